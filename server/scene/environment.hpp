@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace heliograph::scene {
+
+/// An equirectangular environment: linear radiance, row 0 is up.
+/// u = 0.5 + atan2(d.z, d.x) / (2 pi), v = acos(d.y) / pi.
+struct Environment {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::vector<glm::vec3> radiance;
+};
+
+/// Reads a Radiance .hdr file. Non-finite and negative texels are refused.
+/// @throws ImportError
+Environment load_environment(const std::filesystem::path& path);
+
+/// The same radiance from everywhere: the furnace.
+Environment constant_environment(const glm::vec3& radiance);
+
+}  // namespace heliograph::scene

@@ -1,0 +1,101 @@
+// What a scene looks like to the device: std430 layouts, the same bytes in C++.
+#ifndef HELIOGRAPH_SHARED_SCENE_H
+#define HELIOGRAPH_SHARED_SCENE_H
+#include "types.h"
+SHARED_BEGIN
+
+SHARED_CONSTANT uint no_texture = 0xffffffffu;
+
+// 64 bytes. Positions and normals are in mesh space; tangent.w is the bitangent's sign (glTF 3.7.2).
+struct Vertex {
+  vec3 position;
+  uint color_rg;  // linear vertex colour, packUnorm2x16
+  vec3 normal;
+  uint color_ba;
+  vec4 tangent;
+  vec2 uv0;
+  vec2 uv1;
+};
+
+SHARED_CONSTANT uint material_alpha_mask = 1u;
+SHARED_CONSTANT uint material_alpha_blend = 2u;
+SHARED_CONSTANT uint material_double_sided = 4u;
+SHARED_CONSTANT uint material_unlit = 8u;
+
+// A texture slot: `uv = transform * (uvN, 1)` with the rows of KHR_texture_transform's 2x3 matrix.
+struct TextureSlot {
+  vec4 transform_row0;  // xyz: first row; w: unused
+  vec4 transform_row1;  // xyz: second row; w: unused
+  uint texture;         // index into the scene's textures, or no_texture
+  uint uv_set;          // 0 or 1
+  uint padding0;
+  uint padding1;
+};
+
+// glTF 2.0 metallic-roughness material; factors are linear.
+struct Material {
+  vec4 base_color;
+  vec3 emissive;  // factor x KHR_materials_emissive_strength, radiance in scene units
+  float alpha_cutoff;
+  float metallic;
+  float roughness;  // perceptual
+  float normal_scale;
+  float occlusion_strength;
+  float ior;  // 1.5 unless KHR_materials_ior
+  uint flags;
+  uint alpha_mask;  // offset in bytes into the alpha heap read by rays, or no_texture
+  uint alpha_mask_size;  // width | height << 16
+  uint alpha_mask_wrap;  // wrap_s | wrap_t << 8, values of Wrap
+  uint padding0;
+  uint padding1;
+  uint padding2;
+  TextureSlot base_color_texture;
+  TextureSlot metallic_roughness_texture;
+  TextureSlot normal_texture;
+  TextureSlot occlusion_texture;
+  TextureSlot emissive_texture;
+};
+
+SHARED_CONSTANT uint wrap_repeat = 0u;
+SHARED_CONSTANT uint wrap_clamp = 1u;
+SHARED_CONSTANT uint wrap_mirror = 2u;
+
+// One glTF primitive: a range of the scene's vertex and index buffers with one material.
+struct Mesh {
+  uint first_index;
+  uint index_count;
+  uint first_vertex;
+  uint material;
+};
+
+struct Instance {
+  mat4 world;           // mesh -> world
+  mat4 previous_world;  // the same, one rendered frame ago
+  mat4 normal_matrix;   // inverse transpose of world's upper 3x3
+  uint mesh;
+  uint flags;  // instance_flipped where world mirrors (negative determinant)
+  uint padding0;
+  uint padding1;
+};
+SHARED_CONSTANT uint instance_flipped = 1u;
+
+SHARED_CONSTANT uint light_directional = 0u;
+SHARED_CONSTANT uint light_point = 1u;
+SHARED_CONSTANT uint light_spot = 2u;
+
+// KHR_lights_punctual, in world space.
+struct Light {
+  vec3 position;
+  uint type;
+  vec3 direction;  // the way light travels, unit length
+  float range;     // metres; 0: unlimited
+  vec3 color;      // linear colour x intensity: irradiance (directional) or radiant intensity
+  float radius;    // metres (point, spot) or tangent of the angular radius (directional)
+  float spot_scale;   // KHR_lights_punctual's lightAngleScale
+  float spot_offset;  // and lightAngleOffset
+  float padding0;
+  float padding1;
+};
+
+SHARED_END
+#endif
