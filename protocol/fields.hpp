@@ -1,0 +1,81 @@
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <limits>
+#include <string_view>
+#include <tuple>
+
+namespace heliograph::protocol {
+
+/// What a field accepts beyond its type. The range holds for every number in it (the elements of a
+/// vector, too); the length counts bytes of a string or elements of a list.
+struct FieldLimits {
+  double minimum = -std::numeric_limits<double>::infinity();
+  double maximum = std::numeric_limits<double>::infinity();
+  std::size_t min_length = 0;
+  std::size_t max_length = std::numeric_limits<std::size_t>::max();
+};
+
+/// How a field behaves when it is absent.
+enum class Presence {
+  required,    ///< refused (std::optional members: simply empty)
+  defaulted,   ///< the member keeps the value the struct gives it
+  or_null,     ///< std::optional members: written as null when empty
+};
+
+/// One declared member of a message: the single source for parsing, validation, writing and
+/// schema. See `field()`.
+template <class Struct, class Member>
+struct Field {
+  std::string_view name;
+  Member Struct::*member;
+  std::string_view help;
+  std::string_view unit_name = {};
+  FieldLimits limits = {};
+  Presence presence = Presence::required;
+
+  constexpr Field range(double minimum, double maximum) const {
+    Field copy = *this;
+    copy.limits.minimum = minimum;
+    copy.limits.maximum = maximum;
+    return copy;
+  }
+  constexpr Field length(std::size_t minimum, std::size_t maximum) const {
+    Field copy = *this;
+    copy.limits.min_length = minimum;
+    copy.limits.max_length = maximum;
+    return copy;
+  }
+  constexpr Field unit(std::string_view name_of_unit) const {
+    Field copy = *this;
+    copy.unit_name = name_of_unit;
+    return copy;
+  }
+  constexpr Field or_default() const {
+    Field copy = *this;
+    copy.presence = Presence::defaulted;
+    return copy;
+  }
+  constexpr Field or_null() const {
+    Field copy = *this;
+    copy.presence = Presence::or_null;
+    return copy;
+  }
+};
+
+/// Declares a member of a message, in its `static constexpr auto fields()`:
+///   return std::tuple{field("width", &Size::width, "Picture width.").range(16, 8192)};
+/// Members may be bool, 32 or 64 bit integers, float, double, std::string, a HELIOGRAPH_ENUM,
+/// std::array and std::vector of those, std::optional, another message, or RawJson.
+template <class Struct, class Member>
+constexpr Field<Struct, Member> field(std::string_view name, Member Struct::*member,
+                                      std::string_view help) {
+  return {.name = name, .member = member, .help = help};
+}
+
+/// A struct that declares its fields.
+template <class T>
+concept Message = requires { T::fields(); };
+
+}  // namespace heliograph::protocol

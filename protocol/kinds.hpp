@@ -1,0 +1,12 @@
+#pragma once
+
+#include "protocol/enum_names.hpp"
+
+namespace heliograph::protocol {
+
+HELIOGRAPH_ENUM(DeviceType, cpu, integrated, discrete, virtual_, other)
+HELIOGRAPH_ENUM(TracerKind, embree, software)
+HELIOGRAPH_ENUM(PassKind, device, host)
+HELIOGRAPH_ENUM(ImageFormat, png)
+
+}  // namespace heliograph::protocol

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <typeindex>
+
+#include "protocol/raw_json.hpp"
+
+namespace heliograph::protocol {
+
+/// One method of the protocol: the dispatcher takes calls by it, the OpenRPC document is made
+/// from it.
+struct MethodDescriptor {
+  std::string_view name;
+  std::string_view summary;
+  std::type_index params;
+  std::type_index result;
+  /// Whether a call without id has an effect. Other calls without id ask for an answer that
+  /// nobody would get and are dropped.
+  bool may_be_notification;
+  std::string_view example_params;  ///< JSON text
+  std::string_view example_result;  ///< JSON text
+  RawJson (*params_schema)();
+  RawJson (*result_schema)();
+  Result<void> (*check_params)(const RawJson&);
+  Result<void> (*check_result)(const RawJson&);
+};
+
+/// A message the server sends unasked.
+struct NotificationDescriptor {
+  std::string_view name;
+  std::string_view summary;
+  std::type_index params;
+  RawJson (*params_schema)();
+};
+
+std::span<const MethodDescriptor> methods();
+std::span<const NotificationDescriptor> notifications();
+
+/// The whole contract as an OpenRPC 1.3 document: methods with parameters, results, errors and
+/// examples; the server's notifications stand under "x-notifications".
+RawJson openrpc_document();
+
+}  // namespace heliograph::protocol

@@ -1,0 +1,334 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocol/fields.hpp"
+#include "protocol/kinds.hpp"
+#include "protocol/raw_json.hpp"
+
+// Messages about the session: greeting, scene, camera, settings.
+
+namespace heliograph::protocol {
+
+/// x, y, z in metres or as a direction; world space, +Y up, right-handed.
+using Vec3 = std::array<float, 3>;
+
+inline constexpr std::string_view protocol_name = "heliograph.v1";
+
+/// Parameters of methods that take none.
+struct Empty {
+  static constexpr auto fields() { return std::tuple{}; }
+  bool operator==(const Empty&) const = default;
+};
+
+struct Hello {
+  std::optional<std::string> client;
+  std::vector<std::string> codecs{"jpeg"};
+  std::string session = "main";
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("client", &Hello::client, "Name and version of the client, for the log.")
+            .length(0, 200),
+        field("codecs", &Hello::codecs, "Picture codecs the client can decode, best first.")
+            .length(1, 16)
+            .or_default(),
+        field("session", &Hello::session, "The session to watch.").length(1, 64).or_default(),
+    };
+  }
+  bool operator==(const Hello&) const = default;
+};
+
+struct DeviceInfo {
+  std::string name;
+  std::string driver;
+  DeviceType type = DeviceType::other;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("name", &DeviceInfo::name, "Name of the Vulkan device."),
+        field("driver", &DeviceInfo::driver, "Name and version of its driver."),
+        field("type", &DeviceInfo::type, "Kind of device."),
+    };
+  }
+  bool operator==(const DeviceInfo&) const = default;
+};
+
+struct ServerLimits {
+  std::uint32_t max_width = 0;
+  std::uint32_t max_height = 0;
+  std::uint32_t max_message_bytes = 0;
+  std::uint32_t ack_window = 0;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("max_width", &ServerLimits::max_width, "Widest picture.").unit("pixels"),
+        field("max_height", &ServerLimits::max_height, "Highest picture.").unit("pixels"),
+        field("max_message_bytes", &ServerLimits::max_message_bytes,
+              "Longest message the server reads.")
+            .unit("bytes"),
+        field("ack_window", &ServerLimits::ack_window,
+              "Frames the server sends ahead of the newest stream.ack."),
+    };
+  }
+  bool operator==(const ServerLimits&) const = default;
+};
+
+struct HelloResult {
+  std::string protocol{protocol_name};
+  std::string version;
+  DeviceInfo device;
+  TracerKind tracer = TracerKind::software;
+  std::string session;
+  std::string viewer;
+  std::vector<std::string> codecs;
+  ServerLimits limits;
+  std::uint32_t rev = 0;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("protocol", &HelloResult::protocol, "Protocol and its version."),
+        field("version", &HelloResult::version, "Version of the server."),
+        field("device", &HelloResult::device, "Where pictures are rendered."),
+        field("tracer", &HelloResult::tracer, "What traces the rays."),
+        field("session", &HelloResult::session, "The session that is watched."),
+        field("viewer", &HelloResult::viewer,
+              "This viewer's id: the `by` of notifications to the others."),
+        field("codecs", &HelloResult::codecs, "Codecs of the frames that will come, best first."),
+        field("limits", &HelloResult::limits, "What the server refuses to exceed."),
+        field("rev", &HelloResult::rev, "Revision of the session's state."),
+    };
+  }
+  bool operator==(const HelloResult&) const = default;
+};
+
+struct SceneFile {
+  std::string name;
+  std::uint64_t bytes = 0;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("name", &SceneFile::name, "Name for scene.load."),
+        field("bytes", &SceneFile::bytes, "Size of the file.").unit("bytes"),
+    };
+  }
+  bool operator==(const SceneFile&) const = default;
+};
+
+struct SceneListResult {
+  std::vector<SceneFile> scenes;
+  std::optional<std::string> current;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("scenes", &SceneListResult::scenes, "The scenes of the server's catalogue."),
+        field("current", &SceneListResult::current, "Name of the loaded scene.").or_null(),
+    };
+  }
+  bool operator==(const SceneListResult&) const = default;
+};
+
+struct SceneLoad {
+  std::string name;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("name", &SceneLoad::name, "A name that scene.list gave.").length(1, 512),
+    };
+  }
+  bool operator==(const SceneLoad&) const = default;
+};
+
+struct Bounds {
+  Vec3 min{};
+  Vec3 max{};
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("min", &Bounds::min, "Least corner, world space.").unit("metres"),
+        field("max", &Bounds::max, "Greatest corner, world space.").unit("metres"),
+    };
+  }
+  bool operator==(const Bounds&) const = default;
+};
+
+struct SceneInfo {
+  std::string name;
+  std::uint64_t triangles = 0;
+  std::uint32_t instances = 0;
+  std::uint32_t meshes = 0;
+  std::uint32_t materials = 0;
+  std::uint32_t textures = 0;
+  std::uint32_t lights = 0;
+  std::vector<std::string> cameras;
+  Bounds bounds;
+  std::vector<std::string> warnings;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("name", &SceneInfo::name, "Name in the catalogue."),
+        field("triangles", &SceneInfo::triangles, "Triangles over all instances."),
+        field("instances", &SceneInfo::instances, "Meshes as placed in the scene."),
+        field("meshes", &SceneInfo::meshes, "Different meshes."),
+        field("materials", &SceneInfo::materials, "Materials."),
+        field("textures", &SceneInfo::textures, "Textures."),
+        field("lights", &SceneInfo::lights, "Punctual and directional lights."),
+        field("cameras", &SceneInfo::cameras, "Names for camera.set."),
+        field("bounds", &SceneInfo::bounds, "Box around everything."),
+        field("warnings", &SceneInfo::warnings, "What the importer ignored or repaired."),
+    };
+  }
+  bool operator==(const SceneInfo&) const = default;
+};
+
+struct SceneProgress {
+  std::string name;
+  std::string stage;
+  double fraction = 0.0;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("name", &SceneProgress::name, "The scene that is being loaded."),
+        field("stage", &SceneProgress::stage, "What is being done."),
+        field("fraction", &SceneProgress::fraction, "How much is done.").range(0, 1),
+    };
+  }
+  bool operator==(const SceneProgress&) const = default;
+};
+
+struct SceneChanged {
+  SceneInfo scene;
+
+  static constexpr auto fields() {
+    return std::tuple{field("scene", &SceneChanged::scene, "The scene that is shown now.")};
+  }
+  bool operator==(const SceneChanged&) const = default;
+};
+
+struct Camera {
+  Vec3 eye{};
+  Vec3 target{};
+  Vec3 up{0.0f, 1.0f, 0.0f};
+  float vertical_fov = 45.0f;
+  std::optional<std::string> name;
+  std::uint32_t rev = 0;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("eye", &Camera::eye, "Where the camera is, world space.").unit("metres"),
+        field("target", &Camera::target, "The point in the middle of the picture.")
+            .unit("metres"),
+        field("up", &Camera::up, "The direction that points up in the picture."),
+        field("vertical_fov", &Camera::vertical_fov, "Field of view, top to bottom.")
+            .unit("degrees"),
+        field("name", &Camera::name, "The scene camera this is, null once it was moved.")
+            .or_null(),
+        field("rev", &Camera::rev, "Revision of the session's state."),
+    };
+  }
+  bool operator==(const Camera&) const = default;
+};
+
+struct CameraSet {
+  std::optional<Vec3> eye;
+  std::optional<Vec3> target;
+  std::optional<Vec3> up;
+  std::optional<float> vertical_fov;
+  std::optional<std::string> name;
+  std::optional<std::uint32_t> seq;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("eye", &CameraSet::eye, "Where the camera is, world space.")
+            .range(-1e9, 1e9)
+            .unit("metres"),
+        field("target", &CameraSet::target, "The point in the middle of the picture.")
+            .range(-1e9, 1e9)
+            .unit("metres"),
+        field("up", &CameraSet::up, "The direction that points up in the picture.")
+            .range(-1e9, 1e9),
+        field("vertical_fov", &CameraSet::vertical_fov, "Field of view, top to bottom.")
+            .range(1, 170)
+            .unit("degrees"),
+        field("name", &CameraSet::name,
+              "A scene camera to begin from; the other members are applied on top.")
+            .length(1, 256),
+        field("seq", &CameraSet::seq,
+              "The client's own count; frames that show this camera echo it as input_seq_echo."),
+    };
+  }
+  bool operator==(const CameraSet&) const = default;
+};
+
+struct CameraChanged {
+  Camera camera;
+  std::string by;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("camera", &CameraChanged::camera, "The camera now."),
+        field("by", &CameraChanged::by, "The viewer that moved it; empty: the server."),
+    };
+  }
+  bool operator==(const CameraChanged&) const = default;
+};
+
+struct SettingsState {
+  std::uint32_t rev = 0;
+  RawJson settings;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("rev", &SettingsState::rev, "Revision of the session's state."),
+        field("settings", &SettingsState::settings, "The whole tree of settings."),
+    };
+  }
+  bool operator==(const SettingsState&) const = default;
+};
+
+struct SettingsPatch {
+  RawJson patch;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("patch", &SettingsPatch::patch,
+              "Part of the settings tree (RFC 7386): null resets to the default."),
+    };
+  }
+  bool operator==(const SettingsPatch&) const = default;
+};
+
+struct SettingsApplied {
+  std::uint32_t rev = 0;
+  RawJson applied;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("rev", &SettingsApplied::rev, "Revision of the session's state."),
+        field("applied", &SettingsApplied::applied,
+              "The patch as applied: each null replaced by the value it led to."),
+    };
+  }
+  bool operator==(const SettingsApplied&) const = default;
+};
+
+struct SettingsChanged {
+  std::uint32_t rev = 0;
+  RawJson patch;
+  std::string by;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("rev", &SettingsChanged::rev, "Revision of the session's state."),
+        field("patch", &SettingsChanged::patch, "The settings that changed."),
+        field("by", &SettingsChanged::by, "The viewer that changed them; empty: the server."),
+    };
+  }
+  bool operator==(const SettingsChanged&) const = default;
+};
+
+}  // namespace heliograph::protocol
