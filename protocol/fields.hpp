@@ -8,20 +8,22 @@
 
 namespace heliograph::protocol {
 
+inline constexpr std::size_t unlimited_length = std::numeric_limits<std::size_t>::max();
+
 /// What a field accepts beyond its type. The range holds for every number in it (the elements of a
 /// vector, too); the length counts bytes of a string or elements of a list.
 struct FieldLimits {
   double minimum = -std::numeric_limits<double>::infinity();
   double maximum = std::numeric_limits<double>::infinity();
   std::size_t min_length = 0;
-  std::size_t max_length = std::numeric_limits<std::size_t>::max();
+  std::size_t max_length = unlimited_length;
 };
 
 /// How a field behaves when it is absent.
 enum class Presence {
-  required,    ///< refused (std::optional members: simply empty)
-  defaulted,   ///< the member keeps the value the struct gives it
-  or_null,     ///< std::optional members: written as null when empty
+  required,   ///< refused (std::optional members: simply empty)
+  defaulted,  ///< the member keeps the value the struct gives it
+  or_null,    ///< std::optional members: written as null when empty
 };
 
 /// One declared member of a message: the single source for parsing, validation, writing and

@@ -74,6 +74,7 @@ class Dispatcher {
 
   void add_raw(std::string_view name, std::type_index request, std::type_index response,
                RawHandler handler);
+  Result<RawJson> read_message(std::string_view text) const;
   void handle_one(const RawJson& request, const CallContext& context,
                   const std::shared_ptr<Exchange>& exchange) const;
   void invoke(const Entry& entry, const RawJson& params, const CallContext& context,

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "protocol/enum_names.hpp"
 #include "protocol/result.hpp"
@@ -76,8 +77,8 @@ std::span<const SettingDescriptor> setting_descriptors();
 std::span<const SettingGroup> setting_groups();
 /// The setting called `path`, or null.
 const SettingDescriptor* find_setting(std::string_view path);
-/// The names of the histories in `scope`, for people and schemas.
-std::span<const std::string_view> reset_scope_names();
+/// The names of the histories in `scope`.
+std::vector<std::string_view> scope_names(ResetScope scope);
 
 /// Calls `visitor(descriptor, value)` for every setting in order; `value` is a reference to the
 /// member (bool, int, float, std::string or an enum class), const if `settings` is.

@@ -1,0 +1,39 @@
+#include "protocol/codec.hpp"
+
+#include "protocol/codec_templates.hpp"
+
+namespace heliograph::protocol {
+
+#define MESSAGE(T)                                   \
+  template Result<T> decode<T>(const RawJson& json); \
+  template RawJson encode<T>(const T& message);      \
+  template RawJson schema_of<T>();
+
+MESSAGE(Empty)
+MESSAGE(RawJson)
+MESSAGE(Hello)
+MESSAGE(HelloResult)
+MESSAGE(SceneListResult)
+MESSAGE(SceneLoad)
+MESSAGE(SceneInfo)
+MESSAGE(SceneProgress)
+MESSAGE(SceneChanged)
+MESSAGE(Camera)
+MESSAGE(CameraSet)
+MESSAGE(CameraChanged)
+MESSAGE(SettingsState)
+MESSAGE(SettingsPatch)
+MESSAGE(SettingsApplied)
+MESSAGE(SettingsChanged)
+MESSAGE(StreamConfigure)
+MESSAGE(StreamState)
+MESSAGE(StreamAck)
+MESSAGE(StatsSubscription)
+MESSAGE(StatsFrame)
+MESSAGE(FrameBuffers)
+MESSAGE(FrameCapture)
+MESSAGE(CapturedFrame)
+
+#undef MESSAGE
+
+}  // namespace heliograph::protocol

@@ -1,0 +1,163 @@
+#include "protocol/methods.hpp"
+
+#include <vector>
+
+#include "protocol/codec.hpp"
+
+namespace heliograph::protocol {
+namespace {
+
+template <class T>
+Result<void> check(const RawJson& json) {
+  const Result<T> message = decode<T>(json);
+  if (!message) return message.error();
+  return {};
+}
+
+struct Example {
+  std::string_view params;
+  std::string_view result;
+};
+
+enum class Call { query, command };
+
+template <class Params, class ResultType>
+MethodDescriptor method(std::string_view name, Call call, std::string_view summary,
+                        Example example) {
+  return {.name = name,
+          .summary = summary,
+          .params = typeid(Params),
+          .result = typeid(ResultType),
+          .may_be_notification = call == Call::command,
+          .example_params = example.params,
+          .example_result = example.result,
+          .params_schema = schema_of<Params>,
+          .result_schema = schema_of<ResultType>,
+          .check_params = check<Params>,
+          .check_result = check<ResultType>};
+}
+
+template <class Params>
+NotificationDescriptor notification(std::string_view name, std::string_view summary) {
+  return {.name = name,
+          .summary = summary,
+          .params = typeid(Params),
+          .params_schema = schema_of<Params>};
+}
+
+constexpr std::string_view no_params = "{}";
+
+constexpr std::string_view greeting = R"({
+  "protocol": "heliograph.v1", "version": "0.1.0",
+  "device": {"name": "llvmpipe", "driver": "llvmpipe 22.3.6",
+             "type": "cpu"},
+  "tracer": "embree", "session": "main", "viewer": "v1", "codecs": ["jpeg"],
+  "limits": {"max_width": 3840, "max_height": 2160, "max_message_bytes": 65536,
+             "ack_window": 2},
+  "rev": 1})";
+
+constexpr std::string_view scene = R"({
+  "name": "atrium", "triangles": 344000, "instances": 210, "meshes": 34, "materials": 18,
+  "textures": 41, "lights": 1, "cameras": ["entrance", "gallery"],
+  "bounds": {"min": [-12.0, 0.0, -6.5], "max": [12.0, 11.5, 6.5]}, "warnings": []})";
+
+constexpr std::string_view camera = R"({
+  "eye": [8.0, 1.7, 0.0], "target": [0.0, 2.5, 0.0], "up": [0.0, 1.0, 0.0],
+  "vertical_fov": 50.0, "name": null, "rev": 7})";
+
+std::vector<MethodDescriptor> session_methods() {
+  return {
+      method<Hello, HelloResult>(
+          "hello", Call::query,
+          "Introduces a viewer: says what it can decode and learns who serves it.",
+          {R"({"client": "example 1.0", "codecs": ["jpeg"]})", greeting}),
+      method<Empty, SceneListResult>(
+          "scene.list", Call::query, "Lists the scenes that can be loaded.",
+          {no_params,
+           R"({"scenes": [{"name": "atrium", "bytes": 18874368}], "current": "atrium"})"}),
+      method<SceneLoad, SceneInfo>(
+          "scene.load", Call::command,
+          "Loads a scene and shows it; scene.progress tells how far it is. On failure the scene "
+          "that was shown stays.",
+          {R"({"name": "atrium"})", scene}),
+      method<Empty, SceneInfo>("scene.info", Call::query, "Describes the scene that is shown.",
+                               {no_params, scene}),
+      method<Empty, Camera>("camera.get", Call::query, "Tells where the camera is.",
+                            {no_params, camera}),
+      method<CameraSet, Camera>(
+          "camera.set", Call::command,
+          "Moves the camera; members that are left out stay as they are.",
+          {R"({"eye": [8.0, 1.7, 0.0], "target": [0.0, 2.5, 0.0], "seq": 12})", camera}),
+      method<Empty, Camera>("camera.fit", Call::command,
+                            "Moves the camera back until the whole scene is in the picture.",
+                            {no_params, camera}),
+      method<Empty, SettingsState>(
+          "settings.get", Call::query, "Gives the whole tree of settings.",
+          {no_params, R"({"rev": 7, "settings": {"tone_map": {"curve": "neutral"}}})"}),
+      method<SettingsPatch, SettingsApplied>(
+          "settings.patch", Call::command,
+          "Changes settings by a merge patch (RFC 7386): all of it or, on any error, nothing.",
+          {R"({"patch": {"tone_map": {"curve": "agx"}, "exposure": {"compensation": null}}})",
+           R"({"rev": 8, "applied": {"tone_map": {"curve": "agx"},
+                                     "exposure": {"compensation": 0.0}}})"}),
+      method<Empty, RawJson>(
+          "settings.schema", Call::query,
+          "Gives the JSON Schema of the settings: types, defaults, limits, units, help.",
+          {no_params, R"({"type": "object", "properties": {}})"}),
+  };
+}
+
+std::vector<MethodDescriptor> stream_methods() {
+  return {
+      method<StreamConfigure, StreamState>(
+          "stream.configure", Call::command,
+          "Sets size, quality and pace of this viewer's pictures; gives what is in effect.",
+          {R"({"width": 1280, "height": 720, "quality": 80})",
+           R"({"width": 1280, "height": 720, "quality": 80, "max_fps": 60.0,
+               "paused": false})"}),
+      method<StreamAck, Empty>(
+          "stream.ack", Call::command,
+          "Tells that a frame was displayed. The server sends only a window of frames ahead.",
+          {R"({"frame_seq": 42, "decode_us": 3100, "present_us": 9800})", "{}"}),
+      method<StatsSubscription, StatsSubscription>(
+          "stats.subscribe", Call::command,
+          "Asks for stats.frame notifications; gives the interval in effect.",
+          {R"({"interval_ms": 250})", R"({"interval_ms": 250})"}),
+      method<Empty, FrameBuffers>(
+          "frame.buffers", Call::query, "Lists what can be shown or captured.",
+          {no_params,
+           R"({"buffers": [{"name": "output", "description": "The finished picture."}]})"}),
+      method<FrameCapture, CapturedFrame>(
+          "frame.capture", Call::query, "Renders one buffer and gives it as a file.",
+          {R"({"buffer": "output", "samples": 16})",
+           R"({"buffer": "output", "format": "png", "width": 1280, "height": 720, "samples": 16,
+               "data": "iVBORw0KGgo="})"}),
+      method<Empty, RawJson>("rpc.discover", Call::query, "Gives this document.",
+                             {no_params, R"({"openrpc": "1.3.2"})"}),
+  };
+}
+
+}  // namespace
+
+std::span<const MethodDescriptor> methods() {
+  static const std::vector<MethodDescriptor> all = [] {
+    std::vector<MethodDescriptor> list = session_methods();
+    const std::vector<MethodDescriptor> more = stream_methods();
+    list.insert(list.end(), more.begin(), more.end());
+    return list;
+  }();
+  return all;
+}
+
+std::span<const NotificationDescriptor> notifications() {
+  static const std::vector<NotificationDescriptor> all{
+      notification<SettingsChanged>("settings.changed", "Another viewer changed settings."),
+      notification<CameraChanged>("camera.changed", "Another viewer moved the camera."),
+      notification<SceneProgress>("scene.progress", "A scene is being loaded."),
+      notification<SceneChanged>("scene.changed", "Another scene is shown now."),
+      notification<StatsFrame>("stats.frame", "Timings of a picture, for subscribers."),
+  };
+  return all;
+}
+
+}  // namespace heliograph::protocol
