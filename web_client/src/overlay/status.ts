@@ -1,0 +1,162 @@
+// Where the connection stands: a quiet pill while all is well, a card when there is no picture.
+
+import { element, setText } from "../panel/element.ts";
+import { humanise } from "../protocol/settings_schema.ts";
+import type { ConnectionState } from "../stream/connection.ts";
+import type { Viewer } from "../viewer.ts";
+
+interface Notice {
+  title: string;
+  detail: string;
+  /** In [0, 1]; undefined shows no bar, null an endless one. */
+  progress?: number | null;
+  action?: { label: string; run: () => void };
+  /** Whether the last picture stays visible, dimmed, behind the notice. */
+  dims: boolean;
+}
+
+const retryRefreshMs = 250;
+
+export function mountStatus(viewer: Viewer, pill: HTMLElement, card: HTMLElement): void {
+  const view = createCard(card);
+  const pillText = element("span", { class: "pill-text" });
+  pill.append(element("span", { class: "dot" }), pillText);
+  const update = (): void => {
+    const state = viewer.connection.state.value;
+    pill.dataset.state = state.kind;
+    setText(pillText, pillLabel(state));
+    view.show(noticeFor(viewer, state));
+  };
+  viewer.connection.state.watch(update);
+  viewer.loading.watch(update);
+  viewer.scenes.watch(update);
+  viewer.scene.watch(update);
+  let hadPicture = false;
+  viewer.frame.watch((frame) => {
+    if (frame && !hadPicture) {
+      hadPicture = true;
+      update();
+    }
+  });
+  setInterval(() => {
+    if ("retryAt" in viewer.connection.state.value) update();
+  }, retryRefreshMs);
+}
+
+function pillLabel(state: ConnectionState): string {
+  switch (state.kind) {
+    case "connecting":
+      return "Connecting";
+    case "live":
+      return "Live";
+    case "lost":
+      return "Reconnecting";
+    case "full":
+      return "Server full";
+    case "wrong_version":
+      return "Other version";
+    case "forbidden":
+      return "No access";
+  }
+}
+
+function noticeFor(viewer: Viewer, state: ConnectionState): Notice | null {
+  const retry = { label: "Try now", run: () => viewer.connection.retryNow() };
+  switch (state.kind) {
+    case "connecting":
+      return { title: "Connecting", detail: "Looking for the server", progress: null, dims: true };
+    case "lost":
+      return {
+        title: "Connection lost",
+        detail: `The server does not answer. ${countdown(state.retryAt)}`,
+        action: retry,
+        dims: true,
+      };
+    case "full":
+      return {
+        title: "The server is full",
+        detail: `No place is free for another viewer. ${countdown(state.retryAt)}`,
+        action: retry,
+        dims: true,
+      };
+    case "wrong_version":
+      return {
+        title: "This page is of another version",
+        detail: `The server speaks ${state.detail || "another protocol"}. Reload to get its page.`,
+        action: { label: "Reload", run: () => location.reload() },
+        dims: true,
+      };
+    case "forbidden":
+      return {
+        title: "No access",
+        detail: state.detail || "The server does not let this page in.",
+        action: { label: "Reload", run: () => location.reload() },
+        dims: true,
+      };
+    case "live":
+      return liveNotice(viewer);
+  }
+}
+
+function liveNotice(viewer: Viewer): Notice | null {
+  const loading = viewer.loading.value;
+  if (loading) {
+    return {
+      title: `Loading ${loading.name}`,
+      detail: humanise(loading.stage),
+      progress: loading.fraction > 0 ? loading.fraction : null,
+      dims: true,
+    };
+  }
+  if (!viewer.scene.value) {
+    return viewer.scenes.value.scenes.length > 0
+      ? { title: "No scene yet", detail: "Choose one in the panel.", dims: false }
+      : {
+          title: "No scenes found",
+          detail: "Put .glb or .gltf files into the folder that the server was started with.",
+          action: { label: "Look again", run: () => void viewer.refreshScenes() },
+          dims: false,
+        };
+  }
+  if (!viewer.frame.value) {
+    return { title: "Rendering", detail: "The first picture is on its way", progress: null, dims: false };
+  }
+  return null;
+}
+
+function countdown(retryAt: number): string {
+  const seconds = Math.ceil((retryAt - Date.now()) / 1000);
+  return seconds > 0 ? `Trying again in ${seconds} s.` : "Trying again now.";
+}
+
+function createCard(card: HTMLElement): { show(notice: Notice | null): void } {
+  const title = element("h1");
+  const detail = element("p");
+  const bar = element("div", { class: "bar" });
+  const progress = element("div", { class: "progress", role: "progressbar" }, bar);
+  const action = element("button", { type: "button", class: "button" });
+  let run: () => void = () => {};
+  action.addEventListener("click", () => run());
+  card.append(element("div", { class: "card" }, title, detail, progress, action));
+  return {
+    show(notice) {
+      card.hidden = notice === null;
+      if (!notice) return;
+      card.classList.toggle("dims", notice.dims);
+      setText(title, notice.title);
+      setText(detail, notice.detail);
+      progress.hidden = notice.progress === undefined;
+      progress.classList.toggle("endless", notice.progress === null);
+      bar.style.width = typeof notice.progress === "number" ? `${notice.progress * 100}%` : "";
+      progress.setAttribute("aria-label", notice.title);
+      if (typeof notice.progress === "number") {
+        progress.setAttribute("aria-valuenow", String(Math.round(notice.progress * 100)));
+      } else {
+        progress.removeAttribute("aria-valuenow");
+      }
+      action.hidden = !notice.action;
+      setText(action, notice.action?.label ?? "");
+      run = notice.action?.run ?? (() => {});
+    },
+  };
+}

@@ -1,0 +1,58 @@
+// Short messages that come and go in a corner. The same message is not stacked twice.
+
+import { element, icon, setText } from "../panel/element.ts";
+
+const shownMs = 8000;
+const mostAtOnce = 4;
+
+export class Toasts {
+  private readonly container: HTMLElement;
+  private readonly open = new Map<string, { node: HTMLElement; renew: () => void }>();
+
+  constructor(container: HTMLElement) {
+    this.container = container;
+  }
+
+  show(message: string): void {
+    const known = this.open.get(message);
+    if (known) {
+      known.renew();
+      return;
+    }
+    let timer = 0;
+    const close = (): void => {
+      clearTimeout(timer);
+      node.remove();
+      this.open.delete(message);
+    };
+    const renew = (): void => {
+      clearTimeout(timer);
+      timer = window.setTimeout(close, shownMs);
+    };
+    const text = element("span", { class: "toast-text" });
+    setText(text, message);
+    const node = element(
+      "div",
+      {
+        class: "toast",
+        mouseenter: () => clearTimeout(timer),
+        mouseleave: renew,
+      },
+      icon("warning"),
+      text,
+      element(
+        "button",
+        { type: "button", class: "icon-button", "aria-label": "Dismiss", click: close },
+        icon("close"),
+      ),
+    );
+    this.open.set(message, { node, renew });
+    this.container.append(node);
+    renew();
+    if (this.open.size > mostAtOnce) {
+      const oldest = this.open.keys().next().value as string;
+      this.open.get(oldest)?.node.remove();
+      this.open.delete(oldest);
+    }
+  }
+}

@@ -1,0 +1,98 @@
+// The frame of the side panel, which becomes a bottom sheet on narrow screens.
+
+import { preferences } from "../preferences.ts";
+import { type Viewer, bufferSetting } from "../viewer.ts";
+import { button, element, icon } from "./element.ts";
+import { createPerformanceSection } from "./performance_section.ts";
+import { createSceneSection } from "./scene_section.ts";
+import { createSection } from "./section.ts";
+import { mountSettings } from "./settings_panel.ts";
+import { type ResolutionChoice, createStreamSection } from "./stream_section.ts";
+import type { Signal } from "../signal.ts";
+
+export interface PanelActions {
+  help(): void;
+  fullscreen: (() => void) | null;
+}
+
+export interface Panel {
+  resolution: Signal<ResolutionChoice>;
+  toggle(): void;
+}
+
+const narrow = matchMedia("(max-width: 640px)");
+
+export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActions): Panel {
+  const stream = createStreamSection(viewer);
+  const settings = element("div", { class: "settings" });
+  const content = element(
+    "div",
+    { class: "panel-content", id: "panel-content" },
+    createSceneSection(viewer),
+    createSection({
+      id: "performance",
+      title: "Performance",
+      body: createPerformanceSection(viewer),
+      openAtFirst: true,
+    }),
+    settings,
+    createSection({ id: "stream", title: "Stream", body: stream.node, openAtFirst: false }),
+  );
+  const fold = element(
+    "button",
+    { type: "button", class: "icon-button fold", "aria-controls": "panel-content" },
+    icon("panel"),
+  );
+  const header = element(
+    "header",
+    {},
+    element("span", { class: "brand" }, icon("sun"), "Heliograph"),
+    button("Help (?)", "help", actions.help),
+    actions.fullscreen ? button("Fullscreen", "fullscreen", actions.fullscreen) : null,
+    fold,
+  );
+  root.append(header, content);
+  mountSettings(settings, viewer.settings, [bufferSetting]);
+
+  const key = (): string => (narrow.matches ? "sheet" : "panel");
+  let open = false;
+  const show = (shown: boolean): void => {
+    open = shown;
+    root.classList.toggle("folded", !shown);
+    content.inert = !shown;
+    fold.setAttribute("aria-expanded", String(shown));
+    const label = shown ? "Hide panel (H)" : "Show panel (H)";
+    fold.setAttribute("aria-label", label);
+    fold.dataset.tip = label;
+  };
+  const toggle = (): void => {
+    show(!open);
+    preferences.setFlag(key(), open);
+  };
+  const restore = (): void => show(preferences.flag(key(), !narrow.matches));
+  fold.addEventListener("click", toggle);
+  narrow.addEventListener("change", restore);
+  mountSheetDrag(header, () => open, toggle);
+  restore();
+  return { resolution: stream.resolution, toggle };
+}
+
+/** On a phone the header is the handle of the sheet: a swipe up opens it, down closes it. */
+function mountSheetDrag(header: HTMLElement, isOpen: () => boolean, toggle: () => void): void {
+  let startedAt: number | null = null;
+  header.addEventListener("pointerdown", (event) => {
+    startedAt = narrow.matches ? event.clientY : null;
+  });
+  header.addEventListener("pointermove", (event) => {
+    if (startedAt === null) return;
+    const up = startedAt - event.clientY;
+    if (isOpen() ? up < -24 : up > 24) {
+      startedAt = null;
+      toggle();
+    }
+  });
+  header.addEventListener("click", (event) => {
+    const onButton = event.target instanceof Element && event.target.closest("button");
+    if (narrow.matches && !onButton) toggle();
+  });
+}

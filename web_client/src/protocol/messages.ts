@@ -1,0 +1,104 @@
+// Shapes of the JSON messages this client sends and understands (protocol heliograph.v1).
+
+export const subprotocol = "heliograph.v1";
+
+export type Vector3 = [number, number, number];
+export type JsonValue = null | boolean | number | string | JsonValue[] | JsonObject;
+export interface JsonObject {
+  [name: string]: JsonValue;
+}
+
+export interface Hello {
+  protocol: string;
+  version: string;
+  device: { name: string; driver: string; type: string };
+  tracer: string;
+  session: string;
+  viewer: string | number;
+  codecs: string[];
+  limits: { max_width: number; max_height: number; max_message_bytes: number; ack_window: number };
+  rev: number;
+}
+
+export interface SceneList {
+  scenes: { name: string; bytes: number }[];
+  current: string | null;
+}
+
+export interface SceneInfo {
+  name: string;
+  triangles: number;
+  instances: number;
+  meshes: number;
+  materials: number;
+  textures: number;
+  lights: number;
+  cameras: string[];
+  bounds: { min: Vector3; max: Vector3 };
+  warnings: string[];
+}
+
+export interface SceneProgress {
+  name: string;
+  stage: string;
+  fraction: number;
+}
+
+/** Positions in metres, world space; vertical_fov in degrees. */
+export interface Camera {
+  eye: Vector3;
+  target: Vector3;
+  up: Vector3;
+  vertical_fov: number;
+  name: string | null;
+}
+
+export interface StreamSettings {
+  width: number;
+  height: number;
+  quality: number;
+  max_fps: number;
+  paused: boolean;
+}
+
+export interface PassTiming {
+  name: string;
+  kind: "device" | "host";
+  ms: number;
+}
+
+export interface FrameStats {
+  render_id: number;
+  fps: number;
+  frame_ms: number;
+  encode_ms: number;
+  bytes: number;
+  width: number;
+  height: number;
+  samples: number;
+  tracer: string;
+  passes: PassTiming[];
+}
+
+export interface BufferInfo {
+  name: string;
+  description: string;
+}
+
+export interface Capture {
+  buffer: string;
+  format: string;
+  width: number;
+  height: number;
+  samples: number;
+  data: string;
+}
+
+export const ErrorCode = {
+  methodNotFound: -32601,
+  unauthenticated: -32000,
+  forbidden: -32001,
+  notFound: -32004,
+  full: -32029,
+  notReady: -32050,
+} as const;

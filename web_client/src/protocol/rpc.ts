@@ -1,0 +1,112 @@
+// JSON-RPC 2.0 over any text channel: numbered requests, notifications both ways, batches.
+
+import type { JsonObject } from "./messages.ts";
+
+export interface RpcErrorData {
+  path?: string;
+  reason?: string;
+  limit?: unknown;
+}
+
+export class RpcError extends Error {
+  readonly code: number;
+  readonly data: RpcErrorData;
+
+  constructor(code: number, message: string, data: RpcErrorData = {}) {
+    super(message);
+    this.code = code;
+    this.data = data;
+  }
+
+  /** One readable sentence: the server's message, with its reason where the message lacks it. */
+  get sentence(): string {
+    const reason = this.data.reason;
+    return reason && !this.message.includes(reason) ? `${this.message}: ${reason}` : this.message;
+  }
+}
+
+/** The channel went away before the answer came; the caller normally just waits for the next. */
+export class ChannelClosed extends Error {}
+
+interface Pending {
+  resolve: (result: never) => void;
+  reject: (error: Error) => void;
+  timer: ReturnType<typeof setTimeout>;
+}
+
+const defaultTimeoutMs = 30_000;
+
+export class RpcPeer {
+  private readonly send: (text: string) => void;
+  private readonly onNotification: (method: string, params: unknown) => void;
+  private readonly pending = new Map<number, Pending>();
+  private nextId = 1;
+
+  constructor(
+    send: (text: string) => void,
+    onNotification: (method: string, params: unknown) => void,
+  ) {
+    this.send = send;
+    this.onNotification = onNotification;
+  }
+
+  request<Result>(
+    method: string,
+    params: object = {},
+    timeoutMs = defaultTimeoutMs,
+  ): Promise<Result> {
+    const id = this.nextId++;
+    return new Promise<Result>((resolve, reject) => {
+      const timer = setTimeout(() => {
+        this.pending.delete(id);
+        reject(new RpcError(0, `The server did not answer ${method} in ${timeoutMs / 1000} s`));
+      }, timeoutMs);
+      this.pending.set(id, { resolve, reject, timer });
+      this.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
+    });
+  }
+
+  notify(method: string, params: object): void {
+    this.send(JSON.stringify({ jsonrpc: "2.0", method, params }));
+  }
+
+  /** Takes one text message from the channel. Ignores what is not JSON-RPC. */
+  receive(text: string): void {
+    let message: unknown;
+    try {
+      message = JSON.parse(text);
+    } catch {
+      return;
+    }
+    for (const entry of Array.isArray(message) ? message : [message]) {
+      this.dispatch(entry as JsonObject);
+    }
+  }
+
+  /** Fails every waiting request: the channel is gone. */
+  close(): void {
+    for (const { reject, timer } of this.pending.values()) {
+      clearTimeout(timer);
+      reject(new ChannelClosed("The connection was lost"));
+    }
+    this.pending.clear();
+  }
+
+  private dispatch(entry: JsonObject): void {
+    if (typeof entry !== "object" || entry === null) return;
+    if (typeof entry.method === "string") {
+      if (entry.id === undefined) this.onNotification(entry.method, entry.params ?? {});
+      return;
+    }
+    const waiting = this.pending.get(entry.id as number);
+    if (!waiting) return;
+    this.pending.delete(entry.id as number);
+    clearTimeout(waiting.timer);
+    if (entry.error !== undefined) {
+      const error = entry.error as unknown as { code: number; message: string; data?: RpcErrorData };
+      waiting.reject(new RpcError(error.code, error.message, error.data ?? {}));
+    } else {
+      waiting.resolve(entry.result as never);
+    }
+  }
+}

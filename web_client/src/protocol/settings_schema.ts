@@ -1,0 +1,270 @@
+// Turns the server's JSON Schema of its settings into a description of controls. Nothing here
+// knows a setting by name, so a setting added to the server appears without a change here.
+
+import type { JsonObject, JsonValue } from "./messages.ts";
+import { isObject } from "./settings_tree.ts";
+
+interface ControlBase {
+  /** Dotted path of the setting. */
+  path: string;
+  label: string;
+  description: string;
+  /** As the schema names it, for example "seconds"; empty when the value has none. */
+  unit: string;
+  default: JsonValue | undefined;
+  order: number;
+}
+
+export interface NumberRange {
+  minimum: number | undefined;
+  maximum: number | undefined;
+  step: number;
+  integer: boolean;
+}
+
+export interface ToggleControl extends ControlBase {
+  kind: "toggle";
+}
+export interface SliderControl extends ControlBase, NumberRange {
+  kind: "slider";
+  minimum: number;
+  maximum: number;
+  logarithmic: boolean;
+}
+export interface NumberControl extends ControlBase, NumberRange {
+  kind: "number";
+}
+export interface VectorControl extends ControlBase, NumberRange {
+  kind: "vector";
+  length: number;
+}
+export interface ChoiceControl extends ControlBase {
+  kind: "choice";
+  options: { value: JsonValue; label: string }[];
+}
+export interface TextControl extends ControlBase {
+  kind: "text";
+}
+/** A shape this client has no widget for: edited as JSON text. */
+export interface JsonControl extends ControlBase {
+  kind: "json";
+}
+
+export type Control =
+  | ToggleControl
+  | SliderControl
+  | NumberControl
+  | VectorControl
+  | ChoiceControl
+  | TextControl
+  | JsonControl;
+
+export interface ControlGroup {
+  path: string;
+  title: string;
+  description: string;
+  order: number;
+  controls: Control[];
+  groups: ControlGroup[];
+}
+
+/** Describes the whole panel. The result is an unnamed group that holds the top-level ones. */
+export function describeControls(schema: JsonObject): ControlGroup {
+  return describeGroup(schema, schema, "", "", 0);
+}
+
+/** Every default of the schema, as a settings tree. */
+export function defaultTree(group: ControlGroup): JsonObject {
+  const tree: JsonObject = {};
+  for (const control of group.controls) {
+    if (control.default !== undefined) tree[lastName(control.path)] = control.default;
+  }
+  for (const inner of group.groups) tree[lastName(inner.path)] = defaultTree(inner);
+  return tree;
+}
+
+export function allControls(group: ControlGroup): Control[] {
+  return [...group.controls, ...group.groups.flatMap(allControls)];
+}
+
+/** "max_history" -> "Max history". */
+export function humanise(name: string): string {
+  const words = name.replaceAll("_", " ").trim();
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}
+
+function describeGroup(
+  root: JsonObject,
+  schema: JsonObject,
+  path: string,
+  title: string,
+  order: number,
+): ControlGroup {
+  const group: ControlGroup = {
+    path,
+    title,
+    description: text(schema.description),
+    order,
+    controls: [],
+    groups: [],
+  };
+  const properties = isObject(schema.properties) ? schema.properties : {};
+  Object.entries(properties).forEach(([name, value], index) => {
+    const node = resolve(root, value);
+    const inner = path ? `${path}.${name}` : name;
+    const label = text(node.title) || humanise(name);
+    const position = typeof node["x-order"] === "number" ? node["x-order"] : index;
+    if (isObject(node.properties)) {
+      group.groups.push(describeGroup(root, node, inner, label, position));
+    } else {
+      group.controls.push(describeControl(node, inner, label, position));
+    }
+  });
+  group.controls.sort((a, b) => a.order - b.order);
+  group.groups = group.groups
+    .filter((inner) => inner.controls.length > 0 || inner.groups.length > 0)
+    .sort((a, b) => a.order - b.order);
+  return group;
+}
+
+function describeControl(
+  node: JsonObject,
+  path: string,
+  label: string,
+  order: number,
+): Control {
+  const base: ControlBase = {
+    path,
+    label,
+    description: text(node.description),
+    unit: text(node["x-unit"]),
+    default: node.default,
+    order,
+  };
+  const type = typeOf(node);
+  if (Array.isArray(node.enum) && node.enum.length > 0) {
+    const labels = isObject(node["x-labels"]) ? node["x-labels"] : {};
+    const options = node.enum
+      .filter((value) => value !== null)
+      .map((value) => ({ value, label: text(labels[String(value)]) || humanise(String(value)) }));
+    return { ...base, kind: "choice", options };
+  }
+  if (type === "boolean") return { ...base, kind: "toggle" };
+  if (type === "string") return { ...base, kind: "text" };
+  if (type === "number" || type === "integer") return describeNumber(base, node, type);
+  if (type === "array") {
+    const items = isObject(node.items) ? node.items : {};
+    const itemType = typeOf(items);
+    const length = vectorLength(node);
+    if ((itemType === "number" || itemType === "integer") && length > 0) {
+      return { ...base, kind: "vector", length, ...numberRange(items, itemType) };
+    }
+  }
+  return { ...base, kind: "json" };
+}
+
+function describeNumber(base: ControlBase, node: JsonObject, type: string): Control {
+  const range = numberRange(node, type);
+  const { minimum, maximum } = range;
+  if (minimum === undefined || maximum === undefined || !(maximum > minimum)) {
+    return { ...base, kind: "number", ...range };
+  }
+  const logarithmic = minimum > 0 && maximum / minimum >= 1000;
+  return { ...base, kind: "slider", ...range, minimum, maximum, logarithmic };
+}
+
+function numberRange(node: JsonObject, type: string): NumberRange {
+  const integer = type === "integer";
+  const minimum = numeric(node.minimum) ?? numeric(node.exclusiveMinimum);
+  const maximum = numeric(node.maximum) ?? numeric(node.exclusiveMaximum);
+  const stated = numeric(node.multipleOf);
+  const span = minimum !== undefined && maximum !== undefined ? maximum - minimum : undefined;
+  const step = stated ?? (integer ? 1 : span ? niceStep(span / 200) : 0.1);
+  return { minimum, maximum, step, integer };
+}
+
+/** The largest of 1, 2, 5 times a power of ten that is not above the given width. */
+export function niceStep(width: number): number {
+  const power = 10 ** Math.floor(Math.log10(width));
+  const leading = width / power;
+  const factor = leading >= 5 ? 5 : leading >= 2 ? 2 : 1;
+  return Number((factor * power).toPrecision(6));
+}
+
+/** Decimals that tell neighbouring values of this step apart. */
+export function decimalsOf(step: number): number {
+  return Math.min(6, Math.max(0, Math.ceil(-Math.log10(step) - 1e-9)));
+}
+
+/** Writes a number with the digits its control distinguishes, without trailing zeros. */
+export function formatNumber(value: number, range: NumberRange): string {
+  if (range.integer) return String(Math.round(value));
+  const decimals = Math.max(decimalsOf(range.step), value !== 0 ? significant(value) : 0);
+  return String(Number(value.toFixed(Math.min(decimals, 7))));
+}
+
+function significant(value: number): number {
+  return Math.max(0, 2 - Math.floor(Math.log10(Math.abs(value))));
+}
+
+/** Reads typed text; null when it is not a number. The result is kept inside the range. */
+export function parseNumber(typed: string, range: NumberRange): number | null {
+  const value = Number(typed.trim().replace(",", "."));
+  if (typed.trim() === "" || !Number.isFinite(value)) return null;
+  const low = range.minimum ?? -Infinity;
+  const high = range.maximum ?? Infinity;
+  return Math.min(high, Math.max(low, range.integer ? Math.round(value) : value));
+}
+
+/** Slider position in [0, 1] of a value. */
+export function sliderPosition(control: SliderControl, value: number): number {
+  const { minimum, maximum } = control;
+  const inside = Math.min(maximum, Math.max(minimum, value));
+  return control.logarithmic
+    ? Math.log(inside / minimum) / Math.log(maximum / minimum)
+    : (inside - minimum) / (maximum - minimum);
+}
+
+/** Value at a slider position in [0, 1], rounded to the control's step or to three digits. */
+export function sliderValue(control: SliderControl, position: number): number {
+  const { minimum, maximum, step } = control;
+  let value: number;
+  if (control.logarithmic) {
+    value = Number((minimum * (maximum / minimum) ** position).toPrecision(3));
+    if (control.integer) value = Math.round(value);
+  } else {
+    const steps = Math.round((position * (maximum - minimum)) / step);
+    value = Number((minimum + steps * step).toFixed(decimalsOf(step) + 1));
+  }
+  return Math.min(maximum, Math.max(minimum, value));
+}
+
+function resolve(root: JsonObject, value: JsonValue): JsonObject {
+  if (!isObject(value)) return {};
+  if (typeof value.$ref !== "string" || !value.$ref.startsWith("#/")) return value;
+  let node: JsonValue | undefined = root;
+  for (const name of value.$ref.slice(2).split("/")) node = isObject(node) ? node[name] : undefined;
+  return isObject(node) ? { ...node, ...value } : value;
+}
+
+function typeOf(node: JsonObject): string {
+  if (Array.isArray(node.type)) return String(node.type.find((name) => name !== "null") ?? "");
+  return text(node.type);
+}
+
+function vectorLength(node: JsonObject): number {
+  const stated = numeric(node.maxItems) ?? numeric(node.minItems);
+  return stated ?? (Array.isArray(node.default) ? node.default.length : 0);
+}
+
+function numeric(value: JsonValue | undefined): number | undefined {
+  return typeof value === "number" ? value : undefined;
+}
+
+function text(value: JsonValue | undefined): string {
+  return typeof value === "string" ? value : "";
+}
+
+function lastName(path: string): string {
+  return path.slice(path.lastIndexOf(".") + 1);
+}

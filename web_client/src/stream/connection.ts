@@ -1,0 +1,204 @@
+// The connection to the server: opens it, says hello, notices loss, comes back.
+
+import { type Hello, ErrorCode, subprotocol } from "../protocol/messages.ts";
+import { ChannelClosed, RpcError, RpcPeer } from "../protocol/rpc.ts";
+import { Signal } from "../signal.ts";
+import { Backoff } from "./backoff.ts";
+import type { DrawnFrame, FromWorker, ToWorker } from "./worker_messages.ts";
+
+export type ConnectionState =
+  | { kind: "connecting" }
+  | { kind: "live"; hello: Hello }
+  | { kind: "lost"; retryAt: number }
+  | { kind: "wrong_version"; detail: string }
+  | { kind: "full"; retryAt: number }
+  | { kind: "forbidden"; detail: string };
+
+export interface ConnectionEvents {
+  live(hello: Hello): Promise<void>;
+  notification(method: string, params: unknown): void;
+  drawn(frame: DrawnFrame): void;
+  /** Only where the worker cannot draw: shows the picture and takes ownership of it. */
+  draw(picture: ImageBitmap | VideoFrame, frame: DrawnFrame): void;
+  warning(message: string): void;
+}
+
+const closeCode = { policy: 1008, tryAgainLater: 1013, unauthorised: 4001, version: 4005 };
+const stableAfterMs = 5000;
+const aliveCheckMs = 15_000;
+const aliveTimeoutMs = 10_000;
+
+export class Connection {
+  readonly state = new Signal<ConnectionState>({ kind: "connecting" });
+  readonly rpc: RpcPeer;
+  private readonly worker: Worker;
+  private readonly url: string;
+  private readonly probeUrl: string;
+  private readonly events: ConnectionEvents;
+  private readonly backoff = new Backoff();
+  private retryTimer = 0;
+  private stableTimer = 0;
+  private heardAt = 0;
+
+  constructor(base: string, canvas: OffscreenCanvas | null, events: ConnectionEvents) {
+    const url = new URL("ws", base);
+    url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
+    this.url = url.href;
+    this.probeUrl = new URL("rpc", base).href;
+    this.events = events;
+    this.worker = new Worker(new URL("worker.js", base), { name: "stream" });
+    this.worker.onmessage = ({ data }: MessageEvent<FromWorker>) => this.receive(data);
+    this.worker.onerror = () => this.events.warning("The stream worker could not be started");
+    this.rpc = new RpcPeer(
+      (text) => this.post({ kind: "send", text }),
+      (method, params) => this.events.notification(method, params),
+    );
+    if (canvas) this.post({ kind: "canvas", canvas }, [canvas]);
+    addEventListener("online", () => this.retryNow());
+    addEventListener("visibilitychange", () => {
+      if (!document.hidden) this.retryNow();
+    });
+    setInterval(() => void this.checkAlive(), aliveCheckMs);
+  }
+
+  open(): void {
+    clearTimeout(this.retryTimer);
+    this.retryTimer = 0;
+    this.post({ kind: "open", url: this.url, subprotocol });
+  }
+
+  /** Cuts a waiting time short, after a click or when the network is back. */
+  retryNow(): void {
+    if (this.retryTimer) this.open();
+  }
+
+  private post(message: ToWorker, transfer: Transferable[] = []): void {
+    this.worker.postMessage(message, transfer);
+  }
+
+  private receive(message: FromWorker): void {
+    this.heardAt = performance.now();
+    switch (message.kind) {
+      case "opened":
+        void this.sayHello(message.subprotocol);
+        break;
+      case "closed":
+        void this.closed(message.code, message.reason, message.wasOpen);
+        break;
+      case "text":
+        this.rpc.receive(message.text);
+        break;
+      case "drawn":
+        this.events.drawn(message.frame);
+        break;
+      case "picture":
+        this.events.draw(message.picture, message.frame);
+        this.events.drawn(message.frame);
+        break;
+      case "undecodable":
+        this.events.warning(`A picture could not be shown: ${message.message}`);
+        break;
+    }
+  }
+
+  private async sayHello(spoken: string): Promise<void> {
+    if (spoken !== subprotocol) {
+      this.stop({ kind: "wrong_version", detail: spoken || "no known version" });
+      return;
+    }
+    try {
+      const hello = await this.rpc.request<Hello>("hello", {
+        client: "heliograph-web",
+        codecs: ["jpeg"],
+      });
+      if (hello.protocol !== subprotocol) {
+        this.stop({ kind: "wrong_version", detail: hello.protocol });
+        return;
+      }
+      await this.events.live(hello);
+      this.state.set({ kind: "live", hello });
+      clearTimeout(this.stableTimer);
+      this.stableTimer = window.setTimeout(() => this.backoff.reset(), stableAfterMs);
+    } catch (error) {
+      if (error instanceof ChannelClosed) return;
+      this.helloRefused(error as Error);
+    }
+  }
+
+  private helloRefused(error: Error): void {
+    const code = error instanceof RpcError ? error.code : 0;
+    if (code === ErrorCode.unauthenticated || code === ErrorCode.forbidden) {
+      this.stop({ kind: "forbidden", detail: error.message });
+      return;
+    }
+    this.post({ kind: "close" });
+    this.rpc.close();
+    if (code !== ErrorCode.full) this.events.warning(error.message);
+    this.retryLater(code === ErrorCode.full ? "full" : "lost");
+  }
+
+  private async closed(code: number, reason: string, wasOpen: boolean): Promise<void> {
+    clearTimeout(this.stableTimer);
+    this.rpc.close();
+    if (code === closeCode.version) {
+      this.state.set({ kind: "wrong_version", detail: reason });
+    } else if (code === closeCode.policy || code === closeCode.unauthorised) {
+      this.state.set({ kind: "forbidden", detail: reason });
+    } else if (code === closeCode.tryAgainLater) {
+      this.retryLater("full");
+    } else {
+      const spoken = wasOpen ? null : await this.probeVersion();
+      if (spoken && spoken !== subprotocol) {
+        this.state.set({ kind: "wrong_version", detail: spoken });
+      } else {
+        this.retryLater("lost");
+      }
+    }
+  }
+
+  /**
+   * A browser does not tell why an upgrade was refused. Plain HTTP does: a server that answers
+   * there but names another protocol is alive and merely of another version.
+   */
+  private async probeVersion(): Promise<string | null> {
+    try {
+      const response = await fetch(this.probeUrl, {
+        method: "POST",
+        headers: { "content-type": "application/json" },
+        body: JSON.stringify({ jsonrpc: "2.0", id: 1, method: "hello", params: {} }),
+      });
+      const answer = (await response.json()) as { result?: Partial<Hello> };
+      return answer.result?.protocol ?? null;
+    } catch {
+      return null;
+    }
+  }
+
+  private retryLater(kind: "lost" | "full"): void {
+    const waitMs = this.backoff.next();
+    this.state.set({ kind, retryAt: Date.now() + waitMs });
+    clearTimeout(this.retryTimer);
+    this.retryTimer = window.setTimeout(() => this.open(), waitMs);
+  }
+
+  private stop(state: ConnectionState): void {
+    this.post({ kind: "close" });
+    this.rpc.close();
+    this.state.set(state);
+  }
+
+  /** A silently dropped network path looks open for ever unless something asks now and then. */
+  private async checkAlive(): Promise<void> {
+    const quiet = performance.now() - this.heardAt >= aliveCheckMs;
+    if (this.state.value.kind !== "live" || !quiet) return;
+    try {
+      await this.rpc.request("camera.get", {}, aliveTimeoutMs);
+    } catch (error) {
+      if (error instanceof RpcError && error.code !== 0) return;
+      if (this.state.value.kind !== "live") return;
+      this.post({ kind: "close" });
+      this.rpc.close();
+      this.retryLater("lost");
+    }
+  }
+}

@@ -1,0 +1,117 @@
+// Decodes and draws the newest frame. A frame that arrives while another is being decoded
+// replaces any that still waits: what matters is the latest picture, not every picture.
+
+import { type FrameHeader, mimeType, parseFrameHeader } from "../protocol/frame_header.ts";
+import { type DrawnFrame, clockMs } from "./worker_messages.ts";
+
+interface Arrived {
+  header: FrameHeader;
+  message: ArrayBuffer;
+  receivedAt: number;
+}
+
+export interface FrameSink {
+  /** Shows the picture and takes ownership of it. */
+  draw(picture: ImageBitmap | VideoFrame, frame: DrawnFrame): void;
+  /** Tells the server that a frame is dealt with, shown or skipped. */
+  acknowledge(frameSeq: number, decodeUs: number, presentUs: number): void;
+  failed(message: string): void;
+}
+
+export type Decode = (
+  bytes: Uint8Array<ArrayBuffer>,
+  type: string,
+) => Promise<ImageBitmap | VideoFrame>;
+
+export class FramePipeline {
+  private readonly sink: FrameSink;
+  private readonly decode: Decode;
+  private waiting: Arrived | null = null;
+  private busy = false;
+
+  constructor(sink: FrameSink, decode: Decode) {
+    this.sink = sink;
+    this.decode = decode;
+  }
+
+  /** Takes one binary message from the socket. */
+  push(message: ArrayBuffer): void {
+    let header: FrameHeader;
+    try {
+      header = parseFrameHeader(message);
+    } catch (error) {
+      this.sink.failed((error as Error).message);
+      return;
+    }
+    if (this.waiting) this.sink.acknowledge(this.waiting.header.frameSeq, 0, 0);
+    this.waiting = { header, message, receivedAt: clockMs() };
+    if (!this.busy) void this.run();
+  }
+
+  /** Forgets a waiting frame of a connection that is gone. */
+  clear(): void {
+    this.waiting = null;
+  }
+
+  private async run(): Promise<void> {
+    this.busy = true;
+    while (this.waiting) {
+      const frame = this.waiting;
+      this.waiting = null;
+      await this.show(frame);
+    }
+    this.busy = false;
+  }
+
+  private async show({ header, message, receivedAt }: Arrived): Promise<void> {
+    const type = mimeType(header.codec);
+    if (!type) {
+      this.sink.failed(`the server sent a picture in codec ${header.codec}`);
+      return;
+    }
+    const startedAt = clockMs();
+    try {
+      const picture = await this.decode(new Uint8Array(message, header.headerBytes), type);
+      const decodedAt = clockMs();
+      this.sink.draw(picture, {
+        frameSeq: header.frameSeq,
+        inputSeqEcho: header.inputSeqEcho,
+        renderId: header.renderId,
+        width: header.width,
+        height: header.height,
+        samples: header.sampleCount,
+        bytes: message.byteLength,
+        renderMs: header.renderUs / 1000,
+        encodeMs: header.encodeUs / 1000,
+        decodeMs: decodedAt - startedAt,
+        receivedAt,
+        drawnAt: clockMs(),
+      });
+      const decodeUs = Math.round((decodedAt - startedAt) * 1000);
+      const presentUs = Math.round((clockMs() - receivedAt) * 1000);
+      this.sink.acknowledge(header.frameSeq, decodeUs, presentUs);
+    } catch {
+      this.sink.failed(`frame ${header.frameSeq} could not be decoded as ${type}`);
+      this.sink.acknowledge(header.frameSeq, 0, 0);
+    }
+  }
+}
+
+/** The fastest decoder this browser has. ImageDecoder reads the bytes where they lie. */
+export async function chooseDecoder(): Promise<Decode> {
+  if ("ImageDecoder" in globalThis && (await ImageDecoder.isTypeSupported("image/jpeg"))) {
+    return async (bytes, type) => {
+      const decoder = new ImageDecoder({ data: bytes, type, colorSpaceConversion: "none" });
+      try {
+        return (await decoder.decode()).image;
+      } finally {
+        decoder.close();
+      }
+    };
+  }
+  return (bytes, type) =>
+    createImageBitmap(new Blob([bytes], { type }), {
+      colorSpaceConversion: "none",
+      premultiplyAlpha: "none",
+    });
+}

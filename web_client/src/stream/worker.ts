@@ -1,0 +1,84 @@
+// The stream worker: owns the socket, decodes and draws, so that a busy page delays no frame.
+
+import { CanvasPainter } from "./canvas_painter.ts";
+import { FramePipeline, type FrameSink, chooseDecoder } from "./frame_pipeline.ts";
+import type { FromWorker, ToWorker } from "./worker_messages.ts";
+
+interface WorkerScope {
+  postMessage(message: FromWorker, transfer?: Transferable[]): void;
+  onmessage: ((event: MessageEvent<ToWorker>) => void) | null;
+}
+const scope = self as unknown as WorkerScope;
+
+let socket: WebSocket | null = null;
+let painter: CanvasPainter | null = null;
+
+const sink: FrameSink = {
+  draw(picture, frame) {
+    if (painter) {
+      painter.draw(picture, frame.width, frame.height);
+      scope.postMessage({ kind: "drawn", frame });
+    } else {
+      scope.postMessage({ kind: "picture", picture, frame }, [picture]);
+    }
+  },
+  acknowledge(frameSeq, decodeUs, presentUs) {
+    const params = { frame_seq: frameSeq, decode_us: decodeUs, present_us: presentUs };
+    send(JSON.stringify({ jsonrpc: "2.0", method: "stream.ack", params }));
+  },
+  failed(message) {
+    scope.postMessage({ kind: "undecodable", message });
+  },
+};
+const pipeline = chooseDecoder().then((decode) => new FramePipeline(sink, decode));
+
+function send(text: string): void {
+  if (socket?.readyState === WebSocket.OPEN) socket.send(text);
+}
+
+function close(): void {
+  if (!socket) return;
+  socket.onopen = socket.onmessage = socket.onclose = null;
+  socket.close(1000);
+  socket = null;
+}
+
+async function open(url: string, subprotocol: string): Promise<void> {
+  const frames = await pipeline;
+  close();
+  frames.clear();
+  let wasOpen = false;
+  const opening = new WebSocket(url, subprotocol);
+  opening.binaryType = "arraybuffer";
+  opening.onopen = () => {
+    wasOpen = true;
+    scope.postMessage({ kind: "opened", subprotocol: opening.protocol });
+  };
+  opening.onmessage = (event: MessageEvent<string | ArrayBuffer>) => {
+    if (typeof event.data === "string") scope.postMessage({ kind: "text", text: event.data });
+    else frames.push(event.data);
+  };
+  opening.onclose = ({ code, reason }) => {
+    socket = null;
+    frames.clear();
+    scope.postMessage({ kind: "closed", code, reason, wasOpen });
+  };
+  socket = opening;
+}
+
+scope.onmessage = ({ data }) => {
+  switch (data.kind) {
+    case "canvas":
+      painter = new CanvasPainter(data.canvas);
+      break;
+    case "open":
+      void open(data.url, data.subprotocol);
+      break;
+    case "close":
+      close();
+      break;
+    case "send":
+      send(data.text);
+      break;
+  }
+};

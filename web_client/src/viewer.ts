@@ -1,0 +1,259 @@
+// What this page knows about the session it watches, and what it can ask of it. No DOM here
+// except the canvas that the pictures go to.
+
+import {
+  type BufferInfo,
+  type Camera,
+  type Capture,
+  type FrameStats,
+  type Hello,
+  type JsonObject,
+  type SceneInfo,
+  type SceneList,
+  type SceneProgress,
+  type StreamSettings,
+  ErrorCode,
+} from "./protocol/messages.ts";
+import { ChannelClosed, RpcError, type RpcPeer } from "./protocol/rpc.ts";
+import { SettingsStore } from "./settings_store.ts";
+import { Signal } from "./signal.ts";
+import { CanvasPainter } from "./stream/canvas_painter.ts";
+import { Connection } from "./stream/connection.ts";
+import { LatencyMeter } from "./stream/latency.ts";
+import { RateMeter } from "./stream/rates.ts";
+import { type DrawnFrame, clockMs } from "./stream/worker_messages.ts";
+import { samePose } from "./view/camera.ts";
+import { length, subtract } from "./view/vector.ts";
+import type { PictureSize } from "./view/viewport.ts";
+
+const statsIntervalMs = 250;
+const progressSilenceMs = 20_000;
+
+export const bufferSetting = "view.buffer";
+
+export class Viewer {
+  readonly connection: Connection;
+  readonly rpc: RpcPeer;
+  readonly settings: SettingsStore;
+  readonly scenes = new Signal<SceneList>({ scenes: [], current: null });
+  readonly scene = new Signal<SceneInfo | null>(null);
+  readonly loading = new Signal<SceneProgress | null>(null);
+  readonly camera = new Signal<Camera | null>(null);
+  readonly buffers = new Signal<BufferInfo[]>([]);
+  readonly stats = new Signal<FrameStats | null>(null);
+  readonly frame = new Signal<DrawnFrame | null>(null);
+  readonly stream = new Signal<StreamSettings | null>(null);
+  readonly latency = new LatencyMeter();
+  readonly rates = new RateMeter();
+  /** Says in one sentence what went wrong. */
+  onError: (message: string) => void = () => {};
+  /** True while a hand is on the camera; poses from elsewhere then wait. */
+  cameraBusy: () => boolean = () => false;
+  /** The size of picture that suits the view and this server. */
+  chooseSize: (hello: Hello) => PictureSize = () => ({ width: 640, height: 360 });
+  private inputSeq = 0;
+  private askedSize: PictureSize | null = null;
+  private wantedStream: Partial<StreamSettings> = {};
+  private progressTimer = 0;
+  /** The server's hello, from its arrival until the connection is gone. */
+  private greeting: Hello | null = null;
+
+  constructor(base: string, canvas: HTMLCanvasElement) {
+    const offscreen =
+      typeof canvas.transferControlToOffscreen === "function"
+        ? canvas.transferControlToOffscreen()
+        : null;
+    const painter = offscreen ? null : new CanvasPainter(canvas);
+    this.connection = new Connection(base, offscreen, {
+      live: (hello) => this.becomeLive(hello),
+      notification: (method, params) => this.notified(method, params),
+      drawn: (frame) => this.frameDrawn(frame),
+      draw: (picture, frame) => painter?.draw(picture, frame.width, frame.height),
+      warning: (message) => this.onError(message),
+    });
+    this.rpc = this.connection.rpc;
+    this.settings = new SettingsStore(this.rpc, (error) => this.report(error));
+    this.connection.state.watch(({ kind }) => {
+      if (kind !== "live") this.greeting = null;
+    });
+  }
+
+  get hello(): Hello | null {
+    const state = this.connection.state.value;
+    return state.kind === "live" ? state.hello : null;
+  }
+
+  /** Largest extent of the scene in metres; 1 while none is known. */
+  sceneSize(): number {
+    const bounds = this.scene.value?.bounds;
+    const size = bounds ? length(subtract(bounds.max, bounds.min)) : 0;
+    return size > 0 && Number.isFinite(size) ? size : 1;
+  }
+
+  /** Sends an absolute pose. Call at most once per animation frame. */
+  moveCamera(camera: Camera): void {
+    this.camera.set(camera);
+    this.inputSeq += 1;
+    this.latency.inputSent(this.inputSeq, clockMs());
+    const { eye, target, up, vertical_fov } = camera;
+    this.rpc.notify("camera.set", { eye, target, up, vertical_fov, seq: this.inputSeq });
+  }
+
+  async selectCamera(name: string): Promise<void> {
+    await this.attempt(async () => {
+      this.inputSeq += 1;
+      this.latency.inputSent(this.inputSeq, clockMs());
+      this.camera.set(await this.rpc.request<Camera>("camera.set", { name, seq: this.inputSeq }));
+    });
+  }
+
+  async fitCamera(): Promise<void> {
+    await this.attempt(async () => this.camera.set(await this.rpc.request<Camera>("camera.fit")));
+  }
+
+  async loadScene(name: string): Promise<void> {
+    this.showProgress({ name, stage: "starting", fraction: 0 });
+    try {
+      const tenMinutes = 600_000;
+      const info = await this.rpc.request<SceneInfo>("scene.load", { name }, tenMinutes);
+      await this.sceneChanged(info);
+    } catch (error) {
+      this.showProgress(null);
+      this.scenes.set(this.scenes.value);
+      this.report(error);
+    }
+  }
+
+  async refreshScenes(): Promise<void> {
+    await this.attempt(async () => {
+      this.scenes.set(await this.rpc.request<SceneList>("scene.list"));
+    });
+  }
+
+  /** Asks for pictures of another size if the view, the screen or the choice has changed. */
+  updateSize(): void {
+    if (!this.greeting) return;
+    const size = this.chooseSize(this.greeting);
+    const before = this.askedSize;
+    if (before && before.width === size.width && before.height === size.height) return;
+    this.askedSize = size;
+    void this.configureStream(size);
+  }
+
+  /** Changes the stream; remembered for the next connection. */
+  requestStream(change: Partial<StreamSettings>): void {
+    this.wantedStream = { ...this.wantedStream, ...change };
+    void this.configureStream(change);
+  }
+
+  async capture(): Promise<Capture> {
+    const buffer = String(this.settings.value(bufferSetting) ?? "output");
+    return this.rpc.request<Capture>("frame.capture", { buffer, format: "png" }, 120_000);
+  }
+
+  report(error: unknown): void {
+    if (error instanceof ChannelClosed) return;
+    const known = error instanceof RpcError ? error.sentence : (error as Error).message;
+    this.onError(known);
+  }
+
+  private async becomeLive(hello: Hello): Promise<void> {
+    this.greeting = hello;
+    this.latency.reset();
+    this.inputSeq = 0;
+    this.askedSize = this.chooseSize(hello);
+    await Promise.all([
+      this.configureStream({ ...this.wantedStream, ...this.askedSize }),
+      this.settings.load(),
+      this.refreshScenes(),
+      this.readScene(),
+      this.attempt(() => this.readBuffers()),
+      this.attempt(() => this.rpc.request("stats.subscribe", { interval_ms: statsIntervalMs })),
+    ]);
+  }
+
+  /** Reads scene and camera; puts our camera back if the server came back with the same scene. */
+  private async readScene(): Promise<void> {
+    const before = { scene: this.scene.value?.name, camera: this.camera.value };
+    try {
+      const info = await this.rpc.request<SceneInfo>("scene.info");
+      const camera = await this.rpc.request<Camera>("camera.get");
+      this.scene.set(info);
+      this.showProgress(null);
+      this.camera.set(camera);
+      if (before.camera && before.scene === info.name && !samePose(before.camera, camera)) {
+        this.moveCamera(before.camera);
+      }
+    } catch (error) {
+      const waiting =
+        error instanceof RpcError &&
+        (error.code === ErrorCode.notReady || error.code === ErrorCode.notFound);
+      if (!waiting) throw error;
+    }
+  }
+
+  private async readBuffers(): Promise<void> {
+    const answer = await this.rpc.request<{ buffers: BufferInfo[] }>("frame.buffers");
+    this.buffers.set(answer.buffers);
+  }
+
+  private async sceneChanged(info: SceneInfo): Promise<void> {
+    this.showProgress(null);
+    this.scene.set(info);
+    this.scenes.set({ ...this.scenes.value, current: info.name });
+    await this.attempt(async () => {
+      this.camera.set(await this.rpc.request<Camera>("camera.get"));
+    });
+    await this.attempt(() => this.readBuffers());
+  }
+
+  private async configureStream(change: Partial<StreamSettings>): Promise<void> {
+    if (Object.keys(change).length === 0 || !this.greeting) return;
+    await this.attempt(async () => {
+      this.stream.set(await this.rpc.request<StreamSettings>("stream.configure", change));
+    });
+  }
+
+  private frameDrawn(frame: DrawnFrame): void {
+    this.rates.add(frame.drawnAt, frame.bytes);
+    this.latency.frameDrawn(frame.inputSeqEcho, frame.drawnAt);
+    this.frame.set(frame);
+  }
+
+  private notified(method: string, params: unknown): void {
+    switch (method) {
+      case "settings.changed":
+        this.settings.receive((params as { patch: JsonObject }).patch);
+        break;
+      case "camera.changed":
+        if (!this.cameraBusy()) this.camera.set((params as { camera: Camera }).camera);
+        break;
+      case "scene.changed":
+        void this.sceneChanged((params as { scene: SceneInfo }).scene);
+        break;
+      case "scene.progress":
+        this.showProgress(params as SceneProgress);
+        break;
+      case "stats.frame":
+        this.stats.set(params as FrameStats);
+        break;
+    }
+  }
+
+  /** A load that another viewer started may fail without word; its bar must not stay for ever. */
+  private showProgress(progress: SceneProgress | null): void {
+    clearTimeout(this.progressTimer);
+    this.loading.set(progress);
+    if (progress) {
+      this.progressTimer = window.setTimeout(() => this.loading.set(null), progressSilenceMs);
+    }
+  }
+
+  private async attempt(action: () => Promise<unknown>): Promise<void> {
+    try {
+      await action();
+    } catch (error) {
+      this.report(error);
+    }
+  }
+}
