@@ -27,6 +27,7 @@ struct ImportLimits {
   std::uint32_t instances = 200'000;
   std::uint32_t node_depth = 256;
   std::uint32_t json_depth = 64;
+  std::uint64_t json_values = 16'000'000;
 };
 
 /// Told as loading proceeds: stage name and fraction of the whole, 0..1. Called on the loading thread.

@@ -47,6 +47,7 @@ struct Sampler {
 struct Texture {
   std::uint32_t image = 0;
   Sampler sampler;
+  bool operator==(const Texture&) const = default;
 };
 
 struct Mesh {
@@ -78,6 +79,7 @@ struct Camera {
   float vertical_fov = 45.0f;        // degrees; perspective
   float orthographic_height = 0.0f;  // metres, full height; 0: perspective
   float near_plane = 0.05f;          // metres
+  float far_plane = 1000.0f;         // metres; orthographic only, perspective has none
 };
 
 /// A light with its world-space device form and the name of its node.

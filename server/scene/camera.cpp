@@ -1,0 +1,70 @@
+#include "scene/camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace heliograph::scene {
+
+glm::mat4 view_matrix(const Camera& camera) {
+  glm::vec3 forward = camera.target - camera.eye;
+  const float distance = glm::length(forward);
+  forward = distance > 0.0f ? forward / distance : glm::vec3(0.0f, 0.0f, -1.0f);
+  glm::vec3 up = camera.up;
+  if (!(glm::length(glm::cross(forward, up)) > 1e-5f * glm::length(up)) || glm::length(up) == 0.0f) {
+    up = std::abs(forward.y) < 0.9f ? glm::vec3(0.0f, 1.0f, 0.0f) : glm::vec3(0.0f, 0.0f, -1.0f);
+  }
+  return glm::lookAtRH(camera.eye, camera.eye + forward, up);
+}
+
+glm::mat4 projection_matrix(const Camera& camera, float aspect) {
+  glm::mat4 matrix(0.0f);
+  if (camera.orthographic_height > 0.0f) {
+    const float depth = camera.far_plane - camera.near_plane;
+    matrix[0][0] = 2.0f / (camera.orthographic_height * aspect);
+    matrix[1][1] = -2.0f / camera.orthographic_height;
+    matrix[2][2] = 1.0f / depth;
+    matrix[3][2] = camera.far_plane / depth;
+    matrix[3][3] = 1.0f;
+    return matrix;
+  }
+  const float focal_length = 1.0f / std::tan(glm::radians(camera.vertical_fov) / 2.0f);
+  matrix[0][0] = focal_length / aspect;
+  matrix[1][1] = -focal_length;
+  matrix[2][3] = -1.0f;
+  matrix[3][2] = camera.near_plane;
+  return matrix;
+}
+
+Camera fit_camera(const Bounds& bounds, float vertical_fov, float aspect) {
+  constexpr float margin = 1.08f;
+  const glm::vec3 center = bounds.empty() ? glm::vec3(0.0f) : bounds.center();
+  const glm::vec3 half = bounds.empty() ? glm::vec3(1.0f) : 0.5f * (bounds.maximum - bounds.minimum);
+  const glm::vec3 back = glm::normalize(glm::vec3(0.55f, 0.35f, 1.0f));
+  const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0.0f, 1.0f, 0.0f), back));
+  const glm::vec3 up = glm::cross(back, right);
+  const float slope_y = std::tan(glm::radians(vertical_fov) / 2.0f);
+  const float slope_x = slope_y * aspect;
+
+  // Each corner of the box asks for a distance at which it enters the picture.
+  float distance = 0.0f;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec3 offset = half * glm::vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+    const float needed = std::max(std::abs(glm::dot(offset, right)) / slope_x,
+                                  std::abs(glm::dot(offset, up)) / slope_y);
+    distance = std::max(distance, margin * needed + glm::dot(offset, back));
+  }
+  const float radius = std::max(glm::length(half), 1e-3f);
+  distance = std::max(distance, radius * 0.1f);
+
+  Camera camera;
+  camera.name = "fit";
+  camera.eye = center + back * distance;
+  camera.target = center;
+  camera.vertical_fov = vertical_fov;
+  camera.near_plane = std::max(distance, radius) * 1e-3f;
+  return camera;
+}
+
+}  // namespace heliograph::scene

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace heliograph::scene {
+
+/// The only folder a scene file may read from, with one byte budget for everything read.
+/// Regular files only; symbolic links are followed as long as they stay inside.
+class ConfinedFolder {
+ public:
+  ConfinedFolder(const std::filesystem::path& folder, std::uint64_t byte_budget);
+
+  /// Reads `relative` (already percent-decoded, '/' separated).
+  /// @throws ImportError naming `relative` when it leaves the folder, is missing or exceeds the budget
+  std::vector<std::uint8_t> read(const std::string& relative);
+
+ private:
+  std::filesystem::path root_;
+  std::uint64_t budget_;
+};
+
+/// Reads a whole regular file of at most `max_bytes`. `label` stands for it in errors.
+/// @throws ImportError
+std::vector<std::uint8_t> read_regular_file(const std::filesystem::path& path, std::uint64_t max_bytes,
+                                            const std::string& label);
+
+}  // namespace heliograph::scene

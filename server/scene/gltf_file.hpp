@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "scene/confined_folder.hpp"
+#include "scene/import.hpp"
+#include "scene/json_value.hpp"
+
+namespace heliograph::scene {
+
+struct BufferView {
+  std::span<const std::uint8_t> bytes;
+  std::uint32_t stride = 0;  // bytes; 0: tightly packed
+};
+
+/// A glTF document with its bytes: container, buffers and buffer views read and checked, asset
+/// version and required extensions accepted. The document is read here and in the files beside this
+/// one rather than through a loader library: each value is checked where it is read, before any
+/// narrowing, and nothing that is refused has cost more than its parsing.
+class GltfFile {
+ public:
+  /// @throws ImportError
+  GltfFile(const std::filesystem::path& path, const ImportLimits& limits);
+  ~GltfFile();
+  GltfFile(const GltfFile&) = delete;
+  GltfFile& operator=(const GltfFile&) = delete;
+
+  /// The document. Valid as long as this object.
+  JsonValue root() const;
+  const std::vector<BufferView>& views() const { return views_; }
+  /// Bytes behind a "uri" member: base64 data or a file beside the scene. @throws ImportError
+  std::vector<std::uint8_t> resource(const JsonValue& owner);
+  /// Extensions in use that change nothing here.
+  const std::vector<std::string>& ignored_extensions() const { return ignored_extensions_; }
+
+ private:
+  void read_container(const std::vector<std::uint8_t>& file, const ImportLimits& limits);
+  void check_asset() const;
+  void check_extensions();
+  void read_buffers();
+  void read_views();
+
+  ConfinedFolder folder_;
+  std::vector<std::uint8_t> file_;
+  std::span<const std::uint8_t> binary_chunk_;
+  std::unique_ptr<nlohmann::json> json_;
+  std::vector<std::vector<std::uint8_t>> loaded_buffers_;
+  std::vector<std::span<const std::uint8_t>> buffers_;
+  std::vector<BufferView> views_;
+  std::vector<std::string> ignored_extensions_;
+};
+
+}  // namespace heliograph::scene

@@ -1,0 +1,184 @@
+#include "scene/nodes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+namespace heliograph::scene {
+namespace {
+
+struct DocumentNode {
+  std::string path;
+  Node node;
+  NodeAttachments attachments;
+  std::vector<std::uint32_t> children;
+  bool has_parent = false;
+};
+
+glm::mat4 read_matrix(const JsonValue& json) {
+  const auto values = json.numbers("matrix", 16);
+  glm::mat4 matrix = glm::make_mat4(values->data());
+  const glm::vec4 last_row(matrix[0][3], matrix[1][3], matrix[2][3], matrix[3][3]);
+  if (glm::distance(last_row, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f)) > 1e-3f) {
+    json.refuse("matrix", "is not affine: its last row must be 0 0 0 1");
+  }
+  for (int column = 0; column < 4; ++column) matrix[column][3] = column == 3 ? 1.0f : 0.0f;
+  return matrix;
+}
+
+glm::mat4 read_local_transform(const JsonValue& json) {
+  if (json.has("matrix")) return read_matrix(json);
+  const auto translation = json.numbers<3>("translation", {0.0f, 0.0f, 0.0f});
+  const auto rotation = json.numbers<4>("rotation", {0.0f, 0.0f, 0.0f, 1.0f});
+  const auto scale = json.numbers<3>("scale", {1.0f, 1.0f, 1.0f});
+  const glm::dvec4 quaternion(rotation[0], rotation[1], rotation[2], rotation[3]);
+  const double length = glm::length(quaternion);
+  if (length < 1e-6) json.refuse("rotation", "is not a quaternion of unit length");
+  const glm::quat unit(static_cast<float>(quaternion.w / length), static_cast<float>(quaternion.x / length),
+                       static_cast<float>(quaternion.y / length), static_cast<float>(quaternion.z / length));
+  glm::mat4 matrix = glm::mat4_cast(unit);
+  for (int axis = 0; axis < 3; ++axis) matrix[axis] *= scale[axis];
+  matrix[3] = glm::vec4(translation[0], translation[1], translation[2], 1.0f);
+  return matrix;
+}
+
+struct Counts {
+  std::size_t nodes;
+  std::size_t meshes;
+  std::size_t cameras;
+  std::size_t lights;
+  std::size_t skins;
+};
+
+DocumentNode read_node(const JsonValue& json, const Counts& counts) {
+  DocumentNode result;
+  result.path = json.path();
+  result.node.name = json.text("name");
+  result.node.local = read_local_transform(json);
+  result.children = json.indices("children", counts.nodes, "nodes");
+  result.attachments.mesh = json.index("mesh", counts.meshes, "meshes");
+  result.attachments.camera = json.index("camera", counts.cameras, "cameras");
+  json.index("skin", counts.skins, "skins");
+  if (const auto light = json.object("extensions", "KHR_lights_punctual")) {
+    result.attachments.light = light->required_index("light", counts.lights, "lights");
+  }
+  // "extras" may be of any type (glTF 3.12) and hold anything: only our own key is looked at.
+  if (result.attachments.light && json.is_object("extras")) {
+    const auto extras = json.object("extras");
+    float& diameter = result.attachments.angular_diameter;
+    diameter = extras->number("angularDiameterDeg", diameter);
+    if (diameter < 0.0f || diameter > 90.0f) {
+      extras->refuse("angularDiameterDeg", "must be from 0 to 90 degrees");
+    }
+  }
+  return result;
+}
+
+void link_parents(std::vector<DocumentNode>& nodes) {
+  for (const DocumentNode& node : nodes) {
+    for (const std::uint32_t child : node.children) {
+      if (std::exchange(nodes[child].has_parent, true)) {
+        throw ImportError(nodes[child].path + ": has more than one parent");
+      }
+    }
+  }
+}
+
+// Visits `roots` and all below, parents first; returns how many nodes there were.
+template <typename Visit>
+std::size_t visit_hierarchy(const std::vector<DocumentNode>& nodes, const std::vector<std::uint32_t>& roots,
+                            std::uint32_t max_depth, Visit visit) {
+  struct Pending {
+    std::uint32_t node;
+    std::optional<std::uint32_t> parent;  // in order of visiting
+    std::uint32_t depth;
+  };
+  std::vector<Pending> pending;
+  for (auto root = roots.rbegin(); root != roots.rend(); ++root) pending.push_back({*root, std::nullopt, 1});
+  std::uint32_t visited = 0;
+  while (!pending.empty()) {
+    const Pending next = pending.back();
+    pending.pop_back();
+    const DocumentNode& node = nodes[next.node];
+    if (next.depth > max_depth) {
+      throw ImportError(node.path + ": lies deeper than " + std::to_string(max_depth) + " levels");
+    }
+    visit(next.node, next.parent);
+    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
+      pending.push_back({*child, visited, next.depth + 1});
+    }
+    ++visited;
+  }
+  return visited;
+}
+
+// With one parent at most for each node, those that no root reaches lie on or below a cycle.
+void check_no_cycles(const std::vector<DocumentNode>& nodes, std::uint32_t max_depth) {
+  std::vector<std::uint32_t> roots;
+  for (std::uint32_t i = 0; i < nodes.size(); ++i) {
+    if (!nodes[i].has_parent) roots.push_back(i);
+  }
+  const auto ignore = [](std::uint32_t, std::optional<std::uint32_t>) {};
+  if (visit_hierarchy(nodes, roots, max_depth, ignore) != nodes.size()) {
+    throw ImportError("nodes: the hierarchy has a cycle");
+  }
+}
+
+std::vector<std::uint32_t> read_roots(const JsonValue& root, const std::vector<DocumentNode>& nodes) {
+  const std::vector<JsonValue> scenes = root.objects("scenes");
+  std::vector<std::vector<std::uint32_t>> roots_of_scene;
+  for (const JsonValue& scene : scenes) {
+    std::vector<std::uint32_t> roots = scene.indices("nodes", nodes.size(), "nodes");
+    std::vector<std::uint32_t> sorted = roots;
+    std::sort(sorted.begin(), sorted.end());
+    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
+      scene.refuse("nodes", "names a node twice");
+    }
+    for (const std::uint32_t node : roots) {
+      if (nodes[node].has_parent) scene.refuse("nodes", "names a node that is not a root");
+    }
+    roots_of_scene.push_back(std::move(roots));
+  }
+  const auto shown = root.index("scene", scenes.size(), "scenes");
+  if (!scenes.empty()) return roots_of_scene[shown.value_or(0)];
+  std::vector<std::uint32_t> all;
+  for (std::uint32_t i = 0; i < nodes.size(); ++i) {
+    if (!nodes[i].has_parent) all.push_back(i);
+  }
+  return all;
+}
+
+}  // namespace
+
+NodeTable read_nodes(const JsonValue& root, std::size_t light_count, const ImportLimits& limits) {
+  const std::vector<JsonValue> documents = root.objects("nodes");
+  if (documents.size() > limits.nodes) {
+    throw ImportError("nodes: " + std::to_string(documents.size()) + " exceed the limit of " +
+                      std::to_string(limits.nodes));
+  }
+  const Counts counts{documents.size(), root.objects("meshes").size(), root.objects("cameras").size(),
+                      light_count, root.objects("skins").size()};
+  std::vector<DocumentNode> nodes;
+  nodes.reserve(documents.size());
+  for (const JsonValue& json : documents) nodes.push_back(read_node(json, counts));
+  link_parents(nodes);
+  check_no_cycles(nodes, limits.node_depth);
+
+  NodeTable table;
+  table.has_skins = counts.skins > 0;
+  visit_hierarchy(nodes, read_roots(root, nodes), limits.node_depth,
+                  [&](std::uint32_t index, std::optional<std::uint32_t> parent) {
+                    Node node = nodes[index].node;
+                    node.parent = parent;
+                    node.world = parent ? table.nodes[*parent].world * node.local : node.local;
+                    table.nodes.push_back(std::move(node));
+                    table.attachments.push_back(nodes[index].attachments);
+                    table.paths.push_back(nodes[index].path);
+                  });
+  return table;
+}
+
+}  // namespace heliograph::scene

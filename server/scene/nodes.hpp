@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "scene/gltf_file.hpp"
+#include "scene/scene.hpp"
+
+namespace heliograph::scene {
+
+/// What hangs on a node, as indices into the document's arrays.
+struct NodeAttachments {
+  std::optional<std::uint32_t> mesh;
+  std::optional<std::uint32_t> camera;
+  std::optional<std::uint32_t> light;
+  float angular_diameter = 0.53f;  // degrees: the sun's from Earth unless the node's extras say otherwise
+};
+
+/// The nodes of the shown scene, parents first, with world transforms. `attachments[i]` belongs to
+/// `nodes[i]`; `paths[i]` names it in errors.
+struct NodeTable {
+  std::vector<Node> nodes;
+  std::vector<NodeAttachments> attachments;
+  std::vector<std::string> paths;
+  bool has_skins = false;
+};
+
+/// Reads all nodes, refuses cycles, second parents and excessive depth, and keeps those that the
+/// document's default scene (or its first, or all root nodes) shows.
+/// @throws ImportError
+NodeTable read_nodes(const JsonValue& root, std::size_t light_count, const ImportLimits& limits);
+
+}  // namespace heliograph::scene

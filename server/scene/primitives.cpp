@@ -1,0 +1,134 @@
+#include <algorithm>
+
+#include "scene/meshes.hpp"
+
+namespace heliograph::scene {
+namespace {
+
+class PrimitiveReader {
+ public:
+  PrimitiveReader(std::span<const Accessor> accessors, std::size_t material_count,
+                  const ImportLimits& limits, Warnings& warnings)
+      : accessors_(accessors), material_count_(material_count), limits_(limits), warnings_(warnings) {}
+
+  /// Nothing for points, lines and primitives without a triangle.
+  std::optional<Primitive> read(const JsonValue& json) {
+    const std::uint64_t mode = json.integer("mode", 4);
+    if (mode > 6) json.refuse("mode", std::to_string(mode) + " is not a primitive mode");
+    const auto attributes = json.object("attributes");
+    if (!attributes) json.refuse("attributes", "is missing");
+
+    Primitive primitive;
+    const auto position = attribute(*attributes, "POSITION", ElementType::vec3);
+    primitive.normal = attribute(*attributes, "NORMAL", ElementType::vec3);
+    primitive.tangent = attribute(*attributes, "TANGENT", ElementType::vec4);
+    primitive.uv[0] = attribute(*attributes, "TEXCOORD_0", ElementType::vec2);
+    primitive.uv[1] = attribute(*attributes, "TEXCOORD_1", ElementType::vec2);
+    primitive.color = color_attribute(*attributes);
+    check_counts(*attributes);
+    check_targets(json);
+    primitive.indices = json.index("indices", accessors_.size(), "accessors");
+    primitive.material = json.index("material", material_count_, "materials");
+    if (mode < 4) {
+      warnings_.add("points and lines are not drawn");
+      return std::nullopt;
+    }
+    if (!position) {
+      warnings_.add(json.path() + " has no positions and was left out");
+      return std::nullopt;
+    }
+    primitive.mode = static_cast<Primitive::Mode>(mode);
+    primitive.position = *position;
+    if (!count_triangles(json, primitive)) return std::nullopt;
+    return primitive;
+  }
+
+ private:
+  std::optional<std::uint32_t> attribute(const JsonValue& attributes, std::string_view name, ElementType type) {
+    const auto index = attributes.index(name, accessors_.size(), "accessors");
+    if (index && accessors_[*index].element != type) attributes.refuse(name, "has the wrong element type");
+    if (index && accessors_[*index].component == ComponentType::u32) {
+      attributes.refuse(name, "has the wrong component type");
+    }
+    return index;
+  }
+
+  std::optional<std::uint32_t> color_attribute(const JsonValue& attributes) {
+    const auto index = attributes.index("COLOR_0", accessors_.size(), "accessors");
+    if (!index) return index;
+    const ElementType type = accessors_[*index].element;
+    if (type != ElementType::vec3 && type != ElementType::vec4) {
+      attributes.refuse("COLOR_0", "has the wrong element type");
+    }
+    return index;
+  }
+
+  // Every attribute, known or not, must cover the same vertices.
+  void check_counts(const JsonValue& attributes) {
+    std::optional<std::uint32_t> count;
+    for (const std::string& name : attributes.keys()) {
+      const std::uint32_t index = attributes.required_index(name, accessors_.size(), "accessors");
+      const std::uint32_t own = accessors_[index].count;
+      if (count && own != *count) attributes.refuse(name, "differs in count from the other attributes");
+      count = own;
+    }
+    vertex_count_ = count.value_or(0);
+  }
+
+  void check_targets(const JsonValue& json) {
+    for (const JsonValue& target : json.objects("targets")) {
+      for (const std::string& name : target.keys()) {
+        const std::uint32_t index = target.required_index(name, accessors_.size(), "accessors");
+        if (accessors_[index].count != vertex_count_) target.refuse(name, "differs in count from its primitive");
+      }
+    }
+  }
+
+  bool count_triangles(const JsonValue& json, const Primitive& primitive) {
+    const std::uint32_t corners = primitive.indices ? accessors_[*primitive.indices].count : vertex_count_;
+    const bool separate = primitive.mode == Primitive::Mode::triangles;
+    if (corners < 3) {
+      warnings_.add(json.path() + " has no triangle and was left out");
+      return false;
+    }
+    if (separate && corners % 3 != 0) warnings_.add(json.path() + " ends in a part of a triangle");
+    triangles_ += separate ? corners / 3 : corners - 2;
+    vertices_ += vertex_count_;
+    if (triangles_ > limits_.triangles || vertices_ > 3 * limits_.triangles) {
+      json.refuse("exceeds the limit of " + std::to_string(limits_.triangles) + " triangles for the whole scene");
+    }
+    return true;
+  }
+
+  std::span<const Accessor> accessors_;
+  std::size_t material_count_;
+  const ImportLimits& limits_;
+  Warnings& warnings_;
+  std::uint32_t vertex_count_ = 0;
+  std::uint64_t triangles_ = 0;
+  std::uint64_t vertices_ = 0;
+};
+
+}  // namespace
+
+PrimitiveTable read_primitives(const JsonValue& root, std::span<const Accessor> accessors,
+                               std::size_t material_count, const ImportLimits& limits, Warnings& warnings) {
+  PrimitiveTable table;
+  PrimitiveReader reader(accessors, material_count, limits, warnings);
+  for (const JsonValue& mesh : root.objects("meshes")) {
+    const std::vector<JsonValue> primitives = mesh.objects("primitives");
+    if (primitives.empty()) mesh.refuse("has no primitives");
+    const std::string mesh_name = mesh.text("name");
+    std::vector<std::uint32_t>& members = table.of_mesh.emplace_back();
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+      auto primitive = reader.read(primitives[i]);
+      if (!primitive) continue;
+      primitive->name = primitives.size() == 1 ? mesh_name : mesh_name + "." + std::to_string(i);
+      members.push_back(static_cast<std::uint32_t>(table.primitives.size()));
+      table.primitives.push_back(std::move(*primitive));
+    }
+  }
+  return table;
+}
+
+}  // namespace heliograph::scene

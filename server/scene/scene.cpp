@@ -1,0 +1,39 @@
+#include "scene/scene.hpp"
+
+#include <cstddef>
+
+namespace heliograph::scene {
+namespace {
+
+// The layouts that std430 gives these structs: the device reads these very bytes.
+static_assert(sizeof(shared::Vertex) == 64);
+static_assert(offsetof(shared::Vertex, color_rg) == 12 && offsetof(shared::Vertex, normal) == 16);
+static_assert(offsetof(shared::Vertex, tangent) == 32 && offsetof(shared::Vertex, uv1) == 56);
+static_assert(sizeof(shared::TextureSlot) == 48);
+static_assert(sizeof(shared::Material) == 320 && sizeof(shared::Material) % 16 == 0);
+static_assert(offsetof(shared::Material, alpha_cutoff) == 28);
+static_assert(offsetof(shared::Material, base_color_texture) == 80);
+static_assert(sizeof(shared::Mesh) == 16);
+static_assert(sizeof(shared::Instance) == 208 && offsetof(shared::Instance, mesh) == 192);
+static_assert(sizeof(shared::Light) == 64);
+static_assert(offsetof(shared::Light, direction) == 16 && offsetof(shared::Light, color) == 32);
+
+}  // namespace
+
+void Bounds::include(const glm::vec3& point) {
+  minimum = glm::min(minimum, point);
+  maximum = glm::max(maximum, point);
+}
+
+void Bounds::include(const Bounds& other) {
+  minimum = glm::min(minimum, other.minimum);
+  maximum = glm::max(maximum, other.maximum);
+}
+
+std::uint64_t Scene::triangle_count() const {
+  std::uint64_t count = 0;
+  for (const Instance& instance : instances) count += meshes[instance.mesh].indices.size() / 3;
+  return count;
+}
+
+}  // namespace heliograph::scene
