@@ -1,0 +1,23 @@
+#pragma once
+
+#include "scenes/generator/atrium_materials.hpp"
+#include "scenes/generator/document.hpp"
+
+/// The parts of the atrium; each adds its meshes and places them.
+namespace heliograph::scenes {
+
+void add_floors(Document& document, const AtriumMaterials& materials);
+void add_pool(Document& document, const AtriumMaterials& materials);
+void add_columns(Document& document, const AtriumMaterials& materials);
+void add_arcades(Document& document, const AtriumMaterials& materials);
+void add_cornices(Document& document, const AtriumMaterials& materials);
+void add_balustrades(Document& document, const AtriumMaterials& materials);
+void add_vaults(Document& document, const AtriumMaterials& materials);
+void add_aisle_walls(Document& document, const AtriumMaterials& materials);
+void add_gallery(Document& document, const AtriumMaterials& materials);
+void add_roof(Document& document, const AtriumMaterials& materials);
+void add_lamps(Document& document, const AtriumMaterials& materials);
+void add_cloths(Document& document, const AtriumMaterials& materials);
+void add_vases(Document& document, const AtriumMaterials& materials);
+
+}  // namespace heliograph::scenes
