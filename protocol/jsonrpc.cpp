@@ -144,8 +144,8 @@ class Dispatcher::Exchange : public std::enable_shared_from_this<Exchange> {
       try {
         exchange_->settle(slot_, result ? result_text(id_, *result)
                                         : error_text(id_, result.error()));
-      } catch (const std::exception&) {
-        // Out of memory while writing one answer: the connection's own limits take over.
+      } catch (...) {
+        // Out of memory or a transport that fails: there is nobody left to tell.
       }
     }
 

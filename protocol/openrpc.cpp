@@ -117,8 +117,8 @@ RawJson openrpc_document() {
          "Steers a render server. JSON-RPC 2.0 as text messages of a WebSocket at /ws "
          "(subprotocol heliograph.v1) or as POST /rpc."},
         {"license", {{"name", "MIT"}}}}},
-      {"servers",
-       json::array({{{"name", "local"}, {"url", "http://localhost:8080/rpc"}}})},
+      // Relative to where this document was fetched: the server need not know its own address.
+      {"servers", json::array({{{"name", "this server"}, {"url", "/rpc"}}})},
       {"methods", json::array()},
       {"x-notifications", json::array()},
       {"components",
