@@ -36,6 +36,9 @@ type Report = (value: JsonValue) => void;
 
 const sliderSteps = 1000;
 
+/** Longer units have no room beside the number; the tooltip tells them. */
+const longestSymbol = 3;
+
 const unitSymbols: Record<string, string> = {
   seconds: "s",
   second: "s",
@@ -195,9 +198,9 @@ function arrowDirection(event: KeyboardEvent): number {
   return 0;
 }
 
-/** The next value on the control's grid; on a logarithmic one a step is a hundredth of the way. */
+/** The next value on the control's grid; on a curved scale a step is a hundredth of the way. */
 function stepped(control: SliderControl, value: number, steps: number): number {
-  if (!control.logarithmic) {
+  if (control.scale === "linear") {
     return parseNumber(String(value + steps * control.step), control) ?? value;
   }
   const next = sliderValue(control, sliderPosition(control, value) + steps / 100);
@@ -328,7 +331,7 @@ function numberEntry(range: NumberRange, unit: string, report: Report, label: st
   });
   const symbol = unitSymbol(unit);
   const node = element("span", { class: "entry" }, input);
-  if (symbol) node.append(element("span", { class: "unit", "aria-hidden": "true" }, symbol));
+  if (symbol && symbol.length <= longestSymbol) node.append(element("span", { class: "unit", "aria-hidden": "true" }, symbol));
   return {
     node,
     input,

@@ -146,9 +146,8 @@ function describeScene(scene: SceneInfo): string {
 }
 
 function compact(value: number): string {
-  return new Intl.NumberFormat("en", { notation: "compact", maximumFractionDigits: 1 }).format(
-    value,
-  );
+  if (value >= 1e6) return `${(value / 1e6).toFixed(1)} M`;
+  return value >= 10_000 ? `${Math.round(value / 1000)} k` : String(value);
 }
 
 function showWarnings(node: HTMLDetailsElement, warnings: string[]): void {

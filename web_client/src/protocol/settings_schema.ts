@@ -4,6 +4,12 @@
 import type { JsonObject, JsonValue } from "./messages.ts";
 import { isObject } from "./settings_tree.ts";
 
+/** Wider ranges of whole numbers, like those of a random seed, are typed instead of dragged. */
+const widestIntegerSlider = 1_000_000;
+
+/** How names are written that are not plain words. */
+const properNames: Record<string, string> = { aces: "ACES", agx: "AgX", ibl: "IBL", taa: "TAA" };
+
 interface ControlBase {
   /** Dotted path of the setting. */
   path: string;
@@ -22,6 +28,9 @@ export interface NumberRange {
   integer: boolean;
 }
 
+/** How a slider's way is divided among its values. */
+export type SliderScale = "linear" | "logarithmic" | "cubic";
+
 export interface ToggleControl extends ControlBase {
   kind: "toggle";
 }
@@ -29,7 +38,7 @@ export interface SliderControl extends ControlBase, NumberRange {
   kind: "slider";
   minimum: number;
   maximum: number;
-  logarithmic: boolean;
+  scale: SliderScale;
 }
 export interface NumberControl extends ControlBase, NumberRange {
   kind: "number";
@@ -89,8 +98,9 @@ export function allControls(group: ControlGroup): Control[] {
 
 /** "max_history" -> "Max history". */
 export function humanise(name: string): string {
-  const words = name.replaceAll("_", " ").trim();
-  return words.charAt(0).toUpperCase() + words.slice(1);
+  const words = name.split(/[_ ]+/).map((word) => properNames[word] ?? word);
+  const sentence = words.join(" ").trim();
+  return sentence.charAt(0).toUpperCase() + sentence.slice(1);
 }
 
 function describeGroup(
@@ -166,11 +176,23 @@ function describeControl(
 function describeNumber(base: ControlBase, node: JsonObject, type: string): Control {
   const range = numberRange(node, type);
   const { minimum, maximum } = range;
-  if (minimum === undefined || maximum === undefined || !(maximum > minimum)) {
+  const bounded = minimum !== undefined && maximum !== undefined && maximum > minimum;
+  if (!bounded || (range.integer && maximum - minimum > widestIntegerSlider)) {
     return { ...base, kind: "number", ...range };
   }
-  const logarithmic = minimum > 0 && maximum / minimum >= 1000;
-  return { ...base, kind: "slider", ...range, minimum, maximum, logarithmic };
+  const scale = scaleFor(minimum, maximum, base.default);
+  return { ...base, kind: "slider", ...range, minimum, maximum, scale };
+}
+
+/** Room for the small values where the interesting ones are small compared with the largest. */
+function scaleFor(
+  minimum: number,
+  maximum: number,
+  standard: JsonValue | undefined,
+): SliderScale {
+  if (minimum > 0 && maximum / minimum >= 1000) return "logarithmic";
+  const small = typeof standard === "number" && standard > 0 && standard < 0.06 * maximum;
+  return minimum === 0 && small ? "cubic" : "linear";
 }
 
 function numberRange(node: JsonObject, type: string): NumberRange {
@@ -199,12 +221,9 @@ export function decimalsOf(step: number): number {
 /** Writes a number with the digits its control distinguishes, without trailing zeros. */
 export function formatNumber(value: number, range: NumberRange): string {
   if (range.integer) return String(Math.round(value));
-  const decimals = Math.max(decimalsOf(range.step), value !== 0 ? significant(value) : 0);
-  return String(Number(value.toFixed(Math.min(decimals, 7))));
-}
-
-function significant(value: number): number {
-  return Math.max(0, 2 - Math.floor(Math.log10(Math.abs(value))));
+  const threeDigits = value === 0 ? 0 : 2 - Math.floor(Math.log10(Math.abs(value)));
+  const decimals = Math.min(7, Math.max(decimalsOf(range.step), threeDigits));
+  return String(Number(value.toFixed(decimals)));
 }
 
 /** Reads typed text; null when it is not a number. The result is kept inside the range. */
@@ -218,23 +237,26 @@ export function parseNumber(typed: string, range: NumberRange): number | null {
 
 /** Slider position in [0, 1] of a value. */
 export function sliderPosition(control: SliderControl, value: number): number {
-  const { minimum, maximum } = control;
+  const { minimum, maximum, scale } = control;
   const inside = Math.min(maximum, Math.max(minimum, value));
-  return control.logarithmic
-    ? Math.log(inside / minimum) / Math.log(maximum / minimum)
-    : (inside - minimum) / (maximum - minimum);
+  if (scale === "logarithmic") return Math.log(inside / minimum) / Math.log(maximum / minimum);
+  const fraction = (inside - minimum) / (maximum - minimum);
+  return scale === "cubic" ? Math.cbrt(fraction) : fraction;
 }
 
 /** Value at a slider position in [0, 1], rounded to the control's step or to three digits. */
 export function sliderValue(control: SliderControl, position: number): number {
-  const { minimum, maximum, step } = control;
+  const { minimum, maximum, step, scale } = control;
+  const span = maximum - minimum;
   let value: number;
-  if (control.logarithmic) {
-    value = Number((minimum * (maximum / minimum) ** position).toPrecision(3));
-    if (control.integer) value = Math.round(value);
+  if (scale === "linear") {
+    value = Number((minimum + Math.round((position * span) / step) * step).toFixed(6));
   } else {
-    const steps = Math.round((position * (maximum - minimum)) / step);
-    value = Number((minimum + steps * step).toFixed(decimalsOf(step) + 1));
+    const exact =
+      scale === "cubic"
+        ? minimum + span * position ** 3
+        : minimum * (maximum / minimum) ** position;
+    value = control.integer ? Math.round(exact) : Number(exact.toPrecision(3));
   }
   return Math.min(maximum, Math.max(minimum, value));
 }

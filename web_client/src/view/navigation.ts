@@ -61,6 +61,9 @@ export class Navigation {
     surface.addEventListener("pointercancel", this.pointerUp);
     surface.addEventListener("wheel", this.wheel, { passive: false });
     surface.addEventListener("contextmenu", (event) => event.preventDefault());
+    surface.addEventListener("mousedown", (event) => {
+      if (event.button === 1) event.preventDefault(); // no automatic scrolling
+    });
     surface.addEventListener("keydown", this.keyDown);
     addEventListener("keyup", this.keyUp);
     addEventListener("blur", () => this.heldKeys.clear());
@@ -73,13 +76,11 @@ export class Navigation {
 
   private readonly pointerDown = (event: PointerEvent): void => {
     this.surface.setPointerCapture(event.pointerId);
-    this.surface.focus({ preventScroll: true });
     this.pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
     this.glide = { yaw: 0, pitch: 0 };
     if (this.pointers.size > 1) this.gesture = "pinch";
     else this.gesture = event.button !== 0 || event.shiftKey ? "pan" : "orbit";
     this.surface.classList.add("grabbing");
-    event.preventDefault();
   };
 
   private readonly pointerMove = (event: PointerEvent): void => {

@@ -1,0 +1,95 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+import type { JsonObject } from "../src/protocol/messages.ts";
+import { RpcPeer } from "../src/protocol/rpc.ts";
+import { SettingsStore } from "../src/settings_store.ts";
+
+const schema: JsonObject = {
+  properties: {
+    exposure: {
+      "x-order": 0,
+      properties: {
+        ev: { type: "number", minimum: -4, maximum: 4, default: 0 },
+        auto: { type: "boolean", default: false },
+      },
+    },
+  },
+};
+
+interface Request {
+  id: number;
+  method: string;
+  params: { patch?: JsonObject };
+}
+
+/** A channel whose far end is this test: it reads what was sent and answers when it likes. */
+async function connected() {
+  const sent: Request[] = [];
+  const refused: unknown[] = [];
+  const rpc: RpcPeer = new RpcPeer((text) => sent.push(JSON.parse(text) as Request), () => {});
+  const answer = async (body: object): Promise<Request> => {
+    const request = sent.shift();
+    assert.ok(request, "nothing was sent");
+    rpc.receive(JSON.stringify({ jsonrpc: "2.0", id: request.id, ...body }));
+    await new Promise((resolve) => setTimeout(resolve, 0));
+    return request;
+  };
+  const store = new SettingsStore(rpc, (error) => refused.push(error));
+  const loaded = store.load();
+  await answer({ result: schema });
+  await answer({ result: { rev: 1, settings: { exposure: { ev: 0, auto: false } } } });
+  await loaded;
+  return { store, sent, refused, answer };
+}
+
+test("a change shows at once and is sent as the smallest patch", async () => {
+  const { store, answer } = await connected();
+  store.change("exposure.ev", 2);
+  assert.equal(store.value("exposure.ev"), 2);
+  const request = await answer({ result: { rev: 2, applied: { exposure: { ev: 2 } } } });
+  assert.equal(request.method, "settings.patch");
+  assert.deepEqual(request.params.patch, { exposure: { ev: 2 } });
+});
+
+test("changes during a request are joined into one and do not flicker back", async () => {
+  const { store, sent, answer } = await connected();
+  store.change("exposure.ev", 1);
+  store.change("exposure.ev", 2);
+  store.change("exposure.ev", 3);
+  store.change("exposure.auto", true);
+  assert.equal(sent.length, 1);
+  await answer({ result: { rev: 2, applied: { exposure: { ev: 1 } } } });
+  assert.equal(store.value("exposure.ev"), 3);
+  const second = await answer({ result: { rev: 3, applied: { exposure: { ev: 3, auto: true } } } });
+  assert.deepEqual(second.params.patch, { exposure: { ev: 3, auto: true } });
+  assert.equal(sent.length, 0);
+});
+
+test("a refused change is reported and what the server has comes back", async () => {
+  const { store, refused, answer } = await connected();
+  store.change("exposure.ev", 4);
+  await answer({ error: { code: -32602, message: "exposure.ev is locked" } });
+  assert.equal(refused.length, 1);
+  await answer({ result: { rev: 1, settings: { exposure: { ev: 0, auto: false } } } });
+  assert.equal(store.value("exposure.ev"), 0);
+});
+
+test("a reset sends null and shows the default", async () => {
+  const { store, answer } = await connected();
+  store.receive({ exposure: { ev: 3 } });
+  assert.equal(store.value("exposure.ev"), 3);
+  store.reset("exposure.ev");
+  assert.equal(store.value("exposure.ev"), 0);
+  const request = await answer({ result: { rev: 2, applied: { exposure: { ev: 0 } } } });
+  assert.deepEqual(request.params.patch, { exposure: { ev: null } });
+});
+
+test("resetting a group touches only what was changed", async () => {
+  const { store, answer } = await connected();
+  store.receive({ exposure: { auto: true } });
+  const group = store.schema.value.groups[0];
+  assert.ok(group);
+  store.resetGroup(group);
+  const request = await answer({ result: { rev: 2, applied: { exposure: { auto: false } } } });
+  assert.deepEqual(request.params.patch, { exposure: { auto: null } });
+});
