@@ -45,8 +45,7 @@ NumberRange range_of(const FieldLimits& limits) {
     constexpr double exact = 9007199254740991.0;
     const auto lowest = static_cast<double>(std::numeric_limits<T>::lowest());
     const auto highest = static_cast<double>(std::numeric_limits<T>::max());
-    return {std::max({limits.minimum, lowest, -exact}),
-            std::min({limits.maximum, highest, exact})};
+    return {std::max({limits.minimum, lowest, -exact}), std::min({limits.maximum, highest, exact})};
   }
 }
 
@@ -63,8 +62,7 @@ Result<void> keep(Result<T> value, auto& out) {
 inline Result<void> check_length(std::size_t length, const std::string& path,
                                  const FieldLimits& limits, const char* what) {
   if (length >= limits.min_length && length <= limits.max_length) return {};
-  NumberRange range{static_cast<double>(limits.min_length),
-                    static_cast<double>(limits.max_length)};
+  NumberRange range{static_cast<double>(limits.min_length), static_cast<double>(limits.max_length)};
   if (limits.max_length == unlimited_length) {
     range.maximum = std::numeric_limits<double>::infinity();
   }
@@ -82,8 +80,7 @@ template <class List>
 Result<void> read_elements(const json& in, List& out, const std::string& path,
                            const FieldLimits& limits) {
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const Result<void> element =
-        read(in[i], out[i], path + "[" + std::to_string(i) + "]", limits);
+    const Result<void> element = read(in[i], out[i], path + "[" + std::to_string(i) + "]", limits);
     if (!element) return element;
   }
   return {};

@@ -30,11 +30,11 @@ constexpr std::array<std::string_view, count> split_names(std::string_view list)
 
 /// Declares `enum class Name` whose enumerators count up from zero and are known by name at run
 /// time, so that JSON, schema and command line need no second list.
-#define HELIOGRAPH_ENUM(Name, ...)                                                        \
-  enum class Name { __VA_ARGS__ };                                                        \
-  constexpr auto list_enum_names(Name) {                                                  \
-    return ::heliograph::protocol::split_names<                                           \
-        ::heliograph::protocol::count_names(#__VA_ARGS__)>(#__VA_ARGS__);                 \
+#define HELIOGRAPH_ENUM(Name, ...)                                                   \
+  enum class Name { __VA_ARGS__ };                                                   \
+  constexpr auto list_enum_names(Name) {                                             \
+    return ::heliograph::protocol::split_names< ::heliograph::protocol::count_names( \
+        #__VA_ARGS__)>(#__VA_ARGS__);                                                \
   }
 
 template <class Enum>

@@ -78,6 +78,8 @@ constexpr Field<Struct, Member> field(std::string_view name, Member Struct::*mem
 
 /// A struct that declares its fields.
 template <class T>
-concept Message = requires { T::fields(); };
+concept Message = requires {
+  T::fields();
+};
 
 }  // namespace heliograph::protocol

@@ -68,7 +68,9 @@ void visit_members(Header& header, Visitor&& visit) {
   visit(header.sample_count);
 }
 
-bool known(FrameType type) { return type >= FrameType::frame && type <= FrameType::timing; }
+bool known(FrameType type) {
+  return type >= FrameType::frame && type <= FrameType::timing;
+}
 
 bool known(FrameCodec codec) {
   switch (codec) {
@@ -85,8 +87,7 @@ bool known(FrameCodec codec) {
 }
 
 Error malformed(std::string path, std::string reason, std::string limit = {}) {
-  return error::make(ErrorCode::parse_error, std::move(path), std::move(reason),
-                     std::move(limit));
+  return error::make(ErrorCode::parse_error, std::move(path), std::move(reason), std::move(limit));
 }
 
 Result<void> check_picture(const FrameHeader& header) {

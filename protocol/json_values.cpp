@@ -68,9 +68,8 @@ Result<std::size_t> read_choice(const json& value, const std::string& path,
   for (std::size_t i = 0; i < choices.size(); ++i) {
     if (choices[i] == name) return i;
   }
-  return error::invalid(
-      path, "unknown value" + suggestion(name, {choices.begin(), choices.end()}),
-      choices_text(choices));
+  return error::invalid(path, "unknown value" + suggestion(name, {choices.begin(), choices.end()}),
+                        choices_text(choices));
 }
 
 double shortest(float value) {
@@ -81,7 +80,9 @@ double shortest(float value) {
   return result;
 }
 
-std::string number_text(double value) { return decimal(value); }
+std::string number_text(double value) {
+  return decimal(value);
+}
 
 std::string range_text(NumberRange range) {
   // The limits of float itself are no limits that anybody wants to read.

@@ -25,8 +25,7 @@ Result<bool> read_boolean(const nlohmann::json& value, const std::string& path);
 Result<std::int64_t> read_integer(const nlohmann::json& value, const std::string& path,
                                   NumberRange range);
 /// A finite number.
-Result<double> read_number(const nlohmann::json& value, const std::string& path,
-                           NumberRange range);
+Result<double> read_number(const nlohmann::json& value, const std::string& path, NumberRange range);
 Result<std::string> read_text(const nlohmann::json& value, const std::string& path);
 /// The index of a text among `choices`.
 Result<std::size_t> read_choice(const nlohmann::json& value, const std::string& path,

@@ -142,8 +142,8 @@ class Dispatcher::Exchange : public std::enable_shared_from_this<Exchange> {
     void finish(Result<RawJson> result) noexcept {
       if (finished_.exchange(true)) return;
       try {
-        exchange_->settle(slot_, result ? result_text(id_, *result)
-                                        : error_text(id_, result.error()));
+        exchange_->settle(slot_,
+                          result ? result_text(id_, *result) : error_text(id_, result.error()));
       } catch (...) {
         // Out of memory or a transport that fails: there is nobody left to tell.
       }
@@ -185,9 +185,8 @@ Dispatcher::Dispatcher(DispatchLimits limits, std::span<const MethodDescriptor> 
     : limits_(limits) {
   for (const MethodDescriptor& method : methods) entries_[method.name] = {&method, {}};
   if (entries_.contains("rpc.discover")) {
-    add<Empty, RawJson>("rpc.discover", [](Empty, const CallContext&, auto done) {
-      done(openrpc_document());
-    });
+    add<Empty, RawJson>("rpc.discover",
+                        [](Empty, const CallContext&, auto done) { done(openrpc_document()); });
   }
   if (entries_.contains("settings.schema")) {
     add<Empty, RawJson>("settings.schema", [](Empty, const CallContext&, auto done) {
@@ -196,8 +195,8 @@ Dispatcher::Dispatcher(DispatchLimits limits, std::span<const MethodDescriptor> 
   }
 }
 
-void Dispatcher::add_raw(std::string_view name, std::type_index request,
-                         std::type_index response, RawHandler handler) {
+void Dispatcher::add_raw(std::string_view name, std::type_index request, std::type_index response,
+                         RawHandler handler) {
   const auto found = entries_.find(name);
   if (found == entries_.end()) {
     throw std::logic_error("no method is called " + std::string(name));
@@ -256,8 +255,7 @@ Result<RawJson> Dispatcher::read_message(std::string_view text) const {
   const json& value = message->value();
   if (value.is_array() && value.empty()) return invalid_request({}, "the batch is empty");
   if (value.is_array() && value.size() > limits_.max_batch) {
-    return error::too_large({}, "the batch has too many calls",
-                            std::to_string(limits_.max_batch));
+    return error::too_large({}, "the batch has too many calls", std::to_string(limits_.max_batch));
   }
   return message;
 }

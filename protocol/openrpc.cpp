@@ -38,13 +38,15 @@ constexpr auto error_descriptions = std::to_array<ErrorDescription>({
 constexpr std::array<std::string_view, 5> usual_errors{"InvalidParams", "NotFound", "TooLarge",
                                                        "NotReady", "Internal"};
 
-json parsed(std::string_view text) { return json::parse(text); }
+json parsed(std::string_view text) {
+  return json::parse(text);
+}
 
 json errors_component() {
   json errors = json::object();
   for (const ErrorDescription& description : error_descriptions) {
-    errors[std::string(description.name)] = {
-        {"code", static_cast<int>(description.code)}, {"message", description.message}};
+    errors[std::string(description.name)] = {{"code", static_cast<int>(description.code)},
+                                             {"message", description.message}};
   }
   return errors;
 }

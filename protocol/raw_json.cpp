@@ -21,6 +21,8 @@ std::string RawJson::text() const {
   return value_->dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-bool RawJson::operator==(const RawJson& other) const { return *value_ == *other.value_; }
+bool RawJson::operator==(const RawJson& other) const {
+  return *value_ == *other.value_;
+}
 
 }  // namespace heliograph::protocol

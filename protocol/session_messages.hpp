@@ -220,13 +220,11 @@ struct Camera {
   static constexpr auto fields() {
     return std::tuple{
         field("eye", &Camera::eye, "Where the camera is, world space.").unit("metres"),
-        field("target", &Camera::target, "The point in the middle of the picture.")
-            .unit("metres"),
+        field("target", &Camera::target, "The point in the middle of the picture.").unit("metres"),
         field("up", &Camera::up, "The direction that points up in the picture."),
         field("vertical_fov", &Camera::vertical_fov, "Field of view, top to bottom.")
             .unit("degrees"),
-        field("name", &Camera::name, "The scene camera this is, null once it was moved.")
-            .or_null(),
+        field("name", &Camera::name, "The scene camera this is, null once it was moved.").or_null(),
         field("rev", &Camera::rev, "Revision of the session's state."),
     };
   }

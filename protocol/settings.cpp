@@ -16,15 +16,19 @@ constexpr std::array<std::string_view, 1> reset_names{"accumulation"};
 
 // The words that settings.def uses for limits.
 constexpr SettingLimits any{};
-constexpr SettingLimits range(double minimum, double maximum) { return {minimum, maximum}; }
-constexpr SettingLimits name_length(double minimum, double maximum) { return {minimum, maximum}; }
+constexpr SettingLimits range(double minimum, double maximum) {
+  return {minimum, maximum};
+}
+constexpr SettingLimits name_length(double minimum, double maximum) {
+  return {minimum, maximum};
+}
 
 template <class Value>
 SettingDescriptor describe(std::string_view path, std::string_view group, std::string_view name,
                            const Value& initial, SettingLimits limits, std::string_view unit,
                            ResetScope resets, std::string_view help) {
-  SettingDescriptor result{path, group, name, SettingType::boolean, {}, limits, {}, unit, resets,
-                           help};
+  SettingDescriptor result{path, group,  name, SettingType::boolean, {}, limits, {},
+                           unit, resets, help};
   if constexpr (std::is_enum_v<Value>) {
     result.type = SettingType::choice;
     result.initial = std::string(enum_name(initial));
@@ -42,7 +46,7 @@ std::vector<SettingDescriptor> make_descriptors() {
   using enum ResetScope;
   const Settings initial_settings;
   return {
-#define SETTING(group, name, type, initial, limits, unit, resets, help)                          \
+#define SETTING(group, name, type, initial, limits, unit, resets, help)                        \
   describe(#group "." #name, #group, #name, initial_settings.group.name, limits, unit, resets, \
            help),
 #include "protocol/settings.def"
@@ -127,8 +131,7 @@ Result<void> set_by_path(Settings& settings, std::string_view assignment) {
   const std::string_view path = assignment.substr(0, equals);
   const SettingDescriptor* setting = find_setting(path);
   if (setting == nullptr) return unknown_path(path);
-  return assign_setting(settings, *setting,
-                        value_of(assignment.substr(equals + 1), setting->type));
+  return assign_setting(settings, *setting, value_of(assignment.substr(equals + 1), setting->type));
 }
 
 }  // namespace heliograph::protocol

@@ -37,7 +37,9 @@ enum class ResetScope : std::uint32_t { none = 0, accumulation = 1u << 0 };
 constexpr ResetScope operator|(ResetScope a, ResetScope b) {
   return static_cast<ResetScope>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
 }
-constexpr ResetScope& operator|=(ResetScope& a, ResetScope b) { return a = a | b; }
+constexpr ResetScope& operator|=(ResetScope& a, ResetScope b) {
+  return a = a | b;
+}
 /// Whether `scope` holds every history of `part`.
 constexpr bool includes(ResetScope scope, ResetScope part) {
   const auto bits = static_cast<std::uint32_t>(part);

@@ -14,13 +14,20 @@ namespace {
 
 using nlohmann::json;
 
-json json_of(bool value) { return value; }
-json json_of(int value) { return value; }
-json json_of(float value) { return shortest(value); }
-json json_of(const std::string& value) { return value; }
+json json_of(bool value) {
+  return value;
+}
+json json_of(int value) {
+  return value;
+}
+json json_of(float value) {
+  return shortest(value);
+}
+json json_of(const std::string& value) {
+  return value;
+}
 template <class Enum>
-  requires std::is_enum_v<Enum>
-json json_of(Enum value) {
+requires std::is_enum_v<Enum> json json_of(Enum value) {
   return enum_name(value);
 }
 
@@ -82,8 +89,8 @@ Result<void> read(const json& value, const SettingDescriptor& setting, std::stri
 }
 
 template <class Enum>
-  requires std::is_enum_v<Enum>
-Result<void> read(const json& value, const SettingDescriptor& setting, Enum& out) {
+requires std::is_enum_v<Enum> Result<void> read(const json& value, const SettingDescriptor& setting,
+                                                Enum& out) {
   const auto index = read_choice(value, std::string(setting.path), setting.choices);
   if (!index) return index.error();
   out = static_cast<Enum>(*index);

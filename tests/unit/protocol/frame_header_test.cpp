@@ -37,22 +37,22 @@ std::vector<std::uint8_t> bytes_of(const FrameHeader& header) {
 }
 
 TEST(FrameHeader, HasTheBytesOfTheContract) {
-  const std::vector<std::uint8_t> golden{
-      'H',  'V',  'R',  'F',                           // 0 magic
-      1,    2,    3,    3,                             // 4 version, type, codec, flags
-      64,   0,    0x50, 0x01,                          // 8 header bytes, quality
-      0x04, 0x03, 0x02, 0x01,                          // 12 frame_seq
-      0x14, 0x13, 0x12, 0x11,                          // 16 render_id
-      0x24, 0x23, 0x22, 0x21,                          // 20 input_seq_echo
-      0x34, 0x33, 0x32, 0x31,                          // 24 state_rev
-      0x02, 0x01, 0x03, 0x01,                          // 28 width, height
-      0x04, 0x00, 0x05, 0x00,                          // 32 x, y
-      0x00, 0x05, 0xd0, 0x02,                          // 36 full size
-      0x48, 0x47, 0x46, 0x45, 0x44, 0x43, 0x42, 0x41,  // 40 render_start_us
-      0x54, 0x53, 0x52, 0x51,                          // 48 render_us
-      0x64, 0x63, 0x62, 0x61,                          // 52 encode_us
-      0x74, 0x73, 0x72, 0x71,                          // 56 queue_us
-      0x84, 0x83, 0x82, 0x81};                         // 60 sample_count
+  const std::vector<std::uint8_t> golden{'H',  'V',  'R',  'F',   // 0 magic
+                                         1,    2,    3,    3,     // 4 version, type, codec, flags
+                                         64,   0,    0x50, 0x01,  // 8 header bytes, quality
+                                         0x04, 0x03, 0x02, 0x01,  // 12 frame_seq
+                                         0x14, 0x13, 0x12, 0x11,  // 16 render_id
+                                         0x24, 0x23, 0x22, 0x21,  // 20 input_seq_echo
+                                         0x34, 0x33, 0x32, 0x31,  // 24 state_rev
+                                         0x02, 0x01, 0x03, 0x01,  // 28 width, height
+                                         0x04, 0x00, 0x05, 0x00,  // 32 x, y
+                                         0x00, 0x05, 0xd0, 0x02,  // 36 full size
+                                         0x48, 0x47, 0x46, 0x45,
+                                         0x44, 0x43, 0x42, 0x41,   // 40 render_start_us
+                                         0x54, 0x53, 0x52, 0x51,   // 48 render_us
+                                         0x64, 0x63, 0x62, 0x61,   // 52 encode_us
+                                         0x74, 0x73, 0x72, 0x71,   // 56 queue_us
+                                         0x84, 0x83, 0x82, 0x81};  // 60 sample_count
   EXPECT_EQ(bytes_of(example()), golden);
 }
 
@@ -88,7 +88,9 @@ struct Damage {
   const char* path;
 };
 
-void PrintTo(const Damage& damage, std::ostream* out) { *out << damage.path; }
+void PrintTo(const Damage& damage, std::ostream* out) {
+  *out << damage.path;
+}
 
 class FrameHeaderRefuses : public testing::TestWithParam<Damage> {};
 
@@ -101,16 +103,14 @@ TEST_P(FrameHeaderRefuses, NamesTheFieldAtFault) {
   EXPECT_EQ(decoded.error().path, GetParam().path);
 }
 
-INSTANTIATE_TEST_SUITE_P(Fields, FrameHeaderRefuses,
-                         testing::Values(Damage{0, 'h', "magic"}, Damage{3, 'V', "magic"},
-                                         Damage{4, 0, "version"}, Damage{4, 2, "version"},
-                                         Damage{5, 0, "type"}, Damage{5, 5, "type"},
-                                         Damage{6, 0, "codec"}, Damage{6, 4, "codec"},
-                                         Damage{6, 255, "codec"}, Damage{8, 63, "header_bytes"},
-                                         Damage{9, 255, "header_bytes"},
-                                         Damage{29, 255, "full_width"},
-                                         Damage{33, 255, "full_width"},
-                                         Damage{39, 0, "full_height"}));
+INSTANTIATE_TEST_SUITE_P(
+    Fields, FrameHeaderRefuses,
+    testing::Values(Damage{0, 'h', "magic"}, Damage{3, 'V', "magic"}, Damage{4, 0, "version"},
+                    Damage{4, 2, "version"}, Damage{5, 0, "type"}, Damage{5, 5, "type"},
+                    Damage{6, 0, "codec"}, Damage{6, 4, "codec"}, Damage{6, 255, "codec"},
+                    Damage{8, 63, "header_bytes"}, Damage{9, 255, "header_bytes"},
+                    Damage{29, 255, "full_width"}, Damage{33, 255, "full_width"},
+                    Damage{39, 0, "full_height"}));
 
 TEST(FrameHeaderRefuses, AnEmptyPictureUnlessItIsOnlyTiming) {
   FrameHeader header = example();

@@ -33,11 +33,11 @@ class DispatcherTest : public testing::Test {
     dispatcher.add<Empty, Camera>("camera.fit", [](Empty, const CallContext&, auto done) {
       done(error::not_ready("no scene is loaded"));
     });
-    dispatcher.add<Empty, FrameBuffers>(
-        "frame.buffers", [this](Empty, const CallContext&, auto done) {
-          ++buffer_calls;
-          done(FrameBuffers{});
-        });
+    dispatcher.add<Empty, FrameBuffers>("frame.buffers",
+                                        [this](Empty, const CallContext&, auto done) {
+                                          ++buffer_calls;
+                                          done(FrameBuffers{});
+                                        });
   }
 
   /// The reply's text; fails unless it comes at once and only once.
@@ -60,8 +60,8 @@ class DispatcherTest : public testing::Test {
 };
 
 TEST_F(DispatcherTest, AnswersARequestWithItsResultAndId) {
-  const json answer = reply_to(
-      R"({"jsonrpc":"2.0","id":7,"method":"camera.set","params":{"eye":[1,2,3]}})");
+  const json answer =
+      reply_to(R"({"jsonrpc":"2.0","id":7,"method":"camera.set","params":{"eye":[1,2,3]}})");
   EXPECT_EQ(answer.at("jsonrpc"), "2.0");
   EXPECT_EQ(answer.at("id"), 7);
   EXPECT_EQ(answer.at("result").at("eye"), json::parse("[1.0,2.0,3.0]"));
@@ -71,8 +71,8 @@ TEST_F(DispatcherTest, AnswersARequestWithItsResultAndId) {
 
 TEST_F(DispatcherTest, EchoesEveryKindOfId) {
   for (const char* id : {"\"a\"", "\"\"", "0", "-5", "1.5", "12345678901234567890", "null"}) {
-    const json answer = reply_to(std::string(R"({"jsonrpc":"2.0","method":"camera.set","id":)") +
-                                 id + "}");
+    const json answer =
+        reply_to(std::string(R"({"jsonrpc":"2.0","method":"camera.set","id":)") + id + "}");
     EXPECT_EQ(answer.at("id").dump(), id);
     EXPECT_TRUE(answer.contains("result"));
   }
@@ -80,8 +80,8 @@ TEST_F(DispatcherTest, EchoesEveryKindOfId) {
 
 TEST_F(DispatcherTest, RefusesOtherIds) {
   for (const char* id : {"{}", "[1]", "true"}) {
-    const json answer = reply_to(std::string(R"({"jsonrpc":"2.0","method":"camera.set","id":)") +
-                                 id + "}");
+    const json answer =
+        reply_to(std::string(R"({"jsonrpc":"2.0","method":"camera.set","id":)") + id + "}");
     EXPECT_EQ(code_of(answer), -32600);
     EXPECT_TRUE(answer.at("id").is_null());
   }
@@ -136,8 +136,8 @@ TEST_F(DispatcherTest, SuggestsTheMethodThatWasMeant) {
 }
 
 TEST_F(DispatcherTest, TellsWhichParameterIsWrongAndWhatWouldBeRight) {
-  const json answer = reply_to(
-      R"({"jsonrpc":"2.0","id":1,"method":"camera.set","params":{"vertical_fov":500}})");
+  const json answer =
+      reply_to(R"({"jsonrpc":"2.0","id":1,"method":"camera.set","params":{"vertical_fov":500}})");
   EXPECT_EQ(code_of(answer), -32602);
   EXPECT_EQ(answer.at("error").at("data"),
             json::parse(R"({"path":"vertical_fov","reason":"is out of range",
@@ -146,11 +146,11 @@ TEST_F(DispatcherTest, TellsWhichParameterIsWrongAndWhatWouldBeRight) {
 }
 
 TEST_F(DispatcherTest, TakesParametersByNameOnly) {
-  EXPECT_EQ(code_of(reply_to(
-                R"({"jsonrpc":"2.0","id":1,"method":"camera.set","params":[[1,2,3]]})")),
-            -32602);
-  EXPECT_TRUE(reply_to(R"({"jsonrpc":"2.0","id":1,"method":"camera.set","params":[]})")
-                  .contains("result"));
+  EXPECT_EQ(
+      code_of(reply_to(R"({"jsonrpc":"2.0","id":1,"method":"camera.set","params":[[1,2,3]]})")),
+      -32602);
+  EXPECT_TRUE(
+      reply_to(R"({"jsonrpc":"2.0","id":1,"method":"camera.set","params":[]})").contains("result"));
 }
 
 TEST_F(DispatcherTest, PassesOnTheErrorOfAHandler) {
@@ -223,10 +223,8 @@ TEST_F(DispatcherTest, CompletesABatchFromManyThreads) {
   for (int round = 0; round < 50; ++round) {
     json batch = json::array();
     for (int i = 0; i < 16; ++i) {
-      batch.push_back({{"jsonrpc", "2.0"},
-                       {"id", i},
-                       {"method", "scene.load"},
-                       {"params", {{"name", "a"}}}});
+      batch.push_back(
+          {{"jsonrpc", "2.0"}, {"id", i}, {"method", "scene.load"}, {"params", {{"name", "a"}}}});
     }
     std::promise<std::string> replied;
     dispatcher.handle(batch.dump(), CallContext{},

@@ -1,10 +1,11 @@
+#include "protocol/messages.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "protocol/codec_templates.hpp"
-#include "protocol/messages.hpp"
 
 namespace heliograph::protocol {
 namespace {
@@ -109,7 +110,9 @@ struct BadMember {
   const char* limit;
 };
 
-void PrintTo(const BadMember& bad, std::ostream* out) { *out << bad.pointer << "=" << bad.value; }
+void PrintTo(const BadMember& bad, std::ostream* out) {
+  *out << bad.pointer << "=" << bad.value;
+}
 
 class MessageRefuses : public testing::TestWithParam<BadMember> {};
 
@@ -144,8 +147,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadMember{"/text", "\"a\"", "text", "number of characters", "2 to 4"},
         BadMember{"/text", "\"abcde\"", "text", "number of characters", "2 to 4"},
         BadMember{"/text", "7", "text", "must be a text", ""},
-        BadMember{"/colour", "\"gren\"", "colour", "did you mean green?",
-                  "red, green or default"},
+        BadMember{"/colour", "\"gren\"", "colour", "did you mean green?", "red, green or default"},
         BadMember{"/colour", "1", "colour", "must be a text", "red, green or default"},
         BadMember{"/list", "{}", "list", "must be a list", ""},
         BadMember{"/list", "[]", "list", "number of elements", "1 to 3"},

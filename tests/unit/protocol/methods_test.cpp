@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -16,11 +18,11 @@ TEST(Methods, AreThoseOfTheContract) {
   std::set<std::string_view> names;
   for (const MethodDescriptor& method : methods()) names.insert(method.name);
   EXPECT_EQ(names.size(), methods().size());
-  EXPECT_EQ(names, (std::set<std::string_view>{
-                       "hello", "scene.list", "scene.load", "scene.info", "camera.get",
-                       "camera.set", "camera.fit", "settings.get", "settings.patch",
-                       "settings.schema", "stream.configure", "stream.ack", "stats.subscribe",
-                       "frame.buffers", "frame.capture", "rpc.discover"}));
+  EXPECT_EQ(names, (std::set<std::string_view>{"hello", "scene.list", "scene.load", "scene.info",
+                                               "camera.get", "camera.set", "camera.fit",
+                                               "settings.get", "settings.patch", "settings.schema",
+                                               "stream.configure", "stream.ack", "stats.subscribe",
+                                               "frame.buffers", "frame.capture", "rpc.discover"}));
 }
 
 TEST(Methods, ExamplesAreWhatTheMethodsTakeAndGive) {
@@ -34,6 +36,22 @@ TEST(Methods, ExamplesAreWhatTheMethodsTakeAndGive) {
     ASSERT_TRUE(result) << method.name;
     const Result<void> result_fits = method.check_result(*result);
     EXPECT_TRUE(result_fits) << method.name << ": " << result_fits.error().message;
+  }
+}
+
+TEST(Readme, NamesEveryMethodNotificationAndErrorCode) {
+  const auto folder = std::filesystem::path(__FILE__).parent_path();
+  std::ifstream file(folder / "../../../protocol/README.md");
+  ASSERT_TRUE(file);
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  const auto names = [&](const std::string& text) {
+    EXPECT_NE(page.find(text), std::string::npos) << text << " is missing";
+  };
+  for (const MethodDescriptor& method : methods()) names("`" + std::string(method.name) + "`");
+  for (const NotificationDescriptor& sent : notifications()) names(std::string(sent.name));
+  const RawJson document = openrpc_document();
+  for (const json& error : document.value().at("components").at("errors")) {
+    names(error.at("code").dump());
   }
 }
 

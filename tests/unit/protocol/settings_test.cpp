@@ -121,7 +121,9 @@ struct Refusal {
   const char* message_part;
 };
 
-void PrintTo(const Refusal& refusal, std::ostream* out) { *out << refusal.assignment; }
+void PrintTo(const Refusal& refusal, std::ostream* out) {
+  *out << refusal.assignment;
+}
 
 class SetByPathRefuses : public testing::TestWithParam<Refusal> {};
 
@@ -138,25 +140,24 @@ TEST_P(SetByPathRefuses, NamesPathAndRemedyAndChangesNothing) {
 
 INSTANTIATE_TEST_SUITE_P(
     BadAssignments, SetByPathRefuses,
-    testing::Values(
-        Refusal{"tone_map.curve", "tone_map.curve", "path=value"},
-        Refusal{"=aces", "=aces", "path=value"},
-        Refusal{"", "", "path=value"},
-        Refusal{"tone_map.curve=asec", "tone_map.curve", "did you mean aces?"},
-        Refusal{"tone_map.curve=", "tone_map.curve", "neutral, aces, agx or linear"},
-        Refusal{"tonemap.curve=aces", "tonemap.curve", "did you mean tone_map.curve?"},
-        Refusal{"tone_map=aces", "tone_map", "tone_map.curve"},
-        Refusal{"exposure.compensation=17", "exposure.compensation", "-16 to 16"},
-        Refusal{"exposure.compensation=1x", "exposure.compensation", "must be a number"},
-        Refusal{"exposure.compensation=nan", "exposure.compensation", "finite"},
-        Refusal{"exposure.compensation=inf", "exposure.compensation", "finite"},
-        Refusal{"accumulation.max_samples=2.5", "accumulation.max_samples", "whole"},
-        Refusal{"accumulation.max_samples=0", "accumulation.max_samples", "1 to 65536"},
-        Refusal{"sampling.seed=2147483648", "sampling.seed", "0 to 2147483647"},
-        Refusal{"shadows.enabled=maybe", "shadows.enabled", "true or false"},
-        Refusal{"view.buffer=", "view.buffer", "1 to 64 characters"},
-        Refusal{"view.buffer=a b", "view.buffer", "1 to 64 characters"},
-        Refusal{"view.buffer=\xff", "view.buffer", "1 to 64 characters"}));
+    testing::Values(Refusal{"tone_map.curve", "tone_map.curve", "path=value"},
+                    Refusal{"=aces", "=aces", "path=value"}, Refusal{"", "", "path=value"},
+                    Refusal{"tone_map.curve=asec", "tone_map.curve", "did you mean aces?"},
+                    Refusal{"tone_map.curve=", "tone_map.curve", "neutral, aces, agx or linear"},
+                    Refusal{"tonemap.curve=aces", "tonemap.curve", "did you mean tone_map.curve?"},
+                    Refusal{"tone_map=aces", "tone_map", "tone_map.curve"},
+                    Refusal{"exposure.compensation=17", "exposure.compensation", "-16 to 16"},
+                    Refusal{"exposure.compensation=1x", "exposure.compensation",
+                            "must be a number"},
+                    Refusal{"exposure.compensation=nan", "exposure.compensation", "finite"},
+                    Refusal{"exposure.compensation=inf", "exposure.compensation", "finite"},
+                    Refusal{"accumulation.max_samples=2.5", "accumulation.max_samples", "whole"},
+                    Refusal{"accumulation.max_samples=0", "accumulation.max_samples", "1 to 65536"},
+                    Refusal{"sampling.seed=2147483648", "sampling.seed", "0 to 2147483647"},
+                    Refusal{"shadows.enabled=maybe", "shadows.enabled", "true or false"},
+                    Refusal{"view.buffer=", "view.buffer", "1 to 64 characters"},
+                    Refusal{"view.buffer=a b", "view.buffer", "1 to 64 characters"},
+                    Refusal{"view.buffer=\xff", "view.buffer", "1 to 64 characters"}));
 
 TEST(SettingsMarkdown, ListsEverySetting) {
   const std::string page = settings_markdown();
