@@ -61,6 +61,9 @@ function main(): void {
   });
   panel.resolution.watch(() => viewer.updateSize());
 
+  viewer.scene.watch((scene) => {
+    document.title = scene ? `${scene.name} · Heliograph` : "Heliograph";
+  });
   document.addEventListener("visibilitychange", () => {
     viewer.requestStream({ paused: document.hidden });
   });

@@ -9,6 +9,7 @@ function peer() {
     (text) => sent.push(JSON.parse(text)),
     (method, params) => heard.push([method, params]),
   );
+  rpc.open();
   return { rpc, sent, heard };
 }
 
@@ -56,6 +57,7 @@ test("a lost channel fails what waits, nonsense and stray answers are ignored", 
   rpc.receive('{"jsonrpc":"2.0","id":99,"result":0}');
   rpc.close();
   await assert.rejects(waiting, ChannelClosed);
+  await assert.rejects(rpc.request("b"), ChannelClosed);
 });
 
 test("silence ends in an error that names the method", async () => {

@@ -27,6 +27,7 @@ async function connected() {
   const sent: Request[] = [];
   const refused: unknown[] = [];
   const rpc: RpcPeer = new RpcPeer((text) => sent.push(JSON.parse(text) as Request), () => {});
+  rpc.open();
   const answer = async (body: object): Promise<Request> => {
     const request = sent.shift();
     assert.ok(request, "nothing was sent");

@@ -56,10 +56,19 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
 
   const key = (): string => (narrow.matches ? "sheet" : "panel");
   let open = false;
+  let live = false;
+  const enable = (): void => {
+    content.inert = !open || !live;
+    content.classList.toggle("idle", !live);
+  };
+  viewer.connection.state.watch(({ kind }) => {
+    live = kind === "live";
+    enable();
+  });
   const show = (shown: boolean): void => {
     open = shown;
     root.classList.toggle("folded", !shown);
-    content.inert = !shown;
+    enable();
     fold.setAttribute("aria-expanded", String(shown));
     const label = shown ? "Hide panel (H)" : "Show panel (H)";
     fold.setAttribute("aria-label", label);

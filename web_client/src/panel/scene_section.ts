@@ -36,7 +36,9 @@ function scenePicker(viewer: Viewer): HTMLSelectElement {
     const { scenes, current } = viewer.scenes.value;
     const loading = viewer.loading.value;
     const options = scenes.map(({ name }) => ({ value: name, label: name }));
-    if (scenes.length === 0) options.push({ value: "", label: "No scenes found" });
+    if (scenes.length === 0) {
+      options.push({ value: "", label: viewer.hello ? "No scenes found" : "–" });
+    }
     else if (!current && !loading) options.unshift({ value: "", label: "Choose a scene" });
     setOptions(select, options);
     select.value = loading?.name ?? current ?? "";
@@ -44,6 +46,7 @@ function scenePicker(viewer: Viewer): HTMLSelectElement {
   };
   viewer.scenes.watch(update);
   viewer.loading.watch(update);
+  viewer.connection.state.watch(update);
   return select;
 }
 
@@ -57,7 +60,7 @@ function cameraPicker(viewer: Viewer): HTMLSelectElement {
   const update = (): void => {
     const names = viewer.scene.value?.cameras ?? [];
     setOptions(select, [
-      { value: freeView, label: names.length > 0 ? "Free view" : "Free view (scene has none)" },
+      { value: freeView, label: "Free view" },
       ...names.map((name) => ({ value: name, label: name })),
     ]);
     const current = viewer.camera.value?.name ?? freeView;

@@ -41,6 +41,7 @@ export class RpcPeer {
   private readonly onNotification: (method: string, params: unknown) => void;
   private readonly pending = new Map<number, Pending>();
   private nextId = 1;
+  private connected = false;
 
   constructor(
     send: (text: string) => void,
@@ -50,11 +51,17 @@ export class RpcPeer {
     this.onNotification = onNotification;
   }
 
+  /** The channel is there: requests may be made until close(). */
+  open(): void {
+    this.connected = true;
+  }
+
   request<Result>(
     method: string,
     params: object = {},
     timeoutMs = defaultTimeoutMs,
   ): Promise<Result> {
+    if (!this.connected) return Promise.reject(new ChannelClosed("There is no connection"));
     const id = this.nextId++;
     return new Promise<Result>((resolve, reject) => {
       const timer = setTimeout(() => {
@@ -83,8 +90,9 @@ export class RpcPeer {
     }
   }
 
-  /** Fails every waiting request: the channel is gone. */
+  /** Fails every waiting request and all later ones: the channel is gone. */
   close(): void {
+    this.connected = false;
     for (const { reject, timer } of this.pending.values()) {
       clearTimeout(timer);
       reject(new ChannelClosed("The connection was lost"));

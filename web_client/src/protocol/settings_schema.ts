@@ -8,7 +8,13 @@ import { isObject } from "./settings_tree.ts";
 const widestIntegerSlider = 1_000_000;
 
 /** How names are written that are not plain words. */
-const properNames: Record<string, string> = { aces: "ACES", agx: "AgX", ibl: "IBL", taa: "TAA" };
+const properNames: Record<string, string> = {
+  aces: "ACES",
+  agx: "AgX",
+  gbuffer: "G-buffer",
+  ibl: "IBL",
+  taa: "TAA",
+};
 
 interface ControlBase {
   /** Dotted path of the setting. */

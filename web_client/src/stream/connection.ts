@@ -80,6 +80,7 @@ export class Connection {
     this.heardAt = performance.now();
     switch (message.kind) {
       case "opened":
+        this.rpc.open();
         void this.sayHello(message.subprotocol);
         break;
       case "closed":
