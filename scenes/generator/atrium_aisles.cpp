@@ -6,14 +6,12 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <cmath>
-#include <functional>
 
 namespace heliograph::scenes {
 namespace {
 
 constexpr float pi = glm::pi<float>();
 constexpr float half_wall = 0.5f * plan::wall_thickness;
-constexpr float vault_springing = 4.2f;
 constexpr float vault_height = 1.8f;
 
 // Clear spans of the aisles, from the arcade's back to the outer wall.
@@ -29,12 +27,12 @@ Mesh groin_vault(float width_x, float width_z) {
     const float side = web < 2 ? 1.0f : -1.0f;
     const float across = 0.5f * (along_z ? width_x : width_z);
     const float length = 0.5f * (along_z ? width_z : width_x);
-    mesh.append(patch(12, 6, [&](float u, float v) {
+    mesh.append(patch(10, 5, [&](float u, float v) {
       const float reach = 0.5f * pi * v;
       const float angle = (2.0f * u - 1.0f) * reach;
       const float c = across * std::sin(angle);
       const float l = side * length * std::sin(reach);
-      const float y = vault_springing + vault_height * std::cos(angle);
+      const float y = plan::vault_springing + vault_height * std::cos(angle);
       const glm::vec2 slope(-std::sin(angle) / across, -std::cos(angle) / vault_height);
       const glm::vec2 uv(angle * 0.5f * (across + vault_height), l);
       if (along_z) return SurfacePoint{{c, y, l}, {slope.x, slope.y, 0.0f}, uv};
@@ -51,13 +49,13 @@ Mesh transverse_rib(float span, float width) {
       .line_to({-0.16f, 0.06f - 0.5f * width}).arc_to({-0.10f, -0.5f * width}, -0.5f, 4)
       .line_to({0.05f, -0.5f * width});
   std::vector<Station> stations;
-  constexpr int segments = 24;
+  constexpr int segments = 16;
   float distance = 0.0f;
   glm::vec3 previous(0.0f);
   for (int i = 0; i <= segments; ++i) {
     const float angle = pi * float(i) / float(segments);
     const glm::vec3 point(0.5f * span * std::cos(angle),
-                          vault_springing + vault_height * std::sin(angle), 0.0f);
+                          plan::vault_springing + vault_height * std::sin(angle), 0.0f);
     const glm::vec3 outwards = glm::normalize(
         glm::vec3(2.0f * std::cos(angle) / span, std::sin(angle) / vault_height, 0.0f));
     if (i > 0) distance += glm::distance(point, previous);
@@ -107,74 +105,6 @@ void add_vaults(Document& document, const AtriumMaterials& m) {
   for (int quadrant = 0; quadrant < 4; ++quadrant) {
     document.place(corner_vault, mirrored({aisle_middle.x, 0.0f, aisle_middle.y}, quadrant));
     document.place(end_rib, mirrored({aisle_middle.x, 0.0f, plan::arcade.y}, quadrant));
-  }
-}
-
-namespace {
-
-// A wall of one side from `bottom` to `top`, in the plane z = 0 facing +Z.
-Mesh wall_strip(float length, float bottom, float top) {
-  const float half = 0.5f * length;
-  return quad({-half, bottom, 0}, {half, bottom, 0}, {half, top, 0}, {-half, top, 0});
-}
-
-Mesh dado(float length) {
-  Profile profile({0.05f, 0.0f});
-  profile.line_to({0.05f, 0.16f}).arc_by({-0.025f, 0.03f}, -0.5f, 4).line_to({0.025f, 1.20f})
-      .arc_by({0.035f, 0.04f}, -0.5f, 4).line_by({0.0f, 0.03f})
-      .arc_by({-0.02f, 0.03f}, 0.5f, 3).line_to({0.0f, 1.30f});
-  return sweep(profile, straight_stations(length));
-}
-
-Mesh impost(float length) {
-  Profile profile({0.0f, vault_springing - 0.26f});
-  profile.arc_by({0.05f, 0.05f}, 0.5f, 4).line_by({0.0f, 0.03f})
-      .curve_through({{0.07f, vault_springing - 0.12f}, {0.13f, vault_springing - 0.06f}}, 3)
-      .line_by({0.02f, 0.0f}).line_to({0.15f, vault_springing}).line_to({0.0f, vault_springing});
-  return sweep(profile, straight_stations(length));
-}
-
-// A flat half column on the outer wall that receives a rib, with a moulded foot.
-Mesh pilaster(float height) {
-  constexpr float half = 0.30f;
-  constexpr float depth = 0.16f;
-  Profile profile({0.06f, 0.0f});
-  profile.line_to({0.06f, 0.20f}).arc_by({-0.02f, 0.06f}, 0.9f, 4).line_by({-0.01f, 0.0f})
-      .arc_to({0.0f, 0.38f}, -0.4f, 4).line_to({0.0f, height - 0.30f})
-      .arc_by({0.0f, 0.05f}, 0.9f, 4).line_to({0.0f, height - 0.16f})
-      .arc_by({0.06f, 0.07f}, 0.5f, 4).line_by({0.02f, 0.0f}).line_to({0.08f, height});
-  return rectangular_moulding(profile, {half, depth});
-}
-
-}  // namespace
-
-void add_aisle_walls(Document& document, const AtriumMaterials& m) {
-  const glm::vec2 length = 2.0f * plan::walls;
-  const auto place_sides = [&](int long_mesh, int short_mesh) {
-    document.place(long_mesh, {0.0f, 0.0f, -plan::walls.y}, 0.0f);
-    document.place(long_mesh, {0.0f, 0.0f, plan::walls.y}, 180.0f);
-    document.place(short_mesh, {-plan::walls.x, 0.0f, 0.0f}, 90.0f);
-    document.place(short_mesh, {plan::walls.x, 0.0f, 0.0f}, -90.0f);
-  };
-  const auto add_ring = [&](const std::string& name, int material,
-                            const std::function<Mesh(float)>& make) {
-    place_sides(document.add_mesh(name, make(length.x), material),
-                document.add_mesh(name + "_end", make(length.y), material));
-  };
-  add_ring("aisle_wall", m.plaster,
-           [](float l) { return wall_strip(l, 0.0f, plan::lower.wall_top); });
-  add_ring("gallery_wall", m.plaster_upper,
-           [](float l) { return wall_strip(l, plan::upper.floor, plan::upper.top); });
-  add_ring("dado", m.floor_red, dado);
-  add_ring("impost", m.trim, impost);
-  const int shaft = document.add_mesh("pilaster", pilaster(vault_springing - 0.02f), m.trim);
-  for (const plan::Spot& spot : plan::columns()) {
-    const glm::vec2 out = spot.on_long_side
-                              ? glm::vec2(spot.position.x, spot.position.y < 0 ? -plan::walls.y
-                                                                               : plan::walls.y)
-                              : glm::vec2(spot.position.x < 0 ? -plan::walls.x : plan::walls.x,
-                                          spot.position.y);
-    document.place(shaft, {out.x, 0.0f, out.y}, spot.turn);
   }
 }
 
@@ -236,82 +166,13 @@ Mesh ceiling_beams() {
 
 void add_gallery(Document& document, const AtriumMaterials& m) {
   const int floor = document.add_mesh(
-      "gallery_floor", aisle_ring(plan::upper.floor, true, half_wall), m.gallery_floor);
+      "gallery_floor", aisle_ring(plan::upper.floor, true, half_wall), m.brick);
   document.place(floor, glm::vec3(0.0f));
   const int panels = document.add_mesh("gallery_ceiling", aisle_ring(ceiling_height, false, 0.0f),
                                        m.painted_panel);
   document.place(panels, glm::vec3(0.0f));
   const int beams = document.add_mesh("gallery_beams", ceiling_beams(), m.beam);
   document.place(beams, glm::vec3(0.0f));
-}
-
-namespace {
-
-constexpr float tile_pitch = 0.30f;
-const glm::vec2 eaves{-0.62f, 12.98f};  // outwards from the column axes, height
-const glm::vec2 ridge{5.4f, 14.9f};
-
-// One run of convex cover tiles up the slope, each course tucked under the next.
-Mesh tile_run(float length, int courses) {
-  Mesh mesh;
-  const float course = length / float(courses);
-  for (int k = 0; k < courses; ++k) {
-    const float lift = 0.025f;
-    mesh.append(patch(8, 1, [&](float u, float v) {
-      const float angle = pi * u;
-      const float radius = glm::mix(0.105f, 0.085f, v);
-      const glm::vec3 normal(std::cos(angle), std::sin(angle), 0.0f);
-      return SurfacePoint{
-          {radius * normal.x, radius * normal.y + lift * (1.0f - v), -(float(k) + v) * course},
-          normal, {angle * radius, -v * course}};
-    }));
-  }
-  // The open end at the eaves, closed with mortar.
-  mesh.append(patch(8, 1, [&](float u, float v) {
-    const float angle = pi * u;
-    const glm::vec3 rim(std::cos(angle) * 0.105f, std::sin(angle) * 0.105f * v + 0.025f, 0.01f);
-    return SurfacePoint{rim, {0, 0, 1}, {rim.x, -rim.y}};
-  }));
-  return mesh;
-}
-
-// The slope of one side in its own frame: +Z faces the courtyard, z = 0 on the column axes.
-Mesh roof_side(float half_length_at_axis) {
-  const glm::vec3 low(0.0f, eaves.y, -eaves.x);
-  const glm::vec3 high(0.0f, ridge.y, -ridge.x);
-  const glm::vec3 up_slope = glm::normalize(high - low);
-  const float slope_length = glm::distance(low, high);
-  const float low_half = half_length_at_axis + eaves.x;
-  const float high_half = half_length_at_axis + ridge.x;
-  Mesh mesh = quad_facing({-low_half, low.y, low.z}, {low_half, low.y, low.z},
-                          {high_half, high.y, high.z}, {-high_half, high.y, high.z}, {0, 1, 0});
-  const int runs = int(2.0f * low_half / tile_pitch);
-  glm::mat4 slope(1.0f);
-  slope[1] = glm::vec4(glm::cross(-up_slope, glm::vec3(1, 0, 0)), 0.0f);
-  slope[2] = glm::vec4(-up_slope, 0.0f);
-  const Mesh full_run = tile_run(slope_length, 10);
-  for (int i = 0; i < runs; ++i) {
-    const float x = (float(i) + 0.5f - 0.5f * float(runs)) * 2.0f * low_half / float(runs);
-    mesh.append(full_run, glm::translate(glm::mat4(1.0f), low + glm::vec3(x, 0, 0)) * slope);
-  }
-  const float inward = -eaves.x;
-  mesh.append(quad_facing({-low_half, low.y - 0.07f, low.z}, {low_half, low.y - 0.07f, low.z},
-                          {low_half, low.y, low.z}, {-low_half, low.y, low.z}, {0, 0, 1}));
-  mesh.append(quad_facing({-low_half - inward, low.y - 0.07f, 0.0f},
-                          {low_half + inward, low.y - 0.07f, 0.0f},
-                          {low_half, low.y - 0.07f, low.z}, {-low_half, low.y - 0.07f, low.z},
-                          {0, -1, 0}));
-  return mesh;
-}
-
-}  // namespace
-
-void add_roof(Document& document, const AtriumMaterials& m) {
-  const int long_side = document.add_mesh("roof", roof_side(plan::arcade.x), m.roof);
-  const int short_side = document.add_mesh("roof_end", roof_side(plan::arcade.y), m.roof);
-  for (const plan::Spot& side : plan::sides(0.0f)) {
-    document.place(side.on_long_side ? long_side : short_side, side.at(0.0f), side.turn);
-  }
 }
 
 }  // namespace heliograph::scenes

@@ -157,7 +157,7 @@ Mesh keystone(float radius, float height) {
 }
 
 struct ArchMeshes {
-  int wall, light_stones, dark_stones, mould, keystone;
+  int wall, light_trim, red_stones;  // -1 where there is none
 };
 
 ArchMeshes lower_arch(Document& document, const AtriumMaterials& m, const std::string& prefix,
@@ -165,25 +165,28 @@ ArchMeshes lower_arch(Document& document, const AtriumMaterials& m, const std::s
   const float radius = plan::arch_radius(plan::lower, bay_width);
   const int stones = bay_width > 3.5f ? 17 : 13;
   const float height = plan::lower.wall_top - plan::lower.springing;
-  return {document.add_mesh(prefix + "_wall", arcade_wall(bay_width, radius, height, 28), m.ashlar),
-          document.add_mesh(prefix + "_stones_light", voussoirs(radius, 0.36f, stones, 0), m.trim),
-          document.add_mesh(prefix + "_stones_red", voussoirs(radius, 0.36f, stones, 1), m.trim_red),
-          document.add_mesh(prefix + "_hood", hood_mould(radius + 0.36f, 28), m.trim), -1};
+  constexpr float depth = 0.36f;
+  Mesh light = voussoirs(radius, depth, stones, 0);
+  light.append(hood_mould(radius + depth, 20));
+  return {
+      document.add_mesh(prefix + "_wall", arcade_wall(bay_width, radius, height, 24), m.ashlar),
+      document.add_mesh(prefix + "_stones_light", std::move(light), m.trim),
+      document.add_mesh(prefix + "_stones_red", voussoirs(radius, depth, stones, 1), m.trim_red)};
 }
 
 ArchMeshes upper_arch(Document& document, const AtriumMaterials& m, const std::string& prefix,
                       float bay_width) {
   const float radius = plan::arch_radius(plan::upper, bay_width);
   const float height = plan::upper.wall_top - plan::upper.springing;
-  return {document.add_mesh(prefix + "_wall", arcade_wall(bay_width, radius, height, 28), m.ashlar),
-          -1, -1,
-          document.add_mesh(prefix + "_archivolt", archivolt(radius, 28), m.trim),
-          document.add_mesh(prefix + "_keystone", keystone(radius, 0.32f), m.trim)};
+  Mesh trim = archivolt(radius, 20);
+  trim.append(keystone(radius, 0.32f));
+  return {
+      document.add_mesh(prefix + "_wall", arcade_wall(bay_width, radius, height, 22), m.ashlar),
+      document.add_mesh(prefix + "_archivolt", std::move(trim), m.trim), -1};
 }
 
 void place_arch(Document& document, const ArchMeshes& arch, glm::vec3 origin, float turn) {
-  for (const int mesh :
-       {arch.wall, arch.light_stones, arch.dark_stones, arch.mould, arch.keystone}) {
+  for (const int mesh : {arch.wall, arch.light_trim, arch.red_stones}) {
     if (mesh >= 0) document.place(mesh, origin, turn);
   }
 }
@@ -193,12 +196,15 @@ void add_corner_piers(Document& document, const AtriumMaterials& m) {
   const float width = plan::wall_thickness + 0.04f;
   for (const plan::Storey& storey : {plan::lower, plan::upper}) {
     const float height = storey.wall_top - storey.springing;
-    const int pier = document.add_mesh("corner_pier", box({width, height, width}), m.ashlar);
+    const Mesh pier = box({width, height, width});
+    Mesh piers;
     for (const float x : {-plan::arcade.x, plan::arcade.x}) {
       for (const float z : {-plan::arcade.y, plan::arcade.y}) {
-        document.place(pier, {x, storey.springing + 0.5f * height, z});
+        piers.append(pier, glm::translate(glm::mat4(1.0f), {x, 0.5f * height, z}));
       }
     }
+    const int mesh = document.add_mesh("corner_piers", std::move(piers), m.ashlar);
+    document.place(mesh, {0.0f, storey.springing, 0.0f});
   }
 }
 
@@ -291,12 +297,12 @@ Mesh baluster() {
   profile.line_by({0.0f, 0.05f}).line_to({0.045f, 0.06f})
       .curve_through({{0.036f, 0.10f}, {0.066f, 0.22f}, {0.055f, 0.32f}, {0.030f, 0.50f},
                       {0.036f, 0.56f}}, 2)
-      .arc_by({0.0f, 0.03f}, 0.8f, 3).line_to({0.055f, 0.62f}).line_to({0.055f, 0.70f});
-  return lathe(profile, 12, 0.06f, 1.5f);
+      .arc_by({0.0f, 0.03f}, 0.8f, 2).line_to({0.055f, 0.62f}).line_to({0.055f, 0.70f});
+  return lathe(profile, 8, 0.06f, 1.5f);
 }
 
 Mesh baluster_row(float length) {
-  const int count = int(length / 0.27f);
+  const int count = int(length / 0.29f);
   const Mesh one = baluster();
   Mesh mesh;
   for (int i = 0; i < count; ++i) {
@@ -306,9 +312,10 @@ Mesh baluster_row(float length) {
   return mesh;
 }
 
-Mesh rail_and_plinth(float length) {
-  Mesh mesh = bevelled_box({length, 0.10f, 0.30f}, 0.01f);
-  for (Vertex& vertex : mesh.vertices) vertex.position.y += 0.05f;
+Mesh balustrade(float length) {
+  Mesh mesh = baluster_row(length);
+  mesh.append(bevelled_box({length, 0.10f, 0.30f}, 0.01f),
+              glm::translate(glm::mat4(1.0f), {0.0f, 0.05f, 0.0f}));
   Profile profile({0.09f, 0.80f});
   profile.line_by({0.0f, 0.03f}).arc_by({0.05f, 0.03f}, -0.5f, 3).line_by({0.0f, 0.04f})
       .arc_to({0.08f, rail_height}, 0.4f, 3).line_to({-0.08f, rail_height})
@@ -323,14 +330,11 @@ Mesh rail_and_plinth(float length) {
 void add_balustrades(Document& document, const AtriumMaterials& m) {
   const float long_length = plan::bay - 2.0f * pedestal_clearance;
   const float short_length = plan::short_bay - 2.0f * pedestal_clearance;
-  const int long_rail = document.add_mesh("balustrade", rail_and_plinth(long_length), m.trim);
-  const int short_rail = document.add_mesh("balustrade_end", rail_and_plinth(short_length), m.trim);
-  const int long_row = document.add_mesh("balusters", baluster_row(long_length), m.capital);
-  const int short_row = document.add_mesh("balusters_end", baluster_row(short_length), m.capital);
+  const int long_mesh = document.add_mesh("balustrade", balustrade(long_length), m.capital);
+  const int short_mesh = document.add_mesh("balustrade_end", balustrade(short_length), m.capital);
   for (const plan::Spot& spot : plan::bays()) {
-    document.place(spot.on_long_side ? long_rail : short_rail, spot.at(plan::upper.floor),
+    document.place(spot.on_long_side ? long_mesh : short_mesh, spot.at(plan::upper.floor),
                    spot.turn);
-    document.place(spot.on_long_side ? long_row : short_row, spot.at(plan::upper.floor), spot.turn);
   }
 }
 

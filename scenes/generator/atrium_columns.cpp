@@ -47,13 +47,13 @@ Mesh attic_base(const ColumnMeasures& c, int segments) {
   Mesh mesh = bevelled_box({2.0f * spread, plinth, 2.0f * spread}, 0.008f);
   for (Vertex& vertex : mesh.vertices) vertex.position.y += 0.5f * plinth;
   Profile profile({1.18f * r, plinth});
-  profile.arc_by({0.0f, 2.6f * unit}, 1.0f, 8)
+  profile.arc_by({0.0f, 2.6f * unit}, 1.0f, 6)
       .line_by({0.0f, 0.35f * unit}).line_to({1.14f * r, profile.pen().y})
-      .arc_to({1.08f * r, plinth + 4.6f * unit}, -0.8f, 6)
+      .arc_to({1.08f * r, plinth + 4.6f * unit}, -0.8f, 4)
       .line_by({0.0f, 0.35f * unit})
-      .arc_by({0.0f, 1.2f * unit}, 1.0f, 7)
+      .arc_by({0.0f, 1.2f * unit}, 1.0f, 5)
       .line_to({1.05f * r, profile.pen().y})
-      .arc_to({r, c.base_height}, -0.3f, 3);
+      .arc_to({r, c.base_height}, -0.3f, 2);
   mesh.append(lathe(profile, segments, 1.2f * r, 1.5f));
   return mesh;
 }
@@ -88,7 +88,7 @@ Profile fluting(int flutes, int segments) {
 Mesh fluted_shaft(const ColumnMeasures& c, int flutes, int rows) {
   const float bottom = c.pedestal_height + c.base_height;
   const float height = c.shaft_top - bottom;
-  const Profile section = fluting(flutes, 4);
+  const Profile section = fluting(flutes, 3);
   const float tile = 1.2f;
   const float repeats = std::round(2.0f * pi * c.bottom_radius / tile);
   const float stretch = std::max(1.0f, repeats) * tile / section.length();
@@ -124,7 +124,7 @@ Mesh smooth_shaft(const ColumnMeasures& c, int segments, int rows) {
 
 // One acanthus leaf: a tongue that climbs the bell and curls outwards, ribbed along the middle.
 Mesh acanthus(float foot_radius, float height, float width, float curl) {
-  return smooth_patch(6, 9, {width, height}, [=](double u, double v) {
+  return smooth_patch(4, 6, {width, height}, [=](double u, double v) {
     const double across = 2.0 * u - 1.0;
     const double lobes = 1.0 + 0.10 * std::cos(v * 18.0);
     const double half = 0.5 * width * lobes * std::sqrt(std::max(0.0, 1.02 - v * v * 0.9));
@@ -136,6 +136,15 @@ Mesh acanthus(float foot_radius, float height, float width, float curl) {
   });
 }
 
+// A rolled volute as a disc about the Y axis: rim, groove, rim, eye.
+Mesh scroll(float radius, float half_width) {
+  Profile profile({0.001f, -half_width});
+  profile.line_to({radius * 0.9f, -half_width}).arc_to({radius * 0.9f, half_width}, 0.35f, 4)
+      .line_to({radius * 0.68f, half_width}).arc_to({radius * 0.34f, half_width}, -0.6f, 3)
+      .arc_to({0.001f, half_width * 1.15f}, 0.3f, 2);
+  return lathe(profile, 12, radius, 1.5f);
+}
+
 // Bell, two rows of eight leaves, corner volutes and a moulded abacus: a plain Corinthian capital.
 Mesh leaf_capital(const ColumnMeasures& c) {
   const float height = c.top - c.shaft_top;
@@ -143,11 +152,11 @@ Mesh leaf_capital(const ColumnMeasures& c) {
   const float abacus = 0.17f * height;
   const float bell = height - abacus;
   Profile profile({r, 0.0f});
-  profile.arc_by({0.0f, 0.06f * height}, 1.0f, 5)
+  profile.arc_by({0.0f, 0.06f * height}, 1.0f, 4)
       .curve_through({{r * 0.98f, 0.30f * height}, {r * 1.04f, 0.60f * height},
-                      {r * 1.30f, bell - 0.03f * height}}, 3)
-      .arc_to({r * 1.30f, bell}, 0.8f, 3);
-  Mesh mesh = lathe(profile, 32, r, 1.5f);
+                      {r * 1.30f, bell - 0.03f * height}}, 2)
+      .arc_to({r * 1.30f, bell}, 0.8f, 2);
+  Mesh mesh = lathe(profile, 20, r, 1.5f);
   const Mesh low_leaf = acanthus(r, 0.42f * height, 0.72f * r, 0.32f * r);
   const Mesh high_leaf = acanthus(r, 0.72f * height, 0.66f * r, 0.44f * r);
   for (int i = 0; i < 8; ++i) {
@@ -155,10 +164,11 @@ Mesh leaf_capital(const ColumnMeasures& c) {
     mesh.append(low_leaf, glm::rotate(glm::mat4(1.0f), turn, {0.0f, 1.0f, 0.0f}));
     mesh.append(high_leaf, glm::rotate(glm::mat4(1.0f), turn + pi / 8.0f, {0.0f, 1.0f, 0.0f}));
   }
-  const Mesh volute = torus(0.105f * height, 0.05f * height, 14, 8);
+  const Mesh volute = scroll(0.15f * height, 0.045f * height);
   for (int i = 0; i < 4; ++i) {
+    // On the diagonals, with the eyes to both sides.
     glm::mat4 place = glm::rotate(glm::mat4(1.0f), pi * (0.5f * float(i) + 0.25f), {0, 1, 0});
-    place = glm::translate(place, {0.0f, bell - 0.14f * height, 1.18f * c.abacus_half});
+    place = glm::translate(place, {0.0f, bell - 0.13f * height, 1.16f * c.abacus_half});
     mesh.append(volute, glm::rotate(place, 0.5f * pi, {0.0f, 0.0f, 1.0f}));
   }
   Profile edge({-0.055f, bell});
@@ -179,7 +189,7 @@ Mesh plain_capital(const ColumnMeasures& c) {
   profile.arc_by({0.0f, 0.10f * height}, 1.0f, 5).line_by({0.0f, 0.26f * height})
       .line_by({0.03f * r, 0.0f}).line_by({0.0f, 0.05f * height})
       .curve_through({{1.22f * r, 0.52f * height}, {1.38f * r, 0.68f * height}}, 4);
-  Mesh mesh = lathe(profile, 28, r, 1.5f);
+  Mesh mesh = lathe(profile, 16, r, 1.5f);
   Profile edge({-0.02f, 0.68f * height});
   edge.line_by({0.0f, 0.16f * height}).arc_to({0.012f, 0.90f * height}, -0.4f, 3)
       .line_to({0.012f, height});
@@ -193,15 +203,15 @@ Mesh plain_capital(const ColumnMeasures& c) {
 }  // namespace
 
 void add_columns(Document& document, const AtriumMaterials& m) {
-  const int lower_foot = document.add_mesh("column_foot", column_foot(lower_column, 40), m.trim);
+  const int lower_foot = document.add_mesh("column_foot", column_foot(lower_column, 24), m.trim);
   const int lower_shaft =
-      document.add_mesh("column_shaft", fluted_shaft(lower_column, 20, 10), m.column);
+      document.add_mesh("column_shaft", fluted_shaft(lower_column, 20, 6), m.column);
   const int lower_capital =
       document.add_mesh("column_capital", leaf_capital(lower_column), m.capital);
   const int upper_foot =
-      document.add_mesh("gallery_column_foot", column_foot(upper_column, 28), m.trim);
+      document.add_mesh("gallery_column_foot", column_foot(upper_column, 16), m.trim);
   const int upper_shaft =
-      document.add_mesh("gallery_column_shaft", smooth_shaft(upper_column, 28, 8), m.column_dark);
+      document.add_mesh("gallery_column_shaft", smooth_shaft(upper_column, 24, 6), m.column_dark);
   const int upper_capital =
       document.add_mesh("gallery_column_capital", plain_capital(upper_column), m.capital);
   for (const plan::Spot& spot : plan::columns()) {

@@ -53,7 +53,7 @@ AtriumMaterials add_atrium_materials(Document& document, Gloss gloss) {
 
   m.floor_light = palette.add(
       "floor_light",
-      marble({"floor_light", {0.90f, 0.875f, 0.83f}, {0.83f, 0.79f, 0.73f}, {0.60f, 0.55f, 0.49f},
+      marble({"floor_light", {0.84f, 0.815f, 0.77f}, {0.77f, 0.735f, 0.675f}, {0.54f, 0.49f, 0.43f},
               0.55f, 0.16f, 1}, 1.9f), true);
   m.floor_dark = palette.add(
       "floor_dark",
@@ -79,12 +79,11 @@ AtriumMaterials add_atrium_materials(Document& document, Gloss gloss) {
               0.55f, 0.18f, 5}, 0.9f), columns);
   m.capital = palette.add("capital", smooth_limestone("capital", {0.89f, 0.84f, 0.75f}, 14), columns);
 
-  m.plaster = palette.add("plaster", plaster("plaster", {0.80f, 0.64f, 0.45f}, 21), all);
+  m.plaster = palette.add("plaster", plaster("plaster", {0.89f, 0.79f, 0.62f}, 21), all);
   m.plaster_upper =
-      palette.add("plaster_upper", plaster("plaster_upper", {0.70f, 0.38f, 0.29f}, 22), all);
+      palette.add("plaster_upper", plaster("plaster_upper", {0.80f, 0.53f, 0.40f}, 22), all);
   m.brick = palette.add("brick", recipes::brick(), all);
-  m.gallery_floor =
-      palette.add("gallery_floor", terracotta("gallery_floor", {0.66f, 0.37f, 0.26f}, 23), all);
+  m.fresco = palette.add("fresco", stencilled_fresco(), all);
 
   m.star_vault = palette.add("star_vault", recipes::star_vault());
   m.frieze = palette.add("frieze", meander_frieze(), all);
@@ -107,10 +106,10 @@ AtriumMaterials add_atrium_materials(Document& document, Gloss gloss) {
   m.pot = palette.add("pot", terracotta("pot", {0.72f, 0.44f, 0.31f}, 52), columns);
   m.majolica = palette.add("majolica", recipes::majolica(), columns);
 
-  m.banners = {palette.add_cloth("banner_red", {0.56f, 0.07f, 0.07f}, {0.84f, 0.60f, 0.25f}, all),
-               palette.add_cloth("banner_green", {0.09f, 0.27f, 0.16f}, {0.78f, 0.66f, 0.34f}, all),
-               palette.add_cloth("banner_blue", {0.08f, 0.14f, 0.38f}, {0.80f, 0.68f, 0.40f}, all)};
-  m.curtain = palette.add_cloth("curtain", {0.45f, 0.06f, 0.08f}, {0.58f, 0.14f, 0.12f}, all);
+  m.banners = {palette.add_cloth("banner_red", {0.70f, 0.08f, 0.07f}, {0.84f, 0.60f, 0.25f}, all),
+               palette.add_cloth("banner_green", {0.11f, 0.38f, 0.20f}, {0.78f, 0.66f, 0.34f}, all),
+               palette.add_cloth("banner_blue", {0.10f, 0.20f, 0.54f}, {0.80f, 0.68f, 0.40f}, all)};
+  m.curtain = palette.add_cloth("curtain", {0.50f, 0.07f, 0.08f}, {0.64f, 0.19f, 0.13f}, all);
 
   m.leaf = palette.add("leaf", recipes::leaf());
   m.soil = palette.add("soil", recipes::soil());

@@ -13,7 +13,7 @@ enum class Gloss { floor, floor_columns_trim, nearly_all };
 struct AtriumMaterials {
   int floor_light, floor_dark, floor_red, mortar;
   int ashlar, trim, trim_red, column, column_dark, capital;
-  int plaster, plaster_upper, brick, gallery_floor;
+  int plaster, plaster_upper, fresco, brick;
   int star_vault, frieze, mosaic, painted_panel;
   int beam, door;
   int bronze, iron, gold, mirror;

@@ -26,6 +26,8 @@ struct Storey {
 inline constexpr Storey lower{0.0f, 4.2f, 1.5f, 6.1f, 6.6f};
 inline constexpr Storey upper{6.6f, 10.0f, 1.68f, 12.35f, 12.9f};
 
+inline constexpr float vault_springing = 4.2f;  // of the aisles
+
 inline float arch_radius(const Storey& storey, float bay_width) {
   return storey.arch_radius - 0.5f * (bay - bay_width);
 }

@@ -1,5 +1,7 @@
 #include "scenes/generator/environment.hpp"
 
+#include "scenes/generator/noise.hpp"
+
 #include <glm/gtc/constants.hpp>
 
 #include <algorithm>
@@ -12,15 +14,15 @@ namespace {
 
 constexpr float pi = glm::pi<float>();
 
-std::array<std::uint8_t, 4> to_rgbe(glm::vec3 color) {
+// `dither` in [-0.5, 0.5) hides the coarse steps of the mantissas in smooth skies.
+std::array<std::uint8_t, 4> to_rgbe(glm::vec3 color, glm::vec3 dither) {
   const float largest = std::max({color.x, color.y, color.z});
   if (largest < 1e-32f) return {0, 0, 0, 0};
   int exponent = 0;
   const float scale = std::frexp(largest, &exponent) * 256.0f / largest;
-  const auto mantissa = [&](float c) {
-    return std::uint8_t(std::clamp(c * scale, 0.0f, 255.0f));
-  };
-  return {mantissa(color.x), mantissa(color.y), mantissa(color.z), std::uint8_t(exponent + 128)};
+  const glm::vec3 mantissa = glm::clamp(glm::floor(color * scale + dither + 0.5f), 0.0f, 255.0f);
+  return {std::uint8_t(mantissa.x), std::uint8_t(mantissa.y), std::uint8_t(mantissa.z),
+          std::uint8_t(exponent + 128)};
 }
 
 // One component of a scanline: runs of at least 4 equal bytes as (128 + length, value), the rest
@@ -81,7 +83,8 @@ std::vector<std::uint8_t> encode_hdr(const Environment& environment) {
   for (auto& plane : planes) plane.resize(width);
   for (int y = 0; y < environment.height; ++y) {
     for (int x = 0; x < environment.width; ++x) {
-      const auto rgbe = to_rgbe(environment.at(x, y));
+      const glm::vec3 dither(hash_unit(x, y, 1), hash_unit(x, y, 2), hash_unit(x, y, 3));
+      const auto rgbe = to_rgbe(environment.at(x, y), 0.98f * (dither - 0.5f));
       for (std::size_t c = 0; c < 4; ++c) planes[c][std::size_t(x)] = rgbe[c];
     }
     file.insert(file.end(), {2, 2, std::uint8_t(width >> 8), std::uint8_t(width & 255)});

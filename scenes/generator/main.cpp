@@ -88,14 +88,14 @@ void write_document(const Options& options, const Document& document) {
 
 void generate(const Options& options) {
   std::filesystem::create_directories(options.output);
-  const ClearSky sky = make_clear_sky(direction_to_sun(sun_elevation, sun_azimuth), 1024, 512);
-  if (options.wants("sky")) {
-    write_file(options.output / "sky.hdr", encode_hdr(sky.environment), "clear sky");
-  }
   if (options.wants("tests")) {
     write_file(options.output / "white.hdr", encode_hdr(make_white_environment()), "radiance 1");
     write_document(options, make_furnace());
     write_document(options, make_mirror());
+  }
+  const ClearSky sky = make_clear_sky(direction_to_sun(sun_elevation, sun_azimuth), 1024, 512);
+  if (options.wants("sky")) {
+    write_file(options.output / "sky.hdr", encode_hdr(sky.environment), "clear sky");
   }
   if (options.wants("atrium")) write_document(options, make_atrium(1, sky));
   if (options.wants("atrium_2", false)) write_document(options, make_atrium(2, sky));

@@ -1,5 +1,6 @@
 #include "scenes/generator/noise.hpp"
 
+#include <array>
 #include <cmath>
 
 namespace heliograph::scenes {
@@ -11,8 +12,16 @@ int wrap(int value, int period) {
 }
 
 glm::vec2 lattice_gradient(int x, int y, std::uint32_t seed) {
-  const float angle = 6.2831853f * hash_unit(x, y, seed);
-  return {std::cos(angle), std::sin(angle)};
+  constexpr std::size_t count = 64;
+  static const auto directions = [] {
+    std::array<glm::vec2, count> table;
+    for (std::size_t i = 0; i < count; ++i) {
+      const float angle = 6.2831853f * (float(i) + 0.5f) / float(count);
+      table[i] = {std::cos(angle), std::sin(angle)};
+    }
+    return table;
+  }();
+  return directions[hash(x, y, seed) % count];
 }
 
 float fade(float t) { return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f); }

@@ -32,6 +32,7 @@ TextureRecipe meander_frieze();
 TextureRecipe mosaic();
 TextureRecipe majolica();
 TextureRecipe painted_panel();
+TextureRecipe stencilled_fresco();
 
 // wood, metal, cloth, plants
 TextureRecipe wood(const std::string& name, glm::vec3 light, glm::vec3 dark, std::uint32_t seed);

@@ -176,4 +176,29 @@ TextureRecipe painted_panel() {
   return {"painted_panel", 1.0f, 1, false, sample};
 }
 
+TextureRecipe stencilled_fresco() {
+  const auto sample = [](glm::vec2 uv) {
+    const float cloud = fractal_noise(uv, {3, 3}, 5, 951);
+    const float wear = fractal_noise(uv, {10, 10}, 3, 961);
+    // A lozenge net with a quatrefoil in every mesh.
+    const glm::vec2 turned(4.0f * (uv.x + uv.y), 4.0f * (uv.x - uv.y));
+    const glm::vec2 local = turned - glm::floor(turned) - 0.5f;
+    const float net = std::max(std::abs(local.x), std::abs(local.y));
+    const glm::vec2 lobe = glm::abs(local) - 0.10f;
+    const float foil = std::min(glm::length(lobe), glm::length(local) + 0.03f);
+    const float line = smooth_step(0.455f, 0.47f, net);
+    const float quatrefoil = smooth_step(0.135f, 0.115f, foil);
+    SurfaceSample s;
+    s.color = glm::vec3(0.28f, 0.43f, 0.42f) * (1.0f + 0.16f * cloud);
+    s.color = blend(s.color, glm::vec3(0.62f, 0.66f, 0.55f), 0.75f * line);
+    s.roughness = 0.8f + 0.05f * cloud;
+    s.height = 0.0006f * cloud;
+    gild(s, quatrefoil, wear);
+    s.color = blend(s.color, glm::vec3(0.50f, 0.14f, 0.10f),
+                    smooth_step(0.055f, 0.04f, glm::length(local)));
+    return s;
+  };
+  return {"stencilled_fresco", 1.4f, 1, false, sample};
+}
+
 }  // namespace heliograph::scenes::recipes

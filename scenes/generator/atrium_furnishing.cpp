@@ -1,0 +1,292 @@
+#include "scenes/generator/atrium_parts.hpp"
+#include "scenes/generator/atrium_plan.hpp"
+#include "scenes/generator/noise.hpp"
+#include "scenes/generator/shapes.hpp"
+
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <cmath>
+
+namespace heliograph::scenes {
+namespace {
+
+constexpr float pi = glm::pi<float>();
+constexpr double two_pi = 2.0 * glm::pi<double>();
+
+glm::mat4 moved(glm::vec3 by) { return glm::translate(glm::mat4(1.0f), by); }
+
+glm::mat4 turned(float angle, glm::vec3 axis) {
+  return glm::rotate(glm::mat4(1.0f), angle, axis);
+}
+
+Mesh rod(float radius, float length, int segments) {
+  Profile profile({radius, 0.0f});
+  profile.line_to({radius, length});
+  return lathe(profile, segments, radius, 0.6f);
+}
+
+// Oval links, each turned a quarter against the last, hanging down from the origin.
+Mesh chain(float length) {
+  constexpr float pitch = 0.088f;
+  Mesh link = torus(0.030f, 0.008f, 8, 3);
+  Mesh mesh;
+  for (int i = 0; i < int(length / pitch); ++i) {
+    glm::mat4 place = moved({0.0f, -(float(i) + 0.5f) * pitch, 0.0f});
+    place = place * turned(i % 2 == 0 ? 0.0f : 0.5f * pi, {0, 1, 0});
+    place = place * turned(0.5f * pi, {1, 0, 0});
+    mesh.append(link, glm::scale(place, {1.0f, 1.0f, 1.7f}));
+  }
+  return mesh;
+}
+
+// The lantern hangs below the origin, its foot at y = -0.75.
+Mesh lantern_frame() {
+  Profile cap({0.20f, -0.26f});
+  cap.line_to({0.215f, -0.25f}).curve_through({{0.14f, -0.17f}, {0.07f, -0.13f}, {0.05f, -0.08f}}, 3)
+      .arc_to({0.02f, -0.04f}, 0.5f, 4).line_to({0.012f, 0.0f});
+  Mesh mesh = lathe(cap, 18, 0.15f, 0.6f);
+  Profile foot({0.001f, -0.75f});
+  foot.arc_to({0.03f, -0.70f}, 0.6f, 4).curve_through({{0.06f, -0.66f}, {0.15f, -0.62f}}, 3)
+      .line_to({0.17f, -0.60f}).line_to({0.16f, -0.595f}).line_to({0.02f, -0.595f});
+  mesh.append(lathe(foot, 18, 0.12f, 0.6f));
+  Profile under({0.02f, -0.262f});
+  under.line_to({0.20f, -0.262f});
+  mesh.append(lathe(under, 18, 0.15f, 0.6f));
+  const Mesh post = rod(0.009f, 0.35f, 6);
+  for (int i = 0; i < 6; ++i) {
+    const float angle = pi / 3.0f * float(i);
+    const glm::mat4 place = moved({0.158f * std::cos(angle), -0.60f, -0.158f * std::sin(angle)});
+    const glm::mat4 lean(glm::vec4(1, 0, 0, 0),
+                         glm::vec4(0.1f * std::cos(angle), 1, -0.1f * std::sin(angle), 0),
+                         glm::vec4(0, 0, 1, 0), glm::vec4(0, 0, 0, 1));
+    mesh.append(post, place * lean);
+  }
+  return mesh;
+}
+
+Mesh lantern_glass() {
+  Profile profile({0.03f, -0.59f});
+  profile.curve_through({{0.10f, -0.56f}, {0.135f, -0.44f}, {0.12f, -0.33f}, {0.07f, -0.27f}}, 3);
+  return lathe(profile, 18, 0.12f, 0.6f);
+}
+
+}  // namespace
+
+void add_lamps(Document& document, const AtriumMaterials& m) {
+  constexpr float chain_length = 1.35f;
+  const float hook = plan::lower.springing + plan::lower.arch_radius - 0.02f;
+  const int links = document.add_mesh("lamp_chain", chain(chain_length), m.iron);
+  const int frame = document.add_mesh("lamp_frame", lantern_frame(), m.bronze);
+  const int glass = document.add_mesh("lamp_glass", lantern_glass(), m.lamp_glass);
+  const std::vector<plan::Spot> bays = plan::bays();
+  for (const int bay : {1, 3, 4, 6, 9, 11, 12, 14, 17, 20}) {
+    const plan::Spot& spot = bays[std::size_t(bay)];
+    const float arch = plan::arch_radius(plan::lower, spot.on_long_side ? plan::bay
+                                                                        : plan::short_bay);
+    const float top = hook + arch - plan::lower.arch_radius;
+    document.place(links, spot.at(top));
+    document.place(frame, spot.at(top - chain_length));
+    document.place(glass, spot.at(top - chain_length));
+    Light light;
+    light.name = "lamp";
+    light.color = {1.0f, 0.62f, 0.30f};
+    light.intensity = 2.2f;
+    light.range = 9.0f;
+    Node node;
+    node.translation = spot.at(top - chain_length - 0.85f);  // below the frame: nothing shadows it
+    document.add_light(std::move(light), std::move(node));
+  }
+}
+
+namespace {
+
+constexpr float banner_width = 0.95f;
+constexpr float banner_length = 2.5f;
+constexpr float pole_length = 1.45f;
+constexpr float pole_rise = 0.30f;  // over its length
+
+// A gonfalon with a swallow tail that hangs from a pole along +Z, in the plane x = 0, stirred by a
+// light wind that grows towards its foot.
+Mesh banner_cloth(double phase) {
+  return smooth_patch(14, 26, {banner_width, banner_length}, [=](double u, double v) {
+    const double tail = 0.32 * std::abs(2.0 * u - 1.0) - 0.16;
+    const double drop = v * (banner_length + tail * v * v);
+    const double wave = 0.055 * std::sin(two_pi * (1.15 * u - 0.55 * v) + phase) +
+                        0.035 * std::sin(two_pi * (2.3 * u + 0.7 * v) + 2.0 * phase);
+    const double along = 0.38 + u * banner_width;
+    return glm::dvec3(wave * (0.12 + v * 0.88), pole_rise * along / pole_length - drop, along);
+  });
+}
+
+Mesh banner_pole() {
+  const float length = std::hypot(pole_length, pole_rise);
+  Mesh mesh = rod(0.024f, length, 10);
+  mesh.append(sphere(0.05f, 14, 8, {0.3f, 0.15f}), moved({0.0f, length + 0.03f, 0.0f}));
+  Mesh out;
+  out.append(mesh, turned(0.5f * pi - std::atan2(pole_rise, pole_length), {1, 0, 0}));
+  return out;
+}
+
+// Both halves of a curtain in an arch of the lower arcade, tied back to the columns.
+Mesh curtain_pair() {
+  constexpr double height = 3.75;
+  constexpr double half_opening = 1.36;
+  Mesh mesh;
+  for (const double side : {-1.0, 1.0}) {
+    mesh.append(smooth_patch(42, 12, {2.6f, float(height)}, [=](double u, double v) {
+      // Width of the gathered cloth: wide on the rod, narrow at the tie, wider on the floor.
+      const double to_tie = std::min(v / 0.56, 1.0);
+      const double below = std::max(0.0, (v - 0.56) / 0.44);
+      const double width = 1.28 - 1.0 * to_tie * to_tie * (3.0 - 2.0 * to_tie) +
+                           0.30 * below * (2.0 - below);
+      const double depth = 0.055 + 0.045 * (1.28 - width);
+      const double folds = std::cos(two_pi * (7.0 * u + 0.3 * std::sin(3.0 * v)));
+      const double sag = 0.10 * std::sin(two_pi * 0.5 * u) * to_tie;
+      return glm::dvec3(side * (half_opening - width * u), height * (1.0 - v) + 0.01 - sag,
+                        depth * folds + 0.02 * std::sin(two_pi * 3.0 * u + 5.0 * v));
+    }));
+  }
+  return mesh;
+}
+
+Mesh curtain_rod() {
+  Mesh mesh;
+  mesh.append(rod(0.022f, 2.9f, 10), moved({1.45f, 3.80f, 0.0f}) * turned(0.5f * pi, {0, 0, 1}));
+  for (const float x : {-1.28f, 1.28f}) {
+    mesh.append(torus(0.15f, 0.022f, 18, 8),
+                glm::scale(moved({x, 1.66f, 0.0f}), {1.0f, 2.2f, 0.75f}));
+  }
+  return mesh;
+}
+
+}  // namespace
+
+void add_cloths(Document& document, const AtriumMaterials& m) {
+  std::array<int, 3> cloth{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    cloth[i] = document.add_mesh(document.materials[std::size_t(m.banners[i])].name,
+                                 banner_cloth(1.7 * double(i)), m.banners[i]);
+  }
+  const int pole = document.add_mesh("banner_pole", banner_pole(), m.gold);
+  const std::vector<plan::Spot> columns = plan::columns();
+  constexpr float height = 9.55f;
+  std::size_t color = 0;
+  for (const int column : {1, 3, 5, 7, 10, 12, 14, 16}) {
+    const plan::Spot& spot = columns[std::size_t(column)];
+    const float inwards = spot.position.y < 0.0f ? 0.20f : -0.20f;
+    const glm::vec3 foot = spot.at(height) + glm::vec3(0.0f, 0.0f, inwards);
+    document.place(pole, foot, spot.turn);
+    document.place(cloth[color++ % 3], foot, spot.turn);
+  }
+  const int curtain = document.add_mesh("curtain", curtain_pair(), m.curtain);
+  const int rods = document.add_mesh("curtain_rod", curtain_rod(), m.bronze);
+  const std::vector<plan::Spot> bays = plan::bays();
+  for (const int bay : {2, 5, 10, 13}) {
+    const plan::Spot& spot = bays[std::size_t(bay)];
+    document.place(curtain, spot.at(0.0f), spot.turn);
+    document.place(rods, spot.at(0.0f), spot.turn);
+  }
+}
+
+namespace {
+
+Mesh urn() {
+  Profile profile({0.20f, 0.0f});
+  profile.line_to({0.20f, 0.04f}).arc_by({-0.05f, 0.05f}, -0.6f, 4).line_by({0.0f, 0.02f})
+      .curve_through({{0.24f, 0.24f}, {0.33f, 0.46f}, {0.31f, 0.66f}, {0.21f, 0.82f},
+                      {0.19f, 0.90f}}, 4)
+      .curve_through({{0.22f, 0.96f}, {0.28f, 1.00f}}, 3).arc_by({-0.02f, 0.02f}, 0.9f, 4)
+      .line_to({0.20f, 0.95f}).line_to({0.17f, 0.90f});
+  Mesh mesh = lathe(profile, 24, 0.28f, 1.2f);
+  const Mesh handle = patch(9, 5, [](float u, float v) {
+    const float around = pi * (1.5f - 1.15f * u);
+    const float tube = 2.0f * pi * (v < 1.0f ? v : 0.0f);
+    const glm::vec3 spoke(-std::cos(around), -std::sin(around), 0.0f);
+    const glm::vec3 normal = spoke * std::cos(tube) + glm::vec3(0, 0, std::sin(tube));
+    return SurfacePoint{glm::vec3(0.27f, 0.76f, 0.0f) + 0.13f * spoke + 0.022f * normal, normal,
+                        {0.4f * u, 0.14f * v}};
+  });
+  mesh.append(handle);
+  mesh.append(handle, turned(pi, {0, 1, 0}));
+  return mesh;
+}
+
+Mesh garden_pot() {
+  Profile profile({0.24f, 0.0f});
+  profile.line_to({0.25f, 0.05f}).line_to({0.235f, 0.06f})
+      .curve_through({{0.32f, 0.34f}, {0.36f, 0.52f}}, 4).line_by({0.02f, 0.0f})
+      .arc_by({0.0f, 0.07f}, 0.5f, 4).line_by({-0.02f, 0.0f}).line_by({0.0f, 0.03f})
+      .arc_by({-0.04f, 0.0f}, 0.9f, 4).line_to({0.31f, 0.54f});
+  return lathe(profile, 26, 0.32f, 1.0f);
+}
+
+// One leaf blade that arches outwards and down, creased along the middle; u across, v from the
+// stalk (bottom of the image) to the tip.
+Mesh blade(float length, float width, float lean, float droop) {
+  const auto middle = [=](double t) {
+    const double rise = length * (t * std::cos(lean) - droop * t * t * 0.5);
+    const double out = length * (t * std::sin(lean) + droop * t * t * 0.22);
+    return glm::dvec2(out, rise);
+  };
+  Mesh mesh = smooth_patch(2, 7, {1.0f, 1.0f}, [=](double u, double v) {
+    const double t = 1.0 - v;
+    const double across = (u - 0.5) * width;
+    const glm::dvec2 spine = middle(t);
+    return glm::dvec3(across, spine.y + 0.35 * across * across / width, spine.x);
+  });
+  for (Vertex& vertex : mesh.vertices) {
+    if (vertex.normal.y < 0.0f) vertex.normal = -vertex.normal;
+  }
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const auto at = [&](std::size_t k) { return mesh.vertices[mesh.indices[i + k]]; };
+    const glm::vec3 facing =
+        glm::cross(at(1).position - at(0).position, at(2).position - at(0).position);
+    if (glm::dot(facing, at(0).normal + at(1).normal + at(2).normal) < 0.0f) {
+      std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+    }
+  }
+  return mesh;
+}
+
+// A rosette of blades round the origin, young and upright in the middle, old and bent outside.
+Mesh plant(int blades, float size, std::uint32_t seed) {
+  Mesh mesh;
+  for (int i = 0; i < blades; ++i) {
+    const auto random = [&](int what) { return hash_unit(i, what, seed); };
+    const float age = (float(i) + 0.5f) / float(blades);
+    const float length = size * (0.75f + 0.35f * random(0)) * (1.0f - 0.15f * age);
+    const float lean = 0.08f + 0.85f * age + 0.12f * random(1);
+    const float droop = 0.25f + 0.75f * age * (0.7f + 0.6f * random(2));
+    const float turn = float(i) * 2.39996f + 0.4f * random(3);  // golden angle
+    mesh.append(blade(length, 0.17f * size, lean, droop), turned(turn, {0, 1, 0}));
+  }
+  return mesh;
+}
+
+}  // namespace
+
+void add_vases(Document& document, const AtriumMaterials& m) {
+  const int urns = document.add_mesh("urn", urn(), m.majolica);
+  const int pots = document.add_mesh("garden_pot", garden_pot(), m.pot);
+  const int tall = document.add_mesh("urn_plant", plant(26, 0.95f, 71), m.leaf);
+  const int wide = document.add_mesh("pot_plant", plant(34, 1.15f, 72), m.leaf);
+  const int earth = document.add_mesh("pot_soil", disc(0.33f, 20), m.soil);
+  const std::vector<plan::Spot> columns = plan::columns();
+  for (const int column : {1, 3, 5, 7, 10, 12, 14, 16}) {
+    const plan::Spot& spot = columns[std::size_t(column)];
+    const float inwards = spot.position.y < 0.0f ? 0.95f : -0.95f;
+    const glm::vec3 foot = spot.at(0.0f) + glm::vec3(0.0f, 0.0f, inwards);
+    document.place(urns, foot, spot.turn);
+    document.place(tall, foot + glm::vec3(0.0f, 0.90f, 0.0f), 47.0f * float(column));
+  }
+  for (const float x : {-3.55f, 3.55f}) {
+    for (const float z : {-2.55f, 2.55f}) {
+      document.place(pots, {x, 0.0f, z}, 20.0f * x);
+      document.place(wide, {x, 0.56f, z}, 30.0f * (x + 2.0f * z));
+      document.place(earth, {x, 0.57f, z});
+    }
+  }
+}
+
+}  // namespace heliograph::scenes
