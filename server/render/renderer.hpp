@@ -1,0 +1,125 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "protocol/kinds.hpp"
+#include "protocol/result.hpp"
+#include "protocol/settings.hpp"
+#include "scene/environment.hpp"
+#include "scene/scene.hpp"
+
+namespace heliograph::render {
+
+struct EngineOptions {
+  std::string device;           // part of a device's name, or empty: the best there is
+  std::string tracer = "auto";  // auto, embree, software
+  bool validation = false;      // Vulkan validation layers on, every message an error
+  std::filesystem::path cache_folder;  // pipeline cache; empty: none
+};
+
+struct DeviceInfo {
+  std::string name;
+  std::string driver;
+  protocol::DeviceType type;
+};
+
+/// A scene and its environment on the device, with its acceleration structure. Shared, immutable.
+class SceneResources;
+
+/// One device with its programs: made once, shared by every renderer.
+class Engine {
+ public:
+  /// @throws gpu::GpuError with the reasons when no device will do
+  explicit Engine(const EngineOptions& options);
+  ~Engine();
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+
+  const DeviceInfo& device() const;
+  protocol::TracerKind tracer() const;
+  std::uint32_t max_image_size() const;  // pixels, either side
+  std::uint64_t validation_messages() const;
+
+  /// Uploads, prefilters the environment and builds the acceleration structure.
+  /// May run on any thread, beside rendering.
+  std::shared_ptr<const SceneResources> upload(std::shared_ptr<const scene::Scene> scene,
+                                               const scene::Environment& environment);
+
+  struct Parts;
+  Parts& parts() { return *parts_; }
+
+ private:
+  std::unique_ptr<Parts> parts_;
+};
+
+struct PassTime {
+  std::string name;
+  protocol::PassKind kind;  // device or host
+  float milliseconds;
+};
+
+/// Four floats a pixel, row 0 on top; what the channels mean is the buffer's description.
+struct FloatImage {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::vector<float> rgba;
+};
+
+struct BufferInfo {
+  std::string name;
+  std::string description;
+};
+
+/// One rendered frame, ready for an encoder.
+struct Frame {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::vector<std::uint8_t> rgba;  // sRGB, alpha 255, row 0 on top, tightly packed
+  std::uint32_t samples = 0;       // accumulated in this picture
+  bool converged = false;          // another frame would show the same
+  float milliseconds = 0.0f;       // whole frame, wall clock
+  std::vector<PassTime> passes;
+};
+
+/// Draws one view of a scene: camera, settings, size and history of one session.
+/// Not thread safe: one thread calls it.
+class Renderer {
+ public:
+  explicit Renderer(Engine& engine);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  void set_scene(std::shared_ptr<const SceneResources> scene);
+  void set_size(std::uint32_t width, std::uint32_t height);
+  void set_camera(const scene::Camera& camera);
+  /// Refused when `view.buffer` names no buffer; then nothing is applied.
+  protocol::Result<void> set_settings(const protocol::Settings& settings);
+
+  /// False once a resting picture has all its samples and nothing has changed since.
+  bool needs_frame() const;
+  /// Draws the next frame. Without a scene the picture is black.
+  Frame render();
+
+  /// Every buffer that `view.buffer` and `capture` accept, "output" first.
+  const std::vector<BufferInfo>& buffers() const;
+  /// The buffer as of the last frame, raw values (linear radiance, metres, unit vectors ...).
+  protocol::Result<FloatImage> capture(std::string_view buffer);
+  /// The same as a picture for people: the debug view of that buffer, as streamed.
+  protocol::Result<Frame> capture_view(std::string_view buffer);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// What Vulkan offers on this machine, a line per driver file and device with the reason why each
+/// was or was not chosen. Never throws.
+std::string describe_devices(const EngineOptions& options);
+
+}  // namespace heliograph::render
