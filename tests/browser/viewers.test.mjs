@@ -74,6 +74,23 @@ async function swipe(page, from, to) {
   await touch("touchEnd");
 }
 
+/** Two fingers that part while both move to the right. */
+async function pinch(page, middle) {
+  const session = await page.context().newCDPSession(page);
+  const points = (step) => [
+    { x: middle.x - 30 - step * 3, y: middle.y, id: 0 },
+    { x: middle.x + 30 + step * 9, y: middle.y, id: 1 },
+  ];
+  await session.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: points(0) });
+  for (let step = 1; step <= 8; step += 1) {
+    await session.send("Input.dispatchTouchEvent", { type: "touchMove", touchPoints: points(step) });
+    await page.waitForTimeout(20);
+  }
+  await session.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
+}
+
+const distance = (a, b) => Math.hypot(...a.map((value, axis) => value - b[axis]));
+
 test("on a phone the panel is a sheet and a finger orbits", async () => {
   const { page, context, complaints } = await openViewer(browser, server.url, {
     viewport: { width: 360, height: 740 },
@@ -94,6 +111,14 @@ test("on a phone the panel is a sheet and a finger orbits", async () => {
     async () => JSON.stringify((await server.call("camera.get")).eye) !== eyeBefore,
     "an orbit by finger",
   );
+  await page.waitForTimeout(1000);
+  const apart = await server.call("camera.get");
+  await pinch(page, { x: 180, y: 300 });
+  await eventually(async () => {
+    const { eye, target } = await server.call("camera.get");
+    const closer = distance(eye, target) < 0.9 * distance(apart.eye, apart.target);
+    return closer && distance(target, apart.target) > 0;
+  }, "a pinch to move closer and aside");
 
   await page.getByRole("button", { name: "Show panel" }).tap();
   await eventually(async () => (await panel.boundingBox()).y < 500, "an open sheet");
@@ -115,6 +140,20 @@ test("on a phone the panel is a sheet and a finger orbits", async () => {
   await context.close();
 });
 
+test("where a canvas cannot be handed to the worker the page draws itself", async () => {
+  const context = await browser.newContext();
+  await context.addInitScript(() => {
+    delete HTMLCanvasElement.prototype.transferControlToOffscreen;
+  });
+  const { page, complaints } = await openViewer(browser, server.url, { context });
+  await firstPicture(page);
+  await settle(page);
+  const { deviation } = statistics(await lookAt(page, "drawn_by_page"));
+  assert.ok(deviation > 0.03, "the picture is nearly blank");
+  assert.deepEqual(complaints, []);
+  await context.close();
+});
+
 test("after a restart of the server the page comes back with its camera", async () => {
   const { page, context, complaints } = await openViewer(browser, server.url);
   await firstPicture(page);
@@ -132,7 +171,7 @@ test("after a restart of the server the page comes back with its camera", async 
   await page.waitForSelector('#pill[data-state="live"]', { timeout: 40_000 });
   await eventually(async () => {
     const { eye } = await server.call("camera.get");
-    return Math.hypot(...eye.map((value, axis) => value - eyeBefore[axis])) < 1e-3;
+    return distance(eye, eyeBefore) < 1e-3;
   }, "the camera to be restored");
   await firstPicture(page);
   await settle(page);

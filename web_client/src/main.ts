@@ -64,9 +64,9 @@ function main(): void {
   viewer.scene.watch((scene) => {
     document.title = scene ? `${scene.name} · Heliograph` : "Heliograph";
   });
-  document.addEventListener("visibilitychange", () => {
-    viewer.requestStream({ paused: document.hidden });
-  });
+  const pauseUnseen = (): void => viewer.requestStream({ paused: document.hidden });
+  document.addEventListener("visibilitychange", pauseUnseen);
+  pauseUnseen();
   addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const focused = document.activeElement;

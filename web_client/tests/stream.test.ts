@@ -93,7 +93,7 @@ function pipeline() {
   return { frames, log, decoded };
 }
 
-test("while one frame is decoded only the newest waits, and every frame is acknowledged", async () => {
+test("while one frame is decoded only the newest waits, and each is acknowledged", async () => {
   const { frames, log, decoded } = pipeline();
   for (const seq of [1, 2, 3]) frames.push(frameMessage(seq));
   await decoded();
@@ -101,7 +101,7 @@ test("while one frame is decoded only the newest waits, and every frame is ackno
   assert.deepEqual(log, ["decode 1", "ack 2", "draw 1", "ack 1", "decode 3", "draw 3", "ack 3"]);
 });
 
-test("a frame that cannot be decoded is told, acknowledged and does not stop the next", async () => {
+test("an undecodable frame is told, acknowledged and does not stop the next", async () => {
   const { frames, log, decoded } = pipeline();
   frames.push(frameMessage(1));
   await decoded(false);
@@ -109,7 +109,7 @@ test("a frame that cannot be decoded is told, acknowledged and does not stop the
   await decoded();
   assert.deepEqual(log, [
     "decode 1",
-    "frame 1 could not be decoded as image/jpeg",
+    "it could not be decoded as image/jpeg",
     "ack 1",
     "decode 2",
     "draw 2",

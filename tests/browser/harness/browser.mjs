@@ -20,13 +20,15 @@ export function launchBrowser() {
   });
 }
 
-/** Opens the client. `complaints` collects console errors, exceptions and CSP violations. */
-export async function openViewer(browser, url, options = {}) {
-  const context = await browser.newContext({
-    viewport: { width: 1280, height: 720 },
-    colorScheme: "dark",
-    ...options,
-  });
+/** Opens the client, in a new context if none is given. `complaints` collects console errors, exceptions and CSP violations. */
+export async function openViewer(browser, url, { context: given, ...options } = {}) {
+  const context =
+    given ??
+    (await browser.newContext({
+      viewport: { width: 1280, height: 720 },
+      colorScheme: "dark",
+      ...options,
+    }));
   const page = await context.newPage();
   const complaints = [];
   page.on("console", (message) => {

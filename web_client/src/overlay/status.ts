@@ -119,7 +119,8 @@ function liveNotice(viewer: Viewer): Notice | null {
         };
   }
   if (!viewer.frame.value) {
-    return { title: "Rendering", detail: "The first picture is on its way", progress: null, dims: false };
+    const detail = "The first picture is on its way";
+    return { title: "Rendering", detail, progress: null, dims: false };
   }
   return null;
 }

@@ -186,7 +186,8 @@ function slider(control: SliderControl, report: Report): Widget {
       entry.show(value);
       shown = Number(value ?? control.minimum);
       track.value = String(Math.round(sliderPosition(control, shown) * sliderSteps));
-      track.setAttribute("aria-valuetext", `${formatNumber(shown, control)} ${control.unit}`.trim());
+      const spoken = `${formatNumber(shown, control)} ${control.unit}`.trim();
+      track.setAttribute("aria-valuetext", spoken);
       fill();
     },
   };
@@ -247,7 +248,9 @@ function choice(control: ChoiceControl, report: Report): Widget {
   const select = element(
     "select",
     { change: () => report(control.options[select.selectedIndex]?.value ?? null) },
-    ...control.options.map(({ value, label }) => element("option", { value: String(value) }, label)),
+    ...control.options.map(({ value, label }) =>
+      element("option", { value: String(value) }, label),
+    ),
   );
   return {
     labelled: select,
@@ -331,7 +334,10 @@ function numberEntry(range: NumberRange, unit: string, report: Report, label: st
   });
   const symbol = unitSymbol(unit);
   const node = element("span", { class: "entry" }, input);
-  if (symbol && symbol.length <= longestSymbol) node.append(element("span", { class: "unit", "aria-hidden": "true" }, symbol));
+  if (symbol && symbol.length <= longestSymbol) {
+    node.classList.add("with-unit");
+    node.append(element("span", { class: "unit", "aria-hidden": "true" }, symbol));
+  }
   return {
     node,
     input,

@@ -25,7 +25,8 @@ export function createPerformanceSection(viewer: Viewer): HTMLElement {
     const median = viewer.latency.median;
     setText(rate.value, resting ? (frame ? "at rest" : "–") : `${formatRate(fps)} fps`);
     setText(latency.value, median === null ? "–" : `${median.toFixed(0)} ms`);
-    setText(bandwidth.value, resting ? (frame ? "0 kB/s" : "–") : formatBandwidth(bytesPerSecond));
+    const bytes = formatBandwidth(resting ? 0 : bytesPerSecond);
+    setText(bandwidth.value, frame ? bytes : "–");
     setText(size.value, frame ? `${frame.width} × ${frame.height}` : "–");
     setText(samples.value, frame ? String(frame.samples) : "–");
   };

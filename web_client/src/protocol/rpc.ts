@@ -8,6 +8,12 @@ export interface RpcErrorData {
   limit?: unknown;
 }
 
+interface RpcErrorObject {
+  code: number;
+  message: string;
+  data?: RpcErrorData;
+}
+
 export class RpcError extends Error {
   readonly code: number;
   readonly data: RpcErrorData;
@@ -111,8 +117,8 @@ export class RpcPeer {
     this.pending.delete(entry.id as number);
     clearTimeout(waiting.timer);
     if (entry.error !== undefined) {
-      const error = entry.error as unknown as { code: number; message: string; data?: RpcErrorData };
-      waiting.reject(new RpcError(error.code, error.message, error.data ?? {}));
+      const { code, message, data } = entry.error as unknown as RpcErrorObject;
+      waiting.reject(new RpcError(code, message, data ?? {}));
     } else {
       waiting.resolve(entry.result as never);
     }

@@ -91,7 +91,7 @@ export class FramePipeline {
       const presentUs = Math.round((clockMs() - receivedAt) * 1000);
       this.sink.acknowledge(header.frameSeq, decodeUs, presentUs);
     } catch {
-      this.sink.failed(`frame ${header.frameSeq} could not be decoded as ${type}`);
+      this.sink.failed(`it could not be decoded as ${type}`);
       this.sink.acknowledge(header.frameSeq, 0, 0);
     }
   }

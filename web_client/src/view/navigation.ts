@@ -64,7 +64,7 @@ export class Navigation {
     surface.addEventListener("mousedown", (event) => {
       if (event.button === 1) event.preventDefault(); // no automatic scrolling
     });
-    surface.addEventListener("keydown", this.keyDown);
+    addEventListener("keydown", this.keyDown);
     addEventListener("keyup", this.keyUp);
     addEventListener("blur", () => this.heldKeys.clear());
   }
@@ -145,7 +145,8 @@ export class Navigation {
   };
 
   private readonly keyDown = (event: KeyboardEvent): void => {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const elsewhere = event.target !== this.surface && event.target !== document.body;
+    if (elsewhere || event.ctrlKey || event.metaKey || event.altKey) return;
     this.shiftHeld = event.shiftKey;
     if (event.key === "f" || event.key === "F") {
       this.host.fit();
