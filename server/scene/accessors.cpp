@@ -10,11 +10,14 @@ namespace {
 std::uint32_t component_size(ComponentType type) {
   switch (type) {
     case ComponentType::i8:
-    case ComponentType::u8: return 1;
+    case ComponentType::u8:
+      return 1;
     case ComponentType::i16:
-    case ComponentType::u16: return 2;
+    case ComponentType::u16:
+      return 2;
     case ComponentType::u32:
-    case ComponentType::f32: return 4;
+    case ComponentType::f32:
+      return 4;
   }
   return 4;
 }
@@ -26,19 +29,29 @@ std::uint32_t element_size(ElementType element, ComponentType component) {
     return dimension * ((dimension * size + 3) / 4 * 4);
   };
   switch (element) {
-    case ElementType::mat2: return matrix(2);
-    case ElementType::mat3: return matrix(3);
-    case ElementType::mat4: return matrix(4);
-    default: return component_count(element) * size;
+    case ElementType::mat2:
+      return matrix(2);
+    case ElementType::mat3:
+      return matrix(3);
+    case ElementType::mat4:
+      return matrix(4);
+    default:
+      return component_count(element) * size;
   }
 }
 
 ComponentType read_component_type(const JsonValue& owner) {
   const std::uint64_t value = owner.required_integer("componentType");
   switch (value) {
-    case 5120: case 5121: case 5122: case 5123: case 5125: case 5126:
+    case 5120:
+    case 5121:
+    case 5122:
+    case 5123:
+    case 5125:
+    case 5126:
       return static_cast<ComponentType>(value);
-    default: owner.refuse("componentType", std::to_string(value) + " is not a component type");
+    default:
+      owner.refuse("componentType", std::to_string(value) + " is not a component type");
   }
 }
 
@@ -76,23 +89,30 @@ float load_component(const std::uint8_t* bytes, ComponentType type, bool normali
       const float value = load<std::int8_t>(bytes);
       return normalized ? std::max(value / 127.0f, -1.0f) : value;
     }
-    case ComponentType::u8: return load<std::uint8_t>(bytes) / (normalized ? 255.0f : 1.0f);
+    case ComponentType::u8:
+      return load<std::uint8_t>(bytes) / (normalized ? 255.0f : 1.0f);
     case ComponentType::i16: {
       const float value = load<std::int16_t>(bytes);
       return normalized ? std::max(value / 32767.0f, -1.0f) : value;
     }
-    case ComponentType::u16: return load<std::uint16_t>(bytes) / (normalized ? 65535.0f : 1.0f);
-    case ComponentType::u32: return static_cast<float>(load<std::uint32_t>(bytes));
-    case ComponentType::f32: return load<float>(bytes);
+    case ComponentType::u16:
+      return load<std::uint16_t>(bytes) / (normalized ? 65535.0f : 1.0f);
+    case ComponentType::u32:
+      return static_cast<float>(load<std::uint32_t>(bytes));
+    case ComponentType::f32:
+      return load<float>(bytes);
   }
   return 0.0f;
 }
 
 std::uint32_t load_unsigned(const std::uint8_t* bytes, ComponentType type) {
   switch (type) {
-    case ComponentType::u8: return load<std::uint8_t>(bytes);
-    case ComponentType::u16: return load<std::uint16_t>(bytes);
-    default: return load<std::uint32_t>(bytes);
+    case ComponentType::u8:
+      return load<std::uint8_t>(bytes);
+    case ComponentType::u16:
+      return load<std::uint16_t>(bytes);
+    default:
+      return load<std::uint32_t>(bytes);
   }
 }
 
@@ -100,7 +120,8 @@ bool is_index_type(ComponentType type) {
   return type == ComponentType::u8 || type == ComponentType::u16 || type == ComponentType::u32;
 }
 
-Accessor::Sparse read_sparse(const JsonValue& sparse, const GltfFile& file, const Accessor& accessor) {
+Accessor::Sparse read_sparse(const JsonValue& sparse, const GltfFile& file,
+                             const Accessor& accessor) {
   const std::uint64_t count = sparse.required_integer("count");
   if (count == 0 || count > accessor.count) {
     sparse.refuse("count", "must be from 1 to the accessor's count");
@@ -109,23 +130,28 @@ Accessor::Sparse read_sparse(const JsonValue& sparse, const GltfFile& file, cons
   const auto values = sparse.object("values");
   if (!indices || !values) sparse.refuse("must have indices and values");
 
-  const std::uint32_t index_view = indices->required_index("bufferView", file.views().size(), "buffer views");
+  const std::uint32_t index_view =
+      indices->required_index("bufferView", file.views().size(), "buffer views");
   const ComponentType index_type = read_component_type(*indices);
-  if (!is_index_type(index_type)) indices->refuse("componentType", "must be an unsigned integer type");
+  if (!is_index_type(index_type))
+    indices->refuse("componentType", "must be an unsigned integer type");
   const std::uint32_t index_size = component_size(index_type);
-  const auto index_bytes = checked_range(*indices, file.views()[index_view],
-                                         indices->integer("byteOffset", 0), count, index_size, index_size);
+  const auto index_bytes =
+      checked_range(*indices, file.views()[index_view], indices->integer("byteOffset", 0), count,
+                    index_size, index_size);
 
   Accessor::Sparse result;
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t index = load_unsigned(index_bytes.data() + i * index_size, index_type);
-    if (index >= accessor.count) indices->refuse("index " + std::to_string(index) + " is out of range");
+    if (index >= accessor.count)
+      indices->refuse("index " + std::to_string(index) + " is out of range");
     if (i > 0 && index <= result.indices.back()) indices->refuse("must ascend");
     result.indices.push_back(index);
   }
 
   const std::uint32_t size = element_size(accessor.element, accessor.component);
-  const std::uint32_t value_view = values->required_index("bufferView", file.views().size(), "buffer views");
+  const std::uint32_t value_view =
+      values->required_index("bufferView", file.views().size(), "buffer views");
   result.values = checked_range(*values, file.views()[value_view], values->integer("byteOffset", 0),
                                 count, size, size);
   return result;
@@ -150,7 +176,8 @@ Accessor read_accessor(const JsonValue& json, const GltfFile& file, const Import
     const BufferView& source = file.views()[*view];
     if (source.stride != 0) result.stride = source.stride;
     if (result.stride < size) json.refuse("is wider than its buffer view's byteStride");
-    result.bytes = checked_range(json, source, json.integer("byteOffset", 0), count, result.stride, size);
+    result.bytes =
+        checked_range(json, source, json.integer("byteOffset", 0), count, result.stride, size);
   }
   if (const auto sparse = json.object("sparse")) result.sparse = read_sparse(*sparse, file, result);
   return result;
@@ -164,13 +191,19 @@ void Accessor::refuse(std::string_view reason) const {
 
 std::uint32_t component_count(ElementType type) {
   switch (type) {
-    case ElementType::scalar: return 1;
-    case ElementType::vec2: return 2;
-    case ElementType::vec3: return 3;
+    case ElementType::scalar:
+      return 1;
+    case ElementType::vec2:
+      return 2;
+    case ElementType::vec3:
+      return 3;
     case ElementType::vec4:
-    case ElementType::mat2: return 4;
-    case ElementType::mat3: return 9;
-    case ElementType::mat4: return 16;
+    case ElementType::mat2:
+      return 4;
+    case ElementType::mat3:
+      return 9;
+    case ElementType::mat4:
+      return 16;
   }
   return 1;
 }
@@ -188,7 +221,8 @@ std::vector<glm::vec<components, float>> read_vectors(const Accessor& accessor) 
   using Vector = glm::vec<components, float>;
   std::vector<Vector> result(accessor.count, Vector(0.0f));
   const std::uint32_t size = component_size(accessor.component);
-  const int available = std::min<int>(components, static_cast<int>(component_count(accessor.element)));
+  const int available =
+      std::min<int>(components, static_cast<int>(component_count(accessor.element)));
   const auto load_element = [&](const std::uint8_t* bytes, Vector& target) {
     for (int i = 0; i < available; ++i) {
       target[i] = load_component(bytes + i * size, accessor.component, accessor.normalized);
@@ -203,7 +237,8 @@ std::vector<glm::vec<components, float>> read_vectors(const Accessor& accessor) 
   if (accessor.sparse) {
     const std::uint32_t element_bytes = element_size(accessor.element, accessor.component);
     for (std::size_t i = 0; i < accessor.sparse->indices.size(); ++i) {
-      load_element(accessor.sparse->values.data() + i * element_bytes, result[accessor.sparse->indices[i]]);
+      load_element(accessor.sparse->values.data() + i * element_bytes,
+                   result[accessor.sparse->indices[i]]);
     }
   }
   return result;
@@ -213,8 +248,10 @@ template std::vector<glm::vec2> read_vectors<2>(const Accessor&);
 template std::vector<glm::vec3> read_vectors<3>(const Accessor&);
 template std::vector<glm::vec4> read_vectors<4>(const Accessor&);
 
-std::vector<std::uint32_t> read_vertex_indices(const Accessor& accessor, std::uint32_t vertex_count) {
-  if (accessor.element != ElementType::scalar || !is_index_type(accessor.component) || accessor.normalized) {
+std::vector<std::uint32_t> read_vertex_indices(const Accessor& accessor,
+                                               std::uint32_t vertex_count) {
+  if (accessor.element != ElementType::scalar || !is_index_type(accessor.component) ||
+      accessor.normalized) {
     accessor.refuse("cannot hold indices: they are unsigned, unnormalised scalars");
   }
   std::vector<std::uint32_t> result(accessor.count, 0);

@@ -2,12 +2,11 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
-
-#include <glm/glm.hpp>
 
 #include "scene/gltf_file.hpp"
 
@@ -50,6 +49,7 @@ std::vector<glm::vec<components, float>> read_vectors(const Accessor& accessor);
 
 /// All elements of an index accessor (unsigned scalar), widened to 32 bits.
 /// @throws ImportError when the type does not fit or an index is not below `vertex_count`
-std::vector<std::uint32_t> read_vertex_indices(const Accessor& accessor, std::uint32_t vertex_count);
+std::vector<std::uint32_t> read_vertex_indices(const Accessor& accessor,
+                                               std::uint32_t vertex_count);
 
 }  // namespace heliograph::scene

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-
 #include <glm/gtc/matrix_transform.hpp>
 
 namespace heliograph::scene {
@@ -12,7 +11,8 @@ glm::mat4 view_matrix(const Camera& camera) {
   const float distance = glm::length(forward);
   forward = distance > 0.0f ? forward / distance : glm::vec3(0.0f, 0.0f, -1.0f);
   glm::vec3 up = camera.up;
-  if (!(glm::length(glm::cross(forward, up)) > 1e-5f * glm::length(up)) || glm::length(up) == 0.0f) {
+  if (!(glm::length(glm::cross(forward, up)) > 1e-5f * glm::length(up)) ||
+      glm::length(up) == 0.0f) {
     up = std::abs(forward.y) < 0.9f ? glm::vec3(0.0f, 1.0f, 0.0f) : glm::vec3(0.0f, 0.0f, -1.0f);
   }
   return glm::lookAtRH(camera.eye, camera.eye + forward, up);
@@ -40,7 +40,8 @@ glm::mat4 projection_matrix(const Camera& camera, float aspect) {
 Camera fit_camera(const Bounds& bounds, float vertical_fov, float aspect) {
   constexpr float margin = 1.08f;
   const glm::vec3 center = bounds.empty() ? glm::vec3(0.0f) : bounds.center();
-  const glm::vec3 half = bounds.empty() ? glm::vec3(1.0f) : 0.5f * (bounds.maximum - bounds.minimum);
+  const glm::vec3 half =
+      bounds.empty() ? glm::vec3(1.0f) : 0.5f * (bounds.maximum - bounds.minimum);
   const glm::vec3 back = glm::normalize(glm::vec3(0.55f, 0.35f, 1.0f));
   const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0.0f, 1.0f, 0.0f), back));
   const glm::vec3 up = glm::cross(back, right);
@@ -50,7 +51,8 @@ Camera fit_camera(const Bounds& bounds, float vertical_fov, float aspect) {
   // Each corner of the box asks for a distance at which it enters the picture.
   float distance = 0.0f;
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec3 offset = half * glm::vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+    const glm::vec3 offset =
+        half * glm::vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
     const float needed = std::max(std::abs(glm::dot(offset, right)) / slope_x,
                                   std::abs(glm::dot(offset, up)) / slope_y);
     distance = std::max(distance, margin * needed + glm::dot(offset, back));

@@ -14,7 +14,8 @@ float required_number(const JsonValue& json, std::string_view key) {
 
 void read_perspective(const JsonValue& json, Camera& camera) {
   const float vertical_fov = required_number(json, "yfov");
-  if (vertical_fov <= 0.0f || vertical_fov >= 3.14159265f) json.refuse("yfov", "must be between 0 and pi");
+  if (vertical_fov <= 0.0f || vertical_fov >= 3.14159265f)
+    json.refuse("yfov", "must be between 0 and pi");
   camera.vertical_fov = glm::degrees(vertical_fov);
   camera.near_plane = required_number(json, "znear");
   if (camera.near_plane <= 0.0f) json.refuse("znear", "must be more than 0");
@@ -55,7 +56,8 @@ std::vector<Camera> read_cameras(const JsonValue& root) {
   return cameras;
 }
 
-Camera place_camera(Camera camera, const std::string& node_name, const glm::mat4& world, const Bounds& bounds) {
+Camera place_camera(Camera camera, const std::string& node_name, const glm::mat4& world,
+                    const Bounds& bounds) {
   if (!node_name.empty()) camera.name = node_name;
   const glm::vec3 forward = unit_or(-glm::vec3(world[2]), {0.0f, 0.0f, -1.0f});
   camera.eye = glm::vec3(world[3]);

@@ -45,7 +45,8 @@ std::vector<std::uint8_t> ConfinedFolder::read(const std::string& relative) {
   const auto outside = [&] { throw ImportError(label + " lies outside the scene's folder"); };
   if (relative.find('\0') != std::string::npos) throw ImportError("a file name holds a zero byte");
   const std::filesystem::path requested(relative);
-  if (requested.is_absolute() || !is_inside((root_ / requested).lexically_normal(), root_)) outside();
+  if (requested.is_absolute() || !is_inside((root_ / requested).lexically_normal(), root_))
+    outside();
   std::error_code error;
   const std::filesystem::path resolved = std::filesystem::canonical(root_ / requested, error);
   if (error) throw ImportError(label + " is missing");
@@ -55,8 +56,8 @@ std::vector<std::uint8_t> ConfinedFolder::read(const std::string& relative) {
   return bytes;
 }
 
-std::vector<std::uint8_t> read_regular_file(const std::filesystem::path& path, std::uint64_t max_bytes,
-                                            const std::string& label) {
+std::vector<std::uint8_t> read_regular_file(const std::filesystem::path& path,
+                                            std::uint64_t max_bytes, const std::string& label) {
   // Not blocking: opening a pipe must not wait for its writer before we see that it is one.
   const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.get() < 0) {

@@ -14,7 +14,8 @@ class ConfinedFolder {
   ConfinedFolder(const std::filesystem::path& folder, std::uint64_t byte_budget);
 
   /// Reads `relative` (already percent-decoded, '/' separated).
-  /// @throws ImportError naming `relative` when it leaves the folder, is missing or exceeds the budget
+  /// @throws ImportError naming `relative` when it leaves the folder, is missing or exceeds the
+  /// budget
   std::vector<std::uint8_t> read(const std::string& relative);
 
  private:
@@ -24,7 +25,7 @@ class ConfinedFolder {
 
 /// Reads a whole regular file of at most `max_bytes`. `label` stands for it in errors.
 /// @throws ImportError
-std::vector<std::uint8_t> read_regular_file(const std::filesystem::path& path, std::uint64_t max_bytes,
-                                            const std::string& label);
+std::vector<std::uint8_t> read_regular_file(const std::filesystem::path& path,
+                                            std::uint64_t max_bytes, const std::string& label);
 
 }  // namespace heliograph::scene

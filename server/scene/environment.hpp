@@ -2,9 +2,8 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <vector>
-
 #include <glm/glm.hpp>
+#include <vector>
 
 namespace heliograph::scene {
 
@@ -16,7 +15,7 @@ struct Environment {
   std::vector<glm::vec3> radiance;
 };
 
-/// Reads a Radiance .hdr file. Non-finite and negative texels are refused.
+/// Reads a Radiance .hdr file of at most 8192 x 4096 pixels.
 /// @throws ImportError
 Environment load_environment(const std::filesystem::path& path);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-
 #include <nlohmann/json.hpp>
 
 #include "scene/quote.hpp"
@@ -12,12 +11,12 @@
 namespace heliograph::scene {
 namespace {
 
-constexpr std::uint32_t glb_magic = 0x46546c67;       // "glTF"
-constexpr std::uint32_t glb_json_chunk = 0x4e4f534a;  // "JSON"
+constexpr std::uint32_t glb_magic = 0x46546c67;         // "glTF"
+constexpr std::uint32_t glb_json_chunk = 0x4e4f534a;    // "JSON"
 constexpr std::uint32_t glb_binary_chunk = 0x004e4942;  // "BIN"
 
 constexpr std::array<std::string_view, 6> supported_extensions = {
-    "KHR_lights_punctual",  "KHR_materials_emissive_strength", "KHR_materials_ior",
+    "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_ior",
     "KHR_materials_unlit", "KHR_mesh_quantization",           "KHR_texture_transform"};
 
 bool is_supported(const std::string& extension) {
@@ -42,7 +41,8 @@ std::vector<Chunk> read_glb_chunks(std::span<const std::uint8_t> file) {
   const std::uint32_t version = read_u32(file, 4);
   if (version != 2) throw ImportError("GLB version " + std::to_string(version) + " is not 2");
   const std::uint32_t length = read_u32(file, 8);
-  if (length > file.size() || length < 12) throw ImportError("GLB is cut: its header promises more bytes");
+  if (length > file.size() || length < 12)
+    throw ImportError("GLB is cut: its header promises more bytes");
   std::vector<Chunk> chunks;
   std::size_t offset = 12;
   while (offset < length && chunks.size() < 2) {
@@ -78,7 +78,9 @@ GltfFile::GltfFile(const std::filesystem::path& path, const ImportLimits& limits
 
 GltfFile::~GltfFile() = default;
 
-JsonValue GltfFile::root() const { return JsonValue(*json_, ""); }
+JsonValue GltfFile::root() const {
+  return JsonValue(*json_, "");
+}
 
 void GltfFile::read_container(const std::vector<std::uint8_t>& file, const ImportLimits& limits) {
   if (file.empty()) throw ImportError("the file is empty");
@@ -156,12 +158,14 @@ void GltfFile::read_views() {
     const std::uint64_t length = view.required_integer("byteLength");
     const std::uint64_t available = buffers_[buffer].size();
     if (length == 0) view.refuse("byteLength", "must be at least 1");
-    if (offset > available || length > available - offset) view.refuse("reaches past the end of its buffer");
+    if (offset > available || length > available - offset)
+      view.refuse("reaches past the end of its buffer");
     const std::uint64_t stride = view.integer("byteStride", 0);
     if (stride != 0 && (stride < 4 || stride > 252 || stride % 4 != 0)) {
       view.refuse("byteStride", "must be a multiple of 4 from 4 to 252");
     }
-    views_.push_back({buffers_[buffer].subspan(offset, length), static_cast<std::uint32_t>(stride)});
+    views_.push_back(
+        {buffers_[buffer].subspan(offset, length), static_cast<std::uint32_t>(stride)});
   }
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
-#include <limits>
 #include <memory>
 #include <string>
 
@@ -15,7 +14,9 @@ namespace {
 // states here how large a single block may grow.
 thread_local std::size_t largest_block = 0;
 
-void* allocate_block(std::size_t size) { return size > largest_block ? nullptr : std::malloc(size); }
+void* allocate_block(std::size_t size) {
+  return size > largest_block ? nullptr : std::malloc(size);
+}
 
 void* resize_block(void* block, std::size_t size) {
   return size > largest_block ? nullptr : std::realloc(block, size);
@@ -29,8 +30,9 @@ void* resize_block(void* block, std::size_t size) {
 #define STBI_MAX_DIMENSIONS 8192
 #define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG
-#define STBI_ONLY_HDR
 #define STBI_NO_STDIO
+#define STBI_NO_HDR
+#define STBI_NO_LINEAR
 #define STBI_NO_FAILURE_STRINGS
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
@@ -49,7 +51,7 @@ struct FreeBlock {
 };
 
 // Feeds stb_image and notes when it asks for bytes that are not there: it fills the gap of a cut
-// JPEG or HDR with zeros and calls that success.
+// JPEG with zeros and calls that success.
 class ByteSource {
  public:
   explicit ByteSource(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -75,11 +77,9 @@ class ByteSource {
   }
 
   void skip(int count) {
-    // stb_image steps back with a negative count when it has read ahead.
-    const auto target = static_cast<std::int64_t>(position_) + count;
-    if (target > static_cast<std::int64_t>(bytes_.size())) ran_dry_ = true;
-    position_ = static_cast<std::size_t>(
-        std::clamp<std::int64_t>(target, 0, static_cast<std::int64_t>(bytes_.size())));
+    const std::size_t left = bytes_.size() - position_;
+    if (count < 0 || static_cast<std::size_t>(count) > left) ran_dry_ = true;
+    position_ += std::min<std::size_t>(std::max(count, 0), left);
   }
 
   std::span<const std::uint8_t> bytes_;
@@ -89,24 +89,18 @@ class ByteSource {
 
 bool is_png(std::span<const std::uint8_t> file) {
   static constexpr std::uint8_t signature[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-  return file.size() >= sizeof signature && std::memcmp(file.data(), signature, sizeof signature) == 0;
+  return file.size() >= sizeof signature &&
+         std::memcmp(file.data(), signature, sizeof signature) == 0;
 }
 
 bool is_jpeg(std::span<const std::uint8_t> file) {
   return file.size() >= 3 && file[0] == 0xff && file[1] == 0xd8 && file[2] == 0xff;
 }
 
-void check_size(int width, int height, std::uint32_t max_height) {
-  if (width <= 0 || height <= 0) throw ImportError("has no pixels");
-  if (static_cast<std::uint32_t>(width) > largest_image_side ||
-      static_cast<std::uint32_t>(height) > max_height) {
-    throw ImportError("is " + std::to_string(width) + " x " + std::to_string(height) +
-                      " pixels, more than " + std::to_string(largest_image_side) + " x " +
-                      std::to_string(max_height));
-  }
-}
+}  // namespace
 
-ImageSize probe(std::span<const std::uint8_t> file, std::uint32_t max_height) {
+ImageSize probe_image(std::span<const std::uint8_t> file) {
+  if (!is_png(file) && !is_jpeg(file)) throw ImportError("is neither PNG nor JPEG");
   largest_block = 1 << 20;
   ByteSource source(file);
   const stbi_io_callbacks callbacks = ByteSource::callbacks();
@@ -116,59 +110,34 @@ ImageSize probe(std::span<const std::uint8_t> file, std::uint32_t max_height) {
   if (!stbi_info_from_callbacks(&callbacks, &source, &width, &height, &channels)) {
     throw ImportError("has a damaged header, no pixels or too many");
   }
-  check_size(width, height, max_height);
+  const int limit = static_cast<int>(largest_image_side);
+  if (width <= 0 || height <= 0) throw ImportError("has no pixels");
+  if (width > limit || height > limit) {
+    throw ImportError("is " + std::to_string(width) + " x " + std::to_string(height) +
+                      " pixels, more than " + std::to_string(limit) + " a side");
+  }
   return {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
 }
 
-template <typename Pixel, typename Decode>
-std::unique_ptr<Pixel, FreeBlock> decode(std::span<const std::uint8_t> file, ImageSize size, int channels,
-                                         Decode decode_from_callbacks) {
+void decode_image(std::span<const std::uint8_t> file, ImageSize size,
+                  std::span<std::uint8_t> rgba) {
+  // 16-bit RGBA takes 8 bytes a pixel; inflating doubles its block as it grows.
+  const std::size_t padded = std::size_t(size.width + 32) * (size.height + 32);
+  largest_block = 24 * padded + (std::size_t(1) << 16);
   ByteSource source(file);
   const stbi_io_callbacks callbacks = ByteSource::callbacks();
   int width = 0;
   int height = 0;
-  int file_channels = 0;
-  std::unique_ptr<Pixel, FreeBlock> pixels(
-      decode_from_callbacks(&callbacks, &source, &width, &height, &file_channels, channels));
+  int channels = 0;
+  const std::unique_ptr<stbi_uc, FreeBlock> pixels(
+      stbi_load_from_callbacks(&callbacks, &source, &width, &height, &channels, 4));
   if (!pixels) throw ImportError("cannot be decoded: its data is damaged or cut");
   if (source.ran_dry()) throw ImportError("is cut: its data ends early");
-  if (static_cast<std::uint32_t>(width) != size.width || static_cast<std::uint32_t>(height) != size.height) {
+  if (static_cast<std::uint32_t>(width) != size.width ||
+      static_cast<std::uint32_t>(height) != size.height) {
     throw ImportError("changes its size between header and data");
   }
-  return pixels;
-}
-
-}  // namespace
-
-ImageSize probe_image(std::span<const std::uint8_t> file) {
-  if (!is_png(file) && !is_jpeg(file)) throw ImportError("is neither PNG nor JPEG");
-  if (file.size() > std::numeric_limits<int>::max()) throw ImportError("is too large a file");
-  return probe(file, largest_image_side);
-}
-
-void decode_image(std::span<const std::uint8_t> file, ImageSize size, std::span<std::uint8_t> rgba) {
-  // 16-bit RGBA takes 8 bytes a pixel; inflating doubles its block as it grows.
-  const std::size_t padded = std::size_t(size.width + 32) * (size.height + 32);
-  largest_block = 24 * padded + (std::size_t(1) << 16);
-  const auto pixels = decode<stbi_uc>(file, size, 4, stbi_load_from_callbacks);
   std::memcpy(rgba.data(), pixels.get(), std::size_t(size.width) * size.height * 4);
-}
-
-ImageSize probe_radiance(std::span<const std::uint8_t> file) {
-  const std::string_view text(reinterpret_cast<const char*>(file.data()), file.size());
-  if (!text.starts_with("#?RADIANCE\n") && !text.starts_with("#?RGBE\n")) {
-    throw ImportError("is not a Radiance .hdr file");
-  }
-  return probe(file, largest_image_side / 2);
-}
-
-std::vector<glm::vec3> decode_radiance(std::span<const std::uint8_t> file, ImageSize size) {
-  const std::size_t count = std::size_t(size.width) * size.height;
-  largest_block = count * sizeof(glm::vec3) + (std::size_t(1) << 16);
-  const auto pixels = decode<float>(file, size, 3, stbi_loadf_from_callbacks);
-  std::vector<glm::vec3> result(count);
-  std::memcpy(result.data(), pixels.get(), count * sizeof(glm::vec3));
-  return result;
 }
 
 }  // namespace heliograph::scene

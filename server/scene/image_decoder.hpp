@@ -1,10 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <span>
 #include <vector>
-
-#include <glm/glm.hpp>
 
 namespace heliograph::scene {
 
@@ -21,15 +20,9 @@ inline constexpr std::uint32_t largest_image_side = 8192;
 ImageSize probe_image(std::span<const std::uint8_t> file);
 
 /// Decodes a PNG or JPEG picture of the probed `size` into `rgba`, 4 bytes a pixel, row 0 on top;
-/// 16-bit channels are reduced to 8. Memory stays in proportion to `size`, whatever the file inflates to.
+/// 16-bit channels are reduced to 8. Memory stays in proportion to `size`, whatever the file
+/// inflates to.
 /// @throws ImportError when the data is cut or damaged
 void decode_image(std::span<const std::uint8_t> file, ImageSize size, std::span<std::uint8_t> rgba);
-
-/// Size of a Radiance .hdr picture. @throws ImportError
-ImageSize probe_radiance(std::span<const std::uint8_t> file);
-
-/// Decodes a Radiance .hdr picture of the probed `size`: linear RGB, row 0 on top.
-/// @throws ImportError when the data is cut or damaged
-std::vector<glm::vec3> decode_radiance(std::span<const std::uint8_t> file, ImageSize size);
 
 }  // namespace heliograph::scene

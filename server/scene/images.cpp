@@ -1,9 +1,9 @@
 #include "scene/images.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <atomic>
 #include <thread>
-
-#include <tbb/parallel_for.h>
 
 #include "scene/image_decoder.hpp"
 #include "scene/mipmaps.hpp"
@@ -13,11 +13,12 @@ namespace heliograph::scene {
 namespace {
 
 [[noreturn]] void refuse(const ImageSource& source, const std::string& reason) {
-  throw ImportError(source.path + (source.name.empty() ? "" : " " + in_quotes(source.name)) + " " + reason);
+  throw ImportError(source.path + (source.name.empty() ? "" : " " + in_quotes(source.name)) + " " +
+                    reason);
 }
 
-std::vector<ImageSize> probe_images(std::span<const ImageSource> sources, std::span<const ImageUse> uses,
-                                    const ImportLimits& limits) {
+std::vector<ImageSize> probe_images(std::span<const ImageSource> sources,
+                                    std::span<const ImageUse> uses, const ImportLimits& limits) {
   std::vector<ImageSize> sizes;
   std::uint64_t texels = 0;
   for (const ImageUse& use : uses) {
@@ -34,7 +35,8 @@ std::vector<ImageSize> probe_images(std::span<const ImageSource> sources, std::s
     }
     texels += std::uint64_t(width) * height;
     if (texels > limits.texels) {
-      throw ImportError("the images hold more than the limit of " + std::to_string(limits.texels) + " texels");
+      throw ImportError("the images hold more than the limit of " + std::to_string(limits.texels) +
+                        " texels");
     }
   }
   return sizes;
@@ -78,8 +80,9 @@ std::vector<ImageSource> read_image_sources(GltfFile& file) {
   return result;
 }
 
-std::vector<Image> decode_images(std::span<const ImageSource> sources, std::span<const ImageUse> uses,
-                                 const ImportLimits& limits, const std::function<void(float)>& decoded) {
+std::vector<Image> decode_images(std::span<const ImageSource> sources,
+                                 std::span<const ImageUse> uses, const ImportLimits& limits,
+                                 const std::function<void(float)>& decoded) {
   const std::vector<ImageSize> sizes = probe_images(sources, uses, limits);
   std::vector<Image> images(uses.size());
   std::atomic<std::size_t> done = 0;

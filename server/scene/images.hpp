@@ -19,7 +19,8 @@ struct ImageSource {
   std::span<const std::uint8_t> bytes;
 };
 
-/// One way in which an image is sampled: a picture used both as colour and as data is decoded twice.
+/// One way in which an image is sampled: a picture used both as colour and as data is decoded
+/// twice.
 struct ImageUse {
   std::uint32_t source = 0;
   bool srgb = false;
@@ -32,7 +33,8 @@ std::vector<ImageSource> read_image_sources(GltfFile& file);
 /// Decodes every use, with mip levels, in parallel. `decoded` is told the fraction done, on the
 /// calling thread.
 /// @throws ImportError when an image is damaged or a limit is exceeded
-std::vector<Image> decode_images(std::span<const ImageSource> sources, std::span<const ImageUse> uses,
-                                 const ImportLimits& limits, const std::function<void(float)>& decoded);
+std::vector<Image> decode_images(std::span<const ImageSource> sources,
+                                 std::span<const ImageUse> uses, const ImportLimits& limits,
+                                 const std::function<void(float)>& decoded);
 
 }  // namespace heliograph::scene

@@ -1,8 +1,9 @@
 #include "scene/import.hpp"
 
-#include <cmath>
-
 #include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <optional>
 
 #include "scene/accessors.hpp"
 #include "scene/cameras.hpp"
@@ -12,6 +13,7 @@
 #include "scene/materials.hpp"
 #include "scene/meshes.hpp"
 #include "scene/nodes.hpp"
+#include "scene/primitives.hpp"
 #include "scene/references.hpp"
 #include "scene/textures.hpp"
 #include "scene/warnings.hpp"
@@ -33,7 +35,8 @@ bool is_finite(const glm::mat4& matrix) {
 
 class Importer {
  public:
-  Importer(const std::filesystem::path& path, const ImportLimits& limits, const ImportProgress& progress)
+  Importer(const std::filesystem::path& path, const ImportLimits& limits,
+           const ImportProgress& progress)
       : limits_(limits), progress_(progress) {
     report("reading", 0.0f);
     file_.emplace(path, limits);
@@ -42,7 +45,8 @@ class Importer {
 
   Scene import() {
     const JsonValue root = file_->root();
-    for (const std::string& name : file_->ignored_extensions()) warnings_.add("extension " + name + " is ignored");
+    for (const std::string& name : file_->ignored_extensions())
+      warnings_.add("extension " + name + " is ignored");
 
     const std::vector<Accessor> accessors = read_accessors(*file_, limits_);
     check_skins(root, accessors);
@@ -62,8 +66,9 @@ class Importer {
     build_meshes(primitives, accessors);
     report("images", 0.3f);
     scene_.textures = textures.used_textures();
-    scene_.images = decode_images(images, textures.image_uses(), limits_,
-                                  [&](float fraction) { report("images", 0.3f + 0.65f * fraction); });
+    scene_.images = decode_images(images, textures.image_uses(), limits_, [&](float fraction) {
+      report("images", 0.3f + 0.65f * fraction);
+    });
     build_alpha_heap(scene_);
 
     place_instances(nodes, primitives);
@@ -114,7 +119,8 @@ class Importer {
       for (const std::uint32_t mesh : primitives.of_mesh[*nodes.attachments[i].mesh]) {
         scene_.instances.push_back({mesh, i});
         if (scene_.instances.size() > limits_.instances) {
-          throw ImportError("the scene exceeds the limit of " + std::to_string(limits_.instances) + " instances");
+          throw ImportError("the scene exceeds the limit of " + std::to_string(limits_.instances) +
+                            " instances");
         }
         include_in_bounds(scene_.meshes[mesh].bounds, world, nodes.paths[i]);
       }
@@ -128,7 +134,8 @@ class Importer {
                             corner & 4 ? mesh.maximum.z : mesh.minimum.z);
       const glm::vec3 placed(world * glm::vec4(point, 1.0f));
       for (int axis = 0; axis < 3; ++axis) {
-        if (!(std::abs(placed[axis]) <= farthest)) throw ImportError(path + ": places its mesh too far out");
+        if (!(std::abs(placed[axis]) <= farthest))
+          throw ImportError(path + ": places its mesh too far out");
       }
       scene_.bounds.include(placed);
     }

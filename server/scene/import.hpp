@@ -30,10 +30,12 @@ struct ImportLimits {
   std::uint64_t json_values = 16'000'000;
 };
 
-/// Told as loading proceeds: stage name and fraction of the whole, 0..1. Called on the loading thread.
+/// Told as loading proceeds: stage name and fraction of the whole, 0..1. Called on the loading
+/// thread.
 using ImportProgress = std::function<void(std::string_view stage, float fraction)>;
 
-/// Reads a .glb or .gltf file with everything it refers to; nothing outside `path`'s folder is opened.
+/// Reads a .glb or .gltf file with everything it refers to; nothing outside `path`'s folder is
+/// opened.
 /// @throws ImportError
 Scene import_gltf(const std::filesystem::path& path, const ImportLimits& limits = {},
                   const ImportProgress& progress = {});

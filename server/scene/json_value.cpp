@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-
 #include <nlohmann/json.hpp>
 
 #include "scene/import.hpp"
@@ -82,7 +81,9 @@ const json* JsonValue::find(std::string_view key) const {
   return found == json_->end() ? nullptr : &*found;
 }
 
-bool JsonValue::has(std::string_view key) const { return find(key) != nullptr; }
+bool JsonValue::has(std::string_view key) const {
+  return find(key) != nullptr;
+}
 
 bool JsonValue::is_object(std::string_view key) const {
   const json* found = find(key);
@@ -155,7 +156,8 @@ std::optional<float> JsonValue::number(std::string_view key) const {
   return value;
 }
 
-std::optional<std::vector<float>> JsonValue::numbers(std::string_view key, std::size_t count) const {
+std::optional<std::vector<float>> JsonValue::numbers(std::string_view key,
+                                                     std::size_t count) const {
   const json* found = find(key);
   if (!found) return std::nullopt;
   const std::string reason = "must be an array of " + std::to_string(count) + " numbers";

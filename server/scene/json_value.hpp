@@ -2,12 +2,11 @@
 
 #include <array>
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include <nlohmann/json_fwd.hpp>
 
 namespace heliograph::scene {
 
@@ -36,10 +35,13 @@ class JsonValue {
   bool boolean(std::string_view key, bool fallback) const;
 
   std::optional<float> number(std::string_view key) const;
-  float number(std::string_view key, float fallback) const { return number(key).value_or(fallback); }
+  float number(std::string_view key, float fallback) const {
+    return number(key).value_or(fallback);
+  }
   std::optional<std::vector<float>> numbers(std::string_view key, std::size_t count) const;
   template <std::size_t count>
-  std::array<float, count> numbers(std::string_view key, const std::array<float, count>& fallback) const {
+  std::array<float, count> numbers(std::string_view key,
+                                   const std::array<float, count>& fallback) const {
     const auto found = numbers(key, count);
     if (!found) return fallback;
     std::array<float, count> result;
@@ -54,9 +56,12 @@ class JsonValue {
   std::uint64_t required_integer(std::string_view key) const;
 
   /// An index below `count`; `plural` names what is indexed, for the error.
-  std::optional<std::uint32_t> index(std::string_view key, std::size_t count, std::string_view plural) const;
-  std::uint32_t required_index(std::string_view key, std::size_t count, std::string_view plural) const;
-  std::vector<std::uint32_t> indices(std::string_view key, std::size_t count, std::string_view plural) const;
+  std::optional<std::uint32_t> index(std::string_view key, std::size_t count,
+                                     std::string_view plural) const;
+  std::uint32_t required_index(std::string_view key, std::size_t count,
+                               std::string_view plural) const;
+  std::vector<std::uint32_t> indices(std::string_view key, std::size_t count,
+                                     std::string_view plural) const;
 
  private:
   const nlohmann::json* find(std::string_view key) const;

@@ -15,7 +15,8 @@ void read_cone(const JsonValue& json, shared::Light& light) {
   if (const auto spot = json.object("spot")) {
     inner = spot->number("innerConeAngle", inner);
     outer = spot->number("outerConeAngle", outer);
-    if (inner < 0.0f || inner >= outer) spot->refuse("innerConeAngle", "must be from 0 to below outerConeAngle");
+    if (inner < 0.0f || inner >= outer)
+      spot->refuse("innerConeAngle", "must be from 0 to below outerConeAngle");
     if (outer > half_pi + 1e-4f) spot->refuse("outerConeAngle", "must be at most pi / 2");
   }
   light.spot_scale = 1.0f / std::max(0.001f, std::cos(inner) - std::cos(outer));
@@ -62,7 +63,8 @@ std::vector<Light> read_lights(const JsonValue& root) {
   return lights;
 }
 
-Light place_light(Light light, const std::string& node_name, const glm::mat4& world, float angular_diameter) {
+Light place_light(Light light, const std::string& node_name, const glm::mat4& world,
+                  float angular_diameter) {
   if (!node_name.empty()) light.name = node_name;
   light.device.position = glm::vec3(world[3]);
   const glm::vec3 direction = -glm::vec3(world[2]);

@@ -13,6 +13,7 @@ std::vector<Light> read_lights(const JsonValue& root);
 
 /// `light` as the node with this world transform carries it. A directional light subtends
 /// `angular_diameter` degrees.
-Light place_light(Light light, const std::string& node_name, const glm::mat4& world, float angular_diameter);
+Light place_light(Light light, const std::string& node_name, const glm::mat4& world,
+                  float angular_diameter);
 
 }  // namespace heliograph::scene

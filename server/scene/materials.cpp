@@ -15,9 +15,9 @@ shared::TextureSlot empty_slot() {
   return slot;
 }
 
-// KHR_texture_transform: translation * rotation * scale, the rotation counter-clockwise as seen with
-// v pointing down. The sample matrix in the extension's text turns the other way; its test model and
-// the implementations agree on this one (github.com/KhronosGroup/glTF/issues/1563).
+// KHR_texture_transform: translation * rotation * scale, the rotation counter-clockwise as seen
+// with v pointing down. The sample matrix in the extension's text turns the other way; its test
+// model and the implementations agree on this one (github.com/KhronosGroup/glTF/issues/1563).
 void apply_transform(const JsonValue& transform, shared::TextureSlot& slot) {
   const auto offset = transform.numbers<2>("offset", {0.0f, 0.0f});
   const auto scale = transform.numbers<2>("scale", {1.0f, 1.0f});
@@ -30,11 +30,13 @@ void apply_transform(const JsonValue& transform, shared::TextureSlot& slot) {
 
 class MaterialReader {
  public:
-  MaterialReader(TextureTable& textures, Warnings& warnings) : textures_(textures), warnings_(warnings) {}
+  MaterialReader(TextureTable& textures, Warnings& warnings)
+      : textures_(textures), warnings_(warnings) {}
 
   shared::Material read(const JsonValue& json) {
     shared::Material material = default_material();
-    if (const auto pbr = json.object("pbrMetallicRoughness")) read_metallic_roughness(*pbr, material);
+    if (const auto pbr = json.object("pbrMetallicRoughness"))
+      read_metallic_roughness(*pbr, material);
     if (const auto normal = json.object("normalTexture")) {
       material.normal_texture = read_slot(*normal, false);
       material.normal_scale = normal->number("scale", 1.0f);
@@ -115,7 +117,8 @@ class MaterialReader {
     }
     if (const auto ior = extensions->object("KHR_materials_ior")) {
       material.ior = ior->number("ior", 1.5f);
-      if (material.ior != 0.0f && material.ior < 1.0f) ior->refuse("ior", "must be 0, or 1 and more");
+      if (material.ior != 0.0f && material.ior < 1.0f)
+        ior->refuse("ior", "must be 0, or 1 and more");
     }
     if (extensions->has("KHR_materials_unlit")) material.flags |= shared::material_unlit;
   }
@@ -135,7 +138,8 @@ class MaterialReader {
     slot.uv_set = static_cast<std::uint32_t>(uv_set);
     slot.texture = textures_.use(texture, srgb);
     if (slot.texture == shared::no_texture) {
-      warnings_.add("textures[" + std::to_string(texture) + "] has no PNG or JPEG image and was left out");
+      warnings_.add("textures[" + std::to_string(texture) +
+                    "] has no PNG or JPEG image and was left out");
     }
     return slot;
   }

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-
 #include <glm/packing.hpp>
+#include <numeric>
 
 #include "scene/tangents.hpp"
 
@@ -24,7 +23,8 @@ std::vector<std::uint32_t> to_triangles(Primitive::Mode mode, std::vector<std::u
   triangles.reserve((count - 2) * 3);
   for (std::size_t i = 0; i + 2 < count; ++i) {
     if (mode == Primitive::Mode::strip) {
-      triangles.insert(triangles.end(), {corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]});
+      triangles.insert(triangles.end(),
+                       {corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]});
     } else {
       triangles.insert(triangles.end(), {corners[i + 1], corners[i + 2], corners[0]});
     }
@@ -32,7 +32,8 @@ std::vector<std::uint32_t> to_triangles(Primitive::Mode mode, std::vector<std::u
   return triangles;
 }
 
-std::vector<std::uint32_t> read_triangles(const Primitive& primitive, std::span<const Accessor> accessors) {
+std::vector<std::uint32_t> read_triangles(const Primitive& primitive,
+                                          std::span<const Accessor> accessors) {
   const std::uint32_t vertex_count = accessors[primitive.position].count;
   std::vector<std::uint32_t> corners;
   if (primitive.indices) {
@@ -62,7 +63,8 @@ std::vector<Vertex> read_vertices(const Primitive& primitive, std::span<const Ac
     for (std::size_t i = 0; i < vertices.size(); ++i) store(vertices[i], values[i]);
   };
   fill.operator()<3>(primitive.normal, [](Vertex& v, const glm::vec3& value) { v.normal = value; });
-  fill.operator()<4>(primitive.tangent, [](Vertex& v, const glm::vec4& value) { v.tangent = value; });
+  fill.operator()<4>(primitive.tangent,
+                     [](Vertex& v, const glm::vec4& value) { v.tangent = value; });
   fill.operator()<2>(primitive.uv[0], [](Vertex& v, const glm::vec2& value) { v.uv0 = value; });
   fill.operator()<2>(primitive.uv[1], [](Vertex& v, const glm::vec2& value) { v.uv1 = value; });
   if (primitive.color) {
@@ -80,7 +82,8 @@ glm::vec3 face_normal(const Vertex& a, const Vertex& b, const Vertex& c) {
   const glm::dvec3 second = glm::dvec3(c.position) - glm::dvec3(a.position);
   const glm::dvec3 normal = glm::cross(first, second);
   const double length = glm::length(normal);
-  return length > 0.0 && std::isfinite(length) ? glm::vec3(normal / length) : glm::vec3(0.0f, 0.0f, 1.0f);
+  return length > 0.0 && std::isfinite(length) ? glm::vec3(normal / length)
+                                               : glm::vec3(0.0f, 0.0f, 1.0f);
 }
 
 // Flat shading: no two triangles share a vertex.
@@ -134,8 +137,8 @@ void orthonormalize_tangents(std::vector<Vertex>& vertices) {
 
 }  // namespace
 
-Mesh build_mesh(const Primitive& primitive, std::span<const Accessor> accessors, std::uint32_t material,
-                std::span<const shared::Material> materials) {
+Mesh build_mesh(const Primitive& primitive, std::span<const Accessor> accessors,
+                std::uint32_t material, std::span<const shared::Material> materials) {
   Mesh mesh;
   mesh.name = primitive.name;
   mesh.material = material;

@@ -23,7 +23,8 @@ ColorTables make_color_tables() {
   tables.narrow.resize(65536);
   for (int i = 0; i < 256; ++i) {
     const double encoded = i / 255.0;
-    const double linear = encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+    const double linear =
+        encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
     tables.to_linear[i] = static_cast<std::uint16_t>(std::lround(linear * 65535.0));
     tables.widen[i] = static_cast<std::uint16_t>(i * 257);
   }
@@ -74,7 +75,8 @@ void halve(const Level& source, const Level& target, bool srgb) {
   const std::vector<std::uint8_t>& encode = srgb ? tables.to_srgb : tables.narrow;
   const std::uint64_t total = std::uint64_t(source.width) * source.height;
   std::vector<Taps> columns;
-  for (std::uint32_t x = 0; x < target.width; ++x) columns.push_back(taps_of(x, source.width, target.width));
+  for (std::uint32_t x = 0; x < target.width; ++x)
+    columns.push_back(taps_of(x, source.width, target.width));
 
   for (std::uint32_t y = 0; y < target.height; ++y) {
     const Taps rows = taps_of(y, source.height, target.height);
@@ -108,8 +110,8 @@ void halve_even(const Level& source, const Level& target, bool srgb) {
     const std::uint8_t* row = source.pixels + 2 * y * stride;
     for (std::uint32_t x = 0; x < target.width; ++x, row += 8, pixel += 4) {
       for (int c = 0; c < 3; ++c) {
-        const std::uint32_t sum =
-            decode[row[c]] + decode[row[c + 4]] + decode[row[c + stride]] + decode[row[c + stride + 4]];
+        const std::uint32_t sum = decode[row[c]] + decode[row[c + 4]] + decode[row[c + stride]] +
+                                  decode[row[c + stride + 4]];
         pixel[c] = encode[(sum + 2) / 4];
       }
       const std::uint32_t alpha = row[3] + row[7] + row[3 + stride] + row[7 + stride];

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
-
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
+#include <utility>
 
 namespace heliograph::scene {
 namespace {
@@ -37,8 +36,9 @@ glm::mat4 read_local_transform(const JsonValue& json) {
   const glm::dvec4 quaternion(rotation[0], rotation[1], rotation[2], rotation[3]);
   const double length = glm::length(quaternion);
   if (length < 1e-6) json.refuse("rotation", "is not a quaternion of unit length");
-  const glm::quat unit(static_cast<float>(quaternion.w / length), static_cast<float>(quaternion.x / length),
-                       static_cast<float>(quaternion.y / length), static_cast<float>(quaternion.z / length));
+  const glm::quat unit(
+      static_cast<float>(quaternion.w / length), static_cast<float>(quaternion.x / length),
+      static_cast<float>(quaternion.y / length), static_cast<float>(quaternion.z / length));
   glm::mat4 matrix = glm::mat4_cast(unit);
   for (int axis = 0; axis < 3; ++axis) matrix[axis] *= scale[axis];
   matrix[3] = glm::vec4(translation[0], translation[1], translation[2], 1.0f);
@@ -89,15 +89,17 @@ void link_parents(std::vector<DocumentNode>& nodes) {
 
 // Visits `roots` and all below, parents first; returns how many nodes there were.
 template <typename Visit>
-std::size_t visit_hierarchy(const std::vector<DocumentNode>& nodes, const std::vector<std::uint32_t>& roots,
-                            std::uint32_t max_depth, Visit visit) {
+std::size_t visit_hierarchy(const std::vector<DocumentNode>& nodes,
+                            const std::vector<std::uint32_t>& roots, std::uint32_t max_depth,
+                            Visit visit) {
   struct Pending {
     std::uint32_t node;
     std::optional<std::uint32_t> parent;  // in order of visiting
     std::uint32_t depth;
   };
   std::vector<Pending> pending;
-  for (auto root = roots.rbegin(); root != roots.rend(); ++root) pending.push_back({*root, std::nullopt, 1});
+  for (auto root = roots.rbegin(); root != roots.rend(); ++root)
+    pending.push_back({*root, std::nullopt, 1});
   std::uint32_t visited = 0;
   while (!pending.empty()) {
     const Pending next = pending.back();
@@ -127,7 +129,8 @@ void check_no_cycles(const std::vector<DocumentNode>& nodes, std::uint32_t max_d
   }
 }
 
-std::vector<std::uint32_t> read_roots(const JsonValue& root, const std::vector<DocumentNode>& nodes) {
+std::vector<std::uint32_t> read_roots(const JsonValue& root,
+                                      const std::vector<DocumentNode>& nodes) {
   const std::vector<JsonValue> scenes = root.objects("scenes");
   std::vector<std::vector<std::uint32_t>> roots_of_scene;
   for (const JsonValue& scene : scenes) {
@@ -159,8 +162,8 @@ NodeTable read_nodes(const JsonValue& root, std::size_t light_count, const Impor
     throw ImportError("nodes: " + std::to_string(documents.size()) + " exceed the limit of " +
                       std::to_string(limits.nodes));
   }
-  const Counts counts{documents.size(), root.objects("meshes").size(), root.objects("cameras").size(),
-                      light_count, root.objects("skins").size()};
+  const Counts counts{documents.size(), root.objects("meshes").size(),
+                      root.objects("cameras").size(), light_count, root.objects("skins").size()};
   std::vector<DocumentNode> nodes;
   nodes.reserve(documents.size());
   for (const JsonValue& json : documents) nodes.push_back(read_node(json, counts));

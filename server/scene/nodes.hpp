@@ -14,7 +14,8 @@ struct NodeAttachments {
   std::optional<std::uint32_t> mesh;
   std::optional<std::uint32_t> camera;
   std::optional<std::uint32_t> light;
-  float angular_diameter = 0.53f;  // degrees: the sun's from Earth unless the node's extras say otherwise
+  float angular_diameter =
+      0.53f;  // degrees: the sun's from Earth unless the node's extras say otherwise
 };
 
 /// The nodes of the shown scene, parents first, with world transforms. `attachments[i]` belongs to

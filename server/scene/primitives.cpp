@@ -1,6 +1,4 @@
-#include <algorithm>
-
-#include "scene/meshes.hpp"
+#include "scene/primitives.hpp"
 
 namespace heliograph::scene {
 namespace {
@@ -9,7 +7,10 @@ class PrimitiveReader {
  public:
   PrimitiveReader(std::span<const Accessor> accessors, std::size_t material_count,
                   const ImportLimits& limits, Warnings& warnings)
-      : accessors_(accessors), material_count_(material_count), limits_(limits), warnings_(warnings) {}
+      : accessors_(accessors),
+        material_count_(material_count),
+        limits_(limits),
+        warnings_(warnings) {}
 
   /// Nothing for points, lines and primitives without a triangle.
   std::optional<Primitive> read(const JsonValue& json) {
@@ -44,9 +45,11 @@ class PrimitiveReader {
   }
 
  private:
-  std::optional<std::uint32_t> attribute(const JsonValue& attributes, std::string_view name, ElementType type) {
+  std::optional<std::uint32_t> attribute(const JsonValue& attributes, std::string_view name,
+                                         ElementType type) {
     const auto index = attributes.index(name, accessors_.size(), "accessors");
-    if (index && accessors_[*index].element != type) attributes.refuse(name, "has the wrong element type");
+    if (index && accessors_[*index].element != type)
+      attributes.refuse(name, "has the wrong element type");
     if (index && accessors_[*index].component == ComponentType::u32) {
       attributes.refuse(name, "has the wrong component type");
     }
@@ -69,7 +72,8 @@ class PrimitiveReader {
     for (const std::string& name : attributes.keys()) {
       const std::uint32_t index = attributes.required_index(name, accessors_.size(), "accessors");
       const std::uint32_t own = accessors_[index].count;
-      if (count && own != *count) attributes.refuse(name, "differs in count from the other attributes");
+      if (count && own != *count)
+        attributes.refuse(name, "differs in count from the other attributes");
       count = own;
     }
     vertex_count_ = count.value_or(0);
@@ -79,13 +83,15 @@ class PrimitiveReader {
     for (const JsonValue& target : json.objects("targets")) {
       for (const std::string& name : target.keys()) {
         const std::uint32_t index = target.required_index(name, accessors_.size(), "accessors");
-        if (accessors_[index].count != vertex_count_) target.refuse(name, "differs in count from its primitive");
+        if (accessors_[index].count != vertex_count_)
+          target.refuse(name, "differs in count from its primitive");
       }
     }
   }
 
   bool count_triangles(const JsonValue& json, const Primitive& primitive) {
-    const std::uint32_t corners = primitive.indices ? accessors_[*primitive.indices].count : vertex_count_;
+    const std::uint32_t corners =
+        primitive.indices ? accessors_[*primitive.indices].count : vertex_count_;
     const bool separate = primitive.mode == Primitive::Mode::triangles;
     if (corners < 3) {
       warnings_.add(json.path() + " has no triangle and was left out");
@@ -95,7 +101,8 @@ class PrimitiveReader {
     triangles_ += separate ? corners / 3 : corners - 2;
     vertices_ += vertex_count_;
     if (triangles_ > limits_.triangles || vertices_ > 3 * limits_.triangles) {
-      json.refuse("exceeds the limit of " + std::to_string(limits_.triangles) + " triangles for the whole scene");
+      json.refuse("exceeds the limit of " + std::to_string(limits_.triangles) +
+                  " triangles for the whole scene");
     }
     return true;
   }
@@ -112,7 +119,8 @@ class PrimitiveReader {
 }  // namespace
 
 PrimitiveTable read_primitives(const JsonValue& root, std::span<const Accessor> accessors,
-                               std::size_t material_count, const ImportLimits& limits, Warnings& warnings) {
+                               std::size_t material_count, const ImportLimits& limits,
+                               Warnings& warnings) {
   PrimitiveTable table;
   PrimitiveReader reader(accessors, material_count, limits, warnings);
   for (const JsonValue& mesh : root.objects("meshes")) {

@@ -7,7 +7,8 @@ namespace {
 
 void check_sampler(const JsonValue& sampler, std::span<const Accessor> accessors) {
   const Accessor& input = accessors[sampler.required_index("input", accessors.size(), "accessors")];
-  const Accessor& output = accessors[sampler.required_index("output", accessors.size(), "accessors")];
+  const Accessor& output =
+      accessors[sampler.required_index("output", accessors.size(), "accessors")];
   if (input.element != ElementType::scalar || input.component != ComponentType::f32) {
     sampler.refuse("input", "must hold float scalars");
   }
@@ -23,8 +24,8 @@ void check_sampler(const JsonValue& sampler, std::span<const Accessor> accessors
 }
 
 void check_channel(const JsonValue& channel, std::size_t sampler_count, std::size_t node_count) {
-  static constexpr std::array<std::string_view, 5> paths = {"translation", "rotation", "scale", "weights",
-                                                            "pointer"};
+  static constexpr std::array<std::string_view, 5> paths = {"translation", "rotation", "scale",
+                                                            "weights", "pointer"};
   channel.required_index("sampler", sampler_count, "samplers");
   const auto target = channel.object("target");
   if (!target) channel.refuse("target", "is missing");
@@ -48,7 +49,8 @@ void check_skins(const JsonValue& root, std::span<const Accessor> accessors) {
     if (accessor.element != ElementType::mat4 || accessor.component != ComponentType::f32) {
       skin.refuse("inverseBindMatrices", "must hold float 4x4 matrices");
     }
-    if (accessor.count < joints.size()) skin.refuse("inverseBindMatrices", "holds fewer than there are joints");
+    if (accessor.count < joints.size())
+      skin.refuse("inverseBindMatrices", "holds fewer than there are joints");
   }
 }
 

@@ -12,15 +12,22 @@ constexpr std::uint32_t none = 0xffffffffu;
 
 glm::vec2 transformed_uv(const shared::Vertex& vertex, const shared::TextureSlot& slot) {
   const glm::vec3 uv(slot.uv_set == 0 ? vertex.uv0 : vertex.uv1, 1.0f);
-  return {glm::dot(glm::vec3(slot.transform_row0), uv), glm::dot(glm::vec3(slot.transform_row1), uv)};
+  return {glm::dot(glm::vec3(slot.transform_row0), uv),
+          glm::dot(glm::vec3(slot.transform_row1), uv)};
 }
 
 // What corners must agree in to share a tangent.
 using WeldKey = std::array<float, 8>;
 
 WeldKey weld_key(const shared::Vertex& vertex, const glm::vec2& uv) {
-  return {vertex.position.x, vertex.position.y, vertex.position.z, vertex.normal.x,
-          vertex.normal.y,   vertex.normal.z,   uv.x,              uv.y};
+  return {vertex.position.x,
+          vertex.position.y,
+          vertex.position.z,
+          vertex.normal.x,
+          vertex.normal.y,
+          vertex.normal.z,
+          uv.x,
+          uv.y};
 }
 
 std::uint64_t hash_of(const WeldKey& key) {
@@ -34,7 +41,8 @@ std::uint64_t hash_of(const WeldKey& key) {
 }
 
 // For each vertex the first one that equals it: an open-addressing table of vertex numbers.
-std::vector<std::uint32_t> weld(const std::vector<shared::Vertex>& vertices, const std::vector<glm::vec2>& uvs) {
+std::vector<std::uint32_t> weld(const std::vector<shared::Vertex>& vertices,
+                                const std::vector<glm::vec2>& uvs) {
   const std::size_t slot_count = std::bit_ceil(2 * vertices.size() + 1);
   std::vector<std::uint32_t> table(slot_count, none);
   std::vector<std::uint32_t> first(vertices.size());
@@ -80,7 +88,8 @@ FaceTangent face_tangent(const std::array<glm::vec3, 3>& p, const std::array<glm
   return {direction, area > 0.0f ? Hand::right : Hand::left};
 }
 
-float corner_angle(const glm::vec3& to_previous, const glm::vec3& to_next, const glm::vec3& normal) {
+float corner_angle(const glm::vec3& to_previous, const glm::vec3& to_next,
+                   const glm::vec3& normal) {
   const glm::vec3 a = normalized_or_zero(project(to_previous, normal));
   const glm::vec3 b = normalized_or_zero(project(to_next, normal));
   return std::acos(std::clamp(glm::dot(a, b), -1.0f, 1.0f));
@@ -92,7 +101,8 @@ class TangentBuilder {
                  const shared::TextureSlot& normal_map)
       : vertices_(vertices), indices_(indices) {
     uvs_.reserve(vertices.size());
-    for (const shared::Vertex& vertex : vertices) uvs_.push_back(transformed_uv(vertex, normal_map));
+    for (const shared::Vertex& vertex : vertices)
+      uvs_.push_back(transformed_uv(vertex, normal_map));
     welded_ = weld(vertices, uvs_);
     sums_.resize(2 * vertices.size(), glm::vec3(0.0f));
   }

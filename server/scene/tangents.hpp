@@ -1,19 +1,18 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
-
 #include <glm/glm.hpp>
+#include <vector>
 
 #include "shaders/shared/scene.h"
 
 namespace heliograph::scene {
 
-/// Makes the tangents of a triangle mesh after MikkTSpace's convention (M. Mikkelsen, "Simulation of
-/// Wrinkled Surfaces Revisited", 2008), which glTF 3.7.2.1 prescribes where a file brings none: each
-/// triangle's tangent is projected onto the plane of the corner's normal and weighted by the corner's
-/// angle; corners that agree in position, normal, texture coordinates and handedness share the sum.
-/// Vertices used with both hands are split, so `vertices` may grow and `indices` change.
+/// Makes the tangents of a triangle mesh after MikkTSpace's convention (M. Mikkelsen, "Simulation
+/// of Wrinkled Surfaces Revisited", 2008), which glTF 3.7.2.1 prescribes where a file brings none:
+/// each triangle's tangent is projected onto the plane of the corner's normal and weighted by the
+/// corner's angle; corners that agree in position, normal, texture coordinates and handedness share
+/// the sum. Vertices used with both hands are split, so `vertices` may grow and `indices` change.
 /// The bitangent is cross(normal, tangent) * tangent.w and points where texture v decreases (up).
 /// Normals must be of unit length. `normal_map` says which uv set and transform the texture uses.
 void generate_tangents(std::vector<shared::Vertex>& vertices, std::vector<std::uint32_t>& indices,

@@ -7,10 +7,14 @@ namespace {
 
 std::uint32_t read_wrap(const JsonValue& sampler, std::string_view key) {
   switch (sampler.integer(key, 10497)) {
-    case 10497: return shared::wrap_repeat;
-    case 33071: return shared::wrap_clamp;
-    case 33648: return shared::wrap_mirror;
-    default: sampler.refuse(key, "is not a wrapping mode");
+    case 10497:
+      return shared::wrap_repeat;
+    case 33071:
+      return shared::wrap_clamp;
+    case 33648:
+      return shared::wrap_mirror;
+    default:
+      sampler.refuse(key, "is not a wrapping mode");
   }
 }
 
@@ -19,14 +23,25 @@ Sampler read_sampler(const JsonValue& json) {
   sampler.wrap_s = read_wrap(json, "wrapS");
   sampler.wrap_t = read_wrap(json, "wrapT");
   switch (json.integer("magFilter", 9729)) {
-    case 9728: sampler.magnify = Filter::nearest; break;
-    case 9729: break;
-    default: json.refuse("magFilter", "is not a magnification filter");
+    case 9728:
+      sampler.magnify = Filter::nearest;
+      break;
+    case 9729:
+      break;
+    default:
+      json.refuse("magFilter", "is not a magnification filter");
   }
   const std::uint64_t minify = json.integer("minFilter", 9987);
   switch (minify) {
-    case 9728: case 9729: case 9984: case 9985: case 9986: case 9987: break;
-    default: json.refuse("minFilter", "is not a minification filter");
+    case 9728:
+    case 9729:
+    case 9984:
+    case 9985:
+    case 9986:
+    case 9987:
+      break;
+    default:
+      json.refuse("minFilter", "is not a minification filter");
   }
   // 9984 and up: bit 0 is the filter within a level, bit 1 the one between levels.
   sampler.minify = minify % 2 == 0 ? Filter::nearest : Filter::linear;

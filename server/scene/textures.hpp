@@ -10,8 +10,8 @@
 
 namespace heliograph::scene {
 
-/// The document's textures, and those of them that materials turn out to use: each as colour (sRGB),
-/// as data, or as both, without duplicates.
+/// The document's textures, and those of them that materials turn out to use: each as colour
+/// (sRGB), as data, or as both, without duplicates.
 class TextureTable {
  public:
   /// @throws ImportError
@@ -19,8 +19,8 @@ class TextureTable {
 
   std::size_t size() const { return textures_.size(); }
 
-  /// The scene texture for one use of document texture `index`, or shared::no_texture when its image
-  /// is only given through an extension that is not supported.
+  /// The scene texture for one use of document texture `index`, or shared::no_texture when its
+  /// image is only given through an extension that is not supported.
   std::uint32_t use(std::uint32_t index, bool srgb);
 
   const std::vector<ImageUse>& image_uses() const { return image_uses_; }

@@ -14,7 +14,8 @@ constexpr std::uint8_t not_base64 = 0xff;
 constexpr std::array<std::uint8_t, 256> make_base64_values() {
   std::array<std::uint8_t, 256> values{};
   values.fill(not_base64);
-  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  constexpr std::string_view digits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   for (std::size_t i = 0; i < digits.size(); ++i) {
     values[static_cast<unsigned char>(digits[i])] = static_cast<std::uint8_t>(i);
   }
@@ -47,7 +48,8 @@ bool has_scheme(std::string_view uri) {
   if (colon == std::string_view::npos || colon == 0) return false;
   if (!std::isalpha(static_cast<unsigned char>(uri[0]))) return false;
   for (const char c : uri.substr(0, colon)) {
-    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '+' && c != '-' && c != '.') return false;
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '+' && c != '-' && c != '.')
+      return false;
   }
   return true;
 }

@@ -11,7 +11,8 @@ class Warnings {
  public:
   void add(std::string text) {
     if (texts_.size() >= max_count) return;
-    if (std::find(texts_.begin(), texts_.end(), text) == texts_.end()) texts_.push_back(std::move(text));
+    if (std::find(texts_.begin(), texts_.end(), text) == texts_.end())
+      texts_.push_back(std::move(text));
   }
   std::vector<std::string> take() { return std::move(texts_); }
 

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/accessors.hpp"
+#include "scene/gltf_file.hpp"
+#include "scene/warnings.hpp"
+
+namespace heliograph::scene {
+
+/// One triangle primitive of the document: which accessors it is made of, types and counts checked.
+struct Primitive {
+  enum class Mode { triangles = 4, strip = 5, fan = 6 };
+
+  std::string name;
+  Mode mode = Mode::triangles;
+  std::uint32_t position = 0;
+  std::optional<std::uint32_t> normal;
+  std::optional<std::uint32_t> tangent;
+  std::array<std::optional<std::uint32_t>, 2> uv;
+  std::optional<std::uint32_t> color;
+  std::optional<std::uint32_t> indices;
+  std::optional<std::uint32_t> material;
+};
+
+/// All primitives that have triangles, and which of them make up each mesh of the document.
+struct PrimitiveTable {
+  std::vector<Primitive> primitives;
+  std::vector<std::vector<std::uint32_t>> of_mesh;
+};
+
+/// Points and lines are left out with a warning.
+/// @throws ImportError
+PrimitiveTable read_primitives(const JsonValue& root, std::span<const Accessor> accessors,
+                               std::size_t material_count, const ImportLimits& limits,
+                               Warnings& warnings);
+
+}  // namespace heliograph::scene

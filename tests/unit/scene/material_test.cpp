@@ -1,0 +1,172 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "gltf_builder.hpp"
+#include "scene/materials.hpp"
+
+namespace heliograph::scene::test {
+namespace {
+
+using nlohmann::json;
+
+GltfBuilder with_material(json material) {
+  GltfBuilder builder = everything();
+  builder.json["materials"][0] = std::move(material);
+  return builder;
+}
+
+TEST(Materials, AnEmptyOneIsTheDefault) {
+  const Scene scene = with_material(json::object()).import();
+  ASSERT_EQ(scene.materials.size(), 1u);
+  const shared::Material& material = scene.materials[0];
+  EXPECT_EQ(material.base_color, glm::vec4(1.0f));
+  EXPECT_EQ(material.metallic, 1.0f);
+  EXPECT_EQ(material.roughness, 1.0f);
+  EXPECT_EQ(material.emissive, glm::vec3(0.0f));
+  EXPECT_EQ(material.ior, 1.5f);
+  EXPECT_EQ(material.flags, 0u);
+  EXPECT_EQ(material.base_color_texture.texture, shared::no_texture);
+  EXPECT_EQ(material.alpha_mask, shared::no_texture);
+  EXPECT_TRUE(scene.images.empty()) << "nothing uses the image";
+}
+
+TEST(Materials, FactorsAndFlags) {
+  const Scene scene =
+      with_material({{"name", "paint"},
+                     {"pbrMetallicRoughness",
+                      {{"baseColorFactor", {.1, .2, .3, .4}},
+                       {"metallicFactor", .5},
+                       {"roughnessFactor", .25}}},
+                     {"emissiveFactor", {1, .5, 0}},
+                     {"alphaMode", "BLEND"},
+                     {"doubleSided", true},
+                     {"extensions",
+                      {{"KHR_materials_emissive_strength", {{"emissiveStrength", 10}}},
+                       {"KHR_materials_ior", {{"ior", 1.33}}},
+                       {"KHR_materials_unlit", json::object()}}}})
+          .import();
+  const shared::Material& material = scene.materials[0];
+  EXPECT_EQ(scene.material_names[0], "paint");
+  EXPECT_FLOAT_EQ(material.base_color.w, 0.4f);
+  EXPECT_FLOAT_EQ(material.metallic, 0.5f);
+  EXPECT_FLOAT_EQ(material.roughness, 0.25f);
+  EXPECT_EQ(material.emissive, glm::vec3(10.0f, 5.0f, 0.0f));
+  EXPECT_FLOAT_EQ(material.ior, 1.33f);
+  EXPECT_EQ(material.flags,
+            shared::material_alpha_blend | shared::material_double_sided | shared::material_unlit);
+}
+
+TEST(Materials, EverySlotKeepsItsTextureSetAndStrength) {
+  GltfBuilder builder =
+      with_material({{"pbrMetallicRoughness",
+                      {{"baseColorTexture", {{"index", 0}}},
+                       {"metallicRoughnessTexture", {{"index", 0}, {"texCoord", 1}}}}},
+                     {"normalTexture", {{"index", 0}, {"scale", .7}}},
+                     {"occlusionTexture", {{"index", 0}, {"strength", .3}, {"texCoord", 1}}},
+                     {"emissiveTexture", {{"index", 0}}}});
+  const Scene scene = builder.import();
+  const shared::Material& material = scene.materials[0];
+  EXPECT_FLOAT_EQ(material.normal_scale, 0.7f);
+  EXPECT_FLOAT_EQ(material.occlusion_strength, 0.3f);
+  EXPECT_EQ(material.metallic_roughness_texture.uv_set, 1u);
+  EXPECT_EQ(material.occlusion_texture.uv_set, 1u);
+  EXPECT_EQ(material.base_color_texture.uv_set, 0u);
+  // One picture, used as colour and as data: two images, two textures, nothing more.
+  ASSERT_EQ(scene.images.size(), 2u);
+  ASSERT_EQ(scene.textures.size(), 2u);
+  const auto srgb = [&](const shared::TextureSlot& slot) {
+    return scene.images[scene.textures[slot.texture].image].srgb;
+  };
+  EXPECT_TRUE(srgb(material.base_color_texture));
+  EXPECT_TRUE(srgb(material.emissive_texture));
+  EXPECT_FALSE(srgb(material.metallic_roughness_texture));
+  EXPECT_FALSE(srgb(material.normal_texture));
+  EXPECT_FALSE(srgb(material.occlusion_texture));
+  EXPECT_EQ(scene.textures[0].sampler.wrap_s, shared::wrap_clamp);
+  EXPECT_EQ(scene.textures[0].sampler.wrap_t, shared::wrap_repeat);
+}
+
+TEST(Materials, TextureTransformScalesRotatesThenMoves) {
+  GltfBuilder builder = everything();
+  builder.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"] = {
+      {"KHR_texture_transform",
+       {{"offset", {.5, .25}}, {"rotation", 1.57079632679}, {"scale", {2, 3}}, {"texCoord", 1}}}};
+  const shared::TextureSlot slot = builder.import().materials[0].base_color_texture;
+  EXPECT_EQ(slot.uv_set, 1u);
+  const glm::vec3 uv(1.0f, 0.0f, 1.0f);
+  // A quarter turn counter-clockwise with v down takes +u to -v.
+  EXPECT_NEAR(glm::dot(glm::vec3(slot.transform_row0), uv), 0.5f, 1e-6f);
+  EXPECT_NEAR(glm::dot(glm::vec3(slot.transform_row1), uv), 0.25f - 2.0f, 1e-6f);
+}
+
+TEST(Materials, FactorsOutsideTheirRangeAreClampedAndSaidSo) {
+  const Scene scene = with_material({{"pbrMetallicRoughness", {{"roughnessFactor", 3}}}}).import();
+  EXPECT_EQ(scene.materials[0].roughness, 1.0f);
+  ASSERT_EQ(scene.warnings.size(), 2u);  // and the skin
+  EXPECT_NE(scene.warnings[0].find("materials[0].pbrMetallicRoughness.roughnessFactor"),
+            std::string::npos);
+}
+
+TEST(Materials, ExtensionsThatAreNotSupportedAreNamed) {
+  GltfBuilder builder = triangle();
+  builder.json["extensionsUsed"] = {"KHR_materials_sheen"};
+  const Scene scene = builder.import();
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_NE(scene.warnings[0].find("KHR_materials_sheen"), std::string::npos);
+}
+
+TEST(Materials, ATextureOnlyInAnotherFormatIsLeftOut) {
+  GltfBuilder builder = everything();
+  builder.json["textures"][0].erase("source");
+  const Scene scene = builder.import();
+  EXPECT_EQ(scene.materials[0].base_color_texture.texture, shared::no_texture);
+  EXPECT_FALSE(scene.warnings.empty());
+}
+
+TEST(Materials, MaskedAlphaIsLaidOutForRays) {
+  GltfBuilder builder = everything();
+  const Bytes pixels = {1, 2, 3, 10, 1, 2, 3, 20, 1, 2, 3, 30,
+                        1, 2, 3, 40, 1, 2, 3, 50, 1, 2, 3, 60};
+  builder.add("textures", {{"source", builder.add_image(png(3, 2, 4, pixels))}});
+  builder.json["materials"] = {
+      {{"alphaMode", "MASK"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}},
+      {{"alphaMode", "MASK"},
+       {"alphaCutoff", .25},
+       {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 1}}}}}},
+      {{"alphaMode", "MASK"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 1}}}}}},
+      {{"alphaMode", "MASK"}}};
+  const Scene scene = builder.import();
+  ASSERT_EQ(scene.alpha_heap.size(), 4u + 6u);
+  const shared::Material& masked = scene.materials[1];
+  EXPECT_EQ(masked.flags, shared::material_alpha_mask);
+  EXPECT_FLOAT_EQ(masked.alpha_cutoff, 0.25f);
+  EXPECT_EQ(masked.alpha_mask, 4u);
+  EXPECT_EQ(masked.alpha_mask_size, 3u | 2u << 16);
+  EXPECT_EQ(masked.alpha_mask_wrap, shared::wrap_repeat | shared::wrap_repeat << 8);
+  EXPECT_EQ(scene.materials[0].alpha_mask_wrap, shared::wrap_clamp | shared::wrap_repeat << 8);
+  EXPECT_EQ(scene.alpha_heap[4], 10);
+  EXPECT_EQ(scene.alpha_heap[9], 60);
+  EXPECT_EQ(scene.materials[2].alpha_mask, 4u) << "the same picture is stored once";
+  EXPECT_EQ(scene.materials[3].alpha_mask, shared::no_texture);
+}
+
+TEST(Materials, SamplersFollowTheirCodes) {
+  GltfBuilder builder = everything();
+  builder.json["samplers"][0] = {
+      {"magFilter", 9728}, {"minFilter", 9986}, {"wrapS", 33648}, {"wrapT", 33071}};
+  Sampler sampler = builder.import().textures[0].sampler;
+  EXPECT_EQ(sampler.magnify, Filter::nearest);
+  EXPECT_EQ(sampler.minify, Filter::nearest);
+  EXPECT_TRUE(sampler.mipmapped);
+  EXPECT_EQ(sampler.mip_filter, Filter::linear);
+  EXPECT_EQ(sampler.wrap_s, shared::wrap_mirror);
+  EXPECT_EQ(sampler.wrap_t, shared::wrap_clamp);
+  builder.json["samplers"][0]["minFilter"] = 9729;
+  sampler = builder.import().textures[0].sampler;
+  EXPECT_EQ(sampler.minify, Filter::linear);
+  EXPECT_FALSE(sampler.mipmapped);
+}
+
+}  // namespace
+}  // namespace heliograph::scene::test
