@@ -17,7 +17,7 @@ struct View {
 };
 
 constexpr View along_nave{"along_nave", {13.6f, 1.75f, 1.5f}, {-4.0f, 3.3f, -0.9f}, 56.0f};
-constexpr View gallery{"gallery", {10.6f, 8.45f, 4.75f}, {-3.0f, 4.2f, -2.4f}, 58.0f};
+constexpr View gallery{"gallery", {15.6f, 8.5f, 0.5f}, {-2.0f, 4.3f, -1.3f}, 58.0f};
 constexpr View courtyard{"courtyard", {-5.5f, 2.1f, 4.2f}, {2.0f, 2.4f, -3.5f}, 54.0f};
 constexpr View floor_view{"floor", {9.0f, 0.45f, -1.0f}, {0.0f, 0.9f, 0.4f}, 50.0f};
 
@@ -72,6 +72,7 @@ Document make_atrium(int case_number, const ClearSky& sky) {
   add_lamps(document, materials);
   add_cloths(document, materials);
   add_vases(document, materials);
+  add_clips(document, case_number);
   return document;
 }
 

@@ -59,8 +59,7 @@ Profile stone_section(float radius, float depth, float inset) {
   profile.line_to({outer, front - chamfer}).line_to({outer - chamfer, front})
       .line_to({inner + chamfer, front}).line_to({inner, front - chamfer})
       .line_to({inner, chamfer - front}).line_to({inner + chamfer, -front})
-      .line_to({outer - chamfer, -front}).line_to({outer, chamfer - front})
-      .line_to({outer, 0.01f - half_wall});
+      .line_to({outer, -front}).line_to({outer, 0.01f - half_wall});
   return profile;
 }
 
@@ -178,7 +177,7 @@ ArchMeshes upper_arch(Document& document, const AtriumMaterials& m, const std::s
                       float bay_width) {
   const float radius = plan::arch_radius(plan::upper, bay_width);
   const float height = plan::upper.wall_top - plan::upper.springing;
-  Mesh trim = archivolt(radius, 20);
+  Mesh trim = archivolt(radius, 18);
   trim.append(keystone(radius, 0.32f));
   return {
       document.add_mesh(prefix + "_wall", arcade_wall(bay_width, radius, height, 22), m.ashlar),
@@ -194,18 +193,18 @@ void place_arch(Document& document, const ArchMeshes& arch, glm::vec3 origin, fl
 void add_corner_piers(Document& document, const AtriumMaterials& m) {
   // A little wider than the walls that meet here, so that no two faces coincide.
   const float width = plan::wall_thickness + 0.04f;
+  Mesh piers;
   for (const plan::Storey& storey : {plan::lower, plan::upper}) {
     const float height = storey.wall_top - storey.springing;
     const Mesh pier = box({width, height, width});
-    Mesh piers;
     for (const float x : {-plan::arcade.x, plan::arcade.x}) {
       for (const float z : {-plan::arcade.y, plan::arcade.y}) {
-        piers.append(pier, glm::translate(glm::mat4(1.0f), {x, 0.5f * height, z}));
+        piers.append(pier, glm::translate(glm::mat4(1.0f),
+                                          {x, storey.springing + 0.5f * height, z}));
       }
     }
-    const int mesh = document.add_mesh("corner_piers", std::move(piers), m.ashlar);
-    document.place(mesh, {0.0f, storey.springing, 0.0f});
   }
+  document.place(document.add_mesh("corner_piers", std::move(piers), m.ashlar), {});
 }
 
 }  // namespace
@@ -295,14 +294,14 @@ constexpr float pedestal_clearance = 0.31f;  // from the column axis to the end 
 Mesh baluster() {
   Profile profile({0.062f, 0.0f});
   profile.line_by({0.0f, 0.05f}).line_to({0.045f, 0.06f})
-      .curve_through({{0.036f, 0.10f}, {0.066f, 0.22f}, {0.055f, 0.32f}, {0.030f, 0.50f},
-                      {0.036f, 0.56f}}, 2)
+      .curve_through({{0.040f, 0.10f}, {0.066f, 0.21f}, {0.055f, 0.33f}, {0.034f, 0.46f},
+                      {0.030f, 0.56f}}, 1)
       .arc_by({0.0f, 0.03f}, 0.8f, 2).line_to({0.055f, 0.62f}).line_to({0.055f, 0.70f});
   return lathe(profile, 8, 0.06f, 1.5f);
 }
 
 Mesh baluster_row(float length) {
-  const int count = int(length / 0.29f);
+  const int count = int(length / 0.31f);
   const Mesh one = baluster();
   Mesh mesh;
   for (int i = 0; i < count; ++i) {

@@ -138,11 +138,12 @@ Mesh acanthus(float foot_radius, float height, float width, float curl) {
 
 // A rolled volute as a disc about the Y axis: rim, groove, rim, eye.
 Mesh scroll(float radius, float half_width) {
-  Profile profile({0.001f, -half_width});
-  profile.line_to({radius * 0.9f, -half_width}).arc_to({radius * 0.9f, half_width}, 0.35f, 4)
-      .line_to({radius * 0.68f, half_width}).arc_to({radius * 0.34f, half_width}, -0.6f, 3)
-      .arc_to({0.001f, half_width * 1.15f}, 0.3f, 2);
-  return lathe(profile, 12, radius, 1.5f);
+  Profile side({radius * 0.92f, 0.0f});
+  side.arc_to({radius * 0.88f, half_width}, 0.3f, 1).line_to({radius * 0.70f, half_width})
+      .arc_to({radius * 0.36f, half_width}, -0.6f, 2).arc_to({0.001f, half_width * 1.15f}, 0.3f, 1);
+  Mesh mesh = lathe(side, 9, radius, 1.5f);
+  mesh.append(Mesh(mesh), glm::rotate(glm::mat4(1.0f), pi, {1.0f, 0.0f, 0.0f}));
+  return mesh;
 }
 
 // Bell, two rows of eight leaves, corner volutes and a moulded abacus: a plain Corinthian capital.
@@ -186,7 +187,7 @@ Mesh plain_capital(const ColumnMeasures& c) {
   const float height = c.top - c.shaft_top;
   const float r = c.top_radius;
   Profile profile({r, 0.0f});
-  profile.arc_by({0.0f, 0.10f * height}, 1.0f, 5).line_by({0.0f, 0.26f * height})
+  profile.arc_by({0.0f, 0.10f * height}, 1.0f, 3).line_by({0.0f, 0.26f * height})
       .line_by({0.03f * r, 0.0f}).line_by({0.0f, 0.05f * height})
       .curve_through({{1.22f * r, 0.52f * height}, {1.38f * r, 0.68f * height}}, 4);
   Mesh mesh = lathe(profile, 16, r, 1.5f);
@@ -203,13 +204,13 @@ Mesh plain_capital(const ColumnMeasures& c) {
 }  // namespace
 
 void add_columns(Document& document, const AtriumMaterials& m) {
-  const int lower_foot = document.add_mesh("column_foot", column_foot(lower_column, 24), m.trim);
+  const int lower_foot = document.add_mesh("column_foot", column_foot(lower_column, 20), m.trim);
   const int lower_shaft =
-      document.add_mesh("column_shaft", fluted_shaft(lower_column, 20, 6), m.column);
+      document.add_mesh("column_shaft", fluted_shaft(lower_column, 20, 5), m.column);
   const int lower_capital =
       document.add_mesh("column_capital", leaf_capital(lower_column), m.capital);
   const int upper_foot =
-      document.add_mesh("gallery_column_foot", column_foot(upper_column, 16), m.trim);
+      document.add_mesh("gallery_column_foot", column_foot(upper_column, 14), m.trim);
   const int upper_shaft =
       document.add_mesh("gallery_column_shaft", smooth_shaft(upper_column, 24, 6), m.column_dark);
   const int upper_capital =

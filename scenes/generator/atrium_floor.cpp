@@ -201,9 +201,9 @@ void add_pool(Document& document, const AtriumMaterials& m) {
       .arc_by({0.0f, 0.06f}, 0.9f, 5).line_by({0.03f, 0.0f})
       .curve_through({{0.34f, 1.08f}, {0.50f, 1.22f}}, 5).arc_by({-0.01f, 0.06f}, 0.8f, 4)
       .line_to({0.44f, 1.27f}).curve_through({{0.30f, 1.16f}, {0.05f, 1.12f}}, 5);
-  document.place(document.add_mesh("pedestal", lathe(stem, 36, 0.3f, 1.2f), m.column), {});
+  document.place(document.add_mesh("pedestal", lathe(stem, 30, 0.3f, 1.2f), m.column), {});
   const float radius = 0.46f;
-  const int ball = document.add_mesh("hero_sphere", sphere(radius, 72, 36, {3.0f, 1.5f}), m.mirror);
+  const int ball = document.add_mesh("hero_sphere", sphere(radius, 64, 32, {3.0f, 1.5f}), m.mirror);
   const int node = document.place(ball, {0.0f, 1.20f + radius, 0.0f});
   document.nodes[std::size_t(node)].name = "hero_sphere";
 }

@@ -29,7 +29,7 @@ Mesh rod(float radius, float length, int segments) {
 // Oval links, each turned a quarter against the last, hanging down from the origin.
 Mesh chain(float length) {
   constexpr float pitch = 0.088f;
-  Mesh link = torus(0.030f, 0.008f, 8, 3);
+  Mesh link = torus(0.030f, 0.008f, 7, 3);
   Mesh mesh;
   for (int i = 0; i < int(length / pitch); ++i) {
     glm::mat4 place = moved({0.0f, -(float(i) + 0.5f) * pitch, 0.0f});
@@ -45,14 +45,14 @@ Mesh lantern_frame() {
   Profile cap({0.20f, -0.26f});
   cap.line_to({0.215f, -0.25f}).curve_through({{0.14f, -0.17f}, {0.07f, -0.13f}, {0.05f, -0.08f}}, 3)
       .arc_to({0.02f, -0.04f}, 0.5f, 4).line_to({0.012f, 0.0f});
-  Mesh mesh = lathe(cap, 18, 0.15f, 0.6f);
+  Mesh mesh = lathe(cap, 14, 0.15f, 0.6f);
   Profile foot({0.001f, -0.75f});
   foot.arc_to({0.03f, -0.70f}, 0.6f, 4).curve_through({{0.06f, -0.66f}, {0.15f, -0.62f}}, 3)
       .line_to({0.17f, -0.60f}).line_to({0.16f, -0.595f}).line_to({0.02f, -0.595f});
-  mesh.append(lathe(foot, 18, 0.12f, 0.6f));
+  mesh.append(lathe(foot, 14, 0.12f, 0.6f));
   Profile under({0.02f, -0.262f});
   under.line_to({0.20f, -0.262f});
-  mesh.append(lathe(under, 18, 0.15f, 0.6f));
+  mesh.append(lathe(under, 14, 0.15f, 0.6f));
   const Mesh post = rod(0.009f, 0.35f, 6);
   for (int i = 0; i < 6; ++i) {
     const float angle = pi / 3.0f * float(i);
@@ -68,7 +68,7 @@ Mesh lantern_frame() {
 Mesh lantern_glass() {
   Profile profile({0.03f, -0.59f});
   profile.curve_through({{0.10f, -0.56f}, {0.135f, -0.44f}, {0.12f, -0.33f}, {0.07f, -0.27f}}, 3);
-  return lathe(profile, 18, 0.12f, 0.6f);
+  return lathe(profile, 14, 0.12f, 0.6f);
 }
 
 }  // namespace
@@ -89,12 +89,13 @@ void add_lamps(Document& document, const AtriumMaterials& m) {
     document.place(frame, spot.at(top - chain_length));
     document.place(glass, spot.at(top - chain_length));
     Light light;
-    light.name = "lamp";
+    light.name = "lamp_light";
     light.color = {1.0f, 0.62f, 0.30f};
     light.intensity = 2.2f;
     light.range = 9.0f;
     Node node;
-    node.translation = spot.at(top - chain_length - 0.85f);  // below the frame: nothing shadows it
+    // Below the frame, which would shadow the room from a light inside it.
+    node.translation = spot.at(top - chain_length - 0.85f);
     document.add_light(std::move(light), std::move(node));
   }
 }
@@ -128,13 +129,14 @@ Mesh banner_pole() {
   return out;
 }
 
-// Both halves of a curtain in an arch of the lower arcade, tied back to the columns.
+// Both halves of a curtain in an arch of the lower arcade, tied back to the columns. The origin is
+// on the rod, so that the clips can swing it.
 Mesh curtain_pair() {
   constexpr double height = 3.75;
   constexpr double half_opening = 1.36;
   Mesh mesh;
   for (const double side : {-1.0, 1.0}) {
-    mesh.append(smooth_patch(42, 12, {2.6f, float(height)}, [=](double u, double v) {
+    mesh.append(smooth_patch(38, 11, {2.6f, float(height)}, [=](double u, double v) {
       // Width of the gathered cloth: wide on the rod, narrow at the tie, wider on the floor.
       const double to_tie = std::min(v / 0.56, 1.0);
       const double below = std::max(0.0, (v - 0.56) / 0.44);
@@ -143,7 +145,7 @@ Mesh curtain_pair() {
       const double depth = 0.055 + 0.045 * (1.28 - width);
       const double folds = std::cos(two_pi * (7.0 * u + 0.3 * std::sin(3.0 * v)));
       const double sag = 0.10 * std::sin(two_pi * 0.5 * u) * to_tie;
-      return glm::dvec3(side * (half_opening - width * u), height * (1.0 - v) + 0.01 - sag,
+      return glm::dvec3(side * (half_opening - width * u), -height * v - sag,
                         depth * folds + 0.02 * std::sin(two_pi * 3.0 * u + 5.0 * v));
     }));
   }
@@ -154,7 +156,7 @@ Mesh curtain_rod() {
   Mesh mesh;
   mesh.append(rod(0.022f, 2.9f, 10), moved({1.45f, 3.80f, 0.0f}) * turned(0.5f * pi, {0, 0, 1}));
   for (const float x : {-1.28f, 1.28f}) {
-    mesh.append(torus(0.15f, 0.022f, 18, 8),
+    mesh.append(torus(0.15f, 0.022f, 14, 6),
                 glm::scale(moved({x, 1.66f, 0.0f}), {1.0f, 2.2f, 0.75f}));
   }
   return mesh;
@@ -184,7 +186,7 @@ void add_cloths(Document& document, const AtriumMaterials& m) {
   const std::vector<plan::Spot> bays = plan::bays();
   for (const int bay : {2, 5, 10, 13}) {
     const plan::Spot& spot = bays[std::size_t(bay)];
-    document.place(curtain, spot.at(0.0f), spot.turn);
+    document.place(curtain, spot.at(3.76f), spot.turn);
     document.place(rods, spot.at(0.0f), spot.turn);
   }
 }
@@ -193,10 +195,10 @@ namespace {
 
 Mesh urn() {
   Profile profile({0.20f, 0.0f});
-  profile.line_to({0.20f, 0.04f}).arc_by({-0.05f, 0.05f}, -0.6f, 4).line_by({0.0f, 0.02f})
+  profile.line_to({0.20f, 0.04f}).arc_by({-0.05f, 0.05f}, -0.6f, 3).line_by({0.0f, 0.02f})
       .curve_through({{0.24f, 0.24f}, {0.33f, 0.46f}, {0.31f, 0.66f}, {0.21f, 0.82f},
-                      {0.19f, 0.90f}}, 4)
-      .curve_through({{0.22f, 0.96f}, {0.28f, 1.00f}}, 3).arc_by({-0.02f, 0.02f}, 0.9f, 4)
+                      {0.19f, 0.90f}}, 3)
+      .curve_through({{0.22f, 0.96f}, {0.28f, 1.00f}}, 3).arc_by({-0.02f, 0.02f}, 0.9f, 2)
       .line_to({0.20f, 0.95f}).line_to({0.17f, 0.90f});
   Mesh mesh = lathe(profile, 24, 0.28f, 1.2f);
   const Mesh handle = patch(9, 5, [](float u, float v) {
@@ -271,7 +273,7 @@ void add_vases(Document& document, const AtriumMaterials& m) {
   const int pots = document.add_mesh("garden_pot", garden_pot(), m.pot);
   const int tall = document.add_mesh("urn_plant", plant(26, 0.95f, 71), m.leaf);
   const int wide = document.add_mesh("pot_plant", plant(34, 1.15f, 72), m.leaf);
-  const int earth = document.add_mesh("pot_soil", disc(0.33f, 20), m.soil);
+  Mesh earth;
   const std::vector<plan::Spot> columns = plan::columns();
   for (const int column : {1, 3, 5, 7, 10, 12, 14, 16}) {
     const plan::Spot& spot = columns[std::size_t(column)];
@@ -284,9 +286,10 @@ void add_vases(Document& document, const AtriumMaterials& m) {
     for (const float z : {-2.55f, 2.55f}) {
       document.place(pots, {x, 0.0f, z}, 20.0f * x);
       document.place(wide, {x, 0.56f, z}, 30.0f * (x + 2.0f * z));
-      document.place(earth, {x, 0.57f, z});
+      earth.append(disc(0.33f, 20), moved({x, 0.57f, z}));
     }
   }
+  document.place(document.add_mesh("pot_soil", std::move(earth), m.soil), {});
 }
 
 }  // namespace heliograph::scenes

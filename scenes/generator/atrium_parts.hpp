@@ -20,4 +20,8 @@ void add_lamps(Document& document, const AtriumMaterials& materials);
 void add_cloths(Document& document, const AtriumMaterials& materials);
 void add_vases(Document& document, const AtriumMaterials& materials);
 
+/// The clips `moving_camera` and `moving_objects_light`, loops of ten seconds. Finds what moves by
+/// the names of the nodes; `case_number` as in make_atrium().
+void add_clips(Document& document, int case_number);
+
 }  // namespace heliograph::scenes

@@ -53,7 +53,7 @@ Mesh roof_side(float half_length_at_axis) {
   glm::mat4 slope(1.0f);
   slope[1] = glm::vec4(glm::cross(-up_slope, glm::vec3(1, 0, 0)), 0.0f);
   slope[2] = glm::vec4(-up_slope, 0.0f);
-  const Mesh full_run = tile_run(slope_length, 5);
+  const Mesh full_run = tile_run(slope_length, 3);
   for (int i = 0; i < runs; ++i) {
     const float x = (float(i) + 0.5f - 0.5f * float(runs)) * 2.0f * low_half / float(runs);
     mesh.append(full_run, glm::translate(glm::mat4(1.0f), low + glm::vec3(x, 0, 0)) * slope);

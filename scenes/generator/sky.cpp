@@ -21,9 +21,9 @@ constexpr double top_altitude = 100e3;
 constexpr double viewer_altitude = 300.0;  // high enough for a soft, hazy horizon
 const dvec3 rayleigh_scattering{5.802e-6, 13.558e-6, 33.1e-6};
 constexpr double rayleigh_height = 8000.0;
-// Haze of a summer day (vertical optical depth 0.1), where the references have very clean air.
-constexpr double mie_scattering = 7.6e-5;
-constexpr double mie_absorption = 7.0e-6;
+// Haze of a summer day (vertical optical depth 0.13), where the references have very clean air.
+constexpr double mie_scattering = 1.0e-4;
+constexpr double mie_absorption = 8.0e-6;
 constexpr double mie_height = 1200.0;
 constexpr double mie_asymmetry = 0.76;
 const dvec3 ozone_absorption{0.650e-6, 1.881e-6, 0.085e-6};
