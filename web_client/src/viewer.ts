@@ -119,7 +119,6 @@ export class Viewer {
       await this.sceneChanged(info);
     } catch (error) {
       this.showProgress(null);
-      this.scenes.set(this.scenes.value);
       this.report(error);
     }
   }
