@@ -19,6 +19,22 @@ constexpr float bevel = 0.006f;
 constexpr glm::vec2 field{15.0f, 4.0f};       // half extents of the octagon pavement of the nave
 constexpr glm::vec2 pool_opening{3.0f, 2.0f};  // left out of it
 
+// A convex outline, counter-clockwise in (x, z), with every edge moved inwards by `distance`.
+std::vector<glm::vec2> inset(const std::vector<glm::vec2>& outline, float distance) {
+  const std::size_t count = outline.size();
+  const auto inward = [&](std::size_t i) {
+    const glm::vec2 edge = glm::normalize(outline[(i + 1) % count] - outline[i]);
+    return glm::vec2(-edge.y, edge.x);
+  };
+  std::vector<glm::vec2> result;
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::vec2 before = inward((i + count - 1) % count);
+    const glm::vec2 after = inward(i);
+    result.push_back(outline[i] + distance * (before + after) / (1.0f + glm::dot(before, after)));
+  }
+  return result;
+}
+
 // A slab with chamfered edges whose top lies near y = 0, laid by hand: each a little higher or
 // lower and out of level, and cut from another part of the marble.
 void lay_slab(Mesh& mesh, const std::vector<glm::vec2>& outline) {
@@ -39,26 +55,21 @@ void lay_slab(Mesh& mesh, const std::vector<glm::vec2>& outline) {
   const auto height = [&](glm::vec2 p) { return lift + glm::dot(tilt, p - middle); };
   const glm::vec3 up = glm::normalize(glm::vec3(-tilt.x, 1.0f, -tilt.y));
 
-  const auto shrunk = [&](glm::vec2 p, float by) {
-    const glm::vec2 d = p - middle;
-    return middle + d * (1.0f - by / glm::length(d));
-  };
+  const std::vector<glm::vec2> rim = inset(outline, joint);
+  const std::vector<glm::vec2> face = inset(outline, joint + bevel);
   const auto top = static_cast<std::uint32_t>(mesh.vertices.size());
   const auto count = static_cast<std::uint32_t>(outline.size());
-  for (const glm::vec2& corner : outline) {
-    const glm::vec2 p = shrunk(corner, 1.4f * (joint + bevel));
+  for (const glm::vec2& p : face) {
     mesh.vertices.push_back({{p.x, height(p), p.y}, up, {}, uv(p)});
   }
   for (std::uint32_t i = 1; i + 1 < count; ++i) mesh.add_triangle(top, top + i, top + i + 1);
   for (std::uint32_t i = 0; i < count; ++i) {
-    const glm::vec2 a = outline[i];
-    const glm::vec2 b = outline[(i + 1) % count];
-    const glm::vec2 edge_out = glm::normalize(0.5f * (a + b) - middle);
-    const glm::vec3 normal = glm::normalize(glm::vec3(edge_out.x, 0.8f, edge_out.y));
+    const glm::vec2 edge = glm::normalize(outline[(i + 1) % count] - outline[i]);
+    const glm::vec3 normal = glm::normalize(glm::vec3(edge.y, 1.0f, -edge.x));
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    for (const glm::vec2& corner : {a, b}) {
-      const glm::vec2 in = shrunk(corner, 1.4f * (joint + bevel));
-      const glm::vec2 out = shrunk(corner, 1.4f * joint);
+    for (const std::uint32_t corner : {i, (i + 1) % count}) {
+      const glm::vec2 in = face[corner];
+      const glm::vec2 out = rim[corner];
       mesh.vertices.push_back({{in.x, height(in), in.y}, normal, {}, uv(in)});
       mesh.vertices.push_back({{out.x, height(in) - bevel, out.y}, normal, {}, uv(out)});
     }

@@ -29,7 +29,7 @@ Mesh rod(float radius, float length, int segments) {
 // Oval links, each turned a quarter against the last, hanging down from the origin.
 Mesh chain(float length) {
   constexpr float pitch = 0.088f;
-  Mesh link = torus(0.030f, 0.008f, 7, 3);
+  Mesh link = torus(0.030f, 0.008f, 7, 4);
   Mesh mesh;
   for (int i = 0; i < int(length / pitch); ++i) {
     glm::mat4 place = moved({0.0f, -(float(i) + 0.5f) * pitch, 0.0f});
@@ -143,7 +143,7 @@ Mesh curtain_pair() {
       const double width = 1.28 - 1.0 * to_tie * to_tie * (3.0 - 2.0 * to_tie) +
                            0.30 * below * (2.0 - below);
       const double depth = 0.055 + 0.045 * (1.28 - width);
-      const double folds = std::cos(two_pi * (7.0 * u + 0.3 * std::sin(3.0 * v)));
+      const double folds = std::cos(two_pi * (4.6 * u + 0.3 * std::sin(3.0 * v)));
       const double sag = 0.10 * std::sin(two_pi * 0.5 * u) * to_tie;
       return glm::dvec3(side * (half_opening - width * u), -height * v - sag,
                         depth * folds + 0.02 * std::sin(two_pi * 3.0 * u + 5.0 * v));

@@ -52,7 +52,7 @@ Image normal_map(const Field& height, int size, float pixel_width) {
 // Points below their surroundings see less of the sky: occlusion falls with the depth relative to
 // the width of the hollow.
 Field cavity_occlusion(const Field& height, int size, float pixel_width) {
-  const int radius = std::max(2, size / 64);
+  const int radius = std::max(2, size / 32);
   const Field mean = blurred(height, size, radius);
   Field occlusion(height.size());
   for (std::size_t i = 0; i < height.size(); ++i) {
