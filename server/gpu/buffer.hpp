@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "gpu/device.hpp"
+
+namespace heliograph::gpu {
+
+/// Where a buffer lives. On a CPU device every buffer is mapped.
+enum class Memory {
+  device,    // fastest for the device
+  upload,    // mapped, written by the host
+  readback,  // mapped and cached, read by the host
+};
+
+/// A buffer with its own memory. Every buffer may be copied from and to.
+class Buffer {
+ public:
+  Buffer() = default;
+  Buffer(const Device& device, std::string name, VkDeviceSize size, VkBufferUsageFlags usage,
+         Memory memory);
+  ~Buffer();
+  Buffer(Buffer&& other) noexcept { swap(other); }
+  Buffer& operator=(Buffer&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+
+  VkBuffer handle() const { return handle_; }
+  VkDeviceSize size() const { return size_; }
+  const std::string& name() const { return name_; }
+  explicit operator bool() const { return handle_ != VK_NULL_HANDLE; }
+
+  /// The buffer's bytes, or null when the host cannot reach them.
+  std::byte* mapped() const { return mapped_; }
+
+  /// A view for uniform texel buffers; made once, kept with the buffer.
+  VkBufferView texel_view(VkFormat format);
+
+ private:
+  void swap(Buffer& other) noexcept;
+
+  const Device* device_ = nullptr;
+  std::string name_;
+  VkBuffer handle_ = VK_NULL_HANDLE;
+  VkDeviceMemory memory_ = VK_NULL_HANDLE;
+  VkBufferView view_ = VK_NULL_HANDLE;
+  VkDeviceSize size_ = 0;
+  std::byte* mapped_ = nullptr;
+};
+
+/// A device buffer holding a copy of `bytes` (at least 16 bytes long, so that empty tables bind).
+Buffer upload_buffer(const Device& device, std::string name, std::span<const std::byte> bytes,
+                     VkBufferUsageFlags usage);
+
+}  // namespace heliograph::gpu

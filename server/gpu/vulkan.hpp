@@ -1,0 +1,20 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+#include <volk.h>
+
+namespace heliograph::gpu {
+
+class GpuError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// @throws GpuError naming `what` and the result when `result` is an error
+void check(VkResult result, const char* what);
+
+std::string to_string(VkResult result);
+
+}  // namespace heliograph::gpu
