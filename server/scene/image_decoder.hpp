@@ -1,15 +1,14 @@
 #pragma once
 
 #include <cstdint>
-#include <glm/glm.hpp>
 #include <span>
-#include <vector>
 
 namespace heliograph::scene {
 
 struct ImageSize {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
+  bool operator==(const ImageSize&) const = default;
 };
 
 /// No picture wider or higher than this is opened.
@@ -20,8 +19,8 @@ inline constexpr std::uint32_t largest_image_side = 8192;
 ImageSize probe_image(std::span<const std::uint8_t> file);
 
 /// Decodes a PNG or JPEG picture of the probed `size` into `rgba`, 4 bytes a pixel, row 0 on top;
-/// 16-bit channels are reduced to 8. Memory stays in proportion to `size`, whatever the file
-/// inflates to.
+/// 16-bit channels are reduced to 8. Colour profiles and gamma in the file are ignored, as glTF
+/// 3.8.2 asks. Memory stays in proportion to `size`, whatever the file inflates to.
 /// @throws ImportError when the data is cut or damaged
 void decode_image(std::span<const std::uint8_t> file, ImageSize size, std::span<std::uint8_t> rgba);
 

@@ -175,7 +175,8 @@ TEST(Geometry, DegenerateTrianglesKeepFiniteFrames) {
   const std::size_t offset = builder.json["bufferViews"][0]["byteOffset"];
   std::fill_n(builder.binary.begin() + offset, 48, std::uint8_t(0));
   builder.json["meshes"][0]["primitives"][0]["attributes"].erase("NORMAL");
-  for (const shared::Vertex& vertex : builder.import().meshes[0].vertices) {
+  const Scene scene = builder.import();
+  for (const shared::Vertex& vertex : scene.meshes[0].vertices) {
     EXPECT_NEAR(glm::length(vertex.normal), 1.0f, 1e-5f);
     EXPECT_NEAR(glm::length(glm::vec3(vertex.tangent)), 1.0f, 1e-5f);
   }

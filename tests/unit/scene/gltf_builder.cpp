@@ -1,17 +1,10 @@
 #include "gltf_builder.hpp"
 
+#include <turbojpeg.h>
 #include <unistd.h>
 
 #include <array>
 #include <cstdlib>
-
-#define STB_IMAGE_WRITE_STATIC
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#include <stb/stb_image_write.h>
-#pragma GCC diagnostic pop
 
 namespace heliograph::scene::test {
 namespace {
@@ -207,14 +200,15 @@ Bytes png(std::uint32_t width, std::uint32_t height, int channels, const Bytes& 
   return file;
 }
 
-Bytes jpeg(std::uint32_t width, std::uint32_t height, const Bytes& rgb) {
-  Bytes file;
-  const auto append = [](void* target, void* data, int size) {
-    const auto* first = static_cast<const std::uint8_t*>(data);
-    static_cast<Bytes*>(target)->insert(static_cast<Bytes*>(target)->end(), first, first + size);
-  };
-  stbi_write_jpg_to_func(append, &file, static_cast<int>(width), static_cast<int>(height), 3,
-                         rgb.data(), 95);
+Bytes jpeg(std::uint32_t width, std::uint32_t height, const Bytes& rgb, bool progressive) {
+  const tjhandle compressor = tjInitCompress();
+  unsigned char* data = nullptr;
+  unsigned long size = 0;
+  tjCompress2(compressor, rgb.data(), static_cast<int>(width), 0, static_cast<int>(height),
+              TJPF_RGB, &data, &size, TJSAMP_420, 95, progressive ? TJFLAG_PROGRESSIVE : 0);
+  const Bytes file(data, data + size);
+  tjFree(data);
+  tjDestroy(compressor);
   return file;
 }
 

@@ -70,7 +70,7 @@ GltfBuilder everything();
 /// Uncompressed PNG; `channels` 1..4, `depth` 8 or 16 (big-endian samples).
 Bytes png(std::uint32_t width, std::uint32_t height, int channels, const Bytes& samples,
           int depth = 8);
-Bytes jpeg(std::uint32_t width, std::uint32_t height, const Bytes& rgb);
+Bytes jpeg(std::uint32_t width, std::uint32_t height, const Bytes& rgb, bool progressive = false);
 
 std::string base64(const Bytes& bytes);
 

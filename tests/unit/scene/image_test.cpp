@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <algorithm>
 
 #include "gltf_builder.hpp"
 #include "scene/image_decoder.hpp"
@@ -43,23 +43,34 @@ TEST(ImageDecoder, SixteenBitsAreReducedToEight) {
             (Bytes{0x12, 0xff, 0, 0x80}));
 }
 
-TEST(ImageDecoder, ReadsJpeg) {
+TEST(ImageDecoder, ReadsJpegBaselineAndProgressive) {
   Bytes rgb;
   for (int i = 0; i < 16 * 16; ++i) rgb.insert(rgb.end(), {200, 100, 50});
-  const Bytes pixels = decoded(jpeg(16, 16, rgb));
-  EXPECT_NEAR(pixels[0], 200, 3);
-  EXPECT_NEAR(pixels[1], 100, 3);
-  EXPECT_NEAR(pixels[2], 50, 3);
-  EXPECT_EQ(pixels[3], 255);
+  for (const bool progressive : {false, true}) {
+    const Bytes pixels = decoded(jpeg(16, 16, rgb, progressive));
+    EXPECT_NEAR(pixels[0], 200, 3);
+    EXPECT_NEAR(pixels[1], 100, 3);
+    EXPECT_NEAR(pixels[2], 50, 3);
+    EXPECT_EQ(pixels[3], 255);
+  }
+}
+
+TEST(ImageDecoder, GammaInTheFileIsIgnored) {
+  // A gAMA chunk that says linear: a decoder that honours it would brighten the picture.
+  Bytes file = png(1, 1, 3, {100, 100, 100});
+  const Bytes gamma = {0, 0, 0, 4, 'g', 'A', 'M', 'A', 0, 1, 0x86, 0xa0, 0x31, 0xe8, 0x96, 0x5f};
+  file.insert(file.begin() + 33, gamma.begin(), gamma.end());
+  EXPECT_EQ(decoded(file), (Bytes{100, 100, 100, 255}));
 }
 
 TEST(ImageDecoder, RefusesWhatIsCutAtAnyByte) {
   Bytes noise(48 * 48 * 3);
   for (std::size_t i = 0; i < noise.size(); ++i)
     noise[i] = static_cast<std::uint8_t>(i * 2654435761u >> 13);
-  for (const Bytes& file : {png(5, 4, 3, Bytes(60, 3)), jpeg(48, 48, noise)}) {
+  for (const Bytes& file :
+       {png(5, 4, 3, Bytes(60, 3)), jpeg(48, 48, noise), jpeg(48, 48, noise, true)}) {
     ASSERT_EQ(reason_of(file), "");
-    for (std::size_t size = 0; size + 12 < file.size(); size += 1 + file.size() / 200) {
+    for (std::size_t size = 0; size < file.size() - 2; size += 1 + file.size() / 200) {
       EXPECT_NE(reason_of(Bytes(file.begin(), file.begin() + size)), "")
           << size << " of " << file.size();
     }
@@ -79,10 +90,11 @@ TEST(ImageDecoder, RefusesPicturesWithoutPixelsOrWithTooMany) {
   EXPECT_NE(reason_of(png(8193, 1, 4, Bytes(8193 * 4))), "");
 }
 
-TEST(ImageDecoder, MemoryFollowsTheSizeNotTheData) {
-  // 64 MiB of rows behind a header of 4 x 4: a loader that inflates first would take it all.
-  const Bytes bomb = png(4, 4, 4, Bytes(64 << 20));
-  EXPECT_NE(reason_of(bomb).find("damaged"), std::string::npos);
+TEST(ImageDecoder, RowsBeyondThePictureAreNotRead) {
+  // 16 MiB of rows behind a header of 4 x 4: a loader that inflates first would hold them all.
+  Bytes samples(16 << 20, 77);
+  std::fill_n(samples.begin(), 64, std::uint8_t(5));
+  EXPECT_EQ(decoded(png(4, 4, 4, samples)), Bytes(64, 5));
 }
 
 TEST(Mipmaps, ChainsEndAtOnePixel) {
