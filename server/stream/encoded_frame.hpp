@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "protocol/frame_header.hpp"
+
+namespace heliograph::stream {
+
+using Clock = std::chrono::steady_clock;
+
+/// The newest input of one viewer that a picture shows.
+struct InputEcho {
+  std::string viewer;
+  std::uint32_t seq = 0;
+};
+
+/// One encoded picture, made once and shared by all who see it. The members of the header that
+/// differ between viewers (frame_seq, input_seq_echo, queue_us, flags about drops) are filled in
+/// when a viewer takes it.
+struct EncodedFrame {
+  protocol::FrameHeader header;
+  std::vector<std::uint8_t> payload;
+  std::vector<InputEcho> inputs;
+  Clock::time_point encoded_at;
+};
+
+using SharedFrame = std::shared_ptr<const EncodedFrame>;
+
+/// A frame on its way to one viewer: its own header bytes, the shared payload.
+struct OutgoingFrame {
+  std::array<std::uint8_t, protocol::frame_header_bytes> header;
+  SharedFrame frame;
+};
+
+}  // namespace heliograph::stream

@@ -1,0 +1,77 @@
+#include "stream/viewer_pacer.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace heliograph::stream {
+namespace {
+
+/// Weight of a new measurement, as in TCP's smoothed round trip time (RFC 6298).
+constexpr double newest_weight = 1.0 / 8.0;
+
+}  // namespace
+
+void ViewerPacer::offer(SharedFrame frame) {
+  if (paused_) return;
+  if (waiting_) {
+    ++totals_.dropped;
+    dropped_since_taken_ = true;
+  }
+  waiting_ = std::move(frame);
+  ++last_offered_;
+}
+
+std::optional<ViewerPacer::Taken> ViewerPacer::take(Clock::time_point now) {
+  if (!waiting_ || paused_ || !window_open() || now < next_turn_) return std::nullopt;
+  Taken taken{.frame_seq = last_offered_,
+              .first_after_drop = std::exchange(dropped_since_taken_, false),
+              .frame = std::exchange(waiting_, nullptr)};
+  const std::uint64_t bytes = taken.frame->payload.size() + protocol::frame_header_bytes;
+  on_the_way_.push_back({.frame_seq = taken.frame_seq, .bytes = bytes, .at = now});
+  // Turns keep their rhythm when one came a little late, but do not pile up over a pause.
+  next_turn_ = std::max(next_turn_ + least_interval_, now + least_interval_ / 2);
+  ++totals_.frames;
+  totals_.bytes += bytes;
+  return taken;
+}
+
+bool ViewerPacer::acknowledge(std::uint32_t frame_seq, std::chrono::microseconds held,
+                              Clock::time_point now) {
+  const auto known = std::find_if(on_the_way_.begin(), on_the_way_.end(),
+                                  [&](const Sent& sent) { return sent.frame_seq == frame_seq; });
+  if (known == on_the_way_.end()) return false;
+  measure(*known, held, now);
+  on_the_way_.erase(on_the_way_.begin(), known + 1);
+  return true;
+}
+
+void ViewerPacer::measure(const Sent& sent, std::chrono::microseconds held,
+                          Clock::time_point now) {
+  using std::chrono::duration_cast;
+  using std::chrono::microseconds;
+  const auto total = std::max(duration_cast<microseconds>(now - sent.at), microseconds(1));
+  // A client's own figure is trusted only as far as it is possible.
+  const auto sample = total - std::clamp(held, microseconds(0), total);
+  const double rate = static_cast<double>(sent.bytes) * 1e6 / static_cast<double>(total.count());
+  const bool first = goodput_ == 0.0;
+  const double weight = first ? 1.0 : newest_weight;
+  goodput_ += weight * (rate - goodput_);
+  round_trip_ += microseconds(
+      static_cast<std::int64_t>(weight * static_cast<double>((sample - round_trip_).count())));
+}
+
+void ViewerPacer::set_max_rate(double frames_per_second) {
+  least_interval_ = std::chrono::microseconds(static_cast<std::int64_t>(1e6 / frames_per_second));
+  next_turn_ = {};
+}
+
+void ViewerPacer::set_paused(bool paused) {
+  paused_ = paused;
+  if (paused_) waiting_ = nullptr;
+}
+
+bool ViewerPacer::has_room(Clock::time_point now) const {
+  return !paused_ && !waiting_ && window_open() && now >= next_turn_;
+}
+
+}  // namespace heliograph::stream

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "stream/encoded_frame.hpp"
+
+namespace heliograph::stream {
+
+/// Frames that may be on their way to a viewer without its stream.ack.
+inline constexpr std::uint32_t ack_window = 2;
+
+struct PacerTotals {
+  std::uint64_t frames = 0;  // taken for sending
+  std::uint64_t bytes = 0;
+  std::uint64_t dropped = 0;  // replaced by a newer one before they could be sent
+};
+
+/// Decides what one viewer gets, and when. There is no queue: one slot holds the latest frame, a
+/// newer one replaces it. A viewer that stops acknowledging keeps at most `ack_window` frames on
+/// the way and one in the slot. Pure logic: callers bring the time.
+class ViewerPacer {
+ public:
+  /// Puts a frame into the slot, numbering it for this viewer.
+  void offer(SharedFrame frame);
+  /// The waiting frame's number, if the viewer may have it now; it then counts as on its way.
+  struct Taken {
+    std::uint32_t frame_seq;
+    bool first_after_drop;
+    SharedFrame frame;
+  };
+  std::optional<Taken> take(Clock::time_point now);
+  /// An acknowledgement covers all earlier frames. False for one that was never sent.
+  bool acknowledge(std::uint32_t frame_seq, std::chrono::microseconds held, Clock::time_point now);
+
+  void set_max_rate(double frames_per_second);
+  void set_paused(bool paused);
+  bool paused() const { return paused_; }
+
+  /// Whether a frame rendered now could be sent at once.
+  bool has_room(Clock::time_point now) const;
+  bool frame_waiting() const { return waiting_ != nullptr; }
+  /// When the rate limit next lets a frame through.
+  Clock::time_point next_turn() const { return next_turn_; }
+
+  const PacerTotals& totals() const { return totals_; }
+  /// Smoothed time from sending to acknowledgement, less what the client says it held the frame;
+  /// zero before the first.
+  std::chrono::microseconds round_trip() const { return round_trip_; }
+  /// Smoothed bytes a second that were acknowledged while the window was in use; zero before any.
+  double goodput() const { return goodput_; }
+
+ private:
+  struct Sent {
+    std::uint32_t frame_seq;
+    std::uint64_t bytes;
+    Clock::time_point at;
+  };
+
+  bool window_open() const { return on_the_way_.size() < ack_window; }
+  void measure(const Sent& sent, std::chrono::microseconds held, Clock::time_point now);
+
+  SharedFrame waiting_;
+  std::uint32_t last_offered_ = 0;
+  bool dropped_since_taken_ = false;
+  std::deque<Sent> on_the_way_;
+  bool paused_ = false;
+  std::chrono::microseconds least_interval_{0};
+  Clock::time_point next_turn_;
+  PacerTotals totals_;
+  std::chrono::microseconds round_trip_{0};
+  double goodput_ = 0.0;
+};
+
+}  // namespace heliograph::stream
