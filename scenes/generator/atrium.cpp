@@ -1,10 +1,10 @@
 #include "scenes/generator/atrium.hpp"
 
-#include "scenes/generator/atrium_parts.hpp"
-
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+
+#include "scenes/generator/atrium_parts.hpp"
 
 namespace heliograph::scenes {
 namespace {
@@ -18,7 +18,7 @@ struct View {
 
 constexpr View along_nave{"along_nave", {13.6f, 1.75f, 1.5f}, {-4.0f, 3.3f, -0.9f}, 56.0f};
 constexpr View gallery{"gallery", {15.6f, 8.5f, 0.5f}, {-2.0f, 4.3f, -1.3f}, 58.0f};
-constexpr View courtyard{"courtyard", {-5.5f, 2.1f, 4.2f}, {2.0f, 2.4f, -3.5f}, 54.0f};
+constexpr View courtyard{"courtyard", {-7.4f, 2.0f, 3.9f}, {2.0f, 2.6f, -3.2f}, 56.0f};
 constexpr View floor_view{"floor", {9.0f, 0.45f, -1.0f}, {0.0f, 0.9f, 0.4f}, 50.0f};
 
 void add_cameras(Document& document, int case_number) {
@@ -40,8 +40,7 @@ void add_sun(Document& document, const ClearSky& sky) {
   sun.intensity = strongest;
   Node node;
   node.translation = {0.0f, 20.0f, 0.0f};
-  node.rotation =
-      look_rotation(direction_to_sun(sun_elevation, sun_azimuth), glm::vec3(0.0f));
+  node.rotation = look_rotation(direction_to_sun(sun_elevation, sun_azimuth), glm::vec3(0.0f));
   node.angular_diameter = 0.53f;
   document.add_light(std::move(sun), std::move(node));
 }
@@ -71,7 +70,7 @@ Document make_atrium(int case_number, const ClearSky& sky) {
   add_roof(document, materials);
   add_lamps(document, materials);
   add_cloths(document, materials);
-  add_vases(document, materials);
+  add_plants(document, materials);
   add_clips(document, case_number);
   return document;
 }

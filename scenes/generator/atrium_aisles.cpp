@@ -1,11 +1,10 @@
-#include "scenes/generator/atrium_parts.hpp"
-#include "scenes/generator/atrium_plan.hpp"
-#include "scenes/generator/shapes.hpp"
-
+#include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include <cmath>
+#include "scenes/generator/atrium_parts.hpp"
+#include "scenes/generator/atrium_plan.hpp"
+#include "scenes/generator/shapes.hpp"
 
 namespace heliograph::scenes {
 namespace {
@@ -27,7 +26,7 @@ Mesh groin_vault(float width_x, float width_z) {
     const float side = web < 2 ? 1.0f : -1.0f;
     const float across = 0.5f * (along_z ? width_x : width_z);
     const float length = 0.5f * (along_z ? width_z : width_x);
-    mesh.append(patch(10, 5, [&](float u, float v) {
+    mesh.append(patch(8, 5, [&](float u, float v) {
       const float reach = 0.5f * pi * v;
       const float angle = (2.0f * u - 1.0f) * reach;
       const float c = across * std::sin(angle);
@@ -45,11 +44,13 @@ Mesh groin_vault(float width_x, float width_z) {
 // A rib under the joint of two vaults: half an ellipse from wall to wall, along local X.
 Mesh transverse_rib(float span, float width) {
   Profile profile({0.05f, 0.5f * width});
-  profile.line_to({-0.10f, 0.5f * width}).arc_to({-0.16f, 0.5f * width - 0.06f}, -0.5f, 4)
-      .line_to({-0.16f, 0.06f - 0.5f * width}).arc_to({-0.10f, -0.5f * width}, -0.5f, 4)
+  profile.line_to({-0.10f, 0.5f * width})
+      .arc_to({-0.16f, 0.5f * width - 0.06f}, -0.5f, 4)
+      .line_to({-0.16f, 0.06f - 0.5f * width})
+      .arc_to({-0.10f, -0.5f * width}, -0.5f, 4)
       .line_to({0.05f, -0.5f * width});
   std::vector<Station> stations;
-  constexpr int segments = 16;
+  constexpr int segments = 14;
   float distance = 0.0f;
   glm::vec3 previous(0.0f);
   for (int i = 0; i <= segments; ++i) {
@@ -116,8 +117,8 @@ Mesh aisle_ring(float height, bool facing_up, float inner_margin) {
   const glm::vec2 out = plan::walls;
   const glm::vec3 normal(0.0f, facing_up ? 1.0f : -1.0f, 0.0f);
   const auto rectangle = [&](float x0, float x1, float z0, float z1) {
-    Mesh mesh = quad_facing({x0, height, z1}, {x1, height, z1}, {x1, height, z0}, {x0, height, z0},
-                            normal);
+    Mesh mesh =
+        quad_facing({x0, height, z1}, {x1, height, z1}, {x1, height, z0}, {x0, height, z0}, normal);
     // One coordinate frame for the whole ring: joints between the four parts do not show.
     for (Vertex& v : mesh.vertices) v.uv = {v.position.x, facing_up ? v.position.z : -v.position.z};
     return mesh;
@@ -165,8 +166,8 @@ Mesh ceiling_beams() {
 }  // namespace
 
 void add_gallery(Document& document, const AtriumMaterials& m) {
-  const int floor = document.add_mesh(
-      "gallery_floor", aisle_ring(plan::upper.floor, true, half_wall), m.brick);
+  const int floor =
+      document.add_mesh("gallery_floor", aisle_ring(plan::upper.floor, true, half_wall), m.brick);
   document.place(floor, glm::vec3(0.0f));
   const int panels = document.add_mesh("gallery_ceiling", aisle_ring(ceiling_height, false, 0.0f),
                                        m.painted_panel);

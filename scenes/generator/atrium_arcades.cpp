@@ -1,11 +1,10 @@
-#include "scenes/generator/atrium_parts.hpp"
-#include "scenes/generator/atrium_plan.hpp"
-#include "scenes/generator/shapes.hpp"
-
+#include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include <cmath>
+#include "scenes/generator/atrium_parts.hpp"
+#include "scenes/generator/atrium_plan.hpp"
+#include "scenes/generator/shapes.hpp"
 
 namespace heliograph::scenes {
 namespace {
@@ -18,7 +17,8 @@ constexpr float half_wall = 0.5f * plan::wall_thickness;
 Mesh arcade_wall(float bay_width, float radius, float height, int segments) {
   const float half = 0.5f * bay_width;
   std::vector<float> xs{-half};
-  for (int i = 0; i <= segments; ++i) xs.push_back(-radius * std::cos(pi * float(i) / float(segments)));
+  for (int i = 0; i <= segments; ++i)
+    xs.push_back(-radius * std::cos(pi * float(i) / float(segments)));
   xs.push_back(half);
   Mesh mesh;
   for (const float side : {-1.0f, 1.0f}) {
@@ -27,8 +27,7 @@ Mesh arcade_wall(float bay_width, float radius, float height, int segments) {
       const float inside = radius * radius - x * x;
       const float opening = inside > 1e-6f ? std::sqrt(inside) : 0.0f;
       for (const float y : {opening, height}) {
-        mesh.vertices.push_back(
-            {{x, y, side * half_wall}, {0.0f, 0.0f, side}, {}, {side * x, -y}});
+        mesh.vertices.push_back({{x, y, side * half_wall}, {0.0f, 0.0f, side}, {}, {side * x, -y}});
       }
     }
     for (std::uint32_t i = 0; i + 1 < xs.size(); ++i) {
@@ -56,10 +55,14 @@ Profile stone_section(float radius, float depth, float inset) {
   const float front = half_wall + 0.035f - inset;
   constexpr float chamfer = 0.014f;
   Profile profile({outer, half_wall - 0.01f});
-  profile.line_to({outer, front - chamfer}).line_to({outer - chamfer, front})
-      .line_to({inner + chamfer, front}).line_to({inner, front - chamfer})
-      .line_to({inner, chamfer - front}).line_to({inner + chamfer, -front})
-      .line_to({outer, -front}).line_to({outer, 0.01f - half_wall});
+  profile.line_to({outer, front - chamfer})
+      .line_to({outer - chamfer, front})
+      .line_to({inner + chamfer, front})
+      .line_to({inner, front - chamfer})
+      .line_to({inner, chamfer - front})
+      .line_to({inner + chamfer, -front})
+      .line_to({outer, -front})
+      .line_to({outer, 0.01f - half_wall});
   return profile;
 }
 
@@ -103,8 +106,10 @@ Mesh voussoirs(float radius, float depth, int stones, int first_stone) {
 // A label moulding that frames the arch stones on the courtyard side.
 Mesh hood_mould(float radius, int segments) {
   Profile profile({radius + 0.075f, half_wall - 0.01f});
-  profile.line_by({0.0f, 0.055f}).arc_by({-0.035f, 0.035f}, 0.5f, 4)
-      .line_by({-0.012f, 0.0f}).arc_to({radius, half_wall + 0.03f}, -0.5f, 4);
+  profile.line_by({0.0f, 0.055f})
+      .arc_by({-0.035f, 0.035f}, 0.5f, 4)
+      .line_by({-0.012f, 0.0f})
+      .arc_to({radius, half_wall + 0.03f}, -0.5f, 4);
   return sweep(profile, arch_stations(segments, radius));
 }
 
@@ -112,11 +117,17 @@ Mesh hood_mould(float radius, int segments) {
 Mesh archivolt(float radius, int segments) {
   const float front = half_wall;
   Profile profile({radius + 0.24f, front - 0.01f});
-  profile.line_to({radius + 0.24f, front + 0.06f}).arc_by({-0.045f, -0.022f}, 0.5f, 4)
-      .line_by({-0.075f, 0.0f}).line_by({0.0f, -0.014f}).line_by({-0.07f, 0.0f})
-      .line_by({0.0f, -0.012f}).arc_to({radius - 0.02f, front - 0.02f}, 0.7f, 4)
-      .line_to({radius - 0.02f, 0.02f - front}).line_to({radius + 0.02f, -front - 0.02f})
-      .line_to({radius + 0.16f, -front - 0.02f}).line_to({radius + 0.16f, 0.01f - front});
+  profile.line_to({radius + 0.24f, front + 0.06f})
+      .arc_by({-0.045f, -0.022f}, 0.5f, 4)
+      .line_by({-0.075f, 0.0f})
+      .line_by({0.0f, -0.014f})
+      .line_by({-0.07f, 0.0f})
+      .line_by({0.0f, -0.012f})
+      .arc_to({radius - 0.02f, front - 0.02f}, 0.7f, 4)
+      .line_to({radius - 0.02f, 0.02f - front})
+      .line_to({radius + 0.02f, -front - 0.02f})
+      .line_to({radius + 0.16f, -front - 0.02f})
+      .line_to({radius + 0.16f, 0.01f - front});
   return sweep(profile, arch_stations(segments, radius));
 }
 
@@ -127,10 +138,13 @@ Mesh keystone(float radius, float height) {
   const float bottom = radius - 0.06f;
   const float top = radius + height;
   Profile side({half_wall - 0.02f, bottom});
-  side.line_to({half_wall + 0.07f, bottom}).arc_by({0.0f, 0.10f}, 0.9f, 6)
-      .curve_through({{half_wall + 0.10f, bottom + 0.45f * (top - bottom)},
-                      {half_wall + 0.16f, top - 0.05f}}, 5)
-      .line_to({half_wall + 0.16f, top}).line_to({half_wall - 0.02f, top});
+  side.line_to({half_wall + 0.07f, bottom})
+      .arc_by({0.0f, 0.10f}, 0.9f, 6)
+      .curve_through(
+          {{half_wall + 0.10f, bottom + 0.45f * (top - bottom)}, {half_wall + 0.16f, top - 0.05f}},
+          5)
+      .line_to({half_wall + 0.16f, top})
+      .line_to({half_wall - 0.02f, top});
   const auto half_at = [&](float y) {
     return glm::mix(lower_half, upper_half, (y - bottom) / (top - bottom));
   };
@@ -140,14 +154,15 @@ Mesh keystone(float radius, float height) {
     mesh.append(patch(1, rows, [&](float u, float v) {
       const ProfilePoint& p = run[std::size_t(std::lround(v * float(rows)))];
       const float x = (2.0f * u - 1.0f) * half_at(p.position.y);
-      return SurfacePoint{{x, p.position.y, p.position.x}, {0.0f, p.normal.y, p.normal.x},
-                          {x, -p.distance}};
+      return SurfacePoint{
+          {x, p.position.y, p.position.x}, {0.0f, p.normal.y, p.normal.x}, {x, -p.distance}};
     }));
     for (const float end : {-1.0f, 1.0f}) {
       mesh.append(patch(1, rows, [&](float u, float v) {
         const ProfilePoint& p = run[std::size_t(std::lround(v * float(rows)))];
         const float z = glm::mix(half_wall - 0.02f, p.position.x, u);
-        return SurfacePoint{{end * half_at(p.position.y), p.position.y, z}, {end, 0.0f, 0.0f},
+        return SurfacePoint{{end * half_at(p.position.y), p.position.y, z},
+                            {end, 0.0f, 0.0f},
                             {end * z, -p.position.y}};
       }));
     }
@@ -177,11 +192,10 @@ ArchMeshes upper_arch(Document& document, const AtriumMaterials& m, const std::s
                       float bay_width) {
   const float radius = plan::arch_radius(plan::upper, bay_width);
   const float height = plan::upper.wall_top - plan::upper.springing;
-  Mesh trim = archivolt(radius, 18);
+  Mesh trim = archivolt(radius, 16);
   trim.append(keystone(radius, 0.32f));
-  return {
-      document.add_mesh(prefix + "_wall", arcade_wall(bay_width, radius, height, 22), m.ashlar),
-      document.add_mesh(prefix + "_archivolt", std::move(trim), m.trim), -1};
+  return {document.add_mesh(prefix + "_wall", arcade_wall(bay_width, radius, height, 22), m.ashlar),
+          document.add_mesh(prefix + "_archivolt", std::move(trim), m.trim), -1};
 }
 
 void place_arch(Document& document, const ArchMeshes& arch, glm::vec3 origin, float turn) {
@@ -199,8 +213,8 @@ void add_corner_piers(Document& document, const AtriumMaterials& m) {
     const Mesh pier = box({width, height, width});
     for (const float x : {-plan::arcade.x, plan::arcade.x}) {
       for (const float z : {-plan::arcade.y, plan::arcade.y}) {
-        piers.append(pier, glm::translate(glm::mat4(1.0f),
-                                          {x, storey.springing + 0.5f * height, z}));
+        piers.append(pier,
+                     glm::translate(glm::mat4(1.0f), {x, storey.springing + 0.5f * height, z}));
       }
     }
   }
@@ -228,26 +242,32 @@ namespace {
 // Architrave, frieze band left flat for the painted strip, dentils, corona and cyma.
 Profile cornice_profile(float height, float projection) {
   Profile profile({-0.05f, 0.0f});
-  profile.line_to({0.035f, 0.0f}).line_to({0.035f, 0.22f * height})
-      .arc_by({0.05f, 0.06f * height}, -0.5f, 3).line_by({0.0f, 0.22f * height})
-      .line_to({0.55f * projection, 0.5f * height}).line_by({0.0f, 0.02f * height})
-      .line_to({0.72f * projection, 0.53f * height}).line_by({0.0f, 0.17f * height})
+  profile.line_to({0.035f, 0.0f})
+      .line_to({0.035f, 0.22f * height})
+      .arc_by({0.05f, 0.06f * height}, -0.5f, 3)
+      .line_by({0.0f, 0.22f * height})
+      .line_to({0.55f * projection, 0.5f * height})
+      .line_by({0.0f, 0.02f * height})
+      .line_to({0.72f * projection, 0.53f * height})
+      .line_by({0.0f, 0.17f * height})
       .line_by({0.015f, 0.0f})
-      .curve_through({{0.80f * projection, 0.78f * height}, {0.93f * projection, 0.88f * height},
-                      {projection, 0.95f * height}}, 3)
-      .line_to({projection, height}).line_to({-0.05f, height});
+      .curve_through({{0.80f * projection, 0.78f * height},
+                      {0.93f * projection, 0.88f * height},
+                      {projection, 0.95f * height}},
+                     3)
+      .line_to({projection, height})
+      .line_to({-0.05f, height});
   return profile;
 }
 
 Mesh cornice(float length, float height, float projection) {
   Mesh mesh = sweep(cornice_profile(height, projection), straight_stations(length));
-  const Mesh dentil =
-      box({0.10f, 0.18f * height, 0.55f * projection - 0.08f});
+  const Mesh dentil = box({0.10f, 0.18f * height, 0.55f * projection - 0.08f});
   const int count = int(length / 0.21f);
   for (int i = 0; i < count; ++i) {
     const float x = (float(i) + 0.5f - 0.5f * float(count)) * length / float(count);
-    mesh.append(dentil, glm::translate(glm::mat4(1.0f),
-                                       {x, 0.40f * height, 0.04f + 0.275f * projection}));
+    mesh.append(dentil,
+                glm::translate(glm::mat4(1.0f), {x, 0.40f * height, 0.04f + 0.275f * projection}));
   }
   return mesh;
 }
@@ -261,8 +281,7 @@ void add_cornice_ring(Document& document, const AtriumMaterials& m, const plan::
                       const std::string& prefix, float projection) {
   const float height = storey.top - storey.wall_top;
   const glm::vec2 length = 2.0f * (plan::arcade - half_wall);
-  const int long_side =
-      document.add_mesh(prefix, cornice(length.x, height, projection), m.trim);
+  const int long_side = document.add_mesh(prefix, cornice(length.x, height, projection), m.trim);
   const int short_side =
       document.add_mesh(prefix + "_end", cornice(length.y, height, projection), m.trim);
   for (const plan::Spot& side : plan::sides(-half_wall)) {
@@ -281,8 +300,8 @@ void add_cornices(Document& document, const AtriumMaterials& m) {
   const int long_side = document.add_mesh("frieze", frieze(length.x, band), m.frieze);
   const int short_side = document.add_mesh("frieze_end", frieze(length.y, band), m.frieze);
   for (const plan::Spot& side : plan::sides(-half_wall - 0.012f)) {
-    document.place(side.on_long_side ? long_side : short_side,
-                   side.at(plan::upper.wall_top - band), side.turn);
+    document.place(side.on_long_side ? long_side : short_side, side.at(plan::upper.wall_top - band),
+                   side.turn);
   }
 }
 
@@ -293,10 +312,13 @@ constexpr float pedestal_clearance = 0.31f;  // from the column axis to the end 
 
 Mesh baluster() {
   Profile profile({0.062f, 0.0f});
-  profile.line_by({0.0f, 0.05f}).line_to({0.045f, 0.06f})
-      .curve_through({{0.040f, 0.10f}, {0.066f, 0.21f}, {0.055f, 0.33f}, {0.034f, 0.46f},
-                      {0.030f, 0.56f}}, 1)
-      .arc_by({0.0f, 0.03f}, 0.8f, 2).line_to({0.055f, 0.62f}).line_to({0.055f, 0.70f});
+  profile.line_by({0.0f, 0.05f})
+      .line_to({0.045f, 0.06f})
+      .curve_through(
+          {{0.040f, 0.10f}, {0.066f, 0.21f}, {0.055f, 0.33f}, {0.034f, 0.46f}, {0.030f, 0.56f}}, 1)
+      .arc_by({0.0f, 0.03f}, 0.8f, 2)
+      .line_to({0.055f, 0.62f})
+      .line_to({0.055f, 0.70f});
   return lathe(profile, 8, 0.06f, 1.5f);
 }
 
@@ -316,10 +338,16 @@ Mesh balustrade(float length) {
   mesh.append(bevelled_box({length, 0.10f, 0.30f}, 0.01f),
               glm::translate(glm::mat4(1.0f), {0.0f, 0.05f, 0.0f}));
   Profile profile({0.09f, 0.80f});
-  profile.line_by({0.0f, 0.03f}).arc_by({0.05f, 0.03f}, -0.5f, 3).line_by({0.0f, 0.04f})
-      .arc_to({0.08f, rail_height}, 0.4f, 3).line_to({-0.08f, rail_height})
-      .arc_by({-0.06f, -0.05f}, 0.4f, 3).line_by({0.0f, -0.04f})
-      .arc_to({-0.09f, 0.83f}, -0.5f, 3).line_to({-0.09f, 0.80f}).line_to({0.09f, 0.80f});
+  profile.line_by({0.0f, 0.03f})
+      .arc_by({0.05f, 0.03f}, -0.5f, 3)
+      .line_by({0.0f, 0.04f})
+      .arc_to({0.08f, rail_height}, 0.4f, 3)
+      .line_to({-0.08f, rail_height})
+      .arc_by({-0.06f, -0.05f}, 0.4f, 3)
+      .line_by({0.0f, -0.04f})
+      .arc_to({-0.09f, 0.83f}, -0.5f, 3)
+      .line_to({-0.09f, 0.80f})
+      .line_to({0.09f, 0.80f});
   mesh.append(sweep(profile, straight_stations(length)));
   return mesh;
 }

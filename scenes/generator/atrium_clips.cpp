@@ -1,13 +1,12 @@
-#include "scenes/generator/atrium.hpp"
-#include "scenes/generator/atrium_parts.hpp"
-#include "scenes/generator/atrium_plan.hpp"
-
-#include <glm/gtc/constants.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <glm/gtc/constants.hpp>
 #include <string>
+
+#include "scenes/generator/atrium.hpp"
+#include "scenes/generator/atrium_parts.hpp"
+#include "scenes/generator/atrium_plan.hpp"
 
 namespace heliograph::scenes {
 namespace {
@@ -50,7 +49,9 @@ void animate(Animation& animation, int node, const std::function<Pose(float)>& p
   if (turns) animation.channels.push_back(std::move(turn));
 }
 
-Pose look(glm::vec3 eye, glm::vec3 target) { return {eye, look_rotation(eye, target)}; }
+Pose look(glm::vec3 eye, glm::vec3 target) {
+  return {eye, look_rotation(eye, target)};
+}
 
 // Case 1 travels down the nave and back, case 2 along the gallery, case 3 an S through the court.
 Pose camera_pose(int case_number, float phase) {
@@ -66,8 +67,8 @@ Pose camera_pose(int case_number, float phase) {
                         0.5f + 3.0f * std::sin(angle));
     return look(eye, {-2.0f, 4.3f, -1.3f});
   }
-  const glm::vec3 eye(-5.5f + 5.0f * std::sin(angle), 2.1f, 4.2f - 0.7f * std::sin(2.0f * angle));
-  return look(eye, {2.0f + 2.0f * std::sin(angle), 2.4f, -3.5f});
+  const glm::vec3 eye(-7.4f + 3.0f * std::sin(angle), 2.0f, 3.9f - 0.7f * std::sin(2.0f * angle));
+  return look(eye, {2.0f + 2.0f * std::sin(angle), 2.6f, -3.2f});
 }
 
 // Something that hangs from `hook`; `base` is its pose at rest.
@@ -84,7 +85,8 @@ void animate_object(const Node& node, int index, Animation& animation) {
     glm::vec3 hook = node.translation;
     hook.y = plan::lower.springing + plan::lower.arch_radius;
     animate(animation, index, [=](float phase) {
-      return swung(base, hook, {1.0f, 0.0f, 0.0f}, 0.10f * std::sin(two_pi * 3.0f * phase + offset));
+      return swung(base, hook, {1.0f, 0.0f, 0.0f},
+                   0.10f * std::sin(two_pi * 3.0f * phase + offset));
     });
   } else if (node.name == "curtain") {
     const glm::vec3 along_rod = node.rotation * glm::vec3(1.0f, 0.0f, 0.0f);

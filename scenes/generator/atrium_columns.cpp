@@ -1,11 +1,10 @@
-#include "scenes/generator/atrium_parts.hpp"
-#include "scenes/generator/atrium_plan.hpp"
-#include "scenes/generator/shapes.hpp"
-
+#include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include <cmath>
+#include "scenes/generator/atrium_parts.hpp"
+#include "scenes/generator/atrium_plan.hpp"
+#include "scenes/generator/shapes.hpp"
 
 namespace heliograph::scenes {
 namespace {
@@ -13,12 +12,12 @@ namespace {
 constexpr float pi = glm::pi<float>();
 
 struct ColumnMeasures {
-  float pedestal_half;    // of its die
+  float pedestal_half;  // of its die
   float pedestal_height;
-  float base_height;      // plinth and the two tori of an Attic base
-  float bottom_radius;    // of the shaft
+  float base_height;    // plinth and the two tori of an Attic base
+  float bottom_radius;  // of the shaft
   float top_radius;
-  float shaft_top;        // above the storey's floor
+  float shaft_top;  // above the storey's floor
   float top;
   float abacus_half;
 };
@@ -26,15 +25,26 @@ struct ColumnMeasures {
 constexpr ColumnMeasures lower_column{0.43f, 0.55f, 0.30f, 0.355f, 0.305f, 3.52f, 4.2f, 0.54f};
 constexpr ColumnMeasures upper_column{0.27f, 0.95f, 0.20f, 0.200f, 0.170f, 2.98f, 3.4f, 0.36f};
 
+// Closes a square moulding from above or below.
+void append_square(Mesh& mesh, float height, float half, bool facing_up) {
+  mesh.append(quad_facing({-half, height, half}, {half, height, half}, {half, height, -half},
+                          {-half, height, -half}, {0.0f, facing_up ? 1.0f : -1.0f, 0.0f}));
+}
+
 Mesh pedestal(const ColumnMeasures& c) {
   const float h = c.pedestal_height;
   Profile profile({0.045f, 0.0f});
-  profile.line_to({0.045f, 0.11f}).line_by({-0.008f, 0.008f}).arc_by({-0.037f, 0.042f}, -0.5f, 4)
-      .line_to({0.0f, h - 0.13f}).arc_by({0.03f, 0.04f}, -0.5f, 4).line_by({0.0f, 0.012f})
-      .arc_by({0.022f, 0.03f}, 0.45f, 3).line_to({0.052f, h - 0.008f}).line_to({0.044f, h});
+  profile.line_to({0.045f, 0.11f})
+      .line_by({-0.008f, 0.008f})
+      .arc_by({-0.037f, 0.042f}, -0.5f, 4)
+      .line_to({0.0f, h - 0.13f})
+      .arc_by({0.03f, 0.04f}, -0.5f, 4)
+      .line_by({0.0f, 0.012f})
+      .arc_by({0.022f, 0.03f}, 0.45f, 3)
+      .line_to({0.052f, h - 0.008f})
+      .line_to({0.044f, h});
   Mesh mesh = rectangular_moulding(profile, glm::vec2(c.pedestal_half));
-  const float half = c.pedestal_half + 0.044f;
-  mesh.append(quad({-half, h, half}, {half, h, half}, {half, h, -half}, {-half, h, -half}));
+  append_square(mesh, h, c.pedestal_half + 0.044f, true);
   return mesh;
 }
 
@@ -48,7 +58,8 @@ Mesh attic_base(const ColumnMeasures& c, int segments) {
   for (Vertex& vertex : mesh.vertices) vertex.position.y += 0.5f * plinth;
   Profile profile({1.18f * r, plinth});
   profile.arc_by({0.0f, 2.6f * unit}, 1.0f, 6)
-      .line_by({0.0f, 0.35f * unit}).line_to({1.14f * r, profile.pen().y})
+      .line_by({0.0f, 0.35f * unit})
+      .line_to({1.14f * r, profile.pen().y})
       .arc_to({1.08f * r, plinth + 4.6f * unit}, -0.8f, 4)
       .line_by({0.0f, 0.35f * unit})
       .arc_by({0.0f, 1.2f * unit}, 1.0f, 5)
@@ -124,7 +135,7 @@ Mesh smooth_shaft(const ColumnMeasures& c, int segments, int rows) {
 
 // One acanthus leaf: a tongue that climbs the bell and curls outwards, ribbed along the middle.
 Mesh acanthus(float foot_radius, float height, float width, float curl) {
-  return smooth_patch(4, 6, {width, height}, [=](double u, double v) {
+  return smooth_patch(4, 5, {width, height}, [=](double u, double v) {
     const double across = 2.0 * u - 1.0;
     const double lobes = 1.0 + 0.10 * std::cos(v * 18.0);
     const double half = 0.5 * width * lobes * std::sqrt(std::max(0.0, 1.02 - v * v * 0.9));
@@ -139,8 +150,10 @@ Mesh acanthus(float foot_radius, float height, float width, float curl) {
 // A rolled volute as a disc about the Y axis: rim, groove, rim, eye.
 Mesh scroll(float radius, float half_width) {
   Profile side({radius * 0.92f, 0.0f});
-  side.arc_to({radius * 0.88f, half_width}, 0.3f, 1).line_to({radius * 0.70f, half_width})
-      .arc_to({radius * 0.36f, half_width}, -0.6f, 2).arc_to({0.001f, half_width * 1.15f}, 0.3f, 1);
+  side.arc_to({radius * 0.88f, half_width}, 0.3f, 1)
+      .line_to({radius * 0.70f, half_width})
+      .arc_to({radius * 0.36f, half_width}, -0.6f, 2)
+      .arc_to({0.001f, half_width * 1.15f}, 0.3f, 1);
   Mesh mesh = lathe(side, 9, radius, 1.5f);
   mesh.append(Mesh(mesh), glm::rotate(glm::mat4(1.0f), pi, {1.0f, 0.0f, 0.0f}));
   return mesh;
@@ -154,8 +167,10 @@ Mesh leaf_capital(const ColumnMeasures& c) {
   const float bell = height - abacus;
   Profile profile({r, 0.0f});
   profile.arc_by({0.0f, 0.06f * height}, 1.0f, 4)
-      .curve_through({{r * 0.98f, 0.30f * height}, {r * 1.04f, 0.60f * height},
-                      {r * 1.30f, bell - 0.03f * height}}, 2)
+      .curve_through({{r * 0.98f, 0.30f * height},
+                      {r * 1.04f, 0.60f * height},
+                      {r * 1.30f, bell - 0.03f * height}},
+                     2)
       .arc_to({r * 1.30f, bell}, 0.8f, 2);
   Mesh mesh = lathe(profile, 20, r, 1.5f);
   const Mesh low_leaf = acanthus(r, 0.42f * height, 0.72f * r, 0.32f * r);
@@ -173,12 +188,12 @@ Mesh leaf_capital(const ColumnMeasures& c) {
     mesh.append(volute, glm::rotate(place, 0.5f * pi, {0.0f, 0.0f, 1.0f}));
   }
   Profile edge({-0.055f, bell});
-  edge.arc_to({-0.03f, bell + 0.45f * abacus}, -0.5f, 4).line_by({0.012f, 0.0f})
-      .arc_to({0.0f, c.top - c.shaft_top}, 0.5f, 4);
+  edge.arc_to({-0.03f, bell + 0.45f * abacus}, -0.5f, 3)
+      .line_by({0.012f, 0.0f})
+      .arc_to({0.0f, height}, 0.5f, 3);
   mesh.append(rectangular_moulding(edge, glm::vec2(c.abacus_half)));
-  const float inset = c.abacus_half - 0.055f;
-  mesh.append(
-      quad({-inset, bell, -inset}, {inset, bell, -inset}, {inset, bell, inset}, {-inset, bell, inset}));
+  append_square(mesh, bell, c.abacus_half - 0.055f, false);
+  append_square(mesh, height, c.abacus_half, true);
   return mesh;
 }
 
@@ -187,17 +202,19 @@ Mesh plain_capital(const ColumnMeasures& c) {
   const float height = c.top - c.shaft_top;
   const float r = c.top_radius;
   Profile profile({r, 0.0f});
-  profile.arc_by({0.0f, 0.10f * height}, 1.0f, 3).line_by({0.0f, 0.26f * height})
-      .line_by({0.03f * r, 0.0f}).line_by({0.0f, 0.05f * height})
+  profile.arc_by({0.0f, 0.10f * height}, 1.0f, 3)
+      .line_by({0.0f, 0.26f * height})
+      .line_by({0.03f * r, 0.0f})
+      .line_by({0.0f, 0.05f * height})
       .curve_through({{1.22f * r, 0.52f * height}, {1.38f * r, 0.68f * height}}, 4);
   Mesh mesh = lathe(profile, 16, r, 1.5f);
   Profile edge({-0.02f, 0.68f * height});
-  edge.line_by({0.0f, 0.16f * height}).arc_to({0.012f, 0.90f * height}, -0.4f, 3)
+  edge.line_by({0.0f, 0.16f * height})
+      .arc_to({0.012f, 0.90f * height}, -0.4f, 3)
       .line_to({0.012f, height});
   mesh.append(rectangular_moulding(edge, glm::vec2(c.abacus_half)));
-  const float inset = c.abacus_half - 0.02f;
-  const float y = 0.68f * height;
-  mesh.append(quad({-inset, y, -inset}, {inset, y, -inset}, {inset, y, inset}, {-inset, y, inset}));
+  append_square(mesh, 0.68f * height, c.abacus_half - 0.02f, false);
+  append_square(mesh, height, c.abacus_half + 0.012f, true);
   return mesh;
 }
 

@@ -1,22 +1,21 @@
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <vector>
+
 #include "scenes/generator/atrium_parts.hpp"
 #include "scenes/generator/atrium_plan.hpp"
 #include "scenes/generator/noise.hpp"
 #include "scenes/generator/shapes.hpp"
 
-#include <glm/gtc/constants.hpp>
-#include <glm/gtc/matrix_transform.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 namespace heliograph::scenes {
 namespace {
 
-constexpr float joint = 0.004f;   // half the gap between two slabs
+constexpr float joint = 0.004f;  // half the gap between two slabs
 constexpr float bevel = 0.006f;
 
-constexpr glm::vec2 field{15.0f, 4.0f};       // half extents of the octagon pavement of the nave
+constexpr glm::vec2 field{15.0f, 4.0f};        // half extents of the octagon pavement of the nave
 constexpr glm::vec2 pool_opening{3.0f, 2.0f};  // left out of it
 
 // A convex outline, counter-clockwise in (x, z), with every edge moved inwards by `distance`.
@@ -195,9 +194,14 @@ void add_pool(Document& document, const AtriumMaterials& m) {
   constexpr float rim_top = 0.32f;
   constexpr float water_level = 0.20f;
   Profile rim({0.56f, -0.01f});
-  rim.line_to({0.56f, 0.07f}).arc_by({-0.06f, 0.05f}, -0.5f, 4).line_to({0.50f, rim_top - 0.10f})
-      .arc_by({0.05f, 0.05f}, 0.4f, 4).line_by({0.0f, 0.03f}).arc_to({0.53f, rim_top}, 0.5f, 3)
-      .line_to({0.02f, rim_top}).arc_to({0.0f, rim_top - 0.02f}, 0.5f, 3);
+  rim.line_to({0.56f, 0.07f})
+      .arc_by({-0.06f, 0.05f}, -0.5f, 4)
+      .line_to({0.50f, rim_top - 0.10f})
+      .arc_by({0.05f, 0.05f}, 0.4f, 4)
+      .line_by({0.0f, 0.03f})
+      .arc_to({0.53f, rim_top}, 0.5f, 3)
+      .line_to({0.02f, rim_top})
+      .arc_to({0.0f, rim_top - 0.02f}, 0.5f, 3);
   document.place(document.add_mesh("pool_rim", rectangular_moulding(rim, inner), m.trim), {});
   Profile wall({0.0f, rim_top - 0.02f});
   wall.line_to({0.0f, water_level - 0.02f});
@@ -207,11 +211,16 @@ void add_pool(Document& document, const AtriumMaterials& m) {
   document.place(document.add_mesh("water", std::move(water), m.water), {});
 
   Profile stem({0.42f, 0.15f});
-  stem.line_to({0.42f, 0.26f}).arc_by({-0.06f, 0.07f}, -0.6f, 5).line_by({-0.05f, 0.0f})
+  stem.line_to({0.42f, 0.26f})
+      .arc_by({-0.06f, 0.07f}, -0.6f, 5)
+      .line_by({-0.05f, 0.0f})
       .curve_through({{0.20f, 0.50f}, {0.15f, 0.75f}, {0.19f, 0.95f}}, 5)
-      .arc_by({0.0f, 0.06f}, 0.9f, 5).line_by({0.03f, 0.0f})
-      .curve_through({{0.34f, 1.08f}, {0.50f, 1.22f}}, 5).arc_by({-0.01f, 0.06f}, 0.8f, 4)
-      .line_to({0.44f, 1.27f}).curve_through({{0.30f, 1.16f}, {0.05f, 1.12f}}, 5);
+      .arc_by({0.0f, 0.06f}, 0.9f, 5)
+      .line_by({0.03f, 0.0f})
+      .curve_through({{0.34f, 1.08f}, {0.50f, 1.22f}}, 5)
+      .arc_by({-0.01f, 0.06f}, 0.8f, 4)
+      .line_to({0.44f, 1.27f})
+      .curve_through({{0.30f, 1.16f}, {0.05f, 1.12f}}, 5);
   document.place(document.add_mesh("pedestal", lathe(stem, 30, 0.3f, 1.2f), m.column), {});
   const float radius = 0.46f;
   const int ball = document.add_mesh("hero_sphere", sphere(radius, 64, 32, {3.0f, 1.5f}), m.mirror);

@@ -1,12 +1,10 @@
-#include "scenes/generator/atrium_parts.hpp"
-#include "scenes/generator/atrium_plan.hpp"
-#include "scenes/generator/noise.hpp"
-#include "scenes/generator/shapes.hpp"
-
+#include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include <cmath>
+#include "scenes/generator/atrium_parts.hpp"
+#include "scenes/generator/atrium_plan.hpp"
+#include "scenes/generator/shapes.hpp"
 
 namespace heliograph::scenes {
 namespace {
@@ -14,7 +12,9 @@ namespace {
 constexpr float pi = glm::pi<float>();
 constexpr double two_pi = 2.0 * glm::pi<double>();
 
-glm::mat4 moved(glm::vec3 by) { return glm::translate(glm::mat4(1.0f), by); }
+glm::mat4 moved(glm::vec3 by) {
+  return glm::translate(glm::mat4(1.0f), by);
+}
 
 glm::mat4 turned(float angle, glm::vec3 axis) {
   return glm::rotate(glm::mat4(1.0f), angle, axis);
@@ -43,12 +43,17 @@ Mesh chain(float length) {
 // The lantern hangs below the origin, its foot at y = -0.75.
 Mesh lantern_frame() {
   Profile cap({0.20f, -0.26f});
-  cap.line_to({0.215f, -0.25f}).curve_through({{0.14f, -0.17f}, {0.07f, -0.13f}, {0.05f, -0.08f}}, 3)
-      .arc_to({0.02f, -0.04f}, 0.5f, 4).line_to({0.012f, 0.0f});
+  cap.line_to({0.215f, -0.25f})
+      .curve_through({{0.14f, -0.17f}, {0.07f, -0.13f}, {0.05f, -0.08f}}, 3)
+      .arc_to({0.02f, -0.04f}, 0.5f, 4)
+      .line_to({0.012f, 0.0f});
   Mesh mesh = lathe(cap, 14, 0.15f, 0.6f);
   Profile foot({0.001f, -0.75f});
-  foot.arc_to({0.03f, -0.70f}, 0.6f, 4).curve_through({{0.06f, -0.66f}, {0.15f, -0.62f}}, 3)
-      .line_to({0.17f, -0.60f}).line_to({0.16f, -0.595f}).line_to({0.02f, -0.595f});
+  foot.arc_to({0.03f, -0.70f}, 0.6f, 4)
+      .curve_through({{0.06f, -0.66f}, {0.15f, -0.62f}}, 3)
+      .line_to({0.17f, -0.60f})
+      .line_to({0.16f, -0.595f})
+      .line_to({0.02f, -0.595f});
   mesh.append(lathe(foot, 14, 0.12f, 0.6f));
   Profile under({0.02f, -0.262f});
   under.line_to({0.20f, -0.262f});
@@ -82,8 +87,8 @@ void add_lamps(Document& document, const AtriumMaterials& m) {
   const std::vector<plan::Spot> bays = plan::bays();
   for (const int bay : {1, 3, 4, 6, 9, 11, 12, 14, 17, 20}) {
     const plan::Spot& spot = bays[std::size_t(bay)];
-    const float arch = plan::arch_radius(plan::lower, spot.on_long_side ? plan::bay
-                                                                        : plan::short_bay);
+    const float arch =
+        plan::arch_radius(plan::lower, spot.on_long_side ? plan::bay : plan::short_bay);
     const float top = hook + arch - plan::lower.arch_radius;
     document.place(links, spot.at(top));
     document.place(frame, spot.at(top - chain_length));
@@ -140,8 +145,8 @@ Mesh curtain_pair() {
       // Width of the gathered cloth: wide on the rod, narrow at the tie, wider on the floor.
       const double to_tie = std::min(v / 0.56, 1.0);
       const double below = std::max(0.0, (v - 0.56) / 0.44);
-      const double width = 1.28 - 1.0 * to_tie * to_tie * (3.0 - 2.0 * to_tie) +
-                           0.30 * below * (2.0 - below);
+      const double width =
+          1.28 - 1.0 * to_tie * to_tie * (3.0 - 2.0 * to_tie) + 0.30 * below * (2.0 - below);
       const double depth = 0.055 + 0.045 * (1.28 - width);
       const double folds = std::cos(two_pi * (4.6 * u + 0.3 * std::sin(3.0 * v)));
       const double sag = 0.10 * std::sin(two_pi * 0.5 * u) * to_tie;
@@ -189,107 +194,6 @@ void add_cloths(Document& document, const AtriumMaterials& m) {
     document.place(curtain, spot.at(3.76f), spot.turn);
     document.place(rods, spot.at(0.0f), spot.turn);
   }
-}
-
-namespace {
-
-Mesh urn() {
-  Profile profile({0.20f, 0.0f});
-  profile.line_to({0.20f, 0.04f}).arc_by({-0.05f, 0.05f}, -0.6f, 3).line_by({0.0f, 0.02f})
-      .curve_through({{0.24f, 0.24f}, {0.33f, 0.46f}, {0.31f, 0.66f}, {0.21f, 0.82f},
-                      {0.19f, 0.90f}}, 3)
-      .curve_through({{0.22f, 0.96f}, {0.28f, 1.00f}}, 3).arc_by({-0.02f, 0.02f}, 0.9f, 2)
-      .line_to({0.20f, 0.95f}).line_to({0.17f, 0.90f});
-  Mesh mesh = lathe(profile, 24, 0.28f, 1.2f);
-  const Mesh handle = patch(9, 5, [](float u, float v) {
-    const float around = pi * (1.5f - 1.15f * u);
-    const float tube = 2.0f * pi * (v < 1.0f ? v : 0.0f);
-    const glm::vec3 spoke(-std::cos(around), -std::sin(around), 0.0f);
-    const glm::vec3 normal = spoke * std::cos(tube) + glm::vec3(0, 0, std::sin(tube));
-    return SurfacePoint{glm::vec3(0.27f, 0.76f, 0.0f) + 0.13f * spoke + 0.022f * normal, normal,
-                        {0.4f * u, 0.14f * v}};
-  });
-  mesh.append(handle);
-  mesh.append(handle, turned(pi, {0, 1, 0}));
-  return mesh;
-}
-
-Mesh garden_pot() {
-  Profile profile({0.24f, 0.0f});
-  profile.line_to({0.25f, 0.05f}).line_to({0.235f, 0.06f})
-      .curve_through({{0.32f, 0.34f}, {0.36f, 0.52f}}, 4).line_by({0.02f, 0.0f})
-      .arc_by({0.0f, 0.07f}, 0.5f, 4).line_by({-0.02f, 0.0f}).line_by({0.0f, 0.03f})
-      .arc_by({-0.04f, 0.0f}, 0.9f, 4).line_to({0.31f, 0.54f});
-  return lathe(profile, 26, 0.32f, 1.0f);
-}
-
-// One leaf blade that arches outwards and down, creased along the middle; u across, v from the
-// stalk (bottom of the image) to the tip.
-Mesh blade(float length, float width, float lean, float droop) {
-  const auto middle = [=](double t) {
-    const double rise = length * (t * std::cos(lean) - droop * t * t * 0.5);
-    const double out = length * (t * std::sin(lean) + droop * t * t * 0.22);
-    return glm::dvec2(out, rise);
-  };
-  Mesh mesh = smooth_patch(2, 7, {1.0f, 1.0f}, [=](double u, double v) {
-    const double t = 1.0 - v;
-    const double across = (u - 0.5) * width;
-    const glm::dvec2 spine = middle(t);
-    return glm::dvec3(across, spine.y + 0.35 * across * across / width, spine.x);
-  });
-  for (Vertex& vertex : mesh.vertices) {
-    if (vertex.normal.y < 0.0f) vertex.normal = -vertex.normal;
-  }
-  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    const auto at = [&](std::size_t k) { return mesh.vertices[mesh.indices[i + k]]; };
-    const glm::vec3 facing =
-        glm::cross(at(1).position - at(0).position, at(2).position - at(0).position);
-    if (glm::dot(facing, at(0).normal + at(1).normal + at(2).normal) < 0.0f) {
-      std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
-    }
-  }
-  return mesh;
-}
-
-// A rosette of blades round the origin, young and upright in the middle, old and bent outside.
-Mesh plant(int blades, float size, std::uint32_t seed) {
-  Mesh mesh;
-  for (int i = 0; i < blades; ++i) {
-    const auto random = [&](int what) { return hash_unit(i, what, seed); };
-    const float age = (float(i) + 0.5f) / float(blades);
-    const float length = size * (0.75f + 0.35f * random(0)) * (1.0f - 0.15f * age);
-    const float lean = 0.08f + 0.85f * age + 0.12f * random(1);
-    const float droop = 0.25f + 0.75f * age * (0.7f + 0.6f * random(2));
-    const float turn = float(i) * 2.39996f + 0.4f * random(3);  // golden angle
-    mesh.append(blade(length, 0.17f * size, lean, droop), turned(turn, {0, 1, 0}));
-  }
-  return mesh;
-}
-
-}  // namespace
-
-void add_vases(Document& document, const AtriumMaterials& m) {
-  const int urns = document.add_mesh("urn", urn(), m.majolica);
-  const int pots = document.add_mesh("garden_pot", garden_pot(), m.pot);
-  const int tall = document.add_mesh("urn_plant", plant(26, 0.95f, 71), m.leaf);
-  const int wide = document.add_mesh("pot_plant", plant(34, 1.15f, 72), m.leaf);
-  Mesh earth;
-  const std::vector<plan::Spot> columns = plan::columns();
-  for (const int column : {1, 3, 5, 7, 10, 12, 14, 16}) {
-    const plan::Spot& spot = columns[std::size_t(column)];
-    const float inwards = spot.position.y < 0.0f ? 0.95f : -0.95f;
-    const glm::vec3 foot = spot.at(0.0f) + glm::vec3(0.0f, 0.0f, inwards);
-    document.place(urns, foot, spot.turn);
-    document.place(tall, foot + glm::vec3(0.0f, 0.90f, 0.0f), 47.0f * float(column));
-  }
-  for (const float x : {-3.55f, 3.55f}) {
-    for (const float z : {-2.55f, 2.55f}) {
-      document.place(pots, {x, 0.0f, z}, 20.0f * x);
-      document.place(wide, {x, 0.56f, z}, 30.0f * (x + 2.0f * z));
-      earth.append(disc(0.33f, 20), moved({x, 0.57f, z}));
-    }
-  }
-  document.place(document.add_mesh("pot_soil", std::move(earth), m.soil), {});
 }
 
 }  // namespace heliograph::scenes

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "scenes/generator/document.hpp"
-
 #include <array>
+
+#include "scenes/generator/document.hpp"
 
 namespace heliograph::scenes {
 

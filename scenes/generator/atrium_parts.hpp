@@ -18,7 +18,7 @@ void add_gallery(Document& document, const AtriumMaterials& materials);
 void add_roof(Document& document, const AtriumMaterials& materials);
 void add_lamps(Document& document, const AtriumMaterials& materials);
 void add_cloths(Document& document, const AtriumMaterials& materials);
-void add_vases(Document& document, const AtriumMaterials& materials);
+void add_plants(Document& document, const AtriumMaterials& materials);
 
 /// The clips `moving_camera` and `moving_objects_light`, loops of ten seconds. Finds what moves by
 /// the names of the nodes; `case_number` as in make_atrium().

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <glm/glm.hpp>
-
 #include <vector>
 
 /// Measures of the atrium: a courtyard open to the sky, with an arcade of two storeys on all four

@@ -1,11 +1,10 @@
-#include "scenes/generator/atrium_parts.hpp"
-#include "scenes/generator/atrium_plan.hpp"
-#include "scenes/generator/shapes.hpp"
-
+#include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include <cmath>
+#include "scenes/generator/atrium_parts.hpp"
+#include "scenes/generator/atrium_plan.hpp"
+#include "scenes/generator/shapes.hpp"
 
 namespace heliograph::scenes {
 namespace {
@@ -27,7 +26,8 @@ Mesh tile_run(float length, int courses) {
       const glm::vec3 normal(std::cos(angle), std::sin(angle), 0.0f);
       return SurfacePoint{
           {radius * normal.x, radius * normal.y + lift * (1.0f - v), -(float(k) + v) * course},
-          normal, {angle * radius, -v * course}};
+          normal,
+          {angle * radius, -v * course}};
     }));
   }
   // The open end at the eaves, closed with mortar.
@@ -61,10 +61,9 @@ Mesh roof_side(float half_length_at_axis) {
   const float inward = -eaves.x;
   mesh.append(quad_facing({-low_half, low.y - 0.07f, low.z}, {low_half, low.y - 0.07f, low.z},
                           {low_half, low.y, low.z}, {-low_half, low.y, low.z}, {0, 0, 1}));
-  mesh.append(quad_facing({-low_half - inward, low.y - 0.07f, 0.0f},
-                          {low_half + inward, low.y - 0.07f, 0.0f},
-                          {low_half, low.y - 0.07f, low.z}, {-low_half, low.y - 0.07f, low.z},
-                          {0, -1, 0}));
+  mesh.append(quad_facing(
+      {-low_half - inward, low.y - 0.07f, 0.0f}, {low_half + inward, low.y - 0.07f, 0.0f},
+      {low_half, low.y - 0.07f, low.z}, {-low_half, low.y - 0.07f, low.z}, {0, -1, 0}));
   return mesh;
 }
 

@@ -1,19 +1,20 @@
+#include <functional>
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <vector>
+
 #include "scenes/generator/atrium_parts.hpp"
 #include "scenes/generator/atrium_plan.hpp"
 #include "scenes/generator/shapes.hpp"
-
-#include <glm/gtc/constants.hpp>
-#include <glm/gtc/matrix_transform.hpp>
-
-#include <functional>
-#include <vector>
 
 namespace heliograph::scenes {
 namespace {
 
 constexpr float pi = glm::pi<float>();
 
-glm::mat4 moved(glm::vec3 by) { return glm::translate(glm::mat4(1.0f), by); }
+glm::mat4 moved(glm::vec3 by) {
+  return glm::translate(glm::mat4(1.0f), by);
+}
 
 // A wall of one side from `bottom` to `top`, in the plane z = 0 facing +Z.
 Mesh wall_strip(float length, float bottom, float top) {
@@ -23,18 +24,25 @@ Mesh wall_strip(float length, float bottom, float top) {
 
 Mesh dado(float length) {
   Profile profile({0.05f, 0.0f});
-  profile.line_to({0.05f, 0.16f}).arc_by({-0.025f, 0.03f}, -0.5f, 4).line_to({0.025f, 1.20f})
-      .arc_by({0.035f, 0.04f}, -0.5f, 4).line_by({0.0f, 0.03f})
-      .arc_by({-0.02f, 0.03f}, 0.5f, 3).line_to({0.0f, 1.30f});
+  profile.line_to({0.05f, 0.16f})
+      .arc_by({-0.025f, 0.03f}, -0.5f, 4)
+      .line_to({0.025f, 1.20f})
+      .arc_by({0.035f, 0.04f}, -0.5f, 4)
+      .line_by({0.0f, 0.03f})
+      .arc_by({-0.02f, 0.03f}, 0.5f, 3)
+      .line_to({0.0f, 1.30f});
   return sweep(profile, straight_stations(length));
 }
 
 Mesh impost(float length) {
   const float top = plan::vault_springing;
   Profile profile({0.0f, top - 0.26f});
-  profile.arc_by({0.05f, 0.05f}, 0.5f, 4).line_by({0.0f, 0.03f})
+  profile.arc_by({0.05f, 0.05f}, 0.5f, 4)
+      .line_by({0.0f, 0.03f})
       .curve_through({{0.07f, top - 0.12f}, {0.13f, top - 0.06f}}, 3)
-      .line_by({0.02f, 0.0f}).line_to({0.15f, top}).line_to({0.0f, top});
+      .line_by({0.02f, 0.0f})
+      .line_to({0.15f, top})
+      .line_to({0.0f, top});
   return sweep(profile, straight_stations(length));
 }
 
@@ -43,10 +51,16 @@ Mesh pilaster(float height) {
   constexpr float half = 0.30f;
   constexpr float depth = 0.16f;
   Profile profile({0.06f, 0.0f});
-  profile.line_to({0.06f, 0.20f}).arc_by({-0.02f, 0.06f}, 0.9f, 4).line_by({-0.01f, 0.0f})
-      .arc_to({0.0f, 0.38f}, -0.4f, 4).line_to({0.0f, height - 0.30f})
-      .arc_by({0.0f, 0.05f}, 0.9f, 4).line_to({0.0f, height - 0.16f})
-      .arc_by({0.06f, 0.07f}, 0.5f, 4).line_by({0.02f, 0.0f}).line_to({0.08f, height});
+  profile.line_to({0.06f, 0.20f})
+      .arc_by({-0.02f, 0.06f}, 0.9f, 4)
+      .line_by({-0.01f, 0.0f})
+      .arc_to({0.0f, 0.38f}, -0.4f, 4)
+      .line_to({0.0f, height - 0.30f})
+      .arc_by({0.0f, 0.05f}, 0.9f, 4)
+      .line_to({0.0f, height - 0.16f})
+      .arc_by({0.06f, 0.07f}, 0.5f, 4)
+      .line_by({0.02f, 0.0f})
+      .line_to({0.08f, height});
   return rectangular_moulding(profile, {half, depth});
 }
 
@@ -80,10 +94,14 @@ Mesh field_frames(const std::vector<Field>& fields) {
   Mesh mesh;
   for (const Field& field : fields) {
     Profile profile({0.15f, 0.0f});
-    profile.line_by({0.0f, 0.03f}).arc_by({-0.04f, 0.03f}, -0.5f, 3).line_by({-0.05f, 0.0f})
-        .arc_by({-0.04f, -0.035f}, 0.6f, 3).line_to({0.0f, 0.02f}).line_to({0.0f, 0.0f});
-    const Mesh frame = rectangular_moulding(
-        profile, {field.half_width, 0.5f * (field_top - field_bottom)});
+    profile.line_by({0.0f, 0.03f})
+        .arc_by({-0.04f, 0.03f}, -0.5f, 3)
+        .line_by({-0.05f, 0.0f})
+        .arc_by({-0.04f, -0.035f}, 0.6f, 3)
+        .line_to({0.0f, 0.02f})
+        .line_to({0.0f, 0.0f});
+    const Mesh frame =
+        rectangular_moulding(profile, {field.half_width, 0.5f * (field_top - field_bottom)});
     mesh.append(frame, glm::rotate(moved({field.middle, field_height, 0.0f}), 0.5f * pi,
                                    {1.0f, 0.0f, 0.0f}));
   }
@@ -137,8 +155,12 @@ Mesh door_leaves() {
 
 Mesh door_frame() {
   Profile profile({door_half + 0.26f, 0.0f});
-  profile.line_by({0.0f, 0.17f}).arc_by({-0.05f, 0.04f}, 0.5f, 3).line_by({-0.11f, 0.0f})
-      .arc_by({-0.05f, -0.05f}, -0.5f, 4).line_by({-0.05f, 0.0f}).line_to({door_half, 0.05f});
+  profile.line_by({0.0f, 0.17f})
+      .arc_by({-0.05f, 0.04f}, 0.5f, 3)
+      .line_by({-0.11f, 0.0f})
+      .arc_by({-0.05f, -0.05f}, -0.5f, 4)
+      .line_by({-0.05f, 0.0f})
+      .line_to({door_half, 0.05f});
   std::vector<Station> stations = arch_stations(18, door_half);
   for (Station& station : stations) station.origin.y = door_springing;
   Station right_foot = stations.front();
@@ -186,8 +208,7 @@ void add_aisle_walls(Document& document, const AtriumMaterials& m) {
   place_on_walls(document, -1, document.add_mesh("door", door_leaves(), m.door));
   place_on_walls(document, -1, document.add_mesh("door_frame", door_frame(), m.trim));
 
-  const int shaft =
-      document.add_mesh("pilaster", pilaster(plan::vault_springing - 0.02f), m.trim);
+  const int shaft = document.add_mesh("pilaster", pilaster(plan::vault_springing - 0.02f), m.trim);
   for (const plan::Spot& spot : plan::columns()) {
     glm::vec2 on_wall = spot.position;
     float& outwards = spot.on_long_side ? on_wall.y : on_wall.x;

@@ -1,8 +1,7 @@
 #include "scenes/generator/document.hpp"
 
-#include <glm/gtc/constants.hpp>
-
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 
 namespace heliograph::scenes {
 

@@ -1,14 +1,13 @@
 #pragma once
 
-#include "scenes/generator/mesh.hpp"
-#include "scenes/generator/texture.hpp"
-
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
-
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "scenes/generator/mesh.hpp"
+#include "scenes/generator/texture.hpp"
 
 namespace heliograph::scenes {
 

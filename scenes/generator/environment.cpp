@@ -1,13 +1,12 @@
 #include "scenes/generator/environment.hpp"
 
-#include "scenes/generator/noise.hpp"
-
-#include <glm/gtc/constants.hpp>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 #include <string>
+
+#include "scenes/generator/noise.hpp"
 
 namespace heliograph::scenes {
 namespace {
@@ -64,8 +63,7 @@ glm::vec3 Environment::horizontal_irradiance() const {
   glm::vec3 sum(0.0f);
   for (int y = 0; y < height / 2; ++y) {
     const float polar = (float(y) + 0.5f) / float(height) * pi;
-    const float solid_angle =
-        2.0f * pi / float(width) * pi / float(height) * std::sin(polar);
+    const float solid_angle = 2.0f * pi / float(width) * pi / float(height) * std::sin(polar);
     glm::vec3 row(0.0f);
     for (int x = 0; x < width; ++x) row += at(x, y);
     sum += row * solid_angle * std::cos(polar);

@@ -1,13 +1,12 @@
 #include "scenes/generator/glb.hpp"
 
-#include "scenes/generator/parallel.hpp"
-
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <span>
+
+#include "scenes/generator/parallel.hpp"
 
 namespace heliograph::scenes {
 namespace {
@@ -23,7 +22,9 @@ constexpr int filter_linear = 9729;
 constexpr int filter_trilinear = 9987;
 constexpr int wrap_repeat = 10497;
 
-Json to_json(glm::vec3 v) { return Json::array({v.x, v.y, v.z}); }
+Json to_json(glm::vec3 v) {
+  return Json::array({v.x, v.y, v.z});
+}
 
 class GlbWriter {
  public:
@@ -70,10 +71,8 @@ int GlbWriter::add_view(std::span<const T> data, int target) {
 }
 
 int GlbWriter::add_accessor(int view, int component_type, std::size_t count, const char* type) {
-  gltf_["accessors"].push_back({{"bufferView", view},
-                                {"componentType", component_type},
-                                {"count", count},
-                                {"type", type}});
+  gltf_["accessors"].push_back(
+      {{"bufferView", view}, {"componentType", component_type}, {"count", count}, {"type", type}});
   return int(gltf_["accessors"].size()) - 1;
 }
 
@@ -114,8 +113,7 @@ int GlbWriter::add_texture(const std::string& name, const std::vector<std::uint8
 }
 
 Json GlbWriter::material_json(const Material& material) {
-  Json pbr = {{"baseColorFactor",
-               {material.color.x, material.color.y, material.color.z, 1.0f}},
+  Json pbr = {{"baseColorFactor", {material.color.x, material.color.y, material.color.z, 1.0f}},
               {"metallicFactor", material.metallic},
               {"roughnessFactor", material.roughness}};
   Json json = {{"name", material.name}};
@@ -130,8 +128,7 @@ Json GlbWriter::material_json(const Material& material) {
     json["occlusionTexture"] = {{"index", surface}};
   }
   json["pbrMetallicRoughness"] = std::move(pbr);
-  const float strength =
-      std::max({material.emission.x, material.emission.y, material.emission.z});
+  const float strength = std::max({material.emission.x, material.emission.y, material.emission.z});
   if (strength > 0.0f) {
     json["emissiveFactor"] = to_json(material.emission / std::max(strength, 1.0f));
     if (strength > 1.0f) {
@@ -262,9 +259,8 @@ void GlbWriter::write_animations() {
       const int view = add_view(std::span<const float>(values), 0);
       const int output =
           add_accessor(view, type_float, channel.values.size(), rotation ? "VEC4" : "VEC3");
-      json["samplers"].push_back({{"input", times(channel.seconds)},
-                                  {"output", output},
-                                  {"interpolation", "LINEAR"}});
+      json["samplers"].push_back(
+          {{"input", times(channel.seconds)}, {"output", output}, {"interpolation", "LINEAR"}});
       json["channels"].push_back(
           {{"sampler", json["samplers"].size() - 1},
            {"target", {{"node", channel.node}, {"path", rotation ? "rotation" : "translation"}}}});

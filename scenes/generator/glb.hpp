@@ -1,9 +1,9 @@
 #pragma once
 
-#include "scenes/generator/document.hpp"
-
 #include <cstdint>
 #include <vector>
+
+#include "scenes/generator/document.hpp"
 
 namespace heliograph::scenes {
 

@@ -1,8 +1,3 @@
-#include "scenes/generator/atrium.hpp"
-#include "scenes/generator/environment.hpp"
-#include "scenes/generator/glb.hpp"
-#include "scenes/generator/test_scenes.hpp"
-
 #include <charconv>
 #include <cstdio>
 #include <exception>
@@ -13,6 +8,11 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "scenes/generator/atrium.hpp"
+#include "scenes/generator/environment.hpp"
+#include "scenes/generator/glb.hpp"
+#include "scenes/generator/test_scenes.hpp"
 
 namespace {
 
@@ -79,8 +79,7 @@ void write_file(const std::filesystem::path& path, const std::vector<std::uint8_
 }
 
 void write_document(const Options& options, const Document& document) {
-  write_file(options.output / (document.name + ".glb"),
-             encode_glb(document, options.texture_size),
+  write_file(options.output / (document.name + ".glb"), encode_glb(document, options.texture_size),
              std::to_string(document.drawn_triangles()) + " triangles, " +
                  std::to_string(document.instance_count()) + " instances, " +
                  std::to_string(document.materials.size()) + " materials");

@@ -81,8 +81,8 @@ void compute_tangents(Mesh& mesh) {
   std::vector<SurfaceGradient> sums(mesh.vertices.size());
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     const std::uint32_t* corner = &mesh.indices[i];
-    const SurfaceGradient face = gradient(mesh.vertices[corner[0]], mesh.vertices[corner[1]],
-                                          mesh.vertices[corner[2]]);
+    const SurfaceGradient face =
+        gradient(mesh.vertices[corner[0]], mesh.vertices[corner[1]], mesh.vertices[corner[2]]);
     for (int k = 0; k < 3; ++k) {
       const float weight = corner_angle(mesh.vertices[corner[k]].position,
                                         mesh.vertices[corner[(k + 1) % 3]].position,

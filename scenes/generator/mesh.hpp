@@ -1,9 +1,8 @@
 #pragma once
 
-#include <glm/glm.hpp>
-
 #include <cstddef>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <vector>
 
 namespace heliograph::scenes {

@@ -24,7 +24,9 @@ glm::vec2 lattice_gradient(int x, int y, std::uint32_t seed) {
   return directions[hash(x, y, seed) % count];
 }
 
-float fade(float t) { return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f); }
+float fade(float t) {
+  return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f);
+}
 
 }  // namespace
 
@@ -82,8 +84,7 @@ Cell cellular_noise(glm::vec2 p, glm::ivec2 cells, std::uint32_t seed, float jit
       const int x = wrap(cell.x, cells.x);
       const int y = wrap(cell.y, cells.y);
       const glm::vec2 offset(hash_unit(x, y, seed), hash_unit(x, y, seed + 1u));
-      const glm::vec2 feature =
-          glm::vec2(cell) + glm::mix(glm::vec2(0.5f), offset, jitter);
+      const glm::vec2 feature = glm::vec2(cell) + glm::mix(glm::vec2(0.5f), offset, jitter);
       const float distance = glm::distance(scaled, feature);
       if (distance < first) {
         second = first;

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "scenes/generator/texture.hpp"
-
 #include <cstdint>
 #include <string>
+
+#include "scenes/generator/texture.hpp"
 
 /// Procedural surfaces. All tile; sizes are in metres; colours are sRGB as a painter mixes them.
 namespace heliograph::scenes::recipes {

@@ -1,10 +1,10 @@
-#include "scenes/generator/noise.hpp"
-#include "scenes/generator/recipe_tools.hpp"
-#include "scenes/generator/recipes.hpp"
-
 #include <array>
 #include <cmath>
 #include <string_view>
+
+#include "scenes/generator/noise.hpp"
+#include "scenes/generator/recipe_tools.hpp"
+#include "scenes/generator/recipes.hpp"
 
 namespace heliograph::scenes::recipes {
 namespace {
@@ -23,8 +23,8 @@ float star(glm::vec2 offset, float outer, float inner, int rays, float softness)
   const glm::vec2 tip(outer, 0.0f);
   const glm::vec2 notch(inner * std::cos(0.5f * sector), inner * std::sin(0.5f * sector));
   const float radius = glm::length(offset);
-  const glm::vec2 point = radius * glm::vec2(std::cos(folded * 0.5f * sector),
-                                             std::sin(folded * 0.5f * sector));
+  const glm::vec2 point =
+      radius * glm::vec2(std::cos(folded * 0.5f * sector), std::sin(folded * 0.5f * sector));
   const glm::vec2 edge = glm::normalize(notch - tip);
   const float distance = glm::dot(point - tip, glm::vec2(-edge.y, edge.x));
   return smooth_step(-softness, softness, distance);
@@ -97,12 +97,11 @@ TextureRecipe mosaic() {
   const auto sample = [](glm::vec2 uv) {
     constexpr int tesserae = 36;
     const Block block = block_at(uv, tesserae, tesserae, 0.0f);
-    const glm::vec2 middle =
-        (glm::vec2(block.column, block.row) + 0.5f) / float(tesserae);
+    const glm::vec2 middle = (glm::vec2(block.column, block.row) + 0.5f) / float(tesserae);
     const float grout =
-        1.0f - smooth_step(0.05f, 0.14f,
-                           std::min({block.local.x, 1 - block.local.x, block.local.y,
-                                     1 - block.local.y}));
+        1.0f -
+        smooth_step(0.05f, 0.14f,
+                    std::min({block.local.x, 1 - block.local.x, block.local.y, 1 - block.local.y}));
     const float tone = hash_unit(block.column, block.row, 701);
     const float wave = middle.y * 6.0f + 0.35f * std::sin(two_pi * middle.x * 2.0f);
     const int band = int(std::floor(wave)) % 3;
@@ -139,8 +138,8 @@ TextureRecipe majolica() {
     const float petals = smooth_step(petal_edge + 0.02f, petal_edge - 0.02f, radius);
     const float heart = smooth_step(0.10f, 0.07f, radius);
     const float stripes = ring(std::abs(local.y), 0.46f, 0.018f, 0.006f);
-    const float vine = ring(std::abs(local.y - 0.38f * std::sin(two_pi * cell.x * 0.5f)), 0.0f,
-                            0.016f, 0.010f);
+    const float vine =
+        ring(std::abs(local.y - 0.38f * std::sin(two_pi * cell.x * 0.5f)), 0.0f, 0.016f, 0.010f);
     SurfaceSample s;
     s.color = blend(white, blue * (1.0f + 0.5f * pool), std::max({petals, stripes, 0.7f * vine}));
     s.color = blend(s.color, ochre, heart);
@@ -189,7 +188,7 @@ TextureRecipe stencilled_fresco() {
     const float line = smooth_step(0.455f, 0.47f, net);
     const float quatrefoil = smooth_step(0.135f, 0.115f, foil);
     SurfaceSample s;
-    s.color = glm::vec3(0.28f, 0.43f, 0.42f) * (1.0f + 0.16f * cloud);
+    s.color = glm::vec3(0.36f, 0.52f, 0.50f) * (1.0f + 0.16f * cloud);
     s.color = blend(s.color, glm::vec3(0.62f, 0.66f, 0.55f), 0.75f * line);
     s.roughness = 0.8f + 0.05f * cloud;
     s.height = 0.0006f * cloud;

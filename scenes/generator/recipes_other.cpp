@@ -1,8 +1,8 @@
+#include <cmath>
+
 #include "scenes/generator/noise.hpp"
 #include "scenes/generator/recipe_tools.hpp"
 #include "scenes/generator/recipes.hpp"
-
-#include <cmath>
 
 namespace heliograph::scenes::recipes {
 namespace {
@@ -72,8 +72,8 @@ TextureRecipe damask(const std::string& name, glm::vec3 cloth, glm::vec3 motif) 
     const bool inner_cell = fold < wave;
     const glm::vec2 middle(0.5f * std::round(uv.x * 2.0f - 0.5f) + 0.25f,
                            0.5f * std::round(uv.y * 2.0f));
-    const glm::vec2 other(0.5f * std::round(uv.x * 2.0f), 0.5f * std::round(uv.y * 2.0f - 0.5f) +
-                                                              0.25f);
+    const glm::vec2 other(0.5f * std::round(uv.x * 2.0f),
+                          0.5f * std::round(uv.y * 2.0f - 0.5f) + 0.25f);
     const glm::vec2 offset = 2.0f * (uv - (inner_cell ? middle : other));
     const float radius = glm::length(offset * glm::vec2(1.25f, 0.85f));
     const float angle = std::atan2(offset.x, offset.y);
@@ -96,7 +96,8 @@ TextureRecipe leaf() {
     // The stalk is at the bottom of the tile; the blade is a slender lens with a wavy rim.
     const float along = 1.0f - uv.y;
     const float across = uv.x - 0.5f;
-    const float rim = 0.40f * std::pow(std::sin(3.14159265f * std::clamp(along, 0.0f, 1.0f)), 0.75f) *
+    const float rim = 0.40f *
+                      std::pow(std::sin(3.14159265f * std::clamp(along, 0.0f, 1.0f)), 0.75f) *
                       (1.0f - 0.35f * along) * (1.0f + 0.05f * std::sin(two_pi * 9.0f * along));
     const float inside = rim - std::abs(across);
     const float rib = smooth_step(0.020f, 0.006f, std::abs(across));

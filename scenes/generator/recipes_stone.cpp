@@ -1,8 +1,8 @@
+#include <cmath>
+
 #include "scenes/generator/noise.hpp"
 #include "scenes/generator/recipe_tools.hpp"
 #include "scenes/generator/recipes.hpp"
-
-#include <cmath>
 
 namespace heliograph::scenes::recipes {
 namespace {
@@ -19,7 +19,8 @@ float weathered(glm::vec2 uv, glm::ivec2 cells, std::uint32_t seed) {
 TextureRecipe marble(const MarbleLook& look, float width) {
   const auto sample = [look](glm::vec2 uv) {
     const std::uint32_t seed = look.seed * 977u;
-    const glm::vec2 warp(fractal_noise(uv, {3, 3}, 4, seed), fractal_noise(uv, {3, 3}, 4, seed + 7));
+    const glm::vec2 warp(fractal_noise(uv, {3, 3}, 4, seed),
+                         fractal_noise(uv, {3, 3}, 4, seed + 7));
     const glm::vec2 p = uv + 0.07f * warp;
     const float broad = std::pow(ridge_noise(p, {2, 3}, 4, seed + 13), 16.0f);
     const float thin = std::pow(ridge_noise(p, {5, 4}, 4, seed + 31), 26.0f);
@@ -79,12 +80,11 @@ TextureRecipe smooth_limestone(const std::string& name, glm::vec3 color, std::ui
 TextureRecipe plaster(const std::string& name, glm::vec3 color, std::uint32_t seed) {
   const auto sample = [color, seed](glm::vec2 uv) {
     const float cloud = fractal_noise(uv, {2, 2}, 6, seed);
-    const float trowel = fractal_noise(
-        uv + 0.04f * fractal_noise(uv, {3, 3}, 2, seed + 3), {7, 12}, 4, seed + 9);
+    const float trowel =
+        fractal_noise(uv + 0.04f * fractal_noise(uv, {3, 3}, 2, seed + 3), {7, 12}, 4, seed + 9);
     const float crack_zone = smooth_step(0.1f, 0.6f, fractal_noise(uv, {2, 2}, 3, seed + 19));
     const float crack =
-        crack_zone *
-        smooth_step(0.985f, 0.998f, ridge_noise(uv, {5, 5}, 4, seed + 29));
+        crack_zone * smooth_step(0.985f, 0.998f, ridge_noise(uv, {5, 5}, 4, seed + 29));
     SurfaceSample s;
     s.color = color * (1.0f + 0.08f * cloud + 0.025f * trowel);
     s.color += glm::vec3(0.012f, 0.0f, -0.012f) * cloud;

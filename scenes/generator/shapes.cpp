@@ -1,9 +1,8 @@
 #include "scenes/generator/shapes.hpp"
 
-#include <glm/gtc/constants.hpp>
-
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 
 namespace heliograph::scenes {
 namespace {
@@ -28,8 +27,7 @@ Mesh patch(int columns, int rows, const std::function<SurfacePoint(float, float)
   Mesh mesh;
   for (int row = 0; row <= rows; ++row) {
     for (int column = 0; column <= columns; ++column) {
-      const SurfacePoint point =
-          surface(float(column) / float(columns), float(row) / float(rows));
+      const SurfacePoint point = surface(float(column) / float(columns), float(row) / float(rows));
       mesh.vertices.push_back({point.position, glm::normalize(point.normal), {}, point.uv});
     }
   }
@@ -63,8 +61,8 @@ Mesh lathe(const Profile& profile, int segments, float reference_radius, float t
         const glm::vec3 position =
             spoke * point.position.x + glm::vec3(0.0f, point.position.y, 0.0f);
         const glm::vec3 normal = spoke * point.normal.x + glm::vec3(0.0f, point.normal.y, 0.0f);
-        mesh.vertices.push_back({position, glm::normalize(normal), {},
-                                 {turn * repeats * tile, -point.distance}});
+        mesh.vertices.push_back(
+            {position, glm::normalize(normal), {}, {turn * repeats * tile, -point.distance}});
       }
     }
     join_grid(mesh, first, segments, int(run.size()) - 1);
@@ -78,10 +76,9 @@ Mesh sweep(const Profile& profile, const std::vector<Station>& stations) {
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     for (const ProfilePoint& point : run) {
       for (const Station& station : stations) {
-        const glm::vec3 position = station.origin + station.axis_x * point.position.x +
-                                   station.axis_y * point.position.y;
-        const glm::vec3 normal =
-            station.axis_x * point.normal.x + station.axis_y * point.normal.y;
+        const glm::vec3 position =
+            station.origin + station.axis_x * point.position.x + station.axis_y * point.position.y;
+        const glm::vec3 normal = station.axis_x * point.normal.x + station.axis_y * point.normal.y;
         mesh.vertices.push_back(
             {position, glm::normalize(normal), {}, {station.distance, -point.distance}});
       }
@@ -165,11 +162,9 @@ Mesh box(glm::vec3 size) {
   mesh.append(quad({-h.x, -h.y, h.z}, {h.x, -h.y, h.z}, {h.x, h.y, h.z}, {-h.x, h.y, h.z}));
   mesh.append(quad({h.x, -h.y, -h.z}, {-h.x, -h.y, -h.z}, {-h.x, h.y, -h.z}, {h.x, h.y, -h.z}));
   mesh.append(quad({h.x, -h.y, h.z}, {h.x, -h.y, -h.z}, {h.x, h.y, -h.z}, {h.x, h.y, h.z}));
-  mesh.append(
-      quad({-h.x, -h.y, -h.z}, {-h.x, -h.y, h.z}, {-h.x, h.y, h.z}, {-h.x, h.y, -h.z}));
+  mesh.append(quad({-h.x, -h.y, -h.z}, {-h.x, -h.y, h.z}, {-h.x, h.y, h.z}, {-h.x, h.y, -h.z}));
   mesh.append(quad({-h.x, h.y, h.z}, {h.x, h.y, h.z}, {h.x, h.y, -h.z}, {-h.x, h.y, -h.z}));
-  mesh.append(
-      quad({-h.x, -h.y, -h.z}, {h.x, -h.y, -h.z}, {h.x, -h.y, h.z}, {-h.x, -h.y, h.z}));
+  mesh.append(quad({-h.x, -h.y, -h.z}, {h.x, -h.y, -h.z}, {h.x, -h.y, h.z}, {-h.x, -h.y, h.z}));
   return mesh;
 }
 
@@ -229,10 +224,9 @@ Mesh bevelled_box(glm::vec3 size, float bevel) {
     }
   }
   for (int corner = 0; corner < 8; ++corner) {
-    add_bevel_corner(mesh,
-                     {corner & 1 ? -1.0f : 1.0f, corner & 2 ? -1.0f : 1.0f,
-                      corner & 4 ? -1.0f : 1.0f},
-                     half, b);
+    add_bevel_corner(
+        mesh, {corner & 1 ? -1.0f : 1.0f, corner & 2 ? -1.0f : 1.0f, corner & 4 ? -1.0f : 1.0f},
+        half, b);
   }
   return mesh;
 }
@@ -253,7 +247,8 @@ Mesh torus(float ring_radius, float tube_radius, int segments, int sides) {
     const float tube = 2.0f * pi * (v < 1.0f ? v : 0.0f);
     const glm::vec3 spoke(std::cos(around), 0.0f, -std::sin(around));
     const glm::vec3 normal = spoke * std::cos(tube) + glm::vec3(0.0f, std::sin(tube), 0.0f);
-    return SurfacePoint{spoke * ring_radius + normal * tube_radius, normal,
+    return SurfacePoint{spoke * ring_radius + normal * tube_radius,
+                        normal,
                         {2.0f * pi * ring_radius * u, -2.0f * pi * tube_radius * v}};
   });
 }

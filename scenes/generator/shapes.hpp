@@ -1,10 +1,10 @@
 #pragma once
 
-#include "scenes/generator/mesh.hpp"
-#include "scenes/generator/profile.hpp"
-
 #include <functional>
 #include <vector>
+
+#include "scenes/generator/mesh.hpp"
+#include "scenes/generator/profile.hpp"
 
 namespace heliograph::scenes {
 

@@ -1,12 +1,11 @@
 #include "scenes/generator/sky.hpp"
 
-#include "scenes/generator/parallel.hpp"
-
-#include <glm/gtc/constants.hpp>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "scenes/generator/parallel.hpp"
 
 namespace heliograph::scenes {
 namespace {
@@ -52,7 +51,9 @@ Medium medium_at(double altitude) {
   return medium;
 }
 
-double rayleigh_phase(double cosine) { return 3.0 / (16.0 * pi) * (1.0 + cosine * cosine); }
+double rayleigh_phase(double cosine) {
+  return 3.0 / (16.0 * pi) * (1.0 + cosine * cosine);
+}
 
 // Cornette and Shanks 1992.
 double mie_phase(double cosine) {
@@ -62,7 +63,9 @@ double mie_phase(double cosine) {
          ((2.0 + g * g) * base * std::sqrt(base));
 }
 
-dvec3 exp_each(dvec3 v) { return {std::exp(v.x), std::exp(v.y), std::exp(v.z)}; }
+dvec3 exp_each(dvec3 v) {
+  return {std::exp(v.x), std::exp(v.y), std::exp(v.z)};
+}
 
 // A ray seen in the plane through the centre of the earth: altitude along it, and where it ends.
 struct Ray {
@@ -70,8 +73,8 @@ struct Ray {
   double cosine;  // of the angle to the zenith at the start
 
   double altitude(double distance) const {
-    return std::sqrt(radius * radius + distance * distance +
-                     2.0 * radius * cosine * distance) - ground_radius;
+    return std::sqrt(radius * radius + distance * distance + 2.0 * radius * cosine * distance) -
+           ground_radius;
   }
   // Nearest positive distance to a sphere about the centre of the earth, or -1.
   double distance_to(double sphere) const {
@@ -191,7 +194,9 @@ dvec3 radiance_along(const LightByAltitude& light, dvec3 direction, dvec3 to_sun
   return radiance;
 }
 
-double luminance(dvec3 c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
+double luminance(dvec3 c) {
+  return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
+}
 
 }  // namespace
 
@@ -215,7 +220,8 @@ ClearSky make_clear_sky(glm::vec3 to_sun, int width, int height) {
   fill(height / 2, height, ground_albedo / pi * (from_sun + from_sky));
 
   const dvec3 daylight = from_sun + from_sky;
-  const dvec3 balance = daylight_white / luminance(daylight_white) * daylight_illuminance / daylight;
+  const dvec3 balance =
+      daylight_white / luminance(daylight_white) * daylight_illuminance / daylight;
   for (glm::vec3& pixel : sky.environment.radiance) pixel *= glm::vec3(balance);
   sky.sun_irradiance = glm::vec3(light.sun(0.0) * balance);
   sky.sky_irradiance = glm::vec3(from_sky * balance);

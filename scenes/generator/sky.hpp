@@ -1,16 +1,16 @@
 #pragma once
 
-#include "scenes/generator/environment.hpp"
-
 #include <glm/glm.hpp>
+
+#include "scenes/generator/environment.hpp"
 
 namespace heliograph::scenes {
 
 /// A clear sky and the light of the sun that belongs to it, in the same arbitrary unit.
 struct ClearSky {
-  Environment environment;     // without the disc of the sun
-  glm::vec3 sun_irradiance;    // of a surface that faces the sun, at the ground
-  glm::vec3 sky_irradiance;    // of an upward facing surface, by the sky alone
+  Environment environment;   // without the disc of the sun
+  glm::vec3 sun_irradiance;  // of a surface that faces the sun, at the ground
+  glm::vec3 sky_irradiance;  // of an upward facing surface, by the sky alone
 };
 
 /// Integrates sunlight scattered by air, haze and absorbed by ozone through a spherical

@@ -1,9 +1,9 @@
 #include "scenes/generator/test_scenes.hpp"
 
-#include "scenes/generator/shapes.hpp"
-
 #include <algorithm>
 #include <cstdio>
+
+#include "scenes/generator/shapes.hpp"
 
 namespace heliograph::scenes {
 namespace {
@@ -43,8 +43,10 @@ Document make_mirror() {
   Document document;
   document.name = "mirror";
   document.description = "A mirror sphere over a mirror plane; the camera looks down on both";
-  const int ball = add_sphere(document, "mirror", glm::vec3(1.0f), 0.0f, 1.0f, {0.0f, radius, 0.0f});
-  const int material = document.meshes[std::size_t(document.nodes[std::size_t(ball)].mesh)].material;
+  const int ball =
+      add_sphere(document, "mirror", glm::vec3(1.0f), 0.0f, 1.0f, {0.0f, radius, 0.0f});
+  const int material =
+      document.meshes[std::size_t(document.nodes[std::size_t(ball)].mesh)].material;
   Mesh plane = quad({-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4});
   document.place(document.add_mesh("plane", std::move(plane), material), glm::vec3(0.0f));
   document.add_camera("main", {0.0f, 1.4f, 3.2f}, {0.0f, 0.35f, 0.0f}, 40.0f);

@@ -13,7 +13,9 @@ std::uint8_t to_byte(float value) {
   return std::uint8_t(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f));
 }
 
-int wrap(int value, int size) { return (value % size + size) % size; }
+int wrap(int value, int size) {
+  return (value % size + size) % size;
+}
 
 // Mean over a (2 * radius + 1)^2 window that runs over the borders, as one pass in x and one in y.
 Field blurred(const Field& field, int size, int radius) {
@@ -71,8 +73,7 @@ TextureSet bake(const TextureRecipe& recipe, int wanted_size) {
   Field height(std::size_t(size) * std::size_t(size));
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
-      const SurfaceSample sample =
-          recipe.sample((glm::vec2(x, y) + 0.5f) / float(size));
+      const SurfaceSample sample = recipe.sample((glm::vec2(x, y) + 0.5f) / float(size));
       std::uint8_t* color = set.color.at(x, y);
       for (int c = 0; c < 3; ++c) color[c] = to_byte(sample.color[c]);
       if (recipe.masked) color[3] = to_byte(sample.alpha);

@@ -1,11 +1,10 @@
 #pragma once
 
-#include "scenes/generator/image.hpp"
-
-#include <glm/glm.hpp>
-
 #include <functional>
+#include <glm/glm.hpp>
 #include <string>
+
+#include "scenes/generator/image.hpp"
 
 namespace heliograph::scenes {
 

@@ -1,20 +1,20 @@
 #include "scenes/generator/atrium.hpp"
-#include "scenes/generator/glb.hpp"
 
-#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
 #include <map>
 #include <set>
 #include <tuple>
+
+#include "scenes/generator/glb.hpp"
 
 namespace heliograph::scenes {
 namespace {
 
 const ClearSky& small_sky() {
-  static const ClearSky sky =
-      make_clear_sky(direction_to_sun(sun_elevation, sun_azimuth), 64, 32);
+  static const ClearSky sky = make_clear_sky(direction_to_sun(sun_elevation, sun_azimuth), 64, 32);
   return sky;
 }
 
@@ -38,8 +38,8 @@ TEST(Atrium, IndicesAreInRangeAndTrianglesHaveArea) {
       const std::uint32_t* corner = &mesh.indices[i];
       for (int k = 0; k < 3; ++k) ASSERT_LT(corner[k], mesh.vertices.size()) << named.name;
       const glm::vec3 a = mesh.vertices[corner[0]].position;
-      const glm::vec3 facing = glm::cross(mesh.vertices[corner[1]].position - a,
-                                          mesh.vertices[corner[2]].position - a);
+      const glm::vec3 facing =
+          glm::cross(mesh.vertices[corner[1]].position - a, mesh.vertices[corner[2]].position - a);
       ASSERT_GT(glm::length(facing), 0.0f) << named.name;
     }
   }
@@ -70,8 +70,8 @@ TEST(Atrium, FacesLookWhereTheirNormalsPoint) {
       const glm::vec3 face =
           glm::normalize(glm::cross(b.position - a.position, c.position - a.position));
       ASSERT_GT(glm::dot(face, a.normal + b.normal + c.normal), 0.0f) << named.name;
-      const float best = std::max({glm::dot(face, a.normal), glm::dot(face, b.normal),
-                                   glm::dot(face, c.normal)});
+      const float best =
+          std::max({glm::dot(face, a.normal), glm::dot(face, b.normal), glm::dot(face, c.normal)});
       off += best < 0.4f;
     }
     EXPECT_LE(double(off), 0.01 * double(mesh.triangle_count())) << named.name;
@@ -92,10 +92,8 @@ TEST(Atrium, TangentsFollowTheTextureCoordinates) {
       const glm::vec2 uvs[2] = {b.uv - a.uv, c.uv - a.uv};
       const float area = uvs[0].x * uvs[1].y - uvs[1].x * uvs[0].y;
       if (std::abs(area) < 1e-10f) continue;
-      const glm::vec3 along_u =
-          glm::normalize((edges[0] * uvs[1].y - edges[1] * uvs[0].y) / area);
-      const glm::vec3 along_v =
-          glm::normalize((edges[1] * uvs[0].x - edges[0] * uvs[1].x) / area);
+      const glm::vec3 along_u = glm::normalize((edges[0] * uvs[1].y - edges[1] * uvs[0].y) / area);
+      const glm::vec3 along_v = glm::normalize((edges[1] * uvs[0].x - edges[0] * uvs[1].x) / area);
       const glm::vec3 tangent(a.tangent);
       const glm::vec3 to_image_top = a.tangent.w * glm::cross(a.normal, tangent);
       wrong += glm::dot(tangent, along_u) < 0.0f || glm::dot(to_image_top, along_v) > 0.0f;
@@ -113,8 +111,8 @@ TEST(Atrium, ClosedShapesAreWoundConsistently) {
   };
   int checked = 0;
   for (const NamedMesh& named : atrium().meshes) {
-    if (named.name != "hero_sphere" && named.name != "lamp_chain" &&
-        named.name != "corner_piers" && named.name != "gallery_beams") {
+    if (named.name != "hero_sphere" && named.name != "lamp_chain" && named.name != "corner_piers" &&
+        named.name != "gallery_beams") {
       continue;
     }
     std::map<std::pair<Point, Point>, int> edges;

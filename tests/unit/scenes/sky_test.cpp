@@ -1,11 +1,12 @@
-#include "scenes/generator/atrium.hpp"
 #include "scenes/generator/sky.hpp"
-#include "scenes/generator/test_scenes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
+
+#include "scenes/generator/atrium.hpp"
+#include "scenes/generator/test_scenes.hpp"
 
 namespace heliograph::scenes {
 namespace {
@@ -16,7 +17,9 @@ const ClearSky& sky() {
   return made;
 }
 
-float luminance(glm::vec3 c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+float luminance(glm::vec3 c) {
+  return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
+}
 
 // The simplest decoder of the format the encoder writes.
 Environment decode_hdr(const std::vector<std::uint8_t>& file, int width, int height) {
@@ -39,8 +42,8 @@ Environment decode_hdr(const std::vector<std::uint8_t>& file, int width, int hei
     }
     for (int x = 0; x < width; ++x) {
       const auto plane = [&](int c) { return float(bytes[std::size_t(c * width + x)]); };
-      out.at(x, y) = glm::vec3(plane(0), plane(1), plane(2)) *
-                     std::ldexp(1.0f, int(plane(3)) - 136);
+      out.at(x, y) =
+          glm::vec3(plane(0), plane(1), plane(2)) * std::ldexp(1.0f, int(plane(3)) - 136);
     }
   }
   EXPECT_EQ(at, file.size());
@@ -82,8 +85,8 @@ TEST(Sky, IsBrightestAroundTheSun) {
 }
 
 TEST(Sky, SunlightIsWarmAndFourToSixTimesTheSkylight) {
-  const float sun = luminance(sky().sun_irradiance) *
-                    direction_to_sun(sun_elevation, sun_azimuth).y;
+  const float sun =
+      luminance(sky().sun_irradiance) * direction_to_sun(sun_elevation, sun_azimuth).y;
   const float ratio = sun / luminance(sky().sky_irradiance);
   EXPECT_GT(ratio, 4.0f);
   EXPECT_LT(ratio, 6.0f);

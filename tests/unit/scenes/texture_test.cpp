@@ -1,11 +1,12 @@
-#include "scenes/generator/atrium_materials.hpp"
-#include "scenes/generator/noise.hpp"
 #include "scenes/generator/texture.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
+
+#include "scenes/generator/atrium_materials.hpp"
+#include "scenes/generator/noise.hpp"
 
 namespace heliograph::scenes {
 namespace {
