@@ -36,8 +36,8 @@ class Buffer {
   /// The buffer's bytes, or null when the host cannot reach them.
   std::byte* mapped() const { return mapped_; }
 
-  /// A view for uniform texel buffers; made once, kept with the buffer.
-  VkBufferView texel_view(VkFormat format);
+  /// A view for uniform texel buffers, made at the first call and kept. Not thread safe.
+  VkBufferView texel_view(VkFormat format) const;
 
  private:
   void swap(Buffer& other) noexcept;
@@ -46,7 +46,7 @@ class Buffer {
   std::string name_;
   VkBuffer handle_ = VK_NULL_HANDLE;
   VkDeviceMemory memory_ = VK_NULL_HANDLE;
-  VkBufferView view_ = VK_NULL_HANDLE;
+  mutable VkBufferView view_ = VK_NULL_HANDLE;
   VkDeviceSize size_ = 0;
   std::byte* mapped_ = nullptr;
 };

@@ -101,7 +101,7 @@ class FramePlan {
   VkExtent2D extent() const { return extent_; }
   const Device& device() const { return device_; }
 
-  /// An image of the plan's extent; mapped on CPU devices. `view` lists it among the views.
+  /// An image of the plan's extent; mapped on CPU devices.
   ImageRef image(std::string name, VkFormat format, VkImageUsageFlags extra_usage = 0);
   /// Two images that change places after every frame; cleared to zero.
   History history(std::string name, VkFormat format);
@@ -147,18 +147,17 @@ class FramePlan {
   friend class PassBuilder;
   struct Resource;
   struct Pass;
-  struct Frame;
 
   std::uint32_t add(Resource resource);
   void check_pass(const Pass& pass) const;
   void derive_barriers();
   void make_descriptor_sets();
   void list_views();
-  void record(const Pass& pass, VkCommandBuffer commands);
+  void record(const Pass& pass, VkCommandBuffer commands, std::uint32_t query);
   void record_raster(const Pass& pass, VkCommandBuffer commands);
   void bind(const Pass& pass, VkCommandBuffer commands);
   void begin(VkCommandBuffer commands) const;
-  void finish(VkCommandBuffer commands, bool host_follows) const;
+  void submit(VkCommandBuffer commands) const;
   void read_timers();
   const Image& physical(std::uint32_t index, std::uint32_t parity) const;
   VkImageView physical_view(std::uint32_t index, std::uint32_t parity) const;

@@ -24,7 +24,7 @@ bool has_layer(const char* name) {
 }
 
 bool has_extension(const char* name) {
-  const auto found = enumerate<VkExtensionProperties>([](std::uint32_t* count, auto* out) {
+  const auto found = enumerate<VkExtensionProperties>([](std::uint32_t* count, VkExtensionProperties* out) {
     return vkEnumerateInstanceExtensionProperties(nullptr, count, out);
   });
   for (const auto& extension : found) {
