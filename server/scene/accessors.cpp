@@ -210,8 +210,15 @@ std::uint32_t component_count(ElementType type) {
 
 std::vector<Accessor> read_accessors(const GltfFile& file, const ImportLimits& limits) {
   std::vector<Accessor> result;
+  std::uint64_t replacements = 0;
   for (const JsonValue& json : file.root().objects("accessors")) {
     result.push_back(read_accessor(json, file, limits));
+    // Accessors may share the bytes of their replacements, so that the file's size is no bound.
+    if (result.back().sparse) replacements += result.back().sparse->indices.size();
+    if (replacements > 3 * limits.triangles) {
+      json.refuse("exceeds the limit of " + std::to_string(3 * limits.triangles) +
+                  " sparse elements for the whole scene");
+    }
   }
   return result;
 }

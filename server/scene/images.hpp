@@ -24,7 +24,6 @@ struct ImageSource {
 struct ImageUse {
   std::uint32_t source = 0;
   bool srgb = false;
-  bool operator==(const ImageUse&) const = default;
 };
 
 /// @throws ImportError

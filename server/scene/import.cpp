@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <new>
 #include <optional>
 
 #include "scene/accessors.hpp"
@@ -172,7 +173,11 @@ class Importer {
 
 Scene import_gltf(const std::filesystem::path& path, const ImportLimits& limits,
                   const ImportProgress& progress) {
-  return Importer(path, limits, progress).import();
+  try {
+    return Importer(path, limits, progress).import();
+  } catch (const std::bad_alloc&) {
+    throw ImportError("the scene needs more memory than there is");
+  }
 }
 
 }  // namespace heliograph::scene

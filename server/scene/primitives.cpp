@@ -63,6 +63,9 @@ class PrimitiveReader {
     if (type != ElementType::vec3 && type != ElementType::vec4) {
       attributes.refuse("COLOR_0", "has the wrong element type");
     }
+    if (accessors_[*index].component == ComponentType::u32) {
+      attributes.refuse("COLOR_0", "has the wrong component type");
+    }
     return index;
   }
 
@@ -81,6 +84,7 @@ class PrimitiveReader {
 
   void check_targets(const JsonValue& json) {
     for (const JsonValue& target : json.objects("targets")) {
+      warnings_.add("morph targets are left at rest");
       for (const std::string& name : target.keys()) {
         const std::uint32_t index = target.required_index(name, accessors_.size(), "accessors");
         if (accessors_[index].count != vertex_count_)

@@ -46,7 +46,6 @@ struct Sampler {
 struct Texture {
   std::uint32_t image = 0;
   Sampler sampler;
-  bool operator==(const Texture&) const = default;
 };
 
 struct Mesh {

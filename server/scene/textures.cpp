@@ -1,7 +1,5 @@
 #include "scene/textures.hpp"
 
-#include <algorithm>
-
 namespace heliograph::scene {
 namespace {
 
@@ -50,14 +48,6 @@ Sampler read_sampler(const JsonValue& json) {
   return sampler;
 }
 
-template <typename T>
-std::uint32_t find_or_add(std::vector<T>& items, const T& item) {
-  const auto found = std::find(items.begin(), items.end(), item);
-  if (found != items.end()) return static_cast<std::uint32_t>(found - items.begin());
-  items.push_back(item);
-  return static_cast<std::uint32_t>(items.size() - 1);
-}
-
 }  // namespace
 
 TextureTable::TextureTable(const JsonValue& root) {
@@ -76,8 +66,13 @@ TextureTable::TextureTable(const JsonValue& root) {
 std::uint32_t TextureTable::use(std::uint32_t index, bool srgb) {
   const Declared& declared = textures_[index];
   if (!declared.image) return shared::no_texture;
-  const std::uint32_t image = find_or_add(image_uses_, ImageUse{*declared.image, srgb});
-  return find_or_add(used_textures_, Texture{image, declared.sampler});
+  const auto [image, new_image] = image_of_use_.try_emplace(
+      {*declared.image, srgb}, static_cast<std::uint32_t>(image_uses_.size()));
+  if (new_image) image_uses_.push_back({*declared.image, srgb});
+  const auto [texture, new_texture] =
+      texture_of_use_.try_emplace({index, srgb}, static_cast<std::uint32_t>(used_textures_.size()));
+  if (new_texture) used_textures_.push_back({image->second, declared.sampler});
+  return texture->second;
 }
 
 }  // namespace heliograph::scene

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "scene/gltf_file.hpp"
@@ -33,6 +35,8 @@ class TextureTable {
   };
 
   std::vector<Declared> textures_;
+  std::map<std::pair<std::uint32_t, bool>, std::uint32_t> image_of_use_;
+  std::map<std::pair<std::uint32_t, bool>, std::uint32_t> texture_of_use_;
   std::vector<ImageUse> image_uses_;
   std::vector<Texture> used_textures_;
 };

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <iterator>
 #include <random>
 
 #include "gltf_builder.hpp"
@@ -219,6 +221,25 @@ TEST(Container, RandomDamageNeverGetsPastTheChecks) {
   }
   EXPECT_GT(refused, 1000);
   EXPECT_LT(refused, 3000) << "some changes are harmless";
+}
+
+// The same for values: every member of the document in turn becomes something else.
+TEST(Container, OddValuesNeverGetPastTheChecks) {
+  const GltfBuilder good = everything();
+  const json flat = good.json.flatten();
+  const json odd[] = {
+      -1, 0,   1,    1.5,     2147483648u,   4294967295u,    1e30,   -1e30,
+      "", "x", true, nullptr, json::array(), json::object(), {0, 0}, 18446744073709551615ull};
+  const TemporaryFolder folder;
+  int refused = 0;
+  for (const auto& member : flat.items()) {
+    for (const json& value : odd) {
+      GltfBuilder damaged = good;
+      damaged.json[json::json_pointer(member.key())] = value;
+      refused += !refusal_of(folder.write("scene.glb", damaged.glb())).empty();
+    }
+  }
+  EXPECT_GT(refused, static_cast<int>(flat.size()) * 8) << "of " << flat.size() * std::size(odd);
 }
 
 TEST(Container, ProgressRisesFromNothingToAll) {

@@ -120,6 +120,18 @@ TEST(Geometry, NormalizedIntegersFollowTheSpecification) {
   expect_vector(mesh.vertices[2].normal, {0, -1, 0});
 }
 
+TEST(Geometry, QuantizedPositionsNeedNoConversion) {
+  GltfBuilder builder;
+  const auto view =
+      builder.add_view(std::vector<std::uint16_t>{0, 0, 0, 0, 65535, 0, 0, 0, 0, 300, 0, 0}, 8);
+  const auto position = builder.add_accessor(view, 5123, "VEC3", 3, true);
+  builder.json["extensionsRequired"] = {"KHR_mesh_quantization"};
+  builder.show({{"attributes", {{"POSITION", position}}}});
+  expect_vector(builder.import().bounds.maximum, {1, 300.0f / 65535.0f, 0});
+  builder.json["accessors"][position].erase("normalized");
+  expect_vector(builder.import().bounds.maximum, {65535, 300, 0});
+}
+
 TEST(Geometry, VertexColorsAreKeptInSixteenBits) {
   GltfBuilder builder = triangle();
   json& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
