@@ -104,7 +104,7 @@ TextureRecipe mosaic() {
                     std::min({block.local.x, 1 - block.local.x, block.local.y, 1 - block.local.y}));
     const float tone = hash_unit(block.column, block.row, 701);
     const float wave = middle.y * 6.0f + 0.35f * std::sin(two_pi * middle.x * 2.0f);
-    const int band = int(std::floor(wave)) % 3;
+    const int band = int(std::floor(wave + 3.0f)) % 3;  // the wave dips below 0
     const std::array<glm::vec3, 3> palette = {glm::vec3(0.05f, 0.24f, 0.36f),
                                               glm::vec3(0.13f, 0.46f, 0.50f),
                                               glm::vec3(0.70f, 0.76f, 0.68f)};
@@ -130,7 +130,7 @@ TextureRecipe majolica() {
     const glm::vec3 white(0.90f, 0.88f, 0.83f);
     const glm::vec3 blue(0.08f, 0.17f, 0.46f);
     const glm::vec3 ochre(0.80f, 0.52f, 0.14f);
-    const glm::vec2 cell = uv * glm::vec2(6.0f, 3.0f);
+    const glm::vec2 cell = uv * 4.0f;
     const glm::vec2 local = cell - glm::floor(cell) - 0.5f;
     const float radius = glm::length(local);
     const float angle = std::atan2(local.y, local.x);
