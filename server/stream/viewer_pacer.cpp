@@ -22,7 +22,7 @@ void ViewerPacer::offer(SharedFrame frame) {
 }
 
 std::optional<ViewerPacer::Taken> ViewerPacer::take(Clock::time_point now) {
-  if (!waiting_ || paused_ || !window_open() || now < next_turn_) return std::nullopt;
+  if (!sendable(now)) return std::nullopt;
   Taken taken{.frame_seq = last_offered_,
               .first_after_drop = std::exchange(dropped_since_taken_, false),
               .frame = std::exchange(waiting_, nullptr)};
@@ -68,6 +68,10 @@ void ViewerPacer::set_max_rate(double frames_per_second) {
 void ViewerPacer::set_paused(bool paused) {
   paused_ = paused;
   if (paused_) waiting_ = nullptr;
+}
+
+bool ViewerPacer::sendable(Clock::time_point now) const {
+  return waiting_ && !paused_ && window_open() && now >= next_turn_;
 }
 
 bool ViewerPacer::has_room(Clock::time_point now) const {

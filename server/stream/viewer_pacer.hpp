@@ -42,6 +42,8 @@ class ViewerPacer {
   /// Whether a frame rendered now could be sent at once.
   bool has_room(Clock::time_point now) const;
   bool frame_waiting() const { return waiting_ != nullptr; }
+  /// Whether take() would give a frame.
+  bool sendable(Clock::time_point now) const;
   /// When the rate limit next lets a frame through.
   Clock::time_point next_turn() const { return next_turn_; }
 

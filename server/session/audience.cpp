@@ -1,0 +1,246 @@
+#include "session/audience.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "protocol/jsonrpc.hpp"
+#include "stream/quality_classes.hpp"
+
+namespace heliograph::session {
+
+using protocol::Result;
+using std::chrono::duration_cast;
+using std::chrono::microseconds;
+
+namespace {
+
+void add(stream::PacerTotals& sum, const stream::PacerTotals& more) {
+  sum.frames += more.frames;
+  sum.bytes += more.bytes;
+  sum.dropped += more.dropped;
+}
+
+/// `frames` are in ascending quality.
+const stream::SharedFrame& choose(const std::vector<stream::SharedFrame>& frames, int quality) {
+  std::vector<int> classes;
+  for (const stream::SharedFrame& frame : frames) classes.push_back(frame->header.quality);
+  return frames[stream::nearest_class(classes, quality)];
+}
+
+stream::OutgoingFrame address(const stream::ViewerPacer::Taken& taken, const std::string& viewer) {
+  protocol::FrameHeader header = taken.frame->header;
+  header.frame_seq = taken.frame_seq;
+  if (taken.first_after_drop) header.flags |= protocol::frame_flag::first_after_drop;
+  for (const stream::InputEcho& input : taken.frame->inputs) {
+    if (input.viewer == viewer) header.input_seq_echo = input.seq;
+  }
+  const auto queued = duration_cast<microseconds>(Clock::now() - taken.frame->encoded_at);
+  header.queue_us = static_cast<std::uint32_t>(queued.count());
+  return {.header = protocol::encode_frame_header(header), .frame = taken.frame};
+}
+
+}  // namespace
+
+Audience::Audience(std::size_t max_viewers, Wakeup& room)
+    : max_viewers_(max_viewers), room_(room) {}
+
+Result<std::string> Audience::join(std::weak_ptr<ViewerLink> link) {
+  const std::lock_guard lock(mutex_);
+  if (viewers_.size() >= max_viewers_) {
+    return protocol::error::full("the session has no room for another viewer",
+                                 std::to_string(max_viewers_) + " viewers");
+  }
+  const std::string id = "v" + std::to_string(++viewers_so_far_);
+  Viewer& viewer = viewers_[id];
+  viewer.link = std::move(link);
+  viewer.pacer.set_max_rate(viewer.stream.max_fps);
+  return id;
+}
+
+void Audience::leave(const std::string& viewer) {
+  const std::lock_guard lock(mutex_);
+  const auto found = viewers_.find(viewer);
+  if (found == viewers_.end()) return;
+  add(departed_, found->second.pacer.totals());
+  viewers_.erase(found);
+}
+
+void Audience::start(const std::string& viewer) {
+  const std::lock_guard lock(mutex_);
+  const Result<Viewer*> found = find(viewer);
+  if (!found || (*found)->started) return;
+  (*found)->started = true;
+  offer_latest(**found);
+  room_.notify();
+}
+
+Result<ViewerStream> Audience::configure(const std::string& viewer,
+                                         const protocol::StreamConfigure& change) {
+  const std::lock_guard lock(mutex_);
+  const Result<Viewer*> found = find(viewer);
+  if (!found) return found.error();
+  Viewer& it = **found;
+  if (change.quality) it.stream.quality = static_cast<int>(*change.quality);
+  if (change.max_fps) {
+    it.stream.max_fps = *change.max_fps;
+    it.pacer.set_max_rate(it.stream.max_fps);
+  }
+  if (change.paused) {
+    const bool resumes = it.stream.paused && !*change.paused;
+    it.stream.paused = *change.paused;
+    it.pacer.set_paused(it.stream.paused);
+    if (resumes && it.started) offer_latest(it);
+  }
+  room_.notify();
+  return it.stream;
+}
+
+Result<void> Audience::acknowledge(const std::string& viewer, const protocol::StreamAck& ack) {
+  const std::lock_guard lock(mutex_);
+  const Result<Viewer*> found = find(viewer);
+  if (!found) return found.error();
+  Viewer& it = **found;
+  // Late and repeated acknowledgements are normal and say nothing new.
+  it.pacer.acknowledge(ack.frame_seq, microseconds(ack.present_us), Clock::now());
+  if (it.pacer.frame_waiting()) {
+    announce(it);
+  } else {
+    room_.notify();
+  }
+  return {};
+}
+
+Result<void> Audience::subscribe(const std::string& viewer, std::chrono::milliseconds interval) {
+  const std::lock_guard lock(mutex_);
+  const Result<Viewer*> found = find(viewer);
+  if (!found) return found.error();
+  (*found)->stats_interval = interval;
+  (*found)->next_stats = {};
+  return {};
+}
+
+std::optional<stream::OutgoingFrame> Audience::take(const std::string& viewer) {
+  const std::lock_guard lock(mutex_);
+  const Result<Viewer*> found = find(viewer);
+  if (!found) return std::nullopt;
+  const auto taken = (*found)->pacer.take(Clock::now());
+  if (!taken) {
+    // A frame that waits only for its turn needs the render thread's clock.
+    if ((*found)->pacer.frame_waiting()) room_.notify();
+    return std::nullopt;
+  }
+  room_.notify();
+  return address(*taken, viewer);
+}
+
+bool Audience::wants_frame() const {
+  const std::lock_guard lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  return std::any_of(viewers_.begin(), viewers_.end(), [&](const auto& entry) {
+    return entry.second.started && entry.second.pacer.has_room(now);
+  });
+}
+
+bool Audience::watching() const {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(viewers_.begin(), viewers_.end(), [](const auto& entry) {
+    return entry.second.started && !entry.second.stream.paused;
+  });
+}
+
+std::optional<Clock::time_point> Audience::next_turn() const {
+  const std::lock_guard lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  std::optional<Clock::time_point> next;
+  for (const auto& [id, viewer] : viewers_) {
+    const Clock::time_point turn = viewer.pacer.next_turn();
+    if (!viewer.started || viewer.stream.paused || turn <= now) continue;
+    next = next ? std::min(*next, turn) : turn;
+  }
+  return next;
+}
+
+void Audience::announce_waiting() {
+  const std::lock_guard lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  for (const auto& [id, viewer] : viewers_) {
+    if (viewer.pacer.sendable(now)) announce(viewer);
+  }
+}
+
+std::vector<int> Audience::quality_classes() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<int> wanted;
+  for (const auto& [id, viewer] : viewers_) {
+    if (viewer.started && !viewer.stream.paused) wanted.push_back(viewer.stream.quality);
+  }
+  return stream::quality_classes(std::move(wanted));
+}
+
+void Audience::publish(std::vector<stream::SharedFrame> frames) {
+  const std::lock_guard lock(mutex_);
+  latest_ = std::move(frames);
+  for (auto& [id, viewer] : viewers_) {
+    if (viewer.started) offer_latest(viewer);
+  }
+}
+
+void Audience::publish_stats(const protocol::StatsFrame& stats) {
+  const std::lock_guard lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  std::string text;
+  for (auto& [id, viewer] : viewers_) {
+    if (viewer.stats_interval.count() == 0 || now < viewer.next_stats) continue;
+    viewer.next_stats = now + viewer.stats_interval;
+    if (text.empty()) text = protocol::make_notification("stats.frame", stats);
+    if (const auto link = viewer.link.lock()) link->send(text, "stats.frame");
+  }
+}
+
+void Audience::send_all(std::string_view text, std::string_view key) {
+  send_others({}, text, key);
+}
+
+void Audience::send_others(const std::string& except, std::string_view text,
+                           std::string_view key) {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [id, viewer] : viewers_) {
+    if (id == except) continue;
+    if (const auto link = viewer.link.lock()) link->send(std::string(text), key);
+  }
+}
+
+AudienceTotals Audience::totals() const {
+  const std::lock_guard lock(mutex_);
+  AudienceTotals totals{.viewers = viewers_.size(), .sent = departed_};
+  std::int64_t measured = 0;
+  for (const auto& [id, viewer] : viewers_) {
+    add(totals.sent, viewer.pacer.totals());
+    totals.goodput += viewer.pacer.goodput();
+    if (viewer.pacer.goodput() == 0.0) continue;
+    totals.mean_round_trip += viewer.pacer.round_trip();
+    ++measured;
+  }
+  if (measured > 0) totals.mean_round_trip /= measured;
+  return totals;
+}
+
+Result<Audience::Viewer*> Audience::find(const std::string& viewer) {
+  const auto found = viewers_.find(viewer);
+  if (found == viewers_.end()) {
+    return protocol::error::not_ready("only a viewer on a WebSocket can ask for this");
+  }
+  return &found->second;
+}
+
+void Audience::offer_latest(Viewer& viewer) {
+  if (latest_.empty() || viewer.stream.paused) return;
+  viewer.pacer.offer(choose(latest_, viewer.stream.quality));
+  announce(viewer);
+}
+
+void Audience::announce(const Viewer& viewer) {
+  if (const auto link = viewer.link.lock()) link->frame_ready();
+}
+
+}  // namespace heliograph::session

@@ -1,0 +1,45 @@
+#include "session/commands/commands.hpp"
+#include "stream/base64.hpp"
+
+namespace heliograph::session {
+
+using protocol::CapturedFrame;
+using protocol::Empty;
+using protocol::FrameBuffers;
+using protocol::FrameCapture;
+using protocol::Result;
+
+namespace {
+
+void capture(SessionHost& host, const FrameCapture& request,
+             protocol::Completion<CapturedFrame> done) {
+  const auto answer = [request, done](Result<Capture> capture) {
+    if (!capture) return done(capture.error());
+    done(CapturedFrame{.buffer = request.buffer,
+                       .format = request.format,
+                       .width = capture->width,
+                       .height = capture->height,
+                       .samples = capture->samples,
+                       .data = stream::base64_encode(capture->file)});
+  };
+  const Result<void> accepted = host.default_session().request_capture(
+      {.buffer = request.buffer, .samples = request.samples, .done = answer});
+  if (!accepted) done(accepted.error());
+}
+
+}  // namespace
+
+void add_capture_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
+  add_command<Empty, FrameBuffers>(
+      dispatcher, "frame.buffers",
+      [&](const Empty&, const std::string&) -> Result<FrameBuffers> {
+        return FrameBuffers{.buffers = host.default_session().buffers()};
+      });
+  dispatcher.add<FrameCapture, CapturedFrame>(
+      "frame.capture", [&](const FrameCapture& request, const protocol::CallContext&,
+                           protocol::Completion<CapturedFrame> done) {
+        capture(host, request, std::move(done));
+      });
+}
+
+}  // namespace heliograph::session

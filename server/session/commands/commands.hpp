@@ -1,0 +1,29 @@
+#pragma once
+
+#include "protocol/jsonrpc.hpp"
+#include "session/session_host.hpp"
+
+// The methods of the protocol, a file per group. Each command is only what it does: shapes and
+// ranges of its parameters were checked before.
+
+namespace heliograph::session {
+
+void add_scene_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
+void add_camera_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
+void add_settings_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
+void add_stream_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
+void add_stats_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
+void add_capture_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
+
+/// Adds a command that answers at once: `command(request, viewer)` gives a Result<Response>.
+template <class Request, class Response, class Command>
+void add_command(protocol::Dispatcher& dispatcher, std::string_view name, Command command) {
+  dispatcher.add<Request, Response>(
+      name, [command = std::move(command)](const Request& request,
+                                           const protocol::CallContext& context,
+                                           protocol::Completion<Response> done) {
+        done(command(request, context.viewer));
+      });
+}
+
+}  // namespace heliograph::session

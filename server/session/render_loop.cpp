@@ -1,0 +1,95 @@
+#include "session/render_loop.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+namespace heliograph::session {
+namespace {
+
+// One picture may wait while another is being encoded: the renderer stays at most one ahead.
+constexpr std::size_t waiting_pictures = 1;
+constexpr std::size_t waiting_captures = 4;
+
+}  // namespace
+
+RenderLoop::RenderLoop(render::Engine& engine)
+    : engine_(engine),
+      encoder_("encoder", waiting_pictures),
+      capture_writer_("capture writer", waiting_captures),
+      thread_([this] { run(); }) {}
+
+RenderLoop::~RenderLoop() {
+  stopping_ = true;
+  wakeup_.notify();
+  thread_.join();
+}
+
+std::shared_ptr<Session> RenderLoop::open(SessionOptions options) {
+  auto view = std::make_unique<SessionView>(
+      engine_, std::move(options),
+      ViewServices{.wakeup = wakeup_,
+                   .encoder = encoder_,
+                   .jpeg = jpeg_,
+                   .capture_writer = capture_writer_,
+                   .measurements = measurements_});
+  std::shared_ptr<Session> session = view->session();
+  {
+    const std::lock_guard lock(mutex_);
+    views_.push_back(std::move(view));
+  }
+  wakeup_.notify();
+  return session;
+}
+
+void RenderLoop::on_first_frame(std::function<void()> callback) {
+  const std::lock_guard lock(mutex_);
+  on_first_frame_ = std::move(callback);
+}
+
+void RenderLoop::run() {
+  while (!stopping_) {
+    if (advance_all()) continue;
+    wakeup_.wait_until(next_due());
+  }
+}
+
+bool RenderLoop::advance_all() {
+  const std::lock_guard lock(mutex_);
+  bool worked = false;
+  for (const auto& view : views_) {
+    if (stopping_) return false;
+    worked |= advance(*view);
+    if (!has_rendered_ && view->has_rendered()) report_first_frame();
+  }
+  return worked;
+}
+
+bool RenderLoop::advance(SessionView& view) {
+  try {
+    return view.advance();
+  } catch (const std::exception& failure) {
+    spdlog::error("session {}: rendering failed: {}", view.session()->name(), failure.what());
+    view.recover();
+    return false;
+  }
+}
+
+std::optional<Clock::time_point> RenderLoop::next_due() {
+  const std::lock_guard lock(mutex_);
+  std::optional<Clock::time_point> next;
+  for (const auto& view : views_) {
+    const auto due = view->next_due();
+    if (due) next = next ? std::min(*next, *due) : *due;
+  }
+  return next;
+}
+
+void RenderLoop::report_first_frame() {
+  has_rendered_ = true;
+  if (on_first_frame_) std::exchange(on_first_frame_, nullptr)();
+}
+
+}  // namespace heliograph::session

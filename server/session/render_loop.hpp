@@ -1,0 +1,52 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "session/session_view.hpp"
+
+namespace heliograph::session {
+
+/// The one thread that draws for all sessions of a device, each in turn, and the threads that
+/// encode beside it. It sleeps while nobody wants anything.
+class RenderLoop {
+ public:
+  explicit RenderLoop(render::Engine& engine);
+  ~RenderLoop();
+  RenderLoop(const RenderLoop&) = delete;
+  RenderLoop& operator=(const RenderLoop&) = delete;
+
+  /// Opens a session; it is drawn from now on.
+  std::shared_ptr<Session> open(SessionOptions options);
+
+  /// Called once, on the render thread, when the first picture is there.
+  void on_first_frame(std::function<void()> callback);
+  bool has_rendered() const { return has_rendered_; }
+  RenderTotals totals() const { return measurements_.totals(); }
+
+ private:
+  void run();
+  bool advance_all();
+  bool advance(SessionView& view);
+  std::optional<Clock::time_point> next_due();
+  void report_first_frame();
+
+  render::Engine& engine_;
+  Wakeup wakeup_;
+  Measurements measurements_;
+  std::mutex mutex_;  // guards views_ and on_first_frame_
+  std::vector<std::unique_ptr<SessionView>> views_;
+  std::function<void()> on_first_frame_;
+  std::atomic<bool> has_rendered_ = false;
+  std::atomic<bool> stopping_ = false;
+  stream::JpegEncoder jpeg_;
+  Worker encoder_;
+  Worker capture_writer_;
+  std::thread thread_;
+};
+
+}  // namespace heliograph::session

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "protocol/result.hpp"
+
+namespace heliograph::session {
+
+struct CatalogueEntry {
+  std::string name;  // path below its root, '/' separated, without .glb or .gltf
+  std::uint64_t bytes = 0;
+  std::filesystem::path path;  // canonical
+  std::filesystem::path root;  // canonical
+};
+
+/// The scenes that clients may load: every .glb and .gltf file below the root folders. Clients give
+/// names, never paths, and a name is only ever compared with what was found, so that no name leads
+/// out of the roots; neither do symbolic links.
+class SceneCatalogue {
+ public:
+  /// @throws std::runtime_error when a root is not a folder
+  explicit SceneCatalogue(const std::vector<std::filesystem::path>& roots);
+
+  /// All scenes as they are on disk now, by name. Where two have the same name the earlier root
+  /// wins, and .glb wins over .gltf.
+  std::vector<CatalogueEntry> list() const;
+  /// The scene called `name`; its file's extension may be part of it.
+  protocol::Result<CatalogueEntry> find(const std::string& name) const;
+
+  const std::vector<std::filesystem::path>& roots() const { return roots_; }
+
+ private:
+  std::vector<std::filesystem::path> roots_;
+};
+
+}  // namespace heliograph::session

@@ -1,0 +1,32 @@
+#include "session/scene_description.hpp"
+
+namespace heliograph::session {
+
+protocol::Vec3 to_protocol(const glm::vec3& vector) {
+  return {vector.x, vector.y, vector.z};
+}
+
+glm::vec3 from_protocol(const protocol::Vec3& vector) {
+  return {vector[0], vector[1], vector[2]};
+}
+
+protocol::SceneInfo describe_scene(const std::string& name, const scene::Scene& scene) {
+  const auto count = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
+  protocol::SceneInfo info;
+  info.name = name;
+  info.triangles = scene.triangle_count();
+  info.instances = count(scene.instances);
+  info.meshes = count(scene.meshes);
+  info.materials = count(scene.materials);
+  info.textures = count(scene.textures);
+  info.lights = count(scene.lights);
+  for (const scene::Camera& camera : scene.cameras) info.cameras.push_back(camera.name);
+  if (!scene.bounds.empty()) {
+    info.bounds = {.min = to_protocol(scene.bounds.minimum),
+                   .max = to_protocol(scene.bounds.maximum)};
+  }
+  info.warnings = scene.warnings;
+  return info;
+}
+
+}  // namespace heliograph::session

@@ -1,0 +1,179 @@
+#include "session/session.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "protocol/jsonrpc.hpp"
+#include "protocol/settings_json.hpp"
+#include "protocol/suggestions.hpp"
+#include "scene/camera.hpp"
+#include "session/scene_description.hpp"
+
+namespace heliograph::session {
+
+using protocol::Result;
+namespace error = protocol::error;
+
+Session::Session(SessionOptions options, std::vector<protocol::BufferInfo> buffers,
+                 Wakeup& changed)
+    : options_(std::move(options)),
+      buffers_(std::move(buffers)),
+      changed_(changed),
+      audience_(options_.limits.max_viewers, changed) {
+  state_.settings = options_.settings;
+  state_.width = std::min(options_.width, options_.limits.max_width);
+  state_.height = std::min(options_.height, options_.limits.max_height);
+  state_.rev = 1;
+  state_.version = 1;
+  state_.changed_at = Clock::now();
+}
+
+std::uint32_t Session::rev() const {
+  const std::lock_guard lock(mutex_);
+  return state_.rev;
+}
+
+std::uint64_t Session::version() const {
+  const std::lock_guard lock(mutex_);
+  return state_.version;
+}
+
+RenderState Session::render_state() const {
+  const std::lock_guard lock(mutex_);
+  RenderState state = state_;
+  for (const auto& [viewer, seq] : input_seqs_) {
+    state.inputs.push_back({.viewer = viewer, .seq = seq});
+  }
+  return state;
+}
+
+Result<protocol::SceneInfo> Session::scene_info() const {
+  const std::lock_guard lock(mutex_);
+  if (const Result<void> there = require_scene(); !there) return there.error();
+  return scene_info_;
+}
+
+void Session::show(LoadedScene scene, const std::string& by) {
+  const std::lock_guard lock(mutex_);
+  scene_ = std::move(scene.scene);
+  scene_info_ = describe_scene(scene.name, *scene_);
+  state_.resources = std::move(scene.resources);
+  if (scene_->cameras.empty()) {
+    state_.camera = scene::fit_camera(scene_->bounds, scene::Camera().vertical_fov, aspect());
+    camera_name_.reset();
+  } else {
+    state_.camera = scene_->cameras.front();
+    camera_name_ = state_.camera.name;
+  }
+  changed();
+  audience_.send_others(by, protocol::make_notification(
+                                "scene.changed", protocol::SceneChanged{.scene = scene_info_}),
+                        {});
+}
+
+protocol::SettingsState Session::settings() const {
+  const std::lock_guard lock(mutex_);
+  return {.rev = state_.rev,
+          .settings = protocol::RawJson(protocol::to_json(state_.settings))};
+}
+
+Result<protocol::SettingsApplied> Session::patch_settings(const protocol::RawJson& patch,
+                                                          const std::string& by) {
+  const std::lock_guard lock(mutex_);
+  protocol::Settings patched = state_.settings;
+  const Result<nlohmann::json> applied = protocol::apply_patch(patched, patch.value());
+  if (!applied) return applied.error();
+  if (const auto known = check_buffer(patched.view.buffer, "view.buffer"); !known) {
+    return known.error();
+  }
+  protocol::RawJson effective(*applied);
+  if (patched != state_.settings) {
+    state_.settings = std::move(patched);
+    changed();
+    const protocol::SettingsChanged message{.rev = state_.rev, .patch = effective, .by = by};
+    audience_.send_others(by, protocol::make_notification("settings.changed", message), {});
+  }
+  return protocol::SettingsApplied{.rev = state_.rev, .applied = std::move(effective)};
+}
+
+Result<protocol::StreamState> Session::configure_stream(const protocol::StreamConfigure& request,
+                                                        const std::string& by) {
+  ViewerStream stream;
+  const bool only_size = !request.quality && !request.max_fps && !request.paused;
+  if (!by.empty() || !only_size) {
+    const Result<ViewerStream> configured = audience_.configure(by, request);
+    if (!configured) return configured.error();
+    stream = *configured;
+  }
+  const std::lock_guard lock(mutex_);
+  const std::uint32_t width =
+      std::min(request.width.value_or(state_.width), options_.limits.max_width);
+  const std::uint32_t height =
+      std::min(request.height.value_or(state_.height), options_.limits.max_height);
+  if (width != state_.width || height != state_.height) {
+    state_.width = width;
+    state_.height = height;
+    changed(false);
+  }
+  return protocol::StreamState{.width = width,
+                               .height = height,
+                               .quality = static_cast<std::uint32_t>(stream.quality),
+                               .max_fps = stream.max_fps,
+                               .paused = stream.paused};
+}
+
+void Session::leave(const std::string& viewer) {
+  audience_.leave(viewer);
+  const std::lock_guard lock(mutex_);
+  input_seqs_.erase(viewer);
+}
+
+Result<void> Session::request_capture(CaptureRequest request) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (const Result<void> there = require_scene(); !there) return there.error();
+    if (const auto known = check_buffer(request.buffer, "buffer"); !known) return known.error();
+    if (captures_.size() >= options_.limits.max_captures) {
+      return error::full("too many captures are waiting",
+                         std::to_string(options_.limits.max_captures));
+    }
+    captures_.push_back(std::move(request));
+  }
+  changed_.notify();
+  return {};
+}
+
+std::vector<CaptureRequest> Session::take_captures() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(captures_, {});
+}
+
+void Session::changed(bool new_revision) {
+  ++state_.version;
+  if (new_revision) ++state_.rev;
+  state_.changed_at = Clock::now();
+  changed_.notify();
+}
+
+Result<void> Session::check_buffer(const std::string& buffer, const std::string& path) const {
+  std::vector<std::string_view> names;
+  for (const protocol::BufferInfo& info : buffers_) {
+    if (info.name == buffer) return {};
+    names.push_back(info.name);
+  }
+  return error::make(protocol::ErrorCode::invalid_params, path,
+                     "names no buffer" + protocol::suggestion(buffer, names),
+                     "a name that frame.buffers gives");
+}
+
+Result<void> Session::require_scene() const {
+  if (scene_) return {};
+  return error::not_ready("no scene is loaded");
+}
+
+float Session::aspect() const {
+  return static_cast<float>(state_.width) / static_cast<float>(state_.height);
+}
+
+}  // namespace heliograph::session

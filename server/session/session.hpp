@@ -1,0 +1,120 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocol/messages.hpp"
+#include "protocol/result.hpp"
+#include "protocol/settings.hpp"
+#include "scene/scene.hpp"
+#include "session/audience.hpp"
+#include "session/capture.hpp"
+#include "session/wakeup.hpp"
+
+namespace heliograph::render {
+class SceneResources;
+}
+
+namespace heliograph::session {
+
+struct SessionLimits {
+  std::uint32_t max_width = 3840;
+  std::uint32_t max_height = 2160;
+  std::size_t max_viewers = 32;
+  std::size_t max_captures = 16;  // waiting at one time
+};
+
+struct SessionOptions {
+  std::string name = "main";
+  std::uint32_t width = 1280;
+  std::uint32_t height = 720;
+  protocol::Settings settings;
+  SessionLimits limits;
+};
+
+/// A scene that is ready to be shown.
+struct LoadedScene {
+  std::string name;
+  std::shared_ptr<const scene::Scene> scene;
+  std::shared_ptr<const render::SceneResources> resources;
+};
+
+/// Everything a picture depends on, as of one moment.
+struct RenderState {
+  std::uint64_t version = 0;  // counts every change
+  std::uint32_t rev = 0;
+  Clock::time_point changed_at;
+  std::shared_ptr<const render::SceneResources> resources;
+  scene::Camera camera;
+  protocol::Settings settings;
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::vector<stream::InputEcho> inputs;
+};
+
+/// The state that viewers share and steer: scene, camera, settings, picture size. Commands take
+/// effect at once, whatever the renderer is doing; it takes the newest state for its next frame, so
+/// nothing queues up. Thread safe. `by` is the viewer that asks, empty for callers without stream.
+class Session {
+ public:
+  /// `buffers`: what `view.buffer` may name. `changed` is notified when there is something to do.
+  Session(SessionOptions options, std::vector<protocol::BufferInfo> buffers, Wakeup& changed);
+
+  const std::string& name() const { return options_.name; }
+  const SessionLimits& limits() const { return options_.limits; }
+  const std::vector<protocol::BufferInfo>& buffers() const { return buffers_; }
+  Audience& audience() { return audience_; }
+  std::uint32_t rev() const;
+
+  protocol::Result<protocol::SceneInfo> scene_info() const;
+  void show(LoadedScene scene, const std::string& by);
+
+  protocol::Result<protocol::Camera> camera() const;
+  protocol::Result<protocol::Camera> set_camera(const protocol::CameraSet& request,
+                                                const std::string& by);
+  protocol::Result<protocol::Camera> fit_camera(const std::string& by);
+
+  protocol::SettingsState settings() const;
+  protocol::Result<protocol::SettingsApplied> patch_settings(const protocol::RawJson& patch,
+                                                             const std::string& by);
+
+  protocol::Result<protocol::StreamState> configure_stream(
+      const protocol::StreamConfigure& request, const std::string& by);
+  void leave(const std::string& viewer);
+
+  protocol::Result<void> request_capture(CaptureRequest request);
+  /// The captures asked for since the last call.
+  std::vector<CaptureRequest> take_captures();
+
+  std::uint64_t version() const;
+  RenderState render_state() const;
+
+ private:
+  void changed(bool new_revision = true);
+  protocol::Result<void> check_buffer(const std::string& buffer, const std::string& path) const;
+  protocol::Result<void> require_scene() const;
+  protocol::Camera camera_message() const;
+  protocol::Camera moved_camera(const scene::Camera& camera, std::optional<std::string> name,
+                                const std::string& by);
+  float aspect() const;
+
+  const SessionOptions options_;
+  const std::vector<protocol::BufferInfo> buffers_;
+  Wakeup& changed_;
+  Audience audience_;
+
+  mutable std::mutex mutex_;
+  RenderState state_;
+  std::optional<std::string> camera_name_;
+  std::shared_ptr<const scene::Scene> scene_;
+  protocol::SceneInfo scene_info_;
+  std::map<std::string, std::uint32_t> input_seqs_;  // by viewer
+  std::vector<CaptureRequest> captures_;
+};
+
+}  // namespace heliograph::session

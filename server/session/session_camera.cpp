@@ -1,0 +1,105 @@
+#include <glm/glm.hpp>
+#include <utility>
+
+#include "protocol/jsonrpc.hpp"
+#include "protocol/suggestions.hpp"
+#include "scene/camera.hpp"
+#include "session/scene_description.hpp"
+#include "session/session.hpp"
+
+// The camera of a session.
+
+namespace heliograph::session {
+
+using protocol::Result;
+namespace error = protocol::error;
+
+namespace {
+
+Result<scene::Camera> named_camera(const scene::Scene& scene, const std::string& name) {
+  std::vector<std::string_view> names;
+  for (const scene::Camera& camera : scene.cameras) {
+    if (camera.name == name) return camera;
+    names.push_back(camera.name);
+  }
+  return error::not_found("name", "no camera of the scene is called so" +
+                                      protocol::suggestion(name, names));
+}
+
+/// Whether eye and target are far enough apart for floats to tell a direction.
+bool has_direction(const scene::Camera& camera) {
+  const float scale = glm::length(camera.eye) + glm::length(camera.target);
+  return glm::distance(camera.eye, camera.target) > 1e-6f * scale;
+}
+
+Result<scene::Camera> requested_camera(scene::Camera camera, const protocol::CameraSet& request) {
+  if (request.eye) camera.eye = from_protocol(*request.eye);
+  if (request.target) camera.target = from_protocol(*request.target);
+  if (request.up) camera.up = from_protocol(*request.up);
+  if (request.vertical_fov) {
+    camera.vertical_fov = *request.vertical_fov;
+    camera.orthographic_height = 0.0f;
+  }
+  if (!has_direction(camera)) {
+    return error::invalid(request.target ? "target" : "eye", "eye and target coincide");
+  }
+  if (glm::length(camera.up) == 0.0f) return error::invalid("up", "must not be zero");
+  return camera;
+}
+
+}  // namespace
+
+Result<protocol::Camera> Session::camera() const {
+  const std::lock_guard lock(mutex_);
+  if (const Result<void> there = require_scene(); !there) return there.error();
+  return camera_message();
+}
+
+Result<protocol::Camera> Session::set_camera(const protocol::CameraSet& request,
+                                             const std::string& by) {
+  const std::lock_guard lock(mutex_);
+  if (const Result<void> there = require_scene(); !there) return there.error();
+  scene::Camera base = state_.camera;
+  if (request.name) {
+    Result<scene::Camera> named = named_camera(*scene_, *request.name);
+    if (!named) return named.error();
+    base = *std::move(named);
+  }
+  const Result<scene::Camera> camera = requested_camera(std::move(base), request);
+  if (!camera) return camera.error();
+  if (request.seq) input_seqs_[by] = *request.seq;
+
+  const bool adjusted = request.eye || request.target || request.up || request.vertical_fov;
+  std::optional<std::string> name = request.name ? request.name : camera_name_;
+  return moved_camera(*camera, adjusted ? std::nullopt : std::move(name), by);
+}
+
+Result<protocol::Camera> Session::fit_camera(const std::string& by) {
+  const std::lock_guard lock(mutex_);
+  if (const Result<void> there = require_scene(); !there) return there.error();
+  const scene::Camera camera =
+      scene::fit_camera(scene_->bounds, state_.camera.vertical_fov, aspect());
+  return moved_camera(camera, std::nullopt, by);
+}
+
+protocol::Camera Session::moved_camera(const scene::Camera& camera,
+                                       std::optional<std::string> name, const std::string& by) {
+  state_.camera = camera;
+  camera_name_ = std::move(name);
+  changed();
+  const protocol::CameraChanged message{.camera = camera_message(), .by = by};
+  audience_.send_others(by, protocol::make_notification("camera.changed", message),
+                        "camera.changed");
+  return message.camera;
+}
+
+protocol::Camera Session::camera_message() const {
+  return {.eye = to_protocol(state_.camera.eye),
+          .target = to_protocol(state_.camera.target),
+          .up = to_protocol(state_.camera.up),
+          .vertical_fov = state_.camera.vertical_fov,
+          .name = camera_name_,
+          .rev = state_.rev};
+}
+
+}  // namespace heliograph::session

@@ -1,0 +1,45 @@
+#include "session/session_host.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
+#include "session/commands/commands.hpp"
+
+namespace heliograph::session {
+
+SessionHost::SessionHost(render::Engine& engine, HostOptions options)
+    : engine_(engine),
+      options_(std::move(options)),
+      catalogue_(options_.scene_roots),
+      render_loop_(engine),
+      session_(render_loop_.open(options_.session)),
+      dispatcher_(options_.dispatch),
+      loader_(engine, catalogue_, options_.environment) {
+  add_scene_commands(dispatcher_, *this);
+  add_camera_commands(dispatcher_, *this);
+  add_settings_commands(dispatcher_, *this);
+  add_stream_commands(dispatcher_, *this);
+  add_stats_commands(dispatcher_, *this);
+  add_capture_commands(dispatcher_, *this);
+  dispatcher_.on_handler_failure([](std::string_view method, std::string_view reason) {
+    spdlog::error("{} failed: {}", method, reason);
+  });
+}
+
+SessionHost::~SessionHost() = default;
+
+std::shared_ptr<Session> SessionHost::find_session(std::string_view name) const {
+  return name == session_->name() ? session_ : nullptr;
+}
+
+void SessionHost::load_scene(const std::string& name, const std::string& by,
+                             SceneLoader::Completion done) {
+  loader_.load(session_, name, by, std::move(done));
+}
+
+void SessionHost::on_first_frame(std::function<void()> callback) {
+  render_loop_.on_first_frame(std::move(callback));
+}
+
+}  // namespace heliograph::session

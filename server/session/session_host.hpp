@@ -1,0 +1,59 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocol/jsonrpc.hpp"
+#include "render/renderer.hpp"
+#include "session/render_loop.hpp"
+#include "session/scene_catalogue.hpp"
+#include "session/scene_loader.hpp"
+
+namespace heliograph::session {
+
+struct HostOptions {
+  SessionOptions session;
+  std::vector<std::filesystem::path> scene_roots;
+  std::optional<std::filesystem::path> environment;  // for every scene, instead of its own
+  protocol::DispatchLimits dispatch;
+};
+
+/// Everything of the server but its sockets: the sessions, what renders them and loads their
+/// scenes, and the dispatcher through which clients steer them.
+class SessionHost {
+ public:
+  /// @throws std::runtime_error, scene::ImportError
+  SessionHost(render::Engine& engine, HostOptions options);
+  ~SessionHost();
+
+  const protocol::Dispatcher& dispatcher() const { return dispatcher_; }
+  const protocol::DispatchLimits& dispatch_limits() const { return options_.dispatch; }
+  const SceneCatalogue& catalogue() const { return catalogue_; }
+  render::Engine& engine() { return engine_; }
+
+  /// The session called `name`, or null.
+  std::shared_ptr<Session> find_session(std::string_view name) const;
+  /// The session that a caller means who has named none.
+  Session& default_session() const { return *session_; }
+
+  void load_scene(const std::string& name, const std::string& by, SceneLoader::Completion done);
+  void on_first_frame(std::function<void()> callback);
+  /// Whether a picture has been rendered: everything works.
+  bool ready() const { return render_loop_.has_rendered(); }
+  RenderTotals render_totals() const { return render_loop_.totals(); }
+
+ private:
+  render::Engine& engine_;
+  const HostOptions options_;
+  SceneCatalogue catalogue_;
+  RenderLoop render_loop_;
+  std::shared_ptr<Session> session_;
+  protocol::Dispatcher dispatcher_;
+  SceneLoader loader_;
+};
+
+}  // namespace heliograph::session

@@ -1,0 +1,253 @@
+#include "session/session_view.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+namespace heliograph::session {
+
+using std::chrono::duration_cast;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+namespace {
+
+/// How long everything must rest before the final picture is sent.
+constexpr milliseconds rest_before_final{300};
+constexpr int final_quality = 95;
+constexpr std::chrono::minutes capture_patience{5};
+constexpr std::chrono::seconds rest_after_failure{1};
+
+std::uint32_t microseconds_of(Clock::duration duration) {
+  return static_cast<std::uint32_t>(duration_cast<microseconds>(duration).count());
+}
+
+std::vector<protocol::BufferInfo> to_protocol(const std::vector<render::BufferInfo>& buffers) {
+  std::vector<protocol::BufferInfo> result;
+  for (const auto& [name, description] : buffers) result.push_back({name, description});
+  return result;
+}
+
+std::vector<protocol::PassTiming> to_protocol(const std::vector<render::PassTime>& passes) {
+  std::vector<protocol::PassTiming> result;
+  for (const render::PassTime& pass : passes) {
+    result.push_back({.name = pass.name, .kind = pass.kind, .ms = pass.milliseconds});
+  }
+  return result;
+}
+
+stream::PictureView view_of(const render::Frame& frame) {
+  return {.width = frame.width, .height = frame.height, .rgba = frame.rgba};
+}
+
+}  // namespace
+
+struct SessionView::Picture {
+  render::Frame frame;
+  protocol::FrameHeader header;
+  std::vector<stream::InputEcho> inputs;
+  double fps = 0.0;
+};
+
+SessionView::SessionView(render::Engine& engine, SessionOptions options, ViewServices services)
+    : engine_(engine),
+      services_(services),
+      renderer_(std::make_unique<render::Renderer>(engine)),
+      session_(std::make_shared<Session>(std::move(options), to_protocol(renderer_->buffers()),
+                                         services.wakeup)) {}
+
+SessionView::~SessionView() = default;
+
+bool SessionView::advance() {
+  if (Clock::now() < resting_until_) return false;
+  adopt_state();
+  collect_captures();
+  session_->audience().announce_waiting();
+  if (settle_captures()) return true;
+  if (!services_.encoder.has_room()) return false;
+  if (frame_wanted()) {
+    render_frame();
+    return true;
+  }
+  if (final_due()) {
+    encode(Encoding::final);
+    return true;
+  }
+  return false;
+}
+
+std::optional<Clock::time_point> SessionView::next_due() const {
+  std::optional<Clock::time_point> due = session_->audience().next_turn();
+  const auto also = [&](Clock::time_point time) { due = due ? std::min(*due, time) : time; };
+  if (newest_ && newest_->frame.converged && !final_sent_) {
+    const Clock::time_point rested = state_.changed_at + rest_before_final;
+    if (rested > Clock::now()) also(rested);
+  }
+  if (resting_until_ > Clock::now()) also(resting_until_);
+  return due;
+}
+
+void SessionView::recover() {
+  resting_until_ = Clock::now() + rest_after_failure;
+  for (PendingCapture& capture : captures_) capture.request.done(protocol::error::internal());
+  captures_.clear();
+}
+
+void SessionView::adopt_state() {
+  if (session_->version() == state_.version) return;
+  const RenderState before = std::exchange(state_, session_->render_state());
+  if (state_.resources != before.resources) renderer_->set_scene(state_.resources);
+  const bool resized = state_.width != before.width || state_.height != before.height;
+  if (resized) renderer_->set_size(state_.width, state_.height);
+  cut_ |= resized || state_.resources != before.resources;
+  renderer_->set_camera(state_.camera);
+  if (const auto accepted = renderer_->set_settings(state_.settings); !accepted) {
+    spdlog::error("session {}: the renderer refused settings: {}", session_->name(),
+                  accepted.error().message);
+  }
+}
+
+void SessionView::collect_captures() {
+  for (CaptureRequest& request : session_->take_captures()) {
+    captures_.push_back(
+        {.request = std::move(request), .deadline = Clock::now() + capture_patience});
+  }
+}
+
+bool SessionView::settle_captures() {
+  const Clock::time_point now = Clock::now();
+  std::vector<PendingCapture> open;
+  for (PendingCapture& capture : captures_) {
+    if (capture_ready(capture.request) && write_capture(capture.request)) continue;
+    if (now < capture.deadline) {
+      open.push_back(std::move(capture));
+    } else {
+      capture.request.done(
+          protocol::error::not_ready("the picture did not rest long enough to be captured"));
+    }
+  }
+  captures_.swap(open);
+  return captures_.size() != open.size();
+}
+
+bool SessionView::capture_ready(const CaptureRequest& request) const {
+  if (!newest_) return false;
+  if (!renderer_->needs_frame()) return true;
+  return newest_version_ == state_.version && request.samples &&
+         newest_->frame.samples >= *request.samples;
+}
+
+/// False if too many files are being written already.
+bool SessionView::write_capture(CaptureRequest& request) {
+  if (!services_.capture_writer.has_room()) return false;
+  auto view = renderer_->capture_view(request.buffer);
+  if (!view) {
+    request.done(view.error());
+    return true;
+  }
+  const std::uint32_t samples = newest_->frame.samples;
+  services_.capture_writer.post([request = std::move(request), samples,
+                                 frame = std::make_shared<render::Frame>(*std::move(view)),
+                                 &wakeup = services_.wakeup] {
+    request.done(Capture{.width = frame->width,
+                         .height = frame->height,
+                         .samples = samples,
+                         .file = encode_capture(view_of(*frame), request.format)});
+    wakeup.notify();
+  });
+  return true;
+}
+
+bool SessionView::frame_wanted() {
+  if (!renderer_->needs_frame()) return false;
+  // The first picture of a session is made unasked: it shows that everything works.
+  const bool first = !newest_ && state_.resources;
+  return first || !captures_.empty() || session_->audience().wants_frame();
+}
+
+bool SessionView::final_due() const {
+  return newest_ && newest_->frame.converged && !final_sent_ && !renderer_->needs_frame() &&
+         Clock::now() >= state_.changed_at + rest_before_final &&
+         session_->audience().watching();
+}
+
+void SessionView::render_frame() {
+  const Clock::time_point start = Clock::now();
+  auto picture = std::make_shared<Picture>();
+  picture->frame = renderer_->render();
+  const Clock::time_point end = Clock::now();
+
+  recent_frames_.push_back(end);
+  while (recent_frames_.front() < end - std::chrono::seconds(1)) recent_frames_.pop_front();
+  services_.measurements.rendered(std::chrono::duration<double>(end - start).count(),
+                                  to_protocol(picture->frame.passes));
+
+  const auto width = static_cast<std::uint16_t>(picture->frame.width);
+  const auto height = static_cast<std::uint16_t>(picture->frame.height);
+  protocol::FrameHeader& header = picture->header;
+  header.flags = protocol::frame_flag::key;
+  if (std::exchange(cut_, false)) header.flags |= protocol::frame_flag::discontinuity;
+  header.render_id = ++render_count_;
+  header.state_rev = state_.rev;
+  header.width = header.full_width = width;
+  header.height = header.full_height = height;
+  header.render_start_us = static_cast<std::uint64_t>(
+      duration_cast<microseconds>(start.time_since_epoch()).count());
+  header.render_us = microseconds_of(end - start);
+  header.sample_count = picture->frame.samples;
+  picture->inputs = state_.inputs;
+  picture->fps = static_cast<double>(recent_frames_.size());
+
+  newest_ = std::move(picture);
+  newest_version_ = state_.version;
+  final_sent_ = false;
+  if (!session_->audience().watching()) return;
+  const bool rested = end >= state_.changed_at + rest_before_final;
+  encode(newest_->frame.converged && rested ? Encoding::final : Encoding::interactive);
+}
+
+void SessionView::encode(Encoding encoding) {
+  std::vector<int> qualities = session_->audience().quality_classes();
+  if (qualities.empty()) return;
+  const bool final = encoding == Encoding::final;
+  if (final) qualities = {std::max(final_quality, qualities.back())};
+  final_sent_ = final;
+
+  services_.encoder.post([session = session_, picture = newest_, qualities, final,
+                          tracer = engine_.tracer(), &services = services_] {
+    const auto sampling = final ? stream::ChromaSampling::full : stream::ChromaSampling::half;
+    std::vector<stream::SharedFrame> frames;
+    double seconds = 0.0;
+    for (const int quality : qualities) {
+      const Clock::time_point start = Clock::now();
+      auto frame = std::make_shared<stream::EncodedFrame>();
+      frame->payload = services.jpeg.encode(view_of(picture->frame), quality, sampling);
+      frame->encoded_at = Clock::now();
+      frame->inputs = picture->inputs;
+      frame->header = picture->header;
+      frame->header.quality = static_cast<std::uint16_t>(quality);
+      frame->header.encode_us = microseconds_of(frame->encoded_at - start);
+      if (final) frame->header.flags |= protocol::frame_flag::final;
+      seconds = std::chrono::duration<double>(frame->encoded_at - start).count();
+      services.measurements.encoded(seconds);
+      frames.push_back(std::move(frame));
+    }
+    const std::size_t bytes = frames.back()->payload.size();
+    session->audience().publish(std::move(frames));
+    session->audience().publish_stats({.render_id = picture->header.render_id,
+                                       .fps = picture->fps,
+                                       .frame_ms = picture->frame.milliseconds,
+                                       .encode_ms = 1000.0 * seconds,
+                                       .bytes = bytes,
+                                       .width = picture->frame.width,
+                                       .height = picture->frame.height,
+                                       .samples = picture->frame.samples,
+                                       .tracer = tracer,
+                                       .passes = to_protocol(picture->frame.passes)});
+    services.wakeup.notify();
+  });
+}
+
+}  // namespace heliograph::session

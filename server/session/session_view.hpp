@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "render/renderer.hpp"
+#include "session/measurements.hpp"
+#include "session/session.hpp"
+#include "session/worker.hpp"
+#include "stream/jpeg_encoder.hpp"
+
+namespace heliograph::session {
+
+/// What all views of one device share.
+struct ViewServices {
+  Wakeup& wakeup;             // of the render thread
+  Worker& encoder;            // pictures for the stream
+  stream::JpegEncoder& jpeg;  // used by `encoder` only
+  Worker& capture_writer;     // files, which take longer
+  Measurements& measurements;
+};
+
+/// One session as the render thread sees it: takes over the session's state, draws while somebody
+/// wants frames, has them encoded, answers captures. Used by the render thread only, apart from
+/// construction.
+class SessionView {
+ public:
+  SessionView(render::Engine& engine, SessionOptions options, ViewServices services);
+  ~SessionView();
+
+  const std::shared_ptr<Session>& session() const { return session_; }
+  bool has_rendered() const { return newest_ != nullptr; }
+
+  /// Does what is most pressing: at most one frame. False if there was nothing to do.
+  bool advance();
+  /// When there may be something to do without anybody's asking.
+  std::optional<Clock::time_point> next_due() const;
+  /// After an exception out of `advance`: fails what waits for pictures and rests for a while.
+  void recover();
+
+ private:
+  struct Picture;
+  struct PendingCapture {
+    CaptureRequest request;
+    Clock::time_point deadline;
+  };
+  enum class Encoding { interactive, final };
+
+  void adopt_state();
+  void collect_captures();
+  bool settle_captures();
+  bool capture_ready(const CaptureRequest& request) const;
+  bool write_capture(CaptureRequest& request);
+  bool frame_wanted();
+  bool final_due() const;
+  void render_frame();
+  void encode(Encoding encoding);
+  double frames_in_last_second() const;
+
+  render::Engine& engine_;
+  ViewServices services_;
+  std::unique_ptr<render::Renderer> renderer_;
+  std::shared_ptr<Session> session_;
+
+  RenderState state_;
+  std::shared_ptr<const Picture> newest_;
+  std::uint64_t newest_version_ = 0;
+  bool final_sent_ = false;
+  bool cut_ = true;  // the next picture has nothing in common with the last
+  std::uint32_t render_count_ = 0;
+  std::deque<Clock::time_point> recent_frames_;
+  std::vector<PendingCapture> captures_;
+  Clock::time_point resting_until_;
+};
+
+}  // namespace heliograph::session

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace heliograph::session {
+
+/// The way to one viewer, provided by the transport. Calls come from any thread and with locks
+/// held: they return at once and do not call back.
+class ViewerLink {
+ public:
+  virtual ~ViewerLink() = default;
+  /// Audience::take has a frame for this viewer.
+  virtual void frame_ready() = 0;
+  /// Sends a text message. Waiting messages with the same `key` are replaced by this one, unless
+  /// the key is empty: only the newest position of a camera matters.
+  virtual void send(std::string text, std::string_view key) = 0;
+};
+
+}  // namespace heliograph::session

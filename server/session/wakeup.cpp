@@ -1,0 +1,24 @@
+#include "session/wakeup.hpp"
+
+namespace heliograph::session {
+
+void Wakeup::notify() {
+  {
+    const std::lock_guard lock(mutex_);
+    notified_ = true;
+  }
+  condition_.notify_one();
+}
+
+void Wakeup::wait_until(std::optional<Clock::time_point> deadline) {
+  std::unique_lock lock(mutex_);
+  const auto notified = [&] { return notified_; };
+  if (deadline) {
+    condition_.wait_until(lock, *deadline, notified);
+  } else {
+    condition_.wait(lock, notified);
+  }
+  notified_ = false;
+}
+
+}  // namespace heliograph::session

@@ -1,0 +1,55 @@
+#include "session/worker.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <exception>
+#include <utility>
+
+namespace heliograph::session {
+
+Worker::Worker(std::string name, std::size_t capacity)
+    : name_(std::move(name)), capacity_(capacity), thread_([this] { run(); }) {}
+
+Worker::~Worker() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  condition_.notify_one();
+  thread_.join();
+}
+
+bool Worker::post(std::function<void()> task) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (waiting_.size() >= capacity_) return false;
+    waiting_.push_back(std::move(task));
+  }
+  condition_.notify_one();
+  return true;
+}
+
+bool Worker::has_room() const {
+  const std::lock_guard lock(mutex_);
+  return waiting_.size() < capacity_;
+}
+
+void Worker::run() {
+  while (true) {
+    std::function<void()> task;
+    {
+      std::unique_lock lock(mutex_);
+      condition_.wait(lock, [&] { return stopping_ || !waiting_.empty(); });
+      if (stopping_) return;
+      task = std::move(waiting_.front());
+      waiting_.pop_front();
+    }
+    try {
+      task();
+    } catch (const std::exception& failure) {
+      spdlog::error("{}: {}", name_, failure.what());
+    }
+  }
+}
+
+}  // namespace heliograph::session

@@ -1,0 +1,303 @@
+#include "session/session.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <thread>
+
+namespace heliograph::session {
+namespace {
+
+using nlohmann::json;
+using protocol::CameraSet;
+using protocol::ErrorCode;
+using protocol::Vec3;
+
+/// Remembers what it was sent.
+class RecordingLink : public ViewerLink {
+ public:
+  void frame_ready() override { ++announced; }
+  void send(std::string text, std::string_view key) override {
+    messages.push_back(json::parse(text));
+    keys.emplace_back(key);
+  }
+
+  int announced = 0;
+  std::vector<json> messages;
+  std::vector<std::string> keys;
+};
+
+class SessionTest : public testing::Test {
+ protected:
+  SessionTest() : session_(options(), {{"output", "picture"}, {"normal", "normals"}}, wakeup_) {}
+
+  static SessionOptions options() {
+    SessionOptions options;
+    options.width = 640;
+    options.height = 360;
+    options.limits.max_viewers = 2;
+    options.limits.max_captures = 1;
+    return options;
+  }
+
+  static LoadedScene a_scene() {
+    auto scene = std::make_shared<scene::Scene>();
+    scene->bounds.include(glm::vec3(-1.0f));
+    scene->bounds.include(glm::vec3(1.0f));
+    scene::Camera near;
+    near.name = "near";
+    near.eye = {0.0f, 0.0f, 3.0f};
+    scene::Camera far = near;
+    far.name = "far";
+    far.eye = {0.0f, 0.0f, 30.0f};
+    scene->cameras = {near, far};
+    return {.name = "box", .scene = scene, .resources = nullptr};
+  }
+
+  struct Joined {
+    std::shared_ptr<RecordingLink> link = std::make_shared<RecordingLink>();
+    std::string id;
+  };
+  Joined join() {
+    Joined joined;
+    joined.id = *session_.audience().join(joined.link);
+    session_.audience().start(joined.id);
+    return joined;
+  }
+
+  Wakeup wakeup_;
+  Session session_;
+};
+
+TEST_F(SessionTest, WithoutASceneTellsThatItIsNotReady) {
+  EXPECT_EQ(session_.camera().error().code, ErrorCode::not_ready);
+  EXPECT_EQ(session_.scene_info().error().code, ErrorCode::not_ready);
+  EXPECT_EQ(session_.request_capture({}).error().code, ErrorCode::not_ready);
+}
+
+TEST_F(SessionTest, ASceneBringsItsFirstCamera) {
+  session_.show(a_scene(), "");
+  const auto camera = session_.camera();
+  ASSERT_TRUE(camera);
+  EXPECT_EQ(camera->name, "near");
+  EXPECT_EQ(camera->eye, (Vec3{0.0f, 0.0f, 3.0f}));
+  EXPECT_EQ(session_.scene_info()->cameras, (std::vector<std::string>{"near", "far"}));
+}
+
+TEST_F(SessionTest, ASceneWithoutCamerasIsSeenWhole) {
+  LoadedScene loaded = a_scene();
+  auto bare = std::make_shared<scene::Scene>(*loaded.scene);
+  bare->cameras.clear();
+  loaded.scene = bare;
+  session_.show(std::move(loaded), "");
+  const auto camera = session_.camera();
+  ASSERT_TRUE(camera);
+  EXPECT_EQ(camera->name, std::nullopt);
+  const Vec3 eye = camera->eye;
+  EXPECT_GT(glm::length(glm::vec3(eye[0], eye[1], eye[2])), 1.7f) << "inside the box";
+}
+
+TEST_F(SessionTest, CameraMembersThatAreLeftOutStay) {
+  session_.show(a_scene(), "");
+  const auto moved = session_.set_camera({.eye = Vec3{5, 1, 2}, .vertical_fov = 60.0f}, "");
+  ASSERT_TRUE(moved);
+  EXPECT_EQ(moved->eye, (Vec3{5, 1, 2}));
+  EXPECT_EQ(moved->target, (Vec3{0, 0, 0}));
+  EXPECT_EQ(moved->vertical_fov, 60.0f);
+  EXPECT_EQ(moved->name, std::nullopt) << "a moved camera is no longer the scene's";
+}
+
+TEST_F(SessionTest, ANamedCameraIsTheBaseOfTheRest) {
+  session_.show(a_scene(), "");
+  EXPECT_EQ(session_.set_camera({.name = "far"}, "")->name, "far");
+  const auto adjusted = session_.set_camera({.vertical_fov = 20.0f, .name = "far"}, "");
+  EXPECT_EQ(adjusted->eye, (Vec3{0, 0, 30}));
+  EXPECT_EQ(adjusted->name, std::nullopt);
+  const auto unknown = session_.set_camera({.name = "fat"}, "");
+  EXPECT_EQ(unknown.error().code, ErrorCode::not_found);
+  EXPECT_NE(unknown.error().message.find("far"), std::string::npos);
+}
+
+TEST_F(SessionTest, ARefusedCameraChangesNothing) {
+  session_.show(a_scene(), "");
+  const auto before = session_.camera();
+  EXPECT_EQ(session_.set_camera({.eye = Vec3{2, 2, 2}, .target = Vec3{2, 2, 2}}, "").error().path,
+            "target");
+  EXPECT_EQ(session_.set_camera({.eye = Vec3{0, 0, 0}}, "").error().path, "eye");
+  EXPECT_EQ(session_.set_camera({.up = Vec3{0, 0, 0}}, "").error().path, "up");
+  EXPECT_EQ(*session_.camera(), *before);
+}
+
+TEST_F(SessionTest, EveryChangeHasItsRevision) {
+  session_.show(a_scene(), "");
+  const std::uint32_t first = session_.rev();
+  ASSERT_TRUE(session_.set_camera({.eye = Vec3{1, 2, 3}}, ""));
+  EXPECT_EQ(session_.rev(), first + 1);
+  const protocol::RawJson patch(json{{"exposure", {{"compensation", 1.0}}}});
+  EXPECT_EQ(session_.patch_settings(patch, "")->rev, first + 2);
+  EXPECT_EQ(session_.patch_settings(patch, "")->rev, first + 2) << "nothing changed";
+  EXPECT_EQ(session_.render_state().settings.exposure.compensation, 1.0f);
+}
+
+TEST_F(SessionTest, ABadPatchAppliesNothing) {
+  const protocol::RawJson patch(
+      json{{"exposure", {{"compensation", 1.0}}}, {"view", {{"buffer", "norml"}}}});
+  const auto refused = session_.patch_settings(patch, "");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::invalid_params);
+  EXPECT_EQ(refused.error().path, "view.buffer");
+  EXPECT_NE(refused.error().message.find("normal"), std::string::npos);
+  EXPECT_EQ(session_.render_state().settings, protocol::Settings());
+}
+
+TEST_F(SessionTest, OthersHearOfChangesAndTheCauserDoesNot) {
+  session_.show(a_scene(), "");
+  const Joined causer = join();
+  const Joined other = join();
+  ASSERT_TRUE(session_.set_camera({.eye = Vec3{1, 2, 3}}, causer.id));
+  ASSERT_TRUE(session_.patch_settings(protocol::RawJson(json{{"shadows", {{"enabled", false}}}}),
+                                      causer.id));
+  session_.show(a_scene(), causer.id);
+  EXPECT_TRUE(causer.link->messages.empty());
+  ASSERT_EQ(other.link->messages.size(), 3u);
+  EXPECT_EQ(other.link->messages[0]["method"], "camera.changed");
+  EXPECT_EQ(other.link->messages[0]["params"]["by"], causer.id);
+  EXPECT_EQ(other.link->messages[1]["params"]["patch"], (json{{"shadows", {{"enabled", false}}}}));
+  EXPECT_EQ(other.link->messages[2]["method"], "scene.changed");
+  EXPECT_EQ(other.link->keys, (std::vector<std::string>{"camera.changed", "", ""}))
+      << "only absolute messages may replace each other";
+}
+
+TEST_F(SessionTest, InputsAreEchoedPerViewerUntilTheyLeave) {
+  session_.show(a_scene(), "");
+  const Joined viewer = join();
+  ASSERT_TRUE(session_.set_camera({.eye = Vec3{1, 2, 3}, .seq = 12}, viewer.id));
+  const RenderState state = session_.render_state();
+  ASSERT_EQ(state.inputs.size(), 1u);
+  EXPECT_EQ(state.inputs[0].viewer, viewer.id);
+  EXPECT_EQ(state.inputs[0].seq, 12u);
+  session_.leave(viewer.id);
+  EXPECT_TRUE(session_.render_state().inputs.empty());
+}
+
+TEST_F(SessionTest, PictureSizesAreCutToTheLimit) {
+  const Joined viewer = join();
+  const auto stream = session_.configure_stream(
+      {.width = 16384, .height = 200, .quality = 50, .max_fps = 10.0}, viewer.id);
+  ASSERT_TRUE(stream);
+  EXPECT_EQ(stream->width, 3840u);
+  EXPECT_EQ(stream->height, 200u);
+  EXPECT_EQ(stream->quality, 50u);
+  EXPECT_EQ(session_.render_state().width, 3840u);
+}
+
+TEST_F(SessionTest, WithoutAStreamOnlyTheSizeCanBeSet) {
+  EXPECT_EQ(session_.configure_stream({.width = 320}, "")->width, 320u);
+  EXPECT_EQ(session_.configure_stream({.quality = 50}, "").error().code, ErrorCode::not_ready);
+}
+
+TEST_F(SessionTest, AFullSessionSaysSo) {
+  const Joined first = join();
+  const Joined second = join();
+  const auto third = session_.audience().join(std::make_shared<RecordingLink>());
+  EXPECT_EQ(third.error().code, ErrorCode::full);
+  session_.leave(first.id);
+  EXPECT_TRUE(session_.audience().join(std::make_shared<RecordingLink>()));
+}
+
+TEST_F(SessionTest, CapturesAreCheckedAndLimited) {
+  session_.show(a_scene(), "");
+  EXPECT_EQ(session_.request_capture({.buffer = "depth"}).error().path, "buffer");
+  EXPECT_TRUE(session_.request_capture({.buffer = "normal"}));
+  EXPECT_EQ(session_.request_capture({.buffer = "normal"}).error().code, ErrorCode::full);
+  EXPECT_EQ(session_.take_captures().size(), 1u);
+  EXPECT_TRUE(session_.take_captures().empty());
+}
+
+std::vector<stream::SharedFrame> encoded(std::uint32_t render_id, std::vector<int> qualities) {
+  std::vector<stream::SharedFrame> frames;
+  for (const int quality : qualities) {
+    auto frame = std::make_shared<stream::EncodedFrame>();
+    frame->header.render_id = render_id;
+    frame->header.quality = static_cast<std::uint16_t>(quality);
+    frame->header.width = frame->header.full_width = 16;
+    frame->header.height = frame->header.full_height = 16;
+    frame->payload.resize(100);
+    frame->encoded_at = Clock::now();
+    frames.push_back(frame);
+  }
+  return frames;
+}
+
+TEST_F(SessionTest, ViewersGetTheirQualityAndShareTheBytes) {
+  const Joined first = join();
+  const Joined second = join();
+  ASSERT_TRUE(session_.configure_stream({.quality = 40}, first.id));
+  EXPECT_EQ(session_.audience().quality_classes(), (std::vector<int>{40, 80}));
+  session_.audience().publish(encoded(7, {40, 80}));
+  const auto low = session_.audience().take(first.id);
+  const auto high = session_.audience().take(second.id);
+  ASSERT_TRUE(low && high);
+  EXPECT_EQ(protocol::decode_frame_header(low->header)->quality, 40);
+  EXPECT_EQ(protocol::decode_frame_header(low->header)->frame_seq, 1u);
+  EXPECT_EQ(protocol::decode_frame_header(high->header)->quality, 80);
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  session_.audience().publish(encoded(8, {95}));
+  EXPECT_EQ(session_.audience().take(first.id)->frame, session_.audience().take(second.id)->frame);
+}
+
+TEST_F(SessionTest, ANewcomerGetsTheLatestPicture) {
+  session_.audience().publish(encoded(3, {95}));
+  const Joined viewer = join();
+  EXPECT_GT(viewer.link->announced, 0);
+  EXPECT_EQ(session_.audience().take(viewer.id)->frame->header.render_id, 3u);
+}
+
+TEST_F(SessionTest, WhoPausesIsSentNothingAndResumesWithTheLatest) {
+  const Joined viewer = join();
+  ASSERT_TRUE(session_.configure_stream({.paused = true}, viewer.id));
+  EXPECT_FALSE(session_.audience().watching());
+  session_.audience().publish(encoded(4, {80}));
+  EXPECT_FALSE(session_.audience().take(viewer.id));
+  ASSERT_TRUE(session_.configure_stream({.paused = false}, viewer.id));
+  EXPECT_EQ(session_.audience().take(viewer.id)->frame->header.render_id, 4u);
+}
+
+TEST_F(SessionTest, FramesAreWantedWhileTheWindowIsOpen) {
+  EXPECT_FALSE(session_.audience().wants_frame()) << "nobody is there";
+  const Joined viewer = join();
+  ASSERT_TRUE(session_.configure_stream({.max_fps = 240.0}, viewer.id));
+  for (std::uint32_t id = 1; id <= stream::ack_window; ++id) {
+    session_.audience().publish(encoded(id, {80}));
+    ASSERT_TRUE(session_.audience().take(viewer.id));
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_FALSE(session_.audience().wants_frame());
+  ASSERT_TRUE(session_.audience().acknowledge(viewer.id, {.frame_seq = 1}));
+  EXPECT_TRUE(session_.audience().wants_frame());
+}
+
+TEST_F(SessionTest, ADepartedViewerIsForgottenButCounted) {
+  Joined viewer = join();
+  session_.audience().publish(encoded(1, {80}));
+  ASSERT_TRUE(session_.audience().take(viewer.id));
+  session_.leave(viewer.id);
+  viewer.link.reset();
+  session_.audience().publish(encoded(2, {80}));
+  EXPECT_FALSE(session_.audience().take(viewer.id));
+  EXPECT_EQ(session_.audience().acknowledge(viewer.id, {.frame_seq = 1}).error().code,
+            ErrorCode::not_ready);
+  EXPECT_EQ(session_.audience().totals().viewers, 0u);
+  EXPECT_EQ(session_.audience().totals().sent.frames, 1u);
+}
+
+TEST_F(SessionTest, StatsComeNoMoreOftenThanAskedFor) {
+  const Joined viewer = join();
+  ASSERT_TRUE(session_.audience().subscribe(viewer.id, std::chrono::hours(1)));
+  for (int i = 0; i < 3; ++i) session_.audience().publish_stats({.render_id = 5});
+  ASSERT_EQ(viewer.link->messages.size(), 1u);
+  EXPECT_EQ(viewer.link->messages[0]["params"]["render_id"], 5);
+}
+
+}  // namespace
+}  // namespace heliograph::session
