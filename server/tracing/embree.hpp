@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <type_traits>
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+namespace heliograph::tracing {
+
+struct EmbreeRelease {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+  void operator()(RTCBVH bvh) const { rtcReleaseBVH(bvh); }
+};
+
+/// Owns one reference to an Embree object: EmbreeHandle<RTCScene>.
+template <typename Handle>
+using EmbreeHandle = std::unique_ptr<std::remove_pointer_t<Handle>, EmbreeRelease>;
+
+/// @throws std::runtime_error when this processor will not do
+EmbreeHandle<RTCDevice> make_embree_device();
+
+/// @throws std::runtime_error naming `action` when something failed on this thread since last asked
+void check_embree(RTCDevice device, const char* action);
+
+}  // namespace heliograph::tracing

@@ -1,0 +1,196 @@
+#include "tracing/bvh.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <bit>
+#include <map>
+
+#include "tests/support/traced_scene.hpp"
+
+namespace heliograph::tracing {
+namespace {
+
+using namespace heliograph::test;
+
+struct Box {
+  glm::vec3 low;
+  glm::vec3 high;
+};
+
+Box left_box(const shared::BvhNode& node) {
+  return {{node.left_xy.x, node.left_xy.z, node.both_z.x},
+          {node.left_xy.y, node.left_xy.w, node.both_z.y}};
+}
+
+Box right_box(const shared::BvhNode& node) {
+  return {{node.right_xy.x, node.right_xy.z, node.both_z.z},
+          {node.right_xy.y, node.right_xy.w, node.both_z.w}};
+}
+
+bool is_leaf(std::uint32_t link) { return link & shared::bvh_leaf_bit; }
+
+std::uint32_t leaf_count(std::uint32_t link) {
+  return ((link >> shared::bvh_leaf_count_shift) & shared::bvh_leaf_count_mask) + 1;
+}
+
+shared::BvhTriangle triangle_at(const Bvh& bvh, std::size_t index) {
+  std::array<glm::vec4, 3> texels;
+  for (std::size_t i = 0; i < 3; ++i) texels[i] = bvh.triangles[3 * index + i];
+  return std::bit_cast<shared::BvhTriangle>(texels);
+}
+
+/// Walks every branch under `link`, checking that boxes hold what is below, and counts triangles.
+void check_mesh(const Bvh& bvh, std::uint32_t link, const Box& box, float slack,
+                std::map<std::uint32_t, int>& seen) {
+  if (!is_leaf(link)) {
+    const shared::BvhNode& node = bvh.records[link & shared::bvh_number_mask];
+    for (const auto& [child, inner] : {std::pair(node.left, left_box(node)),
+                                       std::pair(node.right, right_box(node))}) {
+      for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_GE(inner.low[axis], box.low[axis]);
+        EXPECT_LE(inner.high[axis], box.high[axis]);
+      }
+      check_mesh(bvh, child, inner, slack, seen);
+    }
+    return;
+  }
+  const std::uint32_t first = link & shared::bvh_leaf_first_mask;
+  for (std::uint32_t i = first; i < first + leaf_count(link); ++i) {
+    const shared::BvhTriangle triangle = triangle_at(bvh, i);
+    ++seen[triangle.triangle & shared::bvh_number_mask];
+    for (const glm::vec3& corner : {triangle.corner, triangle.corner + triangle.edge1,
+                                    triangle.corner + triangle.edge2}) {
+      for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_GE(corner[axis], box.low[axis] - slack);
+        EXPECT_LE(corner[axis], box.high[axis] + slack);
+      }
+    }
+  }
+}
+
+/// All instance records under the top level.
+std::vector<shared::BvhInstance> instances_below(const Bvh& bvh, std::uint32_t link) {
+  if (link == shared::bvh_no_link) return {};
+  if (is_leaf(link)) {
+    return {std::bit_cast<shared::BvhInstance>(bvh.records[link & shared::bvh_leaf_first_mask])};
+  }
+  const shared::BvhNode& node = bvh.records[link & shared::bvh_number_mask];
+  std::vector<shared::BvhInstance> result = instances_below(bvh, node.left);
+  for (const auto& instance : instances_below(bvh, node.right)) result.push_back(instance);
+  return result;
+}
+
+class BvhTest : public testing::Test {
+ protected:
+  Bvh build(const scene::Scene& scene) const { return build_bvh(device_.get(), scene); }
+  EmbreeHandle<RTCDevice> device_ = make_embree_device();
+};
+
+constexpr Box everywhere{glm::vec3(-1e30f), glm::vec3(1e30f)};
+
+TEST_F(BvhTest, HoldsEveryTriangleOnceWithinItsBoxes) {
+  const scene::Scene scene = two_level_scene(1);
+  const Bvh bvh = build(scene);
+  const auto instances = instances_below(bvh, bvh.root);
+  ASSERT_EQ(instances.size(), scene.instances.size());
+  std::map<std::uint32_t, int> placed;
+  for (const shared::BvhInstance& record : instances) {
+    const std::uint32_t index = record.instance & shared::bvh_number_mask;
+    ++placed[index];
+    std::map<std::uint32_t, int> seen;
+    check_mesh(bvh, record.root, everywhere, 1e-5f, seen);
+    const scene::Mesh& mesh = scene.meshes.at(scene.instances.at(index).mesh);
+    EXPECT_EQ(seen.size(), mesh.indices.size() / 3);
+    for (const auto& [triangle, count] : seen) EXPECT_EQ(count, 1) << "triangle " << triangle;
+  }
+  EXPECT_EQ(placed.size(), scene.instances.size());
+  EXPECT_TRUE(bvh.masked);
+  EXPECT_LE(bvh.depth, shared::bvh_stack_size);
+}
+
+TEST_F(BvhTest, EveryWordOfALinkIsANormalFloat) {
+  const Bvh bvh = build(two_level_scene(2));
+  for (const shared::BvhInstance& record : instances_below(bvh, bvh.root)) {
+    EXPECT_TRUE(std::isnormal(std::bit_cast<float>(record.root)));
+    EXPECT_TRUE(std::isnormal(std::bit_cast<float>(record.instance)));
+    EXPECT_TRUE(record.mask == shared::bvh_no_link ||
+                std::isnormal(std::bit_cast<float>(record.mask)));
+  }
+}
+
+TEST_F(BvhTest, NothingIsTheRootOfAnEmptyScene) {
+  EXPECT_EQ(build({}).root, shared::bvh_no_link);
+  scene::Scene scene;
+  add_mesh(scene, quad(), plain_material());
+  EXPECT_EQ(build(scene).root, shared::bvh_no_link) << "no instance";
+  place(scene, add_mesh(scene, {}, plain_material()), glm::mat4(1.0f));
+  EXPECT_EQ(build(scene).root, shared::bvh_no_link) << "a mesh without triangles";
+}
+
+TEST_F(BvhTest, OneTriangleInOneInstance) {
+  Random random(3);
+  scene::Scene scene;
+  place(scene, add_mesh(scene, soup(random, 1, 1.0f), plain_material()), glm::mat4(1.0f));
+  const Bvh bvh = build(scene);
+  ASSERT_TRUE(is_leaf(bvh.root));
+  const auto instances = instances_below(bvh, bvh.root);
+  ASSERT_EQ(instances.size(), 1u);
+  EXPECT_TRUE(is_leaf(instances[0].root));
+  EXPECT_EQ(leaf_count(instances[0].root), 1u);
+}
+
+TEST_F(BvhTest, LeavesOutWhatNoRayCanMeet) {
+  scene::Scene scene;
+  shared::Material invisible = plain_material();
+  invisible.flags = shared::material_alpha_mask;
+  invisible.base_color.w = 0.2f;
+  const std::uint32_t plain = add_mesh(scene, quad(), plain_material());
+  place(scene, add_mesh(scene, quad(), invisible), glm::mat4(1.0f));
+  place(scene, plain, glm::scale(glm::mat4(1.0f), glm::vec3(1.0f, 0.0f, 1.0f)));
+  place(scene, plain, glm::mat4(1.0f));
+  const Bvh bvh = build(scene);
+  const auto instances = instances_below(bvh, bvh.root);
+  ASSERT_EQ(instances.size(), 1u);
+  EXPECT_EQ(instances[0].instance & shared::bvh_number_mask, 2u);
+}
+
+TEST_F(BvhTest, StaysShallowOverThousandsOfEqualTriangles) {
+  Random random(4);
+  scene::Mesh mesh = soup(random, 1, 1.0f);
+  for (int i = 0; i < 5000; ++i) mesh.indices.insert(mesh.indices.end(), {0, 1, 2});
+  scene::Scene scene;
+  place(scene, add_mesh(scene, mesh, plain_material()), glm::mat4(1.0f));
+  EXPECT_LT(build(scene).depth, 24u);
+}
+
+TEST_F(BvhTest, FitsTheStackWhenEveryTriangleIsHalfAsLarge) {
+  scene::Mesh mesh;
+  float size = 1e6f;
+  for (int i = 0; i < 70; ++i, size *= 0.5f) {
+    for (const glm::vec3& corner : {glm::vec3(0, 0, 0), {1, 0, 0.5f}, {0, 1, 0.5f}}) {
+      mesh.indices.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
+      add_vertex(mesh, size * (corner + 1.0f), {});
+    }
+  }
+  scene::Scene scene;
+  place(scene, add_mesh(scene, mesh, plain_material()), glm::mat4(1.0f));
+  EXPECT_LE(build(scene).depth, shared::bvh_stack_size);
+}
+
+TEST_F(BvhTest, IgnoresTrianglesWithoutAPlace) {
+  Random random(5);
+  scene::Mesh mesh = soup(random, 8, 1.0f);
+  mesh.vertices[4].position.x = std::numeric_limits<float>::quiet_NaN();
+  mesh.vertices[7].position.y = std::numeric_limits<float>::infinity();
+  scene::Scene scene;
+  place(scene, add_mesh(scene, mesh, plain_material()), glm::mat4(1.0f));
+  const Bvh bvh = build(scene);
+  std::map<std::uint32_t, int> seen;
+  check_mesh(bvh, instances_below(bvh, bvh.root).at(0).root, everywhere, 1e-5f, seen);
+  EXPECT_EQ(seen.size(), 6u);
+  EXPECT_FALSE(seen.contains(1) || seen.contains(2));
+}
+
+}  // namespace
+}  // namespace heliograph::tracing
