@@ -66,6 +66,7 @@ Document make_atrium(int case_number, const ClearSky& sky) {
   add_balustrades(document, materials);
   add_vaults(document, materials);
   add_aisle_walls(document, materials);
+  add_outer_walls(document, materials);
   add_gallery(document, materials);
   add_roof(document, materials);
   add_lamps(document, materials);

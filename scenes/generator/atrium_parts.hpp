@@ -14,6 +14,7 @@ void add_cornices(Document& document, const AtriumMaterials& materials);
 void add_balustrades(Document& document, const AtriumMaterials& materials);
 void add_vaults(Document& document, const AtriumMaterials& materials);
 void add_aisle_walls(Document& document, const AtriumMaterials& materials);
+void add_outer_walls(Document& document, const AtriumMaterials& materials);
 void add_gallery(Document& document, const AtriumMaterials& materials);
 void add_roof(Document& document, const AtriumMaterials& materials);
 void add_lamps(Document& document, const AtriumMaterials& materials);

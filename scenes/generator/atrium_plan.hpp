@@ -27,6 +27,10 @@ inline constexpr Storey upper{6.6f, 10.0f, 1.68f, 12.35f, 12.9f};
 
 inline constexpr float vault_springing = 4.2f;  // of the aisles
 
+// The roof rises outwards from the eaves to its ridge, this far behind the column axes.
+inline constexpr float roof_depth = 5.4f;
+inline constexpr float ridge_height = 14.9f;
+
 inline float arch_radius(const Storey& storey, float bay_width) {
   return storey.arch_radius - 0.5f * (bay - bay_width);
 }

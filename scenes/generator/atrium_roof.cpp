@@ -12,7 +12,7 @@ namespace {
 constexpr float pi = glm::pi<float>();
 constexpr float tile_pitch = 0.30f;
 const glm::vec2 eaves{-0.62f, 12.98f};  // outwards from the column axes, height
-const glm::vec2 ridge{5.4f, 14.9f};
+const glm::vec2 ridge{plan::roof_depth, plan::ridge_height};
 
 // One run of convex cover tiles up the slope, each course tucked under the next.
 Mesh tile_run(float length, int courses) {

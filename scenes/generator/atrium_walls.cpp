@@ -199,14 +199,15 @@ void add_aisle_walls(Document& document, const AtriumMaterials& m) {
            [](float l) { return wall_strip(l, plan::upper.floor, plan::upper.top); });
   add_ring("dado", m.floor_red, dado);
   add_ring("impost", m.trim, impost);
+  Mesh end_frames = field_frames(end_wall_fields());
+  end_frames.append(door_frame());
   place_on_walls(document,
                  document.add_mesh("wall_frames", field_frames(long_wall_fields()), m.trim),
-                 document.add_mesh("wall_frames_end", field_frames(end_wall_fields()), m.trim));
+                 document.add_mesh("wall_frames_end", std::move(end_frames), m.trim));
   place_on_walls(
       document, document.add_mesh("wall_fresco", field_paintings(long_wall_fields()), m.fresco),
       document.add_mesh("wall_fresco_end", field_paintings(end_wall_fields()), m.fresco));
   place_on_walls(document, -1, document.add_mesh("door", door_leaves(), m.door));
-  place_on_walls(document, -1, document.add_mesh("door_frame", door_frame(), m.trim));
 
   const int shaft = document.add_mesh("pilaster", pilaster(plan::vault_springing - 0.02f), m.trim);
   for (const plan::Spot& spot : plan::columns()) {
@@ -215,6 +216,22 @@ void add_aisle_walls(Document& document, const AtriumMaterials& m) {
     outwards *= spot.on_long_side ? plan::walls.y / plan::arcade.y : plan::walls.x / plan::arcade.x;
     document.place(shaft, {on_wall.x, 0.0f, on_wall.y}, spot.turn);
   }
+}
+
+void add_outer_walls(Document& document, const AtriumMaterials& m) {
+  // Under the ridge of the roof, which the coping closes.
+  const glm::vec2 extents = plan::arcade + plan::roof_depth;
+  constexpr float top = plan::ridge_height - 0.02f;
+  Profile wall({0.0f, -0.12f});
+  wall.line_to({0.0f, top});
+  document.place(document.add_mesh("outer_wall", rectangular_moulding(wall, extents), m.brick), {});
+  Profile coping({0.0f, top - 0.16f});
+  coping.arc_by({0.10f, 0.08f}, -0.5f, 4)
+      .line_by({0.0f, 0.10f})
+      .line_to({-0.10f, top + 0.14f})
+      .line_to({-0.30f, top + 0.02f})
+      .line_to({-0.30f, top - 0.14f});
+  document.place(document.add_mesh("coping", rectangular_moulding(coping, extents), m.trim), {});
 }
 
 }  // namespace heliograph::scenes
