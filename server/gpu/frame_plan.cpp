@@ -246,7 +246,7 @@ void FramePlan::record(const Pass& pass, VkCommandBuffer commands, std::uint32_t
                             pass.indirect->second);
     } else {
       vkCmdDispatch(commands, groups(pass.threads.width, pass.local_size.width),
-                    groups(pass.threads.height, pass.local_size.height), 1);
+                    groups(pass.threads.height, pass.local_size.height), pass.layers);
     }
   }
   vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_, query + 1);
@@ -359,8 +359,9 @@ PassBuilder& PassBuilder::depth(ImageRef image, float clear) {
   return *this;
 }
 
-PassBuilder& PassBuilder::dispatch(VkExtent2D threads) {
+PassBuilder& PassBuilder::dispatch(VkExtent2D threads, std::uint32_t layers) {
   plan_.passes_[pass_].threads = threads;
+  plan_.passes_[pass_].layers = layers;
   return *this;
 }
 

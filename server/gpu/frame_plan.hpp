@@ -65,8 +65,8 @@ class PassBuilder {
   PassBuilder& color(ImageRef image, std::optional<std::array<float, 4>> clear);
   PassBuilder& depth(ImageRef image, float clear);
 
-  /// One thread per pixel (or per element).
-  PassBuilder& dispatch(VkExtent2D threads);
+  /// One thread per pixel (or per element) and layer.
+  PassBuilder& dispatch(VkExtent2D threads, std::uint32_t layers = 1);
   /// Groups from a VkDispatchIndirectCommand at `offset` of a buffer, which counts as read.
   PassBuilder& dispatch_indirect(BufferRef groups, VkDeviceSize offset);
   /// Draw calls of a raster pass; the pipeline and shared sets are bound.

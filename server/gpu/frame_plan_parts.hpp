@@ -38,6 +38,7 @@ struct FramePlan::Pass {
   std::optional<Attachment> depth;
   std::optional<std::pair<std::uint32_t, VkDeviceSize>> indirect;
   VkExtent2D threads{};
+  std::uint32_t layers = 1;
   std::size_t constants_size = 0;
   std::function<void(std::byte*)> constants;
   std::function<void(VkCommandBuffer, VkPipelineLayout)> draw;

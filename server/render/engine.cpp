@@ -1,0 +1,87 @@
+#include "render/engine_parts.hpp"
+#include "render/scene_resources.hpp"
+
+namespace heliograph::render {
+namespace {
+
+protocol::DeviceType device_type(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_CPU: return protocol::DeviceType::cpu;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return protocol::DeviceType::integrated;
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return protocol::DeviceType::discrete;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return protocol::DeviceType::virtual_;
+    default: return protocol::DeviceType::other;
+  }
+}
+
+std::unique_ptr<tracing::RayTracer> make_tracer(const gpu::Device& device,
+                                                const std::string& wanted) {
+  if (wanted == "embree" || (wanted == "auto" && device.is_cpu())) {
+    return tracing::make_embree_tracer(device);
+  }
+  if (wanted == "software" || wanted == "auto") return tracing::make_software_tracer(device);
+  throw gpu::GpuError("there is no tracer \"" + wanted + "\": choose auto, embree or software");
+}
+
+}  // namespace
+
+Engine::Parts::Parts(const EngineOptions& options)
+    : instance(options.validation),
+      device(instance, {options.device, options.cache_folder}),
+      programs(device),
+      tracer(make_tracer(device, options.tracer)),
+      split_sum_table(make_split_sum_table(device, programs)),
+      around(make_environment_sampler(device, true)),
+      clamped(make_environment_sampler(device, false)),
+      info{device.report().name, device.report().driver, device_type(device.report().type)} {}
+
+Engine::Engine(const EngineOptions& options) : parts_(std::make_unique<Parts>(options)) {}
+Engine::~Engine() = default;
+
+const DeviceInfo& Engine::device() const { return parts_->info; }
+protocol::TracerKind Engine::tracer() const { return parts_->tracer->kind(); }
+
+std::uint32_t Engine::max_image_size() const {
+  return std::min(parts_->device.limits().maxImageDimension2D, 8192u);
+}
+
+std::uint64_t Engine::validation_messages() const {
+  return parts_->instance.validation_messages();
+}
+
+std::shared_ptr<const SceneResources> Engine::upload(std::shared_ptr<const scene::Scene> scene,
+                                                     const scene::Environment& environment) {
+  return std::make_shared<const SceneResources>(parts_->device, parts_->programs, std::move(scene),
+                                                environment, *parts_->tracer);
+}
+
+std::string describe_devices(const EngineOptions& options) {
+  std::string text = "Driver files (in the order the Vulkan loader reads them):\n";
+  const auto files = gpu::describe_driver_files();
+  for (const auto& file : files) text += "  " + file + "\n";
+  if (files.empty()) text += "  none found\n";
+  try {
+    const gpu::Instance instance(false);
+    text += "Devices:\n";
+    bool chosen = false;
+    for (const auto& report : gpu::survey_devices(instance, options.device)) {
+      text += std::string(report.chosen ? "* " : "  ") + report.name + ", " +
+              gpu::type_name(report.type) + ", Vulkan " + report.version + ", " + report.driver +
+              "\n    " + (report.chosen ? "chosen: " : "not chosen: ") + report.reason + "\n";
+      if (!report.chosen) continue;
+      chosen = true;
+      const bool cpu = report.type == VK_PHYSICAL_DEVICE_TYPE_CPU;
+      text += std::string("    default ray tracer: ") +
+              (cpu ? "embree (its memory is ours)" : "software (our BVH in a compute shader)") +
+              "\n";
+    }
+    if (!chosen) {
+      text += "  none will do; mesa-vulkan-drivers has one for machines without a GPU\n";
+    }
+  } catch (const gpu::GpuError& error) {
+    text += std::string("Vulkan does not start: ") + error.what() + "\n";
+  }
+  return text;
+}
+
+}  // namespace heliograph::render

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "gpu/device.hpp"
+#include "render/environment_prefilter.hpp"
+#include "render/programs.hpp"
+#include "render/renderer.hpp"
+#include "tracing/ray_tracer.hpp"
+
+namespace heliograph::render {
+
+/// What an engine is made of, in order of construction.
+struct Engine::Parts {
+  explicit Parts(const EngineOptions& options);
+
+  gpu::Instance instance;
+  gpu::Device device;
+  Programs programs;
+  std::unique_ptr<tracing::RayTracer> tracer;
+  gpu::Image split_sum_table;
+  gpu::Sampler around;   // wraps in u: equirectangular maps
+  gpu::Sampler clamped;
+  DeviceInfo info;
+};
+
+}  // namespace heliograph::render

@@ -1,0 +1,115 @@
+#include "render/environment_prefilter.hpp"
+
+#include <vector>
+
+#include "gpu/frame_plan.hpp"
+#include "render/irradiance.hpp"
+
+namespace heliograph::render {
+namespace {
+
+constexpr std::uint32_t cube_size = 256;
+constexpr std::uint32_t cube_levels = 6;  // 256 ... 8
+constexpr std::uint32_t samples_per_texel = 48;
+constexpr std::uint32_t table_size = 128;
+
+struct PrefilterConstants {
+  float roughness;
+  float source_size;
+  std::uint32_t samples;
+};
+
+gpu::Image make_cube(const gpu::Device& device, const char* name) {
+  gpu::ImageDesc desc{.name = name, .extent = {cube_size, cube_size}};
+  desc.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+  desc.levels = cube_levels;
+  desc.layers = 6;
+  desc.cube = true;
+  return gpu::Image(device, desc);
+}
+
+gpu::Image upload_map(const gpu::Device& device, const scene::Environment& environment) {
+  std::vector<glm::vec4> texels;
+  texels.reserve(environment.radiance.size());
+  for (const glm::vec3& radiance : environment.radiance) texels.emplace_back(radiance, 1.0f);
+  gpu::ImageDesc desc{.name = "environment", .extent = {environment.width, environment.height}};
+  desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+  gpu::Image image(device, desc);
+  image.upload(std::as_bytes(std::span(texels)));
+  return image;
+}
+
+}  // namespace
+
+gpu::Sampler make_environment_sampler(const gpu::Device& device, bool wrap_u) {
+  VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+  info.magFilter = info.minFilter = VK_FILTER_LINEAR;
+  info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
+  info.addressModeU =
+      wrap_u ? VK_SAMPLER_ADDRESS_MODE_REPEAT : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  info.addressModeV = info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  info.maxLod = VK_LOD_CLAMP_NONE;
+  return gpu::Sampler(device, info);
+}
+
+EnvironmentMaps prefilter_environment(const gpu::Device& device, const Programs& programs,
+                                      const scene::Environment& environment) {
+  EnvironmentMaps maps{upload_map(device, environment), make_cube(device, "prefiltered"),
+                       project_irradiance(environment)};
+  const gpu::Image source_cube = make_cube(device, "environment cube");
+  const gpu::Sampler around = make_environment_sampler(device, true);
+  const gpu::Sampler clamped = make_environment_sampler(device, false);
+
+  gpu::FramePlan plan(device, {cube_size, cube_size});
+  const auto map = plan.import(maps.map, std::nullopt, around.handle());
+  std::vector<gpu::ImageRef> source_levels;
+  for (std::uint32_t level = 0; level < cube_levels; ++level) {
+    source_levels.push_back(plan.import(source_cube, level, VK_NULL_HANDLE));
+  }
+  plan.pass("environment.cube", programs.environment_cube)
+      .read(map)
+      .write(source_levels[0])
+      .dispatch(plan.extent(), 6);
+  for (std::uint32_t level = 1; level < cube_levels; ++level) {
+    plan.pass("environment.mip", programs.cube_mip)
+        .read(source_levels[level - 1])
+        .write(source_levels[level])
+        .dispatch({cube_size >> level, cube_size >> level}, 6);
+  }
+  plan.compile();
+  plan.execute();
+
+  // A plan of its own: the cube as a whole is another resource than its levels, and the wait
+  // between two plans is what orders them.
+  gpu::FramePlan filter(device, {cube_size, cube_size});
+  const auto filter_source = filter.import(source_cube, std::nullopt, clamped.handle());
+  for (std::uint32_t level = 0; level < cube_levels; ++level) {
+    const float roughness = static_cast<float>(level) / (cube_levels - 1);
+    const auto target = filter.import(maps.prefiltered, level, VK_NULL_HANDLE);
+    filter.pass("environment.prefilter", programs.prefilter_environment)
+        .read(filter_source)
+        .write(target)
+        .constants(PrefilterConstants{roughness, cube_size, level ? samples_per_texel : 1u})
+        .dispatch({cube_size >> level, cube_size >> level}, 6);
+  }
+  filter.compile();
+  filter.execute();
+  return maps;
+}
+
+gpu::Image make_split_sum_table(const gpu::Device& device, const Programs& programs) {
+  gpu::ImageDesc desc{.name = "split sum", .extent = {table_size, table_size}};
+  desc.format = VK_FORMAT_R32G32_SFLOAT;
+  desc.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+  gpu::Image table(device, desc);
+  gpu::FramePlan plan(device, desc.extent);
+  plan.pass("split_sum_table", programs.split_sum_table)
+      .write(plan.import(table, 0, VK_NULL_HANDLE))
+      .constants(std::uint32_t{256})
+      .dispatch(desc.extent);
+  plan.compile();
+  plan.execute();
+  return table;
+}
+
+}  // namespace heliograph::render

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "gpu/frame_plan.hpp"
+#include "render/programs.hpp"
+#include "render/scene_resources.hpp"
+#include "shaders/shared/frame_constants.h"
+#include "tracing/ray_tracer.hpp"
+
+namespace heliograph::render {
+
+/// What a frame is made from. References outlive the plan; `constants` changes from frame to frame.
+struct FrameInputs {
+  const Programs& programs;
+  const SceneResources& scene;
+  const tracing::RayTracer& tracer;
+  const shared::FrameConstants& constants;
+  const std::uint32_t& samples;  // already in the accumulated picture
+};
+
+/// The buffers that outlive the frame or leave it.
+struct FrameOutputs {
+  gpu::History accumulated;  // linear radiance
+  gpu::ImageRef picture;     // sRGB, RGBA8
+};
+
+/// Declares all passes of a frame, in order.
+FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in);
+
+}  // namespace heliograph::render

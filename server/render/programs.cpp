@@ -1,0 +1,69 @@
+#include "render/programs.hpp"
+
+#include <cstddef>
+
+#include "render/gbuffer.hpp"
+#include "shaders/embedded.hpp"
+#include "shaders/shared/scene.h"
+
+namespace heliograph::render {
+namespace {
+
+std::vector<gpu::DescriptorLayout::Binding> frame_bindings() {
+  return {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
+          {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+          {2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+          {3, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+          {4, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
+          {5, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
+          {6, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}};
+}
+
+std::vector<gpu::DescriptorLayout::Binding> material_bindings() {
+  std::vector<gpu::DescriptorLayout::Binding> bindings;
+  for (std::uint32_t i = 0; i < material_textures; ++i) {
+    bindings.push_back({i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER});
+  }
+  return bindings;
+}
+
+gpu::RasterState gbuffer_state() {
+  using shared::Vertex;
+  gpu::RasterState state;
+  state.color_formats.assign(GBuffer::formats.begin(), GBuffer::formats.end());
+  state.depth_format = VK_FORMAT_D32_SFLOAT;
+  state.vertex_bindings = {{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX}};
+  state.vertex_attributes = {
+      {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
+      {1, 0, VK_FORMAT_R16G16_UNORM, offsetof(Vertex, color_rg)},
+      {2, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal)},
+      {3, 0, VK_FORMAT_R16G16_UNORM, offsetof(Vertex, color_ba)},
+      {4, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, tangent)},
+      {5, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, uv0)},
+  };
+  return state;
+}
+
+}  // namespace
+
+Programs::Programs(const gpu::Device& device)
+    : frame_layout(device, "frame", frame_bindings()),
+      material_layout(device, "material", material_bindings()),
+      environment_cube(device, shaders::environment_cube),
+      cube_mip(device, shaders::cube_mip),
+      prefilter_environment(device, shaders::prefilter_environment),
+      split_sum_table(device, shaders::split_sum_table),
+      gbuffer(device, shaders::gbuffer_vert, shaders::gbuffer_frag, gbuffer_state(),
+              {{frame_set, &frame_layout}, {material_set, &material_layout}}),
+      gbuffer_masked(device, shaders::gbuffer_vert, shaders::gbuffer_masked_frag, gbuffer_state(),
+                     {{frame_set, &frame_layout}, {material_set, &material_layout}}),
+      begin_rays(device, shaders::begin_rays),
+      shadow_rays(device, shaders::shadow_rays, {{frame_set, &frame_layout}}),
+      ambient_rays(device, shaders::ambient_rays, {{frame_set, &frame_layout}}),
+      resolve_visibility(device, shaders::resolve_visibility),
+      skybox(device, shaders::skybox, {{frame_set, &frame_layout}}),
+      compose(device, shaders::compose, {{frame_set, &frame_layout}}),
+      accumulate(device, shaders::accumulate, {{frame_set, &frame_layout}}),
+      present(device, shaders::present, {{frame_set, &frame_layout}}) {}
+
+}  // namespace heliograph::render

@@ -1,0 +1,184 @@
+#include "render/scene_resources.hpp"
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+
+namespace heliograph::render {
+namespace {
+
+template <typename Element>
+gpu::Buffer upload(const gpu::Device& device, const char* name,
+                   const std::vector<Element>& elements, VkBufferUsageFlags usage = 0) {
+  const auto bytes = std::as_bytes(std::span(elements));
+  if (bytes.size() > device.limits().maxStorageBufferRange) {
+    throw gpu::GpuError("the scene's " + std::string(name) + " take " +
+                        std::to_string(bytes.size() >> 20) + " MiB; this device binds at most " +
+                        std::to_string(device.limits().maxStorageBufferRange >> 20) + " MiB");
+  }
+  return gpu::upload_buffer(device, name, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | usage);
+}
+
+VkSamplerAddressMode address_mode(std::uint32_t wrap) {
+  switch (wrap) {
+    case shared::wrap_clamp: return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    case shared::wrap_mirror: return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
+    default: return VK_SAMPLER_ADDRESS_MODE_REPEAT;
+  }
+}
+
+VkFilter filter(scene::Filter from) {
+  return from == scene::Filter::nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
+}
+
+VkSamplerCreateInfo sampler_info(const scene::Sampler& from) {
+  VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+  info.magFilter = filter(from.magnify);
+  info.minFilter = filter(from.minify);
+  info.mipmapMode = from.mip_filter == scene::Filter::nearest ? VK_SAMPLER_MIPMAP_MODE_NEAREST
+                                                              : VK_SAMPLER_MIPMAP_MODE_LINEAR;
+  info.addressModeU = address_mode(from.wrap_s);
+  info.addressModeV = address_mode(from.wrap_t);
+  info.addressModeW = VK_SAMPLER_ADDRESS_MODE_REPEAT;
+  info.maxLod = from.mipmapped ? VK_LOD_CLAMP_NONE : 0.25f;  // glTF without mipmaps: Vulkan's hint
+  return info;
+}
+
+gpu::Image constant_texture(const gpu::Device& device, const char* name,
+                            std::array<std::uint8_t, 4> texel) {
+  gpu::ImageDesc desc{.name = name, .extent = {1, 1}, .format = VK_FORMAT_R8G8B8A8_UNORM};
+  desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+  gpu::Image image(device, desc);
+  image.upload(std::as_bytes(std::span(texel)));
+  return image;
+}
+
+scene::Bounds world_bounds(const scene::Bounds& mesh, const glm::mat4& world) {
+  scene::Bounds bounds;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec3 point{corner & 1 ? mesh.maximum.x : mesh.minimum.x,
+                          corner & 2 ? mesh.maximum.y : mesh.minimum.y,
+                          corner & 4 ? mesh.maximum.z : mesh.minimum.z};
+    bounds.include(glm::vec3(world * glm::vec4(point, 1.0f)));
+  }
+  return bounds;
+}
+
+}  // namespace
+
+SceneResources::SceneResources(const gpu::Device& device, const Programs& programs,
+                               std::shared_ptr<const scene::Scene> source,
+                               const scene::Environment& from, const tracing::RayTracer& tracer)
+    : scene(std::move(source)),
+      white_(constant_texture(device, "white", {255, 255, 255, 255})),
+      flat_normal_(constant_texture(device, "flat normal", {128, 128, 255, 255})) {
+  upload_tables(device);
+  upload_textures(device);
+  make_material_sets(device, programs);
+  list_draws();
+  structure = tracer.build(*scene, buffers);
+  environment = prefilter_environment(device, programs, from);
+}
+
+void SceneResources::upload_tables(const gpu::Device& device) {
+  std::vector<shared::Vertex> vertices;
+  std::vector<std::uint32_t> indices;
+  for (const scene::Mesh& mesh : scene->meshes) {
+    meshes_.push_back({static_cast<std::uint32_t>(indices.size()),
+                       static_cast<std::uint32_t>(mesh.indices.size()),
+                       static_cast<std::uint32_t>(vertices.size()), mesh.material});
+    vertices.insert(vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+    indices.insert(indices.end(), mesh.indices.begin(), mesh.indices.end());
+  }
+  for (const scene::Instance& from : scene->instances) {
+    shared::Instance instance{};
+    instance.world = instance.previous_world = scene->nodes[from.node].world;
+    instance.normal_matrix =
+        glm::mat4(glm::transpose(glm::inverse(glm::mat3(instance.world))));
+    instance.mesh = from.mesh;
+    const bool mirrored = glm::determinant(glm::mat3(instance.world)) < 0.0f;
+    instance.flags = mirrored ? shared::instance_flipped : 0u;
+    instances_.push_back(instance);
+  }
+  std::vector<shared::Light> lights;
+  for (const scene::Light& light : scene->lights) lights.push_back(light.device);
+
+  buffers.vertices = upload(device, "vertices", vertices, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+  buffers.indices = upload(device, "indices", indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+  buffers.meshes = upload(device, "meshes", meshes_);
+  buffers.instances = upload(device, "instances", instances_);
+  buffers.materials = upload(device, "materials", scene->materials);
+  buffers.lights = upload(device, "lights", lights);
+  buffers.alpha_heap = upload(device, "alpha masks", scene->alpha_heap);
+}
+
+void SceneResources::upload_textures(const gpu::Device& device) {
+  for (const scene::Image& from : scene->images) {
+    gpu::ImageDesc desc{.name = from.name.empty() ? "texture" : from.name};
+    desc.extent = {from.width, from.height};
+    desc.format = from.srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
+    desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+    desc.levels = from.levels;
+    images_.emplace_back(device, desc);
+    images_.back().upload(std::as_bytes(std::span(from.pixels)));
+  }
+  std::vector<scene::Sampler> known;
+  for (const scene::Texture& texture : scene->textures) {
+    const auto found = std::find(known.begin(), known.end(), texture.sampler);
+    texture_sampler_.push_back(static_cast<std::uint32_t>(found - known.begin()));
+    if (found != known.end()) continue;
+    known.push_back(texture.sampler);
+    samplers_.emplace_back(device, sampler_info(texture.sampler));
+  }
+  samplers_.emplace_back(device, sampler_info({}));  // for slots without a texture
+}
+
+void SceneResources::make_material_sets(const gpu::Device& device, const Programs& programs) {
+  const auto count = static_cast<std::uint32_t>(scene->materials.size());
+  pool_ = std::make_unique<gpu::DescriptorPool>(device, count, count * material_textures);
+  for (const shared::Material& material : scene->materials) {
+    const std::array slots{&material.base_color_texture, &material.metallic_roughness_texture,
+                           &material.normal_texture, &material.occlusion_texture,
+                           &material.emissive_texture};
+    const VkDescriptorSet set = pool_->allocate(programs.material_layout.handle());
+    gpu::DescriptorWriter writer(device, set);
+    for (std::uint32_t i = 0; i < material_textures; ++i) {
+      const std::uint32_t texture = slots[i]->texture;
+      if (texture == shared::no_texture) {
+        const gpu::Image& constant = slots[i] == &material.normal_texture ? flat_normal_ : white_;
+        writer.sampled_image(i, constant.view(), samplers_.back().handle());
+      } else {
+        writer.sampled_image(i, images_[scene->textures[texture].image].view(),
+                             samplers_[texture_sampler_[texture]].handle());
+      }
+    }
+    writer.apply();
+    material_sets.push_back(set);
+  }
+}
+
+void SceneResources::list_draws() {
+  for (std::uint32_t i = 0; i < scene->instances.size(); ++i) {
+    const scene::Instance& instance = scene->instances[i];
+    const shared::Mesh& mesh = meshes_[instance.mesh];
+    const std::uint32_t flags = scene->materials[mesh.material].flags;
+    Draw draw{};
+    draw.instance = i;
+    draw.material = mesh.material;
+    draw.first_index = mesh.first_index;
+    draw.index_count = mesh.index_count;
+    draw.first_vertex = mesh.first_vertex;
+    draw.masked = flags & (shared::material_alpha_mask | shared::material_alpha_blend);
+    draw.double_sided = flags & shared::material_double_sided;
+    draw.flipped = instances_[i].flags & shared::instance_flipped;
+    draw.bounds =
+        world_bounds(scene->meshes[instance.mesh].bounds, scene->nodes[instance.node].world);
+    draws.push_back(draw);
+  }
+  std::sort(draws.begin(), draws.end(), [](const Draw& a, const Draw& b) {
+    return std::tie(a.masked, a.material, a.first_index, a.instance) <
+           std::tie(b.masked, b.material, b.first_index, b.instance);
+  });
+}
+
+}  // namespace heliograph::render

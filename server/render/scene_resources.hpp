@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "render/environment_prefilter.hpp"
+#include "render/renderer.hpp"
+#include "tracing/ray_tracer.hpp"
+
+namespace heliograph::render {
+
+/// One instance as the rasteriser draws it.
+struct Draw {
+  std::uint32_t instance;  // in the instance table
+  std::uint32_t material;
+  std::uint32_t first_index;
+  std::uint32_t index_count;
+  std::uint32_t first_vertex;
+  bool masked;  // alpha mask or blend: the program that discards
+  bool double_sided;
+  bool flipped;
+  scene::Bounds bounds;  // world
+};
+
+class SceneResources {
+ public:
+  SceneResources(const gpu::Device& device, const Programs& programs,
+                 std::shared_ptr<const scene::Scene> scene,
+                 const scene::Environment& environment, const tracing::RayTracer& tracer);
+
+  std::shared_ptr<const scene::Scene> scene;
+  tracing::SceneBuffers buffers;
+  std::shared_ptr<const tracing::AccelerationStructure> structure;
+  EnvironmentMaps environment;
+  std::vector<Draw> draws;  // opaque first, then by material
+  std::vector<VkDescriptorSet> material_sets;
+
+ private:
+  void upload_tables(const gpu::Device& device);
+  void upload_textures(const gpu::Device& device);
+  void make_material_sets(const gpu::Device& device, const Programs& programs);
+  void list_draws();
+
+  std::vector<shared::Mesh> meshes_;
+  std::vector<shared::Instance> instances_;
+  std::vector<gpu::Image> images_;
+  gpu::Image white_;
+  gpu::Image flat_normal_;
+  std::vector<gpu::Sampler> samplers_;
+  std::vector<std::uint32_t> texture_sampler_;  // by texture, into samplers_
+  std::unique_ptr<gpu::DescriptorPool> pool_;
+};
+
+}  // namespace heliograph::render

@@ -1,0 +1,16 @@
+#include "render/skybox.hpp"
+
+#include "render/frame.hpp"
+
+namespace heliograph::render {
+
+gpu::ImageRef draw_skybox(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer) {
+  const auto background = plan.image("skybox", VK_FORMAT_R32G32B32A32_SFLOAT);
+  plan.pass("skybox", in.programs.skybox)
+      .read(gbuffer.motion)
+      .write(background)
+      .dispatch(plan.extent());
+  return background;
+}
+
+}  // namespace heliograph::render

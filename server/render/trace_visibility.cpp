@@ -1,0 +1,58 @@
+#include "render/trace_visibility.hpp"
+
+#include "render/frame.hpp"
+#include "shaders/shared/ray.h"
+
+namespace heliograph::render {
+namespace {
+
+/// Generate -> trace -> bring back: the wavefront of one visibility signal.
+gpu::ImageRef trace_visibility(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                               const std::string& name, const gpu::ComputeProgram& generator,
+                               std::uint32_t flag) {
+  const VkExtent2D extent = plan.extent();
+  const std::uint32_t pixels = extent.width * extent.height;
+  constexpr VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  const tracing::RayStream rays{
+      plan.buffer(name + ".ray_count", sizeof(shared::RayCount),
+                  usage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, gpu::Memory::device),
+      plan.buffer(name + ".rays", sizeof(shared::Ray) * pixels, usage, gpu::Memory::device),
+      pixels};
+  const auto occluded =
+      plan.buffer(name + ".occluded", sizeof(std::uint32_t) * pixels, usage, gpu::Memory::device);
+  const auto visibility = plan.image(name + ".visibility", VK_FORMAT_R32_SFLOAT);
+  // Without new rays the stream stays empty and tracing it costs nothing.
+  const auto wanted = [&constants = in.constants, flag] { return (constants.counts.y & flag) != 0; };
+
+  plan.pass(name + ".begin", in.programs.begin_rays).write(rays.count).dispatch({1, 1});
+  plan.pass(name + ".rays", generator)
+      .read(gbuffer.normals)
+      .read(gbuffer.motion)
+      .read_write(rays.count)
+      .write(rays.rays)
+      .write(visibility)
+      .dispatch(extent)
+      .when(wanted);
+  in.tracer.trace_any(plan, name + ".trace", *in.scene.structure, rays, occluded);
+  plan.pass(name + ".resolve", in.programs.resolve_visibility)
+      .read(rays.count)
+      .read(rays.rays)
+      .read(occluded)
+      .write(visibility)
+      .dispatch_indirect(rays.count, offsetof(shared::RayCount, groups_x));
+  return visibility;
+}
+
+}  // namespace
+
+gpu::ImageRef trace_shadows(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer) {
+  return trace_visibility(plan, in, gbuffer, "shadows", in.programs.shadow_rays,
+                          shared::frame_shadows);
+}
+
+gpu::ImageRef trace_ambient(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer) {
+  return trace_visibility(plan, in, gbuffer, "ambient", in.programs.ambient_rays,
+                          shared::frame_ambient_occlusion);
+}
+
+}  // namespace heliograph::render

@@ -1,0 +1,39 @@
+// Looking up the environment: one rotation for background, reflection and diffuse light.
+#ifndef HELIOGRAPH_ENVIRONMENT_GLSL
+#define HELIOGRAPH_ENVIRONMENT_GLSL
+#include "lib/frame.glsl"
+#include "lib/equirectangular.glsl"
+
+/// World direction -> direction in the environment's own frame.
+vec3 environment_direction(vec3 world) {
+  float c = frame.environment.y;
+  float s = frame.environment.z;
+  return vec3(c * world.x - s * world.z, world.y, s * world.x + c * world.z);
+}
+
+vec3 environment_radiance(vec3 world) {
+  vec2 uv = equirectangular_uv(environment_direction(world));
+  return textureLod(environment_map, uv, 0.0).rgb * frame.environment.x;
+}
+
+/// GGX-prefiltered radiance about the mirror direction `world`.
+vec3 environment_reflection(vec3 world, float roughness) {
+  float level = roughness * float(frame.counts.z - 1u);
+  return textureLod(prefiltered_environment, environment_direction(world), level).rgb *
+         frame.environment.x;
+}
+
+/// Irradiance / pi of a surface facing `world` (Ramamoorthi and Hanrahan 2001, nine terms).
+vec3 environment_irradiance(vec3 world) {
+  vec3 n = environment_direction(world);
+  vec3 sum = frame.irradiance[0].rgb;
+  sum += frame.irradiance[1].rgb * n.y + frame.irradiance[2].rgb * n.z;
+  sum += frame.irradiance[3].rgb * n.x + frame.irradiance[4].rgb * (n.x * n.y);
+  sum += frame.irradiance[5].rgb * (n.y * n.z);
+  sum += frame.irradiance[6].rgb * (3.0 * n.z * n.z - 1.0);
+  sum += frame.irradiance[7].rgb * (n.x * n.z);
+  sum += frame.irradiance[8].rgb * (n.x * n.x - n.y * n.y);
+  return max(sum, vec3(0.0)) * frame.environment.x;
+}
+
+#endif

@@ -1,0 +1,38 @@
+// The shared set 0: the frame's constants and the scene's tables.
+#ifndef HELIOGRAPH_FRAME_GLSL
+#define HELIOGRAPH_FRAME_GLSL
+#include "shared/frame_constants.h"
+#include "shared/scene.h"
+
+layout(set = 0, binding = 0, std140) uniform FrameBlock { FrameConstants frame; };
+layout(set = 0, binding = 1, std430) readonly buffer InstanceTable { Instance instances[]; };
+layout(set = 0, binding = 2, std430) readonly buffer MaterialTable { Material materials[]; };
+layout(set = 0, binding = 3, std430) readonly buffer LightTable { Light lights[]; };
+layout(set = 0, binding = 4) uniform sampler2D environment_map;
+layout(set = 0, binding = 5) uniform samplerCube prefiltered_environment;
+layout(set = 0, binding = 6) uniform sampler2D split_sum_table;
+
+bool enabled(uint flag) { return (frame.counts.y & flag) != 0u; }
+
+bool outside_frame(ivec2 pixel) {
+  return pixel.x >= int(frame.extent.x) || pixel.y >= int(frame.extent.y);
+}
+
+/// View-space position of a pixel's sample at `view_z` metres along -Z.
+vec3 view_position(ivec2 pixel, float view_z) {
+  vec2 ndc = (vec2(pixel) + 0.5) / vec2(frame.extent.xy) * 2.0 - 1.0;
+  vec2 slope = ndc * frame.unproject.xy + frame.unproject.zw;
+  return vec3(enabled(frame_orthographic) ? slope : slope * view_z, -view_z);
+}
+
+vec3 world_position(ivec2 pixel, float view_z) {
+  return (frame.inverse_view * vec4(view_position(pixel, view_z), 1.0)).xyz;
+}
+
+/// Unit vector from the surface (or the background) toward the eye, world space.
+vec3 to_eye(ivec2 pixel) {
+  vec3 view = enabled(frame_orthographic) ? vec3(0.0, 0.0, 1.0) : -view_position(pixel, 1.0);
+  return normalize(mat3(frame.inverse_view) * view);
+}
+
+#endif

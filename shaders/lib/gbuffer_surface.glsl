@@ -1,0 +1,89 @@
+// Fragment stage of the G-buffer: the glTF material evaluated at a pixel, into its signals.
+#include "lib/frame.glsl"
+#include "lib/octahedral.glsl"
+#include "lib/random.glsl"
+
+layout(location = 0) in vec3 world_normal;
+layout(location = 1) in vec4 world_tangent;
+layout(location = 2) in vec4 texture_uv;
+layout(location = 3) in vec4 vertex_color;
+layout(location = 4) in vec3 clip_now;
+layout(location = 5) in vec3 clip_before;
+layout(location = 6) in vec2 view_depths;
+layout(location = 7) in vec3 world_point;
+layout(location = 8) flat in uint instance_index;
+
+layout(location = 0) out vec4 normals;     // octahedral: shading xy, geometric zw
+layout(location = 1) out vec4 base_color;  // square root of linear rgb, occlusion
+layout(location = 2) out vec4 surface;     // roughness, metallic, unlit, unused
+layout(location = 3) out vec4 motion;      // to the previous frame: uv, view Z; and view Z now
+layout(location = 4) out vec4 emissive;    // linear radiance
+layout(location = 5) out vec2 depth_slope; // view Z per pixel in x and y
+layout(location = 6) out uint instance_id;
+
+layout(push_constant) uniform Constants { uint material_index; };
+
+layout(set = 2, binding = 0) uniform sampler2D base_color_map;
+layout(set = 2, binding = 1) uniform sampler2D metallic_roughness_map;
+layout(set = 2, binding = 2) uniform sampler2D normal_map;
+layout(set = 2, binding = 3) uniform sampler2D occlusion_map;
+layout(set = 2, binding = 4) uniform sampler2D emissive_map;
+
+vec2 slot_uv(TextureSlot slot) {
+  vec3 uv = vec3(slot.uv_set == 0u ? texture_uv.xy : texture_uv.zw, 1.0);
+  return vec2(dot(slot.transform_row0.xyz, uv), dot(slot.transform_row1.xyz, uv));
+}
+
+vec3 mapped_normal(Material material, vec3 normal, float side) {
+  vec2 uv = slot_uv(material.normal_texture);
+  vec3 texel = texture(normal_map, uv).xyz * 2.0 - 1.0;
+  texel.xy *= material.normal_scale;
+  vec3 tangent = world_tangent.xyz - normal * dot(normal, world_tangent.xyz);
+  float size = dot(tangent, tangent);
+  if (size < 1e-12) return normal;
+  tangent *= inversesqrt(size);
+  vec3 bitangent = cross(normal, tangent) * world_tangent.w;
+  return normalize((tangent * texel.x + bitangent * texel.y) * side + normal * texel.z);
+}
+
+void main() {
+  Material material = materials[material_index];
+  vec4 color = material.base_color * vertex_color *
+               texture(base_color_map, slot_uv(material.base_color_texture));
+#ifndef GBUFFER_OPAQUE
+  float cutoff = material.alpha_cutoff;
+  // Blended surfaces cover a random share of the samples: accumulation makes it the right share.
+  if ((material.flags & material_alpha_blend) != 0u) {
+    cutoff = random_number(uvec2(gl_FragCoord.xy), frame.extent.z, 40u + (material_index & 7u),
+                           frame.extent.w);
+  }
+  if (color.a < cutoff) discard;
+#endif
+  vec3 across = cross(dFdy(world_point), dFdx(world_point));
+  vec3 vertex_normal = normalize(world_normal);
+  float side = gl_FrontFacing ? 1.0 : -1.0;
+  vertex_normal *= side;
+  float area = dot(across, across);
+  vec3 geometric = area > 0.0 ? across * inversesqrt(area) : vertex_normal;
+  if (dot(geometric, vertex_normal) < 0.0) geometric = -geometric;
+  vec3 shading = vertex_normal;
+  if (material.normal_texture.texture != no_texture) {
+    shading = mapped_normal(material, vertex_normal, side);
+  }
+  vec4 packed_surface = texture(metallic_roughness_map,
+                                slot_uv(material.metallic_roughness_texture));
+  float occlusion = texture(occlusion_map, slot_uv(material.occlusion_texture)).r;
+
+  normals = vec4(octahedral_encode(shading), octahedral_encode(geometric));
+  base_color = vec4(sqrt(clamp(color.rgb, 0.0, 1.0)),
+                    mix(1.0, occlusion, material.occlusion_strength));
+  surface = vec4(material.roughness * packed_surface.g, material.metallic * packed_surface.b,
+                 (material.flags & material_unlit) != 0u ? 1.0 : 0.0, 0.0);
+  vec2 uv_now = clip_now.xy / clip_now.z * 0.5;
+  vec2 uv_before = clip_before.xy / clip_before.z * 0.5;
+  motion = vec4(uv_before - uv_now, view_depths.y - view_depths.x, view_depths.x);
+  emissive = vec4(material.emissive * texture(emissive_map, slot_uv(material.emissive_texture)).rgb,
+                  1.0);
+  depth_slope = vec2(dFdx(view_depths.x), dFdy(view_depths.x));
+  instance_id = instance_index + 1u;
+}

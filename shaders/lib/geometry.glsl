@@ -1,0 +1,42 @@
+#ifndef HELIOGRAPH_GEOMETRY_GLSL
+#define HELIOGRAPH_GEOMETRY_GLSL
+
+const float pi = 3.14159265358979;
+
+/// Two unit vectors that complete `n` to a right-handed frame (Duff et al. 2017).
+void orthonormal_basis(vec3 n, out vec3 tangent, out vec3 bitangent) {
+  float s = n.z >= 0.0 ? 1.0 : -1.0;
+  float a = -1.0 / (s + n.z);
+  float b = n.x * n.y * a;
+  tangent = vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x);
+  bitangent = vec3(b, s + n.y * n.y * a, -n.y);
+}
+
+/// A ray origin just off the surface at `position`, on the side `normal` points to: offset in
+/// units in the last place, so it fits scenes of any size (Waechter and Binder 2019).
+vec3 offset_origin(vec3 position, vec3 normal) {
+  ivec3 steps = ivec3(256.0 * normal);
+  vec3 moved = intBitsToFloat(floatBitsToInt(position) +
+                              ivec3(mix(steps, -steps, lessThan(position, vec3(0.0)))));
+  bvec3 near_zero = lessThan(abs(position), vec3(1.0 / 32.0));
+  return mix(moved, position + normal * (1.0 / 65536.0), near_zero);
+}
+
+/// Cosine-distributed direction about `normal`; pdf = cos / pi.
+vec3 sample_cosine(vec3 normal, vec2 u) {
+  vec3 tangent, bitangent;
+  orthonormal_basis(normal, tangent, bitangent);
+  float radius = sqrt(u.x);
+  float angle = 2.0 * pi * u.y;
+  return normalize(tangent * (radius * cos(angle)) + bitangent * (radius * sin(angle)) +
+                   normal * sqrt(max(0.0, 1.0 - u.x)));
+}
+
+/// A point of the unit disk, uniform.
+vec2 sample_disk(vec2 u) {
+  float radius = sqrt(u.x);
+  float angle = 2.0 * pi * u.y;
+  return radius * vec2(cos(angle), sin(angle));
+}
+
+#endif

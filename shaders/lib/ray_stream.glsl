@@ -1,0 +1,27 @@
+// Appending rays to a stream: one global atomic per workgroup. Include after declaring the
+// workgroup size; rays need bindings `ray_count` and `rays` in the pass set.
+#ifndef HELIOGRAPH_RAY_STREAM_GLSL
+#define HELIOGRAPH_RAY_STREAM_GLSL
+#include "shared/ray.h"
+
+const uint rays_per_group = 64u;  // of the tracing dispatch
+
+shared uint group_rays;
+shared uint group_base;
+
+#define APPEND_RAY(wanted, ray)                                                     \
+  {                                                                                 \
+    if (gl_LocalInvocationIndex == 0u) group_rays = 0u;                             \
+    barrier();                                                                      \
+    uint slot = (wanted) ? atomicAdd(group_rays, 1u) : 0u;                          \
+    barrier();                                                                      \
+    if (gl_LocalInvocationIndex == 0u && group_rays > 0u) {                         \
+      group_base = atomicAdd(ray_count.count, group_rays);                          \
+      uint last = group_base + group_rays - 1u;                                     \
+      atomicMax(ray_count.groups_x, last / rays_per_group + 1u);                    \
+    }                                                                               \
+    barrier();                                                                      \
+    if (wanted) rays[group_base + slot] = (ray);                                    \
+  }
+
+#endif
