@@ -18,7 +18,7 @@ struct SceneBuffers {
   gpu::Buffer instances;   // shared::Instance
   gpu::Buffer materials;   // shared::Material
   gpu::Buffer lights;      // shared::Light
-  gpu::Buffer alpha_heap;  // bytes, four to a uint
+  gpu::Buffer alpha_heap;  // bytes, four to a uint; also a uniform texel buffer
 };
 
 /// A stream of rays in device buffers: `count` holds a shared::RayCount, `rays` shared::Ray.
@@ -28,7 +28,8 @@ struct RayStream {
   std::uint32_t capacity = 0;
 };
 
-/// What a tracer has built for one scene. Immutable, shared by all plans that trace it.
+/// What a tracer has built for one scene. Immutable, shared by all plans that trace it, and
+/// outlives them. Refers to the scene's buffers, never to the scene.
 class AccelerationStructure {
  public:
   virtual ~AccelerationStructure() = default;
@@ -36,7 +37,8 @@ class AccelerationStructure {
 
 /// Answers rays. Every other shader is the same whatever traces. Alpha-masked surfaces let rays
 /// through where their base colour's alpha (level 0, nearest texel) x factor is below the cutoff;
-/// rays see both faces of every triangle; hits at t in (t_min, t_max).
+/// rays see both faces of every triangle; hits at t in (t_min, t_max). Instances squeezed flat, so
+/// that their matrix has no inverse, are not met. A tracer outlives its structures and plans.
 class RayTracer {
  public:
   virtual ~RayTracer() = default;

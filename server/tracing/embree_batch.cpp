@@ -1,0 +1,134 @@
+#include "tracing/embree_batch.hpp"
+
+#include <array>
+
+namespace heliograph::tracing {
+namespace {
+
+// An interval that contains nothing: Embree leaves such rays alone.
+constexpr float dead_from = 1.0f;
+constexpr float dead_to = 0.0f;
+
+shared::Hit miss(const shared::Ray& ray) {
+  return {ray.t_max, shared::hit_none, 0, 0.0f, 0.0f, 0, 0, 0};
+}
+
+#if RTC_VERSION_MAJOR < 4
+
+// Embree 3: streams of rays, sorted by direction inside. 395k shadow rays of an atrium cost 12.5 ms
+// this way and 52 ms one by one.
+
+RTCIntersectContext incoherent() {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  return context;
+}
+
+RTCRay to_embree(const shared::Ray& ray) {
+  const bool alive = ray.t_min < ray.t_max;
+  return {ray.origin.x,    ray.origin.y,    ray.origin.z,    alive ? ray.t_min : dead_from,
+          ray.direction.x, ray.direction.y, ray.direction.z, 0.0f,
+          alive ? ray.t_max : dead_to,      ~0u,             0,
+          0};
+}
+
+}  // namespace
+
+void intersect_batch(RTCScene scene, std::span<const shared::Ray> rays, shared::Hit* hits) {
+  RTCIntersectContext context = incoherent();
+  std::array<RTCRayHit, embree_batch> batch;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    batch[i].ray = to_embree(rays[i]);
+    batch[i].hit.geomID = batch[i].hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  }
+  rtcIntersect1M(scene, &context, batch.data(), static_cast<unsigned>(rays.size()),
+                 sizeof(RTCRayHit));
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto& [ray, hit] = batch[i];
+    hits[i] = hit.geomID == RTC_INVALID_GEOMETRY_ID
+                  ? miss(rays[i])
+                  : shared::Hit{ray.tfar, hit.instID[0], hit.primID, hit.u, hit.v, 0, 0, 0};
+  }
+}
+
+void occluded_batch(RTCScene scene, std::span<const shared::Ray> rays, std::uint32_t* occluded) {
+  RTCIntersectContext context = incoherent();
+  std::array<RTCRay, embree_batch> batch;
+  for (std::size_t i = 0; i < rays.size(); ++i) batch[i] = to_embree(rays[i]);
+  rtcOccluded1M(scene, &context, batch.data(), static_cast<unsigned>(rays.size()), sizeof(RTCRay));
+  // Embree sets tfar to -infinity where something was hit.
+  for (std::size_t i = 0; i < rays.size(); ++i) occluded[i] = batch[i].tfar < dead_to ? 1 : 0;
+}
+
+#else
+
+// Embree 4 has no streams: packets of 16, the widest it takes.
+
+constexpr std::size_t packet = 16;
+
+struct Lanes {
+  alignas(64) std::array<int, packet> valid{};
+};
+
+Lanes load(std::span<const shared::Ray> rays, RTCRay16& lanes) {
+  Lanes result;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const shared::Ray& ray = rays[i];
+    result.valid[i] = ray.t_min < ray.t_max ? -1 : 0;
+    lanes.org_x[i] = ray.origin.x;
+    lanes.org_y[i] = ray.origin.y;
+    lanes.org_z[i] = ray.origin.z;
+    lanes.tnear[i] = result.valid[i] ? ray.t_min : dead_from;
+    lanes.dir_x[i] = ray.direction.x;
+    lanes.dir_y[i] = ray.direction.y;
+    lanes.dir_z[i] = ray.direction.z;
+    lanes.time[i] = 0.0f;
+    lanes.tfar[i] = result.valid[i] ? ray.t_max : dead_to;
+    lanes.mask[i] = ~0u;
+    lanes.id[i] = lanes.flags[i] = 0;
+  }
+  return result;
+}
+
+}  // namespace
+
+void intersect_batch(RTCScene scene, std::span<const shared::Ray> rays, shared::Hit* hits) {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
+  for (std::size_t first = 0; first < rays.size(); first += packet) {
+    const auto some = rays.subspan(first, std::min(packet, rays.size() - first));
+    RTCRayHit16 lanes{};
+    const Lanes active = load(some, lanes.ray);
+    std::fill_n(lanes.hit.geomID, packet, RTC_INVALID_GEOMETRY_ID);
+    std::fill_n(lanes.hit.instID[0], packet, RTC_INVALID_GEOMETRY_ID);
+    rtcIntersect16(active.valid.data(), scene, &lanes, &arguments);
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      hits[first + i] = lanes.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID
+                            ? miss(some[i])
+                            : shared::Hit{lanes.ray.tfar[i], lanes.hit.instID[0][i],
+                                          lanes.hit.primID[i], lanes.hit.u[i], lanes.hit.v[i],
+                                          0, 0, 0};
+    }
+  }
+}
+
+void occluded_batch(RTCScene scene, std::span<const shared::Ray> rays, std::uint32_t* occluded) {
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
+  for (std::size_t first = 0; first < rays.size(); first += packet) {
+    const auto some = rays.subspan(first, std::min(packet, rays.size() - first));
+    RTCRay16 lanes{};
+    const Lanes active = load(some, lanes);
+    rtcOccluded16(active.valid.data(), scene, &lanes, &arguments);
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      occluded[first + i] = lanes.tfar[i] < dead_to ? 1 : 0;
+    }
+  }
+}
+
+#endif
+
+}  // namespace heliograph::tracing

@@ -1,0 +1,101 @@
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <span>
+
+#include "shaders/shared/ray.h"
+#include "tracing/embree.hpp"
+#include "tracing/embree_batch.hpp"
+#include "tracing/embree_scene.hpp"
+#include "tracing/ray_tracer.hpp"
+
+namespace heliograph::tracing {
+namespace {
+
+class EmbreeStructure : public AccelerationStructure {
+ public:
+  EmbreeStructure(RTCDevice device, const scene::Scene& scene, const gpu::Buffer& alpha_heap)
+      : scene_(device, scene,
+               {reinterpret_cast<const std::uint8_t*>(alpha_heap.mapped()), alpha_heap.size()}) {}
+
+  RTCScene handle() const { return scene_.handle(); }
+
+ private:
+  EmbreeScene scene_;
+};
+
+template <typename Element>
+Element* mapped(const gpu::FramePlan& plan, gpu::BufferRef buffer) {
+  return reinterpret_cast<Element*>(plan.get(buffer).mapped());
+}
+
+/// Calls `trace(rays, answers)` for every batch of the stream, on all processors.
+template <typename Answer, typename Trace>
+void trace_batches(const gpu::FramePlan& plan, const RayStream& stream, gpu::BufferRef answers,
+                   const Trace& trace) {
+  const std::size_t count =
+      std::min(mapped<const shared::RayCount>(plan, stream.count)->count, stream.capacity);
+  const std::span rays(mapped<const shared::Ray>(plan, stream.rays), count);
+  auto* const results = mapped<Answer>(plan, answers);
+  const std::size_t batches = (count + embree_batch - 1) / embree_batch;
+  tbb::parallel_for(std::size_t(0), batches, [&](std::size_t batch) {
+    const std::size_t first = batch * embree_batch;
+    trace(rays.subspan(first, std::min(embree_batch, count - first)), results + first);
+  });
+}
+
+class EmbreeTracer : public RayTracer {
+ public:
+  explicit EmbreeTracer(const gpu::Device& device) : embree_(make_embree_device()) {
+    if (device.is_cpu()) return;
+    throw gpu::GpuError("the tracer \"embree\" works on rays in the processor's memory, but " +
+                        device.report().name + " is not a processor; use \"software\"");
+  }
+
+  protocol::TracerKind kind() const override { return protocol::TracerKind::embree; }
+
+  std::shared_ptr<const AccelerationStructure> build(const scene::Scene& scene,
+                                                     const SceneBuffers& buffers) const override {
+    return std::make_shared<EmbreeStructure>(embree_.get(), scene, buffers.alpha_heap);
+  }
+
+  void trace_closest(gpu::FramePlan& plan, const std::string& name,
+                     const AccelerationStructure& structure, const RayStream& rays,
+                     gpu::BufferRef hits) const override {
+    const RTCScene scene = dynamic_cast<const EmbreeStructure&>(structure).handle();
+    plan.host(name, [&plan, scene, rays, hits] {
+          trace_batches<shared::Hit>(plan, rays, hits, [scene](auto batch, shared::Hit* results) {
+            intersect_batch(scene, batch, results);
+          });
+        })
+        .read(rays.count)
+        .read(rays.rays)
+        .write(hits);
+  }
+
+  void trace_any(gpu::FramePlan& plan, const std::string& name,
+                 const AccelerationStructure& structure, const RayStream& rays,
+                 gpu::BufferRef occluded) const override {
+    const RTCScene scene = dynamic_cast<const EmbreeStructure&>(structure).handle();
+    plan.host(name, [&plan, scene, rays, occluded] {
+          trace_batches<std::uint32_t>(plan, rays, occluded,
+                                       [scene](auto batch, std::uint32_t* results) {
+                                         occluded_batch(scene, batch, results);
+                                       });
+        })
+        .read(rays.count)
+        .read(rays.rays)
+        .write(occluded);
+  }
+
+ private:
+  EmbreeHandle<RTCDevice> embree_;
+};
+
+}  // namespace
+
+std::unique_ptr<RayTracer> make_embree_tracer(const gpu::Device& device) {
+  return std::make_unique<EmbreeTracer>(device);
+}
+
+}  // namespace heliograph::tracing
