@@ -109,7 +109,8 @@ void SceneResources::upload_tables(const gpu::Device& device) {
   buffers.instances = upload(device, "instances", instances_);
   buffers.materials = upload(device, "materials", scene->materials);
   buffers.lights = upload(device, "lights", lights);
-  buffers.alpha_heap = upload(device, "alpha masks", scene->alpha_heap);
+  buffers.alpha_heap = upload(device, "alpha masks", scene->alpha_heap,
+                              VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
 }
 
 void SceneResources::upload_textures(const gpu::Device& device) {
