@@ -82,6 +82,7 @@ void Device::create(const Instance& instance) {
   VkPhysicalDeviceVulkan13Features v13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
   v13.dynamicRendering = VK_TRUE;
   v13.synchronization2 = VK_TRUE;
+  v13.maintenance4 = VK_TRUE;  // the compiler writes LocalSizeId
   VkPhysicalDeviceVulkan12Features v12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, &v13};
   v12.bufferDeviceAddress = VK_TRUE;
   v12.hostQueryReset = VK_TRUE;

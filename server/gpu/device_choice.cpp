@@ -47,6 +47,7 @@ std::vector<std::string> missing_parts(VkPhysicalDevice device, std::uint32_t ve
   };
   need(v13.dynamicRendering, "dynamicRendering");
   need(v13.synchronization2, "synchronization2");
+  need(v13.maintenance4, "maintenance4");
   need(v12.bufferDeviceAddress, "bufferDeviceAddress");
   need(v12.hostQueryReset, "hostQueryReset");
   need(features.features.independentBlend, "independentBlend");

@@ -27,10 +27,11 @@ VkFormat storage_format(SpvImageFormat format) {
   }
 }
 
-/// Whether a resource carries a decoration, on the variable or on every member of its block.
-bool decorated(spvc_compiler compiler, const spvc_reflected_resource& resource,
+/// Whether a resource carries a decoration, on the variable or on every member of its `block`.
+bool decorated(spvc_compiler compiler, const spvc_reflected_resource& resource, bool block,
                SpvDecoration decoration) {
   if (spvc_compiler_has_decoration(compiler, resource.id, decoration)) return true;
+  if (!block) return false;
   const SpvDecoration* found = nullptr;
   size_t count = 0;
   if (spvc_compiler_get_buffer_block_decorations(compiler, resource.id, &found, &count) !=
@@ -75,6 +76,8 @@ class Reflector {
     collect(SPVC_RESOURCE_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
     collect(SPVC_RESOURCE_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
     collect(SPVC_RESOURCE_TYPE_SAMPLED_IMAGE, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
+    // From SPIR-V 1.6 on, texel buffers are images without a sampler.
+    collect(SPVC_RESOURCE_TYPE_SEPARATE_IMAGE, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER);
     std::sort(result_.bindings.begin(), result_.bindings.end(),
               [](const ShaderBinding& a, const ShaderBinding& b) {
                 return std::pair(a.set, a.binding) < std::pair(b.set, b.binding);
@@ -114,14 +117,14 @@ class Reflector {
       binding.type = descriptor;
       if (kind == SPVC_RESOURCE_TYPE_SAMPLED_IMAGE) {
         binding.type = sampled_type(compiler_, resource);
-        if (binding.type == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER) {
-          binding.format = texel_format(compiler_, resource);
-        }
       }
-      const bool writable = kind == SPVC_RESOURCE_TYPE_STORAGE_BUFFER ||
-                            kind == SPVC_RESOURCE_TYPE_STORAGE_IMAGE;
-      binding.writes = writable && !decorated(compiler_, resource, SpvDecorationNonWritable);
-      binding.reads = !decorated(compiler_, resource, SpvDecorationNonReadable);
+      if (binding.type == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER) {
+        binding.format = texel_format(compiler_, resource);
+      }
+      const bool block = kind == SPVC_RESOURCE_TYPE_STORAGE_BUFFER;
+      const bool writable = block || kind == SPVC_RESOURCE_TYPE_STORAGE_IMAGE;
+      binding.writes = writable && !decorated(compiler_, resource, block, SpvDecorationNonWritable);
+      binding.reads = !decorated(compiler_, resource, block, SpvDecorationNonReadable);
       if (kind == SPVC_RESOURCE_TYPE_STORAGE_IMAGE) {
         const auto type = spvc_compiler_get_type_handle(compiler_, resource.base_type_id);
         binding.format = storage_format(spvc_type_get_image_storage_format(type));
