@@ -1,0 +1,40 @@
+#include "cli/engine_options.hpp"
+
+#include <cstdlib>
+#include <stdexcept>
+
+namespace heliograph::cli {
+namespace {
+
+/// $XDG_CACHE_HOME/heliograph or ~/.cache/heliograph; empty where neither is known.
+std::filesystem::path cache_folder() {
+  const auto variable = [](const char* name) {
+    const char* value = std::getenv(name);
+    return std::filesystem::path(value ? value : "");
+  };
+  const std::filesystem::path cache = variable("XDG_CACHE_HOME");
+  if (cache.is_absolute()) return cache / "heliograph";
+  const std::filesystem::path home = variable("HOME");
+  if (home.is_absolute()) return home / ".cache" / "heliograph";
+  return {};
+}
+
+}  // namespace
+
+render::EngineOptions engine_options(const DeviceOptions& options) {
+  return {.device = options.device,
+          .tracer = options.tracer,
+          .validation = std::getenv("HELIOGRAPH_VALIDATION") != nullptr,
+          .cache_folder = cache_folder()};
+}
+
+protocol::Settings parse_settings(const std::vector<std::string>& assignments) {
+  protocol::Settings settings;
+  for (const std::string& assignment : assignments) {
+    const protocol::Result<void> set = protocol::set_by_path(settings, assignment);
+    if (!set) throw std::invalid_argument("--set " + assignment + ": " + set.error().message);
+  }
+  return settings;
+}
+
+}  // namespace heliograph::cli

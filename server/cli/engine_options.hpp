@@ -1,0 +1,15 @@
+#pragma once
+
+#include "cli/options.hpp"
+#include "protocol/settings.hpp"
+#include "render/renderer.hpp"
+
+namespace heliograph::cli {
+
+render::EngineOptions engine_options(const DeviceOptions& options);
+
+/// The defaults, changed by "path=value" of the command line.
+/// @throws std::invalid_argument
+protocol::Settings parse_settings(const std::vector<std::string>& assignments);
+
+}  // namespace heliograph::cli

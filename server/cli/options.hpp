@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace heliograph::cli {
+
+struct LogOptions {
+  std::string format = "text";  // text or json
+  std::string level = "info";
+};
+
+struct DeviceOptions {
+  std::string device;
+  std::string tracer = "auto";
+};
+
+struct ServeOptions {
+  std::string host = "127.0.0.1";
+  std::uint16_t port = 8080;
+  std::string scene;
+  std::vector<std::filesystem::path> scene_roots;
+  std::string environment;
+  std::uint32_t width = 1280;
+  std::uint32_t height = 720;
+  std::uint32_t max_viewers = 32;
+  std::string token;
+  bool insecure = false;
+  std::vector<std::string> allowed_origins;
+  std::vector<std::string> settings;  // path=value
+  DeviceOptions device;
+  LogOptions log;
+};
+
+struct RenderOptions {
+  std::filesystem::path scene;
+  std::filesystem::path output;
+  std::uint32_t width = 1280;
+  std::uint32_t height = 720;
+  std::string camera;
+  std::optional<std::uint32_t> samples;
+  std::vector<std::string> settings;  // path=value
+  std::string buffer = "output";
+  std::string environment;
+  bool timings = false;
+  std::uint32_t frames = 16;
+  DeviceOptions device;
+};
+
+struct DevicesOptions {
+  DeviceOptions device;
+};
+
+struct SchemaOptions {
+  bool markdown = false;
+};
+
+struct HealthOptions {
+  std::string url = "http://127.0.0.1:8080/health/ready";
+};
+
+/// What remains to be done when parsing was all there is to it: text was asked for, or the command
+/// line is wrong.
+struct Finished {
+  int exit_code = 0;
+};
+
+using Command = std::variant<Finished, ServeOptions, RenderOptions, DevicesOptions, SchemaOptions,
+                             HealthOptions>;
+
+/// Reads the command line, HELIOGRAPH_* variables and the file of --config, in this precedence.
+/// Help goes to stdout, errors to stderr with the nearest name that exists.
+Command parse_command_line(int count, char** arguments);
+
+}  // namespace heliograph::cli

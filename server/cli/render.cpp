@@ -1,0 +1,162 @@
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "cli/commands.hpp"
+#include "cli/engine_options.hpp"
+#include "protocol/suggestions.hpp"
+#include "scene/camera.hpp"
+#include "scene/environment.hpp"
+#include "scene/import.hpp"
+#include "session/environment_choice.hpp"
+#include "stream/png_encoder.hpp"
+
+namespace heliograph::cli {
+namespace {
+
+constexpr int warm_up_frames = 3;
+
+scene::Environment choose_environment(const RenderOptions& options) {
+  if (!options.environment.empty()) return scene::load_environment(options.environment);
+  const auto beside = session::environment_beside(options.scene, options.scene.parent_path());
+  return beside ? scene::load_environment(*beside)
+                : scene::constant_environment(glm::vec3(1.0f));
+}
+
+scene::Camera choose_camera(const scene::Scene& scene, const RenderOptions& options) {
+  std::vector<std::string_view> names;
+  for (const scene::Camera& camera : scene.cameras) {
+    if (options.camera.empty() || camera.name == options.camera) return camera;
+    names.push_back(camera.name);
+  }
+  if (!options.camera.empty()) {
+    throw std::runtime_error("the scene has no camera " + options.camera +
+                             protocol::suggestion(options.camera, names));
+  }
+  const float aspect =
+      static_cast<float>(options.width) / static_cast<float>(options.height);
+  return scene::fit_camera(scene.bounds, scene::Camera().vertical_fov, aspect);
+}
+
+template <class Value>
+Value accepted(protocol::Result<Value> result) {
+  if (!result) throw std::runtime_error(result.error().message);
+  return *std::move(result);
+}
+
+void accept(const protocol::Result<void>& result) {
+  if (!result) throw std::runtime_error(result.error().message);
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Times of many frames, pass by pass in the order of the frame.
+class Timings {
+ public:
+  void add(const render::Frame& frame) {
+    frame_ms_.push_back(frame.milliseconds);
+    for (const render::PassTime& pass : frame.passes) {
+      auto& times = passes_[pass.name];
+      if (times.empty()) order_.push_back({pass.name, pass.kind});
+      times.push_back(pass.milliseconds);
+    }
+  }
+
+  nlohmann::json json() const {
+    nlohmann::json passes = nlohmann::json::array();
+    for (const auto& [name, kind] : order_) {
+      passes.push_back({{"name", name},
+                        {"kind", protocol::enum_name(kind)},
+                        {"ms", median(passes_.at(name))}});
+    }
+    return {{"frames", frame_ms_.size()}, {"frame_ms", median(frame_ms_)}, {"passes", passes}};
+  }
+
+ private:
+  struct Pass {
+    std::string name;
+    protocol::PassKind kind;
+  };
+  std::vector<double> frame_ms_;
+  std::vector<Pass> order_;
+  std::map<std::string, std::vector<double>> passes_;
+};
+
+/// The median frame while the picture keeps changing, as one line of JSON.
+void print_timings(render::Engine& engine, render::Renderer& renderer,
+                   const protocol::Settings& settings, const RenderOptions& options) {
+  protocol::Settings endless = settings;
+  endless.accumulation.max_samples = 65536;
+  accept(renderer.set_settings(endless));
+  for (int i = 0; i < warm_up_frames; ++i) renderer.render();
+  Timings timings;
+  for (std::uint32_t i = 0; i < options.frames; ++i) timings.add(renderer.render());
+  nlohmann::json line = timings.json();
+  line["scene"] = options.scene.filename().string();
+  line["device"] = engine.device().name;
+  line["tracer"] = protocol::enum_name(engine.tracer());
+  line["width"] = options.width;
+  line["height"] = options.height;
+  std::printf("%s\n", line.dump().c_str());
+}
+
+render::Frame render_picture(render::Renderer& renderer, const RenderOptions& options) {
+  std::uint32_t samples = 0;
+  bool converged = false;
+  while (!converged && samples < options.samples.value_or(65536)) {
+    const render::Frame frame = renderer.render();
+    samples = frame.samples;
+    converged = frame.converged;
+  }
+  return accepted(renderer.capture_view(options.buffer));
+}
+
+void write_file(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes) {
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  if (!file) throw std::runtime_error("cannot write " + path.string());
+}
+
+}  // namespace
+
+int run(const RenderOptions& options) {
+  protocol::Settings settings = parse_settings(options.settings);
+  if (options.samples) settings.accumulation.max_samples = static_cast<int>(*options.samples);
+  const auto scene =
+      std::make_shared<const scene::Scene>(scene::import_gltf(options.scene));
+  const scene::Environment environment = choose_environment(options);
+  const scene::Camera camera = choose_camera(*scene, options);
+
+  render::Engine engine(engine_options(options.device));
+  render::Renderer renderer(engine);
+  const auto resources = engine.upload(scene, environment);
+  renderer.set_scene(resources);
+  renderer.set_size(options.width, options.height);
+  renderer.set_camera(camera);
+  accept(renderer.set_settings(settings));
+  if (options.timings) {
+    print_timings(engine, renderer, settings, options);
+    // Measured frames have no part in the picture: the same command gives the same file.
+    renderer.set_scene(resources);
+    accept(renderer.set_settings(settings));
+  }
+  const render::Frame picture = render_picture(renderer, options);
+  write_file(options.output,
+             stream::encode_png({.width = picture.width, .height = picture.height,
+                                 .rgba = picture.rgba}));
+  return 0;
+}
+
+}  // namespace heliograph::cli

@@ -1,0 +1,46 @@
+#include "cli/scene_roots.hpp"
+
+#include <stdexcept>
+
+namespace heliograph::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* demo_scene = "glossy_sponza_1";
+
+}  // namespace
+
+std::vector<fs::path> choose_scene_roots(const std::vector<fs::path>& given) {
+  if (!given.empty()) return given;
+  std::error_code error;
+  const fs::path executable = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (const fs::path& folder : {fs::path(HELIOGRAPH_BUILD_SCENES), executable / "../scenes",
+                                 executable / "../share/heliograph/scenes"}) {
+    if (!fs::is_directory(folder, error)) continue;
+    if (!session::SceneCatalogue({folder}).list().empty()) return {folder.lexically_normal()};
+  }
+  return {};
+}
+
+std::string choose_scene(const session::SceneCatalogue& catalogue, const std::string& wanted) {
+  if (!wanted.empty()) {
+    const auto found = catalogue.find(wanted);
+    if (!found) {
+      throw std::runtime_error("--scene " + wanted + ": " + found.error().message);
+    }
+    return found->name;
+  }
+  const std::vector<session::CatalogueEntry> scenes = catalogue.list();
+  if (scenes.empty()) {
+    throw std::runtime_error(
+        "there is no scene to show: make the demo scene with \"heliograph-scenes FOLDER\" and "
+        "start with --scene-root FOLDER");
+  }
+  for (const session::CatalogueEntry& scene : scenes) {
+    if (scene.name == demo_scene) return scene.name;
+  }
+  return scenes.front().name;
+}
+
+}  // namespace heliograph::cli

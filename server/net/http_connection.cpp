@@ -1,0 +1,185 @@
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <boost/asio/dispatch.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <cctype>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "net/connection.hpp"
+#include "net/rate_limit.hpp"
+#include "protocol/messages.hpp"
+
+namespace heliograph::net {
+namespace {
+
+namespace http = beast::http;
+using boost::system::error_code;
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
+template <class View>
+std::string to_string(const View& view) {
+  return std::string(view.data(), view.size());
+}
+
+HttpRequest to_request(http::request<http::string_body>&& message) {
+  HttpRequest request;
+  request.method = to_string(message.method_string());
+  const std::string target = to_string(message.target());
+  const std::size_t question = std::min(target.find('?'), target.size());
+  request.path = target.substr(0, question);
+  request.query = parse_query(std::string_view(target).substr(
+      std::min(question + 1, target.size())));
+  for (const auto& field : message) {
+    const std::string name = lower(to_string(field.name_string()));
+    std::string value = to_string(field.value());
+    // Repeated fields are one list, RFC 9110 section 5.2; two hosts or origins then match nothing.
+    const auto [entry, first] = request.headers.emplace(name, value);
+    if (!first) entry->second += ", " + value;
+  }
+  request.body = std::move(message.body());
+  return request;
+}
+
+/// Why an upgrade that may otherwise pass cannot become a viewer.
+std::optional<HttpResponse> upgrade_refusal(const HttpRequest& request) {
+  if (request.path != "/ws") return text_response(404, "The WebSocket is at /ws.");
+  const auto offered = header_elements(request.header("sec-websocket-protocol"));
+  if (std::find(offered.begin(), offered.end(), protocol::protocol_name) == offered.end()) {
+    return text_response(400, "This server speaks the subprotocol heliograph.v1; offer it in "
+                              "Sec-WebSocket-Protocol.");
+  }
+  return std::nullopt;
+}
+
+class HttpConnection : public Connection, public std::enable_shared_from_this<HttpConnection> {
+ public:
+  HttpConnection(ServerContext& context, asio::ip::tcp::socket socket)
+      : context_(context),
+        stream_(std::move(socket)),
+        calls_(calls_per_second, calls_at_once, RateLimit::Clock::now()) {
+    context_.enter(*this);
+  }
+  ~HttpConnection() override { context_.leave(*this); }
+
+  void read() {
+    parser_.emplace();
+    parser_->header_limit(largest_request_head);
+    parser_->body_limit(context_.host.dispatch_limits().max_message_bytes);
+    // The first request must come soon; later ones may take their time.
+    stream_.expires_after(std::exchange(first_, false) ? handshake_timeout : idle_timeout);
+    http::async_read(stream_, buffer_, *parser_,
+                     [self = shared_from_this()](error_code error, std::size_t) {
+                       self->received(error);
+                     });
+  }
+
+  void shut_down() override {
+    leaving_ = true;
+    if (!answering_) close();
+  }
+
+ private:
+  void received(error_code error) {
+    if (error == http::error::body_limit || error == http::error::header_limit) {
+      keep_alive_ = false;
+      return send(text_response(413, "The request is too large."));
+    }
+    if (error == http::error::end_of_stream || !error) {
+      if (error) return close();
+      return answer();
+    }
+    if (error.category() == http::make_error_code(http::error::bad_method).category()) {
+      keep_alive_ = false;
+      return send(text_response(400, "This is not an HTTP request."));
+    }
+    // Timed out or gone: nobody is left to answer.
+  }
+
+  void answer() {
+    const bool upgrade = beast::websocket::is_upgrade(parser_->get());
+    keep_alive_ = parser_->keep_alive() && !upgrade && !leaving_;
+    answering_ = true;
+    const HttpRequest request = to_request(parser_->release());
+    if (upgrade) return become_viewer(request);
+    if (!calls_.allow(RateLimit::Clock::now())) {
+      return send(text_response(429, "Too many requests on this connection."));
+    }
+    stream_.expires_never();
+    context_.router.handle(request, [self = shared_from_this()](HttpResponse response) {
+      asio::post(self->stream_.get_executor(), [self, response = std::move(response)]() mutable {
+        self->send(std::move(response));
+      });
+    });
+  }
+
+  void become_viewer(const HttpRequest& request) {
+    if (auto refused = context_.access.refusal(request)) return send(*std::move(refused));
+    if (auto refused = upgrade_refusal(request)) return send(*std::move(refused));
+    stream_.expires_never();
+    start_viewer_connection(context_, std::move(stream_), request);
+  }
+
+  void send(HttpResponse answer) {
+    response_ = {};
+    response_.version(11);
+    response_.result(static_cast<unsigned>(answer.status));
+    for (const auto& [name, value] : security_headers()) response_.set(name, value);
+    response_.set(http::field::cache_control, "no-store");
+    if (!answer.content_type.empty()) {
+      response_.set(http::field::content_type, answer.content_type);
+    }
+    for (const auto& [name, value] : answer.headers) response_.set(name, value);
+    response_.keep_alive(keep_alive_);
+    response_.body() = std::move(answer.body);
+    response_.prepare_payload();
+    stream_.expires_after(idle_timeout);
+    http::async_write(stream_, response_,
+                      [self = shared_from_this()](error_code error, std::size_t) {
+                        self->sent(error);
+                      });
+  }
+
+  void sent(error_code error) {
+    answering_ = false;
+    if (error) return;
+    if (!keep_alive_ || leaving_) return close();
+    read();
+  }
+
+  void close() {
+    error_code ignored;
+    stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_both, ignored);
+  }
+
+  ServerContext& context_;
+  beast::tcp_stream stream_;
+  beast::flat_buffer buffer_;
+  std::optional<http::request_parser<http::string_body>> parser_;
+  http::response<http::string_body> response_;
+  RateLimit calls_;
+  bool first_ = true;
+  bool keep_alive_ = false;
+  bool answering_ = false;
+  bool leaving_ = false;
+};
+
+}  // namespace
+
+void start_http_connection(ServerContext& context, asio::ip::tcp::socket socket) {
+  const auto connection = std::make_shared<HttpConnection>(context, std::move(socket));
+  asio::dispatch(asio::get_associated_executor(connection, context.io.get_executor()),
+                 [connection] { connection->read(); });
+}
+
+}  // namespace heliograph::net

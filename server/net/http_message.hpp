@@ -1,0 +1,42 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace heliograph::net {
+
+/// A request as far as the routes need it; independent of the HTTP library.
+struct HttpRequest {
+  std::string method;
+  std::string path;  // before any '?', as sent
+  std::map<std::string, std::string> query;    // decoded
+  std::map<std::string, std::string> headers;  // names in lower case
+  std::string body;
+
+  /// The header's value, empty if absent. `name` in lower case.
+  std::string_view header(const std::string& name) const;
+  std::optional<std::string> parameter(const std::string& name) const;
+};
+
+struct HttpResponse {
+  int status = 200;
+  std::string content_type = "text/plain; charset=utf-8";
+  std::string body;
+  std::vector<std::pair<std::string, std::string>> headers;
+};
+
+/// One line of plain text for people.
+HttpResponse text_response(int status, std::string_view text);
+HttpResponse json_response(std::string body);
+
+/// The name and value pairs of a query string (without '?'), percent and plus decoded.
+std::map<std::string, std::string> parse_query(std::string_view query);
+
+/// The elements of a comma separated header, without white space around them.
+std::vector<std::string_view> header_elements(std::string_view value, char separator = ',');
+
+}  // namespace heliograph::net

@@ -1,0 +1,176 @@
+#include "net/router.hpp"
+
+#include <charconv>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "net/metrics.hpp"
+#include "protocol/settings_json.hpp"
+#include "web_client/embedded_assets.hpp"
+
+namespace heliograph::net {
+namespace {
+
+constexpr std::string_view sessions_prefix = "/api/v1/sessions/";
+
+HttpResponse with_header(HttpResponse response, std::string name, std::string value) {
+  response.headers.emplace_back(std::move(name), std::move(value));
+  return response;
+}
+
+HttpResponse method_not_allowed(std::string allowed) {
+  return with_header(text_response(405, "This address takes " + allowed + " only."), "Allow",
+                     allowed);
+}
+
+HttpResponse error_response(const protocol::Error& error) {
+  using protocol::ErrorCode;
+  switch (error.code) {
+    case ErrorCode::not_found:
+      return text_response(404, error.message);
+    case ErrorCode::invalid_params:
+      return text_response(400, error.message);
+    case ErrorCode::full:
+    case ErrorCode::not_ready:
+      return text_response(503, error.message);
+    default:
+      return text_response(500, error.message);
+  }
+}
+
+std::optional<HttpResponse> asset(const HttpRequest& request) {
+  const web::Asset* file = web::find_asset(request.path);
+  if (!file) return std::nullopt;
+  HttpResponse response;
+  for (const std::string_view tag : header_elements(request.header("if-none-match"))) {
+    if (tag == file->etag || tag == "*") response.status = 304;
+  }
+  response.content_type = file->content_type;
+  if (response.status == 200) response.body.assign(file->bytes.begin(), file->bytes.end());
+  response.headers.emplace_back("ETag", file->etag);
+  response.headers.emplace_back("Cache-Control", "no-cache");
+  return response;
+}
+
+HttpResponse schema() {
+  const nlohmann::json document{{"openrpc", protocol::openrpc_document().value()},
+                                {"settings", protocol::settings_schema()}};
+  return json_response(document.dump());
+}
+
+/// "main/frame.jpg" -> main, jpg
+std::optional<std::pair<std::string_view, std::string_view>> picture_address(
+    std::string_view path) {
+  if (!path.starts_with(sessions_prefix)) return std::nullopt;
+  path.remove_prefix(sessions_prefix.size());
+  constexpr std::string_view file = "/frame.";
+  const std::size_t split = path.find(file);
+  if (split == std::string_view::npos) return std::nullopt;
+  return std::pair{path.substr(0, split), path.substr(split + file.size())};
+}
+
+}  // namespace
+
+const std::vector<std::pair<std::string, std::string>>& security_headers() {
+  static const std::vector<std::pair<std::string, std::string>> headers{
+      {"Content-Security-Policy",
+       "default-src 'self'; img-src 'self' blob: data:; worker-src 'self' blob:; "
+       "connect-src 'self' ws: wss:; object-src 'none'; base-uri 'none'; form-action 'none'; "
+       "frame-ancestors 'none'"},
+      {"X-Content-Type-Options", "nosniff"},
+      {"Referrer-Policy", "no-referrer"},
+      {"Cross-Origin-Resource-Policy", "same-origin"},
+      {"Cross-Origin-Opener-Policy", "same-origin"},
+  };
+  return headers;
+}
+
+Router::Router(session::SessionHost& host, const AccessControl& access)
+    : host_(host), access_(access) {}
+
+void Router::handle(const HttpRequest& request, Reply reply) const {
+  const bool health_check = request.path.starts_with("/health/");
+  const std::optional<std::string> token = request.parameter("token");
+  const bool exchange = request.path == "/" && token && access_.is_token(*token);
+  if (auto refused = access_.refusal(request, !health_check && !exchange)) {
+    return reply(*std::move(refused));
+  }
+  if (exchange) {
+    HttpResponse redirect = text_response(303, "Go on to /");
+    redirect.headers = {{"Location", "/"}, {"Set-Cookie", access_.token_cookie()}};
+    return reply(std::move(redirect));
+  }
+  if (request.path == "/rpc") {
+    if (request.method != "POST") return reply(method_not_allowed("POST"));
+    return call(request, std::move(reply));
+  }
+  if (request.method != "GET" && request.method != "HEAD") {
+    return reply(method_not_allowed("GET"));
+  }
+  if (const auto address = picture_address(request.path)) {
+    return picture(request, address->first, address->second, std::move(reply));
+  }
+  HttpResponse response = answer_get(request);
+  if (request.method == "HEAD") response.body.clear();
+  reply(std::move(response));
+}
+
+HttpResponse Router::answer_get(const HttpRequest& request) const {
+  if (request.path == "/health/live") return text_response(200, "live");
+  if (request.path == "/health/ready") return health(host_.ready() && !draining_);
+  if (request.path == "/metrics") {
+    return {.content_type = "text/plain; version=0.0.4; charset=utf-8",
+            .body = metrics_text(host_, started_)};
+  }
+  if (request.path == "/api/v1/schema") return schema();
+  if (request.path == "/ws") {
+    return with_header(text_response(426, "This address speaks WebSocket."), "Upgrade",
+                       "websocket");
+  }
+  if (auto file = asset(request)) return *std::move(file);
+  return text_response(404, "There is nothing at this address.");
+}
+
+HttpResponse Router::health(bool ready) const {
+  if (ready) return text_response(200, "ready");
+  return text_response(503, draining_ ? "shutting down" : "no picture has been rendered yet");
+}
+
+void Router::call(const HttpRequest& request, Reply reply) const {
+  host_.dispatcher().handle(request.body, {}, [reply = std::move(reply)](std::string answer) {
+    if (answer.empty()) return reply({.status = 204, .content_type = {}});
+    reply(json_response(std::move(answer)));
+  });
+}
+
+void Router::picture(const HttpRequest& request, std::string_view session,
+                     std::string_view extension, Reply reply) const {
+  const std::shared_ptr<session::Session> found = host_.find_session(session);
+  if (!found) return reply(text_response(404, "There is no such session."));
+  if (extension != "png" && extension != "jpg") {
+    return reply(text_response(404, "Pictures are frame.jpg and frame.png."));
+  }
+  session::CaptureRequest capture;
+  capture.format =
+      extension == "png" ? session::CaptureFormat::png : session::CaptureFormat::jpeg;
+  capture.buffer = request.parameter("buffer").value_or("output");
+  const std::string samples = request.parameter("samples").value_or("1");
+  std::uint32_t count = 0;
+  const char* end = samples.data() + samples.size();
+  const auto parsed = std::from_chars(samples.data(), end, count);
+  if (parsed.ec != std::errc() || parsed.ptr != end || count == 0) {
+    return reply(text_response(400, "samples must be a whole number from 1."));
+  }
+  capture.samples = count;
+  capture.done = [reply, type = extension == "png" ? "image/png" : "image/jpeg"](
+                     protocol::Result<session::Capture> result) {
+    if (!result) return reply(error_response(result.error()));
+    reply({.content_type = type, .body = {result->file.begin(), result->file.end()}});
+  };
+  if (const auto accepted = found->request_capture(std::move(capture)); !accepted) {
+    reply(error_response(accepted.error()));
+  }
+}
+
+}  // namespace heliograph::net

@@ -1,0 +1,240 @@
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <boost/asio/post.hpp>
+#include <boost/beast/core/buffers_to_string.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "net/connection.hpp"
+#include "net/rate_limit.hpp"
+#include "protocol/messages.hpp"
+#include "session/viewer_link.hpp"
+
+namespace heliograph::net {
+namespace {
+
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using boost::system::error_code;
+
+// A viewer that does not take its messages is let go before they fill the memory. Large enough for
+// a captured picture of the largest size.
+constexpr std::size_t most_waiting_messages = 256;
+constexpr std::size_t most_waiting_bytes = 128u << 20;
+
+constexpr std::uint16_t slow_consumer = 4004;
+constexpr int reconnect_after_ms = 1000;
+
+constexpr const char* rate_limited =
+    R"({"jsonrpc":"2.0","id":null,"error":{"code":-32002,)"
+    R"("message":"too many messages on this connection",)"
+    R"("data":{"path":"","reason":"too many messages","limit":"500 in a second"}}})";
+
+class ViewerConnection : public Connection,
+                         public session::ViewerLink,
+                         public std::enable_shared_from_this<ViewerConnection> {
+ public:
+  ViewerConnection(ServerContext& context, beast::tcp_stream stream)
+      : context_(context),
+        socket_(std::move(stream)),
+        close_deadline_(socket_.get_executor()),
+        calls_(calls_per_second, calls_at_once, RateLimit::Clock::now()) {
+    context_.enter(*this);
+  }
+  ~ViewerConnection() override { context_.leave(*this); }
+
+  void accept(const HttpRequest& request) {
+    websocket::stream_base::timeout timeouts{};
+    timeouts.handshake_timeout = handshake_timeout;
+    timeouts.idle_timeout = idle_timeout;
+    timeouts.keep_alive_pings = true;
+    socket_.set_option(timeouts);
+    socket_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
+      response.set(http::field::sec_websocket_protocol, std::string(protocol::protocol_name));
+    }));
+    socket_.read_message_max(context_.host.dispatch_limits().max_message_bytes);
+    // One WebSocket frame per picture, written from where it lies.
+    socket_.auto_fragment(false);
+
+    handshake_.method(http::verb::get);
+    handshake_.target(request.path);
+    handshake_.version(11);
+    for (const auto& [name, value] : request.headers) handshake_.set(name, value);
+    socket_.async_accept(handshake_, [self = shared_from_this()](error_code error) {
+      if (!error) self->accepted();
+    });
+  }
+
+  void shut_down() override {
+    close(1001, "{\"reconnectAfterMs\":" + std::to_string(reconnect_after_ms) + "}");
+  }
+
+  void frame_ready() override {
+    if (announced_.exchange(true)) return;
+    asio::post(socket_.get_executor(), [self = shared_from_this()] {
+      self->announced_ = false;
+      self->write_next();
+    });
+  }
+
+  void send(std::string text, std::string_view key) override {
+    asio::post(socket_.get_executor(),
+               [self = shared_from_this(), text = std::move(text), key = std::string(key)]() mutable {
+                 self->enqueue(std::move(text), std::move(key));
+               });
+  }
+
+ private:
+  struct Message {
+    std::string text;
+    std::string key;
+  };
+
+  void accepted() {
+    const auto joined = context_.host.default_session().audience().join(weak_from_this());
+    if (!joined) {
+      close(websocket::close_code::try_again_later, joined.error().message);
+      return read();
+    }
+    viewer_ = *joined;
+    spdlog::info("viewer {} connected", viewer_);
+    if (context_.draining) shut_down();
+    read();
+  }
+
+  void read() {
+    socket_.async_read(incoming_, [self = shared_from_this()](error_code error, std::size_t) {
+      self->received(error);
+    });
+  }
+
+  void received(error_code error) {
+    if (error) return ended(error);
+    const bool text = socket_.got_text();
+    const std::string message = beast::buffers_to_string(incoming_.data());
+    incoming_.consume(incoming_.size());
+    if (closing_) return read();
+    if (!text) {
+      close(websocket::close_code::unknown_data, "messages to the server are text");
+      return read();
+    }
+    if (calls_.allow(RateLimit::Clock::now())) {
+      const std::weak_ptr<ViewerConnection> weak = weak_from_this();
+      context_.host.dispatcher().handle(message, {.viewer = viewer_}, [weak](std::string answer) {
+        const auto self = weak.lock();
+        if (self && !answer.empty()) self->send(std::move(answer), {});
+      });
+    } else {
+      enqueue(rate_limited, {});
+    }
+    read();
+  }
+
+  void enqueue(std::string text, std::string key) {
+    if (closing_) return;
+    const auto same = std::find_if(waiting_.begin(), waiting_.end(), [&](const Message& message) {
+      return !key.empty() && message.key == key;
+    });
+    if (same != waiting_.end()) {
+      waiting_bytes_ += text.size();
+      waiting_bytes_ -= same->text.size();
+      same->text = std::move(text);
+      return;
+    }
+    waiting_bytes_ += text.size();
+    waiting_.push_back({.text = std::move(text), .key = std::move(key)});
+    if (waiting_.size() > most_waiting_messages || waiting_bytes_ > most_waiting_bytes) {
+      waiting_.clear();
+      return close(slow_consumer, "messages are not being read");
+    }
+    write_next();
+  }
+
+  void write_next() {
+    if (writing_ || closing_ || viewer_.empty()) return;
+    const auto done = [self = shared_from_this()](error_code error, std::size_t) {
+      self->written(error);
+    };
+    if (!waiting_.empty()) {
+      writing_ = true;
+      text_in_flight_ = std::move(waiting_.front().text);
+      waiting_.pop_front();
+      waiting_bytes_ -= text_in_flight_.size();
+      socket_.text(true);
+      return socket_.async_write(asio::buffer(text_in_flight_), done);
+    }
+    frame_in_flight_ = context_.host.default_session().audience().take(viewer_);
+    if (!frame_in_flight_) return;
+    writing_ = true;
+    const std::array<asio::const_buffer, 2> parts{
+        asio::buffer(frame_in_flight_->header), asio::buffer(frame_in_flight_->frame->payload)};
+    socket_.binary(true);
+    socket_.async_write(parts, done);
+  }
+
+  void written(error_code error) {
+    writing_ = false;
+    frame_in_flight_.reset();
+    if (!error) write_next();
+  }
+
+  void close(std::uint16_t code, const std::string& reason) {
+    if (std::exchange(closing_, true)) return;
+    websocket::close_reason close_reason(code);
+    // What fits into a control frame, RFC 6455 section 5.5.
+    close_reason.reason.assign(reason.data(), std::min<std::size_t>(reason.size(), 123));
+    socket_.async_close(close_reason, [self = shared_from_this()](error_code error) {
+      self->ended(error);
+    });
+    // A peer that does not answer, or a write that never ends, must not keep the socket open.
+    close_deadline_.expires_after(drain_deadline);
+    close_deadline_.async_wait([self = shared_from_this()](error_code error) {
+      if (!error) self->ended(error);
+    });
+  }
+
+  void ended(error_code error) {
+    closing_ = true;
+    close_deadline_.cancel();
+    waiting_.clear();
+    error_code ignored;
+    beast::get_lowest_layer(socket_).socket().close(ignored);
+    if (viewer_.empty()) return;
+    context_.host.default_session().leave(viewer_);
+    spdlog::info("viewer {} left: {}", viewer_, error.message());
+    viewer_.clear();
+  }
+
+  ServerContext& context_;
+  websocket::stream<beast::tcp_stream> socket_;
+  http::request<http::empty_body> handshake_;
+  asio::steady_timer close_deadline_;
+  RateLimit calls_;
+  beast::flat_buffer incoming_;
+  std::string viewer_;
+  std::deque<Message> waiting_;
+  std::size_t waiting_bytes_ = 0;
+  std::string text_in_flight_;
+  std::optional<stream::OutgoingFrame> frame_in_flight_;
+  bool writing_ = false;
+  bool closing_ = false;
+  std::atomic<bool> announced_ = false;
+};
+
+}  // namespace
+
+void start_viewer_connection(ServerContext& context, beast::tcp_stream stream,
+                             const HttpRequest& request) {
+  std::make_shared<ViewerConnection>(context, std::move(stream))->accept(request);
+}
+
+}  // namespace heliograph::net
