@@ -17,16 +17,26 @@ layout(location = 4) out vec3 clip_now;
 layout(location = 5) out vec3 clip_before;
 layout(location = 6) out vec2 view_depths;  // now and one frame ago, metres along -Z
 layout(location = 7) out vec3 world_point;
-layout(location = 8) flat out uint instance_index;
+
+layout(push_constant) uniform Constants { DrawConstants draw; };
+
+vec3 transform(vec4 rows[3], vec4 v) { return vec3(dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)); }
+
+/// Cofactors of the upper 3x3 times n: the inverse transpose's direction without dividing, turned
+/// outward again where the matrix mirrors.
+vec3 transform_normal(vec4 rows[3], vec3 n) {
+  vec3 cofactors = vec3(dot(cross(rows[1].xyz, rows[2].xyz), n),
+                        dot(cross(rows[2].xyz, rows[0].xyz), n),
+                        dot(cross(rows[0].xyz, rows[1].xyz), n));
+  return normalize((draw.flags & instance_flipped) != 0u ? -cofactors : cofactors);
+}
 
 void main() {
-  instance_index = gl_InstanceIndex;
-  Instance instance = instances[gl_InstanceIndex];
-  vec4 world = instance.world * vec4(position, 1.0);
-  vec4 before = instance.previous_world * vec4(position, 1.0);
-  world_normal = mat3(instance.normal_matrix) * normal;
-  world_tangent = vec4(mat3(instance.world) * tangent.xyz,
-                       (instance.flags & instance_flipped) != 0u ? -tangent.w : tangent.w);
+  vec4 world = vec4(transform(draw.world, vec4(position, 1.0)), 1.0);
+  vec4 before = vec4(transform(draw.previous_world, vec4(position, 1.0)), 1.0);
+  world_normal = transform_normal(draw.world, normal);
+  world_tangent = vec4(transform(draw.world, vec4(tangent.xyz, 0.0)),
+                       (draw.flags & instance_flipped) != 0u ? -tangent.w : tangent.w);
   texture_uv = uv;
   vertex_color = vec4(color_rg, color_ba);
   clip_now = (frame.unjittered * world).xyw;

@@ -60,8 +60,9 @@ VkDescriptorSet DescriptorPool::allocate(VkDescriptorSetLayout layout) const {
 }
 
 DescriptorWriter& DescriptorWriter::buffer(std::uint32_t binding, VkDescriptorType type,
-                                           VkBuffer buffer) {
-  writes_.push_back({binding, type, {buffer, 0, VK_WHOLE_SIZE}, {}, VK_NULL_HANDLE});
+                                           VkBuffer buffer, VkDeviceSize offset,
+                                           VkDeviceSize size) {
+  writes_.push_back({binding, type, {buffer, offset, size}, {}, VK_NULL_HANDLE});
   return *this;
 }
 

@@ -51,7 +51,8 @@ class DescriptorPool {
 class DescriptorWriter {
  public:
   DescriptorWriter(const Device& device, VkDescriptorSet set) : device_(device), set_(set) {}
-  DescriptorWriter& buffer(std::uint32_t binding, VkDescriptorType type, VkBuffer buffer);
+  DescriptorWriter& buffer(std::uint32_t binding, VkDescriptorType type, VkBuffer buffer,
+                           VkDeviceSize offset = 0, VkDeviceSize size = VK_WHOLE_SIZE);
   DescriptorWriter& texel_buffer(std::uint32_t binding, VkBufferView view);
   DescriptorWriter& storage_image(std::uint32_t binding, VkImageView view);
   DescriptorWriter& sampled_image(std::uint32_t binding, VkImageView view, VkSampler sampler);

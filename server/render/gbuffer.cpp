@@ -29,15 +29,15 @@ class DrawRecorder {
       material_ = draw.material;
       vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, material_set, 1,
                               &in_.scene.material_sets[material_], 0, nullptr);
-      vkCmdPushConstants(commands_, layout_,
-                         VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                         sizeof material_, &material_);
     }
+    vkCmdPushConstants(commands_, layout_,
+                       VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                       sizeof draw.constants, &draw.constants);
     vkCmdSetCullMode(commands_, draw.double_sided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
     vkCmdSetFrontFace(commands_, draw.flipped ? VK_FRONT_FACE_CLOCKWISE
                                               : VK_FRONT_FACE_COUNTER_CLOCKWISE);
     vkCmdDrawIndexed(commands_, draw.index_count, 1, draw.first_index,
-                     static_cast<std::int32_t>(draw.first_vertex), draw.instance);
+                     static_cast<std::int32_t>(draw.first_vertex), 0);
   }
 
  private:
@@ -75,7 +75,7 @@ GBuffer rasterize_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
       .color(gbuffer.depth_slope, nothing)
       .color(gbuffer.instance, nothing)
       .depth(gbuffer.depth, 0.0f)
-      .constants(std::uint32_t{0})
+      .constants(shared::DrawConstants{})  // every draw pushes its own
       .draw([in](VkCommandBuffer commands, VkPipelineLayout layout) {
         const Frustum frustum(in.constants.view_projection);
         DrawRecorder recorder(in, commands, layout);

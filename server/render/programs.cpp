@@ -11,12 +11,10 @@ namespace {
 
 std::vector<gpu::DescriptorLayout::Binding> frame_bindings() {
   return {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
-          {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-          {2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-          {3, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-          {4, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
-          {5, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
-          {6, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}};
+          {1, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
+          {2, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
+          {3, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
+          {4, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}};
 }
 
 std::vector<gpu::DescriptorLayout::Binding> material_bindings() {
@@ -24,6 +22,7 @@ std::vector<gpu::DescriptorLayout::Binding> material_bindings() {
   for (std::uint32_t i = 0; i < material_textures; ++i) {
     bindings.push_back({i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER});
   }
+  bindings.push_back({material_textures, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER});
   return bindings;
 }
 

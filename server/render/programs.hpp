@@ -6,7 +6,7 @@ namespace heliograph::render {
 
 /// Set 0: the frame's constants and the scene's tables (shaders/lib/frame.glsl).
 inline constexpr std::uint32_t frame_set = 0;
-/// Set 2: the five textures of one material (shaders/lib/gbuffer_surface.glsl).
+/// Set 2: the five textures of one material, then its values (shaders/lib/gbuffer_surface.glsl).
 inline constexpr std::uint32_t material_set = 2;
 inline constexpr std::uint32_t material_textures = 5;
 

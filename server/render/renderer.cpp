@@ -77,15 +77,13 @@ void Renderer::State::build_plan() {
 void Renderer::State::write_frame_set() {
   pool = std::make_unique<gpu::DescriptorPool>(parts.device, 1, 8);
   const VkDescriptorSet set = pool->allocate(parts.programs.frame_layout.handle());
-  constexpr auto storage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  constexpr auto uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
   gpu::DescriptorWriter(parts.device, set)
-      .buffer(0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, constants_buffer.handle())
-      .buffer(1, storage, scene->buffers.instances.handle())
-      .buffer(2, storage, scene->buffers.materials.handle())
-      .buffer(3, storage, scene->buffers.lights.handle())
-      .sampled_image(4, scene->environment.map.view(), parts.around.handle())
-      .sampled_image(5, scene->environment.prefiltered.view(), parts.clamped.handle())
-      .sampled_image(6, parts.split_sum_table.view(), parts.clamped.handle())
+      .buffer(0, uniform, constants_buffer.handle())
+      .buffer(1, uniform, scene->light_block.handle())
+      .sampled_image(2, scene->environment.map.view(), parts.around.handle())
+      .sampled_image(3, scene->environment.prefiltered.view(), parts.clamped.handle())
+      .sampled_image(4, parts.split_sum_table.view(), parts.clamped.handle())
       .apply();
   plan->share_set(frame_set, set);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <tuple>
 
 namespace heliograph::render {
@@ -51,6 +52,19 @@ gpu::Image constant_texture(const gpu::Device& device, const char* name,
   gpu::Image image(device, desc);
   image.upload(std::as_bytes(std::span(texel)));
   return image;
+}
+
+shared::DrawConstants draw_constants(const shared::Instance& instance, std::uint32_t index) {
+  shared::DrawConstants constants{};
+  const glm::mat4 now = glm::transpose(instance.world);
+  const glm::mat4 before = glm::transpose(instance.previous_world);
+  for (int row = 0; row < 3; ++row) {
+    constants.world[row] = now[row];
+    constants.previous_world[row] = before[row];
+  }
+  constants.instance = index;
+  constants.flags = instance.flags;
+  return constants;
 }
 
 scene::Bounds world_bounds(const scene::Bounds& mesh, const glm::mat4& world) {
@@ -103,6 +117,15 @@ void SceneResources::upload_tables(const gpu::Device& device) {
   std::vector<shared::Light> lights;
   for (const scene::Light& light : scene->lights) lights.push_back(light.device);
 
+  if (lights.size() > shared::max_lights) {
+    throw gpu::GpuError("the scene has " + std::to_string(lights.size()) +
+                        " lights; at most " + std::to_string(shared::max_lights) + " are drawn");
+  }
+  std::vector<shared::Light> block = lights;
+  block.resize(shared::max_lights);
+  light_block = gpu::upload_buffer(device, "light block", std::as_bytes(std::span(block)),
+                                   VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+
   buffers.vertices = upload(device, "vertices", vertices, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
   buffers.indices = upload(device, "indices", indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
   buffers.meshes = upload(device, "meshes", meshes_);
@@ -137,6 +160,14 @@ void SceneResources::upload_textures(const gpu::Device& device) {
 void SceneResources::make_material_sets(const gpu::Device& device, const Programs& programs) {
   const auto count = static_cast<std::uint32_t>(scene->materials.size());
   pool_ = std::make_unique<gpu::DescriptorPool>(device, count, count * material_textures);
+  const VkDeviceSize alignment = device.limits().minUniformBufferOffsetAlignment;
+  const VkDeviceSize stride = (sizeof(shared::Material) + alignment - 1) / alignment * alignment;
+  std::vector<std::byte> blocks(stride * count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    std::memcpy(blocks.data() + i * stride, &scene->materials[i], sizeof(shared::Material));
+  }
+  material_blocks_ = gpu::upload_buffer(device, "material blocks", blocks,
+                                        VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
   for (const shared::Material& material : scene->materials) {
     const std::array slots{&material.base_color_texture, &material.metallic_roughness_texture,
                            &material.normal_texture, &material.occlusion_texture,
@@ -153,6 +184,8 @@ void SceneResources::make_material_sets(const gpu::Device& device, const Program
                              samplers_[texture_sampler_[texture]].handle());
       }
     }
+    writer.buffer(material_textures, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, material_blocks_.handle(),
+                  material_sets.size() * stride, sizeof(shared::Material));
     writer.apply();
     material_sets.push_back(set);
   }
@@ -164,7 +197,7 @@ void SceneResources::list_draws() {
     const shared::Mesh& mesh = meshes_[instance.mesh];
     const std::uint32_t flags = scene->materials[mesh.material].flags;
     Draw draw{};
-    draw.instance = i;
+    draw.constants = draw_constants(instances_[i], i);
     draw.material = mesh.material;
     draw.first_index = mesh.first_index;
     draw.index_count = mesh.index_count;
@@ -177,8 +210,8 @@ void SceneResources::list_draws() {
     draws.push_back(draw);
   }
   std::sort(draws.begin(), draws.end(), [](const Draw& a, const Draw& b) {
-    return std::tie(a.masked, a.material, a.first_index, a.instance) <
-           std::tie(b.masked, b.material, b.first_index, b.instance);
+    return std::tie(a.masked, a.material, a.first_index, a.constants.instance) <
+           std::tie(b.masked, b.material, b.first_index, b.constants.instance);
   });
 }
 

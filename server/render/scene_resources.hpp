@@ -11,7 +11,7 @@ namespace heliograph::render {
 
 /// One instance as the rasteriser draws it.
 struct Draw {
-  std::uint32_t instance;  // in the instance table
+  shared::DrawConstants constants;
   std::uint32_t material;
   std::uint32_t first_index;
   std::uint32_t index_count;
@@ -32,6 +32,7 @@ class SceneResources {
   tracing::SceneBuffers buffers;
   std::shared_ptr<const tracing::AccelerationStructure> structure;
   EnvironmentMaps environment;
+  gpu::Buffer light_block;  // shared::Light[max_lights], uniform
   std::vector<Draw> draws;  // opaque first, then by material
   std::vector<VkDescriptorSet> material_sets;
 
@@ -48,6 +49,7 @@ class SceneResources {
   gpu::Image flat_normal_;
   std::vector<gpu::Sampler> samplers_;
   std::vector<std::uint32_t> texture_sampler_;  // by texture, into samplers_
+  gpu::Buffer material_blocks_;  // shared::Material each, at the device's uniform alignment
   std::unique_ptr<gpu::DescriptorPool> pool_;
 };
 

@@ -5,12 +5,10 @@
 #include "shared/scene.h"
 
 layout(set = 0, binding = 0, std140) uniform FrameBlock { FrameConstants frame; };
-layout(set = 0, binding = 1, std430) readonly buffer InstanceTable { Instance instances[]; };
-layout(set = 0, binding = 2, std430) readonly buffer MaterialTable { Material materials[]; };
-layout(set = 0, binding = 3, std430) readonly buffer LightTable { Light lights[]; };
-layout(set = 0, binding = 4) uniform sampler2D environment_map;
-layout(set = 0, binding = 5) uniform samplerCube prefiltered_environment;
-layout(set = 0, binding = 6) uniform sampler2D split_sum_table;
+layout(set = 0, binding = 1, std140) uniform LightBlock { Light lights[max_lights]; };
+layout(set = 0, binding = 2) uniform sampler2D environment_map;
+layout(set = 0, binding = 3) uniform samplerCube prefiltered_environment;
+layout(set = 0, binding = 4) uniform sampler2D split_sum_table;
 
 bool enabled(uint flag) { return (frame.counts.y & flag) != 0u; }
 

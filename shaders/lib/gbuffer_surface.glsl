@@ -11,7 +11,6 @@ layout(location = 4) in vec3 clip_now;
 layout(location = 5) in vec3 clip_before;
 layout(location = 6) in vec2 view_depths;
 layout(location = 7) in vec3 world_point;
-layout(location = 8) flat in uint instance_index;
 
 layout(location = 0) out vec4 normals;     // octahedral: shading xy, geometric zw
 layout(location = 1) out vec4 base_color;  // square root of linear rgb, occlusion
@@ -21,20 +20,22 @@ layout(location = 4) out vec4 emissive;    // linear radiance
 layout(location = 5) out vec2 depth_slope; // view Z per pixel in x and y
 layout(location = 6) out uint instance_id;
 
-layout(push_constant) uniform Constants { uint material_index; };
+layout(push_constant) uniform Constants { DrawConstants draw; };
 
 layout(set = 2, binding = 0) uniform sampler2D base_color_map;
 layout(set = 2, binding = 1) uniform sampler2D metallic_roughness_map;
 layout(set = 2, binding = 2) uniform sampler2D normal_map;
 layout(set = 2, binding = 3) uniform sampler2D occlusion_map;
 layout(set = 2, binding = 4) uniform sampler2D emissive_map;
+// Uniform, not storage: helper lanes must see it too, or the texture's level of detail is wrong.
+layout(set = 2, binding = 5, std140) uniform MaterialBlock { Material material; };
 
 vec2 slot_uv(TextureSlot slot) {
   vec3 uv = vec3(slot.uv_set == 0u ? texture_uv.xy : texture_uv.zw, 1.0);
   return vec2(dot(slot.transform_row0.xyz, uv), dot(slot.transform_row1.xyz, uv));
 }
 
-vec3 mapped_normal(Material material, vec3 normal, float side) {
+vec3 mapped_normal(vec3 normal, float side) {
   vec2 uv = slot_uv(material.normal_texture);
   vec3 texel = texture(normal_map, uv).xyz * 2.0 - 1.0;
   texel.xy *= material.normal_scale;
@@ -47,14 +48,13 @@ vec3 mapped_normal(Material material, vec3 normal, float side) {
 }
 
 void main() {
-  Material material = materials[material_index];
   vec4 color = material.base_color * vertex_color *
                texture(base_color_map, slot_uv(material.base_color_texture));
 #ifndef GBUFFER_OPAQUE
   float cutoff = material.alpha_cutoff;
   // Blended surfaces cover a random share of the samples: accumulation makes it the right share.
   if ((material.flags & material_alpha_blend) != 0u) {
-    cutoff = random_number(uvec2(gl_FragCoord.xy), frame.extent.z, 40u + (material_index & 7u),
+    cutoff = random_number(uvec2(gl_FragCoord.xy), frame.extent.z, 40u + (draw.instance & 15u),
                            frame.extent.w);
   }
   if (color.a < cutoff) discard;
@@ -68,7 +68,7 @@ void main() {
   if (dot(geometric, vertex_normal) < 0.0) geometric = -geometric;
   vec3 shading = vertex_normal;
   if (material.normal_texture.texture != no_texture) {
-    shading = mapped_normal(material, vertex_normal, side);
+    shading = mapped_normal(vertex_normal, side);
   }
   vec4 packed_surface = texture(metallic_roughness_map,
                                 slot_uv(material.metallic_roughness_texture));
@@ -85,5 +85,5 @@ void main() {
   emissive = vec4(material.emissive * texture(emissive_map, slot_uv(material.emissive_texture)).rgb,
                   1.0);
   depth_slope = vec2(dFdx(view_depths.x), dFdy(view_depths.x));
-  instance_id = instance_index + 1u;
+  instance_id = draw.instance + 1u;
 }

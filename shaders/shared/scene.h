@@ -79,6 +79,17 @@ struct Instance {
 };
 SHARED_CONSTANT uint instance_flipped = 1u;
 
+// What one draw of the G-buffer needs of its instance: push constants, because lavapipe reads
+// storage buffers lane by lane. Rows of the matrices.
+struct DrawConstants {
+  vec4 world[3];
+  vec4 previous_world[3];
+  uint instance;
+  uint flags;
+};
+
+SHARED_CONSTANT uint max_lights = 256u;  // a uniform block of 16 KiB
+
 SHARED_CONSTANT uint light_directional = 0u;
 SHARED_CONSTANT uint light_point = 1u;
 SHARED_CONSTANT uint light_spot = 2u;
