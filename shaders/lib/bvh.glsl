@@ -86,86 +86,99 @@ bool triangle_hit(uint place, Line line, vec2 range, out vec3 tuv, out uint tria
          tuv.x > range.x && tuv.x < range.y;
 }
 
-Hit trace(Ray ray) {
-  Hit hit;
-  hit.t = ray.t_max;
-  hit.instance = hit_none;
-  hit.triangle = 0u;
-  hit.u = hit.v = 0.0;
-  hit.padding0 = hit.padding1 = hit.padding2 = 0u;
+// Links still to be visited. Both levels share the stack; bvh_no_link ends each of them.
+uint stack[bvh_stack_size];
+uint waiting = 0u;
 
-  const Line world = make_line(ray.origin, ray.direction);
-  Line line = world;
-  uint stack[bvh_stack_size];
-  stack[0] = bvh_no_link;
-  uint waiting = 1u;
-  bool in_mesh = false;
-  uvec3 placed = uvec3(0u);  // root, instance, mask of the mesh the ray is in
-  uint link = ray.t_min < ray.t_max ? root : bvh_no_link;
+void push(uint link) { stack[waiting++] = link; }
 
-  while (link != bvh_no_link || in_mesh) {
-    while (is_node(link)) {
-      const int texel = int((link & bvh_number_mask) * bvh_texels_per_record);
-      const vec4 left_xy = texelFetch(records, texel);
-      const vec4 right_xy = texelFetch(records, texel + 1);
-      const vec4 both_z = texelFetch(records, texel + 2);
-      const uvec2 children = floatBitsToUint(texelFetch(records, texel + 3).xy);
-      const vec2 range = vec2(ray.t_min, hit.t);
-      const vec2 left = box_interval(left_xy.xy, left_xy.zw, both_z.xy, line, range);
-      const vec2 right = box_interval(right_xy.xy, right_xy.zw, both_z.zw, line, range);
-      const bool enter_left = left.x <= left.y;
-      const bool enter_right = right.x <= right.y;
-      const bool swapped = !ANY_HIT && right.x < left.x;
-      if (enter_left && enter_right) {
-        stack[waiting++] = swapped ? children.x : children.y;
-        link = swapped ? children.y : children.x;
-      } else if (enter_left || enter_right) {
-        link = enter_left ? children.x : children.y;
-      } else {
-        link = stack[--waiting];
-      }
-    }
-    if (link == bvh_no_link) {
-      if (!in_mesh) break;
-      in_mesh = false;
-      line = world;
-      link = stack[--waiting];
-    } else if (!in_mesh) {
-      const uint record = link & bvh_leaf_first_mask;
-      placed = record_bits(record, 3u).xyz;
-      const int texel = int(record * bvh_texels_per_record);
-      const vec4 row0 = texelFetch(records, texel);
-      const vec4 row1 = texelFetch(records, texel + 1);
-      const vec4 row2 = texelFetch(records, texel + 2);
-      const vec4 origin = vec4(world.origin, 1.0);
-      line = make_line(vec3(dot(row0, origin), dot(row1, origin), dot(row2, origin)),
-                       vec3(dot(row0.xyz, world.direction), dot(row1.xyz, world.direction),
-                            dot(row2.xyz, world.direction)));
-      stack[waiting++] = bvh_no_link;
-      link = placed.x;
-      in_mesh = true;
+uint pop() { return stack[--waiting]; }
+
+// Follows the line down to the next leaf that it may meet within the range, or to bvh_no_link.
+uint descend(uint link, Line line, vec2 range) {
+  while (is_node(link)) {
+    const int texel = int((link & bvh_number_mask) * bvh_texels_per_record);
+    const vec4 left_xy = texelFetch(records, texel);
+    const vec4 right_xy = texelFetch(records, texel + 1);
+    const vec4 both_z = texelFetch(records, texel + 2);
+    const uvec2 children = floatBitsToUint(texelFetch(records, texel + 3).xy);
+    const vec2 left = box_interval(left_xy.xy, left_xy.zw, both_z.xy, line, range);
+    const vec2 right = box_interval(right_xy.xy, right_xy.zw, both_z.zw, line, range);
+    const bool enter_left = left.x <= left.y;
+    const bool enter_right = right.x <= right.y;
+    // Sorting pays only where a near hit spares the far child.
+    const bool right_first = !ANY_HIT && right.x < left.x;
+    if (enter_left && enter_right) {
+      push(right_first ? children.x : children.y);
+      link = right_first ? children.y : children.x;
+    } else if (enter_left || enter_right) {
+      link = enter_left ? children.x : children.y;
     } else {
-      uint place = link & bvh_leaf_first_mask;
-      const uint end = place + ((link >> bvh_leaf_count_shift) & bvh_leaf_count_mask) + 1u;
-      for (; place < end; ++place) {
-        vec3 tuv;
-        uint triangle;
-        if (!triangle_hit(place, line, vec2(ray.t_min, hit.t), tuv, triangle)) continue;
-        if (placed.z != bvh_no_link &&
-            !mask_stops(placed.z & bvh_number_mask, place, tuv.y, tuv.z)) {
-          continue;
-        }
-        hit.t = tuv.x;
-        hit.u = tuv.y;
-        hit.v = tuv.z;
-        hit.instance = placed.y & bvh_number_mask;
-        hit.triangle = triangle;
-        if (ANY_HIT) return hit;
-      }
-      link = stack[--waiting];
+      link = pop();
     }
   }
-  return hit;
+  return link;
+}
+
+// Tests a leaf's triangles up to the first that may be masked away. What remains of the leaf comes
+// back as a link: looking up masks between triangles would cost every lane, masked or not.
+uint test_leaf(uint link, Line line, float t_min, uvec4 placed, inout Hit hit) {
+  uint place = link & bvh_leaf_first_mask;
+  const uint end = place + ((link >> bvh_leaf_count_shift) & bvh_leaf_count_mask) + 1u;
+  const bool masked = placed.z != bvh_no_link;
+  bool found = false;
+  vec3 tuv = vec3(0.0);
+  uint triangle = 0u;
+  for (; place < end && !(found && (ANY_HIT || masked)); ++place) {
+    vec3 candidate;
+    uint number;
+    const vec2 range = vec2(t_min, found ? tuv.x : hit.t);
+    if (!triangle_hit(place, line, range, candidate, number)) continue;
+    found = true;
+    tuv = candidate;
+    triangle = number;
+  }
+  if (found && (!masked || mask_stops(placed.z & bvh_number_mask, place - 1u, tuv.y, tuv.z))) {
+    hit.t = tuv.x;
+    hit.u = tuv.y;
+    hit.v = tuv.z;
+    hit.instance = placed.y & bvh_number_mask;
+    hit.triangle = triangle;
+  }
+  if (place == end) return pop();
+  return bvh_leaf_bit | bvh_number_tag | (end - place - 1u) << bvh_leaf_count_shift | place;
+}
+
+Line into_mesh(uint record, Line world) {
+  const int texel = int(record * bvh_texels_per_record);
+  const mat3x4 rows = mat3x4(texelFetch(records, texel), texelFetch(records, texel + 1),
+                             texelFetch(records, texel + 2));
+  return make_line(vec4(world.origin, 1.0) * rows, vec4(world.direction, 0.0) * rows);
+}
+
+// The closest hit, or any if ANY_HIT; hit_none where there is none.
+Hit trace(Ray ray) {
+  Hit hit = Hit(ray.t_max, hit_none, 0u, 0.0, 0.0, 0u, 0u, 0u);
+  if (!(ray.t_min < ray.t_max)) return hit;
+  const Line world = make_line(ray.origin, ray.direction);
+  push(bvh_no_link);
+  uint instance_link = root;
+  while (true) {
+    instance_link = descend(instance_link, world, vec2(ray.t_min, hit.t));
+    if (instance_link == bvh_no_link) return hit;
+    const uint record = instance_link & bvh_leaf_first_mask;
+    const uvec4 placed = record_bits(record, 3u);  // root, instance, mask
+    const Line line = into_mesh(record, world);
+    push(bvh_no_link);
+    uint link = placed.x;
+    while (true) {
+      link = descend(link, line, vec2(ray.t_min, hit.t));
+      if (link == bvh_no_link) break;
+      link = test_leaf(link, line, ray.t_min, placed, hit);
+      if (ANY_HIT && hit.instance != hit_none) return hit;
+    }
+    instance_link = pop();
+  }
 }
 
 #endif
