@@ -1,0 +1,166 @@
+"""Starts the real server and asks it things over HTTP."""
+
+import http.client
+import json
+import os
+import queue
+import re
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+import unittest
+
+START_TIMEOUT = 120
+
+
+class Server:
+    """A running server on a free port of the loopback interface."""
+
+    def __init__(self, *arguments, scenes=None, environment=None):
+        self.log = tempfile.TemporaryFile(mode="w+")
+        command = [os.environ["HELIOGRAPH_BINARY"], "serve", "--port", "0", "--width", "160",
+                   "--height", "90", "--set", "accumulation.max_samples=4",
+                   "--scene-root", scenes or os.environ["HELIOGRAPH_SCENES"], *arguments]
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=self.log, text=True,
+                                        env={**os.environ, **(environment or {})})
+        try:
+            self.url = self._wait_for_address()
+        except Exception:
+            self.process.kill()
+            raise
+        self.host, self.port = re.fullmatch(r"http://(.+):(\d+)/", self.url).groups()
+        self.port = int(self.port)
+
+    def _wait_for_address(self):
+        lines = queue.Queue()
+        reader = threading.Thread(target=lambda: lines.put(self.process.stdout.readline()),
+                                  daemon=True)
+        reader.start()
+        line = lines.get(timeout=START_TIMEOUT)
+        found = re.match(r"listening on (http://\S+)", line)
+        if not found:
+            raise RuntimeError(f"the server said {line!r} and logged:\n{self.log_text()}")
+        return found.group(1)
+
+    def log_text(self):
+        self.log.seek(0)
+        return self.log.read()
+
+    @property
+    def alive(self):
+        return self.process.poll() is None
+
+    @property
+    def websocket_url(self):
+        return f"ws://{self.host}:{self.port}/ws"
+
+    def memory_bytes(self):
+        with open(f"/proc/{self.process.pid}/statm", encoding="ascii") as file:
+            return int(file.read().split()[1]) * os.sysconf("SC_PAGESIZE")
+
+    def cpu_seconds(self):
+        with open(f"/proc/{self.process.pid}/stat", encoding="ascii") as file:
+            fields = file.read().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def request(self, method, path, body=None, headers=None, timeout=60):
+        """One HTTP exchange: status, headers with lower-case names, body."""
+        connection = http.client.HTTPConnection(self.host, self.port, timeout=timeout)
+        try:
+            connection.request(method, path, body, headers or {})
+            response = connection.getresponse()
+            names = {name.lower(): value for name, value in response.getheaders()}
+            return response.status, names, response.read()
+        finally:
+            connection.close()
+
+    def get(self, path, **headers):
+        return self.request("GET", path, headers=headers)
+
+    def post_rpc(self, payload):
+        """Sends any JSON value, or bytes as they are; gives the status and the parsed answer."""
+        body = payload if isinstance(payload, bytes) else json.dumps(payload).encode()
+        status, _, answer = self.request("POST", "/rpc", body,
+                                         {"Content-Type": "application/json"}, timeout=120)
+        return status, json.loads(answer) if answer else None
+
+    def ask(self, method, params=None):
+        """The whole JSON-RPC answer, be it a result or an error."""
+        call = {"jsonrpc": "2.0", "id": 1, "method": method, "params": params or {}}
+        return self.post_rpc(call)[1]
+
+    def call(self, method, params=None):
+        answer = self.ask(method, params)
+        if "error" in answer:
+            raise AssertionError(f"{method}: {answer['error']}")
+        return answer["result"]
+
+    def wait_for(self, condition, what, timeout=20):
+        deadline = time.monotonic() + timeout
+        while not condition():
+            if time.monotonic() > deadline:
+                raise AssertionError(f"{what} did not happen in {timeout} s:\n{self.log_text()}")
+            time.sleep(0.05)
+
+    def stop(self, number=signal.SIGTERM):
+        """Ends the server and gives its exit code."""
+        if self.alive:
+            self.process.send_signal(number)
+        try:
+            return self.process.wait(timeout=15)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+            return None
+        finally:
+            self.process.stdout.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.stop()
+        self.log.close()
+
+
+class ServerTestCase(unittest.IsolatedAsyncioTestCase):
+    """Tests that share one server, which must survive each of them."""
+
+    arguments = ()
+
+    @classmethod
+    def setUpClass(cls):
+        cls.server = Server(*cls.arguments)
+
+    @classmethod
+    def tearDownClass(cls):
+        with cls.server:
+            pass
+
+    def setUp(self):
+        self.reset()
+
+    def tearDown(self):
+        self.assertTrue(self.server.alive, "the server died:\n" + self.server.log_text())
+
+    def reset(self):
+        """The state every test begins with."""
+        if self.server.call("scene.list")["current"] != "mirror":
+            self.server.call("scene.load", {"name": "mirror"})
+        defaults = {group: None for group in self.server.call("settings.get")["settings"]}
+        self.server.call("settings.patch", {"patch": defaults})
+        self.server.call("settings.patch", {"patch": {"accumulation": {"max_samples": 4}}})
+        self.server.call("stream.configure", {"width": 160, "height": 90})
+        self.server.call("camera.fit")
+
+    def assert_error(self, answer, code, *, path=None, limit=None):
+        self.assertIn("error", answer)
+        error = answer["error"]
+        self.assertEqual(error["code"], code, error)
+        self.assertTrue(error["message"])
+        if path is not None:
+            self.assertEqual(error["data"]["path"], path, error)
+        if limit is not None:
+            self.assertIn(limit, error["data"].get("limit", ""), error)

@@ -1,0 +1,146 @@
+"""A viewer: one WebSocket, requests with answers, notifications, frames with acknowledgement."""
+
+import asyncio
+import json
+import struct
+from dataclasses import dataclass
+
+import websockets
+
+SUBPROTOCOL = "heliograph.v1"
+
+FLAG_KEY = 1
+FLAG_FINAL = 2
+FLAG_FIRST_AFTER_DROP = 4
+
+_LAYOUT = struct.Struct("<4sBBBBHHIIIIHHHHHHQIIII")
+_NAMES = ("magic version type codec flags header_bytes quality frame_seq render_id input_seq_echo "
+          "state_rev width height x y full_width full_height render_start_us render_us encode_us "
+          "queue_us sample_count").split()
+
+
+@dataclass
+class Frame:
+    header: dict
+    payload: bytes
+    received_at: float
+
+    @classmethod
+    def parse(cls, message, received_at):
+        header = dict(zip(_NAMES, _LAYOUT.unpack_from(message)))
+        return cls(header, message[header["header_bytes"]:], received_at)
+
+    @property
+    def final(self):
+        return bool(self.header["flags"] & FLAG_FINAL)
+
+
+class Viewer:
+    """Use with `async with`. Acknowledges every frame unless told otherwise."""
+
+    def __init__(self, server, *, acknowledge=True, greet=True):
+        self.server = server
+        self.acknowledge = acknowledge
+        self.greet = greet
+        self.frames = asyncio.Queue()
+        self.frames_received = 0
+        self.bytes_received = 0
+        self.notifications = []
+        self.unasked = asyncio.Queue()  # answers without a known id
+        self._answers = {}
+        self._next_id = 1
+
+    async def __aenter__(self):
+        self.socket = await websockets.connect(self.server.websocket_url, max_size=None,
+                                               subprotocols=[SUBPROTOCOL], compression=None)
+        self._reader = asyncio.create_task(self._read())
+        if self.greet:
+            self.hello = await self.call("hello", {"client": "protocol tests"})
+        return self
+
+    async def __aexit__(self, *_):
+        await self.socket.close()
+        await self._reader
+
+    async def closed(self, timeout=15):
+        """Waits for the end of the connection; gives close code and reason."""
+        await asyncio.wait_for(asyncio.shield(self._reader), timeout)
+        return self.socket.close_code, self.socket.close_reason
+
+    async def _read(self):
+        loop = asyncio.get_running_loop()
+        try:
+            async for message in self.socket:
+                self.bytes_received += len(message)
+                if isinstance(message, bytes):
+                    frame = Frame.parse(message, loop.time())
+                    self.frames_received += 1
+                    self.frames.put_nowait(frame)
+                    if self.acknowledge:
+                        await self.notify("stream.ack", {"frame_seq": frame.header["frame_seq"]})
+                else:
+                    self._take(json.loads(message))
+        except websockets.ConnectionClosed:
+            pass
+        for waiting in self._answers.values():
+            waiting.cancel()
+
+    def _take(self, message):
+        if isinstance(message, dict) and "method" in message:
+            self.notifications.append(message)
+            return
+        waiting = self._answers.pop(message.get("id"), None) if isinstance(message, dict) else None
+        if waiting:
+            waiting.set_result(message)
+        else:
+            self.unasked.put_nowait(message)
+
+    async def send(self, text):
+        await self.socket.send(text)
+
+    async def notify(self, method, params):
+        await self.send(json.dumps({"jsonrpc": "2.0", "method": method, "params": params}))
+
+    async def ask(self, method, params=None, timeout=60):
+        """The whole answer, result or error."""
+        number = self._next_id
+        self._next_id += 1
+        waiting = asyncio.get_running_loop().create_future()
+        self._answers[number] = waiting
+        await self.send(json.dumps(
+            {"jsonrpc": "2.0", "id": number, "method": method, "params": params or {}}))
+        return await asyncio.wait_for(waiting, timeout)
+
+    async def call(self, method, params=None, timeout=60):
+        answer = await self.ask(method, params, timeout)
+        if "error" in answer:
+            raise AssertionError(f"{method}: {answer['error']}")
+        return answer["result"]
+
+    async def next_frame(self, timeout=30):
+        return await asyncio.wait_for(self.frames.get(), timeout)
+
+    async def frame_where(self, condition, timeout=60):
+        """The next frame that fulfils the condition; others are skipped."""
+        async def search():
+            while True:
+                frame = await self.frames.get()
+                if condition(frame):
+                    return frame
+        return await asyncio.wait_for(search(), timeout)
+
+    async def rest(self, timeout=60):
+        """Waits for the final picture of the present state, after which nothing should come."""
+        rev = (await self.call("camera.get"))["rev"]
+        return await self.frame_where(
+            lambda frame: frame.final and frame.header["state_rev"] >= rev, timeout)
+
+    async def notification(self, method, timeout=15):
+        """The first notification of this name."""
+        deadline = asyncio.get_running_loop().time() + timeout
+        while asyncio.get_running_loop().time() < deadline:
+            for message in self.notifications:
+                if message["method"] == method:
+                    return message["params"]
+            await asyncio.sleep(0.02)
+        raise AssertionError(f"no {method} in {timeout} s")

@@ -1,0 +1,206 @@
+"""Methods and errors, over POST /rpc and over the WebSocket: one dispatcher, one truth."""
+
+import base64
+import json
+
+from harness.pictures import decode_png
+from harness.server import ServerTestCase
+from harness.viewer import Viewer
+
+
+class Methods(ServerTestCase):
+    async def test_hello_introduces_server_and_viewer(self):
+        async with Viewer(self.server) as viewer:
+            hello = viewer.hello
+            self.assertEqual(hello["protocol"], "heliograph.v1")
+            self.assertEqual(hello["session"], "main")
+            self.assertEqual(hello["codecs"], ["jpeg"])
+            self.assertEqual(hello["limits"]["ack_window"], 2)
+            self.assertTrue(hello["device"]["name"])
+            self.assertIn(hello["tracer"], ("embree", "software"))
+            async with Viewer(self.server) as other:
+                self.assertNotEqual(other.hello["viewer"], hello["viewer"])
+
+    async def test_hello_refuses_what_it_cannot_serve(self):
+        async with Viewer(self.server, greet=False) as viewer:
+            answer = await viewer.ask("hello", {"session": "elsewhere"})
+            self.assert_error(answer, -32004, path="session")
+            answer = await viewer.ask("hello", {"codecs": ["av1"]})
+            self.assert_error(answer, -32602, path="codecs", limit="jpeg")
+
+    def test_every_method_that_is_declared_exists(self):
+        document = self.server.call("rpc.discover")
+        names = {method["name"] for method in document["methods"]}
+        self.assertIn("frame.capture", names)
+        for name in names - {"scene.load"}:
+            answer = self.server.ask(name)
+            self.assertNotEqual(answer.get("error", {}).get("code"), -32601, name)
+            self.assertNotEqual(answer.get("error", {}).get("code"), -32603, name)
+
+    def test_the_schema_is_also_a_page(self):
+        status, headers, body = self.server.get("/api/v1/schema")
+        self.assertEqual((status, headers["content-type"]), (200, "application/json"))
+        document = json.loads(body)
+        self.assertEqual(document["openrpc"], self.server.call("rpc.discover"))
+        self.assertEqual(document["settings"], self.server.call("settings.schema"))
+
+    def test_cameras_are_absolute_and_partial(self):
+        before = self.server.call("camera.get")
+        moved = self.server.call("camera.set", {"eye": [3, 2, 1]})
+        self.assertEqual(moved["eye"], [3, 2, 1])
+        self.assertEqual(moved["target"], before["target"])
+        self.assertGreater(moved["rev"], before["rev"])
+        self.assertEqual(self.server.call("camera.get"), moved)
+
+    def test_bad_cameras_are_refused_and_change_nothing(self):
+        before = self.server.call("camera.get")
+        for params, path in (({"eye": before["target"]}, "eye"),
+                             ({"vertical_fov": 171}, "vertical_fov"),
+                             ({"vertical_fov": 0}, "vertical_fov"),
+                             ({"eye": [1, 2]}, "eye"),
+                             ({"eye": [1e10, 0, 0]}, "eye[0]"),
+                             ({"eye": ["a", 0, 0]}, "eye[0]"),
+                             ({"up": [0, 0, 0]}, "up")):
+            self.assert_error(self.server.ask("camera.set", params), -32602, path=path)
+        self.assert_error(self.server.ask("camera.set", {"name": "nowhere"}), -32004, path="name")
+        self.assertEqual(self.server.call("camera.get"), before)
+
+    def test_settings_patches_apply_whole_or_not_at_all(self):
+        answer = self.server.call("settings.patch", {"patch": {"exposure": {"compensation": 2}}})
+        self.assertEqual(answer["applied"], {"exposure": {"compensation": 2}})
+        before = self.server.call("settings.get")
+        self.assertEqual(before["settings"]["exposure"]["compensation"], 2)
+        for patch, path, limit in (
+                ({"exposure": {"compensation": 99}}, "exposure.compensation", "16"),
+                ({"tone_map": {"curve": "pretty"}}, "tone_map.curve", "aces"),
+                ({"tone_map": {"curve": "agx"}, "exposur": {}}, "exposur", ""),
+                ({"exposure": {"compensation": 0}, "shadows": {"enabled": "no"}},
+                 "shadows.enabled", ""),
+                ({"view": {"buffer": "nothing"}}, "view.buffer", "frame.buffers")):
+            answer = self.server.ask("settings.patch", {"patch": patch})
+            self.assert_error(answer, -32602, path=path, limit=limit)
+            self.assertEqual(self.server.call("settings.get"), before)
+        reset = self.server.call("settings.patch", {"patch": {"exposure": None}})
+        self.assertEqual(reset["applied"], {"exposure": {"compensation": 0}})
+
+    async def test_others_hear_what_one_viewer_changes(self):
+        async with Viewer(self.server) as causer, Viewer(self.server) as other:
+            await causer.call("settings.patch", {"patch": {"exposure": {"compensation": 1}}})
+            changed = await other.notification("settings.changed")
+            self.assertEqual(changed["patch"], {"exposure": {"compensation": 1}})
+            self.assertEqual(changed["by"], causer.hello["viewer"])
+            await causer.call("camera.set", {"eye": [4, 4, 4]})
+            moved = await other.notification("camera.changed")
+            self.assertEqual(moved["camera"]["eye"], [4, 4, 4])
+            heard = {message["method"] for message in causer.notifications}
+            self.assertFalse(heard & {"settings.changed", "camera.changed"}, "an echo")
+
+    def test_every_buffer_can_be_captured(self):
+        self.server.call("stream.configure", {"width": 96, "height": 54})
+        buffers = self.server.call("frame.buffers")["buffers"]
+        self.assertEqual(buffers[0]["name"], "output")
+        pictures = {}
+        for buffer in buffers:
+            self.assertTrue(buffer["description"])
+            capture = self.server.call("frame.capture", {"buffer": buffer["name"], "samples": 1})
+            picture = decode_png(base64.b64decode(capture["data"], validate=True))
+            self.assertEqual((picture.width, picture.height), (96, 54), buffer)
+            pictures[buffer["name"]] = picture
+        self.assertGreater(pictures["output"].deviation(), 5, "the picture is nearly blank")
+        self.assertGreater(len({picture.rgb for picture in pictures.values()}), 3)
+
+    def test_a_capture_waits_for_its_samples(self):
+        self.server.call("camera.set", {"eye": [3, 3, 3]})
+        few = self.server.call("frame.capture", {"samples": 2})
+        self.assertGreaterEqual(few["samples"], 2)
+        self.server.call("camera.set", {"eye": [3, 3, 4]})
+        self.assertEqual(self.server.call("frame.capture")["samples"], 4)
+        self.assertEqual(self.server.call("frame.capture", {"samples": 1000})["samples"], 4)
+
+    def test_captures_of_what_is_not_there_are_refused(self):
+        self.assert_error(self.server.ask("frame.capture", {"buffer": "outptu"}), -32602,
+                          path="buffer")
+        self.assert_error(self.server.ask("frame.capture", {"format": "bmp"}), -32602,
+                          path="format")
+
+
+class Calls(ServerTestCase):
+    """JSON-RPC itself."""
+
+    def test_unknown_methods_get_a_suggestion(self):
+        answer = self.server.ask("camera.gte")
+        self.assert_error(answer, -32601)
+        self.assertIn("camera.get", answer["error"]["message"])
+
+    def test_what_is_not_json_or_no_call(self):
+        for body in (b"{", b"", b"\xff\xfe", b"nonsense", b"{} {}"):
+            self.assert_error(self.server.post_rpc(body)[1], -32700)
+        for value in (1, "text", {}, {"jsonrpc": "1.0", "method": "camera.get", "id": 1},
+                      {"jsonrpc": "2.0", "method": 5, "id": 1}, []):
+            self.assert_error(self.server.post_rpc(value)[1], -32600)
+
+    def test_wrong_parameters(self):
+        self.assert_error(self.server.ask("scene.load"), -32602, path="name")
+        answer = self.server.post_rpc(
+            {"jsonrpc": "2.0", "id": 1, "method": "camera.get", "params": [1]})[1]
+        self.assert_error(answer, -32602, path="params")
+
+    def test_too_deep_and_too_large(self):
+        deep = b"[" * 1000 + b"]" * 1000
+        self.assert_error(self.server.post_rpc(deep)[1], -32013, limit="64")
+        status, _, body = self.server.request("POST", "/rpc", b" " * 70000)
+        self.assertEqual(status, 413, body)
+
+    def test_batches_answer_in_order(self):
+        batch = [{"jsonrpc": "2.0", "id": "a", "method": "camera.get"},
+                 {"jsonrpc": "2.0", "method": "camera.fit"},
+                 {"jsonrpc": "2.0", "id": 7, "method": "no.such"},
+                 "nonsense",
+                 {"jsonrpc": "2.0", "id": None, "method": "settings.get"}]
+        status, answers = self.server.post_rpc(batch)
+        self.assertEqual(status, 200)
+        self.assertEqual([answer["id"] for answer in answers], ["a", 7, None, None])
+        self.assert_error(answers[1], -32601)
+        self.assert_error(answers[2], -32600)
+        self.assertIn("settings", answers[3]["result"])
+        call = {"jsonrpc": "2.0", "id": 1, "method": "camera.get"}
+        self.assert_error(self.server.post_rpc([call] * 33)[1], -32013, limit="32")
+
+    def test_notifications_get_no_answer(self):
+        status, answer = self.server.post_rpc(
+            {"jsonrpc": "2.0", "method": "camera.set", "params": {"eye": [1, 7, 1]}})
+        self.assertEqual((status, answer), (204, None))
+        self.assertEqual(self.server.call("camera.get")["eye"], [1, 7, 1])
+
+    def test_streams_are_for_viewers(self):
+        for method, params in (("stream.ack", {"frame_seq": 1}),
+                               ("stats.subscribe", {"interval_ms": 100}),
+                               ("stream.configure", {"quality": 50})):
+            self.assert_error(self.server.ask(method, params), -32050)
+
+    async def test_the_websocket_gives_the_same_answers(self):
+        async with Viewer(self.server) as viewer:
+            for method, params in (("camera.get", {}), ("settings.get", {}), ("scene.info", {}),
+                                   ("camera.gte", {}), ("camera.set", {"vertical_fov": 500})):
+                over_http = self.server.ask(method, params)
+                over_socket = await viewer.ask(method, params)
+                for answer in (over_http, over_socket):
+                    answer.pop("id")
+                self.assertEqual(over_http, over_socket)
+            await viewer.send("{")
+            answer = await viewer.unasked.get()
+            self.assert_error(answer, -32700)
+            await viewer.call("camera.get")
+
+    async def test_a_flood_is_slowed_down_and_the_viewer_stays(self):
+        async with Viewer(self.server) as viewer:
+            for _ in range(1500):
+                await viewer.notify("camera.set", {"vertical_fov": 45})
+            answer = await viewer.unasked.get()
+            self.assert_error(answer, -32002)
+            await self.idle(1.0)
+            await viewer.call("camera.get")
+
+    async def idle(self, seconds):
+        import asyncio
+        await asyncio.sleep(seconds)

@@ -1,0 +1,196 @@
+"""Starting, watching and ending the server; the program's other commands."""
+
+import asyncio
+import json
+import os
+import re
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+import unittest
+
+from harness.pictures import decode_jpeg, decode_png
+from harness.server import Server, ServerTestCase
+from harness.viewer import Viewer
+
+
+def run(*arguments, environment=None, timeout=120):
+    """The program with these arguments: exit code, stdout, stderr."""
+    done = subprocess.run([os.environ["HELIOGRAPH_BINARY"], *arguments], capture_output=True,
+                          text=True, timeout=timeout, env={**os.environ, **(environment or {})},
+                          check=False)
+    return done.returncode, done.stdout, done.stderr
+
+
+def scene_file(name):
+    return os.path.join(os.environ["HELIOGRAPH_SCENES"], name)
+
+
+class Watching(ServerTestCase):
+    def test_health(self):
+        for path in ("/health/live", "/health/ready"):
+            self.assertEqual(self.server.get(path)[0], 200)
+        code, out, _ = run("health", "--url", self.server.url + "health/ready")
+        self.assertEqual((code, "200 ready" in out), (0, True))
+
+    async def test_metrics_count(self):
+        def value(name):
+            page = self.server.get("/metrics")[2].decode()
+            return float(re.search(rf"^heliograph_{name} (\S+)$", page, re.MULTILINE)[1])
+        status, headers, page = self.server.get("/metrics")
+        self.assertEqual(status, 200)
+        self.assertIn("version=0.0.4", headers["content-type"])
+        for line in page.decode().splitlines():
+            self.assertRegex(line, r"^(# (HELP|TYPE) heliograph_\w+ .+|heliograph_\w+(\{.+\})? "
+                                   r"[-+.e0-9]+)$")
+        before = value("frames_sent_total"), value("render_seconds_count")
+        async with Viewer(self.server) as viewer:
+            self.assertEqual(value("viewers"), 1)
+            await viewer.call("camera.set", {"eye": [3, 3, 3]})
+            await viewer.rest()
+            received, rendered = viewer.frames_received, value("render_seconds_count")
+        self.assertGreaterEqual(rendered - before[1], 4)
+        self.assertEqual(value("frames_sent_total") - before[0], received)
+        self.assertGreater(value("sent_bytes_total"), 64 * received)
+        self.assertGreater(value("resident_memory_bytes"), 1e6)
+        self.assertIn(b'heliograph_pass_milliseconds{pass="', page)
+
+    def test_pictures_over_http(self):
+        status, headers, body = self.server.get("/api/v1/sessions/main/frame.jpg?samples=2")
+        self.assertEqual((status, headers["content-type"]), (200, "image/jpeg"))
+        self.assertEqual(decode_jpeg(body).width, 160)
+        status, headers, body = self.server.get("/api/v1/sessions/main/frame.png?buffer=output")
+        self.assertEqual((status, headers["content-type"]), (200, "image/png"))
+        self.assertEqual(decode_png(body).height, 90)
+        for path, expected in (("main/frame.bmp", 404), ("other/frame.png", 404),
+                               ("main/frame.png?buffer=none", 400),
+                               ("main/frame.png?samples=x", 400),
+                               ("main/frame.png?samples=-1", 400)):
+            self.assertEqual(self.server.get("/api/v1/sessions/" + path)[0], expected, path)
+
+
+class Ending(unittest.IsolatedAsyncioTestCase):
+    async def test_viewers_are_told_to_come_back(self):
+        for number in (signal.SIGTERM, signal.SIGINT):
+            with Server() as server:
+                async with Viewer(server) as viewer:
+                    await viewer.next_frame()
+                    begin = time.monotonic()
+                    server.process.send_signal(number)
+                    code, reason = await viewer.closed()
+                self.assertEqual(code, 1001)
+                self.assertGreater(json.loads(reason)["reconnectAfterMs"], 0)
+                self.assertEqual(await asyncio.to_thread(server.stop), 0)
+                self.assertLess(time.monotonic() - begin, 6)
+
+    async def test_a_viewer_that_does_not_listen_does_not_hold_it_up(self):
+        with Server("--set", "accumulation.max_samples=60000") as server:
+            viewer = Viewer(server)
+            await viewer.__aenter__()
+            viewer.socket.transport.pause_reading()
+            await asyncio.sleep(1)
+            begin = time.monotonic()
+            self.assertEqual(await asyncio.to_thread(server.stop), 0)
+            self.assertLess(time.monotonic() - begin, 8)
+            viewer.socket.transport.abort()
+
+
+class CommandLine(unittest.TestCase):
+    def fails(self, *arguments, saying, environment=None):
+        code, out, err = run(*arguments, environment=environment)
+        self.assertNotEqual(code, 0, out)
+        lines = [line for line in err.splitlines() if line.startswith("heliograph: ")]
+        self.assertEqual(len(lines), 1, err)
+        self.assertRegex(lines[0], saying)
+
+    def test_help_has_examples(self):
+        for command in ((), ("serve",), ("render",), ("devices",), ("schema",), ("health",)):
+            code, out, _ = run(*command, "--help")
+            self.assertEqual(code, 0)
+            self.assertIn("Example", out, command)
+
+    def test_mistakes_get_a_suggestion(self):
+        self.fails("serv", saying="did you mean serve")
+        self.fails("serve", "--prot", "1", saying="did you mean --port")
+        self.fails("serve", "--set", "tone_map.curv=agx", saying="did you mean tone_map.curve")
+        self.fails("serve", "--set", "exposure.compensation=99", saying="16")
+        self.fails("serve", "--scene", "mirorr", "--scene-root", os.environ["HELIOGRAPH_SCENES"],
+                   saying="did you mean mirror")
+
+    def test_starts_that_cannot_work_say_why(self):
+        root = ("--scene-root", os.environ["HELIOGRAPH_SCENES"])
+        with tempfile.TemporaryDirectory() as empty:
+            self.fails("serve", "--scene-root", empty, saying="heliograph-scenes")
+            self.fails("serve", "--scene-root", empty + "/missing", saying="is not a folder")
+            with open(empty + "/broken.glb", "wb") as file:
+                file.write(b"nonsense")
+            self.fails("serve", "--scene-root", empty, "--port", "0", saying="broken")
+        self.fails("serve", "--host", "0.0.0.0", *root, saying="--token")
+        self.fails("serve", "--host", "0.0.0.0", "--token", "short", *root, saying="8 characters")
+        self.fails("serve", "--port", "0", *root, saying="device", environment={
+            "HELIOGRAPH_DEVICE": "no such device"})
+        with socket.socket() as taken:
+            taken.bind(("127.0.0.1", 0))
+            taken.listen()
+            self.fails("serve", "--port", str(taken.getsockname()[1]), *root, saying="listen on")
+
+    def test_options_from_environment_and_file(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".toml") as config:
+            config.write('[serve]\nset = ["exposure.compensation=3"]\nwidth = 99\n')
+            config.flush()
+            with Server("--config", config.name, environment={"HELIOGRAPH_LOG_FORMAT": "json"}
+                        ) as server:
+                stream = server.call("stream.configure", {})
+                self.assertEqual(stream["width"], 160, "the command line comes first")
+                server.stop()
+                for line in server.log_text().splitlines():
+                    self.assertIn("message", json.loads(line))
+
+    def test_schema(self):
+        code, out, _ = run("schema")
+        document = json.loads(out)
+        self.assertEqual((code, sorted(document)), (0, ["openrpc", "settings"]))
+        code, out, _ = run("schema", "--markdown")
+        self.assertIn("tone_map.curve", out)
+
+    def test_devices(self):
+        code, out, _ = run("devices")
+        self.assertEqual(code, 0)
+        self.assertIn("Vulkan", out)
+
+    def test_health_of_nobody(self):
+        with socket.socket() as unused:
+            unused.bind(("127.0.0.1", 0))
+            port = unused.getsockname()[1]
+        code, _, err = run("health", "--url", f"http://127.0.0.1:{port}/health/ready")
+        self.assertEqual(code, 1)
+        self.assertIn("refused", err)
+
+    def test_render_writes_a_picture(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "out.png")
+            code, out, err = run("render", scene_file("mirror.glb"), "-o", path, "--width", "96",
+                                 "--height", "64", "--samples", "2", "--timings", "--frames", "2")
+            self.assertEqual(code, 0, err)
+            timings = json.loads(out)
+            self.assertEqual(timings["frames"], 2)
+            self.assertGreaterEqual(len(timings["passes"]), 3)
+            with open(path, "rb") as file:
+                picture = decode_png(file.read())
+            self.assertEqual((picture.width, picture.height), (96, 64))
+            self.assertGreater(picture.deviation(), 5)
+
+    def test_render_says_what_is_wrong(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = ("-o", folder + "/out.png")
+            self.fails("render", folder + "/missing.glb", *out, saying="missing.glb|not exist")
+            self.fails("render", scene_file("mirror.glb"), saying="--output")
+            small = ("--width", "32", "--height", "32", "--samples", "1")
+            self.fails("render", scene_file("mirror.glb"), *out, *small, "--buffer", "outptu",
+                       saying="outptu|output")
+            self.fails("render", scene_file("mirror.glb"), *out, *small, "--camera", "nowhere",
+                       saying="camera")
+            self.fails("render", scene_file("mirror.glb"), "-o", folder + "/no/out.png", *small,
+                       saying="cannot write")

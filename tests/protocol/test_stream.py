@@ -1,0 +1,204 @@
+"""The stream of pictures: headers, echoes, rest and silence."""
+
+import asyncio
+import base64
+import time
+
+from harness.pictures import decode_jpeg, decode_png, difference
+from harness.server import ServerTestCase
+from harness.viewer import FLAG_FIRST_AFTER_DROP, FLAG_KEY, Viewer
+
+
+class Frames(ServerTestCase):
+    async def test_headers_are_valid_and_pictures_decode(self):
+        async with Viewer(self.server) as viewer:
+            await viewer.call("stream.configure", {"width": 160, "height": 90, "quality": 70})
+            await viewer.call("camera.set", {"eye": [3, 2, 3]})
+            last = None
+            for _ in range(3):
+                frame = await viewer.next_frame()
+                header = frame.header
+                self.assertEqual(header["magic"], b"HVRF")
+                self.assertEqual((header["version"], header["type"], header["codec"]), (1, 1, 1))
+                self.assertEqual(header["header_bytes"], 64)
+                self.assertTrue(header["flags"] & FLAG_KEY)
+                self.assertEqual((header["full_width"], header["full_height"]),
+                                 (header["width"], header["height"]))
+                picture = decode_jpeg(frame.payload)
+                self.assertEqual((picture.width, picture.height),
+                                 (header["width"], header["height"]))
+                if last:
+                    self.assertGreater(header["frame_seq"], last["frame_seq"])
+                    self.assertGreaterEqual(header["render_id"], last["render_id"])
+                    self.assertGreaterEqual(header["render_start_us"], last["render_start_us"])
+                last = header
+
+    async def test_a_camera_changes_the_picture_and_its_seq_is_echoed(self):
+        async with Viewer(self.server) as viewer:
+            await viewer.call("camera.set", {"eye": [3, 1, 3], "seq": 41})
+            first = await viewer.frame_where(
+                lambda frame: frame.final and frame.header["input_seq_echo"] == 41)
+            camera = await viewer.call("camera.set", {"eye": [-3, 2, 3], "seq": 42})
+            second = await viewer.frame_where(
+                lambda frame: frame.final and frame.header["input_seq_echo"] == 42)
+            self.assertEqual(second.header["state_rev"], camera["rev"])
+            apart = difference(decode_jpeg(first.payload), decode_jpeg(second.payload))
+            self.assertGreater(apart, 3)
+
+    async def test_each_viewer_gets_its_own_echo(self):
+        async with Viewer(self.server) as mover, Viewer(self.server) as watcher:
+            camera = await mover.call("camera.set", {"eye": [3, 1, 2], "seq": 9})
+
+            def shows(frame):
+                return frame.header["state_rev"] >= camera["rev"]
+            self.assertEqual((await mover.frame_where(shows)).header["input_seq_echo"], 9)
+            self.assertEqual((await watcher.frame_where(shows)).header["input_seq_echo"], 0)
+
+    async def test_a_resting_picture_is_finished_and_then_nothing_is_sent(self):
+        async with Viewer(self.server) as viewer:
+            await viewer.call("camera.set", {"eye": [3, 2, 2]})
+            final = await viewer.rest()
+            self.assertEqual(final.header["sample_count"], 4)
+            self.assertGreaterEqual(final.header["quality"], 95)
+            self.assertTrue(decode_jpeg(final.payload).full_chroma)
+            received, cpu = viewer.bytes_received, self.server.cpu_seconds()
+            await asyncio.sleep(2)
+            self.assertEqual(viewer.bytes_received, received, "something came after the final")
+            self.assertLess(self.server.cpu_seconds() - cpu, 0.1, "an idle server computes")
+
+    async def test_the_final_picture_is_the_captured_one(self):
+        async with Viewer(self.server) as viewer:
+            await viewer.call("camera.set", {"eye": [2, 2, 3]})
+            seen = decode_jpeg((await viewer.rest()).payload)
+            capture = await viewer.call("frame.capture")
+            captured = decode_png(base64.b64decode(capture["data"]))
+            self.assertLess(difference(seen, captured), 2)
+
+    async def test_a_newcomer_sees_the_resting_picture(self):
+        async with Viewer(self.server) as first:
+            await first.call("camera.set", {"eye": [2, 3, 3]})
+            resting = await first.rest()
+        async with Viewer(self.server) as second:
+            frame = await second.next_frame(timeout=5)
+            self.assertEqual(frame.header["render_id"], resting.header["render_id"])
+            self.assertEqual(frame.header["frame_seq"], 1)
+
+    async def test_size_and_quality_take_effect(self):
+        async with Viewer(self.server) as viewer:
+            await viewer.rest()
+            state = await viewer.call("stream.configure", {"width": 200, "height": 120})
+            self.assertEqual((state["width"], state["height"]), (200, 120))
+            frame = await viewer.frame_where(lambda frame: frame.header["width"] == 200)
+            self.assertEqual(frame.header["height"], 120)
+            huge = await viewer.call("stream.configure", {"width": 16384, "height": 16})
+            self.assertEqual(huge["width"], viewer.hello["limits"]["max_width"])
+            await viewer.call("stream.configure", {"width": 160, "height": 90, "quality": 30})
+            await viewer.call("camera.set", {"eye": [3, 3, 2]})
+            await viewer.frame_where(lambda frame: frame.header["quality"] == 30)
+
+    async def test_a_paused_viewer_gets_nothing_until_it_resumes(self):
+        async with Viewer(self.server) as viewer:
+            await viewer.rest()
+            await viewer.call("stream.configure", {"paused": True})
+            camera = await viewer.call("camera.set", {"eye": [1, 3, 3]})
+            before = viewer.frames_received
+            await asyncio.sleep(1)
+            self.assertEqual(viewer.frames_received, before)
+            await viewer.call("stream.configure", {"paused": False})
+            await viewer.frame_where(lambda frame: frame.header["state_rev"] >= camera["rev"])
+
+    async def test_the_rate_limit_holds(self):
+        self.server.call("settings.patch", {"patch": {"accumulation": {"max_samples": 10000}}})
+        async with Viewer(self.server) as viewer:
+            await viewer.call("stream.configure", {"max_fps": 4})
+            await viewer.next_frame()
+            begin, before = time.monotonic(), viewer.frames_received
+            await asyncio.sleep(2)
+            rate = (viewer.frames_received - before) / (time.monotonic() - begin)
+            self.assertLessEqual(rate, 5)
+            self.assertGreater(rate, 1)
+
+    async def test_statistics_name_the_passes(self):
+        async with Viewer(self.server) as viewer:
+            self.assertEqual(await viewer.call("stats.subscribe", {"interval_ms": 50}),
+                             {"interval_ms": 50})
+            await viewer.call("camera.set", {"eye": [3, 3, 3]})
+            stats = await viewer.notification("stats.frame")
+            self.assertGreater(stats["frame_ms"], 0)
+            self.assertGreater(stats["bytes"], 100)
+            self.assertGreaterEqual(len(stats["passes"]), 3)
+            self.assertLessEqual({entry["kind"] for entry in stats["passes"]}, {"device", "host"})
+
+
+class SlowViewers(ServerTestCase):
+    def setUp(self):
+        super().setUp()
+        self.server.call("settings.patch", {"patch": {"accumulation": {"max_samples": 60000}}})
+
+    async def rate(self, viewer, seconds):
+        before = viewer.frames_received
+        await asyncio.sleep(seconds)
+        return (viewer.frames_received - before) / seconds
+
+    async def test_a_viewer_that_does_not_acknowledge_gets_a_window_and_later_the_latest(self):
+        async with Viewer(self.server, acknowledge=False) as lazy, Viewer(self.server) as brisk:
+            await self.rate(brisk, 2)
+            self.assertEqual(lazy.frames_received, lazy.hello["limits"]["ack_window"])
+            newest = (await brisk.next_frame()).header["render_id"]
+            while not brisk.frames.empty():
+                newest = brisk.frames.get_nowait().header["render_id"]
+            while not lazy.frames.empty():
+                last = lazy.frames.get_nowait()
+            await lazy.notify("stream.ack", {"frame_seq": last.header["frame_seq"]})
+            fresh = await lazy.next_frame()
+            self.assertGreaterEqual(fresh.header["render_id"], newest)
+            self.assertTrue(fresh.header["flags"] & FLAG_FIRST_AFTER_DROP)
+            self.assertGreater(fresh.header["frame_seq"], last.header["frame_seq"] + 1)
+
+    async def test_a_stalled_viewer_costs_the_others_nothing(self):
+        async with Viewer(self.server) as brisk:
+            await brisk.call("stream.configure", {"width": 320, "height": 180, "quality": 100})
+            await self.rate(brisk, 1)
+            alone = await self.rate(brisk, 3)
+            async with Viewer(self.server) as stalled:
+                transport = stalled.socket.transport
+                transport.pause_reading()
+                await self.rate(brisk, 1)
+                memory = self.server.memory_bytes()
+                beside = await self.rate(brisk, 3)
+                grown = self.server.memory_bytes() - memory
+                transport.resume_reading()
+            print(f"frames a second: {alone:.1f} alone, {beside:.1f} beside a stalled viewer; "
+                  f"memory {grown / 1e6:+.1f} MB ", end="")
+            # Encoding is shared, so only the noise of a busy machine is allowed for.
+            self.assertGreater(beside, 0.7 * alone)
+            self.assertLess(grown, 20e6)
+
+    async def test_viewers_that_vanish_in_the_middle_of_frames_are_forgotten(self):
+        async with Viewer(self.server) as stays:
+            for _ in range(5):
+                viewer = Viewer(self.server)
+                await viewer.__aenter__()
+                await viewer.call("stream.configure", {"quality": 100})
+                await viewer.next_frame()
+                viewer.socket.transport.abort()
+            before = stays.frames_received
+            await self.rate(stays, 1)
+            self.assertGreater(stays.frames_received, before)
+            await self.until_viewers(1)
+
+    async def until_viewers(self, count):
+        for _ in range(100):
+            metrics = self.server.get("/metrics")[2].decode()
+            if f"heliograph_viewers {count}\n" in metrics:
+                return
+            await asyncio.sleep(0.1)
+        self.fail(f"there are not {count} viewers:\n{metrics}")
+
+    async def test_acknowledging_nonsense_does_no_harm(self):
+        async with Viewer(self.server) as viewer:
+            for seq in (0, 7, 4294967295):
+                await viewer.notify("stream.ack", {"frame_seq": seq})
+            answer = await viewer.ask("stream.ack", {"frame_seq": -1})
+            self.assert_error(answer, -32602, path="frame_seq")
+            await viewer.next_frame()
