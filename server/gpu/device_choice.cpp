@@ -81,10 +81,67 @@ int rank(VkPhysicalDeviceType type) {
   }
 }
 
+/// Every manifest the loader would read.
+std::vector<std::filesystem::path> driver_files() {
+  std::vector<std::filesystem::path> files;
+  for (const char* variable : {"VK_DRIVER_FILES", "VK_ICD_FILENAMES"}) {
+    const char* value = std::getenv(variable);
+    if (!value) continue;
+    std::istringstream list(value);
+    for (std::string file; std::getline(list, file, ':');) files.emplace_back(file);
+    return files;
+  }
+  for (const char* folder :
+       {"/etc/vulkan/icd.d", "/usr/local/share/vulkan/icd.d", "/usr/share/vulkan/icd.d"}) {
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+      if (entry.path().extension() == ".json") files.push_back(entry.path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// Sets an environment variable and puts back what was there.
+class ScopedVariable {
+ public:
+  ScopedVariable(const char* name, const std::string& value) : name_(name) {
+    if (const char* old = std::getenv(name)) before_ = old;
+    setenv(name, value.c_str(), 1);
+  }
+  ~ScopedVariable() {
+    if (before_) {
+      setenv(name_, before_->c_str(), 1);
+    } else {
+      unsetenv(name_);
+    }
+  }
+  ScopedVariable(const ScopedVariable&) = delete;
+  ScopedVariable& operator=(const ScopedVariable&) = delete;
+
+ private:
+  const char* name_;
+  std::optional<std::string> before_;
+};
+
 std::string joined(const std::vector<std::string>& parts) {
   std::string text;
   for (const auto& part : parts) text += (text.empty() ? "" : ", ") + part;
   return text;
+}
+
+/// Names of the devices that Vulkan finds as the environment stands, or why there is none.
+std::string devices_of_this_driver() {
+  try {
+    const Instance instance(false);
+    std::vector<std::string> names;
+    for (const VkPhysicalDevice device : instance.devices()) {
+      names.push_back(report_on(device).name);
+    }
+    return names.empty() ? "loads, but finds no device of its kind here" : joined(names);
+  } catch (const GpuError& error) {
+    return std::string("does not load: ") + error.what();
+  }
 }
 
 }  // namespace
@@ -125,33 +182,19 @@ std::vector<DeviceReport> survey_devices(const Instance& instance, const std::st
   return reports;
 }
 
-std::vector<std::string> describe_driver_files() {
-  namespace fs = std::filesystem;
-  std::vector<fs::path> files;
-  for (const char* variable : {"VK_DRIVER_FILES", "VK_ICD_FILENAMES"}) {
-    const char* value = std::getenv(variable);
-    if (!value) continue;
-    std::istringstream list(value);
-    for (std::string file; std::getline(list, file, ':');) files.emplace_back(file);
-    break;
-  }
-  if (files.empty()) {
-    for (const char* folder : {"/etc/vulkan/icd.d", "/usr/local/share/vulkan/icd.d",
-                               "/usr/share/vulkan/icd.d"}) {
-      std::error_code error;
-      for (const auto& entry : fs::directory_iterator(folder, error)) {
-        if (entry.path().extension() == ".json") files.push_back(entry.path());
-      }
-    }
-    std::sort(files.begin(), files.end());
-  }
-  std::vector<std::string> lines;
-  for (const auto& file : files) {
+std::vector<DriverReport> examine_driver_files() {
+  std::vector<DriverReport> reports;
+  for (const auto& file : driver_files()) {
     std::error_code error;
-    const bool there = fs::is_regular_file(file, error);
-    lines.push_back(file.string() + (there ? "" : "  (missing)"));
+    if (!std::filesystem::is_regular_file(file, error)) {
+      reports.push_back({file.string(), "no such file"});
+      continue;
+    }
+    const ScopedVariable newer("VK_DRIVER_FILES", file.string());
+    const ScopedVariable older("VK_ICD_FILENAMES", file.string());
+    reports.push_back({file.string(), devices_of_this_driver()});
   }
-  return lines;
+  return reports;
 }
 
 }  // namespace heliograph::gpu

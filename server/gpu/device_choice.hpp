@@ -24,9 +24,15 @@ struct DeviceReport {
 /// discrete GPU before an integrated, a virtual one, a CPU. Reports come in the loader's order.
 std::vector<DeviceReport> survey_devices(const Instance& instance, const std::string& wanted);
 
-/// The driver files (ICD manifests) that the loader would read, one line each with what is wrong
-/// with it, in the loader's order.
-std::vector<std::string> describe_driver_files();
+/// What one driver file (ICD manifest) brings.
+struct DriverReport {
+  std::string file;
+  std::string verdict;  // its devices' names, or why there is none
+};
+
+/// Starts Vulkan with each driver file alone and tells what came of it, in the loader's order.
+/// Changes VK_DRIVER_FILES while it runs: for the doctor's single thread only.
+std::vector<DriverReport> examine_driver_files();
 
 const char* type_name(VkPhysicalDeviceType type);
 

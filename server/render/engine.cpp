@@ -56,11 +56,11 @@ std::shared_ptr<const SceneResources> Engine::upload(std::shared_ptr<const scene
 }
 
 std::string describe_devices(const EngineOptions& options) {
-  std::string text = "Driver files (in the order the Vulkan loader reads them):\n";
-  const auto files = gpu::describe_driver_files();
-  for (const auto& file : files) text += "  " + file + "\n";
-  if (files.empty()) text += "  none found\n";
+  std::string text = "Driver files and what each finds alone:\n";
   try {
+    const auto drivers = gpu::examine_driver_files();
+    for (const auto& driver : drivers) text += "  " + driver.file + "\n    " + driver.verdict + "\n";
+    if (drivers.empty()) text += "  none found\n";
     const gpu::Instance instance(false);
     text += "Devices:\n";
     bool chosen = false;
