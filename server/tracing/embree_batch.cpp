@@ -1,5 +1,6 @@
 #include "tracing/embree_batch.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace heliograph::tracing {

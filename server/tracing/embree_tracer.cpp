@@ -1,7 +1,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <memory>
 #include <span>
+#include <string>
 
 #include "shaders/shared/ray.h"
 #include "tracing/embree.hpp"

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <new>
 #include <stdexcept>
+#include <string>
 
 namespace heliograph::tracing {
 namespace {

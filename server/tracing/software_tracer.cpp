@@ -1,5 +1,8 @@
 #include <cstddef>
+#include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "shaders/embedded.hpp"
 #include "shaders/shared/ray.h"

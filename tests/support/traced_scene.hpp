@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/glm.hpp>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "scene/scene.hpp"

@@ -4,7 +4,10 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
+#include <limits>
 #include <map>
+#include <utility>
 
 #include "tests/support/traced_scene.hpp"
 
