@@ -1,0 +1,42 @@
+#include "tests/support/engine.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <memory>
+
+namespace heliograph::test {
+namespace {
+
+using Engines = std::map<std::string, std::unique_ptr<render::Engine>>;
+
+Engines& engines() {
+  static Engines all;
+  return all;
+}
+
+}  // namespace
+
+render::Engine& engine(const std::string& tracer) {
+  auto& wanted = engines()[tracer];
+  if (!wanted) {
+    const char* device = std::getenv("HELIOGRAPH_TEST_DEVICE");
+    wanted = std::make_unique<render::Engine>(render::EngineOptions{
+        .device = device ? device : "", .tracer = tracer, .validation = true, .cache_folder = {}});
+    std::printf("device: %s, %s, tracer %s\n", wanted->device().name.c_str(),
+                wanted->device().driver.c_str(), tracer.c_str());
+  }
+  return *wanted;
+}
+
+std::uint64_t validation_messages() {
+  std::uint64_t messages = 0;
+  for (const auto& [tracer, made] : engines()) {
+    if (made) messages += made->validation_messages();
+  }
+  return messages;
+}
+
+void release_engines() { engines().clear(); }
+
+}  // namespace heliograph::test

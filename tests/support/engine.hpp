@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "render/engine_parts.hpp"
+
+namespace heliograph::test {
+
+/// This run's engine with the tracer ("embree" or "software") and the validation layers on, made
+/// at the first call. HELIOGRAPH_TEST_DEVICE names a part of another device's name.
+render::Engine& engine(const std::string& tracer = "embree");
+
+/// The device of the engine that tests share.
+inline const gpu::Device& device() { return engine().parts().device; }
+
+/// What the validation layers have said to all engines so far.
+std::uint64_t validation_messages();
+
+/// Ends all engines.
+void release_engines();
+
+}  // namespace heliograph::test

@@ -1,0 +1,75 @@
+#pragma once
+
+#include "render/frame.hpp"
+#include "render/view_constants.hpp"
+#include "tests/support/engine.hpp"
+#include "tests/support/scene_builder.hpp"
+
+namespace heliograph::test {
+
+struct RigOptions {
+  VkExtent2D extent{64, 64};
+  scene::Environment environment = scene::constant_environment(glm::vec3(1.0f));
+  protocol::Settings settings;
+  std::string tracer = "embree";
+};
+
+/// A scene, a view and a frame plan, in which a test declares the passes it wants to see alone.
+class FrameRig {
+ public:
+  FrameRig(std::shared_ptr<const scene::Scene> scene, const scene::Camera& camera,
+           const RigOptions& options = {});
+
+  gpu::FramePlan& plan() { return plan_; }
+  const render::FrameInputs& inputs() const { return inputs_; }
+  VkDescriptorSet frame_set() const { return frame_set_; }
+  const shared::FrameConstants& constants() const { return constants_; }
+  const render::SceneResources& scene() const { return *scene_; }
+
+  /// The next frame's view: what was current becomes previous.
+  void set_view(const scene::Camera& camera, std::uint32_t sample = 0);
+  void set_settings(const protocol::Settings& settings) { settings_ = settings; }
+  /// Samples already in the accumulated picture.
+  void set_accumulated(std::uint32_t samples) { samples_ = samples; }
+
+  /// An image that the test fills: `texels` of the image's format for every pixel, row 0 on top.
+  template <typename Texel>
+  gpu::ImageRef input(const std::string& name, VkFormat format, const std::vector<Texel>& texels) {
+    const gpu::ImageRef image = plan_.image(name, format);
+    plan_.get(image).upload(std::as_bytes(std::span(texels)));
+    return image;
+  }
+  /// Overwrites an image between frames.
+  template <typename Texel>
+  void fill(gpu::ImageRef image, const std::vector<Texel>& texels) {
+    plan_.get(image).upload(std::as_bytes(std::span(texels)));
+  }
+
+  /// Compiles at the first call, then runs one frame.
+  void run();
+  /// As the frame that ran last left it.
+  render::FloatImage read(gpu::ImageRef image) const;
+
+ private:
+  render::Engine::Parts& parts_;
+  std::shared_ptr<const render::SceneResources> scene_;
+  RigOptions options_;
+  protocol::Settings settings_;
+  shared::FrameConstants constants_{};
+  std::uint32_t samples_ = 0;
+  bool has_view_ = false;
+  bool compiled_ = false;
+  gpu::Buffer constants_buffer_;
+  gpu::DescriptorPool pool_;
+  VkDescriptorSet frame_set_ = VK_NULL_HANDLE;
+  render::FrameInputs inputs_;
+  gpu::FramePlan plan_;
+};
+
+/// A pixel's four values.
+inline glm::vec4 texel(const render::FloatImage& image, std::uint32_t x, std::uint32_t y) {
+  const float* values = &image.rgba[(std::size_t{y} * image.width + x) * 4];
+  return {values[0], values[1], values[2], values[3]};
+}
+
+}  // namespace heliograph::test
