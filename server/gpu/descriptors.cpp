@@ -47,7 +47,9 @@ DescriptorPool::DescriptorPool(const Device& device, std::uint32_t sets,
         "create a descriptor pool");
 }
 
-DescriptorPool::~DescriptorPool() { vkDestroyDescriptorPool(device_.handle(), handle_, nullptr); }
+DescriptorPool::~DescriptorPool() {
+  vkDestroyDescriptorPool(device_.handle(), handle_, nullptr);
+}
 
 VkDescriptorSet DescriptorPool::allocate(VkDescriptorSetLayout layout) const {
   VkDescriptorSetAllocateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
@@ -72,15 +74,21 @@ DescriptorWriter& DescriptorWriter::texel_buffer(std::uint32_t binding, VkBuffer
 }
 
 DescriptorWriter& DescriptorWriter::storage_image(std::uint32_t binding, VkImageView view) {
-  writes_.push_back({binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, {},
-                     {VK_NULL_HANDLE, view, VK_IMAGE_LAYOUT_GENERAL}, VK_NULL_HANDLE});
+  writes_.push_back({binding,
+                     VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+                     {},
+                     {VK_NULL_HANDLE, view, VK_IMAGE_LAYOUT_GENERAL},
+                     VK_NULL_HANDLE});
   return *this;
 }
 
 DescriptorWriter& DescriptorWriter::sampled_image(std::uint32_t binding, VkImageView view,
                                                   VkSampler sampler) {
-  writes_.push_back({binding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, {},
-                     {sampler, view, VK_IMAGE_LAYOUT_GENERAL}, VK_NULL_HANDLE});
+  writes_.push_back({binding,
+                     VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                     {},
+                     {sampler, view, VK_IMAGE_LAYOUT_GENERAL},
+                     VK_NULL_HANDLE});
   return *this;
 }
 

@@ -294,8 +294,9 @@ void FramePlan::record_raster(const Pass& pass, VkCommandBuffer commands) {
   info.pColorAttachments = colors.data();
   info.pDepthAttachment = pass.depth ? &depth : nullptr;
   vkCmdBeginRendering(commands, &info);
-  const VkViewport viewport{0.0f, 0.0f, static_cast<float>(extent_.width),
-                            static_cast<float>(extent_.height), 0.0f, 1.0f};
+  const VkViewport viewport{
+      0.0f, 0.0f, static_cast<float>(extent_.width), static_cast<float>(extent_.height),
+      0.0f, 1.0f};
   vkCmdSetViewport(commands, 0, 1, &viewport);
   vkCmdSetScissor(commands, 0, 1, &info.renderArea);
   bind(pass, commands);
@@ -325,9 +326,15 @@ VkImageView FramePlan::physical_view(std::uint32_t index, std::uint32_t parity) 
   return physical(index, parity).level_view(resources_[index].level.value_or(0));
 }
 
-const Image& FramePlan::get(ImageRef image) const { return physical(image.index, parity_); }
-const Image& FramePlan::latest(ImageRef image) const { return physical(image.index, parity_ ^ 1); }
-const Buffer& FramePlan::get(BufferRef buffer) const { return *resources_[buffer.index].buffer; }
+const Image& FramePlan::get(ImageRef image) const {
+  return physical(image.index, parity_);
+}
+const Image& FramePlan::latest(ImageRef image) const {
+  return physical(image.index, parity_ ^ 1);
+}
+const Buffer& FramePlan::get(BufferRef buffer) const {
+  return *resources_[buffer.index].buffer;
+}
 
 void FramePlan::reset(const History& history) {
   for (const Image* image : resources_[history.current.index].images) image->clear();

@@ -126,7 +126,7 @@ class FramePlan {
   void execute();
   const std::vector<PassTiming>& timings() const { return timings_; }
 
-  const Image& get(ImageRef image) const;    // this frame's image of a history
+  const Image& get(ImageRef image) const;  // this frame's image of a history
   const Buffer& get(BufferRef buffer) const;
   /// The image written by the frame that just ran.
   const Image& latest(ImageRef image) const;

@@ -10,12 +10,18 @@ namespace {
 
 const char* type_text(VkDescriptorType type) {
   switch (type) {
-    case VK_DESCRIPTOR_TYPE_STORAGE_IMAGE: return "a storage image";
-    case VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER: return "a sampled image";
-    case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER: return "a storage buffer";
-    case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER: return "a uniform buffer";
-    case VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER: return "a texel buffer";
-    default: return "something else";
+    case VK_DESCRIPTOR_TYPE_STORAGE_IMAGE:
+      return "a storage image";
+    case VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER:
+      return "a sampled image";
+    case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER:
+      return "a storage buffer";
+    case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER:
+      return "a uniform buffer";
+    case VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER:
+      return "a texel buffer";
+    default:
+      return "something else";
   }
 }
 

@@ -33,7 +33,7 @@ struct FramePlan::Pass {
   const Program* program = nullptr;  // null: a host pass
   bool is_raster = false;
   VkExtent3D local_size{1, 1, 1};
-  std::vector<Use> bound;     // in binding order
+  std::vector<Use> bound;  // in binding order
   std::vector<Attachment> colors;
   std::optional<Attachment> depth;
   std::optional<std::pair<std::uint32_t, VkDeviceSize>> indirect;

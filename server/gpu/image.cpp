@@ -17,7 +17,9 @@ VkImageAspectFlags aspect_of(VkFormat format) {
 
 }  // namespace
 
-bool is_depth(VkFormat format) { return format == VK_FORMAT_D32_SFLOAT; }
+bool is_depth(VkFormat format) {
+  return format == VK_FORMAT_D32_SFLOAT;
+}
 
 std::uint32_t texel_bytes(VkFormat format) {
   switch (format) {
@@ -25,30 +27,46 @@ std::uint32_t texel_bytes(VkFormat format) {
     case VK_FORMAT_R8G8B8A8_SRGB:
     case VK_FORMAT_R32_UINT:
     case VK_FORMAT_R32_SFLOAT:
-    case VK_FORMAT_D32_SFLOAT: return 4;
+    case VK_FORMAT_D32_SFLOAT:
+      return 4;
     case VK_FORMAT_R32G32_UINT:
     case VK_FORMAT_R32G32_SFLOAT:
-    case VK_FORMAT_R16G16B16A16_SFLOAT: return 8;
+    case VK_FORMAT_R16G16B16A16_SFLOAT:
+      return 8;
     case VK_FORMAT_R32G32B32A32_UINT:
-    case VK_FORMAT_R32G32B32A32_SFLOAT: return 16;
-    default: throw GpuError("no texel size known for " + std::string(format_name(format)));
+    case VK_FORMAT_R32G32B32A32_SFLOAT:
+      return 16;
+    default:
+      throw GpuError("no texel size known for " + std::string(format_name(format)));
   }
 }
 
 const char* format_name(VkFormat format) {
   switch (format) {
-    case VK_FORMAT_R8G8B8A8_UNORM: return "rgba8";
-    case VK_FORMAT_R8G8B8A8_SRGB: return "rgba8 sRGB";
-    case VK_FORMAT_R32_UINT: return "r32ui";
-    case VK_FORMAT_R32_SFLOAT: return "r32f";
-    case VK_FORMAT_D32_SFLOAT: return "d32f";
-    case VK_FORMAT_R32G32_UINT: return "rg32ui";
-    case VK_FORMAT_R32G32_SFLOAT: return "rg32f";
-    case VK_FORMAT_R16G16B16A16_SFLOAT: return "rgba16f";
-    case VK_FORMAT_R32G32B32A32_UINT: return "rgba32ui";
-    case VK_FORMAT_R32G32B32A32_SFLOAT: return "rgba32f";
-    case VK_FORMAT_UNDEFINED: return "no format";
-    default: return "another format";
+    case VK_FORMAT_R8G8B8A8_UNORM:
+      return "rgba8";
+    case VK_FORMAT_R8G8B8A8_SRGB:
+      return "rgba8 sRGB";
+    case VK_FORMAT_R32_UINT:
+      return "r32ui";
+    case VK_FORMAT_R32_SFLOAT:
+      return "r32f";
+    case VK_FORMAT_D32_SFLOAT:
+      return "d32f";
+    case VK_FORMAT_R32G32_UINT:
+      return "rg32ui";
+    case VK_FORMAT_R32G32_SFLOAT:
+      return "rg32f";
+    case VK_FORMAT_R16G16B16A16_SFLOAT:
+      return "rgba16f";
+    case VK_FORMAT_R32G32B32A32_UINT:
+      return "rgba32ui";
+    case VK_FORMAT_R32G32B32A32_SFLOAT:
+      return "rgba32f";
+    case VK_FORMAT_UNDEFINED:
+      return "no format";
+    default:
+      return "another format";
   }
 }
 
@@ -109,8 +127,10 @@ VkImageView Image::make_view(std::uint32_t first_level, std::uint32_t levels, bo
   VkImageViewCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
   info.image = handle_;
   // Storage access sees a cube as six layers.
-  if (desc_.cube && !storage) info.viewType = VK_IMAGE_VIEW_TYPE_CUBE;
-  else info.viewType = desc_.layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
+  if (desc_.cube && !storage)
+    info.viewType = VK_IMAGE_VIEW_TYPE_CUBE;
+  else
+    info.viewType = desc_.layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
   info.format = desc_.format;
   info.subresourceRange = {aspect_of(desc_.format), first_level, levels, 0, desc_.layers};
   VkImageView view = VK_NULL_HANDLE;

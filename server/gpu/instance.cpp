@@ -24,9 +24,10 @@ bool has_layer(const char* name) {
 }
 
 bool has_extension(const char* name) {
-  const auto found = enumerate<VkExtensionProperties>([](std::uint32_t* count, VkExtensionProperties* out) {
-    return vkEnumerateInstanceExtensionProperties(nullptr, count, out);
-  });
+  const auto found =
+      enumerate<VkExtensionProperties>([](std::uint32_t* count, VkExtensionProperties* out) {
+        return vkEnumerateInstanceExtensionProperties(nullptr, count, out);
+      });
   for (const auto& extension : found) {
     if (std::strcmp(extension.extensionName, name) == 0) return true;
   }
@@ -51,8 +52,9 @@ Instance::Instance(bool validation) : validation_(validation) {
   }
   const char* layer = "VK_LAYER_KHRONOS_validation";
   if (validation && !has_layer(layer)) {
-    throw GpuError("the Vulkan validation layers were asked for but are not installed: "
-                   "install vulkan-validationlayers");
+    throw GpuError(
+        "the Vulkan validation layers were asked for but are not installed: "
+        "install vulkan-validationlayers");
   }
   VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
   application.pApplicationName = "heliograph";
@@ -85,7 +87,8 @@ std::vector<VkPhysicalDevice> Instance::devices() const {
   });
 }
 
-VkBool32 Instance::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+VkBool32 Instance::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                              VkDebugUtilsMessageTypeFlagsEXT,
                               const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
   static_cast<Instance*>(user)->messages_ += 1;
   std::fprintf(stderr, "vulkan: %s\n", data->pMessage);

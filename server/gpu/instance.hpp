@@ -25,10 +25,10 @@ class Instance {
   std::uint64_t validation_messages() const { return messages_; }
   std::vector<VkPhysicalDevice> devices() const;
 
-  static VKAPI_ATTR VkBool32 VKAPI_CALL
-  on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
-             VkDebugUtilsMessageTypeFlagsEXT types,
-             const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
+  static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+                                                   VkDebugUtilsMessageTypeFlagsEXT types,
+                                                   const VkDebugUtilsMessengerCallbackDataEXT* data,
+                                                   void* user);
 
  private:
   VkInstance handle_ = VK_NULL_HANDLE;

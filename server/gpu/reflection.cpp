@@ -1,7 +1,7 @@
+#include <spirv_cross/spirv_cross_c.h>
+
 #include <algorithm>
 #include <memory>
-
-#include <spirv_cross/spirv_cross_c.h>
 
 #include "gpu/shader.hpp"
 
@@ -15,15 +15,24 @@ using Context = std::unique_ptr<spvc_context_s, ContextGuard>;
 
 VkFormat storage_format(SpvImageFormat format) {
   switch (format) {
-    case SpvImageFormatRgba32f: return VK_FORMAT_R32G32B32A32_SFLOAT;
-    case SpvImageFormatRgba16f: return VK_FORMAT_R16G16B16A16_SFLOAT;
-    case SpvImageFormatRg32f: return VK_FORMAT_R32G32_SFLOAT;
-    case SpvImageFormatR32f: return VK_FORMAT_R32_SFLOAT;
-    case SpvImageFormatRgba8: return VK_FORMAT_R8G8B8A8_UNORM;
-    case SpvImageFormatR32ui: return VK_FORMAT_R32_UINT;
-    case SpvImageFormatRg32ui: return VK_FORMAT_R32G32_UINT;
-    case SpvImageFormatRgba32ui: return VK_FORMAT_R32G32B32A32_UINT;
-    default: return VK_FORMAT_UNDEFINED;
+    case SpvImageFormatRgba32f:
+      return VK_FORMAT_R32G32B32A32_SFLOAT;
+    case SpvImageFormatRgba16f:
+      return VK_FORMAT_R16G16B16A16_SFLOAT;
+    case SpvImageFormatRg32f:
+      return VK_FORMAT_R32G32_SFLOAT;
+    case SpvImageFormatR32f:
+      return VK_FORMAT_R32_SFLOAT;
+    case SpvImageFormatRgba8:
+      return VK_FORMAT_R8G8B8A8_UNORM;
+    case SpvImageFormatR32ui:
+      return VK_FORMAT_R32_UINT;
+    case SpvImageFormatRg32ui:
+      return VK_FORMAT_R32G32_UINT;
+    case SpvImageFormatRgba32ui:
+      return VK_FORMAT_R32G32B32A32_UINT;
+    default:
+      return VK_FORMAT_UNDEFINED;
   }
 }
 
@@ -51,7 +60,8 @@ VkDescriptorType sampled_type(spvc_compiler compiler, const spvc_reflected_resou
 /// The format of the view a texel buffer is bound through: four floats, or one uint.
 VkFormat texel_format(spvc_compiler compiler, const spvc_reflected_resource& resource) {
   const auto image = spvc_compiler_get_type_handle(compiler, resource.base_type_id);
-  const auto texel = spvc_compiler_get_type_handle(compiler, spvc_type_get_image_sampled_type(image));
+  const auto texel =
+      spvc_compiler_get_type_handle(compiler, spvc_type_get_image_sampled_type(image));
   return spvc_type_get_basetype(texel) == SPVC_BASETYPE_FP32 ? VK_FORMAT_R32G32B32A32_SFLOAT
                                                              : VK_FORMAT_R32_UINT;
 }
@@ -151,6 +161,8 @@ class Reflector {
 
 }  // namespace
 
-Reflection reflect(const ShaderBinary& shader) { return Reflector(shader).run(); }
+Reflection reflect(const ShaderBinary& shader) {
+  return Reflector(shader).run();
+}
 
 }  // namespace heliograph::gpu

@@ -51,8 +51,7 @@ VkDescriptorSetLayout make_pass_layout(const Device& device,
                                        const std::vector<ShaderBinding>& bindings) {
   std::vector<VkDescriptorSetLayoutBinding> infos;
   for (const auto& binding : bindings) {
-    infos.push_back(
-        {binding.binding, binding.type, binding.count, VK_SHADER_STAGE_ALL, nullptr});
+    infos.push_back({binding.binding, binding.type, binding.count, VK_SHADER_STAGE_ALL, nullptr});
   }
   VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   info.bindingCount = static_cast<std::uint32_t>(infos.size());

@@ -25,8 +25,8 @@ struct ShaderBinding {
   std::string name;
   VkDescriptorType type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
   std::uint32_t count = 1;
-  bool reads = true;   // not writeonly
-  bool writes = true;  // not readonly
+  bool reads = true;                      // not writeonly
+  bool writes = true;                     // not readonly
   VkFormat format = VK_FORMAT_UNDEFINED;  // of a storage image
 };
 
@@ -83,7 +83,8 @@ class Program {
 class ComputeProgram : public Program {
  public:
   /// @throws GpuError when a shared layout lacks or contradicts what the shader declares
-  ComputeProgram(const Device& device, const ShaderBinary& shader, const SharedLayouts& shared = {});
+  ComputeProgram(const Device& device, const ShaderBinary& shader,
+                 const SharedLayouts& shared = {});
   VkExtent3D local_size() const { return local_size_; }
 
  private:

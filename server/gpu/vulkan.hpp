@@ -1,9 +1,9 @@
 #pragma once
 
+#include <volk.h>
+
 #include <stdexcept>
 #include <string>
-
-#include <volk.h>
 
 namespace heliograph::gpu {
 

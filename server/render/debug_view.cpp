@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
-
 #include <glm/glm.hpp>
 #include <glm/gtc/packing.hpp>
 
@@ -19,17 +18,23 @@ float channel(const std::byte* texel, VkFormat format, std::uint32_t index) {
     return static_cast<float>(value) * scale;
   };
   switch (format) {
-    case VK_FORMAT_R32G32B32A32_SFLOAT: return load(0.0f, 4, 1.0f);
-    case VK_FORMAT_R32G32_SFLOAT: return load(0.0f, 2, 1.0f);
-    case VK_FORMAT_R32_SFLOAT: return load(0.0f, 1, 1.0f);
-    case VK_FORMAT_R32_UINT: return load(std::uint32_t{}, 1, 1.0f);
-    case VK_FORMAT_R8G8B8A8_UNORM: return load(std::uint8_t{}, 4, 1.0f / 255.0f);
+    case VK_FORMAT_R32G32B32A32_SFLOAT:
+      return load(0.0f, 4, 1.0f);
+    case VK_FORMAT_R32G32_SFLOAT:
+      return load(0.0f, 2, 1.0f);
+    case VK_FORMAT_R32_SFLOAT:
+      return load(0.0f, 1, 1.0f);
+    case VK_FORMAT_R32_UINT:
+      return load(std::uint32_t{}, 1, 1.0f);
+    case VK_FORMAT_R8G8B8A8_UNORM:
+      return load(std::uint8_t{}, 4, 1.0f / 255.0f);
     case VK_FORMAT_R16G16B16A16_SFLOAT: {
       std::uint16_t half;
       std::memcpy(&half, texel + index * 2, 2);
       return glm::unpackHalf1x16(half);
     }
-    default: throw gpu::GpuError(std::string("no view of ") + gpu::format_name(format));
+    default:
+      throw gpu::GpuError(std::string("no view of ") + gpu::format_name(format));
   }
 }
 

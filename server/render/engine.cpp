@@ -6,11 +6,16 @@ namespace {
 
 protocol::DeviceType device_type(VkPhysicalDeviceType type) {
   switch (type) {
-    case VK_PHYSICAL_DEVICE_TYPE_CPU: return protocol::DeviceType::cpu;
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return protocol::DeviceType::integrated;
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return protocol::DeviceType::discrete;
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return protocol::DeviceType::virtual_;
-    default: return protocol::DeviceType::other;
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+      return protocol::DeviceType::cpu;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      return protocol::DeviceType::integrated;
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      return protocol::DeviceType::discrete;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      return protocol::DeviceType::virtual_;
+    default:
+      return protocol::DeviceType::other;
   }
 }
 
@@ -38,8 +43,12 @@ Engine::Parts::Parts(const EngineOptions& options)
 Engine::Engine(const EngineOptions& options) : parts_(std::make_unique<Parts>(options)) {}
 Engine::~Engine() = default;
 
-const DeviceInfo& Engine::device() const { return parts_->info; }
-protocol::TracerKind Engine::tracer() const { return parts_->tracer->kind(); }
+const DeviceInfo& Engine::device() const {
+  return parts_->info;
+}
+protocol::TracerKind Engine::tracer() const {
+  return parts_->tracer->kind();
+}
 
 std::uint32_t Engine::max_image_size() const {
   return std::min(parts_->device.limits().maxImageDimension2D, 8192u);
@@ -59,7 +68,8 @@ std::string describe_devices(const EngineOptions& options) {
   std::string text = "Driver files and what each finds alone:\n";
   try {
     const auto drivers = gpu::examine_driver_files();
-    for (const auto& driver : drivers) text += "  " + driver.file + "\n    " + driver.verdict + "\n";
+    for (const auto& driver : drivers)
+      text += "  " + driver.file + "\n    " + driver.verdict + "\n";
     if (drivers.empty()) text += "  none found\n";
     const gpu::Instance instance(false);
     text += "Devices:\n";

@@ -17,7 +17,7 @@ struct Engine::Parts {
   Programs programs;
   std::unique_ptr<tracing::RayTracer> tracer;
   gpu::Image split_sum_table;
-  gpu::Sampler around;   // wraps in u: equirectangular maps
+  gpu::Sampler around;  // wraps in u: equirectangular maps
   gpu::Sampler clamped;
   DeviceInfo info;
 };

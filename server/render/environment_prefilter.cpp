@@ -1,5 +1,7 @@
 #include "render/environment_prefilter.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <vector>
 
 #include "gpu/frame_plan.hpp"
@@ -8,8 +10,9 @@
 namespace heliograph::render {
 namespace {
 
-constexpr std::uint32_t cube_size = 256;
-constexpr std::uint32_t cube_levels = 6;  // 256 ... 8
+constexpr std::uint32_t largest_cube = 256;
+constexpr std::uint32_t smallest_cube = 16;
+constexpr std::uint32_t smallest_level = 8;
 constexpr std::uint32_t samples_per_texel = 48;
 constexpr std::uint32_t table_size = 128;
 
@@ -19,10 +22,15 @@ struct PrefilterConstants {
   std::uint32_t samples;
 };
 
-gpu::Image make_cube(const gpu::Device& device, const char* name) {
+/// A face spans a quarter of the map's width: no more texels than there is detail.
+std::uint32_t cube_size_for(const scene::Environment& environment) {
+  return std::bit_floor(std::clamp(environment.width / 4, smallest_cube, largest_cube));
+}
+
+gpu::Image make_cube(const gpu::Device& device, const char* name, std::uint32_t cube_size) {
   gpu::ImageDesc desc{.name = name, .extent = {cube_size, cube_size}};
   desc.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
-  desc.levels = cube_levels;
+  desc.levels = static_cast<std::uint32_t>(std::countr_zero(cube_size / smallest_level)) + 1;
   desc.layers = 6;
   desc.cube = true;
   return gpu::Image(device, desc);
@@ -54,9 +62,11 @@ gpu::Sampler make_environment_sampler(const gpu::Device& device, bool wrap_u) {
 
 EnvironmentMaps prefilter_environment(const gpu::Device& device, const Programs& programs,
                                       const scene::Environment& environment) {
-  EnvironmentMaps maps{upload_map(device, environment), make_cube(device, "prefiltered"),
+  const std::uint32_t cube_size = cube_size_for(environment);
+  EnvironmentMaps maps{upload_map(device, environment), make_cube(device, "prefiltered", cube_size),
                        project_irradiance(environment)};
-  const gpu::Image source_cube = make_cube(device, "environment cube");
+  const gpu::Image source_cube = make_cube(device, "environment cube", cube_size);
+  const std::uint32_t cube_levels = source_cube.desc().levels;
   const gpu::Sampler around = make_environment_sampler(device, true);
   const gpu::Sampler clamped = make_environment_sampler(device, false);
 
@@ -89,7 +99,8 @@ EnvironmentMaps prefilter_environment(const gpu::Device& device, const Programs&
     filter.pass("environment.prefilter", programs.prefilter_environment)
         .read(filter_source)
         .write(target)
-        .constants(PrefilterConstants{roughness, cube_size, level ? samples_per_texel : 1u})
+        .constants(PrefilterConstants{roughness, static_cast<float>(cube_size),
+                                      level ? samples_per_texel : 1u})
         .dispatch({cube_size >> level, cube_size >> level}, 6);
   }
   filter.compile();

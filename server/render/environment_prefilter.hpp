@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-
 #include <glm/glm.hpp>
 
 #include "gpu/image.hpp"

@@ -34,8 +34,8 @@ class DrawRecorder {
                        VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                        sizeof draw.constants, &draw.constants);
     vkCmdSetCullMode(commands_, draw.double_sided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
-    vkCmdSetFrontFace(commands_, draw.flipped ? VK_FRONT_FACE_CLOCKWISE
-                                              : VK_FRONT_FACE_COUNTER_CLOCKWISE);
+    vkCmdSetFrontFace(commands_,
+                      draw.flipped ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
     vkCmdDrawIndexed(commands_, draw.index_count, 1, draw.first_index,
                      static_cast<std::int32_t>(draw.first_vertex), 0);
   }

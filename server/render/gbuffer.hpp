@@ -10,19 +10,22 @@ struct FrameInputs;
 
 /// What the rasteriser leaves for every later pass (DESIGN: the frame's second stage).
 struct GBuffer {
-  gpu::ImageRef normals;      // octahedral: shading xy, geometric zw; world space
-  gpu::ImageRef base_color;   // square root of linear rgb; a: occlusion
-  gpu::ImageRef surface;      // perceptual roughness, metallic, unlit
-  gpu::ImageRef motion;       // previous uv - uv, previous view Z - view Z; w: view Z, metres, 0: none
-  gpu::ImageRef emissive;     // linear radiance
+  gpu::ImageRef normals;     // octahedral: shading xy, geometric zw; world space
+  gpu::ImageRef base_color;  // square root of linear rgb; a: occlusion
+  gpu::ImageRef surface;     // perceptual roughness, metallic, unlit
+  gpu::ImageRef motion;    // previous uv - uv, previous view Z - view Z; w: view Z, metres, 0: none
+  gpu::ImageRef emissive;  // linear radiance
   gpu::ImageRef depth_slope;  // change of view Z per pixel in x and y
   gpu::ImageRef instance;     // instance + 1, 0: none
   gpu::ImageRef depth;        // reversed
 
   /// Of the colour attachments, in the order above.
-  static constexpr std::array formats{VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R8G8B8A8_UNORM,
-                                      VK_FORMAT_R8G8B8A8_UNORM,      VK_FORMAT_R32G32B32A32_SFLOAT,
-                                      VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32G32_SFLOAT,
+  static constexpr std::array formats{VK_FORMAT_R32G32B32A32_SFLOAT,
+                                      VK_FORMAT_R8G8B8A8_UNORM,
+                                      VK_FORMAT_R8G8B8A8_UNORM,
+                                      VK_FORMAT_R32G32B32A32_SFLOAT,
+                                      VK_FORMAT_R16G16B16A16_SFLOAT,
+                                      VK_FORMAT_R32G32_SFLOAT,
                                       VK_FORMAT_R32_UINT};
 };
 

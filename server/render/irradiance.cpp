@@ -8,8 +8,15 @@ namespace {
 
 /// The basis as polynomials: each term's function of the direction, without its constant.
 std::array<double, 9> polynomials(const glm::dvec3& d) {
-  return {1.0,         d.y,         d.z,       d.x, d.x * d.y, d.y * d.z, 3.0 * d.z * d.z - 1.0,
-          d.x * d.z, d.x * d.x - d.y * d.y};
+  return {1.0,
+          d.y,
+          d.z,
+          d.x,
+          d.x * d.y,
+          d.y * d.z,
+          3.0 * d.z * d.z - 1.0,
+          d.x * d.z,
+          d.x * d.x - d.y * d.y};
 }
 
 /// Normalisation of the basis squared (once to project, once to evaluate) times the cosine lobe's
@@ -39,8 +46,7 @@ std::array<glm::vec4, 9> project_irradiance(const scene::Environment& environmen
       const double phi = ((x + 0.5) / environment.width - 0.5) * 2.0 * pi;
       const glm::dvec3 direction{std::sin(theta) * std::cos(phi), std::cos(theta),
                                  std::sin(theta) * std::sin(phi)};
-      const glm::dvec3 radiance =
-          environment.radiance[std::size_t{y} * environment.width + x];
+      const glm::dvec3 radiance = environment.radiance[std::size_t{y} * environment.width + x];
       const auto terms = polynomials(direction);
       for (std::size_t i = 0; i < 9; ++i) sums[i] += radiance * (terms[i] * solid_angle);
     }

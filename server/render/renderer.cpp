@@ -20,18 +20,32 @@ bool same_view(const scene::Camera& a, const scene::Camera& b) {
 
 constexpr std::string_view picture_name = "output";
 
+scene::Scene empty_scene() {
+  scene::Scene scene;
+  scene.name = "empty";
+  scene.material_names.emplace_back("none");
+  scene.materials.emplace_back();
+  for (const auto slot :
+       {&shared::Material::base_color_texture, &shared::Material::metallic_roughness_texture,
+        &shared::Material::normal_texture, &shared::Material::occlusion_texture,
+        &shared::Material::emissive_texture}) {
+    (scene.materials.back().*slot).texture = shared::no_texture;
+  }
+  return scene;
+}
+
 }  // namespace
 
 struct Renderer::State {
-  explicit State(Engine::Parts& engine)
+  State(Engine::Parts& engine, std::shared_ptr<const SceneResources> empty)
       : parts(engine),
+        nothing(std::move(empty)),
         constants_buffer(engine.device, "frame constants", sizeof(shared::FrameConstants),
                          VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Memory::upload) {}
 
   void build_plan();
   void write_frame_set();
   void list_buffers();
-  Frame black() const;
   Frame picture();
   const gpu::Image* find(std::string_view buffer) const;
   std::uint32_t wanted_samples() const {
@@ -45,6 +59,7 @@ struct Renderer::State {
   }
 
   Engine::Parts& parts;
+  std::shared_ptr<const SceneResources> nothing;  // the empty scene
   gpu::Buffer constants_buffer;
   shared::FrameConstants constants{};
   bool has_previous = false;
@@ -91,24 +106,12 @@ void Renderer::State::write_frame_set() {
 void Renderer::State::list_buffers() {
   buffers.clear();
   buffers.push_back({std::string(picture_name), "The finished picture."});
-  if (!plan) return;
   for (const auto& view : plan->views()) {
     if (view.name != picture_name) buffers.push_back({view.name, view.description});
   }
 }
 
-Frame Renderer::State::black() const {
-  Frame frame;
-  frame.width = extent.width;
-  frame.height = extent.height;
-  frame.rgba.assign(std::size_t{extent.width} * extent.height * 4, 0);
-  for (std::size_t i = 3; i < frame.rgba.size(); i += 4) frame.rgba[i] = 255;
-  frame.converged = true;
-  return frame;
-}
-
 const gpu::Image* Renderer::State::find(std::string_view buffer) const {
-  if (!plan) return nullptr;
   for (const auto& view : plan->views()) {
     if (view.name == buffer) return &plan->latest(view.image);
   }
@@ -129,8 +132,11 @@ Frame Renderer::State::picture() {
   return frame;
 }
 
-Renderer::Renderer(Engine& engine) : state_(std::make_unique<State>(engine.parts())) {
-  state_->list_buffers();
+Renderer::Renderer(Engine& engine)
+    : state_(std::make_unique<State>(
+          engine.parts(), engine.upload(std::make_shared<const scene::Scene>(empty_scene()),
+                                        scene::constant_environment(glm::vec3(0.0f))))) {
+  set_scene(nullptr);
 }
 Renderer::~Renderer() = default;
 
@@ -138,17 +144,15 @@ void Renderer::set_scene(std::shared_ptr<const SceneResources> scene) {
   // The plan refers to the old scene: it goes first.
   state_->plan.reset();
   state_->inputs.reset();
-  state_->scene = std::move(scene);
-  if (state_->scene) state_->build_plan();
+  state_->scene = scene ? std::move(scene) : state_->nothing;
+  state_->build_plan();
   state_->list_buffers();
-  state_->stale = true;
 }
 
 void Renderer::set_size(std::uint32_t width, std::uint32_t height) {
   if (state_->extent.width == width && state_->extent.height == height) return;
   state_->extent = {width, height};
-  if (state_->scene) state_->build_plan();
-  state_->stale = true;
+  state_->build_plan();
 }
 
 void Renderer::set_camera(const scene::Camera& camera) {
@@ -174,7 +178,6 @@ protocol::Result<void> Renderer::set_settings(const protocol::Settings& settings
 }
 
 bool Renderer::needs_frame() const {
-  if (!state_->plan) return state_->stale;
   return state_->stale || state_->samples < state_->wanted_samples();
 }
 
@@ -182,12 +185,10 @@ Frame Renderer::render() {
   State& state = *state_;
   const auto start = std::chrono::steady_clock::now();
   state.stale = false;
-  if (!state.plan) return state.black();
   if (!state.settings.accumulation.enabled) state.samples = 0;
   const shared::FrameConstants before = state.constants;
-  state.constants =
-      make_frame_constants(state.camera, state.settings, *state.scene, state.extent,
-                           state.samples, state.has_previous ? &before : nullptr);
+  state.constants = make_frame_constants(state.camera, state.settings, *state.scene, state.extent,
+                                         state.samples, state.has_previous ? &before : nullptr);
   state.has_previous = true;
   std::memcpy(state.constants_buffer.mapped(), &state.constants, sizeof state.constants);
   state.plan->execute();
@@ -206,13 +207,15 @@ Frame Renderer::render() {
   return frame;
 }
 
-const std::vector<BufferInfo>& Renderer::buffers() const { return state_->buffers; }
+const std::vector<BufferInfo>& Renderer::buffers() const {
+  return state_->buffers;
+}
 
 protocol::Result<FloatImage> Renderer::capture(std::string_view buffer) {
-  if (!state_->plan) return protocol::error::not_ready("no scene is loaded yet");
   const gpu::Image* image = state_->find(buffer);
   if (!image) {
-    return protocol::error::not_found("buffer", "there is no buffer \"" + std::string(buffer) + "\"");
+    return protocol::error::not_found("buffer",
+                                      "there is no buffer \"" + std::string(buffer) + "\"");
   }
   return read_image(*image);
 }

@@ -16,9 +16,9 @@
 namespace heliograph::render {
 
 struct EngineOptions {
-  std::string device;           // part of a device's name, or empty: the best there is
-  std::string tracer = "auto";  // auto, embree, software
-  bool validation = false;      // Vulkan validation layers on, every message an error
+  std::string device;                  // part of a device's name, or empty: the best there is
+  std::string tracer = "auto";         // auto, embree, software
+  bool validation = false;             // Vulkan validation layers on, every message an error
   std::filesystem::path cache_folder;  // pipeline cache; empty: none
 };
 
@@ -95,6 +95,7 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
+  /// Null is the empty scene, which every renderer starts with.
   void set_scene(std::shared_ptr<const SceneResources> scene);
   void set_size(std::uint32_t width, std::uint32_t height);
   void set_camera(const scene::Camera& camera);
@@ -103,7 +104,7 @@ class Renderer {
 
   /// False once a resting picture has all its samples and nothing has changed since.
   bool needs_frame() const;
-  /// Draws the next frame. Without a scene the picture is black.
+  /// Draws the next frame; the empty scene is black.
   Frame render();
 
   /// Every buffer that `view.buffer` and `capture` accept, "output" first.

@@ -22,9 +22,12 @@ gpu::Buffer upload(const gpu::Device& device, const char* name,
 
 VkSamplerAddressMode address_mode(std::uint32_t wrap) {
   switch (wrap) {
-    case shared::wrap_clamp: return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-    case shared::wrap_mirror: return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
-    default: return VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    case shared::wrap_clamp:
+      return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    case shared::wrap_mirror:
+      return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
+    default:
+      return VK_SAMPLER_ADDRESS_MODE_REPEAT;
   }
 }
 
@@ -107,8 +110,7 @@ void SceneResources::upload_tables(const gpu::Device& device) {
   for (const scene::Instance& from : scene->instances) {
     shared::Instance instance{};
     instance.world = instance.previous_world = scene->nodes[from.node].world;
-    instance.normal_matrix =
-        glm::mat4(glm::transpose(glm::inverse(glm::mat3(instance.world))));
+    instance.normal_matrix = glm::mat4(glm::transpose(glm::inverse(glm::mat3(instance.world))));
     instance.mesh = from.mesh;
     const bool mirrored = glm::determinant(glm::mat3(instance.world)) < 0.0f;
     instance.flags = mirrored ? shared::instance_flipped : 0u;
@@ -118,8 +120,8 @@ void SceneResources::upload_tables(const gpu::Device& device) {
   for (const scene::Light& light : scene->lights) lights.push_back(light.device);
 
   if (lights.size() > shared::max_lights) {
-    throw gpu::GpuError("the scene has " + std::to_string(lights.size()) +
-                        " lights; at most " + std::to_string(shared::max_lights) + " are drawn");
+    throw gpu::GpuError("the scene has " + std::to_string(lights.size()) + " lights; at most " +
+                        std::to_string(shared::max_lights) + " are drawn");
   }
   std::vector<shared::Light> block = lights;
   block.resize(shared::max_lights);
@@ -132,8 +134,8 @@ void SceneResources::upload_tables(const gpu::Device& device) {
   buffers.instances = upload(device, "instances", instances_);
   buffers.materials = upload(device, "materials", scene->materials);
   buffers.lights = upload(device, "lights", lights);
-  buffers.alpha_heap = upload(device, "alpha masks", scene->alpha_heap,
-                              VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+  buffers.alpha_heap =
+      upload(device, "alpha masks", scene->alpha_heap, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
 }
 
 void SceneResources::upload_textures(const gpu::Device& device) {
@@ -166,8 +168,8 @@ void SceneResources::make_material_sets(const gpu::Device& device, const Program
   for (std::uint32_t i = 0; i < count; ++i) {
     std::memcpy(blocks.data() + i * stride, &scene->materials[i], sizeof(shared::Material));
   }
-  material_blocks_ = gpu::upload_buffer(device, "material blocks", blocks,
-                                        VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+  material_blocks_ =
+      gpu::upload_buffer(device, "material blocks", blocks, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
   for (const shared::Material& material : scene->materials) {
     const std::array slots{&material.base_color_texture, &material.metallic_roughness_texture,
                            &material.normal_texture, &material.occlusion_texture,

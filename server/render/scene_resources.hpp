@@ -25,8 +25,8 @@ struct Draw {
 class SceneResources {
  public:
   SceneResources(const gpu::Device& device, const Programs& programs,
-                 std::shared_ptr<const scene::Scene> scene,
-                 const scene::Environment& environment, const tracing::RayTracer& tracer);
+                 std::shared_ptr<const scene::Scene> scene, const scene::Environment& environment,
+                 const tracing::RayTracer& tracer);
 
   std::shared_ptr<const scene::Scene> scene;
   tracing::SceneBuffers buffers;

@@ -22,7 +22,9 @@ gpu::ImageRef trace_visibility(gpu::FramePlan& plan, const FrameInputs& in, cons
       plan.buffer(name + ".occluded", sizeof(std::uint32_t) * pixels, usage, gpu::Memory::device);
   const auto visibility = plan.image(name + ".visibility", VK_FORMAT_R32_SFLOAT);
   // Without new rays the stream stays empty and tracing it costs nothing.
-  const auto wanted = [&constants = in.constants, flag] { return (constants.counts.y & flag) != 0; };
+  const auto wanted = [&constants = in.constants, flag] {
+    return (constants.counts.y & flag) != 0;
+  };
 
   plan.pass(name + ".begin", in.programs.begin_rays).write(rays.count).dispatch({1, 1});
   plan.pass(name + ".rays", generator)
