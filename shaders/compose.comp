@@ -31,6 +31,7 @@ struct Surface {
 vec3 direct_light(Surface s) {
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < frame.counts.x; ++i) {
+    if (!reaches(lights[i], s.position)) continue;
     LightSample light = light_at(lights[i], s.position);
     if (dot(s.geometric, light.direction) <= 0.0) continue;
     sum += light.irradiance * shade_light(s.color, s.metallic, s.roughness, s.f0, s.normal, s.eye,

@@ -60,6 +60,7 @@ void main() {
     float pick = random_number(uvec2(pixel), frame.extent.z, 1u, frame.extent.w);
     // Weighted reservoir of one: the pick is rescaled after every decision.
     for (uint i = 0u; i < frame.counts.x; ++i) {
+      if (!reaches(lights[i], position)) continue;
       float weight = light_weight(lights[i], position, shading, geometric);
       if (weight <= 0.0) continue;
       total += weight;

@@ -31,7 +31,7 @@ then the file.)text";
 
 constexpr const char* render_examples = R"text(Examples:
   heliograph render helmet.glb -o helmet.png --width 1920 --height 1080
-  heliograph render helmet.glb -o normals.png --buffer normal --samples 1
+  heliograph render helmet.glb -o normals.png --buffer gbuffer.normals --samples 1
   heliograph render helmet.glb -o dark.png --environment studio.hdr --set exposure.compensation=-1
   heliograph render atrium.glb -o atrium.png --timings --frames 32)text";
 
@@ -54,14 +54,15 @@ void add_device_options(CLI::App& command, DeviceOptions& options) {
       ->envname("HELIOGRAPH_TRACER");
 }
 
-void add_size_options(CLI::App& command, std::uint32_t& width, std::uint32_t& height) {
-  command.add_option("--width", width, "Picture width, pixels")
+/// `Number` is an integer or an optional one; `otherwise` tells what holds without the option.
+template <class Number>
+void add_size_options(CLI::App& command, Number& width, Number& height,
+                      const std::string& otherwise) {
+  command.add_option("--width", width, "Picture width, pixels [" + otherwise + "]")
       ->check(CLI::Range(16, 16384))
-      ->capture_default_str()
       ->envname("HELIOGRAPH_WIDTH");
   command.add_option("--height", height, "Picture height, pixels")
       ->check(CLI::Range(16, 16384))
-      ->capture_default_str()
       ->envname("HELIOGRAPH_HEIGHT");
 }
 
@@ -131,7 +132,7 @@ CLI::App* add_serve(CLI::App& app, ServeOptions& options) {
       ->allow_extra_args(false)
       ->envname("HELIOGRAPH_SCENE_ROOT");
   add_environment_option(*command, options.environment);
-  add_size_options(*command, options.width, options.height);
+  add_size_options(*command, options.width, options.height, "640x360 on a CPU, else 1280x720");
   add_settings_option(*command, options.settings);
   add_device_options(*command, options.device);
   add_log_options(*command, options.log);
@@ -147,7 +148,7 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options) {
   command->add_option("-o,--output", options.output, "PNG file to write")
       ->type_name("FILE")
       ->required();
-  add_size_options(*command, options.width, options.height);
+  add_size_options(*command, options.width, options.height, "1280x720");
   command->add_option("--camera", options.camera, "Camera of the scene [its first, or all in view]")
       ->type_name("NAME");
   command

@@ -25,8 +25,8 @@ struct ServeOptions {
   std::string scene;
   std::vector<std::filesystem::path> scene_roots;
   std::string environment;
-  std::uint32_t width = 1280;
-  std::uint32_t height = 720;
+  std::optional<std::uint32_t> width;  // absent: as the device can bear
+  std::optional<std::uint32_t> height;
   std::uint32_t max_viewers = 32;
   std::string token;
   bool insecure = false;

@@ -18,13 +18,20 @@ namespace {
 
 session::HostOptions host_options(const ServeOptions& options) {
   session::HostOptions result;
-  result.session.width = options.width;
-  result.session.height = options.height;
+  result.session.width = options.width.value_or(result.session.width);
+  result.session.height = options.height.value_or(result.session.height);
   result.session.settings = parse_settings(options.settings);
   result.session.limits.max_viewers = options.max_viewers;
   result.scene_roots = choose_scene_roots(options.scene_roots);
   if (!options.environment.empty()) result.environment = options.environment;
   return result;
+}
+
+/// Where nobody says how large pictures are to be, a processor is not given the work of a GPU.
+void fit_size(session::SessionOptions& session, const render::DeviceInfo& device) {
+  if (device.type != protocol::DeviceType::cpu) return;
+  session.width = 640;
+  session.height = 360;
 }
 
 net::ServerOptions server_options(const ServeOptions& options) {
@@ -52,17 +59,30 @@ class StartFailure {
   std::optional<std::string> reason_;
 };
 
+/// Ends the threads of the host while those who get its answers still exist.
+class HostStop {
+ public:
+  explicit HostStop(session::SessionHost& host) : host_(host) {}
+  ~HostStop() { host_.stop(); }
+  HostStop(const HostStop&) = delete;
+  HostStop& operator=(const HostStop&) = delete;
+
+ private:
+  session::SessionHost& host_;
+};
+
 }  // namespace
 
 int run(const ServeOptions& options) {
   set_up_log(options.log);
-  const session::HostOptions hosting = host_options(options);
+  session::HostOptions hosting = host_options(options);
   const std::string scene =
       choose_scene(session::SceneCatalogue(hosting.scene_roots), options.scene);
 
   render::Engine engine(engine_options(options.device));
   spdlog::info("rendering on {} ({}), rays by {}", engine.device().name, engine.device().driver,
                protocol::enum_name(engine.tracer()));
+  if (!options.width && !options.height) fit_size(hosting.session, engine.device());
   session::SessionHost host(engine, hosting);
   net::Server server(host, server_options(options));
 
@@ -71,6 +91,7 @@ int run(const ServeOptions& options) {
     std::fflush(stdout);
   });
   StartFailure failure;
+  const HostStop stop_first(host);
   host.load_scene(scene, {}, [&](const protocol::Result<protocol::SceneInfo>& loaded) {
     if (loaded) return;
     failure.set(scene + ": " + loaded.error().message);

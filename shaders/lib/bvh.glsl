@@ -69,7 +69,7 @@ bool mask_stops(uint mask, uint place, float u, float v) {
   return bitfieldExtract(word, int(8u * (offset & 3u)), 8) >= threshold;
 }
 
-// Möller and Trumbore (1997), both faces: (t, u, v) of the plane's point, and whether it is inside.
+// Möller and Trumbore (1997), both faces: (t, u, v) where the plane is met, and whether inside.
 bool triangle_hit(uint place, Line line, vec2 range, out vec3 tuv, out uint triangle) {
   const int texel = int(place * bvh_texels_per_triangle);
   const vec4 corner = texelFetch(triangles, texel);

@@ -9,6 +9,13 @@ struct LightSample {
   vec3 irradiance;  // on a surface facing the light, unshadowed
 };
 
+/// Whether any of the light arrives at `position`: cheap, so that loops skip what is far away.
+bool reaches(Light light, vec3 position) {
+  vec3 to_light = light.position - position;
+  return light.type == light_directional || light.range <= 0.0 ||
+         dot(to_light, to_light) < light.range * light.range;
+}
+
 LightSample light_at(Light light, vec3 position) {
   LightSample s;
   if (light.type == light_directional) {

@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+"""Checks that a folder includes only folders below it (README, "Where things are")."""
+
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+# Folder -> what it may include besides itself.
+BELOW = {
+    "protocol": set(),
+    "gpu": set(),
+    "scene": {"protocol"},
+    "tracing": {"gpu", "scene", "protocol"},
+    "render": {"tracing", "gpu", "scene", "protocol"},
+    "stream": {"protocol"},
+    "session": {"render", "stream", "scene", "protocol"},
+    "net": {"session", "stream", "protocol"},
+    "cli": {"net", "session", "render", "stream", "scene", "protocol"},
+}
+# Headers outside the folders above, and who may include them.
+SHARED = {"shaders": {"scene", "tracing", "render"}, "web_client": {"net"}}
+INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
+
+
+def folder_of(path: pathlib.Path) -> str:
+    parts = path.relative_to(ROOT).parts
+    return parts[1] if parts[0] == "server" else parts[0]
+
+
+def violations(path: pathlib.Path):
+    folder = folder_of(path)
+    if folder not in BELOW:
+        return
+    for number, line in enumerate(path.read_text().splitlines(), 1):
+        match = INCLUDE.match(line)
+        if not match:
+            continue
+        target = match.group(1).split("/")[0]
+        allowed = BELOW[folder] | {folder}
+        if target in BELOW and target not in allowed:
+            yield f"{path.relative_to(ROOT)}:{number}: {folder} must not include {match.group(1)}"
+        if target in SHARED and folder not in SHARED[target]:
+            yield f"{path.relative_to(ROOT)}:{number}: {folder} must not include {match.group(1)}"
+
+
+def main() -> int:
+    files = [
+        path
+        for top in ("protocol", "server")
+        for pattern in ("*.hpp", "*.cpp")
+        for path in (ROOT / top).rglob(pattern)
+    ]
+    if len(files) < 50:
+        print(f"only {len(files)} files found: the check looks in the wrong place")
+        return 1
+    found = [line for path in files for line in violations(path)]
+    print("\n".join(found) if found else f"{len(files)} files: every include points down")
+    return 1 if found else 0
+
+
+sys.exit(main())
