@@ -55,8 +55,9 @@ SessionView::SessionView(render::Engine& engine, SessionOptions options, ViewSer
     : engine_(engine),
       services_(services),
       renderer_(std::make_unique<render::Renderer>(engine)),
-      session_(std::make_shared<Session>(std::move(options), to_protocol(renderer_->buffers()),
-                                         services.wakeup)) {}
+      session_(std::make_shared<Session>(std::move(options), services.wakeup)) {
+  session_->set_buffers(to_protocol(renderer_->buffers()));
+}
 
 SessionView::~SessionView() = default;
 
@@ -95,13 +96,23 @@ void SessionView::recover() {
   captures_.clear();
 }
 
+void SessionView::abandon_captures() {
+  captures_.clear();
+  session_->take_captures();
+}
+
 void SessionView::adopt_state() {
   if (session_->version() == state_.version) return;
   const RenderState before = std::exchange(state_, session_->render_state());
-  if (state_.resources != before.resources) renderer_->set_scene(state_.resources);
+  if (state_.resources != before.resources) {
+    renderer_->set_scene(state_.resources);
+    session_->set_buffers(to_protocol(renderer_->buffers()));
+  }
   const bool resized = state_.width != before.width || state_.height != before.height;
   if (resized) renderer_->set_size(state_.width, state_.height);
   cut_ |= resized || state_.resources != before.resources;
+  // What view.buffer may name is known once there is a scene.
+  if (!state_.resources) return;
   renderer_->set_camera(state_.camera);
   if (const auto accepted = renderer_->set_settings(state_.settings); !accepted) {
     spdlog::error("session {}: the renderer refused settings: {}", session_->name(),
@@ -212,7 +223,7 @@ void SessionView::encode(Encoding encoding) {
   std::vector<int> qualities = session_->audience().quality_classes();
   if (qualities.empty()) return;
   const bool final = encoding == Encoding::final;
-  if (final) qualities = {std::max(final_quality, qualities.back())};
+  if (final) qualities.assign(1, std::max(final_quality, qualities.back()));
   final_sent_ = final;
 
   services_.encoder.post([session = session_, picture = newest_, qualities, final,
