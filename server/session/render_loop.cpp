@@ -21,10 +21,13 @@ RenderLoop::RenderLoop(render::Engine& engine)
       capture_writer_("capture writer", waiting_captures),
       thread_([this] { run(); }) {}
 
-RenderLoop::~RenderLoop() {
-  stopping_ = true;
+void RenderLoop::stop() {
+  if (stopping_.exchange(true)) return;
   wakeup_.notify();
   thread_.join();
+  encoder_.stop();
+  capture_writer_.stop();
+  for (const auto& view : views_) view->abandon_captures();
 }
 
 std::shared_ptr<Session> RenderLoop::open(SessionOptions options) {

@@ -16,7 +16,7 @@ namespace heliograph::session {
 class RenderLoop {
  public:
   explicit RenderLoop(render::Engine& engine);
-  ~RenderLoop();
+  ~RenderLoop() { stop(); }
   RenderLoop(const RenderLoop&) = delete;
   RenderLoop& operator=(const RenderLoop&) = delete;
 
@@ -26,6 +26,8 @@ class RenderLoop {
   /// Called once, on the render thread, when the first picture is there.
   void on_first_frame(std::function<void()> callback);
   bool has_rendered() const { return has_rendered_; }
+  /// Ends the threads and everything that waits for them. No callback comes afterwards.
+  void stop();
   RenderTotals totals() const { return measurements_.totals(); }
 
  private:

@@ -35,13 +35,14 @@ SceneLoader::SceneLoader(render::Engine& engine, const SceneCatalogue& catalogue
       environments_(std::move(environment)),
       thread_([this] { run(); }) {}
 
-SceneLoader::~SceneLoader() {
+void SceneLoader::stop() {
   {
     const std::lock_guard lock(mutex_);
-    stopping_ = true;
+    if (stopping_.exchange(true)) return;
   }
   condition_.notify_one();
   thread_.join();
+  waiting_.reset();
 }
 
 void SceneLoader::load(std::shared_ptr<Session> session, const std::string& name,

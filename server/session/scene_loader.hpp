@@ -29,13 +29,16 @@ class SceneLoader {
 
   SceneLoader(render::Engine& engine, const SceneCatalogue& catalogue,
               std::optional<std::filesystem::path> environment);
-  ~SceneLoader();
+  ~SceneLoader() { stop(); }
   SceneLoader(const SceneLoader&) = delete;
   SceneLoader& operator=(const SceneLoader&) = delete;
 
   /// `done` is called once, here or on the loading thread.
   void load(std::shared_ptr<Session> session, const std::string& name, const std::string& by,
             Completion done);
+
+  /// Ends the thread and the load under way; what waits is dropped unanswered.
+  void stop();
 
  private:
   struct Request {

@@ -15,10 +15,8 @@ namespace heliograph::session {
 using protocol::Result;
 namespace error = protocol::error;
 
-Session::Session(SessionOptions options, std::vector<protocol::BufferInfo> buffers,
-                 Wakeup& changed)
+Session::Session(SessionOptions options, Wakeup& changed)
     : options_(std::move(options)),
-      buffers_(std::move(buffers)),
       changed_(changed),
       audience_(options_.limits.max_viewers, changed) {
   state_.settings = options_.settings;
@@ -32,6 +30,16 @@ Session::Session(SessionOptions options, std::vector<protocol::BufferInfo> buffe
 std::uint32_t Session::rev() const {
   const std::lock_guard lock(mutex_);
   return state_.rev;
+}
+
+void Session::set_buffers(std::vector<protocol::BufferInfo> buffers) {
+  const std::lock_guard lock(mutex_);
+  buffers_ = std::move(buffers);
+}
+
+std::vector<protocol::BufferInfo> Session::buffers() const {
+  const std::lock_guard lock(mutex_);
+  return buffers_;
 }
 
 std::uint64_t Session::version() const {

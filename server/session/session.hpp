@@ -62,14 +62,17 @@ struct RenderState {
 /// nothing queues up. Thread safe. `by` is the viewer that asks, empty for callers without stream.
 class Session {
  public:
-  /// `buffers`: what `view.buffer` may name. `changed` is notified when there is something to do.
-  Session(SessionOptions options, std::vector<protocol::BufferInfo> buffers, Wakeup& changed);
+  /// `changed` is notified when there is something to do.
+  Session(SessionOptions options, Wakeup& changed);
 
   const std::string& name() const { return options_.name; }
   const SessionLimits& limits() const { return options_.limits; }
-  const std::vector<protocol::BufferInfo>& buffers() const { return buffers_; }
   Audience& audience() { return audience_; }
   std::uint32_t rev() const;
+
+  /// What `view.buffer` and captures may name; the renderer knows it.
+  void set_buffers(std::vector<protocol::BufferInfo> buffers);
+  std::vector<protocol::BufferInfo> buffers() const;
 
   protocol::Result<protocol::SceneInfo> scene_info() const;
   void show(LoadedScene scene, const std::string& by);
@@ -104,11 +107,11 @@ class Session {
   float aspect() const;
 
   const SessionOptions options_;
-  const std::vector<protocol::BufferInfo> buffers_;
   Wakeup& changed_;
   Audience audience_;
 
   mutable std::mutex mutex_;
+  std::vector<protocol::BufferInfo> buffers_;
   RenderState state_;
   std::optional<std::string> camera_name_;
   std::shared_ptr<const scene::Scene> scene_;

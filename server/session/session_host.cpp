@@ -27,7 +27,12 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
   });
 }
 
-SessionHost::~SessionHost() = default;
+SessionHost::~SessionHost() { stop(); }
+
+void SessionHost::stop() {
+  loader_.stop();
+  render_loop_.stop();
+}
 
 std::shared_ptr<Session> SessionHost::find_session(std::string_view name) const {
   return name == session_->name() ? session_ : nullptr;

@@ -44,6 +44,9 @@ class SessionHost {
   void on_first_frame(std::function<void()> callback);
   /// Whether a picture has been rendered: everything works.
   bool ready() const { return render_loop_.has_rendered(); }
+  /// Ends all threads. Answers that are still due come as errors before this returns, so that it
+  /// must come before the end of whoever takes them.
+  void stop();
   RenderTotals render_totals() const { return render_loop_.totals(); }
 
  private:

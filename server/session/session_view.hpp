@@ -40,6 +40,8 @@ class SessionView {
   std::optional<Clock::time_point> next_due() const;
   /// After an exception out of `advance`: fails what waits for pictures and rests for a while.
   void recover();
+  /// Drops all captures unanswered.
+  void abandon_captures();
 
  private:
   struct Picture;

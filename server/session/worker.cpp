@@ -10,19 +10,20 @@ namespace heliograph::session {
 Worker::Worker(std::string name, std::size_t capacity)
     : name_(std::move(name)), capacity_(capacity), thread_([this] { run(); }) {}
 
-Worker::~Worker() {
+void Worker::stop() {
   {
     const std::lock_guard lock(mutex_);
-    stopping_ = true;
+    if (std::exchange(stopping_, true)) return;
   }
   condition_.notify_one();
   thread_.join();
+  waiting_.clear();
 }
 
 bool Worker::post(std::function<void()> task) {
   {
     const std::lock_guard lock(mutex_);
-    if (waiting_.size() >= capacity_) return false;
+    if (stopping_ || waiting_.size() >= capacity_) return false;
     waiting_.push_back(std::move(task));
   }
   condition_.notify_one();

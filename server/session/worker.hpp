@@ -15,14 +15,15 @@ class Worker {
  public:
   /// At most `capacity` tasks wait.
   Worker(std::string name, std::size_t capacity);
-  /// Waits for the running task; waiting ones are destroyed undone.
-  ~Worker();
+  ~Worker() { stop(); }
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
   /// False if no more tasks can wait; then `task` was not taken.
   bool post(std::function<void()> task);
   bool has_room() const;
+  /// Waits for the running task; waiting ones are destroyed undone, later ones are not taken.
+  void stop();
 
  private:
   void run();

@@ -114,6 +114,19 @@ class Framing(ServerTestCase):
             self.assertRaises(ConnectionError, raw.read, 1)
         self.assertLess(time.monotonic() - begin, 20)
 
+    async def test_who_asks_without_listening_is_let_go(self):
+        def gone():
+            return b"heliograph_viewers 0\n" in self.server.get("/metrics")[2]
+        self.server.wait_for(gone, "the leaving of earlier viewers")
+        call = b'{"jsonrpc":"2.0","id":1,"method":"rpc.discover"}'
+        with RawSocket(self.server, receive_buffer=4096) as raw:
+            raw.upgrade()
+            self.server.wait_for(lambda: not gone(), "a viewer")
+            for _ in range(900):
+                raw.send(frame(TEXT, call))
+            self.server.wait_for(gone, "the end of the viewer")
+        self.assertLess(self.server.memory_bytes(), 2e9)
+
     async def test_random_bytes_beside_a_viewer(self):
         self.server.call("settings.patch", {"patch": {"accumulation": {"max_samples": 60000}}})
         chance = random.Random(7)

@@ -74,7 +74,7 @@ class Watching(ServerTestCase):
 class Ending(unittest.IsolatedAsyncioTestCase):
     async def test_viewers_are_told_to_come_back(self):
         for number in (signal.SIGTERM, signal.SIGINT):
-            with Server() as server:
+            with await asyncio.to_thread(Server) as server:
                 async with Viewer(server) as viewer:
                     await viewer.next_frame()
                     begin = time.monotonic()
@@ -82,11 +82,11 @@ class Ending(unittest.IsolatedAsyncioTestCase):
                     code, reason = await viewer.closed()
                 self.assertEqual(code, 1001)
                 self.assertGreater(json.loads(reason)["reconnectAfterMs"], 0)
-                self.assertEqual(await asyncio.to_thread(server.stop), 0)
+                self.assertEqual(await asyncio.to_thread(server.wait), 0)
                 self.assertLess(time.monotonic() - begin, 6)
 
     async def test_a_viewer_that_does_not_listen_does_not_hold_it_up(self):
-        with Server("--set", "accumulation.max_samples=60000") as server:
+        with await asyncio.to_thread(Server, "--set", "accumulation.max_samples=60000") as server:
             viewer = Viewer(server)
             await viewer.__aenter__()
             viewer.socket.transport.pause_reading()

@@ -108,6 +108,10 @@ class Server:
         """Ends the server and gives its exit code."""
         if self.alive:
             self.process.send_signal(number)
+        return self.wait()
+
+    def wait(self):
+        """Waits for the server to end and gives its exit code; None if it has to be killed."""
         try:
             return self.process.wait(timeout=15)
         except subprocess.TimeoutExpired:

@@ -29,7 +29,9 @@ class RecordingLink : public ViewerLink {
 
 class SessionTest : public testing::Test {
  protected:
-  SessionTest() : session_(options(), {{"output", "picture"}, {"normal", "normals"}}, wakeup_) {}
+  SessionTest() : session_(options(), wakeup_) {
+    session_.set_buffers({{"output", "picture"}, {"normal", "normals"}});
+  }
 
   static SessionOptions options() {
     SessionOptions options;
