@@ -70,7 +70,8 @@ MeshBvh build_mesh(RTCDevice device, const scene::Mesh& mesh, const shared::Mate
 
 std::uint32_t moved_link(std::uint32_t link, std::size_t records, std::size_t triangles) {
   if (link & shared::bvh_leaf_bit) {
-    const std::uint32_t count = (link >> shared::bvh_leaf_count_shift) & shared::bvh_leaf_count_mask;
+    const std::uint32_t count =
+        (link >> shared::bvh_leaf_count_shift) & shared::bvh_leaf_count_mask;
     return leaf_link((link & shared::bvh_leaf_first_mask) + triangles, count + 1);
   }
   return number((link & shared::bvh_number_mask) + records);
@@ -107,10 +108,15 @@ PlacedMesh append_mesh(Bvh& bvh, const MeshBvh& mesh, std::vector<glm::vec4>& uv
   }
   if (!mesh.mask) return placed;
   const AlphaMask& mask = *mesh.mask;
-  placed.mask = number(append_record(
-      bvh, shared::BvhMask{number(mask.texels), number(mask.width), number(mask.height),
-                           number(mask.threshold), number(mask.wrap_s), number(mask.wrap_t),
-                           number(triangle_texels + uvs.size()), number(first_triangle), {}}));
+  placed.mask = number(append_record(bvh, shared::BvhMask{number(mask.texels),
+                                                          number(mask.width),
+                                                          number(mask.height),
+                                                          number(mask.threshold),
+                                                          number(mask.wrap_s),
+                                                          number(mask.wrap_t),
+                                                          number(triangle_texels + uvs.size()),
+                                                          number(first_triangle),
+                                                          {}}));
   for (const shared::BvhTriangle& triangle : mesh.triangles) {
     const auto* uv = &mask.uvs[3 * std::size_t(triangle.triangle & shared::bvh_number_mask)];
     uvs.emplace_back(uv[0], uv[1]);
@@ -167,9 +173,9 @@ void append_top_level(RTCDevice device, Bvh& bvh, const scene::Scene& scene,
     if (meshes[mesh].root == shared::bvh_no_link || !inverse) continue;
     boxes[i] = world_box(scene.meshes[mesh].bounds, world);
     const glm::mat4 rows = glm::transpose(*inverse);
-    records[i] = static_cast<std::uint32_t>(append_record(
-        bvh, shared::BvhInstance{rows[0], rows[1], rows[2], meshes[mesh].root, number(i),
-                                 meshes[mesh].mask, 0}));
+    records[i] = static_cast<std::uint32_t>(
+        append_record(bvh, shared::BvhInstance{rows[0], rows[1], rows[2], meshes[mesh].root,
+                                               number(i), meshes[mesh].mask, 0}));
   }
   const Hierarchy top = build_hierarchy(
       device, boxes, 1, [&](auto items) { return leaf_link(records[items[0]], 1); });

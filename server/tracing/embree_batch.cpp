@@ -10,8 +10,12 @@ namespace {
 constexpr float dead_from = 1.0f;
 constexpr float dead_to = 0.0f;
 
+shared::Hit make_hit(float t, unsigned instance, unsigned triangle, float u, float v) {
+  return {t, instance, triangle, u, v, 0, 0, 0};
+}
+
 shared::Hit miss(const shared::Ray& ray) {
-  return {ray.t_max, shared::hit_none, 0, 0.0f, 0.0f, 0, 0, 0};
+  return make_hit(ray.t_max, shared::hit_none, 0, 0.0f, 0.0f);
 }
 
 #if RTC_VERSION_MAJOR < 4
@@ -28,10 +32,17 @@ RTCIntersectContext incoherent() {
 
 RTCRay to_embree(const shared::Ray& ray) {
   const bool alive = ray.t_min < ray.t_max;
-  return {ray.origin.x,    ray.origin.y,    ray.origin.z,    alive ? ray.t_min : dead_from,
-          ray.direction.x, ray.direction.y, ray.direction.z, 0.0f,
-          alive ? ray.t_max : dead_to,      ~0u,             0,
-          0};
+  RTCRay result{};
+  result.org_x = ray.origin.x;
+  result.org_y = ray.origin.y;
+  result.org_z = ray.origin.z;
+  result.tnear = alive ? ray.t_min : dead_from;
+  result.dir_x = ray.direction.x;
+  result.dir_y = ray.direction.y;
+  result.dir_z = ray.direction.z;
+  result.tfar = alive ? ray.t_max : dead_to;
+  result.mask = ~0u;
+  return result;
 }
 
 }  // namespace
@@ -49,7 +60,7 @@ void intersect_batch(RTCScene scene, std::span<const shared::Ray> rays, shared::
     const auto& [ray, hit] = batch[i];
     hits[i] = hit.geomID == RTC_INVALID_GEOMETRY_ID
                   ? miss(rays[i])
-                  : shared::Hit{ray.tfar, hit.instID[0], hit.primID, hit.u, hit.v, 0, 0, 0};
+                  : make_hit(ray.tfar, hit.instID[0], hit.primID, hit.u, hit.v);
   }
 }
 
@@ -108,9 +119,8 @@ void intersect_batch(RTCScene scene, std::span<const shared::Ray> rays, shared::
     for (std::size_t i = 0; i < some.size(); ++i) {
       hits[first + i] = lanes.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID
                             ? miss(some[i])
-                            : shared::Hit{lanes.ray.tfar[i], lanes.hit.instID[0][i],
-                                          lanes.hit.primID[i], lanes.hit.u[i], lanes.hit.v[i],
-                                          0, 0, 0};
+                            : make_hit(lanes.ray.tfar[i], lanes.hit.instID[0][i],
+                                       lanes.hit.primID[i], lanes.hit.u[i], lanes.hit.v[i]);
     }
   }
 }

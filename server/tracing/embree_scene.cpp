@@ -81,9 +81,9 @@ void EmbreeScene::let_through(const RTCFilterFunctionNArguments* arguments) {
   const unsigned lanes = arguments->N;
   for (unsigned i = 0; i < lanes; ++i) {
     if (arguments->valid[i] == 0) continue;
-    const bool stops = mask.stops_ray(heap, RTCHitN_primID(arguments->hit, lanes, i),
-                                      RTCHitN_u(arguments->hit, lanes, i),
-                                      RTCHitN_v(arguments->hit, lanes, i));
+    const bool stops =
+        mask.stops_ray(heap, RTCHitN_primID(arguments->hit, lanes, i),
+                       RTCHitN_u(arguments->hit, lanes, i), RTCHitN_v(arguments->hit, lanes, i));
     if (!stops) arguments->valid[i] = 0;
   }
 }

@@ -66,11 +66,13 @@ class EmbreeTracer : public RayTracer {
                      const AccelerationStructure& structure, const RayStream& rays,
                      gpu::BufferRef hits) const override {
     const RTCScene scene = dynamic_cast<const EmbreeStructure&>(structure).handle();
-    plan.host(name, [&plan, scene, rays, hits] {
-          trace_batches<shared::Hit>(plan, rays, hits, [scene](auto batch, shared::Hit* results) {
-            intersect_batch(scene, batch, results);
-          });
-        })
+    plan.host(name,
+              [&plan, scene, rays, hits] {
+                trace_batches<shared::Hit>(plan, rays, hits,
+                                           [scene](auto batch, shared::Hit* results) {
+                                             intersect_batch(scene, batch, results);
+                                           });
+              })
         .read(rays.count)
         .read(rays.rays)
         .write(hits);
@@ -80,12 +82,13 @@ class EmbreeTracer : public RayTracer {
                  const AccelerationStructure& structure, const RayStream& rays,
                  gpu::BufferRef occluded) const override {
     const RTCScene scene = dynamic_cast<const EmbreeStructure&>(structure).handle();
-    plan.host(name, [&plan, scene, rays, occluded] {
-          trace_batches<std::uint32_t>(plan, rays, occluded,
-                                       [scene](auto batch, std::uint32_t* results) {
-                                         occluded_batch(scene, batch, results);
-                                       });
-        })
+    plan.host(name,
+              [&plan, scene, rays, occluded] {
+                trace_batches<std::uint32_t>(plan, rays, occluded,
+                                             [scene](auto batch, std::uint32_t* results) {
+                                               occluded_batch(scene, batch, results);
+                                             });
+              })
         .read(rays.count)
         .read(rays.rays)
         .write(occluded);

@@ -74,11 +74,13 @@ class Flattener {
     if (node.count > 0) return write_leaf_({node.items.data(), node.count});
     const auto index = static_cast<std::uint32_t>(hierarchy_.nodes.size());
     const auto& [left, right] = node.boxes;
-    hierarchy_.nodes.push_back(
-        {{left.lower_x, left.upper_x, left.lower_y, left.upper_y},
-         {right.lower_x, right.upper_x, right.lower_y, right.upper_y},
-         {left.lower_z, left.upper_z, right.lower_z, right.upper_z},
-         0, 0, 0, 0});
+    hierarchy_.nodes.push_back({{left.lower_x, left.upper_x, left.lower_y, left.upper_y},
+                                {right.lower_x, right.upper_x, right.lower_y, right.upper_y},
+                                {left.lower_z, left.upper_z, right.lower_z, right.upper_z},
+                                0,
+                                0,
+                                0,
+                                0});
     const auto child = [&](int i) {
       return add(*static_cast<const BuildNode*>(node.children[i]), waiting + 1);
     };

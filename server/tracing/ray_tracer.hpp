@@ -38,8 +38,9 @@ class AccelerationStructure {
 
 /// Answers rays. Every other shader is the same whatever traces. Alpha-masked surfaces let rays
 /// through where their base colour's alpha (level 0, nearest texel) x factor is below the cutoff;
-/// rays see both faces of every triangle; hits at t in (t_min, t_max). Instances squeezed flat, so
-/// that their matrix has no inverse, are not met. A tracer outlives its structures and plans.
+/// rays see both faces of every triangle; hits at t in (t_min, t_max), 0 <= t_min; rays
+/// with an empty interval miss. Instances squeezed flat, so that their matrix has no inverse, are
+/// not met. A tracer outlives its structures and plans.
 class RayTracer {
  public:
   virtual ~RayTracer() = default;

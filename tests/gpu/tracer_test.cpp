@@ -29,9 +29,9 @@ class TracedScene {
  public:
   TracedScene(const gpu::Device& device, const RayTracer& tracer, const scene::Scene& scene)
       : device_(device), tracer_(tracer) {
-    buffers_.alpha_heap = gpu::upload_buffer(device, "alpha masks",
-                                             std::as_bytes(std::span(scene.alpha_heap)),
-                                             VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+    buffers_.alpha_heap =
+        gpu::upload_buffer(device, "alpha masks", std::as_bytes(std::span(scene.alpha_heap)),
+                           VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
     structure_ = tracer.build(scene, buffers_);
   }
 
@@ -40,15 +40,14 @@ class TracedScene {
     const auto capacity = static_cast<std::uint32_t>(rays.size());
     constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     gpu::FramePlan plan(device_, {1, 1});
-    const RayStream stream{plan.buffer("count", sizeof(shared::RayCount),
-                                       storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
-                                       gpu::Memory::upload),
-                           plan.buffer("rays", rays.size_bytes(), storage, gpu::Memory::upload),
-                           capacity};
-    const auto hits = plan.buffer("hits", capacity * sizeof(shared::Hit), storage,
-                                  gpu::Memory::readback);
-    const auto occluded = plan.buffer("occluded", capacity * sizeof(std::uint32_t), storage,
-                                      gpu::Memory::readback);
+    const RayStream stream{
+        plan.buffer("count", sizeof(shared::RayCount),
+                    storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, gpu::Memory::upload),
+        plan.buffer("rays", rays.size_bytes(), storage, gpu::Memory::upload), capacity};
+    const auto hits =
+        plan.buffer("hits", capacity * sizeof(shared::Hit), storage, gpu::Memory::readback);
+    const auto occluded =
+        plan.buffer("occluded", capacity * sizeof(std::uint32_t), storage, gpu::Memory::readback);
     tracer_.trace_closest(plan, "closest", *structure_, stream, hits);
     tracer_.trace_any(plan, "any", *structure_, stream, occluded);
     plan.compile();
@@ -269,9 +268,13 @@ class AssetTest : public TracerTest {
   }
 };
 
-TEST_F(AssetTest, TracersAgreeOnAHelmet) { expect_agreement("gltf/DamagedHelmet.glb"); }
+TEST_F(AssetTest, TracersAgreeOnAHelmet) {
+  expect_agreement("gltf/DamagedHelmet.glb");
+}
 
-TEST_F(AssetTest, TracersAgreeInAnAtrium) { expect_agreement("standins/glossy_sponza_1.glb"); }
+TEST_F(AssetTest, TracersAgreeInAnAtrium) {
+  expect_agreement("standins/glossy_sponza_1.glb");
+}
 
 }  // namespace
 }  // namespace heliograph::tracing

@@ -67,8 +67,9 @@ inline scene::Mesh sphere(int rings) {
     for (int x = 0; x <= columns; ++x) {
       const float theta = 3.14159265f * static_cast<float>(y) / static_cast<float>(rings);
       const float phi = 6.28318531f * static_cast<float>(x % columns) / static_cast<float>(columns);
-      add_vertex(mesh, {std::sin(theta) * std::cos(phi), std::cos(theta),
-                        std::sin(theta) * std::sin(phi)}, {});
+      add_vertex(
+          mesh, {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)},
+          {});
     }
   }
   const auto at = [&](int x, int y) { return static_cast<std::uint32_t>(y * (columns + 1) + x); };
@@ -196,7 +197,8 @@ inline bool mask_stops(const scene::Scene& scene, const scene::Mesh& mesh, std::
   const int x = wrapped_texel(s, material.alpha_mask_wrap & 0xffu, width);
   const int y = wrapped_texel(t, material.alpha_mask_wrap >> 8,
                               static_cast<int>(material.alpha_mask_size >> 16));
-  const double alpha = scene.alpha_heap[material.alpha_mask + static_cast<std::size_t>(y * width + x)];
+  const double alpha =
+      scene.alpha_heap[material.alpha_mask + static_cast<std::size_t>(y * width + x)];
   return alpha / 255.0 * material.base_color.w >= material.alpha_cutoff;
 }
 
@@ -227,9 +229,14 @@ inline shared::Hit closest_by_search(const scene::Scene& scene, const shared::Ra
       if (u < 0.0 || v < 0.0 || u + v > 1.0 || t <= ray.t_min || t >= nearest) continue;
       if (!mask_stops(scene, mesh, triangle, u, v)) continue;
       nearest = t;
-      hit = {static_cast<float>(t), static_cast<std::uint32_t>(i),
-             static_cast<std::uint32_t>(triangle), static_cast<float>(u), static_cast<float>(v),
-             0, 0, 0};
+      hit = {static_cast<float>(t),
+             static_cast<std::uint32_t>(i),
+             static_cast<std::uint32_t>(triangle),
+             static_cast<float>(u),
+             static_cast<float>(v),
+             0,
+             0,
+             0};
     }
   }
   return hit;

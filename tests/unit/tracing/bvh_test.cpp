@@ -31,7 +31,9 @@ Box right_box(const shared::BvhNode& node) {
           {node.right_xy.y, node.right_xy.w, node.both_z.w}};
 }
 
-bool is_leaf(std::uint32_t link) { return link & shared::bvh_leaf_bit; }
+bool is_leaf(std::uint32_t link) {
+  return link & shared::bvh_leaf_bit;
+}
 
 std::uint32_t leaf_count(std::uint32_t link) {
   return ((link >> shared::bvh_leaf_count_shift) & shared::bvh_leaf_count_mask) + 1;
@@ -48,8 +50,8 @@ void check_mesh(const Bvh& bvh, std::uint32_t link, const Box& box, float slack,
                 std::map<std::uint32_t, int>& seen) {
   if (!is_leaf(link)) {
     const shared::BvhNode& node = bvh.records[link & shared::bvh_number_mask];
-    for (const auto& [child, inner] : {std::pair(node.left, left_box(node)),
-                                       std::pair(node.right, right_box(node))}) {
+    for (const auto& [child, inner] :
+         {std::pair(node.left, left_box(node)), std::pair(node.right, right_box(node))}) {
       for (int axis = 0; axis < 3; ++axis) {
         EXPECT_GE(inner.low[axis], box.low[axis]);
         EXPECT_LE(inner.high[axis], box.high[axis]);
@@ -62,8 +64,8 @@ void check_mesh(const Bvh& bvh, std::uint32_t link, const Box& box, float slack,
   for (std::uint32_t i = first; i < first + leaf_count(link); ++i) {
     const shared::BvhTriangle triangle = triangle_at(bvh, i);
     ++seen[triangle.triangle & shared::bvh_number_mask];
-    for (const glm::vec3& corner : {triangle.corner, triangle.corner + triangle.edge1,
-                                    triangle.corner + triangle.edge2}) {
+    for (const glm::vec3& corner :
+         {triangle.corner, triangle.corner + triangle.edge1, triangle.corner + triangle.edge2}) {
       for (int axis = 0; axis < 3; ++axis) {
         EXPECT_GE(corner[axis], box.low[axis] - slack);
         EXPECT_LE(corner[axis], box.high[axis] + slack);
