@@ -24,7 +24,7 @@ void main() {
     vec3 shading = octahedral_decode(encoded.xy);
     vec3 geometric = octahedral_decode(encoded.zw);
     vec2 u = random_pair(uvec2(pixel), frame.extent.z, 3u, frame.extent.w);
-    ray.origin = offset_origin(world_position(pixel, view_z), geometric);
+    ray.origin = offset_origin(world_position(pixel, view_z), geometric, view_z);
     ray.t_min = 0.0;
     ray.direction = sample_cosine(shading, u);
     ray.t_max = frame.environment.w;

@@ -23,7 +23,7 @@ float light_weight(Light light, vec3 position, vec3 shading, vec3 geometric) {
 }
 
 /// A direction toward a point of the light's disk, and how far to trace.
-Ray shadow_ray(Light light, vec3 position, vec3 geometric, vec2 u) {
+Ray shadow_ray(Light light, vec3 position, vec3 geometric, float view_z, vec2 u) {
   LightSample s = light_at(light, position);
   float spread = light.radius;
   if (light.type == light_directional && frame.exposure.z >= 0.0) spread = frame.exposure.z;
@@ -33,7 +33,7 @@ Ray shadow_ray(Light light, vec3 position, vec3 geometric, vec2 u) {
   vec2 disk = sample_disk(u) * spread;
   vec3 direction = normalize(s.direction + tangent * disk.x + bitangent * disk.y);
   Ray ray;
-  ray.origin = offset_origin(position, geometric);
+  ray.origin = offset_origin(position, geometric, view_z);
   ray.t_min = 0.0;
   ray.direction = direction;
   ray.t_max = s.distance;
@@ -75,7 +75,7 @@ void main() {
     if (total > 0.0) {
       unshadowed = 1.0;
       vec2 u = random_pair(uvec2(pixel), frame.extent.z, 2u, frame.extent.w);
-      ray = shadow_ray(lights[chosen], position, geometric, u);
+      ray = shadow_ray(lights[chosen], position, geometric, view_z, u);
       ray.pixel = uint(pixel.x) | uint(pixel.y) << 16u;
       // The light's disk may reach below the horizon, where nothing of it is seen.
       wanted = dot(ray.direction, geometric) > 0.0;

@@ -35,7 +35,8 @@ vec2 slot_uv(TextureSlot slot) {
   return vec2(dot(slot.transform_row0.xyz, uv), dot(slot.transform_row1.xyz, uv));
 }
 
-vec3 mapped_normal(vec3 normal, float side) {
+/// The normal map about the front face's `normal`; a back face reverses the result as a whole.
+vec3 mapped_normal(vec3 normal) {
   vec2 uv = slot_uv(material.normal_texture);
   vec3 texel = texture(normal_map, uv).xyz * 2.0 - 1.0;
   texel.xy *= material.normal_scale;
@@ -44,7 +45,7 @@ vec3 mapped_normal(vec3 normal, float side) {
   if (size < 1e-12) return normal;
   tangent *= inversesqrt(size);
   vec3 bitangent = cross(normal, tangent) * world_tangent.w;
-  return normalize((tangent * texel.x + bitangent * texel.y) * side + normal * texel.z);
+  return normalize(tangent * texel.x + bitangent * texel.y + normal * texel.z);
 }
 
 void main() {
@@ -57,19 +58,17 @@ void main() {
     cutoff = random_number(uvec2(gl_FragCoord.xy), frame.extent.z, 40u + (draw.instance & 15u),
                            frame.extent.w);
   }
-  if (color.a < cutoff) discard;
+  bool hole = color.a < cutoff;
 #endif
   vec3 across = cross(dFdy(world_point), dFdx(world_point));
   vec3 vertex_normal = normalize(world_normal);
   float side = gl_FrontFacing ? 1.0 : -1.0;
-  vertex_normal *= side;
   float area = dot(across, across);
-  vec3 geometric = area > 0.0 ? across * inversesqrt(area) : vertex_normal;
-  if (dot(geometric, vertex_normal) < 0.0) geometric = -geometric;
+  vec3 geometric = area > 0.0 ? across * inversesqrt(area) : vertex_normal * side;
+  if (dot(geometric, vertex_normal) * side < 0.0) geometric = -geometric;
   vec3 shading = vertex_normal;
-  if (material.normal_texture.texture != no_texture) {
-    shading = mapped_normal(vertex_normal, side);
-  }
+  if (material.normal_texture.texture != no_texture) shading = mapped_normal(vertex_normal);
+  shading *= side;
   vec4 packed_surface = texture(metallic_roughness_map,
                                 slot_uv(material.metallic_roughness_texture));
   float occlusion = texture(occlusion_map, slot_uv(material.occlusion_texture)).r;
@@ -86,4 +85,7 @@ void main() {
                   1.0);
   depth_slope = vec2(dFdx(view_depths.x), dFdy(view_depths.x));
   instance_id = draw.instance + 1u;
+#ifndef GBUFFER_OPAQUE
+  if (hole) discard;  // last: derivatives beside a lane that has left are undefined
+#endif
 }

@@ -12,14 +12,14 @@ void orthonormal_basis(vec3 n, out vec3 tangent, out vec3 bitangent) {
   bitangent = vec3(b, s + n.y * n.y * a, -n.y);
 }
 
-/// A ray origin just off the surface at `position`, on the side `normal` points to: offset in
-/// units in the last place, so it fits scenes of any size (Waechter and Binder 2019).
-vec3 offset_origin(vec3 position, vec3 normal) {
-  ivec3 steps = ivec3(256.0 * normal);
-  vec3 moved = intBitsToFloat(floatBitsToInt(position) +
-                              ivec3(mix(steps, -steps, lessThan(position, vec3(0.0)))));
-  bvec3 near_zero = lessThan(abs(position), vec3(1.0 / 32.0));
-  return mix(moved, position + normal * (1.0 / 65536.0), near_zero);
+/// A ray origin off the surface at `position`, on the side `normal` points to, by what rounding
+/// may have moved the position: seen from `distance` away it was rebuilt from a depth (measured:
+/// below 2^-15 of the distance, with triangles a kilometre long), placed far from the origin of
+/// the world it loses the last places of its coordinates.
+vec3 offset_origin(vec3 position, vec3 normal, float distance) {
+  vec3 size = abs(position);
+  float largest = max(size.x, max(size.y, size.z));
+  return position + normal * max(distance * exp2(-15.0), largest * exp2(-20.0));
 }
 
 /// Cosine-distributed direction about `normal`; pdf = cos / pi.

@@ -15,7 +15,7 @@ ShaderOutput evaluate(uint which, ShaderInput given) {
       orthonormal_basis(given.a.xyz, tangent, bitangent);
       return ShaderOutput(vec4(tangent, 0.0), vec4(bitangent, 0.0));
     }
-    case 2: return ShaderOutput(vec4(offset_origin(given.a.xyz, given.b.xyz), 0.0), vec4(0.0));
+    case 2: return ShaderOutput(vec4(offset_origin(given.a.xyz, given.b.xyz, given.b.w), 0.0), vec4(0.0));
     case 3: return ShaderOutput(vec4(sample_cosine(given.a.xyz, given.b.xy), 0.0), vec4(0.0));
     case 4: return ShaderOutput(vec4(sample_disk(given.a.xy), 0.0, 0.0), vec4(0.0));
     case 5: return ShaderOutput(vec4(equirectangular_uv(given.a.xyz), 0.0, 0.0), vec4(0.0));
