@@ -1,0 +1,63 @@
+#include "render/accumulate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/support/frame_rig.hpp"
+
+namespace heliograph::test {
+namespace {
+
+constexpr VkExtent2D extent{19, 11};
+constexpr std::size_t pixels = extent.width * extent.height;
+
+class AccumulateTest : public testing::Test {
+ protected:
+  void SetUp() override { history_ = render::accumulate(rig_.plan(), rig_.inputs(), hdr_); }
+
+  /// One frame that shows `color` everywhere, with so many samples before it.
+  glm::vec4 frame(const glm::vec4& color, std::uint32_t samples) {
+    rig_.fill(hdr_, std::vector(pixels, color));
+    rig_.set_accumulated(samples);
+    rig_.run();
+    return texel(rig_.read(history_.current), 18, 10);
+  }
+
+  FrameRig rig_{SceneBuilder().build(), look({0, 0, 3}, {0, 0, 0}), {.extent = extent}};
+  gpu::ImageRef hdr_ =
+      rig_.input("hdr", VK_FORMAT_R32G32B32A32_SFLOAT, std::vector(pixels, glm::vec4(0.0f)));
+  gpu::History history_;
+};
+
+TEST_F(AccumulateTest, IsTheMeanOfAllSamples) {
+  glm::dvec3 sum(0.0);
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    const glm::vec4 color(static_cast<float>(i * i % 17), 0.25f * static_cast<float>(i % 3), 1e4f, 1);
+    sum += glm::dvec3(color);
+    const glm::dvec3 mean = sum / (i + 1.0);
+    const glm::vec4 got = frame(color, i);
+    EXPECT_NEAR(got.x, mean.x, 1e-5 * mean.x + 1e-6) << i;
+    EXPECT_NEAR(got.y, mean.y, 1e-5) << i;
+    EXPECT_NEAR(got.z, 1e4, 1e-2) << i;
+  }
+}
+
+TEST_F(AccumulateTest, StartsAnewWithTheFirstSample) {
+  frame(glm::vec4(100, 50, 20, 1), 0);
+  frame(glm::vec4(100, 50, 20, 1), 1);
+  EXPECT_EQ(frame(glm::vec4(1, 2, 3, 1), 0), glm::vec4(1, 2, 3, 1));
+}
+
+TEST_F(AccumulateTest, ABrokenHistoryEndsWithARestart) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  frame(glm::vec4(nan), 0);
+  const glm::vec4 broken = frame(glm::vec4(1.0f), 1);
+  EXPECT_TRUE(std::isnan(broken.x)) << "the history is read";
+  EXPECT_EQ(frame(glm::vec4(1, 2, 3, 1), 0), glm::vec4(1, 2, 3, 1));
+  EXPECT_EQ(frame(glm::vec4(1, 2, 3, 1), 1), glm::vec4(1, 2, 3, 1));
+}
+
+}  // namespace
+}  // namespace heliograph::test

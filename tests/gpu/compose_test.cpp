@@ -1,0 +1,144 @@
+#include "render/compose.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "tests/gpu/gbuffer_input.hpp"
+
+namespace heliograph::test {
+namespace {
+
+constexpr VkExtent2D extent{16, 16};
+constexpr std::size_t pixels = extent.width * extent.height;
+
+struct Inputs {
+  SurfacePixel pixel;
+  float shadow = 1.0f;
+  float ambient = 1.0f;
+  glm::vec3 background{0.0f};
+  protocol::Settings settings;
+};
+
+/// What composition makes of a pixel in the middle, seen from (0, 0, 2) along -z.
+glm::vec3 compose(SceneBuilder& scene, const Inputs& in) {
+  FrameRig rig(scene.build(), look({0, 0, 2}, {0, 0, 0}), {.extent = extent, .settings = in.settings});
+  const auto gbuffer = make_gbuffer(rig, in.pixel);
+  const auto flat = [&](const char* name, float value) {
+    return rig.input(name, VK_FORMAT_R32_SFLOAT, std::vector(pixels, value));
+  };
+  const auto background = rig.input("background", VK_FORMAT_R32G32B32A32_SFLOAT,
+                                    std::vector(pixels, glm::vec4(in.background, 1)));
+  const auto hdr = render::compose(rig.plan(), rig.inputs(), gbuffer, flat("shadow", in.shadow),
+                                   flat("ambient", in.ambient), background);
+  rig.run();
+  return glm::vec3(texel(rig.read(hdr), 8, 8));
+}
+
+protocol::Settings only_direct() {
+  protocol::Settings settings;
+  settings.lighting.environment_diffuse = settings.lighting.environment_specular = false;
+  return settings;
+}
+
+/// Appendix B of glTF 2.0 at normal incidence of the view, in double.
+double brdf(double albedo, double roughness, double cosine) {
+  const double alpha2 = std::pow(roughness, 4.0);
+  const double half = std::sqrt(0.5 * (1.0 + cosine));  // n.h = v.h
+  const double fresnel = 0.04 + 0.96 * std::pow(1.0 - half, 5.0);
+  const double d = half * half * (alpha2 - 1.0) + 1.0;
+  const double distribution = alpha2 / (std::numbers::pi * d * d);
+  const double lambda = 0.5 * (std::sqrt(1.0 + alpha2 * (1.0 / (cosine * cosine) - 1.0)) - 1.0);
+  return (1.0 - fresnel) * albedo / std::numbers::pi +
+         fresnel * distribution / (1.0 + lambda) / (4.0 * cosine);
+}
+
+TEST(Compose, SunOnADielectricPlaneIsAnalytic) {
+  for (const float degrees : {0.0f, 30.0f, 60.0f, 80.0f}) {
+    const float angle = glm::radians(degrees);
+    SceneBuilder scene;
+    scene.add_sun({std::sin(angle), 0, -std::cos(angle)}, {4, 2, 1});
+    Inputs in;
+    in.pixel.color = glm::vec3(0.25f);  // its root, one half, is off by half a code value
+    in.settings = only_direct();
+    const double albedo = std::pow(128.0 / 255.0, 2.0);
+    const double cosine = std::cos(angle);
+    const double expected = 4.0 * cosine * brdf(albedo, 1.0, cosine);
+    const glm::vec3 got = compose(scene, in);
+    // The pixel beside the middle sees the plane from almost straight ahead.
+    EXPECT_NEAR(got.x, expected, 0.01 * expected) << degrees;
+    EXPECT_NEAR(got.y, 0.5 * got.x, 1e-5);
+    EXPECT_NEAR(got.x, 4.0 * cosine * albedo / std::numbers::pi, 0.12 * got.x) << "about Lambert";
+  }
+}
+
+TEST(Compose, LightFromBehindTheSurfaceIsNone) {
+  SceneBuilder scene;
+  scene.add_sun({0.2f, 0, 1}, glm::vec3(4.0f));
+  Inputs in;
+  in.settings = only_direct();
+  EXPECT_EQ(compose(scene, in), glm::vec3(0.0f));
+}
+
+TEST(Compose, ShadowScalesDirectLightOnly) {
+  SceneBuilder scene;
+  scene.add_sun({0, 0, -1}, glm::vec3(4.0f));
+  Inputs in;
+  in.settings = only_direct();
+  const float lit = compose(scene, in).x;
+  in.shadow = 0.25f;
+  EXPECT_NEAR(compose(scene, in).x, 0.25f * lit, 1e-5f);
+  in.settings.shadows.enabled = false;
+  EXPECT_NEAR(compose(scene, in).x, lit, 1e-5f);
+  in.settings = {};
+  in.settings.lighting.direct = false;
+  EXPECT_NEAR(compose(scene, in).x, 1.0f, 0.02f) << "a white plane in a white furnace";
+}
+
+TEST(Compose, AmbientVisibilityAndOcclusionMapScaleTheEnvironment) {
+  SceneBuilder scene;
+  Inputs in;
+  const float open = compose(scene, in).x;
+  in.ambient = 0.5f;
+  EXPECT_NEAR(compose(scene, in).x, 0.5f * open, 1e-4f);
+  in.pixel.occlusion = 51.0f / 255.0f;
+  EXPECT_NEAR(compose(scene, in).x, 0.1f * open, 1e-4f);
+  in.settings.ambient.occlusion = false;
+  EXPECT_NEAR(compose(scene, in).x, 0.2f * open, 1e-4f);
+}
+
+TEST(Compose, UnlitShowsItsColourAndEmissionIsAdded) {
+  SceneBuilder scene;
+  scene.add_sun({0, 0, -1}, glm::vec3(4.0f));
+  Inputs in;
+  in.pixel.unlit = true;
+  in.pixel.color = glm::vec3(std::pow(51.0f / 255.0f, 2.0f));
+  EXPECT_NEAR(compose(scene, in).x, in.pixel.color.x, 1e-5f);
+  in.pixel.emissive = {0.5f, 1.0f, 1.5f};
+  const glm::vec3 glowing = compose(scene, in);
+  EXPECT_NEAR(glowing.x, in.pixel.color.x + 0.5f, 1e-5f);
+  EXPECT_NEAR(glowing.z, in.pixel.color.x + 1.5f, 1e-5f);
+  in.settings.lighting.emissive = false;
+  EXPECT_NEAR(compose(scene, in).z, in.pixel.color.x, 1e-5f);
+}
+
+TEST(Compose, BackgroundShowsWhereNothingIs) {
+  SceneBuilder scene;
+  Inputs in;
+  in.pixel.view_z = 0.0f;
+  in.background = {3, 2, 1};
+  EXPECT_EQ(compose(scene, in), in.background);
+}
+
+TEST(Compose, ABadValueBecomesBlackInsteadOfSpreading) {
+  SceneBuilder scene;
+  scene.add_sun({0, 0, -1}, glm::vec3(4.0f));
+  Inputs in;
+  in.shadow = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(compose(scene, in), glm::vec3(0.0f));
+}
+
+}  // namespace
+}  // namespace heliograph::test

@@ -1,0 +1,235 @@
+#include "gpu/frame_plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "tests/gpu/embedded.hpp"
+#include "tests/support/engine.hpp"
+
+namespace heliograph::gpu {
+namespace {
+
+constexpr VkFormat format = VK_FORMAT_R32_SFLOAT;
+
+class FramePlanTest : public testing::Test {
+ protected:
+  /// One pass `name`: to = from + amount.
+  PassBuilder add(const std::string& name, ImageRef from, ImageRef to, float amount = 1.0f) {
+    return plan_.pass(name, program_).read(from).write(to).constants(amount).dispatch(
+        plan_.extent());
+  }
+  ImageRef image(const std::string& name) {
+    const ImageRef made = plan_.image(name, format);
+    plan_.get(made).clear();
+    return made;
+  }
+  float value(ImageRef image) {
+    const auto bytes = plan_.latest(image).download();
+    const auto* texels = reinterpret_cast<const float*>(bytes.data());
+    for (std::size_t i = 1; i < bytes.size() / 4; ++i) EXPECT_EQ(texels[i], texels[0]) << i;
+    return texels[0];
+  }
+  /// What compile() says.
+  std::string complaint() {
+    try {
+      plan_.compile();
+    } catch (const GpuError& error) {
+      return error.what();
+    }
+    return {};
+  }
+  void expect_complaint(std::initializer_list<const char*> parts) {
+    const std::string text = complaint();
+    for (const char* part : parts) EXPECT_NE(text.find(part), std::string::npos) << part << ": " << text;
+  }
+
+  const Device& device_ = test::device();
+  ComputeProgram program_{device_, test::shaders::add};
+  FramePlan plan_{device_, {13, 9}};
+};
+
+TEST_F(FramePlanTest, RunsPassesInOrder) {
+  const auto a = image("a"), b = image("b"), c = image("c");
+  add("first", a, b, 2.0f);
+  add("second", b, c, 3.0f);
+  plan_.compile();
+  plan_.execute();
+  EXPECT_EQ(value(c), 5.0f);
+}
+
+TEST_F(FramePlanTest, EvaluatesConstantsEveryFrame) {
+  const auto a = image("a"), b = image("b");
+  float amount = 1.0f;
+  plan_.pass("add", program_).read(a).write(b).constants([&] { return amount; }).dispatch({13, 9});
+  plan_.compile();
+  plan_.execute();
+  EXPECT_EQ(value(b), 1.0f);
+  amount = 4.0f;
+  plan_.execute();
+  EXPECT_EQ(value(b), 4.0f);
+}
+
+TEST_F(FramePlanTest, PutsBarriersWhereReadsFollowWrites) {
+  const auto a = image("a"), b = image("b"), c = image("c");
+  add("writes b", a, b);
+  add("reads b", b, c);
+  plan_.compile();
+  EXPECT_EQ(plan_.barriers(), (std::vector<std::string>{"reads b"}));
+}
+
+TEST_F(FramePlanTest, PutsBarriersWhereWritesFollowReadsOrWrites) {
+  const auto a = image("a"), b = image("b"), c = image("c");
+  add("reads a", a, b);
+  add("writes a", c, a);
+  add("writes a again", c, a);
+  plan_.compile();
+  EXPECT_EQ(plan_.barriers(), (std::vector<std::string>{"writes a", "writes a again"}));
+}
+
+TEST_F(FramePlanTest, LeavesIndependentPassesAlone) {
+  const auto a = image("a"), b = image("b"), c = image("c"), d = image("d");
+  add("a to b", a, b);
+  add("a to c", a, c);
+  add("b to d", b, d);
+  plan_.compile();
+  EXPECT_EQ(plan_.barriers(), (std::vector<std::string>{"b to d"}));
+}
+
+TEST_F(FramePlanTest, NeedsNoBarrierAfterAHostPass) {
+  const auto a = image("a"), b = image("b"), c = image("c");
+  add("device", a, b);
+  plan_.host("host", [] {});
+  add("device after", b, c);
+  plan_.compile();
+  EXPECT_TRUE(plan_.barriers().empty());
+}
+
+TEST_F(FramePlanTest, SwapsHistoriesAndResetsThem) {
+  const History history = plan_.history("count", format);
+  add("count", history.previous, history.current);
+  plan_.compile();
+  for (int frame = 1; frame <= 5; ++frame) {
+    plan_.execute();
+    EXPECT_EQ(value(history.current), static_cast<float>(frame));
+  }
+  plan_.reset(history);
+  plan_.execute();
+  EXPECT_EQ(value(history.current), 1.0f);
+}
+
+TEST_F(FramePlanTest, SkipsPassesWhoseConditionFails) {
+  const auto a = image("a"), b = image("b");
+  bool wanted = false;
+  add("maybe", a, b, 7.0f).when([&] { return wanted; });
+  plan_.compile();
+  plan_.execute();
+  EXPECT_EQ(value(b), 0.0f);
+  EXPECT_LT(plan_.timings()[0].milliseconds, 0.0f);
+  wanted = true;
+  plan_.execute();
+  EXPECT_EQ(value(b), 7.0f);
+  EXPECT_GE(plan_.timings()[0].milliseconds, 0.0f);
+}
+
+TEST_F(FramePlanTest, RunsHostPassesOnMappedImagesBetweenDevicePasses) {
+  if (!device_.is_cpu()) GTEST_SKIP() << "images are mapped on CPU devices only";
+  const auto a = image("a"), b = image("b"), c = image("c");
+  const History history = plan_.history("history", format);
+  plan_.host("first", [] {});
+  add("before", a, b, 3.0f);
+  add("count", history.previous, history.current);
+  float counted = 0.0f;
+  plan_.host("square", [&] {
+    const HostView view = plan_.get(b).host();
+    for (std::uint32_t y = 0; y < 9; ++y) {
+      for (std::uint32_t x = 0; x < 13; ++x) view.row<float>(y)[x] *= view.row<float>(y)[x];
+    }
+    counted = plan_.get(history.current).host().row<float>(8)[12];
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  });
+  add("after", b, c, 1.0f);
+  plan_.host("last", [] {});
+  plan_.compile();
+  for (int frame = 1; frame <= 3; ++frame) {
+    plan_.execute();
+    EXPECT_EQ(value(c), 10.0f);
+    EXPECT_EQ(counted, static_cast<float>(frame));
+  }
+  ASSERT_EQ(plan_.timings().size(), 6u);
+  EXPECT_TRUE(plan_.timings()[3].host);
+  EXPECT_EQ(plan_.timings()[3].name, "square");
+  EXPECT_GE(plan_.timings()[3].milliseconds, 5.0f);
+  EXPECT_FALSE(plan_.timings()[4].host);
+  for (const PassTiming& timing : plan_.timings()) EXPECT_GE(timing.milliseconds, 0.0f);
+}
+
+TEST_F(FramePlanTest, ListsEveryWrittenImageOnceWithItsDescription) {
+  const auto a = image("a"), b = image("b");
+  const History history = plan_.history("history", format);
+  add("to b", a, b).describe("What b is.");
+  add("to b again", a, b);
+  add("to history", b, history.current);
+  plan_.compile();
+  ASSERT_EQ(plan_.views().size(), 2u);
+  EXPECT_EQ(plan_.views()[0].name, "b");
+  EXPECT_EQ(plan_.views()[0].description, "What b is.");
+  EXPECT_EQ(plan_.views()[1].name, "history");
+  EXPECT_NE(plan_.views()[1].description.find("to history"), std::string::npos);
+}
+
+TEST_F(FramePlanTest, NamesAWrongFormat) {
+  const auto a = plan_.image("vectors", VK_FORMAT_R32G32B32A32_SFLOAT);
+  add("brighten", a, image("b"));
+  expect_complaint({"\"brighten\"", "binding 0", "\"given\"", "\"vectors\""});
+}
+
+TEST_F(FramePlanTest, NamesAMissingBinding) {
+  plan_.pass("brighten", program_).read(image("a")).constants(1.0f).dispatch({1, 1});
+  expect_complaint({"\"brighten\"", "binding 1", "\"sum\""});
+}
+
+TEST_F(FramePlanTest, NamesAResourceTooMany) {
+  const auto a = image("a"), b = image("b"), c = image("spare");
+  plan_.pass("brighten", program_).read(a).write(b).read(c).constants(1.0f).dispatch({1, 1});
+  expect_complaint({"\"brighten\"", "\"spare\""});
+}
+
+TEST_F(FramePlanTest, NamesAnImageGivenAsReadThatTheShaderWrites) {
+  const auto a = image("a"), b = image("b");
+  plan_.pass("brighten", program_).read(a).read(b).constants(1.0f).dispatch({1, 1});
+  expect_complaint({"\"brighten\"", "binding 1", "\"sum\"", "\"b\"", "only read"});
+}
+
+TEST_F(FramePlanTest, NamesAReadonlyImageDeclaredAsWritten) {
+  const auto a = image("a"), b = image("b");
+  plan_.pass("brighten", program_).write(a).write(b).constants(1.0f).dispatch({1, 1});
+  expect_complaint({"\"brighten\"", "binding 0", "\"given\"", "readonly"});
+}
+
+TEST_F(FramePlanTest, NamesABufferWhereAnImageBelongs) {
+  const auto buffer = plan_.buffer("bytes", 64, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, Memory::device);
+  plan_.pass("brighten", program_).read(buffer).write(image("b")).constants(1.0f).dispatch({1, 1});
+  expect_complaint({"\"brighten\"", "binding 0", "buffer \"bytes\""});
+}
+
+TEST_F(FramePlanTest, NamesConstantsOfTheWrongSize) {
+  const auto a = image("a"), b = image("b");
+  plan_.pass("brighten", program_).read(a).write(b).constants(glm::vec2(1.0f)).dispatch({1, 1});
+  expect_complaint({"\"brighten\"", "4 bytes of constants", "given 8"});
+}
+
+TEST_F(FramePlanTest, NamesAPassThatIsNeverDispatched) {
+  plan_.pass("brighten", program_).read(image("a")).write(image("b")).constants(1.0f);
+  expect_complaint({"\"brighten\"", "never dispatched"});
+}
+
+TEST_F(FramePlanTest, RefusesToRunUncompiledAndToGrowCompiled) {
+  EXPECT_THROW(plan_.execute(), GpuError);
+  plan_.compile();
+  EXPECT_THROW(plan_.image("late", format), GpuError);
+}
+
+}  // namespace
+}  // namespace heliograph::gpu

@@ -1,0 +1,88 @@
+#include "render/present.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/frame_rig.hpp"
+
+namespace heliograph::test {
+namespace {
+
+constexpr VkExtent2D extent{64, 64};
+
+// A triangle half as wide as would keep the mean exactly leaves an eighth of a code value.
+constexpr double tolerance = 0.13 / 255.0;
+
+class PresentTest : public testing::Test {
+ protected:
+  /// The picture, in code values, of `radiance` everywhere.
+  render::FloatImage present(const glm::vec3& radiance, const protocol::Settings& settings) {
+    FrameRig rig(SceneBuilder().build(), look({0, 0, 3}, {0, 0, 0}),
+                 {.extent = extent, .settings = settings});
+    const auto image = rig.input("radiance", VK_FORMAT_R32G32B32A32_SFLOAT,
+                                 std::vector(extent.width * extent.height, glm::vec4(radiance, 1)));
+    const auto picture = render::present(rig.plan(), rig.inputs(), image);
+    rig.run();
+    const render::FloatImage first = rig.read(picture);
+    rig.run();
+    EXPECT_EQ(first.rgba, rig.read(picture).rgba) << "the dither must stand still";
+    return first;
+  }
+  static glm::dvec3 mean(const render::FloatImage& image) {
+    glm::dvec3 sum(0.0);
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+      for (int c = 0; c < 3; ++c) sum[c] += image.rgba[i + c];
+      EXPECT_EQ(image.rgba[i + 3], 1.0f);
+    }
+    return sum * (4.0 / static_cast<double>(image.rgba.size()));
+  }
+  static double encode(double c) {
+    return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;
+  }
+
+  static protocol::Settings linear() {
+    protocol::Settings settings;
+    settings.tone_map.curve = protocol::ToneMapCurve::linear;
+    return settings;
+  }
+};
+
+TEST_F(PresentTest, DitherKeepsTheMeanAndAddsAtMostOneCodeValue) {
+  const glm::vec3 radiance(0.1f, 0.4f, 0.02f);
+  const render::FloatImage picture = present(radiance, linear());
+  const glm::dvec3 average = mean(picture);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(average[c], encode(radiance[c]), tolerance) << c;
+  for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
+    ASSERT_NEAR(picture.rgba[i], encode(0.1), 1.01 / 255.0);
+  }
+}
+
+TEST_F(PresentTest, ExposureCountsInStops) {
+  protocol::Settings settings = linear();
+  settings.exposure.compensation = 2.0f;
+  EXPECT_NEAR(mean(present(glm::vec3(0.1f), settings)).x, encode(0.4), tolerance);
+  settings.exposure.compensation = -1.0f;
+  EXPECT_NEAR(mean(present(glm::vec3(0.1f), settings)).x, encode(0.05), tolerance);
+}
+
+TEST_F(PresentTest, ClipsWhatIsTooBrightAndBlackensWhatIsNegative) {
+  const render::FloatImage picture = present({50.0f, -1.0f, 0.0f}, linear());
+  EXPECT_GT(mean(picture).x, 1.0 - 0.2 / 255.0);
+  EXPECT_LT(mean(picture).y, 0.2 / 255.0);
+}
+
+TEST_F(PresentTest, EveryCurveIsAnother) {
+  std::vector<double> greens;
+  for (const auto curve : {protocol::ToneMapCurve::neutral, protocol::ToneMapCurve::aces,
+                           protocol::ToneMapCurve::agx, protocol::ToneMapCurve::linear}) {
+    protocol::Settings settings;
+    settings.tone_map.curve = curve;
+    const double green = mean(present({0.2f, 0.6f, 0.4f}, settings)).y;
+    for (const double other : greens) EXPECT_GT(std::abs(green - other), 0.5 / 255.0);
+    greens.push_back(green);
+  }
+}
+
+}  // namespace
+}  // namespace heliograph::test

@@ -1,0 +1,71 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <fstream>
+
+#include "gpu/device_choice.hpp"
+#include "gpu/image.hpp"
+#include "gpu/shader.hpp"
+
+namespace heliograph::gpu {
+namespace {
+
+TEST(Check, NamesWhatFailedAndWhy) {
+  EXPECT_NO_THROW(check(VK_SUCCESS, "do something"));
+  EXPECT_NO_THROW(check(VK_INCOMPLETE, "list things")) << "not an error";
+  try {
+    check(VK_ERROR_OUT_OF_DEVICE_MEMORY, "make a thing");
+    FAIL();
+  } catch (const GpuError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("make a thing"), std::string::npos) << text;
+    EXPECT_NE(text.find(to_string(VK_ERROR_OUT_OF_DEVICE_MEMORY)), std::string::npos) << text;
+  }
+}
+
+TEST(Formats, KnowTheirSize) {
+  EXPECT_EQ(texel_bytes(VK_FORMAT_R32G32B32A32_SFLOAT), 16u);
+  EXPECT_EQ(texel_bytes(VK_FORMAT_R16G16B16A16_SFLOAT), 8u);
+  EXPECT_EQ(texel_bytes(VK_FORMAT_R32G32_SFLOAT), 8u);
+  EXPECT_EQ(texel_bytes(VK_FORMAT_R32_SFLOAT), 4u);
+  EXPECT_EQ(texel_bytes(VK_FORMAT_R32_UINT), 4u);
+  EXPECT_EQ(texel_bytes(VK_FORMAT_R8G8B8A8_UNORM), 4u);
+  EXPECT_EQ(texel_bytes(VK_FORMAT_R8G8B8A8_SRGB), 4u);
+  EXPECT_THROW(texel_bytes(VK_FORMAT_BC7_UNORM_BLOCK), GpuError);
+  EXPECT_TRUE(is_depth(VK_FORMAT_D32_SFLOAT));
+  EXPECT_FALSE(is_depth(VK_FORMAT_R32_SFLOAT));
+}
+
+TEST(Reflect, RefusesWhatIsNotSpirv) {
+  constexpr std::array<std::uint32_t, 4> words{1, 2, 3, 4};
+  try {
+    reflect({"broken.comp", words});
+    FAIL();
+  } catch (const GpuError& error) {
+    EXPECT_NE(std::string(error.what()).find("broken.comp"), std::string::npos) << error.what();
+  }
+}
+
+TEST(DriverFiles, SaysWhichFileOfTheEnvironmentIsMissing) {
+  const std::string there = testing::TempDir() + "heliograph_driver.json";
+  std::ofstream(there) << "{}";
+  ::setenv("VK_DRIVER_FILES", (there + ":/no/such/driver.json").c_str(), 1);
+  const auto lines = describe_driver_files();
+  ::unsetenv("VK_DRIVER_FILES");
+  std::remove(there.c_str());
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0].find("missing"), std::string::npos) << lines[0];
+  EXPECT_NE(lines[1].find("/no/such/driver.json"), std::string::npos) << lines[1];
+  EXPECT_NE(lines[1].find("missing"), std::string::npos) << lines[1];
+}
+
+TEST(DeviceTypes, HaveNames) {
+  EXPECT_STREQ(type_name(VK_PHYSICAL_DEVICE_TYPE_CPU), "CPU");
+  EXPECT_STRNE(type_name(VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU),
+               type_name(VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU));
+}
+
+}  // namespace
+}  // namespace heliograph::gpu

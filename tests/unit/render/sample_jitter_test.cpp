@@ -1,0 +1,35 @@
+#include "render/view_constants.hpp"
+
+#include <gtest/gtest.h>
+
+namespace heliograph::render {
+namespace {
+
+TEST(SampleJitter, BeginsInTheMiddleAndStaysInsideThePixel) {
+  EXPECT_EQ(sample_jitter(0), glm::vec2(0.0f));
+  for (std::uint32_t i = 0; i < 70000; ++i) {
+    EXPECT_LE(glm::abs(sample_jitter(i)).x, 0.5f);
+    EXPECT_LE(glm::abs(sample_jitter(i)).y, 0.5f);
+  }
+}
+
+// A drift would move the picture as samples accumulate.
+TEST(SampleJitter, AveragesToTheMiddle) {
+  for (const std::uint32_t count : {16u, 64u, 256u, 4096u}) {
+    glm::dvec2 sum(0.0);
+    for (std::uint32_t i = 0; i < count; ++i) sum += glm::dvec2(sample_jitter(i));
+    EXPECT_LT(glm::length(sum / static_cast<double>(count)), 1.5 / count + 1e-4) << count;
+  }
+}
+
+TEST(SampleJitter, FillsThePixelEvenly) {
+  std::array<int, 16> counts{};
+  for (std::uint32_t i = 0; i < 256; ++i) {
+    const glm::vec2 cell = (sample_jitter(i) + 0.5f) * 3.9999f;
+    ++counts[static_cast<std::size_t>(cell.y) * 4 + static_cast<std::size_t>(cell.x)];
+  }
+  for (const int count : counts) EXPECT_NEAR(count, 16, 5);
+}
+
+}  // namespace
+}  // namespace heliograph::render
