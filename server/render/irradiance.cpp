@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace heliograph::render {
 namespace {
@@ -30,25 +31,68 @@ constexpr std::array<double, 9> factors() {
   return {band0, band1, band1, band1, band2, band2, band2_z, band2, band2_xy};
 }
 
+/// Integrals over a row's polar angles, from the zenith down: of sin t times each factor that the
+/// polynomials have there.
+struct RowIntegrals {
+  RowIntegrals(double t0, double t1) {
+    const double c0 = std::cos(t0), c1 = std::cos(t1);
+    const double s0 = std::sin(t0), s1 = std::sin(t1);
+    one = c0 - c1;
+    cosine = 0.5 * (c0 * c0 - c1 * c1);
+    cosine_squared = (c0 * c0 * c0 - c1 * c1 * c1) / 3.0;
+    sine = 0.5 * (t1 - t0 - (s1 * c1 - s0 * c0));
+    sine_cosine = (s1 * s1 * s1 - s0 * s0 * s0) / 3.0;
+    sine_squared = one - cosine_squared;
+  }
+  double one, cosine, cosine_squared, sine, sine_cosine, sine_squared;
+};
+
+/// Integrals over a column's azimuths.
+struct ColumnIntegrals {
+  ColumnIntegrals(double p0, double p1) {
+    const double c0 = std::cos(p0), c1 = std::cos(p1);
+    const double s0 = std::sin(p0), s1 = std::sin(p1);
+    one = p1 - p0;
+    cosine = s1 - s0;
+    sine = c0 - c1;
+    cosine_squared = 0.5 * (one + s1 * c1 - s0 * c0);
+    sine_squared = one - cosine_squared;
+    sine_cosine = 0.5 * (s1 * s1 - s0 * s0);
+  }
+  double one, cosine, sine, cosine_squared, sine_squared, sine_cosine;
+};
+
+/// Each polynomial integrated over one texel, exactly: a small constant environment projects as
+/// well as a large one.
+std::array<double, 9> texel_integrals(const RowIntegrals& row, const ColumnIntegrals& column) {
+  return {row.one * column.one,
+          row.cosine * column.one,
+          row.sine * column.sine,
+          row.sine * column.cosine,
+          row.sine_cosine * column.cosine,
+          row.sine_cosine * column.sine,
+          3.0 * row.sine_squared * column.sine_squared - row.one * column.one,
+          row.sine_squared * column.sine_cosine,
+          row.sine_squared * column.cosine_squared - row.cosine_squared * column.one};
+}
+
 }  // namespace
 
 std::array<glm::vec4, 9> project_irradiance(const scene::Environment& environment) {
   constexpr double pi = std::numbers::pi;
-  std::array<glm::dvec3, 9> sums{};
-  const double step_phi = 2.0 * pi / environment.width;
   const double step_theta = pi / environment.height;
+  const double step_phi = 2.0 * pi / environment.width;
+  std::vector<ColumnIntegrals> columns;
+  for (std::uint32_t x = 0; x < environment.width; ++x) {
+    columns.emplace_back(x * step_phi - pi, (x + 1.0) * step_phi - pi);
+  }
+  std::array<glm::dvec3, 9> sums{};
   for (std::uint32_t y = 0; y < environment.height; ++y) {
-    const double theta = (y + 0.5) * step_theta;
-    // The exact solid angle of a row's texel, so that a constant environment projects exactly.
-    const double solid_angle =
-        step_phi * (std::cos(y * step_theta) - std::cos((y + 1.0) * step_theta));
+    const RowIntegrals row(y * step_theta, (y + 1.0) * step_theta);
     for (std::uint32_t x = 0; x < environment.width; ++x) {
-      const double phi = ((x + 0.5) / environment.width - 0.5) * 2.0 * pi;
-      const glm::dvec3 direction{std::sin(theta) * std::cos(phi), std::cos(theta),
-                                 std::sin(theta) * std::sin(phi)};
       const glm::dvec3 radiance = environment.radiance[std::size_t{y} * environment.width + x];
-      const auto terms = polynomials(direction);
-      for (std::size_t i = 0; i < 9; ++i) sums[i] += radiance * (terms[i] * solid_angle);
+      const auto terms = texel_integrals(row, columns[x]);
+      for (std::size_t i = 0; i < 9; ++i) sums[i] += radiance * terms[i];
     }
   }
   std::array<glm::vec4, 9> coefficients{};

@@ -18,7 +18,7 @@ TEST(SampleJitter, AveragesToTheMiddle) {
   for (const std::uint32_t count : {16u, 64u, 256u, 4096u}) {
     glm::dvec2 sum(0.0);
     for (std::uint32_t i = 0; i < count; ++i) sum += glm::dvec2(sample_jitter(i));
-    EXPECT_LT(glm::length(sum / static_cast<double>(count)), 1.5 / count + 1e-4) << count;
+    EXPECT_LT(glm::length(sum / static_cast<double>(count)), 2.0 / count + 1e-4) << count;
   }
 }
 

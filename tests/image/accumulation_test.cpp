@@ -1,0 +1,202 @@
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "tests/image/still.hpp"
+
+namespace heliograph::test {
+namespace {
+
+constexpr std::uint32_t width = 160, height = 90;
+
+/// Things on a ground under a soft sun and a grey sky, with noise of every kind.
+std::shared_ptr<const scene::Scene> things() {
+  SceneBuilder builder;
+  builder.place(builder.add_quad({{{-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}}},
+                                 surface({0.6f, 0.55f, 0.5f})));
+  builder.place(builder.add_sphere(0.8f, surface({0.8f, 0.2f, 0.1f}, 0.4f)),
+                glm::translate(glm::mat4(1.0f), {-0.9f, 0.8f, 0}));
+  builder.place(builder.add_sphere(0.6f, surface({0.9f, 0.8f, 0.6f}, 0.2f, 1.0f)),
+                glm::translate(glm::mat4(1.0f), {0.8f, 0.6f, 0.5f}));
+  builder.add_sun({-0.6f, -1, -0.4f}, glm::vec3(2.5f), 8.0f);
+  builder.add_lamp({1.5f, 2, 1}, {2, 1, 0.5f}, 0.2f);
+  return builder.build();
+}
+
+Still make(const std::string& tracer = "embree") {
+  return Still(things(), scene::constant_environment(glm::vec3(0.5f, 0.6f, 0.8f)),
+               look({0.5f, 2, 4.5f}, {0, 0.5f, 0}), width, height, tracer);
+}
+
+TEST(Accumulation, ConvergesTowardThePictureOfManySamples) {
+  Still truth = make();
+  protocol::Settings settings;
+  settings.accumulation.max_samples = 256;
+  settings.sampling.seed = 99;
+  truth.apply(settings);
+  const render::Frame expected = truth.accumulate(256);
+  save_picture("things", expected);
+
+  Still still = make();
+  double before = 1e9;
+  for (const std::uint32_t samples : {1u, 4u, 16u, 64u}) {
+    const double error = difference(expected, still.accumulate(samples)).mean;
+    EXPECT_LT(error, 0.72 * before) << samples;  // independent samples would halve it
+    before = error;
+  }
+  EXPECT_LT(before, 0.8) << "code values";
+}
+
+TEST(Accumulation, EndsAndResumesOnlyWhenSomethingChanges) {
+  Still still = make();
+  protocol::Settings settings;
+  settings.accumulation.max_samples = 5;
+  still.apply(settings);
+  for (std::uint32_t i = 1; i <= 5; ++i) {
+    EXPECT_TRUE(still.renderer.needs_frame());
+    const render::Frame frame = still.renderer.render();
+    EXPECT_EQ(frame.samples, i);
+    EXPECT_EQ(frame.converged, i == 5);
+  }
+  EXPECT_FALSE(still.renderer.needs_frame());
+  still.renderer.set_camera(look({0.5f, 2, 4.5f}, {0, 0.5f, 0}));
+  still.apply(settings);
+  still.renderer.set_size(width, height);
+  EXPECT_FALSE(still.renderer.needs_frame()) << "nothing changed";
+
+  settings.exposure.compensation = 1.0f;
+  still.apply(settings);
+  EXPECT_TRUE(still.renderer.needs_frame());
+  EXPECT_GE(still.renderer.render().samples, 5u) << "exposure throws no sample away";
+  EXPECT_FALSE(still.renderer.needs_frame());
+
+  settings.lighting.direct = false;
+  still.apply(settings);
+  EXPECT_EQ(still.renderer.render().samples, 1u) << "light does";
+  still.accumulate(5);
+  still.renderer.set_camera(look({0.6f, 2, 4.5f}, {0, 0.5f, 0}));
+  EXPECT_TRUE(still.renderer.needs_frame());
+  EXPECT_EQ(still.renderer.render().samples, 1u);
+}
+
+TEST(Accumulation, LeavesNothingOfTheOldView) {
+  Still moved = make(), fresh = make();
+  moved.renderer.set_camera(look({-3, 1, 3}, {0, 0.5f, 0}));
+  moved.accumulate(10);
+  moved.renderer.set_camera(look({0.5f, 2, 4.5f}, {0, 0.5f, 0}));
+  EXPECT_EQ(moved.accumulate(1).rgba, fresh.accumulate(1).rgba);
+  moved.renderer.set_size(80, 45);
+  moved.renderer.render();
+  moved.renderer.set_size(width, height);
+  EXPECT_EQ(moved.accumulate(3).rgba, fresh.accumulate(3).rgba);
+}
+
+TEST(Determinism, TheSeedDecidesEveryByte) {
+  for (const char* tracer : {"embree", "software"}) {
+    Still a = make(tracer), b = make(tracer), other = make(tracer);
+    protocol::Settings settings;
+    settings.sampling.seed = 7;
+    a.apply(settings);
+    b.apply(settings);
+    settings.sampling.seed = 8;
+    other.apply(settings);
+    const render::Frame frame = a.accumulate(6);
+    EXPECT_EQ(frame.rgba, b.accumulate(6).rgba) << tracer;
+    EXPECT_NE(frame.rgba, other.accumulate(6).rgba) << tracer;
+  }
+}
+
+TEST(Tracers, GiveNearlyTheSamePicture) {
+  Still embree = make("embree"), software = make("software");
+  EXPECT_EQ(engine("embree").tracer(), protocol::TracerKind::embree);
+  EXPECT_EQ(engine("software").tracer(), protocol::TracerKind::software);
+  const render::Frame expected = embree.accumulate(16), actual = software.accumulate(16);
+  save_picture("things_embree", expected);
+  save_picture("things_software", actual);
+  expect_similar("tracers", expected, actual, 0.02, 0.9995);
+}
+
+TEST(Shadows, DarkenOnlyAndOnlyWhenWanted) {
+  Still still = make();
+  still.accumulate(32);
+  const render::FloatImage with = still.capture("accumulated");
+  protocol::Settings settings;
+  settings.shadows.enabled = false;
+  still.apply(settings);
+  save_picture("things_without_shadows", still.accumulate(32));
+  const render::FloatImage without = still.capture("accumulated");
+  EXPECT_LT(mean_luminance(with), 0.99 * mean_luminance(without));
+  int darker = 0;
+  for (std::size_t i = 0; i < with.rgba.size(); i += 4) {
+    EXPECT_LE(with.rgba[i], without.rgba[i] + 0.02f * without.rgba[i] + 0.02f) << i;
+    darker += with.rgba[i] < 0.7f * without.rgba[i];
+  }
+  EXPECT_GT(darker, 300) << "pixels in shadow";
+}
+
+TEST(Settings, EachLightSwitchTakesLightAway) {
+  Still still = make();
+  still.accumulate(4);
+  const double all = mean_luminance(still.capture("accumulated"));
+  const auto without = [&](auto change) {
+    protocol::Settings settings;
+    change(settings);
+    still.apply(settings);
+    still.accumulate(4);
+    return mean_luminance(still.capture("accumulated"));
+  };
+  EXPECT_LT(without([](auto& s) { s.lighting.direct = false; }), 0.9 * all);
+  EXPECT_LT(without([](auto& s) { s.lighting.environment_diffuse = false; }), 0.9 * all);
+  EXPECT_LT(without([](auto& s) { s.lighting.environment_specular = false; }), 0.995 * all);
+  EXPECT_LT(without([](auto& s) { s.environment.visible = false; }), 0.95 * all);
+  EXPECT_GT(without([](auto& s) { s.ambient.occlusion = false; }), all);
+  EXPECT_GT(without([](auto& s) { s.environment.intensity = 2.0f; }), 1.2 * all);
+}
+
+TEST(Sizes, OddOnesWorkWithBothTracers) {
+  for (const char* tracer : {"embree", "software"}) {
+    Still still = make(tracer);
+    for (const auto& [w, h] : {std::pair(1u, 1u), {17u, 31u}, {641u, 3u}, {1919u, 1079u}}) {
+      still.renderer.set_size(w, h);
+      const render::Frame frame = still.renderer.render();
+      EXPECT_EQ(frame.width, w);
+      EXPECT_EQ(frame.height, h);
+      EXPECT_EQ(frame.rgba.size(), std::size_t{4} * w * h);
+      int lit = 0;
+      for (std::size_t i = 0; i < frame.rgba.size(); i += 4) lit += frame.rgba[i] > 20;
+      EXPECT_GE(lit, static_cast<int>(frame.rgba.size() / 8)) << w << " x " << h;
+    }
+  }
+}
+
+TEST(Buffers, EveryOneCanBeCapturedAndShown) {
+  Still still = make();
+  still.accumulate(2);
+  ASSERT_GE(still.renderer.buffers().size(), 10u);
+  EXPECT_EQ(still.renderer.buffers()[0].name, "output");
+  for (const render::BufferInfo& buffer : still.renderer.buffers()) {
+    EXPECT_FALSE(buffer.description.empty()) << buffer.name;
+    const auto values = still.renderer.capture(buffer.name);
+    ASSERT_TRUE(values) << buffer.name;
+    EXPECT_EQ(values->rgba.size(), std::size_t{4} * width * height);
+    const auto view = still.renderer.capture_view(buffer.name);
+    ASSERT_TRUE(view) << buffer.name;
+    save_picture("buffer_" + buffer.name, *view);
+    // Not blank: some pixel differs from the first.
+    bool differs = false;
+    for (std::size_t i = 4; i < view->rgba.size(); ++i) differs |= view->rgba[i] != view->rgba[i % 4];
+    EXPECT_TRUE(differs || buffer.name == "gbuffer.emissive") << buffer.name;
+    protocol::Settings settings;
+    settings.view.buffer = buffer.name;
+    still.apply(settings);
+    const render::Frame shown = still.renderer.render();
+    EXPECT_EQ(shown.width, width);
+  }
+  EXPECT_FALSE(still.renderer.capture("no such buffer"));
+  protocol::Settings settings;
+  settings.view.buffer = "no such buffer";
+  EXPECT_FALSE(still.renderer.set_settings(settings));
+}
+
+}  // namespace
+}  // namespace heliograph::test
