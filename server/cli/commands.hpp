@@ -12,6 +12,8 @@ int run(const RenderOptions& options);
 int run(const DevicesOptions& options);
 int run(const SchemaOptions& options);
 int run(const HealthOptions& options);
-inline int run(const Finished& finished) { return finished.exit_code; }
+inline int run(const Finished& finished) {
+  return finished.exit_code;
+}
 
 }  // namespace heliograph::cli

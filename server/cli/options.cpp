@@ -104,8 +104,9 @@ void add_network_options(CLI::App& command, ServeOptions& options) {
       .add_option("--token", options.token,
                   "Secret that clients must show; needed for other addresses than loopback")
       ->envname("HELIOGRAPH_TOKEN");
-  command.add_flag("--insecure", options.insecure,
-                   "Lets everybody who reaches the address watch and steer")
+  command
+      .add_flag("--insecure", options.insecure,
+                "Lets everybody who reaches the address watch and steer")
       ->envname("HELIOGRAPH_INSECURE");
   command
       .add_option("--allow-origin", options.allowed_origins,
@@ -151,9 +152,7 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options) {
   add_size_options(*command, options.width, options.height, "1280x720");
   command->add_option("--camera", options.camera, "Camera of the scene [its first, or all in view]")
       ->type_name("NAME");
-  command
-      ->add_option("--samples", options.samples,
-                   "Samples per pixel [accumulation.max_samples]")
+  command->add_option("--samples", options.samples, "Samples per pixel [accumulation.max_samples]")
       ->check(CLI::Range(1, 65536));
   add_settings_option(*command, options.settings);
   command->add_option("--buffer", options.buffer, "Picture to write: any buffer of the renderer")

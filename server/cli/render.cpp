@@ -25,8 +25,7 @@ constexpr int warm_up_frames = 3;
 scene::Environment choose_environment(const RenderOptions& options) {
   if (!options.environment.empty()) return scene::load_environment(options.environment);
   const auto beside = session::environment_beside(options.scene, options.scene.parent_path());
-  return beside ? scene::load_environment(*beside)
-                : scene::constant_environment(glm::vec3(1.0f));
+  return beside ? scene::load_environment(*beside) : scene::constant_environment(glm::vec3(1.0f));
 }
 
 scene::Camera choose_camera(const scene::Scene& scene, const RenderOptions& options) {
@@ -39,8 +38,7 @@ scene::Camera choose_camera(const scene::Scene& scene, const RenderOptions& opti
     throw std::runtime_error("the scene has no camera " + options.camera +
                              protocol::suggestion(options.camera, names));
   }
-  const float aspect =
-      static_cast<float>(options.width) / static_cast<float>(options.height);
+  const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
   return scene::fit_camera(scene.bounds, scene::Camera().vertical_fov, aspect);
 }
 
@@ -75,9 +73,8 @@ class Timings {
   nlohmann::json json() const {
     nlohmann::json passes = nlohmann::json::array();
     for (const auto& [name, kind] : order_) {
-      passes.push_back({{"name", name},
-                        {"kind", protocol::enum_name(kind)},
-                        {"ms", median(passes_.at(name))}});
+      passes.push_back(
+          {{"name", name}, {"kind", protocol::enum_name(kind)}, {"ms", median(passes_.at(name))}});
     }
     return {{"frames", frame_ms_.size()}, {"frame_ms", median(frame_ms_)}, {"passes", passes}};
   }
@@ -134,8 +131,7 @@ void write_file(const std::filesystem::path& path, const std::vector<std::uint8_
 int run(const RenderOptions& options) {
   protocol::Settings settings = parse_settings(options.settings);
   if (options.samples) settings.accumulation.max_samples = static_cast<int>(*options.samples);
-  const auto scene =
-      std::make_shared<const scene::Scene>(scene::import_gltf(options.scene));
+  const auto scene = std::make_shared<const scene::Scene>(scene::import_gltf(options.scene));
   const scene::Environment environment = choose_environment(options);
   const scene::Camera camera = choose_camera(*scene, options);
 
@@ -153,9 +149,9 @@ int run(const RenderOptions& options) {
     accept(renderer.set_settings(settings));
   }
   const render::Frame picture = render_picture(renderer, options);
-  write_file(options.output,
-             stream::encode_png({.width = picture.width, .height = picture.height,
-                                 .rgba = picture.rgba}));
+  write_file(
+      options.output,
+      stream::encode_png({.width = picture.width, .height = picture.height, .rgba = picture.rgba}));
   return 0;
 }
 

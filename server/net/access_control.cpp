@@ -102,8 +102,9 @@ std::optional<HttpResponse> AccessControl::refusal(const HttpRequest& request,
   }
   if (needs_token && !options_.token.empty() && !token_shown(request)) {
     HttpResponse response =
-        text_response(401, "This server asks for a token: open /?token=..., or send it as "
-                           "\"Authorization: Bearer\".");
+        text_response(401,
+                      "This server asks for a token: open /?token=..., or send it as "
+                      "\"Authorization: Bearer\".");
     response.headers.emplace_back("WWW-Authenticate", "Bearer");
     return response;
   }

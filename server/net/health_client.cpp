@@ -34,8 +34,8 @@ std::optional<Address> parse_url(std::string_view url) {
   if (address.target.empty()) address.target = "/";
   const std::size_t colon = authority.rfind(':');
   const std::size_t bracket = authority.rfind(']');
-  const bool has_port = colon != std::string_view::npos &&
-                        (bracket == std::string_view::npos || colon > bracket);
+  const bool has_port =
+      colon != std::string_view::npos && (bracket == std::string_view::npos || colon > bracket);
   if (has_port) {
     address.port = authority.substr(colon + 1);
     authority = authority.substr(0, colon);

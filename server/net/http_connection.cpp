@@ -1,7 +1,4 @@
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
-#include <boost/asio/dispatch.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
@@ -38,8 +35,8 @@ HttpRequest to_request(http::request<http::string_body>&& message) {
   const std::string target = to_string(message.target());
   const std::size_t question = std::min(target.find('?'), target.size());
   request.path = target.substr(0, question);
-  request.query = parse_query(std::string_view(target).substr(
-      std::min(question + 1, target.size())));
+  request.query =
+      parse_query(std::string_view(target).substr(std::min(question + 1, target.size())));
   for (const auto& field : message) {
     const std::string name = lower(to_string(field.name_string()));
     std::string value = to_string(field.value());
@@ -56,8 +53,9 @@ std::optional<HttpResponse> upgrade_refusal(const HttpRequest& request) {
   if (request.path != "/ws") return text_response(404, "The WebSocket is at /ws.");
   const auto offered = header_elements(request.header("sec-websocket-protocol"));
   if (std::find(offered.begin(), offered.end(), protocol::protocol_name) == offered.end()) {
-    return text_response(400, "This server speaks the subprotocol heliograph.v1; offer it in "
-                              "Sec-WebSocket-Protocol.");
+    return text_response(400,
+                         "This server speaks the subprotocol heliograph.v1; offer it in "
+                         "Sec-WebSocket-Protocol.");
   }
   return std::nullopt;
 }
@@ -78,10 +76,9 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     parser_->body_limit(context_.host.dispatch_limits().max_message_bytes);
     // The first request must come soon; later ones may take their time.
     stream_.expires_after(std::exchange(first_, false) ? handshake_timeout : idle_timeout);
-    http::async_read(stream_, buffer_, *parser_,
-                     [self = shared_from_this()](error_code error, std::size_t) {
-                       self->received(error);
-                     });
+    http::async_read(
+        stream_, buffer_, *parser_,
+        [self = shared_from_this()](error_code error, std::size_t) { self->received(error); });
   }
 
   void shut_down() override {
@@ -95,10 +92,8 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
       keep_alive_ = false;
       return send(text_response(413, "The request is too large."));
     }
-    if (error == http::error::end_of_stream || !error) {
-      if (error) return close();
-      return answer();
-    }
+    if (!error) return answer();
+    if (error == http::error::end_of_stream) return close();
     if (error.category() == http::make_error_code(http::error::bad_method).category()) {
       keep_alive_ = false;
       return send(text_response(400, "This is not an HTTP request."));
@@ -144,10 +139,9 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     response_.body() = std::move(answer.body);
     response_.prepare_payload();
     stream_.expires_after(idle_timeout);
-    http::async_write(stream_, response_,
-                      [self = shared_from_this()](error_code error, std::size_t) {
-                        self->sent(error);
-                      });
+    http::async_write(
+        stream_, response_,
+        [self = shared_from_this()](error_code error, std::size_t) { self->sent(error); });
   }
 
   void sent(error_code error) {
@@ -177,9 +171,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
 }  // namespace
 
 void start_http_connection(ServerContext& context, asio::ip::tcp::socket socket) {
-  const auto connection = std::make_shared<HttpConnection>(context, std::move(socket));
-  asio::dispatch(asio::get_associated_executor(connection, context.io.get_executor()),
-                 [connection] { connection->read(); });
+  std::make_shared<HttpConnection>(context, std::move(socket))->read();
 }
 
 }  // namespace heliograph::net

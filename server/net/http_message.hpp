@@ -12,7 +12,7 @@ namespace heliograph::net {
 /// A request as far as the routes need it; independent of the HTTP library.
 struct HttpRequest {
   std::string method;
-  std::string path;  // before any '?', as sent
+  std::string path;                            // before any '?', as sent
   std::map<std::string, std::string> query;    // decoded
   std::map<std::string, std::string> headers;  // names in lower case
   std::string body;

@@ -27,7 +27,8 @@ class Page {
     sample(fmt::format("{}_count", name), {}, static_cast<double>(count));
   }
   void describe(std::string_view name, std::string_view help, std::string_view type) {
-    text_ += fmt::format("# HELP heliograph_{0} {1}\n# TYPE heliograph_{0} {2}\n", name, help, type);
+    text_ +=
+        fmt::format("# HELP heliograph_{0} {1}\n# TYPE heliograph_{0} {2}\n", name, help, type);
   }
   void sample(std::string_view name, std::string_view labels, double value) {
     text_ += fmt::format("heliograph_{}{} {}\n", name, labels, value);
@@ -70,14 +71,13 @@ std::string metrics_text(const session::SessionHost& host,
              round_trip.count());
   page.gauge("goodput_bytes_per_second", "Acknowledged bytes of all viewers.", audience.goodput);
   page.summary("render_seconds", "Rendering, per frame.", render.render_seconds, render.frames);
-  page.summary("encode_seconds", "Encoding, per picture.", render.encode_seconds,
-               render.encodings);
+  page.summary("encode_seconds", "Encoding, per picture.", render.encode_seconds, render.encodings);
   page.describe("pass_milliseconds", "Each pass of the latest frame.", "gauge");
   for (const protocol::PassTiming& pass : render.passes) {
-    page.sample("pass_milliseconds",
-                fmt::format("{{pass=\"{}\",kind=\"{}\"}}", pass.name,
-                            protocol::enum_name(pass.kind)),
-                pass.ms);
+    page.sample(
+        "pass_milliseconds",
+        fmt::format("{{pass=\"{}\",kind=\"{}\"}}", pass.name, protocol::enum_name(pass.kind)),
+        pass.ms);
   }
   return std::move(page).text();
 }

@@ -152,8 +152,7 @@ void Router::picture(const HttpRequest& request, std::string_view session,
     return reply(text_response(404, "Pictures are frame.jpg and frame.png."));
   }
   session::CaptureRequest capture;
-  capture.format =
-      extension == "png" ? session::CaptureFormat::png : session::CaptureFormat::jpeg;
+  capture.format = extension == "png" ? session::CaptureFormat::png : session::CaptureFormat::jpeg;
   capture.buffer = request.parameter("buffer").value_or("output");
   const std::string samples = request.parameter("samples").value_or("1");
   std::uint32_t count = 0;

@@ -25,8 +25,8 @@ struct Server::State {
     listen(options.port);
     stop_signals.add(SIGINT);
     stop_signals.add(SIGTERM);
-    context = std::make_unique<ServerContext>(
-        ServerContext{.host = host, .access = access, .router = router, .io = io, .connections = {}});
+    context = std::make_unique<ServerContext>(ServerContext{
+        .host = host, .access = access, .router = router, .io = io, .connections = {}});
   }
 
   void listen(std::uint16_t port) {
@@ -39,8 +39,8 @@ struct Server::State {
       acceptor.bind(endpoint);
       acceptor.listen();
     } catch (const boost::system::system_error& failure) {
-      throw std::runtime_error(fmt::format("cannot listen on {}:{}: {}", address, port,
-                                           failure.code().message()));
+      throw std::runtime_error(
+          fmt::format("cannot listen on {}:{}: {}", address, port, failure.code().message()));
     }
   }
 

@@ -87,10 +87,10 @@ class ViewerConnection : public Connection,
   }
 
   void send(std::string text, std::string_view key) override {
-    asio::post(socket_.get_executor(),
-               [self = shared_from_this(), text = std::move(text), key = std::string(key)]() mutable {
-                 self->enqueue(std::move(text), std::move(key));
-               });
+    asio::post(socket_.get_executor(), [self = shared_from_this(), text = std::move(text),
+                                        key = std::string(key)]() mutable {
+      self->enqueue(std::move(text), std::move(key));
+    });
   }
 
  private:
@@ -175,8 +175,8 @@ class ViewerConnection : public Connection,
     frame_in_flight_ = context_.host.default_session().audience().take(viewer_);
     if (!frame_in_flight_) return;
     writing_ = true;
-    const std::array<asio::const_buffer, 2> parts{
-        asio::buffer(frame_in_flight_->header), asio::buffer(frame_in_flight_->frame->payload)};
+    const std::array<asio::const_buffer, 2> parts{asio::buffer(frame_in_flight_->header),
+                                                  asio::buffer(frame_in_flight_->frame->payload)};
     socket_.binary(true);
     socket_.async_write(parts, done);
   }
@@ -192,9 +192,8 @@ class ViewerConnection : public Connection,
     websocket::close_reason close_reason(code);
     // What fits into a control frame, RFC 6455 section 5.5.
     close_reason.reason.assign(reason.data(), std::min<std::size_t>(reason.size(), 123));
-    socket_.async_close(close_reason, [self = shared_from_this()](error_code error) {
-      self->ended(error);
-    });
+    socket_.async_close(close_reason,
+                        [self = shared_from_this()](error_code error) { self->ended(error); });
     // A peer that does not answer, or a write that never ends, must not keep the socket open.
     close_deadline_.expires_after(drain_deadline);
     close_deadline_.async_wait([self = shared_from_this()](error_code error) {

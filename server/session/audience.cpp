@@ -201,8 +201,7 @@ void Audience::send_all(std::string_view text, std::string_view key) {
   send_others({}, text, key);
 }
 
-void Audience::send_others(const std::string& except, std::string_view text,
-                           std::string_view key) {
+void Audience::send_others(const std::string& except, std::string_view text, std::string_view key) {
   const std::lock_guard lock(mutex_);
   for (const auto& [id, viewer] : viewers_) {
     if (id == except) continue;

@@ -5,8 +5,7 @@
 
 namespace heliograph::session {
 
-std::vector<std::uint8_t> encode_capture(const stream::PictureView& picture,
-                                         CaptureFormat format) {
+std::vector<std::uint8_t> encode_capture(const stream::PictureView& picture, CaptureFormat format) {
   if (format == CaptureFormat::png) return stream::encode_png(picture);
   constexpr int quality = 90;
   return stream::JpegEncoder().encode(picture, quality, stream::ChromaSampling::full);

@@ -16,8 +16,7 @@ std::optional<fs::path> environment_beside(const fs::path& scene, const fs::path
   return std::nullopt;
 }
 
-EnvironmentSource::EnvironmentSource(std::optional<fs::path> forced)
-    : forced_(std::move(forced)) {}
+EnvironmentSource::EnvironmentSource(std::optional<fs::path> forced) : forced_(std::move(forced)) {}
 
 std::shared_ptr<const scene::Environment> EnvironmentSource::environment_for(
     const CatalogueEntry& entry) {

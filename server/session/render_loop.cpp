@@ -31,13 +31,12 @@ void RenderLoop::stop() {
 }
 
 std::shared_ptr<Session> RenderLoop::open(SessionOptions options) {
-  auto view = std::make_unique<SessionView>(
-      engine_, std::move(options),
-      ViewServices{.wakeup = wakeup_,
-                   .encoder = encoder_,
-                   .jpeg = jpeg_,
-                   .capture_writer = capture_writer_,
-                   .measurements = measurements_});
+  auto view = std::make_unique<SessionView>(engine_, std::move(options),
+                                            ViewServices{.wakeup = wakeup_,
+                                                         .encoder = encoder_,
+                                                         .jpeg = jpeg_,
+                                                         .capture_writer = capture_writer_,
+                                                         .measurements = measurements_});
   std::shared_ptr<Session> session = view->session();
   {
     const std::lock_guard lock(mutex_);

@@ -90,8 +90,8 @@ protocol::Result<CatalogueEntry> SceneCatalogue::find(const std::string& name) c
   }
   std::vector<std::string_view> names;
   for (const CatalogueEntry& entry : scenes) names.push_back(entry.name);
-  return protocol::error::not_found(
-      "name", "is not in the catalogue" + protocol::suggestion(name, names));
+  return protocol::error::not_found("name",
+                                    "is not in the catalogue" + protocol::suggestion(name, names));
 }
 
 }  // namespace heliograph::session

@@ -84,8 +84,8 @@ Result<protocol::SceneInfo> SceneLoader::carry_out(const Request& request) {
   const Clock::time_point start = Clock::now();
   try {
     const auto environment = environments_.environment_for(request.entry);
-    auto imported = scene::import_gltf(
-        request.entry.path, {}, [&](std::string_view stage, float fraction) {
+    auto imported =
+        scene::import_gltf(request.entry.path, {}, [&](std::string_view stage, float fraction) {
           stop_if_superseded(request);
           report_progress(request, stage, import_share * fraction);
         });
@@ -99,8 +99,7 @@ Result<protocol::SceneInfo> SceneLoader::carry_out(const Request& request) {
         request.by);
     report_progress(request, "ready", 1.0f);
     spdlog::info("session {}: {} loaded in {:.2f} s, {} triangles", request.session->name(),
-                 request.entry.name,
-                 std::chrono::duration<double>(Clock::now() - start).count(),
+                 request.entry.name, std::chrono::duration<double>(Clock::now() - start).count(),
                  scene->triangle_count());
     return describe_scene(request.entry.name, *scene);
   } catch (const Superseded&) {
@@ -117,8 +116,8 @@ void SceneLoader::report_progress(const Request& request, std::string_view stage
                                   float fraction) const {
   const protocol::SceneProgress progress{
       .name = request.entry.name, .stage = std::string(stage), .fraction = fraction};
-  request.session->audience().send_all(
-      protocol::make_notification("scene.progress", progress), "scene.progress");
+  request.session->audience().send_all(protocol::make_notification("scene.progress", progress),
+                                       "scene.progress");
 }
 
 void SceneLoader::stop_if_superseded(const Request& request) const {

@@ -75,15 +75,15 @@ void Session::show(LoadedScene scene, const std::string& by) {
     camera_name_ = state_.camera.name;
   }
   changed();
-  audience_.send_others(by, protocol::make_notification(
-                                "scene.changed", protocol::SceneChanged{.scene = scene_info_}),
-                        {});
+  audience_.send_others(
+      by,
+      protocol::make_notification("scene.changed", protocol::SceneChanged{.scene = scene_info_}),
+      {});
 }
 
 protocol::SettingsState Session::settings() const {
   const std::lock_guard lock(mutex_);
-  return {.rev = state_.rev,
-          .settings = protocol::RawJson(protocol::to_json(state_.settings))};
+  return {.rev = state_.rev, .settings = protocol::RawJson(protocol::to_json(state_.settings))};
 }
 
 Result<protocol::SettingsApplied> Session::patch_settings(const protocol::RawJson& patch,

@@ -86,8 +86,8 @@ class Session {
   protocol::Result<protocol::SettingsApplied> patch_settings(const protocol::RawJson& patch,
                                                              const std::string& by);
 
-  protocol::Result<protocol::StreamState> configure_stream(
-      const protocol::StreamConfigure& request, const std::string& by);
+  protocol::Result<protocol::StreamState> configure_stream(const protocol::StreamConfigure& request,
+                                                           const std::string& by);
   void leave(const std::string& viewer);
 
   protocol::Result<void> request_capture(CaptureRequest request);

@@ -22,8 +22,8 @@ Result<scene::Camera> named_camera(const scene::Scene& scene, const std::string&
     if (camera.name == name) return camera;
     names.push_back(camera.name);
   }
-  return error::not_found("name", "no camera of the scene is called so" +
-                                      protocol::suggestion(name, names));
+  return error::not_found(
+      "name", "no camera of the scene is called so" + protocol::suggestion(name, names));
 }
 
 /// Whether eye and target are far enough apart for floats to tell a direction.
@@ -82,8 +82,8 @@ Result<protocol::Camera> Session::fit_camera(const std::string& by) {
   return moved_camera(camera, std::nullopt, by);
 }
 
-protocol::Camera Session::moved_camera(const scene::Camera& camera,
-                                       std::optional<std::string> name, const std::string& by) {
+protocol::Camera Session::moved_camera(const scene::Camera& camera, std::optional<std::string> name,
+                                       const std::string& by) {
   state_.camera = camera;
   camera_name_ = std::move(name);
   changed();

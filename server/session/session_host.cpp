@@ -27,7 +27,9 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
   });
 }
 
-SessionHost::~SessionHost() { stop(); }
+SessionHost::~SessionHost() {
+  stop();
+}
 
 void SessionHost::stop() {
   loader_.stop();

@@ -180,8 +180,7 @@ bool SessionView::frame_wanted() {
 
 bool SessionView::final_due() const {
   return newest_ && newest_->frame.converged && !final_sent_ && !renderer_->needs_frame() &&
-         Clock::now() >= state_.changed_at + rest_before_final &&
-         session_->audience().watching();
+         Clock::now() >= state_.changed_at + rest_before_final && session_->audience().watching();
 }
 
 void SessionView::render_frame() {
@@ -204,8 +203,8 @@ void SessionView::render_frame() {
   header.state_rev = state_.rev;
   header.width = header.full_width = width;
   header.height = header.full_height = height;
-  header.render_start_us = static_cast<std::uint64_t>(
-      duration_cast<microseconds>(start.time_since_epoch()).count());
+  header.render_start_us =
+      static_cast<std::uint64_t>(duration_cast<microseconds>(start.time_since_epoch()).count());
   header.render_us = microseconds_of(end - start);
   header.sample_count = picture->frame.samples;
   picture->inputs = state_.inputs;

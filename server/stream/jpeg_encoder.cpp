@@ -40,9 +40,8 @@ std::vector<std::uint8_t> JpegEncoder::encode(const PictureView& picture, int qu
 
   unsigned char* out = state_->buffer.data();
   unsigned long size = state_->buffer.size();
-  const int failed =
-      tjCompress2(state_->handle.get(), picture.rgba.data(), width, 0, height, TJPF_RGBX, &out,
-                  &size, subsampling, quality, TJFLAG_NOREALLOC);
+  const int failed = tjCompress2(state_->handle.get(), picture.rgba.data(), width, 0, height,
+                                 TJPF_RGBX, &out, &size, subsampling, quality, TJFLAG_NOREALLOC);
   if (failed) {
     throw std::runtime_error(std::string("JPEG: ") + tjGetErrorStr2(state_->handle.get()));
   }

@@ -13,10 +13,9 @@ std::vector<int> quality_classes(std::vector<int> wanted) {
 }
 
 std::size_t nearest_class(const std::vector<int>& classes, int quality) {
-  const auto nearest =
-      std::min_element(classes.begin(), classes.end(), [&](int a, int b) {
-        return std::abs(a - quality) < std::abs(b - quality);
-      });
+  const auto nearest = std::min_element(classes.begin(), classes.end(), [&](int a, int b) {
+    return std::abs(a - quality) < std::abs(b - quality);
+  });
   return static_cast<std::size_t>(nearest - classes.begin());
 }
 

@@ -45,8 +45,7 @@ bool ViewerPacer::acknowledge(std::uint32_t frame_seq, std::chrono::microseconds
   return true;
 }
 
-void ViewerPacer::measure(const Sent& sent, std::chrono::microseconds held,
-                          Clock::time_point now) {
+void ViewerPacer::measure(const Sent& sent, std::chrono::microseconds held, Clock::time_point now) {
   using std::chrono::duration_cast;
   using std::chrono::microseconds;
   const auto total = std::max(duration_cast<microseconds>(now - sent.at), microseconds(1));

@@ -31,15 +31,13 @@ void capture(SessionHost& host, const FrameCapture& request,
 
 void add_capture_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
   add_command<Empty, FrameBuffers>(
-      dispatcher, "frame.buffers",
-      [&](const Empty&, const std::string&) -> Result<FrameBuffers> {
+      dispatcher, "frame.buffers", [&](const Empty&, const std::string&) -> Result<FrameBuffers> {
         return FrameBuffers{.buffers = host.default_session().buffers()};
       });
   dispatcher.add<FrameCapture, CapturedFrame>(
-      "frame.capture", [&](const FrameCapture& request, const protocol::CallContext&,
-                           protocol::Completion<CapturedFrame> done) {
-        capture(host, request, std::move(done));
-      });
+      "frame.capture",
+      [&](const FrameCapture& request, const protocol::CallContext&,
+          protocol::Completion<CapturedFrame> done) { capture(host, request, std::move(done)); });
 }
 
 }  // namespace heliograph::session

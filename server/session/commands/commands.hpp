@@ -19,11 +19,9 @@ void add_capture_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 template <class Request, class Response, class Command>
 void add_command(protocol::Dispatcher& dispatcher, std::string_view name, Command command) {
   dispatcher.add<Request, Response>(
-      name, [command = std::move(command)](const Request& request,
-                                           const protocol::CallContext& context,
-                                           protocol::Completion<Response> done) {
-        done(command(request, context.viewer));
-      });
+      name, [command = std::move(command)](
+                const Request& request, const protocol::CallContext& context,
+                protocol::Completion<Response> done) { done(command(request, context.viewer)); });
 }
 
 }  // namespace heliograph::session

@@ -23,7 +23,8 @@ Result<SceneListResult> list_scenes(SessionHost& host) {
 
 void add_scene_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
   add_command<Empty, SceneListResult>(
-      dispatcher, "scene.list", [&](const Empty&, const std::string&) { return list_scenes(host); });
+      dispatcher, "scene.list",
+      [&](const Empty&, const std::string&) { return list_scenes(host); });
   add_command<Empty, SceneInfo>(dispatcher, "scene.info", [&](const Empty&, const std::string&) {
     return host.default_session().scene_info();
   });

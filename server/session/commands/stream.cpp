@@ -45,10 +45,10 @@ Result<HelloResult> greet(SessionHost& host, const Hello& request, const std::st
 }  // namespace
 
 void add_stream_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
-  add_command<Hello, HelloResult>(
-      dispatcher, "hello", [&](const Hello& request, const std::string& viewer) {
-        return greet(host, request, viewer);
-      });
+  add_command<Hello, HelloResult>(dispatcher, "hello",
+                                  [&](const Hello& request, const std::string& viewer) {
+                                    return greet(host, request, viewer);
+                                  });
   add_command<StreamConfigure, StreamState>(
       dispatcher, "stream.configure",
       [&](const StreamConfigure& request, const std::string& viewer) {

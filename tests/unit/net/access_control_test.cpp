@@ -30,7 +30,8 @@ TEST(AccessControl, OtherAddressesThanLoopbackNeedATokenOrConsent) {
 }
 
 TEST(AccessControl, TokensMustBeLongEnoughAndFitIntoHeaders) {
-  for (const char* token : {"short", "has space 123", "semicolon;123", "new\nline12", "quote\"123"}) {
+  for (const char* token :
+       {"short", "has space 123", "semicolon;123", "new\nline12", "quote\"123"}) {
     EXPECT_THROW(AccessControl({.token = token}), std::invalid_argument) << token;
   }
 }
@@ -55,8 +56,8 @@ TEST(AccessControl, AnyAddressIsAHostNameWhereAnyInterfaceIsBound) {
 TEST(AccessControl, ComparesTokensWhole) {
   const AccessControl access({.token = "correct-horse"});
   EXPECT_TRUE(access.is_token("correct-horse"));
-  for (const char* wrong : {"", "c", "correct-hors", "correct-horse1", "correct-horsf",
-                            "correct-horsecorrect-horse"}) {
+  for (const char* wrong :
+       {"", "c", "correct-hors", "correct-horse1", "correct-horsf", "correct-horsecorrect-horse"}) {
     EXPECT_FALSE(access.is_token(wrong)) << wrong;
   }
   EXPECT_FALSE(AccessControl({}).is_token("")) << "no token is no empty token";
@@ -71,10 +72,10 @@ TEST(AccessControl, TakesTheTokenFromHeaderCookieOrSubprotocol) {
   EXPECT_EQ(status(access, {{"host", "h"}, {"cookie", "a=b; heliograph_token=correct-horse"}}),
             200);
   EXPECT_EQ(status(access, {{"host", "h"}, {"cookie", "xheliograph_token=correct-horse"}}), 401);
-  EXPECT_EQ(status(access, {{"host", "h"},
-                            {"sec-websocket-protocol",
-                             "heliograph.v1, heliograph.v1.token." + encoded}}),
-            200);
+  EXPECT_EQ(
+      status(access, {{"host", "h"},
+                      {"sec-websocket-protocol", "heliograph.v1, heliograph.v1.token." + encoded}}),
+      200);
 }
 
 TEST(HttpMessage, QueriesAreDecoded) {

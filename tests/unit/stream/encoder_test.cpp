@@ -87,8 +87,7 @@ TEST(JpegEncoder, FullChromaKeepsColouredEdgesThatHalfChromaSmears) {
 
 TEST(JpegEncoder, IsReusableForOtherSizesAndQualities) {
   JpegEncoder encoder;
-  const std::size_t good =
-      encoder.encode(test_picture().view(), 95, ChromaSampling::half).size();
+  const std::size_t good = encoder.encode(test_picture().view(), 95, ChromaSampling::half).size();
   const auto large = encoder.encode(test_picture(640, 360).view(), 50, ChromaSampling::half);
   EXPECT_EQ(decode_jpeg(large).width, 640);
   EXPECT_LT(encoder.encode(test_picture().view(), 30, ChromaSampling::half).size(), good);
