@@ -34,7 +34,8 @@ class AccumulateTest : public testing::Test {
 TEST_F(AccumulateTest, IsTheMeanOfAllSamples) {
   glm::dvec3 sum(0.0);
   for (std::uint32_t i = 0; i < 40; ++i) {
-    const glm::vec4 color(static_cast<float>(i * i % 17), 0.25f * static_cast<float>(i % 3), 1e4f, 1);
+    const glm::vec4 color(static_cast<float>(i * i % 17), 0.25f * static_cast<float>(i % 3), 1e4f,
+                          1);
     sum += glm::dvec3(color);
     const glm::dvec3 mean = sum / (i + 1.0);
     const glm::vec4 got = frame(color, i);

@@ -24,7 +24,8 @@ struct Inputs {
 
 /// What composition makes of a pixel in the middle, seen from (0, 0, 2) along -z.
 glm::vec3 compose(SceneBuilder& scene, const Inputs& in) {
-  FrameRig rig(scene.build(), look({0, 0, 2}, {0, 0, 0}), {.extent = extent, .settings = in.settings});
+  FrameRig rig(scene.build(), look({0, 0, 2}, {0, 0, 0}),
+               {.extent = extent, .settings = in.settings});
   const auto gbuffer = make_gbuffer(rig, in.pixel);
   const auto flat = [&](const char* name, float value) {
     return rig.input(name, VK_FORMAT_R32_SFLOAT, std::vector(pixels, value));

@@ -45,7 +45,8 @@ TEST(Reflection, TellsTypesFormatsAndAccess) {
   EXPECT_EQ(reflection.bindings[0].set, 0u);
   const auto access = [&](std::uint32_t number) {
     for (const ShaderBinding& found : reflection.bindings) {
-      if (found.set == pass_set && found.binding == number) return std::pair(found.reads, found.writes);
+      if (found.set == pass_set && found.binding == number)
+        return std::pair(found.reads, found.writes);
     }
     return std::pair(false, false);
   };
@@ -68,7 +69,8 @@ TEST(DeviceSurvey, ChoosesExactlyOneAndSaysWhyNotTheOthers) {
   const Instance instance(false);
   const auto reports = survey_devices(instance, "");
   ASSERT_FALSE(reports.empty());
-  EXPECT_EQ(std::count_if(reports.begin(), reports.end(), [](const auto& r) { return r.chosen; }), 1);
+  EXPECT_EQ(std::count_if(reports.begin(), reports.end(), [](const auto& r) { return r.chosen; }),
+            1);
   for (const DeviceReport& report : reports) {
     EXPECT_FALSE(report.name.empty());
     EXPECT_FALSE(report.driver.empty());

@@ -17,8 +17,11 @@ class FramePlanTest : public testing::Test {
  protected:
   /// One pass `name`: to = from + amount.
   PassBuilder add(const std::string& name, ImageRef from, ImageRef to, float amount = 1.0f) {
-    return plan_.pass(name, program_).read(from).write(to).constants(amount).dispatch(
-        plan_.extent());
+    return plan_.pass(name, program_)
+        .read(from)
+        .write(to)
+        .constants(amount)
+        .dispatch(plan_.extent());
   }
   ImageRef image(const std::string& name) {
     const ImageRef made = plan_.image(name, format);
@@ -42,7 +45,8 @@ class FramePlanTest : public testing::Test {
   }
   void expect_complaint(std::initializer_list<const char*> parts) {
     const std::string text = complaint();
-    for (const char* part : parts) EXPECT_NE(text.find(part), std::string::npos) << part << ": " << text;
+    for (const char* part : parts)
+      EXPECT_NE(text.find(part), std::string::npos) << part << ": " << text;
   }
 
   const Device& device_ = test::device();

@@ -1,10 +1,10 @@
+#include "render/gbuffer.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "render/gbuffer.hpp"
 #include "tests/support/frame_rig.hpp"
 
 namespace heliograph::test {
@@ -43,7 +43,8 @@ struct Raster {
   /// Where a pixel's middle lies in the world, from its stored depth.
   glm::vec3 world(std::uint32_t x, std::uint32_t y) const {
     const auto& constants = rig.constants();
-    const glm::vec2 ndc = (glm::vec2(x, y) + 0.5f) / glm::vec2(extent.width, extent.height) * 2.0f - 1.0f;
+    const glm::vec2 ndc =
+        (glm::vec2(x, y) + 0.5f) / glm::vec2(extent.width, extent.height) * 2.0f - 1.0f;
     const float view_z = texel(motion, x, y).w;
     const glm::vec2 slope = ndc * glm::vec2(constants.unproject) +
                             glm::vec2(constants.unproject.z, constants.unproject.w);
@@ -90,7 +91,8 @@ TEST(GBuffer, HoldsTheMaterialOfAFacingQuad) {
 TEST(GBuffer, DepthAndItsSlopeFollowATiltedPlane) {
   SceneBuilder builder;
   const glm::mat4 tilt = glm::rotate(glm::mat4(1.0f), 0.8f, glm::normalize(glm::vec3(1, 0.4f, 0)));
-  builder.place(builder.add_quad(facing_quad, surface(glm::vec3(1.0f))), glm::scale(tilt, glm::vec3(20)));
+  builder.place(builder.add_quad(facing_quad, surface(glm::vec3(1.0f))),
+                glm::scale(tilt, glm::vec3(20)));
   const scene::Camera camera = look({0.5f, 1, 6}, {0, 0, 0});
   Raster raster(builder, camera);
   raster.run();
@@ -98,9 +100,11 @@ TEST(GBuffer, DepthAndItsSlopeFollowATiltedPlane) {
   const glm::dvec3 normal = glm::normalize(glm::dvec3(tilt * glm::vec4(0, 0, 1, 0)));
   const auto& constants = raster.rig.constants();
   const auto expected = [&](double x, double y) {
-    const glm::dvec2 ndc = glm::dvec2(x + 0.5, y + 0.5) / glm::dvec2(extent.width, extent.height) * 2.0 - 1.0;
-    const glm::dvec3 ray(glm::dmat4(constants.inverse_view) *
-                         glm::dvec4(ndc.x * constants.unproject.x, ndc.y * constants.unproject.y, -1, 0));
+    const glm::dvec2 ndc =
+        glm::dvec2(x + 0.5, y + 0.5) / glm::dvec2(extent.width, extent.height) * 2.0 - 1.0;
+    const glm::dvec3 ray(
+        glm::dmat4(constants.inverse_view) *
+        glm::dvec4(ndc.x * constants.unproject.x, ndc.y * constants.unproject.y, -1, 0));
     return -glm::dot(normal, glm::dvec3(camera.eye)) / glm::dot(normal, ray);
   };
   for (std::uint32_t y = 1; y + 1 < extent.height; ++y) {
@@ -148,7 +152,8 @@ TEST_P(GBufferMotion, IsTheDifferenceOfTwoProjections) {
   raster.rig.set_view(GetParam());
   raster.run();
   const auto& constants = raster.rig.constants();
-  const glm::mat4 old_projection = scene::projection_matrix(before, 4.0f / 3.0f) * scene::view_matrix(before);
+  const glm::mat4 old_projection =
+      scene::projection_matrix(before, 4.0f / 3.0f) * scene::view_matrix(before);
   double largest = 0.0;
   for (std::uint32_t y = 0; y < extent.height; ++y) {
     for (std::uint32_t x = 0; x < extent.width; ++x) {
@@ -161,7 +166,8 @@ TEST_P(GBufferMotion, IsTheDifferenceOfTwoProjections) {
       const glm::vec4 motion = texel(raster.motion, x, y);
       const glm::vec2 expected = uv(old_projection) - uv(constants.unjittered);
       ASSERT_LE(glm::distance(glm::vec2(motion), expected), 2e-4f) << x << " " << y;
-      const float depth_change = -(scene::view_matrix(before) * world).z + (constants.view * world).z;
+      const float depth_change =
+          -(scene::view_matrix(before) * world).z + (constants.view * world).z;
       ASSERT_NEAR(motion.z, depth_change, 2e-3f) << x << " " << y;
       largest = std::max<double>(largest, glm::length(glm::vec2(motion)));
     }
@@ -170,8 +176,10 @@ TEST_P(GBufferMotion, IsTheDifferenceOfTwoProjections) {
 }
 
 INSTANTIATE_TEST_SUITE_P(PanYawPitchDolly, GBufferMotion,
-                         testing::Values(look({1.3f, 2, 5}, {0.3f, 0, 0}), look({1, 2, 5}, {0.4f, 0, 0}),
-                                         look({1, 2, 5}, {0, 0.4f, 0}), look({0.9f, 1.8f, 4.5f}, {0, 0, 0})));
+                         testing::Values(look({1.3f, 2, 5}, {0.3f, 0, 0}),
+                                         look({1, 2, 5}, {0.4f, 0, 0}),
+                                         look({1, 2, 5}, {0, 0.4f, 0}),
+                                         look({0.9f, 1.8f, 4.5f}, {0, 0, 0})));
 
 void expect_sphere_normals(const glm::mat4& world) {
   SceneBuilder builder;
@@ -185,7 +193,8 @@ void expect_sphere_normals(const glm::mat4& world) {
     for (std::uint32_t x = 0; x < extent.width; ++x) {
       if (!raster.covered(x, y)) continue;
       const glm::vec3 position = raster.world(x, y);
-      const glm::vec3 expected = glm::normalize(to_world * glm::vec3(to_mesh * glm::vec4(position, 1)));
+      const glm::vec3 expected =
+          glm::normalize(to_world * glm::vec3(to_mesh * glm::vec4(position, 1)));
       EXPECT_GT(glm::dot(raster.shading(x, y), expected), 0.999f) << x << " " << y;
       EXPECT_GT(glm::dot(raster.geometric(x, y), camera.eye - position), 0.0f) << x << " " << y;
     }
@@ -194,7 +203,8 @@ void expect_sphere_normals(const glm::mat4& world) {
 }
 
 TEST(GBuffer, NormalsOfASqueezedAndTurnedSphere) {
-  expect_sphere_normals(glm::rotate(glm::scale(glm::mat4(1.0f), {1.2f, 0.5f, 0.8f}), 0.6f, {0, 0, 1}));
+  expect_sphere_normals(
+      glm::rotate(glm::scale(glm::mat4(1.0f), {1.2f, 0.5f, 0.8f}), 0.6f, {0, 0, 1}));
 }
 
 TEST(GBuffer, NormalsOfAMirroredSpherePointOutward) {
@@ -224,10 +234,10 @@ glm::vec3 mapped(const glm::vec3& tilt, const glm::mat4& world, const glm::vec3&
   SceneBuilder builder;
   shared::Material material = surface(glm::vec3(1.0f));
   const glm::vec3 encoded = glm::normalize(tilt) * 127.5f + 127.5f;
-  material.normal_texture.texture =
-      builder.add_texture(1, 1, false, {static_cast<std::uint8_t>(encoded.x + 0.5f),
-                                        static_cast<std::uint8_t>(encoded.y + 0.5f),
-                                        static_cast<std::uint8_t>(encoded.z + 0.5f), 255});
+  material.normal_texture.texture = builder.add_texture(
+      1, 1, false,
+      {static_cast<std::uint8_t>(encoded.x + 0.5f), static_cast<std::uint8_t>(encoded.y + 0.5f),
+       static_cast<std::uint8_t>(encoded.z + 0.5f), 255});
   material.flags |= shared::material_double_sided;
   builder.place(builder.add_quad(facing_quad, material), world);
   Raster raster(builder, look(eye, {0, 0, 0}));
@@ -244,8 +254,9 @@ TEST(NormalMap, TiltsAlongTangentAndBitangent) {
 TEST(NormalMap, OfAMirroredInstanceIsTheMirrorImage) {
   const glm::vec3 tilt(0.5f, 0.3f, 0.8f);
   const glm::mat4 mirror = glm::scale(glm::mat4(1.0f), {-1, 1, 1});
-  EXPECT_LE(glm::distance(mapped(tilt, mirror, {0, 0, 5}), glm::normalize(tilt * glm::vec3(-1, 1, 1))),
-            0.01f);
+  EXPECT_LE(
+      glm::distance(mapped(tilt, mirror, {0, 0, 5}), glm::normalize(tilt * glm::vec3(-1, 1, 1))),
+      0.01f);
 }
 
 // glTF 2.0, 3.9.6: the back face's normals are reversed, mapped ones too.

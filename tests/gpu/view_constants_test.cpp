@@ -30,7 +30,8 @@ TEST_F(ViewConstants, JitterMovesThePictureByTheSamplesOffset) {
     const glm::vec4 clip = matrix * world;
     return (glm::vec2(clip) / clip.w * 0.5f + 0.5f) * glm::vec2(extent.width, extent.height);
   };
-  EXPECT_LE(glm::distance(pixel(moved.view_projection) - pixel(still.view_projection), offset), 1e-4f);
+  EXPECT_LE(glm::distance(pixel(moved.view_projection) - pixel(still.view_projection), offset),
+            1e-4f);
   EXPECT_EQ(moved.unjittered, still.unjittered);
   settings_.antialiasing.jitter = false;
   EXPECT_EQ(make(camera_, 5).view_projection, still.view_projection);

@@ -1,12 +1,10 @@
-#include "render/trace_visibility.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
-#include <glm/gtc/matrix_transform.hpp>
-
+#include "render/trace_visibility.hpp"
 #include "tests/gpu/gbuffer_input.hpp"
 
 namespace heliograph::test {
@@ -24,7 +22,8 @@ glm::vec3 decode(const glm::vec2& p) {
 struct Trace {
   Trace(SceneBuilder& builder, const scene::Camera& view, const std::string& tracer,
         const protocol::Settings& settings = {}, bool ambient = false)
-      : camera(view), rig(builder.build(), view, options(tracer, settings)),
+      : camera(view),
+        rig(builder.build(), view, options(tracer, settings)),
         gbuffer(render::rasterize_gbuffer(rig.plan(), rig.inputs())),
         visibility(ambient ? render::trace_ambient(rig.plan(), rig.inputs(), gbuffer)
                            : render::trace_shadows(rig.plan(), rig.inputs(), gbuffer)) {}
@@ -63,14 +62,18 @@ struct Trace {
 };
 
 std::uint32_t add_ground(SceneBuilder& builder, float size, float height = 0.0f) {
-  return builder.add_quad({{{-size, height, size}, {size, height, size}, {size, height, -size},
-                            {-size, height, -size}}}, surface(glm::vec3(1.0f)));
+  return builder.add_quad({{{-size, height, size},
+                            {size, height, size},
+                            {size, height, -size},
+                            {-size, height, -size}}},
+                          surface(glm::vec3(1.0f)));
 }
 
 /// A roof at `height` that ends at x = 0 and reaches far toward -x.
 std::uint32_t add_roof(SceneBuilder& builder, float height) {
-  return builder.add_quad({{{-50, height, 50}, {0, height, 50}, {0, height, -50}, {-50, height, -50}}},
-                          surface(glm::vec3(1.0f)));
+  return builder.add_quad(
+      {{{-50, height, 50}, {0, height, 50}, {0, height, -50}, {-50, height, -50}}},
+      surface(glm::vec3(1.0f)));
 }
 
 class Shadows : public testing::TestWithParam<std::string> {};
@@ -251,7 +254,9 @@ TEST_P(Shadows, AmbientRaysSeeTheShareOfTheSkyThatCosineWeighs) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Tracers, Shadows, testing::Values("embree", "software"),
-                         [](const testing::TestParamInfo<std::string>& tracer) { return tracer.param; });
+                         [](const testing::TestParamInfo<std::string>& tracer) {
+                           return tracer.param;
+                         });
 
 }  // namespace
 }  // namespace heliograph::test

@@ -184,7 +184,8 @@ TEST(Buffers, EveryOneCanBeCapturedAndShown) {
     save_picture("buffer_" + buffer.name, *view);
     // Not blank: some pixel differs from the first.
     bool differs = false;
-    for (std::size_t i = 4; i < view->rgba.size(); ++i) differs |= view->rgba[i] != view->rgba[i % 4];
+    for (std::size_t i = 4; i < view->rgba.size(); ++i)
+      differs |= view->rgba[i] != view->rgba[i % 4];
     EXPECT_TRUE(differs || buffer.name == "gbuffer.emissive") << buffer.name;
     protocol::Settings settings;
     settings.view.buffer = buffer.name;

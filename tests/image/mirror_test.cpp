@@ -88,17 +88,20 @@ TEST(Mirror, ShowsTheGeneratedSkyWhereItReflects) {
 /// Every axis another colour, and a red glow in one direction: a flip or a turn moves it.
 glm::vec3 coloured_sky(const glm::vec3& d) {
   const glm::vec3 glow = glm::normalize(glm::vec3(0.8f, 0.5f, 0.6f));
-  return glm::vec3(1.0f) + 0.6f * d + glm::vec3(8, 0, 0) * std::pow(std::max(glm::dot(d, glow), 0.0f), 40.0f);
+  return glm::vec3(1.0f) + 0.6f * d +
+         glm::vec3(8, 0, 0) * std::pow(std::max(glm::dot(d, glow), 0.0f), 40.0f);
 }
 
 TEST(Mirror, ShowsAColouredSkyTheRightWayRound) {
-  const Errors errors = reflection_errors(make_environment(512, coloured_sky), 0.0f, "mirror_coloured");
+  const Errors errors =
+      reflection_errors(make_environment(512, coloured_sky), 0.0f, "mirror_coloured");
   EXPECT_LT(errors.median, 0.005);
   EXPECT_LT(errors.worst, 0.05);
 }
 
 TEST(Mirror, TurnsWithTheEnvironment) {
-  const Errors errors = reflection_errors(make_environment(512, coloured_sky), 70.0f, "mirror_turned");
+  const Errors errors =
+      reflection_errors(make_environment(512, coloured_sky), 70.0f, "mirror_turned");
   EXPECT_LT(errors.median, 0.005);
   EXPECT_LT(errors.worst, 0.05);
 }

@@ -68,11 +68,13 @@ TEST_P(Models, LooksSane) {
   if (!file) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS does not say where other people's scenes are";
   const auto scene = std::make_shared<const scene::Scene>(scene::import_gltf(*file));
   const glm::vec3 center = scene->bounds.center();
-  const scene::Camera camera = look(
-      center + 2.6f * scene->bounds.radius() * glm::normalize(GetParam().eye_direction), center, 40.0f);
+  const scene::Camera camera =
+      look(center + 2.6f * scene->bounds.radius() * glm::normalize(GetParam().eye_direction),
+           center, 40.0f);
   Still still(scene, scene::load_environment(*sky), camera, 640, 480);
   save_picture(GetParam().name, still.accumulate(16));
-  for (const char* buffer : {"gbuffer.normals", "gbuffer.base_color", "gbuffer.surface", "gbuffer.emissive"}) {
+  for (const char* buffer :
+       {"gbuffer.normals", "gbuffer.base_color", "gbuffer.surface", "gbuffer.emissive"}) {
     save_picture(std::string(GetParam().name) + "_" + (buffer + 8),
                  *still.renderer.capture_view(buffer));
   }
@@ -85,21 +87,24 @@ TEST_P(Models, LooksSane) {
   EXPECT_LT(brightness, 20.0);
 }
 
-std::string model_name(const testing::TestParamInfo<Model>& info) { return info.param.name; }
+std::string model_name(const testing::TestParamInfo<Model>& info) {
+  return info.param.name;
+}
 
 INSTANTIATE_TEST_SUITE_P(
     Known, Models,
-    testing::Values(Model{"damaged_helmet", "DamagedHelmet.glb", {0.3f, 0.2f, 1}, 0.15, 0.7},
-                    Model{"flight_helmet", "FlightHelmet/FlightHelmet.gltf", {0.3f, 0.2f, 1}, 0.1, 0.6},
-                    Model{"normal_tangent_test", "NormalTangentTest.glb", {0, 0, 1}, 0.1, 0.95}),
+    testing::Values(
+        Model{"damaged_helmet", "DamagedHelmet.glb", {0.3f, 0.2f, 1}, 0.15, 0.7},
+        Model{"flight_helmet", "FlightHelmet/FlightHelmet.gltf", {0.3f, 0.2f, 1}, 0.1, 0.6},
+        Model{"normal_tangent_test", "NormalTangentTest.glb", {0, 0, 1}, 0.1, 0.95}),
     model_name);
 
 TEST(DamagedHelmet, GlowsWhereItIsKnownToGlow) {
   const auto file = asset("gltf/DamagedHelmet.glb");
   if (!file) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS does not say where other people's scenes are";
   const auto scene = std::make_shared<const scene::Scene>(scene::import_gltf(*file));
-  const scene::Camera camera = look(scene->bounds.center() + glm::vec3(0.5f, 0.3f, 3.2f),
-                                    scene->bounds.center(), 45.0f);
+  const scene::Camera camera =
+      look(scene->bounds.center() + glm::vec3(0.5f, 0.3f, 3.2f), scene->bounds.center(), 45.0f);
   Still still(scene, scene::constant_environment(glm::vec3(0.0f)), camera, 320, 240);
   save_picture("damaged_helmet_emissive_only", still.accumulate(2));
   const render::FloatImage radiance = still.capture("accumulated");

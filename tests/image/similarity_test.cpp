@@ -30,7 +30,8 @@ TEST(Ssim, OfEqualPicturesIsOne) {
 }
 
 TEST(Ssim, OfFlatPicturesComparesTheirMeans) {
-  const auto a = picture([](auto, auto) { return 100; }), b = picture([](auto, auto) { return 150; });
+  const auto a = picture([](auto, auto) { return 100; }),
+             b = picture([](auto, auto) { return 150; });
   EXPECT_NEAR(ssim(a, b), (2.0 * 100 * 150 + c1) / (100.0 * 100 + 150.0 * 150 + c1), 1e-9);
 }
 

@@ -61,8 +61,9 @@ TEST(Smith, IsTheHeightCorrelatedForm) {
 
 TEST(Fresnel, RunsFromF0ToOne) {
   const glm::vec3 f0(0.04f, 0.5f, 1.0f);
-  const auto got = call(fresnel, {{.a = glm::vec4(f0, 1.0f)}, {.a = glm::vec4(f0, 0.0f)},
-                                  {.a = glm::vec4(f0, 0.5f)}});
+  const auto got =
+      call(fresnel,
+           {{.a = glm::vec4(f0, 1.0f)}, {.a = glm::vec4(f0, 0.0f)}, {.a = glm::vec4(f0, 0.5f)}});
   EXPECT_LE(glm::distance(glm::vec3(got[0].x), f0), 1e-6f);
   EXPECT_LE(glm::distance(glm::vec3(got[1].x), glm::vec3(1.0f)), 1e-6f);
   EXPECT_NEAR(got[2].x.x, 0.04f + 0.96f / 32.0f, 1e-6f);
@@ -138,7 +139,8 @@ TEST(ShadeLight, DielectricsKeepToWhatTheSpecificationLoses) {
 }
 
 TEST(ShadeLight, IsDarkFromBelowTheHorizon) {
-  const auto got = call(shading, {{.a = glm::vec4(1, 1, 1, 0), .b = glm::vec4(0, 0, 1, 0.5f),
+  const auto got = call(shading, {{.a = glm::vec4(1, 1, 1, 0),
+                                   .b = glm::vec4(0, 0, 1, 0.5f),
                                    .c = glm::vec4(0.6f, 0, -0.8f, 0)}});
   EXPECT_EQ(glm::vec3(got[0].x), glm::vec3(0.0f));
 }

@@ -110,7 +110,8 @@ TEST_P(OffsetOrigin, LeavesTheTriangleBehindAndStaysNearIt) {
     if (u + v > 1.0f) u = 1.0f - u, v = 1.0f - v;
     c.point = (1.0f - u - v) * c.triangle[0] + u * c.triangle[1] + v * c.triangle[2];
     cases.push_back(c);
-    inputs.push_back({.a = glm::vec4(c.point, 0.0f), .b = glm::vec4(c.normal, random.uniform(0.0f, 3.0f) * scale)});
+    inputs.push_back({.a = glm::vec4(c.point, 0.0f),
+                      .b = glm::vec4(c.normal, random.uniform(0.0f, 3.0f) * scale)});
   }
   const auto got = call(offset, inputs);
   int met = 0, below = 0;

@@ -41,14 +41,16 @@ class Environment : public testing::TestWithParam<float> {
     std::vector<ShaderInput> inputs;
     for (const glm::vec3& d : directions_) inputs.push_back({.a = glm::vec4(d, w)});
     std::vector<glm::vec3> result;
-    for (const auto& output : ShaderFunctions(shaders::frame_functions, &rig_).call(function, inputs)) {
+    for (const auto& output :
+         ShaderFunctions(shaders::frame_functions, &rig_).call(function, inputs)) {
       result.emplace_back(output.x);
     }
     return result;
   }
 
   static std::vector<glm::vec3> random_directions() {
-    std::vector<glm::vec3> made{{0, 1, 0}, {0, -1, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}};
+    std::vector<glm::vec3> made{{0, 1, 0},  {0, -1, 0}, {1, 0, 0},
+                                {-1, 0, 0}, {0, 0, 1},  {0, 0, -1}};
     RandomInputs random(3);
     while (made.size() < 3000) made.push_back(random.unit_vector());
     return made;
@@ -171,10 +173,9 @@ void expect_round_trip(const scene::Camera& camera, std::uint32_t sample) {
     EXPECT_NEAR(-(rig.constants().view * world).z, inputs[i].a.z, 1e-5f * (10.0f + inputs[i].a.z));
     const glm::vec3 to_eye(got[i].y);
     EXPECT_NEAR(glm::length(to_eye), 1.0f, 1e-5f);
-    const glm::vec3 expected =
-        camera.orthographic_height > 0.0f
-            ? glm::normalize(camera.eye - camera.target)
-            : glm::normalize(camera.eye - glm::vec3(world));
+    const glm::vec3 expected = camera.orthographic_height > 0.0f
+                                   ? glm::normalize(camera.eye - camera.target)
+                                   : glm::normalize(camera.eye - glm::vec3(world));
     EXPECT_LE(glm::distance(to_eye, expected), 1e-3f);
   }
 }

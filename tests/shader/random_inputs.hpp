@@ -1,8 +1,7 @@
 #pragma once
 
-#include <random>
-
 #include <glm/glm.hpp>
+#include <random>
 
 namespace heliograph::test {
 

@@ -76,8 +76,8 @@ TEST(NeutralToneMap, KeepsBrightColoursInTheCubeAndDesaturatesThem) {
   std::vector<glm::vec3> colors;
   for (int i = 0; i < 3000; ++i) {
     const float gain = std::pow(10.0f, random.uniform(0, 4));
-    colors.push_back(gain * glm::vec3(random.uniform(0, 1), random.uniform(0, 1),
-                                      random.uniform(0, 1)));
+    colors.push_back(gain *
+                     glm::vec3(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)));
   }
   for (const glm::vec3& color : call(neutral, colors)) {
     EXPECT_GE(std::min({color.x, color.y, color.z}), -1e-5f);

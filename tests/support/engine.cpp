@@ -37,6 +37,8 @@ std::uint64_t validation_messages() {
   return messages;
 }
 
-void release_engines() { engines().clear(); }
+void release_engines() {
+  engines().clear();
+}
 
 }  // namespace heliograph::test

@@ -12,7 +12,9 @@ namespace heliograph::test {
 render::Engine& engine(const std::string& tracer = "embree");
 
 /// The device of the engine that tests share.
-inline const gpu::Device& device() { return engine().parts().device; }
+inline const gpu::Device& device() {
+  return engine().parts().device;
+}
 
 /// What the validation layers have said to all engines so far.
 std::uint64_t validation_messages();

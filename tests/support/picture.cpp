@@ -28,7 +28,8 @@ render::Frame triptych(const render::Frame& expected, const render::Frame& actua
     std::copy_n(middle, row, out + row);
     for (std::size_t i = 0; i < row; ++i) {
       if (i % 4 == 3) continue;
-      out[2 * row + i] = static_cast<std::uint8_t>(std::min(gain * std::abs(left[i] - middle[i]), 255));
+      out[2 * row + i] =
+          static_cast<std::uint8_t>(std::min(gain * std::abs(left[i] - middle[i]), 255));
     }
   }
   return wide;

@@ -1,9 +1,8 @@
 #include "tests/support/scene_builder.hpp"
 
 #include <cmath>
-#include <numbers>
-
 #include <glm/gtc/packing.hpp>
+#include <numbers>
 
 namespace heliograph::test {
 namespace {
@@ -76,8 +75,8 @@ std::uint32_t SceneBuilder::add_sphere(float radius, const shared::Material& mat
       const float phi = uv.x * 2.0f * std::numbers::pi_v<float>;
       const glm::vec3 normal{std::sin(theta) * std::sin(phi), std::cos(theta),
                              std::sin(theta) * std::cos(phi)};
-      mesh.vertices.push_back(make_vertex(radius * normal, normal,
-                                          {std::cos(phi), 0.0f, -std::sin(phi)}, uv));
+      mesh.vertices.push_back(
+          make_vertex(radius * normal, normal, {std::cos(phi), 0.0f, -std::sin(phi)}, uv));
       mesh.bounds.include(radius * normal);
     }
   }
@@ -104,8 +103,12 @@ std::uint32_t SceneBuilder::add_texture(std::uint32_t width, std::uint32_t heigh
                                         std::vector<std::uint8_t> pixels) {
   scene::Texture texture;
   texture.image = static_cast<std::uint32_t>(scene_.images.size());
-  texture.sampler = {shared::wrap_clamp, shared::wrap_clamp, scene::Filter::nearest,
-                     scene::Filter::nearest, false, scene::Filter::nearest};
+  texture.sampler = {shared::wrap_clamp,
+                     shared::wrap_clamp,
+                     scene::Filter::nearest,
+                     scene::Filter::nearest,
+                     false,
+                     scene::Filter::nearest};
   scene_.images.push_back({"texture", width, height, 1, srgb, std::move(pixels)});
   scene_.textures.push_back(texture);
   return static_cast<std::uint32_t>(scene_.textures.size() - 1);
@@ -154,8 +157,8 @@ scene::Environment make_environment(std::uint32_t width,
     const double theta = (y + 0.5) / environment.height * std::numbers::pi;
     for (std::uint32_t x = 0; x < width; ++x) {
       const double phi = ((x + 0.5) / width - 0.5) * 2.0 * std::numbers::pi;
-      environment.radiance.push_back(radiance({std::sin(theta) * std::cos(phi), std::cos(theta),
-                                               std::sin(theta) * std::sin(phi)}));
+      environment.radiance.push_back(radiance(
+          {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)}));
     }
   }
   return environment;

@@ -1,9 +1,8 @@
 #pragma once
 
 #include <functional>
-#include <memory>
-
 #include <glm/glm.hpp>
+#include <memory>
 
 #include "scene/environment.hpp"
 #include "scene/scene.hpp"

@@ -19,7 +19,8 @@ std::shared_ptr<const scene::Scene> import_document(const scenes::Document& docu
   const fs::path path = folder / (document.name + ".glb");
   const auto bytes = scenes::encode_glb(document, texture_size);
   std::ofstream(path, std::ios::binary)
-      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
   auto scene = std::make_shared<const scene::Scene>(scene::import_gltf(path));
   fs::remove_all(folder);
   return scene;

@@ -103,8 +103,7 @@ double ssim(const render::Frame& a, const render::Frame& b) {
   constexpr double c2 = (0.03 * 255.0) * (0.03 * 255.0);
   double sum = 0.0;
   for (std::size_t i = 0; i < mean_x.size(); ++i) {
-    const double variances =
-        xx[i] - mean_x[i] * mean_x[i] + yy[i] - mean_y[i] * mean_y[i];
+    const double variances = xx[i] - mean_x[i] * mean_x[i] + yy[i] - mean_y[i] * mean_y[i];
     const double covariance = xy[i] - mean_x[i] * mean_y[i];
     sum += (2.0 * mean_x[i] * mean_y[i] + c1) * (2.0 * covariance + c2) /
            ((mean_x[i] * mean_x[i] + mean_y[i] * mean_y[i] + c1) * (variances + c2));

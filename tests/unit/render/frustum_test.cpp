@@ -59,7 +59,8 @@ TEST(Frustum, NeverDropsABoxWithAVisiblePoint) {
   for (int i = 0; i < 5000; ++i) {
     const glm::vec3 point(number(random), number(random), number(random));
     const glm::vec4 clip = matrix * glm::vec4(point, 1.0f);
-    const bool inside = std::abs(clip.x) <= clip.w && std::abs(clip.y) <= clip.w && clip.z <= clip.w;
+    const bool inside =
+        std::abs(clip.x) <= clip.w && std::abs(clip.y) <= clip.w && clip.z <= clip.w;
     if (!inside) continue;
     ++visible;
     scene::Bounds bounds = box(point, 0.0f);

@@ -16,15 +16,21 @@ scene::Environment make_sky(Radiance radiance) {
     const double theta = (y + 0.5) / sky.height * std::numbers::pi;
     for (std::uint32_t x = 0; x < sky.width; ++x) {
       const double phi = ((x + 0.5) / sky.width - 0.5) * 2.0 * std::numbers::pi;
-      sky.radiance.push_back(radiance(glm::dvec3(
-          std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi))));
+      sky.radiance.push_back(radiance(glm::dvec3(std::sin(theta) * std::cos(phi), std::cos(theta),
+                                                 std::sin(theta) * std::sin(phi))));
     }
   }
   return sky;
 }
 
-const std::array<glm::vec3, 8> normals{
-    {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}, {0.6f, 0.8f, 0}, {0, -0.6f, 0.8f}}};
+const std::array<glm::vec3, 8> normals{{{1, 0, 0},
+                                        {-1, 0, 0},
+                                        {0, 1, 0},
+                                        {0, -1, 0},
+                                        {0, 0, 1},
+                                        {0, 0, -1},
+                                        {0.6f, 0.8f, 0},
+                                        {0, -0.6f, 0.8f}}};
 
 TEST(Irradiance, OfAConstantSkyIsThatConstant) {
   const glm::vec3 radiance(1.0f, 0.5f, 3.0f);
@@ -48,7 +54,8 @@ TEST(Irradiance, OfALinearSkyIsAnalytic) {
 // Band 2 carries a quarter: x y keeps its shape and a fourth of its size.
 TEST(Irradiance, OfAQuadraticSkyIsAnalytic) {
   const auto coefficients = project_irradiance(make_sky([](const glm::dvec3& d) {
-    return glm::vec3(1.0 + d.x * d.y, 1.0 + d.y * d.z + d.x * d.z, 1.0 + 0.5 * (d.x * d.x - d.y * d.y));
+    return glm::vec3(1.0 + d.x * d.y, 1.0 + d.y * d.z + d.x * d.z,
+                     1.0 + 0.5 * (d.x * d.x - d.y * d.y));
   }));
   for (const glm::vec3& n : normals) {
     const glm::vec3 got = evaluate_irradiance(coefficients, n);
@@ -69,8 +76,8 @@ TEST(Irradiance, OfHalfASkyIsWithinAFewPercent) {
 }
 
 TEST(Irradiance, IsNeverNegative) {
-  const auto coefficients = project_irradiance(make_sky(
-      [](const glm::dvec3& d) { return glm::vec3(d.y > 0.99 ? 1000.0f : 0.0f); }));
+  const auto coefficients = project_irradiance(
+      make_sky([](const glm::dvec3& d) { return glm::vec3(d.y > 0.99 ? 1000.0f : 0.0f); }));
   for (const glm::vec3& normal : normals) {
     EXPECT_GE(evaluate_irradiance(coefficients, normal).x, 0.0f);
   }

@@ -1,6 +1,6 @@
-#include "render/view_constants.hpp"
-
 #include <gtest/gtest.h>
+
+#include "render/view_constants.hpp"
 
 namespace heliograph::render {
 namespace {

@@ -1,9 +1,9 @@
-#include "render/debug_view.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+
+#include "render/debug_view.hpp"
 
 namespace heliograph::render {
 namespace {
