@@ -27,7 +27,9 @@ std::string choose_scene(const session::SceneCatalogue& catalogue, const std::st
   if (!wanted.empty()) {
     const auto found = catalogue.find(wanted);
     if (!found) {
-      throw std::runtime_error("--scene " + wanted + ": " + found.error().message);
+      const bool file = fs::is_regular_file(wanted);
+      throw std::runtime_error("--scene " + wanted + ": " + found.error().message +
+                               (file ? "; give its folder with --scene-root" : ""));
     }
     return found->name;
   }

@@ -3,7 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <exception>
+#include <stdexcept>
 #include <utility>
 
 namespace heliograph::session {
@@ -54,8 +54,10 @@ struct SessionView::Picture {
 SessionView::SessionView(render::Engine& engine, SessionOptions options, ViewServices services)
     : engine_(engine),
       services_(services),
-      renderer_(std::make_unique<render::Renderer>(engine)),
-      session_(std::make_shared<Session>(std::move(options), services.wakeup)) {
+      renderer_(std::make_unique<render::Renderer>(engine)) {
+  const auto accepted = renderer_->set_settings(options.settings);
+  if (!accepted) throw std::invalid_argument(accepted.error().message);
+  session_ = std::make_shared<Session>(std::move(options), services.wakeup);
   session_->set_buffers(to_protocol(renderer_->buffers()));
 }
 
@@ -111,8 +113,6 @@ void SessionView::adopt_state() {
   const bool resized = state_.width != before.width || state_.height != before.height;
   if (resized) renderer_->set_size(state_.width, state_.height);
   cut_ |= resized || state_.resources != before.resources;
-  // What view.buffer may name is known once there is a scene.
-  if (!state_.resources) return;
   renderer_->set_camera(state_.camera);
   if (const auto accepted = renderer_->set_settings(state_.settings); !accepted) {
     spdlog::error("session {}: the renderer refused settings: {}", session_->name(),

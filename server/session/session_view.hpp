@@ -28,6 +28,7 @@ struct ViewServices {
 /// construction.
 class SessionView {
  public:
+  /// @throws std::invalid_argument when the renderer refuses the settings
   SessionView(render::Engine& engine, SessionOptions options, ViewServices services);
   ~SessionView();
 

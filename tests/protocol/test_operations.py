@@ -131,6 +131,10 @@ class CommandLine(unittest.TestCase):
         self.fails("serve", "--host", "0.0.0.0", "--token", "short", *root, saying="8 characters")
         self.fails("serve", "--port", "0", *root, saying="device", environment={
             "HELIOGRAPH_DEVICE": "no such device"})
+        self.fails("serve", "--set", "view.buffer=nothing", *root, saying="view.buffer")
+        self.fails("serve", "--scene", scene_file("mirror.glb") + "x", *root, saying="catalogue")
+        with tempfile.NamedTemporaryFile(suffix=".glb") as file:
+            self.fails("serve", "--scene", file.name, *root, saying="--scene-root")
         with socket.socket() as taken:
             taken.bind(("127.0.0.1", 0))
             taken.listen()
