@@ -12,12 +12,6 @@
 namespace heliograph::render {
 namespace {
 
-bool same_view(const scene::Camera& a, const scene::Camera& b) {
-  return a.eye == b.eye && a.target == b.target && a.up == b.up &&
-         a.vertical_fov == b.vertical_fov && a.orthographic_height == b.orthographic_height &&
-         a.near_plane == b.near_plane;
-}
-
 constexpr std::string_view picture_name = "output";
 
 scene::Scene empty_scene() {
@@ -156,7 +150,7 @@ void Renderer::set_size(std::uint32_t width, std::uint32_t height) {
 }
 
 void Renderer::set_camera(const scene::Camera& camera) {
-  if (same_view(state_->camera, camera)) return;
+  if (scene::same_view(state_->camera, camera)) return;
   state_->camera = camera;
   state_->restart();
 }

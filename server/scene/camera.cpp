@@ -37,6 +37,12 @@ glm::mat4 projection_matrix(const Camera& camera, float aspect) {
   return matrix;
 }
 
+bool same_view(const Camera& a, const Camera& b) {
+  return a.eye == b.eye && a.target == b.target && a.up == b.up &&
+         a.vertical_fov == b.vertical_fov && a.orthographic_height == b.orthographic_height &&
+         a.near_plane == b.near_plane && a.far_plane == b.far_plane;
+}
+
 Camera fit_camera(const Bounds& bounds, float vertical_fov, float aspect) {
   constexpr float margin = 1.08f;
   const glm::vec3 center = bounds.empty() ? glm::vec3(0.0f) : bounds.center();

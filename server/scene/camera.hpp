@@ -14,6 +14,9 @@ glm::mat4 view_matrix(const Camera& camera);
 /// near / distance without a far plane; orthographic depth is linear. `aspect` is width / height.
 glm::mat4 projection_matrix(const Camera& camera, float aspect);
 
+/// Whether both show the same, whatever their names.
+bool same_view(const Camera& a, const Camera& b);
+
 /// A camera that sees all of `bounds` from in front, a little from the right and from above.
 /// `vertical_fov` in degrees.
 Camera fit_camera(const Bounds& bounds, float vertical_fov, float aspect);

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "scene/camera.hpp"
+
 namespace heliograph::session {
 
 using std::chrono::duration_cast;
@@ -14,6 +16,10 @@ using std::chrono::milliseconds;
 
 namespace {
 
+/// Whole frames that take longer make a moving picture stutter.
+constexpr milliseconds stuttering_frame{66};
+/// Pixels of the smallest picture that is drawn smaller while moving.
+constexpr std::uint32_t smallest_to_shrink = 640 * 360;
 /// How long everything must rest before the final picture is sent.
 constexpr milliseconds rest_before_final{300};
 constexpr int final_quality = 95;
@@ -52,9 +58,7 @@ struct SessionView::Picture {
 };
 
 SessionView::SessionView(render::Engine& engine, SessionOptions options, ViewServices services)
-    : engine_(engine),
-      services_(services),
-      renderer_(std::make_unique<render::Renderer>(engine)) {
+    : engine_(engine), services_(services), renderer_(std::make_unique<render::Renderer>(engine)) {
   const auto accepted = renderer_->set_settings(options.settings);
   if (!accepted) throw std::invalid_argument(accepted.error().message);
   session_ = std::make_shared<Session>(std::move(options), services.wakeup);
@@ -66,6 +70,7 @@ SessionView::~SessionView() = default;
 bool SessionView::advance() {
   if (Clock::now() < resting_until_) return false;
   adopt_state();
+  adopt_size();
   collect_captures();
   session_->audience().announce_waiting();
   if (settle_captures()) return true;
@@ -88,6 +93,7 @@ std::optional<Clock::time_point> SessionView::next_due() const {
     const Clock::time_point rested = state_.changed_at + rest_before_final;
     if (rested > Clock::now()) also(rested);
   }
+  if (!draws_whole() && moving()) also(moved_at_ + rest_before_final);
   if (resting_until_ > Clock::now()) also(resting_until_);
   return due;
 }
@@ -110,14 +116,37 @@ void SessionView::adopt_state() {
     renderer_->set_scene(state_.resources);
     session_->set_buffers(to_protocol(renderer_->buffers()));
   }
+  const bool same_scene = state_.resources == before.resources;
   const bool resized = state_.width != before.width || state_.height != before.height;
-  if (resized) renderer_->set_size(state_.width, state_.height);
-  cut_ |= resized || state_.resources != before.resources;
+  if (resized) whole_frame_ = {};
+  cut_ |= resized || !same_scene;
+  if (same_scene && !scene::same_view(state_.camera, before.camera)) moved_at_ = Clock::now();
   renderer_->set_camera(state_.camera);
   if (const auto accepted = renderer_->set_settings(state_.settings); !accepted) {
     spdlog::error("session {}: the renderer refused settings: {}", session_->name(),
                   accepted.error().message);
   }
+}
+
+bool SessionView::moving() const {
+  return Clock::now() < moved_at_ + rest_before_final;
+}
+
+/// Small while the camera moves and whole frames would stutter, whole again once it rests.
+void SessionView::adopt_size() {
+  const bool shrink = moving() && whole_frame_ > stuttering_frame &&
+                      state_.width * state_.height > smallest_to_shrink;
+  const float scale = shrink ? state_.settings.motion.scale : 1.0f;
+  const auto scaled = [&](std::uint32_t side) {
+    return std::max(1u, static_cast<std::uint32_t>(static_cast<float>(side) * scale + 0.5f));
+  };
+  drawn_width_ = scaled(state_.width);
+  drawn_height_ = scaled(state_.height);
+  renderer_->set_size(drawn_width_, drawn_height_);
+}
+
+bool SessionView::draws_whole() const {
+  return drawn_width_ == state_.width && drawn_height_ == state_.height;
 }
 
 void SessionView::collect_captures() {
@@ -144,7 +173,7 @@ bool SessionView::settle_captures() {
 }
 
 bool SessionView::capture_ready(const CaptureRequest& request) const {
-  if (!newest_) return false;
+  if (!newest_ || !draws_whole()) return false;
   if (!renderer_->needs_frame()) return true;
   return newest_version_ == state_.version && request.samples &&
          newest_->frame.samples >= *request.samples;
@@ -179,8 +208,9 @@ bool SessionView::frame_wanted() {
 }
 
 bool SessionView::final_due() const {
-  return newest_ && newest_->frame.converged && !final_sent_ && !renderer_->needs_frame() &&
-         Clock::now() >= state_.changed_at + rest_before_final && session_->audience().watching();
+  return newest_ && draws_whole() && newest_->frame.converged && !final_sent_ &&
+         !renderer_->needs_frame() && Clock::now() >= state_.changed_at + rest_before_final &&
+         session_->audience().watching();
 }
 
 void SessionView::render_frame() {
@@ -188,6 +218,7 @@ void SessionView::render_frame() {
   auto picture = std::make_shared<Picture>();
   picture->frame = renderer_->render();
   const Clock::time_point end = Clock::now();
+  if (draws_whole()) whole_frame_ = end - start;
 
   recent_frames_.push_back(end);
   while (recent_frames_.front() < end - std::chrono::seconds(1)) recent_frames_.pop_front();
@@ -201,8 +232,10 @@ void SessionView::render_frame() {
   if (std::exchange(cut_, false)) header.flags |= protocol::frame_flag::discontinuity;
   header.render_id = ++render_count_;
   header.state_rev = state_.rev;
-  header.width = header.full_width = width;
-  header.height = header.full_height = height;
+  header.width = width;
+  header.height = height;
+  header.full_width = static_cast<std::uint16_t>(state_.width);
+  header.full_height = static_cast<std::uint16_t>(state_.height);
   header.render_start_us =
       static_cast<std::uint64_t>(duration_cast<microseconds>(start.time_since_epoch()).count());
   header.render_us = microseconds_of(end - start);
@@ -214,7 +247,7 @@ void SessionView::render_frame() {
   newest_version_ = state_.version;
   final_sent_ = false;
   if (!session_->audience().watching()) return;
-  const bool rested = end >= state_.changed_at + rest_before_final;
+  const bool rested = draws_whole() && end >= state_.changed_at + rest_before_final;
   encode(newest_->frame.converged && rested ? Encoding::final : Encoding::interactive);
 }
 

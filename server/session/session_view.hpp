@@ -53,6 +53,9 @@ class SessionView {
   enum class Encoding { interactive, final };
 
   void adopt_state();
+  void adopt_size();
+  bool moving() const;
+  bool draws_whole() const;
   void collect_captures();
   bool settle_captures();
   bool capture_ready(const CaptureRequest& request) const;
@@ -69,6 +72,10 @@ class SessionView {
   std::shared_ptr<Session> session_;
 
   RenderState state_;
+  Clock::time_point moved_at_;         // when the camera last did
+  std::uint32_t drawn_width_ = 0;      // what the renderer draws now: smaller while moving
+  std::uint32_t drawn_height_ = 0;
+  Clock::duration whole_frame_{};      // time of the newest frame of full size
   std::shared_ptr<const Picture> newest_;
   std::uint64_t newest_version_ = 0;
   bool final_sent_ = false;
