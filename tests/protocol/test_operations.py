@@ -97,6 +97,26 @@ class Ending(unittest.IsolatedAsyncioTestCase):
             viewer.socket.transport.abort()
 
 
+    async def test_work_that_is_under_way_does_not_hold_it_up(self):
+        with await asyncio.to_thread(Server, "--set", "accumulation.max_samples=60000") as server:
+            async with Viewer(server) as viewer:
+                waiting = asyncio.create_task(viewer.ask("frame.capture"))
+                over_http = asyncio.create_task(asyncio.to_thread(self.capture, server))
+                loading = asyncio.create_task(viewer.ask("scene.load", {"name": "furnace"}))
+                await asyncio.sleep(0.3)
+                self.assertFalse(waiting.done() or over_http.done())
+                self.assertEqual(await asyncio.to_thread(server.stop), 0)
+                await asyncio.wait([waiting, over_http, loading], timeout=10)
+                self.assertEqual((await viewer.closed())[0], 1001)
+
+    @staticmethod
+    def capture(server):
+        try:
+            server.ask("frame.capture")
+        except OSError:
+            pass  # the server has gone meanwhile
+
+
 class CommandLine(unittest.TestCase):
     def fails(self, *arguments, saying, environment=None):
         code, out, err = run(*arguments, environment=environment)
