@@ -38,6 +38,16 @@ glm::vec3 unit_or(const glm::vec3& vector, const glm::vec3& fallback) {
   return length > 0.0f && std::isfinite(length) ? vector / length : fallback;
 }
 
+/// How far ahead a view turns about, metres. From outside that is the scene's middle; from inside
+/// a point close by, so that orbiting looks around the room and does not swing through its walls.
+float focus_distance(const Camera& camera, const glm::vec3& forward, const Bounds& bounds) {
+  if (bounds.empty()) return 1.0f;
+  const bool inside = glm::all(glm::greaterThan(camera.eye, bounds.minimum)) &&
+                      glm::all(glm::lessThan(camera.eye, bounds.maximum));
+  if (inside) return 0.1f * bounds.radius();
+  return std::max(glm::dot(bounds.center() - camera.eye, forward), 0.1f);
+}
+
 }  // namespace
 
 std::vector<Camera> read_cameras(const JsonValue& root) {
@@ -62,8 +72,7 @@ Camera place_camera(Camera camera, const std::string& node_name, const glm::mat4
   const glm::vec3 forward = unit_or(-glm::vec3(world[2]), {0.0f, 0.0f, -1.0f});
   camera.eye = glm::vec3(world[3]);
   camera.up = unit_or(glm::vec3(world[1]), {0.0f, 1.0f, 0.0f});
-  const float to_center = bounds.empty() ? 1.0f : glm::dot(bounds.center() - camera.eye, forward);
-  camera.target = camera.eye + forward * std::max(to_center, 0.1f);
+  camera.target = camera.eye + forward * focus_distance(camera, forward, bounds);
   return camera;
 }
 

@@ -83,6 +83,22 @@ TEST(Cameras, LookAlongTheirNodesMinusZ) {
   EXPECT_EQ(camera.orthographic_height, 0.0f);
 }
 
+TEST(Cameras, InsideTheSceneTurnAboutAPointCloseBy) {
+  GltfBuilder builder = triangle();
+  builder.add("cameras",
+              {{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.2}}}});
+  builder.json["nodes"][0]["scale"] = {20, 20, 1};
+  // A second, turned copy gives the scene depth, so that there is an inside.
+  builder.add("nodes", {{"mesh", 0}, {"scale", {20, 20, 1}}, {"translation", {0, 0, 8}}});
+  builder.add("nodes", {{"camera", 0}, {"translation", {3, 3, 6}}});
+  builder.json["scenes"][0]["nodes"] = {0, 1, 2};
+  const Scene scene = builder.import();
+  ASSERT_EQ(scene.cameras.size(), 1u);
+  const Camera& camera = scene.cameras[0];
+  EXPECT_NEAR(glm::distance(camera.eye, camera.target), 0.1f * scene.bounds.radius(), 1e-3f);
+  EXPECT_LT(camera.target.z, camera.eye.z);
+}
+
 TEST(Cameras, OrthographicOnesKeepTheirFullHeight) {
   GltfBuilder builder = everything();
   builder.json["cameras"][0] = {
