@@ -131,8 +131,14 @@ test("a change made elsewhere is shown", async () => {
 
 test("the buffer picker changes the picture", async () => {
   const { page } = viewer;
-  await settle(page);
-  const before = await lookAt("buffer_output");
+  // The server's own capture waits for the newest state; the page may still show an older one.
+  const capture = await server.call("frame.capture", { buffer: "output", format: "png" });
+  const before = await thumbnail(page, Buffer.from(capture.data, "base64"));
+  await eventually(
+    async () => difference(before, await lookAt("buffer_output")) < 0.05,
+    "the newest picture",
+    60_000,
+  );
   const picker = page.locator("select[name=buffer]");
   const names = await picker
     .locator("option")
@@ -149,6 +155,7 @@ test("the buffer picker changes the picture", async () => {
   await eventually(
     async () => difference(before, await lookAt("buffer_back")) < 0.05,
     "the finished picture again",
+    60_000,
   );
 });
 
