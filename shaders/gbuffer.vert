@@ -22,13 +22,16 @@ layout(push_constant) uniform Constants { DrawConstants draw; };
 
 vec3 transform(vec4 rows[3], vec4 v) { return vec3(dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)); }
 
+/// -1 where the instance's matrix mirrors. Not a condition: see lib/gbuffer_surface.glsl.
+float orientation() { return 1.0 - 2.0 * float(min(draw.flags & instance_flipped, 1u)); }
+
 /// Cofactors of the upper 3x3 times n: the inverse transpose's direction without dividing, turned
 /// outward again where the matrix mirrors.
 vec3 transform_normal(vec4 rows[3], vec3 n) {
   vec3 cofactors = vec3(dot(cross(rows[1].xyz, rows[2].xyz), n),
                         dot(cross(rows[2].xyz, rows[0].xyz), n),
                         dot(cross(rows[0].xyz, rows[1].xyz), n));
-  return normalize((draw.flags & instance_flipped) != 0u ? -cofactors : cofactors);
+  return normalize(cofactors * orientation());
 }
 
 void main() {
@@ -36,7 +39,7 @@ void main() {
   vec4 before = vec4(transform(draw.previous_world, vec4(position, 1.0)), 1.0);
   world_normal = transform_normal(draw.world, normal);
   world_tangent = vec4(transform(draw.world, vec4(tangent.xyz, 0.0)),
-                       (draw.flags & instance_flipped) != 0u ? -tangent.w : tangent.w);
+                       tangent.w * orientation());
   texture_uv = uv;
   vertex_color = vec4(color_rg, color_ba);
   clip_now = (frame.unjittered * world).xyw;

@@ -30,8 +30,12 @@ layout(set = 2, binding = 4) uniform sampler2D emissive_map;
 // Uniform, not storage: helper lanes must see it too, or the texture's level of detail is wrong.
 layout(set = 2, binding = 5, std140) uniform MaterialBlock { Material material; };
 
+// No condition here hangs on constants and uniforms alone: lavapipe would make a new shader of every
+// value they take, draw by draw, and keep them all.
+float flag(uint flags, uint bit) { return float(min(flags & bit, 1u)); }
+
 vec2 slot_uv(TextureSlot slot) {
-  vec3 uv = vec3(slot.uv_set == 0u ? texture_uv.xy : texture_uv.zw, 1.0);
+  vec3 uv = vec3(mix(texture_uv.xy, texture_uv.zw, float(slot.uv_set)), 1.0);
   return vec2(dot(slot.transform_row0.xyz, uv), dot(slot.transform_row1.xyz, uv));
 }
 
@@ -39,7 +43,8 @@ vec2 slot_uv(TextureSlot slot) {
 vec3 mapped_normal(vec3 normal) {
   vec2 uv = slot_uv(material.normal_texture);
   vec3 texel = texture(normal_map, uv).xyz * 2.0 - 1.0;
-  texel.xy *= material.normal_scale;
+  // Without a map the normal stays: a whole number divides to 1 only by itself.
+  texel.xy *= material.normal_scale * (1.0 - float(material.normal_texture.texture / no_texture));
   vec3 tangent = world_tangent.xyz - normal * dot(normal, world_tangent.xyz);
   float size = dot(tangent, tangent);
   if (size < 1e-12) return normal;
@@ -52,12 +57,10 @@ void main() {
   vec4 color = material.base_color * vertex_color *
                texture(base_color_map, slot_uv(material.base_color_texture));
 #ifndef GBUFFER_OPAQUE
-  float cutoff = material.alpha_cutoff;
   // Blended surfaces cover a random share of the samples: accumulation makes it the right share.
-  if ((material.flags & material_alpha_blend) != 0u) {
-    cutoff = random_number(uvec2(gl_FragCoord.xy), frame.extent.z, 40u + (draw.instance & 15u),
-                           frame.extent.w);
-  }
+  float share = random_number(uvec2(gl_FragCoord.xy), frame.extent.z, 40u + (draw.instance & 15u),
+                              frame.extent.w);
+  float cutoff = mix(material.alpha_cutoff, share, flag(material.flags, material_alpha_blend));
   bool hole = color.a < cutoff;
 #endif
   vec3 across = cross(dFdy(world_point), dFdx(world_point));
@@ -66,9 +69,7 @@ void main() {
   float area = dot(across, across);
   vec3 geometric = area > 0.0 ? across * inversesqrt(area) : vertex_normal * side;
   if (dot(geometric, vertex_normal) * side < 0.0) geometric = -geometric;
-  vec3 shading = vertex_normal;
-  if (material.normal_texture.texture != no_texture) shading = mapped_normal(vertex_normal);
-  shading *= side;
+  vec3 shading = mapped_normal(vertex_normal) * side;
   vec4 packed_surface = texture(metallic_roughness_map,
                                 slot_uv(material.metallic_roughness_texture));
   float occlusion = texture(occlusion_map, slot_uv(material.occlusion_texture)).r;
@@ -77,7 +78,7 @@ void main() {
   base_color = vec4(sqrt(clamp(color.rgb, 0.0, 1.0)),
                     mix(1.0, occlusion, material.occlusion_strength));
   surface = vec4(material.roughness * packed_surface.g, material.metallic * packed_surface.b,
-                 (material.flags & material_unlit) != 0u ? 1.0 : 0.0, 0.0);
+                 flag(material.flags, material_unlit), 0.0);
   vec2 uv_now = clip_now.xy / clip_now.z * 0.5;
   vec2 uv_before = clip_before.xy / clip_before.z * 0.5;
   motion = vec4(uv_before - uv_now, view_depths.y - view_depths.x, view_depths.x);

@@ -130,6 +130,24 @@ class Frames(ServerTestCase):
             self.assertLessEqual({entry["kind"] for entry in stats["passes"]}, {"device", "host"})
 
 
+class Memory(ServerTestCase):
+    async def test_many_pictures_need_no_more_memory_than_few(self):
+        for scene in ("furnace", "mirror"):
+            self.server.call("scene.load", {"name": scene})
+            self.server.call("settings.patch",
+                             {"patch": {"accumulation": {"max_samples": 60000}}})
+            async with Viewer(self.server) as viewer:
+                await self.pictures(viewer, 20)
+                before = self.server.memory_bytes()
+                await self.pictures(viewer, 80)
+                grown = self.server.memory_bytes() - before
+            self.assertLess(grown, 40e6, scene)
+
+    async def pictures(self, viewer, count):
+        for _ in range(count):
+            await viewer.next_frame()
+
+
 class SlowViewers(ServerTestCase):
     def setUp(self):
         super().setUp()
