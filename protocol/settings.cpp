@@ -12,7 +12,7 @@
 namespace heliograph::protocol {
 namespace {
 
-constexpr std::array<std::string_view, 1> reset_names{"accumulation"};
+constexpr std::array<std::string_view, 3> reset_names{"accumulation", "history", "structure"};
 
 // The words that settings.def uses for limits.
 constexpr SettingLimits any{};

@@ -32,7 +32,12 @@ struct Settings {
 };
 
 /// Histories that a changed setting makes worthless, as a bit mask.
-enum class ResetScope : std::uint32_t { none = 0, accumulation = 1u << 0 };
+enum class ResetScope : std::uint32_t {
+  none = 0,
+  accumulation = 1u << 0,  ///< the mean over a resting picture
+  history = 1u << 1,       ///< what denoisers and antialiasing carry from frame to frame
+  structure = 1u << 2,     ///< the frame's list of passes, and with it every history
+};
 
 constexpr ResetScope operator|(ResetScope a, ResetScope b) {
   return static_cast<ResetScope>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));

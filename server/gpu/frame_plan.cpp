@@ -41,9 +41,10 @@ std::uint32_t FramePlan::add(Resource resource) {
   return static_cast<std::uint32_t>(resources_.size() - 1);
 }
 
-ImageRef FramePlan::image(std::string name, VkFormat format, VkImageUsageFlags extra_usage) {
+ImageRef FramePlan::image(std::string name, VkFormat format, VkImageUsageFlags extra_usage,
+                          std::optional<VkExtent2D> extent) {
   const bool depth = is_depth(format);
-  ImageDesc desc{.name = name, .extent = extent_, .format = format};
+  ImageDesc desc{.name = name, .extent = extent.value_or(extent_), .format = format};
   desc.usage = extra_usage | VK_IMAGE_USAGE_SAMPLED_BIT |
                (depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_IMAGE_USAGE_STORAGE_BIT);
   desc.mapped = device_.is_cpu() && !depth;
@@ -54,9 +55,10 @@ ImageRef FramePlan::image(std::string name, VkFormat format, VkImageUsageFlags e
   return {add(std::move(resource))};
 }
 
-History FramePlan::history(std::string name, VkFormat format) {
-  ImageDesc desc{.name = name, .extent = extent_, .format = format};
-  desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
+History FramePlan::history(std::string name, VkFormat format, VkImageUsageFlags extra_usage,
+                           std::optional<VkExtent2D> extent) {
+  ImageDesc desc{.name = name, .extent = extent.value_or(extent_), .format = format};
+  desc.usage = extra_usage | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
   desc.mapped = device_.is_cpu();
   const auto even = std::make_shared<const Image>(device_, desc);
   const auto odd = std::make_shared<const Image>(device_, desc);
@@ -182,13 +184,19 @@ void FramePlan::execute() {
   vkResetQueryPool(device_.handle(), queries_, 0, static_cast<std::uint32_t>(passes_.size() * 2));
   std::size_t part = 0;
   bool recorded = false;
+  bool barrier = false;  // of passes left out: those behind them rely on it
   begin(commands_[0]);
   for (std::size_t i = 0; i < passes_.size(); ++i) {
     const Pass& pass = passes_[i];
     timings_[i].milliseconds = -1.0f;  // not run
-    if (pass.condition && !pass.condition()) continue;
+    barrier |= pass.barrier_before;
+    if (pass.condition && !pass.condition()) {
+      barrier |= !pass.program;
+      continue;
+    }
     if (pass.program) {
       const auto query = static_cast<std::uint32_t>(i * 2);
+      if (std::exchange(barrier, false)) full_barrier(commands_[part]);
       record(pass, commands_[part], query);
       recorded = true;
       continue;
@@ -230,7 +238,6 @@ void FramePlan::submit(VkCommandBuffer commands) const {
 }
 
 void FramePlan::record(const Pass& pass, VkCommandBuffer commands, std::uint32_t query) {
-  if (pass.barrier_before) full_barrier(commands);
   if (device_.labels()) {
     VkDebugUtilsLabelEXT label{VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT};
     label.pLabelName = pass.name.c_str();

@@ -101,10 +101,12 @@ class FramePlan {
   VkExtent2D extent() const { return extent_; }
   const Device& device() const { return device_; }
 
-  /// An image of the plan's extent; mapped on CPU devices.
-  ImageRef image(std::string name, VkFormat format, VkImageUsageFlags extra_usage = 0);
+  /// An image of the plan's extent, or of its own; mapped on CPU devices.
+  ImageRef image(std::string name, VkFormat format, VkImageUsageFlags extra_usage = 0,
+                 std::optional<VkExtent2D> extent = std::nullopt);
   /// Two images that change places after every frame; cleared to zero.
-  History history(std::string name, VkFormat format);
+  History history(std::string name, VkFormat format, VkImageUsageFlags extra_usage = 0,
+                  std::optional<VkExtent2D> extent = std::nullopt);
   BufferRef buffer(std::string name, VkDeviceSize size, VkBufferUsageFlags usage, Memory memory);
   /// Resources owned elsewhere, which must outlive the plan.
   BufferRef import(const Buffer& buffer);

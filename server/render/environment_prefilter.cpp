@@ -6,6 +6,7 @@
 
 #include "gpu/frame_plan.hpp"
 #include "render/irradiance.hpp"
+#include "shaders/embedded.hpp"
 
 namespace heliograph::render {
 namespace {
@@ -76,12 +77,12 @@ EnvironmentMaps prefilter_environment(const gpu::Device& device, const Programs&
   for (std::uint32_t level = 0; level < cube_levels; ++level) {
     source_levels.push_back(plan.import(source_cube, level, VK_NULL_HANDLE));
   }
-  plan.pass("environment.cube", programs.environment_cube)
+  plan.pass("environment.cube", programs.compute(shaders::environment_cube))
       .read(map)
       .write(source_levels[0])
       .dispatch(plan.extent(), 6);
   for (std::uint32_t level = 1; level < cube_levels; ++level) {
-    plan.pass("environment.mip", programs.cube_mip)
+    plan.pass("environment.mip", programs.compute(shaders::cube_mip))
         .read(source_levels[level - 1])
         .write(source_levels[level])
         .dispatch({cube_size >> level, cube_size >> level}, 6);
@@ -96,7 +97,7 @@ EnvironmentMaps prefilter_environment(const gpu::Device& device, const Programs&
   for (std::uint32_t level = 0; level < cube_levels; ++level) {
     const float roughness = static_cast<float>(level) / (cube_levels - 1);
     const auto target = filter.import(maps.prefiltered, level, VK_NULL_HANDLE);
-    filter.pass("environment.prefilter", programs.prefilter_environment)
+    filter.pass("environment.prefilter", programs.compute(shaders::prefilter_environment))
         .read(filter_source)
         .write(target)
         .constants(PrefilterConstants{roughness, static_cast<float>(cube_size),
@@ -114,7 +115,7 @@ gpu::Image make_split_sum_table(const gpu::Device& device, const Programs& progr
   desc.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
   gpu::Image table(device, desc);
   gpu::FramePlan plan(device, desc.extent);
-  plan.pass("split_sum_table", programs.split_sum_table)
+  plan.pass("split_sum_table", programs.compute(shaders::split_sum_table))
       .write(plan.import(table, 0, VK_NULL_HANDLE))
       .constants(std::uint32_t{256})
       .dispatch(desc.extent);

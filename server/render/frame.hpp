@@ -14,7 +14,11 @@ struct FrameInputs {
   const SceneResources& scene;
   const tracing::RayTracer& tracer;
   const shared::FrameConstants& constants;
+  /// A setting that resets the structure may decide which passes are declared; every other one is
+  /// read when a pass runs.
+  const protocol::Settings& settings;
   const std::uint32_t& samples;  // already in the accumulated picture
+  const float& seconds;          // since the frame before
 };
 
 /// The buffers that outlive the frame or leave it.

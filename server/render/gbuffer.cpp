@@ -55,14 +55,19 @@ GBuffer rasterize_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
   const auto signal = [&](const char* name, std::size_t index) {
     return plan.image(name, GBuffer::formats[index], attachment);
   };
+  const auto remembered = [&](const char* name, std::size_t index, gpu::ImageRef& previous) {
+    const gpu::History history = plan.history(name, GBuffer::formats[index], attachment);
+    previous = history.previous;
+    return history.current;
+  };
   GBuffer gbuffer;
-  gbuffer.normals = signal("gbuffer.normals", 0);
+  gbuffer.normals = remembered("gbuffer.normals", 0, gbuffer.previous_normals);
   gbuffer.base_color = signal("gbuffer.base_color", 1);
-  gbuffer.surface = signal("gbuffer.surface", 2);
-  gbuffer.motion = signal("gbuffer.motion", 3);
+  gbuffer.surface = remembered("gbuffer.surface", 2, gbuffer.previous_surface);
+  gbuffer.motion = remembered("gbuffer.motion", 3, gbuffer.previous_motion);
   gbuffer.emissive = signal("gbuffer.emissive", 4);
   gbuffer.depth_slope = signal("gbuffer.depth_slope", 5);
-  gbuffer.instance = signal("gbuffer.instance", 6);
+  gbuffer.instance = remembered("gbuffer.instance", 6, gbuffer.previous_instance);
   gbuffer.depth = plan.image("gbuffer.depth", VK_FORMAT_D32_SFLOAT);
 
   constexpr std::array<float, 4> nothing{};

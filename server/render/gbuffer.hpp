@@ -19,6 +19,12 @@ struct GBuffer {
   gpu::ImageRef instance;     // instance + 1, 0: none
   gpu::ImageRef depth;        // reversed
 
+  // The frame before, in the same encoding.
+  gpu::ImageRef previous_normals;
+  gpu::ImageRef previous_surface;
+  gpu::ImageRef previous_motion;
+  gpu::ImageRef previous_instance;
+
   /// Of the colour attachments, in the order above.
   static constexpr std::array formats{VK_FORMAT_R32G32B32A32_SFLOAT,
                                       VK_FORMAT_R8G8B8A8_UNORM,

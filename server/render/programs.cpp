@@ -48,21 +48,20 @@ gpu::RasterState gbuffer_state() {
 Programs::Programs(const gpu::Device& device)
     : frame_layout(device, "frame", frame_bindings()),
       material_layout(device, "material", material_bindings()),
-      environment_cube(device, shaders::environment_cube),
-      cube_mip(device, shaders::cube_mip),
-      prefilter_environment(device, shaders::prefilter_environment),
-      split_sum_table(device, shaders::split_sum_table),
       gbuffer(device, shaders::gbuffer_vert, shaders::gbuffer_frag, gbuffer_state(),
               {{frame_set, &frame_layout}, {material_set, &material_layout}}),
       gbuffer_masked(device, shaders::gbuffer_vert, shaders::gbuffer_masked_frag, gbuffer_state(),
                      {{frame_set, &frame_layout}, {material_set, &material_layout}}),
-      begin_rays(device, shaders::begin_rays),
-      shadow_rays(device, shaders::shadow_rays, {{frame_set, &frame_layout}}),
-      ambient_rays(device, shaders::ambient_rays, {{frame_set, &frame_layout}}),
-      resolve_visibility(device, shaders::resolve_visibility),
-      skybox(device, shaders::skybox, {{frame_set, &frame_layout}}),
-      compose(device, shaders::compose, {{frame_set, &frame_layout}}),
-      accumulate(device, shaders::accumulate, {{frame_set, &frame_layout}}),
-      present(device, shaders::present, {{frame_set, &frame_layout}}) {}
+      device_(device) {}
+
+const gpu::ComputeProgram& Programs::compute(const gpu::ShaderBinary& shader) const {
+  const std::lock_guard lock(mutex_);
+  auto& program = compute_[&shader];
+  if (!program) {
+    const gpu::SharedLayouts layouts{{frame_set, &frame_layout}};
+    program = std::make_unique<gpu::ComputeProgram>(device_, shader, layouts);
+  }
+  return *program;
+}
 
 }  // namespace heliograph::render

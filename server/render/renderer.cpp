@@ -1,5 +1,6 @@
 #include "render/renderer.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <optional>
@@ -40,6 +41,7 @@ struct Renderer::State {
   void build_plan();
   void write_frame_set();
   void list_buffers();
+  bool has_buffer(std::string_view name) const;
   Frame picture();
   const gpu::Image* find(std::string_view buffer) const;
   std::uint32_t wanted_samples() const {
@@ -51,13 +53,16 @@ struct Renderer::State {
     samples = 0;
     stale = true;
   }
+  void apply_settings(const protocol::Settings& changed);
 
   Engine::Parts& parts;
   std::shared_ptr<const SceneResources> nothing;  // the empty scene
   gpu::Buffer constants_buffer;
   shared::FrameConstants constants{};
   bool has_previous = false;
-  std::uint32_t samples = 0;  // in the accumulated picture
+  std::uint32_t sequence = 0;  // frames since the last cut: where random sequences stand
+  std::uint32_t samples = 0;   // in the accumulated picture
+  float seconds = 1.0f / 60.0f;  // since the frame before
   bool stale = true;          // something changed since the last frame
 
   std::shared_ptr<const SceneResources> scene;
@@ -74,13 +79,25 @@ struct Renderer::State {
 
 void Renderer::State::build_plan() {
   plan.reset();
-  inputs.emplace(FrameInputs{parts.programs, *scene, *parts.tracer, constants, samples});
+  inputs.emplace(FrameInputs{parts.programs, *scene, *parts.tracer, constants, settings, samples,
+                             seconds});
   plan = std::make_unique<gpu::FramePlan>(parts.device, extent);
   write_frame_set();
   outputs = declare_frame(*plan, *inputs);
   plan->compile();
+  list_buffers();
   has_previous = false;
+  sequence = 0;
   restart();
+}
+
+void Renderer::State::apply_settings(const protocol::Settings& changed) {
+  const auto scope = protocol::changed_scope(settings, changed);
+  settings = changed;
+  stale = true;
+  if (includes(scope, protocol::ResetScope::structure)) build_plan();
+  if (includes(scope, protocol::ResetScope::history)) has_previous = false;
+  if (includes(scope, protocol::ResetScope::accumulation)) restart();
 }
 
 void Renderer::State::write_frame_set() {
@@ -103,6 +120,11 @@ void Renderer::State::list_buffers() {
   for (const auto& view : plan->views()) {
     if (view.name != picture_name) buffers.push_back({view.name, view.description});
   }
+}
+
+bool Renderer::State::has_buffer(std::string_view name) const {
+  return std::any_of(buffers.begin(), buffers.end(),
+                     [&](const BufferInfo& buffer) { return buffer.name == name; });
 }
 
 const gpu::Image* Renderer::State::find(std::string_view buffer) const {
@@ -140,7 +162,6 @@ void Renderer::set_scene(std::shared_ptr<const SceneResources> scene) {
   state_->inputs.reset();
   state_->scene = scene ? std::move(scene) : state_->nothing;
   state_->build_plan();
-  state_->list_buffers();
 }
 
 void Renderer::set_size(std::uint32_t width, std::uint32_t height) {
@@ -155,20 +176,29 @@ void Renderer::set_camera(const scene::Camera& camera) {
   state_->restart();
 }
 
+void Renderer::cut() {
+  state_->has_previous = false;
+  state_->sequence = 0;
+  state_->restart();
+}
+
+void Renderer::set_frame_seconds(float seconds) {
+  state_->seconds = std::max(seconds, 0.0f);
+}
+
 protocol::Result<void> Renderer::set_settings(const protocol::Settings& settings) {
-  bool known = false;
-  for (const BufferInfo& buffer : state_->buffers) known |= buffer.name == settings.view.buffer;
-  if (!known) {
-    return protocol::error::invalid("view.buffer",
-                                    "there is no buffer \"" + settings.view.buffer + "\"",
-                                    "a name from frame.buffers");
-  }
   if (settings == state_->settings) return {};
-  const auto scope = protocol::changed_scope(state_->settings, settings);
-  state_->settings = settings;
-  state_->stale = true;
-  if (includes(scope, protocol::ResetScope::accumulation)) state_->restart();
-  return {};
+  const protocol::Settings before = state_->settings;
+  state_->apply_settings(settings);
+  // Which buffers there are follows from the settings. One that went while it was shown leaves the
+  // picture; one that is asked for and not there is refused.
+  if (settings.view.buffer == before.view.buffer || state_->has_buffer(settings.view.buffer)) {
+    return {};
+  }
+  state_->apply_settings(before);
+  return protocol::error::invalid("view.buffer",
+                                  "there is no buffer \"" + settings.view.buffer + "\"",
+                                  "a name from frame.buffers");
 }
 
 bool Renderer::needs_frame() const {
@@ -182,7 +212,7 @@ Frame Renderer::render() {
   if (!state.settings.accumulation.enabled) state.samples = 0;
   const shared::FrameConstants before = state.constants;
   state.constants = make_frame_constants(state.camera, state.settings, *state.scene, state.extent,
-                                         state.samples, state.has_previous ? &before : nullptr);
+                                         state.sequence++, state.has_previous ? &before : nullptr);
   state.has_previous = true;
   std::memcpy(state.constants_buffer.mapped(), &state.constants, sizeof state.constants);
   state.plan->execute();

@@ -99,7 +99,12 @@ class Renderer {
   void set_scene(std::shared_ptr<const SceneResources> scene);
   void set_size(std::uint32_t width, std::uint32_t height);
   void set_camera(const scene::Camera& camera);
-  /// Refused when `view.buffer` names no buffer; then nothing is applied.
+  /// Forgets every history and starts the random sequences anew: what follows are the frames of a
+  /// fresh renderer.
+  void cut();
+  /// Time from frame to frame, which histories are measured by; 1/60 s until told otherwise.
+  void set_frame_seconds(float seconds);
+  /// Refused when a new `view.buffer` names no buffer; then nothing is applied.
   protocol::Result<void> set_settings(const protocol::Settings& settings);
 
   /// False once a resting picture has all its samples and nothing has changed since.

@@ -2,6 +2,7 @@
 
 #include "render/frame.hpp"
 #include "shaders/shared/ray.h"
+#include "shaders/embedded.hpp"
 
 namespace heliograph::render {
 namespace {
@@ -26,7 +27,7 @@ gpu::ImageRef trace_visibility(gpu::FramePlan& plan, const FrameInputs& in, cons
     return (constants.counts.y & flag) != 0;
   };
 
-  plan.pass(name + ".begin", in.programs.begin_rays).write(rays.count).dispatch({1, 1});
+  plan.pass(name + ".begin", in.programs.compute(shaders::begin_rays)).write(rays.count).dispatch({1, 1});
   plan.pass(name + ".rays", generator)
       .read(gbuffer.normals)
       .read(gbuffer.motion)
@@ -36,7 +37,7 @@ gpu::ImageRef trace_visibility(gpu::FramePlan& plan, const FrameInputs& in, cons
       .dispatch(extent)
       .when(wanted);
   in.tracer.trace_any(plan, name + ".trace", *in.scene.structure, rays, occluded);
-  plan.pass(name + ".resolve", in.programs.resolve_visibility)
+  plan.pass(name + ".resolve", in.programs.compute(shaders::resolve_visibility))
       .read(rays.count)
       .read(rays.rays)
       .read(occluded)
@@ -48,12 +49,12 @@ gpu::ImageRef trace_visibility(gpu::FramePlan& plan, const FrameInputs& in, cons
 }  // namespace
 
 gpu::ImageRef trace_shadows(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer) {
-  return trace_visibility(plan, in, gbuffer, "shadows", in.programs.shadow_rays,
+  return trace_visibility(plan, in, gbuffer, "shadows", in.programs.compute(shaders::shadow_rays),
                           shared::frame_shadows);
 }
 
 gpu::ImageRef trace_ambient(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer) {
-  return trace_visibility(plan, in, gbuffer, "ambient", in.programs.ambient_rays,
+  return trace_visibility(plan, in, gbuffer, "ambient", in.programs.compute(shaders::ambient_rays),
                           shared::frame_ambient_occlusion);
 }
 

@@ -58,7 +58,8 @@ shared::FrameConstants make_frame_constants(const scene::Camera& camera,
   constants.extent = {extent.width, extent.height, sample,
                       static_cast<std::uint32_t>(settings.sampling.seed)};
   constants.counts = {static_cast<std::uint32_t>(scene.scene->lights.size()),
-                      flags(settings, camera), scene.environment.prefiltered.desc().levels, 0};
+                      flags(settings, camera), scene.environment.prefiltered.desc().levels,
+                      before ? 0u : 1u};
   const float rotation = glm::radians(settings.environment.rotation);
   constants.environment = {settings.environment.intensity, std::cos(rotation), std::sin(rotation),
                            settings.ambient.radius};

@@ -22,8 +22,9 @@ struct FrameConstants {
   mat4 inverse_view;              // view -> world
   vec4 unproject;                 // view xy = (ndc * xy + zw) x view Z (perspective)
   vec4 eye;                       // world, metres
-  uvec4 extent;                   // width, height, sample index, random seed
-  uvec4 counts;                   // lights, frame_* flags, levels of the prefiltered cube, unused
+  uvec4 extent;                   // width, height, frames since the last cut, random seed
+  uvec4 counts;                   // lights, frame_* flags, levels of the prefiltered cube, 1 where
+                                  // no history holds
   vec4 environment;               // intensity, cos and sin of the rotation, ambient radius (metres)
   vec4 exposure;                  // factor, tone map curve, tangent of the sun radius or -1, unused
   vec4 irradiance[9];             // spherical harmonics of the irradiance / pi, rgb

@@ -16,7 +16,7 @@ FrameRig::FrameRig(std::shared_ptr<const scene::Scene> scene, const scene::Camer
                         VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Memory::upload),
       pool_(parts_.device, 1, 8),
       frame_set_(pool_.allocate(parts_.programs.frame_layout.handle())),
-      inputs_{parts_.programs, *scene_, *parts_.tracer, constants_, samples_},
+      inputs_{parts_.programs, *scene_, *parts_.tracer, constants_, settings_, samples_, seconds_},
       plan_(parts_.device, options.extent) {
   constexpr auto uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
   gpu::DescriptorWriter(parts_.device, frame_set_)

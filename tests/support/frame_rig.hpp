@@ -57,6 +57,7 @@ class FrameRig {
   protocol::Settings settings_;
   shared::FrameConstants constants_{};
   std::uint32_t samples_ = 0;
+  float seconds_ = 1.0f / 60.0f;
   bool has_view_ = false;
   bool compiled_ = false;
   gpu::Buffer constants_buffer_;

@@ -25,9 +25,11 @@ Settings everything_changed() {
     } else if constexpr (std::is_same_v<Value, std::string>) {
       value = "other." + value;
     } else if constexpr (std::is_enum_v<Value>) {
-      value = static_cast<Value>(setting.choices.size() - 1);
+      const auto last = static_cast<Value>(setting.choices.size() - 1);
+      value = value == last ? Value{} : last;
     } else {
-      value = static_cast<Value>(setting.limits.maximum);
+      const auto most = static_cast<Value>(setting.limits.maximum);
+      value = value == most ? static_cast<Value>(setting.limits.minimum) : most;
     }
   });
   return settings;
