@@ -50,6 +50,12 @@ void Buffer::swap(Buffer& other) noexcept {
   std::swap(mapped_, other.mapped_);
 }
 
+VkDeviceAddress Buffer::address() const {
+  VkBufferDeviceAddressInfo info{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO};
+  info.buffer = handle_;
+  return vkGetBufferDeviceAddress(device_->handle(), &info);
+}
+
 VkBufferView Buffer::texel_view(VkFormat format) const {
   if (view_) return view_;
   VkBufferViewCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
@@ -76,6 +82,23 @@ Buffer upload_buffer(const Device& device, std::string name, std::span<const std
     full_barrier(commands);
   });
   return buffer;
+}
+
+std::vector<std::byte> download_buffer(const Device& device, const Buffer& buffer,
+                                       std::size_t size) {
+  std::vector<std::byte> bytes(size);
+  if (buffer.mapped()) {
+    std::memcpy(bytes.data(), buffer.mapped(), size);
+    return bytes;
+  }
+  const Buffer staging(device, buffer.name() + " download", size, 0, Memory::readback);
+  device.submit_once([&](VkCommandBuffer commands) {
+    full_barrier(commands);
+    const VkBufferCopy region{0, 0, size};
+    vkCmdCopyBuffer(commands, buffer.handle(), staging.handle(), 1, &region);
+  });
+  std::memcpy(bytes.data(), staging.mapped(), size);
+  return bytes;
 }
 
 }  // namespace heliograph::gpu

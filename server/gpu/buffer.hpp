@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "gpu/device.hpp"
 
@@ -36,6 +37,9 @@ class Buffer {
   /// The buffer's bytes, or null when the host cannot reach them.
   std::byte* mapped() const { return mapped_; }
 
+  /// Where shaders and builds find the bytes. The buffer's usage must allow for it.
+  VkDeviceAddress address() const;
+
   /// A view for uniform texel buffers, made at the first call and kept. Not thread safe.
   VkBufferView texel_view(VkFormat format) const;
 
@@ -54,5 +58,9 @@ class Buffer {
 /// A device buffer holding a copy of `bytes` (at least 16 bytes long, so that empty tables bind).
 Buffer upload_buffer(const Device& device, std::string name, std::span<const std::byte> bytes,
                      VkBufferUsageFlags usage);
+
+/// Copies the first `size` bytes back. Waits for the device.
+std::vector<std::byte> download_buffer(const Device& device, const Buffer& buffer,
+                                       std::size_t size);
 
 }  // namespace heliograph::gpu

@@ -79,7 +79,9 @@ void Device::create(const Instance& instance) {
   queue.queueCount = 1;
   queue.pQueuePriorities = &priority;
 
-  VkPhysicalDeviceVulkan13Features v13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+  const RayFeatures rays(report_.rays);
+  VkPhysicalDeviceVulkan13Features v13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
+                                       rays.chain()};
   v13.dynamicRendering = VK_TRUE;
   v13.synchronization2 = VK_TRUE;
   v13.maintenance4 = VK_TRUE;  // the compiler writes LocalSizeId
@@ -98,6 +100,8 @@ void Device::create(const Instance& instance) {
   VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features};
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
+  info.enabledExtensionCount = static_cast<std::uint32_t>(rays.extensions().size());
+  info.ppEnabledExtensionNames = rays.extensions().data();
   check(vkCreateDevice(report_.handle, &info, nullptr, &handle_), "create the Vulkan device");
   volkLoadDevice(handle_);
   vkGetDeviceQueue(handle_, queue_family_, 0, &queue_);

@@ -68,6 +68,7 @@ DeviceReport report_on(VkPhysicalDevice device) {
   report.version = version_text(properties.properties.apiVersion);
   report.type = properties.properties.deviceType;
   report.missing = missing_parts(device, properties.properties.apiVersion);
+  if (report.missing.empty()) report.rays = find_ray_extensions(device);
   return report;
 }
 

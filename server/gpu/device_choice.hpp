@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gpu/instance.hpp"
+#include "gpu/ray_extensions.hpp"
 
 namespace heliograph::gpu {
 
@@ -16,6 +17,7 @@ struct DeviceReport {
   std::string version;  // of Vulkan, "1.3.230"
   VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
   std::vector<std::string> missing;  // what it lacks; empty: it will do
+  RayExtensions rays;                // of a device that will do
   bool chosen = false;
   std::string reason;  // why it was or was not chosen, one sentence
 };

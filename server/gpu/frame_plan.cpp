@@ -109,6 +109,14 @@ PassBuilder FramePlan::pass(std::string name, const ComputeProgram& program) {
   return {*this, passes_.size() - 1};
 }
 
+PassBuilder FramePlan::pass(std::string name, const RayProgram& program) {
+  Pass pass;
+  pass.name = std::move(name);
+  pass.program = pass.rays = &program;
+  passes_.push_back(std::move(pass));
+  return {*this, passes_.size() - 1};
+}
+
 PassBuilder FramePlan::raster(std::string name, const RasterProgram& program) {
   Pass pass;
   pass.name = std::move(name);
@@ -248,7 +256,9 @@ void FramePlan::record(const Pass& pass, VkCommandBuffer commands, std::uint32_t
     record_raster(pass, commands);
   } else {
     bind(pass, commands);
-    if (pass.indirect) {
+    if (pass.rays) {
+      pass.rays->launch(commands, pass.threads.width);
+    } else if (pass.indirect) {
       vkCmdDispatchIndirect(commands, resources_[pass.indirect->first].buffer->handle(),
                             pass.indirect->second);
     } else {
@@ -261,8 +271,7 @@ void FramePlan::record(const Pass& pass, VkCommandBuffer commands, std::uint32_t
 }
 
 void FramePlan::bind(const Pass& pass, VkCommandBuffer commands) {
-  const VkPipelineBindPoint point =
-      pass.is_raster ? VK_PIPELINE_BIND_POINT_GRAPHICS : VK_PIPELINE_BIND_POINT_COMPUTE;
+  const VkPipelineBindPoint point = pass.bind_point();
   const VkPipelineLayout layout = pass.program->layout();
   vkCmdBindPipeline(commands, point, pass.program->pipeline());
   for (const auto& [number, set] : shared_sets_) {
@@ -381,6 +390,11 @@ PassBuilder& PassBuilder::dispatch(VkExtent2D threads, std::uint32_t layers) {
 
 PassBuilder& PassBuilder::dispatch_indirect(BufferRef groups, VkDeviceSize offset) {
   plan_.passes_[pass_].indirect.emplace(groups.index, offset);
+  return *this;
+}
+
+PassBuilder& PassBuilder::launch(std::uint32_t rays) {
+  plan_.passes_[pass_].threads = {rays, 1};
   return *this;
 }
 

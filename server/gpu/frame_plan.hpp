@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "gpu/ray_pipeline.hpp"
 #include "gpu/shader.hpp"
 
 namespace heliograph::gpu {
@@ -25,6 +26,14 @@ struct BufferRef {
 struct History {
   ImageRef current;
   ImageRef previous;
+};
+
+/// What a pass had to touch: every image that it reads or writes counted whole, once for each, and
+/// the entries of the stream it works on, whose count lies at the start of a buffer.
+struct PassWork {
+  std::string name;
+  std::uint64_t image_bytes = 0;
+  std::uint64_t entries = 0;
 };
 
 struct PassTiming {
@@ -69,6 +78,8 @@ class PassBuilder {
   PassBuilder& dispatch(VkExtent2D threads, std::uint32_t layers = 1);
   /// Groups from a VkDispatchIndirectCommand at `offset` of a buffer, which counts as read.
   PassBuilder& dispatch_indirect(BufferRef groups, VkDeviceSize offset);
+  /// One invocation of a ray tracing pipeline's generation stage per element.
+  PassBuilder& launch(std::uint32_t rays);
   /// Draw calls of a raster pass; the pipeline and shared sets are bound.
   PassBuilder& draw(std::function<void(VkCommandBuffer, VkPipelineLayout)> record);
   /// The pass is skipped in frames where this is false.
@@ -117,6 +128,7 @@ class FramePlan {
   void share_set(std::uint32_t number, VkDescriptorSet set);
 
   PassBuilder pass(std::string name, const ComputeProgram& program);
+  PassBuilder pass(std::string name, const RayProgram& program);
   PassBuilder raster(std::string name, const RasterProgram& program);
   PassBuilder host(std::string name, std::function<void()> run);
 
@@ -127,6 +139,9 @@ class FramePlan {
   /// Runs all passes, waits for them, reads the timers and swaps the histories.
   void execute();
   const std::vector<PassTiming>& timings() const { return timings_; }
+  /// The work behind the timings of the frame that just ran, in the same order. Copies counts back
+  /// from the device: for measurements, not for every frame.
+  std::vector<PassWork> work() const;
 
   const Image& get(ImageRef image) const;  // this frame's image of a history
   const Buffer& get(BufferRef buffer) const;

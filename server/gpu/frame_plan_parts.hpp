@@ -31,6 +31,7 @@ struct FramePlan::Pass {
   std::string name;
   std::string description;
   const Program* program = nullptr;  // null: a host pass
+  const RayProgram* rays = nullptr;  // `program`, where it is a ray tracing pipeline
   bool is_raster = false;
   VkExtent3D local_size{1, 1, 1};
   std::vector<Use> bound;  // in binding order
@@ -48,6 +49,10 @@ struct FramePlan::Pass {
   bool barrier_before = false;
   std::array<VkDescriptorSet, 2> sets{};
 
+  VkPipelineBindPoint bind_point() const {
+    if (rays) return VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR;
+    return is_raster ? VK_PIPELINE_BIND_POINT_GRAPHICS : VK_PIPELINE_BIND_POINT_COMPUTE;
+  }
   /// Everything the pass touches: bindings, attachments, indirect arguments.
   std::vector<Use> all_uses() const;
 };

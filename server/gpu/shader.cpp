@@ -3,34 +3,10 @@
 #include <algorithm>
 #include <array>
 
+#include "gpu/shader_module.hpp"
+
 namespace heliograph::gpu {
 namespace {
-
-/// A shader module that lives as long as the pipeline is being made.
-class Module {
- public:
-  Module(const Device& device, const ShaderBinary& shader) : device_(device) {
-    VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
-    info.codeSize = shader.words.size_bytes();
-    info.pCode = shader.words.data();
-    check(vkCreateShaderModule(device.handle(), &info, nullptr, &handle_), "load a shader");
-  }
-  ~Module() { vkDestroyShaderModule(device_.handle(), handle_, nullptr); }
-  Module(const Module&) = delete;
-  Module& operator=(const Module&) = delete;
-
-  VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits bit) const {
-    VkPipelineShaderStageCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO};
-    info.stage = bit;
-    info.module = handle_;
-    info.pName = "main";
-    return info;
-  }
-
- private:
-  const Device& device_;
-  VkShaderModule handle_ = VK_NULL_HANDLE;
-};
 
 void check_shared(const std::string& program, const ShaderBinding& binding,
                   const SharedLayouts& shared) {
@@ -89,6 +65,8 @@ void Program::create_layout(std::span<const Reflection> stages, VkShaderStageFla
       }
     }
   }
+  std::sort(pass_bindings_.begin(), pass_bindings_.end(),
+            [](const auto& a, const auto& b) { return a.binding < b.binding; });
   pass_layout_ = make_pass_layout(device_, pass_bindings_);
   std::uint32_t count = pass_set + 1;
   for (const auto& [set, layout] : shared) count = std::max(count, set + 1);
@@ -111,7 +89,7 @@ ComputeProgram::ComputeProgram(const Device& device, const ShaderBinary& shader,
   const Reflection reflection = reflect(shader);
   local_size_ = reflection.local_size;
   create_layout({&reflection, 1}, VK_SHADER_STAGE_COMPUTE_BIT, shared);
-  const Module module(device, shader);
+  const ShaderModule module(device, shader);
   VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
   info.stage = module.stage(VK_SHADER_STAGE_COMPUTE_BIT);
   info.layout = layout();
@@ -127,8 +105,8 @@ RasterProgram::RasterProgram(const Device& device, const ShaderBinary& vertex,
     : Program(device, std::string(fragment.name)) {
   const std::array reflections{reflect(vertex), reflect(fragment)};
   create_layout(reflections, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, shared);
-  const Module vertex_module(device, vertex);
-  const Module fragment_module(device, fragment);
+  const ShaderModule vertex_module(device, vertex);
+  const ShaderModule fragment_module(device, fragment);
   const std::array stages{vertex_module.stage(VK_SHADER_STAGE_VERTEX_BIT),
                           fragment_module.stage(VK_SHADER_STAGE_FRAGMENT_BIT)};
 

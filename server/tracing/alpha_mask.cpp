@@ -16,7 +16,7 @@ std::uint32_t lowest_alpha(const shared::Material& material) {
   return alpha;
 }
 
-// Into 0..1; the same as wrap() in shaders/lib/bvh.glsl.
+// Into 0..1; the same as wrap() in shaders/lib/nearest_texel.glsl.
 float wrap(float coordinate, std::uint32_t mode) {
   if (mode == shared::wrap_clamp) return std::clamp(coordinate, 0.0f, 1.0f);
   if (mode == shared::wrap_mirror) {

@@ -3,6 +3,7 @@
 #ifndef HELIOGRAPH_LIB_BVH_GLSL
 #define HELIOGRAPH_LIB_BVH_GLSL
 
+#include "lib/nearest_texel.glsl"
 #include "shared/bvh.h"
 #include "shared/ray.h"
 #include "shared/scene.h"
@@ -43,28 +44,16 @@ vec2 box_interval(vec2 x, vec2 y, vec2 z, Line line, vec2 range) {
   return vec2(near, far * 1.0000004);
 }
 
-// Into 0..1; the same as wrap() in server/tracing/alpha_mask.cpp.
-float wrap(float coordinate, uint mode) {
-  if (mode == wrap_clamp) return clamp(coordinate, 0.0, 1.0);
-  if (mode == wrap_mirror) {
-    return 1.0 - abs(coordinate - 2.0 * floor(0.5 * coordinate) - 1.0);
-  }
-  return coordinate - floor(coordinate);
-}
-
 // Whether the mask lets a ray through barycentric (u, v) of the triangle at `place` end there.
 bool mask_stops(uint mask, uint place, float u, float v) {
   const uvec4 texels = record_bits(mask, 0u) & bvh_number_mask;
   const uvec4 lookup = record_bits(mask, 1u) & bvh_number_mask;
-  const uvec2 size = texels.yz;
   const uint threshold = texels.w;
   const int first_uv = int(lookup.z + 2u * (place - lookup.w));
   const vec4 corners01 = texelFetch(triangles, first_uv);
   const vec2 corner2 = texelFetch(triangles, first_uv + 1).xy;
   const vec2 uv = (1.0 - u - v) * corners01.xy + u * corners01.zw + v * corner2;
-  const vec2 wrapped = vec2(wrap(uv.x, lookup.x), wrap(uv.y, lookup.y));
-  const uvec2 texel = min(uvec2(wrapped * vec2(size)), size - 1u);
-  const uint offset = texels.x + texel.y * size.x + texel.x;
+  const uint offset = texels.x + nearest_texel(uv, texels.yz, lookup.xy);
   const uint word = texelFetch(alpha_heap, int(offset >> 2)).x;
   return bitfieldExtract(word, int(8u * (offset & 3u)), 8) >= threshold;
 }

@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# Unpacks the newer Mesa of Debian 12's backports into a folder, beside the system's, which stays
+# as it is. Its software Vulkan device traces rays itself, so that the tests of the tracers
+# "ray_query" and "ray_pipeline" run on machines without a GPU:
+#   deploy/newer_mesa.sh FOLDER && HELIOGRAPH_NEWER_MESA=FOLDER ctest ...
+# Takes only Debian's packages, from the mirror that apt is configured with.
+set -euo pipefail
+if [ $# -ne 1 ]; then
+  echo "usage: deploy/newer_mesa.sh FOLDER" >&2
+  exit 2
+fi
+
+fail() {
+  [ -s "${log:-}" ] && tail -n 10 "$log" >&2
+  echo "newer_mesa: $1" >&2
+  exit 1
+}
+
+mkdir -p "$1"
+folder=$(cd "$1" && pwd)
+if [ -f "$folder/driver.json" ]; then
+  echo "==> $folder holds a newer Mesa already"
+  exit 0
+fi
+codename=$(. /etc/os-release && echo "${VERSION_CODENAME:-unknown}")
+[ "$codename" = bookworm ] ||
+  fail "only Debian 12 needs this: the Mesa of $codename is as new; let HELIOGRAPH_NEWER_MESA unset"
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+log=$work/log
+mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' 'Codename: bookworm' \
+  'Component: main' | head -n 1)
+[ -n "$mirror" ] || fail "apt knows no mirror of Debian 12; run apt-get update first"
+
+# Lists and archives of our own: what apt knows about the system does not change. What is installed
+# still counts, so that only what the newer driver needs beyond it is fetched.
+mkdir -p "$work"/lists/partial "$work"/archives/partial
+keyring=/usr/share/keyrings/debian-archive-keyring.gpg
+{
+  echo "deb [signed-by=$keyring] $mirror bookworm main"
+  echo "deb [signed-by=$keyring] $mirror bookworm-backports main"
+} >"$work/sources.list"
+apt=(apt-get -o "Dir::Etc::sourcelist=$work/sources.list" -o Dir::Etc::sourceparts=/dev/null
+  -o "Dir::State::lists=$work/lists" -o "Dir::Cache::archives=$work/archives"
+  -o "Dir::Cache::pkgcache=" -o "Dir::Cache::srcpkgcache=" -o APT::Sandbox::User=root
+  -o Debug::NoLocking=1 -o Acquire::Retries=2 -o Acquire::Languages=none)
+echo "==> fetching Mesa of bookworm-backports from $mirror"
+"${apt[@]}" update >"$log" 2>&1 || fail "the lists of packages could not be had"
+"${apt[@]}" install --yes --no-install-recommends --download-only \
+  --target-release bookworm-backports mesa-vulkan-drivers >"$log" 2>&1 ||
+  fail "the packages could not be had"
+
+for package in "$work"/archives/*.deb; do
+  dpkg-deb --extract "$package" "$folder"
+done
+library=$(find "$folder" -name libvulkan_lvp.so | head -n 1)
+[ -n "$library" ] || fail "the packages hold no software Vulkan driver"
+sed "s|\"library_path\": *\"[^\"]*\"|\"library_path\": \"$library\"|" \
+  "$folder"/usr/share/vulkan/icd.d/lvp_icd*.json >"$folder/driver.json.new"
+ln -sfn "$(dirname "$library")" "$folder/libraries"
+mv "$folder/driver.json.new" "$folder/driver.json"
+echo "==> $folder holds Mesa $(basename "$(ls "$work"/archives/mesa-vulkan-drivers_*.deb)" | cut -d_ -f2)"
