@@ -1,10 +1,10 @@
 #include "scenes/generator/atrium.hpp"
 
-#include <algorithm>
 #include <stdexcept>
 #include <string>
 
 #include "scenes/generator/atrium_parts.hpp"
+#include "scenes/generator/sunlight.hpp"
 
 namespace heliograph::scenes {
 namespace {
@@ -30,21 +30,6 @@ void add_cameras(Document& document, int case_number) {
   }
 }
 
-void add_sun(Document& document, const ClearSky& sky) {
-  const glm::vec3 irradiance = sky.sun_irradiance;
-  const float strongest = std::max({irradiance.x, irradiance.y, irradiance.z});
-  Light sun;
-  sun.name = "sun";
-  sun.directional = true;
-  sun.color = irradiance / strongest;
-  sun.intensity = strongest;
-  Node node;
-  node.translation = {0.0f, 20.0f, 0.0f};
-  node.rotation = look_rotation(direction_to_sun(sun_elevation, sun_azimuth), glm::vec3(0.0f));
-  node.angular_diameter = 0.53f;
-  document.add_light(std::move(sun), std::move(node));
-}
-
 }  // namespace
 
 Document make_atrium(int case_number, const ClearSky& sky) {
@@ -57,7 +42,7 @@ Document make_atrium(int case_number, const ClearSky& sky) {
   document.description = "An atrium of two storeys round a courtyard open to the sky";
   const AtriumMaterials materials = add_atrium_materials(document, gloss[case_number - 1]);
   add_cameras(document, case_number);
-  add_sun(document, sky);
+  add_sun(document, {sun_elevation, sun_azimuth}, sky);
   add_floors(document, materials);
   add_pool(document, materials);
   add_columns(document, materials);

@@ -1,70 +1,24 @@
-#include <algorithm>
 #include <cmath>
-#include <functional>
-#include <glm/gtc/constants.hpp>
 #include <string>
 
 #include "scenes/generator/atrium.hpp"
 #include "scenes/generator/atrium_parts.hpp"
 #include "scenes/generator/atrium_plan.hpp"
+#include "scenes/generator/clips.hpp"
 
 namespace heliograph::scenes {
 namespace {
 
-constexpr float loop_seconds = 10.0f;
-constexpr int keys_per_loop = 60;
-constexpr float two_pi = 2.0f * glm::pi<float>();
-
-struct Pose {
-  glm::vec3 translation{0.0f};
-  glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};
-};
-
-// Keys of `pose(phase)`, phase in [0, 1], for one node. A rotation that never changes, and a
-// translation that never does, get no channel.
-void animate(Animation& animation, int node, const std::function<Pose(float)>& pose) {
-  Channel move;
-  Channel turn;
-  move.node = turn.node = node;
-  move.path = Channel::Path::translation;
-  turn.path = Channel::Path::rotation;
-  const Pose start = pose(0.0f);
-  bool moves = false;
-  bool turns = false;
-  glm::quat previous = start.rotation;
-  for (int key = 0; key <= keys_per_loop; ++key) {
-    // The last key is the first one again: the loop closes exactly.
-    const Pose now = pose(float(key % keys_per_loop) / float(keys_per_loop));
-    // Of the two quaternions for one rotation the nearer one: no detour between keys.
-    const glm::quat near = glm::dot(now.rotation, previous) < 0.0f ? -now.rotation : now.rotation;
-    previous = near;
-    moves |= now.translation != start.translation;
-    turns |= near != start.rotation;
-    move.seconds.push_back(loop_seconds * float(key) / float(keys_per_loop));
-    move.values.push_back(glm::vec4(now.translation, 0.0f));
-    turn.values.push_back({near.x, near.y, near.z, near.w});
-  }
-  turn.seconds = move.seconds;
-  if (moves) animation.channels.push_back(std::move(move));
-  if (turns) animation.channels.push_back(std::move(turn));
-}
-
-Pose look(glm::vec3 eye, glm::vec3 target) {
-  return {eye, look_rotation(eye, target)};
-}
-
 // Case 1 travels down the nave and back, case 2 along the gallery, case 3 an S through the court.
 Pose camera_pose(int case_number, float phase) {
   const float angle = two_pi * phase;
-  const float there_and_back = 0.5f - 0.5f * std::cos(angle);
+  const float away = there_and_back(phase);
   if (case_number == 1) {
-    const glm::vec3 eye(13.6f - 8.5f * there_and_back, 1.75f + 0.5f * there_and_back,
-                        1.5f + 1.0f * std::sin(angle));
+    const glm::vec3 eye(13.6f - 8.5f * away, 1.75f + 0.5f * away, 1.5f + 1.0f * std::sin(angle));
     return look(eye, {eye.x - 17.6f, 3.3f, -0.9f});
   }
   if (case_number == 2) {
-    const glm::vec3 eye(15.6f - 1.0f * there_and_back, 8.5f + 0.6f * there_and_back,
-                        0.5f + 3.0f * std::sin(angle));
+    const glm::vec3 eye(15.6f - 1.0f * away, 8.5f + 0.6f * away, 0.5f + 3.0f * std::sin(angle));
     return look(eye, {-2.0f, 4.3f, -1.3f});
   }
   const glm::vec3 eye(-7.4f + 3.0f * std::sin(angle), 2.0f, 3.9f - 0.7f * std::sin(2.0f * angle));
@@ -102,15 +56,9 @@ void animate_object(const Node& node, int index, Animation& animation) {
     });
   } else if (node.name == "hero_sphere") {
     animate(animation, index, [=](float phase) {
-      const float rise = 0.35f * (0.5f - 0.5f * std::cos(two_pi * phase));
+      const float rise = 0.35f * there_and_back(phase);
       return Pose{base.translation + glm::vec3(0.0f, rise, 0.0f),
                   glm::angleAxis(two_pi * phase, glm::vec3(0.0f, 1.0f, 0.0f))};
-    });
-  } else if (node.name == "sun") {
-    animate(animation, index, [=](float phase) {
-      const float azimuth = sun_azimuth + 30.0f * std::sin(two_pi * phase);
-      return Pose{base.translation,
-                  look_rotation(direction_to_sun(sun_elevation, azimuth), glm::vec3(0.0f))};
     });
   }
 }
@@ -127,6 +75,7 @@ void add_clips(Document& document, int case_number) {
     }
     animate_object(node, i, objects);
   }
+  swing_sun(document, objects, sun_elevation, sun_azimuth, 30.0f);
   document.animations = {std::move(camera), std::move(objects)};
 }
 

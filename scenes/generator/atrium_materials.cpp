@@ -1,46 +1,12 @@
 #include "scenes/generator/atrium_materials.hpp"
 
+#include "scenes/generator/palette.hpp"
 #include "scenes/generator/recipes.hpp"
 
 namespace heliograph::scenes {
 namespace {
 
 using namespace recipes;
-
-class Palette {
- public:
-  explicit Palette(Document& document) : document_(document) {}
-
-  int add(const std::string& name, TextureRecipe recipe, bool swept = false) {
-    Material material;
-    material.name = name;
-    material.masked = recipe.masked;
-    material.double_sided = recipe.masked;
-    material.texture = std::move(recipe);
-    material.swept = swept;
-    return document_.add_material(std::move(material));
-  }
-
-  int add_cloth(const std::string& name, glm::vec3 cloth, glm::vec3 motif, bool swept) {
-    const int index = add(name, damask(name, cloth, motif), swept);
-    document_.materials[std::size_t(index)].double_sided = true;
-    return index;
-  }
-
-  int add_plain(const std::string& name, glm::vec3 color, float roughness, float metallic,
-                bool swept = false) {
-    Material material;
-    material.name = name;
-    material.color = color;
-    material.roughness = roughness;
-    material.metallic = metallic;
-    material.swept = swept;
-    return document_.add_material(std::move(material));
-  }
-
- private:
-  Document& document_;
-};
 
 }  // namespace
 
@@ -138,16 +104,21 @@ AtriumMaterials add_atrium_materials(Document& document, Gloss gloss) {
   m.pot = palette.add("pot", terracotta("pot", {0.72f, 0.44f, 0.31f}, 52), columns);
   m.majolica = palette.add("majolica", recipes::majolica(), columns);
 
-  m.banners = {palette.add_cloth("banner_red", {0.70f, 0.08f, 0.07f}, {0.84f, 0.60f, 0.25f}, all),
-               palette.add_cloth("banner_green", {0.11f, 0.38f, 0.20f}, {0.78f, 0.66f, 0.34f}, all),
-               palette.add_cloth("banner_blue", {0.10f, 0.20f, 0.54f}, {0.80f, 0.68f, 0.40f}, all)};
-  m.curtain = palette.add_cloth("curtain", {0.50f, 0.07f, 0.08f}, {0.64f, 0.19f, 0.13f}, all);
+  m.banners = {
+      palette.add_cloth("banner_red",
+                        damask("banner_red", {0.70f, 0.08f, 0.07f}, {0.84f, 0.60f, 0.25f}), all),
+      palette.add_cloth("banner_green",
+                        damask("banner_green", {0.11f, 0.38f, 0.20f}, {0.78f, 0.66f, 0.34f}), all),
+      palette.add_cloth("banner_blue",
+                        damask("banner_blue", {0.10f, 0.20f, 0.54f}, {0.80f, 0.68f, 0.40f}), all)};
+  m.curtain = palette.add_cloth(
+      "curtain", damask("curtain", {0.50f, 0.07f, 0.08f}, {0.64f, 0.19f, 0.13f}), all);
 
   m.leaf = palette.add("leaf", recipes::leaf());
   m.soil = palette.add("soil", recipes::soil());
   m.water = palette.add("water", recipes::water());
-  m.lamp_glass = palette.add_plain("lamp_glass", {0.9f, 0.75f, 0.5f}, 0.4f, 0.0f);
-  document.materials[std::size_t(m.lamp_glass)].emission = glm::vec3(6.0f, 3.6f, 1.5f);
+  m.lamp_glass =
+      palette.add_glowing("lamp_glass", {0.9f, 0.75f, 0.5f}, glm::vec3(6.0f, 3.6f, 1.5f));
   return m;
 }
 

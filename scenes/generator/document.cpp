@@ -65,6 +65,15 @@ std::size_t Document::instance_count() const {
   return count;
 }
 
+void apply(const Sweep& sweep, Document& document) {
+  for (Material& material : document.materials) {
+    if (material.swept && sweep.roughness) material.uniform_roughness = sweep.roughness;
+  }
+  for (Node& node : document.nodes) {
+    if (node.angular_diameter && sweep.shadow_angle) node.angular_diameter = sweep.shadow_angle;
+  }
+}
+
 glm::quat look_rotation(glm::vec3 eye, glm::vec3 target) {
   const glm::vec3 forward = glm::normalize(target - eye);
   const float turn = std::atan2(-forward.x, -forward.z);

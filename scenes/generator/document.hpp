@@ -23,6 +23,7 @@ struct Material {
   bool masked = false;
   bool double_sided = false;
   bool swept = false;  // takes part in the roughness sweep; written to the extras
+  std::optional<float> uniform_roughness;  // in place of `roughness` and what the map says of it
 };
 
 struct NamedMesh {
@@ -52,7 +53,8 @@ struct Node {
   int mesh = -1;
   int camera = -1;
   int light = -1;
-  float angular_diameter = 0.0f;  // degrees, of a directional light; written to the extras
+  // Of a directional light, degrees: the full cone. Written to the extras.
+  std::optional<float> angular_diameter;
 };
 
 /// One animated property of one node, linearly interpolated.
@@ -94,6 +96,13 @@ struct Document {
   std::size_t drawn_triangles() const;
   std::size_t instance_count() const;
 };
+
+/// One point of the paper's sweeps; what is not given stays as the scene has it.
+struct Sweep {
+  std::optional<float> roughness;     // of every swept material, all over
+  std::optional<float> shadow_angle;  // angular diameter of the sun, degrees
+};
+void apply(const Sweep& sweep, Document& document);
 
 /// The rotation that turns -Z into the direction from `eye` to `target`, upright.
 glm::quat look_rotation(glm::vec3 eye, glm::vec3 target);

@@ -26,6 +26,12 @@ Json to_json(glm::vec3 v) {
   return Json::array({v.x, v.y, v.z});
 }
 
+void fill_channel(Image& image, std::size_t channel, std::uint8_t value) {
+  for (std::size_t i = channel; i < image.pixels.size(); i += std::size_t(image.channels)) {
+    image.pixels[i] = value;
+  }
+}
+
 class GlbWriter {
  public:
   GlbWriter(const Document& document, int texture_size)
@@ -115,7 +121,7 @@ int GlbWriter::add_texture(const std::string& name, const std::vector<std::uint8
 Json GlbWriter::material_json(const Material& material) {
   Json pbr = {{"baseColorFactor", {material.color.x, material.color.y, material.color.z, 1.0f}},
               {"metallicFactor", material.metallic},
-              {"roughnessFactor", material.roughness}};
+              {"roughnessFactor", material.uniform_roughness.value_or(material.roughness)}};
   Json json = {{"name", material.name}};
   const auto& pngs = pngs_[std::size_t(&material - document_.materials.data())];
   if (material.texture) {
@@ -148,7 +154,8 @@ void GlbWriter::write_materials() {
   pngs_.resize(document_.materials.size());
   parallel_for(document_.materials.size(), [&](std::size_t i) {
     if (!document_.materials[i].texture) return;
-    const TextureSet set = bake(*document_.materials[i].texture, texture_size_);
+    TextureSet set = bake(*document_.materials[i].texture, texture_size_);
+    if (document_.materials[i].uniform_roughness) fill_channel(set.surface, 1, 255);
     pngs_[i] = {encode_png(set.color), encode_png(set.normal), encode_png(set.surface)};
   });
   bool emissive_strength = false;
@@ -229,9 +236,7 @@ void GlbWriter::write_nodes() {
     if (node.mesh >= 0) json["mesh"] = node.mesh;
     if (node.camera >= 0) json["camera"] = node.camera;
     if (node.light >= 0) json["extensions"]["KHR_lights_punctual"]["light"] = node.light;
-    if (node.angular_diameter > 0.0f) {
-      json["extras"]["angularDiameterDeg"] = node.angular_diameter;
-    }
+    if (node.angular_diameter) json["extras"]["angularDiameterDeg"] = *node.angular_diameter;
     gltf_["nodes"].push_back(std::move(json));
     roots.push_back(gltf_["nodes"].size() - 1);
   }

@@ -1,8 +1,3 @@
-#include "scenes/generator/atrium.hpp"
-#include "scenes/generator/environment.hpp"
-#include "scenes/generator/glb.hpp"
-#include "scenes/generator/test_scenes.hpp"
-
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -16,52 +11,61 @@
 #include <system_error>
 #include <vector>
 
+#include "scenes/generator/environment.hpp"
+#include "scenes/generator/glb.hpp"
+#include "scenes/generator/paper_scenes.hpp"
+#include "scenes/generator/studio.hpp"
+#include "scenes/generator/test_scenes.hpp"
+
 namespace {
 
 using namespace heliograph::scenes;
 
 constexpr const char* usage =
     "usage: heliograph-scenes OUTPUT_DIR [--only NAME]... [--texture-size PIXELS]\n"
-    "names: atrium, sky, tests (written when none is named), atrium_2, atrium_3\n";
+    "                         [--roughness R] [--shadow-angle DEGREES]\n"
+    "names: cubes_distance, icosphere, glossy_sponza_1, glossy_sponza_2, glossy_sponza_3,\n"
+    "       shadow_objects, pillars, breakfast_room (each with its sky), sky, studio, tests;\n"
+    "       without any, all but glossy_sponza_2 and glossy_sponza_3\n"
+    "--roughness gives the swept materials this roughness all over, --shadow-angle the sun this\n"
+    "angular diameter.\n";
 
-struct Target {
-  std::string_view name;
-  bool by_default;
-};
-constexpr std::array<Target, 5> targets = {
-    {{"atrium", true}, {"sky", true}, {"tests", true}, {"atrium_2", false}, {"atrium_3", false}}};
+constexpr int sky_width = 1024;
+constexpr int sky_height = 512;
 
 struct Options {
   std::filesystem::path output;
   std::vector<std::string_view> only;
   int texture_size = 512;
+  Sweep sweep;
   bool help = false;
 
   bool wants(std::string_view name) const {
     if (!only.empty()) return std::find(only.begin(), only.end(), name) != only.end();
-    return std::any_of(targets.begin(), targets.end(), [&](const Target& target) {
-      return target.name == name && target.by_default;
-    });
+    return name != "glossy_sponza_2" && name != "glossy_sponza_3";
   }
 };
 
 std::string_view parse_name(std::string_view name) {
-  for (const Target& target : targets) {
-    if (target.name == name) return target.name;
-  }
-  throw std::invalid_argument("no scene is called " + std::string(name));
+  if (name != "sky" && name != "studio" && name != "tests") find_paper_scene(name);
+  return name;
 }
 
-int parse_texture_size(std::string_view text) {
-  constexpr int smallest = 16;
-  constexpr int largest = 4096;
-  int size = 0;
+template <class Number>
+Number parse_number(std::string_view option, std::string_view text, Number low, Number high) {
+  Number value{};
   const char* end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data(), end, size);
-  if (parsed.ec != std::errc() || parsed.ptr != end || size < smallest || size > largest) {
-    throw std::invalid_argument("--texture-size must be a whole number from 16 to 4096");
+  const auto parsed = std::from_chars(text.data(), end, value);
+  if (parsed.ec != std::errc() || parsed.ptr != end || !(value >= low && value <= high)) {
+    const auto shown = [](Number limit) {
+      std::array<char, 32> digits{};
+      return std::string(digits.data(),
+                         std::to_chars(digits.data(), digits.data() + digits.size(), limit).ptr);
+    };
+    throw std::invalid_argument(std::string(option) + " must be a number from " + shown(low) +
+                                " to " + shown(high));
   }
-  return size;
+  return value;
 }
 
 Options parse(const std::vector<std::string_view>& arguments) {
@@ -79,7 +83,11 @@ Options parse(const std::vector<std::string_view>& arguments) {
     } else if (argument == "--only") {
       options.only.push_back(parse_name(value()));
     } else if (argument == "--texture-size") {
-      options.texture_size = parse_texture_size(value());
+      options.texture_size = parse_number(argument, value(), 16, 4096);
+    } else if (argument == "--roughness") {
+      options.sweep.roughness = parse_number(argument, value(), 0.0f, 1.0f);
+    } else if (argument == "--shadow-angle") {
+      options.sweep.shadow_angle = parse_number(argument, value(), 0.0f, 90.0f);
     } else if (argument.starts_with("-") || !options.output.empty()) {
       throw std::invalid_argument("unexpected argument " + std::string(argument));
     } else {
@@ -113,6 +121,16 @@ void write_document(const Options& options, const Document& document) {
                  std::to_string(document.materials.size()) + " materials");
 }
 
+// With its sky beside it, under its own name: that is where the server looks for it.
+void write_scene(const Options& options, const PaperScene& scene) {
+  const ClearSky sky = scene.make_sky(sky_width, sky_height);
+  write_file(options.output / (std::string(scene.name) + ".hdr"), encode_hdr(sky.environment),
+             "clear sky");
+  Document document = scene.make_document(sky);
+  apply(options.sweep, document);
+  write_document(options, document);
+}
+
 void generate(const Options& options) {
   std::error_code failure;
   std::filesystem::create_directories(options.output, failure);
@@ -125,15 +143,17 @@ void generate(const Options& options) {
     write_document(options, make_furnace());
     write_document(options, make_mirror());
   }
-  const bool only_tests = options.only == std::vector<std::string_view>{"tests"};
-  if (only_tests) return;
-  const ClearSky sky = make_clear_sky(direction_to_sun(sun_elevation, sun_azimuth), 1024, 512);
   if (options.wants("sky")) {
+    const ClearSky sky = find_paper_scene("glossy_sponza_1").make_sky(sky_width, sky_height);
     write_file(options.output / "sky.hdr", encode_hdr(sky.environment), "clear sky");
   }
-  if (options.wants("atrium")) write_document(options, make_atrium(1, sky));
-  if (options.wants("atrium_2")) write_document(options, make_atrium(2, sky));
-  if (options.wants("atrium_3")) write_document(options, make_atrium(3, sky));
+  if (options.wants("studio")) {
+    write_file(options.output / "studio.hdr", encode_hdr(make_studio(sky_width, sky_height)),
+               "soft boxes");
+  }
+  for (const PaperScene& scene : paper_scenes()) {
+    if (options.wants(scene.name)) write_scene(options, scene);
+  }
 }
 
 }  // namespace

@@ -44,4 +44,19 @@ TextureRecipe leaf();
 TextureRecipe soil();
 TextureRecipe water();
 
+// floors and objects of the smaller scenes; `width` is one repeat
+TextureRecipe checker(const std::string& name, glm::vec3 light, glm::vec3 dark, int squares,
+                      float width);
+TextureRecipe metal_panels(const std::string& name, glm::vec3 metal, float roughness, float width);
+TextureRecipe lattice();
+TextureRecipe concrete_slabs(const std::string& name, glm::vec3 color, float width);
+TextureRecipe terrazzo(const std::string& name, glm::vec3 ground, std::uint32_t seed);
+TextureRecipe glazed(const std::string& name, glm::vec3 color, std::uint32_t seed);
+TextureRecipe brushed_metal(const std::string& name, glm::vec3 metal, float roughness,
+                            std::uint32_t seed);
+TextureRecipe linen(const std::string& name, glm::vec3 cloth, glm::vec3 stripe);
+
+/// 0 hills at sunset, 1 a dish of lemons, 2 fields of colour; fills the whole tile.
+TextureRecipe painting(int subject);
+
 }  // namespace heliograph::scenes::recipes

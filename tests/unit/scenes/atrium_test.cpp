@@ -142,7 +142,7 @@ TEST(Atrium, HasItsCamerasAndASunThatAgreesWithTheSky) {
   const auto is_sun = [](const Node& node) { return node.name == "sun"; };
   const auto node = std::find_if(atrium().nodes.begin(), atrium().nodes.end(), is_sun);
   ASSERT_NE(node, atrium().nodes.end());
-  EXPECT_FLOAT_EQ(node->angular_diameter, 0.53f);
+  EXPECT_FLOAT_EQ(node->angular_diameter.value(), 0.53f);
   const glm::vec3 travels = node->rotation * glm::vec3(0.0f, 0.0f, -1.0f);
   EXPECT_GT(glm::dot(-travels, direction_to_sun(sun_elevation, sun_azimuth)), 0.99999f);
   const Light& sun = atrium().lights[std::size_t(node->light)];
