@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gpu/frame_plan.hpp"
+#include "render/exposure.hpp"
 #include "render/programs.hpp"
 #include "render/scene_resources.hpp"
 #include "shaders/shared/frame_constants.h"
@@ -11,8 +12,10 @@ namespace heliograph::render {
 /// What a frame is made from. References outlive the plan; `constants` changes from frame to frame.
 struct FrameInputs {
   const Programs& programs;
-  const SceneResources& scene;
+  const SceneResources& scene;             // at rest
+  const tracing::SceneTables& tables;      // what moves as it is now: bind these
   const tracing::RayTracer& tracer;
+  const tracing::AccelerationStructure& structure;  // as it is now: trace this
   const shared::FrameConstants& constants;
   /// A setting that resets the structure may decide which passes are declared; every other one is
   /// read when a pass runs.
@@ -24,6 +27,7 @@ struct FrameInputs {
 /// The buffers that outlive the frame or leave it.
 struct FrameOutputs {
   gpu::History accumulated;  // linear radiance
+  Exposure exposure;
   gpu::ImageRef picture;     // sRGB, RGBA8
 };
 

@@ -12,9 +12,9 @@ class DrawRecorder {
   DrawRecorder(const FrameInputs& in, VkCommandBuffer commands, VkPipelineLayout layout)
       : in_(in), commands_(commands), layout_(layout) {
     const VkDeviceSize offset = 0;
-    const VkBuffer vertices = in.scene.buffers.vertices.handle();
+    const VkBuffer vertices = in.tables.vertices.handle();
     vkCmdBindVertexBuffers(commands, 0, 1, &vertices, &offset);
-    vkCmdBindIndexBuffer(commands, in.scene.buffers.indices.handle(), 0, VK_INDEX_TYPE_UINT32);
+    vkCmdBindIndexBuffer(commands, in.tables.indices.handle(), 0, VK_INDEX_TYPE_UINT32);
     vkCmdSetCullMode(commands, VK_CULL_MODE_BACK_BIT);
     vkCmdSetFrontFace(commands, VK_FRONT_FACE_COUNTER_CLOCKWISE);
   }

@@ -8,6 +8,8 @@
 #include "render/debug_view.hpp"
 #include "render/engine_parts.hpp"
 #include "render/frame.hpp"
+#include "render/frame_set.hpp"
+#include "render/moving_scene.hpp"
 #include "render/view_constants.hpp"
 
 namespace heliograph::render {
@@ -66,6 +68,7 @@ struct Renderer::State {
   bool stale = true;          // something changed since the last frame
 
   std::shared_ptr<const SceneResources> scene;
+  std::optional<MovingScene> moving;  // the scene in this renderer's pose
   scene::Camera camera;
   protocol::Settings settings;
   VkExtent2D extent{640, 360};
@@ -79,8 +82,8 @@ struct Renderer::State {
 
 void Renderer::State::build_plan() {
   plan.reset();
-  inputs.emplace(FrameInputs{parts.programs, *scene, *parts.tracer, constants, settings, samples,
-                             seconds});
+  inputs.emplace(FrameInputs{parts.programs, *scene, moving->tables(), *parts.tracer,
+                             moving->structure(), constants, settings, samples, seconds});
   plan = std::make_unique<gpu::FramePlan>(parts.device, extent);
   write_frame_set();
   outputs = declare_frame(*plan, *inputs);
@@ -103,14 +106,8 @@ void Renderer::State::apply_settings(const protocol::Settings& changed) {
 void Renderer::State::write_frame_set() {
   pool = std::make_unique<gpu::DescriptorPool>(parts.device, 1, 8);
   const VkDescriptorSet set = pool->allocate(parts.programs.frame_layout.handle());
-  constexpr auto uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-  gpu::DescriptorWriter(parts.device, set)
-      .buffer(0, uniform, constants_buffer.handle())
-      .buffer(1, uniform, scene->light_block.handle())
-      .sampled_image(2, scene->environment.map.view(), parts.around.handle())
-      .sampled_image(3, scene->environment.prefiltered.view(), parts.clamped.handle())
-      .sampled_image(4, parts.split_sum_table.view(), parts.clamped.handle())
-      .apply();
+  render::write_frame_set(parts, set, constants_buffer, moving->tables().lights,
+                          scene->environment);
   plan->share_set(frame_set, set);
 }
 
@@ -161,6 +158,7 @@ void Renderer::set_scene(std::shared_ptr<const SceneResources> scene) {
   state_->plan.reset();
   state_->inputs.reset();
   state_->scene = scene ? std::move(scene) : state_->nothing;
+  state_->moving.emplace(state_->parts.device, *state_->parts.tracer, state_->scene);
   state_->build_plan();
 }
 
@@ -202,7 +200,9 @@ protocol::Result<void> Renderer::set_settings(const protocol::Settings& settings
 }
 
 bool Renderer::needs_frame() const {
-  return state_->stale || state_->samples < state_->wanted_samples();
+  if (state_->stale || state_->samples < state_->wanted_samples()) return true;
+  // Exposure that no time passes for stays where it is.
+  return state_->seconds > 0.0f && !is_settled(*state_->plan, state_->outputs.exposure);
 }
 
 Frame Renderer::render() {
@@ -229,6 +229,14 @@ Frame Renderer::render() {
   const auto elapsed = std::chrono::steady_clock::now() - start;
   frame.milliseconds = std::chrono::duration<float, std::milli>(elapsed).count();
   return frame;
+}
+
+std::vector<PassWork> Renderer::work() const {
+  std::vector<PassWork> all;
+  for (const auto& pass : state_->plan->work()) {
+    all.push_back({pass.name, pass.image_bytes, pass.entries});
+  }
+  return all;
 }
 
 const std::vector<BufferInfo>& Renderer::buffers() const {

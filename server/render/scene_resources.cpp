@@ -5,6 +5,8 @@
 #include <cstring>
 #include <tuple>
 
+#include "render/light_table.hpp"
+
 namespace heliograph::render {
 namespace {
 
@@ -93,7 +95,7 @@ SceneResources::SceneResources(const gpu::Device& device, const Programs& progra
   upload_textures(device);
   make_material_sets(device, programs);
   list_draws();
-  structure = tracer.build(*scene, buffers);
+  rest_structure = tracer.build(*scene, rest_tables);
   environment = prefilter_environment(device, programs, from);
 }
 
@@ -119,22 +121,14 @@ void SceneResources::upload_tables(const gpu::Device& device) {
   std::vector<shared::Light> lights;
   for (const scene::Light& light : scene->lights) lights.push_back(light.device);
 
-  if (lights.size() > shared::max_lights) {
-    throw gpu::GpuError("the scene has " + std::to_string(lights.size()) + " lights; at most " +
-                        std::to_string(shared::max_lights) + " are drawn");
-  }
-  std::vector<shared::Light> block = lights;
-  block.resize(shared::max_lights);
-  light_block = gpu::upload_buffer(device, "light block", std::as_bytes(std::span(block)),
-                                   VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
-
-  buffers.vertices = upload(device, "vertices", vertices, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
-  buffers.indices = upload(device, "indices", indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
-  buffers.meshes = upload(device, "meshes", meshes_);
-  buffers.instances = upload(device, "instances", instances_);
-  buffers.materials = upload(device, "materials", scene->materials);
-  buffers.lights = upload(device, "lights", lights);
-  buffers.alpha_heap =
+  rest_tables.vertices = upload(device, "vertices", vertices, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+  rest_tables.indices = upload(device, "indices", indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+  rest_tables.meshes = upload(device, "meshes", meshes_);
+  rest_tables.instances = upload(device, "instances", instances_);
+  rest_tables.materials = upload(device, "materials", scene->materials);
+  rest_tables.lights = make_light_table(device, lights.size());
+  write_lights(rest_tables.lights, lights);
+  rest_tables.alpha_heap =
       upload(device, "alpha masks", scene->alpha_heap, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
 }
 

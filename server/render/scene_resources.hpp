@@ -29,10 +29,9 @@ class SceneResources {
                  const tracing::RayTracer& tracer);
 
   std::shared_ptr<const scene::Scene> scene;
-  tracing::SceneBuffers buffers;
-  std::shared_ptr<const tracing::AccelerationStructure> structure;
+  tracing::SceneBuffers rest_tables;
+  std::shared_ptr<const tracing::AccelerationStructure> rest_structure;
   EnvironmentMaps environment;
-  gpu::Buffer light_block;  // shared::Light[max_lights], uniform
   std::vector<Draw> draws;  // opaque first, then by material
   std::vector<VkDescriptorSet> material_sets;
 

@@ -8,9 +8,9 @@ namespace heliograph::render {
 namespace {
 
 /// Generate -> trace -> bring back: the wavefront of one visibility signal.
-gpu::ImageRef trace_visibility(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                               const std::string& name, const gpu::ComputeProgram& generator,
-                               std::uint32_t flag) {
+gpu::ImageRef trace_visibility(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
+                               const gpu::ComputeProgram& generator,
+                               const std::vector<gpu::ImageRef>& images, std::uint32_t flag) {
   const VkExtent2D extent = plan.extent();
   const std::uint32_t pixels = extent.width * extent.height;
   constexpr VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
@@ -28,15 +28,14 @@ gpu::ImageRef trace_visibility(gpu::FramePlan& plan, const FrameInputs& in, cons
   };
 
   plan.pass(name + ".begin", in.programs.compute(shaders::begin_rays)).write(rays.count).dispatch({1, 1});
-  plan.pass(name + ".rays", generator)
-      .read(gbuffer.normals)
-      .read(gbuffer.motion)
-      .read_write(rays.count)
+  auto pass = plan.pass(name + ".rays", generator);
+  for (const gpu::ImageRef image : images) pass.read(image);
+  pass.read_write(rays.count)
       .write(rays.rays)
       .write(visibility)
       .dispatch(extent)
       .when(wanted);
-  in.tracer.trace_any(plan, name + ".trace", *in.scene.structure, rays, occluded);
+  in.tracer.trace_any(plan, name + ".trace", in.structure, rays, occluded);
   plan.pass(name + ".resolve", in.programs.compute(shaders::resolve_visibility))
       .read(rays.count)
       .read(rays.rays)
@@ -49,13 +48,14 @@ gpu::ImageRef trace_visibility(gpu::FramePlan& plan, const FrameInputs& in, cons
 }  // namespace
 
 gpu::ImageRef trace_shadows(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer) {
-  return trace_visibility(plan, in, gbuffer, "shadows", in.programs.compute(shaders::shadow_rays),
+  return trace_visibility(plan, in, "shadows", in.programs.compute(shaders::shadow_rays),
+                          {gbuffer.normals, gbuffer.motion, gbuffer.base_color, gbuffer.surface},
                           shared::frame_shadows);
 }
 
 gpu::ImageRef trace_ambient(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer) {
-  return trace_visibility(plan, in, gbuffer, "ambient", in.programs.compute(shaders::ambient_rays),
-                          shared::frame_ambient_occlusion);
+  return trace_visibility(plan, in, "ambient", in.programs.compute(shaders::ambient_rays),
+                          {gbuffer.normals, gbuffer.motion}, shared::frame_ambient_occlusion);
 }
 
 }  // namespace heliograph::render

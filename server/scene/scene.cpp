@@ -30,6 +30,13 @@ void Bounds::include(const Bounds& other) {
   maximum = glm::max(maximum, other.maximum);
 }
 
+glm::mat4 Transform::matrix() const {
+  glm::mat4 matrix = glm::mat4_cast(rotation);
+  for (int axis = 0; axis < 3; ++axis) matrix[axis] *= scale[axis];
+  matrix[3] = glm::vec4(translation, 1.0f);
+  return matrix;
+}
+
 std::uint64_t Scene::triangle_count() const {
   std::uint64_t count = 0;
   for (const Instance& instance : instances) count += meshes[instance.mesh].indices.size() / 3;

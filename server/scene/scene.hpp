@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,10 +51,18 @@ struct Texture {
 
 struct Mesh {
   std::string name;
-  std::vector<shared::Vertex> vertices;
+  std::vector<shared::Vertex> vertices;  // at rest
   std::vector<std::uint32_t> indices;  // triangles, counter-clockwise from outside
   std::uint32_t material = 0;
   Bounds bounds;  // mesh space
+};
+
+struct Transform {
+  glm::vec3 translation{0.0f};
+  glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};  // unit length
+  glm::vec3 scale{1.0f};
+
+  glm::mat4 matrix() const;
 };
 
 struct Node {
@@ -61,9 +70,12 @@ struct Node {
   std::optional<std::uint32_t> parent;  // always a smaller index: parents come first
   glm::mat4 local{1.0f};
   glm::mat4 world{1.0f};
+  std::optional<Transform> transform = std::nullopt;  // what `local` is made of, unless a matrix
+  std::vector<float> weights = {};                    // at rest, of its mesh's morph targets
 };
 
-/// One mesh placed in the world by a node.
+/// One mesh placed in the world by a node. Meshes that deform are placed once each, skinned ones by
+/// a node of their own at the origin: their vertices follow joints alone (glTF 3.7.3.3).
 struct Instance {
   std::uint32_t mesh = 0;
   std::uint32_t node = 0;
@@ -78,6 +90,7 @@ struct Camera {
   float orthographic_height = 0.0f;  // metres, full height; 0: perspective
   float near_plane = 0.05f;          // metres
   float far_plane = 1000.0f;         // metres; orthographic only, perspective has none
+  std::optional<std::uint32_t> node = std::nullopt;  // that carries it
 };
 
 /// A light with its world-space device form and the name of its node.
@@ -85,6 +98,61 @@ struct Light {
   std::string name;
   shared::Light device;
   float angular_diameter = 0.0f;  // degrees, directional only
+  std::optional<std::uint32_t> node = std::nullopt;  // that carries it
+};
+
+/// Differences to the vertices of a shape; none where a list is empty.
+struct MorphTarget {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;
+  std::vector<glm::vec3> tangents;
+};
+
+/// A joint of a skin and its share in a vertex.
+struct JointWeight {
+  std::uint32_t joint = 0;  // among the skin's
+  float weight = 0.0f;
+};
+
+/// What a mesh that deforms is made from: its vertices before any morph target or joint moves them.
+struct Shape {
+  std::vector<shared::Vertex> vertices;
+  std::vector<MorphTarget> targets;
+  std::uint32_t joints_per_vertex = 0;  // 0: no joint moves it
+  std::vector<JointWeight> influences;  // joints_per_vertex for every vertex; weights sum to 1
+  bool flat = false;  // no normals in the file: each triangle's own, three vertices to a triangle
+};
+
+struct Skin {
+  std::vector<std::uint32_t> joints;  // nodes
+  std::vector<glm::mat4> inverse_bind;  // scene -> joint, of every joint
+};
+
+/// A mesh that changes its shape: first morph targets, then joints.
+struct Deformation {
+  std::uint32_t mesh = 0;
+  std::uint32_t shape = 0;
+  std::uint32_t node = 0;  // whose morph weights count
+  std::optional<std::uint32_t> skin;
+};
+
+enum class Interpolation { step, linear, cubic_spline };
+enum class Property { translation, rotation, scale, weights };
+
+/// One animated property of a node: a curve through keys.
+struct Channel {
+  std::uint32_t node = 0;
+  Property property = Property::translation;
+  Interpolation interpolation = Interpolation::linear;
+  std::uint32_t width = 3;    // numbers per value
+  std::vector<float> times;   // seconds, ascending
+  std::vector<float> values;  // per key one value; cubic spline: in-tangent, value, out-tangent
+};
+
+struct Clip {
+  std::string name;
+  float duration = 0.0f;  // seconds: its last key
+  std::vector<Channel> channels;
 };
 
 /// A whole glTF scene, validated, ready for upload. Immutable once loaded.
@@ -100,6 +168,10 @@ struct Scene {
   std::vector<Instance> instances;
   std::vector<Camera> cameras;
   std::vector<Light> lights;
+  std::vector<Shape> shapes;
+  std::vector<Skin> skins;
+  std::vector<Deformation> deformations;
+  std::vector<Clip> clips;
   Bounds bounds;  // world space
   std::vector<std::string> warnings;
 

@@ -83,18 +83,15 @@ std::size_t append_record(Bvh& bvh, const Record& record) {
   return bvh.records.size() - 1;
 }
 
-/// Where a mesh went in the whole.
-struct PlacedMesh {
-  std::uint32_t root = shared::bvh_no_link;
-  std::uint32_t mask = shared::bvh_no_link;
-};
-
-PlacedMesh append_mesh(Bvh& bvh, const MeshBvh& mesh, std::vector<glm::vec4>& uvs,
+BvhMesh append_mesh(Bvh& bvh, const MeshBvh& mesh, std::vector<glm::vec4>& uvs,
                        std::size_t triangle_texels) {
-  PlacedMesh placed;
+  BvhMesh placed;
   if (mesh.hierarchy.root == shared::bvh_no_link) return placed;
-  const std::size_t first_record = bvh.records.size();
-  const std::size_t first_triangle = bvh.triangles.size() / shared::bvh_texels_per_triangle;
+  const std::size_t first_record = placed.first_record = bvh.records.size();
+  const std::size_t first_triangle = placed.first_triangle =
+      bvh.triangles.size() / shared::bvh_texels_per_triangle;
+  placed.nodes = mesh.hierarchy.nodes.size();
+  placed.triangles = mesh.triangles.size();
   placed.root = moved_link(mesh.hierarchy.root, first_record, first_triangle);
   for (shared::BvhNode node : mesh.hierarchy.nodes) {
     node.left = moved_link(node.left, first_record, first_triangle);
@@ -125,7 +122,7 @@ PlacedMesh append_mesh(Bvh& bvh, const MeshBvh& mesh, std::vector<glm::vec4>& uv
   return placed;
 }
 
-std::vector<PlacedMesh> append_meshes(Bvh& bvh, const std::vector<MeshBvh>& meshes) {
+void append_meshes(Bvh& bvh, const std::vector<MeshBvh>& meshes) {
   std::size_t records = 0;
   std::size_t texels = 0;
   for (const MeshBvh& mesh : meshes) {
@@ -135,15 +132,14 @@ std::vector<PlacedMesh> append_meshes(Bvh& bvh, const std::vector<MeshBvh>& mesh
   bvh.records.reserve(records);
   bvh.triangles.reserve(texels);
   std::vector<glm::vec4> uvs;
-  std::vector<PlacedMesh> placed;
-  placed.reserve(meshes.size());
+  bvh.meshes.reserve(meshes.size());
   for (const MeshBvh& mesh : meshes) {
-    placed.push_back(append_mesh(bvh, mesh, uvs, texels));
-    bvh.depth = std::max(bvh.depth, mesh.hierarchy.depth);
+    bvh.meshes.push_back(append_mesh(bvh, mesh, uvs, texels));
+    bvh.mesh_depth = std::max(bvh.mesh_depth, mesh.hierarchy.depth);
   }
+  bvh.first_placed = bvh.records.size();
   bvh.triangles.insert(bvh.triangles.end(), uvs.begin(), uvs.end());
   bvh.masked = !uvs.empty();
-  return placed;
 }
 
 scene::Bounds world_box(const scene::Bounds& box, const glm::mat4& world) {
@@ -161,35 +157,6 @@ scene::Bounds world_box(const scene::Bounds& box, const glm::mat4& world) {
   return {result.minimum - slack, result.maximum + slack};
 }
 
-/// Appends instance records and the tree above them.
-void append_top_level(RTCDevice device, Bvh& bvh, const scene::Scene& scene,
-                      const std::vector<PlacedMesh>& meshes) {
-  std::vector<scene::Bounds> boxes(scene.instances.size());
-  std::vector<std::uint32_t> records(scene.instances.size());
-  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    const auto& [mesh, node] = scene.instances[i];
-    const glm::mat4& world = scene.nodes[node].world;
-    const auto inverse = traceable_inverse(world);
-    if (meshes[mesh].root == shared::bvh_no_link || !inverse) continue;
-    boxes[i] = world_box(scene.meshes[mesh].bounds, world);
-    const glm::mat4 rows = glm::transpose(*inverse);
-    records[i] = static_cast<std::uint32_t>(
-        append_record(bvh, shared::BvhInstance{rows[0], rows[1], rows[2], meshes[mesh].root,
-                                               number(i), meshes[mesh].mask, 0}));
-  }
-  const Hierarchy top = build_hierarchy(
-      device, boxes, 1, [&](auto items) { return leaf_link(records[items[0]], 1); });
-  if (top.root == shared::bvh_no_link) return;
-  const std::size_t first = bvh.records.size();
-  for (shared::BvhNode node : top.nodes) {
-    node.left = moved_link(node.left, first, 0);
-    node.right = moved_link(node.right, first, 0);
-    bvh.records.push_back(node);
-  }
-  bvh.root = moved_link(top.root, first, 0);
-  bvh.depth += top.depth + 2;  // the link that leaves the mesh, and the bottom of the stack
-}
-
 }  // namespace
 
 std::optional<glm::mat4> traceable_inverse(const glm::mat4& world) {
@@ -202,6 +169,43 @@ std::optional<glm::mat4> traceable_inverse(const glm::mat4& world) {
   return inverse;
 }
 
+BvhTopLevel build_top_level(RTCDevice device, const Bvh& bvh,
+                            std::span<const std::uint32_t> mesh_of,
+                            std::span<const glm::mat4> worlds,
+                            std::span<const scene::Bounds> bounds) {
+  BvhTopLevel top;
+  std::vector<scene::Bounds> boxes(worlds.size());
+  std::vector<std::uint32_t> records(worlds.size());
+  for (std::size_t i = 0; i < worlds.size(); ++i) {
+    const BvhMesh& mesh = bvh.meshes[mesh_of[i]];
+    const auto inverse = traceable_inverse(worlds[i]);
+    if (mesh.root == shared::bvh_no_link || !inverse) continue;
+    boxes[i] = world_box(bounds[mesh_of[i]], worlds[i]);
+    records[i] = static_cast<std::uint32_t>(bvh.first_placed + top.records.size());
+    const glm::mat4 rows = glm::transpose(*inverse);
+    top.records.push_back(std::bit_cast<shared::BvhNode>(shared::BvhInstance{
+        rows[0], rows[1], rows[2], mesh.root, number(i), mesh.mask, 0}));
+  }
+  const Hierarchy tree = build_hierarchy(
+      device, boxes, 1, [&](auto items) { return leaf_link(records[items[0]], 1); });
+  if (tree.root == shared::bvh_no_link) return {};
+  const std::size_t first = bvh.first_placed + top.records.size();
+  for (shared::BvhNode node : tree.nodes) {
+    node.left = moved_link(node.left, first, 0);
+    node.right = moved_link(node.right, first, 0);
+    top.records.push_back(node);
+  }
+  top.root = moved_link(tree.root, first, 0);
+  // Besides both trees: the link that leaves the mesh, and the bottom of the stack.
+  top.depth = bvh.mesh_depth + tree.depth + 2;
+  if (top.depth > shared::bvh_stack_size) {
+    throw std::length_error("the scene nests " + std::to_string(top.depth) +
+                            " boxes deep, rays can wait for " +
+                            std::to_string(shared::bvh_stack_size));
+  }
+  return top;
+}
+
 Bvh build_bvh(RTCDevice device, const scene::Scene& scene) {
   std::vector<MeshBvh> meshes(scene.meshes.size());
   tbb::parallel_for(std::size_t(0), meshes.size(), [&](std::size_t i) {
@@ -209,13 +213,19 @@ Bvh build_bvh(RTCDevice device, const scene::Scene& scene) {
     meshes[i] = build_mesh(device, mesh, scene.materials[mesh.material]);
   });
   Bvh bvh;
-  const std::vector<PlacedMesh> placed = append_meshes(bvh, meshes);
-  append_top_level(device, bvh, scene, placed);
-  if (bvh.depth > shared::bvh_stack_size) {
-    throw std::length_error("the scene nests " + std::to_string(bvh.depth) +
-                            " boxes deep, rays can wait for " +
-                            std::to_string(shared::bvh_stack_size));
+  append_meshes(bvh, meshes);
+  std::vector<std::uint32_t> mesh_of;
+  std::vector<glm::mat4> worlds;
+  for (const scene::Instance& instance : scene.instances) {
+    mesh_of.push_back(instance.mesh);
+    worlds.push_back(scene.nodes[instance.node].world);
   }
+  std::vector<scene::Bounds> bounds;
+  for (const scene::Mesh& mesh : scene.meshes) bounds.push_back(mesh.bounds);
+  const BvhTopLevel top = build_top_level(device, bvh, mesh_of, worlds, bounds);
+  bvh.records.insert(bvh.records.end(), top.records.begin(), top.records.end());
+  bvh.root = top.root;
+  bvh.depth = top.depth;
   return bvh;
 }
 

@@ -16,67 +16,101 @@ EmbreeHandle<RTCScene> new_scene(RTCDevice device) {
   return scene;
 }
 
-// Embree's own buffers: they are padded as its vector loads need and live as long as the geometry.
-EmbreeHandle<RTCGeometry> new_triangles(RTCDevice device, const scene::Mesh& mesh) {
-  EmbreeHandle<RTCGeometry> geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-  auto* positions = static_cast<glm::vec3*>(
-      rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                              sizeof(glm::vec3), mesh.vertices.size()));
-  auto* indices = static_cast<std::uint32_t*>(
-      rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                              3 * sizeof(std::uint32_t), mesh.indices.size() / 3));
-  check_embree(device, "make room for a mesh");
-  std::transform(mesh.vertices.begin(), mesh.vertices.end(), positions,
-                 [](const shared::Vertex& vertex) { return vertex.position; });
-  std::copy(mesh.indices.begin(), mesh.indices.end(), indices);
-  return geometry;
-}
-
 }  // namespace
 
-EmbreeScene::EmbreeScene(RTCDevice device, const scene::Scene& scene,
-                         std::span<const std::uint8_t> alpha_heap)
-    : masks_(scene.meshes.size()), meshes_(scene.meshes.size()), top_(new_scene(device)) {
-  tbb::parallel_for(std::size_t(0), scene.meshes.size(),
-                    [&](std::size_t i) { add_mesh(device, scene, i, alpha_heap); });
-  for (std::size_t i = 0; i < scene.instances.size(); ++i) place(device, scene, i);
-  rtcCommitScene(top_.get());
-  check_embree(device, "build the scene of instances");
-}
-
-void EmbreeScene::add_mesh(RTCDevice device, const scene::Scene& scene, std::size_t index,
-                           std::span<const std::uint8_t> alpha_heap) {
-  const scene::Mesh& mesh = scene.meshes[index];
-  const shared::Material& material = scene.materials[mesh.material];
+EmbreeMesh::EmbreeMesh(RTCDevice device, const scene::Mesh& mesh, const shared::Material& material,
+                       std::span<const std::uint8_t> alpha_heap, Use use) {
   const Coverage seen = coverage(material);
   if (seen == Coverage::none || mesh.indices.size() < 3) return;
-  const EmbreeHandle<RTCGeometry> geometry = new_triangles(device, mesh);
+  geometry_.reset(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+  // Embree's own buffers: they are padded as its vector loads need and live as long as the geometry.
+  positions_ = static_cast<glm::vec3*>(
+      rtcSetNewGeometryBuffer(geometry_.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                              sizeof(glm::vec3), mesh.vertices.size()));
+  auto* indices = static_cast<std::uint32_t*>(
+      rtcSetNewGeometryBuffer(geometry_.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                              3 * sizeof(std::uint32_t), mesh.indices.size() / 3));
+  check_embree(device, "make room for a mesh");
+  std::ranges::transform(mesh.vertices, positions_, &shared::Vertex::position);
+  std::ranges::copy(mesh.indices, indices);
   if (seen == Coverage::masked) {
-    masks_[index] = std::make_unique<Mask>(Mask{make_alpha_mask(mesh, material), alpha_heap});
-    rtcSetGeometryUserData(geometry.get(), const_cast<Mask*>(masks_[index].get()));
-    rtcSetGeometryIntersectFilterFunction(geometry.get(), let_through);
-    rtcSetGeometryOccludedFilterFunction(geometry.get(), let_through);
+    mask_ = std::make_unique<Mask>(Mask{make_alpha_mask(mesh, material), alpha_heap});
+    rtcSetGeometryUserData(geometry_.get(), const_cast<Mask*>(mask_.get()));
+    rtcSetGeometryIntersectFilterFunction(geometry_.get(), let_through);
+    rtcSetGeometryOccludedFilterFunction(geometry_.get(), let_through);
   }
-  rtcCommitGeometry(geometry.get());
-  meshes_[index] = new_scene(device);
-  rtcAttachGeometry(meshes_[index].get(), geometry.get());
-  rtcCommitScene(meshes_[index].get());
+  scene_ = new_scene(device);
+  if (use == Use::deforming) {
+    rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_DYNAMIC);
+    rtcSetGeometryBuildQuality(geometry_.get(), RTC_BUILD_QUALITY_REFIT);
+  }
+  rtcCommitGeometry(geometry_.get());
+  rtcAttachGeometry(scene_.get(), geometry_.get());
+  rtcCommitScene(scene_.get());
   check_embree(device, "build a mesh");
 }
 
-void EmbreeScene::place(RTCDevice device, const scene::Scene& scene, std::size_t instance) {
-  const auto& [mesh, node] = scene.instances[instance];
-  const glm::mat4& world = scene.nodes[node].world;
-  if (!meshes_[mesh] || !traceable_inverse(world)) return;
-  const EmbreeHandle<RTCGeometry> geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE));
-  rtcSetGeometryInstancedScene(geometry.get(), meshes_[mesh].get());
-  rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &world);
-  rtcCommitGeometry(geometry.get());
-  rtcAttachGeometryByID(top_.get(), geometry.get(), static_cast<unsigned>(instance));
-  check_embree(device, "place a mesh");
+void EmbreeMesh::refit(std::span<const shared::Vertex> vertices) {
+  if (!scene_) return;
+  std::ranges::transform(vertices, positions_, &shared::Vertex::position);
+  rtcUpdateGeometryBuffer(geometry_.get(), RTC_BUFFER_TYPE_VERTEX, 0);
+  rtcCommitGeometry(geometry_.get());
+  rtcCommitScene(scene_.get());
 }
 
-void EmbreeScene::let_through(const RTCFilterFunctionNArguments* arguments) {
+std::vector<std::shared_ptr<EmbreeMesh>> make_embree_meshes(
+    RTCDevice device, const scene::Scene& scene, std::span<const std::uint8_t> alpha_heap) {
+  std::vector<std::shared_ptr<EmbreeMesh>> meshes(scene.meshes.size());
+  tbb::parallel_for(std::size_t(0), meshes.size(), [&](std::size_t i) {
+    const scene::Mesh& mesh = scene.meshes[i];
+    meshes[i] = std::make_shared<EmbreeMesh>(device, mesh, scene.materials[mesh.material],
+                                             alpha_heap, EmbreeMesh::Use::rigid);
+  });
+  return meshes;
+}
+
+EmbreeScene::EmbreeScene(RTCDevice device, const scene::Scene& scene,
+                         std::vector<std::shared_ptr<EmbreeMesh>> meshes)
+    : device_(device), meshes_(std::move(meshes)), top_(new_scene(device)) {
+  for (const auto& [mesh, node] : scene.instances) {
+    placed_.push_back({mesh, nullptr});
+    if (!meshes_[mesh]->handle()) continue;
+    const std::size_t index = placed_.size() - 1;
+    auto& geometry = placed_.back().geometry;
+    geometry.reset(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE));
+    rtcSetGeometryInstancedScene(geometry.get(), meshes_[mesh]->handle());
+    rtcAttachGeometryByID(top_.get(), geometry.get(), static_cast<unsigned>(index));
+    place(index, scene.nodes[node].world);
+  }
+  check_embree(device, "place meshes");
+  commit();
+}
+
+void EmbreeScene::place(std::size_t instance, const glm::mat4& world) {
+  const RTCGeometry geometry = placed_[instance].geometry.get();
+  if (!geometry) return;
+  if (traceable_inverse(world)) {
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &world);
+    rtcEnableGeometry(geometry);
+  } else {
+    rtcDisableGeometry(geometry);
+  }
+  rtcCommitGeometry(geometry);
+}
+
+void EmbreeScene::refit(std::uint32_t mesh, std::span<const shared::Vertex> vertices) {
+  meshes_[mesh]->refit(vertices);
+  for (const auto& [own, geometry] : placed_) {
+    if (own == mesh && geometry) rtcCommitGeometry(geometry.get());
+  }
+}
+
+void EmbreeScene::commit() {
+  rtcCommitScene(top_.get());
+  check_embree(device_, "build the scene of instances");
+}
+
+void EmbreeMesh::let_through(const RTCFilterFunctionNArguments* arguments) {
   const auto& [mask, heap] = *static_cast<const Mask*>(arguments->geometryUserPtr);
   const unsigned lanes = arguments->N;
   for (unsigned i = 0; i < lanes; ++i) {

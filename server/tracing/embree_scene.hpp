@@ -11,16 +11,19 @@
 
 namespace heliograph::tracing {
 
-/// A scene in Embree's hands: one Embree scene per mesh, and one of instances whose geometry
-/// numbers are indices among the scene's instances.
-class EmbreeScene {
+/// One mesh in Embree's hands, ready to be placed any number of times.
+class EmbreeMesh {
  public:
-  /// Keeps no reference to `scene`; `alpha_heap` is the scene's and must stay alive.
-  /// @throws std::runtime_error when Embree fails
-  EmbreeScene(RTCDevice device, const scene::Scene& scene,
-              std::span<const std::uint8_t> alpha_heap);
+  enum class Use { rigid, deforming };
 
-  RTCScene handle() const { return top_.get(); }
+  /// `alpha_heap` is the scene's and must stay alive.
+  EmbreeMesh(RTCDevice device, const scene::Mesh& mesh, const shared::Material& material,
+             std::span<const std::uint8_t> alpha_heap, Use use);
+
+  /// Null where rays meet nothing.
+  RTCScene handle() const { return scene_.get(); }
+  /// Refits a deforming mesh to its moved vertices.
+  void refit(std::span<const shared::Vertex> vertices);
 
  private:
   struct Mask {
@@ -29,12 +32,41 @@ class EmbreeScene {
   };
 
   static void let_through(const RTCFilterFunctionNArguments* arguments);
-  void add_mesh(RTCDevice device, const scene::Scene& scene, std::size_t index,
-                std::span<const std::uint8_t> alpha_heap);
-  void place(RTCDevice device, const scene::Scene& scene, std::size_t instance);
 
-  std::vector<std::unique_ptr<const Mask>> masks_;  // by mesh, null where rays pass nowhere
-  std::vector<EmbreeHandle<RTCScene>> meshes_;      // null where rays meet nothing
+  std::unique_ptr<const Mask> mask_;  // null where rays pass nowhere
+  EmbreeHandle<RTCGeometry> geometry_;
+  EmbreeHandle<RTCScene> scene_;
+  glm::vec3* positions_ = nullptr;  // the geometry's own
+};
+
+/// All meshes of a scene. @throws std::runtime_error when Embree fails
+std::vector<std::shared_ptr<EmbreeMesh>> make_embree_meshes(
+    RTCDevice device, const scene::Scene& scene, std::span<const std::uint8_t> alpha_heap);
+
+/// Placed meshes; their geometry numbers are indices among the scene's instances.
+class EmbreeScene {
+ public:
+  /// In the pose of `scene`, to which it keeps no reference. @throws std::runtime_error
+  EmbreeScene(RTCDevice device, const scene::Scene& scene,
+              std::vector<std::shared_ptr<EmbreeMesh>> meshes);
+
+  RTCScene handle() const { return top_.get(); }
+  const std::vector<std::shared_ptr<EmbreeMesh>>& meshes() const { return meshes_; }
+
+  /// What follows takes effect with commit().
+  void place(std::size_t instance, const glm::mat4& world);
+  void refit(std::uint32_t mesh, std::span<const shared::Vertex> vertices);
+  void commit();
+
+ private:
+  struct Placed {
+    std::uint32_t mesh;
+    EmbreeHandle<RTCGeometry> geometry;  // null where rays meet nothing
+  };
+
+  RTCDevice device_;
+  std::vector<std::shared_ptr<EmbreeMesh>> meshes_;
+  std::vector<Placed> placed_;  // by instance
   EmbreeHandle<RTCScene> top_;
 };
 

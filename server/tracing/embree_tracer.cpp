@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "shaders/shared/ray.h"
 #include "tracing/embree.hpp"
@@ -15,17 +16,32 @@
 namespace heliograph::tracing {
 namespace {
 
-class EmbreeStructure : public AccelerationStructure {
+class EmbreeStructure : public virtual AccelerationStructure {
  public:
-  EmbreeStructure(RTCDevice device, const scene::Scene& scene, const gpu::Buffer& alpha_heap)
-      : scene_(device, scene,
-               {reinterpret_cast<const std::uint8_t*>(alpha_heap.mapped()), alpha_heap.size()}) {}
+  EmbreeStructure(RTCDevice device, const scene::Scene& scene,
+                  std::vector<std::shared_ptr<EmbreeMesh>> meshes)
+      : scene_(device, scene, std::move(meshes)) {}
 
-  RTCScene handle() const { return scene_.handle(); }
+  const EmbreeScene& scene() const { return scene_; }
 
- private:
+ protected:
   EmbreeScene scene_;
 };
+
+class MovingEmbreeStructure : public EmbreeStructure, public MovingStructure {
+ public:
+  using EmbreeStructure::EmbreeStructure;
+
+  void update(const Movement& movement) override {
+    for (const Movement::Mesh& mesh : movement.deformed) scene_.refit(mesh.mesh, mesh.vertices);
+    for (const std::uint32_t i : movement.moved) scene_.place(i, movement.worlds[i]);
+    if (!movement.deformed.empty() || !movement.moved.empty()) scene_.commit();
+  }
+};
+
+std::span<const std::uint8_t> mapped_bytes(const gpu::Buffer& buffer) {
+  return {reinterpret_cast<const std::uint8_t*>(buffer.mapped()), buffer.size()};
+}
 
 template <typename Element>
 Element* mapped(const gpu::FramePlan& plan, gpu::BufferRef buffer) {
@@ -59,13 +75,29 @@ class EmbreeTracer : public RayTracer {
 
   std::shared_ptr<const AccelerationStructure> build(const scene::Scene& scene,
                                                      const SceneBuffers& buffers) const override {
-    return std::make_shared<EmbreeStructure>(embree_.get(), scene, buffers.alpha_heap);
+    return std::make_shared<EmbreeStructure>(
+        embree_.get(), scene,
+        make_embree_meshes(embree_.get(), scene, mapped_bytes(buffers.alpha_heap)));
+  }
+
+  // Shares the meshes that keep their shape; they hold on to what they need.
+  std::unique_ptr<MovingStructure> build_moving(std::shared_ptr<const AccelerationStructure> rest,
+                                                const scene::Scene& scene,
+                                                const SceneTables& tables) const override {
+    auto meshes = dynamic_cast<const EmbreeStructure&>(*rest).scene().meshes();
+    for (const scene::Deformation& deformation : scene.deformations) {
+      const scene::Mesh& mesh = scene.meshes[deformation.mesh];
+      meshes[deformation.mesh] = std::make_shared<EmbreeMesh>(
+          embree_.get(), mesh, scene.materials[mesh.material], mapped_bytes(tables.alpha_heap),
+          EmbreeMesh::Use::deforming);
+    }
+    return std::make_unique<MovingEmbreeStructure>(embree_.get(), scene, std::move(meshes));
   }
 
   void trace_closest(gpu::FramePlan& plan, const std::string& name,
                      const AccelerationStructure& structure, const RayStream& rays,
                      gpu::BufferRef hits) const override {
-    const RTCScene scene = dynamic_cast<const EmbreeStructure&>(structure).handle();
+    const RTCScene scene = dynamic_cast<const EmbreeStructure&>(structure).scene().handle();
     plan.host(name,
               [&plan, scene, rays, hits] {
                 trace_batches<shared::Hit>(plan, rays, hits,
@@ -81,7 +113,7 @@ class EmbreeTracer : public RayTracer {
   void trace_any(gpu::FramePlan& plan, const std::string& name,
                  const AccelerationStructure& structure, const RayStream& rays,
                  gpu::BufferRef occluded) const override {
-    const RTCScene scene = dynamic_cast<const EmbreeStructure&>(structure).handle();
+    const RTCScene scene = dynamic_cast<const EmbreeStructure&>(structure).scene().handle();
     plan.host(name,
               [&plan, scene, rays, occluded] {
                 trace_batches<std::uint32_t>(plan, rays, occluded,

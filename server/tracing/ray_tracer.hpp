@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "gpu/frame_plan.hpp"
@@ -22,6 +23,20 @@ struct SceneBuffers {
   gpu::Buffer alpha_heap;  // bytes, four to a uint; also a uniform texel buffer
 };
 
+/// The same tables as one renderer sees them in its pose of the moment. What never moves is the
+/// shared table itself; vertices of meshes that deform, instances and lights of a scene with clips
+/// are the renderer's own. Bind these, never SceneBuffers, wherever a frame reads the scene: their
+/// contents change between frames, the buffers stay the same as long as the plan.
+struct SceneTables {
+  const gpu::Buffer& vertices;
+  const gpu::Buffer& indices;
+  const gpu::Buffer& meshes;
+  const gpu::Buffer& instances;
+  const gpu::Buffer& materials;
+  const gpu::Buffer& lights;
+  const gpu::Buffer& alpha_heap;
+};
+
 /// A stream of rays in device buffers: `count` holds a shared::RayCount, `rays` shared::Ray.
 struct RayStream {
   gpu::BufferRef count;
@@ -34,6 +49,28 @@ struct RayStream {
 class AccelerationStructure {
  public:
   virtual ~AccelerationStructure() = default;
+};
+
+/// What changed since a moving structure was last told.
+struct Movement {
+  struct Mesh {
+    std::uint32_t mesh;
+    std::span<const shared::Vertex> vertices;  // of the whole mesh, as SceneTables::vertices has it
+    scene::Bounds bounds;                      // mesh space
+  };
+  std::span<const glm::mat4> worlds;     // mesh -> world, of every instance
+  std::span<const std::uint32_t> moved;  // instances whose matrix changed
+  std::span<const Mesh> deformed;        // meshes whose vertices changed
+};
+
+/// One renderer's structure over a scene that moves. It shares with the structure at rest whatever
+/// stays as it is, and refits or builds anew only what moved.
+class MovingStructure : public virtual AccelerationStructure {
+ public:
+  /// Brings the structure into the pose that `movement` describes. Called between frames, on the
+  /// thread that executes plans, never while one that traces this structure runs: plans that were
+  /// declared with it stay valid and see the new pose in their next frame.
+  virtual void update(const Movement& movement) = 0;
 };
 
 /// Answers rays. Every other shader is the same whatever traces. Alpha-masked surfaces let rays
@@ -49,6 +86,13 @@ class RayTracer {
   /// Thread safe.
   virtual std::shared_ptr<const AccelerationStructure> build(const scene::Scene& scene,
                                                              const SceneBuffers& buffers) const = 0;
+  /// A structure for one renderer, in the pose of `scene` until it is updated. Its instances may be
+  /// placed anew; its meshes keep their triangles, and those named by `scene.deformations` may
+  /// change their vertices. Only for scenes with clips. `rest` is what build() made of it; `tables` are the
+  /// renderer's own and outlive the structure. Keeps no reference to `scene`. Thread safe.
+  virtual std::unique_ptr<MovingStructure> build_moving(
+      std::shared_ptr<const AccelerationStructure> rest, const scene::Scene& scene,
+      const SceneTables& tables) const = 0;
 
   /// Adds the pass `name` that writes one shared::Hit per ray.
   virtual void trace_closest(gpu::FramePlan& plan, const std::string& name,
@@ -64,5 +108,11 @@ class RayTracer {
 std::unique_ptr<RayTracer> make_software_tracer(const gpu::Device& device);
 /// Embree on the mapped ray buffers; CPU devices only. @throws gpu::GpuError on others
 std::unique_ptr<RayTracer> make_embree_tracer(const gpu::Device& device);
+/// The driver's hierarchy, walked by a compute shader. @throws gpu::GpuError where the device lacks
+/// VK_KHR_ray_query
+std::unique_ptr<RayTracer> make_ray_query_tracer(const gpu::Device& device);
+/// The driver's hierarchy and the driver's way to walk it. @throws gpu::GpuError where the device
+/// lacks VK_KHR_ray_tracing_pipeline
+std::unique_ptr<RayTracer> make_ray_pipeline_tracer(const gpu::Device& device);
 
 }  // namespace heliograph::tracing

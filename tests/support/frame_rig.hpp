@@ -1,6 +1,7 @@
 #pragma once
 
 #include "render/frame.hpp"
+#include "render/moving_scene.hpp"
 #include "render/view_constants.hpp"
 #include "tests/support/engine.hpp"
 #include "tests/support/scene_builder.hpp"
@@ -24,13 +25,16 @@ class FrameRig {
   const render::FrameInputs& inputs() const { return inputs_; }
   VkDescriptorSet frame_set() const { return frame_set_; }
   const shared::FrameConstants& constants() const { return constants_; }
-  const render::SceneResources& scene() const { return *scene_; }
+  const render::SceneResources& scene() const { return moving_.rest(); }
+  render::MovingScene& moving() { return moving_; }
 
   /// The next frame's view: what was current becomes previous.
   void set_view(const scene::Camera& camera, std::uint32_t sample = 0);
   void set_settings(const protocol::Settings& settings) { settings_ = settings; }
   /// Samples already in the accumulated picture.
   void set_accumulated(std::uint32_t samples) { samples_ = samples; }
+  /// Time from the frame before to the next one.
+  void set_seconds(float seconds) { seconds_ = seconds; }
 
   /// An image that the test fills: `texels` of the image's format for every pixel, row 0 on top.
   template <typename Texel>
@@ -52,7 +56,7 @@ class FrameRig {
 
  private:
   render::Engine::Parts& parts_;
-  std::shared_ptr<const render::SceneResources> scene_;
+  render::MovingScene moving_;
   RigOptions options_;
   protocol::Settings settings_;
   shared::FrameConstants constants_{};

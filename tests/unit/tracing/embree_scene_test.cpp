@@ -22,7 +22,8 @@ struct Answers {
 
 Answers trace(const scene::Scene& scene, std::span<const shared::Ray> rays) {
   const auto device = make_embree_device();
-  const EmbreeScene built(device.get(), scene, scene.alpha_heap);
+  const EmbreeScene built(device.get(), scene,
+                          make_embree_meshes(device.get(), scene, scene.alpha_heap));
   Answers answers{std::vector<shared::Hit>(rays.size()), std::vector<std::uint32_t>(rays.size())};
   for (std::size_t i = 0; i < rays.size(); i += embree_batch) {
     const auto batch = rays.subspan(i, std::min(embree_batch, rays.size() - i));
