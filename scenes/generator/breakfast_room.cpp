@@ -53,7 +53,7 @@ BreakfastMaterials add_materials(Document& document) {
   m.lemon = palette.add("lemon", terracotta("lemon", {0.96f, 0.80f, 0.16f}, 3110));
   m.steel = palette.add("steel", brushed_metal("steel", {0.90f, 0.89f, 0.87f}, 0.16f, 3111), true);
   m.brass = palette.add("brass", brushed_metal("brass", {0.93f, 0.77f, 0.45f}, 0.24f, 3112), true);
-  m.bulb_cord = palette.add_plain("cord", {0.05f, 0.05f, 0.05f}, 0.6f, 0.0f);
+  m.bulb_cord = palette.add_plain("cord", {0.05f, 0.05f, 0.05f}, 0.55f, 0.0f);
   m.picture_frame = palette.add("picture_frame", gold());
   m.toy = palette.add("toy", checker("toy", {0.90f, 0.86f, 0.76f}, {0.74f, 0.13f, 0.10f}, 4, 1.0f));
   for (int k = 0; k < 3; ++k) {

@@ -9,6 +9,9 @@
 namespace heliograph::scenes {
 namespace {
 
+// Brings an upward facing surface to irradiance pi.
+constexpr float aperture = 0.403f;
+
 /// A rectangle at distance 1 that looks at the middle of the room.
 struct SoftBox {
   float elevation;  // degrees, as direction_to_sun
@@ -69,7 +72,7 @@ Environment make_studio(int width, int height) {
         for (const SoftBox& box : boxes) radiance += box.radiance * coverage(box, direction);
         sum += radiance;
       }
-      studio.at(x, y) = sum / float(grid * grid);
+      studio.at(x, y) = sum * (aperture / float(grid * grid));
     }
   }
   return studio;
