@@ -1,6 +1,7 @@
 // What follows from declared reads and writes before anything runs: checks, barriers, views.
 
 #include <algorithm>
+#include <cstring>
 #include <set>
 
 #include "gpu/frame_plan_parts.hpp"
@@ -141,6 +142,28 @@ void FramePlan::list_views() {
       views_.push_back({resource.name, text, {use.resource}});
     }
   }
+}
+
+std::vector<PassWork> FramePlan::work() const {
+  std::vector<PassWork> all;
+  for (const Pass& pass : passes_) {
+    PassWork work{.name = pass.name};
+    for (const auto& use : pass.all_uses()) {
+      const Resource& resource = resources_[use.resource];
+      if (const Image* image = resource.images[0]) {
+        const auto& desc = image->desc();
+        const std::uint64_t texels = std::uint64_t{desc.extent.width} * desc.extent.height;
+        work.image_bytes += texels * texel_bytes(desc.format) * (use.reads + use.writes);
+      } else if (work.entries == 0 && resource.name.ends_with(".ray_count")) {
+        const auto count = download_buffer(device_, *resource.buffer, sizeof(std::uint32_t));
+        std::uint32_t entries = 0;
+        std::memcpy(&entries, count.data(), sizeof entries);
+        work.entries = entries;
+      }
+    }
+    all.push_back(std::move(work));
+  }
+  return all;
 }
 
 }  // namespace heliograph::gpu

@@ -1,0 +1,204 @@
+// Times every pass of the frame on scenes of the caller's, beside what the machine can do at best.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fstream>
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <nlohmann/json.hpp>
+
+#include "protocol/settings.hpp"
+#include "protocol/settings_json.hpp"
+#include "render/engine_parts.hpp"
+#include "render/renderer.hpp"
+#include "scene/camera.hpp"
+#include "scene/import.hpp"
+#include "tests/bench/table.hpp"
+
+namespace heliograph::bench {
+namespace {
+
+struct Options {
+  std::vector<std::filesystem::path> scenes;
+  std::vector<std::string> sizes{"640x360"};
+  std::vector<std::string> settings;
+  std::vector<std::filesystem::path> presets;
+  std::filesystem::path environment;
+  std::filesystem::path output;
+  std::string device;
+  std::string tracer = "auto";
+  int frames = 16;
+  int warm_up = 4;
+  bool still = false;
+};
+
+VkExtent2D parse_size(const std::string& text) {
+  VkExtent2D extent{};
+  char end = 0;
+  if (std::sscanf(text.c_str(), "%ux%u%c", &extent.width, &extent.height, &end) != 2 ||
+      extent.width == 0 || extent.height == 0) {
+    throw std::runtime_error("--size " + text + " must look like 640x360");
+  }
+  return extent;
+}
+
+protocol::Settings parse_settings(const Options& options) {
+  protocol::Settings settings;
+  // Measured frames never come to rest.
+  settings.accumulation.max_samples = 65536;
+  for (const auto& path : options.presets) {
+    std::ifstream file(path);
+    const auto tree = nlohmann::json::parse(file, nullptr, false);
+    if (!file || tree.is_discarded()) throw std::runtime_error("cannot read " + path.string());
+    const auto applied = protocol::apply_patch(settings, tree);
+    if (!applied) throw std::runtime_error(path.string() + ": " + applied.error().message);
+  }
+  for (const std::string& assignment : options.settings) {
+    const auto applied = protocol::set_by_path(settings, assignment);
+    if (!applied) throw std::runtime_error(applied.error().message);
+  }
+  return settings;
+}
+
+/// A floor and a wall of one mesh, for a first look without any file.
+scene::Scene plain_scene() {
+  scene::Scene scene;
+  scene.name = "two quads";
+  scene.material_names.emplace_back("plain");
+  shared::Material material{};
+  material.base_color = glm::vec4(0.8f);
+  material.roughness = 0.3f;
+  material.normal_scale = 1.0f;
+  material.ior = 1.5f;
+  for (auto* slot : {&material.base_color_texture, &material.metallic_roughness_texture,
+                     &material.normal_texture, &material.occlusion_texture,
+                     &material.emissive_texture}) {
+    slot->texture = shared::no_texture;
+  }
+  scene.materials.push_back(material);
+  scene::Mesh mesh;
+  const auto quad = [&](glm::vec3 corner, glm::vec3 u, glm::vec3 v) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    const glm::vec3 normal = glm::normalize(glm::cross(u, v));
+    for (const glm::vec3& point : {corner, corner + u, corner + u + v, corner + v}) {
+      shared::Vertex vertex{};
+      vertex.position = point;
+      vertex.normal = normal;
+      vertex.color_rg = vertex.color_ba = 0xffffffffu;
+      vertex.tangent = glm::vec4(glm::normalize(u), 1.0f);
+      mesh.vertices.push_back(vertex);
+      mesh.bounds.include(point);
+    }
+    for (const std::uint32_t index : {0u, 1u, 2u, 0u, 2u, 3u}) mesh.indices.push_back(first + index);
+  };
+  quad({-4, 0, 4}, {8, 0, 0}, {0, 0, -8});
+  quad({-4, 0, -4}, {8, 0, 0}, {0, 4, 0});
+  scene.bounds = mesh.bounds;
+  scene.meshes.push_back(std::move(mesh));
+  scene.nodes.emplace_back();
+  scene.instances.push_back({0, 0});
+  return scene;
+}
+
+scene::Camera first_camera(const scene::Scene& scene, VkExtent2D extent) {
+  if (!scene.cameras.empty()) return scene.cameras.front();
+  const float aspect = static_cast<float>(extent.width) / static_cast<float>(extent.height);
+  return scene::fit_camera(scene.bounds, scene::Camera().vertical_fov, aspect);
+}
+
+/// A small swing about the target, so that no two frames show the same view.
+scene::Camera swung(const scene::Camera& camera, int frame) {
+  const float angle = glm::radians(0.25f) * std::sin(0.3f * static_cast<float>(frame));
+  const glm::mat4 turn = glm::rotate(glm::mat4(1.0f), angle, camera.up);
+  scene::Camera moved = camera;
+  moved.eye = camera.target + glm::vec3(turn * glm::vec4(camera.eye - camera.target, 0.0f));
+  return moved;
+}
+
+nlohmann::json measure(render::Engine& engine, const scene::Scene& scene,
+                       const std::shared_ptr<const render::SceneResources>& resources,
+                       VkExtent2D extent, const Options& options) {
+  render::Renderer renderer(engine);
+  renderer.set_scene(resources);
+  renderer.set_size(extent.width, extent.height);
+  const auto accepted = renderer.set_settings(parse_settings(options));
+  if (!accepted) throw std::runtime_error(accepted.error().message);
+  const scene::Camera camera = first_camera(scene, extent);
+  Table table;
+  for (int i = 0; i < options.warm_up + options.frames; ++i) {
+    renderer.set_camera(options.still ? camera : swung(camera, i));
+    const render::Frame frame = renderer.render();
+    if (i >= options.warm_up) table.add(frame);
+  }
+  const CopyRates rates = measure_copy_rates(engine.parts().device, extent);
+  nlohmann::json summary = table.summary(renderer.work(), rates);
+  summary["scene"] = scene.name;
+  summary["triangles"] = scene.triangle_count();
+  summary["device"] = engine.device().name;
+  summary["driver"] = engine.device().driver;
+  summary["tracer"] = protocol::enum_name(engine.tracer());
+  summary["copy_gigabytes_per_second"] = {{"shader", rates.shader * 1e-9},
+                                          {"processor", rates.processor * 1e-9}};
+  return summary;
+}
+
+void run(const Options& options) {
+  render::Engine engine({.device = options.device, .tracer = options.tracer});
+  const scene::Environment environment =
+      options.environment.empty() ? scene::constant_environment(glm::vec3(1.0f))
+                                  : scene::load_environment(options.environment);
+  nlohmann::json results = nlohmann::json::array();
+  const auto measure_scene = [&](scene::Scene loaded) {
+    const auto scene = std::make_shared<const scene::Scene>(std::move(loaded));
+    const auto resources = engine.upload(scene, environment);
+    for (const std::string& size : options.sizes) {
+      const auto summary = measure(engine, *scene, resources, parse_size(size), options);
+      std::printf("\n%s, %s, %s, %s\n", scene->name.c_str(), size.c_str(),
+                  engine.device().name.c_str(),
+                  std::string(protocol::enum_name(engine.tracer())).c_str());
+      print(summary);
+      std::fflush(stdout);
+      results.push_back(summary);
+    }
+  };
+  if (options.scenes.empty()) measure_scene(plain_scene());
+  for (const auto& path : options.scenes) {
+    scene::Scene loaded = scene::import_gltf(path);
+    loaded.name = path.stem().string();
+    measure_scene(std::move(loaded));
+  }
+  if (options.output.empty()) return;
+  std::ofstream file(options.output);
+  file << results.dump(2) << '\n';
+  if (!file) throw std::runtime_error("cannot write " + options.output.string());
+}
+
+}  // namespace
+}  // namespace heliograph::bench
+
+int main(int argc, char** argv) {
+  using namespace heliograph::bench;
+  Options options;
+  CLI::App app("Times every pass of a frame while the camera moves a little: median ms, ns per "
+               "pixel, rays per second, bytes of images, and how many times longer than a copy of "
+               "as many bytes the pass takes.");
+  app.add_option("scenes", options.scenes, "glTF files; without any, two quads");
+  app.add_option("--size", options.sizes, "picture sizes, such as 640x360")->expected(1, -1);
+  app.add_option("--frames", options.frames, "measured frames")->check(CLI::PositiveNumber);
+  app.add_option("--warm-up", options.warm_up, "frames before them")->check(CLI::NonNegativeNumber);
+  app.add_option("--set", options.settings, "path=value, as `heliograph render` takes it");
+  app.add_option("--preset", options.presets, "JSON files of settings, applied in order");
+  app.add_option("--environment", options.environment, "the sky; otherwise white");
+  app.add_option("--device", options.device, "part of the device's name");
+  app.add_option("--tracer", options.tracer, "as `heliograph serve` takes it");
+  app.add_option("--output", options.output, "also write the results to this file, as JSON");
+  app.add_flag("--still", options.still, "let the camera rest");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    run(options);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "heliograph-bench: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
