@@ -1,8 +1,28 @@
-// The metallic-roughness BRDF of glTF 2.0 (appendix B): GGX with height-correlated Smith masking,
-// Schlick's Fresnel, Lambert below. Perceptual roughness; alpha = roughness^2.
+// The metallic-roughness BRDF of glTF 2.0 (appendix B): GGX with height-correlated Smith masking and
+// Schlick's Fresnel above Lambert. Two things differ from the specification, so that a white surface
+// gives back all light, whatever its roughness and metalness: what microfacets reflect more than
+// once comes back with the specular lobe (Fdez-Aguera 2019, Turquin 2019), and the diffuse lobe gets
+// what the specular lobe as a whole leaves, not what one microfacet leaves.
+// Perceptual roughness; alpha = roughness^2.
 #ifndef HELIOGRAPH_BRDF_GLSL
 #define HELIOGRAPH_BRDF_GLSL
 #include "lib/geometry.glsl"
+
+const float dielectric_f0 = 0.04;  // index of refraction 1.5
+
+/// A point of a surface as it looks from one direction.
+struct SurfaceMaterial {
+  vec3 normal;     // shading, unit length
+  vec3 geometric;  // of the triangle, on the eye's side
+  vec3 eye;        // toward the eye, unit length
+  float n_dot_v;   // > 0
+  float roughness;
+  // What a microfacet reflects: facing + grazing x (1 - v.h)^5, multiple scattering included.
+  vec3 facing;
+  vec3 grazing;
+  vec3 specular_albedo;  // share of white light from everywhere that the specular lobe gives back
+  vec3 diffuse_albedo;   // and the diffuse lobe
+};
 
 vec3 fresnel_schlick(vec3 f0, float cosine) {
   float m = clamp(1.0 - cosine, 0.0, 1.0);
@@ -25,19 +45,55 @@ float smith_visibility(float n_dot_l, float n_dot_v, float alpha) {
   return 0.5 / max(v + l, 1e-7);
 }
 
-/// BRDF x cos for light arriving along -l.
-vec3 shade_light(vec3 base_color, float metallic, float roughness, vec3 f0, vec3 n, vec3 v,
-                 vec3 l) {
-  float n_dot_l = dot(n, l);
+/// Where to look up the split sum that make_material() needs.
+float material_n_dot_v(vec3 normal, vec3 eye) { return clamp(dot(normal, eye), 1e-3, 1.0); }
+
+/// The material toward `eye`. `split` holds scale and bias of F0 at material_n_dot_v() and the
+/// roughness. glTF mixes a dielectric and a metal; so does each of their lobes.
+SurfaceMaterial make_material(vec3 base_color, float metallic, float roughness, vec3 normal,
+                              vec3 geometric, vec3 eye, vec2 split) {
+  SurfaceMaterial m;
+  m.normal = normal;
+  m.geometric = geometric;
+  m.eye = eye;
+  m.n_dot_v = material_n_dot_v(normal, eye);
+  m.roughness = roughness;
+  // 1 + F0 x regained: the multiple scattering of Turquin 2019, exact for F0 = 1.
+  float regained = 1.0 / max(split.x + split.y, 1e-3) - 1.0;
+  float dielectric_scale = 1.0 + dielectric_f0 * regained;
+  vec3 dielectric_share = vec3((1.0 - metallic) * dielectric_scale);
+  vec3 metal_share = metallic * (1.0 + base_color * regained);
+  m.facing = dielectric_share * dielectric_f0 + metal_share * base_color;
+  m.grazing = dielectric_share * (1.0 - dielectric_f0) + metal_share * (1.0 - base_color);
+  m.specular_albedo = m.facing * (split.x + split.y) + m.grazing * split.y;
+  float dielectric_albedo = (dielectric_f0 * split.x + split.y) * dielectric_scale;
+  m.diffuse_albedo = (1.0 - metallic) * (1.0 - min(dielectric_albedo, 1.0)) * base_color;
+  return m;
+}
+
+/// What a microfacet reflects of light that meets it at this cosine.
+vec3 microfacet_reflectance(SurfaceMaterial m, float v_dot_h) {
+  float x = clamp(1.0 - v_dot_h, 0.0, 1.0);
+  float x2 = x * x;
+  return m.facing + m.grazing * (x2 * x2 * x);
+}
+
+/// Specular BRDF x cos for light arriving along -l. Smooth surfaces keep a narrow lobe: a point
+/// light in a perfect mirror is a pole.
+vec3 specular_light(SurfaceMaterial m, vec3 l) {
+  float n_dot_l = dot(m.normal, l);
   if (n_dot_l <= 0.0) return vec3(0.0);
-  float n_dot_v = max(dot(n, v), 1e-4);
-  vec3 h = normalize(l + v);
-  float alpha = max(roughness * roughness, 2e-3);  // a point light in a perfect mirror is a pole
-  vec3 f = fresnel_schlick(f0, dot(v, h));
-  vec3 specular = f * ggx_distribution(clamp(dot(n, h), 0.0, 1.0), alpha) *
-                  smith_visibility(n_dot_l, n_dot_v, alpha);
-  vec3 diffuse = (1.0 - f) * (1.0 - metallic) * base_color / pi;
-  return (specular + diffuse) * n_dot_l;
+  vec3 h = normalize(l + m.eye);
+  float alpha = max(m.roughness * m.roughness, 2e-3);
+  return microfacet_reflectance(m, dot(m.eye, h)) *
+         (ggx_distribution(clamp(dot(m.normal, h), 0.0, 1.0), alpha) *
+          smith_visibility(n_dot_l, m.n_dot_v, alpha) * n_dot_l);
+}
+
+/// BRDF x cos for light arriving along -l.
+vec3 shade_light(SurfaceMaterial m, vec3 l) {
+  float n_dot_l = max(dot(m.normal, l), 0.0);
+  return specular_light(m, l) + m.diffuse_albedo * (n_dot_l / pi);
 }
 
 #endif

@@ -1,6 +1,7 @@
 // Looking up the environment: one rotation for background, reflection and diffuse light.
 #ifndef HELIOGRAPH_ENVIRONMENT_GLSL
 #define HELIOGRAPH_ENVIRONMENT_GLSL
+#include "lib/brdf.glsl"
 #include "lib/frame.glsl"
 #include "lib/equirectangular.glsl"
 
@@ -34,6 +35,24 @@ vec3 environment_irradiance(vec3 world) {
   sum += frame.irradiance[7].rgb * (n.x * n.z);
   sum += frame.irradiance[8].rgb * (n.x * n.x - n.y * n.y);
   return max(sum, vec3(0.0)) * frame.environment.x;
+}
+
+/// The material of a surface toward `eye`, with its split sum looked up.
+SurfaceMaterial surface_material(vec3 base_color, float metallic, float roughness, vec3 normal,
+                                 vec3 geometric, vec3 eye) {
+  vec2 at = vec2(material_n_dot_v(normal, eye), roughness);
+  vec2 split = textureLod(split_sum_table, at, 0.0).rg;
+  return make_material(base_color, metallic, roughness, normal, geometric, eye, split);
+}
+
+/// The environment's diffuse light, as if nothing hid it.
+vec3 environment_diffuse(SurfaceMaterial m) {
+  return m.diffuse_albedo * environment_irradiance(m.normal);
+}
+
+/// The environment's mirrored light by the split sum (Karis 2013), as if nothing hid it.
+vec3 environment_specular(SurfaceMaterial m) {
+  return m.specular_albedo * environment_reflection(reflect(-m.eye, m.normal), m.roughness);
 }
 
 #endif

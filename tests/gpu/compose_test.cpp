@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "tests/gpu/gbuffer_input.hpp"
+#include "tests/support/brdf_twin.hpp"
 
 namespace heliograph::test {
 namespace {
@@ -44,18 +45,6 @@ protocol::Settings only_direct() {
   return settings;
 }
 
-/// Appendix B of glTF 2.0 at normal incidence of the view, in double.
-double brdf(double albedo, double roughness, double cosine) {
-  const double alpha2 = std::pow(roughness, 4.0);
-  const double half = std::sqrt(0.5 * (1.0 + cosine));  // n.h = v.h
-  const double fresnel = 0.04 + 0.96 * std::pow(1.0 - half, 5.0);
-  const double d = half * half * (alpha2 - 1.0) + 1.0;
-  const double distribution = alpha2 / (std::numbers::pi * d * d);
-  const double lambda = 0.5 * (std::sqrt(1.0 + alpha2 * (1.0 / (cosine * cosine) - 1.0)) - 1.0);
-  return (1.0 - fresnel) * albedo / std::numbers::pi +
-         fresnel * distribution / (1.0 + lambda) / (4.0 * cosine);
-}
-
 TEST(Compose, SunOnADielectricPlaneIsAnalytic) {
   for (const float degrees : {0.0f, 30.0f, 60.0f, 80.0f}) {
     const float angle = glm::radians(degrees);
@@ -66,7 +55,8 @@ TEST(Compose, SunOnADielectricPlaneIsAnalytic) {
     in.settings = only_direct();
     const double albedo = std::pow(128.0 / 255.0, 2.0);
     const double cosine = std::cos(angle);
-    const double expected = 4.0 * cosine * brdf(albedo, 1.0, cosine);
+    const double expected =
+        4.0 * shade_light_twin(albedo, 0.0, 1.0, {0, 0, 1}, {std::sin(angle), 0, cosine});
     const glm::vec3 got = compose(scene, in);
     // The pixel beside the middle sees the plane from almost straight ahead.
     EXPECT_NEAR(got.x, expected, 0.01 * expected) << degrees;

@@ -46,12 +46,14 @@ TEST(Furnace, WhiteSpheresOfEveryRoughnessVanish) {
   expect_white(still, "furnace");
 }
 
-TEST(Furnace, WhiteDielectricsVanishToo) {
+TEST(Furnace, WhiteDielectricsAndHalfMetalsVanishToo) {
   SceneBuilder builder;
-  for (int i = 0; i < 5; ++i) {
-    const float roughness = 0.25f * static_cast<float>(i);
-    builder.place(builder.add_sphere(0.45f, surface(glm::vec3(1.0f), roughness)),
-                  glm::translate(glm::mat4(1.0f), {static_cast<float>(i) - 2.0f, 0, 0}));
+  for (int i = 0; i < 10; ++i) {
+    const float roughness = 0.25f * static_cast<float>(i % 5);
+    const float metallic = i < 5 ? 0.0f : 0.5f;
+    const glm::vec3 place(static_cast<float>(i % 5) - 2.0f, i < 5 ? 0.5f : -0.5f, 0);
+    builder.place(builder.add_sphere(0.45f, surface(glm::vec3(1.0f), roughness, metallic)),
+                  glm::translate(glm::mat4(1.0f), place));
   }
   Still still(builder.build(), scene::constant_environment(glm::vec3(1.0f)),
               look({0, 0, 6}, {0, 0, 0}, 36.0f), 320, 180);

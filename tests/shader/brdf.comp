@@ -10,11 +10,12 @@ ShaderOutput evaluate(uint which, ShaderInput given) {
     case 1: return ShaderOutput(vec4(smith_visibility(given.a.x, given.a.y, given.a.z)), vec4(0.0));
     case 2: return ShaderOutput(vec4(fresnel_schlick(given.a.xyz, given.a.w), 0.0), vec4(0.0));
     case 3: {
-      // a: colour, metallic; b: view, roughness; c: light; the normal is +z.
-      vec3 f0 = mix(vec3(0.04), given.a.rgb, given.a.w);
+      // a: colour, metallic; b: view, roughness; c: light; d: split sum; the normal is +z.
       vec3 n = vec3(0.0, 0.0, 1.0);
-      return ShaderOutput(vec4(shade_light(given.a.rgb, given.a.w, given.b.w, f0, n, given.b.xyz,
-                                           given.c.xyz), 0.0), vec4(0.0));
+      SurfaceMaterial m =
+          make_material(given.a.rgb, given.a.w, given.b.w, n, n, given.b.xyz, given.d.xy);
+      return ShaderOutput(vec4(shade_light(m, given.c.xyz), 0.0),
+                          vec4(specular_light(m, given.c.xyz), 0.0));
     }
     case 4: return ShaderOutput(vec4(tone_map_neutral(given.a.rgb), 0.0), vec4(0.0));
     case 5: return ShaderOutput(vec4(tone_map_aces(given.a.rgb), 0.0), vec4(0.0));

@@ -14,6 +14,13 @@ ShaderOutput evaluate(uint which, ShaderInput given) {
       LightSample s = light_at(lights[uint(given.a.x)], given.b.xyz);
       return ShaderOutput(vec4(s.direction, s.distance), vec4(s.irradiance, 0.0));
     }
+    case 4: {
+      // a: metallic, roughness, n.v; a white surface that faces +z.
+      vec3 n = vec3(0.0, 0.0, 1.0);
+      vec3 eye = vec3(sqrt(1.0 - given.a.z * given.a.z), 0.0, given.a.z);
+      SurfaceMaterial m = surface_material(vec3(1.0), given.a.x, given.a.y, n, n, eye);
+      return ShaderOutput(vec4(m.specular_albedo, 0.0), vec4(m.diffuse_albedo, 0.0));
+    }
     default: {
       // a: pixel, view Z.
       ivec2 pixel = ivec2(given.a.xy);

@@ -6,12 +6,13 @@
 #include "render/irradiance.hpp"
 #include "tests/shader/embedded.hpp"
 #include "tests/shader/random_inputs.hpp"
+#include "tests/support/brdf_twin.hpp"
 #include "tests/support/compute_harness.hpp"
 
 namespace heliograph::test {
 namespace {
 
-enum Function : std::uint32_t { irradiance, radiance, reflection, light, position };
+enum Function : std::uint32_t { irradiance, radiance, reflection, light, material, position };
 
 /// A sky without symmetry: turned or mirrored it is another one.
 glm::vec3 smooth_sky(const glm::vec3& d) {
@@ -192,6 +193,29 @@ TEST(WorldPosition, IsTheInverseOfAnOrthographicProjection) {
   camera.far_plane = 100.0f;
   expect_round_trip(camera, 0);
   expect_round_trip(camera, 7);
+}
+
+TEST(Material, SpecularAndDiffuseAlbedoOfWhiteMakeOne) {
+  const FrameRig rig(SceneBuilder().build(), look({0, 0, 3}, {0, 0, 0}));
+  std::vector<ShaderInput> inputs;
+  for (const float metallic : {0.0f, 0.5f, 1.0f}) {
+    for (const float roughness : {0.0f, 0.1f, 0.2f, 0.3f, 0.4f, 0.6f, 1.0f}) {
+      for (const float cosine : {1.0f, 0.7f, 0.3f, 0.1f, 0.02f}) {
+        inputs.push_back({.a = {metallic, roughness, cosine, 0}});
+      }
+    }
+  }
+  const auto got = ShaderFunctions(shaders::frame_functions, &rig).call(material, inputs);
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    EXPECT_NEAR(got[i].x.x + got[i].y.x, 1.0f, 1e-5f) << i;
+    if (inputs[i].a.x > 0.0f) continue;
+    // The dielectric's own share against the integral: the table is interpolated.
+    const glm::dvec2 split = split_sum_twin(inputs[i].a.z, inputs[i].a.y);
+    const double regained = 1.0 / (split.x + split.y) - 1.0;
+    const double expected = (0.04 * split.x + split.y) * (1.0 + 0.04 * regained);
+    EXPECT_NEAR(got[i].x.x, expected, 0.01)
+        << "roughness " << inputs[i].a.y << ", cosine " << inputs[i].a.z;
+  }
 }
 
 }  // namespace
