@@ -69,41 +69,66 @@ TEST(Random, NumbersLieBelowOneForEverySample) {
   }
 }
 
-TEST(Random, OnePixelsSamplesFillTheSquareEvenly) {
-  constexpr int samples = 256, cells = 8;
+/// The pairs and numbers of one pixel, sample after sample.
+std::vector<ShaderOutput> pixel_samples(const glm::uvec2& pixel, std::uint32_t count,
+                                        std::uint32_t dimension, std::uint32_t first = 0) {
+  std::vector<ShaderInput> inputs;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    inputs.push_back(input({pixel.x, pixel.y, first + i}, dimension));
+  }
+  return numbers(inputs);
+}
+
+// A net: however a square of area 1 / 2^n is cut as a power of two by a power of two, each cell
+// holds one of 2^n samples.
+TEST(Random, OnePixelsSamplesAreANetInEveryCut) {
   for (const glm::uvec2 pixel : {glm::uvec2(0, 0), {1, 0}, {639, 359}, {1917, 1078}}) {
-    for (const std::uint32_t dimension : {1u, 2u, 3u}) {
-      std::vector<ShaderInput> inputs;
-      for (std::uint32_t i = 0; i < samples; ++i) {
-        inputs.push_back(input({pixel.x, pixel.y, i}, dimension));
-      }
-      std::vector<int> counts(cells * cells), line(samples / 4);
-      for (const ShaderOutput& output : numbers(inputs)) {
-        ++counts[static_cast<int>(output.x.y * cells) * cells +
-                 static_cast<int>(output.x.x * cells)];
-        ++line[static_cast<int>(output.x.z * static_cast<float>(line.size()))];
-      }
-      // Four are due in each cell; independent numbers would leave some empty and crowd others.
-      for (const int count : counts) {
-        EXPECT_GE(count, 1);
-        EXPECT_LE(count, 8);
-      }
-      for (const int count : line) {
-        EXPECT_GE(count, 2);
-        EXPECT_LE(count, 6);
+    for (const std::uint32_t dimension : {1u, 2u, 40u}) {
+      const auto all = pixel_samples(pixel, 512, dimension);
+      for (const std::uint32_t first : {0u, 256u}) {
+        for (std::uint32_t n = 0; n <= 8; ++n) {
+          for (std::uint32_t across = 0; across <= n; ++across) {
+            std::vector<int> cells(1u << n);
+            for (std::uint32_t i = first; i < first + (1u << n); ++i) {
+              const auto x = static_cast<std::uint32_t>(all[i].x.x * float(1u << across));
+              const auto y = static_cast<std::uint32_t>(all[i].x.y * float(1u << (n - across)));
+              ++cells[y << across | x];
+            }
+            for (const int count : cells) ASSERT_EQ(count, 1) << n << " " << across;
+          }
+          std::vector<int> line(1u << n);
+          for (std::uint32_t i = first; i < first + (1u << n); ++i) {
+            ++line[static_cast<std::size_t>(all[i].x.z * float(1u << n))];
+          }
+          for (const int count : line) ASSERT_EQ(count, 1) << n;
+        }
       }
     }
   }
 }
 
-TEST(Random, NeighboursDimensionsAndSeedsAreIndependent) {
+// The same over pixels: every square of the quadtree holds a net in every sample.
+TEST(Random, SquaresOfPixelsHoldANetInEverySample) {
+  for (const std::uint32_t sample : {0u, 1u, 13u, 100000u}) {
+    std::vector<ShaderInput> inputs;
+    for (std::uint32_t i = 0; i < 64; ++i) inputs.push_back(input({8 + i % 8, 64 + i / 8, sample}));
+    std::vector<int> cells(64);
+    for (const ShaderOutput& output : numbers(inputs)) {
+      ++cells[static_cast<int>(output.x.y * 8.0f) * 8 + static_cast<int>(output.x.x * 8.0f)];
+    }
+    for (const int count : cells) EXPECT_EQ(count, 1) << sample;
+  }
+}
+
+TEST(Random, DimensionsSeedsAndDistantPixelsAreIndependent) {
   constexpr std::uint32_t size = 128;
-  std::vector<ShaderInput> inputs, other_dimension, other_seed;
+  std::vector<ShaderInput> inputs, other_dimension, other_seed, other_tile;
   for (std::uint32_t y = 0; y < size; ++y) {
     for (std::uint32_t x = 0; x < size; ++x) {
       inputs.push_back(input({x, y, 0}, 1));
       other_dimension.push_back(input({x, y, 0}, 2));
       other_seed.push_back(input({x, y, 0}, 1, 1));
+      other_tile.push_back(input({x + size, y, 0}, 1));
     }
   }
   const auto base = numbers(inputs);
@@ -111,21 +136,90 @@ TEST(Random, NeighboursDimensionsAndSeedsAreIndependent) {
   for (const ShaderOutput& output : base) {
     ++counts[static_cast<int>(output.x.y * 16.0f) * 16 + static_cast<int>(output.x.x * 16.0f)];
   }
-  EXPECT_LT(std::abs(chi_square_deviation(counts)), 4.0);
+  EXPECT_LT(chi_square_deviation(counts), 4.0);
 
-  const auto correlation = [&](const std::vector<ShaderOutput>& other, std::size_t shift) {
+  const auto correlation = [&](const std::vector<ShaderOutput>& other) {
     double sum = 0.0;
-    for (std::size_t i = 0; i + shift < base.size(); ++i) {
-      sum += (base[i].x.x - 0.5) * (other[i + shift].x.x - 0.5);
+    for (std::size_t i = 0; i < base.size(); ++i) {
+      sum += (base[i].x.x - 0.5) * (other[i].x.x - 0.5);
     }
     return sum / static_cast<double>(base.size()) * 12.0;  // the variance of one is 1 / 12
   };
   // Four standard deviations of independent numbers' correlation.
   constexpr double limit = 4.0 / size;
-  EXPECT_LT(std::abs(correlation(base, 1)), limit) << "right neighbour";
-  EXPECT_LT(std::abs(correlation(base, size)), limit) << "neighbour below";
-  EXPECT_LT(std::abs(correlation(numbers(other_dimension), 0)), limit);
-  EXPECT_LT(std::abs(correlation(numbers(other_seed), 0)), limit);
+  EXPECT_LT(std::abs(correlation(numbers(other_dimension))), limit);
+  EXPECT_LT(std::abs(correlation(numbers(other_seed))), limit);
+  EXPECT_LT(std::abs(correlation(numbers(other_tile))), limit);
+}
+
+// Dimensions with the same order of samples would lie on a few lines of their common square.
+TEST(Random, DimensionsOfOnePixelFillTheirCommonSquare) {
+  const auto one = pixel_samples({5, 9}, 1024, 1), other = pixel_samples({5, 9}, 1024, 2);
+  std::vector<int> counts(8 * 8);
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    ++counts[static_cast<int>(one[i].x.x * 8.0f) * 8 + static_cast<int>(other[i].x.x * 8.0f)];
+  }
+  EXPECT_LT(chi_square_deviation(counts), 4.0);
+}
+
+constexpr int side = 128;
+
+/// Root mean square of what is left of a picture's error after a Gaussian blur, sigma 1 pixel.
+double blurred_error(const std::vector<double>& error) {
+  constexpr int reach = 3;
+  double kernel[2 * reach + 1], total = 0.0, sum = 0.0;
+  for (int i = -reach; i <= reach; ++i) total += kernel[i + reach] = std::exp(-0.5 * i * i);
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      double value = 0.0;
+      for (int j = -reach; j <= reach; ++j) {
+        for (int i = -reach; i <= reach; ++i) {
+          const int at = (y + j + side) % side * side + (x + i + side) % side;
+          value += kernel[i + reach] * kernel[j + reach] * error[static_cast<std::size_t>(at)];
+        }
+      }
+      sum += value * value;
+    }
+  }
+  return std::sqrt(sum / (side * side)) / (total * total);
+}
+
+struct Errors {
+  double sequence, white;
+};
+
+/// How far off the estimates of half a disk's area are after a blur, from our numbers and from
+/// independent ones, with `samples` in every pixel from `first` on.
+Errors disk_errors(std::uint32_t samples, std::uint32_t first) {
+  const auto inside = [](double x, double y) { return x * x + y * y < 0.5 ? 1.0 : 0.0; };
+  const double truth = 0.5 * 0.25 * 3.14159265358979;
+  std::vector<double> ours(side * side, -truth), white(side * side, -truth);
+  RandomInputs random(3);
+  for (std::uint32_t s = first; s < first + samples; ++s) {
+    std::vector<ShaderInput> inputs;
+    for (std::uint32_t i = 0; i < side * side; ++i) {
+      inputs.push_back(input({i % side, i / side, s}, 2));
+    }
+    const auto got = numbers(inputs);
+    for (std::size_t i = 0; i < got.size(); ++i) {
+      ours[i] += inside(got[i].x.x, got[i].x.y) / samples;
+      white[i] += inside(random.uniform(0, 1), random.uniform(0, 1)) / samples;
+    }
+  }
+  return {blurred_error(ours), blurred_error(white)};
+}
+
+TEST(Random, ErrorsOfOneSampleAreOfHighFrequency) {
+  for (const std::uint32_t sample : {0u, 7u, 1234u}) {
+    const Errors errors = disk_errors(1, sample);
+    EXPECT_LT(errors.sequence, 0.75 * errors.white) << sample;
+  }
+}
+
+TEST(Random, ErrorsFallLikeOneOverTheSamples) {
+  const double few = disk_errors(4, 0).sequence, many = disk_errors(64, 0).sequence;
+  EXPECT_LT(many, few / 7.0) << "independent numbers would gain a factor of 4";
+  EXPECT_LT(many, disk_errors(64, 0).white / 3.0);
 }
 
 }  // namespace

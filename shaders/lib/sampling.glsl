@@ -1,0 +1,44 @@
+// Drawing directions from the specular lobe. Directions are in the frame of the shading normal,
+// which is +z; alpha = roughness^2.
+#ifndef HELIOGRAPH_SAMPLING_GLSL
+#define HELIOGRAPH_SAMPLING_GLSL
+#include "lib/brdf.glsl"
+
+/// A microfacet normal as seen from `view` (z > 0), drawn from a cap of the sphere (Dupuy and
+/// Benyoub 2023). alpha = 0 gives exactly +z.
+vec3 sample_visible_normal(vec3 view, float alpha, vec2 u) {
+  vec3 stretched = normalize(vec3(alpha * view.xy, view.z));
+  float angle = 2.0 * pi * u.x;
+  // From the top of the cap, 1, down to its rim, -stretched.z: never quite the rim itself.
+  float z = 1.0 - u.y * (1.0 + stretched.z);
+  float radius = sqrt(clamp(1.0 - z * z, 0.0, 1.0));
+  vec3 half_vector = vec3(radius * cos(angle), radius * sin(angle), z) + stretched;
+  return normalize(vec3(alpha * half_vector.xy, max(half_vector.z, 1e-7)));
+}
+
+/// Smith's masking of one direction, G1.
+float smith_masking(float cosine, float alpha) {
+  float a2 = alpha * alpha;
+  return 2.0 * cosine / (cosine + sqrt(cosine * cosine * (1.0 - a2) + a2));
+}
+
+/// Density per solid angle of the mirrored direction `light` when its normal came from
+/// sample_visible_normal: G1(v) D(h) / (4 n.v).
+float visible_normal_pdf(vec3 view, vec3 light, float alpha) {
+  vec3 half_vector = normalize(view + light);
+  if (half_vector.z <= 0.0) return 0.0;
+  return smith_masking(view.z, alpha) * ggx_distribution(min(half_vector.z, 1.0), alpha) /
+         (4.0 * view.z);
+}
+
+/// What a sample weighs apart from Fresnel's term, G2 / G1(v): brdf x cosine / pdf. Directions
+/// below the horizon have been masked: 0.
+float visible_normal_weight(vec3 view, vec3 light, float alpha) {
+  if (light.z <= 0.0) return 0.0;
+  float a2 = alpha * alpha;
+  float toward_view = sqrt(view.z * view.z * (1.0 - a2) + a2);
+  float toward_light = sqrt(light.z * light.z * (1.0 - a2) + a2);
+  return light.z * (view.z + toward_view) / (light.z * toward_view + view.z * toward_light);
+}
+
+#endif

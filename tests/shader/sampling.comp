@@ -1,0 +1,17 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "tests/shader/harness.glsl"
+#include "lib/sampling.glsl"
+
+// a: view, alpha; b: two random numbers, or the direction of light.
+ShaderOutput evaluate(uint which, ShaderInput given) {
+  vec3 view = given.a.xyz;
+  float alpha = given.a.w;
+  if (which == 0u) {
+    vec3 normal = sample_visible_normal(view, alpha, given.b.xy);
+    vec3 light = reflect(-view, normal);
+    return ShaderOutput(vec4(normal, visible_normal_weight(view, light, alpha)), vec4(light, 0.0));
+  }
+  return ShaderOutput(vec4(visible_normal_pdf(view, given.b.xyz, alpha),
+                           visible_normal_weight(view, given.b.xyz, alpha), 0.0, 0.0), vec4(0.0));
+}
