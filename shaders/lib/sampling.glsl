@@ -1,5 +1,5 @@
-// Drawing directions from the specular lobe. Directions are in the frame of the shading normal,
-// which is +z; alpha = roughness^2.
+// Drawing directions from the specular lobe. `view` and `light` are in the frame of the shading
+// normal, which is +z; alpha = roughness^2.
 #ifndef HELIOGRAPH_SAMPLING_GLSL
 #define HELIOGRAPH_SAMPLING_GLSL
 #include "lib/brdf.glsl"
@@ -39,6 +39,47 @@ float visible_normal_weight(vec3 view, vec3 light, float alpha) {
   float toward_view = sqrt(view.z * view.z * (1.0 - a2) + a2);
   float toward_light = sqrt(light.z * light.z * (1.0 - a2) + a2);
   return light.z * (view.z + toward_view) / (light.z * toward_view + view.z * toward_light);
+}
+
+/// The specular signal is radiance / this: what its noise has to do with the surface's colour is
+/// taken out before it is filtered and put back by composition.
+vec3 specular_demodulator(SurfaceMaterial m) { return max(m.specular_albedo, vec3(1e-3)); }
+
+/// The shading normal, or as close to it as the mirror direction stays above the triangle (Keller
+/// et al. 2017, appendix A.3): rims of coarse meshes and steep texels of normal maps mirror what
+/// lies along the surface, instead of nothing.
+vec3 reflecting_normal(SurfaceMaterial m) {
+  vec3 mirrored = reflect(-m.eye, m.normal);
+  const float least = 0.01;
+  float above = dot(mirrored, m.geometric);
+  if (above >= least || dot(m.eye, m.geometric) <= 0.0) return m.normal;
+  vec3 lifted = normalize(mirrored + m.geometric * (least - above));
+  return normalize(m.eye + lifted);
+}
+
+/// One direction of the specular lobe, world space, and what its light is multiplied by: BRDF x cos
+/// / pdf. A weight of 0 ends the path: below the horizon of the surface or of its triangle.
+struct SpecularSample {
+  vec3 direction;
+  vec3 weight;
+};
+
+SpecularSample sample_specular(SurfaceMaterial m, vec2 u) {
+  vec3 normal = reflecting_normal(m);
+  vec3 tangent, bitangent;
+  orthonormal_basis(normal, tangent, bitangent);
+  float alpha = m.roughness * m.roughness;
+  vec3 view = vec3(dot(m.eye, tangent), dot(m.eye, bitangent), max(dot(m.eye, normal), 1e-3));
+  view = normalize(view);
+  vec3 microfacet = sample_visible_normal(view, alpha, u);
+  float v_dot_h = dot(view, microfacet);
+  vec3 light = 2.0 * v_dot_h * microfacet - view;
+  SpecularSample s;
+  s.direction = normalize(tangent * light.x + bitangent * light.y + normal * light.z);
+  bool open = dot(s.direction, m.geometric) > 0.0;
+  s.weight = open ? microfacet_reflectance(m, v_dot_h) * visible_normal_weight(view, light, alpha)
+                  : vec3(0.0);
+  return s;
 }
 
 #endif
