@@ -5,7 +5,7 @@
 namespace heliograph::protocol {
 
 HELIOGRAPH_ENUM(DeviceType, cpu, integrated, discrete, virtual_, other)
-HELIOGRAPH_ENUM(TracerKind, embree, software)
+HELIOGRAPH_ENUM(TracerKind, embree, software, ray_query, ray_pipeline)
 HELIOGRAPH_ENUM(PassKind, device, host)
 HELIOGRAPH_ENUM(ImageFormat, png)
 

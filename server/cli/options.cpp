@@ -2,8 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <string>
 #include <string_view>
+#include <vector>
 
+#include "protocol/kinds.hpp"
 #include "protocol/suggestions.hpp"
 
 namespace heliograph::cli {
@@ -45,11 +48,17 @@ constexpr const char* schema_examples = R"text(Examples:
 constexpr const char* health_examples = R"text(Example:
   heliograph health --url http://127.0.0.1:9000/health/ready)text";
 
+std::vector<std::string> tracer_names() {
+  std::vector<std::string> names{"auto"};
+  for (const auto name : protocol::enum_names<protocol::TracerKind>()) names.emplace_back(name);
+  return names;
+}
+
 void add_device_options(CLI::App& command, DeviceOptions& options) {
   command.add_option("--device", options.device, "Part of the name of the Vulkan device to use")
       ->envname("HELIOGRAPH_DEVICE");
-  command.add_option("--tracer", options.tracer, "What traces rays")
-      ->check(CLI::IsMember({"auto", "embree", "software"}))
+  command.add_option("--tracer", options.tracer, "What traces rays; see \"heliograph devices\"")
+      ->check(CLI::IsMember(tracer_names()))
       ->capture_default_str()
       ->envname("HELIOGRAPH_TRACER");
 }

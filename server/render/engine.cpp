@@ -1,5 +1,6 @@
 #include "render/engine_parts.hpp"
 #include "render/scene_resources.hpp"
+#include "tracing/tracer_choice.hpp"
 
 namespace heliograph::render {
 namespace {
@@ -19,13 +20,13 @@ protocol::DeviceType device_type(VkPhysicalDeviceType type) {
   }
 }
 
-std::unique_ptr<tracing::RayTracer> make_tracer(const gpu::Device& device,
-                                                const std::string& wanted) {
-  if (wanted == "embree" || (wanted == "auto" && device.is_cpu())) {
-    return tracing::make_embree_tracer(device);
+/// "embree, software": the first is what the device gets unasked.
+std::string tracer_names(const gpu::DeviceReport& report) {
+  std::string names;
+  for (const protocol::TracerKind kind : tracing::offered_tracers(report)) {
+    names += (names.empty() ? "" : ", ") + std::string(protocol::enum_name(kind));
   }
-  if (wanted == "software" || wanted == "auto") return tracing::make_software_tracer(device);
-  throw gpu::GpuError("there is no tracer \"" + wanted + "\": choose auto, embree or software");
+  return names;
 }
 
 }  // namespace
@@ -34,7 +35,7 @@ Engine::Parts::Parts(const EngineOptions& options)
     : instance(options.validation),
       device(instance, {options.device, options.cache_folder}),
       programs(device),
-      tracer(make_tracer(device, options.tracer)),
+      tracer(tracing::make_tracer(options.tracer, device)),
       split_sum_table(make_split_sum_table(device, programs)),
       around(make_environment_sampler(device, true)),
       clamped(make_environment_sampler(device, false)),
@@ -78,12 +79,10 @@ std::string describe_devices(const EngineOptions& options) {
       text += std::string(report.chosen ? "* " : "  ") + report.name + ", " +
               gpu::type_name(report.type) + ", Vulkan " + report.version + ", " + report.driver +
               "\n    " + (report.chosen ? "chosen: " : "not chosen: ") + report.reason + "\n";
-      if (!report.chosen) continue;
-      chosen = true;
-      const bool cpu = report.type == VK_PHYSICAL_DEVICE_TYPE_CPU;
-      text += std::string("    default ray tracer: ") +
-              (cpu ? "embree (its memory is ours)" : "software (our BVH in a compute shader)") +
-              "\n";
+      if (report.missing.empty()) {
+        text += "    ray tracers, the default first: " + tracer_names(report) + "\n";
+      }
+      chosen |= report.chosen;
     }
     if (!chosen) {
       text += "  none will do; mesa-vulkan-drivers has one for machines without a GPU\n";

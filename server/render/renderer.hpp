@@ -17,7 +17,7 @@ namespace heliograph::render {
 
 struct EngineOptions {
   std::string device;                  // part of a device's name, or empty: the best there is
-  std::string tracer = "auto";         // auto, embree, software
+  std::string tracer = "auto";         // auto, or a protocol::TracerKind
   bool validation = false;             // Vulkan validation layers on, every message an error
   std::filesystem::path cache_folder;  // pipeline cache; empty: none
 };

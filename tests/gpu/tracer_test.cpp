@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -10,7 +11,7 @@
 
 #include "scene/import.hpp"
 #include "tests/support/traced_scene.hpp"
-#include "tracing/ray_tracer.hpp"
+#include "tracing/tracer_choice.hpp"
 
 namespace heliograph::tracing {
 namespace {
@@ -78,14 +79,25 @@ class TracedScene {
   std::shared_ptr<const AccelerationStructure> structure_;
 };
 
+gpu::DeviceOptions device_options() {
+  const char* device = std::getenv("HELIOGRAPH_TEST_DEVICE");
+  return {.wanted = device ? device : "", .cache_folder = {}};
+}
+
+/// The tests' device with every tracer that it offers.
 struct Rig {
+  Rig() {
+    for (const protocol::TracerKind kind : offered_tracers(device.report())) {
+      tracers.emplace(kind, make_tracer(kind, device));
+    }
+  }
+
   gpu::Instance instance{true};
-  gpu::Device device{instance, {}};
-  std::unique_ptr<RayTracer> software = make_software_tracer(device);
-  std::unique_ptr<RayTracer> embree = make_embree_tracer(device);
+  gpu::Device device{instance, device_options()};
+  std::map<protocol::TracerKind, std::unique_ptr<RayTracer>> tracers;
 };
 
-class TracerTest : public testing::TestWithParam<protocol::TracerKind> {
+class TracersTest : public testing::Test {
  protected:
   static void SetUpTestSuite() { rig_ = std::make_unique<Rig>(); }
   static void TearDownTestSuite() { rig_.reset(); }
@@ -93,17 +105,26 @@ class TracerTest : public testing::TestWithParam<protocol::TracerKind> {
     EXPECT_EQ(rig_->instance.validation_messages(), 0u) << "the validation layers complained";
   }
 
-  static const RayTracer& tracer(protocol::TracerKind kind) {
-    return kind == protocol::TracerKind::embree ? *rig_->embree : *rig_->software;
+  static bool offered(protocol::TracerKind kind) { return rig_->tracers.contains(kind); }
+  static std::string lacking(protocol::TracerKind kind) {
+    return rig_->device.report().name + " (" + rig_->device.report().driver +
+           ") does not offer the tracer " + std::string(protocol::enum_name(kind));
   }
   static TracedScene traced(const scene::Scene& scene, protocol::TracerKind kind) {
-    return {rig_->device, tracer(kind), scene};
+    return {rig_->device, *rig_->tracers.at(kind), scene};
   }
 
   static std::unique_ptr<Rig> rig_;
 };
 
-std::unique_ptr<Rig> TracerTest::rig_;
+std::unique_ptr<Rig> TracersTest::rig_;
+
+class TracerTest : public TracersTest, public testing::WithParamInterface<protocol::TracerKind> {
+ protected:
+  void SetUp() override {
+    if (!offered(GetParam())) GTEST_SKIP() << lacking(GetParam());
+  }
+};
 
 /// Share of rays with different answers.
 double disagreement(const Answers& a, const Answers& b) {
@@ -243,30 +264,42 @@ TEST_P(TracerTest, SeesBothFacesOfMirroredInstances) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(, TracerTest,
-                         testing::Values(protocol::TracerKind::software,
-                                         protocol::TracerKind::embree),
-                         [](const auto& test) {
-                           return test.param == protocol::TracerKind::embree ? "Embree"
-                                                                             : "Software";
-                         });
+INSTANTIATE_TEST_SUITE_P(, TracerTest, testing::ValuesIn(all_tracers), [](const auto& test) {
+  switch (test.param) {
+    case protocol::TracerKind::embree:
+      return "Embree";
+    case protocol::TracerKind::software:
+      return "Software";
+    case protocol::TracerKind::ray_query:
+      return "RayQuery";
+    default:
+      return "RayPipeline";
+  }
+});
 
-class AssetTest : public TracerTest {
+class AssetTest : public TracersTest {
  protected:
   static void expect_agreement(const char* file) {
     const char* assets = std::getenv("HELIOGRAPH_TEST_ASSETS");
     if (!assets) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS names no folder of scenes";
     const scene::Scene scene = scene::import_gltf(std::filesystem::path(assets) / file);
     const std::vector<shared::Ray> rays = random_rays(scene, 200'000, 8);
-    const Answers software = traced(scene, protocol::TracerKind::software).trace(rays);
-    const Answers embree = traced(scene, protocol::TracerKind::embree).trace(rays);
-    const double share = disagreement(software, embree);
-    RecordProperty("disagreement", std::to_string(share));
-    RecordProperty("hits", std::to_string(hit_count(embree)));
-    EXPECT_GT(hit_count(embree), rays.size() / 50);
-    EXPECT_LT(share, 1e-3);
+    const Answers expected = traced(scene, protocol::TracerKind::software).trace(rays);
+    EXPECT_GT(hit_count(expected), rays.size() / 50);
+    for (const auto& [kind, tracer] : rig_->tracers) {
+      const double share = disagreement(traced(scene, kind).trace(rays), expected);
+      RecordProperty(std::string(protocol::enum_name(kind)), std::to_string(share));
+      EXPECT_LT(share, 1e-3) << protocol::enum_name(kind) << " against software";
+    }
   }
 };
+
+TEST_F(TracersTest, WhatIsNotOfferedIsRefused) {
+  for (const protocol::TracerKind kind : all_tracers) {
+    if (offered(kind)) continue;
+    EXPECT_THROW(make_tracer(kind, rig_->device), gpu::GpuError) << protocol::enum_name(kind);
+  }
+}
 
 TEST_F(AssetTest, TracersAgreeOnAHelmet) {
   expect_agreement("gltf/DamagedHelmet.glb");

@@ -17,7 +17,7 @@ class Methods(ServerTestCase):
             self.assertEqual(hello["codecs"], ["jpeg"])
             self.assertEqual(hello["limits"]["ack_window"], 2)
             self.assertTrue(hello["device"]["name"])
-            self.assertIn(hello["tracer"], ("embree", "software"))
+            self.assertIn(hello["tracer"], ("embree", "software", "ray_query", "ray_pipeline"))
             async with Viewer(self.server) as other:
                 self.assertNotEqual(other.hello["viewer"], hello["viewer"])
 

@@ -1,0 +1,9 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_ray_tracing : require
+
+#include "shared/ray.h"
+
+layout(location = 0) rayPayloadInEXT Hit found;
+
+void main() { found.instance = hit_none; }
