@@ -100,6 +100,15 @@ std::vector<MethodDescriptor> session_methods() {
           {R"({"patch": {"tone_map": {"curve": "agx"}, "exposure": {"compensation": null}}})",
            R"({"rev": 8, "applied": {"tone_map": {"curve": "agx"},
                                      "exposure": {"compensation": 0.0}}})"}),
+      method<Empty, PresetList>(
+          "settings.presets", Call::query, "Lists the presets of the denoiser.",
+          {no_params,
+           R"({"presets": [{"name": "svgf", "description": "The paper's baseline."}]})"}),
+      method<PresetChoice, SettingsApplied>(
+          "settings.preset", Call::command,
+          "Applies a preset, as settings.patch would; settings it does not name stay.",
+          {R"({"name": "best"})",
+           R"({"rev": 9, "applied": {"specular_blur": {"kernel": "separable"}}})"}),
       method<Empty, RawJson>(
           "settings.schema", Call::query,
           "Gives the JSON Schema of the settings: types, defaults, limits, units, help.",

@@ -314,6 +314,41 @@ struct SettingsApplied {
   bool operator==(const SettingsApplied&) const = default;
 };
 
+struct PresetInfo {
+  std::string name;
+  std::string description;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("name", &PresetInfo::name, "Name for settings.preset."),
+        field("description", &PresetInfo::description, "What it chooses, in a sentence."),
+    };
+  }
+  bool operator==(const PresetInfo&) const = default;
+};
+
+struct PresetList {
+  std::vector<PresetInfo> presets;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("presets", &PresetList::presets, "The presets, each on top of the last, then best."),
+    };
+  }
+  bool operator==(const PresetList&) const = default;
+};
+
+struct PresetChoice {
+  std::string name;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("name", &PresetChoice::name, "A name that settings.presets gave.").length(1, 64),
+    };
+  }
+  bool operator==(const PresetChoice&) const = default;
+};
+
 struct SettingsChanged {
   std::uint32_t rev = 0;
   RawJson patch;

@@ -1,7 +1,11 @@
 #include "cli/engine_options.hpp"
 
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
+
+#include "protocol/presets.hpp"
+#include "protocol/settings_json.hpp"
 
 namespace heliograph::cli {
 namespace {
@@ -28,9 +32,17 @@ render::EngineOptions engine_options(const DeviceOptions& options) {
           .cache_folder = cache_folder()};
 }
 
-protocol::Settings parse_settings(const std::vector<std::string>& assignments) {
+protocol::Settings parse_settings(const SettingsOptions& options) {
   protocol::Settings settings;
-  for (const std::string& assignment : assignments) {
+  if (!options.preset.empty()) {
+    const protocol::Result<protocol::Preset> preset = protocol::find_preset(options.preset);
+    if (!preset)
+      throw std::invalid_argument("--preset " + options.preset + ": " + preset.error().message);
+    const auto applied = protocol::apply_patch(settings, preset->settings.value());
+    if (!applied)
+      throw std::logic_error("preset " + options.preset + ": " + applied.error().message);
+  }
+  for (const std::string& assignment : options.assignments) {
     const protocol::Result<void> set = protocol::set_by_path(settings, assignment);
     if (!set) throw std::invalid_argument("--set " + assignment + ": " + set.error().message);
   }

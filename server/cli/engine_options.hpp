@@ -10,6 +10,6 @@ render::EngineOptions engine_options(const DeviceOptions& options);
 
 /// The defaults, changed by "path=value" of the command line.
 /// @throws std::invalid_argument
-protocol::Settings parse_settings(const std::vector<std::string>& assignments);
+protocol::Settings parse_settings(const SettingsOptions& options);
 
 }  // namespace heliograph::cli

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "protocol/kinds.hpp"
+#include "protocol/presets.hpp"
 #include "protocol/suggestions.hpp"
 
 namespace heliograph::cli {
@@ -36,7 +37,8 @@ constexpr const char* render_examples = R"text(Examples:
   heliograph render helmet.glb -o helmet.png --width 1920 --height 1080
   heliograph render helmet.glb -o normals.png --buffer gbuffer.normals --samples 1
   heliograph render helmet.glb -o dark.png --environment studio.hdr --set exposure.compensation=-1
-  heliograph render atrium.glb -o atrium.png --timings --frames 32)text";
+  heliograph render atrium.glb -o atrium.png --timings --frames 32
+  heliograph render pillars.glb -o svgf.png --preset svgf --set accumulation.handover=4096)text";
 
 constexpr const char* devices_examples = R"text(Example:
   heliograph devices --device llvmpipe)text";
@@ -75,8 +77,15 @@ void add_size_options(CLI::App& command, Number& width, Number& height,
       ->envname("HELIOGRAPH_HEIGHT");
 }
 
-void add_settings_option(CLI::App& command, std::vector<std::string>& settings) {
-  command.add_option("--set", settings, "A setting as PATH=VALUE; see \"heliograph schema\"")
+void add_settings_options(CLI::App& command, SettingsOptions& options) {
+  std::vector<std::string> presets;
+  for (const protocol::Preset& preset : protocol::presets()) presets.emplace_back(preset.name);
+  command.add_option("--preset", options.preset, "A named choice of settings; --set comes on top")
+      ->check(CLI::IsMember(presets))
+      ->envname("HELIOGRAPH_PRESET");
+  command
+      .add_option("--set", options.assignments,
+                  "A setting as PATH=VALUE; see \"heliograph schema\"")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false)
       ->envname("HELIOGRAPH_SET");
@@ -143,7 +152,7 @@ CLI::App* add_serve(CLI::App& app, ServeOptions& options) {
       ->envname("HELIOGRAPH_SCENE_ROOT");
   add_environment_option(*command, options.environment);
   add_size_options(*command, options.width, options.height, "640x360 on a CPU, else 1280x720");
-  add_settings_option(*command, options.settings);
+  add_settings_options(*command, options.settings);
   add_device_options(*command, options.device);
   add_log_options(*command, options.log);
   command->footer(serve_examples);
@@ -163,7 +172,7 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options) {
       ->type_name("NAME");
   command->add_option("--samples", options.samples, "Samples per pixel [accumulation.max_samples]")
       ->check(CLI::Range(1, 65536));
-  add_settings_option(*command, options.settings);
+  add_settings_options(*command, options.settings);
   command->add_option("--buffer", options.buffer, "Picture to write: any buffer of the renderer")
       ->capture_default_str();
   add_environment_option(*command, options.environment);

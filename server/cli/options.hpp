@@ -19,6 +19,11 @@ struct DeviceOptions {
   std::string tracer = "auto";
 };
 
+struct SettingsOptions {
+  std::string preset;
+  std::vector<std::string> assignments;  // path=value, on top of the preset
+};
+
 struct ServeOptions {
   std::string host = "127.0.0.1";
   std::uint16_t port = 8080;
@@ -31,7 +36,7 @@ struct ServeOptions {
   std::string token;
   bool insecure = false;
   std::vector<std::string> allowed_origins;
-  std::vector<std::string> settings;  // path=value
+  SettingsOptions settings;
   DeviceOptions device;
   LogOptions log;
 };
@@ -43,7 +48,7 @@ struct RenderOptions {
   std::uint32_t height = 720;
   std::string camera;
   std::optional<std::uint32_t> samples;
-  std::vector<std::string> settings;  // path=value
+  SettingsOptions settings;
   std::string buffer = "output";
   std::string environment;
   bool timings = false;

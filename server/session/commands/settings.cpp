@@ -1,12 +1,27 @@
+#include "protocol/presets.hpp"
 #include "session/commands/commands.hpp"
 
 namespace heliograph::session {
 
 using protocol::Empty;
+using protocol::PresetChoice;
+using protocol::PresetList;
 using protocol::Result;
 using protocol::SettingsApplied;
 using protocol::SettingsPatch;
 using protocol::SettingsState;
+
+namespace {
+
+PresetList list_presets() {
+  PresetList list;
+  for (const protocol::Preset& preset : protocol::presets()) {
+    list.presets.push_back({std::string(preset.name), std::string(preset.description)});
+  }
+  return list;
+}
+
+}  // namespace
 
 void add_settings_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
   add_command<Empty, SettingsState>(dispatcher, "settings.get",
@@ -16,6 +31,16 @@ void add_settings_commands(protocol::Dispatcher& dispatcher, SessionHost& host) 
   add_command<SettingsPatch, SettingsApplied>(
       dispatcher, "settings.patch", [&](const SettingsPatch& request, const std::string& viewer) {
         return host.default_session().patch_settings(request.patch, viewer);
+      });
+  add_command<Empty, PresetList>(
+      dispatcher, "settings.presets",
+      [](const Empty&, const std::string&) -> Result<PresetList> { return list_presets(); });
+  add_command<PresetChoice, SettingsApplied>(
+      dispatcher, "settings.preset",
+      [&](const PresetChoice& request, const std::string& viewer) -> Result<SettingsApplied> {
+        const Result<protocol::Preset> preset = protocol::find_preset(request.name);
+        if (!preset) return preset.error();
+        return host.default_session().patch_settings(preset->settings, viewer);
       });
 }
 

@@ -18,11 +18,12 @@ TEST(Methods, AreThoseOfTheContract) {
   std::set<std::string_view> names;
   for (const MethodDescriptor& method : methods()) names.insert(method.name);
   EXPECT_EQ(names.size(), methods().size());
-  EXPECT_EQ(names, (std::set<std::string_view>{"hello", "scene.list", "scene.load", "scene.info",
-                                               "camera.get", "camera.set", "camera.fit",
-                                               "settings.get", "settings.patch", "settings.schema",
-                                               "stream.configure", "stream.ack", "stats.subscribe",
-                                               "frame.buffers", "frame.capture", "rpc.discover"}));
+  EXPECT_EQ(names,
+            (std::set<std::string_view>{
+                "hello", "scene.list", "scene.load", "scene.info", "camera.get", "camera.set",
+                "camera.fit", "settings.get", "settings.patch", "settings.presets",
+                "settings.preset", "settings.schema", "stream.configure", "stream.ack",
+                "stats.subscribe", "frame.buffers", "frame.capture", "rpc.discover"}));
 }
 
 TEST(Methods, ExamplesAreWhatTheMethodsTakeAndGive) {
