@@ -37,6 +37,7 @@ Engine::Parts::Parts(const EngineOptions& options)
       programs(device),
       tracer(tracing::make_tracer(options.tracer, device)),
       split_sum_table(make_split_sum_table(device, programs)),
+      ltc_table(make_ltc_image(device)),
       around(make_environment_sampler(device, true)),
       clamped(make_environment_sampler(device, false)),
       info{device.report().name, device.report().driver, device_type(device.report().type)} {}

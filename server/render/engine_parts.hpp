@@ -2,6 +2,7 @@
 
 #include "gpu/device.hpp"
 #include "render/environment_prefilter.hpp"
+#include "render/ltc_table.hpp"
 #include "render/programs.hpp"
 #include "render/renderer.hpp"
 #include "tracing/ray_tracer.hpp"
@@ -17,6 +18,7 @@ struct Engine::Parts {
   Programs programs;
   std::unique_ptr<tracing::RayTracer> tracer;
   gpu::Image split_sum_table;
+  gpu::Image ltc_table;
   gpu::Sampler around;  // wraps in u: equirectangular maps
   gpu::Sampler clamped;
   DeviceInfo info;

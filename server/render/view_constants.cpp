@@ -68,6 +68,7 @@ shared::FrameConstants make_frame_constants(const scene::Camera& camera,
   constants.exposure = {std::exp2(settings.exposure.compensation),
                         static_cast<float>(settings.tone_map.curve), spread, 0.0f};
   for (std::size_t i = 0; i < 9; ++i) constants.irradiance[i] = scene.environment.irradiance[i];
+  constants.sun = glm::vec4(0.0f, 1.0f, 0.0f, -1.0f);
   return constants;
 }
 

@@ -15,7 +15,7 @@ static_assert(offsetof(shared::Material, alpha_cutoff) == 28);
 static_assert(offsetof(shared::Material, base_color_texture) == 80);
 static_assert(sizeof(shared::Mesh) == 16);
 static_assert(sizeof(shared::Instance) == 208 && offsetof(shared::Instance, mesh) == 192);
-static_assert(sizeof(shared::Light) == 64);
+static_assert(sizeof(shared::Light) == 80);
 static_assert(offsetof(shared::Light, direction) == 16 && offsetof(shared::Light, color) == 32);
 
 }  // namespace

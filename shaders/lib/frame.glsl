@@ -5,10 +5,12 @@
 #include "shared/scene.h"
 
 layout(set = 0, binding = 0, std140) uniform FrameBlock { FrameConstants frame; };
-layout(set = 0, binding = 1, std140) uniform LightBlock { Light lights[max_lights]; };
+layout(set = 0, binding = 1, std140) uniform LightBlock { Light lights[uniform_lights]; };
 layout(set = 0, binding = 2) uniform sampler2D environment_map;
 layout(set = 0, binding = 3) uniform samplerCube prefiltered_environment;
 layout(set = 0, binding = 4) uniform sampler2D split_sum_table;
+layout(set = 0, binding = 5) uniform usamplerBuffer light_texels;
+layout(set = 0, binding = 6) uniform sampler2D ltc_table;
 
 bool enabled(uint flag) { return (frame.counts.y & flag) != 0u; }
 
@@ -31,6 +33,12 @@ vec3 world_position(ivec2 pixel, float view_z) {
 vec3 to_eye(ivec2 pixel) {
   vec3 view = enabled(frame_orthographic) ? vec3(0.0, 0.0, 1.0) : -view_position(pixel, 1.0);
   return normalize(mat3(frame.inverse_view) * view);
+}
+
+/// Size of a pixel at `view_z` metres along -Z, metres.
+float pixel_footprint(float view_z) {
+  float height = 2.0 * abs(frame.unproject.y) / float(frame.extent.y);
+  return enabled(frame_orthographic) ? height : height * view_z;
 }
 
 #endif

@@ -23,11 +23,14 @@ struct FrameConstants {
   vec4 unproject;                 // view xy = (ndc * xy + zw) x view Z (perspective)
   vec4 eye;                       // world, metres
   uvec4 extent;                   // width, height, frames since the last cut, random seed
-  uvec4 counts;                   // lights, frame_* flags, levels of the prefiltered cube, 1 where
-                                  // no history holds
+  uvec4 counts;                   // lights with the environment's sun, frame_* flags, levels of the
+                                  // prefiltered cube, 1 where no history holds
   vec4 environment;               // intensity, cos and sin of the rotation, ambient radius (metres)
   vec4 exposure;                  // factor, tone map curve, tangent of the sun radius or -1, unused
   vec4 irradiance[9];             // spherical harmonics of the irradiance / pi, rgb
+  vec4 sun;                       // toward the environment's sun, world; w: tangent of its angular
+                                  // radius, -1: there is none
+  vec4 sun_irradiance;            // rgb, on a surface facing it
 };
 
 SHARED_END

@@ -88,24 +88,32 @@ struct DrawConstants {
   uint flags;
 };
 
-SHARED_CONSTANT uint max_lights = 256u;  // a uniform block of 16 KiB
+// So many lights are read from a uniform block, which is fastest and holds 16 KiB on every device;
+// those after them from texels.
+SHARED_CONSTANT uint uniform_lights = 192u;
+SHARED_CONSTANT uint texels_per_light = 5u;
 
 SHARED_CONSTANT uint light_directional = 0u;
 SHARED_CONSTANT uint light_point = 1u;
 SHARED_CONSTANT uint light_spot = 2u;
+SHARED_CONSTANT uint light_rectangle = 3u;  // this and all after it have an area that shines
+SHARED_CONSTANT uint light_disk = 4u;
 
-// KHR_lights_punctual, in world space.
+// KHR_lights_punctual and area lights, in world space.
 struct Light {
-  vec3 position;
+  vec3 position;      // of the middle
   uint type;
-  vec3 direction;  // the way light travels, unit length
-  float range;     // metres; 0: unlimited
-  vec3 color;      // linear colour x intensity: irradiance (directional) or radiant intensity
-  float radius;    // metres (point, spot) or tangent of the angular radius (directional)
+  vec3 direction;     // the way light travels, unit length; an area light shines on this side
+  float range;        // metres; 0: unlimited
+  vec3 color;         // linear colour x intensity: irradiance (directional), radiant intensity
+                      // (point, spot) or radiance (area)
+  float radius;       // metres (point, spot, disk) or tangent of the angular radius (directional)
+  vec3 tangent;       // along a rectangle's width, unit length
+  float half_width;   // metres
+  float half_height;  // along cross(direction, tangent)
   float spot_scale;   // KHR_lights_punctual's lightAngleScale
   float spot_offset;  // and lightAngleOffset
   float padding0;
-  float padding1;
 };
 
 SHARED_END

@@ -1,0 +1,26 @@
+#include "render/light_table.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace heliograph::render {
+
+static_assert(sizeof(shared::Light) == shared::texels_per_light * 16);
+static_assert(sizeof(shared::Light) * shared::uniform_lights <= 16384);
+
+gpu::Buffer make_light_table(const gpu::Device& device, std::size_t count) {
+  const std::size_t room = std::max<std::size_t>(count, shared::uniform_lights);
+  gpu::Buffer table(device, "lights", room * sizeof(shared::Light),
+                    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT |
+                        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                    gpu::Memory::upload);
+  // Made now: several renderers on several threads share a scene's table.
+  table.texel_view(light_texel_format);
+  return table;
+}
+
+void write_lights(const gpu::Buffer& table, std::span<const shared::Light> lights) {
+  std::memcpy(table.mapped(), lights.data(), lights.size_bytes());
+}
+
+}  // namespace heliograph::render

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <span>
+
+#include "gpu/buffer.hpp"
+#include "shaders/shared/scene.h"
+
+namespace heliograph::render {
+
+inline constexpr VkFormat light_texel_format = VK_FORMAT_R32G32B32A32_UINT;
+
+/// A table of any number of lights as shaders/lib/lights.glsl reads it: the first
+/// shared::uniform_lights from a uniform block, the others as texels of four words.
+gpu::Buffer make_light_table(const gpu::Device& device, std::size_t count);
+
+/// Fills a table that has room for them. Never while a frame runs that reads it.
+void write_lights(const gpu::Buffer& table, std::span<const shared::Light> lights);
+
+}  // namespace heliograph::render
