@@ -1,0 +1,60 @@
+#pragma once
+
+#include <algorithm>
+
+#include "render/frame.hpp"
+#include "shaders/shared/denoise.h"
+
+// The same settings exist for either denoised signal, as two types with the same members.
+
+namespace heliograph::render {
+
+/// What the passes of one signal's accumulation read, this frame. The memory is counted in
+/// seconds, so that it does not depend on the rate, and grows with the picture while that rests, so
+/// that it converges.
+template <class TemporalSettings>
+shared::TemporalConstants temporal_constants(const FrameInputs& in,
+                                             const TemporalSettings& settings) {
+  const auto rests = static_cast<float>(in.samples + 1);
+  const float by_time = in.seconds > 0.0f ? settings.seconds / in.seconds : 0.0f;
+  shared::TemporalConstants constants{};
+  constants.frames = std::max({static_cast<float>(settings.frames), by_time, rests});
+  constants.moments_frames = std::max(static_cast<float>(settings.moments_frames), rests);
+  constants.rectification = static_cast<std::uint32_t>(settings.rectification);
+  constants.radius = settings.rectification_radius;
+  constants.scale = settings.rectification_scale;
+  constants.spatial_variance_frames = static_cast<float>(settings.spatial_variance_frames);
+  const bool holds = settings.enabled && in.constants.counts.w == 0;
+  constants.flags = (holds ? shared::temporal_holds : 0u) |
+                    (settings.mean_variance ? shared::temporal_mean_variance : 0u);
+  constants.depth_tolerance = settings.depth_tolerance;
+  constants.normal_tolerance = settings.normal_tolerance;
+  return constants;
+}
+
+/// One pass of an iteration: both halves of the kernel at once, or one of two.
+struct KernelShape {
+  int level;
+  int columns;
+  int rows;
+  bool first_half;
+};
+
+template <class BlurSettings>
+shared::AtrousConstants atrous_constants(const BlurSettings& settings, const KernelShape& shape) {
+  shared::AtrousConstants constants{};
+  constants.level = shape.level;
+  constants.columns = shape.columns;
+  constants.rows = shape.rows;
+  constants.luminance_sigma = settings.luminance_sigma;
+  constants.normal_power = settings.normal_power;
+  constants.depth_sigma = settings.depth_sigma;
+  const bool keep =
+      shape.first_half && settings.variance_update == protocol::VarianceUpdate::vertical_only;
+  constants.flags = (settings.variance_prefilter ? shared::atrous_variance_prefilter : 0u) |
+                    (keep ? shared::atrous_keep_variance : 0u) |
+                    (settings.jitter ? shared::atrous_jitter : 0u);
+  return constants;
+}
+
+}  // namespace heliograph::render

@@ -1,0 +1,85 @@
+#include "render/denoise_visibility.hpp"
+
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "render/atrous.hpp"
+#include "render/denoise_constants.hpp"
+#include "render/temporal.hpp"
+#include "shaders/embedded.hpp"
+
+namespace heliograph::render {
+namespace {
+
+/// Apparent diameter of the softest light, degrees; local lights as seen from the scene's middle.
+float widest_light(const FrameInputs& in) {
+  const scene::Scene& scene = *in.scene.scene;
+  const float override_degrees = in.settings.shadows.angular_diameter_override;
+  float widest = 0.0f;
+  for (const scene::Light& light : scene.lights) {
+    float tangent = light.device.radius;
+    if (light.device.type == shared::light_directional) {
+      if (override_degrees >= 0.0f) tangent = std::tan(glm::radians(0.5f * override_degrees));
+    } else {
+      tangent /= std::max(glm::distance(light.device.position, scene.bounds.center()), 1e-6f);
+    }
+    widest = std::max(widest, 2.0f * glm::degrees(std::atan(tangent)));
+  }
+  return widest;
+}
+
+Blur blur_of(const FrameInputs& in) {
+  const auto& settings = in.settings.shadow_blur;
+  const auto constants = [in, &settings](const KernelShape& shape) {
+    shared::AtrousConstants made = atrous_constants(settings, shape);
+    const bool twice = settings.adapt_start && widest_light(in) > settings.angle_threshold;
+    made.start_threshold = twice ? -1.0f : 2.0f;
+    return made;
+  };
+  return {"visibility", in.programs.compute(shaders::atrous_visibility), settings.iterations,
+          settings.kernel, constants};
+}
+
+}  // namespace
+
+gpu::ImageRef combine_visibility(gpu::FramePlan& plan, const FrameInputs& in,
+                                 gpu::ImageRef shadows, gpu::ImageRef ambient) {
+  const auto raw = plan.image("visibility.raw", VK_FORMAT_R32G32B32A32_SFLOAT);
+  plan.pass("visibility.combine", in.programs.compute(shaders::combine_visibility))
+      .read(shadows)
+      .read(ambient)
+      .write(raw)
+      .dispatch(plan.extent())
+      .describe("Shadow (red) and ambient (green) visibility of this frame alone.");
+  return raw;
+}
+
+SplitVisibility split_visibility(gpu::FramePlan& plan, const FrameInputs& in,
+                                 gpu::ImageRef visibility) {
+  const SplitVisibility made{plan.image("shadows.denoised.visibility", VK_FORMAT_R32_SFLOAT),
+                             plan.image("ambient.denoised.visibility", VK_FORMAT_R32_SFLOAT)};
+  plan.pass("visibility.split", in.programs.compute(shaders::split_visibility))
+      .read(visibility)
+      .write(made.shadows)
+      .write(made.ambient)
+      .dispatch(plan.extent())
+      .describe("Visibility without its noise.");
+  return made;
+}
+
+gpu::ImageRef denoise_visibility(gpu::FramePlan& plan, const FrameInputs& in,
+                                 const GBuffer& gbuffer, const Guide& guide, gpu::ImageRef raw) {
+  const auto& blurring = in.settings.shadow_blur;
+  const bool feedback =
+      blurring.enabled && blurring.feedback >= 0 && blurring.feedback < blurring.iterations;
+
+  const Integrated integrated = accumulate_visibility(plan, in, guide, raw, feedback);
+  if (!blurring.enabled) return integrated.signal;
+
+  estimate_visibility_variance(plan, in, gbuffer, guide, integrated);
+  return blur(plan, in, gbuffer, guide, blur_of(in), integrated.signal,
+              feedback ? std::optional(Feedback{blurring.feedback, integrated.remembered})
+                       : std::nullopt);
+}
+
+}  // namespace heliograph::render

@@ -1,0 +1,132 @@
+#include "render/temporal.hpp"
+
+#include "render/denoise_constants.hpp"
+#include "shaders/embedded.hpp"
+
+namespace heliograph::render {
+namespace {
+
+constexpr VkFormat four_floats = VK_FORMAT_R32G32B32A32_SFLOAT;
+
+}  // namespace
+
+Integrated accumulate_visibility(gpu::FramePlan& plan, const FrameInputs& in, const Guide& guide,
+                                 gpu::ImageRef raw, bool feedback) {
+  const gpu::History memory = plan.history("visibility.memory", four_floats);
+  const gpu::History moments = plan.history("visibility.moments", four_floats);
+  const gpu::History history = plan.history("visibility.history", four_floats);
+  const gpu::History fast = plan.history("visibility.fast", VK_FORMAT_R32G32_SFLOAT);
+  const auto& settings = in.settings.shadow_temporal;
+  const auto constants = [in, &settings] { return temporal_constants(in, settings); };
+  const gpu::ImageRef signal =
+      feedback ? plan.image("visibility.temporal", four_floats) : memory.current;
+
+  plan.pass("visibility.temporal", in.programs.compute(shaders::temporal_visibility))
+      .read(raw)
+      .read(guide.surface)
+      .read(guide.reprojection)
+      .read(memory.previous)
+      .read(moments.previous)
+      .read(history.previous)
+      .read(fast.previous)
+      .write(signal)
+      .write(moments.current)
+      .write(history.current)
+      .write(fast.current)
+      .constants(constants)
+      .dispatch(plan.extent())
+      .describe("Shadow (red) and ambient (green) visibility gathered over frames: mean and "
+                "variance, moments, frames remembered and how far the mean was moved, the last few "
+                "frames alone.");
+  if (settings.rectification == protocol::Rectification::fast_history) {
+    plan.pass("visibility.rectify", in.programs.compute(shaders::rectify_visibility))
+        .read(guide.surface)
+        .read(fast.current)
+        .read_write(signal)
+        .read_write(history.current)
+        .constants(constants)
+        .dispatch(plan.extent());
+  }
+  return {signal, moments.current, history.current, memory.current};
+}
+
+Integrated accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                               const Guide& guide, gpu::ImageRef raw, bool feedback) {
+  const gpu::History memory = plan.history("specular.memory", four_floats);
+  const gpu::History history = plan.history("specular.history", four_floats);
+  const gpu::History fast = plan.history("specular.fast", four_floats);
+  const auto& settings = in.settings.specular_temporal;
+  const auto constants = [in, &settings] {
+    shared::TemporalConstants made = temporal_constants(in, settings);
+    if (settings.virtual_point) made.flags |= shared::temporal_virtual_point;
+    return made;
+  };
+  const gpu::ImageRef signal =
+      feedback ? plan.image("specular.temporal", four_floats) : memory.current;
+
+  plan.pass("specular.temporal", in.programs.compute(shaders::temporal_specular))
+      .read(raw)
+      .read(guide.surface)
+      .read(gbuffer.instance)
+      .read(guide.reprojection)
+      .read(gbuffer.previous_normals)
+      .read(gbuffer.previous_surface)
+      .read(gbuffer.previous_motion)
+      .read(gbuffer.previous_instance)
+      .read(memory.previous)
+      .read(history.previous)
+      .read(fast.previous)
+      .write(signal)
+      .write(history.current)
+      .write(fast.current)
+      .constants(constants)
+      .dispatch(plan.extent())
+      .describe("Reflections gathered over frames: mean and variance; frames remembered, how far "
+                "the mean was moved, and moments; the last few frames alone.");
+  if (settings.rectification == protocol::Rectification::fast_history) {
+    plan.pass("specular.rectify", in.programs.compute(shaders::rectify_specular))
+        .read(guide.surface)
+        .read(fast.current)
+        .read_write(signal)
+        .read_write(history.current)
+        .constants(constants)
+        .dispatch(plan.extent());
+  }
+  return {signal, history.current, history.current, memory.current};
+}
+
+namespace {
+
+void estimate_variance(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                       const Guide& guide, const Integrated& integrated, const char* name,
+                       const gpu::ComputeProgram& program, const auto& settings) {
+  plan.pass(name, program)
+      .read(guide.surface)
+      .read(gbuffer.depth_slope)
+      .read(integrated.moments)
+      .read(integrated.history)
+      .read_write(integrated.signal)
+      .constants([in, &settings] { return temporal_constants(in, settings); })
+      .dispatch(plan.extent())
+      .when([&settings] { return settings.spatial_variance_frames > 0; });
+}
+
+}  // namespace
+
+void estimate_visibility_variance(gpu::FramePlan& plan, const FrameInputs& in,
+                                  const GBuffer& gbuffer, const Guide& guide,
+                                  const Integrated& visibility) {
+  estimate_variance(plan, in, gbuffer, guide, visibility, "visibility.variance",
+                    in.programs.compute(shaders::spatial_variance_visibility),
+                    in.settings.shadow_temporal);
+}
+
+void estimate_specular_variance(gpu::FramePlan& plan, const FrameInputs& in,
+                                const GBuffer& gbuffer, const Guide& guide,
+                                const Integrated& specular) {
+  estimate_variance(plan, in, gbuffer, guide, specular, "specular.variance",
+                    in.programs.compute(shaders::spatial_variance_specular),
+                    in.settings.specular_temporal);
+}
+
+}  // namespace heliograph::render

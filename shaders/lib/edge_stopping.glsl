@@ -1,0 +1,39 @@
+// Weights that keep a filter from crossing edges (Schied et al. 2017, equations 3 to 5). All return
+// the natural logarithm of the weight, 0 for equal pixels and falling from there, so that their
+// product costs one exponential.
+#ifndef HELIOGRAPH_EDGE_STOPPING_GLSL
+#define HELIOGRAPH_EDGE_STOPPING_GLSL
+
+/// Distance of a neighbour's view Z `found`, `offset` pixels away, from the plane through the
+/// pixel at view Z `z` whose Z changes by `slope` per pixel; metres at the pixel. In perspective
+/// 1/Z is linear across the picture, so that planes stay exact at any step; `curve` is 1/z there
+/// and 0 in orthographic views.
+float plane_distance(float z, vec2 slope, float curve, float found, vec2 offset) {
+  float rise = dot(slope, offset);
+  return abs(found * (1.0 - rise * curve) - z - rise * (1.0 - z * curve));
+}
+
+/// What a surface may rise per pixel: its own slope, and what is seen as half a slope of one face
+/// on; `footprint` is the size of a pixel there, metres.
+float depth_allowance(vec2 slope, vec2 offset, float footprint) {
+  return abs(dot(slope, offset)) + 0.5 * footprint * length(offset);
+}
+
+float depth_exponent(float distance, float allowance, float sigma) {
+  return distance > 0.0 ? -distance / max(sigma * allowance, 1e-30) : 0.0;
+}
+
+/// log(max(0, n_p . n_q)^power)
+float normal_exponent(float cosine, float power) {
+  return power * log(clamp(cosine, 1e-6, 1.0));
+}
+
+/// `noise` is the standard deviation of the brightness, `smallest` a difference nobody sees.
+vec2 luminance_exponent(vec2 p, vec2 q, vec2 noise, float sigma, float smallest) {
+  return -abs(p - q) / (sigma * noise + smallest);
+}
+
+/// Lobes of different widths mirror different things.
+float roughness_exponent(float p, float q) { return -abs(p - q) / (0.02 + 0.2 * p); }
+
+#endif

@@ -1,0 +1,86 @@
+// Making old colours agree with what the current frame shows nearby (paper section 3.1).
+#ifndef HELIOGRAPH_RECTIFICATION_GLSL
+#define HELIOGRAPH_RECTIFICATION_GLSL
+#include "shared/denoise.h"
+
+struct Box {
+  vec3 low;
+  vec3 high;
+};
+
+/// What a window of the current frame holds, gathered colour by colour.
+struct Window {
+  Box range;
+  vec3 sum;
+  vec3 squares;
+  float count;
+};
+
+Window empty_window() {
+  return Window(Box(vec3(1e30), vec3(-1e30)), vec3(0.0), vec3(0.0), 0.0);
+}
+
+void add(inout Window window, vec3 color) {
+  window.range.low = min(window.range.low, color);
+  window.range.high = max(window.range.high, color);
+  window.sum += color;
+  window.squares += color * color;
+  window.count += 1.0;
+}
+
+/// Mean +- scale x standard deviation (Salvi 2016).
+Box variance_box(Window window, float scale) {
+  vec3 mean = window.sum / max(window.count, 1.0);
+  vec3 variance = max(window.squares / max(window.count, 1.0) - mean * mean, vec3(0.0));
+  vec3 reach = scale * sqrt(variance);
+  return Box(mean - reach, mean + reach);
+}
+
+Box rectification_box(Window window, uint mode, float scale) {
+  bool by_range = mode == rectification_color_clamp || mode == rectification_color_clip;
+  if (by_range) return window.range;
+  return variance_box(window, scale);
+}
+
+vec3 clamp_to(Box box, vec3 color) { return clamp(color, box.low, box.high); }
+
+/// The point where the way from the box's middle to `color` leaves the box, or `color` inside it.
+vec3 clip_to(Box box, vec3 color) {
+  vec3 middle = 0.5 * (box.low + box.high);
+  vec3 reach = max(0.5 * (box.high - box.low), vec3(1e-7));
+  vec3 way = color - middle;
+  vec3 overshoot = abs(way / reach);
+  float largest = max(overshoot.x, max(overshoot.y, overshoot.z));
+  return largest > 1.0 ? middle + way / largest : color;
+}
+
+bool clips(uint mode) {
+  return mode == rectification_color_clip || mode == rectification_variance_clip;
+}
+
+/// How far `color` was moved, 0..1, against the box's own size.
+float moved_share(Box box, vec3 color, vec3 moved) {
+  vec3 reach = 0.5 * (box.high - box.low);
+  vec3 way = abs(color - moved);
+  vec3 share = way / max(way + reach, vec3(1e-6));
+  return max(share.x, max(share.y, share.z));
+}
+
+/// Frames that remain of a history whose value was `moved` by a box of half width `reach`: all
+/// where it was not, ever fewer as it was moved by more than the box.
+vec2 shortened_history(vec2 frames, vec2 moved, vec2 reach) {
+  vec2 share = moved / max(moved + reach, vec2(1e-6));
+  return max(frames * (1.0 - share), min(frames, vec2(1.0)));
+}
+
+vec3 to_ycocg(vec3 c) {
+  return vec3(0.25 * c.r + 0.5 * c.g + 0.25 * c.b, 0.5 * (c.r - c.b),
+              -0.25 * c.r + 0.5 * c.g - 0.25 * c.b);
+}
+
+vec3 from_ycocg(vec3 c) {
+  float rest = c.x - c.z;
+  return vec3(rest + c.y, c.x + c.z, rest - c.y);
+}
+
+#endif

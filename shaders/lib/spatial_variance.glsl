@@ -1,0 +1,53 @@
+// A history too short to tell its variance takes that of its neighbours on the same surface
+// (Schied et al. 2017, section 4.2), raised while it is short. What a signal and its memory are
+// comes from the shader that includes this.
+#include "lib/edge_stopping.glsl"
+#include "lib/frame.glsl"
+#include "lib/reprojection.glsl"
+#include "shared/denoise.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(set = 1, binding = 0, rgba32f) readonly uniform image2D guide;
+layout(set = 1, binding = 1, rg32f) readonly uniform image2D depth_slope;
+layout(set = 1, binding = 2, rgba32f) readonly uniform image2D moments;
+layout(set = 1, binding = 3, rgba32f) readonly uniform image2D history;
+layout(set = 1, binding = 4, rgba32f) uniform image2D signal;
+layout(push_constant) uniform Constants { TemporalConstants constants; };
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (outside_frame(pixel)) return;
+  vec4 here = imageLoad(guide, pixel);
+  vec2 frames = frames_of(imageLoad(history, pixel));
+  bool known = here.w <= 0.0 || min(frames.x, frames.y) >= constants.spatial_variance_frames;
+  // No rows to visit instead of a branch around them: that is what vector hardware can skip.
+  int radius = known ? -1 : 3;
+  vec3 normal = here.xyz / max(length(here.xyz), 1e-6);
+  vec2 slope = imageLoad(depth_slope, pixel).xy;
+  float curve = enabled(frame_orthographic) ? 0.0 : 1.0 / max(here.w, 1e-20);
+  float footprint = pixel_footprint(here.w);
+  vec4 sum = vec4(0.0);
+  float total = 0.0;
+  for (int y = -radius; y <= radius; ++y) {
+    for (int x = -radius; x <= radius; ++x) {
+      ivec2 tap = pixel + ivec2(x, y);
+      if (!inside(tap, ivec2(frame.extent.xy))) continue;
+      vec4 there = imageLoad(guide, tap);
+      if (there.w <= 0.0) continue;
+      vec2 offset = vec2(x, y);
+      float weight = exp(depth_exponent(plane_distance(here.w, slope, curve, there.w, offset),
+                                        depth_allowance(slope, offset, footprint), 1.0) +
+                         normal_exponent(dot(normal, normalize(there.xyz)), 128.0));
+      sum += weight * imageLoad(moments, tap);
+      total += weight;
+    }
+  }
+  if (known || total <= 0.0) return;
+  sum /= total;
+  vec2 longer = max(constants.spatial_variance_frames / max(frames, vec2(1.0)), vec2(1.0));
+  vec2 variance = max(second_moment(sum) - first_moment(sum) * first_moment(sum), vec2(0.0));
+  variance *= longer;
+  if ((constants.flags & temporal_mean_variance) != 0u) variance /= max(frames, vec2(1.0));
+  vec4 value = imageLoad(signal, pixel);
+  imageStore(signal, pixel, with_variance(value, max(variance, variance_of(value))));
+}

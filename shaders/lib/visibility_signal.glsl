@@ -1,0 +1,21 @@
+// Two scalars in one image: shadow and ambient visibility, and the variance of each.
+#ifndef HELIOGRAPH_VISIBILITY_SIGNAL_GLSL
+#define HELIOGRAPH_VISIBILITY_SIGNAL_GLSL
+
+const float smallest_difference = 1e-3;
+
+vec2 brightness(vec4 signal) { return signal.xy; }
+vec2 variance_of(vec4 signal) { return signal.zw; }
+vec4 with_variance(vec4 signal, vec2 variance) { return vec4(signal.xy, variance); }
+
+/// Of its memory: frames remembered, and moments of single samples.
+vec2 frames_of(vec4 history) { return history.xy; }
+vec2 first_moment(vec4 moments) { return moments.xy; }
+vec2 second_moment(vec4 moments) { return moments.zw; }
+
+/// Values are weighed, variances by the square of the weight.
+vec4 spread(vec2 weight) { return vec4(weight, weight * weight); }
+/// What else keeps pixels of two roughnesses apart, as an exponent.
+float signal_exponent(float p, float q) { return 0.0; }
+
+#endif

@@ -1,0 +1,183 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 8, local_size_y = 8) in;
+// Gathers reflections over frames. What a mirror shows moves like the point behind it, what a rough
+// surface shows like the surface: both places in the frame before are candidates.
+#include "lib/frame.glsl"
+#include "lib/moments.glsl"
+#include "lib/octahedral.glsl"
+#include "lib/rectification.glsl"
+#include "lib/reprojection.glsl"
+
+layout(set = 1, binding = 0, rgba32f) readonly uniform image2D raw;  // radiance, hit distance
+layout(set = 1, binding = 1, rgba32f) readonly uniform image2D guide;
+layout(set = 1, binding = 2, r32ui) readonly uniform uimage2D instance;
+layout(set = 1, binding = 3, rgba32f) readonly uniform image2D reprojection;
+layout(set = 1, binding = 4, rgba32f) readonly uniform image2D previous_normals;
+layout(set = 1, binding = 5, rgba8) readonly uniform image2D previous_surface;
+layout(set = 1, binding = 6, rgba32f) readonly uniform image2D previous_motion;
+layout(set = 1, binding = 7, r32ui) readonly uniform uimage2D previous_instance;
+layout(set = 1, binding = 8, rgba32f) readonly uniform image2D previous_signal;
+layout(set = 1, binding = 9, rgba32f) readonly uniform image2D previous_history;
+layout(set = 1, binding = 10, rgba32f) readonly uniform image2D previous_fast;
+layout(set = 1, binding = 11, rgba32f) writeonly uniform image2D signal;   // radiance, variance
+layout(set = 1, binding = 12, rgba32f) writeonly uniform image2D history;  // frames, moved, moments
+layout(set = 1, binding = 13, rgba32f) writeonly uniform image2D fast;     // the last few frames
+layout(push_constant) uniform Constants { TemporalConstants constants; };
+
+const float fast_frames = 6.0;
+
+struct Remembered {
+  vec3 radiance;
+  float frames;  // 0: nothing
+  vec2 moments;
+  vec3 fast;
+};
+
+struct Surface {
+  ivec2 pixel;
+  vec3 normal;
+  float roughness;
+  float view_z;
+};
+
+float luminance(vec3 color) { return dot(color, vec3(0.2126, 0.7152, 0.0722)); }
+
+vec4 sample_at(ivec2 pixel) {
+  vec4 found = imageLoad(raw, pixel);
+  return vec4(scrub(found.rgb), scrub(found.w));
+}
+
+Remembered nothing() { return Remembered(vec3(0.0), 0.0, vec2(0.0), vec3(0.0)); }
+
+Remembered recall(HistoryTaps taps) {
+  Remembered found = nothing();
+  for (int i = 0; i < 4; ++i) {
+    float weight = taps.weights[i];
+    if (weight <= 0.0) continue;
+    ivec2 tap = taps.base + tap_offset(i);
+    vec4 state = imageLoad(previous_history, tap);
+    found.radiance += weight * imageLoad(previous_signal, tap).rgb;
+    found.frames += weight * state.x;
+    found.moments += weight * state.zw;
+    found.fast += weight * imageLoad(previous_fast, tap).rgb;
+  }
+  return found;
+}
+
+/// The shortest of the neighbours' hit distances on the same kind of surface: one sample's own is
+/// as noisy as its radiance, and a reflection sharpens toward what touches it.
+float hit_distance(ivec2 pixel) {
+  float nearest = 1e9;
+  for (int y = -1; y <= 1; ++y) {
+    for (int x = -1; x <= 1; ++x) {
+      ivec2 tap = pixel + ivec2(x, y);
+      if (!inside(tap, ivec2(frame.extent.xy))) continue;
+      float found = sample_at(tap).w;
+      if (found > 0.0) nearest = min(nearest, found);
+    }
+  }
+  return nearest < 1e9 ? nearest : 0.0;
+}
+
+/// From this frame's pixel to where the virtual point was in the frame before, in uv.
+vec2 virtual_motion(Surface s) {
+  vec3 position = world_position(s.pixel, s.view_z);
+  vec3 away = -to_eye(s.pixel);
+  vec3 behind = position + away * (hit_distance(s.pixel) * lobe_share(s.roughness));
+  // Both without jitter, and through the same arithmetic: a resting view gives exactly zero.
+  return projected(frame.previous_unjittered, behind) - projected(frame.unjittered, behind);
+}
+
+/// Whether the frame before shows the same mirror there: the surface is compared, not the depth of
+/// what is behind it. A bent mirror shows its point elsewhere and fails the test of its normal.
+bool same_mirror(ivec2 pixel, Surface s) {
+  if (!inside(pixel, ivec2(frame.extent.xy))) return false;
+  if (imageLoad(previous_instance, pixel).r != imageLoad(instance, s.pixel).r) return false;
+  float found_z = imageLoad(previous_motion, pixel).w;
+  if (found_z <= 0.0) return false;
+  vec3 normal = octahedral_decode(imageLoad(previous_normals, pixel).xy);
+  float allowed = mix(0.9995, 0.95, s.roughness);
+  float roughness = imageLoad(previous_surface, pixel).r;
+  return dot(normal, s.normal) > allowed && abs(roughness - s.roughness) < 0.05 + 0.25 * s.roughness;
+}
+
+HistoryTaps virtual_taps(Surface s, vec2 motion) {
+  vec2 position = vec2(s.pixel) + 0.5 + motion * vec2(frame.extent.xy);
+  HistoryTaps taps = bilinear_taps(position);
+  uint mask = 0u;
+  for (int i = 0; i < 4; ++i) {
+    if (taps.weights[i] > 0.0 && same_mirror(taps.base + tap_offset(i), s)) mask |= 1u << uint(i);
+  }
+  return valid_taps(taps, mask);
+}
+
+Window window_about(ivec2 pixel) {
+  Window window = empty_window();
+  for (int y = -constants.radius; y <= constants.radius; ++y) {
+    for (int x = -constants.radius; x <= constants.radius; ++x) {
+      ivec2 tap = pixel + ivec2(x, y);
+      if (!inside(tap, ivec2(frame.extent.xy)) || imageLoad(guide, tap).w <= 0.0) continue;
+      add(window, to_ycocg(sample_at(tap).rgb));
+    }
+  }
+  return window;
+}
+
+/// The old radiance as far as the current neighbourhood allows (paper section 3.1), in YCoCg.
+vec3 rectify(ivec2 pixel, vec3 old) {
+  uint mode = constants.rectification;
+  if (mode < rectification_color_clamp || mode > rectification_variance_clip) return old;
+  Box box = rectification_box(window_about(pixel), mode, constants.scale);
+  vec3 color = to_ycocg(old);
+  return from_ycocg(clips(mode) ? clip_to(box, color) : clamp_to(box, color));
+}
+
+/// Both candidates as one memory.
+Remembered remembered(Surface s) {
+  if ((constants.flags & temporal_holds) == 0u) return nothing();
+  vec4 map = imageLoad(reprojection, s.pixel);
+  HistoryTaps own = valid_taps(bilinear_taps(map.xy), uint(map.z));
+  if ((constants.flags & temporal_virtual_point) == 0u) return recall(own);
+  vec2 motion = virtual_motion(s);
+  HistoryTaps mirrored = virtual_taps(s, motion);
+  vec2 own_motion = map.xy - (vec2(s.pixel) + 0.5);
+  float apart = distance(own_motion, motion * vec2(frame.extent.xy));
+  if (any_tap(mirrored) && (apart > 0.5 || !any_tap(own))) return recall(mirrored);
+  // The surface's own history shows another part of the reflection, the sharper the mirror and the
+  // further the two places are apart.
+  Remembered found = recall(own);
+  found.frames *= surface_trust(s.roughness, apart);
+  return found;
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (outside_frame(pixel)) return;
+  vec4 guided = imageLoad(guide, pixel);
+  vec3 now = sample_at(pixel).rgb;
+  if (guided.w <= 0.0) {
+    imageStore(signal, pixel, vec4(0.0));
+    imageStore(history, pixel, vec4(0.0));
+    imageStore(fast, pixel, vec4(0.0));
+    return;
+  }
+  float size = length(guided.xyz);
+  Surface s = Surface(pixel, guided.xyz / size, size - 1.0, guided.w);
+  Remembered old = remembered(s);
+  vec3 rectified = rectify(pixel, old.radiance);
+  float moved = old.frames > 0.0 ? abs(luminance(rectified) - luminance(old.radiance)) : 0.0;
+
+  float frames = min(old.frames + 1.0, constants.frames);
+  vec3 radiance = mix(rectified, now, 1.0 / frames);
+  float share = 1.0 / min(frames, constants.moments_frames);
+  float bright = luminance(now);
+  vec2 moments = mix(old.moments, vec2(bright, bright * bright), share);
+  float variance = sample_variance(moments.xx, moments.yy,
+                                   vec2(min(frames, constants.moments_frames))).x;
+  if ((constants.flags & temporal_mean_variance) != 0u) variance /= frames;
+
+  imageStore(signal, pixel, vec4(radiance, variance));
+  imageStore(history, pixel, vec4(frames, moved, moments));
+  imageStore(fast, pixel, vec4(mix(old.fast, now, 1.0 / min(frames, fast_frames)), 0.0));
+}
