@@ -54,19 +54,6 @@ gpu::ImageRef combine_visibility(gpu::FramePlan& plan, const FrameInputs& in,
   return raw;
 }
 
-SplitVisibility split_visibility(gpu::FramePlan& plan, const FrameInputs& in,
-                                 gpu::ImageRef visibility) {
-  const SplitVisibility made{plan.image("shadows.denoised.visibility", VK_FORMAT_R32_SFLOAT),
-                             plan.image("ambient.denoised.visibility", VK_FORMAT_R32_SFLOAT)};
-  plan.pass("visibility.split", in.programs.compute(shaders::split_visibility))
-      .read(visibility)
-      .write(made.shadows)
-      .write(made.ambient)
-      .dispatch(plan.extent())
-      .describe("Visibility without its noise.");
-  return made;
-}
-
 gpu::ImageRef denoise_visibility(gpu::FramePlan& plan, const FrameInputs& in,
                                  const GBuffer& gbuffer, const Guide& guide, gpu::ImageRef raw) {
   const auto& blurring = in.settings.shadow_blur;

@@ -13,11 +13,4 @@ gpu::ImageRef combine_visibility(gpu::FramePlan& plan, const FrameInputs& in,
 gpu::ImageRef denoise_visibility(gpu::FramePlan& plan, const FrameInputs& in,
                                  const GBuffer& gbuffer, const Guide& guide, gpu::ImageRef raw);
 
-struct SplitVisibility {
-  gpu::ImageRef shadows;
-  gpu::ImageRef ambient;
-};
-SplitVisibility split_visibility(gpu::FramePlan& plan, const FrameInputs& in,
-                                 gpu::ImageRef visibility);
-
 }  // namespace heliograph::render
