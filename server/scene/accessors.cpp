@@ -120,6 +120,33 @@ bool is_index_type(ComponentType type) {
   return type == ComponentType::u8 || type == ComponentType::u16 || type == ComponentType::u32;
 }
 
+/// Calls `store(element, component, value)` for the first `components` of every element.
+template <typename Store>
+void read_elements(const Accessor& accessor, int components, const Store& store) {
+  const std::uint32_t size = component_size(accessor.component);
+  const int available =
+      std::min<int>(components, static_cast<int>(component_count(accessor.element)));
+  const auto load_element = [&](const std::uint8_t* bytes, std::size_t element) {
+    for (int i = 0; i < available; ++i) {
+      const float value = load_component(bytes + i * size, accessor.component, accessor.normalized);
+      if (!std::isfinite(value)) accessor.refuse("holds a number that is not finite");
+      store(element, i, value);
+    }
+  };
+  if (!accessor.bytes.empty()) {
+    for (std::size_t i = 0; i < accessor.count; ++i) {
+      load_element(accessor.bytes.data() + i * accessor.stride, i);
+    }
+  }
+  if (accessor.sparse) {
+    const std::uint32_t element_bytes = element_size(accessor.element, accessor.component);
+    for (std::size_t i = 0; i < accessor.sparse->indices.size(); ++i) {
+      load_element(accessor.sparse->values.data() + i * element_bytes,
+                   accessor.sparse->indices[i]);
+    }
+  }
+}
+
 Accessor::Sparse read_sparse(const JsonValue& sparse, const GltfFile& file,
                              const Accessor& accessor) {
   const std::uint64_t count = sparse.required_integer("count");
@@ -227,33 +254,33 @@ template <int components>
 std::vector<glm::vec<components, float>> read_vectors(const Accessor& accessor) {
   using Vector = glm::vec<components, float>;
   std::vector<Vector> result(accessor.count, Vector(0.0f));
-  const std::uint32_t size = component_size(accessor.component);
-  const int available =
-      std::min<int>(components, static_cast<int>(component_count(accessor.element)));
-  const auto load_element = [&](const std::uint8_t* bytes, Vector& target) {
-    for (int i = 0; i < available; ++i) {
-      target[i] = load_component(bytes + i * size, accessor.component, accessor.normalized);
-      if (!std::isfinite(target[i])) accessor.refuse("holds a number that is not finite");
-    }
-  };
-  if (!accessor.bytes.empty()) {
-    for (std::size_t i = 0; i < result.size(); ++i) {
-      load_element(accessor.bytes.data() + i * accessor.stride, result[i]);
-    }
-  }
-  if (accessor.sparse) {
-    const std::uint32_t element_bytes = element_size(accessor.element, accessor.component);
-    for (std::size_t i = 0; i < accessor.sparse->indices.size(); ++i) {
-      load_element(accessor.sparse->values.data() + i * element_bytes,
-                   result[accessor.sparse->indices[i]]);
-    }
-  }
+  read_elements(accessor, components, [&](std::size_t element, int component, float value) {
+    result[element][component] = value;
+  });
   return result;
 }
 
 template std::vector<glm::vec2> read_vectors<2>(const Accessor&);
 template std::vector<glm::vec3> read_vectors<3>(const Accessor&);
 template std::vector<glm::vec4> read_vectors<4>(const Accessor&);
+
+std::vector<float> read_numbers(const Accessor& accessor) {
+  const std::size_t width = component_count(accessor.element);
+  std::vector<float> result(accessor.count * width, 0.0f);
+  read_elements(accessor, static_cast<int>(width),
+                [&](std::size_t element, std::size_t component, float value) {
+                  result[element * width + component] = value;
+                });
+  return result;
+}
+
+std::vector<glm::mat4> read_matrices(const Accessor& accessor) {
+  std::vector<glm::mat4> result(accessor.count, glm::mat4(0.0f));
+  read_elements(accessor, 16, [&](std::size_t element, int component, float value) {
+    result[element][component / 4][component % 4] = value;
+  });
+  return result;
+}
 
 std::vector<std::uint32_t> read_vertex_indices(const Accessor& accessor,
                                                std::uint32_t vertex_count) {

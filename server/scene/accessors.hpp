@@ -47,6 +47,13 @@ std::vector<Accessor> read_accessors(const GltfFile& file, const ImportLimits& l
 template <int components>
 std::vector<glm::vec<components, float>> read_vectors(const Accessor& accessor);
 
+/// All components of all elements, one after the other. For scalars and vectors only.
+/// @throws ImportError when one is not finite
+std::vector<float> read_numbers(const Accessor& accessor);
+
+/// All elements of an accessor of float 4x4 matrices. @throws ImportError when one is not finite
+std::vector<glm::mat4> read_matrices(const Accessor& accessor);
+
 /// All elements of an index accessor (unsigned scalar), widened to 32 bits.
 /// @throws ImportError when the type does not fit or an index is not below `vertex_count`
 std::vector<std::uint32_t> read_vertex_indices(const Accessor& accessor,

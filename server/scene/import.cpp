@@ -5,9 +5,12 @@
 #include <cmath>
 #include <new>
 #include <optional>
+#include <set>
 
 #include "scene/accessors.hpp"
+#include "scene/animation.hpp"
 #include "scene/cameras.hpp"
+#include "scene/deform.hpp"
 #include "scene/gltf_file.hpp"
 #include "scene/images.hpp"
 #include "scene/lights.hpp"
@@ -16,6 +19,7 @@
 #include "scene/nodes.hpp"
 #include "scene/primitives.hpp"
 #include "scene/references.hpp"
+#include "scene/shapes.hpp"
 #include "scene/textures.hpp"
 #include "scene/warnings.hpp"
 
@@ -72,10 +76,11 @@ class Importer {
     });
     build_alpha_heap(scene_);
 
+    scene_.clips = read_clips(root, accessors, nodes, warnings_);
+    scene_.skins = read_skins(root, accessors, nodes);
+    scene_.nodes = nodes.nodes;
     place_instances(nodes, primitives);
     place_lights_and_cameras(nodes, lights, cameras);
-    if (nodes.has_skins) warnings_.add("skins are shown in the pose of their vertices");
-    scene_.nodes = std::move(nodes.nodes);
     scene_.warnings = warnings_.take();
     report("done", 1.0f);
     return std::move(scene_);
@@ -103,29 +108,91 @@ class Importer {
     }
     if (scene_.materials.empty()) default_material_index();
     scene_.meshes.resize(table.primitives.size());
+    scene_.shapes.resize(table.primitives.size());
     tbb::parallel_for(std::size_t(0), table.primitives.size(), [&](std::size_t i) {
-      scene_.meshes[i] = build_mesh(table.primitives[i], accessors, materials[i], scene_.materials);
+      const Primitive& primitive = table.primitives[i];
+      auto [mesh, sources] = build_mesh(primitive, accessors, materials[i], scene_.materials);
+      if (primitive.deforms()) {
+        scene_.shapes[i] = build_shape(primitive, accessors, mesh, sources);
+      }
+      scene_.meshes[i] = std::move(mesh);
     });
   }
 
   void place_instances(const NodeTable& nodes, const PrimitiveTable& primitives) {
+    const std::vector<bool> moves = moved_by_clips();
+    const Pose pose = rest_pose(scene_);
     for (std::uint32_t i = 0; i < nodes.nodes.size(); ++i) {
-      const glm::mat4& world = nodes.nodes[i].world;
-      if (!nodes.attachments[i].mesh) continue;
-      const float determinant = glm::determinant(glm::mat3(world));
-      if (!std::isnormal(determinant)) {
-        warnings_.add(nodes.paths[i] + " is scaled to nothing and was left out");
-        continue;
-      }
-      for (const std::uint32_t mesh : primitives.of_mesh[*nodes.attachments[i].mesh]) {
-        scene_.instances.push_back({mesh, i});
-        if (scene_.instances.size() > limits_.instances) {
-          throw ImportError("the scene exceeds the limit of " + std::to_string(limits_.instances) +
-                            " instances");
+      const NodeAttachments& attached = nodes.attachments[i];
+      if (!attached.mesh) continue;
+      const float determinant = glm::determinant(glm::mat3(nodes.nodes[i].world));
+      for (const std::uint32_t mesh : primitives.of_mesh[*attached.mesh]) {
+        const Shape& shape = scene_.shapes[mesh];
+        const bool skinned = attached.skin && shape.joints_per_vertex > 0 &&
+                             !scene_.skins[*attached.skin].joints.empty();
+        if (!skinned && !std::isnormal(determinant) && !moves[i]) {
+          warnings_.add(nodes.paths[i] + " is scaled to nothing and was left out");
+          continue;
         }
-        include_in_bounds(scene_.meshes[mesh].bounds, world, nodes.paths[i]);
+        if (skinned || !shape.targets.empty()) {
+          place_deforming(mesh, i, skinned ? attached.skin : std::nullopt, pose, nodes.paths[i]);
+        } else {
+          place_instance(mesh, i, nodes.paths[i]);
+        }
       }
     }
+  }
+
+  /// Nodes that some clip moves, themselves or through what they hang on.
+  std::vector<bool> moved_by_clips() const {
+    std::vector<bool> moves(scene_.nodes.size());
+    for (const Clip& clip : scene_.clips) {
+      for (const Channel& channel : clip.channels) moves[channel.node] = true;
+    }
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+      const auto& parent = scene_.nodes[i].parent;
+      if (parent && moves[*parent]) moves[i] = true;
+    }
+    return moves;
+  }
+
+  void place_instance(std::uint32_t mesh, std::uint32_t node, const std::string& path) {
+    scene_.instances.push_back({mesh, node});
+    if (scene_.instances.size() > limits_.instances) {
+      throw ImportError("the scene exceeds the limit of " + std::to_string(limits_.instances) +
+                        " instances");
+    }
+    include_in_bounds(scene_.meshes[mesh].bounds, scene_.nodes[node].world, path);
+  }
+
+  // Every place gets a mesh of its own, since each may take another shape.
+  void place_deforming(std::uint32_t mesh, std::uint32_t node, std::optional<std::uint32_t> skin,
+                       const Pose& pose, const std::string& path) {
+    const std::uint32_t shape = mesh;
+    if (skin) check_joints(scene_.shapes[shape], scene_.skins[*skin], path);
+    if (!placed_shapes_.insert(shape).second) mesh = copy_mesh(mesh, path);
+    scene_.deformations.push_back({mesh, shape, node, skin});
+    Mesh& own = scene_.meshes[mesh];
+    own.bounds = deform(scene_, scene_.deformations.back(), pose, own.vertices);
+    place_instance(mesh, skin ? origin_node() : node, path);
+  }
+
+  std::uint32_t copy_mesh(std::uint32_t mesh, const std::string& path) {
+    copied_vertices_ += scene_.meshes[mesh].vertices.size();
+    if (copied_vertices_ > 3 * limits_.triangles) {
+      throw ImportError(path + ": exceeds the limit of " + std::to_string(3 * limits_.triangles) +
+                        " vertices that deform");
+    }
+    scene_.meshes.push_back(Mesh(scene_.meshes[mesh]));
+    return static_cast<std::uint32_t>(scene_.meshes.size() - 1);
+  }
+
+  std::uint32_t origin_node() {
+    if (!origin_) {
+      origin_ = static_cast<std::uint32_t>(scene_.nodes.size());
+      scene_.nodes.push_back({.name = "skinned"});
+    }
+    return *origin_;
   }
 
   void include_in_bounds(const Bounds& mesh, const glm::mat4& world, const std::string& path) {
@@ -146,17 +213,19 @@ class Importer {
                                 const std::vector<Camera>& cameras) {
     for (std::size_t i = 0; i < nodes.nodes.size(); ++i) {
       const Node& node = nodes.nodes[i];
+      const auto index = static_cast<std::uint32_t>(i);
       const NodeAttachments& attached = nodes.attachments[i];
       if ((attached.light || attached.camera) && !is_finite(node.world)) {
         throw ImportError(nodes.paths[i] + ": places its light or camera too far out");
       }
       if (attached.light) {
-        scene_.lights.push_back(
-            place_light(lights[*attached.light], node.name, node.world, attached.angular_diameter));
+        scene_.lights.push_back(place_light(lights, attached.light, node.name, node.world));
+        scene_.lights.back().node = index;
       }
       if (attached.camera) {
         scene_.cameras.push_back(
             place_camera(cameras[*attached.camera], node.name, node.world, scene_.bounds));
+        scene_.cameras.back().node = index;
       }
     }
   }
@@ -167,6 +236,9 @@ class Importer {
   Warnings warnings_;
   Scene scene_;
   std::optional<std::uint32_t> default_material_;
+  std::optional<std::uint32_t> origin_;  // node that skinned meshes hang on
+  std::set<std::uint32_t> placed_shapes_;
+  std::uint64_t copied_vertices_ = 0;
 };
 
 }  // namespace

@@ -135,15 +135,24 @@ void orthonormalize_tangents(std::vector<Vertex>& vertices) {
   }
 }
 
+/// Vertices were duplicated on the way, but corners kept their order.
+std::vector<std::uint32_t> trace_back(const Mesh& mesh, std::span<const std::uint32_t> corners) {
+  std::vector<std::uint32_t> sources(mesh.vertices.size(), 0);
+  for (std::size_t i = 0; i < corners.size(); ++i) sources[mesh.indices[i]] = corners[i];
+  return sources;
+}
+
 }  // namespace
 
-Mesh build_mesh(const Primitive& primitive, std::span<const Accessor> accessors,
-                std::uint32_t material, std::span<const shared::Material> materials) {
-  Mesh mesh;
+BuiltMesh build_mesh(const Primitive& primitive, std::span<const Accessor> accessors,
+                     std::uint32_t material, std::span<const shared::Material> materials) {
+  BuiltMesh built;
+  Mesh& mesh = built.mesh;
   mesh.name = primitive.name;
   mesh.material = material;
   mesh.indices = read_triangles(primitive, accessors);
   mesh.vertices = read_vertices(primitive, accessors);
+  const std::vector<std::uint32_t> corners = mesh.indices;
   if (primitive.normal) {
     normalize_normals(mesh.vertices, mesh.indices);
   } else {
@@ -158,7 +167,8 @@ Mesh build_mesh(const Primitive& primitive, std::span<const Accessor> accessors,
     generate_tangents(mesh.vertices, mesh.indices, normal_map);
   }
   for (const std::uint32_t index : mesh.indices) mesh.bounds.include(mesh.vertices[index].position);
-  return mesh;
+  if (primitive.deforms()) built.sources = trace_back(mesh, corners);
+  return built;
 }
 
 }  // namespace heliograph::scene

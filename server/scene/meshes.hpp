@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "scene/accessors.hpp"
 #include "scene/primitives.hpp"
@@ -9,11 +10,16 @@
 
 namespace heliograph::scene {
 
+struct BuiltMesh {
+  Mesh mesh;
+  std::vector<std::uint32_t> sources;  // by vertex: the vertex of the file that it was made of
+};
+
 /// Reads one primitive's triangles. Missing normals become flat ones (glTF 3.7.2.1); missing
 /// tangents are made for `material`'s normal map, or arbitrary where there is none. `material` is
 /// the index stored in the mesh, `materials` what it indexes.
 /// @throws ImportError when an index is out of range or a number is not finite
-Mesh build_mesh(const Primitive& primitive, std::span<const Accessor> accessors,
-                std::uint32_t material, std::span<const shared::Material> materials);
+BuiltMesh build_mesh(const Primitive& primitive, std::span<const Accessor> accessors,
+                     std::uint32_t material, std::span<const shared::Material> materials);
 
 }  // namespace heliograph::scene

@@ -28,8 +28,7 @@ glm::mat4 read_matrix(const JsonValue& json) {
   return matrix;
 }
 
-glm::mat4 read_local_transform(const JsonValue& json) {
-  if (json.has("matrix")) return read_matrix(json);
+Transform read_transform(const JsonValue& json) {
   const auto translation = json.numbers<3>("translation", {0.0f, 0.0f, 0.0f});
   const auto rotation = json.numbers<4>("rotation", {0.0f, 0.0f, 0.0f, 1.0f});
   const auto scale = json.numbers<3>("scale", {1.0f, 1.0f, 1.0f});
@@ -39,41 +38,53 @@ glm::mat4 read_local_transform(const JsonValue& json) {
   const glm::quat unit(
       static_cast<float>(quaternion.w / length), static_cast<float>(quaternion.x / length),
       static_cast<float>(quaternion.y / length), static_cast<float>(quaternion.z / length));
-  glm::mat4 matrix = glm::mat4_cast(unit);
-  for (int axis = 0; axis < 3; ++axis) matrix[axis] *= scale[axis];
-  matrix[3] = glm::vec4(translation[0], translation[1], translation[2], 1.0f);
-  return matrix;
+  return {{translation[0], translation[1], translation[2]}, unit, {scale[0], scale[1], scale[2]}};
 }
 
-struct Counts {
+/// Of each mesh of the document: the weights of its morph targets, 0 unless given.
+std::vector<std::vector<float>> read_mesh_weights(const JsonValue& root) {
+  std::vector<std::vector<float>> weights;
+  for (const JsonValue& mesh : root.objects("meshes")) {
+    std::size_t count = 0;
+    for (const JsonValue& primitive : mesh.objects("primitives")) {
+      count = std::max(count, primitive.objects("targets").size());
+    }
+    auto given = count > 0 ? mesh.numbers("weights", count) : std::nullopt;
+    weights.push_back(given ? std::move(*given) : std::vector<float>(count, 0.0f));
+  }
+  return weights;
+}
+
+struct Context {
   std::size_t nodes;
-  std::size_t meshes;
+  std::vector<std::vector<float>> mesh_weights;
   std::size_t cameras;
   std::size_t lights;
   std::size_t skins;
 };
 
-DocumentNode read_node(const JsonValue& json, const Counts& counts) {
+DocumentNode read_node(const JsonValue& json, const Context& context) {
   DocumentNode result;
   result.path = json.path();
   result.node.name = json.text("name");
-  result.node.local = read_local_transform(json);
-  result.children = json.indices("children", counts.nodes, "nodes");
-  result.attachments.mesh = json.index("mesh", counts.meshes, "meshes");
-  result.attachments.camera = json.index("camera", counts.cameras, "cameras");
-  json.index("skin", counts.skins, "skins");
-  if (const auto light = json.object("extensions", "KHR_lights_punctual")) {
-    result.attachments.light = light->required_index("light", counts.lights, "lights");
+  if (json.has("matrix")) {
+    result.node.local = read_matrix(json);
+  } else {
+    result.node.transform = read_transform(json);
+    result.node.local = result.node.transform->matrix();
   }
-  // "extras" may be of any type (glTF 3.12) and hold anything: only our own key is looked at.
-  if (result.attachments.light && json.is_object("extras")) {
-    const auto extras = json.object("extras");
-    float& diameter = result.attachments.angular_diameter;
-    diameter = extras->number("angularDiameterDeg", diameter);
-    if (diameter < 0.0f || diameter > 90.0f) {
-      extras->refuse("angularDiameterDeg", "must be from 0 to 90 degrees");
+  result.children = json.indices("children", context.nodes, "nodes");
+  result.attachments.mesh = json.index("mesh", context.mesh_weights.size(), "meshes");
+  if (result.attachments.mesh) {
+    const std::vector<float>& weights = context.mesh_weights[*result.attachments.mesh];
+    result.node.weights = weights;
+    if (!weights.empty() && json.has("weights")) {
+      result.node.weights = *json.numbers("weights", weights.size());
     }
   }
+  result.attachments.camera = json.index("camera", context.cameras, "cameras");
+  result.attachments.skin = json.index("skin", context.skins, "skins");
+  result.attachments.light = read_node_light(json, context.lights);
   return result;
 }
 
@@ -162,21 +173,27 @@ NodeTable read_nodes(const JsonValue& root, std::size_t light_count, const Impor
     throw ImportError("nodes: " + std::to_string(documents.size()) + " exceed the limit of " +
                       std::to_string(limits.nodes));
   }
-  const Counts counts{documents.size(), root.objects("meshes").size(),
+  const Context context{documents.size(), read_mesh_weights(root),
                       root.objects("cameras").size(), light_count, root.objects("skins").size()};
   std::vector<DocumentNode> nodes;
   nodes.reserve(documents.size());
-  for (const JsonValue& json : documents) nodes.push_back(read_node(json, counts));
+  std::uint64_t weights = 0;
+  for (const JsonValue& json : documents) {
+    nodes.push_back(read_node(json, context));
+    weights += nodes.back().node.weights.size();
+    if (weights > limits.json_values) json.refuse("has more morph weights than are accepted");
+  }
   link_parents(nodes);
   check_no_cycles(nodes, limits.node_depth);
 
   NodeTable table;
-  table.has_skins = counts.skins > 0;
+  table.of_document.resize(nodes.size());
   visit_hierarchy(nodes, read_roots(root, nodes), limits.node_depth,
                   [&](std::uint32_t index, std::optional<std::uint32_t> parent) {
                     Node node = nodes[index].node;
                     node.parent = parent;
                     node.world = parent ? table.nodes[*parent].world * node.local : node.local;
+                    table.of_document[index] = static_cast<std::uint32_t>(table.nodes.size());
                     table.nodes.push_back(std::move(node));
                     table.attachments.push_back(nodes[index].attachments);
                     table.paths.push_back(nodes[index].path);

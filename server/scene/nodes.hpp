@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scene/gltf_file.hpp"
+#include "scene/lights.hpp"
 #include "scene/scene.hpp"
 
 namespace heliograph::scene {
@@ -12,10 +13,9 @@ namespace heliograph::scene {
 /// What hangs on a node, as indices into the document's arrays.
 struct NodeAttachments {
   std::optional<std::uint32_t> mesh;
+  std::optional<std::uint32_t> skin;
   std::optional<std::uint32_t> camera;
-  std::optional<std::uint32_t> light;
-  float angular_diameter =
-      0.53f;  // degrees: the sun's from Earth unless the node's extras say otherwise
+  NodeLight light;
 };
 
 /// The nodes of the shown scene, parents first, with world transforms. `attachments[i]` belongs to
@@ -24,7 +24,7 @@ struct NodeTable {
   std::vector<Node> nodes;
   std::vector<NodeAttachments> attachments;
   std::vector<std::string> paths;
-  bool has_skins = false;
+  std::vector<std::optional<std::uint32_t>> of_document;  // into `nodes`, by number in the file
 };
 
 /// Reads all nodes, refuses cycles, second parents and excessive depth, and keeps those that the

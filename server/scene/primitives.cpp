@@ -26,8 +26,9 @@ class PrimitiveReader {
     primitive.uv[0] = attribute(*attributes, "TEXCOORD_0", ElementType::vec2);
     primitive.uv[1] = attribute(*attributes, "TEXCOORD_1", ElementType::vec2);
     primitive.color = color_attribute(*attributes);
+    read_joints(*attributes, primitive);
     check_counts(*attributes);
-    check_targets(json);
+    read_targets(json, primitive);
     primitive.indices = json.index("indices", accessors_.size(), "accessors");
     primitive.material = json.index("material", material_count_, "materials");
     if (mode < 4) {
@@ -82,14 +83,36 @@ class PrimitiveReader {
     vertex_count_ = count.value_or(0);
   }
 
-  void check_targets(const JsonValue& json) {
+  void read_joints(const JsonValue& attributes, Primitive& primitive) {
+    for (std::size_t set = 0; set < primitive.joints.size(); ++set) {
+      const std::string number = std::to_string(set);
+      const auto joints = attribute(attributes, "JOINTS_" + number, ElementType::vec4);
+      const auto weights = attribute(attributes, "WEIGHTS_" + number, ElementType::vec4);
+      if (joints.has_value() != weights.has_value()) {
+        attributes.refuse((joints ? "WEIGHTS_" : "JOINTS_") + number, "is missing");
+      }
+      if (!joints) return;
+      const Accessor& numbers = accessors_[*joints];
+      if (numbers.normalized || (numbers.component != ComponentType::u8 &&
+                                 numbers.component != ComponentType::u16)) {
+        attributes.refuse("JOINTS_" + number, "has the wrong component type");
+      }
+      primitive.joints[set] = joints;
+      primitive.weights[set] = weights;
+    }
+    if (attributes.has("JOINTS_2")) warnings_.add("more than 8 joints for a vertex are left out");
+  }
+
+  void read_targets(const JsonValue& json, Primitive& primitive) {
     for (const JsonValue& target : json.objects("targets")) {
-      warnings_.add("morph targets are left at rest");
       for (const std::string& name : target.keys()) {
         const std::uint32_t index = target.required_index(name, accessors_.size(), "accessors");
         if (accessors_[index].count != vertex_count_)
           target.refuse(name, "differs in count from its primitive");
       }
+      primitive.targets.push_back({attribute(target, "POSITION", ElementType::vec3),
+                                   attribute(target, "NORMAL", ElementType::vec3),
+                                   attribute(target, "TANGENT", ElementType::vec3)});
     }
   }
 
@@ -103,7 +126,7 @@ class PrimitiveReader {
     }
     if (separate && corners % 3 != 0) warnings_.add(json.path() + " ends in a part of a triangle");
     triangles_ += separate ? corners / 3 : corners - 2;
-    vertices_ += vertex_count_;
+    vertices_ += vertex_count_ * (1 + primitive.targets.size());
     if (triangles_ > limits_.triangles || vertices_ > 3 * limits_.triangles) {
       json.refuse("exceeds the limit of " + std::to_string(limits_.triangles) +
                   " triangles for the whole scene");

@@ -17,6 +17,13 @@ namespace heliograph::scene {
 struct Primitive {
   enum class Mode { triangles = 4, strip = 5, fan = 6 };
 
+  /// What a morph target changes.
+  struct Target {
+    std::optional<std::uint32_t> position;
+    std::optional<std::uint32_t> normal;
+    std::optional<std::uint32_t> tangent;
+  };
+
   std::string name;
   Mode mode = Mode::triangles;
   std::uint32_t position = 0;
@@ -26,6 +33,11 @@ struct Primitive {
   std::optional<std::uint32_t> color;
   std::optional<std::uint32_t> indices;
   std::optional<std::uint32_t> material;
+  std::array<std::optional<std::uint32_t>, 2> joints;  // both or none of a set with its weights
+  std::array<std::optional<std::uint32_t>, 2> weights;
+  std::vector<Target> targets;
+
+  bool deforms() const { return joints[0] || !targets.empty(); }
 };
 
 /// All primitives that have triangles, and which of them make up each mesh of the document.

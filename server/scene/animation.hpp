@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "scene/accessors.hpp"
+#include "scene/nodes.hpp"
+#include "scene/warnings.hpp"
+
+namespace heliograph::scene {
+
+/// The document's animations, as far as they move nodes that are shown. Names are unique, so that
+/// each can be asked for; what has none is called "clip" and a number.
+/// @throws ImportError
+std::vector<Clip> read_clips(const JsonValue& root, std::span<const Accessor> accessors,
+                             const NodeTable& nodes, Warnings& warnings);
+
+/// The document's skins, in its order; one whose joints are not all shown comes out without joints.
+/// @throws ImportError
+std::vector<Skin> read_skins(const JsonValue& root, std::span<const Accessor> accessors,
+                             const NodeTable& nodes);
+
+}  // namespace heliograph::scene
