@@ -1,16 +1,10 @@
 #pragma once
 
-#include <span>
 #include <string_view>
 
 namespace heliograph::protocol {
 
-struct EmbeddedPreset {
-  std::string_view name;
-  std::string_view text;  // of the JSON file
-};
-
-/// Made by CMake from scenes/presets, in the order of the ladder.
-std::span<const EmbeddedPreset> embedded_presets();
+/// The text of scenes/presets/NAME.json, embedded by CMake; empty where there is no such file.
+std::string_view embedded_preset(std::string_view name);
 
 }  // namespace heliograph::protocol

@@ -1,5 +1,6 @@
 #include "protocol/presets.hpp"
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -10,29 +11,43 @@
 namespace heliograph::protocol {
 namespace {
 
-std::vector<Preset> parse_presets() {
-  // Views into the descriptions must stay valid: the documents live as long as the program.
-  static const std::vector<nlohmann::json> documents = [] {
-    std::vector<nlohmann::json> all;
-    for (const EmbeddedPreset& file : embedded_presets()) {
-      all.push_back(nlohmann::json::parse(file.text));
-    }
-    return all;
-  }();
-  std::vector<Preset> list;
-  for (std::size_t i = 0; i < documents.size(); ++i) {
-    const nlohmann::json& document = documents[i];
-    list.push_back({embedded_presets()[i].name,
-                    document.at("description").get_ref<const std::string&>(),
-                    RawJson(document.at("settings"))});
-  }
-  return list;
-}
+struct Description {
+  std::string_view name;
+  std::string_view text;
+};
+
+constexpr std::array<Description, 6> descriptions = {{
+    {"svgf",
+     "Spatiotemporal variance-guided filtering of both channels (Schied et al. 2017): the paper's "
+     "baseline."},
+    {"rectification",
+     "svgf, and history is clamped to mean and variance of 3x3 pixels (paper section 3.1): no "
+     "ghosts, more noise."},
+    {"adapted",
+     "rectification, and the blur starts a scale wider on rough surfaces and under large lights "
+     "(paper section 3.2)."},
+    {"separable",
+     "adapted, with the blur as two passes of 5 neighbours in place of one of 25 (paper section "
+     "3.3)."},
+    {"reinhard",
+     "separable, and reflections are compressed before denoising (paper section 3.4): all of the "
+     "paper."},
+    {"best",
+     "The best that Heliograph can do: history clamped to a shorter one, reflections followed "
+     "behind their mirror, no bands."},
+}};
 
 }  // namespace
 
 std::span<const Preset> presets() {
-  static const std::vector<Preset> all = parse_presets();
+  static const std::vector<Preset> all = [] {
+    std::vector<Preset> list;
+    for (const Description& preset : descriptions) {
+      list.push_back(
+          {preset.name, preset.text, RawJson(nlohmann::json::parse(embedded_preset(preset.name)))});
+    }
+    return list;
+  }();
   return all;
 }
 
