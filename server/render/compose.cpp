@@ -5,21 +5,35 @@
 
 namespace heliograph::render {
 
-gpu::ImageRef compose(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                      gpu::ImageRef shadows, gpu::ImageRef ambient, gpu::ImageRef background) {
-  const auto hdr = plan.image("hdr", VK_FORMAT_R32G32B32A32_SFLOAT);
-  plan.pass("compose", in.programs.compute(shaders::compose))
-      .read(gbuffer.normals)
+Composed compose(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                 const RawSignals& raw, const std::optional<DenoisedSignals>& denoised,
+                 gpu::ImageRef background) {
+  constexpr VkFormat format = VK_FORMAT_R32G32B32A32_SFLOAT;
+  Composed composed;
+  composed.hdr = composed.hdr_raw = plan.image("hdr", format);
+  // A binding has to hold an image; one that is not traced is not read.
+  const bool mirrors = raw.specular.has_value();
+  const gpu::ImageRef specular = raw.specular.value_or(background);
+  const auto& shader = denoised ? shaders::compose_denoised : shaders::compose;
+  auto pass = plan.pass("compose", in.programs.compute(shader));
+  pass.read(gbuffer.normals)
       .read(gbuffer.base_color)
       .read(gbuffer.surface)
       .read(gbuffer.motion)
       .read(gbuffer.emissive)
-      .read(shadows)
-      .read(ambient)
       .read(background)
-      .write(hdr)
+      .read(raw.shadows)
+      .read(raw.ambient)
+      .read(specular)
+      .constants([&s = in.settings.specular, mirrors] { return mirrors ? s.max_roughness : -1.0f; })
       .dispatch(plan.extent());
-  return hdr;
+  if (denoised) {
+    composed.hdr_raw = plan.image("hdr_raw", format);
+    pass.read(denoised->visibility).read(denoised->specular.value_or(specular));
+  }
+  pass.write(composed.hdr);
+  if (denoised) pass.write(composed.hdr_raw);
+  return composed;
 }
 
 }  // namespace heliograph::render

@@ -1,27 +1,55 @@
 #include "render/frame.hpp"
 
 #include "render/accumulate.hpp"
+#include "render/antialias.hpp"
 #include "render/compose.hpp"
+#include "render/denoise_specular.hpp"
+#include "render/denoise_visibility.hpp"
 #include "render/gbuffer.hpp"
 #include "render/present.hpp"
 #include "render/skybox.hpp"
+#include "render/trace_gbuffer.hpp"
+#include "render/trace_specular.hpp"
 #include "render/trace_visibility.hpp"
 
 namespace heliograph::render {
+namespace {
+
+/// The signals without noise, as far as the settings denoise them.
+std::optional<DenoisedSignals> denoise(gpu::FramePlan& plan, const FrameInputs& in,
+                                       const GBuffer& gbuffer, const RawSignals& raw) {
+  const protocol::Settings& s = in.settings;
+  const bool visibility = s.shadow_temporal.enabled || s.shadow_blur.enabled;
+  const bool specular = raw.specular && (s.specular_temporal.enabled || s.specular_blur.enabled);
+  if (!visibility && !specular) return std::nullopt;
+  const Guide guide = reproject(plan, in, gbuffer);
+  DenoisedSignals denoised{combine_visibility(plan, in, raw.shadows, raw.ambient), raw.specular};
+  if (visibility) {
+    denoised.visibility = denoise_visibility(plan, in, gbuffer, guide, denoised.visibility);
+  }
+  if (specular) denoised.specular = denoise_specular(plan, in, gbuffer, guide, *raw.specular);
+  return denoised;
+}
+
+}  // namespace
 
 // The stages of the paper's section 3, in its order; the prefilter ran when the environment came.
 FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
-  const GBuffer gbuffer = rasterize_gbuffer(plan, in);
+  const GBuffer gbuffer =
+      traces_gbuffer(in) ? trace_gbuffer(plan, in) : rasterize_gbuffer(plan, in);
 
-  const gpu::ImageRef shadows = trace_shadows(plan, in, gbuffer);
-  const gpu::ImageRef ambient = trace_ambient(plan, in, gbuffer);
+  RawSignals raw{trace_shadows(plan, in, gbuffer), trace_ambient(plan, in, gbuffer), {}};
+  if (in.settings.specular.enabled) raw.specular = trace_specular(plan, in, gbuffer);
+  const auto denoised = denoise(plan, in, gbuffer, raw);
 
   const gpu::ImageRef background = draw_skybox(plan, in, gbuffer);
-  const gpu::ImageRef hdr = compose(plan, in, gbuffer, shadows, ambient, background);
+  const auto [hdr, hdr_raw] = compose(plan, in, gbuffer, raw, denoised, background);
 
-  const gpu::History accumulated = accumulate(plan, in, hdr);
-  const gpu::ImageRef picture = present(plan, in, accumulated.current);
-  return {accumulated, picture};
+  const gpu::History accumulated = accumulate(plan, in, hdr_raw);
+  const Exposure exposure = expose(plan, in, hdr, accumulated.current);
+  const gpu::ImageRef resolved = temporal_antialias(plan, in, gbuffer, exposure, hdr);
+  const gpu::ImageRef picture = present(plan, in, exposure, resolved, accumulated.current);
+  return {accumulated, exposure, picture};
 }
 
 }  // namespace heliograph::render

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "tests/gpu/gbuffer_input.hpp"
 #include "tests/support/brdf_twin.hpp"
@@ -15,28 +16,54 @@ namespace {
 constexpr VkExtent2D extent{16, 16};
 constexpr std::size_t pixels = extent.width * extent.height;
 
+struct Denoised {
+  glm::vec3 visibility;
+  glm::vec3 specular;
+};
+
 struct Inputs {
   SurfacePixel pixel;
   float shadow = 1.0f;
   float ambient = 1.0f;
+  std::optional<glm::vec3> specular;
+  std::optional<Denoised> denoised;
   glm::vec3 background{0.0f};
   protocol::Settings settings;
 };
 
+struct Pictures {
+  glm::vec3 hdr, hdr_raw;
+};
+
 /// What composition makes of a pixel in the middle, seen from (0, 0, 2) along -z.
-glm::vec3 compose(SceneBuilder& scene, const Inputs& in) {
+Pictures compose_both(SceneBuilder& scene, const Inputs& in) {
   FrameRig rig(scene.build(), look({0, 0, 2}, {0, 0, 0}),
                {.extent = extent, .settings = in.settings});
   const auto gbuffer = make_gbuffer(rig, in.pixel);
   const auto flat = [&](const char* name, float value) {
     return rig.input(name, VK_FORMAT_R32_SFLOAT, std::vector(pixels, value));
   };
-  const auto background = rig.input("background", VK_FORMAT_R32G32B32A32_SFLOAT,
-                                    std::vector(pixels, glm::vec4(in.background, 1)));
-  const auto hdr = render::compose(rig.plan(), rig.inputs(), gbuffer, flat("shadow", in.shadow),
-                                   flat("ambient", in.ambient), background);
+  const auto colored = [&](const char* name, const glm::vec3& value) {
+    return rig.input(name, VK_FORMAT_R32G32B32A32_SFLOAT,
+                     std::vector(pixels, glm::vec4(value, 1)));
+  };
+  const auto background = colored("background", in.background);
+  render::RawSignals raw{flat("shadow", in.shadow), flat("ambient", in.ambient), {}};
+  if (in.specular) raw.specular = colored("specular", *in.specular);
+  std::optional<render::DenoisedSignals> denoised;
+  if (in.denoised) {
+    denoised = {colored("visibility", in.denoised->visibility),
+                colored("denoised specular", in.denoised->specular)};
+  }
+  const auto composed =
+      render::compose(rig.plan(), rig.inputs(), gbuffer, raw, denoised, background);
   rig.run();
-  return glm::vec3(texel(rig.read(hdr), 8, 8));
+  return {glm::vec3(texel(rig.read(composed.hdr), 8, 8)),
+          glm::vec3(texel(rig.read(composed.hdr_raw), 8, 8))};
+}
+
+glm::vec3 compose(SceneBuilder& scene, const Inputs& in) {
+  return compose_both(scene, in).hdr;
 }
 
 protocol::Settings only_direct() {
@@ -98,6 +125,46 @@ TEST(Compose, AmbientVisibilityAndOcclusionMapScaleTheEnvironment) {
   EXPECT_NEAR(compose(scene, in).x, 0.1f * open, 1e-4f);
   in.settings.ambient.occlusion = false;
   EXPECT_NEAR(compose(scene, in).x, 0.2f * open, 1e-4f);
+}
+
+TEST(Compose, TracedReflectionsTakeThePlaceOfTheMirroredEnvironment) {
+  SceneBuilder scene;
+  Inputs in;
+  in.pixel.metallic = 1.0f;
+  in.pixel.color = glm::vec3(1.0f);
+  in.specular = glm::vec3(3, 2, 1);
+  const glm::vec3 metal = compose(scene, in);
+  EXPECT_NEAR(metal.x, 3.0f, 0.01f) << "a white metal gives back what it is given";
+  EXPECT_NEAR(metal.z, 1.0f, 0.01f);
+  in.ambient = 0.25f;
+  EXPECT_EQ(compose(scene, in), metal) << "rays know themselves what is hidden";
+  in.settings.specular.max_roughness = 0.5f;
+  EXPECT_NEAR(compose(scene, in).x, 0.25f, 0.01f) << "rougher than rays are traced for";
+  in.pixel.roughness = 0.5f;
+  EXPECT_NEAR(compose(scene, in).x, 3.0f, 0.01f) << "not rougher";
+  in.specular.reset();
+  EXPECT_NEAR(compose(scene, in).x, 0.25f, 0.01f) << "the prefiltered environment";
+}
+
+TEST(Compose, DenoisedSignalsMakeThePictureAndRawOnesTheSample) {
+  SceneBuilder scene;
+  scene.add_sun({0, 0, -1}, glm::vec3(4.0f));
+  Inputs in;
+  in.pixel.roughness = 0.3f;
+  in.shadow = 0.0f;
+  in.ambient = 1.0f;
+  in.specular = glm::vec3(7.0f);
+  const glm::vec3 raw = compose(scene, in);
+  Inputs smooth = in;
+  smooth.shadow = 0.5f;
+  smooth.ambient = 0.75f;
+  smooth.specular = glm::vec3(2.0f);
+  const glm::vec3 filtered = compose(scene, smooth);
+  in.denoised = Denoised{{0.5f, 0.75f, 0.0f}, glm::vec3(2.0f)};
+  const Pictures both = compose_both(scene, in);
+  EXPECT_EQ(both.hdr, filtered);
+  EXPECT_EQ(both.hdr_raw, raw);
+  EXPECT_NE(raw, filtered);
 }
 
 TEST(Compose, UnlitShowsItsColourAndEmissionIsAdded) {
