@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 namespace heliograph::tracing {
 namespace {
@@ -9,6 +10,11 @@ namespace {
 // An interval that contains nothing: Embree leaves such rays alone.
 constexpr float dead_from = 1.0f;
 constexpr float dead_to = 0.0f;
+
+// Embree counts hits at the far end in, we do not. `t_max` > 0.
+float last_before(float t_max) {
+  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(t_max) - 1);
+}
 
 shared::Hit make_hit(float t, unsigned instance, unsigned triangle, float u, float v) {
   return {t, instance, triangle, u, v, 0, 0, 0};
@@ -40,7 +46,7 @@ RTCRay to_embree(const shared::Ray& ray) {
   result.dir_x = ray.direction.x;
   result.dir_y = ray.direction.y;
   result.dir_z = ray.direction.z;
-  result.tfar = alive ? ray.t_max : dead_to;
+  result.tfar = alive ? last_before(ray.t_max) : dead_to;
   result.mask = ~0u;
   return result;
 }
@@ -96,7 +102,7 @@ Lanes load(std::span<const shared::Ray> rays, RTCRay16& lanes) {
     lanes.dir_y[i] = ray.direction.y;
     lanes.dir_z[i] = ray.direction.z;
     lanes.time[i] = 0.0f;
-    lanes.tfar[i] = result.valid[i] ? ray.t_max : dead_to;
+    lanes.tfar[i] = result.valid[i] ? last_before(ray.t_max) : dead_to;
     lanes.mask[i] = ~0u;
     lanes.id[i] = lanes.flags[i] = 0;
   }

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <memory>
 #include <span>
@@ -247,6 +249,36 @@ TEST_P(TracerTest, MissesWithRaysThatReachNowhere) {
   const Answers answers = traced(scene, GetParam()).trace(rays);
   EXPECT_EQ(hit_count(answers), 0u);
   for (const std::uint32_t occluded : answers.occluded) EXPECT_EQ(occluded, 0u);
+}
+
+TEST_P(TracerTest, LeavesOutBothEndsOfTheInterval) {
+  scene::Scene scene;
+  place(scene, add_mesh(scene, quad(), plain_material()), glm::mat4(1.0f));
+  const shared::Ray down{{0.25f, 2, 0.5f}, 0.0f, {0, -1, 0}, 10.0f, 0, 0, 0, 0};
+  std::vector<shared::Ray> rays(5, down);
+  rays[0].t_max = 2.0f;
+  rays[1].t_min = 2.0f;
+  rays[2].t_min = std::nextafter(2.0f, 0.0f);
+  rays[3].t_max = std::nextafter(2.0f, 3.0f);
+  rays[4].origin.y = 0.0f;  // starts on the surface
+  const Answers answers = traced(scene, GetParam()).trace(rays);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const bool within = i == 2 || i == 3;
+    EXPECT_EQ(answers.hits[i].instance == 0, within) << "ray " << i;
+    EXPECT_EQ(answers.occluded[i], within ? 1u : 0u) << "ray " << i;
+  }
+}
+
+TEST_P(TracerTest, DoesNotMeetFlatInstancesAndCornersWithoutAPlace) {
+  scene::Scene scene;
+  const std::uint32_t mesh = add_mesh(scene, quad(), plain_material());
+  place(scene, mesh, glm::scale(glm::mat4(1.0f), glm::vec3(1, 1, 0)));
+  scene::Mesh torn = quad();
+  torn.vertices[1].position.y = std::numeric_limits<float>::infinity();
+  torn.vertices[3].position.x = std::numeric_limits<float>::quiet_NaN();
+  place(scene, add_mesh(scene, torn, plain_material()), glm::mat4(1.0f));
+  scene.bounds = {glm::vec3(-1.0f), glm::vec3(1.0f)};
+  EXPECT_EQ(hit_count(traced(scene, GetParam()).trace(random_rays(scene, 500, 9))), 0u);
 }
 
 TEST_P(TracerTest, SeesBothFacesOfMirroredInstances) {
