@@ -4,16 +4,39 @@
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
+namespace {
 
-gpu::History accumulate(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef hdr) {
+/// Whether the frame alone is anything else than this frame's sample.
+bool is_filtered(const protocol::Settings& settings) {
+  return settings.shadow_temporal.enabled || settings.shadow_blur.enabled ||
+         (settings.specular.enabled &&
+          (settings.specular_temporal.enabled || settings.specular_blur.enabled)) ||
+         settings.antialiasing.temporal || settings.reference.use == protocol::ReferenceUse::resting;
+}
+
+}  // namespace
+
+gpu::History accumulate(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef sample) {
   const auto history = plan.history("accumulated", VK_FORMAT_R32G32B32A32_SFLOAT);
   plan.pass("accumulate", in.programs.compute(shaders::accumulate))
-      .read(hdr)
+      .read(sample)
       .read(history.previous)
       .write(history.current)
       .constants([&samples = in.samples] { return 1.0f / static_cast<float>(samples + 1); })
-      .dispatch(plan.extent());
+      .dispatch(plan.extent())
+      .describe("The mean of all samples since the picture last changed: linear radiance.");
   return history;
+}
+
+float mean_share(const FrameInputs& in) {
+  const protocol::Settings& settings = in.settings;
+  if (settings.reference.use == protocol::ReferenceUse::always || !is_filtered(settings) ||
+      settings.accumulation.handover == 0) {
+    return 1.0f;
+  }
+  // The first sample does not count: what moves shows none of the mean's noise.
+  const auto samples = static_cast<float>(in.samples);
+  return samples / (samples + static_cast<float>(settings.accumulation.handover));
 }
 
 }  // namespace heliograph::render

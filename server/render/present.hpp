@@ -1,12 +1,12 @@
 #pragma once
 
-#include "gpu/frame_plan.hpp"
+#include "render/exposure.hpp"
 
 namespace heliograph::render {
 
-struct FrameInputs;
-
-/// Exposure, tone map, sRGB: RGBA8 for encoders (paper section 3, stage 9).
-gpu::ImageRef present(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef radiance);
+/// The frame and the mean of its samples by mean_share(), exposure, tone map, sRGB: RGBA8 for
+/// encoders (paper section 3, stage 9).
+gpu::ImageRef present(gpu::FramePlan& plan, const FrameInputs& in, const Exposure& exposure,
+                      gpu::ImageRef radiance, gpu::ImageRef mean);
 
 }  // namespace heliograph::render

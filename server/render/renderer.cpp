@@ -8,9 +8,11 @@
 #include "render/debug_view.hpp"
 #include "render/engine_parts.hpp"
 #include "render/frame.hpp"
+#include "render/scene_set.hpp"
 #include "render/frame_set.hpp"
 #include "render/moving_scene.hpp"
 #include "render/view_constants.hpp"
+#include "render/view_table.hpp"
 
 namespace heliograph::render {
 namespace {
@@ -46,6 +48,7 @@ struct Renderer::State {
   bool has_buffer(std::string_view name) const;
   Frame picture();
   const gpu::Image* find(std::string_view buffer) const;
+  std::optional<FloatImage> read(std::string_view view) const;
   std::uint32_t wanted_samples() const {
     return settings.accumulation.enabled
                ? static_cast<std::uint32_t>(settings.accumulation.max_samples)
@@ -83,7 +86,7 @@ struct Renderer::State {
 void Renderer::State::build_plan() {
   plan.reset();
   inputs.emplace(FrameInputs{parts.programs, *scene, moving->tables(), *parts.tracer,
-                             moving->structure(), constants, settings, samples, seconds});
+                             moving->structure(), constants, settings, samples, seconds, *moving});
   plan = std::make_unique<gpu::FramePlan>(parts.device, extent);
   write_frame_set();
   outputs = declare_frame(*plan, *inputs);
@@ -104,18 +107,29 @@ void Renderer::State::apply_settings(const protocol::Settings& changed) {
 }
 
 void Renderer::State::write_frame_set() {
-  pool = std::make_unique<gpu::DescriptorPool>(parts.device, 1, 8);
+  pool = std::make_unique<gpu::DescriptorPool>(parts.device, 2, 16);
   const VkDescriptorSet set = pool->allocate(parts.programs.frame_layout.handle());
   render::write_frame_set(parts, set, constants_buffer, moving->tables().lights,
-                          scene->environment);
+                          scene->environment->view(settings.environment.separate_sun));
   plan->share_set(frame_set, set);
+  const VkDescriptorSet tables = pool->allocate(parts.programs.scene_layout.handle());
+  write_scene_set(parts.device, tables, moving->tables(), scene->texture_heap);
+  plan->share_set(scene_set, tables);
 }
 
 void Renderer::State::list_buffers() {
+  const auto described = [](std::string_view view, const std::string& text) {
+    const std::string colors(legend(colors_of(view)));
+    return BufferInfo{std::string(view), colors.empty() ? text : text + " " + colors};
+  };
   buffers.clear();
   buffers.push_back({std::string(picture_name), "The finished picture."});
   for (const auto& view : plan->views()) {
-    if (view.name != picture_name) buffers.push_back({view.name, view.description});
+    if (view.name == picture_name) continue;
+    buffers.push_back(described(view.name, view.description));
+    for (const Aspect& aspect : aspects_of(view.name)) {
+      buffers.push_back(described(aspect.name, aspect.description));
+    }
   }
 }
 
@@ -131,10 +145,18 @@ const gpu::Image* Renderer::State::find(std::string_view buffer) const {
   return nullptr;
 }
 
+std::optional<FloatImage> Renderer::State::read(std::string_view view) const {
+  const std::string_view source = source_of(view);
+  const gpu::Image* image = find(source.empty() ? view : source);
+  if (!image) return std::nullopt;
+  if (source.empty()) return read_image(*image);
+  return extract(view, read_image(*image), {constants, exposure_factor(*plan, outputs.exposure)});
+}
+
 Frame Renderer::State::picture() {
-  const gpu::Image* image = find(settings.view.buffer);
-  if (image && settings.view.buffer != picture_name) {
-    return visualise(settings.view.buffer, read_image(*image));
+  const std::string& shown = settings.view.buffer;
+  if (shown != picture_name) {
+    if (const auto values = read(shown)) return visualise(shown, *values);
   }
   Frame frame;
   frame.width = extent.width;
@@ -244,12 +266,10 @@ const std::vector<BufferInfo>& Renderer::buffers() const {
 }
 
 protocol::Result<FloatImage> Renderer::capture(std::string_view buffer) {
-  const gpu::Image* image = state_->find(buffer);
-  if (!image) {
-    return protocol::error::not_found("buffer",
-                                      "there is no buffer \"" + std::string(buffer) + "\"");
-  }
-  return read_image(*image);
+  auto values = state_->read(buffer);
+  if (values) return std::move(*values);
+  return protocol::error::not_found("buffer",
+                                    "there is no buffer \"" + std::string(buffer) + "\"");
 }
 
 protocol::Result<Frame> Renderer::capture_view(std::string_view buffer) {

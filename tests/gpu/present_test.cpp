@@ -22,7 +22,8 @@ class PresentTest : public testing::Test {
                  {.extent = extent, .settings = settings});
     const auto image = rig.input("radiance", VK_FORMAT_R32G32B32A32_SFLOAT,
                                  std::vector(extent.width * extent.height, glm::vec4(radiance, 1)));
-    const auto picture = render::present(rig.plan(), rig.inputs(), image);
+    const auto exposure = render::expose(rig.plan(), rig.inputs(), image, image);
+    const auto picture = render::present(rig.plan(), rig.inputs(), exposure, image, image);
     rig.run();
     const render::FloatImage first = rig.read(picture);
     rig.run();
@@ -64,6 +65,33 @@ TEST_F(PresentTest, ExposureCountsInStops) {
   EXPECT_NEAR(mean(present(glm::vec3(0.1f), settings)).x, encode(0.4), tolerance);
   settings.exposure.compensation = -1.0f;
   EXPECT_NEAR(mean(present(glm::vec3(0.1f), settings)).x, encode(0.05), tolerance);
+}
+
+TEST_F(PresentTest, BlendsTheFrameAndTheMeanByTheSamplesOfTheMean) {
+  protocol::Settings settings = linear();
+  settings.accumulation.handover = 8;
+  FrameRig rig(SceneBuilder().build(), look({0, 0, 3}, {0, 0, 0}),
+               {.extent = extent, .settings = settings});
+  const auto flat = [&](const char* name, float value) {
+    return rig.input(name, VK_FORMAT_R32G32B32A32_SFLOAT,
+                     std::vector(extent.width * extent.height, glm::vec4(glm::vec3(value), 1)));
+  };
+  const auto frame = flat("frame", 0.9f), average = flat("mean", 0.1f);
+  const auto exposure = render::expose(rig.plan(), rig.inputs(), frame, average);
+  const auto picture = render::present(rig.plan(), rig.inputs(), exposure, frame, average);
+  for (const auto& [samples, expected] :
+       {std::pair(0u, 0.9), {8u, 0.5}, {24u, 0.3}, {8000u, 0.1008}}) {
+    rig.set_accumulated(samples);
+    rig.run();
+    EXPECT_NEAR(mean(rig.read(picture)).x, encode(expected), tolerance) << samples;
+  }
+  settings.antialiasing.temporal = false;  // nothing left that filters: the mean is the picture
+  settings.shadow_temporal.enabled = settings.shadow_blur.enabled = false;
+  settings.specular.enabled = false;
+  rig.set_settings(settings);
+  rig.set_accumulated(0);
+  rig.run();
+  EXPECT_NEAR(mean(rig.read(picture)).x, encode(0.1), tolerance);
 }
 
 TEST_F(PresentTest, ClipsWhatIsTooBrightAndBlackensWhatIsNegative) {

@@ -24,6 +24,7 @@ class FrameRig {
   gpu::FramePlan& plan() { return plan_; }
   const render::FrameInputs& inputs() const { return inputs_; }
   VkDescriptorSet frame_set() const { return frame_set_; }
+  VkDescriptorSet scene_set() const { return scene_set_; }
   const shared::FrameConstants& constants() const { return constants_; }
   const render::SceneResources& scene() const { return moving_.rest(); }
   render::MovingScene& moving() { return moving_; }
@@ -67,6 +68,7 @@ class FrameRig {
   gpu::Buffer constants_buffer_;
   gpu::DescriptorPool pool_;
   VkDescriptorSet frame_set_ = VK_NULL_HANDLE;
+  VkDescriptorSet scene_set_ = VK_NULL_HANDLE;
   render::FrameInputs inputs_;
   gpu::FramePlan plan_;
 };

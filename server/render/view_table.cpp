@@ -1,0 +1,174 @@
+#include "render/view_table.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "shaders/shared/exposure.h"
+
+namespace heliograph::render {
+namespace {
+
+/// `*` stands for anything; there is at most one.
+bool matches(std::string_view name, std::string_view pattern) {
+  const std::size_t star = pattern.find('*');
+  if (star == std::string_view::npos) return name == pattern;
+  return name.size() + 1 >= pattern.size() && name.starts_with(pattern.substr(0, star)) &&
+         name.ends_with(pattern.substr(star + 1));
+}
+
+struct Pixel {
+  glm::vec4 value;
+  glm::vec2 position;  // its middle, in pixels
+};
+
+struct BufferRule {
+  std::string_view pattern;
+  ViewColors colors;
+};
+
+// The first that matches counts.
+constexpr std::array buffer_rules{
+    BufferRule{"output", ViewColors::picture},
+    BufferRule{"*normals", ViewColors::octahedral},
+    BufferRule{"*base_color", ViewColors::squared},
+    BufferRule{"*surface", ViewColors::channels},
+    BufferRule{"*motion", ViewColors::difference},
+    BufferRule{"*depth_slope", ViewColors::difference},
+    BufferRule{"*instance", ViewColors::identity},
+    BufferRule{"*.visibility", ViewColors::grey},
+    BufferRule{"*.history", ViewColors::heat},
+    BufferRule{"*.moments", ViewColors::channels},
+    BufferRule{"visibility.*", ViewColors::channels},
+    BufferRule{"denoise.guide", ViewColors::direction},
+    BufferRule{"denoise.reprojection", ViewColors::heat},
+};
+
+struct AspectRule {
+  std::string_view buffer;  // pattern
+  std::string_view name;
+  ViewColors colors;
+  glm::vec4 (*extract)(const Pixel&, const ViewContext&);
+  std::string_view description;
+};
+
+glm::vec4 scalar(float value) {
+  return {value, 0.0f, 0.0f, 1.0f};
+}
+
+template <int channel>
+glm::vec4 take(const Pixel& pixel, const ViewContext&) {
+  return scalar(pixel.value[channel]);
+}
+
+glm::vec4 second_pair(const Pixel& pixel, const ViewContext&) {
+  return {pixel.value.z, pixel.value.w, 0.0f, 0.0f};
+}
+
+/// Pixels by which the motion differs from that of a scene at rest.
+glm::vec4 motion_error(const Pixel& pixel, const ViewContext& context) {
+  const shared::FrameConstants& frame = context.constants;
+  const float view_z = pixel.value.w;
+  if (view_z <= 0.0f) return scalar(0.0f);
+  const glm::vec2 size(frame.extent);
+  const glm::vec2 ndc = pixel.position / size * 2.0f - 1.0f;
+  const glm::vec4& unproject = frame.unproject;
+  glm::vec2 slope = ndc * glm::vec2(unproject) + glm::vec2(unproject.z, unproject.w);
+  if ((frame.counts.y & shared::frame_orthographic) == 0) slope *= view_z;
+  const glm::vec4 world = frame.inverse_view * glm::vec4(slope, -view_z, 1.0f);
+  const glm::vec4 before = frame.previous_unjittered * world, now = frame.unjittered * world;
+  const glm::vec2 rest = (glm::vec2(before) / before.w - glm::vec2(now) / now.w) * 0.5f;
+  return scalar(glm::length((glm::vec2(pixel.value) - rest) * size));
+}
+
+glm::vec4 stops(const Pixel& pixel, const ViewContext& context) {
+  const float light = glm::dot(glm::vec3(pixel.value), glm::vec3(0.2126f, 0.7152f, 0.0722f));
+  const float shown = light * context.exposure_factor / shared::exposure_middle_grey;
+  return scalar(std::log2(std::max(shown, 1e-12f)));
+}
+
+constexpr std::array aspect_rules{
+    AspectRule{"gbuffer.normals", "geometric", ViewColors::octahedral, second_pair,
+               "Normals of the triangles themselves, octahedral, world space."},
+    AspectRule{"gbuffer.base_color", "occlusion", ViewColors::share, take<3>,
+               "Occlusion texture, 0..1."},
+    AspectRule{"gbuffer.surface", "roughness", ViewColors::share, take<0>,
+               "Perceptual roughness, 0..1."},
+    AspectRule{"gbuffer.surface", "metallic", ViewColors::share, take<1>, "Metalness, 0..1."},
+    AspectRule{"gbuffer.motion", "view_z", ViewColors::distance, take<3>,
+               "Distance along the view, metres."},
+    AspectRule{"gbuffer.motion", "error", ViewColors::pixels, motion_error,
+               "How far the motion is from what it would be if only the camera moved, pixels."},
+    AspectRule{"visibility.temporal", "noise", ViewColors::deviation, second_pair,
+               "Standard deviation before the blur, of shadow or ambient visibility, the larger; "
+               "captured: both variances."},
+    AspectRule{"visibility.denoised", "noise", ViewColors::deviation, second_pair,
+               "Standard deviation that the blur leaves, of shadow or ambient visibility, the "
+               "larger; captured: both variances."},
+    AspectRule{"visibility.history", "moved", ViewColors::heat, second_pair,
+               "How far rectification moved the remembered visibility: shadow, ambient."},
+    AspectRule{"denoise.reprojection", "unseen", ViewColors::mark, take<3>,
+               "Surfaces that the frame before did not show: 1."},
+    AspectRule{"specular.raw", "distance", ViewColors::distance, take<3>,
+               "Distance from the surface to what it mirrors, metres; 10000: the environment."},
+    AspectRule{"specular.temporal", "noise", ViewColors::deviation, take<3>,
+               "Standard deviation of the reflection's brightness before the blur; captured: "
+               "variance."},
+    AspectRule{"specular.denoised", "noise", ViewColors::deviation, take<3>,
+               "Standard deviation of the reflection's brightness that the blur leaves; captured: "
+               "variance."},
+    AspectRule{"accumulated", "stops", ViewColors::stops, stops,
+               "Luminance as exposed, in stops from middle grey."},
+};
+
+const AspectRule* find_aspect(std::string_view view) {
+  const std::size_t dot = view.rfind('.');
+  if (dot == std::string_view::npos) return nullptr;
+  for (const AspectRule& rule : aspect_rules) {
+    if (rule.name == view.substr(dot + 1) && matches(view.substr(0, dot), rule.buffer)) {
+      return &rule;
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+ViewColors colors_of(std::string_view view) {
+  if (const AspectRule* aspect = find_aspect(view)) return aspect->colors;
+  for (const BufferRule& rule : buffer_rules) {
+    if (matches(view, rule.pattern)) return rule.colors;
+  }
+  return ViewColors::radiance;
+}
+
+std::vector<Aspect> aspects_of(std::string_view buffer) {
+  std::vector<Aspect> aspects;
+  for (const AspectRule& rule : aspect_rules) {
+    if (!matches(buffer, rule.buffer)) continue;
+    aspects.push_back({std::string(buffer) + "." + std::string(rule.name),
+                       std::string(rule.description)});
+  }
+  return aspects;
+}
+
+std::string_view source_of(std::string_view view) {
+  return find_aspect(view) ? view.substr(0, view.rfind('.')) : std::string_view{};
+}
+
+FloatImage extract(std::string_view view, const FloatImage& source, const ViewContext& context) {
+  const AspectRule* rule = find_aspect(view);
+  if (!rule) return source;
+  FloatImage values{source.width, source.height, {}};
+  values.rgba.reserve(source.rgba.size());
+  for (std::uint32_t y = 0; y < source.height; ++y) {
+    for (std::uint32_t x = 0; x < source.width; ++x) {
+      const float* texel = &source.rgba[(std::size_t{y} * source.width + x) * 4];
+      const Pixel pixel{{texel[0], texel[1], texel[2], texel[3]}, {x + 0.5f, y + 0.5f}};
+      const glm::vec4 value = rule->extract(pixel, context);
+      values.rgba.insert(values.rgba.end(), {value.x, value.y, value.z, value.w});
+    }
+  }
+  return values;
+}
+
+}  // namespace heliograph::render

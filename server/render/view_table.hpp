@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "render/renderer.hpp"
+#include "render/view_colors.hpp"
+#include "shaders/shared/frame_constants.h"
+
+namespace heliograph::render {
+
+/// The colours that suit a view, by its name: radiance where the name says nothing.
+ViewColors colors_of(std::string_view view);
+
+/// A view of its own of what lies in some channels of a buffer: "gbuffer.motion.view_z".
+struct Aspect {
+  std::string name;
+  std::string description;
+};
+std::vector<Aspect> aspects_of(std::string_view buffer);
+
+/// The buffer that a view shows an aspect of; empty: the view is a buffer itself.
+std::string_view source_of(std::string_view view);
+
+/// What an aspect needs besides the buffer.
+struct ViewContext {
+  const shared::FrameConstants& constants;
+  float exposure_factor;
+};
+
+/// An aspect's values, from those of its source.
+FloatImage extract(std::string_view view, const FloatImage& source, const ViewContext& context);
+
+}  // namespace heliograph::render

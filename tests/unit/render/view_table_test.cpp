@@ -1,0 +1,138 @@
+#include "render/view_table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace heliograph::render {
+namespace {
+
+using Rgb = std::array<int, 3>;
+
+Rgb texel(const Frame& frame, std::size_t i) {
+  return {frame.rgba[i * 4], frame.rgba[i * 4 + 1], frame.rgba[i * 4 + 2]};
+}
+
+/// A row of pixels.
+FloatImage row(std::initializer_list<std::array<float, 4>> texels) {
+  FloatImage image{static_cast<std::uint32_t>(texels.size()), 1, {}};
+  for (const auto& t : texels) image.rgba.insert(image.rgba.end(), t.begin(), t.end());
+  return image;
+}
+
+int brightness(const Rgb& c) { return 2 * c[0] + 5 * c[1] + c[2]; }
+
+constexpr Rgb dark_blue{68, 1, 84}, yellow{253, 231, 37};
+
+TEST(Heat, RunsFromDarkBlueToYellowAndGetsEverBrighter) {
+  FloatImage ramp{101, 1, {}};
+  for (int i = 0; i <= 100; ++i) {
+    ramp.rgba.insert(ramp.rgba.end(), {static_cast<float>(i) / 100.0f, 0, 0, 1});
+  }
+  const Frame frame = colorize(ViewColors::share, ramp);
+  EXPECT_EQ(texel(frame, 0), dark_blue);
+  EXPECT_EQ(texel(frame, 100), yellow);
+  for (std::size_t i = 1; i <= 100; ++i) {
+    EXPECT_GE(brightness(texel(frame, i)), brightness(texel(frame, i - 1))) << i;
+  }
+}
+
+TEST(Heat, OneOutlierDoesNotDimTheRest) {
+  FloatImage image{100, 1, {}};
+  for (int i = 0; i < 100; ++i) image.rgba.insert(image.rgba.end(), {i == 7 ? 1e6f : 2.0f, 0, 0, 1});
+  EXPECT_EQ(texel(colorize(ViewColors::heat, image), 50), yellow);
+}
+
+TEST(Colors, DistancesTakeEqualStepsOfTheLogarithm) {
+  const Frame frame = colorize(ViewColors::distance,
+                               row({{1, 0, 0, 1}, {10, 0, 0, 1}, {100, 0, 0, 1}, {0, 0, 0, 1}}));
+  EXPECT_EQ(texel(frame, 0), dark_blue);
+  EXPECT_EQ(texel(frame, 3), (Rgb{0, 0, 0})) << "nothing there";
+  const Frame scaled = colorize(ViewColors::distance,
+                                row({{7, 0, 0, 1}, {70, 0, 0, 1}, {700, 0, 0, 1}, {0, 0, 0, 1}}));
+  EXPECT_EQ(frame.rgba, scaled.rgba) << "whatever the size of the scene";
+}
+
+TEST(Colors, WhatIsNoNumberIsBlack) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const ViewColors colors :
+       {ViewColors::picture, ViewColors::radiance, ViewColors::squared, ViewColors::channels,
+        ViewColors::grey, ViewColors::direction, ViewColors::octahedral, ViewColors::share,
+        ViewColors::heat, ViewColors::distance, ViewColors::stops, ViewColors::pixels}) {
+    EXPECT_EQ(texel(colorize(colors, row({{nan, nan, nan, nan}, {1, 1, 1, 1}})), 0), (Rgb{0, 0, 0}))
+        << static_cast<int>(colors);
+  }
+}
+
+TEST(Views, EveryBufferHasTheColoursOfItsKind) {
+  EXPECT_EQ(colors_of("shadows.visibility"), ViewColors::grey);
+  EXPECT_EQ(colors_of("ambient.denoised.visibility"), ViewColors::grey);
+  EXPECT_EQ(colors_of("gbuffer.normals"), ViewColors::octahedral);
+  EXPECT_EQ(colors_of("gbuffer.normals.geometric"), ViewColors::octahedral);
+  EXPECT_EQ(colors_of("gbuffer.motion.view_z"), ViewColors::distance);
+  EXPECT_EQ(colors_of("specular.history"), ViewColors::heat);
+  EXPECT_EQ(colors_of("visibility.blur.even"), ViewColors::channels);
+  EXPECT_EQ(colors_of("hdr"), ViewColors::radiance);
+  EXPECT_EQ(colors_of("something.new"), ViewColors::radiance);
+}
+
+TEST(Views, AspectsNameTheBufferTheyAreOf) {
+  for (const char* buffer : {"gbuffer.normals", "gbuffer.motion", "visibility.history"}) {
+    ASSERT_FALSE(aspects_of(buffer).empty()) << buffer;
+    for (const Aspect& aspect : aspects_of(buffer)) {
+      EXPECT_EQ(source_of(aspect.name), buffer);
+      EXPECT_FALSE(aspect.description.empty());
+      EXPECT_TRUE(aspects_of(aspect.name).empty());
+    }
+  }
+  EXPECT_TRUE(source_of("gbuffer.motion").empty());
+  EXPECT_TRUE(source_of("hdr.view_z").empty());
+}
+
+class Extract : public testing::Test {
+ protected:
+  Extract() {
+    constants_.extent = {4, 2, 0, 0};
+    constants_.inverse_view = constants_.unjittered = glm::mat4(1.0f);
+    constants_.previous_unjittered = glm::mat4(1.0f);
+    constants_.unproject = {1, 1, 0, 0};
+    // Clip w is the distance along -Z: a camera of 90 degrees.
+    for (glm::mat4* m : {&constants_.unjittered, &constants_.previous_unjittered}) {
+      (*m)[2][3] = -1.0f;
+      (*m)[3][3] = 0.0f;
+    }
+  }
+  FloatImage extract_from(std::string_view view, const std::array<float, 4>& value) {
+    FloatImage source{4, 2, {}};
+    for (int i = 0; i < 8; ++i) source.rgba.insert(source.rgba.end(), value.begin(), value.end());
+    return extract(view, source, {constants_, 2.0f});
+  }
+  shared::FrameConstants constants_{};
+};
+
+TEST_F(Extract, TakesTheChannelsThatTheAspectIsAbout) {
+  EXPECT_EQ(extract_from("gbuffer.motion.view_z", {1, 2, 3, 4}).rgba[0], 4.0f);
+  EXPECT_EQ(extract_from("gbuffer.normals.geometric", {1, 2, 3, 4}).rgba[1], 4.0f);
+  EXPECT_EQ(extract_from("gbuffer.surface.metallic", {1, 2, 3, 4}).rgba[0], 2.0f);
+}
+
+TEST_F(Extract, MotionOfAMovingCameraAloneIsNoError) {
+  constants_.previous_unjittered[3][0] = 0.5f;  // the camera stood half a metre further left
+  const float uv = 0.5f / 2.0f * 0.5f;          // at two metres
+  for (const float value : {0.0f, 1.0f}) {
+    const FloatImage error = extract_from("gbuffer.motion.error", {uv + value / 4.0f, 0, 0, 2});
+    for (std::size_t i = 0; i < error.rgba.size(); i += 4) {
+      EXPECT_NEAR(error.rgba[i], value, 1e-5f) << "pixels";
+    }
+  }
+  EXPECT_EQ(extract_from("gbuffer.motion.error", {0.3f, 0, 0, 0}).rgba[0], 0.0f) << "background";
+}
+
+TEST_F(Extract, StopsCountFromMiddleGreyAsExposed) {
+  EXPECT_NEAR(extract_from("accumulated.stops", {0.09f, 0.09f, 0.09f, 1}).rgba[0], 0.0f, 1e-5f);
+  EXPECT_NEAR(extract_from("accumulated.stops", {0.72f, 0.72f, 0.72f, 1}).rgba[0], 3.0f, 1e-5f);
+}
+
+}  // namespace
+}  // namespace heliograph::render
