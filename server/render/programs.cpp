@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "render/gbuffer.hpp"
+#include "render/scene_set.hpp"
 #include "shaders/embedded.hpp"
 #include "shaders/shared/scene.h"
 
@@ -48,6 +49,7 @@ gpu::RasterState gbuffer_state() {
 Programs::Programs(const gpu::Device& device)
     : frame_layout(device, "frame", frame_bindings()),
       material_layout(device, "material", material_bindings()),
+      scene_layout(device, "scene", scene_bindings()),
       gbuffer(device, shaders::gbuffer_vert, shaders::gbuffer_frag, gbuffer_state(),
               {{frame_set, &frame_layout}, {material_set, &material_layout}}),
       gbuffer_masked(device, shaders::gbuffer_vert, shaders::gbuffer_masked_frag, gbuffer_state(),
@@ -58,7 +60,7 @@ const gpu::ComputeProgram& Programs::compute(const gpu::ShaderBinary& shader) co
   const std::lock_guard lock(mutex_);
   auto& program = compute_[&shader];
   if (!program) {
-    const gpu::SharedLayouts layouts{{frame_set, &frame_layout}};
+    const gpu::SharedLayouts layouts{{frame_set, &frame_layout}, {scene_set, &scene_layout}};
     program = std::make_unique<gpu::ComputeProgram>(device_, shader, layouts);
   }
   return *program;

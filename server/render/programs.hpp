@@ -13,6 +13,8 @@ inline constexpr std::uint32_t frame_set = 0;
 /// Set 2: the five textures of one material, then its values (shaders/lib/gbuffer_surface.glsl).
 inline constexpr std::uint32_t material_set = 2;
 inline constexpr std::uint32_t material_textures = 5;
+/// Set 3: the whole scene, for compute shaders (shaders/lib/scene_tables.glsl).
+inline constexpr std::uint32_t scene_set = 3;
 
 /// Every program of the renderer, made once per device, each when it is first asked for.
 class Programs {
@@ -24,6 +26,7 @@ class Programs {
 
   gpu::DescriptorLayout frame_layout;
   gpu::DescriptorLayout material_layout;
+  gpu::DescriptorLayout scene_layout;
 
   gpu::RasterProgram gbuffer;
   gpu::RasterProgram gbuffer_masked;

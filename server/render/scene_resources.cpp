@@ -93,6 +93,7 @@ SceneResources::SceneResources(const gpu::Device& device, const Programs& progra
       flat_normal_(constant_texture(device, "flat normal", {128, 128, 255, 255})) {
   upload_tables(device);
   upload_textures(device);
+  texture_heap = make_texture_heap(device, *scene);
   make_material_sets(device, programs);
   list_draws();
   rest_structure = tracer.build(*scene, rest_tables);

@@ -5,6 +5,7 @@
 
 #include "render/environment_prefilter.hpp"
 #include "render/renderer.hpp"
+#include "render/texture_heap.hpp"
 #include "tracing/ray_tracer.hpp"
 
 namespace heliograph::render {
@@ -32,6 +33,7 @@ class SceneResources {
   tracing::SceneBuffers rest_tables;
   std::shared_ptr<const tracing::AccelerationStructure> rest_structure;
   EnvironmentMaps environment;
+  TextureHeap texture_heap;
   std::vector<Draw> draws;  // opaque first, then by material
   std::vector<VkDescriptorSet> material_sets;
 

@@ -12,7 +12,8 @@ struct Constants {
 
 gpu::SharedLayouts layouts(const FrameRig* rig) {
   if (!rig) return {};
-  return {{render::frame_set, &engine().parts().programs.frame_layout}};
+  const render::Programs& programs = engine().parts().programs;
+  return {{render::frame_set, &programs.frame_layout}, {render::scene_set, &programs.scene_layout}};
 }
 
 }  // namespace
@@ -26,6 +27,7 @@ std::vector<ShaderOutput> ShaderFunctions::call(std::uint32_t function,
   const auto count = static_cast<std::uint32_t>(inputs.size());
   gpu::FramePlan plan(device(), {1, 1});
   if (rig_) plan.share_set(render::frame_set, rig_->frame_set());
+  if (rig_) plan.share_set(render::scene_set, rig_->scene_set());
   const auto given = plan.buffer("inputs", inputs.size_bytes(), storage, gpu::Memory::upload);
   const auto returned =
       plan.buffer("outputs", count * sizeof(ShaderOutput), storage, gpu::Memory::readback);

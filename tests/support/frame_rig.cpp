@@ -4,6 +4,7 @@
 
 #include "render/debug_view.hpp"
 #include "render/frame_set.hpp"
+#include "render/scene_set.hpp"
 
 namespace heliograph::test {
 
@@ -16,14 +17,17 @@ FrameRig::FrameRig(std::shared_ptr<const scene::Scene> scene, const scene::Camer
       settings_(options.settings),
       constants_buffer_(parts_.device, "frame constants", sizeof(shared::FrameConstants),
                         VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Memory::upload),
-      pool_(parts_.device, 1, 8),
+      pool_(parts_.device, 2, 16),
       frame_set_(pool_.allocate(parts_.programs.frame_layout.handle())),
+      scene_set_(pool_.allocate(parts_.programs.scene_layout.handle())),
       inputs_{parts_.programs, moving_.rest(), moving_.tables(), *parts_.tracer, moving_.structure(),
               constants_, settings_, samples_, seconds_},
       plan_(parts_.device, options.extent) {
   render::write_frame_set(parts_, frame_set_, constants_buffer_, moving_.tables().lights,
                           moving_.rest().environment);
   plan_.share_set(render::frame_set, frame_set_);
+  render::write_scene_set(parts_.device, scene_set_, moving_.tables(), moving_.rest().texture_heap);
+  plan_.share_set(render::scene_set, scene_set_);
   set_view(camera);
 }
 

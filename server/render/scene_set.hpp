@@ -1,0 +1,16 @@
+#pragma once
+
+#include "gpu/descriptors.hpp"
+#include "render/texture_heap.hpp"
+#include "tracing/ray_tracer.hpp"
+
+namespace heliograph::render {
+
+/// Bindings of set 3 (shaders/lib/scene_tables.glsl).
+std::vector<gpu::DescriptorLayout::Binding> scene_bindings();
+
+/// Points set 3 at the tables of a scene and at its textures.
+void write_scene_set(const gpu::Device& device, VkDescriptorSet set,
+                     const tracing::SceneTables& tables, const TextureHeap& heap);
+
+}  // namespace heliograph::render
