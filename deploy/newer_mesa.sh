@@ -24,7 +24,7 @@ if [ -f "$folder/driver.json" ]; then
 fi
 codename=$(. /etc/os-release && echo "${VERSION_CODENAME:-unknown}")
 [ "$codename" = bookworm ] ||
-  fail "only Debian 12 needs this: the Mesa of $codename is as new; let HELIOGRAPH_NEWER_MESA unset"
+  fail "only Debian 12 needs this: the Mesa of $codename is as new; leave HELIOGRAPH_NEWER_MESA unset"
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -44,13 +44,16 @@ keyring=/usr/share/keyrings/debian-archive-keyring.gpg
 apt=(apt-get -o "Dir::Etc::sourcelist=$work/sources.list" -o Dir::Etc::sourceparts=/dev/null
   -o "Dir::State::lists=$work/lists" -o "Dir::Cache::archives=$work/archives"
   -o "Dir::Cache::pkgcache=" -o "Dir::Cache::srcpkgcache=" -o APT::Sandbox::User=root
-  -o Debug::NoLocking=1 -o Acquire::Retries=2 -o Acquire::Languages=none)
+  -o Debug::NoLocking=1 -o Acquire::Languages=none -o Acquire::Retries=2
+  -o Acquire::http::Timeout=20 -o Acquire::https::Timeout=20)
 echo "==> fetching Mesa of bookworm-backports from $mirror"
 "${apt[@]}" update >"$log" 2>&1 || fail "the lists of packages could not be had"
 "${apt[@]}" install --yes --no-install-recommends --download-only \
   --target-release bookworm-backports mesa-vulkan-drivers >"$log" 2>&1 ||
   fail "the packages could not be had"
 
+ls "$work"/archives/*.deb >"$log" 2>&1 ||
+  fail "nothing to fetch: the system has the newer Mesa itself"
 for package in "$work"/archives/*.deb; do
   dpkg-deb --extract "$package" "$folder"
 done

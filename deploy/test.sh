@@ -5,5 +5,10 @@ folder=$(cd "$(dirname "$0")" && pwd)
 "$folder/setup.sh" build run test
 "$folder/build.sh" -DHELIOGRAPH_TESTS=ON
 cd "$folder/.."
+build=${HELIOGRAPH_BUILD:-build}
+if [ -z "${HELIOGRAPH_NEWER_MESA:-}" ] && deploy/newer_mesa.sh "$build/newer_mesa"; then
+  HELIOGRAPH_NEWER_MESA=$(cd "$build/newer_mesa" && pwd)
+  export HELIOGRAPH_NEWER_MESA
+fi
 echo "==> running the tests"
-exec ctest --test-dir "${HELIOGRAPH_BUILD:-build}" --output-on-failure "$@"
+exec ctest --test-dir "$build" --output-on-failure "$@"

@@ -37,9 +37,9 @@ RayExtensions find_ray_extensions(VkPhysicalDevice device) {
   VkPhysicalDeviceFeatures2 features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &pipeline};
   vkGetPhysicalDeviceFeatures2(device, &features);
   if (!structure.accelerationStructure) return {};
-  return {.query = has(VK_KHR_RAY_QUERY_EXTENSION_NAME) && query.rayQuery,
-          .pipeline = has(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME) &&
-                      pipeline.rayTracingPipeline};
+  return {
+      .query = has(VK_KHR_RAY_QUERY_EXTENSION_NAME) && query.rayQuery,
+      .pipeline = has(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME) && pipeline.rayTracingPipeline};
 }
 
 RayFeatures::RayFeatures(const RayExtensions& wanted) {

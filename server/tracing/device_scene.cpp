@@ -61,9 +61,8 @@ MeshHierarchies build_meshes(const gpu::Device& device, const scene::Scene& scen
   const gpu::Buffer positions =
       gpu::upload_buffer(device, "positions to build from",
                          std::as_bytes(std::span(triangles.positions)), build_input);
-  const gpu::Buffer indices =
-      gpu::upload_buffer(device, "indices to build from",
-                         std::as_bytes(std::span(triangles.indices)), build_input);
+  const gpu::Buffer indices = gpu::upload_buffer(
+      device, "indices to build from", std::as_bytes(std::span(triangles.indices)), build_input);
   triangles.move_to(positions.address(), indices.address());
   return MeshHierarchies(device, triangles.meshes, Rebuilds::never);
 }

@@ -51,9 +51,8 @@ VkAccelerationStructureBuildSizesInfoKHR build_sizes(
     std::uint32_t count) {
   VkAccelerationStructureBuildSizesInfoKHR sizes{
       VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR};
-  vkGetAccelerationStructureBuildSizesKHR(device.handle(),
-                                          VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &info,
-                                          &count, &sizes);
+  vkGetAccelerationStructureBuildSizesKHR(
+      device.handle(), VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &info, &count, &sizes);
   return sizes;
 }
 
@@ -80,10 +79,11 @@ gpu::Buffer make_scratch(const gpu::Device& device, VkDeviceSize size, VkDeviceS
 
 }  // namespace
 
-MeshHierarchies::MeshHierarchies(const gpu::Device& device,
-                                 std::span<const DeviceTriangles> meshes, Rebuilds rebuilds)
-    : flags_(rebuilds == Rebuilds::never ? VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR
-                                   : VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_BUILD_BIT_KHR) {
+MeshHierarchies::MeshHierarchies(const gpu::Device& device, std::span<const DeviceTriangles> meshes,
+                                 Rebuilds rebuilds)
+    : flags_(rebuilds == Rebuilds::never
+                 ? VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR
+                 : VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_BUILD_BIT_KHR) {
   const auto limits = structure_limits(device);
   scratch_alignment_ = limits.minAccelerationStructureScratchOffsetAlignment;
   VkDeviceSize size = 0, scratch = 0, largest = 0;
@@ -117,8 +117,7 @@ MeshHierarchies::Build MeshHierarchies::plan(const gpu::Device& device,
                                              const DeviceTriangles& mesh) const {
   Build build{triangle_geometry(mesh), {}, mesh.triangle_count, 0};
   build.sizes = build_sizes(
-      device,
-      build_info(VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR, flags_, build.geometry),
+      device, build_info(VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR, flags_, build.geometry),
       mesh.triangle_count);
   return build;
 }

@@ -88,8 +88,8 @@ class RayTracer {
                                                              const SceneBuffers& buffers) const = 0;
   /// A structure for one renderer, in the pose of `scene` until it is updated. Its instances may be
   /// placed anew; its meshes keep their triangles, and those named by `scene.deformations` may
-  /// change their vertices. Only for scenes with clips. `rest` is what build() made of it; `tables` are the
-  /// renderer's own and outlive the structure. Keeps no reference to `scene`. Thread safe.
+  /// change their vertices. Only for scenes with clips. `rest` is what build() made of it; `tables`
+  /// are the renderer's own and outlive the structure. Keeps no reference to `scene`. Thread safe.
   virtual std::unique_ptr<MovingStructure> build_moving(
       std::shared_ptr<const AccelerationStructure> rest, const scene::Scene& scene,
       const SceneTables& tables) const = 0;

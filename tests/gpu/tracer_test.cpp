@@ -2,155 +2,16 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <limits>
-#include <map>
-#include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "scene/import.hpp"
-#include "tests/support/traced_scene.hpp"
-#include "tracing/tracer_choice.hpp"
+#include "tests/gpu/tracer_rig.hpp"
 
 namespace heliograph::tracing {
 namespace {
-
-using namespace heliograph::test;
-
-constexpr float untouched = -7.0f;
-
-struct Answers {
-  std::vector<shared::Hit> hits;
-  std::vector<std::uint32_t> occluded;
-};
-
-/// A scene on the device as one tracer sees it.
-class TracedScene {
- public:
-  TracedScene(const gpu::Device& device, const RayTracer& tracer, const scene::Scene& scene)
-      : device_(device), tracer_(tracer) {
-    buffers_.alpha_heap =
-        gpu::upload_buffer(device, "alpha masks", std::as_bytes(std::span(scene.alpha_heap)),
-                           VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
-    structure_ = tracer.build(scene, buffers_);
-  }
-
-  /// Traces the first `count` of the rays; answers beyond them come back as they were.
-  Answers trace(std::span<const shared::Ray> rays, std::uint32_t count) const {
-    const auto capacity = static_cast<std::uint32_t>(rays.size());
-    constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-    gpu::FramePlan plan(device_, {1, 1});
-    const RayStream stream{
-        plan.buffer("count", sizeof(shared::RayCount),
-                    storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, gpu::Memory::upload),
-        plan.buffer("rays", rays.size_bytes(), storage, gpu::Memory::upload), capacity};
-    const auto hits =
-        plan.buffer("hits", capacity * sizeof(shared::Hit), storage, gpu::Memory::readback);
-    const auto occluded =
-        plan.buffer("occluded", capacity * sizeof(std::uint32_t), storage, gpu::Memory::readback);
-    tracer_.trace_closest(plan, "closest", *structure_, stream, hits);
-    tracer_.trace_any(plan, "any", *structure_, stream, occluded);
-    plan.compile();
-
-    Answers answers{std::vector(capacity, shared::Hit{untouched, 0, 0, 0, 0, 0, 0, 0}),
-                    std::vector(capacity, 7u)};
-    const shared::RayCount header{count, (count + 63) / 64, 1, 1};
-    std::memcpy(plan.get(stream.count).mapped(), &header, sizeof(header));
-    std::memcpy(plan.get(stream.rays).mapped(), rays.data(), rays.size_bytes());
-    const auto hit_bytes = std::as_writable_bytes(std::span(answers.hits));
-    const auto occluded_bytes = std::as_writable_bytes(std::span(answers.occluded));
-    std::memcpy(plan.get(hits).mapped(), hit_bytes.data(), hit_bytes.size());
-    std::memcpy(plan.get(occluded).mapped(), occluded_bytes.data(), occluded_bytes.size());
-    plan.execute();
-    std::memcpy(hit_bytes.data(), plan.get(hits).mapped(), hit_bytes.size());
-    std::memcpy(occluded_bytes.data(), plan.get(occluded).mapped(), occluded_bytes.size());
-    return answers;
-  }
-
-  Answers trace(std::span<const shared::Ray> rays) const {
-    return trace(rays, static_cast<std::uint32_t>(rays.size()));
-  }
-
- private:
-  const gpu::Device& device_;
-  const RayTracer& tracer_;
-  SceneBuffers buffers_;
-  std::shared_ptr<const AccelerationStructure> structure_;
-};
-
-gpu::DeviceOptions device_options() {
-  const char* device = std::getenv("HELIOGRAPH_TEST_DEVICE");
-  return {.wanted = device ? device : "", .cache_folder = {}};
-}
-
-/// The tests' device with every tracer that it offers.
-struct Rig {
-  Rig() {
-    for (const protocol::TracerKind kind : offered_tracers(device.report())) {
-      tracers.emplace(kind, make_tracer(kind, device));
-    }
-  }
-
-  gpu::Instance instance{true};
-  gpu::Device device{instance, device_options()};
-  std::map<protocol::TracerKind, std::unique_ptr<RayTracer>> tracers;
-};
-
-class TracersTest : public testing::Test {
- protected:
-  static void SetUpTestSuite() { rig_ = std::make_unique<Rig>(); }
-  static void TearDownTestSuite() { rig_.reset(); }
-  void TearDown() override {
-    EXPECT_EQ(rig_->instance.validation_messages(), 0u) << "the validation layers complained";
-  }
-
-  static bool offered(protocol::TracerKind kind) { return rig_->tracers.contains(kind); }
-  static std::string lacking(protocol::TracerKind kind) {
-    return rig_->device.report().name + " (" + rig_->device.report().driver +
-           ") does not offer the tracer " + std::string(protocol::enum_name(kind));
-  }
-  static TracedScene traced(const scene::Scene& scene, protocol::TracerKind kind) {
-    return {rig_->device, *rig_->tracers.at(kind), scene};
-  }
-
-  static std::unique_ptr<Rig> rig_;
-};
-
-std::unique_ptr<Rig> TracersTest::rig_;
-
-class TracerTest : public TracersTest, public testing::WithParamInterface<protocol::TracerKind> {
- protected:
-  void SetUp() override {
-    if (!offered(GetParam())) GTEST_SKIP() << lacking(GetParam());
-  }
-};
-
-/// Share of rays with different answers.
-double disagreement(const Answers& a, const Answers& b) {
-  std::size_t different = 0;
-  for (std::size_t i = 0; i < a.hits.size(); ++i) {
-    different += !same_hit(a.hits[i], b.hits[i]) || a.occluded[i] != b.occluded[i];
-  }
-  return static_cast<double>(different) / static_cast<double>(a.hits.size());
-}
-
-std::size_t hit_count(const Answers& answers) {
-  std::size_t count = 0;
-  for (const shared::Hit& hit : answers.hits) count += hit.instance != shared::hit_none;
-  return count;
-}
-
-Answers search(const scene::Scene& scene, std::span<const shared::Ray> rays) {
-  Answers answers;
-  for (const shared::Ray& ray : rays) {
-    answers.hits.push_back(closest_by_search(scene, ray));
-    answers.occluded.push_back(answers.hits.back().instance != shared::hit_none ? 1 : 0);
-  }
-  return answers;
-}
 
 TEST_P(TracerTest, AgreesWithAskingEveryTriangle) {
   for (std::uint32_t seed = 1; seed <= 3; ++seed) {
@@ -296,18 +157,7 @@ TEST_P(TracerTest, SeesBothFacesOfMirroredInstances) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(, TracerTest, testing::ValuesIn(all_tracers), [](const auto& test) {
-  switch (test.param) {
-    case protocol::TracerKind::embree:
-      return "Embree";
-    case protocol::TracerKind::software:
-      return "Software";
-    case protocol::TracerKind::ray_query:
-      return "RayQuery";
-    default:
-      return "RayPipeline";
-  }
-});
+INSTANTIATE_TEST_SUITE_P(, TracerTest, testing::ValuesIn(all_tracers), test_name);
 
 class AssetTest : public TracersTest {
  protected:

@@ -211,6 +211,7 @@ inline shared::Hit closest_by_search(const scene::Scene& scene, const shared::Ra
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh];
     const glm::dmat4 world(scene.nodes[scene.instances[i].node].world);
+    if (glm::determinant(world) == 0.0) continue;
     const auto corner = [&](std::size_t index) {
       const glm::dvec3 position(mesh.vertices[mesh.indices[index]].position);
       return glm::dvec3(world * glm::dvec4(position, 1.0));

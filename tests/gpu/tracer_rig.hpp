@@ -1,0 +1,193 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tests/support/traced_scene.hpp"
+#include "tracing/tracer_choice.hpp"
+
+/// What the tests of tracers share: every tracer of the device, and rays through each.
+namespace heliograph::tracing {
+
+using namespace heliograph::test;
+
+inline constexpr float untouched = -7.0f;
+
+struct Answers {
+  std::vector<shared::Hit> hits;
+  std::vector<std::uint32_t> occluded;
+};
+
+/// A plan that traces one stream of rays, again and again.
+class Tracing {
+ public:
+  Tracing(const gpu::Device& device, const RayTracer& tracer,
+          const AccelerationStructure& structure, std::size_t capacity)
+      : plan_(device, {1, 1}),
+        stream_{plan_.buffer("count", sizeof(shared::RayCount),
+                             storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, gpu::Memory::upload),
+                plan_.buffer("rays", capacity * sizeof(shared::Ray), storage, gpu::Memory::upload),
+                static_cast<std::uint32_t>(capacity)},
+        hits_(plan_.buffer("hits", capacity * sizeof(shared::Hit), storage, gpu::Memory::readback)),
+        occluded_(plan_.buffer("occluded", capacity * sizeof(std::uint32_t), storage,
+                               gpu::Memory::readback)) {
+    tracer.trace_closest(plan_, "closest", structure, stream_, hits_);
+    tracer.trace_any(plan_, "any", structure, stream_, occluded_);
+    plan_.compile();
+  }
+
+  /// Traces the first `count` of the rays; answers beyond them come back as they were.
+  Answers run(std::span<const shared::Ray> rays, std::uint32_t count) {
+    Answers answers{std::vector(rays.size(), shared::Hit{untouched, 0, 0, 0, 0, 0, 0, 0}),
+                    std::vector(rays.size(), 7u)};
+    const shared::RayCount header{count, (count + 63) / 64, 1, 1};
+    std::memcpy(plan_.get(stream_.count).mapped(), &header, sizeof(header));
+    std::memcpy(plan_.get(stream_.rays).mapped(), rays.data(), rays.size_bytes());
+    const auto hit_bytes = std::as_writable_bytes(std::span(answers.hits));
+    const auto occluded_bytes = std::as_writable_bytes(std::span(answers.occluded));
+    std::memcpy(plan_.get(hits_).mapped(), hit_bytes.data(), hit_bytes.size());
+    std::memcpy(plan_.get(occluded_).mapped(), occluded_bytes.data(), occluded_bytes.size());
+    plan_.execute();
+    std::memcpy(hit_bytes.data(), plan_.get(hits_).mapped(), hit_bytes.size());
+    std::memcpy(occluded_bytes.data(), plan_.get(occluded_).mapped(), occluded_bytes.size());
+    return answers;
+  }
+
+  Answers run(std::span<const shared::Ray> rays) {
+    return run(rays, static_cast<std::uint32_t>(rays.size()));
+  }
+
+ private:
+  static constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+
+  gpu::FramePlan plan_;
+  RayStream stream_;
+  gpu::BufferRef hits_;
+  gpu::BufferRef occluded_;
+};
+
+/// A scene on the device as one tracer sees it.
+class TracedScene {
+ public:
+  TracedScene(const gpu::Device& device, const RayTracer& tracer, const scene::Scene& scene)
+      : device_(device), tracer_(tracer) {
+    buffers_.alpha_heap =
+        gpu::upload_buffer(device, "alpha masks", std::as_bytes(std::span(scene.alpha_heap)),
+                           VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+    structure_ = tracer.build(scene, buffers_);
+  }
+
+  Answers trace(std::span<const shared::Ray> rays, std::uint32_t count) const {
+    return Tracing(device_, tracer_, *structure_, rays.size()).run(rays, count);
+  }
+
+  Answers trace(std::span<const shared::Ray> rays) const {
+    return trace(rays, static_cast<std::uint32_t>(rays.size()));
+  }
+
+  std::unique_ptr<MovingStructure> moving(const scene::Scene& scene) const {
+    return tracer_.build_moving(
+        structure_, scene,
+        {buffers_.vertices, buffers_.indices, buffers_.meshes, buffers_.instances,
+         buffers_.materials, buffers_.lights, buffers_.alpha_heap});
+  }
+
+ private:
+  const gpu::Device& device_;
+  const RayTracer& tracer_;
+  SceneBuffers buffers_;
+  std::shared_ptr<const AccelerationStructure> structure_;
+};
+
+inline gpu::DeviceOptions device_options() {
+  const char* device = std::getenv("HELIOGRAPH_TEST_DEVICE");
+  return {.wanted = device ? device : "", .cache_folder = {}};
+}
+
+/// The tests' device with every tracer that it offers.
+struct Rig {
+  Rig() {
+    for (const protocol::TracerKind kind : offered_tracers(device.report())) {
+      tracers.emplace(kind, make_tracer(kind, device));
+    }
+  }
+
+  gpu::Instance instance{true};
+  gpu::Device device{instance, device_options()};
+  std::map<protocol::TracerKind, std::unique_ptr<RayTracer>> tracers;
+};
+
+class TracersTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { rig_ = std::make_unique<Rig>(); }
+  static void TearDownTestSuite() { rig_.reset(); }
+  void TearDown() override {
+    EXPECT_EQ(rig_->instance.validation_messages(), 0u) << "the validation layers complained";
+  }
+
+  static bool offered(protocol::TracerKind kind) { return rig_->tracers.contains(kind); }
+  static std::string lacking(protocol::TracerKind kind) {
+    return rig_->device.report().name + " (" + rig_->device.report().driver +
+           ") does not offer the tracer " + std::string(protocol::enum_name(kind));
+  }
+  static TracedScene traced(const scene::Scene& scene, protocol::TracerKind kind) {
+    return {rig_->device, *rig_->tracers.at(kind), scene};
+  }
+
+  static inline std::unique_ptr<Rig> rig_;
+};
+
+class TracerTest : public TracersTest, public testing::WithParamInterface<protocol::TracerKind> {
+ protected:
+  void SetUp() override {
+    if (offered(GetParam())) return;
+    ASSERT_EQ(std::getenv("HELIOGRAPH_TEST_ALL_TRACERS"), nullptr) << lacking(GetParam());
+    GTEST_SKIP() << lacking(GetParam());
+  }
+};
+
+/// Share of rays with different answers.
+inline double disagreement(const Answers& a, const Answers& b) {
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < a.hits.size(); ++i) {
+    different += !same_hit(a.hits[i], b.hits[i]) || a.occluded[i] != b.occluded[i];
+  }
+  return static_cast<double>(different) / static_cast<double>(a.hits.size());
+}
+
+inline std::size_t hit_count(const Answers& answers) {
+  std::size_t count = 0;
+  for (const shared::Hit& hit : answers.hits) count += hit.instance != shared::hit_none;
+  return count;
+}
+
+inline Answers search(const scene::Scene& scene, std::span<const shared::Ray> rays) {
+  Answers answers;
+  for (const shared::Ray& ray : rays) {
+    answers.hits.push_back(closest_by_search(scene, ray));
+    answers.occluded.push_back(answers.hits.back().instance != shared::hit_none ? 1 : 0);
+  }
+  return answers;
+}
+
+inline std::string test_name(const testing::TestParamInfo<protocol::TracerKind>& test) {
+  switch (test.param) {
+    case protocol::TracerKind::embree:
+      return "Embree";
+    case protocol::TracerKind::software:
+      return "Software";
+    case protocol::TracerKind::ray_query:
+      return "RayQuery";
+    default:
+      return "RayPipeline";
+  }
+}
+
+}  // namespace heliograph::tracing
