@@ -10,6 +10,6 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (outside_frame(pixel) || imageLoad(motion, pixel).w > 0.0) return;
   vec3 radiance = vec3(0.0);
-  if (enabled(frame_environment_visible)) radiance = environment_radiance(-to_eye(pixel));
+  if (enabled(frame_environment_visible)) radiance = environment_background(-to_eye(pixel));
   imageStore(background, pixel, vec4(radiance, 1.0));
 }

@@ -94,7 +94,7 @@ void add_settings_options(CLI::App& command, SettingsOptions& options) {
 void add_environment_option(CLI::App& command, std::string& environment) {
   command
       .add_option("--environment", environment,
-                  "Radiance .hdr file that lights the scenes [the one beside the scene]")
+                  ".hdr or .exr file that lights the scenes [the one beside the scene]")
       ->type_name("FILE")
       ->check(CLI::ExistingFile)
       ->envname("HELIOGRAPH_ENVIRONMENT");

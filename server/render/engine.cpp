@@ -35,6 +35,7 @@ Engine::Parts::Parts(const EngineOptions& options)
     : instance(options.validation),
       device(instance, {options.device, options.cache_folder}),
       programs(device),
+      environments(device, programs),
       tracer(tracing::make_tracer(options.tracer, device)),
       split_sum_table(make_split_sum_table(device, programs)),
       ltc_table(make_ltc_image(device)),
@@ -63,7 +64,8 @@ std::uint64_t Engine::validation_messages() const {
 std::shared_ptr<const SceneResources> Engine::upload(std::shared_ptr<const scene::Scene> scene,
                                                      const scene::Environment& environment) {
   return std::make_shared<const SceneResources>(parts_->device, parts_->programs, std::move(scene),
-                                                environment, *parts_->tracer);
+                                                parts_->environments.get(environment),
+                                                *parts_->tracer);
 }
 
 std::string describe_devices(const EngineOptions& options) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "gpu/device.hpp"
-#include "render/environment_prefilter.hpp"
+#include "render/lit_environment.hpp"
 #include "render/ltc_table.hpp"
 #include "render/programs.hpp"
 #include "render/renderer.hpp"
@@ -16,6 +16,7 @@ struct Engine::Parts {
   gpu::Instance instance;
   gpu::Device device;
   Programs programs;
+  EnvironmentCache environments;
   std::unique_ptr<tracing::RayTracer> tracer;
   gpu::Image split_sum_table;
   gpu::Image ltc_table;

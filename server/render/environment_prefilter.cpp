@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gpu/frame_plan.hpp"
+#include "render/environment_table.hpp"
 #include "render/irradiance.hpp"
 #include "shaders/embedded.hpp"
 
@@ -14,7 +15,7 @@ namespace {
 constexpr std::uint32_t largest_cube = 256;
 constexpr std::uint32_t smallest_cube = 16;
 constexpr std::uint32_t smallest_level = 8;
-constexpr std::uint32_t samples_per_texel = 48;
+constexpr std::uint32_t samples_per_texel = 512;
 constexpr std::uint32_t table_size = 128;
 
 struct PrefilterConstants {
@@ -37,7 +38,19 @@ gpu::Image make_cube(const gpu::Device& device, const char* name, std::uint32_t 
   return gpu::Image(device, desc);
 }
 
-gpu::Image upload_map(const gpu::Device& device, const scene::Environment& environment) {
+gpu::Buffer upload_cells(const gpu::Device& device, const scene::Environment& environment) {
+  const std::vector<EnvironmentCell> cells = make_environment_table(environment);
+  gpu::Buffer buffer =
+      gpu::upload_buffer(device, "environment cells", std::as_bytes(std::span(cells)),
+                         VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+  // Made now: several renderers on several threads share an environment.
+  buffer.texel_view(VK_FORMAT_R32G32B32A32_UINT);
+  return buffer;
+}
+
+}  // namespace
+
+gpu::Image upload_environment(const gpu::Device& device, const scene::Environment& environment) {
   std::vector<glm::vec4> texels;
   texels.reserve(environment.radiance.size());
   for (const glm::vec3& radiance : environment.radiance) texels.emplace_back(radiance, 1.0f);
@@ -47,8 +60,6 @@ gpu::Image upload_map(const gpu::Device& device, const scene::Environment& envir
   image.upload(std::as_bytes(std::span(texels)));
   return image;
 }
-
-}  // namespace
 
 gpu::Sampler make_environment_sampler(const gpu::Device& device, bool wrap_u) {
   VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
@@ -64,8 +75,9 @@ gpu::Sampler make_environment_sampler(const gpu::Device& device, bool wrap_u) {
 EnvironmentMaps prefilter_environment(const gpu::Device& device, const Programs& programs,
                                       const scene::Environment& environment) {
   const std::uint32_t cube_size = cube_size_for(environment);
-  EnvironmentMaps maps{upload_map(device, environment), make_cube(device, "prefiltered", cube_size),
-                       project_irradiance(environment)};
+  EnvironmentMaps maps{upload_environment(device, environment),
+                       make_cube(device, "prefiltered", cube_size),
+                       upload_cells(device, environment), project_irradiance(environment)};
   const gpu::Image source_cube = make_cube(device, "environment cube", cube_size);
   const std::uint32_t cube_levels = source_cube.desc().levels;
   const gpu::Sampler around = make_environment_sampler(device, true);
@@ -117,7 +129,7 @@ gpu::Image make_split_sum_table(const gpu::Device& device, const Programs& progr
   gpu::FramePlan plan(device, desc.extent);
   plan.pass("split_sum_table", programs.compute(shaders::split_sum_table))
       .write(plan.import(table, 0, VK_NULL_HANDLE))
-      .constants(std::uint32_t{256})
+      .constants(std::uint32_t{1024})
       .dispatch(desc.extent);
   plan.compile();
   plan.execute();

@@ -13,8 +13,12 @@ namespace heliograph::render {
 struct EnvironmentMaps {
   gpu::Image map;          // equirectangular, linear radiance
   gpu::Image prefiltered;  // cube, GGX lobes; roughness rises linearly with the level
+  gpu::Buffer cells;       // EnvironmentCell, read as texels of four words
   std::array<glm::vec4, 9> irradiance{};
 };
+
+/// The map as it is, for sampling.
+gpu::Image upload_environment(const gpu::Device& device, const scene::Environment& environment);
 
 /// Runs once per environment. Split-sum first half and spherical harmonics.
 EnvironmentMaps prefilter_environment(const gpu::Device& device, const Programs& programs,

@@ -15,7 +15,11 @@ std::vector<gpu::DescriptorLayout::Binding> frame_bindings() {
           {1, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
           {2, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
           {3, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
-          {4, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}};
+          {4, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
+          {5, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
+          {6, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
+          {7, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
+          {8, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER}};
 }
 
 std::vector<gpu::DescriptorLayout::Binding> material_bindings() {

@@ -87,8 +87,10 @@ scene::Bounds world_bounds(const scene::Bounds& mesh, const glm::mat4& world) {
 
 SceneResources::SceneResources(const gpu::Device& device, const Programs& programs,
                                std::shared_ptr<const scene::Scene> source,
-                               const scene::Environment& from, const tracing::RayTracer& tracer)
+                               std::shared_ptr<const LitEnvironment> around,
+                               const tracing::RayTracer& tracer)
     : scene(std::move(source)),
+      environment(std::move(around)),
       white_(constant_texture(device, "white", {255, 255, 255, 255})),
       flat_normal_(constant_texture(device, "flat normal", {128, 128, 255, 255})) {
   upload_tables(device);
@@ -97,7 +99,6 @@ SceneResources::SceneResources(const gpu::Device& device, const Programs& progra
   make_material_sets(device, programs);
   list_draws();
   rest_structure = tracer.build(*scene, rest_tables);
-  environment = prefilter_environment(device, programs, from);
 }
 
 void SceneResources::upload_tables(const gpu::Device& device) {

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
-#include "render/environment_prefilter.hpp"
+#include "render/lit_environment.hpp"
 #include "render/renderer.hpp"
 #include "render/texture_heap.hpp"
 #include "tracing/ray_tracer.hpp"
@@ -26,15 +27,17 @@ struct Draw {
 class SceneResources {
  public:
   SceneResources(const gpu::Device& device, const Programs& programs,
-                 std::shared_ptr<const scene::Scene> scene, const scene::Environment& environment,
+                 std::shared_ptr<const scene::Scene> scene,
+                 std::shared_ptr<const LitEnvironment> environment,
                  const tracing::RayTracer& tracer);
 
   std::shared_ptr<const scene::Scene> scene;
   tracing::SceneBuffers rest_tables;
   std::shared_ptr<const tracing::AccelerationStructure> rest_structure;
-  EnvironmentMaps environment;
+  std::shared_ptr<const LitEnvironment> environment;
   TextureHeap texture_heap;
   std::vector<Draw> draws;  // opaque first, then by material
+  std::uint32_t deforming_vertices = 0;
   std::vector<VkDescriptorSet> material_sets;
 
  private:

@@ -26,6 +26,22 @@ glm::mat4 jittered(glm::mat4 projection, const glm::vec2& offset) {
   return shift * projection;
 }
 
+/// What depends on the environment; its intensity and rotation are there already.
+void add_environment(shared::FrameConstants& constants, const EnvironmentView& environment) {
+  constants.counts.z = environment.maps.prefiltered.desc().levels;
+  for (std::size_t i = 0; i < 9; ++i) constants.irradiance[i] = environment.maps.irradiance[i];
+  constants.sun = glm::vec4(0.0f, 1.0f, 0.0f, -1.0f);
+  if (!environment.sun) return;
+  const scene::Sun& sun = *environment.sun;
+  const glm::vec4& settings = constants.environment;
+  const glm::vec3& d = sun.direction;
+  const glm::vec3 world(settings.y * d.x + settings.z * d.z, d.y,
+                        settings.y * d.z - settings.z * d.x);
+  constants.sun = glm::vec4(world, std::tan(glm::radians(0.5f * sun.angular_diameter)));
+  constants.sun_irradiance = glm::vec4(sun.irradiance * settings.x, 0.0f);
+  ++constants.counts.x;
+}
+
 }  // namespace
 
 glm::vec2 sample_jitter(std::uint32_t sample) {
@@ -58,7 +74,7 @@ shared::FrameConstants make_frame_constants(const scene::Camera& camera,
   constants.extent = {extent.width, extent.height, sample,
                       static_cast<std::uint32_t>(settings.sampling.seed)};
   constants.counts = {static_cast<std::uint32_t>(scene.scene->lights.size()),
-                      flags(settings, camera), scene.environment.prefiltered.desc().levels,
+                      flags(settings, camera), 0u,
                       before ? 0u : 1u};
   const float rotation = glm::radians(settings.environment.rotation);
   constants.environment = {settings.environment.intensity, std::cos(rotation), std::sin(rotation),
@@ -67,8 +83,7 @@ shared::FrameConstants make_frame_constants(const scene::Camera& camera,
   const float spread = diameter < 0.0f ? -1.0f : std::tan(glm::radians(0.5f * diameter));
   constants.exposure = {std::exp2(settings.exposure.compensation),
                         static_cast<float>(settings.tone_map.curve), spread, 0.0f};
-  for (std::size_t i = 0; i < 9; ++i) constants.irradiance[i] = scene.environment.irradiance[i];
-  constants.sun = glm::vec4(0.0f, 1.0f, 0.0f, -1.0f);
+  add_environment(constants, scene.environment->view(settings.environment.separate_sun));
   return constants;
 }
 

@@ -1,16 +1,35 @@
 #include "scene/environment.hpp"
 
+#include <algorithm>
+
 #include "scene/confined_folder.hpp"
+#include "scene/exr.hpp"
 #include "scene/import.hpp"
 #include "scene/radiance.hpp"
 
 namespace heliograph::scene {
 
+namespace {
+
+/// What light can be: neither negative nor endless, and what is no number is black.
+glm::vec3 physical(const glm::vec3& radiance) {
+  constexpr float brightest = 1e6f;
+  glm::vec3 result;
+  for (int c = 0; c < 3; ++c) {
+    result[c] = radiance[c] > 0.0f ? std::min(radiance[c], brightest) : 0.0f;
+  }
+  return result;
+}
+
+}  // namespace
+
 Environment load_environment(const std::filesystem::path& path) {
   constexpr std::uint64_t max_bytes = 512ull << 20;
   const std::vector<std::uint8_t> file = read_regular_file(path, max_bytes, "the environment");
   try {
-    return decode_radiance(file);
+    Environment environment = is_exr(file) ? decode_exr(file) : decode_radiance(file);
+    for (glm::vec3& radiance : environment.radiance) radiance = physical(radiance);
+    return environment;
   } catch (const ImportError& error) {
     throw ImportError(std::string("the environment ") + error.what());
   }

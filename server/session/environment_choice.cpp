@@ -7,11 +7,13 @@ namespace heliograph::session {
 namespace fs = std::filesystem;
 
 std::optional<fs::path> environment_beside(const fs::path& scene, const fs::path& root) {
-  fs::path own = scene;
-  own.replace_extension(".hdr");
-  for (const fs::path& candidate : {own, scene.parent_path() / "sky.hdr", root / "sky.hdr"}) {
-    std::error_code error;
-    if (fs::is_regular_file(candidate, error)) return candidate;
+  for (const fs::path& place :
+       {fs::path(scene).replace_extension(), scene.parent_path() / "sky", root / "sky"}) {
+    for (const char* extension : {".hdr", ".exr"}) {
+      const fs::path candidate = fs::path(place).concat(extension);
+      std::error_code error;
+      if (fs::is_regular_file(candidate, error)) return candidate;
+    }
   }
   return std::nullopt;
 }

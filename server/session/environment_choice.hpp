@@ -10,7 +10,7 @@
 
 namespace heliograph::session {
 
-/// The Radiance file that goes with a scene: its own name with .hdr, else sky.hdr in its folder or
+/// The .hdr or .exr file that goes with a scene: of its own name, else called sky in its folder or
 /// in `root`; nothing when there is none.
 std::optional<std::filesystem::path> environment_beside(const std::filesystem::path& scene,
                                                         const std::filesystem::path& root);

@@ -12,6 +12,19 @@ vec3 environment_direction(vec3 world) {
   return vec3(c * world.x - s * world.z, world.y, s * world.x + c * world.z);
 }
 
+vec3 world_of_environment(vec3 direction) {
+  float c = frame.environment.y;
+  float s = frame.environment.z;
+  return vec3(c * direction.x + s * direction.z, direction.y, c * direction.z - s * direction.x);
+}
+
+/// What the eye sees behind the scene: with the sun's disk.
+vec3 environment_background(vec3 world) {
+  vec2 uv = equirectangular_uv(environment_direction(world));
+  return textureLod(background_map, uv, 0.0).rgb * frame.environment.x;
+}
+
+/// What lights the scene. Without the sun where it is separated: that is a light of its own.
 vec3 environment_radiance(vec3 world) {
   vec2 uv = equirectangular_uv(environment_direction(world));
   return textureLod(environment_map, uv, 0.0).rgb * frame.environment.x;

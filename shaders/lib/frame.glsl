@@ -11,6 +11,8 @@ layout(set = 0, binding = 3) uniform samplerCube prefiltered_environment;
 layout(set = 0, binding = 4) uniform sampler2D split_sum_table;
 layout(set = 0, binding = 5) uniform usamplerBuffer light_texels;
 layout(set = 0, binding = 6) uniform sampler2D ltc_table;
+layout(set = 0, binding = 7) uniform sampler2D background_map;
+layout(set = 0, binding = 8) uniform usamplerBuffer environment_cells;
 
 bool enabled(uint flag) { return (frame.counts.y & flag) != 0u; }
 

@@ -107,7 +107,8 @@ struct Light {
   float range;        // metres; 0: unlimited
   vec3 color;         // linear colour x intensity: irradiance (directional), radiant intensity
                       // (point, spot) or radiance (area)
-  float radius;       // metres (point, spot, disk) or tangent of the angular radius (directional)
+  float radius;       // metres (point, spot, disk; rectangle: of a disk as large) or tangent of the
+                      // angular radius (directional)
   vec3 tangent;       // along a rectangle's width, unit length
   float half_width;   // metres
   float half_height;  // along cross(direction, tangent)

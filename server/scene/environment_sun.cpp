@@ -1,0 +1,139 @@
+#include "scene/environment_sun.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace heliograph::scene {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double largest_solid_angle = 0.01;  // a disk of 6.5 degrees
+constexpr double times_mean = 24.0;           // a texel of the sun is so much brighter than the mean
+constexpr double least_peak_share = 0.02;     // and than this share of the brightest texel
+constexpr double least_flux_share = 0.01;     // of the whole environment, or it is not worth a light
+
+double luminance(const glm::vec3& color) {
+  return glm::dot(glm::dvec3(color), glm::dvec3(0.2126, 0.7152, 0.0722));
+}
+
+/// The texels of an equirectangular map as pieces of the sphere.
+class Sphere {
+ public:
+  explicit Sphere(const Environment& map)
+      : width_(map.width), height_(map.height), step_(pi / map.height) {}
+
+  double solid_angle(std::size_t texel) const {
+    const double top = step_ * static_cast<double>(texel / width_);
+    return (std::cos(top) - std::cos(top + step_)) * 2.0 * pi / width_;
+  }
+  glm::dvec3 direction(std::size_t texel) const {
+    const double theta = step_ * (static_cast<double>(texel / width_) + 0.5);
+    const double phi = ((static_cast<double>(texel % width_) + 0.5) / width_ - 0.5) * 2.0 * pi;
+    return {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
+  }
+  /// Mean squared distance of a texel's points from its middle, radians.
+  double spread(std::size_t texel) const {
+    const double theta = step_ * (static_cast<double>(texel / width_) + 0.5);
+    const double across = 2.0 * pi / width_ * std::sin(theta);
+    return (step_ * step_ + across * across) / 12.0;
+  }
+  /// Calls `visit` with the texels beside, around the seam and not across the poles.
+  template <typename Visit>
+  void visit_neighbours(std::size_t texel, Visit visit) const {
+    const std::size_t x = texel % width_, row = texel - x;
+    visit(row + (x + 1) % width_);
+    visit(row + (x + width_ - 1) % width_);
+    if (texel >= width_) visit(texel - width_);
+    if (texel + width_ < std::size_t{width_} * height_) visit(texel + width_);
+  }
+
+ private:
+  std::uint32_t width_;
+  std::uint32_t height_;
+  double step_;
+};
+
+/// A bright texel, all bright ones that hang together with it, and the mean radiance around them.
+struct Region {
+  std::vector<std::size_t> texels;
+  glm::dvec3 rim{0.0};
+  double solid_angle = 0.0;
+};
+
+Region grow(const Environment& map, const Sphere& sphere, std::size_t from, double threshold) {
+  Region region;
+  std::vector<bool> seen(map.radiance.size(), false);
+  region.texels.push_back(from);
+  seen[from] = true;
+  double rim_weight = 0.0;
+  for (std::size_t i = 0; i < region.texels.size(); ++i) {
+    region.solid_angle += sphere.solid_angle(region.texels[i]);
+    if (region.solid_angle > largest_solid_angle) break;
+    sphere.visit_neighbours(region.texels[i], [&](std::size_t next) {
+      if (seen[next]) return;
+      seen[next] = true;
+      if (luminance(map.radiance[next]) > threshold) {
+        region.texels.push_back(next);
+        return;
+      }
+      const double weight = sphere.solid_angle(next);
+      region.rim += weight * glm::dvec3(map.radiance[next]);
+      rim_weight += weight;
+    });
+  }
+  if (rim_weight > 0.0) region.rim /= rim_weight;
+  return region;
+}
+
+/// What a region shines more than its rim.
+Sun sun_of(const Environment& map, const Sphere& sphere, const Region& region) {
+  glm::dvec3 irradiance(0.0), towards(0.0);
+  for (const std::size_t texel : region.texels) {
+    const glm::dvec3 more = glm::dvec3(map.radiance[texel]) - region.rim;
+    irradiance += sphere.solid_angle(texel) * more;
+    towards += sphere.solid_angle(texel) * luminance(more) * sphere.direction(texel);
+  }
+  towards = glm::normalize(towards);
+  // The points of a disk lie off its middle by half its radius squared, in the mean of squares.
+  double weight = 0.0, squares = 0.0;
+  for (const std::size_t texel : region.texels) {
+    const double share = std::max(
+        sphere.solid_angle(texel) * luminance(glm::dvec3(map.radiance[texel]) - region.rim), 0.0);
+    const glm::dvec3 aside = glm::cross(towards, sphere.direction(texel));
+    weight += share;
+    squares += share * (glm::dot(aside, aside) + sphere.spread(texel));
+  }
+  const double radius = std::sqrt(2.0 * squares / weight);
+  return {towards, glm::max(irradiance, glm::dvec3(0.0)),
+          static_cast<float>(2.0 * radius * 180.0 / pi)};
+}
+
+}  // namespace
+
+SeparatedEnvironment separate_sun(Environment environment) {
+  const Sphere sphere(environment);
+  double flux = 0.0, brightest = 0.0;
+  std::size_t peak = 0;
+  for (std::size_t i = 0; i < environment.radiance.size(); ++i) {
+    const double value = luminance(environment.radiance[i]);
+    flux += value * sphere.solid_angle(i);
+    if (value > brightest) {
+      brightest = value;
+      peak = i;
+    }
+  }
+  const double threshold =
+      std::max(times_mean * flux / (4.0 * pi), least_peak_share * brightest);
+  if (brightest <= threshold) return {std::move(environment), std::nullopt};
+  const Region region = grow(environment, sphere, peak, threshold);
+  if (region.solid_angle > largest_solid_angle) return {std::move(environment), std::nullopt};
+  const Sun sun = sun_of(environment, sphere, region);
+  if (luminance(sun.irradiance) < least_flux_share * flux) {
+    return {std::move(environment), std::nullopt};
+  }
+  for (const std::size_t texel : region.texels) environment.radiance[texel] = region.rim;
+  return {std::move(environment), sun};
+}
+
+}  // namespace heliograph::scene
