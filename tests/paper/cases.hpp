@@ -1,0 +1,41 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "protocol/settings.hpp"
+#include "scenes/generator/document.hpp"
+
+// What the paper varies in its section 4: the scene, one swept value, what moves, the techniques.
+namespace heliograph::paper {
+
+enum class Movement { still, moving_camera, moving_objects_light };
+std::string_view name(Movement movement);
+/// @throws std::invalid_argument
+Movement parse_movement(std::string_view name);
+
+/// The surfaces' roughness where reflections are looked at, the sun's angular diameter in degrees
+/// where shadows are.
+enum class Swept { roughness, angle };
+std::string_view name(Swept swept);
+/// Of a scene of the paper. @throws std::invalid_argument
+Swept swept_in(std::string_view scene);
+/// The values of the paper's figures.
+std::span<const float> paper_values(Swept swept);
+scenes::Sweep sweep_to(Swept swept, float value);
+
+/// A row of the ladder: a preset, or the preset `separable` with another rectification.
+struct Technique {
+  std::string name;
+  /// For a renderer that never rests: no mean over samples takes the place of the denoiser.
+  protocol::Settings settings() const;
+};
+/// The six presets, then `fast_history` and `percentile`.
+const std::vector<Technique>& techniques();
+/// @throws std::invalid_argument
+const Technique& find_technique(std::string_view name);
+
+}  // namespace heliograph::paper

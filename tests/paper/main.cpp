@@ -1,0 +1,174 @@
+// Regenerates the figures and tables of section 4 of Granja and Pereira, "Hybrid-Rendering
+// Techniques in GPU" (2021): SSIM over roughness and shadow angle, and frame rates.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "scenes/generator/paper_scenes.hpp"
+#include "tests/paper/report.hpp"
+#include "tests/paper/stage.hpp"
+
+namespace heliograph::paper {
+namespace {
+
+struct Options {
+  std::vector<std::string> scenes;
+  std::vector<std::string> presets;
+  std::vector<std::string> movements{"static", "moving_camera", "moving_objects_light"};
+  std::vector<float> values;
+  std::string size = "320x180";
+  int frames = 60;
+  int samples = 512;
+  int texture_size = 256;
+  float frame_rate = 60.0f;
+  std::string truth = "reference";
+  std::string output;
+  std::string device;
+  std::string tracer = "auto";
+  bool without_quality = false;
+  bool without_timings = false;
+
+  StageOptions stage() const {
+    StageOptions stage{.texture_size = texture_size};
+    char end = 0;
+    if (std::sscanf(size.c_str(), "%ux%u%c", &stage.width, &stage.height, &end) != 2) {
+      throw std::invalid_argument("--size " + size + " must look like 640x360");
+    }
+    return stage;
+  }
+  Shot shot(const std::string& movement) const {
+    return {
+        .movement = parse_movement(movement), .frames = frames, .frame_seconds = 1.0f / frame_rate};
+  }
+};
+
+std::vector<float> values_for(const Options& options, Swept swept) {
+  if (!options.values.empty()) return options.values;
+  const auto all = paper_values(swept);
+  return {all.begin(), all.end()};
+}
+
+void measure_quality(render::Engine& engine, const Options& options,
+                     std::vector<Measurement>& measurements) {
+  const Truth source = options.truth == "reference" ? Truth::reference : Truth::accumulated;
+  for (const std::string& scene : options.scenes) {
+    const Swept swept = swept_in(scene);
+    const std::size_t first = measurements.size();
+    for (const float value : values_for(options, swept)) {
+      const Stage stage(engine, scene, sweep_to(swept, value), options.stage());
+      for (const std::string& movement : options.movements) {
+        const Shot shot = options.shot(movement);
+        const auto truth = stage.truth(source, shot, options.samples);
+        for (const std::string& preset : options.presets) {
+          const auto frames = stage.play(find_technique(preset).settings(), shot);
+          measurements.push_back(
+              {scene, swept, value, shot.movement, preset, compare(frames, truth)});
+          const Quality& quality = measurements.back().quality;
+          std::fprintf(stderr, "%s %g %s %s: ssim %.4f flicker %.2f luminance %.3f\n",
+                       scene.c_str(), double(value), movement.c_str(), preset.c_str(), quality.ssim,
+                       quality.flicker, quality.luminance_ratio);
+        }
+      }
+    }
+    const std::vector<Measurement> of_scene(measurements.begin() + std::ptrdiff_t(first),
+                                            measurements.end());
+    std::fputs(quality_tables(of_scene).c_str(), stdout);
+    std::fflush(stdout);
+  }
+}
+
+std::vector<Timing> measure_times(render::Engine& engine, const Options& options) {
+  constexpr int warm_up = 5;
+  std::vector<Timing> timings;
+  for (const std::string& scene : options.scenes) {
+    const Stage stage(engine, scene, {}, options.stage());
+    for (const std::string& movement : options.movements) {
+      for (const std::string& preset : options.presets) {
+        Shot shot = options.shot(movement);
+        shot.frames += warm_up;
+        Timing timing = summarise(stage.time(find_technique(preset).settings(), shot), warm_up);
+        timing.scene = scene;
+        timing.technique = preset;
+        timing.movement = shot.movement;
+        timings.push_back(std::move(timing));
+      }
+    }
+  }
+  std::fputs(timing_tables(timings).c_str(), stdout);
+  return timings;
+}
+
+void run(const Options& options) {
+  render::Engine engine({.device = options.device, .tracer = options.tracer});
+  std::printf("%s, %s, %s pixels, %d frames at %g per second, truth of %d samples\n",
+              engine.device().name.c_str(),
+              std::string(protocol::enum_name(engine.tracer())).c_str(), options.size.c_str(),
+              options.frames, double(options.frame_rate), options.samples);
+  std::vector<Measurement> measurements;
+  std::vector<Timing> timings;
+  if (!options.without_quality) measure_quality(engine, options, measurements);
+  if (!options.without_timings) timings = measure_times(engine, options);
+  if (!options.output.empty()) {
+    write_files(options.output, measurements, timings, engine.device().name);
+  }
+}
+
+void add_options(CLI::App& app, Options& options) {
+  app.add_option("--scenes", options.scenes, "Scenes of the paper [all eight]")->delimiter(',');
+  app.add_option("--presets", options.presets,
+                 "Rows: svgf, rectification, adapted, separable, reinhard, best, fast_history, "
+                 "percentile [all]")
+      ->delimiter(',');
+  app.add_option("--movements", options.movements, "Of static, moving_camera, moving_objects_light")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--values", options.values, "Swept values [the paper's]")->delimiter(',');
+  app.add_option("--size", options.size, "Picture size")->capture_default_str();
+  app.add_option("--frames", options.frames, "Frames of each run")
+      ->check(CLI::Range(3, 100000))
+      ->capture_default_str();
+  app.add_option("--frame-rate", options.frame_rate, "Frames per second of clip time")
+      ->check(CLI::Range(1.0f, 1000.0f))
+      ->capture_default_str();
+  app.add_option("--samples", options.samples, "Samples per pixel of the truth")
+      ->check(CLI::Range(1, 65536))
+      ->capture_default_str();
+  app.add_option("--texture-size", options.texture_size, "Width of the scenes' textures")
+      ->check(CLI::Range(16, 4096))
+      ->capture_default_str();
+  app.add_option("--truth", options.truth, "The path tracer, or the hybrid's own samples averaged")
+      ->check(CLI::IsMember({"reference", "accumulated"}))
+      ->capture_default_str();
+  app.add_option("--output", options.output, "Folder for CSV and JSON files");
+  app.add_option("--device", options.device, "Part of the Vulkan device's name");
+  app.add_option("--tracer", options.tracer, "What traces rays")->capture_default_str();
+  app.add_flag("--without-quality", options.without_quality, "Only frame rates");
+  app.add_flag("--without-timings", options.without_timings, "Only quality");
+}
+
+}  // namespace
+}  // namespace heliograph::paper
+
+int main(int count, char** arguments) {
+  using namespace heliograph;
+  paper::Options options;
+  for (const scenes::PaperScene& scene : scenes::paper_scenes()) {
+    options.scenes.emplace_back(scene.name);
+  }
+  for (const paper::Technique& technique : paper::techniques()) {
+    options.presets.push_back(technique.name);
+  }
+  CLI::App app("Regenerates the paper's figures: SSIM over roughness and shadow angle, frame rates",
+               "heliograph-experiments");
+  paper::add_options(app, options);
+  CLI11_PARSE(app, count, arguments);
+  try {
+    paper::run(options);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "heliograph-experiments: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

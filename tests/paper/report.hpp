@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "render/renderer.hpp"
+#include "tests/paper/cases.hpp"
+#include "tests/paper/quality.hpp"
+
+namespace heliograph::paper {
+
+/// One point of a figure.
+struct Measurement {
+  std::string scene;
+  Swept swept = Swept::roughness;
+  float value = 0.0f;
+  Movement movement = Movement::still;
+  std::string technique;
+  Quality quality;
+};
+
+/// Frame rates of one scene and one technique, with the mean time of each pass.
+struct Timing {
+  std::string scene;
+  std::string technique;
+  Movement movement = Movement::still;
+  double slowest_fps = 0.0;
+  double mean_fps = 0.0;
+  double fastest_fps = 0.0;
+  std::vector<render::PassTime> passes;
+};
+
+/// Of the frames after the first `warm_up`. @throws std::invalid_argument where none are left
+Timing summarise(const std::vector<render::Frame>& frames, int warm_up);
+
+/// For every scene and movement a table of SSIM, flicker and luminance: a row for each technique,
+/// a column for each swept value.
+std::string quality_tables(const std::vector<Measurement>& measurements);
+/// The paper's tables 1 and 2, then milliseconds of each pass.
+std::string timing_tables(const std::vector<Timing>& timings);
+
+/// quality.csv, timings.csv and experiments.json. @throws std::runtime_error
+void write_files(const std::filesystem::path& folder, const std::vector<Measurement>& measurements,
+                 const std::vector<Timing>& timings, const std::string& device);
+
+}  // namespace heliograph::paper

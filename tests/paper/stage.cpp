@@ -1,0 +1,136 @@
+#include "tests/paper/stage.hpp"
+
+#include <unistd.h>
+
+#include <fstream>
+#include <stdexcept>
+
+#include "scene/import.hpp"
+#include "scene/pose.hpp"
+#include "scenes/generator/glb.hpp"
+#include "scenes/generator/paper_scenes.hpp"
+
+namespace heliograph::paper {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int sky_width = 512;
+constexpr int sky_height = 256;
+
+scene::Environment to_environment(const scenes::Environment& sky) {
+  return {.width = static_cast<std::uint32_t>(sky.width),
+          .height = static_cast<std::uint32_t>(sky.height),
+          .radiance = sky.radiance};
+}
+
+scene::Scene read_back(const std::vector<std::uint8_t>& file) {
+  std::string pattern = (fs::temp_directory_path() / "heliograph_paper_XXXXXX").string();
+  if (!mkdtemp(pattern.data())) throw std::runtime_error("cannot make a temporary folder");
+  const fs::path folder = pattern;
+  const fs::path path = folder / "scene.glb";
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(file.data()), static_cast<std::streamsize>(file.size()));
+  try {
+    scene::Scene scene = scene::import_gltf(path);
+    fs::remove_all(folder);
+    return scene;
+  } catch (...) {
+    fs::remove_all(folder);
+    throw;
+  }
+}
+
+/// The scene's first camera at `seconds` of its clip.
+scene::Camera camera_at(const scene::Scene& scene, double seconds) {
+  scene::Camera camera = scene.cameras.at(0);
+  const scene::Clip* clip = scene::find_clip(scene, name(Movement::moving_camera));
+  if (!clip || !camera.node) throw std::runtime_error("the scene's camera cannot move");
+  scene::Pose pose = scene::rest_pose(scene);
+  scene::evaluate(scene, *clip, seconds, pose);
+  const glm::mat4& world = pose.worlds.at(*camera.node);
+  const float distance = glm::distance(camera.eye, camera.target);
+  camera.eye = glm::vec3(world[3]);
+  camera.target = camera.eye - distance * glm::normalize(glm::vec3(world[2]));
+  camera.up = glm::normalize(glm::vec3(world[1]));
+  return camera;
+}
+
+}  // namespace
+
+Stage::Stage(render::Engine& engine, const std::string& scene, const scenes::Sweep& sweep,
+             const StageOptions& options)
+    : engine_(engine), options_(options) {
+  const scenes::PaperScene& recipe = scenes::find_paper_scene(scene);
+  const scenes::ClearSky sky = recipe.make_sky(sky_width, sky_height);
+  scenes::Document document = recipe.make_document(sky);
+  scenes::apply(sweep, document);
+  scene_ = std::make_shared<const scene::Scene>(
+      read_back(scenes::encode_glb(document, options.texture_size)));
+  resources_ = engine.upload(scene_, to_environment(sky.environment));
+}
+
+std::unique_ptr<render::Renderer> Stage::start(const protocol::Settings& settings,
+                                               const Shot& shot) const {
+  auto renderer = std::make_unique<render::Renderer>(engine_);
+  renderer->set_scene(resources_);
+  renderer->set_size(options_.width, options_.height);
+  renderer->set_camera(scene_->cameras.at(0));
+  renderer->set_frame_seconds(shot.frame_seconds);
+  const auto accepted = renderer->set_settings(settings);
+  if (!accepted) throw std::runtime_error(accepted.error().message);
+  return renderer;
+}
+
+void Stage::show_moment(render::Renderer& renderer, const Shot& shot, int frame) const {
+  const double seconds = static_cast<double>(frame) * static_cast<double>(shot.frame_seconds);
+  if (shot.movement == Movement::moving_camera) renderer.set_camera(camera_at(*scene_, seconds));
+  if (shot.movement == Movement::moving_objects_light) {
+    throw std::runtime_error("the renderer cannot play clips");
+  }
+}
+
+std::vector<render::Frame> Stage::play(const protocol::Settings& settings, const Shot& shot) const {
+  std::vector<render::Frame> frames = time(settings, shot);
+  frames.erase(frames.begin(), frames.end() - shot.compared);
+  return frames;
+}
+
+std::vector<render::Frame> Stage::time(const protocol::Settings& settings, const Shot& shot) const {
+  const auto renderer = start(settings, shot);
+  std::vector<render::Frame> frames;
+  for (int i = 0; i < shot.frames; ++i) {
+    show_moment(*renderer, shot, i);
+    frames.push_back(renderer->render());
+    // Only the last pictures are looked at.
+    if (i < shot.frames - shot.compared) frames.back().rgba.clear();
+  }
+  return frames;
+}
+
+std::vector<render::Frame> Stage::truth(Truth source, const Shot& shot, int samples) const {
+  protocol::Settings settings;
+  settings.accumulation.max_samples = samples;
+  settings.accumulation.handover = 0;
+  settings.antialiasing.temporal = false;
+  if (source == Truth::reference) {
+    settings.reference.use = protocol::ReferenceUse::always;
+    settings.reference.scope = protocol::ReferenceScope::same_paths;
+  } else {
+    settings.shadow_temporal.enabled = settings.specular_temporal.enabled = false;
+    settings.shadow_blur.enabled = settings.specular_blur.enabled = false;
+  }
+  const auto renderer = start(settings, shot);
+  std::vector<render::Frame> frames;
+  for (int i = shot.frames - shot.compared; i < shot.frames; ++i) {
+    show_moment(*renderer, shot, i);
+    render::Frame frame = renderer->render();
+    while (!frame.converged) frame = renderer->render();
+    frames.push_back(std::move(frame));
+    if (shot.movement == Movement::still) break;
+  }
+  frames.resize(static_cast<std::size_t>(shot.compared), frames.front());
+  return frames;
+}
+
+}  // namespace heliograph::paper
