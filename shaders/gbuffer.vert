@@ -8,6 +8,7 @@ layout(location = 2) in vec3 normal;
 layout(location = 3) in vec2 color_ba;
 layout(location = 4) in vec4 tangent;
 layout(location = 5) in vec4 uv;
+layout(location = 6) in vec3 previous_position;
 
 layout(location = 0) out vec3 world_normal;
 layout(location = 1) out vec4 world_tangent;
@@ -36,7 +37,7 @@ vec3 transform_normal(vec4 rows[3], vec3 n) {
 
 void main() {
   vec4 world = vec4(transform(draw.world, vec4(position, 1.0)), 1.0);
-  vec4 before = vec4(transform(draw.previous_world, vec4(position, 1.0)), 1.0);
+  vec4 before = vec4(transform(draw.previous_world, vec4(previous_position, 1.0)), 1.0);
   world_normal = transform_normal(draw.world, normal);
   world_tangent = vec4(transform(draw.world, vec4(tangent.xyz, 0.0)),
                        tangent.w * orientation());

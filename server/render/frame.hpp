@@ -9,6 +9,8 @@
 
 namespace heliograph::render {
 
+class MovingScene;
+
 /// What a frame is made from. References outlive the plan; `constants` changes from frame to frame.
 struct FrameInputs {
   const Programs& programs;
@@ -22,6 +24,8 @@ struct FrameInputs {
   const protocol::Settings& settings;
   const std::uint32_t& samples;  // already in the accumulated picture
   const float& seconds;          // since the frame before
+  const MovingScene& moving;     // what the rasteriser draws
+  bool host_kernels = true;      // on devices that are processors, where a pass has one
 };
 
 /// The buffers that outlive the frame or leave it.

@@ -2,6 +2,7 @@
 
 #include "render/frame.hpp"
 #include "render/frustum.hpp"
+#include "render/moving_scene.hpp"
 
 namespace heliograph::render {
 namespace {
@@ -11,9 +12,6 @@ class DrawRecorder {
  public:
   DrawRecorder(const FrameInputs& in, VkCommandBuffer commands, VkPipelineLayout layout)
       : in_(in), commands_(commands), layout_(layout) {
-    const VkDeviceSize offset = 0;
-    const VkBuffer vertices = in.tables.vertices.handle();
-    vkCmdBindVertexBuffers(commands, 0, 1, &vertices, &offset);
     vkCmdBindIndexBuffer(commands, in.tables.indices.handle(), 0, VK_INDEX_TYPE_UINT32);
     vkCmdSetCullMode(commands, VK_CULL_MODE_BACK_BIT);
     vkCmdSetFrontFace(commands, VK_FRONT_FACE_COUNTER_CLOCKWISE);
@@ -36,21 +34,39 @@ class DrawRecorder {
     vkCmdSetCullMode(commands_, draw.double_sided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
     vkCmdSetFrontFace(commands_,
                       draw.flipped ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
-    vkCmdDrawIndexed(commands_, draw.index_count, 1, draw.first_index,
-                     static_cast<std::int32_t>(draw.first_vertex), 0);
+    bind_vertices(draw);
+    const auto first_vertex =
+        draw.previous_vertex ? 0 : static_cast<std::int32_t>(draw.first_vertex);
+    vkCmdDrawIndexed(commands_, draw.index_count, 1, draw.first_index, first_vertex, 0);
   }
 
  private:
+  // The second binding has the positions of the frame before: a table of their own for meshes that
+  // deform, the vertices themselves for all others.
+  void bind_vertices(const Draw& draw) {
+    if (!draw.previous_vertex && shared_vertices_bound_) return;
+    shared_vertices_bound_ = !draw.previous_vertex;
+    std::array buffers{in_.tables.vertices.handle(), in_.tables.vertices.handle()};
+    std::array<VkDeviceSize, 2> offsets{0, 0};
+    if (draw.previous_vertex) {
+      buffers[1] = in_.moving.previous_vertices().handle();
+      offsets = {draw.first_vertex * sizeof(shared::Vertex),
+                 *draw.previous_vertex * sizeof(shared::Vertex)};
+    }
+    vkCmdBindVertexBuffers(commands_, 0, 2, buffers.data(), offsets.data());
+  }
+
   const FrameInputs& in_;
   VkCommandBuffer commands_;
   VkPipelineLayout layout_;
   bool masked_ = false;
   std::uint32_t material_ = ~0u;
+  bool shared_vertices_bound_ = false;
 };
 
 }  // namespace
 
-GBuffer rasterize_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
+GBuffer declare_gbuffer(gpu::FramePlan& plan) {
   constexpr VkImageUsageFlags attachment = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
   const auto signal = [&](const char* name, std::size_t index) {
     return plan.image(name, GBuffer::formats[index], attachment);
@@ -69,7 +85,11 @@ GBuffer rasterize_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
   gbuffer.depth_slope = signal("gbuffer.depth_slope", 5);
   gbuffer.instance = remembered("gbuffer.instance", 6, gbuffer.previous_instance);
   gbuffer.depth = plan.image("gbuffer.depth", VK_FORMAT_D32_SFLOAT);
+  return gbuffer;
+}
 
+GBuffer rasterize_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
+  const GBuffer gbuffer = declare_gbuffer(plan);
   constexpr std::array<float, 4> nothing{};
   plan.raster("gbuffer", in.programs.gbuffer)
       .color(gbuffer.normals, nothing)
@@ -84,7 +104,7 @@ GBuffer rasterize_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
       .draw([in](VkCommandBuffer commands, VkPipelineLayout layout) {
         const Frustum frustum(in.constants.view_projection);
         DrawRecorder recorder(in, commands, layout);
-        for (const Draw& draw : in.scene.draws) {
+        for (const Draw& draw : in.moving.draws()) {
           if (frustum.may_contain(draw.bounds)) recorder.draw(draw);
         }
       });

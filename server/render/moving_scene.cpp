@@ -1,13 +1,250 @@
 #include "render/moving_scene.hpp"
 
-namespace heliograph::render {
+#include <algorithm>
+#include <cstring>
 
-MovingScene::MovingScene(const gpu::Device&, const tracing::RayTracer&,
+#include "render/light_table.hpp"
+#include "render/placement.hpp"
+#include "scene/deform.hpp"
+#include "scene/lights.hpp"
+
+namespace heliograph::render {
+namespace {
+
+template <typename Element>
+gpu::Buffer writable_table(const gpu::Device& device, const char* name,
+                           std::span<const Element> elements, VkBufferUsageFlags usage) {
+  gpu::Buffer table(device, name, elements.size_bytes(), usage, gpu::Memory::upload);
+  std::memcpy(table.mapped(), elements.data(), elements.size_bytes());
+  return table;
+}
+
+std::vector<shared::Vertex> all_vertices(const scene::Scene& scene) {
+  std::vector<shared::Vertex> vertices;
+  for (const scene::Mesh& mesh : scene.meshes) {
+    vertices.insert(vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+  }
+  return vertices;
+}
+
+}  // namespace
+
+/// What a scene with clips has for each renderer.
+struct MovingScene::Moving {
+  /// A mesh that deforms, on the processor.
+  struct Deforming {
+    std::vector<shared::Vertex> vertices;  // now
+    scene::Bounds bounds;
+    std::uint32_t mesh = 0;
+    std::size_t first_vertex = 0;     // in the table of all vertices
+    std::size_t previous_vertex = 0;  // in the table of vertices one frame ago
+    bool moved = false;               // by the last advance
+  };
+
+  Moving(const gpu::Device& device, const SceneResources& rest);
+
+  /// Each brings one kind of thing to `pose`; true when anything is now, or was a frame ago,
+  /// elsewhere.
+  bool move_instances(const scene::Scene& scene, const scene::Pose& pose);
+  bool deform(const scene::Scene& scene, const scene::Pose& before, const scene::Pose& pose);
+  bool move_lights(const scene::Scene& scene, const scene::Pose& before, const scene::Pose& pose);
+  void move_draws(const scene::Scene& scene);
+  void update_structure();
+
+  std::vector<shared::Instance> instances;
+  std::vector<shared::Light> lights;
+  std::vector<Draw> draws;
+  std::vector<std::uint32_t> draw_of;  // by instance
+  std::vector<Deforming> deforming;    // by deformation of the scene
+  std::vector<std::uint32_t> moved;    // instances that the last advance moved or brought to rest
+  std::vector<std::uint32_t> placed;   // those of them with a new matrix
+  std::vector<glm::mat4> worlds;       // by instance
+  std::vector<scene::Bounds> bounds;   // by mesh
+
+  gpu::Buffer instance_table;
+  gpu::Buffer light_table;
+  gpu::Buffer vertex_table;    // empty when no mesh deforms
+  gpu::Buffer previous_table;
+  std::unique_ptr<tracing::MovingStructure> structure;
+
+  const scene::Clip* clip = nullptr;
+  double seconds = 0.0;
+  bool pose_is_new = false;
+  bool settled = true;  // nothing moved in the last advance
+};
+
+MovingScene::Moving::Moving(const gpu::Device& device, const SceneResources& rest)
+    : draws(rest.draws), draw_of(rest.scene->instances.size()) {
+  const scene::Scene& scene = *rest.scene;
+  for (const scene::Instance& instance : scene.instances) {
+    worlds.push_back(scene.nodes[instance.node].world);
+    instances.push_back(place_mesh(instance.mesh, worlds.back()));
+  }
+  for (const scene::Light& light : scene.lights) lights.push_back(light.device);
+  for (const scene::Mesh& mesh : scene.meshes) bounds.push_back(mesh.bounds);
+  for (std::uint32_t i = 0; i < draws.size(); ++i) draw_of[draws[i].constants.instance] = i;
+  instance_table = writable_table(device, "instances now", std::span<const shared::Instance>(instances),
+                                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  light_table = make_light_table(device, lights.size());
+  write_lights(light_table, lights);
+  if (scene.deformations.empty()) return;
+
+  std::vector<std::size_t> first_vertex;
+  std::size_t count = 0;
+  for (const scene::Mesh& mesh : scene.meshes) {
+    first_vertex.push_back(count);
+    count += mesh.vertices.size();
+  }
+  std::vector<shared::Vertex> previous;
+  for (const scene::Deformation& deformation : scene.deformations) {
+    const scene::Mesh& mesh = scene.meshes[deformation.mesh];
+    deforming.push_back(
+        {mesh.vertices, mesh.bounds, deformation.mesh, first_vertex[deformation.mesh], previous.size()});
+    previous.insert(previous.end(), mesh.vertices.begin(), mesh.vertices.end());
+  }
+  const std::vector<shared::Vertex> all = all_vertices(scene);
+  vertex_table = writable_table(
+      device, "vertices now", std::span(all),
+      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+  previous_table = writable_table(device, "vertices before", std::span<const shared::Vertex>(previous),
+                                  VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+}
+
+bool MovingScene::Moving::move_instances(const scene::Scene& scene, const scene::Pose& pose) {
+  moved.clear();
+  placed.clear();
+  auto* const table = reinterpret_cast<shared::Instance*>(instance_table.mapped());
+  for (std::uint32_t i = 0; i < instances.size(); ++i) {
+    shared::Instance& instance = instances[i];
+    const glm::mat4& world = pose.worlds[scene.instances[i].node];
+    const bool moves = world != instance.world;
+    if (!moves && instance.previous_world == instance.world) continue;
+    move_instance(instance, world);
+    table[i] = instance;
+    moved.push_back(i);
+    if (!moves) continue;
+    placed.push_back(i);
+    worlds[i] = world;
+  }
+  return !moved.empty();
+}
+
+bool MovingScene::Moving::deform(const scene::Scene& scene, const scene::Pose& before,
+                                 const scene::Pose& pose) {
+  bool any = false;
+  auto* const table = reinterpret_cast<shared::Vertex*>(vertex_table.mapped());
+  auto* const previous = reinterpret_cast<shared::Vertex*>(previous_table.mapped());
+  for (std::size_t i = 0; i < deforming.size(); ++i) {
+    const scene::Deformation& deformation = scene.deformations[i];
+    Deforming& mesh = deforming[i];
+    const bool moved_before = mesh.moved;
+    mesh.moved = scene::shape_differs(scene, deformation, before, pose);
+    any = any || mesh.moved || moved_before;
+    if (mesh.moved || moved_before) {
+      std::ranges::copy(mesh.vertices, previous + mesh.previous_vertex);
+    }
+    if (!mesh.moved) continue;
+    mesh.bounds = scene::deform(scene, deformation, pose, mesh.vertices);
+    bounds[deformation.mesh] = mesh.bounds;
+    std::ranges::copy(mesh.vertices, table + mesh.first_vertex);
+  }
+  return any;
+}
+
+bool MovingScene::Moving::move_lights(const scene::Scene& scene, const scene::Pose& before,
+                                      const scene::Pose& pose) {
+  bool any = false;
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const auto node = scene.lights[i].node;
+    if (!node || before.worlds[*node] == pose.worlds[*node]) continue;
+    lights[i] = scene::place_light(scene.lights[i].device, pose.worlds[*node]);
+    any = true;
+  }
+  if (any) write_lights(light_table, lights);
+  return any;
+}
+
+void MovingScene::Moving::move_draws(const scene::Scene& scene) {
+  const auto move = [&](std::uint32_t instance) {
+    Draw& draw = draws[draw_of[instance]];
+    draw.constants = draw_constants(instances[instance], instance);
+    draw.flipped = instances[instance].flags & shared::instance_flipped;
+    draw.bounds = world_bounds(bounds[scene.instances[instance].mesh], worlds[instance]);
+  };
+  for (const std::uint32_t instance : moved) move(instance);
+  if (deforming.empty()) return;
+  for (std::uint32_t i = 0; i < instances.size(); ++i) {
+    if (draws[draw_of[i]].previous_vertex) move(i);
+  }
+}
+
+void MovingScene::Moving::update_structure() {
+  std::vector<tracing::Movement::Mesh> meshes;
+  for (const Deforming& mesh : deforming) {
+    if (mesh.moved) meshes.push_back({mesh.mesh, mesh.vertices, mesh.bounds});
+  }
+  structure->update({worlds, placed, meshes});
+}
+
+MovingScene::MovingScene(const gpu::Device& device, const tracing::RayTracer& tracer,
                          std::shared_ptr<const SceneResources> rest)
-    : rest_(std::move(rest)),
-      tables_{rest_->rest_tables.vertices,  rest_->rest_tables.indices,
-              rest_->rest_tables.meshes,    rest_->rest_tables.instances,
-              rest_->rest_tables.materials, rest_->rest_tables.lights,
-              rest_->rest_tables.alpha_heap} {}
+    : rest_(std::move(rest)), pose_(scene::rest_pose(*rest_->scene)) {
+  const tracing::SceneBuffers& shared = rest_->rest_tables;
+  if (!rest_->scene->clips.empty()) moving_ = std::make_unique<Moving>(device, *rest_);
+  tables_.emplace(tracing::SceneTables{
+      moving_ && moving_->vertex_table ? moving_->vertex_table : shared.vertices, shared.indices,
+      shared.meshes, moving_ ? moving_->instance_table : shared.instances, shared.materials,
+      moving_ ? moving_->light_table : shared.lights, shared.alpha_heap});
+  if (!moving_) return;
+  moving_->structure = tracer.build_moving(rest_->rest_structure, *rest_->scene, *tables_);
+}
+
+MovingScene::~MovingScene() = default;
+
+const tracing::AccelerationStructure& MovingScene::structure() const {
+  if (moving_) return *moving_->structure;
+  return *rest_->rest_structure;
+}
+
+const std::vector<Draw>& MovingScene::draws() const {
+  return moving_ ? moving_->draws : rest_->draws;
+}
+
+const gpu::Buffer& MovingScene::previous_vertices() const {
+  return moving_ ? moving_->previous_table : rest_->rest_tables.vertices;
+}
+
+bool MovingScene::set_pose(const scene::Clip* clip, double seconds) {
+  if (!moving_ || (clip == moving_->clip && (!clip || seconds == moving_->seconds))) return false;
+  moving_->clip = clip;
+  moving_->seconds = seconds;
+  moving_->pose_is_new = true;
+  return true;
+}
+
+bool MovingScene::needs_advance() const {
+  return moving_ && (moving_->pose_is_new || !moving_->settled);
+}
+
+bool MovingScene::advance() {
+  if (!needs_advance()) return false;
+  const scene::Scene& scene = *rest_->scene;
+  const scene::Pose before = pose_;
+  if (moving_->pose_is_new) {
+    if (moving_->clip) {
+      scene::evaluate(scene, *moving_->clip, moving_->seconds, pose_);
+    } else {
+      pose_ = scene::rest_pose(scene);
+    }
+  }
+  moving_->pose_is_new = false;
+  const bool instances = moving_->move_instances(scene, pose_);
+  const bool shapes = moving_->deform(scene, before, pose_);
+  const bool lights = moving_->move_lights(scene, before, pose_);
+  moving_->move_draws(scene);
+  moving_->update_structure();
+  moving_->settled = !instances && !shapes;
+  return instances || shapes || lights;
+}
 
 }  // namespace heliograph::render

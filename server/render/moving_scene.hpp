@@ -1,25 +1,57 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "render/scene_resources.hpp"
+#include "scene/pose.hpp"
 #include "tracing/ray_tracer.hpp"
 
 namespace heliograph::render {
 
-/// A scene as one renderer sees it: the shared resources at rest, and over them what moves.
+/// A scene as one renderer sees it: the shared resources at rest, and over them what moves. Several
+/// renderers may show one scene at different times. A scene without clips costs nothing here.
+///
+/// What a pose changes, from one advance() to the next: matrices now and one frame ago in the table
+/// of instances, the vertices of meshes that deform (processor skinning, all cores), lights, the
+/// draw list and the acceleration structure. Buffers and structure keep their identity, so that
+/// plans stay valid.
 class MovingScene {
  public:
   MovingScene(const gpu::Device& device, const tracing::RayTracer& tracer,
               std::shared_ptr<const SceneResources> rest);
+  ~MovingScene();
 
   const SceneResources& rest() const { return *rest_; }
-  const tracing::SceneTables& tables() const { return tables_; }
-  const tracing::AccelerationStructure& structure() const { return *rest_->rest_structure; }
+  /// Every table as it is now; see tracing::SceneTables for how to read them.
+  const tracing::SceneTables& tables() const { return *tables_; }
+  const tracing::AccelerationStructure& structure() const;
+  /// Instances as the rasteriser draws them, in the order of SceneResources::draws.
+  const std::vector<Draw>& draws() const;
+  /// Vertices one frame ago of the meshes that deform; only where Draw::previous_vertex points.
+  const gpu::Buffer& previous_vertices() const;
+
+  /// What the next advance() goes to: a clip of this scene at `seconds`, or rest when null.
+  /// @return whether that differs from where the scene is going already
+  bool set_pose(const scene::Clip* clip, double seconds);
+  /// Whether another advance() would change anything: a new pose, or motion that has ended but is
+  /// still the motion of the frame before.
+  bool needs_advance() const;
+  /// Goes on by one frame: what is current becomes previous, what was set becomes current. Never
+  /// while a frame runs.
+  /// @return whether anything differs from the frame before
+  bool advance();
+  /// Node -> world, as it is now.
+  const scene::Pose& pose() const { return pose_; }
 
  private:
+  struct Moving;
+
   std::shared_ptr<const SceneResources> rest_;
-  tracing::SceneTables tables_;
+  scene::Pose pose_;
+  std::unique_ptr<Moving> moving_;  // null for scenes without clips
+  std::optional<tracing::SceneTables> tables_;
 };
 
 }  // namespace heliograph::render

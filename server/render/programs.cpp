@@ -36,7 +36,9 @@ gpu::RasterState gbuffer_state() {
   gpu::RasterState state;
   state.color_formats.assign(GBuffer::formats.begin(), GBuffer::formats.end());
   state.depth_format = VK_FORMAT_D32_SFLOAT;
-  state.vertex_bindings = {{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX}};
+  // The same vertices now and one frame ago.
+  state.vertex_bindings = {{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX},
+                           {1, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX}};
   state.vertex_attributes = {
       {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
       {1, 0, VK_FORMAT_R16G16_UNORM, offsetof(Vertex, color_rg)},
@@ -44,6 +46,7 @@ gpu::RasterState gbuffer_state() {
       {3, 0, VK_FORMAT_R16G16_UNORM, offsetof(Vertex, color_ba)},
       {4, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, tangent)},
       {5, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, uv0)},
+      {6, 1, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
   };
   return state;
 }

@@ -196,6 +196,17 @@ void Renderer::set_camera(const scene::Camera& camera) {
   state_->restart();
 }
 
+protocol::Result<void> Renderer::set_pose(std::string_view clip, double seconds) {
+  const scene::Scene& scene = *state_->scene->scene;
+  const scene::Clip* const found = scene::find_clip(scene, clip);
+  if (!clip.empty() && !found) {
+    return protocol::error::not_found("clip",
+                                      "the scene has no clip \"" + std::string(clip) + "\"");
+  }
+  if (state_->moving->set_pose(found, seconds)) state_->restart();
+  return {};
+}
+
 void Renderer::cut() {
   state_->has_previous = false;
   state_->sequence = 0;
@@ -223,6 +234,7 @@ protocol::Result<void> Renderer::set_settings(const protocol::Settings& settings
 
 bool Renderer::needs_frame() const {
   if (state_->stale || state_->samples < state_->wanted_samples()) return true;
+  if (state_->moving->needs_advance()) return true;
   // Exposure that no time passes for stays where it is.
   return state_->seconds > 0.0f && !is_settled(*state_->plan, state_->outputs.exposure);
 }
@@ -231,6 +243,9 @@ Frame Renderer::render() {
   State& state = *state_;
   const auto start = std::chrono::steady_clock::now();
   state.stale = false;
+  const bool moves = state.moving->advance();
+  if (moves) state.samples = 0;
+  const auto posed = std::chrono::steady_clock::now();
   if (!state.settings.accumulation.enabled) state.samples = 0;
   const shared::FrameConstants before = state.constants;
   state.constants = make_frame_constants(state.camera, state.settings, *state.scene, state.extent,
@@ -243,6 +258,10 @@ Frame Renderer::render() {
   Frame frame = state.picture();
   frame.samples = state.samples;
   frame.converged = !needs_frame();
+  if (moves) {
+    const std::chrono::duration<float, std::milli> posing = posed - start;
+    frame.passes.push_back({"pose", protocol::PassKind::host, posing.count()});
+  }
   for (const auto& timing : state.plan->timings()) {
     if (timing.milliseconds < 0.0f) continue;
     const auto kind = timing.host ? protocol::PassKind::host : protocol::PassKind::device;

@@ -63,6 +63,14 @@ struct PassTime {
   float milliseconds;
 };
 
+/// What a pass of the last frame had to touch: bytes of the images that it reads and writes, and
+/// the rays of its stream (0: it works on none).
+struct PassWork {
+  std::string name;
+  std::uint64_t image_bytes;
+  std::uint64_t rays;
+};
+
 /// Four floats a pixel, row 0 on top; what the channels mean is the buffer's description.
 struct FloatImage {
   std::uint32_t width = 0;
@@ -99,6 +107,9 @@ class Renderer {
   void set_scene(std::shared_ptr<const SceneResources> scene);
   void set_size(std::uint32_t width, std::uint32_t height);
   void set_camera(const scene::Camera& camera);
+  /// Poses the scene by a clip of it, or as at rest when `clip` is empty, where set_scene leaves it.
+  /// Takes effect with the next frame. Motion restarts the resting picture, not the histories.
+  protocol::Result<void> set_pose(std::string_view clip, double seconds);
   /// Forgets every history and starts the random sequences anew: what follows are the frames of a
   /// fresh renderer.
   void cut();
@@ -111,6 +122,9 @@ class Renderer {
   bool needs_frame() const;
   /// Draws the next frame; the empty scene is black.
   Frame render();
+
+  /// The work behind the last frame's pass times; slow, for measurements.
+  std::vector<PassWork> work() const;
 
   /// Every buffer that `view.buffer` and `capture` accept, "output" first.
   const std::vector<BufferInfo>& buffers() const;

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <map>
 #include <tuple>
 
 #include "render/light_table.hpp"
+#include "render/placement.hpp"
 
 namespace heliograph::render {
 namespace {
@@ -59,30 +61,6 @@ gpu::Image constant_texture(const gpu::Device& device, const char* name,
   return image;
 }
 
-shared::DrawConstants draw_constants(const shared::Instance& instance, std::uint32_t index) {
-  shared::DrawConstants constants{};
-  const glm::mat4 now = glm::transpose(instance.world);
-  const glm::mat4 before = glm::transpose(instance.previous_world);
-  for (int row = 0; row < 3; ++row) {
-    constants.world[row] = now[row];
-    constants.previous_world[row] = before[row];
-  }
-  constants.instance = index;
-  constants.flags = instance.flags;
-  return constants;
-}
-
-scene::Bounds world_bounds(const scene::Bounds& mesh, const glm::mat4& world) {
-  scene::Bounds bounds;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec3 point{corner & 1 ? mesh.maximum.x : mesh.minimum.x,
-                          corner & 2 ? mesh.maximum.y : mesh.minimum.y,
-                          corner & 4 ? mesh.maximum.z : mesh.minimum.z};
-    bounds.include(glm::vec3(world * glm::vec4(point, 1.0f)));
-  }
-  return bounds;
-}
-
 }  // namespace
 
 SceneResources::SceneResources(const gpu::Device& device, const Programs& programs,
@@ -112,13 +90,7 @@ void SceneResources::upload_tables(const gpu::Device& device) {
     indices.insert(indices.end(), mesh.indices.begin(), mesh.indices.end());
   }
   for (const scene::Instance& from : scene->instances) {
-    shared::Instance instance{};
-    instance.world = instance.previous_world = scene->nodes[from.node].world;
-    instance.normal_matrix = glm::mat4(glm::transpose(glm::inverse(glm::mat3(instance.world))));
-    instance.mesh = from.mesh;
-    const bool mirrored = glm::determinant(glm::mat3(instance.world)) < 0.0f;
-    instance.flags = mirrored ? shared::instance_flipped : 0u;
-    instances_.push_back(instance);
+    instances_.push_back(place_mesh(from.mesh, scene->nodes[from.node].world));
   }
   std::vector<shared::Light> lights;
   for (const scene::Light& light : scene->lights) lights.push_back(light.device);
@@ -190,6 +162,12 @@ void SceneResources::make_material_sets(const gpu::Device& device, const Program
 }
 
 void SceneResources::list_draws() {
+  std::map<std::uint32_t, std::uint32_t> previous_vertices;  // by mesh that deforms
+  for (const scene::Deformation& deformation : scene->deformations) {
+    previous_vertices[deformation.mesh] = deforming_vertices;
+    deforming_vertices +=
+        static_cast<std::uint32_t>(scene->meshes[deformation.mesh].vertices.size());
+  }
   for (std::uint32_t i = 0; i < scene->instances.size(); ++i) {
     const scene::Instance& instance = scene->instances[i];
     const shared::Mesh& mesh = meshes_[instance.mesh];
@@ -200,6 +178,8 @@ void SceneResources::list_draws() {
     draw.first_index = mesh.first_index;
     draw.index_count = mesh.index_count;
     draw.first_vertex = mesh.first_vertex;
+    const auto previous = previous_vertices.find(instance.mesh);
+    if (previous != previous_vertices.end()) draw.previous_vertex = previous->second;
     draw.masked = flags & (shared::material_alpha_mask | shared::material_alpha_blend);
     draw.double_sided = flags & shared::material_double_sided;
     draw.flipped = instances_[i].flags & shared::instance_flipped;

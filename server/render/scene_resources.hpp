@@ -18,6 +18,8 @@ struct Draw {
   std::uint32_t first_index;
   std::uint32_t index_count;
   std::uint32_t first_vertex;
+  // Where its vertices of the frame before start among those of all meshes that deform.
+  std::optional<std::uint32_t> previous_vertex;
   bool masked;  // alpha mask or blend: the program that discards
   bool double_sided;
   bool flipped;

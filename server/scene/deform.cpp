@@ -3,6 +3,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace heliograph::scene {
@@ -80,6 +81,15 @@ void make_flat_normals(std::span<shared::Vertex> triangle) {
 }
 
 }  // namespace
+
+bool shape_differs(const Scene& scene, const Deformation& deformation, const Pose& a,
+                   const Pose& b) {
+  if (a.weights[deformation.node] != b.weights[deformation.node]) return true;
+  if (!deformation.skin) return false;
+  return std::ranges::any_of(scene.skins[*deformation.skin].joints, [&](std::uint32_t joint) {
+    return a.worlds[joint] != b.worlds[joint];
+  });
+}
 
 Bounds deform(const Scene& scene, const Deformation& deformation, const Pose& pose,
               std::span<shared::Vertex> vertices) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/cameras.hpp"
+
 namespace heliograph::scene {
 namespace {
 
@@ -100,6 +102,20 @@ Pose rest_pose(const Scene& scene) {
 const Clip* find_clip(const Scene& scene, std::string_view name) {
   const auto found = std::ranges::find(scene.clips, name, &Clip::name);
   return found == scene.clips.end() ? nullptr : &*found;
+}
+
+Camera camera_at(const Scene& scene, const Camera& camera, const Pose& pose) {
+  if (!camera.node) return camera;
+  return place_camera(camera, camera.name, pose.worlds[*camera.node], scene.bounds);
+}
+
+bool carries(const Scene& scene, const Clip& clip, const Camera& camera) {
+  for (auto node = camera.node; node; node = scene.nodes[*node].parent) {
+    for (const Channel& channel : clip.channels) {
+      if (channel.node == *node && channel.property != Property::weights) return true;
+    }
+  }
+  return false;
 }
 
 void sample(const Channel& channel, float seconds, float* value) {

@@ -21,10 +21,11 @@ FrameRig::FrameRig(std::shared_ptr<const scene::Scene> scene, const scene::Camer
       frame_set_(pool_.allocate(parts_.programs.frame_layout.handle())),
       scene_set_(pool_.allocate(parts_.programs.scene_layout.handle())),
       inputs_{parts_.programs, moving_.rest(), moving_.tables(), *parts_.tracer, moving_.structure(),
-              constants_, settings_, samples_, seconds_},
+              constants_, settings_, samples_, seconds_, moving_},
       plan_(parts_.device, options.extent) {
   render::write_frame_set(parts_, frame_set_, constants_buffer_, moving_.tables().lights,
-                          moving_.rest().environment);
+                          moving_.rest().environment->view(
+                              settings_.environment.separate_sun));
   plan_.share_set(render::frame_set, frame_set_);
   render::write_scene_set(parts_.device, scene_set_, moving_.tables(), moving_.rest().texture_heap);
   plan_.share_set(render::scene_set, scene_set_);

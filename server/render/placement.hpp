@@ -1,0 +1,20 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "scene/scene.hpp"
+
+namespace heliograph::render {
+
+/// A mesh placed by `world`, at rest: the previous matrix is the same.
+shared::Instance place_mesh(std::uint32_t mesh, const glm::mat4& world);
+/// Moves an instance to `world`; where it was becomes its previous place.
+void move_instance(shared::Instance& instance, const glm::mat4& world);
+
+/// What the rasteriser pushes for an instance.
+shared::DrawConstants draw_constants(const shared::Instance& instance, std::uint32_t index);
+
+/// A box around a box of the mesh's space, in the world.
+scene::Bounds world_bounds(const scene::Bounds& mesh, const glm::mat4& world);
+
+}  // namespace heliograph::render
