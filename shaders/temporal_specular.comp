@@ -20,10 +20,13 @@ layout(set = 1, binding = 7, r32ui) readonly uniform uimage2D previous_instance;
 layout(set = 1, binding = 8, rgba32f) readonly uniform image2D previous_signal;
 layout(set = 1, binding = 9, rgba32f) readonly uniform image2D previous_history;
 layout(set = 1, binding = 10, rgba32f) readonly uniform image2D previous_fast;
-layout(set = 1, binding = 11, rgba32f) writeonly uniform image2D signal;   // radiance, variance
-layout(set = 1, binding = 12, rgba32f) writeonly uniform image2D history;  // frames, moved, moments
-layout(set = 1, binding = 13, rgba32f) writeonly uniform image2D fast;     // the last few frames
+layout(set = 1, binding = 11, rgba32f) readonly uniform image2D percentiles;  // of tiles, or anything
+layout(set = 1, binding = 12, rgba32f) writeonly uniform image2D signal;   // radiance, variance
+layout(set = 1, binding = 13, rgba32f) writeonly uniform image2D history;  // frames, moved, moments
+layout(set = 1, binding = 14, rgba32f) writeonly uniform image2D fast;     // the last few frames
 layout(push_constant) uniform Constants { TemporalConstants constants; };
+
+#include "lib/percentile_tiles.glsl"
 
 const float fast_frames = 6.0;
 
@@ -167,6 +170,14 @@ void main() {
   Remembered old = remembered(s);
   vec3 rectified = rectify(pixel, old.radiance);
   float moved = old.frames > 0.0 ? abs(luminance(rectified) - luminance(old.radiance)) : 0.0;
+
+  if (constants.rectification == rectification_percentile) {
+    vec2 tile = percentiles_at(pixel).xy;
+    now *= firefly_scale(luminance(now), tile.x, tile.y);
+    moved = outdated_share(vec2(luminance(old.radiance)), tile.xx, tile.yy, constants.scale,
+                           vec2(0.1 * tile.y + 1e-4)).x;
+    old.frames *= 1.0 - moved;
+  }
 
   float frames = min(old.frames + 1.0, constants.frames);
   vec3 radiance = mix(rectified, now, 1.0 / frames);

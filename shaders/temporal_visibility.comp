@@ -14,11 +14,14 @@ layout(set = 1, binding = 3, rgba32f) readonly uniform image2D previous_signal;
 layout(set = 1, binding = 4, rgba32f) readonly uniform image2D previous_moments;
 layout(set = 1, binding = 5, rgba32f) readonly uniform image2D previous_history;
 layout(set = 1, binding = 6, rg32f) readonly uniform image2D previous_fast;
-layout(set = 1, binding = 7, rgba32f) writeonly uniform image2D signal;   // value xy, variance zw
-layout(set = 1, binding = 8, rgba32f) writeonly uniform image2D moments;  // first xy, second zw
-layout(set = 1, binding = 9, rgba32f) writeonly uniform image2D history;  // frames xy, moved zw
-layout(set = 1, binding = 10, rg32f) writeonly uniform image2D fast;
+layout(set = 1, binding = 7, rgba32f) readonly uniform image2D percentiles;  // of tiles, or anything
+layout(set = 1, binding = 8, rgba32f) writeonly uniform image2D signal;   // value xy, variance zw
+layout(set = 1, binding = 9, rgba32f) writeonly uniform image2D moments;  // first xy, second zw
+layout(set = 1, binding = 10, rgba32f) writeonly uniform image2D history;  // frames xy, moved zw
+layout(set = 1, binding = 11, rg32f) writeonly uniform image2D fast;
 layout(push_constant) uniform Constants { TemporalConstants constants; };
+
+#include "lib/percentile_tiles.glsl"
 
 const float fast_frames = 6.0;
 
@@ -78,6 +81,12 @@ void main() {
   Remembered old = recall(pixel);
   vec2 rectified = rectify(pixel, old.signal);
   vec2 moved = mix(vec2(0.0), abs(rectified - old.signal), greaterThan(old.frames, vec2(0.0)));
+
+  if (constants.rectification == rectification_percentile) {
+    vec4 tile = percentiles_at(pixel);
+    moved = outdated_share(old.signal, tile.xz, tile.yw, constants.scale, vec2(0.25));
+    old.frames *= 1.0 - moved;
+  }
 
   vec2 frames = min(old.frames + 1.0, vec2(constants.frames));
   vec2 value = mix(rectified, now, sample_share(frames, constants.frames));

@@ -8,6 +8,23 @@ namespace {
 
 constexpr VkFormat four_floats = VK_FORMAT_R32G32B32A32_SFLOAT;
 
+/// The spread of brightness in every tile of 8x8 pixels of `raw`, for the rectification that needs
+/// it; otherwise any image, which nobody reads.
+gpu::ImageRef measure_percentiles(gpu::FramePlan& plan, const Guide& guide, gpu::ImageRef raw,
+                                  const std::string& signal, const gpu::ComputeProgram& program,
+                                  protocol::Rectification rectification) {
+  if (rectification != protocol::Rectification::percentile) return guide.reprojection;
+  const VkExtent2D tiles{(plan.extent().width + 7) / 8, (plan.extent().height + 7) / 8};
+  const auto percentiles = plan.image(signal + ".percentiles", four_floats, 0, tiles);
+  plan.pass(signal + ".percentiles", program)
+      .read(guide.surface)
+      .read(raw)
+      .write(percentiles)
+      .dispatch(plan.extent())
+      .describe("Tenth and ninetieth percentile of the brightness in every tile of 8x8 pixels.");
+  return percentiles;
+}
+
 }  // namespace
 
 Integrated accumulate_visibility(gpu::FramePlan& plan, const FrameInputs& in, const Guide& guide,
@@ -21,6 +38,10 @@ Integrated accumulate_visibility(gpu::FramePlan& plan, const FrameInputs& in, co
   const gpu::ImageRef signal =
       feedback ? plan.image("visibility.temporal", four_floats) : memory.current;
 
+  const gpu::ImageRef percentiles =
+      measure_percentiles(plan, guide, raw, "visibility",
+                          in.programs.compute(shaders::percentiles_visibility),
+                          settings.rectification);
   plan.pass("visibility.temporal", in.programs.compute(shaders::temporal_visibility))
       .read(raw)
       .read(guide.surface)
@@ -29,6 +50,7 @@ Integrated accumulate_visibility(gpu::FramePlan& plan, const FrameInputs& in, co
       .read(moments.previous)
       .read(history.previous)
       .read(fast.previous)
+      .read(percentiles)
       .write(signal)
       .write(moments.current)
       .write(history.current)
@@ -64,6 +86,10 @@ Integrated accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in, cons
   const gpu::ImageRef signal =
       feedback ? plan.image("specular.temporal", four_floats) : memory.current;
 
+  const gpu::ImageRef percentiles =
+      measure_percentiles(plan, guide, raw, "specular",
+                          in.programs.compute(shaders::percentiles_specular),
+                          settings.rectification);
   plan.pass("specular.temporal", in.programs.compute(shaders::temporal_specular))
       .read(raw)
       .read(guide.surface)
@@ -76,6 +102,7 @@ Integrated accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in, cons
       .read(memory.previous)
       .read(history.previous)
       .read(fast.previous)
+      .read(percentiles)
       .write(signal)
       .write(history.current)
       .write(fast.current)

@@ -66,6 +66,20 @@ float moved_share(Box box, vec3 color, vec3 moved) {
   return max(share.x, max(share.y, share.z));
 }
 
+/// Share of a history to drop whose brightness lies outside the percentiles `low` and `high` of
+/// the current frame nearby, 0..0.95: all of that where it is further out than `scale` times their
+/// spread and `smallest` (Alber 2025).
+vec2 outdated_share(vec2 old, vec2 low, vec2 high, float scale, vec2 smallest) {
+  vec2 outside = max(max(old - high, low - old), vec2(0.0));
+  return 0.95 * clamp(outside / (scale * (high - low) + smallest), vec2(0.0), vec2(1.0));
+}
+
+/// Factor that brings a sample brighter than its neighbours by far down to what they allow.
+float firefly_scale(float bright, float low, float high) {
+  float most = high + 8.0 * (high - low) + 0.1 * high + 1e-3;
+  return bright > most ? most / bright : 1.0;
+}
+
 /// Frames that remain of a history whose value was `moved` by a box of half width `reach`: all
 /// where it was not, ever fewer as it was moved by more than the box.
 vec2 shortened_history(vec2 frames, vec2 moved, vec2 reach) {
