@@ -1,6 +1,9 @@
 #include "render/accumulate.hpp"
 
+#include <algorithm>
+
 #include "render/frame.hpp"
+#include "render/reference.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
@@ -14,6 +17,13 @@ bool is_filtered(const protocol::Settings& settings) {
          settings.antialiasing.temporal || settings.reference.use == protocol::ReferenceUse::resting;
 }
 
+/// Samples in the mean when this frame's is in it.
+std::uint32_t mean_of(const FrameInputs& in) {
+  const bool late = in.settings.reference.use == protocol::ReferenceUse::resting &&
+                    in.settings.accumulation.handover > 0;
+  return late ? std::max(in.samples, 1u) : in.samples + 1;
+}
+
 }  // namespace
 
 gpu::History accumulate(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef sample) {
@@ -22,7 +32,7 @@ gpu::History accumulate(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageR
       .read(sample)
       .read(history.previous)
       .write(history.current)
-      .constants([&samples = in.samples] { return 1.0f / static_cast<float>(samples + 1); })
+      .constants([in] { return 1.0f / static_cast<float>(mean_of(in)); })
       .dispatch(plan.extent())
       .describe("The mean of all samples since the picture last changed: linear radiance.");
   return history;

@@ -7,6 +7,7 @@
 #include "render/denoise_visibility.hpp"
 #include "render/gbuffer.hpp"
 #include "render/present.hpp"
+#include "render/reference.hpp"
 #include "render/skybox.hpp"
 #include "render/trace_gbuffer.hpp"
 #include "render/trace_specular.hpp"
@@ -31,10 +32,20 @@ std::optional<DenoisedSignals> denoise(gpu::FramePlan& plan, const FrameInputs& 
   return denoised;
 }
 
+/// Nothing but the path traced truth.
+FrameOutputs declare_reference(gpu::FramePlan& plan, const FrameInputs& in) {
+  const gpu::ImageRef sample = trace_reference(plan, in);
+  const gpu::History accumulated = accumulate(plan, in, sample);
+  const Exposure exposure = expose(plan, in, sample, accumulated.current);
+  return {accumulated, exposure, present(plan, in, exposure, sample, accumulated.current)};
+}
+
 }  // namespace
 
 // The stages of the paper's section 3, in its order; the prefilter ran when the environment came.
 FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
+  const protocol::ReferenceUse reference = in.settings.reference.use;
+  if (reference == protocol::ReferenceUse::always) return declare_reference(plan, in);
   const GBuffer gbuffer =
       traces_gbuffer(in) ? trace_gbuffer(plan, in) : rasterize_gbuffer(plan, in);
 
@@ -45,7 +56,9 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   const gpu::ImageRef background = draw_skybox(plan, in, gbuffer);
   const auto [hdr, hdr_raw] = compose(plan, in, gbuffer, raw, denoised, background);
 
-  const gpu::History accumulated = accumulate(plan, in, hdr_raw);
+  const bool truth = reference == protocol::ReferenceUse::resting;
+  const gpu::History accumulated =
+      accumulate(plan, in, truth ? trace_reference(plan, in) : hdr_raw);
   const Exposure exposure = expose(plan, in, hdr, accumulated.current);
   const gpu::ImageRef resolved = temporal_antialias(plan, in, gbuffer, exposure, hdr);
   const gpu::ImageRef picture = present(plan, in, exposure, resolved, accumulated.current);

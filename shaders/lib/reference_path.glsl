@@ -1,0 +1,77 @@
+// What the passes of the reference path tracer share. Streams are dense: the ray of a pixel stands
+// at the pixel's place, and a ray that is not wanted has an empty interval, so that no pass ever
+// writes another pixel's radiance.
+#ifndef HELIOGRAPH_REFERENCE_PATH_GLSL
+#define HELIOGRAPH_REFERENCE_PATH_GLSL
+#include "lib/environment.glsl"
+#include "lib/hit_surface.glsl"
+#include "lib/light_choice.glsl"
+#include "lib/random.glsl"
+#include "lib/sampling.glsl"
+#include "shared/reference.h"
+
+const uint rays_per_group = 64u;  // of the tracing dispatch
+
+uint pixel_index(ivec2 pixel) { return uint(pixel.y) * frame.extent.x + uint(pixel.x); }
+
+RayCount dense_stream() {
+  uint count = frame.extent.x * frame.extent.y;
+  return RayCount(count, (count + rays_per_group - 1u) / rays_per_group, 1u, 1u);
+}
+
+Ray no_ray() { return Ray(vec3(0.0), 0.0, vec3(0.0, 0.0, 1.0), 0.0, 0u, 0u, 0u, 0u); }
+
+bool is_wanted(Ray ray) { return ray.t_min < ray.t_max; }
+
+Ray ray_from(vec3 position, vec3 normal, vec3 direction, float t_max) {
+  return Ray(offset_origin(position, normal, 0.0), 0.0, direction, t_max, 0u, 0u, 0u, 0u);
+}
+
+/// The ray tells what its light is worth where nothing is in its way.
+void carry(inout Ray ray, vec3 radiance) {
+  uvec3 bits = floatBitsToUint(radiance);
+  ray.user = bits.r;
+  ray.padding0 = bits.g;
+  ray.padding1 = bits.b;
+}
+
+vec3 carried(Ray ray) { return uintBitsToFloat(uvec3(ray.user, ray.padding0, ray.padding1)); }
+
+/// Dimensions of the random sequences: 16 for each round, away from those of the hybrid.
+uint dimension(uint round, uint which) { return 256u + 16u * round + which; }
+
+vec2 path_pair(ivec2 pixel, uint round, uint which) {
+  return random_pair(uvec2(pixel), frame.extent.z, dimension(round, which), frame.extent.w);
+}
+
+float path_number(ivec2 pixel, uint round, uint which) {
+  return random_number(uvec2(pixel), frame.extent.z, dimension(round, which), frame.extent.w);
+}
+
+/// Whether a path goes straight on through a blended surface.
+bool passes_through(HitSurface s, ivec2 pixel, uint round) {
+  return (s.flags & material_alpha_blend) != 0u && path_number(pixel, round, 0u) >= s.alpha;
+}
+
+Ray straight_on(HitSurface s, vec3 direction) {
+  return ray_from(s.position, -s.geometric, direction, 1e30);
+}
+
+bool is_unlit(HitSurface s) { return (s.flags & material_unlit) != 0u; }
+
+/// What the surface sends out by itself.
+vec3 own_light(HitSurface s) {
+  vec3 light = is_unlit(s) ? s.base_color : vec3(0.0);
+  return enabled(frame_emissive) ? light + s.emissive : light;
+}
+
+SurfaceMaterial material_of(HitSurface s, vec3 direction) {
+  return surface_material(s.base_color, s.metallic, s.roughness, s.normal, s.geometric, -direction);
+}
+
+/// What the camera sees where nothing is.
+vec3 background(vec3 direction) {
+  return enabled(frame_environment_visible) ? environment_background(direction) : vec3(0.0);
+}
+
+#endif

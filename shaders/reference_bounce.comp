@@ -1,0 +1,116 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 8, local_size_y = 8) in;
+// One vertex of a path of full global illumination: what arrives by itself, one light as far as its
+// shadow ray will find, and where the path goes on.
+#include "lib/reference_path.glsl"
+
+layout(set = 1, binding = 0, std430) buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 1, std430) readonly buffer Hits { Hit hits[]; };
+layout(set = 1, binding = 2, std430) buffer Paths { ReferencePath paths[]; };
+layout(set = 1, binding = 3, std430) writeonly buffer ShadowCount { RayCount shadow_count; };
+layout(set = 1, binding = 4, std430) writeonly buffer ShadowRays { Ray shadow_rays[]; };
+layout(set = 1, binding = 5, rgba32f) uniform image2D reference;
+layout(push_constant) uniform Constants { ReferenceConstants constants; };
+
+const uint first_roulette = 3u;  // bounce after which dim paths end at random
+
+vec3 environment_at_miss(ReferencePath path, vec3 direction) {
+  if (path.bounces == 0u) return background(direction);
+  uint lobe = (path.flags & path_mirrored) != 0u ? frame_environment_specular
+                                                 : frame_environment_diffuse;
+  return enabled(lobe) ? environment_radiance(direction) : vec3(0.0);
+}
+
+Ray lamp_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pixel) {
+  if (!enabled(frame_direct)) return no_ray();
+  float pick = path_number(pixel, constants.round, 1u);
+  LightChoice choice = choose_light(m, position, pick);
+  if (choice.total <= 0.0) return no_ray();
+  Light light = light_number(choice.number);
+  LightSample s = sample_light(light, position, path_pair(pixel, constants.round, 2u));
+  if (dot(s.ray_direction, m.geometric) <= 0.0) return no_ray();
+  // Geometry may lie where an area light does and show it: it must not be in its own way.
+  Ray ray = ray_from(position, m.geometric, s.ray_direction, s.distance * 0.999);
+  vec3 light_sent = light.type >= light_rectangle ? s.irradiance * shade_light(m, s.direction)
+                                                  : light_contribution(light, m, position);
+  carry(ray, throughput * light_sent * (choice.total / choice.weight));
+  if (!enabled(frame_shadows)) ray.t_max = 0.0;
+  return ray;
+}
+
+/// One of the two lobes, in proportion to what it gives back; false where the path ends.
+bool scatter(inout ReferencePath path, SurfaceMaterial m, RayCone cone, float t, ivec2 pixel,
+             out vec3 direction) {
+  float specular = luminance(m.specular_albedo);
+  float diffuse = luminance(m.diffuse_albedo);
+  direction = m.normal;
+  if (specular + diffuse <= 0.0) return false;
+  float share = specular / (specular + diffuse);
+  vec2 u = path_pair(pixel, constants.round, 4u);
+  RayCone next;
+  if (path_number(pixel, constants.round, 3u) < share) {
+    SpecularSample drawn = sample_specular(m, u);
+    direction = drawn.direction;
+    path.throughput *= drawn.weight / share;
+    path.flags = path_mirrored;
+    next = mirrored_cone(cone, t, m.roughness);
+  } else {
+    direction = sample_cosine(m.normal, u);
+    bool open = dot(direction, m.geometric) > 0.0;
+    path.throughput *= open ? m.diffuse_albedo / (1.0 - share) : vec3(0.0);
+    path.flags = 0u;
+    next = mirrored_cone(cone, t, 1.0);
+  }
+  path.cone_width = next.width;
+  path.cone_spread = next.spread;
+  path.bounces += 1u;
+  float largest = max(path.throughput.r, max(path.throughput.g, path.throughput.b));
+  if (path.bounces >= first_roulette) {
+    float survival = min(largest, 0.95);
+    if (path_number(pixel, constants.round, 5u) >= survival) return false;
+    path.throughput /= survival;
+  }
+  return largest > 0.0;
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (outside_frame(pixel)) return;
+  uint index = pixel_index(pixel);
+  if (index == 0u) shadow_count = dense_stream();
+  Ray ray = rays[index];
+  Ray shadow = no_ray();
+  if (is_wanted(ray)) {
+    Hit hit = hits[index];
+    ReferencePath path = paths[index];
+    vec3 arrived = path.throughput;
+    vec3 radiance = vec3(0.0);
+    rays[index] = no_ray();
+    if (hit.instance == hit_none) {
+      radiance = environment_at_miss(path, ray.direction);
+    } else {
+      RayCone cone = RayCone(path.cone_width, path.cone_spread);
+      HitSurface s = hit_surface(hit, ray.direction, cone_width(cone, hit.t));
+      if (passes_through(s, pixel, constants.round)) {
+        rays[index] = straight_on(s, ray.direction);
+        path.cone_width = cone_width(cone, hit.t);
+      } else {
+        radiance = own_light(s);
+        if (!is_unlit(s)) {
+          SurfaceMaterial m = material_of(s, ray.direction);
+          shadow = lamp_ray(m, s.position, arrived, pixel);
+          vec3 direction;
+          if (path.bounces < constants.limit &&
+              scatter(path, m, cone, hit.t, pixel, direction)) {
+            rays[index] = ray_from(s.position, s.geometric, direction, 1e30);
+          }
+        }
+      }
+      paths[index] = path;
+    }
+    vec3 sum = imageLoad(reference, pixel).rgb + arrived * radiance;
+    imageStore(reference, pixel, vec4(sum, 1.0));
+  }
+  shadow_rays[index] = shadow;
+}

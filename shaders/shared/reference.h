@@ -1,0 +1,27 @@
+// What the reference path tracer remembers of each pixel's path between passes: std430.
+#ifndef HELIOGRAPH_SHARED_REFERENCE_H
+#define HELIOGRAPH_SHARED_REFERENCE_H
+#include "types.h"
+SHARED_BEGIN
+
+SHARED_CONSTANT uint path_mirrored = 1u;  // the ray left by the specular lobe, not the diffuse one
+
+struct ReferencePath {
+  vec3 throughput;
+  uint bounces;       // scattering events so far
+  float cone_width;   // metres, where the ray begins
+  float cone_spread;  // metres per metre
+  uint flags;         // path_*
+  uint padding0;
+};
+
+// What a pass is told.
+struct ReferenceConstants {
+  uint round;          // of shading, from 0
+  uint limit;          // rounds of the primary surface; bounces of a whole path
+  uint lamps;          // 1: lamps light what specular rays hit
+  float max_roughness;  // rougher surfaces mirror the prefiltered environment; below 0: all do
+};
+
+SHARED_END
+#endif
