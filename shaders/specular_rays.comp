@@ -1,47 +1,4 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
-// One mirrored ray per pixel, or per 2x2, from the visible normals of the surface's roughness.
-#include "lib/frame.glsl"
-#include "lib/ray_stream.glsl"
-#include "lib/sampling.glsl"
-#include "lib/specular_pixels.glsl"
-
-layout(set = 1, binding = 0, rgba32f) readonly uniform image2D normals;
-layout(set = 1, binding = 1, rgba8) readonly uniform image2D base_color;
-layout(set = 1, binding = 2, rgba8) readonly uniform image2D surface;
-layout(set = 1, binding = 3, rgba32f) readonly uniform image2D motion;
-layout(set = 1, binding = 4, std430) buffer Count { RayCount ray_count; };
-layout(set = 1, binding = 5, std430) writeonly buffer Rays { Ray rays[]; };
-layout(set = 1, binding = 6, rgba32f) writeonly uniform image2D radiance;
-layout(push_constant) uniform Constants {
-  float max_roughness;
-  int scale;  // 2: half resolution
-};
-
-#include "lib/gbuffer_material.glsl"
-
-void main() {
-  ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
-  bool inside = all(lessThan(cell, imageSize(radiance)));
-  ivec2 pixel = inside ? traced_pixel(cell, scale) : ivec2(0);
-  float view_z = inside ? imageLoad(motion, pixel).w : 0.0;
-  bool wanted = false;
-  Ray ray;
-  if (view_z > 0.0 && !is_unlit(pixel)) {
-    SurfaceMaterial m = material_at(pixel);
-    SpecularSample s = sample_specular(m, specular_pair(cell, 4u, scale));
-    vec3 weight = s.weight / specular_demodulator(m);
-    wanted = mirrors_rays(m.roughness, max_roughness) && any(greaterThan(weight, vec3(0.0)));
-    ray.origin = offset_origin(world_position(pixel, view_z), m.geometric, view_z);
-    ray.t_min = 0.0;
-    ray.direction = s.direction;
-    ray.t_max = 1e30;
-    ray.pixel = uint(pixel.x) | uint(pixel.y) << 16u;
-    ray.user = floatBitsToUint(weight.r);
-    ray.padding0 = floatBitsToUint(weight.g);
-    ray.padding1 = floatBitsToUint(weight.b);
-  }
-  if (inside) imageStore(radiance, cell, vec4(0.0));
-  APPEND_RAY(wanted, ray)
-}
+#include "lib/specular_generation.glsl"

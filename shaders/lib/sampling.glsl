@@ -62,6 +62,7 @@ vec3 reflecting_normal(SurfaceMaterial m) {
 struct SpecularSample {
   vec3 direction;
   vec3 weight;
+  float density;  // the pdf, per solid angle
 };
 
 SpecularSample sample_specular(SurfaceMaterial m, vec2 u) {
@@ -79,6 +80,7 @@ SpecularSample sample_specular(SurfaceMaterial m, vec2 u) {
   bool open = dot(s.direction, m.geometric) > 0.0;
   s.weight = open ? microfacet_reflectance(m, v_dot_h) * visible_normal_weight(view, light, alpha)
                   : vec3(0.0);
+  s.density = visible_normal_pdf(view, light, alpha);
   return s;
 }
 
