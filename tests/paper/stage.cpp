@@ -85,9 +85,9 @@ std::unique_ptr<render::Renderer> Stage::start(const protocol::Settings& setting
 void Stage::show_moment(render::Renderer& renderer, const Shot& shot, int frame) const {
   const double seconds = static_cast<double>(frame) * static_cast<double>(shot.frame_seconds);
   if (shot.movement == Movement::moving_camera) renderer.set_camera(camera_at(*scene_, seconds));
-  if (shot.movement == Movement::moving_objects_light) {
-    throw std::runtime_error("the renderer cannot play clips");
-  }
+  if (shot.movement != Movement::moving_objects_light) return;
+  const auto posed = renderer.set_pose(name(shot.movement), seconds);
+  if (!posed) throw std::runtime_error(posed.error().message);
 }
 
 std::vector<render::Frame> Stage::play(const protocol::Settings& settings, const Shot& shot) const {
