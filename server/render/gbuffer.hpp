@@ -35,6 +35,9 @@ struct GBuffer {
                                       VK_FORMAT_R32_UINT};
 };
 
+/// Its images, without a pass that writes them.
+GBuffer declare_gbuffer(gpu::FramePlan& plan);
+
 /// Draws every visible instance. Motion is un-jittered; Z is linear along the view.
 GBuffer rasterize_gbuffer(gpu::FramePlan& plan, const FrameInputs& in);
 
