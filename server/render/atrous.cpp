@@ -5,6 +5,31 @@
 #include "render/denoise_constants.hpp"
 
 namespace heliograph::render {
+namespace {
+
+struct IterationImages {
+  gpu::ImageRef guide;
+  gpu::ImageRef depth_slope;
+  gpu::ImageRef signal;
+  gpu::ImageRef filtered;
+};
+
+/// The shader, or its twin where the device's memory is the host's.
+gpu::PassBuilder iteration(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
+                           const Blur& blur, const IterationImages& images,
+                           std::function<shared::AtrousConstants()> constants) {
+  if (!in.host_kernels || !plan.device().is_cpu()) {
+    return plan.pass(name, blur.program).constants(constants).dispatch(plan.extent());
+  }
+  return plan.host(name, [&plan, &frame = in.constants, kind = blur.kind, images, constants] {
+    const auto view = [&plan](gpu::ImageRef image) { return plan.get(image).host(); };
+    host::atrous(kind, constants(), frame,
+                 {view(images.guide), view(images.depth_slope), view(images.signal),
+                  view(images.filtered)});
+  });
+}
+
+}  // namespace
 
 gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                    const Guide& guide, const Blur& blur, gpu::ImageRef signal,
@@ -21,13 +46,12 @@ gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& g
   const gpu::ImageRef half = separable ? image(".blur.half") : gpu::ImageRef{};
 
   const auto pass = [&](const std::string& name, gpu::ImageRef from, gpu::ImageRef to, auto shape) {
-    plan.pass(name, blur.program)
+    const auto constants = [constants = blur.constants, shape] { return constants(shape()); };
+    iteration(plan, in, name, blur, {guide.surface, gbuffer.depth_slope, from, to}, constants)
         .read(guide.surface)
         .read(gbuffer.depth_slope)
         .read(from)
         .write(to)
-        .constants([constants = blur.constants, shape] { return constants(shape()); })
-        .dispatch(plan.extent())
         .describe("The signal on its way through the blur: values and the variance left.");
   };
   for (int level = 0; level <= last; ++level) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "protocol/settings.hpp"
+#include "render/atrous_host.hpp"
 #include "render/reproject.hpp"
 #include "shaders/shared/denoise.h"
 
@@ -19,6 +20,7 @@ struct Blur {
   int iterations;
   protocol::BlurKernel kernel;
   std::function<shared::AtrousConstants(const KernelShape&)> constants;
+  host::Signal kind;
 };
 
 /// An image that the result of iteration `level` is written to, for the next frame.

@@ -49,7 +49,7 @@ Blur blur_of(const FrameInputs& in) {
     return made;
   };
   return {"specular", in.programs.compute(shaders::atrous_specular), settings.iterations,
-          settings.kernel, constants};
+          settings.kernel, constants, host::Signal::specular};
 }
 
 }  // namespace

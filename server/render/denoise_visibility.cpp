@@ -37,7 +37,7 @@ Blur blur_of(const FrameInputs& in) {
     return made;
   };
   return {"visibility", in.programs.compute(shaders::atrous_visibility), settings.iterations,
-          settings.kernel, constants};
+          settings.kernel, constants, host::Signal::visibility};
 }
 
 }  // namespace
