@@ -108,18 +108,17 @@ void main() {
   }
 
   ivec2 last = ivec2(frame.extent.xy) - 1;
-  vec3 sum = vec3(0.0);
-  vec3 squares = vec3(0.0);
-  for (int y = -1; y <= 1; ++y) {
-    for (int x = -1; x <= 1; ++x) {
-      ivec2 at = clamp(pixel + ivec2(x, y), ivec2(0), last);
-      vec3 c = compressed(imageLoad(hdr, at).rgb);
-      sum += c;
-      squares += c * c;
-    }
+  vec3 nearby[9];
+  vec3 mean = vec3(0.0);
+  for (int i = 0; i < 9; ++i) {
+    ivec2 at = clamp(pixel + ivec2(i % 3, i / 3) - 1, ivec2(0), last);
+    nearby[i] = compressed(imageLoad(hdr, at).rgb);
+    mean += nearby[i] / 9.0;
   }
-  vec3 mean = sum / 9.0;
-  vec3 reach = clip * sqrt(max(squares / 9.0 - mean * mean, 0.0));
+  // About the mean, not as a difference of squares: compressed highlights hardly differ.
+  vec3 variance = vec3(0.0);
+  for (int i = 0; i < 9; ++i) variance += (nearby[i] - mean) * (nearby[i] - mean) / 9.0;
+  vec3 reach = clip * sqrt(variance);
   vec3 low = mean - reach;
   vec3 high = mean + reach;
 
@@ -127,7 +126,8 @@ void main() {
   float share = blend;
   if (anti_flicker > 0.0) {
     float margin = min(abs(old.x - low.x), abs(high.x - old.x));
-    share *= margin / max(margin + high.x - low.x, 1e-6);
+    // Never none: a colour that was clamped to the box's face would stay there for ever.
+    share *= max(margin / max(margin + high.x - low.x, 1e-6), 0.2);
   }
   vec3 blended = mix(clamp(old, low, high), compressed(center.rgb), clamp(share, 0.0, 1.0));
   imageStore(resolved, pixel, vec4(expanded(blended), center.a));

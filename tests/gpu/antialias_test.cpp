@@ -38,10 +38,7 @@ class AntialiasTest : public testing::Test {
     gbuffer_.motion = image("motion", glm::vec4(0, 0, 0, 5));
     const render::Exposure exposure = render::expose(rig_.plan(), rig_.inputs(), hdr_, hdr_);
     resolved_ = render::temporal_antialias(rig_.plan(), rig_.inputs(), gbuffer_, exposure, hdr_);
-    look_again();
   }
-  /// The next frame has a history.
-  void look_again() { rig_.set_view(look({0, 0, 3}, {0, 0, 0})); }
 
   /// Everything moves by so many pixels a frame, at this distance.
   void move(const glm::vec2& pixels, float view_z = 5.0f) {
@@ -51,6 +48,7 @@ class AntialiasTest : public testing::Test {
   render::FloatImage frame(const Texels& picture) {
     rig_.fill(hdr_, picture);
     rig_.run();
+    rig_.set_view(look({0, 0, 3}, {0, 0, 0}));  // from now on there is a history
     return rig_.read(resolved_);
   }
   render::FloatImage frame(const Paint& color) { return frame(paint(color)); }
@@ -62,18 +60,17 @@ class AntialiasTest : public testing::Test {
 };
 
 TEST_F(AntialiasTest, APictureThatStandsStillStaysWhatItIs) {
-  const Paint stripes = [](float x, float y) {
-    return glm::vec3(std::fmod(x, 7.0f), 0.1f * y, 1000.0f * (x > 20.0f ? 1.0f : 0.0f));
+  const Paint waves = [](float x, float y) {
+    return glm::vec3(2.0f + std::sin(0.4f * x), 300.0f + 5.0f * y, 0.1f * x + 0.05f * y);
   };
-  frame(stripes);
-  render::FloatImage image;
-  for (int i = 0; i < 20; ++i) image = frame(stripes);
-  const Texels expected = paint(stripes);
-  for (std::uint32_t y = 0; y < height; ++y) {
-    for (std::uint32_t x = 0; x < width; ++x) {
+  const Texels expected = paint(waves);
+  for (int i = 0; i < 20; ++i) frame(waves);
+  const render::FloatImage image = frame(waves);
+  for (std::uint32_t y = 1; y + 1 < height; ++y) {
+    for (std::uint32_t x = 1; x + 1 < width; ++x) {
       const glm::vec4 got = texel(image, x, y), want = expected[y * width + x];
-      // Single bright texels leave the box of their neighbours' spread by a little.
-      for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[c], want[c], 0.35f * want[c] + 0.05f);
+      const float luma = 0.25f * (want.x + 2.0f * want.y + want.z);
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[c], want[c], 0.01f * luma) << x << " " << y;
     }
   }
 }
@@ -82,8 +79,8 @@ TEST_F(AntialiasTest, APictureThatStandsStillStaysWhatItIs) {
 TEST_F(AntialiasTest, ColumnsThatComeInFromOutsideShowTheFrameAlone) {
   const auto shade = [](int frame_number) {
     return [frame_number](float x, float y) {
-      const float pattern = std::sin(0.9f * (x + 3.0f * static_cast<float>(frame_number))) *
-                            std::sin(0.7f * y);
+      const float pattern = std::sin(0.4f * (x + 3.0f * static_cast<float>(frame_number))) *
+                            std::sin(0.3f * y);
       return glm::vec3(1.0f + 0.9f * pattern, 0.5f + 0.4f * pattern, 0.2f);
     };
   };
@@ -168,10 +165,10 @@ TEST_F(AntialiasTest, TheMotionOfAnEdgeIsThatOfTheNearerSurface) {
   const auto picture = [](float x, float) { return x < 24 ? glm::vec3(2.0f) : glm::vec3(0.1f * x); };
   frame(picture);
   const render::FloatImage image = frame(picture);
-  // Pixel 24 is far, beside the edge: with the near motion its history is column 22's, bright, as
+  // Pixel 24 is far, beside the edge: with the near motion its history is column 22's, darker, as
   // far as the box lets it be; with its own motion it would be what it was.
   const float own = picture(24.5f, 0).x;
-  EXPECT_GE(texel(image, 24, 10).x, own);
+  EXPECT_LT(texel(image, 24, 10).x, own - 0.1f);
   EXPECT_NEAR(texel(image, 30, 10).x, picture(30.5f, 0).x, 0.02f);
 }
 
@@ -183,7 +180,7 @@ TEST_F(AntialiasTest, StaysPositiveBesideHardEdges) {
   for (int i = 0; i < 12; ++i) {
     const render::FloatImage image = frame(edge(0.4f * static_cast<float>(i)));
     for (const float value : image.rgba) ASSERT_GE(value, 0.0f);
-    for (const float value : image.rgba) ASSERT_LT(value, 81.0f);
+    for (const float value : image.rgba) ASSERT_LT(value, 82.0f);
   }
 }
 
