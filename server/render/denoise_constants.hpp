@@ -9,6 +9,16 @@
 
 namespace heliograph::render {
 
+/// How much wider the box of rectification becomes while the picture rests: nothing changes any
+/// more, and holding a long history against noise would keep it from converging. The paper's boxes
+/// stay as they are.
+inline float rested_box(const FrameInputs& in, protocol::Rectification mode) {
+  const bool widens =
+      mode == protocol::Rectification::fast_history || mode == protocol::Rectification::percentile;
+  constexpr float settled = 8.0f;  // samples after which what moved has been forgotten
+  return widens ? std::max(1.0f, static_cast<float>(in.samples) / settled) : 1.0f;
+}
+
 /// What the passes of one signal's accumulation read, this frame. The memory is counted in
 /// seconds, so that it does not depend on the rate, and grows with the picture while that rests, so
 /// that it converges.
@@ -22,7 +32,7 @@ shared::TemporalConstants temporal_constants(const FrameInputs& in,
   constants.moments_frames = std::max(static_cast<float>(settings.moments_frames), rests);
   constants.rectification = static_cast<std::uint32_t>(settings.rectification);
   constants.radius = settings.rectification_radius;
-  constants.scale = settings.rectification_scale;
+  constants.scale = settings.rectification_scale * rested_box(in, settings.rectification);
   constants.spatial_variance_frames = static_cast<float>(settings.spatial_variance_frames);
   const bool holds = settings.enabled && in.constants.counts.w == 0;
   constants.flags = (holds ? shared::temporal_holds : 0u) |

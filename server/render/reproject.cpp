@@ -24,8 +24,9 @@ Guide reproject(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuf
         return shared::ReprojectConstants{s.depth_tolerance, s.normal_tolerance};
       })
       .dispatch(plan.extent())
-      .describe("Shading normal times 1 + roughness and view Z; and where each surface was in the "
-                "frame before: pixel, valid neighbours, 1 where it was not seen.");
+      .describe(
+          "Shading normal times 1 + roughness and view Z; and where each surface was in the "
+          "frame before: pixel, valid neighbours, 1 where it was not seen.");
   return guide;
 }
 

@@ -38,10 +38,9 @@ Integrated accumulate_visibility(gpu::FramePlan& plan, const FrameInputs& in, co
   const gpu::ImageRef signal =
       feedback ? plan.image("visibility.temporal", four_floats) : memory.current;
 
-  const gpu::ImageRef percentiles =
-      measure_percentiles(plan, guide, raw, "visibility",
-                          in.programs.compute(shaders::percentiles_visibility),
-                          settings.rectification);
+  const gpu::ImageRef percentiles = measure_percentiles(
+      plan, guide, raw, "visibility", in.programs.compute(shaders::percentiles_visibility),
+      settings.rectification);
   plan.pass("visibility.temporal", in.programs.compute(shaders::temporal_visibility))
       .read(raw)
       .read(guide.surface)
@@ -57,9 +56,10 @@ Integrated accumulate_visibility(gpu::FramePlan& plan, const FrameInputs& in, co
       .write(fast.current)
       .constants(constants)
       .dispatch(plan.extent())
-      .describe("Shadow (red) and ambient (green) visibility gathered over frames: mean and "
-                "variance, moments, frames remembered and how far the mean was moved, the last few "
-                "frames alone.");
+      .describe(
+          "Shadow (red) and ambient (green) visibility gathered over frames: mean and "
+          "variance, moments, frames remembered and how far the mean was moved, the last few "
+          "frames alone.");
   if (settings.rectification == protocol::Rectification::fast_history) {
     plan.pass("visibility.rectify", in.programs.compute(shaders::rectify_visibility))
         .read(guide.surface)
@@ -86,10 +86,9 @@ Integrated accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in, cons
   const gpu::ImageRef signal =
       feedback ? plan.image("specular.temporal", four_floats) : memory.current;
 
-  const gpu::ImageRef percentiles =
-      measure_percentiles(plan, guide, raw, "specular",
-                          in.programs.compute(shaders::percentiles_specular),
-                          settings.rectification);
+  const gpu::ImageRef percentiles = measure_percentiles(
+      plan, guide, raw, "specular", in.programs.compute(shaders::percentiles_specular),
+      settings.rectification);
   plan.pass("specular.temporal", in.programs.compute(shaders::temporal_specular))
       .read(raw)
       .read(guide.surface)
@@ -108,8 +107,9 @@ Integrated accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in, cons
       .write(fast.current)
       .constants(constants)
       .dispatch(plan.extent())
-      .describe("Reflections gathered over frames: mean and variance; frames remembered, how far "
-                "the mean was moved, and moments; the last few frames alone.");
+      .describe(
+          "Reflections gathered over frames: mean and variance; frames remembered, how far "
+          "the mean was moved, and moments; the last few frames alone.");
   if (settings.rectification == protocol::Rectification::fast_history) {
     plan.pass("specular.rectify", in.programs.compute(shaders::rectify_specular))
         .read(guide.surface)
@@ -148,9 +148,8 @@ void estimate_visibility_variance(gpu::FramePlan& plan, const FrameInputs& in,
                     in.settings.shadow_temporal);
 }
 
-void estimate_specular_variance(gpu::FramePlan& plan, const FrameInputs& in,
-                                const GBuffer& gbuffer, const Guide& guide,
-                                const Integrated& specular) {
+void estimate_specular_variance(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                                const Guide& guide, const Integrated& specular) {
   estimate_variance(plan, in, gbuffer, guide, specular, "specular.variance",
                     in.programs.compute(shaders::spatial_variance_specular),
                     in.settings.specular_temporal);

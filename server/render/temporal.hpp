@@ -27,8 +27,7 @@ Integrated accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in, cons
 void estimate_visibility_variance(gpu::FramePlan& plan, const FrameInputs& in,
                                   const GBuffer& gbuffer, const Guide& guide,
                                   const Integrated& visibility);
-void estimate_specular_variance(gpu::FramePlan& plan, const FrameInputs& in,
-                                const GBuffer& gbuffer, const Guide& guide,
-                                const Integrated& specular);
+void estimate_specular_variance(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                                const Guide& guide, const Integrated& specular);
 
 }  // namespace heliograph::render

@@ -1,0 +1,268 @@
+#include "render/temporal.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+
+#include "tests/support/frame_rig.hpp"
+
+namespace heliograph::test {
+namespace {
+
+constexpr std::uint32_t width = 48, height = 32, pixels = width * height;
+constexpr VkExtent2D extent{width, height};
+
+/// A post in front of a wall, everything `scale` times as large.
+struct PostAndWall {
+  explicit PostAndWall(float scale_) : scale(scale_) {
+    const auto corners = [&](float x0, float x1, float y, float z) {
+      return std::array{scale * glm::vec3(x0, -y, z), scale * glm::vec3(x1, -y, z),
+                        scale * glm::vec3(x1, y, z), scale * glm::vec3(x0, y, z)};
+    };
+    builder.place(builder.add_quad(corners(-20, 20, 15, -4), surface({0.5f, 0.5f, 0.5f})));
+    builder.place(builder.add_quad(corners(-0.4f, 0.4f, 5, 0), surface({0.8f, 0.5f, 0.5f})));
+  }
+  scene::Camera from(float x) const {
+    scene::Camera camera = look(scale * glm::vec3(x, 0.1f, 4), scale * glm::vec3(x, 0.1f, 0));
+    camera.near_plane *= scale;
+    return camera;
+  }
+
+  float scale;
+  SceneBuilder builder;
+};
+
+/// Draws two frames from two places and finds the second in the first.
+render::FloatImage reprojected(PostAndWall& scene, float before, float now,
+                               protocol::Settings settings = {}) {
+  settings.antialiasing.jitter = false;
+  FrameRig rig(scene.builder.build(), scene.from(before), {.extent = extent, .settings = settings});
+  const render::GBuffer gbuffer = render::rasterize_gbuffer(rig.plan(), rig.inputs());
+  const render::Guide guide = render::reproject(rig.plan(), rig.inputs(), gbuffer);
+  rig.run();
+  rig.set_view(scene.from(now));
+  rig.run();
+  return rig.read(guide.reprojection);
+}
+
+TEST(Reprojection, OfARestingViewIsThePixelItself) {
+  PostAndWall scene(1.0f);
+  const render::FloatImage found = reprojected(scene, 0.3f, 0.3f);
+  for (std::uint32_t i = 0; i < pixels; ++i) {
+    EXPECT_EQ(found.rgba[4 * i], static_cast<float>(i % width) + 0.5f);
+    EXPECT_EQ(found.rgba[4 * i + 1], static_cast<float>(i / width) + 0.5f);
+    EXPECT_EQ(found.rgba[4 * i + 2], 1.0f) << "one tap";
+    EXPECT_EQ(found.rgba[4 * i + 3], 0.0f);
+  }
+}
+
+/// A public denoiser rebuilds the old position with the new matrix and gets this set wrong.
+TEST(Reprojection, FindsNoHistoryExactlyWhereThePostHidTheWallOrThePictureEnded) {
+  PostAndWall scene(1.0f);
+  const float before = 0.0f, now = 1.2f;
+  const render::FloatImage found = reprojected(scene, before, now);
+  const double focal = 0.5 * height / std::tan(glm::radians(22.5));  // pixels
+  int hidden = 0;
+  for (std::uint32_t y = 0; y < height; ++y) {
+    for (std::uint32_t x = 0; x < width; ++x) {
+      const double slope = (x + 0.5 - 0.5 * width) / focal;
+      const bool post = std::abs(now + 4.0 * slope) < 0.4;
+      const double place = post ? now + 4.0 * slope : now + 8.0 * slope;  // on post or wall
+      const double depth = post ? 4.0 : 8.0;
+      const double column = (place - before) / depth * focal + 0.5 * width;
+      // Seen from before, the post covers the wall where the way to it passes its plane.
+      const double at_post = before + (place - before) * 0.5;
+      const double from_edge = std::abs(std::abs(at_post) - 0.4) / 4.0 * focal;
+      const bool covered = !post && std::abs(at_post) < 0.4;
+      const double from_border = std::min(std::abs(column), std::abs(column - width));
+      if ((!post && from_edge < 1.6) || from_border < 1.6) continue;  // one pixel is searched about
+      const bool outside = column < 0.0 || column > width;
+      const bool lost = found.rgba[4 * (y * width + x) + 3] == 1.0f;
+      EXPECT_EQ(lost, covered || outside) << x << " " << y;
+      hidden += covered;
+      if (!lost) {
+        EXPECT_NEAR(found.rgba[4 * (y * width + x)], column, 0.02) << x;
+      }
+    }
+  }
+  EXPECT_GT(hidden, 20) << "the test must see some";
+}
+
+TEST(Reprojection, DoesNotDependOnTheScaleOfTheScene) {
+  PostAndWall one(1.0f), small(0.01f), large(100.0f);
+  const render::FloatImage expected = reprojected(one, 0.0f, 0.25f);
+  for (PostAndWall* scene : {&small, &large}) {
+    const render::FloatImage found = reprojected(*scene, 0.0f, 0.25f);
+    int different = 0;
+    for (std::uint32_t i = 0; i < pixels; ++i) {
+      different += found.rgba[4 * i + 3] != expected.rgba[4 * i + 3];
+    }
+    EXPECT_LE(different, 2) << scene->scale;
+  }
+}
+
+/// A wall that fills the picture, accumulated over frames that the test makes up.
+class Gathering : public testing::Test {
+ protected:
+  void start(const protocol::Settings& settings, bool specular = false) {
+    protocol::Settings plain = settings;
+    plain.antialiasing.jitter = false;
+    scene_.emplace(1.0f);
+    rig_.emplace(scene_->builder.build(), scene_->from(5.0f),
+                 RigOptions{.extent = extent, .settings = plain});
+    const render::GBuffer gbuffer = render::rasterize_gbuffer(rig_->plan(), rig_->inputs());
+    const render::Guide guide = render::reproject(rig_->plan(), rig_->inputs(), gbuffer);
+    raw_ = rig_->input("raw", VK_FORMAT_R32G32B32A32_SFLOAT, std::vector(pixels, glm::vec4(0.0f)));
+    integrated_ =
+        specular
+            ? render::accumulate_specular(rig_->plan(), rig_->inputs(), gbuffer, guide, raw_, false)
+            : render::accumulate_visibility(rig_->plan(), rig_->inputs(), guide, raw_, false);
+  }
+  /// One frame that shows `values`; the view rests.
+  void frame(const std::vector<glm::vec4>& values) {
+    if (drawn_) rig_->set_view(scene_->from(5.0f));
+    drawn_ = true;
+    rig_->fill(raw_, values);
+    rig_->run();
+  }
+  void frame(const glm::vec4& value) { frame(std::vector(pixels, value)); }
+  glm::vec4 signal() { return texel(rig_->read(integrated_.signal), 20, 16); }
+  glm::vec4 history() { return texel(rig_->read(integrated_.history), 20, 16); }
+
+  static protocol::Settings plain_settings() {
+    protocol::Settings settings;
+    for_both(settings, [](auto& s) {
+      s.seconds = 0.0f;
+      s.frames = 32;
+      s.rectification = protocol::Rectification::off;
+    });
+    return settings;
+  }
+  template <class Change>
+  static void for_both(protocol::Settings& settings, Change change) {
+    change(settings.shadow_temporal);
+    change(settings.specular_temporal);
+  }
+
+  std::optional<PostAndWall> scene_;
+  std::optional<FrameRig> rig_;
+  gpu::ImageRef raw_;
+  render::Integrated integrated_;
+  bool drawn_ = false;
+};
+
+TEST_F(Gathering, IsTheMeanWhileTheHistoryGrowsAndCountsItsFrames) {
+  start(plain_settings());
+  double sum = 0.0;
+  for (int i = 1; i <= 20; ++i) {
+    const float value = i % 3 == 0 ? 1.0f : 0.25f;
+    sum += value;
+    frame(glm::vec4(value, 1.0f - value, 0, 0));
+    EXPECT_NEAR(signal().x, sum / i, 1e-5) << i;
+    EXPECT_NEAR(signal().y, 1.0 - sum / i, 1e-5) << i;
+    EXPECT_NEAR(history().x, i, 1e-3);
+  }
+}
+
+TEST_F(Gathering, CountsSecondsNotFrames) {
+  for (const float rate : {20.0f, 200.0f}) {
+    drawn_ = false;
+    protocol::Settings settings = plain_settings();
+    settings.shadow_temporal.seconds = 0.5f;
+    settings.shadow_temporal.frames = 1;
+    start(settings);
+    rig_->set_seconds(1.0f / rate);
+    const int half_a_second = static_cast<int>(0.5f * rate);
+    for (int i = 0; i < 2 * half_a_second; ++i) frame(glm::vec4(0.0f));
+    EXPECT_NEAR(history().x, half_a_second, 0.1);
+    for (int i = 0; i < half_a_second; ++i) frame(glm::vec4(1.0f));
+    EXPECT_NEAR(signal().x, 1.0 - std::exp(-1.0), 0.03) << "after the same time at any rate";
+  }
+}
+
+TEST_F(Gathering, GrowsWithoutEndWhileThePictureRests) {
+  start(plain_settings());
+  for (std::uint32_t i = 0; i < 60; ++i) {
+    rig_->set_accumulated(i);
+    frame(glm::vec4(static_cast<float>(i % 2)));
+  }
+  EXPECT_NEAR(history().x, 60.0f, 0.01f);
+  EXPECT_NEAR(signal().x, 0.5f, 1e-4f);
+}
+
+TEST_F(Gathering, OfAnHdrStepConvergesAndItsMomentsNeverStick) {
+  protocol::Settings settings = plain_settings();
+  settings.specular_temporal.frames = 100;
+  settings.specular_temporal.mean_variance = false;
+  start(settings, true);
+  for (int i = 0; i < 120; ++i) frame(glm::vec4(5000, 5000, 5000, 1));
+  EXPECT_NEAR(signal().x, 5000.0f, 1.0f);
+  EXPECT_NEAR(history().w, 5000.0f * 5000.0f, 1e4f) << "beyond what half floats hold";
+  for (int i = 0; i < 1200; ++i) frame(glm::vec4(0.01f, 0.01f, 0.01f, 1));
+  EXPECT_NEAR(signal().x, 0.01f + 5000.0 * std::pow(0.99, 1200), 0.02f);
+  EXPECT_NEAR(history().w, 1e-4f, 1e-4f);
+}
+
+TEST_F(Gathering, SwallowsWhatIsNoNumber) {
+  start(plain_settings(), true);
+  frame(glm::vec4(1.0f));
+  std::vector<glm::vec4> bad(pixels, glm::vec4(1.0f));
+  bad[16 * width + 20] = glm::vec4(std::numeric_limits<float>::quiet_NaN());
+  bad[16 * width + 21] = glm::vec4(std::numeric_limits<float>::infinity());
+  frame(bad);
+  for (int i = 0; i < 3; ++i) frame(glm::vec4(1.0f));
+  const render::FloatImage got = rig_->read(integrated_.signal);
+  for (const float value : got.rgba) EXPECT_TRUE(std::isfinite(value));
+  EXPECT_NEAR(signal().x, 0.8f, 1e-5f) << "it counts as black, once";
+}
+
+TEST_F(Gathering, BeginsAnewWhereNoHistoryHolds) {
+  start(plain_settings());
+  for (int i = 0; i < 5; ++i) frame(glm::vec4(1.0f));
+  FrameRig fresh(scene_->builder.build(), scene_->from(5.0f), {.extent = extent});
+  EXPECT_EQ(fresh.constants().counts.w, 1u) << "the first frame says so";
+  EXPECT_EQ(rig_->constants().counts.w, 0u);
+  protocol::Settings off = plain_settings();
+  off.shadow_temporal.enabled = false;
+  rig_->set_settings(off);
+  frame(glm::vec4(0.25f));
+  EXPECT_EQ(signal().x, 0.25f);
+  EXPECT_EQ(history().x, 1.0f);
+}
+
+class Rectified : public Gathering, public testing::WithParamInterface<protocol::Rectification> {};
+INSTANTIATE_TEST_SUITE_P(
+    Modes, Rectified,
+    testing::Values(protocol::Rectification::color_clamp, protocol::Rectification::color_clip,
+                    protocol::Rectification::variance_clamp, protocol::Rectification::variance_clip,
+                    protocol::Rectification::fast_history, protocol::Rectification::percentile),
+    [](const auto& instance) { return std::string(protocol::enum_name(instance.param)); });
+
+TEST_P(Rectified, ForgetsALightThatWentOutSoonerThanWithout) {
+  for (const bool specular : {false, true}) {
+    drawn_ = false;
+    protocol::Settings settings = plain_settings();
+    for_both(settings, [](auto& s) { s.rectification = GetParam(); });
+    start(settings, specular);
+    for (int i = 0; i < 40; ++i) frame(glm::vec4(1.0f));
+    for (int i = 0; i < 8; ++i) frame(glm::vec4(0.0f));
+    EXPECT_LT(signal().x, 0.3f) << specular;  // without: (31/32)^8 = 0.78
+  }
+}
+
+TEST_P(Rectified, LeavesAnEvenPictureAlone) {
+  for (const bool specular : {false, true}) {
+    drawn_ = false;
+    protocol::Settings settings = plain_settings();
+    for_both(settings, [](auto& s) { s.rectification = GetParam(); });
+    start(settings, specular);
+    for (int i = 0; i < 12; ++i) frame(glm::vec4(0.5f));
+    EXPECT_NEAR(signal().x, 0.5f, 1e-3f) << specular;
+    EXPECT_NEAR(history().x, 12.0f, 0.1f) << specular;
+  }
+}
+
+}  // namespace
+}  // namespace heliograph::test
