@@ -39,6 +39,7 @@ constexpr std::array buffer_rules{
     BufferRule{"*.history", ViewColors::heat},
     BufferRule{"*.moments", ViewColors::channels},
     BufferRule{"visibility.*", ViewColors::channels},
+    BufferRule{"*.directions", ViewColors::direction},
     BufferRule{"denoise.guide", ViewColors::direction},
     BufferRule{"denoise.reprojection", ViewColors::heat},
 };
@@ -62,6 +63,10 @@ glm::vec4 take(const Pixel& pixel, const ViewContext&) {
 
 glm::vec4 second_pair(const Pixel& pixel, const ViewContext&) {
   return {pixel.value.z, pixel.value.w, 0.0f, 0.0f};
+}
+
+glm::vec4 offset(const Pixel& pixel, const ViewContext&) {
+  return {glm::vec2(pixel.value) - pixel.position, 0.0f, 0.0f};
 }
 
 /// Pixels by which the motion differs from that of a scene at rest.
@@ -106,10 +111,14 @@ constexpr std::array aspect_rules{
                "larger; captured: both variances."},
     AspectRule{"visibility.history", "moved", ViewColors::heat, second_pair,
                "How far rectification moved the remembered visibility: shadow, ambient."},
+    AspectRule{"denoise.reprojection", "offset", ViewColors::difference, offset,
+               "From each pixel to where its surface was one frame ago, pixels."},
     AspectRule{"denoise.reprojection", "unseen", ViewColors::mark, take<3>,
                "Surfaces that the frame before did not show: 1."},
-    AspectRule{"specular.raw", "distance", ViewColors::distance, take<3>,
+    AspectRule{"specular.radiance", "distance", ViewColors::distance, take<3>,
                "Distance from the surface to what it mirrors, metres; 10000: the environment."},
+    AspectRule{"specular.history", "moved", ViewColors::heat, take<1>,
+               "How far rectification moved the remembered reflection."},
     AspectRule{"specular.temporal", "noise", ViewColors::deviation, take<3>,
                "Standard deviation of the reflection's brightness before the blur; captured: "
                "variance."},

@@ -1,0 +1,110 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "tests/image/still.hpp"
+
+namespace heliograph::test {
+namespace {
+
+constexpr std::uint32_t width = 160, height = 90;
+
+/// Something of everything that a buffer can show; the camera moved before the last frame.
+class Views : public testing::Test {
+ protected:
+  Views() {
+    for (int i = 0; i < 6; ++i) {
+      still_.renderer.set_camera(camera(0.05f * static_cast<float>(i)));
+      still_.renderer.render();
+    }
+  }
+  static scene::Camera camera(float x) { return look({0.5f + x, 2, 4.5f}, {0, 0.5f, 0}); }
+  static std::shared_ptr<const scene::Scene> things() {
+    SceneBuilder builder;
+    builder.place(builder.add_quad({{{-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}}},
+                                   surface({0.6f, 0.55f, 0.5f}, 0.7f)));
+    builder.place(builder.add_sphere(0.8f, surface({0.8f, 0.2f, 0.1f}, 0.4f)),
+                  glm::translate(glm::mat4(1.0f), {-0.9f, 0.8f, 0}));
+    builder.place(builder.add_sphere(0.6f, surface({0.9f, 0.8f, 0.6f}, 0.2f, 1.0f)),
+                  glm::translate(glm::mat4(1.0f), {0.8f, 0.6f, 0.5f}));
+    shared::Material glow = surface({0, 0, 0});
+    glow.emissive = {2.0f, 1.5f, 0.5f};
+    builder.place(builder.add_quad({{{1.8f, 0, 0}, {2.4f, 0, 0}, {2.4f, 1.2f, 0}, {1.8f, 1.2f, 0}}},
+                                   glow));
+    builder.add_sun({-0.6f, -1, -0.4f}, glm::vec3(2.5f), 8.0f);
+    return builder.build();
+  }
+  std::array<int, 3> shown(const char* view, std::uint32_t x, std::uint32_t y) {
+    const render::Frame frame = *still_.renderer.capture_view(view);
+    const std::uint8_t* texel = &frame.rgba[(std::size_t{y} * width + x) * 4];
+    return {texel[0], texel[1], texel[2]};
+  }
+
+  Still still_{things(), scene::constant_environment(glm::vec3(0.5f, 0.6f, 0.8f)), camera(0.0f),
+               width, height};
+};
+
+TEST_F(Views, EveryOneIsListedWithItsUnitCapturedAndShownAndNoneIsBlank) {
+  ASSERT_GE(still_.renderer.buffers().size(), 30u);
+  EXPECT_EQ(still_.renderer.buffers()[0].name, "output");
+  for (const render::BufferInfo& buffer : still_.renderer.buffers()) {
+    EXPECT_GT(buffer.description.size(), 15u) << buffer.name;
+    EXPECT_EQ(buffer.description.find("Written by the pass"), std::string::npos)
+        << buffer.name << " says only where it comes from";
+    const auto values = still_.renderer.capture(buffer.name);
+    ASSERT_TRUE(values) << buffer.name;
+    EXPECT_EQ(values->rgba.size(), std::size_t{4} * width * height) << buffer.name;
+    const auto view = still_.renderer.capture_view(buffer.name);
+    ASSERT_TRUE(view) << buffer.name;
+    save_picture("buffer_" + buffer.name, *view);
+    bool differs = false;
+    for (std::size_t i = 4; i < view->rgba.size(); ++i) {
+      differs |= view->rgba[i] != view->rgba[i % 4];
+    }
+    // In a scene at rest no motion is wrong: that view is all dark.
+    EXPECT_EQ(differs, buffer.name != "gbuffer.motion.error") << buffer.name;
+  }
+}
+
+TEST_F(Views, AnyOfThemCanBeStreamed) {
+  for (const char* name : {"gbuffer.normals.geometric", "gbuffer.motion.view_z", "hdr"}) {
+    protocol::Settings settings;
+    settings.view.buffer = name;
+    still_.apply(settings);
+    const render::Frame streamed = still_.renderer.render();
+    EXPECT_EQ(streamed.rgba, still_.renderer.capture_view(name)->rgba) << name;
+  }
+  protocol::Settings settings;
+  settings.view.buffer = "gbuffer.motion.nothing";
+  EXPECT_FALSE(still_.renderer.set_settings(settings));
+  EXPECT_FALSE(still_.renderer.capture("no such buffer"));
+}
+
+TEST_F(Views, ShowKnownValuesInKnownColours) {
+  // The middle of the metal sphere, about; the lowest row is ground, the highest sky.
+  const std::uint32_t x = 96, y = 56;
+  EXPECT_EQ(shown("gbuffer.surface.metallic", x, y), (std::array{253, 231, 37})) << "1: yellow";
+  EXPECT_EQ(shown("gbuffer.surface.metallic", x, height - 1), (std::array{68, 1, 84})) << "0";
+  EXPECT_EQ(shown("gbuffer.normals", 20, height - 1), (std::array{128, 255, 128})) << "upward";
+  EXPECT_EQ(shown("gbuffer.normals", 20, 0), (std::array{0, 0, 0})) << "none";
+  EXPECT_EQ(shown("gbuffer.motion.view_z", 20, 0), (std::array{0, 0, 0})) << "none";
+  const render::FloatImage depth = still_.capture("gbuffer.motion.view_z");
+  EXPECT_NEAR(rgb(depth, x, y).x, 4.0f, 0.7f) << "metres";
+}
+
+TEST_F(Views, MotionOfARestingSceneIsWhatTheCameraMakesOfIt) {
+  const render::FloatImage motion = still_.capture("gbuffer.motion");
+  const render::FloatImage error = still_.capture("gbuffer.motion.error");
+  float fastest = 0.0f, worst = 0.0f;
+  for (std::size_t i = 0; i < error.rgba.size(); i += 4) {
+    fastest = std::max(fastest, std::abs(motion.rgba[i]) * width);
+    worst = std::max(worst, error.rgba[i]);
+  }
+  EXPECT_GT(fastest, 0.5f) << "pixels";
+  EXPECT_LT(worst, 0.02f) << "pixels";
+}
+
+}  // namespace
+}  // namespace heliograph::test
