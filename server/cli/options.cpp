@@ -38,7 +38,8 @@ constexpr const char* render_examples = R"text(Examples:
   heliograph render helmet.glb -o normals.png --buffer gbuffer.normals --samples 1
   heliograph render helmet.glb -o dark.png --environment studio.hdr --set exposure.compensation=-1
   heliograph render atrium.glb -o atrium.png --timings --frames 32
-  heliograph render pillars.glb -o svgf.png --preset svgf --set accumulation.handover=4096)text";
+  heliograph render pillars.glb -o svgf.png --preset svgf --set accumulation.handover=4096
+  heliograph render pillars.glb -o truth.png --reference full --samples 1024)text";
 
 constexpr const char* devices_examples = R"text(Example:
   heliograph devices --device llvmpipe)text";
@@ -172,6 +173,9 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options) {
       ->type_name("NAME");
   command->add_option("--samples", options.samples, "Samples per pixel [accumulation.max_samples]")
       ->check(CLI::Range(1, 65536));
+  command->add_option("--reference", options.reference,
+                      "Path trace instead: the hybrid's own light paths, or all (full)")
+      ->check(CLI::IsMember({"same_paths", "full"}));
   add_settings_options(*command, options.settings);
   command->add_option("--buffer", options.buffer, "Picture to write: any buffer of the renderer")
       ->capture_default_str();

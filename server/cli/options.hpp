@@ -48,6 +48,7 @@ struct RenderOptions {
   std::uint32_t height = 720;
   std::string camera;
   std::optional<std::uint32_t> samples;
+  std::string reference;  // the scope of the path traced truth, or none
   SettingsOptions settings;
   std::string buffer = "output";
   std::string environment;

@@ -89,6 +89,12 @@ class Timings {
   std::map<std::string, std::vector<double>> passes_;
 };
 
+void choose_reference(protocol::Settings& settings, const std::string& scope) {
+  settings.reference.use = protocol::ReferenceUse::always;
+  settings.reference.scope = scope == "full" ? protocol::ReferenceScope::full
+                                             : protocol::ReferenceScope::same_paths;
+}
+
 /// The median frame while the picture keeps changing, as one line of JSON.
 void print_timings(render::Engine& engine, render::Renderer& renderer,
                    const protocol::Settings& settings, const RenderOptions& options) {
@@ -130,6 +136,7 @@ void write_file(const std::filesystem::path& path, const std::vector<std::uint8_
 
 int run(const RenderOptions& options) {
   protocol::Settings settings = parse_settings(options.settings);
+  if (!options.reference.empty()) choose_reference(settings, options.reference);
   if (options.samples) settings.accumulation.max_samples = static_cast<int>(*options.samples);
   const auto scene = std::make_shared<const scene::Scene>(scene::import_gltf(options.scene));
   const scene::Environment environment = choose_environment(options);
