@@ -3,6 +3,7 @@
 layout(local_size_x = 64) in;
 // Light that comes back along specular rays: from what they met, or from the environment. Light of
 // lamps at the hit waits for a shadow ray of its own.
+#define TEXTURE_ONE_LEVEL
 #include "lib/environment.glsl"
 #include "lib/hit_surface.glsl"
 #include "lib/light_choice.glsl"

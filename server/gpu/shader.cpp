@@ -84,7 +84,8 @@ void Program::create_layout(std::span<const Reflection> stages, VkShaderStageFla
 }
 
 ComputeProgram::ComputeProgram(const Device& device, const ShaderBinary& shader,
-                               const SharedLayouts& shared)
+                               const SharedLayouts& shared,
+                               std::optional<std::uint32_t> specialization)
     : Program(device, std::string(shader.name)) {
   const Reflection reflection = reflect(shader);
   local_size_ = reflection.local_size;
@@ -92,6 +93,12 @@ ComputeProgram::ComputeProgram(const Device& device, const ShaderBinary& shader,
   const ShaderModule module(device, shader);
   VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
   info.stage = module.stage(VK_SHADER_STAGE_COMPUTE_BIT);
+  const VkSpecializationMapEntry entry{0, 0, sizeof(std::uint32_t)};
+  VkSpecializationInfo constants{1, &entry, sizeof(std::uint32_t), nullptr};
+  if (specialization) {
+    constants.pData = &*specialization;
+    info.stage.pSpecializationInfo = &constants;
+  }
   info.layout = layout();
   check(vkCreateComputePipelines(device.handle(), device.pipeline_cache(), 1, &info, nullptr,
                                  &pipeline_),

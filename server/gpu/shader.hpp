@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -82,9 +83,11 @@ class Program {
 
 class ComputeProgram : public Program {
  public:
+  /// `specialization` is the value of the shader's constant 0, where it has one.
   /// @throws GpuError when a shared layout lacks or contradicts what the shader declares
   ComputeProgram(const Device& device, const ShaderBinary& shader,
-                 const SharedLayouts& shared = {});
+                 const SharedLayouts& shared = {},
+                 std::optional<std::uint32_t> specialization = std::nullopt);
   VkExtent3D local_size() const { return local_size_; }
 
  private:

@@ -15,7 +15,7 @@ Composed compose(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbu
   const bool mirrors = raw.specular.has_value();
   const gpu::ImageRef specular = raw.specular.value_or(background);
   const auto& shader = denoised ? shaders::compose_denoised : shaders::compose;
-  auto pass = plan.pass("compose", in.programs.compute(shader));
+  auto pass = plan.pass("compose", in.programs.compute(shader, in.scene.features));
   pass.read(gbuffer.normals)
       .read(gbuffer.base_color)
       .read(gbuffer.surface)

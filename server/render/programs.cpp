@@ -63,12 +63,13 @@ Programs::Programs(const gpu::Device& device)
                      {{frame_set, &frame_layout}, {material_set, &material_layout}}),
       device_(device) {}
 
-const gpu::ComputeProgram& Programs::compute(const gpu::ShaderBinary& shader) const {
+const gpu::ComputeProgram& Programs::compute(const gpu::ShaderBinary& shader,
+                                             std::uint32_t features) const {
   const std::lock_guard lock(mutex_);
-  auto& program = compute_[&shader];
+  auto& program = compute_[{&shader, features}];
   if (!program) {
     const gpu::SharedLayouts layouts{{frame_set, &frame_layout}, {scene_set, &scene_layout}};
-    program = std::make_unique<gpu::ComputeProgram>(device_, shader, layouts);
+    program = std::make_unique<gpu::ComputeProgram>(device_, shader, layouts, features);
   }
   return *program;
 }

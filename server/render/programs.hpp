@@ -22,7 +22,10 @@ class Programs {
   explicit Programs(const gpu::Device& device);
 
   /// The compute program of an embedded shader. Thread safe; the reference lives as long as this.
-  const gpu::ComputeProgram& compute(const gpu::ShaderBinary& shader) const;
+  /// `features` are the shared::scene_* bits of what the scene has: a shader made for a scene without
+  /// area lights, say, has no code for them, which lavapipe would run, masked, for every pixel.
+  const gpu::ComputeProgram& compute(const gpu::ShaderBinary& shader,
+                                     std::uint32_t features = ~0u) const;
 
   gpu::DescriptorLayout frame_layout;
   gpu::DescriptorLayout material_layout;
@@ -34,7 +37,8 @@ class Programs {
  private:
   const gpu::Device& device_;
   mutable std::mutex mutex_;
-  mutable std::map<const gpu::ShaderBinary*, std::unique_ptr<gpu::ComputeProgram>> compute_;
+  using Key = std::pair<const gpu::ShaderBinary*, std::uint32_t>;
+  mutable std::map<Key, std::unique_ptr<gpu::ComputeProgram>> compute_;
 };
 
 }  // namespace heliograph::render

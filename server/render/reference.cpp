@@ -90,6 +90,7 @@ class Wavefront {
   }
 
   void global_illumination(std::uint32_t bounces) {
+    const tracing::RayStream sky = stream("reference.sky");
     const std::uint32_t rounds = 1 + bounces + (has_blended_surfaces(in_) ? blended_layers : 0);
     for (std::uint32_t round = 0; round < rounds; ++round) {
       in_.tracer.trace_closest(plan_, "reference.trace", in_.structure, rays_, hits_);
@@ -99,16 +100,19 @@ class Wavefront {
           .read_write(paths_)
           .write(shadows_.count)
           .write(shadows_.rays)
+          .write(sky.count)
+          .write(sky.rays)
           .read_write(radiance_)
           .constants(constants(in_, round, bounces))
           .dispatch(plan_.extent());
       add(shadows_);
+      add(sky);
     }
   }
 
  private:
   gpu::PassBuilder pass(const std::string& name, const gpu::ShaderBinary& shader) {
-    return plan_.pass(name, in_.programs.compute(shader)).when([in = in_] {
+    return plan_.pass(name, in_.programs.compute(shader, in_.scene.features)).when([in = in_] {
       return traces_reference(in);
     });
   }

@@ -100,6 +100,11 @@ void SceneResources::upload_tables(const gpu::Device& device) {
   rest_tables.meshes = upload(device, "meshes", meshes_);
   rest_tables.instances = upload(device, "instances", instances_);
   rest_tables.materials = upload(device, "materials", scene->materials);
+  const bool areas = std::any_of(lights.begin(), lights.end(), [](const shared::Light& light) {
+    return light.type >= shared::light_rectangle;
+  });
+  features = (areas ? shared::scene_area_lights : 0u) |
+             (lights.size() > shared::uniform_lights ? shared::scene_many_lights : 0u);
   rest_tables.lights = make_light_table(device, lights.size());
   write_lights(rest_tables.lights, lights);
   rest_tables.alpha_heap =

@@ -38,7 +38,8 @@ class SceneResources {
   std::shared_ptr<const tracing::AccelerationStructure> rest_structure;
   std::shared_ptr<const LitEnvironment> environment;
   TextureHeap texture_heap;
-  std::vector<Draw> draws;  // opaque first, then by material
+  std::uint32_t features = 0;  // shared::scene_*
+  std::vector<Draw> draws;     // opaque first, then by material
   std::uint32_t deforming_vertices = 0;
   std::vector<VkDescriptorSet> material_sets;
 

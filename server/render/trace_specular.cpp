@@ -69,7 +69,7 @@ tracing::RayStream shade(gpu::FramePlan& plan, const FrameInputs& in, const GBuf
     std::int32_t scale;
   };
   const auto shadows = make_stream(plan, in, "specular.shadows", rays.capacity);
-  plan.pass("specular.shade", in.programs.compute(shaders::shade_hits))
+  plan.pass("specular.shade", in.programs.compute(shaders::shade_hits, in.scene.features))
       .read(gbuffer.surface)
       .read(gbuffer.motion)
       .read(rays.count)

@@ -48,7 +48,7 @@ gpu::ImageRef trace_visibility(gpu::FramePlan& plan, const FrameInputs& in, cons
 }  // namespace
 
 gpu::ImageRef trace_shadows(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer) {
-  return trace_visibility(plan, in, "shadows", in.programs.compute(shaders::shadow_rays),
+  return trace_visibility(plan, in, "shadows", in.programs.compute(shaders::shadow_rays, in.scene.features),
                           {gbuffer.normals, gbuffer.motion, gbuffer.base_color, gbuffer.surface},
                           shared::frame_shadows);
 }

@@ -14,6 +14,10 @@ layout(set = 0, binding = 6) uniform sampler2D ltc_table;
 layout(set = 0, binding = 7) uniform sampler2D background_map;
 layout(set = 0, binding = 8) uniform usamplerBuffer environment_cells;
 
+layout(constant_id = 0) const uint scene_features = 0xffffffffu;
+/// Whether the scene may have something; known when the shader is made.
+bool scene_has(uint feature) { return (scene_features & feature) != 0u; }
+
 bool enabled(uint flag) { return (frame.counts.y & flag) != 0u; }
 
 bool outside_frame(ivec2 pixel) {

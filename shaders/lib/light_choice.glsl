@@ -57,7 +57,7 @@ LightSample sample_lit_point(Light light, SurfaceMaterial m, vec3 position, vec2
 Ray light_ray(Light light, SurfaceMaterial m, vec3 position, float view_distance, vec2 u,
               float pick, out bool found) {
   LightSample s;
-  if (light.type >= light_rectangle) {
+  if (has_area(light)) {
     s = sample_lit_point(light, m, position, u, pick, found);
   } else {
     s = sample_light(light, position, u);

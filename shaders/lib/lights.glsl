@@ -46,13 +46,17 @@ Light light_number(uint number) {
   Light light;
   if (number + 1u == frame.counts.x && frame.sun.w >= 0.0) {
     light = environment_sun();
-  } else if (number < uniform_lights) {
-    light = lights[number];
+  } else if (!scene_has(scene_many_lights) || number < uniform_lights) {
+    light = lights[min(number, uniform_lights - 1u)];
   } else {
     light = light_of_texels(number);
   }
   if (light.type == light_directional && frame.exposure.z >= 0.0) light.radius = frame.exposure.z;
   return light;
+}
+
+bool has_area(Light light) {
+  return scene_has(scene_area_lights) && light.type >= light_rectangle;
 }
 
 /// Whether any of the light arrives at `position`: cheap, so that loops skip what is far away.
@@ -94,7 +98,7 @@ LightSample light_at(Light light, vec3 position) {
 /// for a point of their disk.
 LightSample sample_light(Light light, vec3 position, vec2 u) {
   LightSample s;
-  if (light.type >= light_rectangle) {
+  if (has_area(light)) {
     AreaSample area = sample_area(light, position, u);
     s.direction = s.ray_direction = area.direction;
     s.distance = area.distance;
@@ -114,7 +118,7 @@ LightSample sample_light(Light light, vec3 position, vec2 u) {
 /// transformed cosines.
 vec3 light_contribution(Light light, SurfaceMaterial m, vec3 position) {
   if (!reaches(light, position)) return vec3(0.0);
-  if (light.type >= light_rectangle) {
+  if (has_area(light)) {
     vec2 share = area_light_shares(light, m.normal, m.eye, m.n_dot_v, m.roughness, position);
     return light.color * (m.diffuse_albedo * share.x + m.specular_albedo * share.y);
   }

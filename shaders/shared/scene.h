@@ -93,6 +93,10 @@ struct DrawConstants {
 SHARED_CONSTANT uint uniform_lights = 192u;
 SHARED_CONSTANT uint texels_per_light = 5u;
 
+// What a scene has: bits of the constant that its shaders are specialised with.
+SHARED_CONSTANT uint scene_area_lights = 1u;
+SHARED_CONSTANT uint scene_many_lights = 2u;  // more than uniform_lights
+
 SHARED_CONSTANT uint light_directional = 0u;
 SHARED_CONSTANT uint light_point = 1u;
 SHARED_CONSTANT uint light_spot = 2u;
