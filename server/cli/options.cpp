@@ -38,6 +38,7 @@ constexpr const char* render_examples = R"text(Examples:
   heliograph render helmet.glb -o normals.png --buffer gbuffer.normals --samples 1
   heliograph render helmet.glb -o dark.png --environment studio.hdr --set exposure.compensation=-1
   heliograph render atrium.glb -o atrium.png --timings --frames 32
+  heliograph render fox.glb -o run.png --clip Run --time 0.2 --frames 24
   heliograph render pillars.glb -o svgf.png --preset svgf --set accumulation.handover=4096
   heliograph render pillars.glb -o truth.png --reference full --samples 1024)text";
 
@@ -182,9 +183,21 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options) {
   add_environment_option(*command, options.environment);
   command->add_flag("--timings", options.timings,
                     "Print one line of JSON: median time of each pass");
-  command->add_option("--frames", options.frames, "Frames to measure for --timings")
-      ->check(CLI::Range(1, 100000))
+  auto* const clip =
+      command->add_option("--clip", options.clip, "Clip of the scene that poses it [at rest]");
+  clip->type_name("NAME");
+  command->add_option("--time", options.time, "Where the clip stands, seconds")
+      ->check(CLI::Range(0.0, 1e6))
+      ->needs(clip)
       ->capture_default_str();
+  command->add_option("--fps", options.fps, "Pictures for each second of the clip")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->needs(clip)
+      ->capture_default_str();
+  command->add_option("--frames", options.frames,
+                      "Pictures of the clip, in numbered files [1]; or frames to measure for "
+                      "--timings [16]")
+      ->check(CLI::Range(1, 100000));
   add_device_options(*command, options.device);
   command->footer(render_examples);
   return command;

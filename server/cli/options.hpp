@@ -53,7 +53,10 @@ struct RenderOptions {
   std::string buffer = "output";
   std::string environment;
   bool timings = false;
-  std::uint32_t frames = 16;
+  std::string clip;  // empty: at rest
+  double time = 0.0;  // seconds into the clip
+  double fps = 30.0;  // pictures of a second of the clip
+  std::optional<std::uint32_t> frames;
   DeviceOptions device;
 };
 

@@ -14,6 +14,7 @@
 #include "scene/camera.hpp"
 #include "scene/environment.hpp"
 #include "scene/import.hpp"
+#include "scene/pose.hpp"
 #include "session/environment_choice.hpp"
 #include "stream/png_encoder.hpp"
 
@@ -21,6 +22,7 @@ namespace heliograph::cli {
 namespace {
 
 constexpr int warm_up_frames = 3;
+constexpr std::uint32_t measured_frames = 16;
 
 scene::Environment choose_environment(const RenderOptions& options) {
   if (!options.environment.empty()) return scene::load_environment(options.environment);
@@ -103,7 +105,8 @@ void print_timings(render::Engine& engine, render::Renderer& renderer,
   accept(renderer.set_settings(endless));
   for (int i = 0; i < warm_up_frames; ++i) renderer.render();
   Timings timings;
-  for (std::uint32_t i = 0; i < options.frames; ++i) timings.add(renderer.render());
+  const std::uint32_t frames = options.frames.value_or(measured_frames);
+  for (std::uint32_t i = 0; i < frames; ++i) timings.add(renderer.render());
   nlohmann::json line = timings.json();
   line["scene"] = options.scene.filename().string();
   line["device"] = engine.device().name;
@@ -132,6 +135,24 @@ void write_file(const std::filesystem::path& path, const std::vector<std::uint8_
   if (!file) throw std::runtime_error("cannot write " + path.string());
 }
 
+/// The camera where a clip has carried it.
+scene::Camera camera_in_clip(const scene::Scene& scene, const scene::Camera& camera,
+                             const std::string& clip_name, double seconds) {
+  const scene::Clip* const clip = scene::find_clip(scene, clip_name);
+  if (!clip || !scene::carries(scene, *clip, camera)) return camera;
+  scene::Pose pose = scene::rest_pose(scene);
+  scene::evaluate(scene, *clip, seconds, pose);
+  return scene::camera_at(scene, camera, pose);
+}
+
+/// "run.png" -> "run_0007.png"
+std::filesystem::path numbered(const std::filesystem::path& path, std::uint32_t number) {
+  std::string digits = std::to_string(number);
+  digits.insert(0, 4 - std::min<std::size_t>(digits.size(), 4), '0');
+  std::filesystem::path result = path;
+  return result.replace_filename(path.stem().string() + "_" + digits + path.extension().string());
+}
+
 }  // namespace
 
 int run(const RenderOptions& options) {
@@ -155,10 +176,17 @@ int run(const RenderOptions& options) {
     renderer.set_scene(resources);
     accept(renderer.set_settings(settings));
   }
-  const render::Frame picture = render_picture(renderer, options);
-  write_file(
-      options.output,
-      stream::encode_png({.width = picture.width, .height = picture.height, .rgba = picture.rgba}));
+  renderer.set_frame_seconds(static_cast<float>(1.0 / options.fps));
+  const std::uint32_t pictures = options.timings ? 1 : options.frames.value_or(1);
+  for (std::uint32_t i = 0; i < pictures; ++i) {
+    const double seconds = options.time + i / options.fps;
+    accept(renderer.set_pose(options.clip, seconds));
+    renderer.set_camera(camera_in_clip(*scene, camera, options.clip, seconds));
+    const render::Frame picture = render_picture(renderer, options);
+    write_file(pictures == 1 ? options.output : numbered(options.output, i),
+               stream::encode_png(
+                   {.width = picture.width, .height = picture.height, .rgba = picture.rgba}));
+  }
   return 0;
 }
 

@@ -243,7 +243,8 @@ bool MovingScene::advance() {
   const bool lights = moving_->move_lights(scene, before, pose_);
   moving_->move_draws(scene);
   moving_->update_structure();
-  moving_->settled = !instances && !shapes;
+  moving_->settled =
+      moving_->placed.empty() && std::ranges::none_of(moving_->deforming, &Moving::Deforming::moved);
   return instances || shapes || lights;
 }
 

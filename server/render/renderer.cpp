@@ -118,18 +118,18 @@ void Renderer::State::write_frame_set() {
 }
 
 void Renderer::State::list_buffers() {
-  const auto described = [](std::string_view view, const std::string& text) {
-    const std::string colors(legend(colors_of(view)));
-    return BufferInfo{std::string(view), colors.empty() ? text : text + " " + colors};
+  const auto list = [this](const std::string& view, const std::string& by_pass) {
+    const std::string_view known = description_of(view), colors = legend(colors_of(view));
+    std::string text = known.empty() ? by_pass : std::string(known);
+    if (!colors.empty()) text.append(" ").append(colors);
+    buffers.push_back({view, text});
   };
   buffers.clear();
   buffers.push_back({std::string(picture_name), "The finished picture."});
   for (const auto& view : plan->views()) {
     if (view.name == picture_name) continue;
-    buffers.push_back(described(view.name, view.description));
-    for (const Aspect& aspect : aspects_of(view.name)) {
-      buffers.push_back(described(aspect.name, aspect.description));
-    }
+    list(view.name, view.description);
+    for (const std::string& aspect : aspects_of(view.name)) list(aspect, {});
   }
 }
 
@@ -244,7 +244,6 @@ Frame Renderer::render() {
   const auto start = std::chrono::steady_clock::now();
   state.stale = false;
   const bool moves = state.moving->advance();
-  if (moves) state.samples = 0;
   const auto posed = std::chrono::steady_clock::now();
   if (!state.settings.accumulation.enabled) state.samples = 0;
   const shared::FrameConstants before = state.constants;
