@@ -24,17 +24,37 @@ struct Pixel {
 struct BufferRule {
   std::string_view pattern;
   ViewColors colors;
+  std::string_view description = {};  // empty: what its pass says
 };
 
 // The first that matches counts.
 constexpr std::array buffer_rules{
     BufferRule{"output", ViewColors::picture},
-    BufferRule{"*normals", ViewColors::octahedral},
-    BufferRule{"*base_color", ViewColors::squared},
-    BufferRule{"*surface", ViewColors::channels},
-    BufferRule{"*motion", ViewColors::difference},
-    BufferRule{"*depth_slope", ViewColors::difference},
-    BufferRule{"*instance", ViewColors::identity},
+    BufferRule{"gbuffer.normals", ViewColors::octahedral,
+               "Normals in world space, octahedral: shading (xy), geometric (zw)."},
+    BufferRule{"gbuffer.base_color", ViewColors::squared,
+               "Square root of the linear base colour; occlusion texture (w)."},
+    BufferRule{"gbuffer.surface", ViewColors::channels,
+               "Perceptual roughness, metalness, 1 where unlit."},
+    BufferRule{"gbuffer.motion", ViewColors::difference,
+               "From each point to where it was one frame ago: shares of the picture's width and "
+               "height, view Z in metres; view Z now (w)."},
+    BufferRule{"gbuffer.emissive", ViewColors::radiance, "Radiance that surfaces give off."},
+    BufferRule{"gbuffer.depth_slope", ViewColors::difference,
+               "Change of view Z to the pixel on the right and below, metres."},
+    BufferRule{"gbuffer.instance", ViewColors::identity, "Instance + 1."},
+    BufferRule{"shadows.visibility", ViewColors::grey,
+               "Share of the lights' light that one ray per pixel finds unshadowed."},
+    BufferRule{"ambient.visibility", ViewColors::grey,
+               "Share of the surroundings that one ray per pixel finds open."},
+    BufferRule{"specular.radiance", ViewColors::radiance,
+               "What one mirrored ray per pixel brings, without the surface's colour; its length "
+               "in metres (w)."},
+    BufferRule{"skybox", ViewColors::radiance, "Radiance of the environment behind the scene."},
+    BufferRule{"hdr", ViewColors::radiance, "The frame's radiance, without noise, before "
+                                            "antialiasing: linear."},
+    BufferRule{"hdr_raw", ViewColors::radiance, "The frame's radiance with its noise: linear."},
+    BufferRule{"reference", ViewColors::radiance, "One sample of the path tracer: linear radiance."},
     BufferRule{"*.visibility", ViewColors::grey},
     BufferRule{"*.history", ViewColors::heat},
     BufferRule{"*.moments", ViewColors::channels},
@@ -150,12 +170,19 @@ ViewColors colors_of(std::string_view view) {
   return ViewColors::radiance;
 }
 
-std::vector<Aspect> aspects_of(std::string_view buffer) {
-  std::vector<Aspect> aspects;
+std::string_view description_of(std::string_view view) {
+  if (const AspectRule* aspect = find_aspect(view)) return aspect->description;
+  for (const BufferRule& rule : buffer_rules) {
+    if (matches(view, rule.pattern)) return rule.description;
+  }
+  return {};
+}
+
+std::vector<std::string> aspects_of(std::string_view buffer) {
+  std::vector<std::string> aspects;
   for (const AspectRule& rule : aspect_rules) {
     if (!matches(buffer, rule.buffer)) continue;
-    aspects.push_back({std::string(buffer) + "." + std::string(rule.name),
-                       std::string(rule.description)});
+    aspects.push_back(std::string(buffer) + "." + std::string(rule.name));
   }
   return aspects;
 }

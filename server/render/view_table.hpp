@@ -13,12 +13,11 @@ namespace heliograph::render {
 /// The colours that suit a view, by its name: radiance where the name says nothing.
 ViewColors colors_of(std::string_view view);
 
-/// A view of its own of what lies in some channels of a buffer: "gbuffer.motion.view_z".
-struct Aspect {
-  std::string name;
-  std::string description;
-};
-std::vector<Aspect> aspects_of(std::string_view buffer);
+/// What its values are and in which unit; empty where the name says nothing.
+std::string_view description_of(std::string_view view);
+
+/// Views of their own of what lies in some channels of a buffer: "gbuffer.motion.view_z".
+std::vector<std::string> aspects_of(std::string_view buffer);
 
 /// The buffer that a view shows an aspect of; empty: the view is a buffer itself.
 std::string_view source_of(std::string_view view);

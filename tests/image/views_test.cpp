@@ -16,7 +16,7 @@ class Views : public testing::Test {
  protected:
   Views() {
     for (int i = 0; i < 6; ++i) {
-      still_.renderer.set_camera(camera(0.05f * static_cast<float>(i)));
+      still_.renderer.set_camera(camera(0.15f * static_cast<float>(i - 5)));
       still_.renderer.render();
     }
   }

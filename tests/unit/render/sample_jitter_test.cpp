@@ -31,5 +31,20 @@ TEST(SampleJitter, FillsThePixelEvenly) {
   for (const int count : counts) EXPECT_NEAR(count, 16, 5);
 }
 
+// What moves is resolved from the last dozen frames, wherever in the sequence they lie.
+TEST(SampleJitter, AnyFramesInARowReachAllPartsOfThePixel) {
+  for (std::uint32_t first = 1; first < 2000; ++first) {
+    std::array<bool, 4> quarters{};
+    glm::dvec2 sum(0.0);
+    for (std::uint32_t i = 0; i < 16; ++i) {
+      const glm::vec2 offset = sample_jitter(first + i);
+      if (i < 9) quarters[(offset.x > 0.0f ? 1 : 0) + (offset.y > 0.0f ? 2 : 0)] = true;
+      sum += glm::dvec2(offset);
+    }
+    for (const bool reached : quarters) EXPECT_TRUE(reached) << first;
+    EXPECT_LT(glm::length(sum / 16.0), 0.15) << "the picture wanders: " << first;
+  }
+}
+
 }  // namespace
 }  // namespace heliograph::render

@@ -80,10 +80,10 @@ TEST(Views, EveryBufferHasTheColoursOfItsKind) {
 TEST(Views, AspectsNameTheBufferTheyAreOf) {
   for (const char* buffer : {"gbuffer.normals", "gbuffer.motion", "visibility.history"}) {
     ASSERT_FALSE(aspects_of(buffer).empty()) << buffer;
-    for (const Aspect& aspect : aspects_of(buffer)) {
-      EXPECT_EQ(source_of(aspect.name), buffer);
-      EXPECT_FALSE(aspect.description.empty());
-      EXPECT_TRUE(aspects_of(aspect.name).empty());
+    for (const std::string& aspect : aspects_of(buffer)) {
+      EXPECT_EQ(source_of(aspect), buffer);
+      EXPECT_FALSE(description_of(aspect).empty());
+      EXPECT_TRUE(aspects_of(aspect).empty());
     }
   }
   EXPECT_TRUE(source_of("gbuffer.motion").empty());
