@@ -62,7 +62,7 @@ vec3 reflecting_normal(SurfaceMaterial m) {
 struct SpecularSample {
   vec3 direction;
   vec3 weight;
-  float density;  // the pdf, per solid angle
+  float density;  // the pdf, per solid angle; finite for mirrors too
 };
 
 SpecularSample sample_specular(SurfaceMaterial m, vec2 u) {
@@ -80,7 +80,7 @@ SpecularSample sample_specular(SurfaceMaterial m, vec2 u) {
   bool open = dot(s.direction, m.geometric) > 0.0;
   s.weight = open ? microfacet_reflectance(m, v_dot_h) * visible_normal_weight(view, light, alpha)
                   : vec3(0.0);
-  s.density = visible_normal_pdf(view, light, alpha);
+  s.density = visible_normal_pdf(view, light, max(alpha, 1e-4));
   return s;
 }
 

@@ -4,9 +4,9 @@
 #include "lib/frame.glsl"
 #include "lib/random.glsl"
 
-/// Roughness is stored in steps of 1 / 255: half of one more is still the same.
+/// Roughness is stored in steps of 1 / 255: a little more than half of one is still the same.
 bool mirrors_rays(float roughness, float max_roughness) {
-  return roughness <= max_roughness + 0.5 / 255.0;
+  return roughness <= max_roughness + 0.6 / 255.0;
 }
 
 /// Whose turn it is of the pixels in a 2x2 cell: all come in four frames, the second opposite the

@@ -15,6 +15,7 @@ void expect_white(Still& still, const std::string& name) {
   protocol::Settings settings;
   settings.ambient.occlusion = false;  // spheres hide parts of the furnace from each other
   settings.lighting.direct = false;
+  settings.specular.enabled = false;  // rays need many samples for this: SpecularRays
   settings.tone_map.curve = protocol::ToneMapCurve::linear;
   settings.exposure.compensation = -1.0f;  // so that what is too bright shows
   still.apply(settings);

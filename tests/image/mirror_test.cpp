@@ -45,16 +45,20 @@ struct Errors {
 };
 
 /// Holds every pixel of the mirror sphere against the environment in the direction it reflects.
-Errors reflection_errors(const scene::Environment& sky, float rotation, const std::string& name) {
+Errors reflection_errors(const scene::Environment& sky, float rotation, bool traced,
+                         const std::string& name) {
   const auto scene = import_document(scenes::make_mirror(), 16);
   const scene::Camera camera = scene->cameras.at(0);
   Still still(scene, sky, camera, width, height);
   protocol::Settings settings;
   settings.ambient.occlusion = false;
-  settings.antialiasing.jitter = false;
+  settings.antialiasing.jitter = settings.antialiasing.temporal = false;
+  settings.shadow_temporal.enabled = settings.shadow_blur.enabled = false;
+  settings.specular_temporal.enabled = settings.specular_blur.enabled = false;
+  settings.specular.enabled = traced;
   settings.environment.rotation = rotation;
   still.apply(settings);
-  save_picture(name, still.accumulate(1));
+  save_picture(name + (traced ? "_traced" : "_prefiltered"), still.accumulate(1));
   const render::FloatImage hdr = still.capture("hdr");
   const double angle = glm::radians(-static_cast<double>(rotation));
   std::vector<double> errors;
@@ -67,6 +71,7 @@ Errors reflection_errors(const scene::Environment& sky, float rotation, const st
       const glm::dvec3 normal = (to_eye + ray * (-b - std::sqrt(b * b - c))) / radius;
       if (-glm::dot(normal, ray) < 0.25) continue;  // flat triangles show at the rim
       const glm::dvec3 r = glm::reflect(ray, normal);
+      if (traced && r.y < 0.05) continue;  // the ground is in the way
       const glm::dvec3 turned(std::cos(angle) * r.x + std::sin(angle) * r.z, r.y,
                               std::cos(angle) * r.z - std::sin(angle) * r.x);
       const glm::dvec3 expected = look_up(sky, turned);
@@ -77,12 +82,15 @@ Errors reflection_errors(const scene::Environment& sky, float rotation, const st
   return {errors.at(errors.size() / 2), errors.back(), static_cast<int>(errors.size())};
 }
 
-TEST(Mirror, ShowsTheGeneratedSkyWhereItReflects) {
+// What the environment's prefiltered cube shows, and what rays do.
+class Mirror : public testing::TestWithParam<bool> {};
+
+TEST_P(Mirror, ShowsTheGeneratedSkyWhereItReflects) {
   const auto sky = scenes::make_clear_sky(scenes::direction_to_sun(50.0f, 30.0f), 512, 256);
-  const Errors errors = reflection_errors(convert(sky.environment), 0.0f, "mirror_sky");
+  const Errors errors = reflection_errors(convert(sky.environment), 0.0f, GetParam(), "mirror_sky");
   EXPECT_GT(errors.pixels, 2000);
-  EXPECT_LT(errors.median, 0.01);
-  EXPECT_LT(errors.worst, 0.15);  // at the horizon, which is sharper than the cube's texels
+  EXPECT_LT(errors.median, GetParam() ? 0.002 : 0.01);
+  EXPECT_LT(errors.worst, GetParam() ? 0.05 : 0.15);  // at the horizon, sharper than the cube
 }
 
 /// Every axis another colour, and a red glow in one direction: a flip or a turn moves it.
@@ -92,19 +100,25 @@ glm::vec3 coloured_sky(const glm::vec3& d) {
          glm::vec3(8, 0, 0) * std::pow(std::max(glm::dot(d, glow), 0.0f), 40.0f);
 }
 
-TEST(Mirror, ShowsAColouredSkyTheRightWayRound) {
+TEST_P(Mirror, ShowsAColouredSkyTheRightWayRound) {
   const Errors errors =
-      reflection_errors(make_environment(512, coloured_sky), 0.0f, "mirror_coloured");
-  EXPECT_LT(errors.median, 0.005);
-  EXPECT_LT(errors.worst, 0.05);
+      reflection_errors(make_environment(512, coloured_sky), 0.0f, GetParam(), "mirror_coloured");
+  EXPECT_LT(errors.median, GetParam() ? 0.001 : 0.005);
+  EXPECT_LT(errors.worst, GetParam() ? 0.02 : 0.05);
 }
 
-TEST(Mirror, TurnsWithTheEnvironment) {
+TEST_P(Mirror, TurnsWithTheEnvironment) {
   const Errors errors =
-      reflection_errors(make_environment(512, coloured_sky), 70.0f, "mirror_turned");
-  EXPECT_LT(errors.median, 0.005);
-  EXPECT_LT(errors.worst, 0.05);
+      reflection_errors(make_environment(512, coloured_sky), 70.0f, GetParam(), "mirror_turned");
+  EXPECT_LT(errors.median, GetParam() ? 0.001 : 0.005);
+  EXPECT_LT(errors.worst, GetParam() ? 0.02 : 0.05);
 }
+
+std::string way_name(const testing::TestParamInfo<bool>& way) {
+  return way.param ? "traced" : "prefiltered";
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, Mirror, testing::Bool(), way_name);
 
 TEST(Background, IsTheEnvironmentBehindEveryPixel) {
   const scene::Environment sky = make_environment(512, coloured_sky);
