@@ -69,6 +69,13 @@ class TransformedCosine {
                                                std::sqrt(1.0 - u)));
   }
 
+  /// Its share above the horizon: before the matrix, the cosine over the lune between two
+  /// hemispheres.
+  double share_above() const {
+    const glm::dvec3 up(matrix_[0].z, matrix_[1].z, matrix_[2].z);
+    return 0.5 * (1.0 + up.z / glm::length(up));
+  }
+
   const glm::dmat3& inverse() const { return inverse_; }
 
  private:

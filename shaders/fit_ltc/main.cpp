@@ -54,15 +54,18 @@ glm::dmat3 matrix_of(const Shape& shape, const glm::dvec3& z, bool isotropic) {
                             glm::dvec3(isotropic ? 0.0 : shape[2], 0.0, 1.0));
 }
 
-/// The cube of the difference, integrated with samples of both: a lobe that misses the other's peak
-/// costs most.
+/// The cube of the difference above the horizon, integrated with samples of both: a lobe that misses
+/// the other's peak costs most. The fit is cut off at the horizon and made as bright again as it was
+/// whole, as shaders/lib/ltc.glsl does.
 double difference(const SpecularLobe& lobe, double albedo, const TransformedCosine& fit) {
   double sum = 0.0;
+  const double above = fit.share_above();
   const auto add = [&](const glm::dvec3& light) {
+    if (light.z <= 0.0) return;
     const double wanted = lobe(light) / albedo;
-    const double got = fit(light);
-    const double density = got + lobe.density(light);
-    const double apart = std::abs(wanted - got);
+    const double whole = fit(light);
+    const double density = whole + lobe.density(light);
+    const double apart = std::abs(wanted - whole / above);
     if (density > 0.0) sum += apart * apart * apart / density;
   };
   for (int i = 0; i < strata * strata; ++i) {

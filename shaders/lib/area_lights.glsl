@@ -45,7 +45,8 @@ vec2 area_light_shares(Light light, vec3 normal, vec3 eye, float n_dot_v, float 
     before = corner;
     moved_before = moved;
   }
-  return vec2(covered_cosine(diffuse), covered_cosine(specular));
+  float above = ltc_share_above(inverse_lobe);
+  return vec2(covered_cosine(diffuse), min(covered_cosine(specular) / above, 1.0));
 }
 
 AreaSample sample_of_point(Light light, vec3 offset, float area) {

@@ -55,6 +55,13 @@ mat3 ltc_inverse(sampler2D table, float n_dot_v, float roughness) {
   return mat3(vec3(entry.x, 0.0, entry.y), vec3(0.0, 1.0, 0.0), vec3(entry.z, 0.0, entry.w));
 }
 
+/// Share of the lobe above the horizon, where it is cut off and made as bright again as it was whole:
+/// the cosine over the lune between the hemisphere and the horizon's, moved back by the matrix.
+float ltc_share_above(mat3 inverse_lobe) {
+  vec2 up = vec2(-inverse_lobe[0].z, inverse_lobe[0].x);
+  return 0.5 + 0.5 * up.y / length(up);
+}
+
 /// World -> the frame of the table: z is the normal, the eye lies over +x.
 mat3 shading_frame(vec3 normal, vec3 eye) {
   vec3 x = eye - normal * dot(eye, normal);

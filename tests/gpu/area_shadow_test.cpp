@@ -92,7 +92,7 @@ void expect_shares(const Shadow& shadow, const glm::dvec3& direction,
     if (std::isnan(shadow.positions[i].x)) continue;
     const double expected = lit_share(shadow.positions[i], direction, point);
     if (std::isnan(expected)) continue;
-    EXPECT_NEAR(shadow.mean[i], expected, 0.15) << shadow.positions[i].x;
+    EXPECT_NEAR(shadow.mean[i], expected, 0.2) << shadow.positions[i].x;
     error += std::abs(shadow.mean[i] - expected);
     bias += shadow.mean[i] - expected;
     half_lit += expected > 0.2 && expected < 0.8;
@@ -160,13 +160,16 @@ TEST(AreaShadows, ASpotWithARadiusCastsASoftShadowAndOneWithoutAHardOne) {
       const glm::dvec2 at(shadow.positions[i].x, shadow.positions[i].z);
       const double reach = std::max(std::abs(at.x), std::abs(at.y));
       // The edge of the table throws its shadow to 0.75; half the disk is as wide again below it.
-      if (reach < 0.75 - 0.5 * radius - 0.02) EXPECT_EQ(shadow.mean[i], 0.0) << at.x << " " << at.y;
-      if (reach > 0.75 + 0.5 * radius + 0.02) EXPECT_EQ(shadow.mean[i], 1.0) << at.x << " " << at.y;
+      const double penumbra = 0.5 * radius + 0.02;
+      if (reach < 0.75 - penumbra) {
+        EXPECT_EQ(shadow.mean[i], 0.0) << at.x << " " << at.y;
+      } else if (reach > 0.75 + penumbra) {
+        EXPECT_EQ(shadow.mean[i], 1.0) << at.x << " " << at.y;
+      }
       dark += shadow.mean[i] == 0.0;
     }
     EXPECT_GT(dark, 20) << radius;
-    if (radius > 0.0f) EXPECT_GT(soft, 100);
-    if (radius == 0.0f) EXPECT_EQ(soft, 0);
+    EXPECT_TRUE(radius > 0.0f ? soft > 100 : soft == 0) << soft;
   }
 }
 
