@@ -99,15 +99,19 @@ class AtrousRig {
     return result;
   }
 
-  /// Milliseconds of the shader and of the host kernel, the best of several frames.
+  /// Milliseconds of the shader and of the host kernel, the best of several frames, by the clock.
   std::pair<double, double> time(const shared::AtrousConstants& constants) {
+    using Clock = std::chrono::steady_clock;
     constants_ = constants;
+    rig_.run();
     std::pair best(1e9, 1e9);
     for (int i = 0; i < 8; ++i) {
+      const auto start = Clock::now();
       rig_.run();
-      const auto& timings = rig_.plan().timings();
-      best.first = std::min<double>(best.first, timings[0].milliseconds);
-      best.second = std::min<double>(best.second, timings[1].milliseconds);
+      const double both = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+      const double host = rig_.plan().timings()[1].milliseconds;
+      best.first = std::min(best.first, both - host);
+      best.second = std::min(best.second, host);
     }
     return best;
   }
