@@ -59,11 +59,37 @@ constexpr std::string_view greeting = R"({
 constexpr std::string_view scene = R"({
   "name": "atrium", "triangles": 344000, "instances": 210, "meshes": 34, "materials": 18,
   "textures": 41, "lights": 1, "cameras": ["entrance", "gallery"],
+  "clips": [{"name": "moving_camera", "duration": 10.0}],
   "bounds": {"min": [-12.0, 0.0, -6.5], "max": [12.0, 11.5, 6.5]}, "warnings": []})";
 
 constexpr std::string_view camera = R"({
   "eye": [8.0, 1.7, 0.0], "target": [0.0, 2.5, 0.0], "up": [0.0, 1.0, 0.0],
   "vertical_fov": 50.0, "name": null, "rev": 7})";
+
+constexpr std::string_view animation = R"({
+  "clips": [{"name": "moving_camera", "duration": 10.0}], "clip": "moving_camera",
+  "playing": true, "seconds": 2.5, "rate": 1.0, "rev": 9})";
+
+std::vector<MethodDescriptor> animation_methods() {
+  return {
+      method<Empty, AnimationState>("animation.list", Call::query,
+                                    "Lists the scene's clips and tells where the clip stands.",
+                                    {no_params, animation}),
+      method<AnimationPlay, AnimationState>(
+          "animation.play", Call::command,
+          "Lets time pass in a clip. A camera that the clip moves follows it until it is taken by "
+          "hand.",
+          {R"({"clip": "moving_camera", "rate": 1.0})", animation}),
+      method<Empty, AnimationState>("animation.pause", Call::command,
+                                    "Stops time; the pose stays.", {no_params, animation}),
+      method<AnimationSeek, AnimationState>("animation.seek", Call::command,
+                                            "Goes to a moment of the clip.",
+                                            {R"({"seconds": 2.5})", animation}),
+      method<AnimationRate, AnimationState>("animation.rate", Call::command,
+                                            "Sets how fast time passes.",
+                                            {R"({"rate": 0.5})", animation}),
+  };
+}
 
 std::vector<MethodDescriptor> session_methods() {
   return {
@@ -153,6 +179,8 @@ std::span<const MethodDescriptor> methods() {
     std::vector<MethodDescriptor> list = session_methods();
     const std::vector<MethodDescriptor> more = stream_methods();
     list.insert(list.end(), more.begin(), more.end());
+    const std::vector<MethodDescriptor> moving = animation_methods();
+    list.insert(list.end(), moving.begin(), moving.end());
     return list;
   }();
   return all;

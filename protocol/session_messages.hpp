@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "protocol/animation_messages.hpp"
 #include "protocol/fields.hpp"
 #include "protocol/kinds.hpp"
 #include "protocol/raw_json.hpp"
@@ -165,6 +166,7 @@ struct SceneInfo {
   std::uint32_t textures = 0;
   std::uint32_t lights = 0;
   std::vector<std::string> cameras;
+  std::vector<ClipInfo> clips;
   Bounds bounds;
   std::vector<std::string> warnings;
 
@@ -178,6 +180,7 @@ struct SceneInfo {
         field("textures", &SceneInfo::textures, "Textures."),
         field("lights", &SceneInfo::lights, "Punctual and directional lights."),
         field("cameras", &SceneInfo::cameras, "Names for camera.set."),
+        field("clips", &SceneInfo::clips, "What animation.play can play."),
         field("bounds", &SceneInfo::bounds, "Box around everything."),
         field("warnings", &SceneInfo::warnings, "What the importer ignored or repaired."),
     };

@@ -8,6 +8,7 @@
 #include "protocol/settings_json.hpp"
 #include "protocol/suggestions.hpp"
 #include "scene/camera.hpp"
+#include "scene/pose.hpp"
 #include "session/scene_description.hpp"
 
 namespace heliograph::session {
@@ -50,6 +51,10 @@ std::uint64_t Session::version() const {
 RenderState Session::render_state() const {
   const std::lock_guard lock(mutex_);
   RenderState state = state_;
+  state.scene = scene_;
+  const scene::Clip* const clip =
+      scene_ && camera_name_ ? scene::find_clip(*scene_, state_.animation.clip) : nullptr;
+  state.camera_follows = clip && scene::carries(*scene_, *clip, state_.camera);
   for (const auto& [viewer, seq] : input_seqs_) {
     state.inputs.push_back({.viewer = viewer, .seq = seq});
   }
@@ -67,6 +72,7 @@ void Session::show(LoadedScene scene, const std::string& by) {
   scene_ = std::move(scene.scene);
   scene_info_ = describe_scene(scene.name, *scene_);
   state_.resources = std::move(scene.resources);
+  state_.animation = {};
   if (scene_->cameras.empty()) {
     state_.camera = scene::fit_camera(scene_->bounds, scene::Camera().vertical_fov, aspect());
     camera_name_.reset();

@@ -12,6 +12,7 @@
 #include "protocol/result.hpp"
 #include "protocol/settings.hpp"
 #include "scene/scene.hpp"
+#include "session/animation_clock.hpp"
 #include "session/audience.hpp"
 #include "session/capture.hpp"
 #include "session/wakeup.hpp"
@@ -50,7 +51,10 @@ struct RenderState {
   std::uint32_t rev = 0;
   Clock::time_point changed_at;
   std::shared_ptr<const render::SceneResources> resources;
+  std::shared_ptr<const scene::Scene> scene;
   scene::Camera camera;
+  bool camera_follows = false;  // the clip carries the camera
+  AnimationClock animation;
   protocol::Settings settings;
   std::uint32_t width = 0;
   std::uint32_t height = 0;
@@ -82,6 +86,12 @@ class Session {
                                                 const std::string& by);
   protocol::Result<protocol::Camera> fit_camera(const std::string& by);
 
+  protocol::Result<protocol::AnimationState> animation() const;
+  protocol::Result<protocol::AnimationState> play(const protocol::AnimationPlay& request);
+  protocol::Result<protocol::AnimationState> pause();
+  protocol::Result<protocol::AnimationState> seek(const protocol::AnimationSeek& request);
+  protocol::Result<protocol::AnimationState> set_rate(const protocol::AnimationRate& request);
+
   protocol::SettingsState settings() const;
   protocol::Result<protocol::SettingsApplied> patch_settings(const protocol::RawJson& patch,
                                                              const std::string& by);
@@ -104,6 +114,9 @@ class Session {
   protocol::Camera camera_message() const;
   protocol::Camera moved_camera(const scene::Camera& camera, std::optional<std::string> name,
                                 const std::string& by);
+  AnimationClock rewound_clock() const;
+  protocol::AnimationState set_clock(const AnimationClock& clock);
+  protocol::AnimationState animation_message() const;
   float aspect() const;
 
   const SessionOptions options_;

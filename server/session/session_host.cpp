@@ -18,6 +18,7 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
       loader_(engine, catalogue_, options_.environment) {
   add_scene_commands(dispatcher_, *this);
   add_camera_commands(dispatcher_, *this);
+  add_animation_commands(dispatcher_, *this);
   add_settings_commands(dispatcher_, *this);
   add_stream_commands(dispatcher_, *this);
   add_stats_commands(dispatcher_, *this);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "scene/camera.hpp"
+#include "scene/pose.hpp"
 
 namespace heliograph::session {
 
@@ -89,11 +90,12 @@ bool SessionView::advance() {
 std::optional<Clock::time_point> SessionView::next_due() const {
   std::optional<Clock::time_point> due = session_->audience().next_turn();
   const auto also = [&](Clock::time_point time) { due = due ? std::min(*due, time) : time; };
-  if (newest_ && newest_->frame.converged && !final_sent_) {
+  if (newest_ && newest_->frame.converged && !final_sent_ && !state_.animation.playing) {
     const Clock::time_point rested = state_.changed_at + rest_before_final;
     if (rested > Clock::now()) also(rested);
   }
-  if (!draws_whole() && moving()) also(moved_at_ + rest_before_final);
+  const Clock::time_point rests = moved_at_ + rest_before_final;
+  if (!draws_whole() && rests > Clock::now()) also(rests);
   if (resting_until_ > Clock::now()) also(resting_until_);
   return due;
 }
@@ -121,14 +123,32 @@ void SessionView::adopt_state() {
   if (resized) whole_frame_ = {};
   cut_ |= resized || !same_scene;
   if (same_scene && !scene::same_view(state_.camera, before.camera)) moved_at_ = Clock::now();
-  renderer_->set_camera(state_.camera);
+  adopt_pose();
   if (const auto accepted = renderer_->set_settings(state_.settings); !accepted) {
     spdlog::error("session {}: the renderer refused settings: {}", session_->name(),
                   accepted.error().message);
   }
 }
 
+/// Where the clip stands now, and the camera with it.
+void SessionView::adopt_pose() {
+  const double seconds = state_.animation.at(Clock::now());
+  if (const auto posed = renderer_->set_pose(state_.animation.clip, seconds); !posed) {
+    spdlog::error("session {}: {}", session_->name(), posed.error().message);
+  }
+  const scene::Clip* const clip =
+      state_.camera_follows ? scene::find_clip(*state_.scene, state_.animation.clip) : nullptr;
+  if (!clip) {
+    renderer_->set_camera(state_.camera);
+    return;
+  }
+  scene::Pose pose = scene::rest_pose(*state_.scene);
+  scene::evaluate(*state_.scene, *clip, seconds, pose);
+  renderer_->set_camera(scene::camera_at(*state_.scene, state_.camera, pose));
+}
+
 bool SessionView::moving() const {
+  if (state_.animation.playing) return true;
   return Clock::now() < moved_at_ + rest_before_final;
 }
 
@@ -174,6 +194,7 @@ bool SessionView::settle_captures() {
 
 bool SessionView::capture_ready(const CaptureRequest& request) const {
   if (!newest_ || !draws_whole()) return false;
+  if (state_.animation.playing) return newest_version_ == state_.version;
   if (!renderer_->needs_frame()) return true;
   return newest_version_ == state_.version && request.samples &&
          newest_->frame.samples >= *request.samples;
@@ -201,7 +222,7 @@ bool SessionView::write_capture(CaptureRequest& request) {
 }
 
 bool SessionView::frame_wanted() {
-  if (!renderer_->needs_frame()) return false;
+  if (!renderer_->needs_frame() && !state_.animation.playing) return false;
   // The first picture of a session is made unasked: it shows that everything works.
   const bool first = !newest_ && state_.resources;
   return first || !captures_.empty() || session_->audience().wants_frame();
@@ -209,12 +230,14 @@ bool SessionView::frame_wanted() {
 
 bool SessionView::final_due() const {
   return newest_ && draws_whole() && newest_->frame.converged && !final_sent_ &&
+         !state_.animation.playing &&
          !renderer_->needs_frame() && Clock::now() >= state_.changed_at + rest_before_final &&
          session_->audience().watching();
 }
 
 void SessionView::render_frame() {
   const Clock::time_point start = Clock::now();
+  if (state_.animation.playing) adopt_pose();
   auto picture = std::make_shared<Picture>();
   picture->frame = renderer_->render();
   const Clock::time_point end = Clock::now();

@@ -53,6 +53,7 @@ class SessionView {
   enum class Encoding { interactive, final };
 
   void adopt_state();
+  void adopt_pose();
   void adopt_size();
   bool moving() const;
   bool draws_whole() const;
