@@ -14,7 +14,8 @@ bool is_filtered(const protocol::Settings& settings) {
   return settings.shadow_temporal.enabled || settings.shadow_blur.enabled ||
          (settings.specular.enabled &&
           (settings.specular_temporal.enabled || settings.specular_blur.enabled)) ||
-         settings.antialiasing.temporal || settings.reference.use == protocol::ReferenceUse::resting;
+         settings.antialiasing.temporal ||
+         settings.reference.use == protocol::ReferenceUse::resting;
 }
 
 /// Samples in the mean when this frame's is in it.

@@ -76,8 +76,8 @@ class Row {
         y_(y),
         pitch_(static_cast<int>(job.images.guide.row_pitch / sizeof(float))),
         signal_pitch_(static_cast<int>(job.images.signal.row_pitch / sizeof(float))),
-        random_(hn::RebindToUnsigned<D>(), job.frame.extent.z, 48u + static_cast<unsigned>(c_.level),
-                job.frame.extent.w),
+        random_(hn::RebindToUnsigned<D>(), job.frame.extent.z,
+                48u + static_cast<unsigned>(c_.level), job.frame.extent.w),
         variance_x_(variance),
         variance_y_(variance + job.width + 2) {}
 
@@ -174,14 +174,16 @@ class Row {
                           V offset_y, V distance, float weight, M wanted, Sums& sums) const {
     const V rise = hn::MulAdd(c.slope_x, offset_x, hn::Mul(c.slope_y, offset_y));
     const V straight = hn::NegMulAdd(rise, c.curve, set(1.0f));
-    const V off_plane = hn::Abs(hn::NegMulAdd(
-        rise, c.flattened, hn::Sub(hn::Mul(guide.w, straight), c.view_z)));
+    const V off_plane =
+        hn::Abs(hn::NegMulAdd(rise, c.flattened, hn::Sub(hn::Mul(guide.w, straight), c.view_z)));
     const V allowed = hn::MulAdd(c.footprint, distance, hn::Abs(rise));
-    V exponent = hn::Div(hn::Neg(off_plane),
-                         hn::Max(hn::Mul(set(c_.depth_sigma), allowed), set(1e-30f)));
-    const V square = hn::MulAdd(guide.x, guide.x, hn::MulAdd(guide.y, guide.y, hn::Mul(guide.z, guide.z)));
+    V exponent =
+        hn::Div(hn::Neg(off_plane), hn::Max(hn::Mul(set(c_.depth_sigma), allowed), set(1e-30f)));
+    const V square =
+        hn::MulAdd(guide.x, guide.x, hn::MulAdd(guide.y, guide.y, hn::Mul(guide.z, guide.z)));
     const V size = hn::Sqrt(square);
-    const V projected = hn::MulAdd(c.nx, guide.x, hn::MulAdd(c.ny, guide.y, hn::Mul(c.nz, guide.z)));
+    const V projected =
+        hn::MulAdd(c.nx, guide.x, hn::MulAdd(c.ny, guide.y, hn::Mul(c.nz, guide.z)));
     const V cosine = hn::Min(hn::Max(hn::Div(projected, size), set(1e-6f)), set(1.0f));
     exponent = hn::MulAdd(set(c_.normal_power), hn::Log(d_, cosine), exponent);
     const M counts = hn::And(wanted, hn::Gt(guide.w, hn::Zero(d_)));
@@ -222,9 +224,9 @@ class Row {
   /// Pixels from tap to tap.
   HWY_INLINE V steps(V roughness) const {
     const float low = c_.start_threshold - 0.05f, high = c_.start_threshold + 0.05f;
-    const V t = hn::Min(hn::Max(hn::Mul(hn::Sub(roughness, set(low)), set(1.0f / (high - low))),
-                                hn::Zero(d_)),
-                        set(1.0f));
+    const V t = hn::Min(
+        hn::Max(hn::Mul(hn::Sub(roughness, set(low)), set(1.0f / (high - low))), hn::Zero(d_)),
+        set(1.0f));
     const V twice = hn::Mul(hn::Mul(t, t), hn::NegMulAdd(set(2.0f), t, set(3.0f)));
     return hn::Round(hn::Mul(set(static_cast<float>(1 << c_.level)), hn::Add(set(1.0f), twice)));
   }
@@ -232,8 +234,8 @@ class Row {
   HWY_INLINE void block(int x) {
     const Texels value = load(row(job_.images.signal, y_) + 4 * x);
     const Texels guide = load(row(job_.images.guide, y_) + 4 * x);
-    const V size = hn::Sqrt(hn::MulAdd(
-        guide.x, guide.x, hn::MulAdd(guide.y, guide.y, hn::Mul(guide.z, guide.z))));
+    const V size = hn::Sqrt(
+        hn::MulAdd(guide.x, guide.x, hn::MulAdd(guide.y, guide.y, hn::Mul(guide.z, guide.z))));
     const V roughness = hn::Sub(size, set(1.0f));
     const M active = hn::And(hn::Gt(guide.w, hn::Zero(d_)),
                              hn::Lt(set(static_cast<float>(c_.level)), levels(roughness)));
@@ -263,8 +265,7 @@ class Row {
 
   /// Where all lanes take the same steps inside the picture, texels lie side by side.
   HWY_INLINE void add_taps(int x, M active, V step, const Center& c, Sums& sums) {
-    const float least =
-        hn::GetLane(hn::MinOfLanes(d_, hn::IfThenElse(active, step, set(1e9f))));
+    const float least = hn::GetLane(hn::MinOfLanes(d_, hn::IfThenElse(active, step, set(1e9f))));
     const float most = hn::GetLane(hn::MaxOfLanes(d_, hn::IfThenElseZero(active, step)));
     const int reach = c_.columns * static_cast<int>(most);
     const bool inside = x >= reach && x + static_cast<int>(hn::Lanes(d_)) + reach <= job_.width;
@@ -380,12 +381,15 @@ HWY_EXPORT(filter_rows);
 void atrous(Signal signal, const shared::AtrousConstants& constants,
             const shared::FrameConstants& frame, const AtrousImages& images) {
   const bool orthographic = (frame.counts.y & shared::frame_orthographic) != 0;
-  const float footprint =
-      2.0f * std::abs(frame.unproject.y) / static_cast<float>(frame.extent.y);
-  const Job job{signal,     constants,
-                frame,      images,
-                static_cast<int>(frame.extent.x), static_cast<int>(frame.extent.y),
-                footprint,  orthographic};
+  const float footprint = 2.0f * std::abs(frame.unproject.y) / static_cast<float>(frame.extent.y);
+  const Job job{signal,
+                constants,
+                frame,
+                images,
+                static_cast<int>(frame.extent.x),
+                static_cast<int>(frame.extent.y),
+                footprint,
+                orthographic};
   tbb::parallel_for(tbb::blocked_range<int>(0, job.height, 8), [&](const auto& rows) {
     HWY_DYNAMIC_DISPATCH(filter_rows)(job, rows.begin(), rows.end());
   });

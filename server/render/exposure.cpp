@@ -43,10 +43,10 @@ Exposure expose(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef hdr,
                 gpu::ImageRef mean) {
   constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   constexpr VkDeviceSize size = sizeof(shared::ExposureState);
-  const Exposure exposure{plan.buffer("exposure", size,
-                                      storage | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
-                                      gpu::Memory::device),
-                          plan.buffer("exposure.report", size, storage, gpu::Memory::readback)};
+  const Exposure exposure{
+      plan.buffer("exposure", size, storage | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
+                  gpu::Memory::device),
+      plan.buffer("exposure.report", size, storage, gpu::Memory::readback)};
   const auto histogram =
       plan.buffer("exposure.histogram", shared::exposure_bins * sizeof(std::uint32_t), storage,
                   gpu::Memory::device);

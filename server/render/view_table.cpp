@@ -51,10 +51,12 @@ constexpr std::array buffer_rules{
                "What one mirrored ray per pixel brings, without the surface's colour; its length "
                "in metres (w)."},
     BufferRule{"skybox", ViewColors::radiance, "Radiance of the environment behind the scene."},
-    BufferRule{"hdr", ViewColors::radiance, "The frame's radiance, without noise, before "
-                                            "antialiasing: linear."},
+    BufferRule{"hdr", ViewColors::radiance,
+               "The frame's radiance, without noise, before "
+               "antialiasing: linear."},
     BufferRule{"hdr_raw", ViewColors::radiance, "The frame's radiance with its noise: linear."},
-    BufferRule{"reference", ViewColors::radiance, "One sample of the path tracer: linear radiance."},
+    BufferRule{"reference", ViewColors::radiance,
+               "One sample of the path tracer: linear radiance."},
     BufferRule{"*.visibility", ViewColors::grey},
     BufferRule{"*.history", ViewColors::heat},
     BufferRule{"*.moments", ViewColors::channels},

@@ -79,8 +79,8 @@ TEST_F(AntialiasTest, APictureThatStandsStillStaysWhatItIs) {
 TEST_F(AntialiasTest, ColumnsThatComeInFromOutsideShowTheFrameAlone) {
   const auto shade = [](int frame_number) {
     return [frame_number](float x, float y) {
-      const float pattern = std::sin(0.4f * (x + 3.0f * static_cast<float>(frame_number))) *
-                            std::sin(0.3f * y);
+      const float pattern =
+          std::sin(0.4f * (x + 3.0f * static_cast<float>(frame_number))) * std::sin(0.3f * y);
       return glm::vec3(1.0f + 0.9f * pattern, 0.5f + 0.4f * pattern, 0.2f);
     };
   };
@@ -95,7 +95,8 @@ TEST_F(AntialiasTest, ColumnsThatComeInFromOutsideShowTheFrameAlone) {
         ASSERT_EQ(texel(image, x, y), picture[y * width + x]) << x << " " << y << " frame " << i;
       }
       for (std::uint32_t x = 8; x < width - 8; ++x) {
-        inside = std::max<double>(inside, std::abs(texel(image, x, y).x - picture[y * width + x].x));
+        inside =
+            std::max<double>(inside, std::abs(texel(image, x, y).x - picture[y * width + x].x));
       }
     }
     // The pattern moves by whole pixels: the history fits wherever there is one.
@@ -106,8 +107,8 @@ TEST_F(AntialiasTest, ColumnsThatComeInFromOutsideShowTheFrameAlone) {
 TEST_F(AntialiasTest, NothingIsRememberedAcrossACut) {
   frame([](float, float) { return glm::vec3(100.0f); });
   FrameRig fresh(SceneBuilder().build(), look({0, 0, 3}, {0, 0, 0}), {.extent = extent});
-  const auto hdr = fresh.input("hdr", VK_FORMAT_R32G32B32A32_SFLOAT,
-                               Texels(width * height, glm::vec4(100.0f)));
+  const auto hdr =
+      fresh.input("hdr", VK_FORMAT_R32G32B32A32_SFLOAT, Texels(width * height, glm::vec4(100.0f)));
   render::GBuffer gbuffer;
   gbuffer.motion = fresh.input("motion", VK_FORMAT_R32G32B32A32_SFLOAT,
                                Texels(width * height, glm::vec4(0, 0, 0, 5)));
@@ -162,7 +163,9 @@ TEST_F(AntialiasTest, TheMotionOfAnEdgeIsThatOfTheNearerSurface) {
     motion.push_back(near ? glm::vec4(-2.0f / width, 0, 0, 2) : glm::vec4(0, 0, 0, 9));
   }
   rig_.fill(gbuffer_.motion, motion);
-  const auto picture = [](float x, float) { return x < 24 ? glm::vec3(2.0f) : glm::vec3(0.1f * x); };
+  const auto picture = [](float x, float) {
+    return x < 24 ? glm::vec3(2.0f) : glm::vec3(0.1f * x);
+  };
   frame(picture);
   const render::FloatImage image = frame(picture);
   // Pixel 24 is far, beside the edge: with the near motion its history is column 22's, darker, as
@@ -174,7 +177,8 @@ TEST_F(AntialiasTest, TheMotionOfAnEdgeIsThatOfTheNearerSurface) {
 
 TEST_F(AntialiasTest, StaysPositiveBesideHardEdges) {
   const auto edge = [](float offset) {
-    return [offset](float x, float) { return x < 20 + offset ? glm::vec3(0.0f) : glm::vec3(80.0f); };
+    return
+        [offset](float x, float) { return x < 20 + offset ? glm::vec3(0.0f) : glm::vec3(80.0f); };
   };
   move({0.4f, 0});
   for (int i = 0; i < 12; ++i) {

@@ -35,7 +35,8 @@ Field make_field(VkExtent2D extent, Signal kind) {
                               : left                ? 0.03f
                                                     : 0.6f;
       const bool hole = x % 19 == 7 && y % 5 == 2;
-      const float view_z = hole ? 0.0f : 3.0f + 0.02f * static_cast<float>(x) + (left ? 0.0f : 1.0f);
+      const float view_z =
+          hole ? 0.0f : 3.0f + 0.02f * static_cast<float>(x) + (left ? 0.0f : 1.0f);
       field.guide.emplace_back(hole ? glm::vec3(0.0f) : normal * (1.0f + roughness), view_z);
       field.slope.emplace_back(hole ? 0.0f : 0.02f, 0.001f);
       const float a = unit(random), b = unit(random), noise = 0.1f * unit(random);
@@ -196,9 +197,9 @@ TEST_P(AtrousHost, IsFasterThanTheShader) {
       const auto [a, b] = rig.time(constants(level, columns, rows, 5u, 0.2f));
       shader += a;
       host += b;
-      RecordProperty(kind + "_" + std::to_string(level) + "_" + std::to_string(columns) +
-                         std::to_string(rows),
-                     std::to_string(a) + " " + std::to_string(b) + " ms");
+      RecordProperty(
+          kind + "_" + std::to_string(level) + "_" + std::to_string(columns) + std::to_string(rows),
+          std::to_string(a) + " " + std::to_string(b) + " ms");
     }
   }
   std::printf("%s: shader %.2f ms, host %.2f ms, ratio %.1f\n", kind.c_str(), shader, host,
@@ -206,8 +207,7 @@ TEST_P(AtrousHost, IsFasterThanTheShader) {
   EXPECT_GT(shader, 1.5 * host);
 }
 
-INSTANTIATE_TEST_SUITE_P(Signals, AtrousHost,
-                         testing::Values(Signal::visibility, Signal::specular),
+INSTANTIATE_TEST_SUITE_P(Signals, AtrousHost, testing::Values(Signal::visibility, Signal::specular),
                          [](const auto& test) {
                            return test.param == Signal::visibility ? "visibility" : "specular";
                          });

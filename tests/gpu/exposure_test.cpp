@@ -111,8 +111,10 @@ float stops_after(float time, float seconds, float adaptation) {
 
 TEST(Exposure, FollowsAStepWithItsTimeConstantAtEveryFrameRate) {
   for (const float seconds : {1.0f / 60.0f, 1.0f / 15.0f, 0.2f}) {
-    EXPECT_NEAR(stops_after(0.6f, seconds, 0.6f), -3.0f * (1.0f - std::exp(-1.0f)), 0.02f) << seconds;
-    EXPECT_NEAR(stops_after(0.6f, seconds, 2.0f), -3.0f * (1.0f - std::exp(-0.3f)), 0.02f) << seconds;
+    EXPECT_NEAR(stops_after(0.6f, seconds, 0.6f), -3.0f * (1.0f - std::exp(-1.0f)), 0.02f)
+        << seconds;
+    EXPECT_NEAR(stops_after(0.6f, seconds, 2.0f), -3.0f * (1.0f - std::exp(-0.3f)), 0.02f)
+        << seconds;
   }
   EXPECT_NEAR(stops_after(0.2f, 0.2f, 0.0f), -3.0f, 0.01f) << "0: at once";
 }

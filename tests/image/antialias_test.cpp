@@ -15,8 +15,9 @@ std::shared_ptr<const scene::Scene> edges() {
   SceneBuilder builder;
   builder.place(builder.add_sphere(0.7f, surface({0.9f, 0.3f, 0.1f})),
                 glm::translate(glm::mat4(1.0f), {-0.7f, 0.3f, 0}));
-  const auto bar = builder.add_quad(
-      {{{-1.5f, 0, 0}, {1.5f, 0, 0}, {1.5f, 0.03f, 0}, {-1.5f, 0.03f, 0}}}, surface({0.1f, 0.1f, 0.1f}));
+  const auto bar =
+      builder.add_quad({{{-1.5f, 0, 0}, {1.5f, 0, 0}, {1.5f, 0.03f, 0}, {-1.5f, 0.03f, 0}}},
+                       surface({0.1f, 0.1f, 0.1f}));
   for (int i = 0; i < 8; ++i) {
     const float angle = 0.3f * static_cast<float>(i);
     builder.place(bar, glm::rotate(glm::translate(glm::mat4(1.0f), {0.8f, -0.4f, 0.2f}), angle,
@@ -94,9 +95,9 @@ TEST(Antialias, WithoutJitterAStillPictureStandsStill) {
 }
 
 TEST(Antialias, EdgesAreBetterThanOneSampleWhileTheCameraMoves) {
-  for (const auto& [name, step] :
-       {std::pair("yaw", glm::vec3(0.02f, 0, 0)), {"pitch", glm::vec3(0, 0.02f, 0)},
-        {"dolly", glm::vec3(0, 0, -0.03f)}}) {
+  for (const auto& [name, step] : {std::pair("yaw", glm::vec3(0.02f, 0, 0)),
+                                   {"pitch", glm::vec3(0, 0.02f, 0)},
+                                   {"dolly", glm::vec3(0, 0, -0.03f)}}) {
     glm::vec3 eye(0, 0, 3), target(0, 0, 0);
     const bool turns = step.z == 0.0f;
     Edges moving(look(eye, target));
@@ -140,8 +141,8 @@ TEST(Handover, FramesOfAStillViewDifferLessAndLess) {
     return sum / 4.0;
   };
   const double early = change_after(2), middle = change_after(48), late = change_after(400);
-  RecordProperty("code_values", std::to_string(early) + " " + std::to_string(middle) + " " +
-                                    std::to_string(late));
+  RecordProperty("code_values",
+                 std::to_string(early) + " " + std::to_string(middle) + " " + std::to_string(late));
   EXPECT_LT(middle, 0.5 * early);
   EXPECT_LT(late, 0.25 * middle);
   EXPECT_LT(late, 0.04) << "code values";

@@ -10,8 +10,9 @@ constexpr std::uint32_t width = 64, height = 40;
 /// A room's worth of light, or a sunny day's.
 class Lit : public Still {
  public:
-  Lit() : Still(ground(), scene::constant_environment(glm::vec3(0.3f)), look({0, 1, 3}, {0, 0, 0}),
-                width, height) {
+  Lit()
+      : Still(ground(), scene::constant_environment(glm::vec3(0.3f)), look({0, 1, 3}, {0, 0, 0}),
+              width, height) {
     settings.exposure.mode = protocol::ExposureMode::automatic;
     settings.exposure.adaptation = 0.5f;
     settings.accumulation.max_samples = 4;

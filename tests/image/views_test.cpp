@@ -31,8 +31,8 @@ class Views : public testing::Test {
                   glm::translate(glm::mat4(1.0f), {0.8f, 0.6f, 0.5f}));
     shared::Material glow = surface({0, 0, 0});
     glow.emissive = {2.0f, 1.5f, 0.5f};
-    builder.place(builder.add_quad({{{1.8f, 0, 0}, {2.4f, 0, 0}, {2.4f, 1.2f, 0}, {1.8f, 1.2f, 0}}},
-                                   glow));
+    builder.place(
+        builder.add_quad({{{1.8f, 0, 0}, {2.4f, 0, 0}, {2.4f, 1.2f, 0}, {1.8f, 1.2f, 0}}}, glow));
     builder.add_sun({-0.6f, -1, -0.4f}, glm::vec3(2.5f), 8.0f);
     return builder.build();
   }

@@ -21,7 +21,9 @@ FloatImage row(std::initializer_list<std::array<float, 4>> texels) {
   return image;
 }
 
-int brightness(const Rgb& c) { return 2 * c[0] + 5 * c[1] + c[2]; }
+int brightness(const Rgb& c) {
+  return 2 * c[0] + 5 * c[1] + c[2];
+}
 
 constexpr Rgb dark_blue{68, 1, 84}, yellow{253, 231, 37};
 
@@ -40,7 +42,8 @@ TEST(Heat, RunsFromDarkBlueToYellowAndGetsEverBrighter) {
 
 TEST(Heat, OneOutlierDoesNotDimTheRest) {
   FloatImage image{100, 1, {}};
-  for (int i = 0; i < 100; ++i) image.rgba.insert(image.rgba.end(), {i == 7 ? 1e6f : 2.0f, 0, 0, 1});
+  for (int i = 0; i < 100; ++i)
+    image.rgba.insert(image.rgba.end(), {i == 7 ? 1e6f : 2.0f, 0, 0, 1});
   EXPECT_EQ(texel(colorize(ViewColors::heat, image), 50), yellow);
 }
 
