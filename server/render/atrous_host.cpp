@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-// What a plain x86-64 has, AVX2 and AVX-512: what lies between is hardly ever met.
+// The baseline, AVX2 and AVX-512: what lies between is hardly ever met.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/atrous_host.cpp"
