@@ -3,12 +3,15 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "scenes/generator/paper_scenes.hpp"
 #include "tests/paper/report.hpp"
 #include "tests/paper/stage.hpp"
+#include "tests/support/picture.hpp"
 
 namespace heliograph::paper {
 namespace {
@@ -18,6 +21,7 @@ struct Options {
   std::vector<std::string> presets;
   std::vector<std::string> movements{"static", "moving_camera", "moving_objects_light"};
   std::vector<float> values;
+  std::vector<std::string> settings;  // path=value, on top of every preset
   std::string size = "320x180";
   int frames = 60;
   int samples = 512;
@@ -37,6 +41,14 @@ struct Options {
       throw std::invalid_argument("--size " + size + " must look like 640x360");
     }
     return stage;
+  }
+  protocol::Settings of(const std::string& preset) const {
+    protocol::Settings all = find_technique(preset).settings();
+    for (const std::string& assignment : settings) {
+      const auto accepted = protocol::set_by_path(all, assignment);
+      if (!accepted) throw std::invalid_argument(accepted.error().message);
+    }
+    return all;
   }
   Shot shot(const std::string& movement) const {
     return {
@@ -61,8 +73,12 @@ void measure_quality(render::Engine& engine, const Options& options,
       for (const std::string& movement : options.movements) {
         const Shot shot = options.shot(movement);
         const auto truth = stage.truth(source, shot, options.samples);
+        const std::string taken =
+            scene + "_" + std::to_string(int(100.0f * value)) + "_" + movement + "_";
+        test::save_picture(taken + "truth", truth.back());
         for (const std::string& preset : options.presets) {
-          const auto frames = stage.play(find_technique(preset).settings(), shot);
+          const auto frames = stage.play(options.of(preset), shot);
+          test::save_picture(taken + preset, frames.back());
           measurements.push_back(
               {scene, swept, value, shot.movement, preset, compare(frames, truth)});
           const Quality& quality = measurements.back().quality;
@@ -88,7 +104,7 @@ std::vector<Timing> measure_times(render::Engine& engine, const Options& options
       for (const std::string& preset : options.presets) {
         Shot shot = options.shot(movement);
         shot.frames += warm_up;
-        Timing timing = summarise(stage.time(find_technique(preset).settings(), shot), warm_up);
+        Timing timing = summarise(stage.time(options.of(preset), shot), warm_up);
         timing.scene = scene;
         timing.technique = preset;
         timing.movement = shot.movement;
@@ -101,6 +117,11 @@ std::vector<Timing> measure_times(render::Engine& engine, const Options& options
 }
 
 void run(const Options& options) {
+  if (!options.output.empty()) {
+    std::filesystem::create_directories(options.output);
+    // Where pictures of tests go.
+    setenv("HELIOGRAPH_TEST_OUTPUT", options.output.c_str(), 1);
+  }
   render::Engine engine({.device = options.device, .tracer = options.tracer});
   std::printf("%s, %s, %s pixels, %d frames at %g per second, truth of %d samples\n",
               engine.device().name.c_str(),
@@ -125,6 +146,9 @@ void add_options(CLI::App& app, Options& options) {
       ->delimiter(',')
       ->capture_default_str();
   app.add_option("--values", options.values, "Swept values [the paper's]")->delimiter(',');
+  app.add_option("--set", options.settings, "A setting on top of every preset")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
   app.add_option("--size", options.size, "Picture size")->capture_default_str();
   app.add_option("--frames", options.frames, "Frames of each run")
       ->check(CLI::Range(3, 100000))
@@ -141,7 +165,8 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--truth", options.truth, "The path tracer, or the hybrid's own samples averaged")
       ->check(CLI::IsMember({"reference", "accumulated"}))
       ->capture_default_str();
-  app.add_option("--output", options.output, "Folder for CSV and JSON files");
+  app.add_option("--output", options.output,
+                 "Folder for CSV, JSON and the last picture of every run");
   app.add_option("--device", options.device, "Part of the Vulkan device's name");
   app.add_option("--tracer", options.tracer, "What traces rays")->capture_default_str();
   app.add_flag("--without-quality", options.without_quality, "Only frame rates");
