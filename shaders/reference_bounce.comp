@@ -1,8 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
-// One vertex of a path of full global illumination: what arrives by itself, one light as far as its
-// shadow ray will find, and where the path goes on.
+// One vertex of a path of full global illumination: what arrives by itself, one light and the
+// environment in one direction as far as their shadow rays will find, and where the path goes on.
+#include "lib/environment_sampling.glsl"
 #include "lib/reference_path.glsl"
 
 layout(set = 1, binding = 0, std430) buffer Rays { Ray rays[]; };
@@ -10,16 +11,75 @@ layout(set = 1, binding = 1, std430) readonly buffer Hits { Hit hits[]; };
 layout(set = 1, binding = 2, std430) buffer Paths { ReferencePath paths[]; };
 layout(set = 1, binding = 3, std430) writeonly buffer ShadowCount { RayCount shadow_count; };
 layout(set = 1, binding = 4, std430) writeonly buffer ShadowRays { Ray shadow_rays[]; };
-layout(set = 1, binding = 5, rgba32f) uniform image2D reference;
+layout(set = 1, binding = 5, std430) writeonly buffer SkyCount { RayCount sky_count; };
+layout(set = 1, binding = 6, std430) writeonly buffer SkyRays { Ray sky_rays[]; };
+layout(set = 1, binding = 7, rgba32f) uniform image2D reference;
 layout(push_constant) uniform Constants { ReferenceConstants constants; };
 
-const uint first_roulette = 3u;  // bounce after which dim paths end at random
+const uint first_roulette = 3u;       // bounce after which dim paths end at random
+const float least_roughness = 0.1;  // whose lobe is wide enough to be met by chance
 
 vec3 environment_at_miss(ReferencePath path, vec3 direction) {
   if (path.bounces == 0u) return background(direction);
   uint lobe = (path.flags & path_mirrored) != 0u ? frame_environment_specular
                                                  : frame_environment_diffuse;
-  return enabled(lobe) ? environment_radiance(direction) : vec3(0.0);
+  if (!enabled(lobe)) return vec3(0.0);
+  // Two ways lead here, each weighed by how likely it is (Veach and Guibas 1995).
+  float other = path.density > 0.0 ? environment_density(direction) : 0.0;
+  float share = other > 0.0 ? path.density / (path.density + other) : 1.0;
+  return environment_radiance(direction) * share;
+}
+
+/// How likely scatter() takes the specular lobe.
+float specular_share(SurfaceMaterial m) {
+  float specular = luminance(m.specular_albedo);
+  return specular / max(specular + luminance(m.diffuse_albedo), 1e-6);
+}
+
+/// What the specular lobe sends to the eye of light along -l, BRDF x cos, and how likely
+/// sample_specular() draws it.
+struct SpecularValue {
+  vec3 reflected;
+  float density;
+};
+
+SpecularValue specular_value(SurfaceMaterial m, vec3 l) {
+  vec3 normal = reflecting_normal(m);
+  vec3 tangent, bitangent;
+  orthonormal_basis(normal, tangent, bitangent);
+  float alpha = m.roughness * m.roughness;
+  vec3 view = normalize(vec3(dot(m.eye, tangent), dot(m.eye, bitangent),
+                             max(dot(m.eye, normal), 1e-3)));
+  vec3 light = vec3(dot(l, tangent), dot(l, bitangent), dot(l, normal));
+  if (light.z <= 0.0) return SpecularValue(vec3(0.0), 0.0);
+  float density = visible_normal_pdf(view, light, alpha);
+  vec3 reflected = microfacet_reflectance(m, dot(view, normalize(view + light))) *
+                   (visible_normal_weight(view, light, alpha) * density);
+  return SpecularValue(reflected, density);
+}
+
+/// Light of the environment from a direction drawn from its own table, lobe by lobe: each with the
+/// weight that scatter() leaves to it.
+Ray sky_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pixel) {
+  EnvironmentSample sky = sample_environment(path_pair(pixel, constants.round, 6u),
+                                             path_pair(pixel, constants.round, 7u));
+  vec3 l = sky.direction;
+  if (dot(l, m.geometric) <= 0.0) return no_ray();
+  float share = specular_share(m);
+  vec3 sent = vec3(0.0);
+  float cosine = dot(l, m.normal);
+  if (cosine > 0.0 && enabled(frame_environment_diffuse)) {
+    float density = (1.0 - share) * cosine / pi;
+    sent += m.diffuse_albedo * (cosine / pi) / (sky.density + density);
+  }
+  if (m.roughness >= least_roughness && enabled(frame_environment_specular)) {
+    SpecularValue value = specular_value(m, l);
+    sent += value.reflected / (sky.density + share * value.density);
+  }
+  if (sent == vec3(0.0)) return no_ray();
+  Ray ray = ray_from(position, m.geometric, l, 1e30);
+  carry(ray, throughput * sent * environment_radiance(l));
+  return ray;
 }
 
 Ray lamp_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pixel) {
@@ -42,11 +102,8 @@ Ray lamp_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pixel) {
 /// One of the two lobes, in proportion to what it gives back; false where the path ends.
 bool scatter(inout ReferencePath path, SurfaceMaterial m, RayCone cone, float t, ivec2 pixel,
              out vec3 direction) {
-  float specular = luminance(m.specular_albedo);
-  float diffuse = luminance(m.diffuse_albedo);
   direction = m.normal;
-  if (specular + diffuse <= 0.0) return false;
-  float share = specular / (specular + diffuse);
+  float share = specular_share(m);
   vec2 u = path_pair(pixel, constants.round, 4u);
   RayCone next;
   if (path_number(pixel, constants.round, 3u) < share) {
@@ -54,12 +111,14 @@ bool scatter(inout ReferencePath path, SurfaceMaterial m, RayCone cone, float t,
     direction = drawn.direction;
     path.throughput *= drawn.weight / share;
     path.flags = path_mirrored;
+    path.density = m.roughness >= least_roughness ? share * drawn.density : 0.0;
     next = mirrored_cone(cone, t, m.roughness);
   } else {
     direction = sample_cosine(m.normal, u);
     bool open = dot(direction, m.geometric) > 0.0;
     path.throughput *= open ? m.diffuse_albedo / (1.0 - share) : vec3(0.0);
     path.flags = 0u;
+    path.density = (1.0 - share) * max(dot(direction, m.normal), 0.0) / pi;
     next = mirrored_cone(cone, t, 1.0);
   }
   path.cone_width = next.width;
@@ -80,7 +139,8 @@ void main() {
   uint index = pixel_index(pixel);
   if (index == 0u) shadow_count = dense_stream();
   Ray ray = rays[index];
-  Ray shadow = no_ray();
+  if (index == 0u) sky_count = dense_stream();
+  Ray shadow = no_ray(), sky = no_ray();
   if (is_wanted(ray)) {
     Hit hit = hits[index];
     ReferencePath path = paths[index];
@@ -100,10 +160,12 @@ void main() {
         if (!is_unlit(s)) {
           SurfaceMaterial m = material_of(s, ray.direction);
           shadow = lamp_ray(m, s.position, arrived, pixel);
-          vec3 direction;
-          if (path.bounces < constants.limit &&
-              scatter(path, m, cone, hit.t, pixel, direction)) {
-            rays[index] = ray_from(s.position, s.geometric, direction, 1e30);
+          if (path.bounces < constants.limit) {
+            sky = sky_ray(m, s.position, arrived, pixel);
+            vec3 direction;
+            if (scatter(path, m, cone, hit.t, pixel, direction)) {
+              rays[index] = ray_from(s.position, s.geometric, direction, 1e30);
+            }
           }
         }
       }
@@ -113,4 +175,5 @@ void main() {
     imageStore(reference, pixel, vec4(sum, 1.0));
   }
   shadow_rays[index] = shadow;
+  sky_rays[index] = sky;
 }

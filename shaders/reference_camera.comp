@@ -16,6 +16,6 @@ void main() {
   if (pixel == ivec2(0)) ray_count = dense_stream();
   RayCone cone = camera_cone();
   rays[pixel_index(pixel)] = camera_ray(pixel);
-  paths[pixel_index(pixel)] = ReferencePath(vec3(1.0), 0u, cone.width, cone.spread, 0u, 0u);
+  paths[pixel_index(pixel)] = ReferencePath(vec3(1.0), 0u, cone.width, cone.spread, 0u, 0.0);
   imageStore(reference, pixel, vec4(0.0, 0.0, 0.0, 1.0));
 }

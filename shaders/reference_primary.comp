@@ -81,7 +81,7 @@ void main() {
         }
         RayCone mirrored = mirrored_cone(cone, hit.t, s.roughness);
         paths[index] = ReferencePath(drawn.weight, 1u, mirrored.width, mirrored.spread,
-                                     path_mirrored, 0u);
+                                     path_mirrored, 0.0);
       } else if (enabled(frame_environment_specular)) {
         open += environment_specular(m);
       }

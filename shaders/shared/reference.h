@@ -12,7 +12,7 @@ struct ReferencePath {
   float cone_width;   // metres, where the ray begins
   float cone_spread;  // metres per metre
   uint flags;         // path_*
-  uint padding0;
+  float density;  // of the ray's direction, per steradian; 0: no other way leads there
 };
 
 // What a pass is told.
