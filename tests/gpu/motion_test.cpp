@@ -236,7 +236,7 @@ std::shared_ptr<scene::Scene> rigid_scene() {
   SceneBuilder builder;
   const auto sphere = builder.add_sphere(0.8f, surface(glm::vec3(1.0f)));
   builder.place(sphere).place(sphere, glm::translate(glm::mat4(1.0f), {1.9f, 0, 0}));
-  builder.place(builder.add_quad({{{-3, -1, 3}, {3, -1, 3}, {3, -1, -3}, {-3, -1, -3}}},
+  builder.place(builder.add_quad({{{-1.4f, -1, 1}, {2.7f, -1, 1}, {2.7f, -1, -1}, {-1.4f, -1, -1}}},
                                  surface(glm::vec3(1.0f))));
   auto scene = std::make_shared<scene::Scene>(*builder.build());
   scene::Node& node = scene->nodes[0];
