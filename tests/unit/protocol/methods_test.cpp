@@ -21,7 +21,8 @@ TEST(Methods, AreThoseOfTheContract) {
   EXPECT_EQ(names,
             (std::set<std::string_view>{
                 "hello", "scene.list", "scene.load", "scene.info", "camera.get", "camera.set",
-                "camera.fit", "settings.get", "settings.patch", "settings.presets",
+                "camera.fit", "animation.list", "animation.play",
+                         "animation.pause", "animation.seek", "animation.rate", "settings.get", "settings.patch", "settings.presets",
                 "settings.preset", "settings.schema", "stream.configure", "stream.ack",
                 "stats.subscribe", "frame.buffers", "frame.capture", "rpc.discover"}));
 }
