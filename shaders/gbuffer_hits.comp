@@ -12,21 +12,24 @@ layout(local_size_x = 64) in;
 layout(set = 1, binding = 0, std430) readonly buffer MetCount { RayCount met_count; };
 layout(set = 1, binding = 1, std430) readonly buffer MetRays { Ray met_rays[]; };
 layout(set = 1, binding = 2, std430) readonly buffer Hits { Hit hits[]; };
-layout(set = 1, binding = 3, std430) buffer Count { RayCount ray_count; };
-layout(set = 1, binding = 4, std430) writeonly buffer Rays { Ray rays[]; };
-layout(set = 1, binding = 5, rgba32f) writeonly uniform image2D normals;
-layout(set = 1, binding = 6, rgba8) writeonly uniform image2D base_color;
-layout(set = 1, binding = 7, rgba8) writeonly uniform image2D surface;
-layout(set = 1, binding = 8, rgba32f) writeonly uniform image2D motion;
-layout(set = 1, binding = 9, rgba16f) writeonly uniform image2D emissive;
-layout(set = 1, binding = 10, rg32f) writeonly uniform image2D depth_slope;
-layout(set = 1, binding = 11, r32ui) writeonly uniform uimage2D instance_id;
+layout(set = 1, binding = 3, std430) readonly buffer Before { Vertex previous_vertices[]; };
+layout(set = 1, binding = 4, std430) buffer Count { RayCount ray_count; };
+layout(set = 1, binding = 5, std430) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 6, rgba32f) writeonly uniform image2D normals;
+layout(set = 1, binding = 7, rgba8) writeonly uniform image2D base_color;
+layout(set = 1, binding = 8, rgba8) writeonly uniform image2D surface;
+layout(set = 1, binding = 9, rgba32f) writeonly uniform image2D motion;
+layout(set = 1, binding = 10, rgba16f) writeonly uniform image2D emissive;
+layout(set = 1, binding = 11, rg32f) writeonly uniform image2D depth_slope;
+layout(set = 1, binding = 12, r32ui) writeonly uniform uimage2D instance_id;
 layout(push_constant) uniform Constants { uint last_round; };
 
 bool passes(Ray ray, Hit hit, HitSurface s) {
   if (last_round != 0u) return false;
   bool back = dot(s.front, ray.direction) > 0.0;
   if (back && (s.flags & material_double_sided) == 0u) return true;
+  // Tracers ask the nearest texel; the picture shows the filtered one, as drawn triangles do.
+  if ((s.flags & material_alpha_mask) != 0u && s.alpha < s.alpha_cutoff) return true;
   if ((s.flags & material_alpha_blend) == 0u) return false;
   uvec2 pixel = uvec2(ray.pixel & 0xffffu, ray.pixel >> 16u);
   return s.alpha < random_number(pixel, frame.extent.z, 40u + (hit.instance & 15u), frame.extent.w);
@@ -52,9 +55,21 @@ vec2 plane_slope(ivec2 pixel, HitSurface s, float view_z) {
   return slopes;
 }
 
+/// Where the point of the triangle was in its mesh one frame ago.
+vec3 previous_local(Hit hit, HitSurface s) {
+  if (!scene_has(scene_deforms)) return s.local;
+  uint base = instances[hit.instance].previous_vertex;
+  if (base == 0u) return s.local;
+  uint first = meshes[instances[hit.instance].mesh].first_index + 3u * hit.triangle;
+  vec3 a = previous_vertices[base - 1u + indices[first]].position;
+  vec3 b = previous_vertices[base - 1u + indices[first + 1u]].position;
+  vec3 c = previous_vertices[base - 1u + indices[first + 2u]].position;
+  return a * (1.0 - hit.u - hit.v) + b * hit.u + c * hit.v;
+}
+
 vec4 motion_of(Hit hit, HitSurface s, float view_z) {
   mat3x4 before = mat3x4(transpose(instances[hit.instance].previous_world));
-  vec4 previous = vec4(vec4(s.local, 1.0) * before, 1.0);
+  vec4 previous = vec4(vec4(previous_local(hit, s), 1.0) * before, 1.0);
   vec3 clip_now = (frame.unjittered * vec4(s.position, 1.0)).xyw;
   vec3 clip_before = (frame.previous_unjittered * previous).xyw;
   float z_before = -(frame.previous_view * previous).z;

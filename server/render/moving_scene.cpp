@@ -107,7 +107,15 @@ MovingScene::Moving::Moving(const gpu::Device& device, const SceneResources& res
       device, "vertices now", std::span(all),
       VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
   previous_table = writable_table(device, "vertices before", std::span<const shared::Vertex>(previous),
-                                  VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+                                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                      VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+  for (const Deforming& mesh : deforming) {
+    for (shared::Instance& instance : instances) {
+      if (instance.mesh != mesh.mesh) continue;
+      instance.previous_vertex = static_cast<std::uint32_t>(mesh.previous_vertex) + 1;
+    }
+  }
+  std::memcpy(instance_table.mapped(), instances.data(), std::span(instances).size_bytes());
 }
 
 bool MovingScene::Moving::move_instances(const scene::Scene& scene, const scene::Pose& pose) {
@@ -211,7 +219,8 @@ const std::vector<Draw>& MovingScene::draws() const {
 }
 
 const gpu::Buffer& MovingScene::previous_vertices() const {
-  return moving_ ? moving_->previous_table : rest_->rest_tables.vertices;
+  const bool deforms = moving_ && moving_->previous_table;
+  return deforms ? moving_->previous_table : rest_->rest_tables.vertices;
 }
 
 bool MovingScene::set_pose(const scene::Clip* clip, double seconds) {

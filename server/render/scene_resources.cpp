@@ -104,7 +104,8 @@ void SceneResources::upload_tables(const gpu::Device& device) {
     return light.type >= shared::light_rectangle;
   });
   features = (areas ? shared::scene_area_lights : 0u) |
-             (lights.size() > shared::uniform_lights ? shared::scene_many_lights : 0u);
+             (lights.size() > shared::uniform_lights ? shared::scene_many_lights : 0u) |
+             (scene->deformations.empty() ? 0u : shared::scene_deforms);
   rest_tables.lights = make_light_table(device, lights.size());
   write_lights(rest_tables.lights, lights);
   rest_tables.alpha_heap =

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "render/frame.hpp"
+#include "render/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 #include "shaders/shared/ray.h"
 
@@ -36,6 +37,7 @@ GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
   const std::uint32_t capacity = ((extent.width + 7) / 8) * ((extent.height + 7) / 8) * 64;
   const auto hits =
       plan.buffer("gbuffer.hits", sizeof(shared::Hit) * capacity, storage, gpu::Memory::device);
+  const auto previous_vertices = plan.import(in.moving.previous_vertices());
   tracing::RayStream current = make_stream(plan, "gbuffer", capacity);
   tracing::RayStream next = make_stream(plan, "gbuffer.passed", capacity);
 
@@ -49,10 +51,11 @@ GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
     plan.pass(name + ".begin", in.programs.compute(shaders::begin_rays))
         .write(next.count)
         .dispatch({1, 1});
-    plan.pass(name + ".shade", in.programs.compute(shaders::gbuffer_hits))
+    plan.pass(name + ".shade", in.programs.compute(shaders::gbuffer_hits, in.scene.features))
         .read(current.count)
         .read(current.rays)
         .read(hits)
+        .read(previous_vertices)
         .read_write(next.count)
         .write(next.rays)
         .write(gbuffer.normals)

@@ -34,6 +34,7 @@ struct HitSurface {
   vec3 local;      // position, mesh space
   vec3 base_color;
   float alpha;
+  float alpha_cutoff;
   float metallic;
   float roughness;
   float occlusion;
@@ -142,6 +143,7 @@ void evaluate_material(inout HitSurface s, HitTriangle t, TexturePlace place) {
                slot_texel(materials[m].base_color_texture, place);
   s.base_color = clamp(color.rgb, 0.0, 1.0);
   s.alpha = color.a;
+  s.alpha_cutoff = materials[m].alpha_cutoff;
   vec4 packed_surface = slot_texel(materials[m].metallic_roughness_texture, place);
   s.metallic = clamp(materials[m].metallic * packed_surface.b, 0.0, 1.0);
   s.roughness = clamp(materials[m].roughness * packed_surface.g, 0.0, 1.0);

@@ -74,8 +74,9 @@ struct Instance {
   mat4 normal_matrix;   // inverse transpose of world's upper 3x3
   uint mesh;
   uint flags;  // instance_flipped where world mirrors (negative determinant)
+  uint previous_vertex;  // its mesh's first vertex among those of the frame before, + 1; 0: the mesh
+                         // keeps its shape
   uint padding0;
-  uint padding1;
 };
 SHARED_CONSTANT uint instance_flipped = 1u;
 
@@ -96,6 +97,7 @@ SHARED_CONSTANT uint texels_per_light = 5u;
 // What a scene has: bits of the constant that its shaders are specialised with.
 SHARED_CONSTANT uint scene_area_lights = 1u;
 SHARED_CONSTANT uint scene_many_lights = 2u;  // more than uniform_lights
+SHARED_CONSTANT uint scene_deforms = 4u;
 
 SHARED_CONSTANT uint light_directional = 0u;
 SHARED_CONSTANT uint light_point = 1u;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "render/trace_gbuffer.hpp"
 #include "tests/support/frame_rig.hpp"
 
 namespace heliograph::test {
@@ -21,11 +22,14 @@ glm::vec3 decode(const glm::vec2& p) {
   return glm::normalize(d);
 }
 
+enum class Source { triangles, rays };
+
 /// The G-buffer of a scene alone.
 struct Raster {
-  Raster(SceneBuilder& builder, const scene::Camera& camera)
+  Raster(Source source, SceneBuilder& builder, const scene::Camera& camera)
       : rig(builder.build(), camera, {.extent = extent}),
-        gbuffer(render::rasterize_gbuffer(rig.plan(), rig.inputs())) {}
+        gbuffer(source == Source::rays ? render::trace_gbuffer(rig.plan(), rig.inputs())
+                                       : render::rasterize_gbuffer(rig.plan(), rig.inputs())) {}
 
   void run() {
     rig.run();
@@ -63,13 +67,20 @@ struct Raster {
   render::FloatImage normals, motion;
 };
 
-TEST(GBuffer, HoldsTheMaterialOfAFacingQuad) {
+class GBuffer : public testing::TestWithParam<Source> {};
+
+INSTANTIATE_TEST_SUITE_P(FoundBy, GBuffer, testing::Values(Source::triangles, Source::rays),
+                         [](const auto& instance) {
+                           return instance.param == Source::rays ? "Rays" : "Triangles";
+                         });
+
+TEST_P(GBuffer, HoldsTheMaterialOfAFacingQuad) {
   SceneBuilder builder;
   shared::Material material = surface({0.25f, 0.5f, 1.0f}, 0.4f, 0.8f);
   material.emissive = {2.0f, 0.5f, 0.0f};
   const auto quad = builder.add_quad(facing_quad, material);
   builder.place(quad, glm::translate(glm::mat4(1.0f), {50, 0, 0})).place(quad);
-  Raster raster(builder, look({0, 0, 5}, {0, 0, 0}));
+  Raster raster(GetParam(), builder, look({0, 0, 5}, {0, 0, 0}));
   raster.run();
   EXPECT_NEAR(texel(raster.motion, 32, 24).w, 5.0f, 1e-5f);
   EXPECT_LE(glm::distance(raster.shading(32, 24), {0, 0, 1}), 1e-6f);
@@ -88,13 +99,13 @@ TEST(GBuffer, HoldsTheMaterialOfAFacingQuad) {
   EXPECT_EQ(texel(raster.rig.read(raster.gbuffer.instance), 0, 0).x, 0.0f);
 }
 
-TEST(GBuffer, DepthAndItsSlopeFollowATiltedPlane) {
+TEST_P(GBuffer, DepthAndItsSlopeFollowATiltedPlane) {
   SceneBuilder builder;
   const glm::mat4 tilt = glm::rotate(glm::mat4(1.0f), 0.8f, glm::normalize(glm::vec3(1, 0.4f, 0)));
   builder.place(builder.add_quad(facing_quad, surface(glm::vec3(1.0f))),
                 glm::scale(tilt, glm::vec3(20)));
   const scene::Camera camera = look({0.5f, 1, 6}, {0, 0, 0});
-  Raster raster(builder, camera);
+  Raster raster(GetParam(), builder, camera);
   raster.run();
   const auto slope = raster.rig.read(raster.gbuffer.depth_slope);
   const glm::dvec3 normal = glm::normalize(glm::dvec3(tilt * glm::vec4(0, 0, 1, 0)));
@@ -123,11 +134,11 @@ TEST(GBuffer, DepthAndItsSlopeFollowATiltedPlane) {
   EXPECT_GT(raster.covered_pixels(), 2000);
 }
 
-TEST(GBuffer, NothingMovesWhileTheCameraRests) {
+TEST_P(GBuffer, NothingMovesWhileTheCameraRests) {
   SceneBuilder builder;
   builder.place(builder.add_sphere(1.0f, surface(glm::vec3(1.0f))));
   const scene::Camera camera = look({1, 2, 4}, {0, 0, 0});
-  Raster raster(builder, camera);
+  Raster raster(GetParam(), builder, camera);
   for (std::uint32_t sample = 0; sample < 3; ++sample) {
     raster.rig.set_view(camera, sample);  // the jitter differs, the motion must not show it
     raster.run();
@@ -139,7 +150,7 @@ TEST(GBuffer, NothingMovesWhileTheCameraRests) {
   }
 }
 
-class GBufferMotion : public testing::TestWithParam<scene::Camera> {};
+class GBufferMotion : public testing::TestWithParam<std::tuple<Source, scene::Camera>> {};
 
 TEST_P(GBufferMotion, IsTheDifferenceOfTwoProjections) {
   SceneBuilder builder;
@@ -147,9 +158,10 @@ TEST_P(GBufferMotion, IsTheDifferenceOfTwoProjections) {
   builder.place(builder.add_quad({{{-9, -1, 9}, {9, -1, 9}, {9, -1, -9}, {-9, -1, -9}}},
                                  surface(glm::vec3(1.0f))));
   const scene::Camera before = look({1, 2, 5}, {0, 0, 0});
-  Raster raster(builder, before);
+  const auto& [source, after] = GetParam();
+  Raster raster(source, builder, before);
   raster.run();
-  raster.rig.set_view(GetParam());
+  raster.rig.set_view(after);
   raster.run();
   const auto& constants = raster.rig.constants();
   const glm::mat4 old_projection =
@@ -176,16 +188,17 @@ TEST_P(GBufferMotion, IsTheDifferenceOfTwoProjections) {
 }
 
 INSTANTIATE_TEST_SUITE_P(PanYawPitchDolly, GBufferMotion,
-                         testing::Values(look({1.3f, 2, 5}, {0.3f, 0, 0}),
-                                         look({1, 2, 5}, {0.4f, 0, 0}),
-                                         look({1, 2, 5}, {0, 0.4f, 0}),
-                                         look({0.9f, 1.8f, 4.5f}, {0, 0, 0})));
+                         testing::Combine(testing::Values(Source::triangles, Source::rays),
+                                          testing::Values(look({1.3f, 2, 5}, {0.3f, 0, 0}),
+                                                          look({1, 2, 5}, {0.4f, 0, 0}),
+                                                          look({1, 2, 5}, {0, 0.4f, 0}),
+                                                          look({0.9f, 1.8f, 4.5f}, {0, 0, 0}))));
 
-void expect_sphere_normals(const glm::mat4& world) {
+void expect_sphere_normals(Source source, const glm::mat4& world) {
   SceneBuilder builder;
   builder.place(builder.add_sphere(1.0f, surface(glm::vec3(1.0f))), world);
   const scene::Camera camera = look({0.3f, 0.5f, 4}, {0, 0, 0});
-  Raster raster(builder, camera);
+  Raster raster(source, builder, camera);
   raster.run();
   const glm::mat3 to_world = glm::transpose(glm::inverse(glm::mat3(world)));
   const glm::mat4 to_mesh = glm::inverse(world);
@@ -202,19 +215,19 @@ void expect_sphere_normals(const glm::mat4& world) {
   EXPECT_GT(raster.covered_pixels(), 200);
 }
 
-TEST(GBuffer, NormalsOfASqueezedAndTurnedSphere) {
+TEST_P(GBuffer, NormalsOfASqueezedAndTurnedSphere) {
   expect_sphere_normals(
-      glm::rotate(glm::scale(glm::mat4(1.0f), {1.2f, 0.5f, 0.8f}), 0.6f, {0, 0, 1}));
+      GetParam(), glm::rotate(glm::scale(glm::mat4(1.0f), {1.2f, 0.5f, 0.8f}), 0.6f, {0, 0, 1}));
 }
 
-TEST(GBuffer, NormalsOfAMirroredSpherePointOutward) {
-  expect_sphere_normals(glm::scale(glm::mat4(1.0f), {-1.2f, 0.5f, 0.8f}));
+TEST_P(GBuffer, NormalsOfAMirroredSpherePointOutward) {
+  expect_sphere_normals(GetParam(), glm::scale(glm::mat4(1.0f), {-1.2f, 0.5f, 0.8f}));
 }
 
-TEST(GBuffer, BackFacesAreCulledUnlessDoubleSidedAndThenFaceTheViewer) {
+TEST_P(GBuffer, BackFacesAreCulledUnlessDoubleSidedAndThenFaceTheViewer) {
   SceneBuilder culled;
   culled.place(culled.add_quad(facing_quad, surface(glm::vec3(1.0f))));
-  Raster behind(culled, look({0, 0, -5}, {0, 0, 0}));
+  Raster behind(GetParam(), culled, look({0, 0, -5}, {0, 0, 0}));
   behind.run();
   EXPECT_EQ(behind.covered_pixels(), 0);
 
@@ -222,7 +235,7 @@ TEST(GBuffer, BackFacesAreCulledUnlessDoubleSidedAndThenFaceTheViewer) {
   shared::Material material = surface(glm::vec3(1.0f));
   material.flags |= shared::material_double_sided;
   both.place(both.add_quad(facing_quad, material));
-  Raster raster(both, look({0, 0, -5}, {0, 0, 0}));
+  Raster raster(GetParam(), both, look({0, 0, -5}, {0, 0, 0}));
   raster.run();
   ASSERT_TRUE(raster.covered(32, 24));
   EXPECT_LE(glm::distance(raster.shading(32, 24), {0, 0, -1}), 1e-6f);
@@ -230,7 +243,7 @@ TEST(GBuffer, BackFacesAreCulledUnlessDoubleSidedAndThenFaceTheViewer) {
 }
 
 /// The shading normal in the middle of a quad whose normal map says `tilt` everywhere.
-glm::vec3 mapped(const glm::vec3& tilt, const glm::mat4& world, const glm::vec3& eye) {
+glm::vec3 mapped(Source source, const glm::vec3& tilt, const glm::mat4& world, const glm::vec3& eye) {
   SceneBuilder builder;
   shared::Material material = surface(glm::vec3(1.0f));
   const glm::vec3 encoded = glm::normalize(tilt) * 127.5f + 127.5f;
@@ -240,32 +253,32 @@ glm::vec3 mapped(const glm::vec3& tilt, const glm::mat4& world, const glm::vec3&
        static_cast<std::uint8_t>(encoded.z + 0.5f), 255});
   material.flags |= shared::material_double_sided;
   builder.place(builder.add_quad(facing_quad, material), world);
-  Raster raster(builder, look(eye, {0, 0, 0}));
+  Raster raster(source, builder, look(eye, {0, 0, 0}));
   raster.run();
   return raster.shading(32, 24);
 }
 
-TEST(NormalMap, TiltsAlongTangentAndBitangent) {
+TEST_P(GBuffer, TiltsAlongTangentAndBitangent) {
   const glm::vec3 tilt(0.5f, 0.3f, 0.8f);
   // The quad's tangent is +x; its bitangent, cross(normal, tangent), +y.
-  EXPECT_LE(glm::distance(mapped(tilt, glm::mat4(1.0f), {0, 0, 5}), glm::normalize(tilt)), 0.01f);
+  EXPECT_LE(glm::distance(mapped(GetParam(), tilt, glm::mat4(1.0f), {0, 0, 5}), glm::normalize(tilt)), 0.01f);
 }
 
-TEST(NormalMap, OfAMirroredInstanceIsTheMirrorImage) {
+TEST_P(GBuffer, OfAMirroredInstanceIsTheMirrorImage) {
   const glm::vec3 tilt(0.5f, 0.3f, 0.8f);
   const glm::mat4 mirror = glm::scale(glm::mat4(1.0f), {-1, 1, 1});
   EXPECT_LE(
-      glm::distance(mapped(tilt, mirror, {0, 0, 5}), glm::normalize(tilt * glm::vec3(-1, 1, 1))),
+      glm::distance(mapped(GetParam(), tilt, mirror, {0, 0, 5}), glm::normalize(tilt * glm::vec3(-1, 1, 1))),
       0.01f);
 }
 
 // glTF 2.0, 3.9.6: the back face's normals are reversed, mapped ones too.
-TEST(NormalMap, OfABackFaceIsReversed) {
+TEST_P(GBuffer, OfABackFaceIsReversed) {
   const glm::vec3 tilt(0.5f, 0.3f, 0.8f);
-  EXPECT_LE(glm::distance(mapped(tilt, glm::mat4(1.0f), {0, 0, -5}), -glm::normalize(tilt)), 0.01f);
+  EXPECT_LE(glm::distance(mapped(GetParam(), tilt, glm::mat4(1.0f), {0, 0, -5}), -glm::normalize(tilt)), 0.01f);
 }
 
-TEST(GBuffer, AlphaMaskLeavesHoles) {
+TEST_P(GBuffer, AlphaMaskLeavesHoles) {
   SceneBuilder builder;
   shared::Material material = surface(glm::vec3(1.0f));
   material.flags |= shared::material_alpha_mask;
@@ -273,7 +286,7 @@ TEST(GBuffer, AlphaMaskLeavesHoles) {
   material.base_color_texture.texture = builder.add_texture(
       2, 2, true, {255, 255, 255, 255, 255, 255, 255, 100, 255, 255, 255, 0, 255, 255, 255, 130});
   builder.place(builder.add_quad(facing_quad, material));
-  Raster raster(builder, look({0, 0, 5}, {0, 0, 0}));
+  Raster raster(GetParam(), builder, look({0, 0, 5}, {0, 0, 0}));
   raster.run();
   // uv (0, 0) lies at the quad's lower left corner.
   EXPECT_TRUE(raster.covered(26, 30)) << "alpha 1";
@@ -282,13 +295,13 @@ TEST(GBuffer, AlphaMaskLeavesHoles) {
   EXPECT_TRUE(raster.covered(38, 18)) << "alpha above the cutoff";
 }
 
-TEST(GBuffer, TexturesAreDecodedFromSrgbAndStandTheRightWayUp) {
+TEST_P(GBuffer, TexturesAreDecodedFromSrgbAndStandTheRightWayUp) {
   SceneBuilder builder;
   shared::Material material = surface(glm::vec3(1.0f));
   material.base_color_texture.texture = builder.add_texture(
       2, 2, true, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 188, 188, 188, 255});
   builder.place(builder.add_quad(facing_quad, material));
-  Raster raster(builder, look({0, 0, 5}, {0, 0, 0}));
+  Raster raster(GetParam(), builder, look({0, 0, 5}, {0, 0, 0}));
   raster.run();
   const auto color = raster.rig.read(raster.gbuffer.base_color);
   const auto linear = [&](std::uint32_t x, std::uint32_t y) {
@@ -301,12 +314,12 @@ TEST(GBuffer, TexturesAreDecodedFromSrgbAndStandTheRightWayUp) {
   EXPECT_LE(glm::distance(linear(38, 18), glm::vec3(0.503f)), 0.01f);
 }
 
-TEST(GBuffer, NearerSurfacesCoverFartherOnes) {
+TEST_P(GBuffer, NearerSurfacesCoverFartherOnes) {
   SceneBuilder builder;
   const auto quad = builder.add_quad(facing_quad, surface(glm::vec3(1.0f)));
   builder.place(quad, glm::translate(glm::mat4(1.0f), {0, 0, 1}));
   builder.place(quad, glm::scale(glm::mat4(1.0f), glm::vec3(3)));
-  Raster raster(builder, look({0, 0, 5}, {0, 0, 0}));
+  Raster raster(GetParam(), builder, look({0, 0, 5}, {0, 0, 0}));
   raster.run();
   EXPECT_NEAR(texel(raster.motion, 32, 24).w, 4.0f, 1e-4f);
   EXPECT_NEAR(texel(raster.motion, 1, 1).w, 5.0f, 1e-4f);
