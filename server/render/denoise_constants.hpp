@@ -37,8 +37,6 @@ shared::TemporalConstants temporal_constants(const FrameInputs& in,
   const bool holds = settings.enabled && in.constants.counts.w == 0;
   constants.flags = (holds ? shared::temporal_holds : 0u) |
                     (settings.mean_variance ? shared::temporal_mean_variance : 0u);
-  constants.depth_tolerance = settings.depth_tolerance;
-  constants.normal_tolerance = settings.normal_tolerance;
   return constants;
 }
 

@@ -20,7 +20,7 @@ Guide reproject(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuf
       .read(gbuffer.previous_instance)
       .write(guide.surface)
       .write(guide.reprojection)
-      .constants([&s = in.settings.shadow_temporal] {
+      .constants([&s = in.settings.reprojection] {
         return shared::ReprojectConstants{s.depth_tolerance, s.normal_tolerance};
       })
       .dispatch(plan.extent())

@@ -24,6 +24,7 @@ constexpr std::uint32_t smallest_to_shrink = 640 * 360;
 /// How long everything must rest before the final picture is sent.
 constexpr milliseconds rest_before_final{300};
 constexpr int final_quality = 95;
+constexpr float longest_frame_seconds = 1.0f;
 constexpr std::chrono::minutes capture_patience{5};
 constexpr std::chrono::seconds rest_after_failure{1};
 
@@ -239,6 +240,10 @@ void SessionView::render_frame() {
   const Clock::time_point start = Clock::now();
   if (state_.animation.playing) adopt_pose();
   auto picture = std::make_shared<Picture>();
+  // Histories are counted in seconds. After a rest the time since the last picture means nothing.
+  const std::chrono::duration<float> since = start - last_frame_;
+  renderer_->set_frame_seconds(std::min(since.count(), longest_frame_seconds));
+  last_frame_ = start;
   picture->frame = renderer_->render();
   const Clock::time_point end = Clock::now();
   if (draws_whole()) whole_frame_ = end - start;

@@ -83,6 +83,7 @@ class SessionView {
   bool cut_ = true;  // the next picture has nothing in common with the last
   std::uint32_t render_count_ = 0;
   std::deque<Clock::time_point> recent_frames_;
+  Clock::time_point last_frame_{};  // when it began
   std::vector<PendingCapture> captures_;
   Clock::time_point resting_until_;
 };

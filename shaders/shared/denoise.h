@@ -31,8 +31,6 @@ struct TemporalConstants {
   float spatial_variance_frames;  // shorter histories take their variance from neighbours
   uint flags;                     // temporal_*
   float compression;              // Reinhard multiplier, 0: none
-  float depth_tolerance;
-  float normal_tolerance;
 };
 
 SHARED_CONSTANT uint atrous_variance_prefilter = 1u;

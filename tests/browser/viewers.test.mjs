@@ -158,8 +158,15 @@ test("after a restart of the server the page comes back with its camera", async 
   const { page, context, complaints } = await openViewer(browser, server.url);
   await firstPicture(page);
   await dragPicture(page, { x: 300, y: 300 }, { x: 520, y: 360 });
-  await page.waitForTimeout(1000);
-  const eyeBefore = (await server.call("camera.get")).eye;
+  // The drag runs on a little after it ends: the camera to come back to is the one at rest.
+  let eyeBefore = null;
+  await eventually(async () => {
+    const seen = (await server.call("camera.get")).eye;
+    const rests = eyeBefore !== null && distance(seen, eyeBefore) === 0;
+    eyeBefore = seen;
+    await page.waitForTimeout(500);
+    return rests;
+  }, "the camera to rest");
   assert.deepEqual(complaints, []);
 
   const { port } = server;
