@@ -257,7 +257,8 @@ TEST(SettingsSchema, TellsTypesAndLimits) {
   EXPECT_EQ(radius["minimum"], 0.05);
   EXPECT_EQ(radius["x-unit"], "metres");
   EXPECT_EQ(groups["environment"]["x-order"], 0);
-  EXPECT_EQ(groups["shadows"]["x-order"], 1);
+  EXPECT_EQ(groups["gbuffer"]["x-order"], 1);
+  EXPECT_EQ(groups["shadows"]["x-order"], 2);
 }
 
 }  // namespace
