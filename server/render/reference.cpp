@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "render/frame.hpp"
+#include "render/ray_stream.hpp"
 #include "shaders/embedded.hpp"
 #include "shaders/shared/ray.h"
 #include "shaders/shared/reference.h"
@@ -123,13 +123,8 @@ class Wavefront {
 
   /// A ray of every pixel; without new rays the old ones are traced no more.
   tracing::RayStream stream(const std::string& name) {
-    const tracing::RayStream made{
-        plan_.buffer(name + ".ray_count", sizeof(shared::RayCount),
-                     storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, gpu::Memory::device),
-        buffer(name + ".rays", sizeof(shared::Ray)), pixels_};
-    plan_.pass(name + ".begin", in_.programs.compute(shaders::begin_rays))
-        .write(made.count)
-        .dispatch({1, 1});
+    const tracing::RayStream made = declare_rays(plan_, name, pixels_);
+    begin_rays(plan_, in_, name, made);
     return made;
   }
 

@@ -2,27 +2,20 @@
 
 #include <optional>
 
+#include "render/ray_stream.hpp"
 #include "render/sort_rays.hpp"
 #include "shaders/embedded.hpp"
-#include "shaders/shared/ray.h"
 
 namespace heliograph::render {
 namespace {
 
 constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 constexpr VkFormat four_floats = VK_FORMAT_R32G32B32A32_SFLOAT;
-constexpr VkDeviceSize groups = offsetof(shared::RayCount, groups_x);
 
 tracing::RayStream make_stream(gpu::FramePlan& plan, const FrameInputs& in,
                                const std::string& name, std::uint32_t capacity) {
-  const tracing::RayStream stream{
-      plan.buffer(name + ".ray_count", sizeof(shared::RayCount),
-                  storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, gpu::Memory::device),
-      plan.buffer(name + ".rays", sizeof(shared::Ray) * capacity, storage, gpu::Memory::device),
-      capacity};
-  plan.pass(name + ".begin", in.programs.compute(shaders::begin_rays))
-      .write(stream.count)
-      .dispatch({1, 1});
+  const tracing::RayStream stream = declare_rays(plan, name, capacity);
+  begin_rays(plan, in, name, stream);
   return stream;
 }
 
@@ -81,7 +74,7 @@ tracing::RayStream shade(gpu::FramePlan& plan, const FrameInputs& in, const GBuf
       .constants([&s = in.settings.specular, scale = target.scale] {
         return Constants{s.hit_shading == protocol::HitShading::traced, scale};
       })
-      .dispatch_indirect(rays.count, groups);
+      .dispatch_indirect(rays.count, ray_groups_offset);
   return shadows;
 }
 
@@ -97,7 +90,7 @@ void resolve_lamps(gpu::FramePlan& plan, const FrameInputs& in, const tracing::R
       .read(occluded)
       .read_write(target.radiance)
       .constants(target.scale)
-      .dispatch_indirect(shadows.count, groups)
+      .dispatch_indirect(shadows.count, ray_groups_offset)
       .describe("Reflections of this frame, demodulated; w: how far their rays went, metres.");
 }
 

@@ -1,7 +1,6 @@
 #include "render/trace_visibility.hpp"
 
-#include "render/frame.hpp"
-#include "shaders/shared/ray.h"
+#include "render/ray_stream.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
@@ -14,11 +13,7 @@ gpu::ImageRef trace_visibility(gpu::FramePlan& plan, const FrameInputs& in, cons
   const VkExtent2D extent = plan.extent();
   const std::uint32_t pixels = extent.width * extent.height;
   constexpr VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-  const tracing::RayStream rays{
-      plan.buffer(name + ".ray_count", sizeof(shared::RayCount),
-                  usage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, gpu::Memory::device),
-      plan.buffer(name + ".rays", sizeof(shared::Ray) * pixels, usage, gpu::Memory::device),
-      pixels};
+  const tracing::RayStream rays = declare_rays(plan, name, pixels);
   const auto occluded =
       plan.buffer(name + ".occluded", sizeof(std::uint32_t) * pixels, usage, gpu::Memory::device);
   const auto visibility = plan.image(name + ".visibility", VK_FORMAT_R32_SFLOAT);
@@ -27,7 +22,7 @@ gpu::ImageRef trace_visibility(gpu::FramePlan& plan, const FrameInputs& in, cons
     return (constants.counts.y & flag) != 0;
   };
 
-  plan.pass(name + ".begin", in.programs.compute(shaders::begin_rays)).write(rays.count).dispatch({1, 1});
+  begin_rays(plan, in, name, rays);
   auto pass = plan.pass(name + ".rays", generator);
   for (const gpu::ImageRef image : images) pass.read(image);
   pass.read_write(rays.count)
@@ -41,7 +36,7 @@ gpu::ImageRef trace_visibility(gpu::FramePlan& plan, const FrameInputs& in, cons
       .read(rays.rays)
       .read(occluded)
       .write(visibility)
-      .dispatch_indirect(rays.count, offsetof(shared::RayCount, groups_x));
+      .dispatch_indirect(rays.count, ray_groups_offset);
   return visibility;
 }
 

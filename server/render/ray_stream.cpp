@@ -1,0 +1,24 @@
+#include "render/ray_stream.hpp"
+
+#include "shaders/embedded.hpp"
+
+namespace heliograph::render {
+
+tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
+                                std::uint32_t capacity) {
+  constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  return {plan.buffer(name + ".ray_count", sizeof(shared::RayCount),
+                      storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, gpu::Memory::device),
+          plan.buffer(name + ".rays", sizeof(shared::Ray) * capacity, storage,
+                      gpu::Memory::device),
+          capacity};
+}
+
+void begin_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
+                const tracing::RayStream& rays) {
+  plan.pass(name + ".begin", in.programs.compute(shaders::begin_rays))
+      .write(rays.count)
+      .dispatch({1, 1});
+}
+
+}  // namespace heliograph::render

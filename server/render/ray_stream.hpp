@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "render/frame.hpp"
+#include "shaders/shared/ray.h"
+
+namespace heliograph::render {
+
+/// Where a stream's RayCount keeps the arguments of an indirect dispatch, one thread per ray.
+inline constexpr VkDeviceSize ray_groups_offset = offsetof(shared::RayCount, groups_x);
+
+/// The buffers of a stream: `name`.ray_count and `name`.rays.
+tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
+                                std::uint32_t capacity);
+
+/// The pass `name`.begin, which empties the stream.
+void begin_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
+                const tracing::RayStream& rays);
+
+}  // namespace heliograph::render
