@@ -153,6 +153,7 @@ void FramePlan::compile() {
   queries.queryCount = static_cast<std::uint32_t>(passes_.size() * 2 + 1);
   check(vkCreateQueryPool(device_.handle(), &queries, nullptr, &queries_), "create the timers");
   for (const Pass& pass : passes_) timings_.push_back({pass.name, !pass.program, 0.0f});
+  if (read_back_.index != ImageRef().index) readback_ = Readback(device_, latest(read_back_));
   compiled_ = true;
 }
 
@@ -219,6 +220,7 @@ void FramePlan::execute() {
     timings_[i].milliseconds =
         std::chrono::duration<float, std::milli>(Clock::now() - start).count();
   }
+  if (readback_) readback_.record(commands_[part], get(read_back_));
   submit(commands_[part]);
   read_timers();
   parity_ ^= 1;
@@ -350,6 +352,12 @@ const Image& FramePlan::latest(ImageRef image) const {
 }
 const Buffer& FramePlan::get(BufferRef buffer) const {
   return *resources_[buffer.index].buffer;
+}
+
+std::vector<std::uint8_t> FramePlan::read() const {
+  std::vector<std::uint8_t> bytes(readback_.size());
+  if (readback_) readback_.read(latest(read_back_), std::as_writable_bytes(std::span(bytes)));
+  return bytes;
 }
 
 void FramePlan::reset(const History& history) {

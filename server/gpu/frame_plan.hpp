@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gpu/ray_pipeline.hpp"
+#include "gpu/readback.hpp"
 #include "gpu/shader.hpp"
 
 namespace heliograph::gpu {
@@ -132,12 +133,17 @@ class FramePlan {
   PassBuilder raster(std::string name, const RasterProgram& program);
   PassBuilder host(std::string name, std::function<void()> run);
 
+  /// The one image that comes back to the host with every frame, through read().
+  void read_back(ImageRef image) { read_back_ = image; }
+
   /// Checks every pass against its shader and derives everything else; call once after the last
   /// pass. @throws GpuError naming pass, binding and what is wrong
   void compile();
 
   /// Runs all passes, waits for them, reads the timers and swaps the histories.
   void execute();
+  /// The frame that just ran, as read_back() asked for it: level 0, rows tightly packed.
+  std::vector<std::uint8_t> read() const;
   const std::vector<PassTiming>& timings() const { return timings_; }
   /// The work behind the timings of the frame that just ran, in the same order. Copies counts back
   /// from the device: for measurements, not for every frame.
@@ -186,6 +192,8 @@ class FramePlan {
   std::vector<std::pair<std::uint32_t, VkDescriptorSet>> shared_sets_;
   std::unique_ptr<DescriptorPool> descriptor_pool_;
   Sampler default_sampler_;
+  ImageRef read_back_;
+  Readback readback_;
   VkCommandPool command_pool_ = VK_NULL_HANDLE;
   std::vector<VkCommandBuffer> commands_;
   VkQueryPool queries_ = VK_NULL_HANDLE;

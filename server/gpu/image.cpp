@@ -4,6 +4,8 @@
 #include <cstring>
 #include <utility>
 
+#include "gpu/readback.hpp"
+
 namespace heliograph::gpu {
 namespace {
 
@@ -189,25 +191,13 @@ void Image::upload(std::span<const std::byte> bytes) const {
 }
 
 std::vector<std::byte> Image::download(std::uint32_t layer) const {
-  const std::size_t row = std::size_t{desc_.extent.width} * texel_bytes(desc_.format);
-  std::vector<std::byte> bytes(row * desc_.extent.height);
-  if (host_.data && layer == 0) {
-    for (std::uint32_t y = 0; y < desc_.extent.height; ++y) {
-      std::memcpy(bytes.data() + y * row, host_.data + y * host_.row_pitch, row);
-    }
-    return bytes;
+  const Readback readback(*device_, *this);
+  if (!host_.data || layer > 0) {
+    device_->submit_once(
+        [&](VkCommandBuffer commands) { readback.record(commands, *this, layer); });
   }
-  const Buffer staging(*device_, desc_.name + " download", bytes.size(), 0, Memory::readback);
-  device_->submit_once([&](VkCommandBuffer commands) {
-    full_barrier(commands);
-    VkBufferImageCopy region{};
-    region.imageSubresource = {aspect_of(desc_.format), 0, layer, 1};
-    region.imageExtent = {desc_.extent.width, desc_.extent.height, 1};
-    vkCmdCopyImageToBuffer(commands, handle_, VK_IMAGE_LAYOUT_GENERAL, staging.handle(), 1,
-                           &region);
-    full_barrier(commands);
-  });
-  std::memcpy(bytes.data(), staging.mapped(), bytes.size());
+  std::vector<std::byte> bytes(readback.size());
+  readback.read(*this, bytes, layer);
   return bytes;
 }
 

@@ -41,7 +41,8 @@ Engine::Parts::Parts(const EngineOptions& options)
       ltc_table(make_ltc_image(device)),
       around(make_environment_sampler(device, true)),
       clamped(make_environment_sampler(device, false)),
-      info{device.report().name, device.report().driver, device_type(device.report().type)} {}
+      info{device.report().name, device.report().driver, device_type(device.report().type)},
+      host_kernels(options.host_kernels) {}
 
 Engine::Engine(const EngineOptions& options) : parts_(std::make_unique<Parts>(options)) {}
 Engine::~Engine() = default;

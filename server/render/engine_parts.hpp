@@ -23,6 +23,7 @@ struct Engine::Parts {
   gpu::Sampler around;  // wraps in u: equirectangular maps
   gpu::Sampler clamped;
   DeviceInfo info;
+  bool host_kernels;
 };
 
 }  // namespace heliograph::render

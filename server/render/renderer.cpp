@@ -86,10 +86,12 @@ struct Renderer::State {
 void Renderer::State::build_plan() {
   plan.reset();
   inputs.emplace(FrameInputs{parts.programs, *scene, moving->tables(), *parts.tracer,
-                             moving->structure(), constants, settings, samples, seconds, *moving});
+                             moving->structure(), constants, settings, samples, seconds, *moving,
+                             parts.host_kernels});
   plan = std::make_unique<gpu::FramePlan>(parts.device, extent);
   write_frame_set();
   outputs = declare_frame(*plan, *inputs);
+  plan->read_back(outputs.picture);
   plan->compile();
   list_buffers();
   has_previous = false;
@@ -161,9 +163,7 @@ Frame Renderer::State::picture() {
   Frame frame;
   frame.width = extent.width;
   frame.height = extent.height;
-  const std::vector<std::byte> bytes = plan->latest(outputs.picture).download();
-  frame.rgba.resize(bytes.size());
-  std::memcpy(frame.rgba.data(), bytes.data(), bytes.size());
+  frame.rgba = plan->read();
   return frame;
 }
 

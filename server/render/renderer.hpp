@@ -20,6 +20,7 @@ struct EngineOptions {
   std::string tracer = "auto";         // auto, or a protocol::TracerKind
   bool validation = false;             // Vulkan validation layers on, every message an error
   std::filesystem::path cache_folder;  // pipeline cache; empty: none
+  bool host_kernels = true;            // on devices that are processors, where a pass has one
 };
 
 struct DeviceInfo {

@@ -13,6 +13,7 @@
 #include "render/renderer.hpp"
 #include "scene/camera.hpp"
 #include "scene/import.hpp"
+#include "tests/bench/embree_rate.hpp"
 #include "tests/bench/table.hpp"
 
 namespace heliograph::bench {
@@ -30,6 +31,7 @@ struct Options {
   int frames = 16;
   int warm_up = 4;
   bool still = false;
+  bool shaders = false;
 };
 
 VkExtent2D parse_size(const std::string& text) {
@@ -115,23 +117,68 @@ scene::Camera swung(const scene::Camera& camera, int frame) {
   return moved;
 }
 
-nlohmann::json measure(render::Engine& engine, const scene::Scene& scene,
+/// One renderer with its times.
+struct Run {
+  Run(render::Engine& engine, const std::shared_ptr<const render::SceneResources>& resources,
+      VkExtent2D extent, const protocol::Settings& settings)
+      : renderer(engine) {
+    renderer.set_scene(resources);
+    renderer.set_size(extent.width, extent.height);
+    const auto accepted = renderer.set_settings(settings);
+    if (!accepted) throw std::runtime_error(accepted.error().message);
+  }
+
+  render::Renderer renderer;
+  Table table;
+};
+
+/// Beside every pass what bounds it: Embree alone on the rays that the last frame traced, and for
+/// host kernels, which are vectorised by hand, how many times longer the shader takes.
+void add_bounds(nlohmann::json& summary, const RecordingTracer& tracer, const scene::Scene& scene,
+                const std::optional<Run>& shaders) {
+  const EmbreeAlone embree(scene);
+  for (auto& pass : summary.at("passes")) {
+    const auto name = pass.at("name").get<std::string>();
+    const double ms = pass.at("ms").get<double>();
+    if (const auto* stream = tracer.find(name)) {
+      const auto alone = embree.milliseconds(*stream);
+      if (alone && *alone > 0.01) {
+        pass["embree_ms"] = *alone;
+        pass["times_embree"] = ms / *alone;
+      }
+    } else if (shaders && pass.at("kind") == protocol::enum_name(protocol::PassKind::host)) {
+      if (const auto shader = shaders->table.median_of(name)) {
+        pass["shader_ms"] = *shader;
+        pass["shader_times"] = *shader / ms;
+      }
+    }
+  }
+}
+
+nlohmann::json measure(render::Engine& engine, const RecordingTracer& tracer,
+                       const scene::Scene& scene,
                        const std::shared_ptr<const render::SceneResources>& resources,
                        VkExtent2D extent, const Options& options) {
-  render::Renderer renderer(engine);
-  renderer.set_scene(resources);
-  renderer.set_size(extent.width, extent.height);
-  const auto accepted = renderer.set_settings(parse_settings(options));
-  if (!accepted) throw std::runtime_error(accepted.error().message);
+  const protocol::Settings settings = parse_settings(options);
+  std::optional<Run> shaders;
+  if (options.shaders) {
+    engine.parts().host_kernels = false;
+    shaders.emplace(engine, resources, extent, settings);
+    engine.parts().host_kernels = true;
+  }
+  Run run(engine, resources, extent, settings);
   const scene::Camera camera = first_camera(scene, extent);
-  Table table;
   for (int i = 0; i < options.warm_up + options.frames; ++i) {
-    renderer.set_camera(options.still ? camera : swung(camera, i));
-    const render::Frame frame = renderer.render();
-    if (i >= options.warm_up) table.add(frame);
+    for (Run* each : {&run, shaders ? &*shaders : nullptr}) {
+      if (!each) continue;
+      each->renderer.set_camera(options.still ? camera : swung(camera, i));
+      const render::Frame frame = each->renderer.render();
+      if (i >= options.warm_up) each->table.add(frame);
+    }
   }
   const CopyRates rates = measure_copy_rates(engine.parts().device, extent);
-  nlohmann::json summary = table.summary(renderer.work(), rates);
+  nlohmann::json summary = run.table.summary(run.renderer.work(), rates);
+  add_bounds(summary, tracer, scene, shaders);
   summary["scene"] = scene.name;
   summary["triangles"] = scene.triangle_count();
   summary["device"] = engine.device().name;
@@ -144,6 +191,9 @@ nlohmann::json measure(render::Engine& engine, const scene::Scene& scene,
 
 void run(const Options& options) {
   render::Engine engine({.device = options.device, .tracer = options.tracer});
+  auto recording = std::make_unique<RecordingTracer>(std::move(engine.parts().tracer));
+  const RecordingTracer& tracer = *recording;
+  engine.parts().tracer = std::move(recording);
   const scene::Environment environment =
       options.environment.empty() ? scene::constant_environment(glm::vec3(1.0f))
                                   : scene::load_environment(options.environment);
@@ -152,7 +202,7 @@ void run(const Options& options) {
     const auto scene = std::make_shared<const scene::Scene>(std::move(loaded));
     const auto resources = engine.upload(scene, environment);
     for (const std::string& size : options.sizes) {
-      const auto summary = measure(engine, *scene, resources, parse_size(size), options);
+      const auto summary = measure(engine, tracer, *scene, resources, parse_size(size), options);
       std::printf("\n%s, %s, %s, %s\n", scene->name.c_str(), size.c_str(),
                   engine.device().name.c_str(),
                   std::string(protocol::enum_name(engine.tracer())).c_str());
@@ -180,8 +230,9 @@ int main(int argc, char** argv) {
   using namespace heliograph::bench;
   Options options;
   CLI::App app("Times every pass of a frame while the camera moves a little: median ms, ns per "
-               "pixel, rays per second, bytes of images, and how many times longer than a copy of "
-               "as many bytes the pass takes.");
+               "pixel, rays per second, bytes of images, how many times longer than a copy of as "
+               "many bytes the pass takes, than Embree alone on the same rays, and how many times "
+               "longer the shader takes that a host kernel stands for.");
   app.add_option("scenes", options.scenes, "glTF files; without any, two quads");
   app.add_option("--size", options.sizes, "picture sizes, such as 640x360")->expected(1, -1);
   app.add_option("--frames", options.frames, "measured frames")->check(CLI::PositiveNumber);
@@ -192,6 +243,8 @@ int main(int argc, char** argv) {
   app.add_option("--device", options.device, "part of the device's name");
   app.add_option("--tracer", options.tracer, "as `heliograph serve` takes it");
   app.add_option("--output", options.output, "also write the results to this file, as JSON");
+  app.add_flag("--shaders", options.shaders,
+               "also draw every frame with shaders alone, beside the host kernels");
   app.add_flag("--still", options.still, "let the camera rest");
   CLI11_PARSE(app, argc, argv);
   try {

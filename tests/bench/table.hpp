@@ -2,6 +2,7 @@
 
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@ namespace heliograph::bench {
 class Table {
  public:
   void add(const render::Frame& frame);
+
+  /// Median milliseconds of the pass `name`; nothing where it never ran.
+  std::optional<double> median_of(const std::string& name) const;
 
   /// A JSON object: frame_ms (median, least, most), and of every pass its median time, ns per pixel,
   /// millions of rays per second, bytes of images, and how many times longer it takes than copying

@@ -123,6 +123,21 @@ TEST_F(FramePlanTest, SwapsHistoriesAndResetsThem) {
   EXPECT_EQ(value(history.current), 1.0f);
 }
 
+TEST_F(FramePlanTest, BringsTheAskedImageBackWithEveryFrame) {
+  const History history = plan_.history("count", format);
+  add("count", history.previous, history.current);
+  plan_.read_back(history.current);
+  plan_.compile();
+  for (int frame = 1; frame <= 3; ++frame) {
+    plan_.execute();
+    const std::vector<std::uint8_t> bytes = plan_.read();
+    const auto downloaded = plan_.latest(history.current).download();
+    ASSERT_EQ(bytes.size(), downloaded.size());
+    EXPECT_EQ(std::memcmp(bytes.data(), downloaded.data(), bytes.size()), 0);
+    EXPECT_EQ(value(history.current), static_cast<float>(frame));
+  }
+}
+
 TEST_F(FramePlanTest, SkipsPassesWhoseConditionFails) {
   const auto a = image("a"), b = image("b");
   bool wanted = false;

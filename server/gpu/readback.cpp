@@ -1,0 +1,49 @@
+#include "gpu/readback.hpp"
+
+#include <cstring>
+
+namespace heliograph::gpu {
+namespace {
+
+bool is_mapped(const Image& image, std::uint32_t layer) {
+  return image.host().data && layer == 0;
+}
+
+std::size_t row_bytes(const ImageDesc& desc) {
+  return std::size_t{desc.extent.width} * texel_bytes(desc.format);
+}
+
+}  // namespace
+
+Readback::Readback(const Device& device, const Image& image)
+    : size_(row_bytes(image.desc()) * image.desc().extent.height) {
+  if (is_mapped(image, 0) && image.desc().layers == 1) return;
+  staging_ = Buffer(device, image.desc().name + " readback", size_, 0, Memory::readback);
+}
+
+void Readback::record(VkCommandBuffer commands, const Image& image, std::uint32_t layer) const {
+  if (is_mapped(image, layer)) return;
+  full_barrier(commands);
+  VkBufferImageCopy region{};
+  region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, layer, 1};
+  if (is_depth(image.desc().format)) {
+    region.imageSubresource.aspectMask = VK_IMAGE_ASPECT_DEPTH_BIT;
+  }
+  region.imageExtent = {image.desc().extent.width, image.desc().extent.height, 1};
+  vkCmdCopyImageToBuffer(commands, image.handle(), VK_IMAGE_LAYOUT_GENERAL, staging_.handle(), 1,
+                         &region);
+  full_barrier(commands);
+}
+
+void Readback::read(const Image& image, std::span<std::byte> to, std::uint32_t layer) const {
+  if (!is_mapped(image, layer)) {
+    std::memcpy(to.data(), staging_.mapped(), size_);
+    return;
+  }
+  const std::size_t row = row_bytes(image.desc());
+  for (std::uint32_t y = 0; y < image.desc().extent.height; ++y) {
+    std::memcpy(to.data() + y * row, image.host().row<const std::byte>(y), row);
+  }
+}
+
+}  // namespace heliograph::gpu
