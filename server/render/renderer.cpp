@@ -4,20 +4,16 @@
 #include <chrono>
 #include <cstring>
 #include <optional>
+#include <utility>
 
 #include "render/debug_view.hpp"
-#include "render/engine_parts.hpp"
-#include "render/frame.hpp"
-#include "render/scene_set.hpp"
-#include "render/frame_set.hpp"
+#include "render/drawing.hpp"
 #include "render/moving_scene.hpp"
 #include "render/view_constants.hpp"
 #include "render/view_table.hpp"
 
 namespace heliograph::render {
 namespace {
-
-constexpr std::string_view picture_name = "output";
 
 scene::Scene empty_scene() {
   scene::Scene scene;
@@ -42,12 +38,9 @@ struct Renderer::State {
         constants_buffer(engine.device, "frame constants", sizeof(shared::FrameConstants),
                          VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Memory::upload) {}
 
-  void build_plan();
-  void write_frame_set();
-  void list_buffers();
-  bool has_buffer(std::string_view name) const;
+  void redraw();
+  protocol::Result<void> change_settings(const protocol::Settings& changed);
   Frame picture();
-  const gpu::Image* find(std::string_view buffer) const;
   std::optional<FloatImage> read(std::string_view view) const;
   std::uint32_t wanted_samples() const {
     return settings.accumulation.enabled
@@ -58,7 +51,8 @@ struct Renderer::State {
     samples = 0;
     stale = true;
   }
-  void apply_settings(const protocol::Settings& changed);
+  std::unique_ptr<Drawing> make_drawing();
+  void use(std::unique_ptr<Drawing> made);
 
   Engine::Parts& parts;
   std::shared_ptr<const SceneResources> nothing;  // the empty scene
@@ -76,83 +70,59 @@ struct Renderer::State {
   protocol::Settings settings;
   VkExtent2D extent{640, 360};
 
-  std::unique_ptr<gpu::DescriptorPool> pool;
-  std::optional<FrameInputs> inputs;
-  std::unique_ptr<gpu::FramePlan> plan;
-  FrameOutputs outputs;
-  std::vector<BufferInfo> buffers;
+  std::unique_ptr<Drawing> drawing;
 };
 
-void Renderer::State::build_plan() {
-  plan.reset();
-  inputs.emplace(FrameInputs{parts.programs, *scene, moving->tables(), *parts.tracer,
-                             moving->structure(), constants, settings, samples, seconds, *moving,
-                             parts.host_kernels});
-  plan = std::make_unique<gpu::FramePlan>(parts.device, extent);
-  write_frame_set();
-  outputs = declare_frame(*plan, *inputs);
-  plan->read_back(outputs.picture);
-  plan->compile();
-  list_buffers();
+std::unique_ptr<Drawing> Renderer::State::make_drawing() {
+  const FrameInputs inputs{parts.programs, *scene,    moving->tables(), *parts.tracer,
+                           moving->structure(), constants, settings,    samples,
+                           seconds,             *moving,   parts.host_kernels};
+  return std::make_unique<Drawing>(parts, inputs, constants_buffer, extent);
+}
+
+void Renderer::State::use(std::unique_ptr<Drawing> made) {
+  drawing = std::move(made);
   has_previous = false;
   sequence = 0;
   restart();
 }
 
-void Renderer::State::apply_settings(const protocol::Settings& changed) {
+// The old drawing goes first: two of them may not fit into memory.
+void Renderer::State::redraw() {
+  drawing.reset();
+  use(make_drawing());
+}
+
+// Which buffers there are follows from the settings. One that went while it was shown leaves the
+// picture; one that is asked for and not there is refused, and then the histories stay.
+protocol::Result<void> Renderer::State::change_settings(const protocol::Settings& changed) {
   const auto scope = protocol::changed_scope(settings, changed);
-  settings = changed;
+  const protocol::Settings before = std::exchange(settings, changed);
+  const bool rebuilds = includes(scope, protocol::ResetScope::structure);
+  if (changed.view.buffer != before.view.buffer) {
+    std::unique_ptr<Drawing> made = rebuilds ? make_drawing() : nullptr;
+    if (!(made ? *made : *drawing).has_buffer(changed.view.buffer)) {
+      settings = before;
+      return protocol::error::invalid("view.buffer",
+                                      "there is no buffer \"" + changed.view.buffer + "\"",
+                                      "a name from frame.buffers");
+    }
+    if (made) use(std::move(made));
+  } else if (rebuilds) {
+    redraw();
+  }
   stale = true;
-  if (includes(scope, protocol::ResetScope::structure)) build_plan();
   if (includes(scope, protocol::ResetScope::history)) has_previous = false;
   if (includes(scope, protocol::ResetScope::accumulation)) restart();
-}
-
-void Renderer::State::write_frame_set() {
-  pool = std::make_unique<gpu::DescriptorPool>(parts.device, 2, 16);
-  const VkDescriptorSet set = pool->allocate(parts.programs.frame_layout.handle());
-  render::write_frame_set(parts, set, constants_buffer, moving->tables().lights,
-                          scene->environment->view(settings.environment.separate_sun));
-  plan->share_set(frame_set, set);
-  const VkDescriptorSet tables = pool->allocate(parts.programs.scene_layout.handle());
-  write_scene_set(parts.device, tables, moving->tables(), scene->texture_heap);
-  plan->share_set(scene_set, tables);
-}
-
-void Renderer::State::list_buffers() {
-  const auto list = [this](const std::string& view, const std::string& by_pass) {
-    const std::string_view known = description_of(view), colors = legend(colors_of(view));
-    std::string text = known.empty() ? by_pass : std::string(known);
-    if (!colors.empty()) text.append(" ").append(colors);
-    buffers.push_back({view, text});
-  };
-  buffers.clear();
-  buffers.push_back({std::string(picture_name), "The finished picture."});
-  for (const auto& view : plan->views()) {
-    if (view.name == picture_name) continue;
-    list(view.name, view.description);
-    for (const std::string& aspect : aspects_of(view.name)) list(aspect, {});
-  }
-}
-
-bool Renderer::State::has_buffer(std::string_view name) const {
-  return std::any_of(buffers.begin(), buffers.end(),
-                     [&](const BufferInfo& buffer) { return buffer.name == name; });
-}
-
-const gpu::Image* Renderer::State::find(std::string_view buffer) const {
-  for (const auto& view : plan->views()) {
-    if (view.name == buffer) return &plan->latest(view.image);
-  }
-  return nullptr;
+  return {};
 }
 
 std::optional<FloatImage> Renderer::State::read(std::string_view view) const {
   const std::string_view source = source_of(view);
-  const gpu::Image* image = find(source.empty() ? view : source);
+  const gpu::Image* image = drawing->find(source.empty() ? view : source);
   if (!image) return std::nullopt;
   if (source.empty()) return read_image(*image);
-  return extract(view, read_image(*image), {constants, exposure_factor(*plan, outputs.exposure)});
+  return extract(view, read_image(*image), {constants, exposure_factor(drawing->plan, drawing->outputs.exposure)});
 }
 
 Frame Renderer::State::picture() {
@@ -163,7 +133,7 @@ Frame Renderer::State::picture() {
   Frame frame;
   frame.width = extent.width;
   frame.height = extent.height;
-  frame.rgba = plan->read();
+  frame.rgba = drawing->plan.read();
   return frame;
 }
 
@@ -176,18 +146,17 @@ Renderer::Renderer(Engine& engine)
 Renderer::~Renderer() = default;
 
 void Renderer::set_scene(std::shared_ptr<const SceneResources> scene) {
-  // The plan refers to the old scene: it goes first.
-  state_->plan.reset();
-  state_->inputs.reset();
+  // The drawing refers to the old scene: it goes first.
+  state_->drawing.reset();
   state_->scene = scene ? std::move(scene) : state_->nothing;
   state_->moving.emplace(state_->parts.device, *state_->parts.tracer, state_->scene);
-  state_->build_plan();
+  state_->redraw();
 }
 
 void Renderer::set_size(std::uint32_t width, std::uint32_t height) {
   if (state_->extent.width == width && state_->extent.height == height) return;
   state_->extent = {width, height};
-  state_->build_plan();
+  state_->redraw();
 }
 
 void Renderer::set_camera(const scene::Camera& camera) {
@@ -219,24 +188,14 @@ void Renderer::set_frame_seconds(float seconds) {
 
 protocol::Result<void> Renderer::set_settings(const protocol::Settings& settings) {
   if (settings == state_->settings) return {};
-  const protocol::Settings before = state_->settings;
-  state_->apply_settings(settings);
-  // Which buffers there are follows from the settings. One that went while it was shown leaves the
-  // picture; one that is asked for and not there is refused.
-  if (settings.view.buffer == before.view.buffer || state_->has_buffer(settings.view.buffer)) {
-    return {};
-  }
-  state_->apply_settings(before);
-  return protocol::error::invalid("view.buffer",
-                                  "there is no buffer \"" + settings.view.buffer + "\"",
-                                  "a name from frame.buffers");
+  return state_->change_settings(settings);
 }
 
 bool Renderer::needs_frame() const {
   if (state_->stale || state_->samples < state_->wanted_samples()) return true;
   if (state_->moving->needs_advance()) return true;
   // Exposure that no time passes for stays where it is.
-  return state_->seconds > 0.0f && !is_settled(*state_->plan, state_->outputs.exposure);
+  return state_->seconds > 0.0f && !is_settled(state_->drawing->plan, state_->drawing->outputs.exposure);
 }
 
 Frame Renderer::render() {
@@ -251,7 +210,7 @@ Frame Renderer::render() {
                                          state.sequence++, state.has_previous ? &before : nullptr);
   state.has_previous = true;
   std::memcpy(state.constants_buffer.mapped(), &state.constants, sizeof state.constants);
-  state.plan->execute();
+  state.drawing->plan.execute();
   ++state.samples;
 
   Frame frame = state.picture();
@@ -261,7 +220,7 @@ Frame Renderer::render() {
     const std::chrono::duration<float, std::milli> posing = posed - start;
     frame.passes.push_back({"pose", protocol::PassKind::host, posing.count()});
   }
-  for (const auto& timing : state.plan->timings()) {
+  for (const auto& timing : state.drawing->plan.timings()) {
     if (timing.milliseconds < 0.0f) continue;
     const auto kind = timing.host ? protocol::PassKind::host : protocol::PassKind::device;
     frame.passes.push_back({timing.name, kind, timing.milliseconds});
@@ -273,14 +232,14 @@ Frame Renderer::render() {
 
 std::vector<PassWork> Renderer::work() const {
   std::vector<PassWork> all;
-  for (const auto& pass : state_->plan->work()) {
+  for (const auto& pass : state_->drawing->plan.work()) {
     all.push_back({pass.name, pass.image_bytes, pass.entries});
   }
   return all;
 }
 
 const std::vector<BufferInfo>& Renderer::buffers() const {
-  return state_->buffers;
+  return state_->drawing->buffers;
 }
 
 protocol::Result<FloatImage> Renderer::capture(std::string_view buffer) {

@@ -82,6 +82,21 @@ TEST_F(Views, AnyOfThemCanBeStreamed) {
   EXPECT_FALSE(still_.renderer.capture("no such buffer"));
 }
 
+TEST_F(Views, ANameThatIsRefusedCostsNoHistory) {
+  still_.renderer.render();
+  const render::Frame before = still_.renderer.render();
+  protocol::Settings settings;
+  settings.specular.enabled = false;  // other passes, other buffers
+  settings.view.buffer = "specular.radiance";
+  const auto refused = still_.renderer.set_settings(settings);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().path, "view.buffer");
+  EXPECT_EQ(still_.renderer.render().samples, before.samples + 1);
+  settings.view.buffer = "output";
+  ASSERT_TRUE(still_.renderer.set_settings(settings));
+  EXPECT_EQ(still_.renderer.render().samples, 1u);
+}
+
 TEST_F(Views, ShowKnownValuesInKnownColours) {
   // The middle of the metal sphere, about; the lowest row is ground, the highest sky.
   const std::uint32_t x = 96, y = 56;
