@@ -125,6 +125,7 @@ gpu::Image make_split_sum_table(const gpu::Device& device, const Programs& progr
   gpu::ImageDesc desc{.name = "split sum", .extent = {table_size, table_size}};
   desc.format = VK_FORMAT_R32G32_SFLOAT;
   desc.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+  desc.mapped = device.is_cpu();  // host kernels read it
   gpu::Image table(device, desc);
   gpu::FramePlan plan(device, desc.extent);
   plan.pass("split_sum_table", programs.compute(shaders::split_sum_table))

@@ -25,6 +25,7 @@ struct FrameInputs {
   const std::uint32_t& samples;  // already in the accumulated picture
   const float& seconds;          // since the frame before
   const MovingScene& moving;     // what the rasteriser draws
+  const gpu::Image& split_sum_table;  // rg32f, mapped on devices that are processors
   bool host_kernels = true;      // on devices that are processors, where a pass has one
 };
 

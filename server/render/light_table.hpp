@@ -1,8 +1,10 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "gpu/buffer.hpp"
+#include "shaders/shared/frame_constants.h"
 #include "shaders/shared/scene.h"
 
 namespace heliograph::render {
@@ -15,5 +17,10 @@ gpu::Buffer make_light_table(const gpu::Device& device, std::size_t count);
 
 /// Fills a table that has room for them. Never while a frame runs that reads it.
 void write_lights(const gpu::Buffer& table, std::span<const shared::Light> lights);
+
+/// The lights of a frame as light_number() of shaders/lib/lights.glsl gives them, the environment's
+/// sun last, from a table that the host can reach.
+std::vector<shared::Light> frame_lights(const gpu::Buffer& table,
+                                        const shared::FrameConstants& frame);
 
 }  // namespace heliograph::render

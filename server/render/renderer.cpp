@@ -76,7 +76,8 @@ struct Renderer::State {
 std::unique_ptr<Drawing> Renderer::State::make_drawing() {
   const FrameInputs inputs{parts.programs, *scene,    moving->tables(), *parts.tracer,
                            moving->structure(), constants, settings,    samples,
-                           seconds,             *moving,   parts.host_kernels};
+                           seconds,             *moving,   parts.split_sum_table,
+                           parts.host_kernels};
   return std::make_unique<Drawing>(parts, inputs, constants_buffer, extent);
 }
 
