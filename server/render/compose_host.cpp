@@ -155,7 +155,7 @@ class Composition {
 };
 
 void compose_rows(const ComposeJob& job, int first, int last) {
-  run_rows<Composition>(job, first, last);
+  run_rows<Composition>(job, job.width, first, last);
 }
 
 }  // namespace heliograph::render::host::HWY_NAMESPACE

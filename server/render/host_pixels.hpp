@@ -203,9 +203,9 @@ HWY_INLINE hn::Mask<D> from_column(D d, int x, int start) {
 
 /// Runs `Kernel<tag>(job).rows(first, last)` in the widest vectors that fit into a row.
 template <template <class> class Kernel, class Job>
-HWY_INLINE void run_rows(const Job& job, int first, int last) {
+HWY_INLINE void run_rows(const Job& job, int width, int first, int last) {
   using Wide = hn::ScalableTag<float>;
-  if (static_cast<std::size_t>(job.width) >= hn::Lanes(Wide())) {
+  if (static_cast<std::size_t>(width) >= hn::Lanes(Wide())) {
     Kernel<Wide>(job).rows(first, last);
   } else {
     Kernel<hn::FixedTag<float, 1>>(job).rows(first, last);

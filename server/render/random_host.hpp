@@ -16,29 +16,15 @@ namespace heliograph::render::host::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// What the numbers of all dimensions are made with.
 template <class DU>
-class RandomPairs {
+class RandomDigits {
+ protected:
   using V = hn::Vec<DU>;
+  using F = hn::Vec<hn::RebindToFloat<DU>>;
 
- public:
-  /// Of one sample, dimension and seed, for any pixel.
-  HWY_INLINE RandomPairs(DU du, std::uint32_t sample, std::uint32_t dimension, std::uint32_t seed)
-      : du_(du), keys_(pcg3d({dimension, seed, 0})), more_(pcg3d({dimension, seed, 1})) {
-    const V place = shuffle(hn::Set(du, sample), keys_.y);
-    first_ = scramble_upward(place, more_.x);
-    second_ = scramble_upward(sobol_second(place), more_.z);
-  }
+  HWY_INLINE explicit RandomDigits(DU du) : du_(du) {}
 
-  /// Both numbers in [0, 1), of pixels at x in row y.
-  HWY_INLINE void at(V x, std::uint32_t y, hn::Vec<hn::RebindToFloat<DU>>& a,
-                     hn::Vec<hn::RebindToFloat<DU>>& b) const {
-    const V order = hn::Or(spread(x), hn::ShiftLeft<1>(spread(hn::Set(du_, y))));
-    const V place = shuffle(order, keys_.x);
-    a = unit_interval(hn::Xor(scramble_upward(place, keys_.z), first_));
-    b = unit_interval(hn::Xor(scramble_upward(sobol_second(place), more_.y), second_));
-  }
-
- private:
   static glm::uvec3 pcg3d(glm::uvec3 v) {
     v = v * 1664525u + 1013904223u;
     v.x += v.y * v.z;
@@ -95,18 +81,75 @@ class RandomPairs {
     v = part<2>(v, 0x33333333u);
     return part<1>(v, 0x55555555u);
   }
-  HWY_INLINE hn::Vec<hn::RebindToFloat<DU>> unit_interval(V digits) const {
+  HWY_INLINE F unit_interval(V digits) const {
     const hn::RebindToFloat<DU> df;
     const hn::RebindToSigned<DU> di;
     const auto whole = hn::BitCast(di, hn::ShiftRight<8>(reverse(digits)));
     return hn::Mul(hn::ConvertTo(df, whole), hn::Set(df, 0x1p-24f));
   }
 
+  /// A pixel's place in the quadtree.
+  HWY_INLINE V order(V x, V y) const { return hn::Or(spread(x), hn::ShiftLeft<1>(spread(y))); }
+
   DU du_;
+};
+
+/// Two numbers of one sample, dimension and seed, for any pixel.
+template <class DU>
+class RandomPairs : RandomDigits<DU> {
+  using Base = RandomDigits<DU>;
+  using typename Base::F;
+  using typename Base::V;
+
+ public:
+  HWY_INLINE RandomPairs(DU du, std::uint32_t sample, std::uint32_t dimension, std::uint32_t seed)
+      : Base(du),
+        keys_(Base::pcg3d({dimension, seed, 0})),
+        more_(Base::pcg3d({dimension, seed, 1})) {
+    const V place = this->shuffle(hn::Set(du, sample), keys_.y);
+    first_ = this->scramble_upward(place, more_.x);
+    second_ = this->scramble_upward(this->sobol_second(place), more_.z);
+  }
+
+  /// Both numbers in [0, 1).
+  HWY_INLINE void at(V x, V y, F& a, F& b) const {
+    const V place = this->shuffle(this->order(x, y), keys_.x);
+    a = this->unit_interval(hn::Xor(this->scramble_upward(place, keys_.z), first_));
+    const V second = this->scramble_upward(this->sobol_second(place), more_.y);
+    b = this->unit_interval(hn::Xor(second, second_));
+  }
+  /// Of pixels in one row.
+  HWY_INLINE void at(V x, std::uint32_t y, F& a, F& b) const { at(x, hn::Set(this->du_, y), a, b); }
+
+ private:
   glm::uvec3 keys_;
   glm::uvec3 more_;
   V first_;
   V second_;
+};
+
+/// One number, independent of the pairs of every dimension.
+template <class DU>
+class RandomNumbers : RandomDigits<DU> {
+  using Base = RandomDigits<DU>;
+  using typename Base::F;
+  using typename Base::V;
+
+ public:
+  HWY_INLINE RandomNumbers(DU du, std::uint32_t sample, std::uint32_t dimension, std::uint32_t seed)
+      : Base(du), keys_(Base::pcg3d({dimension, seed, 2})) {
+    const V place = this->shuffle(hn::Set(du, sample), keys_.y);
+    of_sample_ = this->scramble_upward(place, keys_.x ^ keys_.y);
+  }
+
+  HWY_INLINE F at(V x, V y) const {
+    const V place = this->shuffle(this->order(x, y), keys_.x);
+    return this->unit_interval(hn::Xor(this->scramble_upward(place, keys_.z), of_sample_));
+  }
+
+ private:
+  glm::uvec3 keys_;
+  V of_sample_;
 };
 
 }  // namespace heliograph::render::host::HWY_NAMESPACE

@@ -1,15 +1,48 @@
 #include "render/reproject.hpp"
 
 #include "render/frame.hpp"
+#include "render/reproject_host.hpp"
 #include "shaders/embedded.hpp"
-#include "shaders/shared/denoise.h"
 
 namespace heliograph::render {
+namespace {
+
+/// The shader, or its twin where the device's memory is the host's.
+gpu::PassBuilder declare_pass(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                              const Guide& guide) {
+  const auto constants = [&s = in.settings.reprojection] {
+    return shared::ReprojectConstants{s.depth_tolerance, s.normal_tolerance};
+  };
+  if (!in.host_kernels || !plan.device().is_cpu()) {
+    return plan.pass("denoise.reproject", in.programs.compute(shaders::reproject))
+        .constants(constants)
+        .dispatch(plan.extent());
+  }
+  return plan.host("denoise.reproject", [&plan, &frame = in.constants, gbuffer, guide, constants] {
+    const auto view = [&plan](gpu::ImageRef image) { return plan.get(image).host(); };
+    host::reproject({.frame = frame,
+                     .constants = constants(),
+                     .width = static_cast<int>(plan.extent().width),
+                     .height = static_cast<int>(plan.extent().height),
+                     .normals = view(gbuffer.normals),
+                     .surface = view(gbuffer.surface),
+                     .motion = view(gbuffer.motion),
+                     .depth_slope = view(gbuffer.depth_slope),
+                     .instance = view(gbuffer.instance),
+                     .previous_normals = view(gbuffer.previous_normals),
+                     .previous_motion = view(gbuffer.previous_motion),
+                     .previous_instance = view(gbuffer.previous_instance),
+                     .guide = view(guide.surface),
+                     .reprojection = view(guide.reprojection)});
+  });
+}
+
+}  // namespace
 
 Guide reproject(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer) {
   const Guide guide{plan.image("denoise.guide", VK_FORMAT_R32G32B32A32_SFLOAT),
                     plan.image("denoise.reprojection", VK_FORMAT_R32G32B32A32_SFLOAT)};
-  plan.pass("denoise.reproject", in.programs.compute(shaders::reproject))
+  declare_pass(plan, in, gbuffer, guide)
       .read(gbuffer.normals)
       .read(gbuffer.surface)
       .read(gbuffer.motion)
@@ -20,10 +53,6 @@ Guide reproject(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuf
       .read(gbuffer.previous_instance)
       .write(guide.surface)
       .write(guide.reprojection)
-      .constants([&s = in.settings.reprojection] {
-        return shared::ReprojectConstants{s.depth_tolerance, s.normal_tolerance};
-      })
-      .dispatch(plan.extent())
       .describe(
           "Shading normal times 1 + roughness and view Z; and where each surface was in the "
           "frame before: pixel, valid neighbours, 1 where it was not seen.");

@@ -1,15 +1,48 @@
 #include "render/trace_visibility.hpp"
 
+#include "render/light_table.hpp"
 #include "render/ray_stream.hpp"
+#include "render/visibility_rays_host.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
 namespace {
 
+/// How the rays of one visibility signal are made: the shader with its images, and the kernel for
+/// devices that are processors, where there is one.
+struct Generation {
+  std::string name;
+  const gpu::ComputeProgram& shader;
+  std::vector<gpu::ImageRef> images;
+  std::uint32_t flag;
+  std::function<void(const host::VisibilityRaysJob&)> kernel;
+};
+
+gpu::PassBuilder generation_pass(gpu::FramePlan& plan, const FrameInputs& in,
+                                 const GBuffer& gbuffer, const Generation& generation,
+                                 const tracing::RayStream& rays, gpu::ImageRef visibility) {
+  const std::string name = generation.name + ".rays";
+  if (!in.host_kernels || !plan.device().is_cpu() || !generation.kernel) {
+    return plan.pass(name, generation.shader).dispatch(plan.extent());
+  }
+  return plan.host(name, [&plan, &frame = in.constants, gbuffer, kernel = generation.kernel, rays,
+                          visibility] {
+    const auto view = [&plan](gpu::ImageRef image) { return plan.get(image).host(); };
+    kernel({.frame = frame,
+            .width = static_cast<int>(plan.extent().width),
+            .height = static_cast<int>(plan.extent().height),
+            .normals = view(gbuffer.normals),
+            .motion = view(gbuffer.motion),
+            .count = reinterpret_cast<shared::RayCount*>(plan.get(rays.count).mapped()),
+            .rays = reinterpret_cast<shared::Ray*>(plan.get(rays.rays).mapped()),
+            .visibility = view(visibility)});
+  });
+}
+
 /// Generate -> trace -> bring back: the wavefront of one visibility signal.
-gpu::ImageRef trace_visibility(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
-                               const gpu::ComputeProgram& generator,
-                               const std::vector<gpu::ImageRef>& images, std::uint32_t flag) {
+gpu::ImageRef trace_visibility(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                               const Generation& generation) {
+  const std::string& name = generation.name;
   const VkExtent2D extent = plan.extent();
   const std::uint32_t pixels = extent.width * extent.height;
   constexpr VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
@@ -18,18 +51,14 @@ gpu::ImageRef trace_visibility(gpu::FramePlan& plan, const FrameInputs& in, cons
       plan.buffer(name + ".occluded", sizeof(std::uint32_t) * pixels, usage, gpu::Memory::device);
   const auto visibility = plan.image(name + ".visibility", VK_FORMAT_R32_SFLOAT);
   // Without new rays the stream stays empty and tracing it costs nothing.
-  const auto wanted = [&constants = in.constants, flag] {
+  const auto wanted = [&constants = in.constants, flag = generation.flag] {
     return (constants.counts.y & flag) != 0;
   };
 
   begin_rays(plan, in, name, rays);
-  auto pass = plan.pass(name + ".rays", generator);
-  for (const gpu::ImageRef image : images) pass.read(image);
-  pass.read_write(rays.count)
-      .write(rays.rays)
-      .write(visibility)
-      .dispatch(extent)
-      .when(wanted);
+  auto pass = generation_pass(plan, in, gbuffer, generation, rays, visibility);
+  for (const gpu::ImageRef image : generation.images) pass.read(image);
+  pass.read_write(rays.count).write(rays.rays).write(visibility).when(wanted);
   in.tracer.trace_any(plan, name + ".trace", in.structure, rays, occluded);
   plan.pass(name + ".resolve", in.programs.compute(shaders::resolve_visibility))
       .read(rays.count)
@@ -43,14 +72,30 @@ gpu::ImageRef trace_visibility(gpu::FramePlan& plan, const FrameInputs& in, cons
 }  // namespace
 
 gpu::ImageRef trace_shadows(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer) {
-  return trace_visibility(plan, in, "shadows", in.programs.compute(shaders::shadow_rays, in.scene.features),
-                          {gbuffer.normals, gbuffer.motion, gbuffer.base_color, gbuffer.surface},
-                          shared::frame_shadows);
+  Generation generation{.name = "shadows",
+                        .shader = in.programs.compute(shaders::shadow_rays, in.scene.features),
+                        .images = {gbuffer.normals, gbuffer.motion, gbuffer.base_color,
+                                   gbuffer.surface},
+                        .flag = shared::frame_shadows,
+                        .kernel = {}};
+  if ((in.scene.features & shared::scene_area_lights) == 0) {
+    generation.kernel = [&plan, in, gbuffer](const host::VisibilityRaysJob& common) {
+      const auto lights = frame_lights(in.tables.lights, in.constants);
+      host::shadow_rays({common, lights, plan.get(gbuffer.base_color).host(),
+                         plan.get(gbuffer.surface).host(), in.split_sum_table.host(),
+                         static_cast<int>(in.split_sum_table.desc().extent.width)});
+    };
+  }
+  return trace_visibility(plan, in, gbuffer, generation);
 }
 
 gpu::ImageRef trace_ambient(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer) {
-  return trace_visibility(plan, in, "ambient", in.programs.compute(shaders::ambient_rays),
-                          {gbuffer.normals, gbuffer.motion}, shared::frame_ambient_occlusion);
+  return trace_visibility(plan, in, gbuffer,
+                          {.name = "ambient",
+                           .shader = in.programs.compute(shaders::ambient_rays),
+                           .images = {gbuffer.normals, gbuffer.motion},
+                           .flag = shared::frame_ambient_occlusion,
+                           .kernel = host::ambient_rays});
 }
 
 }  // namespace heliograph::render
