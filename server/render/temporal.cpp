@@ -1,6 +1,7 @@
 #include "render/temporal.hpp"
 
 #include "render/denoise_constants.hpp"
+#include "render/temporal_host.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
@@ -25,6 +26,43 @@ gpu::ImageRef measure_percentiles(gpu::FramePlan& plan, const Guide& guide, gpu:
   return percentiles;
 }
 
+/// The shader, or its twin where the device's memory is the host's and the twin knows the
+/// rectification. `run` takes what is the same for all kernels: constants and how to view an image.
+template <class Constants, class Run>
+gpu::PassBuilder declare_pass(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
+                              const gpu::ComputeProgram& program,
+                              protocol::Rectification rectification, const Constants& constants,
+                              const Run& run) {
+  const bool known = host::can_accumulate(static_cast<std::uint32_t>(rectification));
+  if (!in.host_kernels || !plan.device().is_cpu() || !known) {
+    return plan.pass(name, program).constants(constants).dispatch(plan.extent());
+  }
+  return plan.host(name, [&plan, constants, run] {
+    run(constants(), [&plan](gpu::ImageRef image) { return plan.get(image).host(); });
+  });
+}
+
+/// Holds the long history against the short one.
+void rectify(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
+             const gpu::ComputeProgram& program, void (*kernel)(const host::RectifyJob&),
+             const Guide& guide, gpu::ImageRef fast, gpu::ImageRef signal, gpu::ImageRef history,
+             const auto& constants) {
+  declare_pass(plan, in, name, program, protocol::Rectification::fast_history, constants,
+               [=, extent = plan.extent()](const auto& now, const auto& view) {
+                 kernel({.constants = now,
+                         .width = static_cast<int>(extent.width),
+                         .height = static_cast<int>(extent.height),
+                         .guide = view(guide.surface),
+                         .fast = view(fast),
+                         .signal = view(signal),
+                         .history = view(history)});
+               })
+      .read(guide.surface)
+      .read(fast)
+      .read_write(signal)
+      .read_write(history);
+}
+
 }  // namespace
 
 Integrated accumulate_visibility(gpu::FramePlan& plan, const FrameInputs& in, const Guide& guide,
@@ -41,7 +79,26 @@ Integrated accumulate_visibility(gpu::FramePlan& plan, const FrameInputs& in, co
   const gpu::ImageRef percentiles = measure_percentiles(
       plan, guide, raw, "visibility", in.programs.compute(shaders::percentiles_visibility),
       settings.rectification);
-  plan.pass("visibility.temporal", in.programs.compute(shaders::temporal_visibility))
+  const auto run = [=, extent = plan.extent(), &frame = in.constants](const auto& now,
+                                                                      const auto& view) {
+    host::accumulate_visibility({.frame = frame,
+                                 .constants = now,
+                                 .width = static_cast<int>(extent.width),
+                                 .height = static_cast<int>(extent.height),
+                                 .raw = view(raw),
+                                 .guide = view(guide.surface),
+                                 .reprojection = view(guide.reprojection),
+                                 .previous_signal = view(memory.previous),
+                                 .previous_moments = view(moments.previous),
+                                 .previous_history = view(history.previous),
+                                 .previous_fast = view(fast.previous),
+                                 .signal = view(signal),
+                                 .moments = view(moments.current),
+                                 .history = view(history.current),
+                                 .fast = view(fast.current)});
+  };
+  declare_pass(plan, in, "visibility.temporal", in.programs.compute(shaders::temporal_visibility),
+               settings.rectification, constants, run)
       .read(raw)
       .read(guide.surface)
       .read(guide.reprojection)
@@ -54,20 +111,13 @@ Integrated accumulate_visibility(gpu::FramePlan& plan, const FrameInputs& in, co
       .write(moments.current)
       .write(history.current)
       .write(fast.current)
-      .constants(constants)
-      .dispatch(plan.extent())
       .describe(
           "Shadow (red) and ambient (green) visibility gathered over frames: mean and "
           "variance, moments, frames remembered and how far the mean was moved, the last few "
           "frames alone.");
   if (settings.rectification == protocol::Rectification::fast_history) {
-    plan.pass("visibility.rectify", in.programs.compute(shaders::rectify_visibility))
-        .read(guide.surface)
-        .read(fast.current)
-        .read_write(signal)
-        .read_write(history.current)
-        .constants(constants)
-        .dispatch(plan.extent());
+    rectify(plan, in, "visibility.rectify", in.programs.compute(shaders::rectify_visibility),
+            host::rectify_visibility, guide, fast.current, signal, history.current, constants);
   }
   return {signal, moments.current, history.current, memory.current};
 }
@@ -89,7 +139,29 @@ Integrated accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in, cons
   const gpu::ImageRef percentiles = measure_percentiles(
       plan, guide, raw, "specular", in.programs.compute(shaders::percentiles_specular),
       settings.rectification);
-  plan.pass("specular.temporal", in.programs.compute(shaders::temporal_specular))
+  const auto run = [=, extent = plan.extent(), &frame = in.constants](const auto& now,
+                                                                      const auto& view) {
+    host::accumulate_specular({.frame = frame,
+                               .constants = now,
+                               .width = static_cast<int>(extent.width),
+                               .height = static_cast<int>(extent.height),
+                               .raw = view(raw),
+                               .guide = view(guide.surface),
+                               .instance = view(gbuffer.instance),
+                               .reprojection = view(guide.reprojection),
+                               .previous_normals = view(gbuffer.previous_normals),
+                               .previous_surface = view(gbuffer.previous_surface),
+                               .previous_motion = view(gbuffer.previous_motion),
+                               .previous_instance = view(gbuffer.previous_instance),
+                               .previous_signal = view(memory.previous),
+                               .previous_history = view(history.previous),
+                               .previous_fast = view(fast.previous),
+                               .signal = view(signal),
+                               .history = view(history.current),
+                               .fast = view(fast.current)});
+  };
+  declare_pass(plan, in, "specular.temporal", in.programs.compute(shaders::temporal_specular),
+               settings.rectification, constants, run)
       .read(raw)
       .read(guide.surface)
       .read(gbuffer.instance)
@@ -105,19 +177,12 @@ Integrated accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in, cons
       .write(signal)
       .write(history.current)
       .write(fast.current)
-      .constants(constants)
-      .dispatch(plan.extent())
       .describe(
           "Reflections gathered over frames: mean and variance; frames remembered, how far "
           "the mean was moved, and moments; the last few frames alone.");
   if (settings.rectification == protocol::Rectification::fast_history) {
-    plan.pass("specular.rectify", in.programs.compute(shaders::rectify_specular))
-        .read(guide.surface)
-        .read(fast.current)
-        .read_write(signal)
-        .read_write(history.current)
-        .constants(constants)
-        .dispatch(plan.extent());
+    rectify(plan, in, "specular.rectify", in.programs.compute(shaders::rectify_specular),
+            host::rectify_specular, guide, fast.current, signal, history.current, constants);
   }
   return {signal, history.current, history.current, memory.current};
 }

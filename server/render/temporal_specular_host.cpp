@@ -1,0 +1,264 @@
+#include "render/host_rows.hpp"
+#include "render/temporal_host.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/temporal_specular_host.cpp"
+#include "hwy/foreach_target.h"
+// After the line above, which compiles this file once for each instruction set.
+#include "hwy/contrib/math/math-inl.h"
+#include "render/host_moments.hpp"
+#include "render/host_view.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::host::HWY_NAMESPACE {
+
+template <class D>
+class SpecularAccumulation {
+  using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
+  using DI = hn::RebindToSigned<D>;
+  using VI = hn::Vec<DI>;
+
+  static constexpr float no_hit = 1e9f;
+
+  struct Remembered {
+    Triple<V> radiance;
+    V frames;  // 0: nothing
+    Pair<V> moments;
+    Triple<V> fast;
+  };
+  struct Surface {
+    Triple<V> normal;
+    V roughness;
+    V view_z;
+  };
+
+ public:
+  HWY_INLINE explicit SpecularAccumulation(const TemporalSpecularJob& job)
+      : job_(job), c_(job.constants), bounds_(job.width, job.height) {}
+
+  HWY_INLINE void rows(int first, int last) const {
+    const BandScratch hits(1, job_.width, first, last, 1);
+    for (int y = first - 1; y <= last; ++y) fill_hits(hits, y);
+    const int lanes = static_cast<int>(hn::Lanes(d_));
+    for (int y = first; y < last; ++y) {
+      const ViewedRow<D> view(job_.frame, y);
+      for (int x = 0; x < job_.width; x += lanes) {
+        block(hits, view, std::min(x, job_.width - lanes), y);
+      }
+    }
+  }
+
+ private:
+  HWY_INLINE V set(float value) const { return hn::Set(d_, value); }
+  HWY_INLINE Quad<V> load(const gpu::HostView& image, int x, int y) const {
+    return load4(d_, row_of<const float>(image, y) + 4 * x);
+  }
+
+  /// Hit distances of a row, `no_hit` where there is none to be known.
+  HWY_INLINE void fill_hits(const BandScratch& hits, int y) const {
+    if (y < 0 || y >= job_.height) {
+      std::fill_n(hits.row(0, y) - 1, job_.width + 2, no_hit);
+      return;
+    }
+    const int lanes = static_cast<int>(hn::Lanes(d_));
+    for (int i = 0; i < job_.width; i += lanes) {
+      const int x = std::min(i, job_.width - lanes);
+      const V distance = load(job_.raw, x, y).w;
+      const M known = hn::AndNot(is_bad(distance), hn::Gt(distance, hn::Zero(d_)));
+      hn::StoreU(hn::IfThenElse(known, distance, set(no_hit)), d_, hits.row(0, y) + x);
+    }
+    hits.fill_beyond(0, y, no_hit);
+  }
+
+  /// The shortest of the neighbours' hit distances.
+  HWY_INLINE V hit_distance(const BandScratch& hits, int x, int y) const {
+    V nearest = set(no_hit);
+    for (int i = 0; i < 9; ++i) {
+      nearest = hn::Min(nearest, hn::LoadU(d_, hits.row(0, y + i / 3 - 1) + x + i % 3 - 1));
+    }
+    return hn::IfThenElseZero(hn::Lt(nearest, set(no_hit)), nearest);
+  }
+
+  HWY_INLINE V lobe_share(V roughness) const {
+    const V smooth_part = set(1.0f) - roughness;
+    return clamped(smooth_part * (hn::Sqrt(smooth_part) + roughness), 0.0f, 1.0f);
+  }
+
+  HWY_INLINE Pair<V> projected(const glm::mat4& m, const Triple<V>& p) const {
+    const V w = hn::MulAdd(
+        set(m[0].w), p.x,
+        hn::MulAdd(set(m[1].w), p.y, hn::MulAdd(set(m[2].w), p.z, set(m[3].w))));
+    const V half = set(0.5f) / w;
+    const Triple<V> clip = transformed(m, p);
+    return {clip.x * half, clip.y * half};
+  }
+
+  /// From this frame's pixels to where the virtual points were in the frame before, in pixels.
+  HWY_INLINE Pair<V> virtual_motion(const ViewedRow<D>& view, const BandScratch& hits, int x,
+                                    int y, const Surface& s) const {
+    const Triple<V> position = view.world_position(x, s.view_z);
+    const V depth = hit_distance(hits, x, y) * lobe_share(s.roughness);
+    const Triple<V> behind = position - view.to_eye(x) * depth;
+    const Pair<V> before = projected(job_.frame.previous_unjittered, behind);
+    const Pair<V> now = projected(job_.frame.unjittered, behind);
+    return {(before.x - now.x) * set(static_cast<float>(job_.width)),
+            (before.y - now.y) * set(static_cast<float>(job_.height))};
+  }
+
+  /// Whether the frame before shows the same mirror there.
+  HWY_INLINE M same_mirror(VI x, VI y, M wanted, VI instance, const Surface& s) const {
+    const M asked = hn::And(wanted, bounds_.contain(x, y));
+    if (hn::AllFalse(d_, asked)) return asked;
+    const Spot<D> spot = bounds_.spot(x, y);
+    const auto shown = hn::Eq(spot.word(job_.previous_instance), instance);
+    M same = hn::And(asked, hn::RebindMask(d_, shown));
+    same = hn::And(same, hn::Gt(spot.last_of_four(job_.previous_motion), hn::Zero(d_)));
+    const Pair<V> encoded = spot.first_two(job_.previous_normals);
+    const V cosine = dot(octahedral_decode(encoded.x, encoded.y), s.normal);
+    same = hn::And(same, hn::Gt(cosine, mix(set(0.9995f), set(0.95f), s.roughness)));
+    const auto texel = hn::BitCast(hn::RebindToUnsigned<D>(), spot.word(job_.previous_surface));
+    const V off = hn::Abs(unorm8<0>(d_, texel) - s.roughness);
+    return hn::And(same, hn::Lt(off, hn::MulAdd(set(0.25f), s.roughness, set(0.05f))));
+  }
+
+  HWY_INLINE HistoryTaps<D> virtual_taps(V x, V y, M seen, VI instance, const Surface& s) const {
+    HistoryTaps<D> taps(x, y);
+    for (int i = 0; i < 4; ++i) {
+      const M weighs = hn::And(seen, hn::Gt(taps.weights[i], hn::Zero(d_)));
+      const M same = same_mirror(taps.tap_x(i), taps.tap_y(i), weighs, instance, s);
+      taps.weights[i] = hn::IfThenElseZero(same, taps.weights[i]);
+    }
+    taps.normalise();
+    return taps;
+  }
+
+  HWY_INLINE Remembered nothing() const {
+    const V zero = hn::Zero(d_);
+    return {{zero, zero, zero}, zero, {zero, zero}, {zero, zero, zero}};
+  }
+
+  HWY_INLINE Remembered recall(const HistoryTaps<D>& taps) const {
+    Remembered r = nothing();
+    for (int i = 0; i < 4; ++i) {
+      const V weight = taps.weights[i];
+      const M counts = hn::Gt(weight, hn::Zero(d_));
+      if (hn::AllFalse(d_, counts)) continue;
+      const Spot<D> spot = bounds_.spot(taps.tap_x(i), taps.tap_y(i));
+      const Triple<V> signal = spot.first_three(job_.previous_signal);
+      const Quad<V> state = spot.four(job_.previous_history);
+      const Triple<V> fast = spot.first_three(job_.previous_fast);
+      add_share<D>(counts, weight, signal.x, r.radiance.x);
+      add_share<D>(counts, weight, signal.y, r.radiance.y);
+      add_share<D>(counts, weight, signal.z, r.radiance.z);
+      add_share<D>(counts, weight, state.x, r.frames);
+      add_share<D>(counts, weight, state.z, r.moments.x);
+      add_share<D>(counts, weight, state.w, r.moments.y);
+      add_share<D>(counts, weight, fast.x, r.fast.x);
+      add_share<D>(counts, weight, fast.y, r.fast.y);
+      add_share<D>(counts, weight, fast.z, r.fast.z);
+    }
+    return r;
+  }
+
+  /// Both candidates as one memory.
+  HWY_INLINE Remembered remembered(const BandScratch& hits, const ViewedRow<D>& view, int x, int y,
+                                   M seen, const Surface& s) const {
+    if ((c_.flags & shared::temporal_holds) == 0) return nothing();
+    const Quad<V> map = load(job_.reprojection, x, y);
+    const HistoryTaps<D> own = remembered_taps<D>(map);
+    if ((c_.flags & shared::temporal_virtual_point) == 0) return recall(own);
+    const Pair<V> motion = virtual_motion(view, hits, x, y, s);
+    const V here_x = hn::Iota(d_, static_cast<float>(x) + 0.5f);
+    const V here_y = set(static_cast<float>(y) + 0.5f);
+    const VI instance = hn::LoadU(di_, row_of<const int>(job_.instance, y) + x);
+    const HistoryTaps<D> mirrored =
+        virtual_taps(here_x + motion.x, here_y + motion.y, seen, instance, s);
+    const V apart_x = map.x - here_x - motion.x, apart_y = map.y - here_y - motion.y;
+    const V apart = hn::Sqrt(hn::MulAdd(apart_x, apart_x, apart_y * apart_y));
+    const M elsewhere = hn::Or(hn::Gt(apart, set(0.5f)), hn::Not(own.any()));
+    const M by_mirror = hn::And(mirrored.any(), elsewhere);
+    Remembered found = recall(chosen(by_mirror, mirrored, own));
+    // The surface's own history shows another part of the reflection, the sharper the mirror and
+    // the further the two places are apart.
+    const V reach = hn::MulAdd(set(64.0f) * s.roughness, s.roughness, set(0.25f));
+    const V trust = hn::Exp(d_, hn::Max(hn::Neg(apart / reach), set(-80.0f)));
+    found.frames = hn::IfThenElse(by_mirror, found.frames, found.frames * trust);
+    return found;
+  }
+
+  HWY_INLINE HistoryTaps<D> chosen(M first, const HistoryTaps<D>& a,
+                                   const HistoryTaps<D>& b) const {
+    HistoryTaps<D> taps = b;
+    const auto whole = hn::RebindMask(di_, first);
+    taps.x = hn::IfThenElse(whole, a.x, b.x);
+    taps.y = hn::IfThenElse(whole, a.y, b.y);
+    for (int i = 0; i < 4; ++i) {
+      taps.weights[i] = hn::IfThenElse(first, a.weights[i], b.weights[i]);
+    }
+    return taps;
+  }
+
+  HWY_INLINE void block(const BandScratch& hits, const ViewedRow<D>& view, int x, int y) const {
+    const V zero = hn::Zero(d_), one = set(1.0f);
+    const Quad<V> guide = load(job_.guide, x, y);
+    const M seen = hn::Gt(guide.w, zero);
+    const Quad<V> nothing_seen{zero, zero, zero, zero};
+    float* const signal = row_of<float>(job_.signal, y) + 4 * x;
+    float* const history = row_of<float>(job_.history, y) + 4 * x;
+    float* const fast = row_of<float>(job_.fast, y) + 4 * x;
+    if (hn::AllFalse(d_, seen)) {
+      for (float* out : {signal, history, fast}) store4(d_, nothing_seen, out);
+      return;
+    }
+    const Quad<V> sample = load(job_.raw, x, y);
+    Triple<V> now{sample.x, sample.y, sample.z};
+    now = select(is_bad(now), Triple<V>{zero, zero, zero}, now);
+    const Triple<V> scaled{guide.x, guide.y, guide.z};
+    const V size = length(scaled);
+    const Surface s{scaled * (one / size), size - one, guide.w};
+    const Remembered old = remembered(hits, view, x, y, seen, s);
+
+    const V frames = hn::Min(old.frames + one, set(c_.frames));
+    const Triple<V> radiance = mix(old.radiance, now, one / frames);
+    const V known = hn::Min(frames, set(c_.moments_frames));
+    const V bright = luminance(now);
+    const V first = mix(old.moments.x, bright, one / known);
+    const V second = mix(old.moments.y, bright * bright, one / known);
+    V variance = sample_variance(first, second, known);
+    if (c_.flags & shared::temporal_mean_variance) variance = variance / frames;
+    const Triple<V> recent = mix(old.fast, now, one / hn::Min(frames, set(fast_frames)));
+
+    store4(d_, select(seen, Quad<V>{radiance.x, radiance.y, radiance.z, variance}, nothing_seen),
+           signal);
+    store4(d_, select(seen, Quad<V>{frames, zero, first, second}, nothing_seen), history);
+    store4(d_, select(seen, Quad<V>{recent.x, recent.y, recent.z, zero}, nothing_seen), fast);
+  }
+
+  const D d_{};
+  const DI di_{};
+  const TemporalSpecularJob& job_;
+  const shared::TemporalConstants& c_;
+  Bounds<D> bounds_;
+};
+
+void accumulate_specular_rows(const TemporalSpecularJob& job, int first, int last) {
+  run_rows<SpecularAccumulation>(job, job.width, first, last);
+}
+
+}  // namespace heliograph::render::host::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace heliograph::render::host {
+
+HWY_EXPORT(accumulate_specular_rows);
+
+void accumulate_specular(const TemporalSpecularJob& job) {
+  for_each_band(job.height, [&](int first, int last) {
+    HWY_DYNAMIC_DISPATCH(accumulate_specular_rows)(job, first, last);
+  });
+}
+
+}  // namespace heliograph::render::host
+#endif
