@@ -107,7 +107,7 @@ TEST_F(AntialiasHost, IsFasterThanTheShader) {
   Twins twins({.extent = {640, 360}});
   twins.rig().run();
   twins.next();
-  expect_faster(twins.rig(), "temporal_antialias", 2.0);
+  expect_faster(twins.rig(), {"temporal_antialias"}, 2.0);
 }
 
 }  // namespace

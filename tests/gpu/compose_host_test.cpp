@@ -138,7 +138,7 @@ TEST_F(ComposeHost, WorksAtEverySize) {
 
 TEST_F(ComposeHost, IsFasterThanTheShader) {
   Twins twins({.extent = {640, 360}});
-  expect_faster(twins.rig(), "compose", 2.0);
+  expect_faster(twins.rig(), {"compose"}, 2.0);
 }
 
 }  // namespace

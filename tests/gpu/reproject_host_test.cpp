@@ -84,7 +84,7 @@ TEST_F(ReprojectHost, WorksAtEverySize) {
 TEST_F(ReprojectHost, IsFasterThanTheShader) {
   Twins twins({640, 360});
   twins.rig().set_view(camera(false), 1);
-  expect_faster(twins.rig(), "denoise.reproject", 2.0);
+  expect_faster(twins.rig(), {"denoise.reproject"}, 2.0);
 }
 
 }  // namespace

@@ -93,8 +93,7 @@ TEST_F(VisibilityRaysHost, WorkAtEverySize) {
 
 TEST_F(VisibilityRaysHost, AreMadeFasterThanByTheShaders) {
   Twins twins({640, 360});
-  expect_faster(twins.rig(), "shadows.rays", 2.0);
-  expect_faster(twins.rig(), "ambient.rays", 2.0);
+  expect_faster(twins.rig(), {"shadows.rays", "ambient.rays"}, 2.0);
 }
 
 }  // namespace
