@@ -60,6 +60,7 @@ constexpr std::string_view scene = R"({
   "name": "atrium", "triangles": 344000, "instances": 210, "meshes": 34, "materials": 18,
   "textures": 41, "lights": 1, "cameras": ["entrance", "gallery"],
   "clips": [{"name": "moving_camera", "duration": 10.0}],
+  "variants": [],
   "bounds": {"min": [-12.0, 0.0, -6.5], "max": [12.0, 11.5, 6.5]}, "warnings": []})";
 
 constexpr std::string_view camera = R"({

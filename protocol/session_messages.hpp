@@ -167,6 +167,7 @@ struct SceneInfo {
   std::uint32_t lights = 0;
   std::vector<std::string> cameras;
   std::vector<ClipInfo> clips;
+  std::vector<std::string> variants;
   Bounds bounds;
   std::vector<std::string> warnings;
 
@@ -181,8 +182,10 @@ struct SceneInfo {
         field("lights", &SceneInfo::lights, "Punctual and directional lights."),
         field("cameras", &SceneInfo::cameras, "Names for camera.set."),
         field("clips", &SceneInfo::clips, "What animation.play can play."),
+        field("variants", &SceneInfo::variants,
+              "Names of the file's material variants; what is shown is its default."),
         field("bounds", &SceneInfo::bounds, "Box around everything."),
-        field("warnings", &SceneInfo::warnings, "What the importer ignored or repaired."),
+        field("warnings", &SceneInfo::warnings, "What the importer left out, approximated or repaired."),
     };
   }
   bool operator==(const SceneInfo&) const = default;

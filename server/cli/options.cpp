@@ -102,6 +102,30 @@ void add_environment_option(CLI::App& command, std::string& environment) {
       ->envname("HELIOGRAPH_ENVIRONMENT");
 }
 
+/// What a scene's file may cost before it is refused.
+void add_limit_options(CLI::App& command, scene::ImportLimits& limits) {
+  const auto add = [&](const char* name, auto& limit, const char* help, const char* variable) {
+    return command.add_option(name, limit, help)
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str()
+        ->envname(variable);
+  };
+  add("--max-scene-bytes", limits.file_bytes, "Most bytes of a scene's files together",
+      "HELIOGRAPH_MAX_SCENE_BYTES");
+  add("--max-unpacked-bytes", limits.unpacked_bytes, "Most bytes its compressed buffers grow to",
+      "HELIOGRAPH_MAX_UNPACKED_BYTES");
+  add("--max-triangles", limits.triangles, "Most triangles of a scene", "HELIOGRAPH_MAX_TRIANGLES");
+  add("--max-texels", limits.texels, "Most texels of a scene's images together",
+      "HELIOGRAPH_MAX_TEXELS");
+  add("--max-texture-size", limits.texture_size, "Greatest width and height of an image, pixels",
+      "HELIOGRAPH_MAX_TEXTURE_SIZE");
+  add("--max-nodes", limits.nodes, "Most nodes of a scene", "HELIOGRAPH_MAX_NODES");
+  add("--max-instances", limits.instances, "Most meshes placed in a scene",
+      "HELIOGRAPH_MAX_INSTANCES");
+  add("--max-node-depth", limits.node_depth, "Most levels of nodes below nodes",
+      "HELIOGRAPH_MAX_NODE_DEPTH");
+}
+
 void add_log_options(CLI::App& command, LogOptions& options) {
   command.add_option("--log-format", options.format, "How the log is written to stderr")
       ->check(CLI::IsMember({"text", "json"}))
@@ -153,6 +177,7 @@ CLI::App* add_serve(CLI::App& app, ServeOptions& options) {
       ->allow_extra_args(false)
       ->envname("HELIOGRAPH_SCENE_ROOT");
   add_environment_option(*command, options.environment);
+  add_limit_options(*command, options.limits);
   add_size_options(*command, options.width, options.height, "640x360 on a CPU, else 1280x720");
   add_settings_options(*command, options.settings);
   add_device_options(*command, options.device);
@@ -174,13 +199,15 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options) {
       ->type_name("NAME");
   command->add_option("--samples", options.samples, "Samples per pixel [accumulation.max_samples]")
       ->check(CLI::Range(1, 65536));
-  command->add_option("--reference", options.reference,
-                      "Path trace instead: the hybrid's own light paths, or all (full)")
+  command
+      ->add_option("--reference", options.reference,
+                   "Path trace instead: the hybrid's own light paths, or all (full)")
       ->check(CLI::IsMember({"same_paths", "full"}));
   add_settings_options(*command, options.settings);
   command->add_option("--buffer", options.buffer, "Picture to write: any buffer of the renderer")
       ->capture_default_str();
   add_environment_option(*command, options.environment);
+  add_limit_options(*command, options.limits);
   command->add_flag("--timings", options.timings,
                     "Print one line of JSON: median time of each pass");
   auto* const clip =
@@ -194,9 +221,10 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options) {
       ->check(CLI::Range(0.1, 1000.0))
       ->needs(clip)
       ->capture_default_str();
-  command->add_option("--frames", options.frames,
-                      "Pictures of the clip, in numbered files [1]; or frames to measure for "
-                      "--timings [16]")
+  command
+      ->add_option("--frames", options.frames,
+                   "Pictures of the clip, in numbered files [1]; or frames to measure for "
+                   "--timings [16]")
       ->check(CLI::Range(1, 100000));
   add_device_options(*command, options.device);
   command->footer(render_examples);

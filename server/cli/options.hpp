@@ -7,6 +7,8 @@
 #include <variant>
 #include <vector>
 
+#include "scene/import.hpp"
+
 namespace heliograph::cli {
 
 struct LogOptions {
@@ -36,6 +38,7 @@ struct ServeOptions {
   std::string token;
   bool insecure = false;
   std::vector<std::string> allowed_origins;
+  scene::ImportLimits limits;
   SettingsOptions settings;
   DeviceOptions device;
   LogOptions log;
@@ -48,6 +51,7 @@ struct RenderOptions {
   std::uint32_t height = 720;
   std::string camera;
   std::optional<std::uint32_t> samples;
+  scene::ImportLimits limits;
   std::string reference;  // the scope of the path traced truth, or none
   SettingsOptions settings;
   std::string buffer = "output";

@@ -93,8 +93,8 @@ class Timings {
 
 void choose_reference(protocol::Settings& settings, const std::string& scope) {
   settings.reference.use = protocol::ReferenceUse::always;
-  settings.reference.scope = scope == "full" ? protocol::ReferenceScope::full
-                                             : protocol::ReferenceScope::same_paths;
+  settings.reference.scope =
+      scope == "full" ? protocol::ReferenceScope::full : protocol::ReferenceScope::same_paths;
 }
 
 /// The median frame while the picture keeps changing, as one line of JSON.
@@ -159,7 +159,8 @@ int run(const RenderOptions& options) {
   protocol::Settings settings = parse_settings(options.settings);
   if (!options.reference.empty()) choose_reference(settings, options.reference);
   if (options.samples) settings.accumulation.max_samples = static_cast<int>(*options.samples);
-  const auto scene = std::make_shared<const scene::Scene>(scene::import_gltf(options.scene));
+  const auto scene =
+      std::make_shared<const scene::Scene>(scene::import_gltf(options.scene, options.limits));
   const scene::Environment environment = choose_environment(options);
   const scene::Camera camera = choose_camera(*scene, options);
 

@@ -24,6 +24,7 @@ session::HostOptions host_options(const ServeOptions& options) {
   result.session.limits.max_viewers = options.max_viewers;
   result.scene_roots = choose_scene_roots(options.scene_roots);
   if (!options.environment.empty()) result.environment = options.environment;
+  result.import_limits = options.limits;
   return result;
 }
 

@@ -22,24 +22,6 @@ std::uint32_t component_size(ComponentType type) {
   return 4;
 }
 
-// Columns of a matrix start on 4-byte boundaries (glTF 3.6.2.4).
-std::uint32_t element_size(ElementType element, ComponentType component) {
-  const std::uint32_t size = component_size(component);
-  const auto matrix = [&](std::uint32_t dimension) {
-    return dimension * ((dimension * size + 3) / 4 * 4);
-  };
-  switch (element) {
-    case ElementType::mat2:
-      return matrix(2);
-    case ElementType::mat3:
-      return matrix(3);
-    case ElementType::mat4:
-      return matrix(4);
-    default:
-      return component_count(element) * size;
-  }
-}
-
 ComponentType read_component_type(const JsonValue& owner) {
   const std::uint64_t value = owner.required_integer("componentType");
   switch (value) {
@@ -139,10 +121,9 @@ void read_elements(const Accessor& accessor, int components, const Store& store)
     }
   }
   if (accessor.sparse) {
-    const std::uint32_t element_bytes = element_size(accessor.element, accessor.component);
+    const std::uint32_t size_in_file = element_bytes(accessor.element, accessor.component);
     for (std::size_t i = 0; i < accessor.sparse->indices.size(); ++i) {
-      load_element(accessor.sparse->values.data() + i * element_bytes,
-                   accessor.sparse->indices[i]);
+      load_element(accessor.sparse->values.data() + i * size_in_file, accessor.sparse->indices[i]);
     }
   }
 }
@@ -176,7 +157,7 @@ Accessor::Sparse read_sparse(const JsonValue& sparse, const GltfFile& file,
     result.indices.push_back(index);
   }
 
-  const std::uint32_t size = element_size(accessor.element, accessor.component);
+  const std::uint32_t size = element_bytes(accessor.element, accessor.component);
   const std::uint32_t value_view =
       values->required_index("bufferView", file.views().size(), "buffer views");
   result.values = checked_range(*values, file.views()[value_view], values->integer("byteOffset", 0),
@@ -197,7 +178,7 @@ Accessor read_accessor(const JsonValue& json, const GltfFile& file, const Import
                              std::to_string(3 * limits.triangles) + " elements");
   }
   result.count = static_cast<std::uint32_t>(count);
-  const std::uint32_t size = element_size(result.element, result.component);
+  const std::uint32_t size = element_bytes(result.element, result.component);
   result.stride = size;
   if (const auto view = json.index("bufferView", file.views().size(), "buffer views")) {
     const BufferView& source = file.views()[*view];
@@ -211,6 +192,24 @@ Accessor read_accessor(const JsonValue& json, const GltfFile& file, const Import
 }
 
 }  // namespace
+
+// Columns of a matrix start on 4-byte boundaries (glTF 3.6.2.4).
+std::uint32_t element_bytes(ElementType element, ComponentType component) {
+  const std::uint32_t size = component_size(component);
+  const auto matrix = [&](std::uint32_t dimension) {
+    return dimension * ((dimension * size + 3) / 4 * 4);
+  };
+  switch (element) {
+    case ElementType::mat2:
+      return matrix(2);
+    case ElementType::mat3:
+      return matrix(3);
+    case ElementType::mat4:
+      return matrix(4);
+    default:
+      return component_count(element) * size;
+  }
+}
 
 void Accessor::refuse(std::string_view reason) const {
   throw ImportError(path + ": " + std::string(reason));

@@ -38,6 +38,9 @@ struct Accessor {
 /// Number of components: 4 for mat2, 16 for mat4.
 std::uint32_t component_count(ElementType type);
 
+/// Bytes of one element, tightly packed.
+std::uint32_t element_bytes(ElementType element, ComponentType component);
+
 /// @throws ImportError
 std::vector<Accessor> read_accessors(const GltfFile& file, const ImportLimits& limits);
 

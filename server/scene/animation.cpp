@@ -81,7 +81,10 @@ std::optional<Channel> read_target(const JsonValue& json, const NodeTable& nodes
   const Node& moved = nodes.nodes[*node];
   if (channel.property == Property::weights) {
     channel.width = static_cast<std::uint32_t>(moved.weights.size());
-    if (channel.width == 0) return std::nullopt;
+    if (channel.width == 0) {
+      warnings.add(nodes.paths[*node] + " has no morph targets that could be animated");
+      return std::nullopt;
+    }
   } else if (!moved.transform) {
     warnings.add(nodes.paths[*node] + " has a matrix, which cannot be animated");
     return std::nullopt;

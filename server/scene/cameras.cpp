@@ -19,18 +19,23 @@ void read_perspective(const JsonValue& json, Camera& camera) {
   camera.vertical_fov = glm::degrees(vertical_fov);
   camera.near_plane = required_number(json, "znear");
   if (camera.near_plane <= 0.0f) json.refuse("znear", "must be more than 0");
+  const auto far_plane = json.number("zfar");
+  if (far_plane && *far_plane <= camera.near_plane) {
+    json.refuse("zfar", "must be more than znear");
+  }
+  if (json.number("aspectRatio", 1.0f) <= 0.0f) json.refuse("aspectRatio", "must be more than 0");
 }
 
 void read_orthographic(const JsonValue& json, Camera& camera) {
+  if (required_number(json, "xmag") == 0.0f) json.refuse("xmag", "must not be 0");
   camera.orthographic_height = 2.0f * std::abs(required_number(json, "ymag"));
   if (camera.orthographic_height == 0.0f || !std::isfinite(camera.orthographic_height)) {
     json.refuse("ymag", "must not be 0, nor too large");
   }
   camera.near_plane = required_number(json, "znear");
   camera.far_plane = required_number(json, "zfar");
-  if (camera.near_plane < 0.0f || camera.far_plane <= camera.near_plane) {
-    json.refuse("zfar", "must be more than znear, and znear at least 0");
-  }
+  if (camera.near_plane < 0.0f) json.refuse("znear", "must not be negative");
+  if (camera.far_plane <= camera.near_plane) json.refuse("zfar", "must be more than znear");
 }
 
 glm::vec3 unit_or(const glm::vec3& vector, const glm::vec3& fallback) {

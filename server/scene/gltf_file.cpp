@@ -5,6 +5,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "scene/meshopt.hpp"
 #include "scene/quote.hpp"
 #include "scene/uri.hpp"
 
@@ -15,9 +16,26 @@ constexpr std::uint32_t glb_magic = 0x46546c67;         // "glTF"
 constexpr std::uint32_t glb_json_chunk = 0x4e4f534a;    // "JSON"
 constexpr std::uint32_t glb_binary_chunk = 0x004e4942;  // "BIN"
 
-constexpr std::array<std::string_view, 6> supported_extensions = {
-    "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_ior",
-    "KHR_materials_unlit", "KHR_mesh_quantization",           "KHR_texture_transform"};
+constexpr std::string_view meshopt_extension = "EXT_meshopt_compression";
+
+constexpr std::array<std::string_view, 16> supported_extensions = {
+    meshopt_extension,
+    "EXT_mesh_gpu_instancing",
+    "EXT_texture_webp",
+    "KHR_draco_mesh_compression",
+    "KHR_lights_punctual",
+    "KHR_materials_clearcoat",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_materials_variants",
+    "KHR_materials_volume",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+};
 
 bool is_supported(const std::string& extension) {
   return std::find(supported_extensions.begin(), supported_extensions.end(), extension) !=
@@ -60,6 +78,21 @@ std::vector<Chunk> read_glb_chunks(std::span<const std::uint8_t> file) {
   return chunks;
 }
 
+/// A buffer that EXT_meshopt_compression leaves empty for those who can unpack.
+bool is_fallback(const JsonValue& buffer) {
+  const auto extension = buffer.object("extensions", meshopt_extension);
+  return extension && extension->boolean("fallback", false);
+}
+
+/// The byteOffset of `length` bytes, which must lie within the `available` ones.
+std::uint64_t check_range(const JsonValue& view, std::uint64_t available, std::uint64_t length) {
+  const std::uint64_t offset = view.integer("byteOffset", 0);
+  if (offset > available || length > available - offset) {
+    view.refuse("reaches past the end of its buffer");
+  }
+  return offset;
+}
+
 std::string_view as_text(std::span<const std::uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
@@ -73,7 +106,7 @@ GltfFile::GltfFile(const std::filesystem::path& path, const ImportLimits& limits
   check_asset();
   check_extensions();
   read_buffers();
-  read_views();
+  read_views(limits);
 }
 
 GltfFile::~GltfFile() = default;
@@ -140,6 +173,9 @@ void GltfFile::read_buffers() {
     std::span<const std::uint8_t> bytes = binary_chunk_;
     if (buffer.has("uri")) {
       bytes = loaded_buffers_.emplace_back(resource(buffer));
+    } else if (is_fallback(buffer)) {
+      buffers_.push_back({{}, length});
+      continue;
     } else if (i != 0 || binary_chunk_.empty()) {
       buffer.refuse("has neither a uri nor a GLB binary chunk");
     }
@@ -147,26 +183,36 @@ void GltfFile::read_buffers() {
       buffer.refuse("byteLength", std::to_string(length) + " is more than the " +
                                       std::to_string(bytes.size()) + " bytes there are");
     }
-    buffers_.push_back(bytes.first(length));
+    buffers_.push_back({bytes.first(length), length});
   }
 }
 
-void GltfFile::read_views() {
+void GltfFile::read_views(const ImportLimits& limits) {
+  std::uint64_t unpacked_budget = limits.unpacked_bytes;
   for (const JsonValue& view : root().objects("bufferViews")) {
-    const std::uint32_t buffer = view.required_index("buffer", buffers_.size(), "buffers");
-    const std::uint64_t offset = view.integer("byteOffset", 0);
-    const std::uint64_t length = view.required_integer("byteLength");
-    const std::uint64_t available = buffers_[buffer].size();
-    if (length == 0) view.refuse("byteLength", "must be at least 1");
-    if (offset > available || length > available - offset)
-      view.refuse("reaches past the end of its buffer");
-    const std::uint64_t stride = view.integer("byteStride", 0);
-    if (stride != 0 && (stride < 4 || stride > 252 || stride % 4 != 0)) {
-      view.refuse("byteStride", "must be a multiple of 4 from 4 to 252");
-    }
-    views_.push_back(
-        {buffers_[buffer].subspan(offset, length), static_cast<std::uint32_t>(stride)});
+    views_.push_back(read_view(view, unpacked_budget));
   }
+}
+
+BufferView GltfFile::read_view(const JsonValue& view, std::uint64_t& unpacked_budget) {
+  const Buffer& buffer = buffers_[view.required_index("buffer", buffers_.size(), "buffers")];
+  const std::uint64_t length = view.required_integer("byteLength");
+  if (length == 0) view.refuse("byteLength", "must be at least 1");
+  const std::uint64_t offset = check_range(view, buffer.length, length);
+  const std::uint64_t stride = view.integer("byteStride", 0);
+  if (stride != 0 && (stride < 4 || stride > 252 || stride % 4 != 0)) {
+    view.refuse("byteStride", "must be a multiple of 4 from 4 to 252");
+  }
+  if (const auto packed = view.object("extensions", meshopt_extension)) {
+    const Buffer& source = buffers_[packed->required_index("buffer", buffers_.size(), "buffers")];
+    const std::uint64_t packed_length = packed->required_integer("byteLength");
+    const std::uint64_t packed_offset = check_range(*packed, source.bytes.size(), packed_length);
+    unpacked_views_.push_back(unpack_meshopt(
+        *packed, source.bytes.subspan(packed_offset, packed_length), length, unpacked_budget));
+    return {unpacked_views_.back(), static_cast<std::uint32_t>(stride)};
+  }
+  if (buffer.bytes.empty()) view.refuse("buffer", "names a buffer without data");
+  return {buffer.bytes.subspan(offset, length), static_cast<std::uint32_t>(stride)};
 }
 
 }  // namespace heliograph::scene

@@ -19,6 +19,11 @@ struct BufferView {
   std::uint32_t stride = 0;  // bytes; 0: tightly packed
 };
 
+struct Buffer {
+  std::span<const std::uint8_t> bytes;  // empty: a place holder for what is unpacked
+  std::uint64_t length = 0;
+};
+
 /// A glTF document with its bytes: container, buffers and buffer views read and checked, asset
 /// version and required extensions accepted. The document is read here and in the files beside this
 /// one rather than through a loader library: each value is checked where it is read, before any
@@ -44,14 +49,16 @@ class GltfFile {
   void check_asset() const;
   void check_extensions();
   void read_buffers();
-  void read_views();
+  void read_views(const ImportLimits& limits);
+  BufferView read_view(const JsonValue& view, std::uint64_t& unpacked_budget);
 
   ConfinedFolder folder_;
   std::vector<std::uint8_t> file_;
   std::span<const std::uint8_t> binary_chunk_;
   std::unique_ptr<nlohmann::json> json_;
   std::vector<std::vector<std::uint8_t>> loaded_buffers_;
-  std::vector<std::span<const std::uint8_t>> buffers_;
+  std::vector<std::vector<std::uint8_t>> unpacked_views_;
+  std::vector<Buffer> buffers_;
   std::vector<BufferView> views_;
   std::vector<std::string> ignored_extensions_;
 };

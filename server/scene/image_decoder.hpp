@@ -14,11 +14,11 @@ struct ImageSize {
 /// No picture wider or higher than this is opened.
 inline constexpr std::uint32_t largest_image_side = 8192;
 
-/// Size of a PNG or JPEG picture, from its header alone.
-/// @throws ImportError when it is neither, or has no pixels
+/// Size of a PNG, JPEG or WebP picture, from its header alone.
+/// @throws ImportError when it is none of these, or has no pixels
 ImageSize probe_image(std::span<const std::uint8_t> file);
 
-/// Decodes a PNG or JPEG picture of the probed `size` into `rgba`, 4 bytes a pixel, row 0 on top;
+/// Decodes such a picture of the probed `size` into `rgba`, 4 bytes a pixel, row 0 on top;
 /// 16-bit channels are reduced to 8. Colour profiles and gamma in the file are ignored, as glTF
 /// 3.8.2 asks. Memory stays in proportion to `size`, whatever the file inflates to.
 /// @throws ImportError when the data is cut or damaged

@@ -11,6 +11,7 @@
 #include "scene/animation.hpp"
 #include "scene/cameras.hpp"
 #include "scene/deform.hpp"
+#include "scene/draco.hpp"
 #include "scene/gltf_file.hpp"
 #include "scene/images.hpp"
 #include "scene/lights.hpp"
@@ -21,6 +22,7 @@
 #include "scene/references.hpp"
 #include "scene/shapes.hpp"
 #include "scene/textures.hpp"
+#include "scene/variants.hpp"
 #include "scene/warnings.hpp"
 
 namespace heliograph::scene {
@@ -53,6 +55,12 @@ class Importer {
     for (const std::string& name : file_->ignored_extensions())
       warnings_.add("extension " + name + " is ignored");
 
+    const std::size_t scenes = root.objects("scenes").size();
+    if (scenes > 1) {
+      warnings_.add("of " + std::to_string(scenes) + " scenes in the file one is shown: number " +
+                    std::to_string(root.integer("scene", 0)));
+    }
+
     const std::vector<Accessor> accessors = read_accessors(*file_, limits_);
     check_skins(root, accessors);
     check_animations(root, accessors);
@@ -60,11 +68,13 @@ class Importer {
     MaterialTable materials = read_materials(root, textures, warnings_);
     scene_.materials = std::move(materials.materials);
     scene_.material_names = std::move(materials.names);
+    scene_.material_layers = std::move(materials.layers);
+    scene_.variants = read_variants(root, scene_.materials.size());
     const PrimitiveTable primitives =
-        read_primitives(root, accessors, scene_.materials.size(), limits_, warnings_);
+        read_primitives(*file_, accessors, scene_.materials.size(), limits_, warnings_);
     const std::vector<Light> lights = read_lights(root);
     const std::vector<Camera> cameras = read_cameras(root);
-    NodeTable nodes = read_nodes(root, lights.size(), limits_);
+    NodeTable nodes = read_nodes(root, accessors, lights.size(), limits_);
     const std::vector<ImageSource> images = read_image_sources(*file_);
 
     report("meshes", 0.1f);
@@ -96,6 +106,7 @@ class Importer {
     if (!default_material_) {
       default_material_ = static_cast<std::uint32_t>(scene_.materials.size());
       scene_.materials.push_back(default_material());
+      scene_.material_layers.emplace_back();
       scene_.material_names.push_back("default");
     }
     return *default_material_;
@@ -111,12 +122,19 @@ class Importer {
     scene_.shapes.resize(table.primitives.size());
     tbb::parallel_for(std::size_t(0), table.primitives.size(), [&](std::size_t i) {
       const Primitive& primitive = table.primitives[i];
-      auto [mesh, sources] = build_mesh(primitive, accessors, materials[i], scene_.materials);
-      if (primitive.deforms()) {
-        scene_.shapes[i] = build_shape(primitive, accessors, mesh, sources);
-      }
-      scene_.meshes[i] = std::move(mesh);
+      if (!primitive.draco) return build(i, primitive, accessors, materials[i]);
+      const UnpackedPrimitive unpacked = unpack_draco(primitive, accessors);
+      build(i, unpacked.primitive, unpacked.accessors, materials[i]);
     });
+  }
+
+  void build(std::size_t index, const Primitive& primitive, std::span<const Accessor> accessors,
+             std::uint32_t material) {
+    auto [mesh, sources] = build_mesh(primitive, accessors, material, scene_.materials);
+    if (primitive.deforms()) {
+      scene_.shapes[index] = build_shape(primitive, accessors, mesh, sources);
+    }
+    scene_.meshes[index] = std::move(mesh);
   }
 
   void place_instances(const NodeTable& nodes, const PrimitiveTable& primitives) {

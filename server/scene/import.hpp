@@ -20,6 +20,7 @@ class ImportError : public std::runtime_error {
 /// What a file may cost. Exceeding one refuses the file with an error that names the limit.
 struct ImportLimits {
   std::uint64_t file_bytes = 512ull << 20;
+  std::uint64_t unpacked_bytes = 1ull << 30;  // that compressed buffer views grow to
   std::uint64_t triangles = 20'000'000;
   std::uint64_t texels = 256ull << 20;
   std::uint32_t texture_size = 8192;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "scene/material_layers.hpp"
+
 namespace heliograph::scene {
 namespace {
 
@@ -139,7 +141,7 @@ class MaterialReader {
     slot.texture = textures_.use(texture, srgb);
     if (slot.texture == shared::no_texture) {
       warnings_.add("textures[" + std::to_string(texture) +
-                    "] has no PNG or JPEG image and was left out");
+                    "] has no PNG, JPEG or WebP image and was left out");
     }
     return slot;
   }
@@ -179,8 +181,12 @@ shared::Material default_material() {
 MaterialTable read_materials(const JsonValue& root, TextureTable& textures, Warnings& warnings) {
   MaterialTable table;
   MaterialReader reader(textures, warnings);
+  const std::size_t texture_count = textures.size();
   for (const JsonValue& json : root.objects("materials")) {
     table.materials.push_back(reader.read(json));
+    const auto extensions = json.object("extensions");
+    table.layers.push_back(extensions ? read_material_layers(*extensions, texture_count, warnings)
+                                      : MaterialLayers());
     table.names.push_back(json.text("name"));
   }
   return table;

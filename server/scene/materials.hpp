@@ -12,6 +12,7 @@ namespace heliograph::scene {
 
 struct MaterialTable {
   std::vector<shared::Material> materials;
+  std::vector<MaterialLayers> layers;
   std::vector<std::string> names;
 };
 

@@ -6,6 +6,8 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <utility>
 
+#include "scene/instancing.hpp"
+
 namespace heliograph::scene {
 namespace {
 
@@ -56,11 +58,13 @@ std::vector<std::vector<float>> read_mesh_weights(const JsonValue& root) {
 }
 
 struct Context {
+  std::span<const Accessor> accessors;
   std::size_t nodes;
   std::vector<std::vector<float>> mesh_weights;
   std::size_t cameras;
   std::size_t lights;
   std::size_t skins;
+  std::uint64_t instances;  // that may still be placed
 };
 
 DocumentNode read_node(const JsonValue& json, const Context& context) {
@@ -85,6 +89,12 @@ DocumentNode read_node(const JsonValue& json, const Context& context) {
   result.attachments.camera = json.index("camera", context.cameras, "cameras");
   result.attachments.skin = json.index("skin", context.skins, "skins");
   result.attachments.light = read_node_light(json, context.lights);
+  const auto places = read_instancing(json, context.accessors, context.instances);
+  if (places) {
+    // What skinned vertices follow are joints, not the node.
+    if (result.attachments.skin) json.refuse("skin", "cannot be instanced");
+    result.attachments.places = *places;
+  }
   return result;
 }
 
@@ -165,21 +175,50 @@ std::vector<std::uint32_t> read_roots(const JsonValue& root,
   return all;
 }
 
+/// Children behind all others, one for each place that a node gives its mesh.
+void add_places(NodeTable& table) {
+  const std::size_t count = table.nodes.size();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::vector<Transform> places = std::move(table.attachments[i].places);
+    if (places.empty()) continue;
+    const auto mesh = std::exchange(table.attachments[i].mesh, std::nullopt);
+    for (const Transform& place : places) {
+      Node node;
+      node.name = table.nodes[i].name;
+      node.parent = i;
+      node.local = place.matrix();
+      node.world = table.nodes[i].world * node.local;
+      node.transform = place;
+      node.weights = table.nodes[i].weights;
+      table.nodes.push_back(std::move(node));
+      table.attachments.emplace_back().mesh = mesh;
+      table.paths.push_back(table.paths[i]);
+    }
+  }
+}
+
 }  // namespace
 
-NodeTable read_nodes(const JsonValue& root, std::size_t light_count, const ImportLimits& limits) {
+NodeTable read_nodes(const JsonValue& root, std::span<const Accessor> accessors,
+                     std::size_t light_count, const ImportLimits& limits) {
   const std::vector<JsonValue> documents = root.objects("nodes");
   if (documents.size() > limits.nodes) {
     throw ImportError("nodes: " + std::to_string(documents.size()) + " exceed the limit of " +
                       std::to_string(limits.nodes));
   }
-  const Context context{documents.size(), read_mesh_weights(root),
-                      root.objects("cameras").size(), light_count, root.objects("skins").size()};
+  Context context{accessors,
+                  documents.size(),
+                  read_mesh_weights(root),
+                  root.objects("cameras").size(),
+                  light_count,
+                  root.objects("skins").size(),
+                  limits.instances};
   std::vector<DocumentNode> nodes;
   nodes.reserve(documents.size());
   std::uint64_t weights = 0;
   for (const JsonValue& json : documents) {
     nodes.push_back(read_node(json, context));
+    context.instances -= nodes.back().attachments.places.size();
     weights += nodes.back().node.weights.size();
     if (weights > limits.json_values) json.refuse("has more morph weights than are accepted");
   }
@@ -198,6 +237,7 @@ NodeTable read_nodes(const JsonValue& root, std::size_t light_count, const Impor
                     table.attachments.push_back(nodes[index].attachments);
                     table.paths.push_back(nodes[index].path);
                   });
+  add_places(table);
   return table;
 }
 

@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "scene/accessors.hpp"
 #include "scene/gltf_file.hpp"
 #include "scene/lights.hpp"
 #include "scene/scene.hpp"
@@ -16,6 +18,7 @@ struct NodeAttachments {
   std::optional<std::uint32_t> skin;
   std::optional<std::uint32_t> camera;
   NodeLight light;
+  std::vector<Transform> places;  // EXT_mesh_gpu_instancing: of its mesh, relative to the node
 };
 
 /// The nodes of the shown scene, parents first, with world transforms. `attachments[i]` belongs to
@@ -28,8 +31,10 @@ struct NodeTable {
 };
 
 /// Reads all nodes, refuses cycles, second parents and excessive depth, and keeps those that the
-/// document's default scene (or its first, or all root nodes) shows.
+/// document's default scene (or its first, or all root nodes) shows. A node that places its mesh
+/// many times gets a child for each place instead of the mesh.
 /// @throws ImportError
-NodeTable read_nodes(const JsonValue& root, std::size_t light_count, const ImportLimits& limits);
+NodeTable read_nodes(const JsonValue& root, std::span<const Accessor> accessors,
+                     std::size_t light_count, const ImportLimits& limits);
 
 }  // namespace heliograph::scene

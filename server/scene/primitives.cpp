@@ -1,13 +1,16 @@
 #include "scene/primitives.hpp"
 
+#include "scene/draco.hpp"
+
 namespace heliograph::scene {
 namespace {
 
 class PrimitiveReader {
  public:
-  PrimitiveReader(std::span<const Accessor> accessors, std::size_t material_count,
-                  const ImportLimits& limits, Warnings& warnings)
-      : accessors_(accessors),
+  PrimitiveReader(const GltfFile& file, std::span<const Accessor> accessors,
+                  std::size_t material_count, const ImportLimits& limits, Warnings& warnings)
+      : file_(file),
+        accessors_(accessors),
         material_count_(material_count),
         limits_(limits),
         warnings_(warnings) {}
@@ -41,6 +44,7 @@ class PrimitiveReader {
     }
     primitive.mode = static_cast<Primitive::Mode>(mode);
     primitive.position = *position;
+    read_draco(json, primitive);
     if (!count_triangles(json, primitive)) return std::nullopt;
     return primitive;
   }
@@ -93,8 +97,8 @@ class PrimitiveReader {
       }
       if (!joints) return;
       const Accessor& numbers = accessors_[*joints];
-      if (numbers.normalized || (numbers.component != ComponentType::u8 &&
-                                 numbers.component != ComponentType::u16)) {
+      if (numbers.normalized ||
+          (numbers.component != ComponentType::u8 && numbers.component != ComponentType::u16)) {
         attributes.refuse("JOINTS_" + number, "has the wrong component type");
       }
       primitive.joints[set] = joints;
@@ -116,17 +120,50 @@ class PrimitiveReader {
     }
   }
 
+  void read_draco(const JsonValue& json, Primitive& primitive) {
+    const auto packed = json.object("extensions", "KHR_draco_mesh_compression");
+    if (!packed) return;
+    if (primitive.mode == Primitive::Mode::fan) {
+      packed->refuse("is for triangles and strips only");
+    }
+    const auto attributes = packed->object("attributes");
+    if (!attributes) packed->refuse("attributes", "is missing");
+    DracoGeometry& geometry = primitive.draco.emplace();
+    geometry.path = packed->path();
+    geometry.bytes =
+        file_.views()[packed->required_index("bufferView", file_.views().size(), "buffer views")]
+            .bytes;
+    for (const std::string& name : attributes->keys()) {
+      const std::uint64_t id = attributes->required_integer(name);
+      if (id > 0xffffffffu) attributes->refuse(name, "is not an identifier of 32 bits");
+      if (!json.object("attributes")->has(name)) {
+        attributes->refuse(name, "is not an attribute of the primitive");
+      }
+      geometry.attributes[name] = static_cast<std::uint32_t>(id);
+    }
+  }
+
+  /// Corners as drawn; vertices are added up on the way. A compressed primitive has as many as its
+  /// stream says, whatever the document says of it.
+  std::uint64_t count_corners(const Primitive& primitive) {
+    if (primitive.draco) {
+      const DracoCounts counts = probe_draco(*primitive.draco);
+      vertices_ += counts.vertices + vertex_count_ * primitive.targets.size();
+      return 3 * counts.triangles;
+    }
+    vertices_ += vertex_count_ * (1 + primitive.targets.size());
+    return primitive.indices ? accessors_[*primitive.indices].count : vertex_count_;
+  }
+
   bool count_triangles(const JsonValue& json, const Primitive& primitive) {
-    const std::uint32_t corners =
-        primitive.indices ? accessors_[*primitive.indices].count : vertex_count_;
-    const bool separate = primitive.mode == Primitive::Mode::triangles;
+    const std::uint64_t corners = count_corners(primitive);
+    const bool separate = primitive.draco || primitive.mode == Primitive::Mode::triangles;
     if (corners < 3) {
       warnings_.add(json.path() + " has no triangle and was left out");
       return false;
     }
     if (separate && corners % 3 != 0) warnings_.add(json.path() + " ends in a part of a triangle");
     triangles_ += separate ? corners / 3 : corners - 2;
-    vertices_ += vertex_count_ * (1 + primitive.targets.size());
     if (triangles_ > limits_.triangles || vertices_ > 3 * limits_.triangles) {
       json.refuse("exceeds the limit of " + std::to_string(limits_.triangles) +
                   " triangles for the whole scene");
@@ -134,6 +171,7 @@ class PrimitiveReader {
     return true;
   }
 
+  const GltfFile& file_;
   std::span<const Accessor> accessors_;
   std::size_t material_count_;
   const ImportLimits& limits_;
@@ -145,12 +183,12 @@ class PrimitiveReader {
 
 }  // namespace
 
-PrimitiveTable read_primitives(const JsonValue& root, std::span<const Accessor> accessors,
+PrimitiveTable read_primitives(const GltfFile& file, std::span<const Accessor> accessors,
                                std::size_t material_count, const ImportLimits& limits,
                                Warnings& warnings) {
   PrimitiveTable table;
-  PrimitiveReader reader(accessors, material_count, limits, warnings);
-  for (const JsonValue& mesh : root.objects("meshes")) {
+  PrimitiveReader reader(file, accessors, material_count, limits, warnings);
+  for (const JsonValue& mesh : file.root().objects("meshes")) {
     const std::vector<JsonValue> primitives = mesh.objects("primitives");
     if (primitives.empty()) mesh.refuse("has no primitives");
     const std::string mesh_name = mesh.text("name");

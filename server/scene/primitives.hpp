@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +14,13 @@
 #include "scene/warnings.hpp"
 
 namespace heliograph::scene {
+
+/// Geometry as KHR_draco_mesh_compression holds it.
+struct DracoGeometry {
+  std::string path;  // for errors: "meshes[0].primitives[1].extensions.KHR_draco_mesh_compression"
+  std::span<const std::uint8_t> bytes;
+  std::map<std::string, std::uint32_t, std::less<>> attributes;  // name -> id in the stream
+};
 
 /// One triangle primitive of the document: which accessors it is made of, types and counts checked.
 struct Primitive {
@@ -36,6 +45,22 @@ struct Primitive {
   std::array<std::optional<std::uint32_t>, 2> joints;  // both or none of a set with its weights
   std::array<std::optional<std::uint32_t>, 2> weights;
   std::vector<Target> targets;
+  std::optional<DracoGeometry> draco;  // what takes the place of the accessors' bytes
+
+  /// Calls `visit(name, accessor)` for each attribute there is, by its name in the document.
+  template <typename Visit>
+  void for_each_attribute(const Visit& visit) {
+    visit("POSITION", position);
+    if (normal) visit("NORMAL", *normal);
+    if (tangent) visit("TANGENT", *tangent);
+    if (color) visit("COLOR_0", *color);
+    for (std::size_t set = 0; set < uv.size(); ++set) {
+      const std::string number = std::to_string(set);
+      if (uv[set]) visit("TEXCOORD_" + number, *uv[set]);
+      if (joints[set]) visit("JOINTS_" + number, *joints[set]);
+      if (weights[set]) visit("WEIGHTS_" + number, *weights[set]);
+    }
+  }
 
   bool deforms() const { return joints[0] || !targets.empty(); }
 };
@@ -48,7 +73,7 @@ struct PrimitiveTable {
 
 /// Points and lines are left out with a warning.
 /// @throws ImportError
-PrimitiveTable read_primitives(const JsonValue& root, std::span<const Accessor> accessors,
+PrimitiveTable read_primitives(const GltfFile& file, std::span<const Accessor> accessors,
                                std::size_t material_count, const ImportLimits& limits,
                                Warnings& warnings);
 

@@ -52,7 +52,7 @@ struct Texture {
 struct Mesh {
   std::string name;
   std::vector<shared::Vertex> vertices;  // at rest
-  std::vector<std::uint32_t> indices;  // triangles, counter-clockwise from outside
+  std::vector<std::uint32_t> indices;    // triangles, counter-clockwise from outside
   std::uint32_t material = 0;
   Bounds bounds;  // mesh space
 };
@@ -97,7 +97,7 @@ struct Camera {
 struct Light {
   std::string name;
   shared::Light device;
-  float angular_diameter = 0.0f;  // degrees, directional only
+  float angular_diameter = 0.0f;                     // degrees, directional only
   std::optional<std::uint32_t> node = std::nullopt;  // that carries it
 };
 
@@ -124,7 +124,7 @@ struct Shape {
 };
 
 struct Skin {
-  std::vector<std::uint32_t> joints;  // nodes
+  std::vector<std::uint32_t> joints;    // nodes
   std::vector<glm::mat4> inverse_bind;  // scene -> joint, of every joint
 };
 
@@ -134,6 +134,21 @@ struct Deformation {
   std::uint32_t shape = 0;
   std::uint32_t node = 0;  // whose morph weights count
   std::optional<std::uint32_t> skin;
+};
+
+/// What a material's extensions say beyond metallic and roughness, textures aside. Values that are
+/// absent are those that change nothing.
+struct MaterialLayers {
+  float specular = 1.0f;  // KHR_materials_specular
+  glm::vec3 specular_color{1.0f};
+  float clearcoat = 0.0f;
+  float clearcoat_roughness = 0.0f;
+  glm::vec3 sheen_color{0.0f};
+  float sheen_roughness = 0.0f;
+  float transmission = 0.0f;
+  float thickness = 0.0f;             // metres in the mesh's space; 0: thin walled
+  float attenuation_distance = 0.0f;  // metres; 0: endless
+  glm::vec3 attenuation_color{1.0f};
 };
 
 enum class Interpolation { step, linear, cubic_spline };
@@ -161,7 +176,9 @@ struct Scene {
   std::vector<Node> nodes;
   std::vector<Mesh> meshes;
   std::vector<std::string> material_names;
-  std::vector<shared::Material> materials;  // at least one
+  std::vector<shared::Material> materials;      // at least one
+  std::vector<MaterialLayers> material_layers;  // of each material
+  std::vector<std::string> variants;            // KHR_materials_variants; the default is shown
   std::vector<Image> images;
   std::vector<Texture> textures;
   std::vector<std::uint8_t> alpha_heap;  // alpha of masked base colours, one byte a texel

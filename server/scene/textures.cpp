@@ -57,6 +57,9 @@ TextureTable::TextureTable(const JsonValue& root) {
   for (const JsonValue& json : root.objects("textures")) {
     Declared& texture = textures_.emplace_back();
     texture.image = json.index("source", image_count, "images");
+    if (const auto webp = json.object("extensions", "EXT_texture_webp")) {
+      texture.image = webp->required_index("source", image_count, "images");
+    }
     if (const auto sampler = json.index("sampler", samplers.size(), "samplers")) {
       texture.sampler = samplers[*sampler];
     }

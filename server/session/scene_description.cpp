@@ -22,6 +22,7 @@ protocol::SceneInfo describe_scene(const std::string& name, const scene::Scene& 
   info.lights = count(scene.lights);
   for (const scene::Camera& camera : scene.cameras) info.cameras.push_back(camera.name);
   for (const scene::Clip& clip : scene.clips) info.clips.push_back({clip.name, clip.duration});
+  info.variants = scene.variants;
   if (!scene.bounds.empty()) {
     info.bounds = {.min = to_protocol(scene.bounds.minimum),
                    .max = to_protocol(scene.bounds.maximum)};

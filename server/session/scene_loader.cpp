@@ -7,7 +7,6 @@
 
 #include "protocol/jsonrpc.hpp"
 #include "render/renderer.hpp"
-#include "scene/import.hpp"
 #include "session/scene_description.hpp"
 
 namespace heliograph::session {
@@ -29,10 +28,12 @@ protocol::Error superseded() {
 }  // namespace
 
 SceneLoader::SceneLoader(render::Engine& engine, const SceneCatalogue& catalogue,
-                         std::optional<std::filesystem::path> environment)
+                         std::optional<std::filesystem::path> environment,
+                         const scene::ImportLimits& limits)
     : engine_(engine),
       catalogue_(catalogue),
       environments_(std::move(environment)),
+      limits_(limits),
       thread_([this] { run(); }) {}
 
 void SceneLoader::stop() {
@@ -84,11 +85,11 @@ Result<protocol::SceneInfo> SceneLoader::carry_out(const Request& request) {
   const Clock::time_point start = Clock::now();
   try {
     const auto environment = environments_.environment_for(request.entry);
-    auto imported =
-        scene::import_gltf(request.entry.path, {}, [&](std::string_view stage, float fraction) {
-          stop_if_superseded(request);
-          report_progress(request, stage, import_share * fraction);
-        });
+    auto imported = scene::import_gltf(request.entry.path, limits_,
+                                       [&](std::string_view stage, float fraction) {
+                                         stop_if_superseded(request);
+                                         report_progress(request, stage, import_share * fraction);
+                                       });
     const auto scene = std::make_shared<const scene::Scene>(std::move(imported));
     stop_if_superseded(request);
     report_progress(request, "uploading", import_share);

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "protocol/messages.hpp"
+#include "scene/import.hpp"
 #include "session/environment_choice.hpp"
 #include "session/scene_catalogue.hpp"
 #include "session/session.hpp"
@@ -28,7 +29,7 @@ class SceneLoader {
   using Completion = std::function<void(protocol::Result<protocol::SceneInfo>)>;
 
   SceneLoader(render::Engine& engine, const SceneCatalogue& catalogue,
-              std::optional<std::filesystem::path> environment);
+              std::optional<std::filesystem::path> environment, const scene::ImportLimits& limits);
   ~SceneLoader() { stop(); }
   SceneLoader(const SceneLoader&) = delete;
   SceneLoader& operator=(const SceneLoader&) = delete;
@@ -57,6 +58,7 @@ class SceneLoader {
   render::Engine& engine_;
   const SceneCatalogue& catalogue_;
   EnvironmentSource environments_;
+  const scene::ImportLimits limits_;
 
   std::mutex mutex_;
   std::condition_variable condition_;

@@ -15,7 +15,7 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
       render_loop_(engine),
       session_(render_loop_.open(options_.session)),
       dispatcher_(options_.dispatch),
-      loader_(engine, catalogue_, options_.environment) {
+      loader_(engine, catalogue_, options_.environment, options_.import_limits) {
   add_scene_commands(dispatcher_, *this);
   add_camera_commands(dispatcher_, *this);
   add_animation_commands(dispatcher_, *this);

@@ -19,6 +19,7 @@ struct HostOptions {
   SessionOptions session;
   std::vector<std::filesystem::path> scene_roots;
   std::optional<std::filesystem::path> environment;  // for every scene, instead of its own
+  scene::ImportLimits import_limits;
   protocol::DispatchLimits dispatch;
 };
 

@@ -78,7 +78,7 @@ TEST(ImageDecoder, RefusesWhatIsCutAtAnyByte) {
 }
 
 TEST(ImageDecoder, RefusesOtherFormats) {
-  EXPECT_NE(reason_of({}).find("neither PNG nor JPEG"), std::string::npos);
+  EXPECT_NE(reason_of({}).find("neither PNG, JPEG nor WebP"), std::string::npos);
   EXPECT_NE(reason_of({'G', 'I', 'F', '8', '9', 'a', 1, 0, 1, 0, 0, 0, 0}).find("neither"),
             std::string::npos);
 }

@@ -276,7 +276,7 @@ const Damage damages[] = {
      "images[0]"},
     {"ImageOtherFormat",
      [](auto& b) { b.json["images"][0]["bufferView"] = b.add_view(Bytes(100, 'x')); },
-     "neither PNG nor JPEG"},
+     "neither PNG, JPEG nor WebP"},
     {"ImageWithoutSource", [](auto& b) { b.json["images"][0].erase("bufferView"); },
      "neither a uri"},
 };

@@ -110,10 +110,80 @@ TEST(Materials, FactorsOutsideTheirRangeAreClampedAndSaidSo) {
 
 TEST(Materials, ExtensionsThatAreNotSupportedAreNamed) {
   GltfBuilder builder = triangle();
-  builder.json["extensionsUsed"] = {"KHR_materials_sheen"};
+  builder.json["extensionsUsed"] = {"KHR_materials_iridescence"};
   const Scene scene = builder.import();
   ASSERT_EQ(scene.warnings.size(), 1u);
-  EXPECT_NE(scene.warnings[0].find("KHR_materials_sheen"), std::string::npos);
+  EXPECT_NE(scene.warnings[0].find("KHR_materials_iridescence"), std::string::npos);
+}
+
+TEST(Materials, LayersAreReadAndSaidToBeApproximated) {
+  const GltfBuilder builder = with_material(
+      {{"extensions",
+        {{"KHR_materials_specular",
+          {{"specularFactor", 0.25}, {"specularColorFactor", {1, 2, 0.5}}}},
+         {"KHR_materials_clearcoat",
+          {{"clearcoatFactor", 0.75}, {"clearcoatRoughnessFactor", 0.125}}},
+         {"KHR_materials_sheen",
+          {{"sheenColorFactor", {0.5, 0.25, 1}}, {"sheenRoughnessFactor", 0.5}}},
+         {"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+         {"KHR_materials_volume",
+          {{"thicknessFactor", 0.5},
+           {"attenuationDistance", 2},
+           {"attenuationColor", {1, 0.5, 0.25}}}}}}});
+  const Scene scene = builder.import();
+  const MaterialLayers& layers = scene.material_layers.at(0);
+  EXPECT_EQ(layers.specular, 0.25f);
+  EXPECT_EQ(layers.specular_color, glm::vec3(1.0f, 2.0f, 0.5f));
+  EXPECT_EQ(layers.clearcoat, 0.75f);
+  EXPECT_EQ(layers.clearcoat_roughness, 0.125f);
+  EXPECT_EQ(layers.sheen_color, glm::vec3(0.5f, 0.25f, 1.0f));
+  EXPECT_EQ(layers.sheen_roughness, 0.5f);
+  EXPECT_EQ(layers.transmission, 1.0f);
+  EXPECT_EQ(layers.thickness, 0.5f);
+  EXPECT_EQ(layers.attenuation_distance, 2.0f);
+  EXPECT_EQ(layers.attenuation_color, glm::vec3(1.0f, 0.5f, 0.25f));
+  EXPECT_EQ(scene.warnings.size(), 5u);
+  for (const std::string& warning : scene.warnings) {
+    EXPECT_NE(warning.find("is approximated"), std::string::npos) << warning;
+  }
+}
+
+TEST(Materials, LayersOutsideTheirRangeAreRefused) {
+  const auto refusal_with = [](const char* extension, const nlohmann::json& value) {
+    return refusal_of(with_material({{"extensions", {{extension, value}}}}));
+  };
+  const auto expect = [](const std::string& refusal, std::string_view part) {
+    EXPECT_NE(refusal.find(part), std::string::npos) << refusal;
+  };
+  expect(refusal_with("KHR_materials_specular", {{"specularFactor", 2}}), "from 0 to 1");
+  expect(refusal_with("KHR_materials_specular", {{"specularColorFactor", {1, -1, 1}}}), "negative");
+  expect(refusal_with("KHR_materials_clearcoat", {{"clearcoatFactor", -1}}), "negative");
+  expect(refusal_with("KHR_materials_clearcoat", {{"clearcoatTexture", {{"index", 9}}}}),
+         "clearcoatTexture.index: 9");
+  expect(refusal_with("KHR_materials_sheen", {{"sheenColorFactor", {2, 0, 0}}}), "from 0 to 1");
+  expect(refusal_with("KHR_materials_transmission", {{"transmissionFactor", "all"}}), "number");
+  expect(refusal_with("KHR_materials_volume", {{"attenuationDistance", 0}}), "more than 0");
+  expect(refusal_with("KHR_materials_volume", {{"thicknessFactor", -3}}), "negative");
+  expect(refusal_with("KHR_materials_volume", 5), "must be an object");
+}
+
+TEST(Materials, VariantsAreListedAndTheDefaultIsShown) {
+  GltfBuilder builder = with_material({{"name", "plain"}});
+  builder.add("materials", {{"name", "golden"}});
+  builder.json["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "beach"}},
+                                                                      {{"name", "night"}}};
+  auto& mappings = builder.json["meshes"][0]["primitives"][0]["extensions"]
+                               ["KHR_materials_variants"]["mappings"];
+  mappings = {{{"material", 1}, {"variants", {0, 1}}}};
+  const Scene scene = builder.import();
+  EXPECT_EQ(scene.variants, (std::vector<std::string>{"beach", "night"}));
+  EXPECT_EQ(scene.material_names[scene.meshes[0].material], "plain");
+  mappings[0]["variants"] = {2};
+  EXPECT_NE(refusal_of(builder).find("variants: 2 is not an index"), std::string::npos);
+  mappings[0]["variants"] = {1, 1};
+  EXPECT_NE(refusal_of(builder).find("twice"), std::string::npos);
+  mappings[0] = {{"material", 7}, {"variants", {0}}};
+  EXPECT_NE(refusal_of(builder).find("material: 7"), std::string::npos);
 }
 
 TEST(Materials, ATextureOnlyInAnotherFormatIsLeftOut) {

@@ -44,6 +44,8 @@ TEST(Nodes, OnlyTheDefaultSceneIsShown) {
   const Scene scene = builder.import();
   ASSERT_EQ(scene.nodes.size(), 1u);
   EXPECT_EQ(scene.nodes[0].name, "other");
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_NE(scene.warnings[0].find("of 2 scenes"), std::string::npos);
 }
 
 TEST(Nodes, WithoutScenesAllRootsAreShown) {

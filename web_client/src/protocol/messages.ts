@@ -34,6 +34,7 @@ export interface SceneInfo {
   textures: number;
   lights: number;
   cameras: string[];
+  variants: string[];
   bounds: { min: Vector3; max: Vector3 };
   warnings: string[];
 }
