@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# From a fresh clone to passed tests: installs, builds and runs every test but those known to fail
-# (ctest -L not_yet_held; tests/paper says why). Arguments go to ctest.
+# From a fresh clone to passed tests: installs, builds and runs every test. Arguments go to ctest.
 set -euo pipefail
 folder=$(cd "$(dirname "$0")" && pwd)
 "$folder/setup.sh" build run test
@@ -12,4 +11,4 @@ if [ -z "${HELIOGRAPH_NEWER_MESA:-}" ] && deploy/newer_mesa.sh "$build/newer_mes
   export HELIOGRAPH_NEWER_MESA
 fi
 echo "==> running the tests"
-exec ctest --test-dir "$build" --output-on-failure -LE not_yet_held "$@"
+exec ctest --test-dir "$build" --output-on-failure "$@"

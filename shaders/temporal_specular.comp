@@ -154,6 +154,17 @@ Remembered remembered(Surface s) {
   return found;
 }
 
+/// In frames. Of a reflection only a part comes straight from lights: where they move it may be
+/// remembered four times as long as shadows (measured). A turning environment moves all of it, the
+/// faster the narrower the lobe that gathers it.
+float longest_memory(float roughness) {
+  float longest = min(constants.frames, 4.0 * constants.light_frames);
+  if (constants.environment_turn <= 0.0) return longest;
+  float lobe = 4.0 * atan(roughness * roughness);  // from edge to edge, radians
+  float motion = constants.environment_turn / max(lobe, 1e-4);
+  return min(longest, frames_under_motion(motion));
+}
+
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (outside_frame(pixel)) return;
@@ -179,7 +190,7 @@ void main() {
     old.frames *= 1.0 - moved;
   }
 
-  float frames = min(old.frames + 1.0, constants.frames);
+  float frames = min(old.frames + 1.0, longest_memory(s.roughness));
   vec3 radiance = mix(rectified, now, 1.0 / frames);
   float share = 1.0 / min(frames, constants.moments_frames);
   float bright = luminance(now);

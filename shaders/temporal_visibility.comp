@@ -88,8 +88,10 @@ void main() {
     old.frames *= 1.0 - moved;
   }
 
-  vec2 frames = min(old.frames + 1.0, vec2(constants.frames));
-  vec2 value = mix(rectified, now, sample_share(frames, constants.frames));
+  // Where lights go, shadows age, and what is hidden nearby does not.
+  vec2 longest = vec2(min(constants.frames, constants.light_frames), constants.frames);
+  vec2 frames = min(old.frames + 1.0, longest);
+  vec2 value = mix(rectified, now, 1.0 / frames);
   vec2 share = sample_share(frames, constants.moments_frames);
   vec2 first = mix(old.moments.xy, now, share);
   vec2 second = mix(old.moments.zw, now * now, share);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "render/frame.hpp"
+#include "render/scene_motion.hpp"
 #include "shaders/shared/denoise.h"
 
 // The same settings exist for either denoised signal, as two types with the same members.
@@ -33,6 +34,12 @@ shared::TemporalConstants temporal_constants(const FrameInputs& in,
   constants.rectification = static_cast<std::uint32_t>(settings.rectification);
   constants.radius = settings.rectification_radius;
   constants.scale = settings.rectification_scale * rested_box(in, settings.rectification);
+  if (settings.follow_lights) {
+    constants.light_frames = frames_under_motion(in.scene_motion.lights);
+    constants.environment_turn = in.scene_motion.environment;
+  } else {
+    constants.light_frames = constants.frames;
+  }
   constants.spatial_variance_frames = static_cast<float>(settings.spatial_variance_frames);
   const bool holds = settings.enabled && in.constants.counts.w == 0;
   constants.flags = (holds ? shared::temporal_holds : 0u) |

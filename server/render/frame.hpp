@@ -10,6 +10,7 @@
 namespace heliograph::render {
 
 class MovingScene;
+struct SceneMotion;
 
 /// What a frame is made from. References outlive the plan; `constants` changes from frame to frame.
 struct FrameInputs {
@@ -25,6 +26,7 @@ struct FrameInputs {
   const std::uint32_t& samples;  // already in the accumulated picture
   const float& seconds;          // since the frame before
   const MovingScene& moving;     // what the rasteriser draws
+  const SceneMotion& scene_motion;  // since the frame before
   const gpu::Image& split_sum_table;  // rg32f, mapped on devices that are processors
   bool host_kernels = true;      // on devices that are processors, where a pass has one
 };

@@ -47,12 +47,12 @@ struct MovingScene::Moving {
   /// elsewhere.
   bool move_instances(const scene::Scene& scene, const scene::Pose& pose);
   bool deform(const scene::Scene& scene, const scene::Pose& before, const scene::Pose& pose);
-  bool move_lights(const scene::Scene& scene, const scene::Pose& before, const scene::Pose& pose);
+  bool move_lights(const scene::Scene& scene, const scene::Pose& before, const scene::Pose& pose,
+                   std::vector<shared::Light>& lights);
   void move_draws(const scene::Scene& scene);
   void update_structure();
 
   std::vector<shared::Instance> instances;
-  std::vector<shared::Light> lights;
   std::vector<Draw> draws;
   std::vector<std::uint32_t> draw_of;  // by instance
   std::vector<Deforming> deforming;    // by deformation of the scene
@@ -80,13 +80,11 @@ MovingScene::Moving::Moving(const gpu::Device& device, const SceneResources& res
     worlds.push_back(scene.nodes[instance.node].world);
     instances.push_back(place_mesh(instance.mesh, worlds.back()));
   }
-  for (const scene::Light& light : scene.lights) lights.push_back(light.device);
   for (const scene::Mesh& mesh : scene.meshes) bounds.push_back(mesh.bounds);
   for (std::uint32_t i = 0; i < draws.size(); ++i) draw_of[draws[i].constants.instance] = i;
   instance_table = writable_table(device, "instances now", std::span<const shared::Instance>(instances),
                                   VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-  light_table = make_light_table(device, lights.size());
-  write_lights(light_table, lights);
+  light_table = make_light_table(device, scene.lights.size());
   if (scene.deformations.empty()) return;
 
   std::vector<std::size_t> first_vertex;
@@ -160,7 +158,8 @@ bool MovingScene::Moving::deform(const scene::Scene& scene, const scene::Pose& b
 }
 
 bool MovingScene::Moving::move_lights(const scene::Scene& scene, const scene::Pose& before,
-                                      const scene::Pose& pose) {
+                                      const scene::Pose& pose,
+                                      std::vector<shared::Light>& lights) {
   bool any = false;
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const auto node = scene.lights[i].node;
@@ -198,7 +197,12 @@ MovingScene::MovingScene(const gpu::Device& device, const tracing::RayTracer& tr
                          std::shared_ptr<const SceneResources> rest)
     : rest_(std::move(rest)), pose_(scene::rest_pose(*rest_->scene)) {
   const tracing::SceneBuffers& shared = rest_->rest_tables;
-  if (!rest_->scene->clips.empty()) moving_ = std::make_unique<Moving>(device, *rest_);
+  for (const scene::Light& light : rest_->scene->lights) lights_.push_back(light.device);
+  previous_lights_ = lights_;
+  if (!rest_->scene->clips.empty()) {
+    moving_ = std::make_unique<Moving>(device, *rest_);
+    write_lights(moving_->light_table, lights_);
+  }
   tables_.emplace(tracing::SceneTables{
       moving_ && moving_->vertex_table ? moving_->vertex_table : shared.vertices, shared.indices,
       shared.meshes, moving_ ? moving_->instance_table : shared.instances, shared.materials,
@@ -236,6 +240,7 @@ bool MovingScene::needs_advance() const {
 }
 
 bool MovingScene::advance() {
+  previous_lights_ = lights_;
   if (!needs_advance()) return false;
   const scene::Scene& scene = *rest_->scene;
   const scene::Pose before = pose_;
@@ -249,7 +254,7 @@ bool MovingScene::advance() {
   moving_->pose_is_new = false;
   const bool instances = moving_->move_instances(scene, pose_);
   const bool shapes = moving_->deform(scene, before, pose_);
-  const bool lights = moving_->move_lights(scene, before, pose_);
+  const bool lights = moving_->move_lights(scene, before, pose_, lights_);
   moving_->move_draws(scene);
   moving_->update_structure();
   moving_->settled =

@@ -32,6 +32,10 @@ class MovingScene {
   /// Vertices one frame ago of the meshes that deform; only where Draw::previous_vertex points.
   const gpu::Buffer& previous_vertices() const;
 
+  /// As they are now, and as they were one frame ago; by light of the scene.
+  const std::vector<shared::Light>& lights() const { return lights_; }
+  const std::vector<shared::Light>& previous_lights() const { return previous_lights_; }
+
   /// What the next advance() goes to: a clip of this scene at `seconds`, or rest when null.
   /// @return whether that differs from where the scene is going already
   bool set_pose(const scene::Clip* clip, double seconds);
@@ -50,6 +54,8 @@ class MovingScene {
 
   std::shared_ptr<const SceneResources> rest_;
   scene::Pose pose_;
+  std::vector<shared::Light> lights_;
+  std::vector<shared::Light> previous_lights_;
   std::unique_ptr<Moving> moving_;  // null for scenes without clips
   std::optional<tracing::SceneTables> tables_;
 };

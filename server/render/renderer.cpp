@@ -9,6 +9,7 @@
 #include "render/debug_view.hpp"
 #include "render/drawing.hpp"
 #include "render/moving_scene.hpp"
+#include "render/scene_motion.hpp"
 #include "render/view_constants.hpp"
 #include "render/view_table.hpp"
 
@@ -62,6 +63,7 @@ struct Renderer::State {
   std::uint32_t sequence = 0;  // frames since the last cut: where random sequences stand
   std::uint32_t samples = 0;   // in the accumulated picture
   float seconds = 1.0f / 60.0f;  // since the frame before
+  SceneMotion scene_motion;
   bool stale = true;          // something changed since the last frame
 
   std::shared_ptr<const SceneResources> scene;
@@ -76,8 +78,8 @@ struct Renderer::State {
 std::unique_ptr<Drawing> Renderer::State::make_drawing() {
   const FrameInputs inputs{parts.programs, *scene,    moving->tables(), *parts.tracer,
                            moving->structure(), constants, settings,    samples,
-                           seconds,             *moving,   parts.split_sum_table,
-                           parts.host_kernels};
+                           seconds,             *moving,   scene_motion,
+                           parts.split_sum_table, parts.host_kernels};
   return std::make_unique<Drawing>(parts, inputs, constants_buffer, extent);
 }
 
@@ -209,6 +211,9 @@ Frame Renderer::render() {
   const shared::FrameConstants before = state.constants;
   state.constants = make_frame_constants(state.camera, state.settings, *state.scene, state.extent,
                                          state.sequence++, state.has_previous ? &before : nullptr);
+  state.scene_motion =
+      render::scene_motion(*state.moving, state.constants, state.has_previous ? &before : nullptr,
+                           moves);
   state.has_previous = true;
   std::memcpy(state.constants_buffer.mapped(), &state.constants, sizeof state.constants);
   state.drawing->plan.execute();

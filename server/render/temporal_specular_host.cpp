@@ -199,6 +199,17 @@ class SpecularAccumulation {
     return taps;
   }
 
+  /// In frames; frames_under_motion() of shaders/lib/moments.glsl for the environment.
+  HWY_INLINE V longest_memory(V roughness) const {
+    const V longest = set(std::min(c_.frames, 4.0f * c_.light_frames));
+    if (c_.environment_turn <= 0.0f) return longest;
+    const V lobe = set(4.0f) * hn::Atan(d_, roughness * roughness);
+    const V motion = set(c_.environment_turn) / hn::Max(lobe, set(1e-4f));
+    const V logarithm = hn::Log(d_, clamped(motion, 1e-6f, 1.0f));
+    const V power = hn::Exp(d_, set(-2.0f / 3.0f) * logarithm);
+    return hn::Min(longest, hn::MulAdd(set(0.63f), power - set(1.0f), set(1.0f)));
+  }
+
   HWY_INLINE void block(const BandScratch& hits, const ViewedRow<D>& view, int x, int y) const {
     const V zero = hn::Zero(d_), one = set(1.0f);
     const Quad<V> guide = load(job_.guide, x, y);
@@ -219,7 +230,7 @@ class SpecularAccumulation {
     const Surface s{scaled * (one / size), size - one, guide.w};
     const Remembered old = remembered(hits, view, x, y, seen, s);
 
-    const V frames = hn::Min(old.frames + one, set(c_.frames));
+    const V frames = hn::Min(old.frames + one, longest_memory(s.roughness));
     const Triple<V> radiance = mix(old.radiance, now, one / frames);
     const V known = hn::Min(frames, set(c_.moments_frames));
     const V bright = luminance(now);

@@ -96,7 +96,8 @@ class VisibilityAccumulation {
     const M seen = hn::Gt(load(job_.guide, x, y).w, zero);
     const Remembered old = recall(x, y);
     const Channel shadow = accumulate(now.x, old.signal.x, old.moments.x, old.moments.z,
-                                      old.frames.x, old.fast.x, c_.frames);
+                                      old.frames.x, old.fast.x,
+                                      std::min(c_.frames, c_.light_frames));
     const Channel ambient = accumulate(now.y, old.signal.y, old.moments.y, old.moments.w,
                                        old.frames.y, old.fast.y, c_.frames);
     const Quad<V> signal{hn::IfThenElse(seen, shadow.value, now.x),

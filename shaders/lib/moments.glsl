@@ -5,6 +5,12 @@
 /// Share of a new sample in a mean over `frames` remembered ones, itself included.
 vec2 sample_share(vec2 frames, float longest) { return 1.0 / clamp(frames, vec2(1.0), vec2(longest)); }
 
+/// How many frames of a signal to remember that moves by `motion` of its own width each frame: the
+/// twin of server/render/scene_motion.cpp tells why.
+float frames_under_motion(float motion) {
+  return 1.0 + 0.63 * (pow(clamp(motion, 1e-6, 1.0), -2.0 / 3.0) - 1.0);
+}
+
 /// Variance of one sample from its first two moments over `frames` samples, without bias.
 vec2 sample_variance(vec2 first, vec2 second, vec2 frames) {
   vec2 known = max(frames, vec2(2.0));

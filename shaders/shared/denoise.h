@@ -30,7 +30,8 @@ struct TemporalConstants {
   float scale;  // of its box, standard deviations
   float spatial_variance_frames;  // shorter histories take their variance from neighbours
   uint flags;                     // temporal_*
-  float compression;              // Reinhard multiplier, 0: none
+  float light_frames;             // longest memory of what comes from lights that move
+  float environment_turn;         // since the frame before, radians, where that is followed
 };
 
 SHARED_CONSTANT uint atrous_variance_prefilter = 1u;

@@ -11,6 +11,7 @@ namespace {
 struct View {
   VkExtent2D extent{77, 45};
   bool orthographic = false;
+  render::SceneMotion motion = {};
   protocol::Settings settings;
 };
 
@@ -47,6 +48,7 @@ class Twins {
 
   /// A frame of another noise, turned a little; a few samples are no numbers, as they may be.
   void next() {
+    rig_.set_scene_motion(view_.motion);
     const std::size_t count = std::size_t{view_.extent.width} * view_.extent.height;
     std::vector<glm::vec4> visibility(count), specular(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -134,6 +136,8 @@ TEST_F(TemporalHost, FollowsEverySetting) {
   view.settings.specular_temporal.rectification_radius = 5;
   view.settings.specular_temporal.rectification_scale = 0.5f;
   expect_same_over_frames(view, "other windows");
+
+  expect_same_over_frames({.motion = {.lights = 0.05f, .environment = 0.2f}}, "lights on the way");
 }
 
 TEST_F(TemporalHost, LeavesOtherRectificationsToTheShaders) {

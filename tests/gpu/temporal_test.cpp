@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
+#include "render/scene_motion.hpp"
 #include "tests/support/frame_rig.hpp"
 
 namespace heliograph::test {
@@ -180,6 +181,59 @@ TEST_F(Gathering, CountsSecondsNotFrames) {
     for (int i = 0; i < half_a_second; ++i) frame(glm::vec4(1.0f));
     EXPECT_NEAR(signal().x, 1.0 - std::exp(-1.0), 0.03) << "after the same time at any rate";
   }
+}
+
+TEST_F(Gathering, ForgetsShadowsSoonerWhileLightsMoveButNotWhatIsHiddenNearby) {
+  start(plain_settings());
+  for (int i = 0; i < 40; ++i) frame(glm::vec4(1.0f));
+  rig_->set_scene_motion({.lights = 0.1f});
+  for (int i = 0; i < 4; ++i) frame(glm::vec4(0.0f));
+  const double frames = render::frames_under_motion(0.1f);
+  EXPECT_NEAR(history().x, frames, 1e-3);
+  EXPECT_NEAR(signal().x, std::pow(1.0 - 1.0 / frames, 4), 1e-3);
+  EXPECT_NEAR(signal().y, std::pow(31.0 / 32.0, 4), 1e-3);
+}
+
+TEST_F(Gathering, ForgetsReflectionsSoonerUnderATurningEnvironment) {
+  start(plain_settings(), true);
+  for (int i = 0; i < 40; ++i) frame(glm::vec4(1.0f));
+  rig_->set_scene_motion({.environment = glm::radians(10.0f)});
+  frame(glm::vec4(0.0f));
+  const float lobe = 4.0f * std::atan(1.0f);  // the wall is rough
+  EXPECT_NEAR(history().x, render::frames_under_motion(glm::radians(10.0f) / lobe), 1e-2);
+}
+
+TEST(SceneMotion, IsHowFarLightsWentAgainstTheirWidthWeighedByTheirLight) {
+  SceneBuilder builder;
+  builder.add_quad({{{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}}}, surface(glm::vec3(1.0f)));
+  builder.place(0).add_sun({0, -1, 0}, glm::vec3(3.0f), 4.0f).add_sun({0, -1, 0}, glm::vec3(1.0f));
+  auto scene = std::make_shared<scene::Scene>(*builder.build());
+  scene->lights[0].node = 1;
+  scene->nodes.push_back({.name = "sun", .transform = scene::Transform{}});
+  const glm::quat down = glm::angleAxis(glm::radians(-90.0f), glm::vec3(1, 0, 0));
+  const glm::quat end = glm::angleAxis(glm::radians(-100.0f), glm::vec3(1, 0, 0));
+  scene::Channel turn{.node = 1, .property = scene::Property::rotation, .width = 4,
+                      .times = {0, 10}, .values = {}};
+  for (const glm::quat& q : {down, end}) turn.values.insert(turn.values.end(), {q.x, q.y, q.z, q.w});
+  scene->clips.push_back({"turn", 10.0f, {turn}});
+  FrameRig rig(scene, look({0, 1, 3}, glm::vec3(0.0f)), {.extent = extent});
+  const auto motion_at = [&](double seconds) {
+    rig.moving().set_pose(&rig.scene().scene->clips[0], seconds);
+    rig.moving().advance();
+    return render::scene_motion(rig.moving(), rig.constants(), &rig.constants(), true).lights;
+  };
+  motion_at(0.0);
+  EXPECT_NEAR(motion_at(1.0), 0.75f * 0.25f, 2e-3f) << "one of four degrees, three lights of four";
+  EXPECT_EQ(motion_at(1.0), 0.0f) << "at rest again";
+  EXPECT_NEAR(motion_at(9.0), 0.75f, 1e-5f) << "never more than all";
+  EXPECT_EQ(render::scene_motion(rig.moving(), rig.constants(), nullptr, true).lights, 0.0f);
+}
+
+TEST(FramesUnderMotion, FallFromEndlessToOne) {
+  EXPECT_GT(render::frames_under_motion(0.0f), 1e6f);
+  EXPECT_NEAR(render::frames_under_motion(0.1f), 3.29f, 0.01f);
+  EXPECT_EQ(render::frames_under_motion(1.0f), 1.0f);
+  EXPECT_EQ(render::frames_under_motion(5.0f), 1.0f);
 }
 
 TEST_F(Gathering, GrowsWithoutEndWhileThePictureRests) {

@@ -2,6 +2,7 @@
 
 #include "render/frame.hpp"
 #include "render/moving_scene.hpp"
+#include "render/scene_motion.hpp"
 #include "render/view_constants.hpp"
 #include "tests/support/engine.hpp"
 #include "tests/support/scene_builder.hpp"
@@ -36,6 +37,8 @@ class FrameRig {
   void set_accumulated(std::uint32_t samples) { samples_ = samples; }
   /// Time from the frame before to the next one.
   void set_seconds(float seconds) { seconds_ = seconds; }
+  /// To the next frame.
+  void set_scene_motion(const render::SceneMotion& motion) { scene_motion_ = motion; }
 
   /// An image that the test fills: `texels` of the image's format for every pixel, row 0 on top.
   template <typename Texel>
@@ -63,6 +66,7 @@ class FrameRig {
   shared::FrameConstants constants_{};
   std::uint32_t samples_ = 0;
   float seconds_ = 1.0f / 60.0f;
+  render::SceneMotion scene_motion_;
   bool has_view_ = false;
   bool compiled_ = false;
   gpu::Buffer constants_buffer_;
