@@ -201,6 +201,23 @@ std::vector<std::byte> Image::download(std::uint32_t layer) const {
   return bytes;
 }
 
+std::vector<std::byte> Image::download_level(std::uint32_t level, std::uint32_t layer) const {
+  const VkExtent2D size = level_extent(desc_, level);
+  std::vector<std::byte> bytes(std::size_t{size.width} * size.height * texel_bytes(desc_.format));
+  const Buffer staging(*device_, desc_.name + " download", bytes.size(), 0, Memory::readback);
+  device_->submit_once([&](VkCommandBuffer commands) {
+    full_barrier(commands);
+    VkBufferImageCopy region{};
+    region.imageSubresource = {aspect_of(desc_.format), level, layer, 1};
+    region.imageExtent = {size.width, size.height, 1};
+    vkCmdCopyImageToBuffer(commands, handle_, VK_IMAGE_LAYOUT_GENERAL, staging.handle(), 1,
+                           &region);
+    full_barrier(commands);
+  });
+  std::memcpy(bytes.data(), staging.mapped(), bytes.size());
+  return bytes;
+}
+
 Sampler::Sampler(const Device& device, const VkSamplerCreateInfo& info) : device_(&device) {
   check(vkCreateSampler(device.handle(), &info, nullptr, &handle_), "create a sampler");
 }

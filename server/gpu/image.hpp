@@ -57,6 +57,8 @@ class Image {
   void upload(std::span<const std::byte> bytes) const;
   /// Level 0, layer `layer`, tightly packed; waits.
   std::vector<std::byte> download(std::uint32_t layer = 0) const;
+  /// The same of any level.
+  std::vector<std::byte> download_level(std::uint32_t level, std::uint32_t layer) const;
 
  private:
   void swap(Image& other) noexcept;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "render/frame.hpp"
+#include "render/ray_sink.hpp"
 #include "shaders/shared/ray.h"
 
 namespace heliograph::render {
@@ -18,5 +19,18 @@ tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
 /// The pass `name`.begin, which empties the stream.
 void begin_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
                 const tracing::RayStream& rays);
+
+/// A buffer as kernels on the host see it.
+template <typename Element>
+Element* mapped(const gpu::FramePlan& plan, gpu::BufferRef buffer) {
+  return reinterpret_cast<Element*>(plan.get(buffer).mapped());
+}
+inline host::RaySource ray_source(const gpu::FramePlan& plan, const tracing::RayStream& rays) {
+  return {mapped<const shared::RayCount>(plan, rays.count),
+          mapped<const shared::Ray>(plan, rays.rays)};
+}
+inline host::RaySink ray_sink(const gpu::FramePlan& plan, const tracing::RayStream& rays) {
+  return {mapped<shared::RayCount>(plan, rays.count), mapped<shared::Ray>(plan, rays.rays)};
+}
 
 }  // namespace heliograph::render

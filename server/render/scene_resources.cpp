@@ -74,6 +74,12 @@ SceneResources::SceneResources(const gpu::Device& device, const Programs& progra
   upload_tables(device);
   upload_textures(device);
   texture_heap = make_texture_heap(device, *scene);
+  if (device.is_cpu()) {
+    const auto* const textures =
+        reinterpret_cast<const shared::HeapTexture*>(texture_heap.textures.mapped());
+    host_materials =
+        host::make_material_table(scene->materials, {textures, scene->textures.size()});
+  }
   make_material_sets(device, programs);
   list_draws();
   rest_structure = tracer.build(*scene, rest_tables);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "render/host_tables.hpp"
 #include "render/lit_environment.hpp"
 #include "render/renderer.hpp"
 #include "render/texture_heap.hpp"
@@ -38,6 +39,7 @@ class SceneResources {
   std::shared_ptr<const tracing::AccelerationStructure> rest_structure;
   std::shared_ptr<const LitEnvironment> environment;
   TextureHeap texture_heap;
+  host::MaterialTable host_materials;  // on devices that are processors
   std::uint32_t features = 0;  // shared::scene_*
   std::vector<Draw> draws;     // opaque first, then by material
   std::uint32_t deforming_vertices = 0;

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "render/gbuffer_host.hpp"
 #include "render/moving_scene.hpp"
 #include "render/ray_stream.hpp"
 #include "shaders/embedded.hpp"
@@ -11,6 +12,80 @@ namespace {
 
 constexpr int rounds = 4;
 constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+
+bool by_host(const gpu::FramePlan& plan, const FrameInputs& in) {
+  return in.host_kernels && plan.device().is_cpu();
+}
+
+void camera_rays(gpu::FramePlan& plan, const FrameInputs& in, const tracing::RayStream& rays) {
+  const auto run_host = [&plan, &frame = in.constants, rays] {
+    host::camera_rays(frame, mapped<shared::RayCount>(plan, rays.count),
+                      mapped<shared::Ray>(plan, rays.rays));
+  };
+  const auto bind = [&](gpu::PassBuilder pass) {
+    return pass.write(rays.count).write(rays.rays);
+  };
+  if (by_host(plan, in)) {
+    bind(plan.host("gbuffer.rays", run_host));
+  } else {
+    bind(plan.pass("gbuffer.rays", in.programs.compute(shaders::camera_rays)))
+        .dispatch(plan.extent());
+  }
+}
+
+/// What one round has met.
+struct Round {
+  std::string name;
+  bool last;
+  tracing::RayStream rays;
+  gpu::BufferRef hits;
+  gpu::BufferRef previous_vertices;
+  tracing::RayStream passed;  // rays that go on
+  GBuffer gbuffer;
+};
+
+void shade_on_host(const gpu::FramePlan& plan, const FrameInputs& in, const Round& round) {
+  const auto view = [&plan](gpu::ImageRef image) { return plan.get(image).host(); };
+  const GBuffer& gbuffer = round.gbuffer;
+  host::shade_gbuffer(
+      {in.constants,
+       host::view_scene(in),
+       (in.scene.features & shared::scene_deforms) != 0,
+       round.last,
+       ray_source(plan, round.rays),
+       mapped<const shared::Hit>(plan, round.hits),
+       ray_sink(plan, round.passed),
+       {view(gbuffer.normals), view(gbuffer.base_color), view(gbuffer.surface),
+        view(gbuffer.motion), view(gbuffer.emissive), view(gbuffer.depth_slope),
+        view(gbuffer.instance)}});
+}
+
+void shade(gpu::FramePlan& plan, const FrameInputs& in, const Round& round) {
+  const auto bind = [&](gpu::PassBuilder pass) {
+    return pass.read(round.rays.count)
+        .read(round.rays.rays)
+        .read(round.hits)
+        .read(round.previous_vertices)
+        .read_write(round.passed.count)
+        .write(round.passed.rays)
+        .write(round.gbuffer.normals)
+        .write(round.gbuffer.base_color)
+        .write(round.gbuffer.surface)
+        .write(round.gbuffer.motion)
+        .write(round.gbuffer.emissive)
+        .write(round.gbuffer.depth_slope)
+        .write(round.gbuffer.instance);
+  };
+  const std::string name = round.name + ".shade";
+  if (by_host(plan, in)) {
+    bind(plan.host(name, [&plan, in, round] { shade_on_host(plan, in, round); }));
+    return;
+  }
+  begin_rays(plan, in, round.name, round.passed);
+  bind(plan.pass(name, in.programs.compute(shaders::gbuffer_hits, in.scene.features)))
+      .constants(static_cast<std::uint32_t>(round.last))
+      .dispatch_indirect(round.rays.count, ray_groups_offset);
+}
 
 }  // namespace
 
@@ -31,30 +106,12 @@ GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
   tracing::RayStream current = declare_rays(plan, "gbuffer", capacity);
   tracing::RayStream next = declare_rays(plan, "gbuffer.passed", capacity);
 
-  plan.pass("gbuffer.rays", in.programs.compute(shaders::camera_rays))
-      .write(current.count)
-      .write(current.rays)
-      .dispatch(extent);
+  camera_rays(plan, in, current);
   for (int round = 0; round < rounds; ++round) {
     const std::string name = round == 0 ? "gbuffer" : "gbuffer." + std::to_string(round + 1);
     in.tracer.trace_closest(plan, name + ".trace", in.structure, current, hits);
-    begin_rays(plan, in, name, next);
-    plan.pass(name + ".shade", in.programs.compute(shaders::gbuffer_hits, in.scene.features))
-        .read(current.count)
-        .read(current.rays)
-        .read(hits)
-        .read(previous_vertices)
-        .read_write(next.count)
-        .write(next.rays)
-        .write(gbuffer.normals)
-        .write(gbuffer.base_color)
-        .write(gbuffer.surface)
-        .write(gbuffer.motion)
-        .write(gbuffer.emissive)
-        .write(gbuffer.depth_slope)
-        .write(gbuffer.instance)
-        .constants(static_cast<std::uint32_t>(round == rounds - 1))
-        .dispatch_indirect(current.count, ray_groups_offset);
+    const bool last = round == rounds - 1;
+    shade(plan, in, {name, last, current, hits, previous_vertices, next, gbuffer});
     std::swap(current, next);
   }
   return gbuffer;

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <memory>
+
+#include "scene/scene.hpp"
+
+namespace heliograph::test {
+
+/// Quads with a texture in every slot and a ball: tilted, mirrored, squeezed and seen from behind.
+std::shared_ptr<const scene::Scene> textured_scene();
+
+}  // namespace heliograph::test
