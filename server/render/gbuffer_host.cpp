@@ -28,9 +28,8 @@ void make_camera_rays(const shared::FrameConstants& frame, int tile, int tiles_a
     ray.origin = orthographic ? camera.world_position(p, zero()) : numbers(glm::vec3(frame.eye));
     ray.direction = -camera.to_eye(p);
     ray.t_min = number(near_plane) * length(camera.view_position(p, one()));
-    const Mask inside =
-        float_mask(hn::And(hn::Lt(p.x, integer(static_cast<int>(frame.extent.x))),
-                           hn::Lt(p.y, integer(static_cast<int>(frame.extent.y)))));
+    const Mask inside = float_mask(hn::And(hn::Lt(p.x, integer(static_cast<int>(frame.extent.x))),
+                                           hn::Lt(p.y, integer(static_cast<int>(frame.extent.y)))));
     ray.t_max = select(inside, number(1e30f), number(-1.0f));
     ray.pixel = pack_pixel(p);
     ray.user = numbers(0.0f);
@@ -122,8 +121,7 @@ class Shading {
     const Integer base = instance.whole(HELIOGRAPH_WORD(shared::Instance, previous_vertex));
     const Mask moved = hn::And(hit.met, float_mask(hn::Ne(base, integer(0))));
     if (none(moved)) return s.local;
-    const Records mesh(job_.scene.meshes,
-                       instance.whole(HELIOGRAPH_WORD(shared::Instance, mesh)),
+    const Records mesh(job_.scene.meshes, instance.whole(HELIOGRAPH_WORD(shared::Instance, mesh)),
                        sizeof(shared::Mesh) / 4);
     // Lanes whose mesh keeps its shape read any vertex of a frame ago: the first.
     const Integer first_index =
@@ -153,16 +151,6 @@ class Shading {
             view_z};
   }
 
-  /// Texels of one image, a record of `words` words for every lane.
-  template <int words>
-  struct Texels {
-    HWY_ALIGN std::array<float, words * hn::MaxLanes(Tag())> values;
-    HWY_INLINE void put(const gpu::HostView& image, std::size_t lane, const int* x,
-                        const int* y) const {
-      float* const row = image.row<float>(static_cast<std::uint32_t>(y[lane]));
-      std::memcpy(row + words * x[lane], values.data() + words * lane, words * sizeof(float));
-    }
-  };
   /// Of all images.
   struct AllTexels {
     Texels<4> normals, motion;
@@ -171,45 +159,38 @@ class Shading {
   };
 
   HWY_INLINE void put(const AllTexels& texels, const PixelLanes& pixel, Mask wanted) const {
-    HWY_ALIGN std::array<int, hn::MaxLanes(Tag())> x, y;
-    hn::Store(pixel.x, integer_tag, x.data());
-    hn::Store(pixel.y, integer_tag, y.data());
+    const Places at(pixel);
     const GBufferImages& to = job_.images;
-    for (std::uint64_t lanes = mask_bits(wanted); lanes; lanes &= lanes - 1) {
-      const auto lane = static_cast<std::size_t>(__builtin_ctzll(lanes));
-      texels.normals.put(to.normals, lane, x.data(), y.data());
-      texels.motion.put(to.motion, lane, x.data(), y.data());
-      texels.depth_slope.put(to.depth_slope, lane, x.data(), y.data());
-      texels.emissive.put(to.emissive, lane, x.data(), y.data());
-      texels.base_color.put(to.base_color, lane, x.data(), y.data());
-      texels.surface.put(to.surface, lane, x.data(), y.data());
-      texels.instance.put(to.instance, lane, x.data(), y.data());
-    }
+    for_each_lane(wanted, [&](std::size_t lane) {
+      texels.normals.put(to.normals, lane, at);
+      texels.motion.put(to.motion, lane, at);
+      texels.depth_slope.put(to.depth_slope, lane, at);
+      texels.emissive.put(to.emissive, lane, at);
+      texels.base_color.put(to.base_color, lane, at);
+      texels.surface.put(to.surface, lane, at);
+      texels.instance.put(to.instance, lane, at);
+    });
   }
 
   HWY_INLINE void store(const PixelLanes& pixel, const HitLanes& hit, const SurfaceLanes& s,
                         Mask wanted) const {
     if (none(wanted)) return;
-    AllTexels out;
     const Float view_z = hn::Neg(transform_row(frame_.view, 2, s.position));
     const Float2 shading = octahedral_encode(s.normal), flat = octahedral_encode(s.geometric);
-    hn::StoreInterleaved4(shading.x, shading.y, flat.x, flat.y, tag, out.normals.values.data());
-    const Float4 moved = motion(hit, s, view_z);
-    hn::StoreInterleaved4(moved.x, moved.y, moved.z, moved.w, tag, out.motion.values.data());
-    const Float2 slope = plane_slope(pixel, s, view_z);
-    hn::StoreInterleaved2(slope.x, slope.y, tag, out.depth_slope.values.data());
     const auto half = [](Float low, Float high) {
       return as_float(hn::Or(half_bits(low), hn::ShiftLeft<16>(half_bits(high))));
     };
-    hn::StoreInterleaved2(half(s.emissive.x, s.emissive.y), half(s.emissive.z, one()), tag,
-                          out.emissive.values.data());
-    const Float4 color{hn::Sqrt(s.base_color.x), hn::Sqrt(s.base_color.y),
-                       hn::Sqrt(s.base_color.z), s.occlusion};
-    hn::Store(as_float(pack_unorm8(color)), tag, out.base_color.values.data());
+    const Float4 color{hn::Sqrt(s.base_color.x), hn::Sqrt(s.base_color.y), hn::Sqrt(s.base_color.z),
+                       s.occlusion};
     const Float unlit = hn::IfThenElseZero(s.has(shared::material_unlit), one());
-    hn::Store(as_float(pack_unorm8({s.roughness, s.metallic, unlit, zero()})), tag,
-              out.surface.values.data());
-    hn::Store(as_float(hn::Add(hit.instance, integer(1))), tag, out.instance.values.data());
+    const AllTexels out{
+        Texels<4>(Float4{shading.x, shading.y, flat.x, flat.y}),
+        Texels<4>(motion(hit, s, view_z)),
+        Texels<2>(plane_slope(pixel, s, view_z)),
+        Texels<2>(Float2{half(s.emissive.x, s.emissive.y), half(s.emissive.z, one())}),
+        Texels<1>(as_float(pack_unorm8(color))),
+        Texels<1>(as_float(pack_unorm8({s.roughness, s.metallic, unlit, zero()}))),
+        Texels<1>(as_float(hn::Add(hit.instance, integer(1))))};
     put(out, pixel, wanted);
   }
 
@@ -217,7 +198,12 @@ class Shading {
     const Mask inside =
         float_mask(hn::And(hn::Lt(pixel.x, integer(static_cast<int>(frame_.extent.x))),
                            hn::Lt(pixel.y, integer(static_cast<int>(frame_.extent.y)))));
-    const AllTexels nothing{};
+    const Float none_of_it = zero();
+    const Float2 two{none_of_it, none_of_it};
+    const Float4 four{none_of_it, none_of_it, none_of_it, none_of_it};
+    const AllTexels nothing{Texels<4>(four),      Texels<4>(four),       Texels<2>(two),
+                            Texels<2>(two),       Texels<1>(none_of_it), Texels<1>(none_of_it),
+                            Texels<1>(none_of_it)};
     put(nothing, pixel, hn::And(missed, inside));
   }
 

@@ -8,6 +8,7 @@
 #endif
 
 #include <array>
+#include <cstddef>
 #include <cstring>
 #include <glm/glm.hpp>
 
@@ -31,32 +32,76 @@ inline constexpr Tag tag{};
 inline constexpr IntegerTag integer_tag{};
 inline constexpr UnsignedTag unsigned_tag{};
 
-HWY_INLINE Float number(float value) { return hn::Set(tag, value); }
-HWY_INLINE Integer integer(int value) { return hn::Set(integer_tag, value); }
-HWY_INLINE Unsigned bits(std::uint32_t value) { return hn::Set(unsigned_tag, value); }
-HWY_INLINE Float zero() { return hn::Zero(tag); }
-HWY_INLINE Float one() { return number(1.0f); }
-HWY_INLINE Integer as_integer(Float v) { return hn::BitCast(integer_tag, v); }
-HWY_INLINE Unsigned as_unsigned(Float v) { return hn::BitCast(unsigned_tag, v); }
-HWY_INLINE Unsigned as_unsigned(Integer v) { return hn::BitCast(unsigned_tag, v); }
-HWY_INLINE Integer as_integer(Unsigned v) { return hn::BitCast(integer_tag, v); }
-HWY_INLINE Float as_float(Integer v) { return hn::BitCast(tag, v); }
-HWY_INLINE Float as_float(Unsigned v) { return hn::BitCast(tag, v); }
-HWY_INLINE Float to_float(Integer v) { return hn::ConvertTo(tag, v); }
-HWY_INLINE Integer truncated(Float v) { return hn::ConvertTo(integer_tag, v); }
-HWY_INLINE Mask float_mask(hn::Mask<IntegerTag> m) { return hn::RebindMask(tag, m); }
-HWY_INLINE Mask float_mask(hn::Mask<UnsignedTag> m) { return hn::RebindMask(tag, m); }
-HWY_INLINE hn::Mask<IntegerTag> integer_mask(Mask m) { return hn::RebindMask(integer_tag, m); }
-HWY_INLINE hn::Mask<UnsignedTag> unsigned_mask(Mask m) { return hn::RebindMask(unsigned_tag, m); }
+HWY_INLINE Float number(float value) {
+  return hn::Set(tag, value);
+}
+HWY_INLINE Integer integer(int value) {
+  return hn::Set(integer_tag, value);
+}
+HWY_INLINE Unsigned bits(std::uint32_t value) {
+  return hn::Set(unsigned_tag, value);
+}
+HWY_INLINE Float zero() {
+  return hn::Zero(tag);
+}
+HWY_INLINE Float one() {
+  return number(1.0f);
+}
+HWY_INLINE Integer as_integer(Float v) {
+  return hn::BitCast(integer_tag, v);
+}
+HWY_INLINE Unsigned as_unsigned(Float v) {
+  return hn::BitCast(unsigned_tag, v);
+}
+HWY_INLINE Unsigned as_unsigned(Integer v) {
+  return hn::BitCast(unsigned_tag, v);
+}
+HWY_INLINE Integer as_integer(Unsigned v) {
+  return hn::BitCast(integer_tag, v);
+}
+HWY_INLINE Float as_float(Integer v) {
+  return hn::BitCast(tag, v);
+}
+HWY_INLINE Float as_float(Unsigned v) {
+  return hn::BitCast(tag, v);
+}
+HWY_INLINE Float to_float(Integer v) {
+  return hn::ConvertTo(tag, v);
+}
+HWY_INLINE Integer truncated(Float v) {
+  return hn::ConvertTo(integer_tag, v);
+}
+HWY_INLINE Mask float_mask(hn::Mask<IntegerTag> m) {
+  return hn::RebindMask(tag, m);
+}
+HWY_INLINE Mask float_mask(hn::Mask<UnsignedTag> m) {
+  return hn::RebindMask(tag, m);
+}
+HWY_INLINE hn::Mask<IntegerTag> integer_mask(Mask m) {
+  return hn::RebindMask(integer_tag, m);
+}
+HWY_INLINE hn::Mask<UnsignedTag> unsigned_mask(Mask m) {
+  return hn::RebindMask(unsigned_tag, m);
+}
 
-HWY_INLINE Float select(Mask m, Float yes, Float no) { return hn::IfThenElse(m, yes, no); }
+HWY_INLINE Float select(Mask m, Float yes, Float no) {
+  return hn::IfThenElse(m, yes, no);
+}
 HWY_INLINE Integer select(Mask m, Integer yes, Integer no) {
   return hn::IfThenElse(integer_mask(m), yes, no);
 }
-HWY_INLINE Float multiply_add(Float a, Float b, Float c) { return hn::MulAdd(a, b, c); }
-HWY_INLINE Float at_least(Float v, float low) { return hn::Max(v, number(low)); }
-HWY_INLINE bool none(Mask m) { return hn::AllFalse(tag, m); }
-HWY_INLINE bool all(Mask m) { return hn::AllTrue(tag, m); }
+HWY_INLINE Float multiply_add(Float a, Float b, Float c) {
+  return hn::MulAdd(a, b, c);
+}
+HWY_INLINE Float at_least(Float v, float low) {
+  return hn::Max(v, number(low));
+}
+HWY_INLINE bool none(Mask m) {
+  return hn::AllFalse(tag, m);
+}
+HWY_INLINE bool all(Mask m) {
+  return hn::AllTrue(tag, m);
+}
 
 /// A bit for every lane, the first lowest.
 HWY_INLINE std::uint64_t mask_bits(Mask m) {
@@ -71,10 +116,16 @@ using Float2 = Pair<Float>;
 using Float3 = Triple<Float>;
 using Float4 = Quad<Float>;
 
-HWY_INLINE Float3 numbers(const glm::vec3& v) { return {number(v.x), number(v.y), number(v.z)}; }
-HWY_INLINE Float3 numbers(float v) { return {number(v), number(v), number(v)}; }
+HWY_INLINE Float3 numbers(const glm::vec3& v) {
+  return {number(v.x), number(v.y), number(v.z)};
+}
+HWY_INLINE Float3 numbers(float v) {
+  return {number(v), number(v), number(v)};
+}
 
-HWY_INLINE Float3 operator-(const Float3& v) { return {hn::Neg(v.x), hn::Neg(v.y), hn::Neg(v.z)}; }
+HWY_INLINE Float3 operator-(const Float3& v) {
+  return {hn::Neg(v.x), hn::Neg(v.y), hn::Neg(v.z)};
+}
 /// a * b + c
 HWY_INLINE Float3 multiply_add(const Float3& a, Float b, const Float3& c) {
   return {hn::MulAdd(a.x, b, c.x), hn::MulAdd(a.y, b, c.y), hn::MulAdd(a.z, b, c.z)};
@@ -97,10 +148,10 @@ HWY_INLINE Float3 reflect(const Float3& v, const Float3& n) {
 }
 /// `m` x (v, 1); the columns of a matrix that is the same for all lanes.
 HWY_INLINE Float3 transform_point(const glm::mat4& m, const Float3& v) {
-  return multiply_add(numbers(glm::vec3(m[0])), v.x,
-                      multiply_add(numbers(glm::vec3(m[1])), v.y,
-                                   multiply_add(numbers(glm::vec3(m[2])), v.z,
-                                                numbers(glm::vec3(m[3])))));
+  return multiply_add(
+      numbers(glm::vec3(m[0])), v.x,
+      multiply_add(numbers(glm::vec3(m[1])), v.y,
+                   multiply_add(numbers(glm::vec3(m[2])), v.z, numbers(glm::vec3(m[3])))));
 }
 HWY_INLINE Float3 transform_direction(const glm::mat4& m, const Float3& v) {
   return multiply_add(numbers(glm::vec3(m[0])), v.x,
@@ -108,10 +159,13 @@ HWY_INLINE Float3 transform_direction(const glm::mat4& m, const Float3& v) {
 }
 /// A row of `m` x (v, 1).
 HWY_INLINE Float transform_row(const glm::mat4& m, int row, const Float3& v) {
-  return hn::MulAdd(number(m[0][row]), v.x,
-                    hn::MulAdd(number(m[1][row]), v.y,
-                               hn::MulAdd(number(m[2][row]), v.z, number(m[3][row]))));
+  return hn::MulAdd(
+      number(m[0][row]), v.x,
+      hn::MulAdd(number(m[1][row]), v.y, hn::MulAdd(number(m[2][row]), v.z, number(m[3][row]))));
 }
+
+/// Word of a struct's member.
+#define HELIOGRAPH_WORD(type, member) static_cast<int>(offsetof(type, member) / 4)
 
 /// One record per lane in a table of 32-bit words. Lanes that read the same record, as neighbours
 /// mostly do, read it once.
@@ -154,6 +208,12 @@ HWY_INLINE Integer pack_unorm8(const Float4& v) {
   };
   return hn::Or(hn::Or(byte(v.x), hn::ShiftLeft<8>(byte(v.y))),
                 hn::Or(hn::ShiftLeft<16>(byte(v.z)), hn::ShiftLeft<24>(byte(v.w))));
+}
+
+HWY_INLINE Float4 unpack_unorm8(Integer packed) {
+  const Unsigned bytes = as_unsigned(packed);
+  return {unorm8<0>(tag, bytes), unorm8<8>(tag, bytes), unorm8<16>(tag, bytes),
+          unorm8<24>(tag, bytes)};
 }
 
 /// The bits of a half float, rounded to the nearest. `v` >= 0.

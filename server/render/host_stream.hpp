@@ -37,9 +37,11 @@ HWY_INLINE PixelLanes unpack_pixel(Integer packed) {
 
 HWY_INLINE RayLanes load_rays(const shared::Ray* rays, Integer index) {
   const Integer word = hn::Mul(index, integer(sizeof(shared::Ray) / 4));
-  const auto at = [&](int offset) { return as_float(gather(rays, hn::Add(word, integer(offset)))); };
-  return {{at(0), at(1), at(2)}, {at(4), at(5), at(6)}, at(3), at(7), as_integer(at(8)),
-          {at(9), at(10), at(11)}};
+  const auto at = [&](int offset) {
+    return as_float(gather(rays, hn::Add(word, integer(offset))));
+  };
+  return {{at(0), at(1), at(2)}, {at(4), at(5), at(6)},  at(3), at(7),
+          as_integer(at(8)),     {at(9), at(10), at(11)}};
 }
 
 /// Writes the rays of the lanes in `wanted`, one after the other. @return how many
@@ -60,6 +62,40 @@ HWY_INLINE std::size_t store_rays(const RayLanes& r, Mask wanted, shared::Ray* t
   }
   return count;
 }
+
+/// Calls `work(lane)` for every lane in `wanted`.
+template <class Work>
+HWY_INLINE void for_each_lane(Mask wanted, const Work& work) {
+  for (std::uint64_t lanes = mask_bits(wanted); lanes; lanes &= lanes - 1) {
+    work(static_cast<std::size_t>(__builtin_ctzll(lanes)));
+  }
+}
+
+/// Pixels lane by lane.
+struct Places {
+  HWY_ALIGN std::array<int, hn::MaxLanes(Tag())> x, y;
+  HWY_INLINE explicit Places(const PixelLanes& p) {
+    hn::Store(p.x, integer_tag, x.data());
+    hn::Store(p.y, integer_tag, y.data());
+  }
+};
+
+/// Texels of `words` words lane by lane, on their way into an image.
+template <int words>
+struct Texels {
+  HWY_ALIGN std::array<float, words * hn::MaxLanes(Tag())> values;
+  HWY_INLINE explicit Texels(Float v) { hn::Store(v, tag, values.data()); }
+  HWY_INLINE explicit Texels(const Float2& v) {
+    hn::StoreInterleaved2(v.x, v.y, tag, values.data());
+  }
+  HWY_INLINE explicit Texels(const Float4& v) {
+    hn::StoreInterleaved4(v.x, v.y, v.z, v.w, tag, values.data());
+  }
+  HWY_INLINE void put(const gpu::HostView& image, std::size_t lane, const Places& at) const {
+    float* const row = image.row<float>(static_cast<std::uint32_t>(at.y[lane]));
+    std::memcpy(row + words * at.x[lane], values.data() + words * lane, words * sizeof(float));
+  }
+};
 
 /// The frame's camera, as shaders/lib/frame.glsl has it.
 class CameraLanes {

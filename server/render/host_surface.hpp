@@ -88,8 +88,8 @@ struct MatrixLanes {
   }
 };
 
-/// The corners of each lane's triangle and their weights. Lanes that are not `wanted` have the first
-/// vertex three times.
+/// The corners of each lane's triangle and their weights. Lanes that are not `wanted` have the
+/// first vertex three times.
 class TriangleLanes {
  public:
   HWY_INLINE TriangleLanes(const shared::Vertex* vertices, const std::uint32_t* indices,
@@ -134,14 +134,13 @@ struct PlaceLanes {
 };
 
 /// One uv set. `footprint` is log2 of the squared share of the triangle that the ray covers.
-HWY_INLINE void read_uv(const TriangleLanes& t, int word, Float footprint, Float2& uv,
-                        Float& lod) {
+HWY_INLINE void read_uv(const TriangleLanes& t, int word, Float footprint, Float2& uv, Float& lod) {
   const Float ax = t.a().real(word), ay = t.a().real(word + 1);
   const Float bx = t.b().real(word), by = t.b().real(word + 1);
   const Float cx = t.c().real(word), cy = t.c().real(word + 1);
   uv = {t.between(ax, bx, cx), t.between(ay, by, cy)};
-  const Float area = hn::Abs(hn::MulSub(hn::Sub(bx, ax), hn::Sub(cy, ay),
-                                        hn::Mul(hn::Sub(by, ay), hn::Sub(cx, ax))));
+  const Float area = hn::Abs(
+      hn::MulSub(hn::Sub(bx, ax), hn::Sub(cy, ay), hn::Mul(hn::Sub(by, ay), hn::Sub(cx, ax))));
   lod = hn::MulAdd(hn::Log2(tag, at_least(area, 1e-30f)), number(0.5f), footprint);
 }
 
@@ -200,8 +199,8 @@ HWY_INLINE Float3 mapped_normal(const SceneView& scene, const TriangleLanes& tri
   mapped = hn::And(mapped, hn::Ge(size, number(1e-12f)));
   tangent = tangent * hn::Div(one(), hn::Sqrt(at_least(size, 1e-30f)));
   const Float3 bitangent = cross(normal, tangent) * hn::Mul(triangle.a().real(word + 3), mirrored);
-  const Float3 turned = normalized(
-      multiply_add(tangent, slope.x, multiply_add(bitangent, slope.y, normal * height)));
+  const Float3 turned =
+      normalized(multiply_add(tangent, slope.x, multiply_add(bitangent, slope.y, normal * height)));
   return select(mapped, turned, normal);
 }
 
@@ -225,8 +224,8 @@ HWY_INLINE void evaluate_material(const SceneView& scene, const TriangleLanes& t
   const auto factor = [&](int word) { return material.real(word); };
   const Float4 a = vertex_color(triangle.a()), b = vertex_color(triangle.b());
   const Float4 c = vertex_color(triangle.c());
-  Float4 color = slot_texel<one_level>(scene, material, HELIOGRAPH_WORD(Material, base_color_slot),
-                                       place);
+  Float4 color =
+      slot_texel<one_level>(scene, material, HELIOGRAPH_WORD(Material, base_color_slot), place);
   constexpr int base = HELIOGRAPH_WORD(Material, base_color);
   color.x = hn::Mul(hn::Mul(color.x, factor(base)), triangle.between(a.x, b.x, c.x));
   color.y = hn::Mul(hn::Mul(color.y, factor(base + 1)), triangle.between(a.y, b.y, c.y));
@@ -238,17 +237,18 @@ HWY_INLINE void evaluate_material(const SceneView& scene, const TriangleLanes& t
   const Float4 packed = slot_texel<one_level>(
       scene, material, HELIOGRAPH_WORD(Material, metallic_roughness_slot), place);
   s.metallic = clamped(hn::Mul(factor(HELIOGRAPH_WORD(Material, metallic)), packed.z), 0.0f, 1.0f);
-  s.roughness = clamped(hn::Mul(factor(HELIOGRAPH_WORD(Material, roughness)), packed.y), 0.0f, 1.0f);
+  s.roughness =
+      clamped(hn::Mul(factor(HELIOGRAPH_WORD(Material, roughness)), packed.y), 0.0f, 1.0f);
   constexpr int occlusion_slot = HELIOGRAPH_WORD(Material, occlusion_slot);
   Float occlusion = slot_texel<one_level>(scene, material, occlusion_slot, place, slot_repeats).x;
   const Integer repeats = hn::And(material.whole(occlusion_slot + HELIOGRAPH_WORD(Slot, flags)),
                                   integer(static_cast<int>(slot_repeats)));
   occlusion = select(float_mask(hn::Ne(repeats, integer(0))), packed.x, occlusion);
   s.occlusion = mix(one(), occlusion, factor(HELIOGRAPH_WORD(Material, occlusion_strength)));
-  const Float4 glow = slot_texel<one_level>(scene, material,
-                                            HELIOGRAPH_WORD(Material, emissive_slot), place);
-  s.emissive = material.triple(HELIOGRAPH_WORD(Material, emissive)) *
-               Float3{glow.x, glow.y, glow.z};
+  const Float4 glow =
+      slot_texel<one_level>(scene, material, HELIOGRAPH_WORD(Material, emissive_slot), place);
+  s.emissive =
+      material.triple(HELIOGRAPH_WORD(Material, emissive)) * Float3{glow.x, glow.y, glow.z};
   s.flags = material.whole(HELIOGRAPH_WORD(Material, flags));
 }
 
@@ -260,9 +260,8 @@ HWY_INLINE PlaceLanes texture_place(const TriangleLanes& triangle, const Records
   const Integer uses = material.whole(HELIOGRAPH_WORD(Material, uses));
   if (hn::AllTrue(integer_tag, hn::Eq(uses, integer(0)))) return place;
   const Float across = hn::Div(at_least(width, 1e-20f), at_least(cosine, 1e-2f));
-  const Float footprint =
-      hn::NegMulAdd(number(0.5f), hn::Log2(tag, at_least(twice_world_area, 1e-30f)),
-                    hn::Log2(tag, across));
+  const Float footprint = hn::NegMulAdd(
+      number(0.5f), hn::Log2(tag, at_least(twice_world_area, 1e-30f)), hn::Log2(tag, across));
   read_uv(triangle, HELIOGRAPH_WORD(shared::Vertex, uv0), footprint, place.first, place.first_lod);
   const Integer second = integer(static_cast<int>(uses_second_uv));
   if (!hn::AllFalse(integer_tag, hn::Eq(hn::And(uses, second), second))) {
@@ -285,7 +284,8 @@ HWY_INLINE SurfaceLanes hit_surface(const SceneView& scene, const HitLanes& hit,
   const Integer first_index = hn::Add(mesh.whole(HELIOGRAPH_WORD(shared::Mesh, first_index)),
                                       hn::Mul(hit.triangle, integer(3)));
   const TriangleLanes triangle(scene.vertices, scene.indices, first_index,
-                               mesh.whole(HELIOGRAPH_WORD(shared::Mesh, first_vertex)), hit, hit.met);
+                               mesh.whole(HELIOGRAPH_WORD(shared::Mesh, first_vertex)), hit,
+                               hit.met);
   const Integer flipped = hn::And(instance.whole(HELIOGRAPH_WORD(shared::Instance, flags)),
                                   integer(static_cast<int>(shared::instance_flipped)));
   const Float mirrored = select(float_mask(hn::Ne(flipped, integer(0))), number(-1.0f), one());
@@ -303,8 +303,8 @@ HWY_INLINE SurfaceLanes hit_surface(const SceneView& scene, const HitLanes& hit,
     const Float3 n = vertex.triple(HELIOGRAPH_WORD(shared::Vertex, normal));
     return normalized(multiply_add(by_x, n.x, multiply_add(by_y, n.y, by_z * n.z)));
   };
-  const Float3 vertex_normal =
-      normalized(triangle.between(turned(triangle.a()), turned(triangle.b()), turned(triangle.c())));
+  const Float3 vertex_normal = normalized(
+      triangle.between(turned(triangle.a()), turned(triangle.b()), turned(triangle.c())));
   const Float3 across = cross(world.direction(b - a), world.direction(c - a)) * mirrored;
   const Float area = hn::Sqrt(dot(across, across));
   const Mask flat = hn::Le(area, zero());
@@ -315,8 +315,9 @@ HWY_INLINE SurfaceLanes hit_surface(const SceneView& scene, const HitLanes& hit,
   const Mask opposed = hn::Lt(dot(s.front, vertex_normal), zero());
   s.geometric = s.front * select(opposed, hn::Neg(side), side);
   const PlaceLanes place = texture_place(triangle, material, area, width, hn::Abs(cosine));
-  s.normal = mapped_normal<one_level>(scene, triangle, world, mirrored, material, place,
-                                      vertex_normal) * side;
+  s.normal =
+      mapped_normal<one_level>(scene, triangle, world, mirrored, material, place, vertex_normal) *
+      side;
   evaluate_material<one_level>(scene, triangle, material, place, s);
   return s;
 }

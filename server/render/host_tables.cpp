@@ -85,8 +85,7 @@ void add_level(const std::array<std::vector<glm::vec4>, 6>& faces, int size,
         if (outside(x) && outside(y)) {
           // Three texels meet at a corner of a cube: there is no fourth.
           const int in_x = std::clamp(x, 0, size - 1), in_y = std::clamp(y, 0, size - 1);
-          color =
-              (texel(face, in_x, in_y) + texel(face, x, in_y) + texel(face, in_x, y)) / 3.0f;
+          color = (texel(face, in_x, in_y) + texel(face, x, in_y) + texel(face, in_x, y)) / 3.0f;
         } else {
           color = texel(face, x, y);
         }
@@ -163,14 +162,6 @@ SceneView view_scene(const FrameInputs& in) {
           made.levels.data(),
           reinterpret_cast<const std::uint32_t*>(mapped(in.scene.texture_heap.texels)),
           reinterpret_cast<const shared::Vertex*>(mapped(in.moving.previous_vertices()))};
-}
-
-Table copy_table(const gpu::Image& image) {
-  const std::vector<std::byte> bytes = image.download();
-  Table table{image.desc().extent.width, image.desc().extent.height, {}};
-  table.values.resize(bytes.size() / sizeof(float));
-  std::memcpy(table.values.data(), bytes.data(), bytes.size());
-  return table;
 }
 
 Environment copy_environment(const scene::Environment& map, const gpu::Image& prefiltered) {

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <glm/glm.hpp>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -23,7 +22,7 @@ namespace heliograph::render::host {
 struct Slot {
   glm::vec3 row0;  // of the transform
   glm::vec3 row1;
-  float lod;   // that the texels of the image and the transform add
+  float lod;  // that the texels of the image and the transform add
   std::uint32_t uv_set;
   std::uint32_t flags;  // texture_*, slot_*
   std::uint32_t width;  // of the largest level
@@ -90,16 +89,13 @@ struct Table {
   std::vector<float> values;
 };
 
-/// The first level of an image of floats.
-Table copy_table(const gpu::Image& image);
-
 /// What lights from afar.
 struct Environment {
   Table map;  // equirectangular; three floats an entry
   /// One level of the filtered cube: six faces of four floats a texel, each with a rim of its
   /// neighbours' texels, so that filtering across edges needs no other face.
   struct Level {
-    std::uint32_t size;  // without the rim
+    std::uint32_t size;   // without the rim
     std::uint32_t first;  // float of `cube`
   };
   std::vector<Level> levels;

@@ -7,16 +7,11 @@
 #define HELIOGRAPH_HOST_TEXTURES_HPP
 #endif
 
-#include <cstddef>
-
-#include "render/host_tables.hpp"
 #include "render/host_lanes.hpp"
+#include "render/host_tables.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::host::HWY_NAMESPACE {
-
-/// Word of a struct's member.
-#define HELIOGRAPH_WORD(type, member) static_cast<int>(offsetof(type, member) / 4)
 
 /// IEC 61966-2-1 by the polynomial of texture_heap.glsl.
 HWY_INLINE Float srgb_decode(Float e) {
@@ -60,12 +55,7 @@ HWY_INLINE Neighbours neighbours(Float coordinate, Integer size, Integer wrap, M
 /// One texel, decoded.
 HWY_INLINE Float4 heap_texel(const std::uint32_t* texels, Integer place, Mask srgb) {
   const Integer packed = gather(texels, place);
-  const Float scale = number(1.0f / 255.0f);
-  const Integer low = integer(0xff);
-  Float4 color{hn::Mul(to_float(hn::And(packed, low)), scale),
-               hn::Mul(to_float(hn::And(hn::ShiftRight<8>(packed), low)), scale),
-               hn::Mul(to_float(hn::And(hn::ShiftRight<16>(packed), low)), scale),
-               hn::Mul(to_float(hn::And(hn::ShiftRight<24>(packed), low)), scale)};
+  Float4 color = unpack_unorm8(packed);
   if (!none(srgb)) {
     color.x = select(srgb, srgb_decode(color.x), color.x);
     color.y = select(srgb, srgb_decode(color.y), color.y);
@@ -88,8 +78,8 @@ HWY_INLINE Float4 sample_level(const SceneView& scene, const TextureLanes& t, In
                                const Float2& uv, Mask nearest, Mask srgb) {
   const Integer width = hn::Max(hn::Shr(t.width, level), integer(1));
   const Integer height = hn::Max(hn::Shr(t.height, level), integer(1));
-  const Integer first = hn::IfThenElseZero(integer_mask(t.used),
-                                           gather(scene.levels, hn::Add(t.first_level, level)));
+  const Integer first =
+      hn::IfThenElseZero(integer_mask(t.used), gather(scene.levels, hn::Add(t.first_level, level)));
   const Neighbours s = neighbours(uv.x, width, t.wrap_s, nearest);
   const Neighbours r = neighbours(uv.y, height, t.wrap_t, nearest);
   const Integer top = hn::Add(first, hn::Mul(r.low, width));
@@ -103,8 +93,8 @@ HWY_INLINE Float4 sample_level(const SceneView& scene, const TextureLanes& t, In
 
 /// `lod` counts from the largest level. Where `one_level`, only the nearest is read.
 template <bool one_level>
-HWY_INLINE Float4 sample_texture(const SceneView& scene, const TextureLanes& t,
-                                 const Float2& uv, Float lod) {
+HWY_INLINE Float4 sample_texture(const SceneView& scene, const TextureLanes& t, const Float2& uv,
+                                 Float lod) {
   const auto flag = [&](std::uint32_t bit) {
     const Integer wanted = integer(static_cast<int>(bit));
     return float_mask(hn::Eq(hn::And(t.flags, wanted), wanted));

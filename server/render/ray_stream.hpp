@@ -20,6 +20,11 @@ tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
 void begin_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
                 const tracing::RayStream& rays);
 
+/// Whether passes that have a kernel run it.
+inline bool by_host(const gpu::FramePlan& plan, const FrameInputs& in) {
+  return in.host_kernels && plan.device().is_cpu();
+}
+
 /// A buffer as kernels on the host see it.
 template <typename Element>
 Element* mapped(const gpu::FramePlan& plan, gpu::BufferRef buffer) {

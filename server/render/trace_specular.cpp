@@ -2,8 +2,10 @@
 
 #include <optional>
 
+#include "render/light_table.hpp"
 #include "render/ray_stream.hpp"
 #include "render/sort_rays.hpp"
+#include "render/specular_host.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
@@ -11,13 +13,6 @@ namespace {
 
 constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 constexpr VkFormat four_floats = VK_FORMAT_R32G32B32A32_SFLOAT;
-
-tracing::RayStream make_stream(gpu::FramePlan& plan, const FrameInputs& in,
-                               const std::string& name, std::uint32_t capacity) {
-  const tracing::RayStream stream = declare_rays(plan, name, capacity);
-  begin_rays(plan, in, name, stream);
-  return stream;
-}
 
 /// What rays write: of the plan's size, or of half of it with the direction of every ray.
 struct Target {
@@ -34,48 +29,95 @@ Target make_target(gpu::FramePlan& plan, bool half) {
           plan.image("specular.half.directions", four_floats, 0, extent), extent, 2};
 }
 
+host::SplitSum split_sum(const FrameInputs& in) {
+  const gpu::Image& table = in.split_sum_table;
+  return {table.host(), static_cast<int>(table.desc().extent.width)};
+}
+
 tracing::RayStream generate_rays(gpu::FramePlan& plan, const FrameInputs& in,
                                  const GBuffer& gbuffer, const Target& target) {
-  const auto rays =
-      make_stream(plan, in, "specular", target.extent.width * target.extent.height);
-  const auto& shader = target.directions ? shaders::specular_rays_half : shaders::specular_rays;
-  auto pass = plan.pass("specular.rays", in.programs.compute(shader));
-  pass.read(gbuffer.normals)
-      .read(gbuffer.base_color)
-      .read(gbuffer.surface)
-      .read(gbuffer.motion)
-      .read_write(rays.count)
-      .write(rays.rays)
-      .write(target.radiance)
-      .constants([&s = in.settings.specular] { return s.max_roughness; })
-      .dispatch(target.extent);
-  if (target.directions) pass.write(*target.directions);
+  const auto rays = declare_rays(plan, "specular", target.extent.width * target.extent.height);
+  const auto bind = [&](gpu::PassBuilder pass) {
+    pass.read(gbuffer.normals)
+        .read(gbuffer.base_color)
+        .read(gbuffer.surface)
+        .read(gbuffer.motion)
+        .read_write(rays.count)
+        .write(rays.rays)
+        .write(target.radiance);
+    return target.directions ? pass.write(*target.directions) : pass;
+  };
+  const auto run_host = [&plan, in, gbuffer, target, rays] {
+    const auto view = [&plan](gpu::ImageRef image) { return plan.get(image).host(); };
+    std::optional<gpu::HostView> directions;
+    if (target.directions) directions = view(*target.directions);
+    host::make_specular_rays({in.constants, split_sum(in), in.settings.specular.max_roughness,
+                              view(gbuffer.normals), view(gbuffer.base_color),
+                              view(gbuffer.surface), view(gbuffer.motion), ray_sink(plan, rays),
+                              view(target.radiance), directions});
+  };
+  if (by_host(plan, in)) {
+    bind(plan.host("specular.rays", run_host));
+  } else {
+    const auto& shader = target.directions ? shaders::specular_rays_half : shaders::specular_rays;
+    begin_rays(plan, in, "specular", rays);
+    bind(plan.pass("specular.rays", in.programs.compute(shader)))
+        .constants([&s = in.settings.specular] { return s.max_roughness; })
+        .dispatch(target.extent);
+  }
   return in.settings.specular.sort_rays ? sort_rays(plan, in, "specular", rays) : rays;
 }
 
-/// Shades what the rays met; returns the shadow rays of its lamps.
-tracing::RayStream shade(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                         const tracing::RayStream& rays, gpu::BufferRef hits,
-                         const Target& target) {
+/// What the rays met, and the shadow rays of its lamps.
+struct Hits {
+  tracing::RayStream rays;
+  gpu::BufferRef hits;
+  tracing::RayStream shadows;
+};
+
+void shade_on_host(const gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                   const Hits& hits, const Target& target) {
+  const auto view = [&plan](gpu::ImageRef image) { return plan.get(image).host(); };
+  const auto lights = frame_lights(in.tables.lights, in.constants);
+  const bool separate_sun = in.settings.environment.separate_sun;
+  host::shade_hits({in.constants, host::view_scene(in),
+                    *in.scene.environment->view(separate_sun).maps.host, lights, split_sum(in),
+                    in.settings.specular.hit_shading == protocol::HitShading::traced, target.scale,
+                    view(gbuffer.surface), view(gbuffer.motion), ray_source(plan, hits.rays),
+                    mapped<const shared::Hit>(plan, hits.hits), ray_sink(plan, hits.shadows),
+                    view(target.radiance)});
+}
+
+/// Shades what the rays met; makes the shadow rays of its lamps.
+void shade(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer, const Hits& hits,
+           const Target& target) {
   struct Constants {
     std::uint32_t lamps;
     std::int32_t scale;
   };
-  const auto shadows = make_stream(plan, in, "specular.shadows", rays.capacity);
-  plan.pass("specular.shade", in.programs.compute(shaders::shade_hits, in.scene.features))
-      .read(gbuffer.surface)
-      .read(gbuffer.motion)
-      .read(rays.count)
-      .read(rays.rays)
-      .read(hits)
-      .read_write(shadows.count)
-      .write(shadows.rays)
-      .write(target.radiance)
+  const auto bind = [&](gpu::PassBuilder pass) {
+    return pass.read(gbuffer.surface)
+        .read(gbuffer.motion)
+        .read(hits.rays.count)
+        .read(hits.rays.rays)
+        .read(hits.hits)
+        .read_write(hits.shadows.count)
+        .write(hits.shadows.rays)
+        .write(target.radiance);
+  };
+  // The kernel knows punctual lights alone.
+  if (by_host(plan, in) && (in.scene.features & shared::scene_area_lights) == 0) {
+    bind(plan.host("specular.shade", [&plan, in, gbuffer, hits, target] {
+      shade_on_host(plan, in, gbuffer, hits, target);
+    }));
+    return;
+  }
+  begin_rays(plan, in, "specular.shadows", hits.shadows);
+  bind(plan.pass("specular.shade", in.programs.compute(shaders::shade_hits, in.scene.features)))
       .constants([&s = in.settings.specular, scale = target.scale] {
         return Constants{s.hit_shading == protocol::HitShading::traced, scale};
       })
-      .dispatch_indirect(rays.count, ray_groups_offset);
-  return shadows;
+      .dispatch_indirect(hits.rays.count, ray_groups_offset);
 }
 
 /// Adds the light of lamps that are in view from where the rays ended.
@@ -84,14 +126,23 @@ void resolve_lamps(gpu::FramePlan& plan, const FrameInputs& in, const tracing::R
   const auto occluded = plan.buffer("specular.occluded", sizeof(std::uint32_t) * shadows.capacity,
                                     storage, gpu::Memory::device);
   in.tracer.trace_any(plan, "specular.shadows.trace", in.structure, shadows, occluded);
-  plan.pass("specular.resolve", in.programs.compute(shaders::resolve_specular))
-      .read(shadows.count)
-      .read(shadows.rays)
-      .read(occluded)
-      .read_write(target.radiance)
+  const auto bind = [&](gpu::PassBuilder pass) {
+    return pass.read(shadows.count)
+        .read(shadows.rays)
+        .read(occluded)
+        .read_write(target.radiance)
+        .describe("Reflections of this frame, demodulated; w: how far their rays went, metres.");
+  };
+  if (by_host(plan, in)) {
+    bind(plan.host("specular.resolve", [&plan, shadows, occluded, target] {
+      host::resolve_lamps(ray_source(plan, shadows), mapped<const std::uint32_t>(plan, occluded),
+                          target.scale, plan.get(target.radiance).host());
+    }));
+    return;
+  }
+  bind(plan.pass("specular.resolve", in.programs.compute(shaders::resolve_specular)))
       .constants(target.scale)
-      .dispatch_indirect(shadows.count, ray_groups_offset)
-      .describe("Reflections of this frame, demodulated; w: how far their rays went, metres.");
+      .dispatch_indirect(shadows.count, ray_groups_offset);
 }
 
 gpu::ImageRef upsample(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
@@ -119,7 +170,8 @@ gpu::ImageRef trace_specular(gpu::FramePlan& plan, const FrameInputs& in, const 
   const auto hits = plan.buffer("specular.hits", sizeof(shared::Hit) * rays.capacity, storage,
                                 gpu::Memory::device);
   in.tracer.trace_closest(plan, "specular.trace", in.structure, rays, hits);
-  const auto shadows = shade(plan, in, gbuffer, rays, hits, target);
+  const auto shadows = declare_rays(plan, "specular.shadows", rays.capacity);
+  shade(plan, in, gbuffer, {rays, hits, shadows}, target);
   resolve_lamps(plan, in, shadows, target);
   return target.directions ? upsample(plan, in, gbuffer, target) : target.radiance;
 }

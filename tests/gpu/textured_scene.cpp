@@ -49,8 +49,7 @@ std::shared_ptr<const scene::Scene> textured_scene() {
   scene::Scene textures;
   const shared::Material material = textured(textures);
   SceneBuilder builder;
-  const auto quad =
-      builder.add_quad({{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}}, material);
+  const auto quad = builder.add_quad({{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}}, material);
   const auto ball = builder.add_sphere(0.8f, surface({0.2f, 0.5f, 0.9f}, 0.3f, 0.5f));
   const auto turned = [](const glm::vec3& to, float angle, const glm::vec3& axis,
                          const glm::vec3& scale) {
@@ -59,7 +58,7 @@ std::shared_ptr<const scene::Scene> textured_scene() {
   builder.place(quad, turned({-1.2f, 0.9f, 0}, 0.4f, {0, 1, 0}, {1, 1, 1}));
   builder.place(quad, turned({1.2f, 0.9f, 0}, 2.7f, {0, 1, 0}, {1, 0.8f, 1}));  // from behind
   builder.place(quad, turned({-1.2f, -1, 0}, 0.5f, {1, 0, 0}, {-1, 0.7f, 2}));  // mirrored
-  builder.place(quad, turned({1.2f, -1, 0}, 2.5f, {1, 0, 0}, {-1, 1, 1}));  // both
+  builder.place(quad, turned({1.2f, -1, 0}, 2.5f, {1, 0, 0}, {-1, 1, 1}));      // both
   builder.place(ball, turned({0, 0, -1}, 0.3f, {0, 0, 1}, {-1, 1.4f, 0.7f}));
   scene::Scene scene = *builder.build();
   scene.images = std::move(textures.images);
