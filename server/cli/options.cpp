@@ -114,6 +114,9 @@ void add_limit_options(CLI::App& command, scene::ImportLimits& limits) {
       "HELIOGRAPH_MAX_SCENE_BYTES");
   add("--max-unpacked-bytes", limits.unpacked_bytes, "Most bytes its compressed buffers grow to",
       "HELIOGRAPH_MAX_UNPACKED_BYTES");
+  add("--max-geometry-bytes", limits.scene_bytes,
+      "Most bytes that its geometry and animations take once read",
+      "HELIOGRAPH_MAX_GEOMETRY_BYTES");
   add("--max-triangles", limits.triangles, "Most triangles of a scene", "HELIOGRAPH_MAX_TRIANGLES");
   add("--max-texels", limits.texels, "Most texels of a scene's images together",
       "HELIOGRAPH_MAX_TEXELS");

@@ -102,9 +102,11 @@ bool is_index_type(ComponentType type) {
   return type == ComponentType::u8 || type == ComponentType::u16 || type == ComponentType::u32;
 }
 
-/// Calls `store(element, component, value)` for the first `components` of every element.
+/// Calls `store(element, component, value)` for the first `components` of the first `count`
+/// elements.
 template <typename Store>
-void read_elements(const Accessor& accessor, int components, const Store& store) {
+void read_elements(const Accessor& accessor, int components, std::size_t count,
+                   const Store& store) {
   const std::uint32_t size = component_size(accessor.component);
   const int available =
       std::min<int>(components, static_cast<int>(component_count(accessor.element)));
@@ -116,13 +118,14 @@ void read_elements(const Accessor& accessor, int components, const Store& store)
     }
   };
   if (!accessor.bytes.empty()) {
-    for (std::size_t i = 0; i < accessor.count; ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
       load_element(accessor.bytes.data() + i * accessor.stride, i);
     }
   }
   if (accessor.sparse) {
     const std::uint32_t size_in_file = element_bytes(accessor.element, accessor.component);
     for (std::size_t i = 0; i < accessor.sparse->indices.size(); ++i) {
+      if (accessor.sparse->indices[i] >= count) break;  // they ascend
       load_element(accessor.sparse->values.data() + i * size_in_file, accessor.sparse->indices[i]);
     }
   }
@@ -253,9 +256,9 @@ template <int components>
 std::vector<glm::vec<components, float>> read_vectors(const Accessor& accessor) {
   using Vector = glm::vec<components, float>;
   std::vector<Vector> result(accessor.count, Vector(0.0f));
-  read_elements(accessor, components, [&](std::size_t element, int component, float value) {
-    result[element][component] = value;
-  });
+  read_elements(
+      accessor, components, accessor.count,
+      [&](std::size_t element, int component, float value) { result[element][component] = value; });
   return result;
 }
 
@@ -266,16 +269,16 @@ template std::vector<glm::vec4> read_vectors<4>(const Accessor&);
 std::vector<float> read_numbers(const Accessor& accessor) {
   const std::size_t width = component_count(accessor.element);
   std::vector<float> result(accessor.count * width, 0.0f);
-  read_elements(accessor, static_cast<int>(width),
+  read_elements(accessor, static_cast<int>(width), accessor.count,
                 [&](std::size_t element, std::size_t component, float value) {
                   result[element * width + component] = value;
                 });
   return result;
 }
 
-std::vector<glm::mat4> read_matrices(const Accessor& accessor) {
-  std::vector<glm::mat4> result(accessor.count, glm::mat4(0.0f));
-  read_elements(accessor, 16, [&](std::size_t element, int component, float value) {
+std::vector<glm::mat4> read_matrices(const Accessor& accessor, std::size_t count) {
+  std::vector<glm::mat4> result(count, glm::mat4(0.0f));
+  read_elements(accessor, 16, count, [&](std::size_t element, int component, float value) {
     result[element][component / 4][component % 4] = value;
   });
   return result;

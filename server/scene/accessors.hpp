@@ -54,8 +54,9 @@ std::vector<glm::vec<components, float>> read_vectors(const Accessor& accessor);
 /// @throws ImportError when one is not finite
 std::vector<float> read_numbers(const Accessor& accessor);
 
-/// All elements of an accessor of float 4x4 matrices. @throws ImportError when one is not finite
-std::vector<glm::mat4> read_matrices(const Accessor& accessor);
+/// The first `count` elements of an accessor of float 4x4 matrices, which has as many.
+/// @throws ImportError when one is not finite
+std::vector<glm::mat4> read_matrices(const Accessor& accessor, std::size_t count);
 
 /// All elements of an index accessor (unsigned scalar), widened to 32 bits.
 /// @throws ImportError when the type does not fit or an index is not below `vertex_count`

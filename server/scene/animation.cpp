@@ -111,23 +111,37 @@ Clip read_clip(const JsonValue& json, std::span<const Accessor> accessors, const
   return clip;
 }
 
+/// Channels may share samplers and clips accessors, so that the file's size is no bound: all are
+/// paid for before the first is read.
+void pay_for_keys(const JsonValue& animation, std::span<const Accessor> accessors,
+                  ByteBudget& budget) {
+  const std::vector<JsonValue> samplers = animation.objects("samplers");
+  for (const JsonValue& channel : animation.objects("channels")) {
+    const JsonValue& sampler =
+        samplers[channel.required_index("sampler", samplers.size(), "samplers")];
+    for (const char* const end : {"input", "output"}) {
+      const Accessor& keys = accessors[*sampler.index(end, accessors.size(), "accessors")];
+      budget.take(keys.count, component_count(keys.element) * sizeof(float), sampler.path());
+    }
+  }
+}
+
 std::vector<glm::mat4> read_inverse_binds(const JsonValue& skin,
-                                          std::span<const Accessor> accessors,
-                                          std::size_t joints) {
+                                          std::span<const Accessor> accessors, std::size_t joints) {
   const auto index = skin.index("inverseBindMatrices", accessors.size(), "accessors");
   if (!index) return std::vector<glm::mat4>(joints, glm::mat4(1.0f));
-  std::vector<glm::mat4> matrices = read_matrices(accessors[*index]);
-  matrices.resize(joints);
-  return matrices;
+  return read_matrices(accessors[*index], joints);
 }
 
 }  // namespace
 
 std::vector<Clip> read_clips(const JsonValue& root, std::span<const Accessor> accessors,
-                             const NodeTable& nodes, Warnings& warnings) {
+                             const NodeTable& nodes, ByteBudget& budget, Warnings& warnings) {
   std::vector<Clip> clips;
   std::set<std::string> names;
-  for (const JsonValue& json : root.objects("animations")) {
+  const std::vector<JsonValue> animations = root.objects("animations");
+  for (const JsonValue& json : animations) pay_for_keys(json, accessors, budget);
+  for (const JsonValue& json : animations) {
     Clip clip = read_clip(json, accessors, nodes, warnings);
     if (clip.channels.empty()) continue;
     if (clip.name.empty()) clip.name = "clip " + std::to_string(clips.size() + 1);
@@ -141,15 +155,16 @@ std::vector<Clip> read_clips(const JsonValue& root, std::span<const Accessor> ac
 }
 
 std::vector<Skin> read_skins(const JsonValue& root, std::span<const Accessor> accessors,
-                             const NodeTable& nodes) {
+                             const NodeTable& nodes, ByteBudget& budget) {
   std::vector<Skin> skins;
   for (const JsonValue& json : root.objects("skins")) {
     Skin& skin = skins.emplace_back();
-    for (const std::uint32_t joint : json.indices("joints", nodes.of_document.size(), "nodes")) {
+    const auto joints = json.indices("joints", nodes.of_document.size(), "nodes");
+    budget.take(joints.size(), sizeof(glm::mat4), json.path());
+    for (const std::uint32_t joint : joints) {
       if (nodes.of_document[joint]) skin.joints.push_back(*nodes.of_document[joint]);
     }
-    const std::size_t wanted = json.indices("joints", nodes.of_document.size(), "nodes").size();
-    if (skin.joints.size() < wanted) skin.joints.clear();
+    if (skin.joints.size() < joints.size()) skin.joints.clear();
     skin.inverse_bind = read_inverse_binds(json, accessors, skin.joints.size());
   }
   return skins;

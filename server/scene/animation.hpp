@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "scene/accessors.hpp"
+#include "scene/byte_budget.hpp"
 #include "scene/nodes.hpp"
 #include "scene/warnings.hpp"
 
@@ -12,11 +13,11 @@ namespace heliograph::scene {
 /// each can be asked for; what has none is called "clip" and a number.
 /// @throws ImportError
 std::vector<Clip> read_clips(const JsonValue& root, std::span<const Accessor> accessors,
-                             const NodeTable& nodes, Warnings& warnings);
+                             const NodeTable& nodes, ByteBudget& budget, Warnings& warnings);
 
 /// The document's skins, in its order; one whose joints are not all shown comes out without joints.
 /// @throws ImportError
 std::vector<Skin> read_skins(const JsonValue& root, std::span<const Accessor> accessors,
-                             const NodeTable& nodes);
+                             const NodeTable& nodes, ByteBudget& budget);
 
 }  // namespace heliograph::scene

@@ -45,7 +45,7 @@ class MemoryStream : public Imf::IStream {
   std::size_t position_ = 0;
 };
 
-ImageSize check_header(const Imf::Header& header) {
+ImageSize check_header(const Imf::Header& header, std::uint64_t most_pixels) {
   if (header.hasType() && header.type() != Imf::SCANLINEIMAGE && header.type() != Imf::TILEDIMAGE) {
     throw ImportError("holds deep data, not a picture");
   }
@@ -64,6 +64,9 @@ ImageSize check_header(const Imf::Header& header) {
   if (width > largest_image_side || height > highest) {
     throw ImportError("is larger than " + std::to_string(largest_image_side) + " x " +
                       std::to_string(highest) + " pixels");
+  }
+  if (static_cast<std::uint64_t>(width * height) > most_pixels) {
+    throw ImportError("has more than " + std::to_string(most_pixels) + " pixels");
   }
   if (header.hasTileDescription()) {
     const auto& tiles = header.tileDescription();
@@ -136,12 +139,12 @@ bool is_exr(std::span<const std::uint8_t> file) {
   return file.size() >= magic.size() && std::equal(magic.begin(), magic.end(), file.begin());
 }
 
-Environment decode_exr(std::span<const std::uint8_t> file) {
+Environment decode_exr(std::span<const std::uint8_t> file, std::uint64_t most_pixels) {
   try {
     MemoryStream stream(file);
     Imf::MultiPartInputFile input(stream, 0, false);
     const Imf::Header& header = input.header(0);
-    const ImageSize size = check_header(header);
+    const ImageSize size = check_header(header, most_pixels);
     const Imf::ChannelList& channels = header.channels();
     constexpr int most_channels = 256;
     int channel_count = 0;

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "scene/environment.hpp"
+#include "scene/image_decoder.hpp"
 
 namespace heliograph::scene {
 
@@ -13,7 +14,8 @@ bool is_exr(std::span<const std::uint8_t> file);
 /// Decodes the first part of an OpenEXR picture: scan lines or tiles, any compression, half, float
 /// or whole numbers, with channels R, G and B (of a layer, where the picture has none of its own),
 /// luminance and chroma, or Y alone.
-/// @throws ImportError
-Environment decode_exr(std::span<const std::uint8_t> file);
+/// @throws ImportError, also when there are more than `most_pixels`
+Environment decode_exr(std::span<const std::uint8_t> file,
+                       std::uint64_t most_pixels = most_environment_pixels);
 
 }  // namespace heliograph::scene

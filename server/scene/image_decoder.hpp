@@ -14,6 +14,10 @@ struct ImageSize {
 /// No picture wider or higher than this is opened.
 inline constexpr std::uint32_t largest_image_side = 8192;
 
+/// No environment has more pixels than this: twice as wide as high, as far as that goes.
+inline constexpr std::uint64_t most_environment_pixels =
+    std::uint64_t{largest_image_side} * largest_image_side / 2;
+
 /// Size of a PNG, JPEG or WebP picture, from its header alone.
 /// @throws ImportError when it is none of these, or has no pixels
 ImageSize probe_image(std::span<const std::uint8_t> file);

@@ -2,9 +2,6 @@
 
 #include <tbb/parallel_for.h>
 
-#include <atomic>
-#include <thread>
-
 #include "scene/image_decoder.hpp"
 #include "scene/mipmaps.hpp"
 #include "scene/quote.hpp"
@@ -82,15 +79,12 @@ std::vector<ImageSource> read_image_sources(GltfFile& file) {
 
 std::vector<Image> decode_images(std::span<const ImageSource> sources,
                                  std::span<const ImageUse> uses, const ImportLimits& limits,
-                                 const std::function<void(float)>& decoded) {
+                                 const std::function<void()>& decoded) {
   const std::vector<ImageSize> sizes = probe_images(sources, uses, limits);
   std::vector<Image> images(uses.size());
-  std::atomic<std::size_t> done = 0;
-  const std::thread::id caller = std::this_thread::get_id();
   tbb::parallel_for(std::size_t(0), uses.size(), [&](std::size_t i) {
     images[i] = decode(sources[uses[i].source], sizes[i], uses[i].srgb);
-    const std::size_t finished = ++done;
-    if (std::this_thread::get_id() == caller) decoded(float(finished) / float(uses.size()));
+    decoded();
   });
   return images;
 }

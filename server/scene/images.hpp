@@ -29,11 +29,10 @@ struct ImageUse {
 /// @throws ImportError
 std::vector<ImageSource> read_image_sources(GltfFile& file);
 
-/// Decodes every use, with mip levels, in parallel. `decoded` is told the fraction done, on the
-/// calling thread.
+/// Decodes every use, with mip levels, in parallel. `decoded` is called after each, on any thread.
 /// @throws ImportError when an image is damaged or a limit is exceeded
 std::vector<Image> decode_images(std::span<const ImageSource> sources,
                                  std::span<const ImageUse> uses, const ImportLimits& limits,
-                                 const std::function<void(float)>& decoded);
+                                 const std::function<void()>& decoded);
 
 }  // namespace heliograph::scene

@@ -1,14 +1,19 @@
 #include "scene/import.hpp"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <new>
 #include <optional>
 #include <set>
+#include <thread>
 
 #include "scene/accessors.hpp"
 #include "scene/animation.hpp"
+#include "scene/byte_budget.hpp"
 #include "scene/cameras.hpp"
 #include "scene/deform.hpp"
 #include "scene/draco.hpp"
@@ -40,17 +45,53 @@ bool is_finite(const glm::mat4& matrix) {
   return true;
 }
 
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+  /// Seconds until now, from where the next lap begins.
+  double lap() {
+    const double result = seconds();
+    start_ = Clock::now();
+    return result;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+/// Counts what several threads have done, and tells of it on the one that made it.
+class PartsDone {
+ public:
+  PartsDone(std::function<void(float fraction)> tell, std::size_t parts)
+      : tell_(std::move(tell)), parts_(parts) {}
+
+  void add_one() {
+    const std::size_t done = ++done_;
+    if (std::this_thread::get_id() == home_) tell_(float(done) / float(parts_));
+  }
+
+ private:
+  const std::function<void(float fraction)> tell_;
+  const std::size_t parts_;
+  const std::thread::id home_ = std::this_thread::get_id();
+  std::atomic<std::size_t> done_ = 0;
+};
+
 class Importer {
  public:
   Importer(const std::filesystem::path& path, const ImportLimits& limits,
            const ImportProgress& progress)
-      : limits_(limits), progress_(progress) {
+      : limits_(limits), progress_(progress), budget_(limits.scene_bytes) {
+    const Stopwatch watch;
     report("reading", 0.0f);
     file_.emplace(path, limits);
     scene_.name = path.stem().string();
+    times_.parse = watch.seconds();
   }
 
   Scene import() {
+    Stopwatch watch;
     const JsonValue root = file_->root();
     for (const std::string& name : file_->ignored_extensions())
       warnings_.add("extension " + name + " is ignored");
@@ -71,30 +112,45 @@ class Importer {
     scene_.material_layers = std::move(materials.layers);
     scene_.variants = read_variants(root, scene_.materials.size());
     const PrimitiveTable primitives =
-        read_primitives(*file_, accessors, scene_.materials.size(), limits_, warnings_);
+        read_primitives(*file_, accessors, scene_.materials.size(), limits_, budget_, warnings_);
     const std::vector<Light> lights = read_lights(root);
     const std::vector<Camera> cameras = read_cameras(root);
     NodeTable nodes = read_nodes(root, accessors, lights.size(), limits_);
     const std::vector<ImageSource> images = read_image_sources(*file_);
 
-    report("meshes", 0.1f);
-    build_meshes(primitives, accessors);
-    report("images", 0.3f);
+    times_.check = watch.lap();
     scene_.textures = textures.used_textures();
-    scene_.images = decode_images(images, textures.image_uses(), limits_, [&](float fraction) {
-      report("images", 0.3f + 0.65f * fraction);
-    });
+    const std::vector<std::uint32_t> mesh_materials = choose_materials(primitives);
+    const std::size_t parts = primitives.primitives.size() + textures.image_uses().size();
+    PartsDone done([&](float fraction) { report("meshes and images", 0.1f + 0.85f * fraction); },
+                   parts);
+    tbb::parallel_invoke(
+        [&] {
+          const Stopwatch own;
+          build_meshes(primitives, accessors, mesh_materials, done);
+          times_.geometry = own.seconds();
+        },
+        [&] {
+          const Stopwatch own;
+          scene_.images =
+              decode_images(images, textures.image_uses(), limits_, [&] { done.add_one(); });
+          times_.images = own.seconds();
+        });
+    watch.lap();
     build_alpha_heap(scene_);
 
-    scene_.clips = read_clips(root, accessors, nodes, warnings_);
-    scene_.skins = read_skins(root, accessors, nodes);
+    scene_.clips = read_clips(root, accessors, nodes, budget_, warnings_);
+    scene_.skins = read_skins(root, accessors, nodes, budget_);
     scene_.nodes = nodes.nodes;
     place_instances(nodes, primitives);
     place_lights_and_cameras(nodes, lights, cameras);
     scene_.warnings = warnings_.take();
+    times_.place = watch.seconds();
     report("done", 1.0f);
     return std::move(scene_);
   }
+
+  const ImportTimes& times() const { return times_; }
 
  private:
   void report(std::string_view stage, float fraction) const {
@@ -112,19 +168,28 @@ class Importer {
     return *default_material_;
   }
 
-  void build_meshes(const PrimitiveTable& table, const std::vector<Accessor>& accessors) {
+  std::vector<std::uint32_t> choose_materials(const PrimitiveTable& table) {
     std::vector<std::uint32_t> materials;
     for (const Primitive& primitive : table.primitives) {
       materials.push_back(primitive.material ? *primitive.material : default_material_index());
     }
     if (scene_.materials.empty()) default_material_index();
+    return materials;
+  }
+
+  void build_meshes(const PrimitiveTable& table, const std::vector<Accessor>& accessors,
+                    const std::vector<std::uint32_t>& materials, PartsDone& done) {
     scene_.meshes.resize(table.primitives.size());
     scene_.shapes.resize(table.primitives.size());
     tbb::parallel_for(std::size_t(0), table.primitives.size(), [&](std::size_t i) {
       const Primitive& primitive = table.primitives[i];
-      if (!primitive.draco) return build(i, primitive, accessors, materials[i]);
-      const UnpackedPrimitive unpacked = unpack_draco(primitive, accessors);
-      build(i, unpacked.primitive, unpacked.accessors, materials[i]);
+      if (primitive.draco) {
+        const UnpackedPrimitive unpacked = unpack_draco(primitive, accessors);
+        build(i, unpacked.primitive, unpacked.accessors, materials[i]);
+      } else {
+        build(i, primitive, accessors, materials[i]);
+      }
+      done.add_one();
     });
   }
 
@@ -187,20 +252,25 @@ class Importer {
   void place_deforming(std::uint32_t mesh, std::uint32_t node, std::optional<std::uint32_t> skin,
                        const Pose& pose, const std::string& path) {
     const std::uint32_t shape = mesh;
+    pay_for_deforming(scene_.shapes[shape], skin, path);
     if (skin) check_joints(scene_.shapes[shape], scene_.skins[*skin], path);
-    if (!placed_shapes_.insert(shape).second) mesh = copy_mesh(mesh, path);
+    if (!placed_shapes_.insert(shape).second) mesh = copy_mesh(mesh);
     scene_.deformations.push_back({mesh, shape, node, skin});
     Mesh& own = scene_.meshes[mesh];
     own.bounds = deform(scene_, scene_.deformations.back(), pose, own.vertices);
     place_instance(mesh, skin ? origin_node() : node, path);
   }
 
-  std::uint32_t copy_mesh(std::uint32_t mesh, const std::string& path) {
-    copied_vertices_ += scene_.meshes[mesh].vertices.size();
-    if (copied_vertices_ > 3 * limits_.triangles) {
-      throw ImportError(path + ": exceeds the limit of " + std::to_string(3 * limits_.triangles) +
-                        " vertices that deform");
-    }
+  /// For each place the vertices, the matrices of its joints, and the time that its targets take:
+  /// nodes that share a mesh cost nothing in the file.
+  void pay_for_deforming(const Shape& shape, std::optional<std::uint32_t> skin,
+                         const std::string& path) {
+    budget_.take(shape.vertices.size(),
+                 sizeof(shared::Vertex) + shape.targets.size() * sizeof(glm::vec3), path);
+    if (skin) budget_.take(scene_.skins[*skin].joints.size(), sizeof(glm::mat4), path);
+  }
+
+  std::uint32_t copy_mesh(std::uint32_t mesh) {
     scene_.meshes.push_back(Mesh(scene_.meshes[mesh]));
     return static_cast<std::uint32_t>(scene_.meshes.size() - 1);
   }
@@ -251,20 +321,28 @@ class Importer {
   const ImportLimits& limits_;
   const ImportProgress& progress_;
   std::optional<GltfFile> file_;
+  ByteBudget budget_;
+  ImportTimes times_;
   Warnings warnings_;
   Scene scene_;
   std::optional<std::uint32_t> default_material_;
   std::optional<std::uint32_t> origin_;  // node that skinned meshes hang on
   std::set<std::uint32_t> placed_shapes_;
-  std::uint64_t copied_vertices_ = 0;
 };
 
 }  // namespace
 
 Scene import_gltf(const std::filesystem::path& path, const ImportLimits& limits,
-                  const ImportProgress& progress) {
+                  const ImportProgress& progress, ImportTimes* times) {
   try {
-    return Importer(path, limits, progress).import();
+    const Stopwatch watch;
+    Importer importer(path, limits, progress);
+    Scene scene = importer.import();
+    if (times) {
+      *times = importer.times();
+      times->total = watch.seconds();
+    }
+    return scene;
   } catch (const std::bad_alloc&) {
     throw ImportError("the scene needs more memory than there is");
   }

@@ -21,6 +21,7 @@ class ImportError : public std::runtime_error {
 struct ImportLimits {
   std::uint64_t file_bytes = 512ull << 20;
   std::uint64_t unpacked_bytes = 1ull << 30;  // that compressed buffer views grow to
+  std::uint64_t scene_bytes = 2ull << 30;     // of geometry and animations, once read
   std::uint64_t triangles = 20'000'000;
   std::uint64_t texels = 256ull << 20;
   std::uint32_t texture_size = 8192;
@@ -31,14 +32,24 @@ struct ImportLimits {
   std::uint64_t json_values = 16'000'000;
 };
 
+/// Seconds that the stages of an import took. Geometry and images are read side by side.
+struct ImportTimes {
+  double parse = 0.0;  // the file read, its document parsed, buffers and views checked and unpacked
+  double check = 0.0;  // every other table of the document
+  double geometry = 0.0;  // vertices, triangles, tangents
+  double images = 0.0;    // decoded, with mip levels
+  double place = 0.0;     // nodes, instances, clips, lights, cameras
+  double total = 0.0;
+};
+
 /// Told as loading proceeds: stage name and fraction of the whole, 0..1. Called on the loading
 /// thread.
 using ImportProgress = std::function<void(std::string_view stage, float fraction)>;
 
 /// Reads a .glb or .gltf file with everything it refers to; nothing outside `path`'s folder is
-/// opened.
+/// opened. `times`, where given, is filled in.
 /// @throws ImportError
 Scene import_gltf(const std::filesystem::path& path, const ImportLimits& limits = {},
-                  const ImportProgress& progress = {});
+                  const ImportProgress& progress = {}, ImportTimes* times = nullptr);
 
 }  // namespace heliograph::scene

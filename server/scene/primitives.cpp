@@ -1,6 +1,7 @@
 #include "scene/primitives.hpp"
 
 #include "scene/draco.hpp"
+#include "scene/scene.hpp"
 
 namespace heliograph::scene {
 namespace {
@@ -8,11 +9,13 @@ namespace {
 class PrimitiveReader {
  public:
   PrimitiveReader(const GltfFile& file, std::span<const Accessor> accessors,
-                  std::size_t material_count, const ImportLimits& limits, Warnings& warnings)
+                  std::size_t material_count, const ImportLimits& limits, ByteBudget& budget,
+                  Warnings& warnings)
       : file_(file),
         accessors_(accessors),
         material_count_(material_count),
         limits_(limits),
+        budget_(budget),
         warnings_(warnings) {}
 
   /// Nothing for points, lines and primitives without a triangle.
@@ -163,18 +166,31 @@ class PrimitiveReader {
       return false;
     }
     if (separate && corners % 3 != 0) warnings_.add(json.path() + " ends in a part of a triangle");
-    triangles_ += separate ? corners / 3 : corners - 2;
+    const std::uint64_t triangles = separate ? corners / 3 : corners - 2;
+    triangles_ += triangles;
     if (triangles_ > limits_.triangles || vertices_ > 3 * limits_.triangles) {
       json.refuse("exceeds the limit of " + std::to_string(limits_.triangles) +
                   " triangles for the whole scene");
     }
+    pay(json, primitive, triangles);
     return true;
+  }
+
+  void pay(const JsonValue& json, const Primitive& primitive, std::uint64_t triangles) {
+    // Flat triangles share no vertices.
+    const std::uint64_t vertices =
+        primitive.normal && !primitive.draco ? vertex_count_ : 3 * triangles;
+    std::uint64_t size = sizeof(shared::Vertex) + primitive.targets.size() * 3 * sizeof(glm::vec3);
+    if (primitive.joints[0]) size += 8 * sizeof(JointWeight);
+    budget_.take(vertices, size, json.path());
+    budget_.take(triangles, 3 * sizeof(std::uint32_t), json.path());
   }
 
   const GltfFile& file_;
   std::span<const Accessor> accessors_;
   std::size_t material_count_;
   const ImportLimits& limits_;
+  ByteBudget& budget_;
   Warnings& warnings_;
   std::uint32_t vertex_count_ = 0;
   std::uint64_t triangles_ = 0;
@@ -185,9 +201,9 @@ class PrimitiveReader {
 
 PrimitiveTable read_primitives(const GltfFile& file, std::span<const Accessor> accessors,
                                std::size_t material_count, const ImportLimits& limits,
-                               Warnings& warnings) {
+                               ByteBudget& budget, Warnings& warnings) {
   PrimitiveTable table;
-  PrimitiveReader reader(file, accessors, material_count, limits, warnings);
+  PrimitiveReader reader(file, accessors, material_count, limits, budget, warnings);
   for (const JsonValue& mesh : file.root().objects("meshes")) {
     const std::vector<JsonValue> primitives = mesh.objects("primitives");
     if (primitives.empty()) mesh.refuse("has no primitives");

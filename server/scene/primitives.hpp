@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scene/accessors.hpp"
+#include "scene/byte_budget.hpp"
 #include "scene/gltf_file.hpp"
 #include "scene/warnings.hpp"
 
@@ -71,10 +72,11 @@ struct PrimitiveTable {
   std::vector<std::vector<std::uint32_t>> of_mesh;
 };
 
-/// Points and lines are left out with a warning.
+/// Points and lines are left out with a warning. What the others will take once read is taken from
+/// `budget`.
 /// @throws ImportError
 PrimitiveTable read_primitives(const GltfFile& file, std::span<const Accessor> accessors,
                                std::size_t material_count, const ImportLimits& limits,
-                               Warnings& warnings);
+                               ByteBudget& budget, Warnings& warnings);
 
 }  // namespace heliograph::scene

@@ -115,9 +115,12 @@ glm::vec3 to_radiance(const Pixel& pixel) {
 
 }  // namespace
 
-Environment decode_radiance(std::span<const std::uint8_t> file) {
+Environment decode_radiance(std::span<const std::uint8_t> file, std::uint64_t most_pixels) {
   ByteReader reader(file);
   const ImageSize size = read_header(reader);
+  if (std::uint64_t{size.width} * size.height > most_pixels) {
+    throw ImportError("has more than " + std::to_string(most_pixels) + " pixels");
+  }
   // No encoding takes less than 4 bytes a row: refuse before making room.
   if (reader.left() < std::size_t(size.height) * 4)
     throw ImportError("is cut: its data ends early");

@@ -1,6 +1,6 @@
 #include "scene/variants.hpp"
 
-#include <vector>
+#include <set>
 
 namespace heliograph::scene {
 namespace {
@@ -11,14 +11,13 @@ void check_mappings(const JsonValue& primitive, std::size_t variant_count,
                     std::size_t material_count) {
   const auto own = primitive.object("extensions", extension);
   if (!own) return;
-  std::vector<bool> mapped(variant_count);
+  std::set<std::uint32_t> mapped;
   for (const JsonValue& mapping : own->objects("mappings")) {
     mapping.required_index("material", material_count, "materials");
     const auto variants = mapping.indices("variants", variant_count, "variants");
     if (variants.empty()) mapping.refuse("variants", "must name at least one variant");
     for (const std::uint32_t variant : variants) {
-      if (mapped[variant]) mapping.refuse("variants", "names a variant twice");
-      mapped[variant] = true;
+      if (!mapped.insert(variant).second) mapping.refuse("variants", "names a variant twice");
     }
   }
 }

@@ -15,6 +15,12 @@ using nlohmann::json;
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
+template <typename T>
+std::uint32_t add(GltfBuilder& document, const std::vector<T>& values, int component,
+                  std::string_view type, std::size_t count) {
+  return document.add_accessor(values, component, type, count);
+}
+
 class MalformedData : public Malformed {
  protected:
   json& at(GltfBuilder& document, const std::string& place) const {
@@ -326,6 +332,9 @@ TEST_F(MalformedData, FilesThatClaimMuch) {
   zeros.json["accessors"][0]["count"] = 60'000'001;
   expect_refused("more zeros than the limit", zeros, "accessors[0].count");
 
+  zeros.json["accessors"][0]["count"] = 59'999'999;
+  expect_refused("four gigabytes of vertices at one place", zeros, "geometry and animations");
+
   GltfBuilder sparse = good_;
   for (int i = 0; i < 2000; ++i) sparse.add("accessors", sparse.json["accessors"][5]);
   expect_loaded("many accessors over the same replacements", sparse);
@@ -335,6 +344,42 @@ TEST_F(MalformedData, FilesThatClaimMuch) {
   at(places, "/nodes/6/extensions/EXT_mesh_gpu_instancing/attributes/TRANSLATION") =
       places.add("accessors", accessor);
   expect_refused("more places than the limit", places, "nodes[6].extensions");
+
+  GltfBuilder keys = good_;
+  std::vector<float> times(250'000);
+  for (std::size_t i = 0; i < times.size(); ++i) times[i] = float(i);
+  const auto input = add(keys, times, 5126, "SCALAR", times.size());
+  const auto output =
+      keys.add("accessors", {{"componentType", 5126}, {"type", "VEC3"}, {"count", times.size()}});
+  json channels = json::array();
+  for (int i = 0; i < 600; ++i) {
+    const auto node = keys.add("nodes", json::object());
+    at(keys, "/scenes/0/nodes").push_back(node);
+    channels.push_back({{"sampler", 0}, {"target", {{"node", node}, {"path", "translation"}}}});
+  }
+  keys.json["animations"] = {
+      {{"samplers", {{{"input", input}, {"output", output}}}}, {"channels", channels}}};
+  expect_refused("keys that 600 nodes share", keys, "animations[0].samplers[0]");
+
+  GltfBuilder skins = good_;
+  const auto matrices =
+      skins.add("accessors", {{"componentType", 5126}, {"type", "MAT4"}, {"count", 50'000'000}});
+  for (int i = 0; i < 3000; ++i) {
+    skins.add("skins", {{"joints", {1, 2}}, {"inverseBindMatrices", matrices}});
+  }
+  expect_loaded("matrices that nobody asks for", skins);
+
+  GltfBuilder crowd = good_;
+  const auto vertices =
+      crowd.add("accessors", {{"componentType", 5126}, {"type", "VEC3"}, {"count", 3000}});
+  const json target = {{"POSITION", vertices}};
+  crowd.json["meshes"][3] = {{"primitives",
+                              {{{"attributes", {{"POSITION", vertices}, {"NORMAL", vertices}}},
+                                {"targets", std::vector<json>(100, target)}}}}};
+  for (int i = 0; i < 3000; ++i) {
+    at(crowd, "/scenes/0/nodes").push_back(crowd.add("nodes", {{"mesh", 3}}));
+  }
+  expect_refused("3000 times a mesh with 100 morph targets", crowd, "geometry and animations");
 
   GltfBuilder meshopt = good_;
   json& packed = at(meshopt, "/bufferViews/15");

@@ -1,0 +1,113 @@
+// From a scene's file to its first picture, stage by stage: one line of JSON for each time it is
+// loaded. The first time pays for pipelines that later scenes find made.
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "render/renderer.hpp"
+#include "scene/camera.hpp"
+#include "scene/import.hpp"
+#include "scene/tangents.hpp"
+
+namespace heliograph::bench {
+namespace {
+
+struct Options {
+  std::vector<std::filesystem::path> scenes;
+  std::string environment;
+  std::string device;
+  int repeats = 3;
+  std::uint32_t width = 640;
+  std::uint32_t height = 360;
+};
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Time of one thread, for meshes that are given a normal map and no tangents of their own: part of
+/// "geometry", where all threads share it.
+double time_tangents(const scene::Scene& scene) {
+  const Clock::time_point start = Clock::now();
+  for (const scene::Mesh& mesh : scene.meshes) {
+    const shared::TextureSlot& map = scene.materials[mesh.material].normal_texture;
+    if (map.texture == shared::no_texture) continue;
+    std::vector<shared::Vertex> vertices = mesh.vertices;
+    std::vector<std::uint32_t> indices = mesh.indices;
+    scene::generate_tangents(vertices, indices, map);
+  }
+  return seconds_since(start);
+}
+
+nlohmann::json load(render::Engine& engine, const std::filesystem::path& path,
+                    const scene::Environment& environment, const Options& options) {
+  const Clock::time_point start = Clock::now();
+  scene::ImportTimes times;
+  const auto scene = std::make_shared<const scene::Scene>(scene::import_gltf(path, {}, {}, &times));
+  const Clock::time_point imported = Clock::now();
+  const auto resources = engine.upload(scene, environment);
+  const double upload = seconds_since(imported);
+  const Clock::time_point uploaded = Clock::now();
+  render::Renderer renderer(engine);
+  renderer.set_scene(resources);
+  renderer.set_size(options.width, options.height);
+  const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
+  renderer.set_camera(scene->cameras.empty()
+                          ? scene::fit_camera(scene->bounds, scene::Camera().vertical_fov, aspect)
+                          : scene->cameras.front());
+  renderer.render();
+  const double frame = seconds_since(uploaded);
+  const double total = seconds_since(start);
+  return {{"scene", path.stem().string()},
+          {"triangles", scene->triangle_count()},
+          {"images", scene->images.size()},
+          {"parse", times.parse},
+          {"check", times.check},
+          {"geometry", times.geometry},
+          {"images_decoded", times.images},
+          {"place", times.place},
+          {"import", times.total},
+          {"upload_and_bvh", upload},
+          {"first_frame", frame},
+          {"file_to_first_frame", total},
+          {"tangents_of_one_thread", time_tangents(*scene)}};
+}
+
+void run(const Options& options) {
+  render::Engine engine({.device = options.device});
+  const scene::Environment environment =
+      options.environment.empty() ? scene::constant_environment(glm::vec3(1.0f))
+                                  : scene::load_environment(options.environment);
+  for (const std::filesystem::path& path : options.scenes) {
+    for (int i = 0; i < options.repeats; ++i) {
+      std::printf("%s\n", load(engine, path, environment, options).dump().c_str());
+      std::fflush(stdout);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace heliograph::bench
+
+int main(int count, char** arguments) {
+  heliograph::bench::Options options;
+  CLI::App app("Times from a scene's file to its first picture, seconds.");
+  app.add_option("scenes", options.scenes, "glTF files")->required();
+  app.add_option("--environment", options.environment, ".hdr or .exr file");
+  app.add_option("--device", options.device, "Part of the name of the Vulkan device to use");
+  app.add_option("--repeats", options.repeats, "Times that each scene is loaded");
+  app.add_option("--width", options.width, "Picture width, pixels");
+  app.add_option("--height", options.height, "Picture height, pixels");
+  CLI11_PARSE(app, count, arguments);
+  try {
+    heliograph::bench::run(options);
+  } catch (const std::exception& failure) {
+    std::fprintf(stderr, "heliograph-bench-loading: %s\n", failure.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,46 @@
+#!/bin/sh
+# Fuzzes what reads untrusted files: run.sh gltf|pictures SECONDS [FOLDER]
+# Builds with clang in FOLDER (build-fuzz beside the project unless said), begins with seeds of the
+# project's own and keeps what it learns in FOLDER/corpus-*. A find is left in FOLDER as crash-*,
+# timeout-* or oom-*; the fuzzer run with that file as its argument shows it again.
+set -eu
+target=$1
+seconds=$2
+root=$(cd "$(dirname "$0")/../.." && pwd)
+folder=${3:-$root/build-fuzz}
+
+compiler=
+for candidate in clang++ clang++-19 clang++-18 clang++-17 clang++-16 clang++-15 clang++-14; do
+  if command -v "$candidate" >/dev/null; then
+    compiler=$candidate
+    break
+  fi
+done
+if [ -z "$compiler" ]; then
+  echo "skipped: there is no clang++"
+  exit 77
+fi
+probe=$(mktemp -d)
+trap 'rm -rf "$probe"' EXIT
+echo 'extern "C" int LLVMFuzzerTestOneInput(const unsigned char*, unsigned long) { return 0; }' \
+  >"$probe/probe.cpp"
+if ! "$compiler" -fsanitize=fuzzer,address,undefined "$probe/probe.cpp" -o "$probe/probe" \
+  2>/dev/null; then
+  echo "skipped: $compiler has no libFuzzer (Debian: libclang-rt-dev)"
+  exit 77
+fi
+
+cmake -S "$root" -B "$folder" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" \
+  -DCMAKE_BUILD_TYPE=RelWithDebInfo -DHELIOGRAPH_MODULES=server/scene \
+  -DHELIOGRAPH_SANITIZE=fuzzer-no-link,address,undefined >"$probe/configure.log" ||
+  { cat "$probe/configure.log" && exit 1; }
+ninja -C "$folder" "heliograph-fuzz-$target" heliograph-fuzz-seeds >"$probe/build.log" ||
+  { cat "$probe/build.log" && exit 1; }
+
+cd "$folder"
+mkdir -p "corpus-$target" "seeds-$target"
+bin/heliograph-fuzz-seeds "$target" "seeds-$target"
+export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
+exec "bin/heliograph-fuzz-$target" "corpus-$target" "seeds-$target" -max_total_time="$seconds" \
+  -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=512 -max_len=65536 -verbosity=0 -print_funcs=0 \
+  -print_final_stats=1

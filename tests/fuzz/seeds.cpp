@@ -1,0 +1,121 @@
+// Writes the files that the fuzzers begin with: heliograph-fuzz-seeds gltf|pictures FOLDER
+#include <ImfRgbaFile.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "encoders.hpp"
+#include "rich_document.hpp"
+
+namespace heliograph::scene::test {
+namespace {
+
+void write(const std::filesystem::path& path, const Bytes& bytes) {
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+}
+
+void write_documents(const std::filesystem::path& folder) {
+  write(folder / "triangle.glb", triangle().glb());
+  write(folder / "everything.glb", everything().glb());
+  const GltfBuilder rich = rich_document();
+  write(folder / "rich.glb", rich.glb());
+  // One mesh each, so that a change to one does not hide the others.
+  for (int mesh = 0; mesh < 4; ++mesh) {
+    GltfBuilder single = rich;
+    single.json["nodes"] = {{{"mesh", mesh}}};
+    single.json["scenes"] = {{{"nodes", {0}}}};
+    single.json.erase("animations");
+    single.json.erase("skins");
+    write(folder / ("mesh" + std::to_string(mesh) + ".glb"), single.glb());
+  }
+  DracoInput input;
+  for (int i = 0; i < 16; ++i) input.positions.push_back({i % 4, i / 4, i % 3});
+  for (std::uint32_t i = 0; i < 12; ++i) {
+    if (i % 4 == 3) continue;
+    for (const std::uint32_t corner : {0u, 1u, 4u, 4u, 1u, 5u}) input.indices.push_back(i + corner);
+  }
+  for (const bool sequential : {false, true}) {
+    input.sequential = sequential;
+    input.metadata = sequential;
+    const DracoOutput packed = draco(input);
+    GltfBuilder builder;
+    const auto view = builder.add_view(packed.bytes);
+    builder.json["accessors"] = {
+        {{"componentType", 5126}, {"type", "VEC3"}, {"count", packed.vertices}}};
+    builder.show(
+        {{"attributes", {{"POSITION", 0}}},
+         {"extensions",
+          {{"KHR_draco_mesh_compression", {{"bufferView", view}, {"attributes", packed.ids}}}}}});
+    write(folder / (sequential ? "sequential.glb" : "edgebreaker.glb"), builder.glb());
+  }
+}
+
+Bytes radiance(bool encoded) {
+  constexpr int width = 16, height = 8;
+  Bytes file;
+  const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n";
+  file.assign(header.begin(), header.end());
+  for (int y = 0; y < height; ++y) {
+    if (!encoded) {
+      for (int x = 0; x < width; ++x) {
+        for (const int value : {16 * x, 32 * y, 99, 128}) file.push_back(std::uint8_t(value));
+      }
+      continue;
+    }
+    file.insert(file.end(), {2, 2, 0, width});
+    for (int channel = 0; channel < 4; ++channel) {
+      file.insert(file.end(), {128 + 12, std::uint8_t(40 * channel + y), 4, 1, 2, 3, 4});
+    }
+  }
+  return file;
+}
+
+void write_pictures(const std::filesystem::path& folder) {
+  Bytes rgba;
+  for (int i = 0; i < 16 * 16 * 4; ++i) rgba.push_back(std::uint8_t(i * i >> 5));
+  const Bytes rgb(rgba.begin(), rgba.begin() + 16 * 16 * 3);
+  const Bytes grey(rgba.begin(), rgba.begin() + 16 * 16);
+  write(folder / "rgba.png", png(16, 16, 4, rgba));
+  write(folder / "rgb.png", png(16, 16, 3, rgb));
+  write(folder / "grey.png", png(16, 16, 1, grey));
+  write(folder / "deep.png", png(8, 16, 4, rgba, 16));
+  write(folder / "baseline.jpg", jpeg(16, 16, rgb));
+  write(folder / "progressive.jpg", jpeg(16, 16, rgb, true));
+  write(folder / "lossless.webp", webp(16, 16, rgba));
+  write(folder / "lossy.webp", webp(16, 16, rgba, false));
+  write(folder / "plain.hdr", radiance(false));
+  write(folder / "encoded.hdr", radiance(true));
+  std::vector<Imf::Rgba> pixels;
+  for (int i = 0; i < 32 * 16; ++i) pixels.emplace_back(0.1f * float(i % 32), 0.2f, 3.0f, 1.0f);
+  for (int compression = 0; compression < Imf::NUM_COMPRESSION_METHODS; ++compression) {
+    for (const auto channels : {Imf::WRITE_RGB, Imf::WRITE_YC}) {
+      const std::string name =
+          "c" + std::to_string(compression) + (channels == Imf::WRITE_YC ? "_chroma" : "") + ".exr";
+      const Imf::Header header(32, 16, 1.0f, {0.0f, 0.0f}, 1.0f, Imf::INCREASING_Y,
+                               static_cast<Imf::Compression>(compression));
+      Imf::RgbaOutputFile file((folder / name).c_str(), header, channels);
+      file.setFrameBuffer(pixels.data(), 1, 32);
+      file.writePixels(16);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace heliograph::scene::test
+
+int main(int count, char** arguments) {
+  using namespace heliograph::scene::test;
+  const std::string kind = count == 3 ? arguments[1] : "";
+  if (kind == "gltf") {
+    write_documents(arguments[2]);
+  } else if (kind == "pictures") {
+    write_pictures(arguments[2]);
+  } else {
+    std::fputs("usage: heliograph-fuzz-seeds gltf|pictures FOLDER\n", stderr);
+    return 2;
+  }
+  return 0;
+}
