@@ -47,7 +47,7 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   const protocol::ReferenceUse reference = in.settings.reference.use;
   if (reference == protocol::ReferenceUse::always) return declare_reference(plan, in);
   const GBuffer gbuffer =
-      traces_gbuffer(in) ? trace_gbuffer(plan, in) : rasterize_gbuffer(plan, in);
+      traces_gbuffer(plan.device(), in) ? trace_gbuffer(plan, in) : rasterize_gbuffer(plan, in);
 
   RawSignals raw{trace_shadows(plan, in, gbuffer), trace_ambient(plan, in, gbuffer), {}};
   if (in.settings.specular.enabled) raw.specular = trace_specular(plan, in, gbuffer);

@@ -82,10 +82,15 @@ void shade(gpu::FramePlan& plan, const FrameInputs& in, const Round& round) {
 
 }  // namespace
 
-bool traces_gbuffer(const FrameInputs& in) {
+bool rays_find_gbuffer_sooner(const gpu::DeviceReport& device, protocol::TracerKind tracer) {
+  if (device.type == VK_PHYSICAL_DEVICE_TYPE_CPU) return tracer == protocol::TracerKind::embree;
+  return tracer == protocol::TracerKind::software && device.rays.pipeline && !device.rays.query;
+}
+
+bool traces_gbuffer(const gpu::Device& device, const FrameInputs& in) {
   using enum protocol::PrimaryVisibility;
   if (in.settings.gbuffer.source != automatic) return in.settings.gbuffer.source == rays;
-  return in.tracer.kind() == protocol::TracerKind::embree;
+  return rays_find_gbuffer_sooner(device.report(), in.tracer.kind());
 }
 
 GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
