@@ -15,6 +15,12 @@ Sampler make_default_sampler(const Device& device) {
   return Sampler(device, info);
 }
 
+using Clock = std::chrono::steady_clock;
+
+float since(Clock::time_point start) {
+  return std::chrono::duration<float, std::milli>(Clock::now() - start).count();
+}
+
 std::uint32_t groups(std::uint32_t threads, std::uint32_t local_size) {
   return (threads + local_size - 1) / local_size;
 }
@@ -140,7 +146,7 @@ void FramePlan::compile() {
   list_views();
   make_descriptor_sets();
   std::uint32_t submits = 1;
-  for (const Pass& pass : passes_) submits += pass.program ? 0 : 1;
+  for (const Pass& pass : passes_) submits += timed_by_clock() || !pass.program ? 1 : 0;
   commands_.resize(submits);
   VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
   info.commandPool = command_pool_;
@@ -187,8 +193,11 @@ void FramePlan::make_descriptor_sets() {
   }
 }
 
+bool FramePlan::timed_by_clock() const {
+  return device_.is_cpu();
+}
+
 void FramePlan::execute() {
-  using Clock = std::chrono::steady_clock;
   if (!compiled_) throw GpuError("a frame plan runs only after compile()");
   vkResetQueryPool(device_.handle(), queries_, 0, static_cast<std::uint32_t>(passes_.size() * 2));
   std::size_t part = 0;
@@ -203,26 +212,30 @@ void FramePlan::execute() {
       barrier |= !pass.program;
       continue;
     }
+    const auto start = Clock::now();
     if (pass.program) {
       const auto query = static_cast<std::uint32_t>(i * 2);
       if (std::exchange(barrier, false)) full_barrier(commands_[part]);
       record(pass, commands_[part], query);
       recorded = true;
-      continue;
+      if (!timed_by_clock()) continue;
     }
     if (recorded) {
       submit(commands_[part]);
       begin(commands_[++part]);
       recorded = false;
     }
-    const auto start = Clock::now();
+    if (pass.program) {
+      timings_[i].milliseconds = since(start);
+      continue;
+    }
+    const auto begun = Clock::now();
     pass.host();
-    timings_[i].milliseconds =
-        std::chrono::duration<float, std::milli>(Clock::now() - start).count();
+    timings_[i].milliseconds = since(begun);
   }
   if (readback_) readback_.record(commands_[part], get(read_back_));
   submit(commands_[part]);
-  read_timers();
+  if (!timed_by_clock()) read_timers();
   parity_ ^= 1;
 }
 
@@ -253,7 +266,9 @@ void FramePlan::record(const Pass& pass, VkCommandBuffer commands, std::uint32_t
     label.pLabelName = pass.name.c_str();
     vkCmdBeginDebugUtilsLabelEXT(commands, &label);
   }
-  vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_, query);
+  if (!timed_by_clock()) {
+    vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_, query);
+  }
   if (pass.is_raster) {
     record_raster(pass, commands);
   } else {
@@ -268,7 +283,9 @@ void FramePlan::record(const Pass& pass, VkCommandBuffer commands, std::uint32_t
                     groups(pass.threads.height, pass.local_size.height), pass.layers);
     }
   }
-  vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_, query + 1);
+  if (!timed_by_clock()) {
+    vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_, query + 1);
+  }
   if (device_.labels()) vkCmdEndDebugUtilsLabelEXT(commands);
 }
 

@@ -179,6 +179,9 @@ class FramePlan {
   void record(const Pass& pass, VkCommandBuffer commands, std::uint32_t query);
   void record_raster(const Pass& pass, VkCommandBuffer commands);
   void bind(const Pass& pass, VkCommandBuffer commands);
+  /// Whether every pass is a submit of its own, timed from outside: drivers for processors write
+  /// timestamps while they record, as soon as anything was ever drawn.
+  bool timed_by_clock() const;
   void begin(VkCommandBuffer commands) const;
   void submit(VkCommandBuffer commands) const;
   void read_timers();

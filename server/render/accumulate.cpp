@@ -4,6 +4,7 @@
 
 #include "render/frame.hpp"
 #include "render/reference.hpp"
+#include "render/signals_host.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
@@ -29,12 +30,26 @@ std::uint32_t mean_of(const FrameInputs& in) {
 
 gpu::History accumulate(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef sample) {
   const auto history = plan.history("accumulated", VK_FORMAT_R32G32B32A32_SFLOAT);
-  plan.pass("accumulate", in.programs.compute(shaders::accumulate))
+  const auto weight = [in] { return 1.0f / static_cast<float>(mean_of(in)); };
+  const auto declare = [&] {
+    if (!on_host(plan, in)) {
+      return plan.pass("accumulate", in.programs.compute(shaders::accumulate))
+          .constants(weight)
+          .dispatch(plan.extent());
+    }
+    return plan.host("accumulate", [&plan, weight, sample, history] {
+      host::accumulate({.width = static_cast<int>(plan.extent().width),
+                        .height = static_cast<int>(plan.extent().height),
+                        .weight = weight(),
+                        .sample = plan.get(sample).host(),
+                        .previous = plan.get(history.previous).host(),
+                        .mean = plan.get(history.current).host()});
+    });
+  };
+  declare()
       .read(sample)
       .read(history.previous)
       .write(history.current)
-      .constants([in] { return 1.0f / static_cast<float>(mean_of(in)); })
-      .dispatch(plan.extent())
       .describe("The mean of all samples since the picture last changed: linear radiance.");
   return history;
 }

@@ -19,7 +19,7 @@ gpu::PassBuilder declare_pass(gpu::FramePlan& plan, const FrameInputs& in, gpu::
                               gpu::ImageRef motion, const gpu::History& history,
                               gpu::BufferRef exposure) {
   const auto& settings = in.settings.antialiasing;
-  if (!in.host_kernels || !plan.device().is_cpu()) {
+  if (!on_host(plan, in)) {
     return plan.pass("temporal_antialias", in.programs.compute(shaders::temporal_antialias))
         .constants([&settings] {
           return Constants{settings.blend, settings.clip, settings.anti_flicker ? 1.0f : 0.0f};

@@ -5,6 +5,7 @@
 
 #include "render/atrous.hpp"
 #include "render/denoise_constants.hpp"
+#include "render/signals_host.hpp"
 #include "render/temporal.hpp"
 #include "shaders/embedded.hpp"
 
@@ -45,11 +46,23 @@ Blur blur_of(const FrameInputs& in) {
 gpu::ImageRef combine_visibility(gpu::FramePlan& plan, const FrameInputs& in,
                                  gpu::ImageRef shadows, gpu::ImageRef ambient) {
   const auto raw = plan.image("visibility.raw", VK_FORMAT_R32G32B32A32_SFLOAT);
-  plan.pass("visibility.combine", in.programs.compute(shaders::combine_visibility))
+  const auto declare = [&] {
+    if (!on_host(plan, in)) {
+      return plan.pass("visibility.combine", in.programs.compute(shaders::combine_visibility))
+          .dispatch(plan.extent());
+    }
+    return plan.host("visibility.combine", [&plan, shadows, ambient, raw] {
+      host::combine_visibility({.width = static_cast<int>(plan.extent().width),
+                                .height = static_cast<int>(plan.extent().height),
+                                .shadows = plan.get(shadows).host(),
+                                .ambient = plan.get(ambient).host(),
+                                .visibility = plan.get(raw).host()});
+    });
+  };
+  declare()
       .read(shadows)
       .read(ambient)
       .write(raw)
-      .dispatch(plan.extent())
       .describe("Shadow (red) and ambient (green) visibility of this frame alone.");
   return raw;
 }

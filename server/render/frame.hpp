@@ -31,6 +31,11 @@ struct FrameInputs {
   bool host_kernels = true;      // on devices that are processors, where a pass has one
 };
 
+/// Whether passes that have a host kernel run it.
+inline bool on_host(const gpu::FramePlan& plan, const FrameInputs& in) {
+  return in.host_kernels && plan.device().is_cpu();
+}
+
 /// The buffers that outlive the frame or leave it.
 struct FrameOutputs {
   gpu::History accumulated;  // linear radiance

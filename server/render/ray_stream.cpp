@@ -16,9 +16,15 @@ tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
 
 void begin_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
                 const tracing::RayStream& rays) {
-  plan.pass(name + ".begin", in.programs.compute(shaders::begin_rays))
-      .write(rays.count)
-      .dispatch({1, 1});
+  if (!on_host(plan, in)) {
+    plan.pass(name + ".begin", in.programs.compute(shaders::begin_rays))
+        .write(rays.count)
+        .dispatch({1, 1});
+    return;
+  }
+  plan.host(name + ".begin", [&plan, count = rays.count] {
+    *reinterpret_cast<shared::RayCount*>(plan.get(count).mapped()) = {0, 0, 1, 1};
+  }).write(rays.count);
 }
 
 }  // namespace heliograph::render

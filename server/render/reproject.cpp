@@ -13,7 +13,7 @@ gpu::PassBuilder declare_pass(gpu::FramePlan& plan, const FrameInputs& in, const
   const auto constants = [&s = in.settings.reprojection] {
     return shared::ReprojectConstants{s.depth_tolerance, s.normal_tolerance};
   };
-  if (!in.host_kernels || !plan.device().is_cpu()) {
+  if (!on_host(plan, in)) {
     return plan.pass("denoise.reproject", in.programs.compute(shaders::reproject))
         .constants(constants)
         .dispatch(plan.extent());

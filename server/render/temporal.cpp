@@ -1,6 +1,7 @@
 #include "render/temporal.hpp"
 
 #include "render/denoise_constants.hpp"
+#include "render/spatial_variance_host.hpp"
 #include "render/temporal_host.hpp"
 #include "shaders/embedded.hpp"
 
@@ -34,7 +35,7 @@ gpu::PassBuilder declare_pass(gpu::FramePlan& plan, const FrameInputs& in, const
                               protocol::Rectification rectification, const Constants& constants,
                               const Run& run) {
   const bool known = host::can_accumulate(static_cast<std::uint32_t>(rectification));
-  if (!in.host_kernels || !plan.device().is_cpu() || !known) {
+  if (!on_host(plan, in) || !known) {
     return plan.pass(name, program).constants(constants).dispatch(plan.extent());
   }
   return plan.host(name, [&plan, constants, run] {
@@ -191,15 +192,28 @@ namespace {
 
 void estimate_variance(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                        const Guide& guide, const Integrated& integrated, const char* name,
-                       const gpu::ComputeProgram& program, const auto& settings) {
-  plan.pass(name, program)
+                       const gpu::ComputeProgram& program, host::Signal kind,
+                       const auto& settings) {
+  const auto constants = [in, &settings] { return temporal_constants(in, settings); };
+  const auto run = [=, extent = plan.extent(), &frame = in.constants](const auto& now,
+                                                                      const auto& view) {
+    host::spatial_variance({.kind = kind,
+                            .frame = frame,
+                            .constants = now,
+                            .width = static_cast<int>(extent.width),
+                            .height = static_cast<int>(extent.height),
+                            .guide = view(guide.surface),
+                            .depth_slope = view(gbuffer.depth_slope),
+                            .moments = view(integrated.moments),
+                            .history = view(integrated.history),
+                            .signal = view(integrated.signal)});
+  };
+  declare_pass(plan, in, name, program, protocol::Rectification::off, constants, run)
       .read(guide.surface)
       .read(gbuffer.depth_slope)
       .read(integrated.moments)
       .read(integrated.history)
       .read_write(integrated.signal)
-      .constants([in, &settings] { return temporal_constants(in, settings); })
-      .dispatch(plan.extent())
       .when([&settings] { return settings.spatial_variance_frames > 0; });
 }
 
@@ -210,14 +224,14 @@ void estimate_visibility_variance(gpu::FramePlan& plan, const FrameInputs& in,
                                   const Integrated& visibility) {
   estimate_variance(plan, in, gbuffer, guide, visibility, "visibility.variance",
                     in.programs.compute(shaders::spatial_variance_visibility),
-                    in.settings.shadow_temporal);
+                    host::Signal::visibility, in.settings.shadow_temporal);
 }
 
 void estimate_specular_variance(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                                 const Guide& guide, const Integrated& specular) {
   estimate_variance(plan, in, gbuffer, guide, specular, "specular.variance",
                     in.programs.compute(shaders::spatial_variance_specular),
-                    in.settings.specular_temporal);
+                    host::Signal::specular, in.settings.specular_temporal);
 }
 
 }  // namespace heliograph::render

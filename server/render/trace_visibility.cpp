@@ -2,6 +2,7 @@
 
 #include "render/light_table.hpp"
 #include "render/ray_stream.hpp"
+#include "render/signals_host.hpp"
 #include "render/visibility_rays_host.hpp"
 #include "shaders/embedded.hpp"
 
@@ -22,7 +23,7 @@ gpu::PassBuilder generation_pass(gpu::FramePlan& plan, const FrameInputs& in,
                                  const GBuffer& gbuffer, const Generation& generation,
                                  const tracing::RayStream& rays, gpu::ImageRef visibility) {
   const std::string name = generation.name + ".rays";
-  if (!in.host_kernels || !plan.device().is_cpu() || !generation.kernel) {
+  if (!on_host(plan, in) || !generation.kernel) {
     return plan.pass(name, generation.shader).dispatch(plan.extent());
   }
   return plan.host(name, [&plan, &frame = in.constants, gbuffer, kernel = generation.kernel, rays,
@@ -37,6 +38,26 @@ gpu::PassBuilder generation_pass(gpu::FramePlan& plan, const FrameInputs& in,
             .rays = reinterpret_cast<shared::Ray*>(plan.get(rays.rays).mapped()),
             .visibility = view(visibility)});
   });
+}
+
+/// Brings the answers back to their pixels.
+void resolve(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
+             const tracing::RayStream& rays, gpu::BufferRef occluded, gpu::ImageRef visibility) {
+  const auto declare = [&] {
+    if (!on_host(plan, in)) {
+      return plan.pass(name, in.programs.compute(shaders::resolve_visibility))
+          .dispatch_indirect(rays.count, ray_groups_offset);
+    }
+    return plan.host(name, [&plan, rays, occluded, visibility] {
+      const auto words = [&plan](gpu::BufferRef buffer) { return plan.get(buffer).mapped(); };
+      host::resolve_visibility(
+          {.count = *reinterpret_cast<const shared::RayCount*>(words(rays.count)),
+           .rays = reinterpret_cast<const shared::Ray*>(words(rays.rays)),
+           .occluded = reinterpret_cast<const std::uint32_t*>(words(occluded)),
+           .visibility = plan.get(visibility).host()});
+    });
+  };
+  declare().read(rays.count).read(rays.rays).read(occluded).write(visibility);
 }
 
 /// Generate -> trace -> bring back: the wavefront of one visibility signal.
@@ -60,12 +81,7 @@ gpu::ImageRef trace_visibility(gpu::FramePlan& plan, const FrameInputs& in, cons
   for (const gpu::ImageRef image : generation.images) pass.read(image);
   pass.read_write(rays.count).write(rays.rays).write(visibility).when(wanted);
   in.tracer.trace_any(plan, name + ".trace", in.structure, rays, occluded);
-  plan.pass(name + ".resolve", in.programs.compute(shaders::resolve_visibility))
-      .read(rays.count)
-      .read(rays.rays)
-      .read(occluded)
-      .write(visibility)
-      .dispatch_indirect(rays.count, ray_groups_offset);
+  resolve(plan, in, name + ".resolve", rays, occluded, visibility);
   return visibility;
 }
 
