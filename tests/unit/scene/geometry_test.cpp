@@ -160,6 +160,50 @@ TEST(Geometry, SparseAccessorsReplaceSomeElements) {
   EXPECT_EQ(builder.import().bounds.maximum, glm::vec3(7, 0, 0));
 }
 
+TEST(Geometry, SparseAccessorsWithoutABufferViewBeginAtZero) {
+  GltfBuilder builder = triangle();
+  const auto indices = builder.add_view(std::vector<std::uint8_t>{1, 2});
+  const auto values = builder.add_view(std::vector<float>{2, 0, 0, 0, 3, 0});
+  builder.json["accessors"][0].erase("bufferView");
+  builder.json["accessors"][0]["sparse"] = {
+      {"count", 2},
+      {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
+      {"values", {{"bufferView", values}}}};
+  const std::vector<shared::Vertex> vertices = builder.import().meshes[0].vertices;
+  EXPECT_EQ(vertices[0].position, glm::vec3(0.0f));
+  EXPECT_EQ(vertices[1].position, glm::vec3(2, 0, 0));
+  EXPECT_EQ(vertices[2].position, glm::vec3(0, 3, 0));
+}
+
+TEST(Geometry, EightJointsAVertexShareItByTheirWeights) {
+  GltfBuilder builder = triangle();
+  auto& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
+  const std::vector<std::uint16_t> first = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
+  const std::vector<std::uint8_t> second = {4, 5, 6, 7, 4, 5, 6, 7, 4, 5, 6, 7};
+  attributes["JOINTS_0"] = builder.add_accessor(first, 5123, "VEC4", 3);
+  attributes["JOINTS_1"] = builder.add_accessor(second, 5121, "VEC4", 3);
+  // Normalised bytes: they sum to 2, and so are halved.
+  const std::vector<std::uint8_t> heavy = {102, 51, 51, 51, 102, 51, 51, 51, 102, 51, 51, 51};
+  const auto weights = builder.add_accessor(builder.add_view(heavy), 5121, "VEC4", 3, true);
+  attributes["WEIGHTS_0"] = weights;
+  attributes["WEIGHTS_1"] = weights;
+  nlohmann::json joints = nlohmann::json::array();
+  for (int i = 0; i < 8; ++i) {
+    const auto node = builder.add("nodes", nlohmann::json::object());
+    builder.json["scenes"][0]["nodes"].push_back(node);
+    joints.push_back(node);
+  }
+  builder.add("skins", {{"joints", joints}});
+  builder.json["nodes"][0]["skin"] = 0;
+  const Scene scene = builder.import();
+  const Shape& shape = scene.shapes.at(0);
+  ASSERT_EQ(shape.joints_per_vertex, 8u);
+  for (std::uint32_t lane = 0; lane < 8; ++lane) {
+    EXPECT_EQ(shape.influences[8 + lane].joint, lane);
+    EXPECT_NEAR(shape.influences[8 + lane].weight, lane % 4 == 0 ? 0.2f : 0.1f, 1e-6f);
+  }
+}
+
 TEST(Geometry, FlatNormalsSeparateTheTrianglesOfAFold) {
   GltfBuilder builder;
   const auto position =
