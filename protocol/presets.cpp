@@ -33,8 +33,8 @@ constexpr std::array<Description, 6> descriptions = {{
      "separable, and reflections are compressed before denoising (paper section 3.4): all of the "
      "paper."},
     {"best",
-     "The best that Heliograph can do: history clamped to a shorter one, reflections followed "
-     "behind their mirror, no bands."},
+     "The best that Heliograph can do: histories as long as lights and things rest, reflections "
+     "followed behind their mirror, no bands."},
 }};
 
 }  // namespace

@@ -23,7 +23,8 @@ layout(set = 1, binding = 10, rgba32f) readonly uniform image2D previous_fast;
 layout(set = 1, binding = 11, rgba32f) readonly uniform image2D percentiles;  // of tiles, or anything
 layout(set = 1, binding = 12, rgba32f) writeonly uniform image2D signal;   // radiance, variance
 layout(set = 1, binding = 13, rgba32f) writeonly uniform image2D history;  // frames, moved, moments
-layout(set = 1, binding = 14, rgba32f) writeonly uniform image2D fast;     // the last few frames
+layout(set = 1, binding = 14, rgba32f) writeonly uniform image2D fast;     // the last few frames,
+                                                                          // or the change
 layout(push_constant) uniform Constants { TemporalConstants constants; };
 
 #include "lib/percentile_tiles.glsl"
@@ -201,5 +202,8 @@ void main() {
 
   imageStore(signal, pixel, vec4(radiance, variance));
   imageStore(history, pixel, vec4(frames, moved, moments));
-  imageStore(fast, pixel, vec4(mix(old.fast, now, 1.0 / min(frames, fast_frames)), 0.0));
+  vec3 change = old.frames > 0.0 ? now - old.radiance : vec3(0.0);
+  vec3 recent = mix(old.fast, now, 1.0 / min(frames, fast_frames));
+  bool gradient = constants.rectification == rectification_gradient;
+  imageStore(fast, pixel, vec4(gradient ? change : recent, 0.0));
 }

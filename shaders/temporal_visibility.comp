@@ -18,7 +18,7 @@ layout(set = 1, binding = 7, rgba32f) readonly uniform image2D percentiles;  // 
 layout(set = 1, binding = 8, rgba32f) writeonly uniform image2D signal;   // value xy, variance zw
 layout(set = 1, binding = 9, rgba32f) writeonly uniform image2D moments;  // first xy, second zw
 layout(set = 1, binding = 10, rgba32f) writeonly uniform image2D history;  // frames xy, moved zw
-layout(set = 1, binding = 11, rg32f) writeonly uniform image2D fast;
+layout(set = 1, binding = 11, rg32f) writeonly uniform image2D fast;  // or the change, for gradient
 layout(push_constant) uniform Constants { TemporalConstants constants; };
 
 #include "lib/percentile_tiles.glsl"
@@ -101,5 +101,8 @@ void main() {
   imageStore(signal, pixel, vec4(value, variance));
   imageStore(moments, pixel, vec4(first, second));
   imageStore(history, pixel, vec4(frames, moved));
-  imageStore(fast, pixel, vec4(mix(old.fast, now, sample_share(frames, fast_frames)), 0.0, 0.0));
+  vec2 change = mix(vec2(0.0), now - old.signal, greaterThan(old.frames, vec2(0.0)));
+  vec2 recent = mix(old.fast, now, sample_share(frames, fast_frames));
+  bool gradient = constants.rectification == rectification_gradient;
+  imageStore(fast, pixel, vec4(gradient ? change : recent, 0.0, 0.0));
 }

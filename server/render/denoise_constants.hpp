@@ -34,6 +34,10 @@ shared::TemporalConstants temporal_constants(const FrameInputs& in,
   constants.rectification = static_cast<std::uint32_t>(settings.rectification);
   constants.radius = settings.rectification_radius;
   constants.scale = settings.rectification_scale * rested_box(in, settings.rectification);
+  if (settings.rectification == protocol::Rectification::gradient) {
+    // Of the mean: the neighbourhood's samples are independent of each other.
+    constants.scale /= static_cast<float>(2 * settings.rectification_radius + 1);
+  }
   if (settings.follow_lights) {
     constants.light_frames = frames_under_motion(in.scene_motion.lights);
     constants.environment_turn = in.scene_motion.environment;

@@ -241,6 +241,7 @@ bool MovingScene::needs_advance() const {
 
 bool MovingScene::advance() {
   previous_lights_ = lights_;
+  things_moved_ = false;
   if (!needs_advance()) return false;
   const scene::Scene& scene = *rest_->scene;
   const scene::Pose before = pose_;
@@ -259,7 +260,8 @@ bool MovingScene::advance() {
   moving_->update_structure();
   moving_->settled =
       moving_->placed.empty() && std::ranges::none_of(moving_->deforming, &Moving::Deforming::moved);
-  return instances || shapes || lights;
+  things_moved_ = instances || shapes;
+  return things_moved_ || lights;
 }
 
 }  // namespace heliograph::render

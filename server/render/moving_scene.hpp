@@ -46,6 +46,8 @@ class MovingScene {
   /// while a frame runs.
   /// @return whether anything differs from the frame before
   bool advance();
+  /// Whether any shape is elsewhere than one frame ago.
+  bool things_moved() const { return things_moved_; }
   /// Node -> world, as it is now.
   const scene::Pose& pose() const { return pose_; }
 
@@ -56,6 +58,7 @@ class MovingScene {
   scene::Pose pose_;
   std::vector<shared::Light> lights_;
   std::vector<shared::Light> previous_lights_;
+  bool things_moved_ = false;
   std::unique_ptr<Moving> moving_;  // null for scenes without clips
   std::optional<tracing::SceneTables> tables_;
 };

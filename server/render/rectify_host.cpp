@@ -5,6 +5,7 @@
 #define HWY_TARGET_INCLUDE "render/rectify_host.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
+#include "hwy/contrib/math/math-inl.h"
 #include "render/host_pixels.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -115,8 +116,22 @@ HWY_INLINE V shortened_history(V frames, V moved, V reach) {
   return hn::Max(frames * (one - share), hn::Min(frames, one));
 }
 
+/// Of a neighbourhood whose mean change lies between `low` and `high`, what is beyond doubt
+/// (shaders/lib/rectification.glsl), and how long a history may last under it (moments.glsl).
+template <class V>
+HWY_INLINE V certain_change(V low, V high) {
+  return hn::Max(hn::Max(low, hn::Neg(high)), hn::Zero(hn::DFromV<V>()));
+}
+template <class V>
+HWY_INLINE V frames_under_motion(V motion) {
+  const hn::DFromV<V> d;
+  const V logarithm = hn::Log(d, clamped(motion, 1e-6f, 1.0f));
+  const V power = hn::Exp(d, hn::Set(d, -2.0f / 3.0f) * logarithm);
+  return hn::MulAdd(hn::Set(d, 0.63f), power - hn::Set(d, 1.0f), hn::Set(d, 1.0f));
+}
+
 /// What both signals have in common: Kernel::load() gives what the boxes are made of, and
-/// Kernel::hold() holds a block of pixels in them.
+/// Kernel::hold() holds a block of pixels in them, or Kernel::shorten() their histories.
 template <class D, class Kernel, int channels>
 class Rectification {
   using V = hn::Vec<D>;
@@ -161,7 +176,11 @@ class Rectification {
     float* const history = row_of<float>(job_.history, y) + 4 * x;
     const Quad<V> value = load4(d_, signal), state = load4(d_, history);
     Quad<V> new_value, new_state;
-    kernel.hold(boxes.box(x), value, state, new_value, new_state);
+    if (job_.constants.rectification == shared::rectification_gradient) {
+      kernel.shorten(boxes.box(x), x, y, value, state, new_value, new_state);
+    } else {
+      kernel.hold(boxes.box(x), value, state, new_value, new_state);
+    }
     store4(d_, select(wanted, new_value, value), signal);
     store4(d_, select(wanted, new_state, state), history);
   }
@@ -195,6 +214,23 @@ class VisibilityRectification : public Rectification<D, VisibilityRectification<
     new_value = {x, y, value.z * this->growth(state.x, frames_x),
                  value.w * this->growth(state.y, frames_y)};
     new_state = {frames_x, frames_y, moved_x, moved_y};
+  }
+
+  HWY_INLINE void shorten(const Box& box, int x, int y, const Quad<V>& value, const Quad<V>& state,
+                          Quad<V>& new_value, Quad<V>& new_state) const {
+    V changes[2];
+    load(x, y, changes);
+    const V one = hn::Set(d_, 1.0f);
+    const V frames_x =
+        hn::Min(state.x, frames_under_motion(certain_change(box.low[0], box.high[0])));
+    const V frames_y =
+        hn::Min(state.y, frames_under_motion(certain_change(box.low[1], box.high[1])));
+    const V moved_x = changes[0] * (one / frames_x - one / state.x);
+    const V moved_y = changes[1] * (one / frames_y - one / state.y);
+    new_value = {value.x + moved_x, value.y + moved_y,
+                 value.z * this->growth(state.x, frames_x),
+                 value.w * this->growth(state.y, frames_y)};
+    new_state = {frames_x, frames_y, hn::Abs(moved_x), hn::Abs(moved_y)};
   }
 };
 
@@ -230,6 +266,21 @@ class SpecularRectification : public Rectification<D, SpecularRectification<D>, 
     new_value = {rest + held.y, held.x + held.z, rest - held.y,
                  value.w * this->growth(state.x, frames)};
     new_state = {frames, moved, state.z, state.w};
+  }
+
+  HWY_INLINE void shorten(const Box& box, int x, int y, const Quad<V>& value, const Quad<V>& state,
+                          Quad<V>& new_value, Quad<V>& new_state) const {
+    const V one = hn::Set(d_, 1.0f), smallest = hn::Set(d_, 1e-4f);
+    const V change = certain_change(box.low[0], box.high[0]);
+    const V bright = hn::Abs(to_ycocg({value.x, value.y, value.z}).x);
+    const V frames = hn::Min(state.x, frames_under_motion(change / (bright + change + smallest)));
+    const V share = one / frames - one / state.x;
+    const Quad<V> sampled = load4(d_, row_of<const float>(job_.fast, y) + 4 * x);
+    const V moved = to_ycocg({sampled.x, sampled.y, sampled.z}).x * share;
+    new_value = {hn::MulAdd(sampled.x, share, value.x), hn::MulAdd(sampled.y, share, value.y),
+                 hn::MulAdd(sampled.z, share, value.z),
+                 value.w * this->growth(state.x, frames)};
+    new_state = {frames, hn::Abs(moved), state.z, state.w};
   }
 
  private:

@@ -212,8 +212,7 @@ Frame Renderer::render() {
   state.constants = make_frame_constants(state.camera, state.settings, *state.scene, state.extent,
                                          state.sequence++, state.has_previous ? &before : nullptr);
   state.scene_motion =
-      render::scene_motion(*state.moving, state.constants, state.has_previous ? &before : nullptr,
-                           moves);
+      render::scene_motion(*state.moving, state.constants, state.has_previous ? &before : nullptr);
   state.has_previous = true;
   std::memcpy(state.constants_buffer.mapped(), &state.constants, sizeof state.constants);
   state.drawing->plan.execute();

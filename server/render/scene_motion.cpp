@@ -59,7 +59,7 @@ void add(Sum& sum, const shared::Light& now, const shared::Light& before,
 }  // namespace
 
 SceneMotion scene_motion(const MovingScene& scene, const shared::FrameConstants& now,
-                         const shared::FrameConstants* before, bool things_moved) {
+                         const shared::FrameConstants* before) {
   if (!before) return {};
   Sum sum;
   const auto& lights = scene.lights();
@@ -74,7 +74,7 @@ SceneMotion scene_motion(const MovingScene& scene, const shared::FrameConstants&
   const glm::vec2 facing(now.environment.y, now.environment.z);
   const glm::vec2 faced(before->environment.y, before->environment.z);
   const float turn = std::atan2(facing.x * faced.y - facing.y * faced.x, glm::dot(facing, faced));
-  return {sum.light > 0.0f ? sum.moved / sum.light : 0.0f, std::abs(turn), things_moved};
+  return {sum.light > 0.0f ? sum.moved / sum.light : 0.0f, std::abs(turn), scene.things_moved()};
 }
 
 float frames_under_motion(float motion) {

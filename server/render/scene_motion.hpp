@@ -15,9 +15,9 @@ struct SceneMotion {
   bool things = false;       // whether anything moved or changed its shape
 };
 
-/// `before` is null where no frame went before; `things_moved` is what MovingScene::advance() said.
+/// `before` is null where no frame went before.
 SceneMotion scene_motion(const MovingScene& scene, const shared::FrameConstants& now,
-                         const shared::FrameConstants* before, bool things_moved);
+                         const shared::FrameConstants* before);
 
 /// How many frames of a signal to remember whose light moves by `motion` of its width each frame. A
 /// mean over N frames lags by (N - 1) x motion, and its noise falls as 1 / (2 N - 1): the sum of

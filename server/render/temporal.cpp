@@ -43,12 +43,18 @@ gpu::PassBuilder declare_pass(gpu::FramePlan& plan, const FrameInputs& in, const
   });
 }
 
-/// Holds the long history against the short one.
-void rectify(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
-             const gpu::ComputeProgram& program, void (*kernel)(const host::RectifyJob&),
-             const Guide& guide, gpu::ImageRef fast, gpu::ImageRef signal, gpu::ImageRef history,
-             const auto& constants) {
-  declare_pass(plan, in, name, program, protocol::Rectification::fast_history, constants,
+/// Whether a pass of its own rectifies, after accumulation.
+bool rectifies_after(protocol::Rectification mode) {
+  return mode == protocol::Rectification::fast_history || mode == protocol::Rectification::gradient;
+}
+
+/// Holds the long history against the short one, or shortens it where the signal changes.
+gpu::PassBuilder rectify(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
+                         const gpu::ComputeProgram& program,
+                         void (*kernel)(const host::RectifyJob&), const Guide& guide,
+                         gpu::ImageRef fast, gpu::ImageRef signal, gpu::ImageRef history,
+                         const auto& constants) {
+  return declare_pass(plan, in, name, program, protocol::Rectification::fast_history, constants,
                [=, extent = plan.extent()](const auto& now, const auto& view) {
                  kernel({.constants = now,
                          .width = static_cast<int>(extent.width),
@@ -116,9 +122,13 @@ Integrated accumulate_visibility(gpu::FramePlan& plan, const FrameInputs& in, co
           "Shadow (red) and ambient (green) visibility gathered over frames: mean and "
           "variance, moments, frames remembered and how far the mean was moved, the last few "
           "frames alone.");
-  if (settings.rectification == protocol::Rectification::fast_history) {
+  if (rectifies_after(settings.rectification)) {
     rectify(plan, in, "visibility.rectify", in.programs.compute(shaders::rectify_visibility),
-            host::rectify_visibility, guide, fast.current, signal, history.current, constants);
+            host::rectify_visibility, guide, fast.current, signal, history.current, constants)
+        // Visibility does not depend on the view: it changes only where something moves.
+        .when([&settings, &motion = in.scene_motion] {
+          return settings.rectification != protocol::Rectification::gradient || motion.things;
+        });
   }
   return {signal, moments.current, history.current, memory.current};
 }
@@ -181,9 +191,12 @@ Integrated accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in, cons
       .describe(
           "Reflections gathered over frames: mean and variance; frames remembered, how far "
           "the mean was moved, and moments; the last few frames alone.");
-  if (settings.rectification == protocol::Rectification::fast_history) {
+  if (rectifies_after(settings.rectification)) {
     rectify(plan, in, "specular.rectify", in.programs.compute(shaders::rectify_specular),
-            host::rectify_specular, guide, fast.current, signal, history.current, constants);
+            host::rectify_specular, guide, fast.current, signal, history.current, constants)
+        .when([&settings, &samples = in.samples] {
+          return settings.rectification != protocol::Rectification::gradient || samples == 0;
+        });
   }
   return {signal, history.current, history.current, memory.current};
 }

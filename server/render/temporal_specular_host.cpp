@@ -238,7 +238,10 @@ class SpecularAccumulation {
     const V second = mix(old.moments.y, bright * bright, one / known);
     V variance = sample_variance(first, second, known);
     if (c_.flags & shared::temporal_mean_variance) variance = variance / frames;
-    const Triple<V> recent = mix(old.fast, now, one / hn::Min(frames, set(fast_frames)));
+    Triple<V> recent = mix(old.fast, now, one / hn::Min(frames, set(fast_frames)));
+    if (c_.rectification == shared::rectification_gradient) {
+      recent = select(hn::Gt(old.frames, zero), now - old.radiance, Triple<V>{zero, zero, zero});
+    }
 
     store4(d_, select(seen, Quad<V>{radiance.x, radiance.y, radiance.z, variance}, nothing_seen),
            signal);

@@ -86,7 +86,9 @@ class VisibilityAccumulation {
     c.second = mix(second, now * now, share);
     c.variance = sample_variance(c.first, c.second, hn::Min(c.frames, set(c_.moments_frames)));
     if (c_.flags & shared::temporal_mean_variance) c.variance = c.variance / c.frames;
-    c.fast = mix(fast, now, sample_share(c.frames, fast_frames));
+    c.fast = c_.rectification == shared::rectification_gradient
+                 ? hn::IfThenElseZero(hn::Gt(remembered, hn::Zero(d_)), now - old)
+                 : mix(fast, now, sample_share(c.frames, fast_frames));
     return c;
   }
 
@@ -132,7 +134,8 @@ HWY_EXPORT(accumulate_visibility_rows);
 
 bool can_accumulate(std::uint32_t rectification) {
   return rectification == shared::rectification_off ||
-         rectification == shared::rectification_fast_history;
+         rectification == shared::rectification_fast_history ||
+         rectification == shared::rectification_gradient;
 }
 
 void accumulate_visibility(const TemporalVisibilityJob& job) {

@@ -87,6 +87,9 @@ vec2 shortened_history(vec2 frames, vec2 moved, vec2 reach) {
   return max(frames * (1.0 - share), min(frames, vec2(1.0)));
 }
 
+/// How far a neighbourhood has changed for certain: what the box of its mean change is away from 0.
+vec3 certain_change(Box box) { return max(max(box.low, -box.high), vec3(0.0)); }
+
 vec3 to_ycocg(vec3 c) {
   return vec3(0.25 * c.r + 0.5 * c.g + 0.25 * c.b, 0.5 * (c.r - c.b),
               -0.25 * c.r + 0.5 * c.g - 0.25 * c.b);

@@ -17,6 +17,7 @@ SHARED_CONSTANT uint rectification_variance_clamp = 3u;
 SHARED_CONSTANT uint rectification_variance_clip = 4u;
 SHARED_CONSTANT uint rectification_fast_history = 5u;
 SHARED_CONSTANT uint rectification_percentile = 6u;
+SHARED_CONSTANT uint rectification_gradient = 7u;
 
 SHARED_CONSTANT uint temporal_holds = 1u;          // there is a history
 SHARED_CONSTANT uint temporal_mean_variance = 2u;  // variance of the mean, not of one sample

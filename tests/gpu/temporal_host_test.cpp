@@ -141,6 +141,11 @@ TEST_F(TemporalHost, FollowsEverySetting) {
   view.settings.specular_temporal.rectification_scale = 0.5f;
   expect_same_over_frames(view, "other windows");
 
+  view = {.motion = {.things = true}};
+  view.settings.shadow_temporal.rectification = view.settings.specular_temporal.rectification =
+      protocol::Rectification::gradient;
+  expect_same_over_frames(view, "gradients");
+
   expect_same_over_frames({.motion = {.lights = 0.05f, .environment = 0.2f}}, "lights on the way");
 }
 

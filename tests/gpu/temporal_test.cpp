@@ -220,13 +220,13 @@ TEST(SceneMotion, IsHowFarLightsWentAgainstTheirWidthWeighedByTheirLight) {
   const auto motion_at = [&](double seconds) {
     rig.moving().set_pose(&rig.scene().scene->clips[0], seconds);
     rig.moving().advance();
-    return render::scene_motion(rig.moving(), rig.constants(), &rig.constants(), true).lights;
+    return render::scene_motion(rig.moving(), rig.constants(), &rig.constants()).lights;
   };
   motion_at(0.0);
   EXPECT_NEAR(motion_at(1.0), 0.75f * 0.25f, 2e-3f) << "one of four degrees, three lights of four";
   EXPECT_EQ(motion_at(1.0), 0.0f) << "at rest again";
   EXPECT_NEAR(motion_at(9.0), 0.75f, 1e-5f) << "never more than all";
-  EXPECT_EQ(render::scene_motion(rig.moving(), rig.constants(), nullptr, true).lights, 0.0f);
+  EXPECT_EQ(render::scene_motion(rig.moving(), rig.constants(), nullptr).lights, 0.0f);
 }
 
 TEST(FramesUnderMotion, FallFromEndlessToOne) {
@@ -291,7 +291,8 @@ INSTANTIATE_TEST_SUITE_P(
     Modes, Rectified,
     testing::Values(protocol::Rectification::color_clamp, protocol::Rectification::color_clip,
                     protocol::Rectification::variance_clamp, protocol::Rectification::variance_clip,
-                    protocol::Rectification::fast_history, protocol::Rectification::percentile),
+                    protocol::Rectification::fast_history, protocol::Rectification::percentile,
+                    protocol::Rectification::gradient),
     [](const auto& instance) { return std::string(protocol::enum_name(instance.param)); });
 
 TEST_P(Rectified, ForgetsALightThatWentOutSoonerThanWithout) {
@@ -301,6 +302,7 @@ TEST_P(Rectified, ForgetsALightThatWentOutSoonerThanWithout) {
     for_both(settings, [](auto& s) { s.rectification = GetParam(); });
     start(settings, specular);
     for (int i = 0; i < 40; ++i) frame(glm::vec4(1.0f));
+    rig_->set_scene_motion({.things = true});
     for (int i = 0; i < 8; ++i) frame(glm::vec4(0.0f));
     EXPECT_LT(signal().x, 0.3f) << specular;  // without: (31/32)^8 = 0.78
   }

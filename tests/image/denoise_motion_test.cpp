@@ -131,10 +131,22 @@ TEST(MovingObject, LeavesNoTrailWhereItWas) {
   const auto uncovered = [&](std::size_t pixel) {
     return (is_box(start, pixel) || is_box(before, pixel)) && !is_box(now, pixel);
   };
+  const auto lit_beside = [&](std::size_t pixel) {
+    return !is_box(start, pixel) && !is_box(before, pixel) && !is_box(now, pixel) &&
+           before.picture.rgba[4 * pixel + 1] < now.picture.rgba[4 * pixel + 1];
+  };
   const double trail_start = ghost(start.picture, now.picture, shown, uncovered);
   const double trail = ghost(before.picture, now.picture, shown, uncovered);
-  EXPECT_NEAR(trail_start, 0.0, 0.1);
-  EXPECT_NEAR(trail, 0.0, 0.15);
+  EXPECT_NEAR(trail_start, 0.0, 0.03);
+  EXPECT_NEAR(trail, 0.0, 0.04);
+  EXPECT_LT(ghost(before.picture, now.picture, shown, lit_beside), 0.25)
+      << "of the shadow four frames ago";
+  EXPECT_LT(difference(now.picture, shown).mean, 1.1);
+
+  protocol::Settings held = denoised_alone();
+  held.shadow_temporal.rectification = protocol::Rectification::fast_history;
+  const render::Frame dragging = played(scene, held, "slide", frames);
+  EXPECT_LT(difference(now.picture, shown).mean, 0.7 * difference(now.picture, dragging).mean);
 }
 
 class MovingSun : public testing::TestWithParam<float> {};

@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::array<std::string_view, 3> movement_names = {"static", "moving_camera",
                                                             "moving_objects_light"};
-constexpr std::array<std::string_view, 2> other_rectifications = {"fast_history", "percentile"};
+constexpr std::array<std::string_view, 3> other_rectifications = {"fast_history", "percentile",
+                                                                  "gradient"};
 
 void apply(protocol::Settings& settings, const nlohmann::json& patch) {
   const auto applied = protocol::apply_patch(settings, patch);

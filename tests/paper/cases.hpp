@@ -33,7 +33,7 @@ struct Technique {
   /// For a renderer that never rests: no mean over samples takes the place of the denoiser.
   protocol::Settings settings() const;
 };
-/// The six presets, then `fast_history` and `percentile`.
+/// The six presets, then `fast_history`, `percentile` and `gradient`.
 const std::vector<Technique>& techniques();
 /// @throws std::invalid_argument
 const Technique& find_technique(std::string_view name);

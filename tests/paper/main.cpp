@@ -140,7 +140,7 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--scenes", options.scenes, "Scenes of the paper [all eight]")->delimiter(',');
   app.add_option("--presets", options.presets,
                  "Rows: svgf, rectification, adapted, separable, reinhard, best, fast_history, "
-                 "percentile [all]")
+                 "percentile, gradient [all]")
       ->delimiter(',');
   app.add_option("--movements", options.movements, "Of static, moving_camera, moving_objects_light")
       ->delimiter(',')
