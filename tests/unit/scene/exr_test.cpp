@@ -195,6 +195,23 @@ TEST(Exr, SurvivesDamage) {
   }
 }
 
+// Found by fuzzing: room was made for what an attribute claims before its data was looked for.
+TEST(Exr, AttributesCannotClaimMoreThanTheFileHas) {
+  const std::vector<std::uint8_t> whole = write_rgb({});
+  const auto with_attribute = [&](std::uint32_t claimed, std::size_t bytes) {
+    std::vector<std::uint8_t> file = whole;
+    std::vector<std::uint8_t> attribute = {'x', 0, 'm', 'i', 'n', 'e', 0};
+    for (int shift = 0; shift < 32; shift += 8) attribute.push_back(std::uint8_t(claimed >> shift));
+    attribute.resize(attribute.size() + bytes);
+    file.insert(file.begin() + 8, attribute.begin(), attribute.end());
+    return refusal(file);
+  };
+  EXPECT_NE(with_attribute(100, 100), "has a damaged header");
+  for (const std::uint32_t claimed : {0x00100000u, 0x65726373u, 0x7fffffffu, 0xffffffffu}) {
+    EXPECT_EQ(with_attribute(claimed, 100), "has a damaged header");
+  }
+}
+
 TEST(Exr, FilesAreRecognisedByTheirFirstBytesAndMadePhysical) {
   const auto path = std::filesystem::temp_directory_path() / "heliograph_exr_test.picture";
   std::vector<std::uint8_t> file = write_rgb({.peak = -1.0f});
