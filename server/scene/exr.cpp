@@ -9,12 +9,12 @@
 #include <ImfRgbaFile.h>
 #include <ImfStandardAttributes.h>
 
-#include <algorithm>
 #include <array>
 #include <cstring>
 #include <optional>
 #include <string>
 
+#include "scene/exr_header.hpp"
 #include "scene/image_decoder.hpp"
 #include "scene/import.hpp"
 
@@ -44,49 +44,6 @@ class MemoryStream : public Imf::IStream {
  private:
   std::span<const std::uint8_t> bytes_;
   std::size_t position_ = 0;
-};
-
-/// Walks over the attributes of all headers. OpenEXR makes room for an attribute of a type it does
-/// not know before it looks whether there is so much: two gigabytes, for a file of 300 bytes.
-class AttributeWalker {
- public:
-  explicit AttributeWalker(std::span<const std::uint8_t> file) : left_(file) {}
-
-  void check() {
-    constexpr std::uint32_t several_parts = 0x1000;
-    skip(4);
-    const bool several = read_u32() & several_parts;
-    do {
-      while (skip_text()) {
-        skip_text();
-        skip(read_u32());
-      }
-    } while (several && !left_.empty() && left_.front() != 0);
-  }
-
- private:
-  void skip(std::uint64_t count) {
-    if (count > left_.size()) throw ImportError("has a damaged header");
-    left_ = left_.subspan(count);
-  }
-
-  std::uint32_t read_u32() {
-    std::uint32_t value = 0;
-    const auto bytes = left_;
-    skip(sizeof value);
-    std::memcpy(&value, bytes.data(), sizeof value);
-    return value;
-  }
-
-  /// Whether it was not empty.
-  bool skip_text() {
-    const auto end = std::find(left_.begin(), left_.end(), std::uint8_t{0});
-    const auto length = static_cast<std::size_t>(end - left_.begin());
-    skip(length + 1);
-    return length > 0;
-  }
-
-  std::span<const std::uint8_t> left_;
 };
 
 ImageSize check_header(const Imf::Header& header, std::uint64_t most_pixels) {
@@ -185,7 +142,7 @@ bool is_exr(std::span<const std::uint8_t> file) {
 
 Environment decode_exr(std::span<const std::uint8_t> file, std::uint64_t most_pixels) {
   try {
-    AttributeWalker(file).check();
+    check_exr_attributes(file);
     MemoryStream stream(file);
     Imf::MultiPartInputFile input(stream, 0, false);
     const Imf::Header& header = input.header(0);

@@ -210,6 +210,12 @@ TEST(Exr, AttributesCannotClaimMoreThanTheFileHas) {
   for (const std::uint32_t claimed : {0x00100000u, 0x65726373u, 0x7fffffffu, 0xffffffffu}) {
     EXPECT_EQ(with_attribute(claimed, 100), "has a damaged header");
   }
+  // A list of channels that says it is shorter than it is: what follows would be read out of step.
+  std::vector<std::uint8_t> file = whole;
+  const std::string_view type = "chlist";
+  const auto found = std::search(file.begin(), file.end(), type.begin(), type.end());
+  *(found + 7) -= 1;
+  EXPECT_EQ(refusal(file), "has a damaged header");
 }
 
 TEST(Exr, FilesAreRecognisedByTheirFirstBytesAndMadePhysical) {
