@@ -80,18 +80,12 @@ HWY_INLINE Mask float_mask(hn::Mask<UnsignedTag> m) {
 HWY_INLINE hn::Mask<IntegerTag> integer_mask(Mask m) {
   return hn::RebindMask(integer_tag, m);
 }
-HWY_INLINE hn::Mask<UnsignedTag> unsigned_mask(Mask m) {
-  return hn::RebindMask(unsigned_tag, m);
-}
 
 HWY_INLINE Float select(Mask m, Float yes, Float no) {
   return hn::IfThenElse(m, yes, no);
 }
 HWY_INLINE Integer select(Mask m, Integer yes, Integer no) {
   return hn::IfThenElse(integer_mask(m), yes, no);
-}
-HWY_INLINE Float multiply_add(Float a, Float b, Float c) {
-  return hn::MulAdd(a, b, c);
 }
 HWY_INLINE Float at_least(Float v, float low) {
   return hn::Max(v, number(low));
