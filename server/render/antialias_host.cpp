@@ -199,7 +199,8 @@ class Antialiasing {
       return;
     }
     const Box box = box_about(colors, x, y);
-    const Triple<V> old = compressed(sample_history(clamped(u, 0.0f, 1.0f), clamped(v, 0.0f, 1.0f)));
+    const Triple<V> old =
+        compressed(sample_history(clamped(u, 0.0f, 1.0f), clamped(v, 0.0f, 1.0f)));
     V share = set(job_.blend);
     if (job_.anti_flicker) {
       const V margin = hn::Min(hn::Abs(old.x - box.low.x), hn::Abs(box.high.x - old.x));

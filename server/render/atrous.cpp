@@ -18,7 +18,7 @@ struct IterationImages {
 gpu::PassBuilder iteration(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
                            const Blur& blur, const IterationImages& images,
                            std::function<shared::AtrousConstants()> constants) {
-  if (!in.host_kernels || !plan.device().is_cpu()) {
+  if (!on_host(plan, in)) {
     return plan.pass(name, blur.program).constants(constants).dispatch(plan.extent());
   }
   return plan.host(name, [&plan, &frame = in.constants, kind = blur.kind, images, constants] {

@@ -1,20 +1,17 @@
 #include "render/atrous_host.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-// The baseline, AVX2 and AVX-512: what lies between is hardly ever met.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
+#include "render/host_rows.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/atrous_host.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "hwy/contrib/math/math-inl.h"
-#include "hwy/highway.h"
+#include "render/host_pixels.hpp"
 #include "render/random_host.hpp"
 
 #ifndef HELIOGRAPH_ATROUS_JOB
@@ -49,9 +46,7 @@ class Row {
   using M = hn::Mask<D>;
   static constexpr bool visibility = kind == Signal::visibility;
 
-  struct Texels {
-    V x, y, z, w;
-  };
+  using Texels = Quad<V>;
   struct Center {
     V nx, ny, nz;
     V roughness;
@@ -91,22 +86,14 @@ class Row {
   bool has(std::uint32_t flag) const { return (c_.flags & flag) != 0; }
   HWY_INLINE V set(float value) const { return hn::Set(d_, value); }
 
-  HWY_INLINE Texels load(const float* from) const {
-    Texels t;
-    hn::LoadInterleaved4(d_, from, t.x, t.y, t.z, t.w);
-    return t;
-  }
-  HWY_INLINE Texels gather(const float* image, VI index) const {
-    return {hn::GatherIndex(d_, image, index), hn::GatherIndex(d_, image + 1, index),
-            hn::GatherIndex(d_, image + 2, index), hn::GatherIndex(d_, image + 3, index)};
-  }
+  HWY_INLINE Texels load(const float* from) const { return load4(d_, from); }
   const float* row(const gpu::HostView& image, int y) const {
-    return image.row<const float>(static_cast<std::uint32_t>(y));
+    return row_of<const float>(image, y);
   }
 
   HWY_INLINE V brightness_x(const Texels& t) const {
     if constexpr (visibility) return t.x;
-    return hn::MulAdd(t.x, set(0.2126f), hn::MulAdd(t.y, set(0.7152f), hn::Mul(t.z, set(0.0722f))));
+    return luminance(Triple<V>{t.x, t.y, t.z});
   }
 
   /// Sums down of the variance, weights 1 2 1, into the scratch rows; one pixel more on both ends.
@@ -326,8 +313,8 @@ class Row {
     const VI texel = hn::ShiftLeft<2>(inside_x);
     const VI in_guide = hn::Add(hn::Mul(inside_y, hn::Set(di_, pitch_)), texel);
     const VI in_signal = hn::Add(hn::Mul(inside_y, hn::Set(di_, signal_pitch_)), texel);
-    add_tap(c, gather(row(job_.images.guide, 0), in_guide),
-            gather(row(job_.images.signal, 0), in_signal), dx, dy,
+    add_tap(c, gather4(d_, row(job_.images.guide, 0), in_guide),
+            gather4(d_, row(job_.images.signal, 0), in_signal), dx, dy,
             hn::Sqrt(hn::MulAdd(dx, dx, hn::Mul(dy, dy))), weight, wanted, sums);
   }
 
@@ -390,8 +377,8 @@ void atrous(Signal signal, const shared::AtrousConstants& constants,
                 static_cast<int>(frame.extent.y),
                 footprint,
                 orthographic};
-  tbb::parallel_for(tbb::blocked_range<int>(0, job.height, 8), [&](const auto& rows) {
-    HWY_DYNAMIC_DISPATCH(filter_rows)(job, rows.begin(), rows.end());
+  for_each_band(job.height, [&](int first, int last) {
+    HWY_DYNAMIC_DISPATCH(filter_rows)(job, first, last);
   });
 }
 

@@ -79,8 +79,9 @@ Composed compose(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbu
   if (denoised) composed.hdr_raw = plan.image("hdr_raw", format);
   // A binding has to hold an image; one that is not traced is not read.
   const bool mirrors = raw.specular.has_value();
-  const Images images{gbuffer,     background, raw.shadows, raw.ambient, raw.specular.value_or(background),
-                      denoised, composed};
+  const gpu::ImageRef specular = raw.specular.value_or(background);
+  const Images images{gbuffer,  background, raw.shadows, raw.ambient,
+                      specular, denoised,   composed};
   const auto roughness = [&s = in.settings.specular, mirrors] {
     return mirrors ? s.max_roughness : -1.0f;
   };

@@ -90,7 +90,9 @@ class Bounds {
   Bounds(int width, int height) : width_(width), height_(height) {}
 
   /// The nearest pixel inside.
-  HWY_INLINE Spot<D> spot(VI x, VI y) const { return Spot<D>(inside(x, width_), inside(y, height_)); }
+  HWY_INLINE Spot<D> spot(VI x, VI y) const {
+    return Spot<D>(inside(x, width_), inside(y, height_));
+  }
   HWY_INLINE hn::Mask<D> contain(VI x, VI y) const {
     return hn::RebindMask(
         D(), hn::And(hn::Eq(x, inside(x, width_)), hn::Eq(y, inside(y, height_))));

@@ -1,5 +1,5 @@
 // What host kernels share: pixels of mapped images in vectors, whose lanes lie side by side in a
-// row. Included once per instruction set; the guard is Google Highway's convention for such headers.
+// row. Included once per instruction set; the guard is Google Highway's convention.
 #if defined(HELIOGRAPH_HOST_PIXELS_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef HELIOGRAPH_HOST_PIXELS_HPP
 #undef HELIOGRAPH_HOST_PIXELS_HPP

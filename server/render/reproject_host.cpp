@@ -181,7 +181,8 @@ class Reprojection {
                                 (normal_change(normals, x, y, normal) + set(0.01f));
     expected.view_z = moved.w + moved.z;
     const Pair<V> slope = load2(d_, row_of<const float>(job_.depth_slope, y) + 2 * x);
-    const V change = hn::Abs(slope.x) + hn::Abs(slope.y) + set(0.5f) * view.footprint(expected.view_z);
+    const V footprint = view.footprint(expected.view_z);
+    const V change = hn::Abs(slope.x) + hn::Abs(slope.y) + set(0.5f) * footprint;
     expected.depth_allowance = set(job_.constants.depth_tolerance) * change;
     expected.instance = hn::LoadU(di_, row_of<const int>(job_.instance, y) + x);
     return expected;

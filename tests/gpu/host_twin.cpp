@@ -82,7 +82,9 @@ gpu::ImageRef RandomFrame::four(const std::string& name, const glm::vec4& low,
 gpu::ImageRef RandomFrame::two(const std::string& name, float low, float high) {
   const VkExtent2D extent = rig_.plan().extent();
   std::vector<glm::vec2> texels(std::size_t{extent.width} * extent.height);
-  for (glm::vec2& texel : texels) texel = glm::mix(glm::vec2(low), glm::vec2(high), glm::vec2(unit(), unit()));
+  for (glm::vec2& texel : texels) {
+    texel = glm::mix(glm::vec2(low), glm::vec2(high), glm::vec2(unit(), unit()));
+  }
   return rig_.input(name, VK_FORMAT_R32G32_SFLOAT, texels);
 }
 

@@ -21,8 +21,8 @@ scene::Camera camera(const View& view, float turn) {
   return made;
 }
 
-/// Both signals' accumulation with the variance of short ones, twice over, by the shaders and by their twins, each from its own
-/// memory.
+/// Both signals' accumulation, with the variance of those that are short, twice over: by the
+/// shaders and by their twins, each from its own memory.
 class Twins {
  public:
   explicit Twins(const View& view)
