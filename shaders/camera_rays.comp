@@ -4,7 +4,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 // One ray through every pixel's sample, tile by tile, so that neighbours in the stream see the same
 // part of the scene.
 #include "lib/frame.glsl"
-#include "shared/ray.h"
+#include "lib/ray_index.glsl"
 
 layout(set = 1, binding = 0, std430) writeonly buffer Count { RayCount ray_count; };
 layout(set = 1, binding = 1, std430) writeonly buffer Rays { Ray rays[]; };
@@ -13,7 +13,7 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   uint tile = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
   uint tiles = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
-  if (tile == 0u && gl_LocalInvocationIndex == 0u) ray_count = RayCount(tiles * 64u, tiles, 1u, 1u);
+  if (tile == 0u && gl_LocalInvocationIndex == 0u) ray_count = full_stream(tiles * 64u, 0u);
   bool orthographic = enabled(frame_orthographic);
   Ray ray;
   ray.origin = orthographic ? world_position(pixel, 0.0) : frame.eye.xyz;

@@ -4,9 +4,10 @@ layout(local_size_x = 64) in;
 // The G-buffer from camera rays instead of triangles: the surfaces that rays have met, with the same
 // signals as lib/gbuffer_surface.glsl. Rays go on through back faces that are not drawn and through
 // the share of samples that a blended surface does not cover.
-#include "lib/hit_surface.glsl"
+#include "lib/coverage.glsl"
 #include "lib/octahedral.glsl"
 #include "lib/random.glsl"
+#include "lib/ray_index.glsl"
 #include "lib/ray_stream.glsl"
 
 layout(set = 1, binding = 0, std430) readonly buffer MetCount { RayCount met_count; };
@@ -26,11 +27,8 @@ layout(push_constant) uniform Constants { uint last_round; };
 
 bool passes(Ray ray, Hit hit, HitSurface s) {
   if (last_round != 0u) return false;
-  bool back = dot(s.front, ray.direction) > 0.0;
-  if (back && (s.flags & material_double_sided) == 0u) return true;
-  // Tracers ask the nearest texel; the picture shows the filtered one, as drawn triangles do.
-  if ((s.flags & material_alpha_mask) != 0u && s.alpha < s.alpha_cutoff) return true;
-  if ((s.flags & material_alpha_blend) == 0u) return false;
+  if (is_open(s, ray.direction)) return true;
+  if (!is_blended(s)) return false;
   uvec2 pixel = uvec2(ray.pixel & 0xffffu, ray.pixel >> 16u);
   return s.alpha < random_number(pixel, frame.extent.z, 40u + (hit.instance & 15u), frame.extent.w);
 }
@@ -100,7 +98,7 @@ void store_nothing(ivec2 pixel) {
 }
 
 void main() {
-  uint index = gl_GlobalInvocationID.x;
+  uint index = ray_index();
   bool goes_on = false;
   Ray ray;
   if (index < met_count.count) {
@@ -113,7 +111,7 @@ void main() {
       HitSurface s = hit_surface(hit, ray.direction, cone_width(camera_cone(), hit.t));
       goes_on = passes(ray, hit, s);
       if (!goes_on) store(pixel, hit, s);
-      ray.t_min = hit.t + max(hit.t * 1e-6, 1e-7);
+      ray = beyond(ray, hit);
     }
   }
   APPEND_RAY(goes_on, ray)

@@ -137,9 +137,9 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (outside_frame(pixel)) return;
   uint index = pixel_index(pixel);
-  if (index == 0u) shadow_count = dense_stream();
+  if (index == 0u) shadow_count = dense_stream(frame_blending());
   Ray ray = rays[index];
-  if (index == 0u) sky_count = dense_stream();
+  if (index == 0u) sky_count = dense_stream(frame_blending());
   Ray shadow = no_ray(), sky = no_ray();
   if (is_wanted(ray)) {
     Hit hit = hits[index];
@@ -152,9 +152,9 @@ void main() {
     } else {
       RayCone cone = RayCone(path.cone_width, path.cone_spread);
       HitSurface s = hit_surface(hit, ray.direction, cone_width(cone, hit.t));
-      if (passes_through(s, pixel, constants.round)) {
-        rays[index] = straight_on(s, ray.direction);
-        path.cone_width = cone_width(cone, hit.t);
+      bool open = path.bounces == 0u && is_open(s, ray.direction);
+      if (open || passes_through(s, pixel, constants.round)) {
+        rays[index] = beyond(ray, hit);
       } else {
         radiance = own_light(s);
         if (!is_unlit(s)) {

@@ -13,7 +13,7 @@ layout(set = 1, binding = 3, rgba32f) writeonly uniform image2D reference;
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (outside_frame(pixel)) return;
-  if (pixel == ivec2(0)) ray_count = dense_stream();
+  if (pixel == ivec2(0)) ray_count = dense_stream(0u);
   RayCone cone = camera_cone();
   rays[pixel_index(pixel)] = camera_ray(pixel);
   paths[pixel_index(pixel)] = ReferencePath(vec3(1.0), 0u, cone.width, cone.spread, 0u, 0.0);

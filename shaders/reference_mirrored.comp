@@ -31,7 +31,7 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (outside_frame(pixel)) return;
   uint index = pixel_index(pixel);
-  if (index == 0u) shadow_count = dense_stream();
+  if (index == 0u) shadow_count = dense_stream(frame_blending());
   Ray ray = rays[index];
   Ray shadow = no_ray();
   if (is_wanted(ray)) {

@@ -51,7 +51,7 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (outside_frame(pixel)) return;
   uint index = pixel_index(pixel);
-  if (index == 0u) shadow_count = ambient_count = mirror_count = dense_stream();
+  if (index == 0u) shadow_count = ambient_count = mirror_count = dense_stream(frame_blending());
   Ray ray = rays[index];
   if (!is_wanted(ray)) return;
   rays[index] = no_ray();
@@ -64,9 +64,9 @@ void main() {
     ReferencePath path = paths[index];
     RayCone cone = RayCone(path.cone_width, path.cone_spread);
     HitSurface s = hit_surface(hit, ray.direction, cone_width(cone, hit.t));
-    if (constants.round + 1u < constants.limit && passes_through(s, pixel, constants.round)) {
-      rays[index] = straight_on(s, ray.direction);
-      paths[index].cone_width = cone_width(cone, hit.t);
+    bool passes = is_open(s, ray.direction) || passes_through(s, pixel, constants.round);
+    if (passes && constants.round + 1u < constants.limit) {
+      rays[index] = beyond(ray, hit);
       return;
     }
     radiance = own_light(s);

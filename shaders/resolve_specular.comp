@@ -3,7 +3,7 @@
 layout(local_size_x = 64) in;
 // Adds the light of lamps that shadow rays from specular hits have found in view.
 #include "lib/moments.glsl"
-#include "shared/ray.h"
+#include "lib/ray_index.glsl"
 
 layout(set = 1, binding = 0, std430) readonly buffer Count { RayCount ray_count; };
 layout(set = 1, binding = 1, std430) readonly buffer Rays { Ray rays[]; };
@@ -12,7 +12,7 @@ layout(set = 1, binding = 3, rgba32f) uniform image2D radiance;
 layout(push_constant) uniform Constants { int scale; };
 
 void main() {
-  uint index = gl_GlobalInvocationID.x;
+  uint index = ray_index();
   if (index >= ray_count.count || occluded[index] != 0u) return;
   Ray ray = rays[index];
   ivec2 cell = ivec2(ray.pixel & 0xffffu, ray.pixel >> 16u) / scale;

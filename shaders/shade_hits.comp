@@ -8,6 +8,7 @@ layout(local_size_x = 64) in;
 #include "lib/hit_surface.glsl"
 #include "lib/light_choice.glsl"
 #include "lib/moments.glsl"
+#include "lib/ray_index.glsl"
 #include "lib/ray_stream.glsl"
 #include "lib/specular_pixels.glsl"
 
@@ -60,7 +61,7 @@ Ray lamp_ray(SurfaceMaterial m, vec3 position, vec3 weight, ivec2 pixel, out boo
 }
 
 void main() {
-  uint index = gl_GlobalInvocationID.x;
+  uint index = ray_index();
   bool wanted = false;
   Ray shadow;
   if (index < specular_count.count) {

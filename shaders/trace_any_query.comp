@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 layout(set = 1, binding = 6, std430) writeonly buffer Occluded { uint occluded[]; };
 
 void main() {
-  const uint index = gl_GlobalInvocationID.x;
+  const uint index = ray_index();
   if (index >= ray_count.count) return;
   const Hit hit = trace(rays[index], gl_RayFlagsTerminateOnFirstHitEXT);
   occluded[index] = hit.instance != hit_none ? 1u : 0u;

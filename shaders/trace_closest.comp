@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 layout(set = 1, binding = 5, std430) writeonly buffer Hits { Hit hits[]; };
 
 void main() {
-  const uint index = gl_GlobalInvocationID.x;
+  const uint index = ray_index();
   if (index >= ray_count.count) return;
   hits[index] = trace(rays[index]);
 }

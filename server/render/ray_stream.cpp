@@ -15,10 +15,11 @@ tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
 }
 
 void begin_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
-                const tracing::RayStream& rays) {
+                const tracing::RayStream& rays, Blending blending) {
   if (!on_host(plan, in)) {
-    plan.pass(name + ".begin", in.programs.compute(shaders::begin_rays))
+    plan.pass(name + ".begin", in.programs.compute(shaders::begin_rays, in.scene.features))
         .write(rays.count)
+        .constants(static_cast<std::uint32_t>(blending == Blending::shares))
         .dispatch({1, 1});
     return;
   }

@@ -16,9 +16,12 @@ inline constexpr VkDeviceSize ray_groups_offset = offsetof(shared::RayCount, gro
 tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
                                 std::uint32_t capacity);
 
+/// How a stream's rays meet blended surfaces: stopped by all of them, or by their share.
+enum class Blending { stops, shares };
+
 /// The pass `name`.begin, which empties the stream.
 void begin_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
-                const tracing::RayStream& rays);
+                const tracing::RayStream& rays, Blending blending = Blending::shares);
 
 /// Whether passes that have a kernel run it.
 inline bool by_host(const gpu::FramePlan& plan, const FrameInputs& in) {

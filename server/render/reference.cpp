@@ -1,7 +1,5 @@
 #include "render/reference.hpp"
 
-#include <algorithm>
-
 #include "render/ray_stream.hpp"
 #include "shaders/embedded.hpp"
 #include "shaders/shared/ray.h"
@@ -10,15 +8,8 @@
 namespace heliograph::render {
 namespace {
 
-constexpr std::uint32_t blended_layers = 4;  // that a path may pass through
+constexpr std::uint32_t passed_layers = 4;  // that a path goes straight on through
 constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-
-bool has_blended_surfaces(const FrameInputs& in) {
-  const auto& materials = in.scene.scene->materials;
-  return std::any_of(materials.begin(), materials.end(), [](const shared::Material& material) {
-    return (material.flags & shared::material_alpha_blend) != 0;
-  });
-}
 
 auto constants(const FrameInputs& in, std::uint32_t round, std::uint32_t limit) {
   return [&s = in.settings.specular, round, limit] {
@@ -57,7 +48,7 @@ class Wavefront {
   void same_paths() {
     const tracing::RayStream ambient = stream("reference.ambient");
     const tracing::RayStream mirrored = stream("reference.mirrored");
-    const std::uint32_t rounds = has_blended_surfaces(in_) ? 1 + blended_layers : 1;
+    constexpr std::uint32_t rounds = 1 + passed_layers;
     for (std::uint32_t round = 0; round < rounds; ++round) {
       in_.tracer.trace_closest(plan_, "reference.trace", in_.structure, rays_, hits_);
       pass("reference.primary", shaders::reference_primary)
@@ -91,7 +82,7 @@ class Wavefront {
 
   void global_illumination(std::uint32_t bounces) {
     const tracing::RayStream sky = stream("reference.sky");
-    const std::uint32_t rounds = 1 + bounces + (has_blended_surfaces(in_) ? blended_layers : 0);
+    const std::uint32_t rounds = 1 + bounces + passed_layers;
     for (std::uint32_t round = 0; round < rounds; ++round) {
       in_.tracer.trace_closest(plan_, "reference.trace", in_.structure, rays_, hits_);
       pass("reference.bounce", shaders::reference_bounce)

@@ -109,9 +109,15 @@ void SceneResources::upload_tables(const gpu::Device& device) {
   const bool areas = std::any_of(lights.begin(), lights.end(), [](const shared::Light& light) {
     return light.type >= shared::light_rectangle;
   });
+  const auto& materials = scene->materials;
+  const bool blends =
+      std::any_of(materials.begin(), materials.end(), [](const shared::Material& material) {
+        return (material.flags & shared::material_alpha_blend) != 0;
+      });
   features = (areas ? shared::scene_area_lights : 0u) |
              (lights.size() > shared::uniform_lights ? shared::scene_many_lights : 0u) |
-             (scene->deformations.empty() ? 0u : shared::scene_deforms);
+             (scene->deformations.empty() ? 0u : shared::scene_deforms) |
+             (blends ? shared::scene_blends : 0u);
   rest_tables.lights = make_light_table(device, lights.size());
   write_lights(rest_tables.lights, lights);
   rest_tables.alpha_heap =

@@ -196,7 +196,8 @@ void build_alpha_heap(Scene& scene) {
   std::map<std::uint32_t, std::uint32_t> offset_of_image;
   for (shared::Material& material : scene.materials) {
     const std::uint32_t index = material.base_color_texture.texture;
-    if (!(material.flags & shared::material_alpha_mask) || index == shared::no_texture) continue;
+    const std::uint32_t partial = shared::material_alpha_mask | shared::material_alpha_blend;
+    if (!(material.flags & partial) || index == shared::no_texture) continue;
     const Texture& texture = scene.textures[index];
     const Image& image = scene.images[texture.image];
     const auto known = offset_of_image.find(texture.image);

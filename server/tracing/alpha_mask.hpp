@@ -6,27 +6,38 @@
 #include <vector>
 
 #include "scene/scene.hpp"
+#include "shaders/shared/ray.h"
 
 namespace heliograph::tracing {
 
-/// How much of a material's surface rays meet: glTF alphaMode MASK, everything else is whole.
+/// How much of a material's surface rays meet: in part with glTF's alphaMode MASK and BLEND.
 enum class Coverage { whole, masked, none };
 
 Coverage coverage(const shared::Material& material);
 
+/// A number of a ray that decides which blended surfaces stop it, like ray_blending() in shaders.
+/// `blending`: of its stream; 0: all do.
+std::uint32_t ray_blending(const shared::Ray& ray, std::uint32_t blending);
+
 /// Where rays pass through a mesh of masked coverage.
 struct AlphaMask {
   std::uint32_t texels = 0;  // offset into the scene's alpha heap
-  std::uint32_t width = 0;
+  std::uint32_t width = 0;  // 0: no texture, alpha is 255 all over
   std::uint32_t height = 0;
-  std::uint32_t threshold = 0;  // lowest alpha, of 255, that stops a ray
+  std::uint32_t limit = 0;  // lowest alpha, of 255, that stops a ray; or see shared::mask_blended
   std::uint32_t wrap_s = shared::wrap_repeat;
   std::uint32_t wrap_t = shared::wrap_repeat;
   std::vector<glm::vec2> uvs;  // three per triangle, texture transform applied
 
   /// Whether a ray through barycentric (u, v) of `triangle` ends there. `heap`: the scene's.
-  bool stops_ray(std::span<const std::uint8_t> heap, std::uint32_t triangle, float u,
-                 float v) const;
+  /// `blending`: ray_blending() of the ray.
+  bool stops_ray(std::span<const std::uint8_t> heap, std::uint32_t blending,
+                 std::uint32_t instance, std::uint32_t triangle, float u, float v) const;
+
+ private:
+  /// Of 255, at barycentric (u, v).
+  std::uint32_t alpha(std::span<const std::uint8_t> heap, std::uint32_t triangle, float u,
+                      float v) const;
 };
 
 AlphaMask make_alpha_mask(const scene::Mesh& mesh, const shared::Material& material);

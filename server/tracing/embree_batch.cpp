@@ -4,6 +4,8 @@
 #include <array>
 #include <bit>
 
+#include "tracing/alpha_mask.hpp"
+
 namespace heliograph::tracing {
 namespace {
 
@@ -36,7 +38,7 @@ RTCIntersectContext incoherent() {
   return context;
 }
 
-RTCRay to_embree(const shared::Ray& ray) {
+RTCRay to_embree(const shared::Ray& ray, std::uint32_t blending) {
   const bool alive = ray.t_min < ray.t_max;
   RTCRay result{};
   result.org_x = ray.origin.x;
@@ -48,16 +50,18 @@ RTCRay to_embree(const shared::Ray& ray) {
   result.dir_z = ray.direction.z;
   result.tfar = alive ? last_before(ray.t_max) : dead_to;
   result.mask = ~0u;
+  result.id = ray_blending(ray, blending);  // what filters are told of a ray
   return result;
 }
 
 }  // namespace
 
-void intersect_batch(RTCScene scene, std::span<const shared::Ray> rays, shared::Hit* hits) {
+void intersect_batch(RTCScene scene, std::span<const shared::Ray> rays, std::uint32_t blending,
+                     shared::Hit* hits) {
   RTCIntersectContext context = incoherent();
   std::array<RTCRayHit, embree_batch> batch;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    batch[i].ray = to_embree(rays[i]);
+    batch[i].ray = to_embree(rays[i], blending);
     batch[i].hit.geomID = batch[i].hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   }
   rtcIntersect1M(scene, &context, batch.data(), static_cast<unsigned>(rays.size()),
@@ -70,10 +74,11 @@ void intersect_batch(RTCScene scene, std::span<const shared::Ray> rays, shared::
   }
 }
 
-void occluded_batch(RTCScene scene, std::span<const shared::Ray> rays, std::uint32_t* occluded) {
+void occluded_batch(RTCScene scene, std::span<const shared::Ray> rays, std::uint32_t blending,
+                    std::uint32_t* occluded) {
   RTCIntersectContext context = incoherent();
   std::array<RTCRay, embree_batch> batch;
-  for (std::size_t i = 0; i < rays.size(); ++i) batch[i] = to_embree(rays[i]);
+  for (std::size_t i = 0; i < rays.size(); ++i) batch[i] = to_embree(rays[i], blending);
   rtcOccluded1M(scene, &context, batch.data(), static_cast<unsigned>(rays.size()), sizeof(RTCRay));
   // Embree sets tfar to -infinity where something was hit.
   for (std::size_t i = 0; i < rays.size(); ++i) occluded[i] = batch[i].tfar < dead_to ? 1 : 0;
@@ -89,7 +94,7 @@ struct Lanes {
   alignas(64) std::array<int, packet> valid{};
 };
 
-Lanes load(std::span<const shared::Ray> rays, RTCRay16& lanes) {
+Lanes load(std::span<const shared::Ray> rays, std::uint32_t blending, RTCRay16& lanes) {
   Lanes result;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const shared::Ray& ray = rays[i];
@@ -104,21 +109,23 @@ Lanes load(std::span<const shared::Ray> rays, RTCRay16& lanes) {
     lanes.time[i] = 0.0f;
     lanes.tfar[i] = result.valid[i] ? last_before(ray.t_max) : dead_to;
     lanes.mask[i] = ~0u;
-    lanes.id[i] = lanes.flags[i] = 0;
+    lanes.id[i] = ray_blending(ray, blending);  // what filters are told of a ray
+    lanes.flags[i] = 0;
   }
   return result;
 }
 
 }  // namespace
 
-void intersect_batch(RTCScene scene, std::span<const shared::Ray> rays, shared::Hit* hits) {
+void intersect_batch(RTCScene scene, std::span<const shared::Ray> rays, std::uint32_t blending,
+                     shared::Hit* hits) {
   RTCIntersectArguments arguments;
   rtcInitIntersectArguments(&arguments);
   arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
   for (std::size_t first = 0; first < rays.size(); first += packet) {
     const auto some = rays.subspan(first, std::min(packet, rays.size() - first));
     RTCRayHit16 lanes{};
-    const Lanes active = load(some, lanes.ray);
+    const Lanes active = load(some, blending, lanes.ray);
     std::fill_n(lanes.hit.geomID, packet, RTC_INVALID_GEOMETRY_ID);
     std::fill_n(lanes.hit.instID[0], packet, RTC_INVALID_GEOMETRY_ID);
     rtcIntersect16(active.valid.data(), scene, &lanes, &arguments);
@@ -131,14 +138,15 @@ void intersect_batch(RTCScene scene, std::span<const shared::Ray> rays, shared::
   }
 }
 
-void occluded_batch(RTCScene scene, std::span<const shared::Ray> rays, std::uint32_t* occluded) {
+void occluded_batch(RTCScene scene, std::span<const shared::Ray> rays, std::uint32_t blending,
+                    std::uint32_t* occluded) {
   RTCOccludedArguments arguments;
   rtcInitOccludedArguments(&arguments);
   arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
   for (std::size_t first = 0; first < rays.size(); first += packet) {
     const auto some = rays.subspan(first, std::min(packet, rays.size() - first));
     RTCRay16 lanes{};
-    const Lanes active = load(some, lanes);
+    const Lanes active = load(some, blending, lanes);
     rtcOccluded16(active.valid.data(), scene, &lanes, &arguments);
     for (std::size_t i = 0; i < some.size(); ++i) {
       occluded[first + i] = lanes.tfar[i] < dead_to ? 1 : 0;

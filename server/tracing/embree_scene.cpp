@@ -116,7 +116,9 @@ void EmbreeMesh::let_through(const RTCFilterFunctionNArguments* arguments) {
   for (unsigned i = 0; i < lanes; ++i) {
     if (arguments->valid[i] == 0) continue;
     const bool stops =
-        mask.stops_ray(heap, RTCHitN_primID(arguments->hit, lanes, i),
+        mask.stops_ray(heap, RTCRayN_id(arguments->ray, lanes, i),
+                       RTCHitN_instID(arguments->hit, lanes, i, 0),
+                       RTCHitN_primID(arguments->hit, lanes, i),
                        RTCHitN_u(arguments->hit, lanes, i), RTCHitN_v(arguments->hit, lanes, i));
     if (!stops) arguments->valid[i] = 0;
   }

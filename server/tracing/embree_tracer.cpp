@@ -48,18 +48,19 @@ Element* mapped(const gpu::FramePlan& plan, gpu::BufferRef buffer) {
   return reinterpret_cast<Element*>(plan.get(buffer).mapped());
 }
 
-/// Calls `trace(rays, answers)` for every batch of the stream, on all processors.
+/// Calls `trace(rays, blending, answers)` for every batch of the stream, on all processors.
 template <typename Answer, typename Trace>
 void trace_batches(const gpu::FramePlan& plan, const RayStream& stream, gpu::BufferRef answers,
                    const Trace& trace) {
-  const std::size_t count =
-      std::min(mapped<const shared::RayCount>(plan, stream.count)->count, stream.capacity);
+  const auto& header = *mapped<const shared::RayCount>(plan, stream.count);
+  const std::size_t count = std::min(header.count, stream.capacity);
   const std::span rays(mapped<const shared::Ray>(plan, stream.rays), count);
   auto* const results = mapped<Answer>(plan, answers);
   const std::size_t batches = (count + embree_batch - 1) / embree_batch;
   tbb::parallel_for(std::size_t(0), batches, [&](std::size_t batch) {
     const std::size_t first = batch * embree_batch;
-    trace(rays.subspan(first, std::min(embree_batch, count - first)), results + first);
+    trace(rays.subspan(first, std::min(embree_batch, count - first)), header.blending,
+          results + first);
   });
 }
 
@@ -101,9 +102,7 @@ class EmbreeTracer : public RayTracer {
     plan.host(name,
               [&plan, scene, rays, hits] {
                 trace_batches<shared::Hit>(plan, rays, hits,
-                                           [scene](auto batch, shared::Hit* results) {
-                                             intersect_batch(scene, batch, results);
-                                           });
+                                           [scene](auto... batch) { intersect_batch(scene, batch...); });
               })
         .read(rays.count)
         .read(rays.rays)
@@ -117,9 +116,7 @@ class EmbreeTracer : public RayTracer {
     plan.host(name,
               [&plan, scene, rays, occluded] {
                 trace_batches<std::uint32_t>(plan, rays, occluded,
-                                             [scene](auto batch, std::uint32_t* results) {
-                                               occluded_batch(scene, batch, results);
-                                             });
+                                             [scene](auto... batch) { occluded_batch(scene, batch...); });
               })
         .read(rays.count)
         .read(rays.rays)

@@ -33,7 +33,7 @@ MaskTables::MaskTables(const gpu::Device& device, const scene::Scene& scene) {
     if (coverage(material) != Coverage::masked) continue;
     const AlphaMask mask = make_alpha_mask(mesh, material);
     mask_of_mesh[i] = static_cast<std::uint32_t>(all.size());
-    all.push_back({mask.texels, mask.width, mask.height, mask.threshold, mask.wrap_s, mask.wrap_t,
+    all.push_back({mask.texels, mask.width, mask.height, mask.limit, mask.wrap_s, mask.wrap_t,
                    static_cast<std::uint32_t>(all_uvs.size()), 0});
     all_uvs.insert(all_uvs.end(), mask.uvs.begin(), mask.uvs.end());
   }

@@ -75,6 +75,8 @@ class MovingStructure : public virtual AccelerationStructure {
 
 /// Answers rays. Every other shader is the same whatever traces. Alpha-masked surfaces let rays
 /// through where their base colour's alpha (level 0, nearest texel) x factor is below the cutoff;
+/// blended ones let through what they do not cover, ray by ray, where the stream asks for it
+/// (RayCount::blending), and stop every ray where not; colours of vertices do not count for rays;
 /// rays see both faces of every triangle; hits at t in (t_min, t_max), 0 <= t_min; rays
 /// with an empty interval miss. Instances squeezed flat, so that their matrix has no inverse, are
 /// not met. A tracer outlives its structures and plans.

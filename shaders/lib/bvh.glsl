@@ -4,8 +4,9 @@
 #define HELIOGRAPH_LIB_BVH_GLSL
 
 #include "lib/nearest_texel.glsl"
+#include "lib/ray_blending.glsl"
+#include "lib/ray_index.glsl"
 #include "shared/bvh.h"
-#include "shared/ray.h"
 #include "shared/scene.h"
 
 layout(set = 1, binding = 0, std430) readonly buffer Count { RayCount ray_count; };
@@ -44,18 +45,26 @@ vec2 box_interval(vec2 x, vec2 y, vec2 z, Line line, vec2 range) {
   return vec2(near, far * 1.0000004);
 }
 
-// Whether the mask lets a ray through barycentric (u, v) of the triangle at `place` end there.
-bool mask_stops(uint mask, uint place, float u, float v) {
-  const uvec4 texels = record_bits(mask, 0u) & bvh_number_mask;
-  const uvec4 lookup = record_bits(mask, 1u) & bvh_number_mask;
-  const uint threshold = texels.w;
+uint blending = 0u;  // of the ray
+
+// The mask's alpha, of 255, at barycentric (u, v) of the triangle at `place`.
+uint mask_alpha(uvec4 texels, uvec4 lookup, uint place, float u, float v) {
+  if (texels.y == 0u) return 255u;
   const int first_uv = int(lookup.z + 2u * (place - lookup.w));
   const vec4 corners01 = texelFetch(triangles, first_uv);
   const vec2 corner2 = texelFetch(triangles, first_uv + 1).xy;
   const vec2 uv = (1.0 - u - v) * corners01.xy + u * corners01.zw + v * corner2;
   const uint offset = texels.x + nearest_texel(uv, texels.yz, lookup.xy);
   const uint word = texelFetch(alpha_heap, int(offset >> 2)).x;
-  return bitfieldExtract(word, int(8u * (offset & 3u)), 8) >= threshold;
+  return bitfieldExtract(word, int(8u * (offset & 3u)), 8);
+}
+
+// Whether the mask lets a ray through barycentric tuv.yz of the triangle at `place` end there.
+bool mask_stops(uint mask, uint place, vec3 tuv, uint instance, uint triangle) {
+  const uvec4 texels = record_bits(mask, 0u) & bvh_number_mask;
+  const uvec4 lookup = record_bits(mask, 1u) & bvh_number_mask;
+  const uint alpha = mask_alpha(texels, lookup, place, tuv.y, tuv.z);
+  return alpha_stops(alpha, texels.w, blending, instance, triangle);
 }
 
 // Möller and Trumbore (1997), both faces: (t, u, v) where the plane is met, and whether inside.
@@ -127,11 +136,13 @@ uint test_leaf(uint link, Line line, float t_min, uvec4 placed, inout Hit hit) {
     tuv = candidate;
     triangle = number;
   }
-  if (found && (!masked || mask_stops(placed.z & bvh_number_mask, place - 1u, tuv.y, tuv.z))) {
+  const uint instance = placed.y & bvh_number_mask;
+  if (found && (!masked || mask_stops(placed.z & bvh_number_mask, place - 1u, tuv, instance,
+                                      triangle))) {
     hit.t = tuv.x;
     hit.u = tuv.y;
     hit.v = tuv.z;
-    hit.instance = placed.y & bvh_number_mask;
+    hit.instance = instance;
     hit.triangle = triangle;
   }
   if (place == end) return pop();
@@ -149,6 +160,7 @@ Line into_mesh(uint record, Line world) {
 Hit trace(Ray ray) {
   Hit hit = Hit(ray.t_max, hit_none, 0u, 0.0, 0.0, 0u, 0u, 0u);
   if (!(ray.t_min < ray.t_max)) return hit;
+  blending = ray_blending(ray, ray_count.blending);
   const Line world = make_line(ray.origin, ray.direction);
   push(bvh_no_link);
   uint instance_link = root;

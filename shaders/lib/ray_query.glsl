@@ -3,10 +3,12 @@
 #define HELIOGRAPH_LIB_RAY_QUERY_GLSL
 
 #include "lib/driver_hierarchy.glsl"
+#include "lib/ray_index.glsl"
 
 // The closest hit, or with gl_RayFlagsTerminateOnFirstHitEXT any; hit_none where there is none.
 Hit trace(Ray ray, uint flags) {
   if (!traceable(ray)) return miss(ray);
+  const uint blending = ray_blending(ray, ray_count.blending);
   rayQueryEXT query;
   rayQueryInitializeEXT(query, accelerationStructureEXT(hierarchy), flags, 0xffu, ray.origin,
                         ray.t_min, ray.direction, ray.t_max);
@@ -14,7 +16,7 @@ Hit trace(Ray ray, uint flags) {
   while (rayQueryProceedEXT(query)) {
     if (mask_stops(rayQueryGetIntersectionInstanceIdEXT(query, false),
                    rayQueryGetIntersectionPrimitiveIndexEXT(query, false),
-                   rayQueryGetIntersectionBarycentricsEXT(query, false))) {
+                   rayQueryGetIntersectionBarycentricsEXT(query, false), blending)) {
       rayQueryConfirmIntersectionEXT(query);
     }
   }

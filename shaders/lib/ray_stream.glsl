@@ -4,8 +4,6 @@
 #define HELIOGRAPH_RAY_STREAM_GLSL
 #include "shared/ray.h"
 
-const uint rays_per_group = 64u;  // of the tracing dispatch
-
 shared uint group_rays;
 shared uint group_base;
 
@@ -17,8 +15,9 @@ shared uint group_base;
     barrier();                                                                      \
     if (gl_LocalInvocationIndex == 0u && group_rays > 0u) {                         \
       group_base = atomicAdd(ray_count.count, group_rays);                          \
-      uint last = group_base + group_rays - 1u;                                     \
-      atomicMax(ray_count.groups_x, last / rays_per_group + 1u);                    \
+      uint groups = (group_base + group_rays - 1u) / rays_per_group + 1u;           \
+      atomicMax(ray_count.groups_x, min(groups, groups_per_row));                   \
+      atomicMax(ray_count.groups_y, (groups + groups_per_row - 1u) / groups_per_row); \
     }                                                                               \
     barrier();                                                                      \
     if (wanted) rays[group_base + slot] = (ray);                                    \

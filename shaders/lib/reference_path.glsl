@@ -3,20 +3,20 @@
 // writes another pixel's radiance.
 #ifndef HELIOGRAPH_REFERENCE_PATH_GLSL
 #define HELIOGRAPH_REFERENCE_PATH_GLSL
+#include "lib/coverage.glsl"
 #include "lib/environment.glsl"
-#include "lib/hit_surface.glsl"
+#include "lib/frame_blending.glsl"
 #include "lib/light_choice.glsl"
 #include "lib/random.glsl"
+#include "lib/ray_index.glsl"
 #include "lib/sampling.glsl"
 #include "shared/reference.h"
 
-const uint rays_per_group = 64u;  // of the tracing dispatch
-
 uint pixel_index(ivec2 pixel) { return uint(pixel.y) * frame.extent.x + uint(pixel.x); }
 
-RayCount dense_stream() {
-  uint count = frame.extent.x * frame.extent.y;
-  return RayCount(count, (count + rays_per_group - 1u) / rays_per_group, 1u, 1u);
+/// Of all pixels. `blending`: see RayCount.
+RayCount dense_stream(uint blending) {
+  return full_stream(frame.extent.x * frame.extent.y, blending);
 }
 
 Ray no_ray() { return Ray(vec3(0.0), 0.0, vec3(0.0, 0.0, 1.0), 0.0, 0u, 0u, 0u, 0u); }
@@ -50,11 +50,7 @@ float path_number(ivec2 pixel, uint round, uint which) {
 
 /// Whether a path goes straight on through a blended surface.
 bool passes_through(HitSurface s, ivec2 pixel, uint round) {
-  return (s.flags & material_alpha_blend) != 0u && path_number(pixel, round, 0u) >= s.alpha;
-}
-
-Ray straight_on(HitSurface s, vec3 direction) {
-  return ray_from(s.position, -s.geometric, direction, 1e30);
+  return is_blended(s) && path_number(pixel, round, 0u) >= s.alpha;
 }
 
 bool is_unlit(HitSurface s) { return (s.flags & material_unlit) != 0u; }

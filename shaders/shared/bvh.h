@@ -49,9 +49,9 @@ struct BvhInstance {
 // Where rays pass through a mesh: all numbers.
 struct BvhMask {
   uint texels;     // offset in bytes into the alpha heap
-  uint width;
+  uint width;   // 0: no texture
   uint height;
-  uint threshold;  // lowest alpha, of 255, that stops a ray
+  uint limit;  // lowest alpha, of 255, that stops a ray; or see mask_blended in ray_mask.h
   uint wrap_s;     // values of wrap_*
   uint wrap_t;
   uint first_uv;        // texel of the triangle buffer: two per triangle, uv of its corners

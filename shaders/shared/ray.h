@@ -30,13 +30,24 @@ struct Hit {
   uint padding2;
 };
 
-// In front of a ray stream: how many rays there are, and the indirect dispatch that covers them.
+// In front of a ray stream: how many rays there are, the indirect dispatch that covers them, and how
+// they meet blended surfaces.
 struct RayCount {
   uint count;
   uint groups_x;  // VkDispatchIndirectCommand
   uint groups_y;
   uint groups_z;
+  uint blending;  // 0: blended surfaces stop every ray; else a number of this frame, with which they
+                  // stop a random share of them, as large as what they cover
+  uint padding0;
+  uint padding1;
+  uint padding2;
 };
+
+// No device starts more than 65,535 groups in a row: longer streams take several rows.
+SHARED_CONSTANT uint rays_per_group = 64u;
+SHARED_CONSTANT uint groups_per_row = 32768u;
+SHARED_CONSTANT uint rays_per_row = 2097152u;
 
 SHARED_END
 #endif

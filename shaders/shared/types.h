@@ -18,10 +18,12 @@ using uint = std::uint32_t;
 #define SHARED_BEGIN namespace heliograph::shared {
 #define SHARED_END }
 #define SHARED_CONSTANT inline constexpr
+#define SHARED_FUNCTION inline
 #else
 #define SHARED_BEGIN
 #define SHARED_END
 #define SHARED_CONSTANT const
+#define SHARED_FUNCTION
 #endif
 
 #endif

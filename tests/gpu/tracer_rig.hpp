@@ -44,11 +44,15 @@ class Tracing {
     plan_.compile();
   }
 
-  /// Traces the first `count` of the rays; answers beyond them come back as they were.
-  Answers run(std::span<const shared::Ray> rays, std::uint32_t count) {
+  /// Traces the first `count` of the rays; answers beyond them come back as they were. `blending`:
+  /// see shared::RayCount.
+  Answers run(std::span<const shared::Ray> rays, std::uint32_t count, std::uint32_t blending = 0) {
     Answers answers{std::vector(rays.size(), shared::Hit{untouched, 0, 0, 0, 0, 0, 0, 0}),
                     std::vector(rays.size(), 7u)};
-    const shared::RayCount header{count, (count + 63) / 64, 1, 1};
+    const std::uint32_t groups = (count + shared::rays_per_group - 1) / shared::rays_per_group;
+    const std::uint32_t rows = (groups + shared::groups_per_row - 1) / shared::groups_per_row;
+    const shared::RayCount header{count, std::min(groups, shared::groups_per_row), rows, 1,
+                                  blending};
     std::memcpy(plan_.get(stream_.count).mapped(), &header, sizeof(header));
     std::memcpy(plan_.get(stream_.rays).mapped(), rays.data(), rays.size_bytes());
     const auto hit_bytes = std::as_writable_bytes(std::span(answers.hits));
@@ -102,8 +106,9 @@ class TracedScene {
     structure_ = tracer.build(scene, buffers_);
   }
 
-  Answers trace(std::span<const shared::Ray> rays, std::uint32_t count) const {
-    return tracing(rays.size()).run(rays, count);
+  Answers trace(std::span<const shared::Ray> rays, std::uint32_t count,
+                std::uint32_t blending = 0) const {
+    return tracing(rays.size()).run(rays, count, blending);
   }
 
   Answers trace(std::span<const shared::Ray> rays) const {

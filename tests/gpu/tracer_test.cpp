@@ -84,6 +84,99 @@ TEST_P(TracerTest, MasksLetRaysThroughTexelByTexel) {
   }
 }
 
+double stopped_share(const Answers& answers) {
+  return static_cast<double>(hit_count(answers)) / static_cast<double>(answers.hits.size());
+}
+
+/// Its alpha is that of masked_material() times `factor`.
+shared::Material blended_material(scene::Scene& scene, float factor) {
+  shared::Material material = masked_material(scene, shared::wrap_repeat, shared::wrap_repeat);
+  material.flags = shared::material_alpha_blend;
+  material.base_color.w = factor;
+  return material;
+}
+
+TEST_P(TracerTest, BlendedSurfacesStopTheirShareOfTheRaysThatAskForIt) {
+  const std::vector<shared::Ray> rays = rays_from_above();
+  const auto count = static_cast<std::uint32_t>(rays.size());
+  for (const float factor : {0.0f, 0.3f, 1.0f}) {
+    scene::Scene scene, plain;
+    place(scene, add_mesh(scene, quad(), blended_material(scene, factor)), glm::mat4(1.0f));
+    shared::Material material = plain_material();
+    material.flags = shared::material_alpha_blend;
+    material.alpha_mask = shared::no_texture;
+    material.base_color.w = factor;
+    place(plain, add_mesh(plain, quad(), material), glm::mat4(1.0f));
+    const TracedScene textured = traced(scene, GetParam()), uniform = traced(plain, GetParam());
+    // Without the stream's number they stop every ray.
+    EXPECT_EQ(hit_count(textured.trace(rays)), rays.size());
+    EXPECT_EQ(hit_count(uniform.trace(rays)), rays.size());
+    // Over the image of uv -1 to 2 every texel is seen as often: 8 of 15 have alpha 220, 7 have 120.
+    const double mean_alpha = (8.0 * 220.0 + 7.0 * 120.0) / 15.0 / 255.0;
+    const Answers seen = textured.trace(rays, count, 12345);
+    EXPECT_NEAR(stopped_share(seen), factor * mean_alpha, 0.012) << "factor " << factor;
+    EXPECT_NEAR(stopped_share(uniform.trace(rays, count, 12345)), factor, 0.012);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      ASSERT_EQ(seen.occluded[i] != 0, seen.hits[i].instance != shared::hit_none) << i;
+    }
+  }
+}
+
+// Another frame's number takes other rays, layers decide on their own, and all tracers alike.
+TEST_P(TracerTest, BlendedSurfacesStopOtherRaysInEveryFrame) {
+  scene::Scene scene;
+  const std::uint32_t mesh = add_mesh(scene, quad(), blended_material(scene, 0.6f));
+  place(scene, mesh, glm::mat4(1.0f));
+  place(scene, mesh, glm::translate(glm::mat4(1.0f), {0.0f, -0.5f, 0.0f}));
+  const std::vector<shared::Ray> rays = rays_from_above();
+  const auto count = static_cast<std::uint32_t>(rays.size());
+  const TracedScene subject = traced(scene, GetParam());
+  const Answers first = subject.trace(rays, count, 1), second = subject.trace(rays, count, 2);
+  double alpha = 0.0, squares = 0.0, both = 0.0, below = 0.0;
+  const double share[] = {0.6 * 220.0 / 255.0, 0.6 * 120.0 / 255.0};
+  for (int i = 0; i < 15; ++i) {
+    const double a = share[0x4b2d >> i & 1 ? 0 : 1];
+    const double stopped = 1.0 - (1.0 - a) * (1.0 - a);
+    alpha += stopped / 15.0;
+    squares += stopped * stopped / 15.0;
+  }
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const bool a = first.hits[i].instance != shared::hit_none;
+    const bool b = second.hits[i].instance != shared::hit_none;
+    both += a && b;
+    below += a && first.hits[i].instance == 1;
+  }
+  EXPECT_NEAR(stopped_share(first), alpha, 0.015);
+  EXPECT_NEAR(both / count, squares, 0.015) << "frames are independent";
+  EXPECT_GT(below, 0.1 * count) << "some pass the upper layer and end on the lower";
+  if (!offered(protocol::TracerKind::software)) return;
+  const Answers reference = traced(scene, protocol::TracerKind::software).trace(rays, count, 1);
+  EXPECT_LT(disagreement(first, reference), 1e-3);
+}
+
+// The dispatch of a long stream has several rows: a 4K picture asks 8.3 million rays at once. Two
+// rows are what the 128 MiB hold that lavapipe binds.
+TEST_P(TracerTest, AnswersStreamsLongerThanARowOfGroups) {
+  constexpr std::uint32_t count = shared::rays_per_row + 1000;
+  scene::Scene scene;
+  place(scene, add_mesh(scene, quad(), plain_material()), glm::mat4(1.0f));
+  std::vector<shared::Ray> rays(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    // Every third ray passes beside the quad.
+    rays[i].origin = {i % 3 == 0 ? 5.0f : 0.3f, 1.0f + static_cast<float>(i % 1000), 0.2f};
+    rays[i].direction = {0, -1, 0};
+    rays[i].t_max = 1e30f;
+  }
+  const Answers answers = traced(scene, GetParam()).trace(rays);
+  std::size_t wrong = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const bool hits = i % 3 != 0;
+    const float t = hits ? rays[i].origin.y : 1e30f;
+    wrong += answers.occluded[i] != (hits ? 1u : 0u) || std::abs(answers.hits[i].t - t) > 1e-3f * t;
+  }
+  EXPECT_EQ(wrong, 0u);
+}
+
 TEST_P(TracerTest, AnswersOnlyTheRaysThatAreCounted) {
   const scene::Scene scene = two_level_scene(5);
   const std::vector<shared::Ray> rays = random_rays(scene, 1000, 5);

@@ -1,45 +1,16 @@
 #include "tests/paper/stage.hpp"
 
-#include <unistd.h>
-
-#include <fstream>
 #include <stdexcept>
 
-#include "scene/import.hpp"
 #include "scene/pose.hpp"
-#include "scenes/generator/glb.hpp"
 #include "scenes/generator/paper_scenes.hpp"
+#include "tests/support/generated_scene.hpp"
 
 namespace heliograph::paper {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr int sky_width = 512;
 constexpr int sky_height = 256;
-
-scene::Environment to_environment(const scenes::Environment& sky) {
-  return {.width = static_cast<std::uint32_t>(sky.width),
-          .height = static_cast<std::uint32_t>(sky.height),
-          .radiance = sky.radiance};
-}
-
-scene::Scene read_back(const std::vector<std::uint8_t>& file) {
-  std::string pattern = (fs::temp_directory_path() / "heliograph_paper_XXXXXX").string();
-  if (!mkdtemp(pattern.data())) throw std::runtime_error("cannot make a temporary folder");
-  const fs::path folder = pattern;
-  const fs::path path = folder / "scene.glb";
-  std::ofstream(path, std::ios::binary)
-      .write(reinterpret_cast<const char*>(file.data()), static_cast<std::streamsize>(file.size()));
-  try {
-    scene::Scene scene = scene::import_gltf(path);
-    fs::remove_all(folder);
-    return scene;
-  } catch (...) {
-    fs::remove_all(folder);
-    throw;
-  }
-}
 
 /// The scene's first camera at `seconds` of its clip.
 scene::Camera camera_at(const scene::Scene& scene, double seconds) {
@@ -66,8 +37,8 @@ Stage::Stage(render::Engine& engine, const std::string& scene, const scenes::Swe
   scenes::Document document = recipe.make_document(sky);
   scenes::apply(sweep, document);
   scene_ = std::make_shared<const scene::Scene>(
-      read_back(scenes::encode_glb(document, options.texture_size)));
-  resources_ = engine.upload(scene_, to_environment(sky.environment));
+      test::import_generated(document, options.texture_size));
+  resources_ = engine.upload(scene_, test::import_generated(sky.environment));
 }
 
 std::unique_ptr<render::Renderer> Stage::start(const protocol::Settings& settings,

@@ -27,8 +27,8 @@ Answers trace(const scene::Scene& scene, std::span<const shared::Ray> rays) {
   Answers answers{std::vector<shared::Hit>(rays.size()), std::vector<std::uint32_t>(rays.size())};
   for (std::size_t i = 0; i < rays.size(); i += embree_batch) {
     const auto batch = rays.subspan(i, std::min(embree_batch, rays.size() - i));
-    intersect_batch(built.handle(), batch, &answers.hits[i]);
-    occluded_batch(built.handle(), batch, &answers.occluded[i]);
+    intersect_batch(built.handle(), batch, 0, &answers.hits[i]);
+    occluded_batch(built.handle(), batch, 0, &answers.occluded[i]);
   }
   return answers;
 }
