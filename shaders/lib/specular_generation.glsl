@@ -32,12 +32,15 @@ void main() {
   float view_z = inside ? imageLoad(motion, pixel).w : 0.0;
   bool wanted = false;
   Ray ray;
+#ifdef HALF_RESOLUTION
+  vec4 taken = vec4(0.0);
+#endif
   if (view_z > 0.0 && !is_unlit(pixel)) {
     SurfaceMaterial m = material_at(pixel);
     SpecularSample s = sample_specular(m, specular_pair(cell, 4u, scale));
     vec3 weight = s.weight / specular_demodulator(m);
 #ifdef HALF_RESOLUTION
-    imageStore(directions, cell, vec4(s.direction, s.density));
+    taken = vec4(s.direction, s.density);
     if (weight != vec3(0.0)) weight = vec3(1.0);
 #endif
     wanted = mirrors_rays(m.roughness, max_roughness) && any(greaterThan(weight, vec3(0.0)));
@@ -51,6 +54,9 @@ void main() {
     ray.padding1 = floatBitsToUint(weight.b);
   }
   if (inside) imageStore(radiance, cell, vec4(0.0));
+#ifdef HALF_RESOLUTION
+  if (inside) imageStore(directions, cell, taken);
+#endif
   APPEND_RAY(wanted, ray)
 }
 

@@ -3,17 +3,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "tests/support/similarity.hpp"
+
 namespace heliograph::test {
 namespace {
-
-double mean_luminance(const render::FloatImage& image) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
-    sum += 0.2126 * image.rgba[i] + 0.7152 * image.rgba[i + 1] + 0.0722 * image.rgba[i + 2];
-  }
-  if (!std::isfinite(sum)) throw std::runtime_error("a pixel is no number");
-  return sum / (static_cast<double>(image.rgba.size()) / 4.0);
-}
 
 double mean(std::span<const double> values) {
   double sum = 0.0;
@@ -47,6 +40,7 @@ std::vector<double> mean_luminances(render::Renderer& renderer, protocol::Settin
     if (!renderer.set_settings(settings)) throw std::runtime_error("settings refused");
     while (renderer.render().samples < samples) {}
     means.push_back(mean_luminance(renderer.capture("accumulated").value()));
+    if (!std::isfinite(means.back())) throw std::runtime_error("a pixel is no number");
   }
   return means;
 }

@@ -159,21 +159,5 @@ TEST(Settings, EachLightSwitchTakesLightAway) {
   EXPECT_GT(without([](auto& s) { s.environment.intensity = 2.0f; }), 1.2 * all);
 }
 
-TEST(Sizes, OddOnesWorkWithBothTracers) {
-  for (const char* tracer : {"embree", "software"}) {
-    Still still = make(tracer);
-    for (const auto& [w, h] : {std::pair(1u, 1u), {17u, 31u}, {641u, 3u}, {1919u, 1079u}}) {
-      still.renderer.set_size(w, h);
-      const render::Frame frame = still.renderer.render();
-      EXPECT_EQ(frame.width, w);
-      EXPECT_EQ(frame.height, h);
-      EXPECT_EQ(frame.rgba.size(), std::size_t{4} * w * h);
-      int lit = 0;
-      for (std::size_t i = 0; i < frame.rgba.size(); i += 4) lit += frame.rgba[i] > 20;
-      EXPECT_GE(lit, static_cast<int>(frame.rgba.size() / 8)) << w << " x " << h;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace heliograph::test
