@@ -70,6 +70,7 @@ Result<protocol::Camera> Session::set_camera(const protocol::CameraSet& request,
   if (request.seq) input_seqs_[by] = *request.seq;
 
   const bool adjusted = request.eye || request.target || request.up || request.vertical_fov;
+  if (request.name) ++state_.cuts;
   std::optional<std::string> name = request.name ? request.name : camera_name_;
   return moved_camera(*camera, adjusted ? std::nullopt : std::move(name), by);
 }
@@ -79,6 +80,7 @@ Result<protocol::Camera> Session::fit_camera(const std::string& by) {
   if (const Result<void> there = require_scene(); !there) return there.error();
   const scene::Camera camera =
       scene::fit_camera(scene_->bounds, state_.camera.vertical_fov, aspect());
+  ++state_.cuts;
   return moved_camera(camera, std::nullopt, by);
 }
 

@@ -122,7 +122,9 @@ void SessionView::adopt_state() {
   const bool same_scene = state_.resources == before.resources;
   const bool resized = state_.width != before.width || state_.height != before.height;
   if (resized) whole_frame_ = {};
-  cut_ |= resized || !same_scene;
+  const bool jumped = state_.cuts != before.cuts;
+  if (jumped) renderer_->cut();
+  cut_ |= resized || !same_scene || jumped;
   if (same_scene && !scene::same_view(state_.camera, before.camera)) moved_at_ = Clock::now();
   adopt_pose();
   if (const auto accepted = renderer_->set_settings(state_.settings); !accepted) {

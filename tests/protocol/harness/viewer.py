@@ -12,6 +12,7 @@ SUBPROTOCOL = "heliograph.v1"
 FLAG_KEY = 1
 FLAG_FINAL = 2
 FLAG_FIRST_AFTER_DROP = 4
+FLAG_DISCONTINUITY = 8
 
 _LAYOUT = struct.Struct("<4sBBBBHHIIIIHHHHHHQIIII")
 _NAMES = ("magic version type codec flags header_bytes quality frame_seq render_id input_seq_echo "
