@@ -88,7 +88,7 @@ void store(ivec2 pixel, Hit hit, HitSurface s) {
 }
 
 void store_nothing(ivec2 pixel) {
-  imageStore(normals, pixel, vec4(0.0));
+  imageStore(normals, pixel, vec4(2.0));  // beyond the octahedron: no normal
   imageStore(base_color, pixel, vec4(0.0));
   imageStore(surface, pixel, vec4(0.0));
   imageStore(motion, pixel, vec4(0.0));

@@ -22,7 +22,7 @@ Ray shadow_ray(SurfaceMaterial m, vec3 position, ivec2 pixel) {
   if (!enabled(frame_direct)) return no_ray();
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < frame.counts.x; ++i) {
-    sum += light_contribution(light_number(i), m, position);
+    if (light_reaches(i, position)) sum += light_contribution(light_number(i), m, position);
   }
   float pick = path_number(pixel, constants.round, 1u);
   LightChoice choice = choose_light(m, position, pick);

@@ -91,8 +91,10 @@ GBuffer declare_gbuffer(gpu::FramePlan& plan) {
 GBuffer rasterize_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
   const GBuffer gbuffer = declare_gbuffer(plan);
   constexpr std::array<float, 4> nothing{};
+  // Beyond the octahedron, whose middle is a normal like any other.
+  constexpr std::array<float, 4> no_normal{2.0f, 2.0f, 2.0f, 2.0f};
   plan.raster("gbuffer", in.programs.gbuffer)
-      .color(gbuffer.normals, nothing)
+      .color(gbuffer.normals, no_normal)
       .color(gbuffer.base_color, nothing)
       .color(gbuffer.surface, nothing)
       .color(gbuffer.motion, nothing)

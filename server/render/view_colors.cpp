@@ -129,7 +129,7 @@ Colorize colors_for(ViewColors colors, const FloatImage& image) {
       return [](Texel v) { return direction_color({v[0], v[1], v[2]}); };
     case ViewColors::octahedral:
       return [](Texel v) {
-        const bool none = v[0] == 0.0f && v[1] == 0.0f && v[2] == 0.0f && v[3] == 0.0f;
+        const bool none = v[0] > 1.5f;  // see rasterize_gbuffer()
         return none ? glm::vec3(0.0f) : direction_color(octahedral_decode({v[0], v[1]}));
       };
     case ViewColors::difference:

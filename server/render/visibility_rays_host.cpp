@@ -1,5 +1,7 @@
 #include "render/visibility_rays_host.hpp"
 
+#include <algorithm>
+
 #include "render/host_rows.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -195,8 +197,10 @@ namespace {
 
 /// The indirect dispatch that covers the stream, as shaders/lib/ray_stream.glsl leaves it.
 void finish(shared::RayCount& count) {
-  constexpr std::uint32_t rays_per_group = 64;
-  count.groups_x = (count.count + rays_per_group - 1) / rays_per_group;
+  const std::uint32_t groups =
+      (count.count + shared::rays_per_group - 1) / shared::rays_per_group;
+  count.groups_x = std::min(groups, shared::groups_per_row);
+  count.groups_y = (groups + shared::groups_per_row - 1) / shared::groups_per_row;
 }
 
 }  // namespace

@@ -55,15 +55,32 @@ Light light_number(uint number) {
   return light;
 }
 
-bool has_area(Light light) {
-  return scene_has(scene_area_lights) && light.type >= light_rectangle;
+/// Whether any light of number `number` arrives at `position`: reads no more of it than where it is
+/// and how far it reaches, so that loops pay little for what is far away.
+bool light_reaches(uint number, vec3 position) {
+  vec3 middle;
+  float range;
+  uint type;
+  if (!scene_has(scene_many_lights) || number < uniform_lights) {
+    uint held = min(number, uniform_lights - 1u);
+    middle = lights[held].position;
+    range = lights[held].range;
+    type = lights[held].type;
+  } else {
+    int texel = int(number * texels_per_light);
+    uvec4 first = texelFetch(light_texels, texel);
+    middle = uintBitsToFloat(first.xyz);
+    type = first.w;
+    range = uintBitsToFloat(texelFetch(light_texels, texel + 1).w);
+  }
+  bool sun = number + 1u == frame.counts.x && frame.sun.w >= 0.0;
+  vec3 to_light = middle - position;
+  return sun || type == light_directional || range <= 0.0 ||
+         dot(to_light, to_light) < range * range;
 }
 
-/// Whether any of the light arrives at `position`: cheap, so that loops skip what is far away.
-bool reaches(Light light, vec3 position) {
-  vec3 to_light = light.position - position;
-  return light.type == light_directional || light.range <= 0.0 ||
-         dot(to_light, to_light) < light.range * light.range;
+bool has_area(Light light) {
+  return scene_has(scene_area_lights) && light.type >= light_rectangle;
 }
 
 /// A punctual light's middle.
@@ -114,10 +131,9 @@ LightSample sample_light(Light light, vec3 position, vec2 u) {
   return s;
 }
 
-/// Light that a surface sends to the eye from this light, unshadowed: radiance. Areas by linearly
-/// transformed cosines.
+/// Light that a surface sends to the eye from this light, unshadowed, where light_reaches():
+/// radiance. Areas by linearly transformed cosines.
 vec3 light_contribution(Light light, SurfaceMaterial m, vec3 position) {
-  if (!reaches(light, position)) return vec3(0.0);
   if (has_area(light)) {
     vec2 share = area_light_shares(light, m.normal, m.eye, m.n_dot_v, m.roughness, position);
     return light.color * (m.diffuse_albedo * share.x + m.specular_albedo * share.y);

@@ -111,6 +111,29 @@ TEST_F(Views, ShowKnownValuesInKnownColours) {
   EXPECT_NEAR(rgb(depth, x, y).x, 4.0f, 0.7f) << "metres";
 }
 
+// The middle of the octahedron is +Z, and no code for nothing.
+TEST(NormalsView, ShowsSurfacesThatFaceZ) {
+  for (const auto source : {protocol::PrimaryVisibility::raster, protocol::PrimaryVisibility::rays}) {
+    SceneBuilder builder;
+    builder.place(builder.add_quad({{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}},
+                                   surface(glm::vec3(0.5f))));
+    Still still(builder.build(), scene::constant_environment(glm::vec3(1.0f)),
+                look({0, 0, 4}, {0, 0, 0}), 32, 18);
+    protocol::Settings settings;
+    settings.gbuffer.source = source;
+    still.apply(settings);
+    still.renderer.render();
+    for (const char* view : {"gbuffer.normals", "gbuffer.normals.geometric"}) {
+      const render::Frame frame = *still.renderer.capture_view(view);
+      const std::uint8_t* middle = &frame.rgba[(std::size_t{9} * 32 + 16) * 4];
+      EXPECT_EQ((std::array{middle[0], middle[1], middle[2]}),
+                (std::array<std::uint8_t, 3>{128, 128, 255})) << view;
+      EXPECT_EQ((std::array{frame.rgba[0], frame.rgba[1], frame.rgba[2]}),
+                (std::array<std::uint8_t, 3>{0, 0, 0})) << view << " of the sky";
+    }
+  }
+}
+
 TEST_F(Views, MotionOfARestingSceneIsWhatTheCameraMakesOfIt) {
   const render::FloatImage motion = still_.capture("gbuffer.motion");
   const render::FloatImage error = still_.capture("gbuffer.motion.error");
