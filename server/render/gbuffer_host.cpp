@@ -201,7 +201,10 @@ class Shading {
     const Float none_of_it = zero();
     const Float2 two{none_of_it, none_of_it};
     const Float4 four{none_of_it, none_of_it, none_of_it, none_of_it};
-    const AllTexels nothing{Texels<4>(four),      Texels<4>(four),       Texels<2>(two),
+    // Beyond the octahedron: no normal.
+    const Float beyond = number(2.0f);
+    const Float4 no_normal{beyond, beyond, beyond, beyond};
+    const AllTexels nothing{Texels<4>(no_normal), Texels<4>(four),       Texels<2>(two),
                             Texels<2>(two),       Texels<1>(none_of_it), Texels<1>(none_of_it),
                             Texels<1>(none_of_it)};
     put(nothing, pixel, hn::And(missed, inside));
@@ -235,7 +238,8 @@ HWY_EXPORT(shade_batch);
 void camera_rays(const shared::FrameConstants& frame, shared::RayCount* count, shared::Ray* rays) {
   const auto across = static_cast<int>((frame.extent.x + 7) / 8);
   const auto tiles = across * static_cast<int>((frame.extent.y + 7) / 8);
-  *count = {static_cast<std::uint32_t>(tiles) * 64, static_cast<std::uint32_t>(tiles), 1, 1};
+  *count = {static_cast<std::uint32_t>(tiles) * 64, 0, 0, 1, 0, 0, 0, 0};
+  set_groups(*count);
   tbb::parallel_for(tbb::blocked_range<int>(0, tiles, 8), [&](const auto& some) {
     for (int tile = some.begin(); tile < some.end(); ++tile) {
       HWY_DYNAMIC_DISPATCH(make_camera_rays)(frame, tile, across, rays + 64 * tile);

@@ -26,6 +26,14 @@ void for_each_batch(int count, const Work& work) {
   });
 }
 
+/// The indirect dispatch that covers a stream, as shaders/lib/ray_stream.glsl leaves it.
+inline void set_groups(shared::RayCount& count) {
+  const std::uint32_t groups = (count.count + shared::rays_per_group - 1) / shared::rays_per_group;
+  count.groups_x = std::min(groups, shared::groups_per_row);
+  count.groups_y =
+      std::max((groups + shared::groups_per_row - 1) / shared::groups_per_row, 1u);
+}
+
 /// A stream of rays that kernels read.
 struct RaySource {
   const shared::RayCount* count;
@@ -35,22 +43,25 @@ struct RaySource {
 /// A stream that all threads append to; what shaders/lib/ray_stream.glsl does.
 class RaySink {
  public:
-  RaySink(shared::RayCount* count, shared::Ray* rays) : count_(count), rays_(rays) {}
+  /// `blending`: see shared::RayCount.
+  RaySink(shared::RayCount* count, shared::Ray* rays, std::uint32_t blending)
+      : count_(count), rays_(rays), blending_(blending) {}
 
   /// Before the first ray.
-  void begin() const { *count_ = {0, 0, 1, 1}; }
+  void begin() const { *count_ = {0, 0, 1, 1, blending_, 0, 0, 0}; }
   /// Thread safe.
   void append(std::span<const shared::Ray> rays) const {
     const std::atomic_ref count(count_->count);
     const std::uint32_t first = count.fetch_add(static_cast<std::uint32_t>(rays.size()));
     std::memcpy(rays_ + first, rays.data(), rays.size_bytes());
   }
-  /// After the last: as many groups of 64 as tracing on the device wants.
-  void end() const { count_->groups_x = (count_->count + 63) / 64; }
+  /// After the last.
+  void end() const { set_groups(*count_); }
 
  private:
   shared::RayCount* count_;
   shared::Ray* rays_;
+  std::uint32_t blending_;
 };
 
 }  // namespace heliograph::render::host

@@ -1,6 +1,7 @@
 #include "render/ray_stream.hpp"
 
 #include "shaders/embedded.hpp"
+#include "shaders/shared/ray_mask.h"
 
 namespace heliograph::render {
 
@@ -12,6 +13,12 @@ tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
           plan.buffer(name + ".rays", sizeof(shared::Ray) * capacity, storage,
                       gpu::Memory::device),
           capacity};
+}
+
+std::uint32_t frame_blending(const FrameInputs& in) {
+  if ((in.scene.features & shared::scene_blends) == 0) return 0;
+  const glm::uvec4& extent = in.constants.extent;
+  return shared::mixed_bits(extent.z ^ shared::mixed_bits(extent.w)) | 1u;
 }
 
 void begin_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,

@@ -19,6 +19,9 @@ tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
 /// How a stream's rays meet blended surfaces: stopped by all of them, or by their share.
 enum class Blending { stops, shares };
 
+/// RayCount::blending of a frame's streams; the same in shaders/lib/frame_blending.glsl.
+std::uint32_t frame_blending(const FrameInputs& in);
+
 /// The pass `name`.begin, which empties the stream.
 void begin_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
                 const tracing::RayStream& rays, Blending blending = Blending::shares);
@@ -37,8 +40,12 @@ inline host::RaySource ray_source(const gpu::FramePlan& plan, const tracing::Ray
   return {mapped<const shared::RayCount>(plan, rays.count),
           mapped<const shared::Ray>(plan, rays.rays)};
 }
-inline host::RaySink ray_sink(const gpu::FramePlan& plan, const tracing::RayStream& rays) {
-  return {mapped<shared::RayCount>(plan, rays.count), mapped<shared::Ray>(plan, rays.rays)};
+/// For one frame.
+inline host::RaySink ray_sink(const gpu::FramePlan& plan, const FrameInputs& in,
+                              const tracing::RayStream& rays,
+                              Blending blending = Blending::shares) {
+  return {mapped<shared::RayCount>(plan, rays.count), mapped<shared::Ray>(plan, rays.rays),
+          blending == Blending::shares ? frame_blending(in) : 0u};
 }
 
 }  // namespace heliograph::render

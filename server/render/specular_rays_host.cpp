@@ -118,6 +118,9 @@ void make_tile(const SpecularRaysJob& job, const Cells& cells, int tile_x, int t
   for (int y = top; y < bottom; ++y) {
     float* const row = job.radiance.row<float>(static_cast<std::uint32_t>(y));
     std::fill(row + 4 * left, row + 4 * right, 0.0f);
+    if (!job.directions) continue;
+    float* const taken = job.directions->row<float>(static_cast<std::uint32_t>(y));
+    std::fill(taken + 4 * left, taken + 4 * right, 0.0f);
   }
   const Generation generation(job);
   std::array<shared::Ray, tile_side * tile_side> made;

@@ -47,7 +47,7 @@ void shade_on_host(const gpu::FramePlan& plan, const FrameInputs& in, const Roun
                        round.last,
                        ray_source(plan, round.rays),
                        mapped<const shared::Hit>(plan, round.hits),
-                       ray_sink(plan, round.passed),
+                       ray_sink(plan, in, round.passed, Blending::stops),
                        {view(gbuffer.normals), view(gbuffer.base_color), view(gbuffer.surface),
                         view(gbuffer.motion), view(gbuffer.emissive), view(gbuffer.depth_slope),
                         view(gbuffer.instance)}});
@@ -74,7 +74,8 @@ void shade(gpu::FramePlan& plan, const FrameInputs& in, const Round& round) {
     bind(plan.host(name, [&plan, in, round] { shade_on_host(plan, in, round); }));
     return;
   }
-  begin_rays(plan, in, round.name, round.passed);
+  // Camera rays decide for themselves, by the filtered texel: as drawn triangles do.
+  begin_rays(plan, in, round.name, round.passed, Blending::stops);
   bind(plan.pass(name, in.programs.compute(shaders::gbuffer_hits, in.scene.features)))
       .constants(static_cast<std::uint32_t>(round.last))
       .dispatch_indirect(round.rays.count, ray_groups_offset);

@@ -53,7 +53,7 @@ tracing::RayStream generate_rays(gpu::FramePlan& plan, const FrameInputs& in,
     if (target.directions) directions = view(*target.directions);
     host::make_specular_rays({in.constants, split_sum(in), in.settings.specular.max_roughness,
                               view(gbuffer.normals), view(gbuffer.base_color),
-                              view(gbuffer.surface), view(gbuffer.motion), ray_sink(plan, rays),
+                              view(gbuffer.surface), view(gbuffer.motion), ray_sink(plan, in, rays),
                               view(target.radiance), directions});
   };
   if (by_host(plan, in)) {
@@ -84,7 +84,7 @@ void shade_on_host(const gpu::FramePlan& plan, const FrameInputs& in, const GBuf
                     *in.scene.environment->view(separate_sun).maps.host, lights, split_sum(in),
                     in.settings.specular.hit_shading == protocol::HitShading::traced, target.scale,
                     view(gbuffer.surface), view(gbuffer.motion), ray_source(plan, hits.rays),
-                    mapped<const shared::Hit>(plan, hits.hits), ray_sink(plan, hits.shadows),
+                    mapped<const shared::Hit>(plan, hits.hits), ray_sink(plan, in, hits.shadows),
                     view(target.radiance)});
 }
 

@@ -1,8 +1,7 @@
 #include "render/visibility_rays_host.hpp"
 
-#include <algorithm>
-
 #include "render/host_rows.hpp"
+#include "render/ray_sink.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/visibility_rays_host.cpp"
@@ -193,30 +192,18 @@ namespace heliograph::render::host {
 HWY_EXPORT(shadow_ray_rows);
 HWY_EXPORT(ambient_ray_rows);
 
-namespace {
-
-/// The indirect dispatch that covers the stream, as shaders/lib/ray_stream.glsl leaves it.
-void finish(shared::RayCount& count) {
-  const std::uint32_t groups =
-      (count.count + shared::rays_per_group - 1) / shared::rays_per_group;
-  count.groups_x = std::min(groups, shared::groups_per_row);
-  count.groups_y = (groups + shared::groups_per_row - 1) / shared::groups_per_row;
-}
-
-}  // namespace
-
 void shadow_rays(const ShadowRaysJob& job) {
   for_each_band(job.common.height, [&](int first, int last) {
     HWY_DYNAMIC_DISPATCH(shadow_ray_rows)(job, first, last);
   });
-  finish(*job.common.count);
+  set_groups(*job.common.count);
 }
 
 void ambient_rays(const VisibilityRaysJob& job) {
   for_each_band(job.height, [&](int first, int last) {
     HWY_DYNAMIC_DISPATCH(ambient_ray_rows)(job, first, last);
   });
-  finish(*job.count);
+  set_groups(*job.count);
 }
 
 }  // namespace heliograph::render::host
