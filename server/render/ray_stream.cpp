@@ -30,9 +30,9 @@ void begin_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& 
         .dispatch({1, 1});
     return;
   }
-  plan.host(name + ".begin", [&plan, count = rays.count] {
-    *reinterpret_cast<shared::RayCount*>(plan.get(count).mapped()) = {0, 0, 1, 1};
-  }).write(rays.count);
+  plan.host(name + ".begin",
+            [&plan, in, rays, blending] { ray_sink(plan, in, rays, blending).begin(); })
+      .write(rays.count);
 }
 
 }  // namespace heliograph::render
