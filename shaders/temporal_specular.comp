@@ -54,6 +54,27 @@ vec4 sample_at(ivec2 pixel) {
 
 Remembered nothing() { return Remembered(vec3(0.0), 0.0, vec2(0.0), vec3(0.0)); }
 
+/// The remembered signal between pixels, without the blur of bilinear weights. Held to the four
+/// nearest pixels: a cubic overshoots at edges, and farther pixels may show other surfaces.
+vec3 recall_sharply(HistoryTaps taps) {
+  vec4 across = cubic_weights(taps.fraction.x);
+  vec4 down = cubic_weights(taps.fraction.y);
+  vec3 sum = vec3(0.0), low = vec3(1e30), high = vec3(-1e30);
+  for (int y = 0; y < 4; ++y) {
+    for (int x = 0; x < 4; ++x) {
+      float weight = across[x] * down[y];
+      if (weight == 0.0) continue;
+      ivec2 tap = clamp(taps.base + ivec2(x, y) - 1, ivec2(0), ivec2(frame.extent.xy) - 1);
+      vec3 value = imageLoad(previous_signal, tap).rgb;
+      sum += weight * value;
+      if (x % 3 == 0 || y % 3 == 0) continue;
+      low = min(low, value);
+      high = max(high, value);
+    }
+  }
+  return clamp(sum, low, high);
+}
+
 Remembered recall(HistoryTaps taps) {
   Remembered found = nothing();
   for (int i = 0; i < 4; ++i) {
@@ -65,6 +86,9 @@ Remembered recall(HistoryTaps taps) {
     found.frames += weight * state.x;
     found.moments += weight * state.zw;
     found.fast += weight * imageLoad(previous_fast, tap).rgb;
+  }
+  if (taps.whole && (constants.flags & temporal_bicubic) != 0u) {
+    found.radiance = recall_sharply(taps);
   }
   return found;
 }
@@ -84,34 +108,75 @@ float hit_distance(ivec2 pixel) {
   return nearest < 1e9 ? nearest : 0.0;
 }
 
-/// From this frame's pixel to where the virtual point was in the frame before, in uv.
-vec2 virtual_motion(Surface s) {
-  vec3 position = world_position(s.pixel, s.view_z);
-  vec3 away = -to_eye(s.pixel);
-  vec3 behind = position + away * (hit_distance(s.pixel) * lobe_share(s.roughness));
+/// How a mirror bends: how fast its normal turns along the surface (1 / metres, positive where it
+/// bulges), and how far from pixel to pixel. Means over the neighbours to the left, right, above and
+/// below on the same thing.
+struct Bend {
+  float curvature;
+  float turn;
+};
+
+Bend bend(Surface s, vec3 position) {
+  if ((constants.flags & temporal_bent_mirrors) == 0u) return Bend(0.0, 0.0);
+  uint own = imageLoad(instance, s.pixel).r;
+  vec2 sum = vec2(0.0);
+  float count = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    ivec2 beside = s.pixel + (i < 2 ? ivec2(2 * i - 1, 0) : ivec2(0, 2 * i - 5));
+    if (!inside(beside, ivec2(frame.extent.xy)) || imageLoad(instance, beside).r != own) continue;
+    vec4 found = imageLoad(guide, beside);
+    vec3 step = world_position(beside, found.w) - position;
+    vec3 turn = normalize(found.xyz) - s.normal;
+    sum += vec2(dot(turn, step) / max(dot(step, step), 1e-20), length(turn));
+    count += 1.0;
+  }
+  return count > 0.0 ? Bend(sum.x / count, sum.y / count) : Bend(0.0, 0.0);
+}
+
+/// From where a point behind a pixel is seen to where it was seen in the frame before, in pixels.
+vec2 motion_of(vec3 point) {
   // Both without jitter, and through the same arithmetic: a resting view gives exactly zero.
-  return projected(frame.previous_unjittered, behind) - projected(frame.unjittered, behind);
+  return (projected(frame.previous_unjittered, point) - projected(frame.unjittered, point)) *
+         vec2(frame.extent.xy);
+}
+
+/// From this frame's pixel to where the virtual point was in the frame before, in pixels. A bent
+/// mirror seen from the side has two: its focus lies nearer within the plane of incidence than
+/// across it (Coddington's equations), and each moves its share of the picture.
+vec2 virtual_motion(Surface s, vec3 position, Bend bend) {
+  vec3 eye = to_eye(s.pixel);
+  float far = hit_distance(s.pixel), share = lobe_share(s.roughness);
+  float cosine = clamp(dot(s.normal, eye), 0.2, 1.0);
+  vec2 within =
+      motion_of(position - eye * (share * mirrored_distance(far, bend.curvature / cosine)));
+  if (bend.curvature == 0.0) return within;
+  vec2 across =
+      motion_of(position - eye * (share * mirrored_distance(far, bend.curvature * cosine)));
+  vec2 plane = (mat3(frame.view) * s.normal).xy * sign(frame.unproject.xy);
+  plane /= max(length(plane), 1e-6);
+  return across + plane * dot(within - across, plane);
 }
 
 /// Whether the frame before shows the same mirror there: the surface is compared, not the depth of
-/// what is behind it. A bent mirror shows its point elsewhere and fails the test of its normal.
-bool same_mirror(ivec2 pixel, Surface s) {
+/// what is behind it. Where the normal turns from pixel to pixel, so may that of a neighbour.
+bool same_mirror(ivec2 pixel, Surface s, float turn) {
   if (!inside(pixel, ivec2(frame.extent.xy))) return false;
   if (imageLoad(previous_instance, pixel).r != imageLoad(instance, s.pixel).r) return false;
   float found_z = imageLoad(previous_motion, pixel).w;
   if (found_z <= 0.0) return false;
   vec3 normal = octahedral_decode(imageLoad(previous_normals, pixel).xy);
-  float allowed = mix(0.9995, 0.95, s.roughness);
+  float allowed = min(mix(0.9995, 0.95, s.roughness), 1.0 - 2.0 * turn * turn);
   float roughness = imageLoad(previous_surface, pixel).r;
   return dot(normal, s.normal) > allowed && abs(roughness - s.roughness) < 0.05 + 0.25 * s.roughness;
 }
 
-HistoryTaps virtual_taps(Surface s, vec2 motion) {
-  vec2 position = vec2(s.pixel) + 0.5 + motion * vec2(frame.extent.xy);
+HistoryTaps virtual_taps(Surface s, vec2 motion, float turn) {
+  vec2 position = vec2(s.pixel) + 0.5 + motion;
   HistoryTaps taps = bilinear_taps(position);
   uint mask = 0u;
   for (int i = 0; i < 4; ++i) {
-    if (taps.weights[i] > 0.0 && same_mirror(taps.base + tap_offset(i), s)) mask |= 1u << uint(i);
+    if (taps.weights[i] <= 0.0) continue;
+    if (same_mirror(taps.base + tap_offset(i), s, turn)) mask |= 1u << uint(i);
   }
   return valid_taps(taps, mask);
 }
@@ -143,11 +208,18 @@ Remembered remembered(Surface s) {
   vec4 map = imageLoad(reprojection, s.pixel);
   HistoryTaps own = valid_taps(bilinear_taps(map.xy), uint(map.z));
   if ((constants.flags & temporal_virtual_point) == 0u) return recall(own);
-  vec2 motion = virtual_motion(s);
-  HistoryTaps mirrored = virtual_taps(s, motion);
+  vec3 position = world_position(s.pixel, s.view_z);
+  Bend bend = bend(s, position);
+  vec2 motion = virtual_motion(s, position, bend);
+  HistoryTaps mirrored = virtual_taps(s, motion, bend.turn);
   vec2 own_motion = map.xy - (vec2(s.pixel) + 0.5);
-  float apart = distance(own_motion, motion * vec2(frame.extent.xy));
-  if (any_tap(mirrored) && (apart > 0.5 || !any_tap(own))) return recall(mirrored);
+  float apart = distance(own_motion, motion);
+  float lobe = lobe_pixels(s.roughness);
+  if (any_tap(mirrored) && (apart > worth_parting(lobe) || !any_tap(own))) {
+    Remembered found = recall(mirrored);
+    found.frames = min(found.frames, mirror_memory(lobe));
+    return found;
+  }
   // The surface's own history shows another part of the reflection, the sharper the mirror and the
   // further the two places are apart.
   Remembered found = recall(own);

@@ -32,6 +32,27 @@ struct Remembered {
   vec2 fast;
 };
 
+/// The remembered signal between pixels, without the blur of bilinear weights. Held to the four
+/// nearest pixels: a cubic overshoots at edges, and farther pixels may show other surfaces.
+vec2 recall_sharply(HistoryTaps taps) {
+  vec4 across = cubic_weights(taps.fraction.x);
+  vec4 down = cubic_weights(taps.fraction.y);
+  vec2 sum = vec2(0.0), low = vec2(1e30), high = vec2(-1e30);
+  for (int y = 0; y < 4; ++y) {
+    for (int x = 0; x < 4; ++x) {
+      float weight = across[x] * down[y];
+      if (weight == 0.0) continue;
+      ivec2 tap = clamp(taps.base + ivec2(x, y) - 1, ivec2(0), ivec2(frame.extent.xy) - 1);
+      vec2 value = imageLoad(previous_signal, tap).xy;
+      sum += weight * value;
+      if (x % 3 == 0 || y % 3 == 0) continue;
+      low = min(low, value);
+      high = max(high, value);
+    }
+  }
+  return clamp(sum, low, high);
+}
+
 Remembered recall(ivec2 pixel) {
   Remembered found = Remembered(vec2(0.0), vec4(0.0), vec2(0.0), vec2(0.0));
   if ((constants.flags & temporal_holds) == 0u) return found;
@@ -46,6 +67,7 @@ Remembered recall(ivec2 pixel) {
     found.frames += weight * imageLoad(previous_history, tap).xy;
     found.fast += weight * imageLoad(previous_fast, tap).xy;
   }
+  if (taps.whole && (constants.flags & temporal_bicubic) != 0u) found.signal = recall_sharply(taps);
   return found;
 }
 

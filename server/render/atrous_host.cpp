@@ -203,9 +203,18 @@ class Row {
   }
 
   HWY_INLINE V levels(V roughness) const {
-    if (!has(shared::atrous_levels_by_roughness)) return set(16.0f);
+    V most = set(16.0f);
+    if (has(shared::atrous_lobe_limit) && !job_.orthographic) {
+      const V pixels = hn::Mul(hn::Mul(roughness, roughness), set(2.0f / job_.footprint));
+      // The whole part of the logarithm is the exponent; below 1 it is negative.
+      const V power = hn::ConvertTo(
+          d_, hn::Sub(hn::ShiftRight<23>(hn::BitCast(di_, hn::Max(pixels, set(0.5f)))),
+                      hn::Set(di_, 127)));
+      most = hn::Add(power, set(1.0f));
+    }
+    if (!has(shared::atrous_levels_by_roughness)) return most;
     const V rough = hn::IfThenElse(hn::Le(roughness, set(0.05f)), set(1.0f), set(16.0f));
-    return hn::IfThenElse(hn::Le(roughness, set(0.002f)), hn::Zero(d_), rough);
+    return hn::Min(most, hn::IfThenElse(hn::Le(roughness, set(0.002f)), hn::Zero(d_), rough));
   }
 
   /// Pixels from tap to tap.

@@ -44,6 +44,7 @@ Blur blur_of(const FrameInputs& in) {
   const auto constants = [in, &settings](const KernelShape& shape) {
     shared::AtrousConstants made = atrous_constants(settings, shape);
     made.start_threshold = settings.adapt_start ? settings.roughness_threshold : 2.0f;
+    if (settings.lobe_limit) made.flags |= shared::atrous_lobe_limit;
     const bool quiet = in.settings.specular.hit_shading == protocol::HitShading::environment;
     if (settings.iterations_by_roughness && quiet) made.flags |= shared::atrous_levels_by_roughness;
     return made;

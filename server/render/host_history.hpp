@@ -118,6 +118,8 @@ struct HistoryTaps {
 
   VI x, y;
   V weights[4];  // of (x, y), right of it, below it, below and right
+  V fraction_x, fraction_y;  // of the way from (x, y) to the last of them
+  hn::Mask<D> whole;         // no pixel that counts is missing
 
   HWY_INLINE HistoryTaps(V position_x, V position_y) {
     const D d;
@@ -134,11 +136,20 @@ struct HistoryTaps {
     weights[1] = fx * (one - fy);
     weights[2] = (one - fx) * fy;
     weights[3] = fx * fy;
+    fraction_x = fx;
+    fraction_y = fy;
+    whole = hn::Ge(fx, hn::Zero(d));
   }
 
   HWY_INLINE VI tap_x(int tap) const { return x + hn::Set(DI(), tap & 1); }
   HWY_INLINE VI tap_y(int tap) const { return y + hn::Set(DI(), tap >> 1); }
 
+  /// Leaves a tap out where it is not valid.
+  HWY_INLINE void keep(int tap, hn::Mask<D> valid) {
+    const auto missing = hn::AndNot(valid, hn::Gt(weights[tap], hn::Zero(D())));
+    whole = hn::AndNot(missing, whole);
+    weights[tap] = hn::IfThenElseZero(valid, weights[tap]);
+  }
   /// Makes the weights that are left add up to 1; all 0 where that is less than one hundredth.
   HWY_INLINE void normalise() {
     const D d;
@@ -152,6 +163,54 @@ struct HistoryTaps {
     return hn::Gt(weights[0] + weights[1] + weights[2] + weights[3], hn::Zero(d));
   }
 };
+
+/// Weights of four pixels in a row for a point `f` of the way from the second to the third: the
+/// cubic of Catmull and Rom.
+template <class V>
+HWY_INLINE void cubic_weights(V f, V (&weights)[4]) {
+  const hn::DFromV<V> d;
+  const V half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f);
+  const V steep = hn::Set(d, 1.5f);
+  weights[0] = f * (f * (one - half * f) - half);
+  weights[1] = one + f * f * (steep * f - hn::Set(d, 2.5f));
+  weights[2] = f * (half + f * (two - steep * f));
+  weights[3] = f * f * (half * f - half);
+}
+
+/// recall_sharply() of the shaders: `read` gives the channels of a Spot; where `wanted`, the values
+/// become the cubic's, held to the four nearest pixels.
+template <class D, int channels, class Read, class V = hn::Vec<D>>
+HWY_INLINE void recall_sharply(const Bounds<D>& bounds, const HistoryTaps<D>& taps,
+                               hn::Mask<D> wanted, const Read& read, V (&values)[channels]) {
+  const D d;
+  const hn::RebindToSigned<D> di;
+  V across[4], down[4], sum[channels], low[channels], high[channels];
+  cubic_weights(taps.fraction_x, across);
+  cubic_weights(taps.fraction_y, down);
+  for (int c = 0; c < channels; ++c) {
+    sum[c] = hn::Zero(d);
+    low[c] = hn::Set(d, 1e30f);
+    high[c] = hn::Set(d, -1e30f);
+  }
+  for (int i = 0; i < 16; ++i) {
+    const int x = i % 4, y = i / 4;
+    const V weight = across[x] * down[y];
+    const auto counts = hn::And(wanted, hn::Ne(weight, hn::Zero(d)));
+    if (hn::AllFalse(d, counts)) continue;
+    V found[channels];
+    read(bounds.spot(taps.x + hn::Set(di, x - 1), taps.y + hn::Set(di, y - 1)), found);
+    const bool nearest = x % 3 != 0 && y % 3 != 0;
+    for (int c = 0; c < channels; ++c) {
+      sum[c] = sum[c] + hn::IfThenElseZero(counts, weight * found[c]);
+      if (!nearest) continue;
+      low[c] = hn::IfThenElse(counts, hn::Min(low[c], found[c]), low[c]);
+      high[c] = hn::IfThenElse(counts, hn::Max(high[c], found[c]), high[c]);
+    }
+  }
+  for (int c = 0; c < channels; ++c) {
+    values[c] = hn::IfThenElse(wanted, hn::Min(hn::Max(sum[c], low[c]), high[c]), values[c]);
+  }
+}
 
 }  // namespace heliograph::render::host::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -39,7 +39,7 @@ HWY_INLINE HistoryTaps<D> remembered_taps(const Quad<hn::Vec<D>>& map) {
   for (int i = 0; i < 4; ++i) {
     const auto bit = hn::Set(di, 1 << i);
     const auto valid = hn::RebindMask(d, hn::Eq(hn::And(bits, bit), bit));
-    taps.weights[i] = hn::IfThenElseZero(valid, taps.weights[i]);
+    taps.keep(i, valid);
   }
   taps.normalise();
   return taps;

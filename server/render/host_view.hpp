@@ -67,6 +67,11 @@ class ViewedRow {
         hn::MulAdd(set(m[0][2]), view.x, hn::MulAdd(set(m[1][2]), view.y, set(m[2][2]) * view.z))});
   }
 
+  /// How many pixels wide the lobe of a smooth surface shows what is far away.
+  HWY_INLINE V lobe_pixels(V roughness) const {
+    return orthographic_ ? set(1e6f) : set(2.0f) * roughness * roughness / footprint(set(1.0f));
+  }
+
   /// Size of a pixel at `view_z` metres along -Z, metres.
   HWY_INLINE V footprint(V view_z) const {
     const float height =

@@ -142,6 +142,7 @@ Integrated accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in, cons
   const auto constants = [in, &settings] {
     shared::TemporalConstants made = temporal_constants(in, settings);
     if (settings.virtual_point) made.flags |= shared::temporal_virtual_point;
+    if (settings.bent_mirrors) made.flags |= shared::temporal_bent_mirrors;
     return made;
   };
   const gpu::ImageRef signal =

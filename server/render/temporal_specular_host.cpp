@@ -27,6 +27,9 @@ class SpecularAccumulation {
     Pair<V> moments;
     Triple<V> fast;
   };
+  struct Views {
+    ViewedRow<D> above, here, below;
+  };
   struct Surface {
     Triple<V> normal;
     V roughness;
@@ -42,9 +45,9 @@ class SpecularAccumulation {
     for (int y = first - 1; y <= last; ++y) fill_hits(hits, y);
     const int lanes = static_cast<int>(hn::Lanes(d_));
     for (int y = first; y < last; ++y) {
-      const ViewedRow<D> view(job_.frame, y);
+      const Views views{{job_.frame, y - 1}, {job_.frame, y}, {job_.frame, y + 1}};
       for (int x = 0; x < job_.width; x += lanes) {
-        block(hits, view, std::min(x, job_.width - lanes), y);
+        block(hits, views, std::min(x, job_.width - lanes), y);
       }
     }
   }
@@ -94,20 +97,75 @@ class SpecularAccumulation {
     return {clip.x * half, clip.y * half};
   }
 
-  /// From this frame's pixels to where the virtual points were in the frame before, in pixels.
-  HWY_INLINE Pair<V> virtual_motion(const ViewedRow<D>& view, const BandScratch& hits, int x,
-                                    int y, const Surface& s) const {
-    const Triple<V> position = view.world_position(x, s.view_z);
-    const V depth = hit_distance(hits, x, y) * lobe_share(s.roughness);
-    const Triple<V> behind = position - view.to_eye(x) * depth;
-    const Pair<V> before = projected(job_.frame.previous_unjittered, behind);
-    const Pair<V> now = projected(job_.frame.unjittered, behind);
+  HWY_INLINE V mirrored_distance(V distance, V curvature) const {
+    return distance / hn::Max(hn::MulAdd(set(2.0f) * curvature, distance, set(1.0f)), set(0.25f));
+  }
+
+  /// How a mirror bends: along the surface, positive where it bulges, and from pixel to pixel.
+  struct Bend {
+    V curvature;
+    V turn;
+  };
+
+  HWY_INLINE Bend bend(const Views& views, int x, int y, VI instance, const Surface& s,
+                       const Triple<V>& position) const {
+    const V zero = hn::Zero(d_);
+    if ((c_.flags & shared::temporal_bent_mirrors) == 0) return {zero, zero};
+    V curvature = zero, turns = zero, count = zero;
+    for (int i = 0; i < 4; ++i) {
+      const int column = x + (i < 2 ? 2 * i - 1 : 0), row = y + (i < 2 ? 0 : 2 * i - 5);
+      const VI at_x = hn::Iota(di_, column), at_y = hn::Set(di_, row);
+      const Spot<D> spot = bounds_.spot(at_x, at_y);
+      const auto own = hn::Eq(spot.word(job_.instance), instance);
+      const Quad<V> found = spot.four(job_.guide);
+      const M counts = hn::And(hn::And(bounds_.contain(at_x, at_y), hn::RebindMask(d_, own)),
+                               hn::Gt(found.w, zero));
+      const auto& view = row < y ? views.above : row > y ? views.below : views.here;
+      const Triple<V> step = view.world_position(column, found.w) - position;
+      const Triple<V> turn = normalized(Triple<V>{found.x, found.y, found.z}) - s.normal;
+      const V along = dot(turn, step) / hn::Max(dot(step, step), set(1e-20f));
+      curvature = curvature + hn::IfThenElseZero(counts, along);
+      turns = turns + hn::IfThenElseZero(counts, length(turn));
+      count = count + hn::IfThenElseZero(counts, set(1.0f));
+    }
+    const V share = set(1.0f) / hn::Max(count, set(1.0f));
+    return {curvature * share, turns * share};
+  }
+
+  HWY_INLINE Pair<V> motion_of(const Triple<V>& point) const {
+    const Pair<V> before = projected(job_.frame.previous_unjittered, point);
+    const Pair<V> now = projected(job_.frame.unjittered, point);
     return {(before.x - now.x) * set(static_cast<float>(job_.width)),
             (before.y - now.y) * set(static_cast<float>(job_.height))};
   }
 
+  /// From this frame's pixels to where the virtual points were in the frame before, in pixels.
+  HWY_INLINE Pair<V> virtual_motion(const Views& views, const BandScratch& hits, int x, int y,
+                                    const Surface& s, const Triple<V>& position,
+                                    V curvature) const {
+    const Triple<V> eye = views.here.to_eye(x);
+    const V far = hit_distance(hits, x, y), share = lobe_share(s.roughness);
+    const V cosine = clamped(dot(s.normal, eye), 0.2f, 1.0f);
+    const auto behind = [&](V bend) HWY_ATTR {
+      return motion_of(position - eye * (share * mirrored_distance(far, bend)));
+    };
+    const Pair<V> within = behind(curvature / cosine);
+    if (hn::AllTrue(d_, hn::Eq(curvature, hn::Zero(d_)))) return within;
+    const Pair<V> across = behind(curvature * cosine);
+    const glm::mat4& m = job_.frame.view;
+    const auto turned = [&](int row, float way) HWY_ATTR {
+      const V along = hn::MulAdd(set(m[0][row]), s.normal.x,
+                                 hn::MulAdd(set(m[1][row]), s.normal.y, set(m[2][row]) * s.normal.z));
+      return way < 0.0f ? hn::Neg(along) : along;
+    };
+    const V px = turned(0, job_.frame.unproject.x), py = turned(1, job_.frame.unproject.y);
+    const V square = hn::Max(hn::MulAdd(px, px, py * py), set(1e-12f));
+    const V apart = hn::MulAdd(within.x - across.x, px, (within.y - across.y) * py) / square;
+    return {hn::MulAdd(px, apart, across.x), hn::MulAdd(py, apart, across.y)};
+  }
+
   /// Whether the frame before shows the same mirror there.
-  HWY_INLINE M same_mirror(VI x, VI y, M wanted, VI instance, const Surface& s) const {
+  HWY_INLINE M same_mirror(VI x, VI y, M wanted, VI instance, const Surface& s, V turn) const {
     const M asked = hn::And(wanted, bounds_.contain(x, y));
     if (hn::AllFalse(d_, asked)) return asked;
     const Spot<D> spot = bounds_.spot(x, y);
@@ -116,18 +174,21 @@ class SpecularAccumulation {
     same = hn::And(same, hn::Gt(spot.last_of_four(job_.previous_motion), hn::Zero(d_)));
     const Pair<V> encoded = spot.first_two(job_.previous_normals);
     const V cosine = dot(octahedral_decode(encoded.x, encoded.y), s.normal);
-    same = hn::And(same, hn::Gt(cosine, mix(set(0.9995f), set(0.95f), s.roughness)));
+    const V bent = hn::NegMulAdd(set(2.0f) * turn, turn, set(1.0f));
+    const V allowed = hn::Min(mix(set(0.9995f), set(0.95f), s.roughness), bent);
+    same = hn::And(same, hn::Gt(cosine, allowed));
     const auto texel = hn::BitCast(hn::RebindToUnsigned<D>(), spot.word(job_.previous_surface));
     const V off = hn::Abs(unorm8<0>(d_, texel) - s.roughness);
     return hn::And(same, hn::Lt(off, hn::MulAdd(set(0.25f), s.roughness, set(0.05f))));
   }
 
-  HWY_INLINE HistoryTaps<D> virtual_taps(V x, V y, M seen, VI instance, const Surface& s) const {
+  HWY_INLINE HistoryTaps<D> virtual_taps(V x, V y, M seen, VI instance, const Surface& s,
+                                          V turn) const {
     HistoryTaps<D> taps(x, y);
     for (int i = 0; i < 4; ++i) {
       const M weighs = hn::And(seen, hn::Gt(taps.weights[i], hn::Zero(d_)));
-      const M same = same_mirror(taps.tap_x(i), taps.tap_y(i), weighs, instance, s);
-      taps.weights[i] = hn::IfThenElseZero(same, taps.weights[i]);
+      const M same = same_mirror(taps.tap_x(i), taps.tap_y(i), weighs, instance, s, turn);
+      taps.keep(i, same);
     }
     taps.normalise();
     return taps;
@@ -158,32 +219,50 @@ class SpecularAccumulation {
       add_share<D>(counts, weight, fast.y, r.fast.y);
       add_share<D>(counts, weight, fast.z, r.fast.z);
     }
+    if ((c_.flags & shared::temporal_bicubic) == 0) return r;
+    V values[3] = {r.radiance.x, r.radiance.y, r.radiance.z};
+    recall_sharply<D, 3>(
+        bounds_, taps, taps.whole,
+        [&](const Spot<D>& spot, V(&found)[3]) HWY_ATTR {
+          const Triple<V> signal = spot.first_three(job_.previous_signal);
+          found[0] = signal.x;
+          found[1] = signal.y;
+          found[2] = signal.z;
+        },
+        values);
+    r.radiance = {values[0], values[1], values[2]};
     return r;
   }
 
   /// Both candidates as one memory.
-  HWY_INLINE Remembered remembered(const BandScratch& hits, const ViewedRow<D>& view, int x, int y,
+  HWY_INLINE Remembered remembered(const BandScratch& hits, const Views& views, int x, int y,
                                    M seen, const Surface& s) const {
     if ((c_.flags & shared::temporal_holds) == 0) return nothing();
     const Quad<V> map = load(job_.reprojection, x, y);
     const HistoryTaps<D> own = remembered_taps<D>(map);
     if ((c_.flags & shared::temporal_virtual_point) == 0) return recall(own);
-    const Pair<V> motion = virtual_motion(view, hits, x, y, s);
+    const VI instance = hn::LoadU(di_, row_of<const int>(job_.instance, y) + x);
+    const Triple<V> position = views.here.world_position(x, s.view_z);
+    const Bend bent = bend(views, x, y, instance, s, position);
+    const Pair<V> motion = virtual_motion(views, hits, x, y, s, position, bent.curvature);
     const V here_x = hn::Iota(d_, static_cast<float>(x) + 0.5f);
     const V here_y = set(static_cast<float>(y) + 0.5f);
-    const VI instance = hn::LoadU(di_, row_of<const int>(job_.instance, y) + x);
     const HistoryTaps<D> mirrored =
-        virtual_taps(here_x + motion.x, here_y + motion.y, seen, instance, s);
+        virtual_taps(here_x + motion.x, here_y + motion.y, seen, instance, s, bent.turn);
     const V apart_x = map.x - here_x - motion.x, apart_y = map.y - here_y - motion.y;
     const V apart = hn::Sqrt(hn::MulAdd(apart_x, apart_x, apart_y * apart_y));
-    const M elsewhere = hn::Or(hn::Gt(apart, set(0.5f)), hn::Not(own.any()));
+    const V lobe = views.here.lobe_pixels(s.roughness);
+    const V worth = hn::Min((lobe + set(1.0f)) * set(1.0f / 64.0f), set(0.5f));
+    const M elsewhere = hn::Or(hn::Gt(apart, worth), hn::Not(own.any()));
     const M by_mirror = hn::And(mirrored.any(), elsewhere);
     Remembered found = recall(chosen(by_mirror, mirrored, own));
     // The surface's own history shows another part of the reflection, the sharper the mirror and
     // the further the two places are apart.
     const V reach = hn::MulAdd(set(64.0f) * s.roughness, s.roughness, set(0.25f));
     const V trust = hn::Exp(d_, hn::Max(hn::Neg(apart / reach), set(-80.0f)));
-    found.frames = hn::IfThenElse(by_mirror, found.frames, found.frames * trust);
+    const V beyond = hn::Max(lobe - set(0.25f), hn::Zero(d_));
+    const V kept = hn::Min(found.frames, set(8.0f) * beyond);
+    found.frames = hn::IfThenElse(by_mirror, kept, found.frames * trust);
     return found;
   }
 
@@ -196,6 +275,9 @@ class SpecularAccumulation {
     for (int i = 0; i < 4; ++i) {
       taps.weights[i] = hn::IfThenElse(first, a.weights[i], b.weights[i]);
     }
+    taps.fraction_x = hn::IfThenElse(first, a.fraction_x, b.fraction_x);
+    taps.fraction_y = hn::IfThenElse(first, a.fraction_y, b.fraction_y);
+    taps.whole = hn::Or(hn::And(first, a.whole), hn::AndNot(first, b.whole));
     return taps;
   }
 
@@ -210,7 +292,7 @@ class SpecularAccumulation {
     return hn::Min(longest, hn::MulAdd(set(0.63f), power - set(1.0f), set(1.0f)));
   }
 
-  HWY_INLINE void block(const BandScratch& hits, const ViewedRow<D>& view, int x, int y) const {
+  HWY_INLINE void block(const BandScratch& hits, const Views& views, int x, int y) const {
     const V zero = hn::Zero(d_), one = set(1.0f);
     const Quad<V> guide = load(job_.guide, x, y);
     const M seen = hn::Gt(guide.w, zero);
@@ -228,7 +310,7 @@ class SpecularAccumulation {
     const Triple<V> scaled{guide.x, guide.y, guide.z};
     const V size = length(scaled);
     const Surface s{scaled * (one / size), size - one, guide.w};
-    const Remembered old = remembered(hits, view, x, y, seen, s);
+    const Remembered old = remembered(hits, views, x, y, seen, s);
 
     const V frames = hn::Min(old.frames + one, longest_memory(s.roughness));
     const Triple<V> radiance = mix(old.radiance, now, one / frames);

@@ -73,6 +73,17 @@ class VisibilityAccumulation {
       add_share<D>(counts, weight, fast.x, r.fast.x);
       add_share<D>(counts, weight, fast.y, r.fast.y);
     }
+    if ((c_.flags & shared::temporal_bicubic) == 0) return r;
+    V values[2] = {r.signal.x, r.signal.y};
+    recall_sharply<D, 2>(
+        bounds_, taps, taps.whole,
+        [&](const Spot<D>& spot, V(&found)[2]) HWY_ATTR {
+          const Pair<V> signal = spot.first_two(job_.previous_signal);
+          found[0] = signal.x;
+          found[1] = signal.y;
+        },
+        values);
+    r.signal = {values[0], values[1]};
     return r;
   }
 

@@ -44,10 +44,16 @@ vec2 smooth_variance(ivec2 pixel) {
   return sum;
 }
 
-/// How often a pixel is filtered where reflections bring no noise of their own (paper 3.5).
+/// How often a pixel is filtered: not beyond the width of the lobe, and less often where reflections
+/// bring no noise of their own (paper 3.5).
 int levels(float roughness) {
-  if (!has(atrous_levels_by_roughness)) return 16;
-  return roughness <= 0.002 ? 0 : roughness <= 0.05 ? 1 : 16;
+  int most = 16;
+  if (has(atrous_lobe_limit)) {
+    float pixels = lobe_pixels(roughness);
+    most = pixels < 1.0 ? 0 : 1 + int(log2(pixels));
+  }
+  if (!has(atrous_levels_by_roughness)) return most;
+  return min(most, roughness <= 0.002 ? 0 : roughness <= 0.05 ? 1 : 16);
 }
 
 /// Pixels from tap to tap: twice as many on surfaces rougher than the threshold, with a band

@@ -22,6 +22,8 @@ SHARED_CONSTANT uint rectification_gradient = 7u;
 SHARED_CONSTANT uint temporal_holds = 1u;          // there is a history
 SHARED_CONSTANT uint temporal_mean_variance = 2u;  // variance of the mean, not of one sample
 SHARED_CONSTANT uint temporal_virtual_point = 4u;
+SHARED_CONSTANT uint temporal_bent_mirrors = 8u;  // their virtual points, too
+SHARED_CONSTANT uint temporal_bicubic = 16u;      // reads the remembered signal sharply
 
 struct TemporalConstants {
   float frames;          // longest memory
@@ -39,6 +41,7 @@ SHARED_CONSTANT uint atrous_variance_prefilter = 1u;
 SHARED_CONSTANT uint atrous_keep_variance = 2u;  // this half passes the variance on unfiltered
 SHARED_CONSTANT uint atrous_jitter = 4u;
 SHARED_CONSTANT uint atrous_levels_by_roughness = 8u;
+SHARED_CONSTANT uint atrous_lobe_limit = 16u;
 
 // A kernel of (2 columns + 1) x (2 rows + 1) taps, 2^level pixels apart.
 struct AtrousConstants {

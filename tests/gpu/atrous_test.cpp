@@ -288,6 +288,31 @@ TEST(AtrousLevels, FollowTheRoughnessWhereHitsBringNoNoise) {
   }
 }
 
+TEST(AtrousLevels, EndWhereTheLobeOfASmoothSurfaceEnds) {
+  Input in(9);
+  // Widths of the lobe in pixels: none, one to two, and more than all levels reach.
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const float roughness = i % width < 12 ? 0.01f : i % width < 24 ? 0.17f : 0.9f;
+    in.guide[i] = glm::vec4(0, 0, 1.0f + roughness, 5.0f);
+    in.slope[i] = glm::vec2(0.0f);
+  }
+  shared::AtrousConstants constants = plain();
+  constants.flags |= shared::atrous_lobe_limit;
+  Filter once(in, constants, true, 1), often(in, constants, true, 4);
+  const render::FloatImage one = once.run(), four = often.run();
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const std::size_t x = i % width;
+    if (x < 12) {
+      EXPECT_EQ(four.rgba[4 * i], in.signal[i].x) << "a mirror is not blurred";
+    } else if (x < 24) {
+      EXPECT_EQ(four.rgba[4 * i], one.rgba[4 * i]) << "once";
+      EXPECT_NE(four.rgba[4 * i], in.signal[i].x);
+    } else {
+      EXPECT_NE(four.rgba[4 * i], one.rgba[4 * i]);
+    }
+  }
+}
+
 TEST(AtrousHalves, OfThePaperUpdateTheVarianceInTheSecondAlone) {
   protocol::Settings settings;
   settings.specular_blur.variance_update = protocol::VarianceUpdate::vertical_only;

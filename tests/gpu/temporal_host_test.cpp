@@ -131,6 +131,11 @@ TEST_F(TemporalHost, FollowsEverySetting) {
   expect_same_over_frames(view, "own history, variance of samples");
 
   view = {};
+  view.settings.shadow_temporal.bicubic = view.settings.specular_temporal.bicubic = false;
+  view.settings.specular_temporal.bent_mirrors = false;
+  expect_same_over_frames(view, "bilinear, mirrors as if they were flat");
+
+  view = {};
   view.settings.shadow_temporal.rectification = view.settings.specular_temporal.rectification =
       protocol::Rectification::off;
   expect_same_over_frames(view, "not rectified");

@@ -55,6 +55,8 @@ ShaderOutput evaluate(uint which, ShaderInput given) {
                                  vec4(0.0));
     case 13: return ShaderOutput(vec4(shortened_history(given.a.xy, given.b.xy, given.c.xy), 0.0, 0.0),
                                  vec4(0.0));
+    case 14: return ShaderOutput(cubic_weights(given.a.x),
+                                 vec4(mirrored_distance(given.a.x, given.a.y), 0.0, 0.0, 0.0));
     default: return ShaderOutput(vec4(lobe_share(given.a.x), surface_trust(given.a.y, given.a.z),
                                       scrub(given.b.x), 0.0), vec4(scrub(given.b.xyz), 0.0));
   }

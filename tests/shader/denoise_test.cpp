@@ -25,6 +25,7 @@ enum Function : std::uint32_t {
   variance_box,
   variance,
   shortened,
+  sharp,
   others
 };
 
@@ -261,6 +262,28 @@ TEST(VirtualPoint, LiesBehindAMirrorAndOnARoughSurface) {
   EXPECT_EQ(got[0].x.x, 1.0f);
   EXPECT_NEAR(got[20].x.x, 0.0f, 1e-3);
   for (int i = 1; i <= 20; ++i) EXPECT_LE(got[i].x.x, got[i - 1].x.x + 0.02f);
+}
+
+TEST(CubicWeights, ReadPixelsThemselvesAndStraightAndBentLinesExactly) {
+  for (const float f : {0.0f, 0.25f, 0.5f, 0.9f}) {
+    const glm::vec4 w = call(sharp, {{.a = {f, 0, 0, 0}}})[0].x;
+    EXPECT_NEAR(w.x + w.y + w.z + w.w, 1.0f, 1e-6);
+    EXPECT_NEAR(-w.x + w.z + 2.0f * w.w, f, 1e-6) << "a straight line";
+    EXPECT_NEAR(w.x + w.z + 4.0f * w.w, f * f, 1e-6) << "a parabola";
+  }
+  EXPECT_EQ(call(sharp, {{.a = glm::vec4(0.0f)}})[0].x, glm::vec4(0, 1, 0, 0));
+}
+
+TEST(MirroredDistance, FollowsTheMirrorEquation) {
+  // a: distance, curvature.
+  const auto far = [](float distance, float curvature) {
+    return call(sharp, {{.a = {distance, curvature, 0, 0}}})[0].y.x;
+  };
+  EXPECT_EQ(far(3.0f, 0.0f), 3.0f) << "flat";
+  EXPECT_NEAR(far(1e6f, 0.5f), 1.0f, 1e-4) << "in the focus, half a radius behind a ball";
+  EXPECT_NEAR(1.0f / far(3.0f, 0.25f), 1.0f / 3.0f + 0.5f, 1e-5);
+  EXPECT_NEAR(1.0f / far(1.0f, -0.25f), 1.0f - 0.5f, 1e-5) << "a hollow mirror enlarges";
+  EXPECT_EQ(far(2.0f, -3.0f), 8.0f) << "but never without bounds";
 }
 
 TEST(Scrub, LeavesOnlyNumbers) {
