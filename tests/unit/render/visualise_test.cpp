@@ -22,7 +22,8 @@ TEST(Visualise, ShowsTheOutputAsItIs) {
 }
 
 TEST(Visualise, NormalsAreColouredByAxisAndNothingIsBlack) {
-  EXPECT_EQ(shown("gbuffer.normals", {0, 0, 0, 0}), (Rgb{0, 0, 0}));
+  EXPECT_EQ(shown("gbuffer.normals", {2, 2, 2, 2}), (Rgb{0, 0, 0})) << "no normal";
+  EXPECT_EQ(shown("gbuffer.normals", {0, 0, 0, 0}), (Rgb{128, 128, 255})) << "toward +Z";
   EXPECT_EQ(shown("gbuffer.normals", {1, 0, 1, 0}), (Rgb{255, 128, 128}));
   EXPECT_EQ(shown("gbuffer.normals", {0, 0, 0, 0.1f}), (Rgb{128, 128, 255}));
 }
