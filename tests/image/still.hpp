@@ -14,7 +14,7 @@ class Still {
  public:
   Still(std::shared_ptr<const scene::Scene> scene, const scene::Environment& environment,
         const scene::Camera& camera, std::uint32_t width, std::uint32_t height,
-        const std::string& tracer = "embree")
+        const std::string& tracer = "auto")
       : renderer(engine(tracer)) {
     renderer.set_scene(engine(tracer).upload(std::move(scene), environment));
     renderer.set_camera(camera);

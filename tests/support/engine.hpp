@@ -7,9 +7,9 @@
 
 namespace heliograph::test {
 
-/// This run's engine with the tracer ("embree" or "software") and the validation layers on, made
+/// This run's engine with the tracer ("auto", "embree" ...) and the validation layers on, made
 /// at the first call. HELIOGRAPH_TEST_DEVICE names a part of another device's name.
-render::Engine& engine(const std::string& tracer = "embree");
+render::Engine& engine(const std::string& tracer = "auto");
 
 /// The device of the engine that tests share.
 inline const gpu::Device& device() {

@@ -13,7 +13,7 @@ struct RigOptions {
   VkExtent2D extent{64, 64};
   scene::Environment environment = scene::constant_environment(glm::vec3(1.0f));
   protocol::Settings settings;
-  std::string tracer = "embree";
+  std::string tracer = "auto";
 };
 
 /// A scene, a view and a frame plan, in which a test declares the passes it wants to see alone.
