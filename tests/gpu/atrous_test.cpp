@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "render/denoise_constants.hpp"
@@ -265,52 +267,38 @@ TEST_P(Atrous, NeverReadsTheBackgroundNorFiltersIt) {
   }
 }
 
-TEST(AtrousLevels, FollowTheRoughnessWhereHitsBringNoNoise) {
+/// Where `flag` is set, surfaces of the first roughness are left alone, of the second filtered once,
+/// of the third in every iteration.
+void expect_levels(std::uint32_t flag, const std::array<float, 3>& roughness) {
   Input in(9);
+  const auto third = [](std::size_t i) { return std::min<std::size_t>(i % width / 12, 2); };
   for (std::size_t i = 0; i < pixels; ++i) {
-    const float roughness = i % width < 12 ? 0.0f : i % width < 24 ? 0.04f : 0.6f;
-    in.guide[i] = glm::vec4(0, 0, 1.0f + roughness, 5.0f);
+    in.guide[i] = glm::vec4(0, 0, 1.0f + roughness[third(i)], 5.0f);
     in.slope[i] = glm::vec2(0.0f);
   }
   shared::AtrousConstants constants = plain();
-  constants.flags |= shared::atrous_levels_by_roughness;
+  constants.flags |= flag;
   Filter once(in, constants, true, 1), often(in, constants, true, 4);
   const render::FloatImage one = once.run(), four = often.run();
   for (std::size_t i = 0; i < pixels; ++i) {
-    const std::size_t x = i % width;
-    if (x < 12) {
+    if (third(i) == 0) {
       EXPECT_EQ(four.rgba[4 * i], in.signal[i].x) << "a mirror is not blurred";
-    } else if (x < 24) {
-      EXPECT_EQ(four.rgba[4 * i], one.rgba[4 * i]) << "once";
-    } else {
-      EXPECT_NE(four.rgba[4 * i], one.rgba[4 * i]);
-    }
-  }
-}
-
-TEST(AtrousLevels, EndWhereTheLobeOfASmoothSurfaceEnds) {
-  Input in(9);
-  // Widths of the lobe in pixels: none, one to two, and more than all levels reach.
-  for (std::size_t i = 0; i < pixels; ++i) {
-    const float roughness = i % width < 12 ? 0.01f : i % width < 24 ? 0.17f : 0.9f;
-    in.guide[i] = glm::vec4(0, 0, 1.0f + roughness, 5.0f);
-    in.slope[i] = glm::vec2(0.0f);
-  }
-  shared::AtrousConstants constants = plain();
-  constants.flags |= shared::atrous_lobe_limit;
-  Filter once(in, constants, true, 1), often(in, constants, true, 4);
-  const render::FloatImage one = once.run(), four = often.run();
-  for (std::size_t i = 0; i < pixels; ++i) {
-    const std::size_t x = i % width;
-    if (x < 12) {
-      EXPECT_EQ(four.rgba[4 * i], in.signal[i].x) << "a mirror is not blurred";
-    } else if (x < 24) {
+    } else if (third(i) == 1) {
       EXPECT_EQ(four.rgba[4 * i], one.rgba[4 * i]) << "once";
       EXPECT_NE(four.rgba[4 * i], in.signal[i].x);
     } else {
       EXPECT_NE(four.rgba[4 * i], one.rgba[4 * i]);
     }
   }
+}
+
+TEST(AtrousLevels, FollowTheRoughnessWhereHitsBringNoNoise) {
+  expect_levels(shared::atrous_levels_by_roughness, {0.0f, 0.04f, 0.6f});
+}
+
+// Lobes less than a pixel wide, one to two pixels, and more than all iterations reach.
+TEST(AtrousLevels, EndWhereTheLobeOfASmoothSurfaceEnds) {
+  expect_levels(shared::atrous_lobe_limit, {0.01f, 0.17f, 0.9f});
 }
 
 TEST(AtrousHalves, OfThePaperUpdateTheVarianceInTheSecondAlone) {
