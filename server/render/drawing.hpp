@@ -11,8 +11,8 @@ namespace heliograph::render {
 
 inline constexpr std::string_view picture_name = "output";
 
-/// A compiled frame with all that it holds on to: one scene at one size, made of the passes that the
-/// settings asked for when it was made.
+/// A compiled frame with all that it holds on to: one scene at one size, made of the passes that
+/// the settings asked for when it was made.
 struct Drawing {
   /// References in `inputs`, and `constants_buffer`, outlive the drawing.
   Drawing(const Engine::Parts& parts, const FrameInputs& inputs,

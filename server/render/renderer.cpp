@@ -125,7 +125,8 @@ std::optional<FloatImage> Renderer::State::read(std::string_view view) const {
   const gpu::Image* image = drawing->find(source.empty() ? view : source);
   if (!image) return std::nullopt;
   if (source.empty()) return read_image(*image);
-  return extract(view, read_image(*image), {constants, exposure_factor(drawing->plan, drawing->outputs.exposure)});
+  return extract(view, read_image(*image),
+                 {constants, exposure_factor(drawing->plan, drawing->outputs.exposure)});
 }
 
 Frame Renderer::State::picture() {
@@ -198,7 +199,8 @@ bool Renderer::needs_frame() const {
   if (state_->stale || state_->samples < state_->wanted_samples()) return true;
   if (state_->moving->needs_advance()) return true;
   // Exposure that no time passes for stays where it is.
-  return state_->seconds > 0.0f && !is_settled(state_->drawing->plan, state_->drawing->outputs.exposure);
+  const Drawing& drawing = *state_->drawing;
+  return state_->seconds > 0.0f && !is_settled(drawing.plan, drawing.outputs.exposure);
 }
 
 Frame Renderer::render() {

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "shaders/shared/ray.h"
+#include "tracing/embree_batch.hpp"
 #include "tracing/embree_scene.hpp"
 
 namespace heliograph::bench {
 namespace {
 
-constexpr std::size_t batch_rays = 256;
 constexpr int runs = 5;
 
 bool alive(const shared::Ray& ray) { return ray.t_min < ray.t_max; }
@@ -37,13 +37,13 @@ Prepared prepare(std::span<const shared::Ray> rays) {
 }
 
 void trace(RTCScene scene, Prepared& rays, bool any) {
-  const std::size_t batches = (rays.size() + batch_rays - 1) / batch_rays;
+  const std::size_t batches = (rays.size() + tracing::embree_batch - 1) / tracing::embree_batch;
   tbb::parallel_for(std::size_t(0), batches, [&](std::size_t batch) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    const std::size_t first = batch * batch_rays;
-    const auto count = static_cast<unsigned>(std::min(batch_rays, rays.size() - first));
+    const std::size_t first = batch * tracing::embree_batch;
+    const auto count = static_cast<unsigned>(std::min(tracing::embree_batch, rays.size() - first));
     if (any) {
       rtcOccluded1M(scene, &context, &rays[first].ray, count, sizeof(RTCRayHit));
     } else {
@@ -92,7 +92,7 @@ Prepared prepare(std::span<const shared::Ray> rays) {
 }
 
 void trace(RTCScene scene, Prepared& packets, bool any) {
-  constexpr std::size_t packets_of_batch = batch_rays / lanes;
+  constexpr std::size_t packets_of_batch = tracing::embree_batch / lanes;
   const std::size_t batches = (packets.size() + packets_of_batch - 1) / packets_of_batch;
   tbb::parallel_for(std::size_t(0), batches, [&](std::size_t batch) {
     RTCIntersectArguments closest;
