@@ -15,8 +15,9 @@ std::vector<fs::path> choose_scene_roots(const std::vector<fs::path>& given) {
   if (!given.empty()) return given;
   std::error_code error;
   const fs::path executable = fs::read_symlink("/proc/self/exe", error).parent_path();
-  for (const fs::path& folder : {fs::path(HELIOGRAPH_BUILD_SCENES), executable / "../scenes",
-                                 executable / "../share/heliograph/scenes"}) {
+  // Beside the program in a build folder, then where it is installed.
+  for (const fs::path& folder :
+       {executable / "../scenes", executable / "../share/heliograph/scenes"}) {
     if (!fs::is_directory(folder, error)) continue;
     if (!session::SceneCatalogue({folder}).list().empty()) return {folder.lexically_normal()};
   }
