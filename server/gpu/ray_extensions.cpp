@@ -1,6 +1,7 @@
 #include "gpu/ray_extensions.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 
 namespace heliograph::gpu {
