@@ -2,9 +2,9 @@
 # Deletes from an image what a running server never reads: other drivers than the software device
 # and those that a runtime adds, lists and caches of apt, documentation. Takes from all programs the right to become another user.
 set -euo pipefail
-if [ "${HELIOGRAPH_IMAGE:-}" != yes ]; then
-  echo "slim: deletes parts of the system it runs in; only for images (HELIOGRAPH_IMAGE=yes)" >&2
-  exit 1
+if [ "${1:-}" != image ]; then
+  echo "usage: slim.sh image      inside an image only: deletes parts of the system it runs in" >&2
+  exit 2
 fi
 
 libraries=$(dirname "$(find /usr/lib -name libvulkan_lvp.so)")

@@ -1,0 +1,36 @@
+"""Runs programs; what they say is in the error when they fail."""
+
+import os
+import shutil
+import subprocess
+
+
+class Skip(Exception):
+    """Why a test cannot run on this machine."""
+
+
+def run(*command, timeout=120, check=True, **options):
+    """Gives the standard output, without the last line break."""
+    done = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True, timeout=timeout, **options)
+    if check and done.returncode != 0:
+        words = " ".join(str(word) for word in command)
+        raise RuntimeError(f"{words}: exit code {done.returncode}\n"
+                           f"{done.stdout[-4000:]}{done.stderr[-4000:]}")
+    return done.stdout.rstrip("\n")
+
+
+def succeeds(*command, **options):
+    try:
+        run(*command, **options)
+        return True
+    except (RuntimeError, OSError, subprocess.TimeoutExpired):
+        return False
+
+
+def program(name):
+    """The distribution's own program, whatever else of its name comes first in the path."""
+    found = shutil.which(name, path="/usr/bin:/usr/sbin:" + os.environ.get("PATH", ""))
+    if not found:
+        raise Skip(f"{name} is not installed (deploy/setup.sh deploy installs what is needed)")
+    return found

@@ -1,0 +1,92 @@
+"""What can be told from the files alone: seconds, no engine, no root."""
+
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+from harness.commands import run
+from harness.files import DEPLOY, ROOT, files, text_of
+
+UNIT = os.path.join(DEPLOY, "systemd/heliograph.service")
+
+class Scripts(unittest.TestCase):
+    paths = files("*.sh") + files("*.sh", os.path.join(ROOT, "tests")) + [
+        os.path.join(ROOT, ".ci/run")] + files("p*", os.path.join(DEPLOY, "debian"))
+
+    def test_are_right_in_syntax(self):
+        self.assertGreater(len(self.paths), 6)
+        for path in self.paths:
+            shell = "bash" if "bash" in text_of(path).split("\n", 1)[0] else "sh"
+            with self.subTest(path):
+                run(shell, "-n", path)
+
+    def test_are_to_the_liking_of_shellcheck(self):
+        if not shutil.which("shellcheck"):
+            self.skipTest("shellcheck is not installed")
+        run("shellcheck", "--severity=warning", *self.paths)
+
+    def test_stop_at_the_first_error(self):
+        for path in self.paths:
+            with self.subTest(path):
+                self.assertRegex(text_of(path), r"(?m)^set -e")
+
+
+class Packages(unittest.TestCase):
+    def test_are_listed_once_with_a_known_purpose(self):
+        seen = set()
+        for line in text_of(os.path.join(DEPLOY, "packages")).splitlines():
+            if not line or line.startswith("#"):
+                continue
+            purpose, package, *_ = line.split()
+            with self.subTest(package):
+                self.assertIn(purpose, {"build", "run", "test", "deploy"})
+                self.assertNotIn(package, seen)
+            seen.add(package)
+
+    def test_stand_nowhere_else(self):
+        """What is compiled against is installed by the script alone."""
+        listed = {line.split()[1] for line in text_of(os.path.join(DEPLOY, "packages")).splitlines()
+                  if line.startswith("build ")}
+        dockerfile = text_of(os.path.join(DEPLOY, "Dockerfile"))
+        self.assertIn("deploy/setup.sh build", dockerfile)
+        self.assertEqual([name for name in listed if re.search(rf"install[^\n]*\s{name}\s",
+                                                               dockerfile)], [])
+
+
+class Unit(unittest.TestCase):
+    def setUp(self):
+        if not shutil.which("systemd-analyze"):
+            self.skipTest("systemd-analyze is not installed")
+
+    def test_is_right(self):
+        with tempfile.TemporaryDirectory() as folder:
+            unit = os.path.join(folder, "heliograph.service")
+            with open(unit, "w", encoding="utf-8") as file:
+                file.write(text_of(UNIT).replace("ExecStart=heliograph", "ExecStart=/bin/true"))
+            said = subprocess.run(["systemd-analyze", "verify", unit], stdout=subprocess.PIPE,
+                                  stderr=subprocess.STDOUT, text=True, timeout=60)
+        self.assertEqual((said.returncode, said.stdout), (0, ""))
+
+    def test_exposes_little(self):
+        """systemd's own judgement, from 0 (nothing exposed) to 10."""
+        run("systemd-analyze", "security", "--offline=true", "--threshold=20", UNIT)
+
+
+class Dockerfile(unittest.TestCase):
+    text = text_of(os.path.join(DEPLOY, "Dockerfile"))
+
+    def test_builds_where_no_frontend_can_be_fetched(self):
+        self.assertNotRegex(self.text, r"(?i)#\s*syntax\s*=")
+        self.assertNotIn("<<", self.text)
+
+    def test_ignores_nothing_that_is_committed(self):
+        patterns = text_of(os.path.join(DEPLOY, "Dockerfile.dockerignore")).split()
+        folders = {path.split("/")[0] for path in run("git", "-C", ROOT, "ls-files").splitlines()}
+        self.assertEqual([pattern for pattern in patterns if pattern in folders], [])
+
+
+if __name__ == "__main__":
+    unittest.main()
