@@ -294,6 +294,11 @@ void Dispatcher::invoke(const Entry& entry, const RawJson& params, const CallCon
     return done(error::invalid("params", "must be an object", "parameters go by name"));
   }
   try {
+    if (gate_) {
+      if (Result<void> passed = gate_(*entry.method, context); !passed) {
+        return done(std::move(passed).error());
+      }
+    }
     entry.handler(params, context, done);
   } catch (const std::exception& failure) {
     fail(failure.what());

@@ -19,6 +19,8 @@ namespace heliograph::protocol {
 /// Who calls. Made by the transport for every message; handlers copy what they need later.
 struct CallContext {
   std::string viewer;  ///< the viewer's id; empty for callers that watch no stream
+  /// Where a caller that is no viewer calls; where a viewer is, is known by its id.
+  std::string session{main_session};
 };
 
 /// Takes the answer of a call: from any thread, at once or later; only the first one counts. If
@@ -35,8 +37,8 @@ struct DispatchLimits {
   std::size_t max_batch = 32;
 };
 
-/// JSON-RPC 2.0: text in, typed handlers, text out. Knows no transport. `add` and
-/// `on_handler_failure` belong to set-up; after it, `handle` may be called from any thread.
+/// JSON-RPC 2.0: text in, typed handlers, text out. Knows no transport. All
+/// functions but `handle` belong to set-up; after it, `handle` may be called from any thread.
 class Dispatcher {
  public:
   /// Receives the answer's text, exactly once per message; empty if there is nothing to answer.
@@ -59,6 +61,10 @@ class Dispatcher {
   /// Called with the method and the exception's text when a handler throws. The caller only
   /// learns ErrorCode::internal.
   void on_handler_failure(std::function<void(std::string_view, std::string_view)> report);
+
+  /// Asked before every call of a declared method; an error is the call's answer.
+  using Gate = std::function<Result<void>(const MethodDescriptor&, const CallContext&)>;
+  void set_gate(Gate gate) { gate_ = std::move(gate); }
 
   /// Takes one message: a request, a notification or a batch. Does not throw.
   void handle(std::string_view text, const CallContext& context, Reply reply) const;
@@ -84,6 +90,7 @@ class Dispatcher {
   DispatchLimits limits_;
   std::map<std::string_view, Entry> entries_;
   std::function<void(std::string_view, std::string_view)> report_failure_;
+  Gate gate_;
 };
 
 template <class Request, class Response>

@@ -19,7 +19,9 @@ struct Example {
   std::string_view result;
 };
 
-enum class Call { query, command };
+/// A query changes nothing; a command changes the session, for all who are in it; a personal
+/// command changes something for its caller only.
+enum class Call { query, command, personal };
 
 template <class Params, class ResultType>
 MethodDescriptor method(std::string_view name, Call call, std::string_view summary,
@@ -28,7 +30,8 @@ MethodDescriptor method(std::string_view name, Call call, std::string_view summa
           .summary = summary,
           .params = typeid(Params),
           .result = typeid(ResultType),
-          .may_be_notification = call == Call::command,
+          .may_be_notification = call != Call::query,
+          .needs_control = call == Call::command,
           .example_params = example.params,
           .example_result = example.result,
           .params_schema = schema_of<Params>,
@@ -146,17 +149,17 @@ std::vector<MethodDescriptor> session_methods() {
 std::vector<MethodDescriptor> stream_methods() {
   return {
       method<StreamConfigure, StreamState>(
-          "stream.configure", Call::command,
+          "stream.configure", Call::personal,
           "Sets size, quality and pace of this viewer's pictures; gives what is in effect.",
           {R"({"width": 1280, "height": 720, "quality": 80})",
            R"({"width": 1280, "height": 720, "quality": 80, "max_fps": 60.0,
                "paused": false})"}),
       method<StreamAck, Empty>(
-          "stream.ack", Call::command,
+          "stream.ack", Call::personal,
           "Tells that a frame was displayed. The server sends only a window of frames ahead.",
           {R"({"frame_seq": 42, "decode_us": 3100, "present_us": 9800})", "{}"}),
       method<StatsSubscription, StatsSubscription>(
-          "stats.subscribe", Call::command,
+          "stats.subscribe", Call::personal,
           "Asks for stats.frame notifications; gives the interval in effect.",
           {R"({"interval_ms": 250})", R"({"interval_ms": 250})"}),
       method<Empty, FrameBuffers>(

@@ -8,6 +8,9 @@
 
 namespace heliograph::protocol {
 
+/// The session that always exists and that is meant where none is named.
+inline constexpr std::string_view main_session = "main";
+
 /// One method of the protocol: the dispatcher takes calls by it, the OpenRPC document is made
 /// from it.
 struct MethodDescriptor {
@@ -18,6 +21,8 @@ struct MethodDescriptor {
   /// Whether a call without id has an effect. Other calls without id ask for an answer that
   /// nobody would get and are dropped.
   bool may_be_notification;
+  /// Whether it changes what all viewers of a session share.
+  bool needs_control;
   std::string_view example_params;  ///< JSON text
   std::string_view example_result;  ///< JSON text
   RawJson (*params_schema)();

@@ -104,7 +104,8 @@ json method_of(const MethodDescriptor& method) {
           {"result", {{"name", "result"}, {"schema", method.result_schema().value()}}},
           {"errors", std::move(errors)},
           {"examples", json::array({example_of(method)})},
-          {"x-may-be-notification", method.may_be_notification}};
+          {"x-may-be-notification", method.may_be_notification},
+          {"x-needs-control", method.needs_control}};
 }
 
 }  // namespace

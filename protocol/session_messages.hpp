@@ -29,7 +29,7 @@ struct Empty {
 struct Hello {
   std::optional<std::string> client;
   std::vector<std::string> codecs{"jpeg"};
-  std::string session = "main";
+  std::optional<std::string> session;
 
   static constexpr auto fields() {
     return std::tuple{
@@ -38,7 +38,9 @@ struct Hello {
         field("codecs", &Hello::codecs, "Picture codecs the client can decode, best first.")
             .length(1, 16)
             .or_default(),
-        field("session", &Hello::session, "The session to watch.").length(1, 64).or_default(),
+        field("session", &Hello::session,
+              "The session to watch; left out: the one that /ws?session=NAME named, or main.")
+            .length(1, 64),
     };
   }
   bool operator==(const Hello&) const = default;

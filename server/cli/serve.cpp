@@ -22,6 +22,7 @@ session::HostOptions host_options(const ServeOptions& options) {
   result.session.height = options.height.value_or(result.session.height);
   result.session.settings = parse_settings(options.settings);
   result.session.limits.max_viewers = options.max_viewers;
+  result.limits.viewers = options.max_viewers;
   result.scene_roots = choose_scene_roots(options.scene_roots);
   if (!options.environment.empty()) result.environment = options.environment;
   result.import_limits = options.limits;
@@ -93,7 +94,7 @@ int run(const ServeOptions& options) {
   });
   StartFailure failure;
   const HostStop stop_first(host);
-  host.load_scene(scene, {}, [&](const protocol::Result<protocol::SceneInfo>& loaded) {
+  host.load_scene(host.sessions().main(), scene, {}, [&](const protocol::Result<protocol::SceneInfo>& loaded) {
     if (loaded) return;
     failure.set(scene + ": " + loaded.error().message);
     server.stop();

@@ -49,7 +49,8 @@ HttpRequest to_request(http::request<http::string_body>&& message) {
 }
 
 /// Why an upgrade that may otherwise pass cannot become a viewer.
-std::optional<HttpResponse> upgrade_refusal(const HttpRequest& request) {
+std::optional<HttpResponse> upgrade_refusal(const HttpRequest& request,
+                                            const session::SessionRegistry& sessions) {
   if (request.path != "/ws") return text_response(404, "The WebSocket is at /ws.");
   const auto offered = header_elements(request.header("sec-websocket-protocol"));
   if (std::find(offered.begin(), offered.end(), protocol::protocol_name) == offered.end()) {
@@ -57,6 +58,8 @@ std::optional<HttpResponse> upgrade_refusal(const HttpRequest& request) {
                          "This server speaks the subprotocol heliograph.v1; offer it in "
                          "Sec-WebSocket-Protocol.");
   }
+  const auto session = sessions.find(session_of(request));
+  if (!session) return text_response(404, session.error().message);
   return std::nullopt;
 }
 
@@ -120,7 +123,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
 
   void become_viewer(const HttpRequest& request) {
     if (auto refused = context_.access.refusal(request)) return send(*std::move(refused));
-    if (auto refused = upgrade_refusal(request)) return send(*std::move(refused));
+    if (auto refused = upgrade_refusal(request, context_.host.sessions())) return send(*std::move(refused));
     stream_.expires_never();
     start_viewer_connection(context_, std::move(stream_), request);
   }

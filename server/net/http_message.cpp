@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "protocol/methods.hpp"
+
 namespace heliograph::net {
 namespace {
 
@@ -47,6 +49,10 @@ HttpResponse text_response(int status, std::string_view text) {
 
 HttpResponse json_response(std::string body) {
   return {.content_type = "application/json", .body = std::move(body)};
+}
+
+std::string session_of(const HttpRequest& request) {
+  return request.parameter("session").value_or(std::string(protocol::main_session));
 }
 
 std::map<std::string, std::string> parse_query(std::string_view query) {

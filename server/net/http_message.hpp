@@ -36,6 +36,9 @@ HttpResponse json_response(std::string body);
 /// The name and value pairs of a query string (without '?'), percent and plus decoded.
 std::map<std::string, std::string> parse_query(std::string_view query);
 
+/// The session that a request is about: ?session=NAME, or the main one.
+std::string session_of(const HttpRequest& request);
+
 /// The elements of a comma separated header, without white space around them.
 std::vector<std::string_view> header_elements(std::string_view value, char separator = ',');
 

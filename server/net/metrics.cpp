@@ -52,7 +52,7 @@ double resident_bytes() {
 std::string metrics_text(const session::SessionHost& host,
                          std::chrono::steady_clock::time_point started) {
   const session::RenderTotals render = host.render_totals();
-  const session::AudienceTotals audience = host.default_session().audience().totals();
+  const session::AudienceTotals audience = host.sessions().totals();
   const std::chrono::duration<double> uptime = std::chrono::steady_clock::now() - started;
   const std::chrono::duration<double> round_trip = audience.mean_round_trip;
 

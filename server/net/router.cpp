@@ -138,7 +138,7 @@ HttpResponse Router::health(bool ready) const {
 }
 
 void Router::call(const HttpRequest& request, Reply reply) const {
-  host_.dispatcher().handle(request.body, {}, [reply = std::move(reply)](std::string answer) {
+  host_.dispatcher().handle(request.body, {.viewer = {}, .session = session_of(request)}, [reply = std::move(reply)](std::string answer) {
     if (answer.empty()) return reply({.status = 204, .content_type = {}});
     reply(json_response(std::move(answer)));
   });
@@ -146,8 +146,8 @@ void Router::call(const HttpRequest& request, Reply reply) const {
 
 void Router::picture(const HttpRequest& request, std::string_view session,
                      std::string_view extension, Reply reply) const {
-  const std::shared_ptr<session::Session> found = host_.find_session(session);
-  if (!found) return reply(text_response(404, "There is no such session."));
+  const auto found = host_.sessions().find(session);
+  if (!found) return reply(error_response(found.error()));
   if (extension != "png" && extension != "jpg") {
     return reply(text_response(404, "Pictures are frame.jpg and frame.png."));
   }
@@ -167,7 +167,7 @@ void Router::picture(const HttpRequest& request, std::string_view session,
     if (!result) return reply(error_response(result.error()));
     reply({.content_type = type, .body = {result->file.begin(), result->file.end()}});
   };
-  if (const auto accepted = found->request_capture(std::move(capture)); !accepted) {
+  if (const auto accepted = (*found)->request_capture(std::move(capture)); !accepted) {
     reply(error_response(accepted.error()));
   }
 }

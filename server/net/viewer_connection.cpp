@@ -31,6 +31,7 @@ using boost::system::error_code;
 constexpr std::size_t most_waiting_messages = 256;
 constexpr std::size_t most_waiting_bytes = 128u << 20;
 
+constexpr std::uint16_t session_ended = 4001;
 constexpr std::uint16_t slow_consumer = 4004;
 constexpr int reconnect_after_ms = 1000;
 
@@ -43,8 +44,9 @@ class ViewerConnection : public Connection,
                          public session::ViewerLink,
                          public std::enable_shared_from_this<ViewerConnection> {
  public:
-  ViewerConnection(ServerContext& context, beast::tcp_stream stream)
+  ViewerConnection(ServerContext& context, beast::tcp_stream stream, std::string session)
       : context_(context),
+        session_(std::move(session)),
         socket_(std::move(stream)),
         close_deadline_(socket_.get_executor()),
         calls_(calls_per_second, calls_at_once, RateLimit::Clock::now()) {
@@ -93,6 +95,13 @@ class ViewerConnection : public Connection,
     });
   }
 
+  void dismiss(std::string why) override {
+    asio::post(socket_.get_executor(), [self = shared_from_this(), why = std::move(why)] {
+      self->farewell_ = why;
+      self->write_next();
+    });
+  }
+
  private:
   struct Message {
     std::string text;
@@ -100,13 +109,13 @@ class ViewerConnection : public Connection,
   };
 
   void accepted() {
-    const auto joined = context_.host.default_session().audience().join(weak_from_this());
+    const auto joined = context_.host.sessions().enter(session_, weak_from_this());
     if (!joined) {
       close(websocket::close_code::try_again_later, joined.error().message);
       return read();
     }
     viewer_ = *joined;
-    spdlog::info("viewer {} connected", viewer_);
+    spdlog::info("session {}: viewer {} connected", session_, viewer_);
     if (context_.draining) shut_down();
     read();
   }
@@ -172,7 +181,10 @@ class ViewerConnection : public Connection,
       socket_.text(true);
       return socket_.async_write(asio::buffer(text_in_flight_), done);
     }
-    frame_in_flight_ = context_.host.default_session().audience().take(viewer_);
+    if (farewell_) return close(session_ended, *farewell_);
+    const auto session = context_.host.sessions().session_watched_by(viewer_);
+    if (!session) return;
+    frame_in_flight_ = session->audience().take(viewer_);
     if (!frame_in_flight_) return;
     writing_ = true;
     const std::array<asio::const_buffer, 2> parts{asio::buffer(frame_in_flight_->header),
@@ -208,12 +220,13 @@ class ViewerConnection : public Connection,
     error_code ignored;
     beast::get_lowest_layer(socket_).socket().close(ignored);
     if (viewer_.empty()) return;
-    context_.host.default_session().leave(viewer_);
+    context_.host.sessions().leave(viewer_);
     spdlog::info("viewer {} left: {}", viewer_, error.message());
     viewer_.clear();
   }
 
   ServerContext& context_;
+  const std::string session_;  // where it came in
   websocket::stream<beast::tcp_stream> socket_;
   http::request<http::empty_body> handshake_;
   asio::steady_timer close_deadline_;
@@ -224,6 +237,7 @@ class ViewerConnection : public Connection,
   std::size_t waiting_bytes_ = 0;
   std::string text_in_flight_;
   std::optional<stream::OutgoingFrame> frame_in_flight_;
+  std::optional<std::string> farewell_;  // why to close once everything is sent
   bool writing_ = false;
   bool closing_ = false;
   std::atomic<bool> announced_ = false;
@@ -233,7 +247,8 @@ class ViewerConnection : public Connection,
 
 void start_viewer_connection(ServerContext& context, beast::tcp_stream stream,
                              const HttpRequest& request) {
-  std::make_shared<ViewerConnection>(context, std::move(stream))->accept(request);
+  std::make_shared<ViewerConnection>(context, std::move(stream), session_of(request))
+      ->accept(request);
 }
 
 }  // namespace heliograph::net

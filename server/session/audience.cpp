@@ -14,12 +14,6 @@ using std::chrono::microseconds;
 
 namespace {
 
-void add(stream::PacerTotals& sum, const stream::PacerTotals& more) {
-  sum.frames += more.frames;
-  sum.bytes += more.bytes;
-  sum.dropped += more.dropped;
-}
-
 /// `frames` are in ascending quality.
 const stream::SharedFrame& choose(const std::vector<stream::SharedFrame>& frames, int quality) {
   std::vector<int> classes;
@@ -27,10 +21,12 @@ const stream::SharedFrame& choose(const std::vector<stream::SharedFrame>& frames
   return frames[stream::nearest_class(classes, quality)];
 }
 
-stream::OutgoingFrame address(const stream::ViewerPacer::Taken& taken, const std::string& viewer) {
+stream::OutgoingFrame address(const stream::ViewerPacer::Taken& taken, const std::string& viewer,
+                              bool cut) {
   protocol::FrameHeader header = taken.frame->header;
   header.frame_seq = taken.frame_seq;
   if (taken.first_after_drop) header.flags |= protocol::frame_flag::first_after_drop;
+  if (cut) header.flags |= protocol::frame_flag::discontinuity;
   for (const stream::InputEcho& input : taken.frame->inputs) {
     if (input.viewer == viewer) header.input_seq_echo = input.seq;
   }
@@ -44,24 +40,64 @@ stream::OutgoingFrame address(const stream::ViewerPacer::Taken& taken, const std
 Audience::Audience(std::size_t max_viewers, Wakeup& room)
     : max_viewers_(max_viewers), room_(room) {}
 
-Result<std::string> Audience::join(std::weak_ptr<ViewerLink> link) {
+Result<void> Audience::join(const std::string& id, std::weak_ptr<ViewerLink> link) {
   const std::lock_guard lock(mutex_);
-  if (viewers_.size() >= max_viewers_) {
-    return protocol::error::full("the session has no room for another viewer",
-                                 std::to_string(max_viewers_) + " viewers");
-  }
-  const std::string id = "v" + std::to_string(++viewers_so_far_);
+  if (const Result<void> room = check_room(); !room) return room;
   Viewer& viewer = viewers_[id];
   viewer.link = std::move(link);
   viewer.pacer.set_max_rate(viewer.stream.max_fps);
-  return id;
+  return {};
+}
+
+Result<void> Audience::check_room() const {
+  if (viewers_.size() < max_viewers_) return {};
+  return protocol::error::full("the session has no room for another viewer",
+                               std::to_string(max_viewers_) + " viewers");
+}
+
+Result<void> Audience::hand_over(const std::string& viewer, Audience& there) {
+  Viewers::node_type leaving;
+  {
+    const std::lock_guard lock(mutex_);
+    leaving = viewers_.extract(viewer);
+  }
+  const Result<void> taken = there.take_in(leaving);
+  if (taken) return {};
+  const std::lock_guard lock(mutex_);
+  viewers_.insert(std::move(leaving));
+  return taken;
+}
+
+/// Leaves `viewer` as it is when there is no room.
+Result<void> Audience::take_in(Viewers::node_type& viewer) {
+  const std::lock_guard lock(mutex_);
+  if (const Result<void> room = check_room(); !room) return room;
+  if (viewer.empty()) return {};
+  Viewer& it = viewers_.insert(std::move(viewer)).position->second;
+  it.pacer.withdraw();
+  it.came_over = true;
+  if (it.started) offer_latest(it);
+  room_.notify();
+  return {};
+}
+
+std::vector<std::string> Audience::dismiss_all(const std::string& why) {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> ids;
+  for (const auto& [id, viewer] : viewers_) {
+    ids.push_back(id);
+    departed_ += viewer.pacer.totals();
+    if (const auto link = viewer.link.lock()) link->dismiss(why);
+  }
+  viewers_.clear();
+  return ids;
 }
 
 void Audience::leave(const std::string& viewer) {
   const std::lock_guard lock(mutex_);
   const auto found = viewers_.find(viewer);
   if (found == viewers_.end()) return;
-  add(departed_, found->second.pacer.totals());
+  departed_ += found->second.pacer.totals();
   viewers_.erase(found);
 }
 
@@ -130,7 +166,8 @@ std::optional<stream::OutgoingFrame> Audience::take(const std::string& viewer) {
     return std::nullopt;
   }
   room_.notify();
-  return address(*taken, viewer);
+  const bool cut = std::exchange((*found)->came_over, false);
+  return address(*taken, viewer, cut);
 }
 
 bool Audience::wants_frame() const {
@@ -214,7 +251,7 @@ AudienceTotals Audience::totals() const {
   AudienceTotals totals{.viewers = viewers_.size(), .sent = departed_};
   std::int64_t measured = 0;
   for (const auto& [id, viewer] : viewers_) {
-    add(totals.sent, viewer.pacer.totals());
+    totals.sent += viewer.pacer.totals();
     totals.goodput += viewer.pacer.goodput();
     if (viewer.pacer.goodput() == 0.0) continue;
     totals.mean_round_trip += viewer.pacer.round_trip();

@@ -41,9 +41,13 @@ class Audience {
   /// `room` is notified when a frame can be sent again.
   Audience(std::size_t max_viewers, Wakeup& room);
 
-  /// A new viewer, by the id it gets. It is sent nothing before `start`.
-  protocol::Result<std::string> join(std::weak_ptr<ViewerLink> link);
+  /// Adds a viewer. It is sent nothing before `start`.
+  protocol::Result<void> join(const std::string& viewer, std::weak_ptr<ViewerLink> link);
   void leave(const std::string& viewer);
+  /// Lets a viewer go over to `there` with its stream as it is; if there is no room it stays.
+  protocol::Result<void> hand_over(const std::string& viewer, Audience& there);
+  /// Lets all viewers go, telling them why; gives their ids.
+  std::vector<std::string> dismiss_all(const std::string& why);
   /// The viewer is ready for pictures; it gets the latest one there is.
   void start(const std::string& viewer);
 
@@ -79,10 +83,15 @@ class Audience {
     stream::ViewerPacer pacer;
     ViewerStream stream;
     bool started = false;
+    bool came_over = false;  // its next frame has nothing in common with the last
     std::chrono::milliseconds stats_interval{0};
     Clock::time_point next_stats;
   };
 
+  using Viewers = std::map<std::string, Viewer>;
+
+  protocol::Result<void> check_room() const;
+  protocol::Result<void> take_in(Viewers::node_type& viewer);
   protocol::Result<Viewer*> find(const std::string& viewer);
   void offer_latest(Viewer& viewer);
   static void announce(const Viewer& viewer);
@@ -90,8 +99,7 @@ class Audience {
   const std::size_t max_viewers_;
   Wakeup& room_;
   mutable std::mutex mutex_;
-  std::map<std::string, Viewer> viewers_;
-  std::uint64_t viewers_so_far_ = 0;
+  Viewers viewers_;
   std::vector<stream::SharedFrame> latest_;
   stream::PacerTotals departed_;
 };

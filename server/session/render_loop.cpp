@@ -23,27 +23,41 @@ RenderLoop::RenderLoop(render::Engine& engine)
 
 void RenderLoop::stop() {
   if (stopping_.exchange(true)) return;
-  wakeup_.notify();
+  wakeup_->notify();
   thread_.join();
   encoder_.stop();
   capture_writer_.stop();
   for (const auto& view : views_) view->abandon_captures();
 }
 
-std::shared_ptr<Session> RenderLoop::open(SessionOptions options) {
-  auto view = std::make_unique<SessionView>(engine_, std::move(options),
-                                            ViewServices{.wakeup = wakeup_,
+std::shared_ptr<Session> RenderLoop::open(SessionOptions options, PixelShare pixels) {
+  auto view = std::make_shared<SessionView>(engine_, std::move(options), std::move(pixels),
+                                            ViewServices{.wakeup = *wakeup_,
                                                          .encoder = encoder_,
                                                          .jpeg = jpeg_,
                                                          .capture_writer = capture_writer_,
-                                                         .measurements = measurements_});
+                                                         .measurements = measurements_},
+                                            std::make_shared<Wakeup>(wakeup_));
   std::shared_ptr<Session> session = view->session();
   {
     const std::lock_guard lock(mutex_);
     views_.push_back(std::move(view));
   }
-  wakeup_.notify();
+  wakeup_->notify();
   return session;
+}
+
+void RenderLoop::close(const Session& session) {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = std::find_if(views_.begin(), views_.end(), [&](const auto& view) {
+      return view->session().get() == &session;
+    });
+    if (found == views_.end()) return;
+    closed_.push_back(std::move(*found));
+    views_.erase(found);
+  }
+  wakeup_->notify();
 }
 
 void RenderLoop::on_first_frame(std::function<void()> callback) {
@@ -53,15 +67,29 @@ void RenderLoop::on_first_frame(std::function<void()> callback) {
 
 void RenderLoop::run() {
   while (!stopping_) {
-    if (advance_all()) continue;
-    wakeup_.wait_until(next_due());
+    dismiss_closed();
+    Views views;
+    {
+      const std::lock_guard lock(mutex_);
+      views = views_;
+    }
+    if (advance_all(views)) continue;
+    wakeup_->wait_until(next_due(views));
   }
 }
 
-bool RenderLoop::advance_all() {
-  const std::lock_guard lock(mutex_);
+void RenderLoop::dismiss_closed() {
+  Views closed;
+  {
+    const std::lock_guard lock(mutex_);
+    closed.swap(closed_);
+  }
+  for (const auto& view : closed) view->refuse_captures();
+}
+
+bool RenderLoop::advance_all(const Views& views) {
   bool worked = false;
-  for (const auto& view : views_) {
+  for (const auto& view : views) {
     if (stopping_) return false;
     worked |= advance(*view);
     if (!has_rendered_ && view->has_rendered()) report_first_frame();
@@ -79,10 +107,9 @@ bool RenderLoop::advance(SessionView& view) {
   }
 }
 
-std::optional<Clock::time_point> RenderLoop::next_due() {
-  const std::lock_guard lock(mutex_);
+std::optional<Clock::time_point> RenderLoop::next_due(const Views& views) const {
   std::optional<Clock::time_point> next;
-  for (const auto& view : views_) {
+  for (const auto& view : views) {
     const auto due = view->next_due();
     if (due) next = next ? std::min(*next, *due) : *due;
   }
@@ -91,7 +118,12 @@ std::optional<Clock::time_point> RenderLoop::next_due() {
 
 void RenderLoop::report_first_frame() {
   has_rendered_ = true;
-  if (on_first_frame_) std::exchange(on_first_frame_, nullptr)();
+  std::function<void()> callback;
+  {
+    const std::lock_guard lock(mutex_);
+    callback.swap(on_first_frame_);
+  }
+  if (callback) callback();
 }
 
 }  // namespace heliograph::session

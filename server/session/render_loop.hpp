@@ -20,8 +20,10 @@ class RenderLoop {
   RenderLoop(const RenderLoop&) = delete;
   RenderLoop& operator=(const RenderLoop&) = delete;
 
-  /// Opens a session; it is drawn from now on.
-  std::shared_ptr<Session> open(SessionOptions options);
+  /// Opens a session; it is drawn from now on. @throws as SessionView does
+  std::shared_ptr<Session> open(SessionOptions options, PixelShare pixels);
+  /// The session is drawn no more; captures that wait are refused.
+  void close(const Session& session);
 
   /// Called once, on the render thread, when the first picture is there.
   void on_first_frame(std::function<void()> callback);
@@ -31,17 +33,21 @@ class RenderLoop {
   RenderTotals totals() const { return measurements_.totals(); }
 
  private:
+  using Views = std::vector<std::shared_ptr<SessionView>>;
+
   void run();
-  bool advance_all();
+  void dismiss_closed();
+  bool advance_all(const Views& views);
   bool advance(SessionView& view);
-  std::optional<Clock::time_point> next_due();
+  std::optional<Clock::time_point> next_due(const Views& views) const;
   void report_first_frame();
 
   render::Engine& engine_;
-  Wakeup wakeup_;
+  const std::shared_ptr<Wakeup> wakeup_ = std::make_shared<Wakeup>();
   Measurements measurements_;
-  std::mutex mutex_;  // guards views_ and on_first_frame_
-  std::vector<std::unique_ptr<SessionView>> views_;
+  std::mutex mutex_;  // guards views_, closed_ and on_first_frame_; never held while drawing
+  Views views_;
+  Views closed_;  // end on the render thread, which may be at work on them
   std::function<void()> on_first_frame_;
   std::atomic<bool> has_rendered_ = false;
   std::atomic<bool> stopping_ = false;

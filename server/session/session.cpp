@@ -16,10 +16,11 @@ namespace heliograph::session {
 using protocol::Result;
 namespace error = protocol::error;
 
-Session::Session(SessionOptions options, Wakeup& changed)
+Session::Session(SessionOptions options, std::shared_ptr<Wakeup> changed, PixelShare pixels)
     : options_(std::move(options)),
-      changed_(changed),
-      audience_(options_.limits.max_viewers, changed) {
+      changed_(std::move(changed)),
+      audience_(options_.limits.max_viewers, *changed_),
+      pixels_(std::move(pixels)) {
   state_.settings = options_.settings;
   state_.width = std::min(options_.width, options_.limits.max_width);
   state_.height = std::min(options_.height, options_.limits.max_height);
@@ -126,6 +127,8 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
   const std::uint32_t height =
       std::min(request.height.value_or(state_.height), options_.limits.max_height);
   if (width != state_.width || height != state_.height) {
+    const auto fits = pixels_.resize(static_cast<std::uint64_t>(width) * height);
+    if (!fits) return fits.error();
     state_.width = width;
     state_.height = height;
     changed(false);
@@ -143,6 +146,13 @@ void Session::leave(const std::string& viewer) {
   input_seqs_.erase(viewer);
 }
 
+Result<void> Session::hand_over(const std::string& viewer, Session& there) {
+  if (const auto moved = audience_.hand_over(viewer, there.audience_); !moved) return moved;
+  const std::lock_guard lock(mutex_);
+  input_seqs_.erase(viewer);
+  return {};
+}
+
 Result<void> Session::request_capture(CaptureRequest request) {
   {
     const std::lock_guard lock(mutex_);
@@ -154,7 +164,7 @@ Result<void> Session::request_capture(CaptureRequest request) {
     }
     captures_.push_back(std::move(request));
   }
-  changed_.notify();
+  changed_->notify();
   return {};
 }
 
@@ -167,7 +177,7 @@ void Session::changed(bool new_revision) {
   ++state_.version;
   if (new_revision) ++state_.rev;
   state_.changed_at = Clock::now();
-  changed_.notify();
+  changed_->notify();
 }
 
 Result<void> Session::check_buffer(const std::string& buffer, const std::string& path) const {

@@ -15,6 +15,7 @@
 #include "session/animation_clock.hpp"
 #include "session/audience.hpp"
 #include "session/capture.hpp"
+#include "session/pixel_budget.hpp"
 #include "session/wakeup.hpp"
 
 namespace heliograph::render {
@@ -67,8 +68,9 @@ struct RenderState {
 /// nothing queues up. Thread safe. `by` is the viewer that asks, empty for callers without stream.
 class Session {
  public:
-  /// `changed` is notified when there is something to do.
-  Session(SessionOptions options, Wakeup& changed);
+  /// `changed` is notified when there is something to do; `pixels` is what the picture's size is
+  /// taken from.
+  Session(SessionOptions options, std::shared_ptr<Wakeup> changed, PixelShare pixels = {});
 
   const std::string& name() const { return options_.name; }
   const SessionLimits& limits() const { return options_.limits; }
@@ -100,6 +102,8 @@ class Session {
   protocol::Result<protocol::StreamState> configure_stream(const protocol::StreamConfigure& request,
                                                            const std::string& by);
   void leave(const std::string& viewer);
+  /// Lets a viewer go over to another session; if that has no room it stays.
+  protocol::Result<void> hand_over(const std::string& viewer, Session& there);
 
   protocol::Result<void> request_capture(CaptureRequest request);
   /// The captures asked for since the last call.
@@ -121,10 +125,11 @@ class Session {
   float aspect() const;
 
   const SessionOptions options_;
-  Wakeup& changed_;
+  const std::shared_ptr<Wakeup> changed_;
   Audience audience_;
 
   mutable std::mutex mutex_;
+  PixelShare pixels_;
   std::vector<protocol::BufferInfo> buffers_;
   RenderState state_;
   std::optional<std::string> camera_name_;

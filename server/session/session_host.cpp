@@ -13,7 +13,12 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
       options_(std::move(options)),
       catalogue_(options_.scene_roots),
       render_loop_(engine),
-      session_(render_loop_.open(options_.session)),
+      sessions_(
+          options_.limits, options_.session,
+          [this](SessionOptions session, PixelShare pixels) {
+            return render_loop_.open(std::move(session), std::move(pixels));
+          },
+          [this](const Session& session) { render_loop_.close(session); }),
       dispatcher_(options_.dispatch),
       loader_(engine, catalogue_, options_.environment, options_.import_limits) {
   add_scene_commands(dispatcher_, *this);
@@ -23,6 +28,12 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
   add_stream_commands(dispatcher_, *this);
   add_stats_commands(dispatcher_, *this);
   add_capture_commands(dispatcher_, *this);
+  dispatcher_.set_gate([this](const protocol::MethodDescriptor&,
+                              const protocol::CallContext& call) -> protocol::Result<void> {
+    const auto session = sessions_.session_of(call);
+    if (!session) return session.error();
+    return {};
+  });
   dispatcher_.on_handler_failure([](std::string_view method, std::string_view reason) {
     spdlog::error("{} failed: {}", method, reason);
   });
@@ -37,13 +48,9 @@ void SessionHost::stop() {
   render_loop_.stop();
 }
 
-std::shared_ptr<Session> SessionHost::find_session(std::string_view name) const {
-  return name == session_->name() ? session_ : nullptr;
-}
-
-void SessionHost::load_scene(const std::string& name, const std::string& by,
-                             SceneLoader::Completion done) {
-  loader_.load(session_, name, by, std::move(done));
+void SessionHost::load_scene(std::shared_ptr<Session> session, const std::string& name,
+                             const std::string& by, SceneLoader::Completion done) {
+  loader_.load(std::move(session), name, by, std::move(done));
 }
 
 void SessionHost::on_first_frame(std::function<void()> callback) {

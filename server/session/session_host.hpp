@@ -12,11 +12,13 @@
 #include "session/render_loop.hpp"
 #include "session/scene_catalogue.hpp"
 #include "session/scene_loader.hpp"
+#include "session/session_registry.hpp"
 
 namespace heliograph::session {
 
 struct HostOptions {
-  SessionOptions session;
+  SessionOptions session;  // the main one, and what others start with
+  RegistryLimits limits;
   std::vector<std::filesystem::path> scene_roots;
   std::optional<std::filesystem::path> environment;  // for every scene, instead of its own
   scene::ImportLimits import_limits;
@@ -36,12 +38,11 @@ class SessionHost {
   const SceneCatalogue& catalogue() const { return catalogue_; }
   render::Engine& engine() { return engine_; }
 
-  /// The session called `name`, or null.
-  std::shared_ptr<Session> find_session(std::string_view name) const;
-  /// The session that a caller means who has named none.
-  Session& default_session() const { return *session_; }
+  SessionRegistry& sessions() { return sessions_; }
+  const SessionRegistry& sessions() const { return sessions_; }
 
-  void load_scene(const std::string& name, const std::string& by, SceneLoader::Completion done);
+  void load_scene(std::shared_ptr<Session> session, const std::string& name, const std::string& by,
+                  SceneLoader::Completion done);
   void on_first_frame(std::function<void()> callback);
   /// Whether a picture has been rendered: everything works.
   bool ready() const { return render_loop_.has_rendered(); }
@@ -55,7 +56,7 @@ class SessionHost {
   const HostOptions options_;
   SceneCatalogue catalogue_;
   RenderLoop render_loop_;
-  std::shared_ptr<Session> session_;
+  SessionRegistry sessions_;
   protocol::Dispatcher dispatcher_;
   SceneLoader loader_;
 };

@@ -59,11 +59,12 @@ struct SessionView::Picture {
   double fps = 0.0;
 };
 
-SessionView::SessionView(render::Engine& engine, SessionOptions options, ViewServices services)
+SessionView::SessionView(render::Engine& engine, SessionOptions options, PixelShare pixels,
+                         ViewServices services, std::shared_ptr<Wakeup> wakeup)
     : engine_(engine), services_(services), renderer_(std::make_unique<render::Renderer>(engine)) {
   const auto accepted = renderer_->set_settings(options.settings);
   if (!accepted) throw std::invalid_argument(accepted.error().message);
-  session_ = std::make_shared<Session>(std::move(options), services.wakeup);
+  session_ = std::make_shared<Session>(std::move(options), std::move(wakeup), std::move(pixels));
   session_->set_buffers(to_protocol(renderer_->buffers()));
 }
 
@@ -110,6 +111,14 @@ void SessionView::recover() {
 void SessionView::abandon_captures() {
   captures_.clear();
   session_->take_captures();
+}
+
+void SessionView::refuse_captures() {
+  collect_captures();
+  for (PendingCapture& capture : captures_) {
+    capture.request.done(protocol::error::not_found("session", "the session has ended"));
+  }
+  captures_.clear();
 }
 
 void SessionView::adopt_state() {
@@ -289,7 +298,7 @@ void SessionView::encode(Encoding encoding) {
   final_sent_ = final;
 
   services_.encoder.post([session = session_, picture = newest_, qualities, final,
-                          tracer = engine_.tracer(), &services = services_] {
+                          tracer = engine_.tracer(), services = services_] {
     const auto sampling = final ? stream::ChromaSampling::full : stream::ChromaSampling::half;
     std::vector<stream::SharedFrame> frames;
     double seconds = 0.0;

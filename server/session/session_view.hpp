@@ -29,7 +29,8 @@ struct ViewServices {
 class SessionView {
  public:
   /// @throws std::invalid_argument when the renderer refuses the settings
-  SessionView(render::Engine& engine, SessionOptions options, ViewServices services);
+  SessionView(render::Engine& engine, SessionOptions options, PixelShare pixels,
+              ViewServices services, std::shared_ptr<Wakeup> wakeup);
   ~SessionView();
 
   const std::shared_ptr<Session>& session() const { return session_; }
@@ -43,6 +44,8 @@ class SessionView {
   void recover();
   /// Drops all captures unanswered.
   void abandon_captures();
+  /// Answers all captures that the session has ended.
+  void refuse_captures();
 
  private:
   struct Picture;

@@ -15,6 +15,9 @@ class ViewerLink {
   /// Sends a text message. Waiting messages with the same `key` are replaced by this one, unless
   /// the key is empty: only the newest position of a camera matters.
   virtual void send(std::string text, std::string_view key) = 0;
+  /// Ends the connection once everything is sent: the viewer's session is no more. `why` is a
+  /// sentence for a person.
+  virtual void dismiss(std::string why) = 0;
 };
 
 }  // namespace heliograph::session

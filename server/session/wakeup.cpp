@@ -1,5 +1,7 @@
 #include "session/wakeup.hpp"
 
+#include <utility>
+
 namespace heliograph::session {
 
 void Wakeup::notify() {
@@ -8,6 +10,12 @@ void Wakeup::notify() {
     notified_ = true;
   }
   condition_.notify_one();
+  if (all_) all_->notify();
+}
+
+bool Wakeup::take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(notified_, false);
 }
 
 void Wakeup::wait_until(std::optional<Clock::time_point> deadline) {

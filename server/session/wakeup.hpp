@@ -1,8 +1,10 @@
 #pragma once
 
 #include <condition_variable>
+#include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include "stream/encoded_frame.hpp"
 
@@ -14,11 +16,17 @@ using stream::Clock;
 /// wait ends the wait at once.
 class Wakeup {
  public:
+  /// `all`, if any, is notified with this one: it stands for many such sources.
+  explicit Wakeup(std::shared_ptr<Wakeup> all = nullptr) : all_(std::move(all)) {}
+
   void notify();
+  /// Whether there was a notification since the last look or wait.
+  bool take();
   /// Returns after a notification or at `deadline`, whichever is first.
   void wait_until(std::optional<Clock::time_point> deadline);
 
  private:
+  const std::shared_ptr<Wakeup> all_;
   std::mutex mutex_;
   std::condition_variable condition_;
   bool notified_ = false;

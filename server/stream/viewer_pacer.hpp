@@ -16,6 +16,13 @@ struct PacerTotals {
   std::uint64_t frames = 0;  // taken for sending
   std::uint64_t bytes = 0;
   std::uint64_t dropped = 0;  // replaced by a newer one before they could be sent
+
+  PacerTotals& operator+=(const PacerTotals& more) {
+    frames += more.frames;
+    bytes += more.bytes;
+    dropped += more.dropped;
+    return *this;
+  }
 };
 
 /// Decides what one viewer gets, and when. There is no queue: one slot holds the latest frame, a
@@ -25,6 +32,8 @@ class ViewerPacer {
  public:
   /// Puts a frame into the slot, numbering it for this viewer.
   void offer(SharedFrame frame);
+  /// Empties the slot: what waits is of no interest any more.
+  void withdraw() { waiting_ = nullptr; }
   /// The waiting frame's number, if the viewer may have it now; it then counts as on its way.
   struct Taken {
     std::uint32_t frame_seq;

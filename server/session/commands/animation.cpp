@@ -10,22 +10,25 @@ using protocol::Empty;
 
 void add_animation_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
   add_command<Empty, AnimationState>(
-      dispatcher, "animation.list",
-      [&](const Empty&, const std::string&) { return host.default_session().animation(); });
+      dispatcher, host, "animation.list",
+      [](Session& session, const Empty&, const std::string&) { return session.animation(); });
   add_command<AnimationPlay, AnimationState>(
-      dispatcher, "animation.play", [&](const AnimationPlay& request, const std::string&) {
-        return host.default_session().play(request);
+      dispatcher, host, "animation.play",
+      [](Session& session, const AnimationPlay& request, const std::string&) {
+        return session.play(request);
       });
   add_command<Empty, AnimationState>(
-      dispatcher, "animation.pause",
-      [&](const Empty&, const std::string&) { return host.default_session().pause(); });
+      dispatcher, host, "animation.pause",
+      [](Session& session, const Empty&, const std::string&) { return session.pause(); });
   add_command<AnimationSeek, AnimationState>(
-      dispatcher, "animation.seek", [&](const AnimationSeek& request, const std::string&) {
-        return host.default_session().seek(request);
+      dispatcher, host, "animation.seek",
+      [](Session& session, const AnimationSeek& request, const std::string&) {
+        return session.seek(request);
       });
   add_command<AnimationRate, AnimationState>(
-      dispatcher, "animation.rate", [&](const AnimationRate& request, const std::string&) {
-        return host.default_session().set_rate(request);
+      dispatcher, host, "animation.rate",
+      [](Session& session, const AnimationRate& request, const std::string&) {
+        return session.set_rate(request);
       });
 }
 

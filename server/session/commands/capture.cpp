@@ -11,7 +11,7 @@ using protocol::Result;
 
 namespace {
 
-void capture(SessionHost& host, const FrameCapture& request,
+void capture(Session& session, const FrameCapture& request,
              protocol::Completion<CapturedFrame> done) {
   const auto answer = [request, done](Result<Capture> capture) {
     if (!capture) return done(capture.error());
@@ -22,7 +22,7 @@ void capture(SessionHost& host, const FrameCapture& request,
                        .samples = capture->samples,
                        .data = stream::base64_encode(capture->file)});
   };
-  const Result<void> accepted = host.default_session().request_capture(
+  const Result<void> accepted = session.request_capture(
       {.buffer = request.buffer, .samples = request.samples, .done = answer});
   if (!accepted) done(accepted.error());
 }
@@ -31,13 +31,17 @@ void capture(SessionHost& host, const FrameCapture& request,
 
 void add_capture_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
   add_command<Empty, FrameBuffers>(
-      dispatcher, "frame.buffers", [&](const Empty&, const std::string&) -> Result<FrameBuffers> {
-        return FrameBuffers{.buffers = host.default_session().buffers()};
+      dispatcher, host, "frame.buffers",
+      [](Session& session, const Empty&, const std::string&) -> Result<FrameBuffers> {
+        return FrameBuffers{.buffers = session.buffers()};
       });
   dispatcher.add<FrameCapture, CapturedFrame>(
-      "frame.capture",
-      [&](const FrameCapture& request, const protocol::CallContext&,
-          protocol::Completion<CapturedFrame> done) { capture(host, request, std::move(done)); });
+      "frame.capture", [&](const FrameCapture& request, const protocol::CallContext& context,
+                           protocol::Completion<CapturedFrame> done) {
+        const auto session = host.sessions().session_of(context);
+        if (!session) return done(session.error());
+        capture(**session, request, std::move(done));
+      });
 }
 
 }  // namespace heliograph::session

@@ -16,13 +16,19 @@ void add_stream_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_stats_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_capture_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 
-/// Adds a command that answers at once: `command(request, viewer)` gives a Result<Response>.
+/// Adds a command that answers at once: `command(session, request, viewer)` gives a
+/// Result<Response>. The session is the one that the call belongs to.
 template <class Request, class Response, class Command>
-void add_command(protocol::Dispatcher& dispatcher, std::string_view name, Command command) {
+void add_command(protocol::Dispatcher& dispatcher, SessionHost& host, std::string_view name,
+                 Command command) {
   dispatcher.add<Request, Response>(
-      name, [command = std::move(command)](
-                const Request& request, const protocol::CallContext& context,
-                protocol::Completion<Response> done) { done(command(request, context.viewer)); });
+      name, [&host, command = std::move(command)](const Request& request,
+                                                  const protocol::CallContext& context,
+                                                  protocol::Completion<Response> done) {
+        const auto session = host.sessions().session_of(context);
+        if (!session) return done(session.error());
+        done(command(**session, request, context.viewer));
+      });
 }
 
 }  // namespace heliograph::session

@@ -24,23 +24,28 @@ PresetList list_presets() {
 }  // namespace
 
 void add_settings_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
-  add_command<Empty, SettingsState>(dispatcher, "settings.get",
-                                    [&](const Empty&, const std::string&) -> Result<SettingsState> {
-                                      return host.default_session().settings();
-                                    });
+  add_command<Empty, SettingsState>(
+      dispatcher, host, "settings.get",
+      [](Session& session, const Empty&, const std::string&) -> Result<SettingsState> {
+        return session.settings();
+      });
   add_command<SettingsPatch, SettingsApplied>(
-      dispatcher, "settings.patch", [&](const SettingsPatch& request, const std::string& viewer) {
-        return host.default_session().patch_settings(request.patch, viewer);
+      dispatcher, host, "settings.patch",
+      [](Session& session, const SettingsPatch& request, const std::string& viewer) {
+        return session.patch_settings(request.patch, viewer);
       });
   add_command<Empty, PresetList>(
-      dispatcher, "settings.presets",
-      [](const Empty&, const std::string&) -> Result<PresetList> { return list_presets(); });
+      dispatcher, host, "settings.presets",
+      [](Session&, const Empty&, const std::string&) -> Result<PresetList> {
+        return list_presets();
+      });
   add_command<PresetChoice, SettingsApplied>(
-      dispatcher, "settings.preset",
-      [&](const PresetChoice& request, const std::string& viewer) -> Result<SettingsApplied> {
+      dispatcher, host, "settings.preset",
+      [](Session& session, const PresetChoice& request,
+         const std::string& viewer) -> Result<SettingsApplied> {
         const Result<protocol::Preset> preset = protocol::find_preset(request.name);
         if (!preset) return preset.error();
-        return host.default_session().patch_settings(preset->settings, viewer);
+        return session.patch_settings(preset->settings, viewer);
       });
 }
 

@@ -7,11 +7,11 @@ using protocol::StatsSubscription;
 
 void add_stats_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
   add_command<StatsSubscription, StatsSubscription>(
-      dispatcher, "stats.subscribe",
-      [&](const StatsSubscription& request,
-          const std::string& viewer) -> Result<StatsSubscription> {
-        const auto subscribed = host.default_session().audience().subscribe(
-            viewer, std::chrono::milliseconds(request.interval_ms));
+      dispatcher, host, "stats.subscribe",
+      [](Session& session, const StatsSubscription& request,
+         const std::string& viewer) -> Result<StatsSubscription> {
+        const auto subscribed =
+            session.audience().subscribe(viewer, std::chrono::milliseconds(request.interval_ms));
         if (!subscribed) return subscribed.error();
         return request;
       });

@@ -15,14 +15,24 @@ namespace error = protocol::error;
 
 namespace {
 
-Result<HelloResult> greet(SessionHost& host, const Hello& request, const std::string& viewer) {
-  const std::shared_ptr<Session> session = host.find_session(request.session);
-  if (!session) return error::not_found("session", "does not exist");
+/// The session that a caller who introduces itself wants to be in.
+Result<std::shared_ptr<Session>> choose_session(SessionHost& host, const Hello& request,
+                                                const protocol::CallContext& call) {
+  if (!request.session) return host.sessions().session_of(call);
+  if (call.viewer.empty()) return host.sessions().find(*request.session);
+  return host.sessions().move(call.viewer, *request.session);
+}
+
+Result<HelloResult> greet(SessionHost& host, const Hello& request,
+                          const protocol::CallContext& call) {
   const auto& codecs = request.codecs;
   if (std::find(codecs.begin(), codecs.end(), "jpeg") == codecs.end()) {
     return error::invalid("codecs", "must hold one that the server has", "jpeg");
   }
-  if (!viewer.empty()) session->audience().start(viewer);
+  const Result<std::shared_ptr<Session>> chosen = choose_session(host, request, call);
+  if (!chosen) return chosen.error();
+  const std::shared_ptr<Session>& session = *chosen;
+  if (!call.viewer.empty()) session->audience().start(call.viewer);
 
   const render::DeviceInfo& device = host.engine().device();
   const SessionLimits& limits = session->limits();
@@ -31,7 +41,7 @@ Result<HelloResult> greet(SessionHost& host, const Hello& request, const std::st
   result.device = {.name = device.name, .driver = device.driver, .type = device.type};
   result.tracer = host.engine().tracer();
   result.session = session->name();
-  result.viewer = viewer;
+  result.viewer = call.viewer;
   result.codecs = {"jpeg"};
   result.limits = {
       .max_width = limits.max_width,
@@ -45,19 +55,19 @@ Result<HelloResult> greet(SessionHost& host, const Hello& request, const std::st
 }  // namespace
 
 void add_stream_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
-  add_command<Hello, HelloResult>(dispatcher, "hello",
-                                  [&](const Hello& request, const std::string& viewer) {
-                                    return greet(host, request, viewer);
-                                  });
+  dispatcher.add<Hello, HelloResult>(
+      "hello",
+      [&](const Hello& request, const protocol::CallContext& context,
+          protocol::Completion<HelloResult> done) { done(greet(host, request, context)); });
   add_command<StreamConfigure, StreamState>(
-      dispatcher, "stream.configure",
-      [&](const StreamConfigure& request, const std::string& viewer) {
-        return host.default_session().configure_stream(request, viewer);
+      dispatcher, host, "stream.configure",
+      [](Session& session, const StreamConfigure& request, const std::string& viewer) {
+        return session.configure_stream(request, viewer);
       });
   add_command<StreamAck, Empty>(
-      dispatcher, "stream.ack",
-      [&](const StreamAck& request, const std::string& viewer) -> Result<Empty> {
-        const auto taken = host.default_session().audience().acknowledge(viewer, request);
+      dispatcher, host, "stream.ack",
+      [](Session& session, const StreamAck& request, const std::string& viewer) -> Result<Empty> {
+        const auto taken = session.audience().acknowledge(viewer, request);
         if (!taken) return taken.error();
         return Empty();
       });

@@ -31,8 +31,7 @@ LoadedScene carousel() {
 
 class AnimationTest : public testing::Test {
  protected:
-  Wakeup wakeup_;
-  Session session_{{}, wakeup_};
+  Session session_{{}, std::make_shared<Wakeup>()};
 };
 
 TEST(AnimationClock, PassesAtItsRateWhilePlaying) {

@@ -22,14 +22,17 @@ class RecordingLink : public ViewerLink {
     keys.emplace_back(key);
   }
 
+  void dismiss(std::string why) override { dismissed = std::move(why); }
+
   int announced = 0;
+  std::string dismissed;
   std::vector<json> messages;
   std::vector<std::string> keys;
 };
 
 class SessionTest : public testing::Test {
  protected:
-  SessionTest() : session_(options(), wakeup_) {
+  SessionTest() : session_(options(), std::make_shared<Wakeup>()) {
     session_.set_buffers({{"output", "picture"}, {"normal", "normals"}});
   }
 
@@ -62,12 +65,13 @@ class SessionTest : public testing::Test {
   };
   Joined join() {
     Joined joined;
-    joined.id = *session_.audience().join(joined.link);
+    joined.id = "v" + std::to_string(++joined_so_far_);
+    EXPECT_TRUE(session_.audience().join(joined.id, joined.link));
     session_.audience().start(joined.id);
     return joined;
   }
 
-  Wakeup wakeup_;
+  int joined_so_far_ = 0;
   Session session_;
 };
 
@@ -201,10 +205,10 @@ TEST_F(SessionTest, WithoutAStreamOnlyTheSizeCanBeSet) {
 TEST_F(SessionTest, AFullSessionSaysSo) {
   const Joined first = join();
   const Joined second = join();
-  const auto third = session_.audience().join(std::make_shared<RecordingLink>());
+  const auto third = session_.audience().join("newcomer", std::make_shared<RecordingLink>());
   EXPECT_EQ(third.error().code, ErrorCode::full);
   session_.leave(first.id);
-  EXPECT_TRUE(session_.audience().join(std::make_shared<RecordingLink>()));
+  EXPECT_TRUE(session_.audience().join("newcomer", std::make_shared<RecordingLink>()));
 }
 
 TEST_F(SessionTest, CapturesAreCheckedAndLimited) {

@@ -1,0 +1,179 @@
+#include "session/session_registry.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cctype>
+#include <stdexcept>
+#include <utility>
+
+#include "protocol/suggestions.hpp"
+
+namespace heliograph::session {
+
+using protocol::Result;
+namespace error = protocol::error;
+
+namespace {
+
+bool is_name(std::string_view name) {
+  const auto plain = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == '.';
+  };
+  return !name.empty() && name.size() <= 64 && name.front() != '.' &&
+         std::all_of(name.begin(), name.end(), plain);
+}
+
+}  // namespace
+
+SessionRegistry::SessionRegistry(const RegistryLimits& limits, SessionOptions main, Open open,
+                                 Close close)
+    : limits_(limits),
+      open_(std::move(open)),
+      close_(std::move(close)),
+      pixels_(std::make_shared<PixelBudget>(limits.pixels)) {
+  main.name = protocol::main_session;
+  const Result<std::shared_ptr<Session>> made = create(std::move(main));
+  if (!made) throw std::invalid_argument("the main session: " + made.error().message);
+  main_ = *made;
+}
+
+Result<std::shared_ptr<Session>> SessionRegistry::create(SessionOptions options) {
+  const std::lock_guard lock(mutex_);
+  if (options.name.empty()) options.name = free_name();
+  if (!is_name(options.name)) {
+    return error::invalid("name", "is no name for a session",
+                          "1 to 64 letters, digits, dots, hyphens and underscores");
+  }
+  if (sessions_.contains(options.name)) {
+    return error::conflict("name", "there is a session of this name already");
+  }
+  if (sessions_.size() >= limits_.sessions) {
+    return error::full("there is no room for another session",
+                       std::to_string(limits_.sessions) + " sessions");
+  }
+  options.width = std::min(options.width, options.limits.max_width);
+  options.height = std::min(options.height, options.limits.max_height);
+  PixelShare share(pixels_);
+  const Result<void> fits =
+      share.resize(static_cast<std::uint64_t>(options.width) * options.height);
+  if (!fits) return fits.error();
+  const std::string name = options.name;
+  std::shared_ptr<Session> session = open_(std::move(options), std::move(share));
+  sessions_[name] = session;
+  return session;
+}
+
+Result<void> SessionRegistry::close(const std::string& name, const std::string& why) {
+  const std::lock_guard lock(mutex_);
+  const Result<std::shared_ptr<Session>> found = find_locked(name);
+  if (!found) return found.error();
+  const std::shared_ptr<Session> session = *found;
+  if (session == main_) return error::conflict("session", "the main session always exists");
+  sessions_.erase(name);
+  for (const std::string& viewer : session->audience().dismiss_all(why)) {
+    session_of_viewer_.erase(viewer);
+  }
+  ended_.sent += session->audience().totals().sent;
+  close_(*session);
+  return {};
+}
+
+Result<std::shared_ptr<Session>> SessionRegistry::find(std::string_view name) const {
+  const std::lock_guard lock(mutex_);
+  return find_locked(name);
+}
+
+Result<std::shared_ptr<Session>> SessionRegistry::find_locked(std::string_view name) const {
+  const auto found = sessions_.find(name);
+  if (found != sessions_.end()) return found->second;
+  std::vector<std::string_view> names;
+  for (const auto& [known, session] : sessions_) names.push_back(known);
+  return error::not_found("session", "no session is called so" + protocol::suggestion(name, names));
+}
+
+Result<std::shared_ptr<Session>> SessionRegistry::session_of(
+    const protocol::CallContext& call) const {
+  if (call.viewer.empty()) return find(call.session);
+  if (std::shared_ptr<Session> session = session_watched_by(call.viewer)) return session;
+  return error::not_found("session", "the session has ended");
+}
+
+std::shared_ptr<Session> SessionRegistry::session_watched_by(const std::string& viewer) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = session_of_viewer_.find(viewer);
+  return found == session_of_viewer_.end() ? nullptr : found->second;
+}
+
+std::vector<std::shared_ptr<Session>> SessionRegistry::all() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::shared_ptr<Session>> list;
+  for (const auto& [name, session] : sessions_) list.push_back(session);
+  return list;
+}
+
+Result<std::string> SessionRegistry::enter(const std::string& session,
+                                           std::weak_ptr<ViewerLink> link) {
+  const std::lock_guard lock(mutex_);
+  const Result<std::shared_ptr<Session>> found = find_locked(session);
+  if (!found) return found.error();
+  if (session_of_viewer_.size() >= limits_.viewers) {
+    return error::full("the server has no room for another viewer",
+                       std::to_string(limits_.viewers) + " viewers");
+  }
+  const std::string id = "v" + std::to_string(++viewers_so_far_);
+  if (const auto joined = (*found)->audience().join(id, std::move(link)); !joined) {
+    return joined.error();
+  }
+  session_of_viewer_[id] = *found;
+  return id;
+}
+
+Result<std::shared_ptr<Session>> SessionRegistry::move(const std::string& viewer,
+                                                       const std::string& session) {
+  const std::lock_guard lock(mutex_);
+  const auto here = session_of_viewer_.find(viewer);
+  if (here == session_of_viewer_.end()) {
+    return error::not_ready("only a viewer on a WebSocket can join a session");
+  }
+  const Result<std::shared_ptr<Session>> there = find_locked(session);
+  if (!there || *there == here->second) return there;
+  if (const auto moved = here->second->hand_over(viewer, **there); !moved) return moved.error();
+  here->second = *there;
+  return there;
+}
+
+void SessionRegistry::leave(const std::string& viewer) {
+  const std::lock_guard lock(mutex_);
+  const auto found = session_of_viewer_.find(viewer);
+  if (found == session_of_viewer_.end()) return;
+  found->second->leave(viewer);
+  session_of_viewer_.erase(found);
+}
+
+AudienceTotals SessionRegistry::totals() const {
+  const std::lock_guard lock(mutex_);
+  AudienceTotals totals = ended_;
+  std::size_t measured = 0;
+  for (const auto& [name, session] : sessions_) {
+    const AudienceTotals more = session->audience().totals();
+    totals.viewers += more.viewers;
+    totals.sent += more.sent;
+    totals.goodput += more.goodput;
+    if (more.mean_round_trip.count() == 0) continue;
+    totals.mean_round_trip += more.mean_round_trip;
+    ++measured;
+  }
+  if (measured > 0) totals.mean_round_trip /= static_cast<std::int64_t>(measured);
+  return totals;
+}
+
+std::string SessionRegistry::free_name() {
+  std::string name;
+  do {
+    name = "session-" + std::to_string(++names_so_far_);
+  } while (sessions_.contains(name));
+  return name;
+}
+
+}  // namespace heliograph::session

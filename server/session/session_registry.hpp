@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "protocol/jsonrpc.hpp"
+#include "session/pixel_budget.hpp"
+#include "session/session.hpp"
+
+namespace heliograph::session {
+
+/// What all sessions together may take. Beyond it the answer is ErrorCode::full; nobody who is
+/// there already gets less.
+struct RegistryLimits {
+  std::size_t sessions = 64;
+  std::size_t viewers = 256;
+  std::uint64_t pixels = 8ull * 3840 * 2160;
+};
+
+/// The sessions by name, and which viewer is in which of them. "main" is there from the start and
+/// for good. Thread safe.
+class SessionRegistry {
+ public:
+  using Open = std::function<std::shared_ptr<Session>(SessionOptions, PixelShare)>;
+  using Close = std::function<void(const Session&)>;
+
+  /// `open` makes sessions that are drawn, `close` ends that.
+  /// @throws what `open` throws for the main session
+  SessionRegistry(const RegistryLimits& limits, SessionOptions main, Open open, Close close);
+
+  /// A new session; without a name in `options` it gets one.
+  protocol::Result<std::shared_ptr<Session>> create(SessionOptions options);
+  /// Ends a session. Its viewers are told why and let go.
+  protocol::Result<void> close(const std::string& name, const std::string& why);
+
+  protocol::Result<std::shared_ptr<Session>> find(std::string_view name) const;
+  /// The session that a call belongs to.
+  protocol::Result<std::shared_ptr<Session>> session_of(const protocol::CallContext& call) const;
+  /// The session that a viewer is in, or null.
+  std::shared_ptr<Session> session_watched_by(const std::string& viewer) const;
+  const std::shared_ptr<Session>& main() const { return main_; }
+  /// All sessions, by name.
+  std::vector<std::shared_ptr<Session>> all() const;
+
+  /// Takes in a new viewer; gives its id.
+  protocol::Result<std::string> enter(const std::string& session, std::weak_ptr<ViewerLink> link);
+  /// Brings a viewer into another session, with its stream as it is.
+  protocol::Result<std::shared_ptr<Session>> move(const std::string& viewer,
+                                                  const std::string& session);
+  void leave(const std::string& viewer);
+
+  /// Of all sessions, those that have ended included.
+  AudienceTotals totals() const;
+  const RegistryLimits& limits() const { return limits_; }
+  std::uint64_t pixels_used() const { return pixels_->used(); }
+
+ private:
+  using Sessions = std::map<std::string, std::shared_ptr<Session>, std::less<>>;
+
+  protocol::Result<std::shared_ptr<Session>> find_locked(std::string_view name) const;
+  std::string free_name();
+
+  const RegistryLimits limits_;
+  const Open open_;
+  const Close close_;
+  const std::shared_ptr<PixelBudget> pixels_;
+
+  mutable std::mutex mutex_;
+  Sessions sessions_;
+  std::map<std::string, std::shared_ptr<Session>> session_of_viewer_;
+  std::uint64_t viewers_so_far_ = 0;
+  std::uint64_t names_so_far_ = 0;
+  AudienceTotals ended_;
+  std::shared_ptr<Session> main_;
+};
+
+}  // namespace heliograph::session

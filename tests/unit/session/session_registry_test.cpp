@@ -1,0 +1,155 @@
+#include "session/session_registry.hpp"
+
+#include <gtest/gtest.h>
+
+namespace heliograph::session {
+namespace {
+
+using protocol::ErrorCode;
+
+class SilentLink : public ViewerLink {
+ public:
+  void frame_ready() override {}
+  void send(std::string, std::string_view) override {}
+  void dismiss(std::string why) override { dismissed = std::move(why); }
+
+  std::string dismissed;
+};
+
+class SessionRegistryTest : public testing::Test {
+ protected:
+  SessionRegistryTest() : registry_(limits(), named({}), open(), close()) {}
+
+  static RegistryLimits limits() { return {.sessions = 3, .viewers = 3, .pixels = 1000}; }
+  static SessionOptions named(std::string name, std::uint32_t width = 20) {
+    SessionOptions options;
+    options.name = std::move(name);
+    options.width = width;
+    options.height = 10;
+    options.limits.max_viewers = 2;
+    return options;
+  }
+  SessionRegistry::Open open() {
+    return [](SessionOptions options, PixelShare pixels) {
+      return std::make_shared<Session>(std::move(options), std::make_shared<Wakeup>(),
+                                       std::move(pixels));
+    };
+  }
+  SessionRegistry::Close close() {
+    return [this](const Session& session) { closed_.push_back(session.name()); };
+  }
+  std::string enter(const std::string& session) {
+    links_.push_back(std::make_shared<SilentLink>());
+    const auto id = registry_.enter(session, links_.back());
+    EXPECT_TRUE(id) << id.error().message;
+    return id ? *id : std::string();
+  }
+
+  std::vector<std::string> closed_;
+  std::vector<std::shared_ptr<SilentLink>> links_;
+  SessionRegistry registry_;
+};
+
+TEST_F(SessionRegistryTest, TheMainSessionIsThereForGood) {
+  EXPECT_EQ(registry_.main()->name(), "main");
+  EXPECT_EQ(registry_.close("main", "").error().code, ErrorCode::conflict);
+  EXPECT_TRUE(registry_.find("main"));
+}
+
+TEST_F(SessionRegistryTest, SessionsAreFoundByTheirNames) {
+  ASSERT_TRUE(registry_.create(named("review")));
+  EXPECT_EQ((*registry_.find("review"))->name(), "review");
+  const auto unknown = registry_.find("reviev");
+  EXPECT_EQ(unknown.error().code, ErrorCode::not_found);
+  EXPECT_EQ(unknown.error().path, "session");
+  EXPECT_NE(unknown.error().message.find("review"), std::string::npos);
+  EXPECT_EQ(registry_.create(named("review")).error().code, ErrorCode::conflict);
+  for (const char* bad : {"../etc", "a b", ".hidden", "ümlaut", "a/b"}) {
+    EXPECT_EQ(registry_.create(named(bad)).error().code, ErrorCode::invalid_params) << bad;
+  }
+}
+
+TEST_F(SessionRegistryTest, SessionsWithoutANameGetOne) {
+  ASSERT_TRUE(registry_.create(named("session-1")));
+  const auto session = registry_.create(named(""));
+  ASSERT_TRUE(session);
+  EXPECT_EQ((*session)->name(), "session-2");
+}
+
+TEST_F(SessionRegistryTest, FullIsAnAnswerThatNamesTheLimit) {
+  ASSERT_TRUE(registry_.create(named("a")));
+  const auto large = registry_.create(named("b", 80));
+  EXPECT_EQ(large.error().code, ErrorCode::full);
+  EXPECT_NE(large.error().limit.find("1000 pixels"), std::string::npos);
+  ASSERT_TRUE(registry_.create(named("b")));
+  const auto fourth = registry_.create(named("c"));
+  EXPECT_EQ(fourth.error().code, ErrorCode::full);
+  EXPECT_EQ(fourth.error().limit, "3 sessions");
+  ASSERT_TRUE(registry_.close("a", ""));
+  EXPECT_TRUE(registry_.create(named("c")));
+}
+
+TEST_F(SessionRegistryTest, APictureGrowsOnlyWithinWhatOthersLeave) {
+  const auto session = *registry_.create(named("a"));
+  EXPECT_TRUE(session->configure_stream({.width = 80}, ""));
+  EXPECT_EQ(session->configure_stream({.width = 81}, "").error().code, ErrorCode::full);
+  EXPECT_EQ(session->render_state().width, 80u) << "a refused size changes nothing";
+  EXPECT_EQ(registry_.pixels_used(), 1000u);
+  EXPECT_TRUE(session->configure_stream({.width = 40}, ""));
+  EXPECT_TRUE(registry_.main()->configure_stream({.width = 60}, ""));
+}
+
+TEST_F(SessionRegistryTest, AnEndedSessionGivesItsPixelsBack) {
+  ASSERT_TRUE(registry_.create(named("a", 80)));
+  ASSERT_TRUE(registry_.close("a", ""));
+  EXPECT_EQ(registry_.pixels_used(), 200u);
+  EXPECT_EQ(closed_, std::vector<std::string>{"a"});
+}
+
+TEST_F(SessionRegistryTest, CallsBelongToTheViewersSessionOrToTheOneTheyName) {
+  ASSERT_TRUE(registry_.create(named("a")));
+  const std::string viewer = enter("a");
+  EXPECT_EQ((*registry_.session_of({.viewer = viewer}))->name(), "a");
+  EXPECT_EQ((*registry_.session_of({.viewer = viewer, .session = "main"}))->name(), "a");
+  EXPECT_EQ((*registry_.session_of({.viewer = {}, .session = "a"}))->name(), "a");
+  EXPECT_EQ((*registry_.session_of(protocol::CallContext()))->name(), "main");
+  EXPECT_EQ(registry_.session_of({.viewer = {}, .session = "b"}).error().code,
+            ErrorCode::not_found);
+}
+
+TEST_F(SessionRegistryTest, ViewersMoveAndKeepTheirStream) {
+  const auto there = *registry_.create(named("a"));
+  const std::string viewer = enter("main");
+  ASSERT_TRUE(registry_.main()->configure_stream({.quality = 33}, viewer));
+  ASSERT_TRUE(registry_.move(viewer, "a"));
+  EXPECT_EQ(registry_.session_watched_by(viewer), there);
+  EXPECT_EQ(registry_.main()->audience().totals().viewers, 0u);
+  EXPECT_EQ(there->configure_stream({.max_fps = 10.0}, viewer)->quality, 33u);
+  EXPECT_EQ(registry_.move(viewer, "nowhere").error().code, ErrorCode::not_found);
+  EXPECT_EQ(registry_.move("v99", "a").error().code, ErrorCode::not_ready);
+}
+
+TEST_F(SessionRegistryTest, WhoFindsNoRoomStaysWhereHeIs) {
+  ASSERT_TRUE(registry_.create(named("a")));
+  enter("a");
+  enter("a");
+  const std::string viewer = enter("main");
+  EXPECT_EQ(registry_.move(viewer, "a").error().code, ErrorCode::full);
+  EXPECT_EQ(registry_.session_watched_by(viewer), registry_.main());
+  EXPECT_EQ(registry_.main()->audience().totals().viewers, 1u);
+  EXPECT_EQ(registry_.enter("main", std::make_shared<SilentLink>()).error().limit, "3 viewers");
+}
+
+TEST_F(SessionRegistryTest, ViewersOfAnEndedSessionAreToldWhy) {
+  ASSERT_TRUE(registry_.create(named("a")));
+  const std::string viewer = enter("a");
+  ASSERT_TRUE(registry_.close("a", "it was closed"));
+  EXPECT_EQ(links_.back()->dismissed, "it was closed");
+  EXPECT_EQ(registry_.session_watched_by(viewer), nullptr);
+  EXPECT_EQ(registry_.session_of({.viewer = viewer}).error().code, ErrorCode::not_found);
+  EXPECT_EQ(registry_.totals().viewers, 0u);
+  registry_.leave(viewer);
+}
+
+}  // namespace
+}  // namespace heliograph::session
