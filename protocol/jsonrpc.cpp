@@ -63,6 +63,13 @@ Error invalid_request(std::string path, std::string reason, std::string limit = 
                      std::move(limit));
 }
 
+/// Whether those who may only watch may call it: whatever has no effect, or none on others.
+bool is_for_watching(const MethodDescriptor& method) {
+  if (!method.may_be_notification) return true;
+  return method.name.starts_with("stream.") || method.name.starts_with("stats.") ||
+         method.name == "session.join";
+}
+
 /// The parts of one request that has the shape of JSON-RPC.
 struct Call {
   std::optional<json> id;  ///< none: a notification
@@ -292,6 +299,10 @@ void Dispatcher::invoke(const Entry& entry, const RawJson& params, const CallCon
   };
   if (!params.value().is_object()) {
     return done(error::invalid("params", "must be an object", "parameters go by name"));
+  }
+  if (context.view_only && !is_for_watching(*entry.method)) {
+    return done(error::make(ErrorCode::forbidden, "method",
+                            "the token of this client lets it watch but not steer"));
   }
   try {
     if (gate_) {

@@ -21,6 +21,7 @@ struct CallContext {
   std::string viewer;  ///< the viewer's id; empty for callers that watch no stream
   /// Where a caller that is no viewer calls; where a viewer is, is known by its id.
   std::string session{main_session};
+  bool view_only = false;  ///< may watch but not steer
 };
 
 /// Takes the answer of a call: from any thread, at once or later; only the first one counts. If

@@ -34,10 +34,22 @@ struct ServeOptions {
   std::string environment;
   std::optional<std::uint32_t> width;  // absent: as the device can bear
   std::optional<std::uint32_t> height;
+  std::string tls_certificate;
+  std::string tls_key;
+  std::string metrics_listen;  // "address:port"
+  double drain_notice = 0.0;   // seconds
+  double drain_deadline = 5.0;
   std::uint32_t max_viewers = 32;
+  std::uint32_t max_connections = 256;
+  std::uint32_t max_connections_per_client = 64;
   std::string token;
+  std::string view_token;
+  std::string token_file;
   bool insecure = false;
   std::vector<std::string> allowed_origins;
+  std::vector<std::string> allowed_hosts;
+  std::vector<std::string> trusted_proxies;
+  std::vector<std::string> frame_ancestors;
   scene::ImportLimits limits;
   SettingsOptions settings;
   DeviceOptions device;

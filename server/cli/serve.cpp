@@ -1,5 +1,7 @@
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <mutex>
 #include <optional>
@@ -36,12 +38,58 @@ void fit_size(session::SessionOptions& session, const render::DeviceInfo& device
   session.height = 360;
 }
 
+std::vector<net::Token> tokens(const ServeOptions& options) {
+  std::vector<net::Token> found;
+  if (!options.token_file.empty()) found = net::read_token_file(options.token_file);
+  if (!options.token.empty()) found.push_back({options.token, net::Role::control});
+  if (!options.view_token.empty()) found.push_back({options.view_token, net::Role::view});
+  return found;
+}
+
+/// "127.0.0.1:9464" or "[::1]:9464"
+std::optional<net::Endpoint> endpoint(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const std::size_t colon = std::min(text.rfind(':'), text.size());
+  std::string address = text.substr(0, colon);
+  if (address.starts_with('[') && address.ends_with(']')) {
+    address = address.substr(1, address.size() - 2);
+  }
+  std::uint16_t port = 0;
+  const char* const end = text.data() + text.size();
+  const char* const begin = text.data() + std::min(colon + 1, text.size());
+  const auto parsed = std::from_chars(begin, end, port);
+  if (address.empty() || parsed.ec != std::errc() || parsed.ptr != end) {
+    throw std::invalid_argument("--metrics-listen " + text +
+                                ": must be an address and a port such as 127.0.0.1:9464");
+  }
+  return net::Endpoint{.address = address, .port = port};
+}
+
+std::chrono::milliseconds milliseconds(double seconds) {
+  return std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * seconds));
+}
+
 net::ServerOptions server_options(const ServeOptions& options) {
+  if (options.tls_certificate.empty() != options.tls_key.empty()) {
+    throw std::invalid_argument("--tls-certificate and --tls-key go together");
+  }
   return {.port = options.port,
           .access = {.bind_address = options.host,
-                     .token = options.token,
+                     .tokens = tokens(options),
                      .insecure = options.insecure,
-                     .allowed_origins = options.allowed_origins}};
+                     .allowed_origins = options.allowed_origins,
+                     .allowed_hosts = options.allowed_hosts,
+                     .trusted_proxies = options.trusted_proxies,
+                     .embedded = !options.frame_ancestors.empty()},
+          .router = {.frame_ancestors = options.frame_ancestors,
+                     .metrics = options.metrics_listen.empty()},
+          .tls_certificate = options.tls_certificate,
+          .tls_key = options.tls_key,
+          .measuring = endpoint(options.metrics_listen),
+          .max_connections = options.max_connections,
+          .max_connections_per_client = options.max_connections_per_client,
+          .drain_notice = milliseconds(options.drain_notice),
+          .drain_deadline = milliseconds(options.drain_deadline)};
 }
 
 /// Why the first scene could not be shown. Written by the loading thread, read after it.
@@ -88,8 +136,9 @@ int run(const ServeOptions& options) {
   session::SessionHost host(engine, hosting);
   net::Server server(host, server_options(options));
 
-  host.on_first_frame([url = server.url()] {
+  host.on_first_frame([url = server.url(), metrics = server.metrics_url()] {
     std::printf("listening on %s\n", url.c_str());
+    if (metrics) std::printf("metrics at %s\n", metrics->c_str());
     std::fflush(stdout);
   });
   StartFailure failure;

@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::string_view cookie_name = "heliograph_token";
 constexpr std::string_view token_protocol = "heliograph.v1.token.";
-constexpr std::size_t shortest_token = 8;
+// A request is one guess, not hundreds in as many cookies.
+constexpr std::size_t most_tokens_shown = 3;
 
 bool is_address(std::string_view host) {
   std::array<unsigned char, sizeof(in6_addr)> bytes{};
@@ -56,10 +57,30 @@ std::string machine_name() {
   return gethostname(name.data(), name.size() - 1) == 0 ? lower(name.data()) : std::string();
 }
 
-bool fits_into_headers(std::string_view token) {
-  return std::all_of(token.begin(), token.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '-' || c == '.' || c == '_' || c == '~';
-  });
+/// The address of "10.1.2.3:4711" or "[::1]:4711", which some proxies write.
+std::string_view without_port_of_address(std::string_view text) {
+  return is_address(text) ? text : without_port(text);
+}
+
+/// Every token that the request shows, wherever it does.
+std::vector<std::string> tokens_shown(const HttpRequest& request) {
+  std::vector<std::string> shown;
+  const std::string_view authorization = request.header("authorization");
+  constexpr std::string_view bearer = "Bearer ";
+  if (authorization.starts_with(bearer)) shown.emplace_back(authorization.substr(bearer.size()));
+  for (const std::string_view cookie : header_elements(request.header("cookie"), ';')) {
+    const std::size_t equals = std::min(cookie.find('='), cookie.size());
+    if (cookie.substr(0, equals) != cookie_name) continue;
+    shown.emplace_back(cookie.substr(std::min(equals + 1, cookie.size())));
+  }
+  for (const std::string_view protocol :
+       header_elements(request.header("sec-websocket-protocol"))) {
+    if (!protocol.starts_with(token_protocol)) continue;
+    const auto token = stream::base64url_decode(protocol.substr(token_protocol.size()));
+    shown.push_back(token.value_or(std::string()));
+  }
+  if (shown.size() > most_tokens_shown) shown.resize(most_tokens_shown);
+  return shown;
 }
 
 }  // namespace
@@ -69,68 +90,115 @@ bool is_loopback(std::string_view address) {
          (address.starts_with("127.") && is_address(address));
 }
 
-AccessControl::AccessControl(AccessOptions options) : options_(std::move(options)) {
-  const std::string& token = options_.token;
-  if (!token.empty() && (token.size() < shortest_token || !fits_into_headers(token))) {
-    throw std::invalid_argument(
-        "a token needs at least 8 characters out of letters, digits and -._~");
-  }
-  if (token.empty() && !options_.insecure && !is_loopback(options_.bind_address)) {
+bool is_origin(std::string_view text) {
+  return !authority_of(text).empty();
+}
+
+AccessControl::AccessControl(AccessOptions options)
+    : options_(std::move(options)), tokens_(options_.tokens) {
+  if (tokens_.empty() && !options_.insecure && !is_loopback(options_.bind_address)) {
     throw std::invalid_argument("other machines reach " + options_.bind_address +
                                 ": give a --token, or --insecure if everybody may watch");
   }
   host_names_ = {"localhost", lower(options_.bind_address)};
   if (!is_loopback(options_.bind_address)) host_names_.push_back(machine_name());
   for (const std::string& origin : options_.allowed_origins) {
-    if (authority_of(origin).empty()) {
+    if (!is_origin(origin)) {
       throw std::invalid_argument("\"" + origin +
                                   "\" is not an origin such as https://example.org");
     }
     host_names_.push_back(lower(without_port(authority_of(origin))));
   }
+  for (const std::string& host : options_.allowed_hosts) {
+    if (host.empty() || host.find_first_of("/@?# :*") != std::string::npos) {
+      throw std::invalid_argument("\"" + host + "\" is not a host name such as example.org");
+    }
+    host_names_.push_back(lower(host));
+  }
+  for (const std::string& proxy : options_.trusted_proxies) proxies_.emplace_back(proxy);
 }
 
-std::optional<HttpResponse> AccessControl::refusal(const HttpRequest& request,
-                                                   bool needs_token) const {
+Admission AccessControl::admit(const HttpRequest& request, bool needs_token) const {
+  if (auto refused = wrong_place(request)) return {.refusal = std::move(refused)};
+  if (tokens_.empty()) return {.refusal = std::nullopt, .role = Role::control};
+  if (!needs_token) return {};
+  return judge(tokens_shown(request), request);
+}
+
+Admission AccessControl::admit_by(const std::string& token, const HttpRequest& request) const {
+  if (auto refused = wrong_place(request)) return {.refusal = std::move(refused)};
+  return judge({token}, request);
+}
+
+std::string AccessControl::token_cookie(const std::string& token,
+                                        const HttpRequest& request) const {
+  std::string cookie = std::string(cookie_name) + "=" + token + "; Path=/; HttpOnly";
+  const bool secure = is_secure(request);
+  if (secure) cookie += "; Secure";
+  // Within a page of another site only such a cookie is sent. What that site's page itself asks
+  // for is refused by its origin.
+  cookie += secure && options_.embedded ? "; SameSite=None; Partitioned" : "; SameSite=Strict";
+  return cookie;
+}
+
+std::string AccessControl::client_of(const HttpRequest& request) const {
+  if (!is_proxy(request.peer)) return request.peer;
+  // The last proxy adds at the end; what stands before the first untrusted one is hearsay.
+  const auto chain = header_elements(request.header("x-forwarded-for"));
+  for (auto element = chain.rbegin(); element != chain.rend(); ++element) {
+    const std::string_view address = without_port_of_address(*element);
+    if (!is_address(address)) break;
+    if (!is_proxy(address)) return std::string(address);
+  }
+  return request.peer;
+}
+
+bool AccessControl::is_secure(const HttpRequest& request) const {
+  if (request.secure) return true;
+  const auto schemes = header_elements(request.header("x-forwarded-proto"));
+  return is_proxy(request.peer) && !schemes.empty() && schemes.back() == "https";
+}
+
+std::optional<HttpResponse> AccessControl::wrong_place(const HttpRequest& request) const {
   const std::string_view host = request.header("host");
   if (!host_allowed(host)) {
-    return text_response(403, "This server does not go by the name of the Host header.");
+    return text_response(403, "This server does not go by the name of the Host header; see "
+                              "--allow-host.");
   }
   const bool from_page = request.headers.contains("origin");
-  if (from_page && !origin_allowed(request.header("origin"), host)) {
+  if (from_page && !origin_allowed(request.header("origin"), host, request.secure)) {
     return text_response(403, "Pages of this origin may not use the server; see --allow-origin.");
-  }
-  if (needs_token && !options_.token.empty() && !token_shown(request)) {
-    HttpResponse response =
-        text_response(401,
-                      "This server asks for a token: open /?token=..., or send it as "
-                      "\"Authorization: Bearer\".");
-    response.headers.emplace_back("WWW-Authenticate", "Bearer");
-    return response;
   }
   return std::nullopt;
 }
 
-bool AccessControl::is_token(std::string_view candidate) const {
-  const std::string& token = options_.token;
-  // Every byte is looked at, whatever the candidate holds.
-  unsigned difference = token.size() == candidate.size() ? 0 : 1;
-  for (std::size_t i = 0; i < token.size(); ++i) {
-    const char other = candidate.empty() ? '\0' : candidate[i % candidate.size()];
-    difference |= static_cast<unsigned char>(token[i] ^ other);
+Admission AccessControl::judge(const std::vector<std::string>& shown,
+                               const HttpRequest& request) const {
+  const std::string client = client_key(client_of(request));
+  const auto now = FailureLimit::Clock::now();
+  if (!shown.empty()) {
+    if (const auto wait = failures_.wait_of(client, now); wait.count() > 0) {
+      HttpResponse response = text_response(429, "Too many wrong tokens came from this address.");
+      response.headers.emplace_back("Retry-After", std::to_string(wait.count()));
+      return {.refusal = std::move(response)};
+    }
   }
-  return difference == 0 && !token.empty();
-}
-
-std::string AccessControl::token_cookie() const {
-  return std::string(cookie_name) + "=" + options_.token + "; Path=/; HttpOnly; SameSite=Strict";
+  for (const std::string& candidate : shown) {
+    if (const auto role = tokens_.role_of(candidate)) return {.refusal = {}, .role = *role};
+  }
+  if (!shown.empty()) failures_.failed(client, now);
+  HttpResponse response = text_response(401,
+                                        "This server asks for a token: open /?token=..., or send "
+                                        "it as \"Authorization: Bearer\".");
+  response.headers.emplace_back("WWW-Authenticate", "Bearer");
+  return {.refusal = std::move(response)};
 }
 
 bool AccessControl::host_allowed(std::string_view host) const {
   const std::string name = lower(without_port(host));
   if (name.empty()) return false;
   // With a token a rebound name gains nothing: it does not carry the cookie.
-  if (!options_.token.empty()) return true;
+  if (!tokens_.empty()) return true;
   if (is_loopback(options_.bind_address)) {
     if (is_loopback(name)) return true;
   } else if (is_address(name)) {
@@ -139,31 +207,19 @@ bool AccessControl::host_allowed(std::string_view host) const {
   return std::find(host_names_.begin(), host_names_.end(), name) != host_names_.end();
 }
 
-bool AccessControl::origin_allowed(std::string_view origin, std::string_view host) const {
+/// Without TLS of our own a proxy may have some, so that the scheme of the page tells nothing.
+bool AccessControl::origin_allowed(std::string_view origin, std::string_view host,
+                                   bool secure) const {
   const auto& allowed = options_.allowed_origins;
   if (std::find(allowed.begin(), allowed.end(), origin) != allowed.end()) return true;
+  if (secure && !origin.starts_with("https://")) return false;
   const std::string_view authority = authority_of(origin);
   return !authority.empty() && lower(authority) == lower(host);
 }
 
-bool AccessControl::token_shown(const HttpRequest& request) const {
-  const std::string_view authorization = request.header("authorization");
-  constexpr std::string_view bearer = "Bearer ";
-  if (authorization.starts_with(bearer) && is_token(authorization.substr(bearer.size()))) {
-    return true;
-  }
-  for (const std::string_view cookie : header_elements(request.header("cookie"), ';')) {
-    const std::size_t equals = std::min(cookie.find('='), cookie.size());
-    if (cookie.substr(0, equals) != cookie_name) continue;
-    if (is_token(cookie.substr(std::min(equals + 1, cookie.size())))) return true;
-  }
-  for (const std::string_view protocol :
-       header_elements(request.header("sec-websocket-protocol"))) {
-    if (!protocol.starts_with(token_protocol)) continue;
-    const auto token = stream::base64url_decode(protocol.substr(token_protocol.size()));
-    if (token && is_token(*token)) return true;
-  }
-  return false;
+bool AccessControl::is_proxy(std::string_view address) const {
+  return std::any_of(proxies_.begin(), proxies_.end(),
+                     [&](const AddressRange& range) { return range.contains(address); });
 }
 
 }  // namespace heliograph::net

@@ -2,14 +2,16 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <set>
 
 #include "net/access_control.hpp"
+#include "net/client_stream.hpp"
 #include "net/router.hpp"
+#include "net/tls.hpp"
 #include "session/session_host.hpp"
 
 // What the server and its connections share. For the sources of this folder only: it brings Boost.
@@ -21,8 +23,7 @@ namespace beast = boost::beast;
 
 constexpr std::chrono::seconds handshake_timeout{10};
 constexpr std::chrono::seconds idle_timeout{30};
-constexpr std::chrono::seconds drain_deadline{2};
-constexpr std::size_t most_connections = 256;
+constexpr std::chrono::seconds closing_timeout{2};
 constexpr std::size_t largest_request_head = 8 * 1024;
 constexpr int send_buffer_bytes = 256 * 1024;
 constexpr double calls_per_second = 500.0;
@@ -36,27 +37,32 @@ class Connection {
   virtual void shut_down() = 0;
 };
 
+/// Where a connection came in: the port for everybody, or the one for measuring tools.
+enum class Door { main, measuring };
+
 /// One server's surroundings. All connections live on its one network thread.
 struct ServerContext {
   session::SessionHost& host;
   const AccessControl& access;
   Router& router;
-  asio::io_context& io;
+  std::unique_ptr<TlsCertificate> certificate;  // null: no TLS
+  std::function<void()> on_last_left;           // called while ending, when nobody is left
   std::set<Connection*> connections;
-  bool draining = false;
+  bool draining = false;  // nobody new is let in
+  bool ending = false;    // everybody is asked to leave
 
   void enter(Connection& connection) { connections.insert(&connection); }
   void leave(Connection& connection) {
     connections.erase(&connection);
-    if (draining && connections.empty()) io.stop();
+    if (ending && connections.empty()) on_last_left();
   }
 };
 
 /// Reads requests from a fresh connection and answers them, or hands it to a viewer.
-void start_http_connection(ServerContext& context, asio::ip::tcp::socket socket);
+void start_http_connection(ServerContext& context, ClientStream stream, Door door);
 
 /// Carries on a connection whose client has asked for the viewers' WebSocket and may have it.
-void start_viewer_connection(ServerContext& context, beast::tcp_stream stream,
-                             const HttpRequest& request);
+void start_viewer_connection(ServerContext& context, ClientStream stream,
+                             const HttpRequest& request, Role role);
 
 }  // namespace heliograph::net

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <boost/asio/post.hpp>
+#include <boost/beast/core/detect_ssl.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
@@ -65,23 +66,23 @@ std::optional<HttpResponse> upgrade_refusal(const HttpRequest& request,
 
 class HttpConnection : public Connection, public std::enable_shared_from_this<HttpConnection> {
  public:
-  HttpConnection(ServerContext& context, asio::ip::tcp::socket socket)
+  HttpConnection(ServerContext& context, ClientStream stream, Door door)
       : context_(context),
-        stream_(std::move(socket)),
+        door_(door),
+        stream_(std::move(stream)),
         calls_(calls_per_second, calls_at_once, RateLimit::Clock::now()) {
     context_.enter(*this);
   }
   ~HttpConnection() override { context_.leave(*this); }
 
-  void read() {
-    parser_.emplace();
-    parser_->header_limit(largest_request_head);
-    parser_->body_limit(context_.host.dispatch_limits().max_message_bytes);
-    // The first request must come soon; later ones may take their time.
-    stream_.expires_after(std::exchange(first_, false) ? handshake_timeout : idle_timeout);
-    http::async_read(
-        stream_, buffer_, *parser_,
-        [self = shared_from_this()](error_code error, std::size_t) { self->received(error); });
+  void start() {
+    if (!context_.certificate || door_ == Door::measuring) return read();
+    stream_.next_layer().expires_after(handshake_timeout);
+    beast::async_detect_ssl(stream_.next_layer(), buffer_,
+                            [self = shared_from_this()](error_code error, bool tls) {
+                              if (error) return;
+                              tls ? self->secure() : self->read();
+                            });
   }
 
   void shut_down() override {
@@ -90,6 +91,27 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   }
 
  private:
+  void secure() {
+    stream_.async_secure(context_.certificate->context(), buffer_.data(),
+                         [self = shared_from_this()](error_code error, std::size_t used) {
+                           if (error) return;
+                           self->buffer_.consume(used);
+                           self->read();
+                         });
+  }
+
+  void read() {
+    parser_.emplace();
+    parser_->header_limit(largest_request_head);
+    parser_->body_limit(context_.host.dispatch_limits().max_message_bytes);
+    // The first request must come soon; later ones may take their time.
+    stream_.next_layer().expires_after(std::exchange(first_, false) ? handshake_timeout
+                                                                    : idle_timeout);
+    http::async_read(
+        stream_, buffer_, *parser_,
+        [self = shared_from_this()](error_code error, std::size_t) { self->received(error); });
+  }
+
   void received(error_code error) {
     if (error == http::error::body_limit || error == http::error::header_limit) {
       keep_alive_ = false;
@@ -106,14 +128,18 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
 
   void answer() {
     const bool upgrade = beast::websocket::is_upgrade(parser_->get());
-    keep_alive_ = parser_->keep_alive() && !upgrade && !leaving_;
+    keep_alive_ = parser_->keep_alive() && !upgrade && !leaving_ && !context_.draining;
     answering_ = true;
-    const HttpRequest request = to_request(parser_->release());
+    HttpRequest request = to_request(parser_->release());
+    request.peer = stream_.peer();
+    request.secure = stream_.is_secure();
+    if (door_ == Door::measuring) return send(context_.router.answer_measurer(request));
+    if (context_.certificate && !request.secure) return send(to_https(request));
     if (upgrade) return become_viewer(request);
     if (!calls_.allow(RateLimit::Clock::now())) {
       return send(text_response(429, "Too many requests on this connection."));
     }
-    stream_.expires_never();
+    stream_.next_layer().expires_never();
     context_.router.handle(request, [self = shared_from_this()](HttpResponse response) {
       asio::post(self->stream_.get_executor(), [self, response = std::move(response)]() mutable {
         self->send(std::move(response));
@@ -121,18 +147,35 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     });
   }
 
+  /// What somebody gets who speaks plain HTTP where TLS is spoken.
+  HttpResponse to_https(const HttpRequest& request) {
+    keep_alive_ = false;
+    if (auto refusal = context_.access.admit(request, false).refusal) return *std::move(refusal);
+    HttpResponse response = text_response(400, "This port speaks HTTPS.");
+    if (request.method != "GET" && request.method != "HEAD") return response;
+    response.status = 308;
+    // Without the query: a token in it has been read by others by now.
+    response.headers.emplace_back("Location",
+                                  "https://" + std::string(request.header("host")) + request.path);
+    return response;
+  }
+
   void become_viewer(const HttpRequest& request) {
-    if (auto refused = context_.access.refusal(request)) return send(*std::move(refused));
-    if (auto refused = upgrade_refusal(request, context_.host.sessions())) return send(*std::move(refused));
-    stream_.expires_never();
-    start_viewer_connection(context_, std::move(stream_), request);
+    Admission admission = context_.access.admit(request);
+    if (admission.refusal) return send(*std::move(admission.refusal));
+    if (context_.draining) return send(come_back_later("The server is shutting down."));
+    if (auto refused = upgrade_refusal(request, context_.host.sessions())) {
+      return send(*std::move(refused));
+    }
+    stream_.next_layer().expires_never();
+    start_viewer_connection(context_, std::move(stream_), request, admission.role);
   }
 
   void send(HttpResponse answer) {
     response_ = {};
     response_.version(11);
     response_.result(static_cast<unsigned>(answer.status));
-    for (const auto& [name, value] : security_headers()) response_.set(name, value);
+    for (const auto& [name, value] : context_.router.headers()) response_.set(name, value);
     response_.set(http::field::cache_control, "no-store");
     if (!answer.content_type.empty()) {
       response_.set(http::field::content_type, answer.content_type);
@@ -141,7 +184,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     response_.keep_alive(keep_alive_);
     response_.body() = std::move(answer.body);
     response_.prepare_payload();
-    stream_.expires_after(idle_timeout);
+    stream_.next_layer().expires_after(idle_timeout);
     http::async_write(
         stream_, response_,
         [self = shared_from_this()](error_code error, std::size_t) { self->sent(error); });
@@ -155,12 +198,20 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   }
 
   void close() {
-    error_code ignored;
-    stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_both, ignored);
+    if (!stream_.is_secure()) {
+      error_code ignored;
+      stream_.next_layer().socket().shutdown(asio::ip::tcp::socket::shutdown_both, ignored);
+      return;
+    }
+    stream_.next_layer().expires_after(closing_timeout);
+    async_teardown(beast::role_type::server, stream_, [self = shared_from_this()](error_code) {
+      self->stream_.next_layer().close();
+    });
   }
 
   ServerContext& context_;
-  beast::tcp_stream stream_;
+  const Door door_;
+  ClientStream stream_;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
   http::response<http::string_body> response_;
@@ -173,8 +224,8 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
 
 }  // namespace
 
-void start_http_connection(ServerContext& context, asio::ip::tcp::socket socket) {
-  std::make_shared<HttpConnection>(context, std::move(socket))->read();
+void start_http_connection(ServerContext& context, ClientStream stream, Door door) {
+  std::make_shared<HttpConnection>(context, std::move(stream), door)->start();
 }
 
 }  // namespace heliograph::net

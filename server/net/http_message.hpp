@@ -16,6 +16,8 @@ struct HttpRequest {
   std::map<std::string, std::string> query;    // decoded
   std::map<std::string, std::string> headers;  // names in lower case
   std::string body;
+  std::string peer;     // address of the other end, which may be a proxy
+  bool secure = false;  // came through TLS
 
   /// The header's value, empty if absent. `name` in lower case.
   std::string_view header(const std::string& name) const;

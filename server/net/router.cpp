@@ -3,6 +3,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "net/metrics.hpp"
@@ -70,40 +71,64 @@ std::optional<std::pair<std::string_view, std::string_view>> picture_address(
   return std::pair{path.substr(0, split), path.substr(split + file.size())};
 }
 
-}  // namespace
+using Headers = std::vector<std::pair<std::string, std::string>>;
 
-const std::vector<std::pair<std::string, std::string>>& security_headers() {
-  static const std::vector<std::pair<std::string, std::string>> headers{
+/// The value of frame-ancestors. @throws std::invalid_argument
+std::string frame_ancestors(const std::vector<std::string>& allowed) {
+  if (allowed.empty()) return "'none'";
+  std::string value;
+  for (const std::string& ancestor : allowed) {
+    if (ancestor != "self" && (!is_origin(ancestor) || ancestor.find_first_of(";,'\" ") !=
+                                                           std::string::npos)) {
+      throw std::invalid_argument("\"" + ancestor +
+                                  "\" cannot embed pages: it is neither \"self\" nor an origin "
+                                  "such as https://example.org");
+    }
+    value += (value.empty() ? "" : " ") + (ancestor == "self" ? "'self'" : ancestor);
+  }
+  return value;
+}
+
+Headers protecting_headers(const RouterOptions& options) {
+  return {
       {"Content-Security-Policy",
        "default-src 'self'; img-src 'self' blob: data:; worker-src 'self' blob:; "
        "connect-src 'self' ws: wss:; object-src 'none'; base-uri 'none'; form-action 'none'; "
-       "frame-ancestors 'none'"},
+       "frame-ancestors " +
+           frame_ancestors(options.frame_ancestors)},
       {"X-Content-Type-Options", "nosniff"},
       {"Referrer-Policy", "no-referrer"},
       {"Cross-Origin-Resource-Policy", "same-origin"},
       {"Cross-Origin-Opener-Policy", "same-origin"},
   };
-  return headers;
 }
 
-Router::Router(session::SessionHost& host, const AccessControl& access)
-    : host_(host), access_(access) {}
+}  // namespace
+
+HttpResponse come_back_later(std::string_view why) {
+  return with_header(text_response(503, why), "Retry-After", "1");
+}
+
+Router::Router(session::SessionHost& host, const AccessControl& access,
+               const RouterOptions& options)
+    : host_(host), access_(access), options_(options), headers_(protecting_headers(options)) {}
 
 void Router::handle(const HttpRequest& request, Reply reply) const {
   const bool health_check = request.path.starts_with("/health/");
-  const std::optional<std::string> token = request.parameter("token");
-  const bool exchange = request.path == "/" && token && access_.is_token(*token);
-  if (auto refused = access_.refusal(request, !health_check && !exchange)) {
-    return reply(*std::move(refused));
-  }
-  if (exchange) {
+  const std::optional<std::string> token =
+      request.path == "/" ? request.parameter("token") : std::nullopt;
+  Admission admission =
+      token ? access_.admit_by(*token, request) : access_.admit(request, !health_check);
+  if (admission.refusal) return reply(*std::move(admission.refusal));
+  if (token) {
     HttpResponse redirect = text_response(303, "Go on to /");
-    redirect.headers = {{"Location", "/"}, {"Set-Cookie", access_.token_cookie()}};
+    redirect.headers = {{"Location", "/"}, {"Set-Cookie", access_.token_cookie(*token, request)}};
     return reply(std::move(redirect));
   }
+  if (draining_ && !health_check) return reply(come_back_later("The server is shutting down."));
   if (request.path == "/rpc") {
     if (request.method != "POST") return reply(method_not_allowed("POST"));
-    return call(request, std::move(reply));
+    return call(request, admission.role, std::move(reply));
   }
   if (request.method != "GET" && request.method != "HEAD") {
     return reply(method_not_allowed("GET"));
@@ -116,13 +141,19 @@ void Router::handle(const HttpRequest& request, Reply reply) const {
   reply(std::move(response));
 }
 
-HttpResponse Router::answer_get(const HttpRequest& request) const {
-  if (request.path == "/health/live") return text_response(200, "live");
-  if (request.path == "/health/ready") return health(host_.ready() && !draining_);
-  if (request.path == "/metrics") {
-    return {.content_type = "text/plain; version=0.0.4; charset=utf-8",
-            .body = metrics_text(host_, started_)};
+HttpResponse Router::answer_measurer(const HttpRequest& request) const {
+  if (request.method != "GET" && request.method != "HEAD") return method_not_allowed("GET");
+  if (request.headers.contains("origin")) {
+    return text_response(403, "Pages have no business here.");
   }
+  if (auto state = health(request)) return *std::move(state);
+  if (request.path == "/metrics") return metrics();
+  return text_response(404, "There are /metrics, /health/live and /health/ready here.");
+}
+
+HttpResponse Router::answer_get(const HttpRequest& request) const {
+  if (auto state = health(request)) return *std::move(state);
+  if (request.path == "/metrics" && options_.metrics) return metrics();
   if (request.path == "/api/v1/schema") return schema();
   if (request.path == "/ws") {
     return with_header(text_response(426, "This address speaks WebSocket."), "Upgrade",
@@ -132,13 +163,23 @@ HttpResponse Router::answer_get(const HttpRequest& request) const {
   return text_response(404, "There is nothing at this address.");
 }
 
-HttpResponse Router::health(bool ready) const {
-  if (ready) return text_response(200, "ready");
-  return text_response(503, draining_ ? "shutting down" : "no picture has been rendered yet");
+std::optional<HttpResponse> Router::health(const HttpRequest& request) const {
+  if (request.path == "/health/live") return text_response(200, "live");
+  if (request.path != "/health/ready") return std::nullopt;
+  if (draining_) return come_back_later("shutting down");
+  if (!host_.ready()) return come_back_later("no picture has been rendered yet");
+  return text_response(200, "ready");
 }
 
-void Router::call(const HttpRequest& request, Reply reply) const {
-  host_.dispatcher().handle(request.body, {.viewer = {}, .session = session_of(request)}, [reply = std::move(reply)](std::string answer) {
+HttpResponse Router::metrics() const {
+  return {.content_type = "text/plain; version=0.0.4; charset=utf-8",
+          .body = metrics_text(host_, started_)};
+}
+
+void Router::call(const HttpRequest& request, Role role, Reply reply) const {
+  const protocol::CallContext context{
+      .viewer = {}, .session = session_of(request), .view_only = role == Role::view};
+  host_.dispatcher().handle(request.body, context, [reply = std::move(reply)](std::string answer) {
     if (answer.empty()) return reply({.status = 204, .content_type = {}});
     reply(json_response(std::move(answer)));
   });

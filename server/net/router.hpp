@@ -3,6 +3,10 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "net/access_control.hpp"
 #include "net/http_message.hpp"
@@ -10,33 +14,45 @@
 
 namespace heliograph::net {
 
+struct RouterOptions {
+  std::vector<std::string> frame_ancestors;  // origins whose pages may embed ours, or 'self'
+  bool metrics = true;                       // at /metrics
+};
+
 /// Answers everything over HTTP but the WebSocket: the web client, JSON-RPC, single pictures, the
 /// schema, health and metrics.
 class Router {
  public:
   using Reply = std::function<void(HttpResponse)>;
 
-  Router(session::SessionHost& host, const AccessControl& access);
+  Router(session::SessionHost& host, const AccessControl& access, const RouterOptions& options);
 
   /// Calls `reply` once, here or on another thread.
   void handle(const HttpRequest& request, Reply reply) const;
+  /// What the door for measuring tools answers: metrics and health, to everybody.
+  HttpResponse answer_measurer(const HttpRequest& request) const;
+  /// Every response's protection against misuse of the page: content security policy and the like.
+  const std::vector<std::pair<std::string, std::string>>& headers() const { return headers_; }
   /// From now on the server is not ready for new work.
   void drain() { draining_ = true; }
 
  private:
   HttpResponse answer_get(const HttpRequest& request) const;
-  HttpResponse health(bool ready) const;
-  void call(const HttpRequest& request, Reply reply) const;
+  std::optional<HttpResponse> health(const HttpRequest& request) const;
+  HttpResponse metrics() const;
+  void call(const HttpRequest& request, Role role, Reply reply) const;
   void picture(const HttpRequest& request, std::string_view session, std::string_view extension,
                Reply reply) const;
 
   session::SessionHost& host_;
   const AccessControl& access_;
+  const RouterOptions options_;
+  const std::vector<std::pair<std::string, std::string>> headers_;
   const std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
   std::atomic<bool> draining_ = false;
 };
 
-/// Every response's protection against misuse of the page: content security policy and the like.
-const std::vector<std::pair<std::string, std::string>>& security_headers();
+/// The response while the server shuts down: come back in a while.
+HttpResponse come_back_later(std::string_view why);
 
 }  // namespace heliograph::net

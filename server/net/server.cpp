@@ -6,72 +6,85 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/signal_set.hpp>
-#include <boost/asio/strand.hpp>
 #include <csignal>
 #include <cstdlib>
 #include <stdexcept>
 #include <utility>
 
 #include "net/connection.hpp"
+#include "net/listener.hpp"
 
 namespace heliograph::net {
 
 using asio::ip::tcp;
 using boost::system::error_code;
 
+namespace {
+
+// Those who measure are few, and must not be kept out by the many at the other door.
+constexpr std::size_t most_measuring = 32;
+
+std::vector<AddressRange> address_ranges(const std::vector<std::string>& texts) {
+  return {texts.begin(), texts.end()};
+}
+
+std::unique_ptr<TlsCertificate> certificate(const ServerOptions& options) {
+  if (options.tls_certificate.empty()) return nullptr;
+  return std::make_unique<TlsCertificate>(
+      TlsFiles{.certificate = options.tls_certificate, .key = options.tls_key});
+}
+
+}  // namespace
+
 struct Server::State {
-  State(session::SessionHost& host, const ServerOptions& options)
-      : access(options.access), router(host, access), address(options.access.bind_address) {
-    listen(options.port);
+  State(session::SessionHost& host, const ServerOptions& settings)
+      : options(settings),
+        access(options.access),
+        router(host, access, options.router),
+        limits(options.max_connections, options.max_connections_per_client,
+               address_ranges(options.access.trusted_proxies)),
+        measuring_limits(most_measuring, most_measuring, {}),
+        context{.host = host,
+                .access = access,
+                .router = router,
+                .certificate = certificate(options),
+                .on_last_left = [this] { io.stop(); },
+                .connections = {}},
+        door(io, options.access.bind_address, options.port, [this](tcp::socket socket) {
+          welcome(std::move(socket), limits, Door::main);
+        }) {
+    if (options.measuring) {
+      measuring_door.emplace(io, options.measuring->address, options.measuring->port,
+                             [this](tcp::socket socket) {
+                               welcome(std::move(socket), measuring_limits, Door::measuring);
+                             });
+    }
     stop_signals.add(SIGINT);
     stop_signals.add(SIGTERM);
-    context = std::make_unique<ServerContext>(ServerContext{
-        .host = host, .access = access, .router = router, .io = io, .connections = {}});
+    if (context.certificate) reload_signal.add(SIGHUP);
   }
 
-  void listen(std::uint16_t port) {
-    try {
-      tcp::resolver resolver(io);
-      const auto found = resolver.resolve(address, std::to_string(port), tcp::resolver::passive);
-      const tcp::endpoint endpoint = found.begin()->endpoint();
-      acceptor.open(endpoint.protocol());
-      acceptor.set_option(tcp::acceptor::reuse_address(true));
-      acceptor.bind(endpoint);
-      acceptor.listen();
-    } catch (const boost::system::system_error& failure) {
-      throw std::runtime_error(
-          fmt::format("cannot listen on {}:{}: {}", address, port, failure.code().message()));
-    }
-  }
-
-  void accept() {
-    acceptor.async_accept(asio::make_strand(io), [this](error_code error, tcp::socket socket) {
-      if (error == asio::error::operation_aborted || context->draining) return;
-      if (!error) welcome(std::move(socket));
-      // Out of descriptors: wait for some to come back instead of trying in a circle.
-      if (error && error != asio::error::connection_aborted) {
-        spdlog::warn("cannot accept a connection: {}", error.message());
-        retry.expires_after(std::chrono::milliseconds(100));
-        retry.async_wait([this](error_code) { accept(); });
-        return;
+  void welcome(tcp::socket socket, ConnectionLimits& room, Door by) {
+    error_code gone;
+    const tcp::endpoint peer = socket.remote_endpoint(gone);
+    if (gone) return;
+    auto seat = room.take(peer.address().to_string());
+    if (!seat) {
+      // One line for each would let who floods fill the disk too.
+      if (refusals.allow(RateLimit::Clock::now())) {
+        spdlog::warn("a connection from {} was refused: {} are open", peer.address().to_string(),
+                     room.open());
       }
-      accept();
-    });
-  }
-
-  void welcome(tcp::socket socket) {
-    if (context->connections.size() >= most_connections) {
-      spdlog::warn("a connection was refused: {} are open", most_connections);
       return;
     }
     error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
     // Small, so that a finished write means the picture is nearly there.
     socket.set_option(asio::socket_base::send_buffer_size(send_buffer_bytes), ignored);
-    start_http_connection(*context, std::move(socket));
+    start_http_connection(context, ClientStream(std::move(socket), *std::move(seat)), by);
   }
 
-  void wait_for_signal() {
+  void wait_for_signals() {
     stop_signals.async_wait([this](error_code error, int signal) {
       if (error) return;
       spdlog::info("shutting down after {}", signal == SIGINT ? "SIGINT" : "SIGTERM");
@@ -80,30 +93,58 @@ struct Server::State {
         if (!again) std::_Exit(EXIT_FAILURE);
       });
     });
+    if (context.certificate) wait_for_reload();
   }
 
+  void wait_for_reload() {
+    reload_signal.async_wait([this](error_code error, int) {
+      if (error) return;
+      try {
+        context.certificate->reload();
+        spdlog::info("the certificate was read anew");
+      } catch (const std::runtime_error& failure) {
+        spdlog::error("the old certificate stays: {}", failure.what());
+      }
+      wait_for_reload();
+    });
+  }
+
+  /// From now on nobody new is let in; after the notice, everybody is asked to leave.
   void drain() {
-    if (std::exchange(context->draining, true)) return;
+    if (std::exchange(context.draining, true)) return;
     router.drain();
-    error_code ignored;
-    acceptor.close(ignored);
-    if (context->connections.empty()) return io.stop();
-    // Ending a connection takes it out of the set.
-    const std::set<Connection*> open = context->connections;
-    for (Connection* connection : open) connection->shut_down();
-    deadline.expires_after(drain_deadline);
-    deadline.async_wait([this](error_code) { io.stop(); });
+    deadline.expires_after(options.drain_notice);
+    deadline.async_wait([this](error_code) { end(); });
   }
 
-  AccessControl access;
+  void end() {
+    context.ending = true;
+    door.close();
+    if (measuring_door) measuring_door->close();
+    if (context.connections.empty()) return io.stop();
+    // Ending a connection takes it out of the set.
+    const std::set<Connection*> open = context.connections;
+    for (Connection* connection : open) connection->shut_down();
+    deadline.expires_after(options.drain_deadline);
+    deadline.async_wait([this](error_code) {
+      spdlog::warn("{} connections did not end in time", context.connections.size());
+      io.stop();
+    });
+  }
+
+  const ServerOptions options;
+  const AccessControl access;
   Router router;
-  std::string address;
-  std::unique_ptr<ServerContext> context;  // outlives the connections that `io` still holds
+  ConnectionLimits limits;
+  ConnectionLimits measuring_limits;
+  ServerContext context;  // outlives the connections that `io` still holds
   asio::io_context io{1};
-  tcp::acceptor acceptor{io};
-  asio::steady_timer retry{io};
+  Listener door;
+  std::optional<Listener> measuring_door;
+  RateLimit refusals{1.0, 5.0, RateLimit::Clock::now()};
   asio::steady_timer deadline{io};
   asio::signal_set stop_signals{io};
+  asio::signal_set reload_signal{io};
 };
 
 Server::Server(session::SessionHost& host, const ServerOptions& options)
@@ -112,15 +153,18 @@ Server::Server(session::SessionHost& host, const ServerOptions& options)
 Server::~Server() = default;
 
 std::string Server::url() const {
-  const auto port = state_->acceptor.local_endpoint().port();
-  const std::string& address = state_->address;
-  const bool v6 = address.find(':') != std::string::npos;
-  return fmt::format("http://{}:{}/", v6 ? "[" + address + "]" : address, port);
+  return state_->door.url(state_->context.certificate ? "https" : "http");
+}
+
+std::optional<std::string> Server::metrics_url() const {
+  if (!state_->measuring_door) return std::nullopt;
+  return state_->measuring_door->url("http") + "metrics";
 }
 
 void Server::run() {
-  state_->wait_for_signal();
-  state_->accept();
+  state_->wait_for_signals();
+  state_->door.accept();
+  if (state_->measuring_door) state_->measuring_door->accept();
   state_->io.run();
 }
 

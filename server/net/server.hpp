@@ -1,23 +1,45 @@
 #pragma once
 
+#include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "net/access_control.hpp"
+#include "net/router.hpp"
 #include "session/session_host.hpp"
 
 namespace heliograph::net {
 
+struct Endpoint {
+  std::string address;
+  std::uint16_t port = 0;  // 0: any free one
+};
+
 struct ServerOptions {
   std::uint16_t port = 8080;  // 0: any free one
   AccessOptions access;
+  RouterOptions router;
+  std::filesystem::path tls_certificate;  // PEM; empty: plain HTTP
+  std::filesystem::path tls_key;
+  std::optional<Endpoint> measuring;  // another port, for metrics and health only
+  std::size_t max_connections = 256;
+  std::size_t max_connections_per_client = 64;
+  /// How long the server says that it is not ready before it asks viewers to leave, so that load
+  /// balancers have noticed by then.
+  std::chrono::milliseconds drain_notice{0};
+  /// How long answers that are under way and viewers that leave may take after that.
+  std::chrono::milliseconds drain_deadline{5000};
 };
 
 /// Listens for HTTP and WebSocket clients and serves them on the thread that calls `run`.
 class Server {
  public:
-  /// Opens the port. @throws std::runtime_error, std::invalid_argument
+  /// Opens the ports. @throws std::runtime_error, std::invalid_argument
   Server(session::SessionHost& host, const ServerOptions& options);
   ~Server();
   Server(const Server&) = delete;
@@ -25,8 +47,10 @@ class Server {
 
   /// "http://127.0.0.1:8080/"
   std::string url() const;
-  /// Serves until `stop`, SIGINT or SIGTERM; then tells every viewer to come back later. A second
-  /// signal ends the process at once.
+  /// Where metrics are, if they have a port of their own: "http://127.0.0.1:9464/metrics"
+  std::optional<std::string> metrics_url() const;
+  /// Serves until `stop`, SIGINT or SIGTERM; then lets nobody new in and tells every viewer to come
+  /// back later. A second signal ends the process at once. SIGHUP reads the certificate anew.
   void run();
   /// Ends `run` soon. Any thread.
   void stop();

@@ -44,9 +44,10 @@ class ViewerConnection : public Connection,
                          public session::ViewerLink,
                          public std::enable_shared_from_this<ViewerConnection> {
  public:
-  ViewerConnection(ServerContext& context, beast::tcp_stream stream, std::string session)
+  ViewerConnection(ServerContext& context, ClientStream stream, std::string session, Role role)
       : context_(context),
         session_(std::move(session)),
+        view_only_(role == Role::view),
         socket_(std::move(stream)),
         close_deadline_(socket_.get_executor()),
         calls_(calls_per_second, calls_at_once, RateLimit::Clock::now()) {
@@ -77,7 +78,7 @@ class ViewerConnection : public Connection,
   }
 
   void shut_down() override {
-    close(1001, "{\"reconnectAfterMs\":" + std::to_string(reconnect_after_ms) + "}");
+    close(1001, "{\"reconnect_after_ms\":" + std::to_string(reconnect_after_ms) + "}");
   }
 
   void frame_ready() override {
@@ -116,7 +117,7 @@ class ViewerConnection : public Connection,
     }
     viewer_ = *joined;
     spdlog::info("session {}: viewer {} connected", session_, viewer_);
-    if (context_.draining) shut_down();
+    if (context_.ending) shut_down();
     read();
   }
 
@@ -138,10 +139,12 @@ class ViewerConnection : public Connection,
     }
     if (calls_.allow(RateLimit::Clock::now())) {
       const std::weak_ptr<ViewerConnection> weak = weak_from_this();
-      context_.host.dispatcher().handle(message, {.viewer = viewer_}, [weak](std::string answer) {
-        const auto self = weak.lock();
-        if (self && !answer.empty()) self->send(std::move(answer), {});
-      });
+      context_.host.dispatcher().handle(message, {.viewer = viewer_, .view_only = view_only_},
+                                        [weak](std::string answer) {
+                                          const auto self = weak.lock();
+                                          if (!self || answer.empty()) return;
+                                          self->send(std::move(answer), {});
+                                        });
     } else {
       enqueue(rate_limited, {});
     }
@@ -207,7 +210,7 @@ class ViewerConnection : public Connection,
     socket_.async_close(close_reason,
                         [self = shared_from_this()](error_code error) { self->ended(error); });
     // A peer that does not answer, or a write that never ends, must not keep the socket open.
-    close_deadline_.expires_after(drain_deadline);
+    close_deadline_.expires_after(closing_timeout);
     close_deadline_.async_wait([self = shared_from_this()](error_code error) {
       if (!error) self->ended(error);
     });
@@ -227,7 +230,8 @@ class ViewerConnection : public Connection,
 
   ServerContext& context_;
   const std::string session_;  // where it came in
-  websocket::stream<beast::tcp_stream> socket_;
+  const bool view_only_;
+  websocket::stream<ClientStream> socket_;
   http::request<http::empty_body> handshake_;
   asio::steady_timer close_deadline_;
   RateLimit calls_;
@@ -245,9 +249,9 @@ class ViewerConnection : public Connection,
 
 }  // namespace
 
-void start_viewer_connection(ServerContext& context, beast::tcp_stream stream,
-                             const HttpRequest& request) {
-  std::make_shared<ViewerConnection>(context, std::move(stream), session_of(request))
+void start_viewer_connection(ServerContext& context, ClientStream stream,
+                             const HttpRequest& request, Role role) {
+  std::make_shared<ViewerConnection>(context, std::move(stream), session_of(request), role)
       ->accept(request);
 }
 

@@ -81,7 +81,7 @@ class Ending(unittest.IsolatedAsyncioTestCase):
                     server.process.send_signal(number)
                     code, reason = await viewer.closed()
                 self.assertEqual(code, 1001)
-                self.assertGreater(json.loads(reason)["reconnectAfterMs"], 0)
+                self.assertGreater(json.loads(reason)["reconnect_after_ms"], 0)
                 self.assertEqual(await asyncio.to_thread(server.wait), 0)
                 self.assertLess(time.monotonic() - begin, 6)
 

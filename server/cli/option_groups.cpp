@@ -1,0 +1,71 @@
+#include "cli/option_groups.hpp"
+
+#include <string>
+#include <vector>
+
+#include "protocol/kinds.hpp"
+#include "protocol/presets.hpp"
+
+namespace heliograph::cli {
+namespace {
+
+std::vector<std::string> tracer_names() {
+  std::vector<std::string> names{"auto"};
+  for (const auto name : protocol::enum_names<protocol::TracerKind>()) names.emplace_back(name);
+  return names;
+}
+
+}  // namespace
+
+void add_device_options(CLI::App& command, DeviceOptions& options) {
+  command.add_option("--device", options.device, "Part of the name of the Vulkan device to use")
+      ->group("Device");
+  command.add_option("--tracer", options.tracer, "What traces rays; see \"heliograph devices\"")
+      ->check(CLI::IsMember(tracer_names()))
+      ->capture_default_str()
+      ->group("Device");
+}
+
+void add_settings_options(CLI::App& command, SettingsOptions& options) {
+  std::vector<std::string> presets;
+  for (const protocol::Preset& preset : protocol::presets()) presets.emplace_back(preset.name);
+  command.add_option("--preset", options.preset, "A named choice of settings; --set comes on top")
+      ->check(CLI::IsMember(presets))
+      ->group("Pictures");
+  command
+      .add_option("--set", options.assignments,
+                  "A setting as PATH=VALUE; see \"heliograph schema\"")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false)
+      ->group("Pictures");
+}
+
+void add_environment_option(CLI::App& command, std::string& environment) {
+  command
+      .add_option("--environment", environment,
+                  ".hdr or .exr file that lights the scenes [the one beside the scene]")
+      ->type_name("FILE")
+      ->check(CLI::ExistingFile)
+      ->group("Scenes");
+}
+
+void add_limit_options(CLI::App& command, scene::ImportLimits& limits) {
+  const auto add = [&](const char* name, auto& limit, const char* help) {
+    return command.add_option(name, limit, help)
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str()
+        ->group("Limits of scenes");
+  };
+  add("--max-scene-bytes", limits.file_bytes, "Most bytes of a scene's files together");
+  add("--max-unpacked-bytes", limits.unpacked_bytes, "Most bytes its compressed buffers grow to");
+  add("--max-geometry-bytes", limits.scene_bytes,
+      "Most bytes that its geometry and animations take once read");
+  add("--max-triangles", limits.triangles, "Most triangles of a scene");
+  add("--max-texels", limits.texels, "Most texels of a scene's images together");
+  add("--max-texture-size", limits.texture_size, "Greatest width and height of an image, pixels");
+  add("--max-nodes", limits.nodes, "Most nodes of a scene");
+  add("--max-instances", limits.instances, "Most meshes placed in a scene");
+  add("--max-node-depth", limits.node_depth, "Most levels of nodes below nodes");
+}
+
+}  // namespace heliograph::cli

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+// For the sources of this folder only: it brings Boost.
+
+namespace heliograph::net {
+
+/// One open port. Each connection gets a strand of its own.
+class Listener {
+ public:
+  using Welcome = std::function<void(boost::asio::ip::tcp::socket)>;
+
+  /// Opens the port; 0 takes a free one. @throws std::runtime_error
+  Listener(boost::asio::io_context& io, std::string address, std::uint16_t port, Welcome welcome);
+
+  /// "scheme://address:port/"
+  std::string url(const std::string& scheme) const;
+  void accept();
+  void close();
+
+ private:
+  boost::asio::io_context& io_;
+  const std::string address_;
+  const Welcome welcome_;
+  boost::asio::ip::tcp::acceptor acceptor_;
+  boost::asio::steady_timer retry_;
+};
+
+}  // namespace heliograph::net
