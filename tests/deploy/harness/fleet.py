@@ -1,0 +1,93 @@
+"""The services of the compose file on one machine: several servers behind the balancer."""
+
+import os
+import time
+
+from . import images
+from .commands import program
+from .files import DEPLOY
+from .servers import TOKEN, get
+
+
+class Fleet:
+    """Use as a context. Nodes are containers; the balancer's port is the machine's 8080."""
+
+    def __init__(self, machine, nodes):
+        self.machine, self.count = machine, nodes
+        self.url = f"http://{machine.address}:8080/"
+        self.prometheus = f"http://{machine.address}:9090/"
+        # Nobody must need the source where the images are: the files are enough.
+        self._base = ("--file", os.path.join(DEPLOY, "compose.yaml"), "--project-name", "fleet")
+        self._environment = {"HELIOGRAPH_TOKEN": TOKEN, "HELIOGRAPH_ADDRESS": "0.0.0.0:8080",
+                             "HELIOGRAPH_CPUS": "2"}
+
+    def __enter__(self):
+        program("docker-compose")
+        self.compose("up", "--detach", "--no-build", "--scale", f"heliograph={self.count}",
+                     "heliograph", "balancer")
+        self.wait_ready(self.count)
+        return self
+
+    def __exit__(self, *_):
+        self.compose("down", "--volumes", "--timeout", "5")
+
+    def compose(self, *command, **options):
+        return self.machine.compose(*self._base, *command, environment=self._environment, **options)
+
+    def nodes(self, *, every=False):
+        """The names of the servers' containers, oldest first."""
+        names = self.machine.docker("ps", *(["--all"] if every else []), "--filter",
+                                    "label=com.docker.compose.service=heliograph", "--format",
+                                    "{{.Names}}").split()
+        return sorted(names, key=lambda name: int(name.rsplit("_", 1)[-1].rsplit("-", 1)[-1]))
+
+    def address(self, node):
+        networks = self.machine.inspect(node, "{{json .NetworkSettings.Networks}}")
+        return next(iter(networks.values()))["IPAddress"]
+
+    def states(self):
+        """Of the nodes that the balancer knows an address for: {address: state}."""
+        return {row["addr"].rsplit(":", 1)[0]: row["status"] for row in self._rows()}
+
+    def node_of(self, viewer):
+        """The container that a viewer was sent to, told by the balancer's cookie."""
+        value = viewer.node.split("=", 1)[1]
+        addresses = {row["addr"].rsplit(":", 1)[0] for row in self._rows() if row["cookie"] == value}
+        found = [node for node in self.nodes() if self.address(node) in addresses]
+        if len(found) != 1:
+            raise AssertionError(f"cookie {value} leads to {addresses}, nodes {found}")
+        return found[0]
+
+    def _rows(self):
+        page = self.machine.inside("curl", "--silent", "--fail", f"http://{self._balancer()}:8404/"
+                                   ";csv;norefresh").splitlines()
+        names = page[0].lstrip("# ").split(",")
+        rows = [dict(zip(names, line.split(","))) for line in page[1:]]
+        return [row for row in rows if row["pxname"] == "by_viewer"
+                and row["svname"].startswith("node") and row["addr"]]
+
+    def _balancer(self):
+        return self.address("fleet_balancer_1")
+
+    def wait_ready(self, count, timeout=240):
+        """Until as many nodes take viewers."""
+        deadline = time.monotonic() + timeout
+        while True:
+            states = self.states()
+            if sum(state == "UP" for state in states.values()) >= count:
+                return
+            if time.monotonic() > deadline:
+                raise AssertionError(f"{count} nodes are not up in {timeout} s: {states}\n" +
+                                     self.compose("logs", "--tail", "15"))
+            time.sleep(0.2)
+
+    def ask(self, path, **options):
+        return get(self.url + path, **options)
+
+
+def add_images(machine, *, prometheus=False):
+    images.add_base(machine)
+    images.add_server(machine)
+    images.build_balancer(machine)
+    if prometheus:
+        images.build_prometheus(machine)

@@ -1,0 +1,45 @@
+"""Compares pictures by the decoders of the protocol's tests."""
+
+import importlib.util
+import os
+
+from .commands import run
+from .files import ROOT
+
+_path = os.path.join(ROOT, "tests/protocol/harness/pictures.py")
+_spec = importlib.util.spec_from_file_location("protocol_pictures", _path)
+_pictures = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(_pictures)
+decode_png, decode_jpeg, difference = (_pictures.decode_png, _pictures.decode_jpeg,
+                                       _pictures.difference)
+
+BLOCKS = 8
+
+
+def render(scene, output, *, size=(160, 90), samples=8):
+    """By the program of this build, on this machine."""
+    run(os.environ["HELIOGRAPH_BINARY"], "render", scene, "-o", output, "--width", str(size[0]),
+        "--height", str(size[1]), "--samples", str(samples), timeout=120)
+
+
+def read(path):
+    with open(path, "rb") as file:
+        return decode_png(file.read())
+
+
+def largest_difference_of_means(a, b):
+    """Of 8 x 8 parts of two pictures, 0 to 255: noise averages out, another picture does not."""
+    a, b = (read(picture) if isinstance(picture, str) else picture for picture in (a, b))
+    assert (a.width, a.height) == (b.width, b.height), (a.width, a.height, b.width, b.height)
+    return max(abs(x - y) for x, y in zip(_means(a), _means(b)))
+
+
+def _means(picture):
+    sums, counts = [0] * (3 * BLOCKS ** 2), [0] * (3 * BLOCKS ** 2)
+    for index, value in enumerate(picture.rgb):
+        pixel, channel = divmod(index, 3)
+        y, x = divmod(pixel, picture.width)
+        block = (y * BLOCKS // picture.height) * BLOCKS + x * BLOCKS // picture.width
+        sums[3 * block + channel] += value
+        counts[3 * block + channel] += 1
+    return [total / count for total, count in zip(sums, counts)]

@@ -1,0 +1,178 @@
+"""Machines made of network namespaces, each with a container engine of its own, on one bridge that
+leads out by address translation. Leaves nothing behind."""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+import shutil
+
+from .commands import Skip, program, run, succeeds
+
+SUBNET = "10.213.7"
+GATEWAY = f"{SUBNET}.254"
+BRIDGE = "hgbridge"
+
+
+def check_machine():
+    """Raises Skip where no engine can run."""
+    if os.geteuid() != 0:
+        raise Skip("container tests need root")
+    if not succeeds("unshare", "--mount", "--net", "true"):
+        raise Skip("new namespaces are forbidden here (unshare --mount --net failed)")
+    for name in ("dockerd", "docker", "iptables", "ip", "nsenter"):
+        program(name)
+
+
+class Site:
+    """The bridge. Use as a context; machines are added with `add_machine`."""
+
+    def __init__(self):
+        check_machine()
+        self.folder = tempfile.mkdtemp(prefix="heliograph-site-", dir="/var/tmp")
+        self.machines = []
+        self._rules = [
+            ("nat", "POSTROUTING", "-s", f"{SUBNET}.0/24", "!", "-o", BRIDGE, "-j", "MASQUERADE"),
+            ("filter", "FORWARD", "-i", BRIDGE, "-j", "ACCEPT"),
+            ("filter", "FORWARD", "-o", BRIDGE, "-j", "ACCEPT")]
+        self._forwarding = None
+
+    def __enter__(self):
+        try:
+            run("ip", "link", "add", BRIDGE, "type", "bridge")
+            run("ip", "addr", "add", f"{GATEWAY}/24", "dev", BRIDGE)
+            run("ip", "link", "set", BRIDGE, "up")
+            for table, chain, *rule in self._rules:
+                run("iptables", "-t", table, "-I", chain, *rule)
+            with open("/proc/sys/net/ipv4/ip_forward", "r+", encoding="ascii") as file:
+                self._forwarding = file.read()
+                file.write("1")
+        except Exception:
+            self.__exit__()
+            raise
+        return self
+
+    def __exit__(self, *_):
+        for machine in self.machines:
+            machine.remove()
+        for table, chain, *rule in self._rules:
+            while succeeds("iptables", "-t", table, "-D", chain, *rule):
+                pass
+        run("ip", "link", "del", BRIDGE, check=False)
+        if self._forwarding is not None:
+            with open("/proc/sys/net/ipv4/ip_forward", "w", encoding="ascii") as file:
+                file.write(self._forwarding)
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def add_machine(self):
+        machine = Machine(self, len(self.machines) + 1)
+        self.machines.append(machine)
+        machine.start()
+        return machine
+
+
+class Machine:
+    """A network namespace with an address on the bridge and an engine in it."""
+
+    def __init__(self, site, number):
+        self.name = f"hg{number}"
+        self.address = f"{SUBNET}.{number}"
+        self.folder = os.path.join(site.folder, self.name)
+        self.socket = os.path.join(self.folder, "docker.sock")
+        self._bridge_end = f"hgbridge{number}"
+        self._engine = None
+
+    def start(self):
+        os.mkdir(self.folder)
+        run("ip", "netns", "add", self.name)
+        run("ip", "link", "add", self._bridge_end, "type", "veth", "peer", "name", "eth0", "netns",
+            self.name)
+        run("ip", "link", "set", self._bridge_end, "master", BRIDGE, "up")
+        self.inside("ip", "link", "set", "lo", "up")
+        self.inside("ip", "addr", "add", f"{self.address}/24", "dev", "eth0")
+        self.inside("ip", "link", "set", "eth0", "up")
+        self.inside("ip", "route", "add", "default", "via", GATEWAY)
+        self._start_engine()
+
+    def _start_engine(self):
+        # Its mounts are private and end with it. `ip netns exec` would hide the control groups.
+        log = open(os.path.join(self.folder, "dockerd.log"), "w", encoding="utf-8")
+        script = f"hostname {self.name}; exec {program('dockerd')} \"$@\""
+        self._engine = subprocess.Popen(
+            ["nsenter", f"--net=/run/netns/{self.name}", "unshare", "--mount", "--uts", "sh", "-c",
+             script, "sh", "--data-root", f"{self.folder}/data", "--exec-root",
+             f"{self.folder}/exec", "--pidfile", f"{self.folder}/pid", "--host",
+             f"unix://{self.socket}", "--mtu", str(_smallest_mtu())],
+            stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True)
+        log.close()
+        deadline = time.monotonic() + 60
+        while not succeeds(program("docker"), "--host", f"unix://{self.socket}", "info"):
+            if self._engine.poll() is not None or time.monotonic() > deadline:
+                with open(log.name, encoding="utf-8") as file:
+                    lines = [line for line in file if "level=info" not in line]
+                raise Skip("dockerd does not start: " + "".join(lines[-3:]).strip())
+            time.sleep(0.1)
+
+    def inside(self, *command, **options):
+        """Runs a program in the machine's network."""
+        return run("nsenter", f"--net=/run/netns/{self.name}", *command, **options)
+
+    def docker(self, *command, timeout=120, **options):
+        environment = {**os.environ, "DOCKER_BUILDKIT": "1", **options.pop("environment", {})}
+        return run(program("docker"), "--host", f"unix://{self.socket}", *command, timeout=timeout,
+                   env=environment, **options)
+
+    def compose(self, *command, environment=None, timeout=300):
+        return run(program("docker-compose"), *command, timeout=timeout,
+                   env={**os.environ, "DOCKER_HOST": f"unix://{self.socket}",
+                        **(environment or {})})
+
+    def inspect(self, container, template="{{json .}}"):
+        return json.loads(self.docker("inspect", "--format", template, container))
+
+    def unplug(self):
+        run("ip", "link", "set", self._bridge_end, "down")
+
+    def plug(self):
+        run("ip", "link", "set", self._bridge_end, "up")
+
+    def remove(self):
+        """Ends every container, the engine and the namespace."""
+        if self._engine and self._engine.poll() is None:
+            containers = self.docker("ps", "--all", "--quiet", check=False).split()
+            if containers:
+                self.docker("rm", "--force", "--volumes", *containers, check=False)
+            self._engine.send_signal(signal.SIGTERM)
+            try:
+                self._engine.wait(timeout=20)
+            except subprocess.TimeoutExpired:
+                self._engine.kill()
+                self._engine.wait()
+        self._end_what_is_left()
+        run("ip", "link", "del", self._bridge_end, check=False)
+        run("ip", "netns", "del", self.name, check=False)
+
+    def _end_what_is_left(self):
+        """Processes that name this machine's own folder: containerd and its shims."""
+        for entry in os.listdir("/proc"):
+            if not entry.isdigit() or int(entry) == os.getpid():
+                continue
+            try:
+                with open(f"/proc/{entry}/cmdline", "rb") as file:
+                    if f"{self.folder}/".encode() in file.read():
+                        os.kill(int(entry), signal.SIGKILL)
+            except OSError:
+                continue
+
+
+def _smallest_mtu():
+    """Of the interfaces that lead out: what containers send must fit through all of them."""
+    sizes = [1500]
+    for _, name in socket.if_nameindex():
+        if name != "lo":
+            with open(f"/sys/class/net/{name}/mtu", encoding="ascii") as file:
+                sizes.append(int(file.read()))
+    return min(sizes)

@@ -1,0 +1,232 @@
+"""Three servers behind the balancer: who comes back where, and what one of them may do to the
+others."""
+
+import asyncio
+import json
+import time
+import unittest
+
+import websockets
+
+from harness.fleet import Fleet, add_images
+from harness.pictures import decode_jpeg, difference
+from harness.replaying_viewer import ReplayingViewer, Wish
+from harness.servers import TOKEN
+from harness.site import Site
+
+MOST_SECONDS_AWAY = 5.0
+
+
+def wishes(count):
+    """Different pictures: scene, camera and a setting that is not the default."""
+    return [Wish(scene=("pillars", "glossy_sponza_1")[i % 2], eye=(0.5 * i, 2.0, 8.0 - 0.5 * i),
+                 settings={"exposure": {"compensation": 0.125 * (i + 1)}}) for i in range(count)]
+
+
+class FleetTest(unittest.IsolatedAsyncioTestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.site = cls.enterClassContext(Site())
+        cls.machine = cls.site.add_machine()
+        add_images(cls.machine, prometheus=True)
+        started = time.monotonic()
+        cls.fleet = cls.enterClassContext(Fleet(cls.machine, 3))
+        print(f"fleet: 3 nodes take viewers after {time.monotonic() - started:.1f} s", flush=True)
+
+    async def asyncTearDown(self):
+        """Every test begins with three nodes that take viewers."""
+        await self.compose("up", "--detach", "--no-build", "--scale", "heliograph=3", "heliograph")
+        await asyncio.to_thread(self.fleet.wait_ready, 3)
+
+    async def compose(self, *command):
+        return await asyncio.to_thread(self.fleet.compose, *command)
+
+    async def docker(self, *command):
+        return await asyncio.to_thread(self.machine.docker, *command)
+
+    async def viewers(self, count):
+        """As many viewers, all with their pictures."""
+        found = []
+        for wish in wishes(count):
+            viewer = ReplayingViewer(self.fleet.url, TOKEN, wish)
+            await viewer.__aenter__()
+            self.addAsyncCleanup(viewer.__aexit__)
+            found.append(viewer)
+        return found
+
+    async def nodes_of(self, viewers):
+        return [await asyncio.to_thread(self.fleet.node_of, viewer) for viewer in viewers]
+
+    async def at_rest(self, viewer):
+        """The finished picture."""
+        deadline = time.monotonic() + 60
+        while True:
+            seen = viewer.frames
+            await asyncio.sleep(1.5)
+            if viewer.frames == seen:
+                return decode_jpeg(viewer.last_picture)
+            self.assertLess(time.monotonic(), deadline, "the picture never rests")
+
+    async def move(self, viewers, seconds):
+        """Everybody looks around."""
+        started = time.monotonic()
+        while time.monotonic() - started < seconds:
+            for viewer in viewers:
+                if viewer.connected.is_set():
+                    x, y, z = viewer.wish.eye
+                    try:
+                        await viewer.look((x + 0.01, y, z))
+                    except (OSError, websockets.WebSocketException, asyncio.CancelledError):
+                        continue  # it is being cut off
+            await asyncio.sleep(0.1)
+
+    async def assert_as_wished(self, viewer):
+        """Scene, camera and settings are the viewer's own again, on whatever node it is."""
+        wish = viewer.wish
+        self.assertEqual((await viewer.call("scene.list"))["current"], wish.scene)
+        camera = await viewer.call("camera.get")
+        for name, value in (("eye", wish.eye), ("target", wish.target)):
+            for a, b in zip(camera[name], value):
+                self.assertAlmostEqual(a, b, places=4)
+        settings = (await viewer.call("settings.get"))["settings"]
+        self.assertEqual(settings["exposure"]["compensation"],
+                         wish.settings["exposure"]["compensation"])
+
+    async def test_viewers_spread_and_come_back_to_their_node(self):
+        viewers = await self.viewers(3)
+        nodes = await self.nodes_of(viewers)
+        self.assertEqual(len(set(nodes)), 3, nodes)
+        for viewer in viewers:
+            await viewer.drop()
+            await viewer.whole()
+        self.assertEqual(await self.nodes_of(viewers), nodes)
+        # Ordinary requests with the cookie go there too.
+        for viewer in viewers:
+            status, headers, _ = await asyncio.to_thread(
+                self.fleet.ask, "api/v1/schema", headers={"Cookie": viewer.node})
+            self.assertEqual(status, 200)
+            self.assertNotIn("Set-Cookie", headers)
+
+    async def test_who_names_a_session_meets_the_others_of_it(self):
+        """Without a cookie: the name alone decides."""
+        for name in ("one", "two", "three", "four"):
+            served = set()
+            for _ in range(4):
+                _, headers, _ = await asyncio.to_thread(self.fleet.ask, f"?session={name}")
+                served.add(headers.get("X-Heliograph-Node"))
+            self.assertEqual(len(served), 1, name)
+
+    async def test_viewers_of_a_killed_node_are_soon_back_and_others_notice_nothing(self):
+        viewers = await self.viewers(3)
+        nodes = await self.nodes_of(viewers)
+        victim, others = viewers[0], viewers[1:]
+        before = await self.at_rest(victim)
+        for viewer in viewers:
+            viewer.forget_gaps()
+        await self.docker("kill", nodes[0])
+        await asyncio.gather(self.move(others, 6), victim.whole())
+        loss, = victim.losses
+        print(f"fleet: killed node, viewer whole again after {loss.seconds:.2f} s", flush=True)
+        self.assertLess(loss.seconds, MOST_SECONDS_AWAY)
+        await self.assert_as_wished(victim)
+        self.assertNotEqual((await self.nodes_of([victim]))[0], nodes[0])
+        after = await self.at_rest(victim)
+        self.assertLess(difference(before, after), 3.0)
+        for viewer in others:
+            self.assertEqual(viewer.losses, [])
+            print(f"fleet: longest gap of another viewer {viewer.longest_gap:.2f} s", flush=True)
+            self.assertLess(viewer.longest_gap, 3.0)
+
+    async def test_a_node_that_hangs_is_cut_off(self):
+        """Its connections stay open and say nothing: only the balancer can tell."""
+        viewers = await self.viewers(3)
+        nodes = await self.nodes_of(viewers)
+        started = time.monotonic()
+        await self.docker("pause", nodes[0])
+        try:
+            deadline = started + 20
+            while not viewers[0].losses and time.monotonic() < deadline:
+                await asyncio.sleep(0.05)
+            noticed = viewers[0].losses[0].at - started
+            await viewers[0].whole()
+            away = viewers[0].losses[0].back_at - started
+            print(f"fleet: hung node, cut off after {noticed:.2f} s, viewer whole after {away:.2f} s",
+                  flush=True)
+            self.assertLess(away, 2 * MOST_SECONDS_AWAY)
+            await self.assert_as_wished(viewers[0])
+            self.assertEqual([viewer.losses for viewer in viewers[1:]], [[], []])
+        finally:
+            await self.docker("unpause", nodes[0])
+
+    async def test_a_rolling_update_fails_no_request(self):
+        """New nodes come first, old ones go one by one, while requests and viewers keep coming."""
+        viewers = await self.viewers(2)
+        old = await asyncio.to_thread(self.fleet.nodes)
+        answers, greetings = [], []
+        stop = asyncio.Event()
+
+        async def request():
+            while not stop.is_set():
+                try:
+                    status, _, body = await asyncio.to_thread(
+                        self.fleet.ask, "api/v1/sessions/main/frame.jpg", timeout=30)
+                    answers.append(status if status == 200 else (status, body[:80]))
+                except OSError as failure:
+                    answers.append(repr(failure))
+                await asyncio.sleep(0.1)
+
+        async def greet():
+            while not stop.is_set():
+                greetings.append(await greeting(self.fleet.url))
+                await asyncio.sleep(0.2)
+
+        load = [asyncio.create_task(request()), asyncio.create_task(greet())]
+        await self.compose("up", "--detach", "--no-build", "--no-recreate", "--scale",
+                           "heliograph=6", "heliograph")
+        await asyncio.to_thread(self.fleet.wait_ready, 6)
+        for node in old:
+            await self.docker("stop", "--time", "20", node)
+            await self.docker("rm", node)
+            await asyncio.sleep(1)
+        stop.set()
+        await asyncio.gather(*load)
+        print(f"fleet: rolling update, {len(answers)} requests and {len(greetings)} new viewers",
+              flush=True)
+        self.assertEqual([answer for answer in answers if answer != 200], [])
+        self.assertEqual([failed for failed in greetings if failed], [])
+        for viewer in viewers:
+            await viewer.whole()
+            self.assertTrue(viewer.losses, "its node was replaced")
+            self.assertEqual({loss.code for loss in viewer.losses}, {1001})
+            print("fleet: rolling update, viewer away for "
+                  f"{[round(loss.seconds, 2) for loss in viewer.losses]} s", flush=True)
+            await self.assert_as_wished(viewer)
+
+    async def test_prometheus_finds_every_node(self):
+        await self.compose("up", "--detach", "--no-build", "prometheus")
+        deadline = time.monotonic() + 60
+        while True:
+            try:
+                body = await asyncio.to_thread(
+                    self.machine.inside, "curl", "--silent",
+                    "http://127.0.0.1:9090/api/v1/query?query=heliograph_ready")
+                values = [result["value"][1] for result in json.loads(body)["data"]["result"]]
+                if values == ["1"] * 3:
+                    break
+            except (ValueError, KeyError, RuntimeError):
+                values = None
+            self.assertLess(time.monotonic(), deadline, f"Prometheus sees {values}")
+            await asyncio.sleep(1)
+
+
+async def greeting(url):
+    """One viewer that comes, greets and goes; None or what went wrong."""
+    viewer = ReplayingViewer(url, TOKEN, Wish())
+    try:
+        return await viewer.greet_once()
+    except Exception as failure:  # whatever it is, it is reported
+        return repr(failure)
+
+
+if __name__ == "__main__":
+    unittest.main()
