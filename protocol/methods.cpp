@@ -55,6 +55,7 @@ constexpr std::string_view greeting = R"({
   "device": {"name": "llvmpipe", "driver": "llvmpipe 22.3.6",
              "type": "cpu"},
   "tracer": "embree", "session": "main", "viewer": "v1", "codecs": ["jpeg"],
+  "codec_reason": null,
   "limits": {"max_width": 3840, "max_height": 2160, "max_message_bytes": 65536,
              "ack_window": 2},
   "rev": 1})";
@@ -153,7 +154,17 @@ std::vector<MethodDescriptor> stream_methods() {
           "Sets size, quality and pace of this viewer's pictures; gives what is in effect.",
           {R"({"width": 1280, "height": 720, "quality": 80})",
            R"({"width": 1280, "height": 720, "quality": 80, "max_fps": 60.0,
-               "paused": false})"}),
+               "paused": false, "codec": "jpeg", "still": "jpeg"})"}),
+      method<Empty, StreamState>(
+          "stream.pause", Call::command,
+          "Stops this viewer's pictures, for instance while nobody can see them.",
+          {no_params, R"({"width": 1280, "height": 720, "quality": 80, "max_fps": 60.0,
+               "paused": true, "codec": "jpeg", "still": "jpeg"})"}),
+      method<Empty, StreamState>(
+          "stream.resume", Call::command,
+          "Lets this viewer's pictures come again, beginning with the newest.",
+          {no_params, R"({"width": 1280, "height": 720, "quality": 80, "max_fps": 60.0,
+               "paused": false, "codec": "jpeg", "still": "jpeg"})"}),
       method<StreamAck, Empty>(
           "stream.ack", Call::personal,
           "Tells that a frame was displayed. The server sends only a window of frames ahead.",

@@ -89,6 +89,7 @@ struct HelloResult {
   std::string session;
   std::string viewer;
   std::vector<std::string> codecs;
+  std::optional<std::string> codec_reason;
   ServerLimits limits;
   std::uint32_t rev = 0;
 
@@ -102,6 +103,9 @@ struct HelloResult {
         field("viewer", &HelloResult::viewer,
               "This viewer's id: the `by` of notifications to the others."),
         field("codecs", &HelloResult::codecs, "Codecs of the frames that will come, best first."),
+        field("codec_reason", &HelloResult::codec_reason,
+              "Why the client's best codec is not used; null if it is.")
+            .or_null(),
         field("limits", &HelloResult::limits, "What the server refuses to exceed."),
         field("rev", &HelloResult::rev, "Revision of the session's state."),
     };

@@ -7,6 +7,7 @@
 
 #include "protocol/fields.hpp"
 #include "protocol/kinds.hpp"
+#include "protocol/stream_kinds.hpp"
 
 // Messages about the stream of pictures: its form, acknowledgements, timings, single captures.
 
@@ -18,6 +19,8 @@ struct StreamConfigure {
   std::optional<std::uint32_t> quality;
   std::optional<double> max_fps;
   std::optional<bool> paused;
+  std::optional<StreamCodec> codec;
+  std::optional<StillFormat> still;
 
   static constexpr auto fields() {
     return std::tuple{
@@ -25,9 +28,14 @@ struct StreamConfigure {
         field("height", &StreamConfigure::height, "Picture height.")
             .range(16, 16384)
             .unit("pixels"),
-        field("quality", &StreamConfigure::quality, "JPEG quality.").range(1, 100),
+        field("quality", &StreamConfigure::quality, "Quality on the scale of JPEG, for any codec.")
+            .range(1, 100),
         field("max_fps", &StreamConfigure::max_fps, "Most pictures in a second.").range(0.1, 240),
         field("paused", &StreamConfigure::paused, "Whether no pictures are sent."),
+        field("codec", &StreamConfigure::codec,
+              "Codec while something moves; one that hello agreed on."),
+        field("still", &StreamConfigure::still,
+              "Format of the final picture: JPEG with all its colour, or PNG without any loss."),
     };
   }
   bool operator==(const StreamConfigure&) const = default;
@@ -39,14 +47,18 @@ struct StreamState {
   std::uint32_t quality = 0;
   double max_fps = 0.0;
   bool paused = false;
+  StreamCodec codec = StreamCodec::jpeg;
+  StillFormat still = StillFormat::jpeg;
 
   static constexpr auto fields() {
     return std::tuple{
         field("width", &StreamState::width, "Picture width in effect.").unit("pixels"),
         field("height", &StreamState::height, "Picture height in effect.").unit("pixels"),
-        field("quality", &StreamState::quality, "JPEG quality in effect."),
+        field("quality", &StreamState::quality, "Quality asked for; a slow way gets less."),
         field("max_fps", &StreamState::max_fps, "Most pictures in a second."),
         field("paused", &StreamState::paused, "Whether no pictures are sent."),
+        field("codec", &StreamState::codec, "Codec while something moves."),
+        field("still", &StreamState::still, "Format of the final picture."),
     };
   }
   bool operator==(const StreamState&) const = default;
@@ -110,6 +122,12 @@ struct StatsFrame {
   std::uint32_t height = 0;
   std::uint32_t samples = 0;
   TracerKind tracer = TracerKind::software;
+  StreamPhase state = StreamPhase::interactive;
+  StreamCodec codec = StreamCodec::jpeg;
+  std::uint32_t quality = 0;
+  double scale = 1.0;
+  double round_trip_ms = 0.0;
+  double goodput = 0.0;
   std::vector<PassTiming> passes;
 
   static constexpr auto fields() {
@@ -118,11 +136,25 @@ struct StatsFrame {
         field("fps", &StatsFrame::fps, "Pictures rendered in the last second."),
         field("frame_ms", &StatsFrame::frame_ms, "Time to render it.").unit("milliseconds"),
         field("encode_ms", &StatsFrame::encode_ms, "Time to encode it.").unit("milliseconds"),
-        field("bytes", &StatsFrame::bytes, "Size of the encoded picture.").unit("bytes"),
+        field("bytes", &StatsFrame::bytes, "Size of the picture this viewer was sent last.")
+            .unit("bytes"),
         field("width", &StatsFrame::width, "Picture width.").unit("pixels"),
         field("height", &StatsFrame::height, "Picture height.").unit("pixels"),
         field("samples", &StatsFrame::samples, "Samples accumulated in each pixel."),
         field("tracer", &StatsFrame::tracer, "What traced the rays."),
+        field("state", &StatsFrame::state,
+              "Whether the stream follows changes, refines a resting picture, or is done."),
+        field("codec", &StatsFrame::codec, "Codec chosen for this viewer while something moves."),
+        field("quality", &StatsFrame::quality,
+              "Quality chosen for this viewer while something moves."),
+        field("scale", &StatsFrame::scale,
+              "Size chosen for this viewer while something moves, as a part of the whole size.")
+            .range(0, 1),
+        field("round_trip_ms", &StatsFrame::round_trip_ms,
+              "From sending a picture to this viewer to its acknowledgement.")
+            .unit("milliseconds"),
+        field("goodput", &StatsFrame::goodput, "What reaches this viewer when it is busy.")
+            .unit("bytes per second"),
         field("passes", &StatsFrame::passes, "The frame's passes in their order."),
     };
   }

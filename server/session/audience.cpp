@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "protocol/jsonrpc.hpp"
-#include "stream/quality_classes.hpp"
 
 namespace heliograph::session {
 
@@ -13,13 +12,6 @@ using std::chrono::duration_cast;
 using std::chrono::microseconds;
 
 namespace {
-
-/// `frames` are in ascending quality.
-const stream::SharedFrame& choose(const std::vector<stream::SharedFrame>& frames, int quality) {
-  std::vector<int> classes;
-  for (const stream::SharedFrame& frame : frames) classes.push_back(frame->header.quality);
-  return frames[stream::nearest_class(classes, quality)];
-}
 
 stream::OutgoingFrame address(const stream::ViewerPacer::Taken& taken, const std::string& viewer,
                               bool cut) {
@@ -33,6 +25,18 @@ stream::OutgoingFrame address(const stream::ViewerPacer::Taken& taken, const std
   const auto queued = duration_cast<microseconds>(Clock::now() - taken.frame->encoded_at);
   header.queue_us = static_cast<std::uint32_t>(queued.count());
   return {.header = protocol::encode_frame_header(header), .frame = taken.frame};
+}
+
+/// What the figures of a picture say about one viewer's stream.
+template <class Viewer>
+void complete(protocol::StatsFrame& stats, const Viewer& viewer) {
+  stats.bytes = viewer.last_bytes;
+  stats.encode_ms = viewer.last_encode_us / 1000.0;
+  stats.codec = viewer.form.codec;
+  stats.quality = static_cast<std::uint32_t>(viewer.form.quality);
+  stats.scale = viewer.form.scale / 100.0;
+  stats.round_trip_ms = static_cast<double>(viewer.pacer.round_trip().count()) / 1000.0;
+  stats.goodput = viewer.pacer.goodput();
 }
 
 }  // namespace
@@ -76,6 +80,8 @@ Result<void> Audience::take_in(Viewers::node_type& viewer) {
   Viewer& it = viewers_.insert(std::move(viewer)).position->second;
   it.pacer.withdraw();
   it.came_over = true;
+  it.offered = 0;
+  it.planned = 0;
   if (it.started) offer_latest(it);
   room_.notify();
   return {};
@@ -101,11 +107,13 @@ void Audience::leave(const std::string& viewer) {
   viewers_.erase(found);
 }
 
-void Audience::start(const std::string& viewer) {
+void Audience::start(const std::string& viewer, protocol::StreamCodec codec) {
   const std::lock_guard lock(mutex_);
   const Result<Viewer*> found = find(viewer);
-  if (!found || (*found)->started) return;
-  (*found)->started = true;
+  if (!found) return;
+  (*found)->stream.decodes_video = codec != protocol::StreamCodec::jpeg;
+  (*found)->stream.codec = codec;
+  if (std::exchange((*found)->started, true)) return;
   offer_latest(**found);
   room_.notify();
 }
@@ -116,6 +124,14 @@ Result<ViewerStream> Audience::configure(const std::string& viewer,
   const Result<Viewer*> found = find(viewer);
   if (!found) return found.error();
   Viewer& it = **found;
+  if (change.codec && *change.codec != protocol::StreamCodec::jpeg && !it.stream.decodes_video) {
+    return protocol::error::invalid("codec", "was not agreed on in hello", "jpeg");
+  }
+  if (change.codec) it.stream.codec = *change.codec;
+  if (change.still && it.stream.still != *change.still) {
+    it.stream.still = *change.still;
+    it.offered = 0;
+  }
   if (change.quality) it.stream.quality = static_cast<int>(*change.quality);
   if (change.max_fps) {
     it.stream.max_fps = *change.max_fps;
@@ -125,6 +141,7 @@ Result<ViewerStream> Audience::configure(const std::string& viewer,
     const bool resumes = it.stream.paused && !*change.paused;
     it.stream.paused = *change.paused;
     it.pacer.set_paused(it.stream.paused);
+    if (resumes) it.offered = 0;
     if (resumes && it.started) offer_latest(it);
   }
   room_.notify();
@@ -138,11 +155,8 @@ Result<void> Audience::acknowledge(const std::string& viewer, const protocol::St
   Viewer& it = **found;
   // Late and repeated acknowledgements are normal and say nothing new.
   it.pacer.acknowledge(ack.frame_seq, microseconds(ack.present_us), Clock::now());
-  if (it.pacer.frame_waiting()) {
-    announce(it);
-  } else {
-    room_.notify();
-  }
+  if (it.pacer.frame_waiting()) announce(it);
+  room_.notify();
   return {};
 }
 
@@ -205,32 +219,74 @@ void Audience::announce_waiting() {
   }
 }
 
-std::vector<int> Audience::quality_classes() const {
-  const std::lock_guard lock(mutex_);
-  std::vector<int> wanted;
-  for (const auto& [id, viewer] : viewers_) {
-    if (viewer.started && !viewer.stream.paused) wanted.push_back(viewer.stream.quality);
-  }
-  return stream::quality_classes(std::move(wanted));
-}
-
-void Audience::publish(std::vector<stream::SharedFrame> frames) {
-  const std::lock_guard lock(mutex_);
-  latest_ = std::move(frames);
-  for (auto& [id, viewer] : viewers_) {
-    if (viewer.started) offer_latest(viewer);
-  }
-}
-
-void Audience::publish_stats(const protocol::StatsFrame& stats) {
+bool Audience::awaits(std::uint64_t number) const {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
-  std::string text;
+  return std::any_of(viewers_.begin(), viewers_.end(),
+                     [&](const auto& entry) { return awaits(entry.second, number, now); });
+}
+
+EncodingPlan Audience::plan(std::uint64_t number, Purpose purpose) {
+  const std::lock_guard lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  EncodingPlan plan;
+  std::vector<Viewer*> watching;
+  std::vector<stream::FormWish> wishes;
   for (auto& [id, viewer] : viewers_) {
-    if (viewer.stats_interval.count() == 0 || now < viewer.next_stats) continue;
+    if (!viewer.started || viewer.stream.paused) continue;
+    const bool ready = awaits(viewer, number, now);
+    if (ready) viewer.planned = number;
+    if (purpose == Purpose::final) {
+      plan.still_quality = std::max(plan.still_quality, viewer.stream.quality);
+      const auto known = std::find(plan.stills.begin(), plan.stills.end(), viewer.stream.still);
+      if (ready && known == plan.stills.end()) plan.stills.push_back(viewer.stream.still);
+      continue;
+    }
+    stream::Form form = wish(viewer);
+    // Pictures at rest are few and each is better than the last: a video gains nothing.
+    if (purpose == Purpose::refining) form.codec = protocol::StreamCodec::jpeg;
+    watching.push_back(&viewer);
+    wishes.push_back({.form = form, .ready = ready, .decoder = viewer.pacer.decoder()});
+  }
+  stream::FormPlanner::Plan chosen = planner_.plan(wishes, now);
+  for (std::size_t i = 0; i < watching.size(); ++i) watching[i]->form = chosen.assigned[i];
+  plan.forms = std::move(chosen.requests);
+  return plan;
+}
+
+void Audience::publish(std::uint64_t number, Purpose purpose,
+                       std::vector<stream::SharedFrame> frames) {
+  const std::lock_guard lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  for (auto& [id, viewer] : viewers_) {
+    if (!viewer.started || viewer.stream.paused) continue;
+    const bool planned = viewer.planned == number;
+    const stream::SharedFrame frame = suited(viewer, purpose, frames);
+    if (frame) {
+      offer(viewer, frame);
+    } else if (planned || !viewer.pacer.has_room(now)) {
+      viewer.pacer.skip();
+    }
+    if (frame || planned) viewer.offered = number;
+  }
+  for (const stream::SharedFrame& frame : frames) planner_.published(*frame, now);
+  if (number != latest_number_) latest_.clear();
+  latest_.insert(latest_.end(), frames.begin(), frames.end());
+  latest_number_ = number;
+  latest_purpose_ = purpose;
+}
+
+void Audience::publish_stats(protocol::StatsFrame stats) {
+  const std::lock_guard lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  const bool finished = stats.state == protocol::StreamPhase::still;
+  for (auto& [id, viewer] : viewers_) {
+    const bool told = viewer.stats_interval.count() > 0 && viewer.last_bytes > 0;
+    if (!told || (now < viewer.next_stats && !finished)) continue;
     viewer.next_stats = now + viewer.stats_interval;
-    if (text.empty()) text = protocol::make_notification("stats.frame", stats);
-    if (const auto link = viewer.link.lock()) link->send(text, "stats.frame");
+    complete(stats, viewer);
+    const auto link = viewer.link.lock();
+    if (link) link->send(protocol::make_notification("stats.frame", stats), "stats.frame");
   }
 }
 
@@ -271,8 +327,48 @@ Result<Audience::Viewer*> Audience::find(const std::string& viewer) {
 
 void Audience::offer_latest(Viewer& viewer) {
   if (latest_.empty() || viewer.stream.paused) return;
-  viewer.pacer.offer(choose(latest_, viewer.stream.quality));
+  viewer.form = wish(viewer);
+  const stream::SharedFrame frame = suited(viewer, latest_purpose_, latest_);
+  // Otherwise the newest picture is encoded once more, for this viewer.
+  if (!frame) return;
+  offer(viewer, frame);
+  viewer.offered = latest_number_;
+}
+
+void Audience::offer(Viewer& viewer, const stream::SharedFrame& frame) {
+  viewer.last_bytes = frame->payload.size() + protocol::frame_header_bytes;
+  viewer.last_encode_us = frame->header.encode_us;
+  viewer.pacer.offer(frame);
   announce(viewer);
+}
+
+bool Audience::awaits(const Viewer& viewer, std::uint64_t number, Clock::time_point now) const {
+  return viewer.started && viewer.offered < number && viewer.pacer.has_room(now);
+}
+
+stream::Form Audience::wish(const Viewer& viewer) {
+  return {.codec = viewer.stream.codec, .quality = viewer.stream.quality};
+}
+
+stream::SharedFrame Audience::suited(const Viewer& viewer, Purpose purpose,
+                                     const std::vector<stream::SharedFrame>& frames) {
+  const auto find = [&](auto fits) -> stream::SharedFrame {
+    const auto found = std::find_if(frames.begin(), frames.end(),
+                                    [&](const stream::SharedFrame& frame) { return fits(*frame); });
+    return found == frames.end() ? nullptr : *found;
+  };
+  if (purpose == Purpose::final) {
+    const bool lossless = viewer.stream.still == protocol::StillFormat::png;
+    return find([&](const stream::EncodedFrame& frame) {
+      return (frame.header.codec == protocol::FrameCodec::png) == lossless;
+    });
+  }
+  const auto own = find([&](const stream::EncodedFrame& frame) {
+    return frame.form == viewer.form && viewer.pacer.can_show(frame);
+  });
+  if (own || viewer.form.codec == protocol::StreamCodec::jpeg) return own;
+  const stream::Form stand_in = stream::FormPlanner::stand_in(viewer.form);
+  return find([&](const stream::EncodedFrame& frame) { return frame.form == stand_in; });
 }
 
 void Audience::announce(const Viewer& viewer) {

@@ -14,6 +14,7 @@
 #include "protocol/result.hpp"
 #include "session/viewer_link.hpp"
 #include "session/wakeup.hpp"
+#include "stream/form_planner.hpp"
 #include "stream/viewer_pacer.hpp"
 
 namespace heliograph::session {
@@ -26,6 +27,19 @@ struct ViewerStream {
   int quality = default_quality;
   double max_fps = default_max_fps;
   bool paused = false;
+  bool decodes_video = false;  // it said so in hello
+  protocol::StreamCodec codec = protocol::StreamCodec::jpeg;
+  protocol::StillFormat still = protocol::StillFormat::jpeg;
+};
+
+/// What a picture is sent for: to follow changes, to show how a resting one gets better, to stay.
+enum class Purpose { interactive, refining, final };
+
+/// The encodings of one picture.
+struct EncodingPlan {
+  std::vector<stream::FormRequest> forms;
+  std::vector<protocol::StillFormat> stills;
+  int still_quality = 0;  // at least
 };
 
 struct AudienceTotals {
@@ -48,8 +62,9 @@ class Audience {
   protocol::Result<void> hand_over(const std::string& viewer, Audience& there);
   /// Lets all viewers go, telling them why; gives their ids.
   std::vector<std::string> dismiss_all(const std::string& why);
-  /// The viewer is ready for pictures; it gets the latest one there is.
-  void start(const std::string& viewer);
+  /// The viewer is ready for pictures; it gets the latest one there is. `codec` is the one it likes
+  /// best, and it decodes JPEG.
+  void start(const std::string& viewer, protocol::StreamCodec codec = protocol::StreamCodec::jpeg);
 
   protocol::Result<ViewerStream> configure(const std::string& viewer,
                                            const protocol::StreamConfigure& change);
@@ -66,11 +81,15 @@ class Audience {
   std::optional<Clock::time_point> next_turn() const;
   /// Tells those whose turn has come about waiting frames.
   void announce_waiting();
-  /// The qualities asked for, reduced to few classes.
-  std::vector<int> quality_classes() const;
-  /// Hands out one picture, encoded in ascending qualities.
-  void publish(std::vector<stream::SharedFrame> frames);
-  void publish_stats(const protocol::StatsFrame& stats);
+  /// Whether somebody could be sent the picture of this number, and was not yet. Numbers grow.
+  bool awaits(std::uint64_t number) const;
+  /// How to encode the picture of this number for those who await it.
+  EncodingPlan plan(std::uint64_t number, Purpose purpose);
+  /// Hands out the encodings of the picture that the last plan was for.
+  void publish(std::uint64_t number, Purpose purpose, std::vector<stream::SharedFrame> frames);
+  /// To subscribers whose turn it is; completes `stats` with what concerns each of them. A finished
+  /// picture is always told about.
+  void publish_stats(protocol::StatsFrame stats);
 
   void send_all(std::string_view text, std::string_view key);
   void send_others(const std::string& except, std::string_view text, std::string_view key);
@@ -84,6 +103,11 @@ class Audience {
     ViewerStream stream;
     bool started = false;
     bool came_over = false;  // its next frame has nothing in common with the last
+    std::uint64_t offered = 0;  // number of the newest picture that it was offered or cannot have
+    std::uint64_t planned = 0;  // number of the newest picture that was encoded for it
+    stream::Form form;          // what it gets while something moves
+    std::uint64_t last_bytes = 0;  // of the newest frame that it was offered
+    std::uint32_t last_encode_us = 0;
     std::chrono::milliseconds stats_interval{0};
     Clock::time_point next_stats;
   };
@@ -94,13 +118,21 @@ class Audience {
   protocol::Result<void> take_in(Viewers::node_type& viewer);
   protocol::Result<Viewer*> find(const std::string& viewer);
   void offer_latest(Viewer& viewer);
+  static void offer(Viewer& viewer, const stream::SharedFrame& frame);
+  bool awaits(const Viewer& viewer, std::uint64_t number, Clock::time_point now) const;
+  static stream::Form wish(const Viewer& viewer);
+  static stream::SharedFrame suited(const Viewer& viewer, Purpose purpose,
+                                    const std::vector<stream::SharedFrame>& frames);
   static void announce(const Viewer& viewer);
 
   const std::size_t max_viewers_;
   Wakeup& room_;
   mutable std::mutex mutex_;
   Viewers viewers_;
+  stream::FormPlanner planner_;
   std::vector<stream::SharedFrame> latest_;
+  std::uint64_t latest_number_ = 0;
+  Purpose latest_purpose_ = Purpose::interactive;
   stream::PacerTotals departed_;
 };
 

@@ -115,7 +115,8 @@ Result<protocol::SettingsApplied> Session::patch_settings(const protocol::RawJso
 Result<protocol::StreamState> Session::configure_stream(const protocol::StreamConfigure& request,
                                                         const std::string& by) {
   ViewerStream stream;
-  const bool only_size = !request.quality && !request.max_fps && !request.paused;
+  const bool only_size = !request.quality && !request.max_fps && !request.paused &&
+                         !request.codec && !request.still;
   if (!by.empty() || !only_size) {
     const Result<ViewerStream> configured = audience_.configure(by, request);
     if (!configured) return configured.error();
@@ -137,7 +138,9 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
                                .height = height,
                                .quality = static_cast<std::uint32_t>(stream.quality),
                                .max_fps = stream.max_fps,
-                               .paused = stream.paused};
+                               .paused = stream.paused,
+                               .codec = stream.codec,
+                               .still = stream.still};
 }
 
 void Session::leave(const std::string& viewer) {

@@ -21,9 +21,10 @@ namespace {
 constexpr milliseconds stuttering_frame{66};
 /// Pixels of the smallest picture that is drawn smaller while moving.
 constexpr std::uint32_t smallest_to_shrink = 640 * 360;
+/// After the last change pictures are sent as they come for so long.
+constexpr milliseconds rest_before_refining{150};
 /// How long everything must rest before the final picture is sent.
 constexpr milliseconds rest_before_final{300};
-constexpr int final_quality = 95;
 constexpr float longest_frame_seconds = 1.0f;
 constexpr std::chrono::minutes capture_patience{5};
 constexpr std::chrono::seconds rest_after_failure{1};
@@ -46,25 +47,27 @@ std::vector<protocol::PassTiming> to_protocol(const std::vector<render::PassTime
   return result;
 }
 
-stream::PictureView view_of(const render::Frame& frame) {
-  return {.width = frame.width, .height = frame.height, .rgba = frame.rgba};
+/// @throws std::invalid_argument when the renderer refuses the settings
+std::shared_ptr<Session> make_session(render::Renderer& renderer, SessionOptions options,
+                                      std::shared_ptr<Wakeup> wakeup, PixelShare pixels) {
+  const auto accepted = renderer.set_settings(options.settings);
+  if (!accepted) throw std::invalid_argument(accepted.error().message);
+  return std::make_shared<Session>(std::move(options), std::move(wakeup), std::move(pixels));
 }
 
 }  // namespace
 
-struct SessionView::Picture {
-  render::Frame frame;
-  protocol::FrameHeader header;
-  std::vector<stream::InputEcho> inputs;
-  double fps = 0.0;
-};
-
 SessionView::SessionView(render::Engine& engine, SessionOptions options, PixelShare pixels,
                          ViewServices services, std::shared_ptr<Wakeup> wakeup)
-    : engine_(engine), services_(services), renderer_(std::make_unique<render::Renderer>(engine)) {
-  const auto accepted = renderer_->set_settings(options.settings);
-  if (!accepted) throw std::invalid_argument(accepted.error().message);
-  session_ = std::make_shared<Session>(std::move(options), std::move(wakeup), std::move(pixels));
+    : engine_(engine),
+      services_(services),
+      renderer_(std::make_unique<render::Renderer>(engine)),
+      session_(make_session(*renderer_, std::move(options), wakeup, std::move(pixels))),
+      broadcast_(session_, {.encoder = services.encoder,
+                            .jpeg = services.jpeg,
+                            .measurements = services.measurements,
+                            .wakeup = wakeup,
+                            .tracer = engine.tracer()}) {
   session_->set_buffers(to_protocol(renderer_->buffers()));
 }
 
@@ -77,22 +80,17 @@ bool SessionView::advance() {
   collect_captures();
   session_->audience().announce_waiting();
   if (settle_captures()) return true;
-  if (!services_.encoder.has_room()) return false;
-  if (frame_wanted()) {
-    render_frame();
-    return true;
-  }
-  if (final_due()) {
-    encode(Encoding::final);
-    return true;
-  }
-  return false;
+  if (final_due()) broadcast_.finish();
+  if (broadcast_.pump()) return true;
+  if (!frame_wanted()) return false;
+  render_frame();
+  return true;
 }
 
 std::optional<Clock::time_point> SessionView::next_due() const {
   std::optional<Clock::time_point> due = session_->audience().next_turn();
   const auto also = [&](Clock::time_point time) { due = due ? std::min(*due, time) : time; };
-  if (newest_ && newest_->frame.converged && !final_sent_ && !state_.animation.playing) {
+  if (newest_ && newest_->frame.converged && !broadcast_.finished() && !state_.animation.playing) {
     const Clock::time_point rested = state_.changed_at + rest_before_final;
     if (rested > Clock::now()) also(rested);
   }
@@ -162,6 +160,12 @@ void SessionView::adopt_pose() {
 bool SessionView::moving() const {
   if (state_.animation.playing) return true;
   return Clock::now() < moved_at_ + rest_before_final;
+}
+
+/// Nothing changes, and what is drawn is what stays.
+bool SessionView::resting() const {
+  return !state_.animation.playing && draws_whole() &&
+         Clock::now() >= state_.changed_at + rest_before_refining;
 }
 
 /// Small while the camera moves and whole frames would stutter, whole again once it rests.
@@ -237,99 +241,55 @@ bool SessionView::frame_wanted() {
   if (!renderer_->needs_frame() && !state_.animation.playing) return false;
   // The first picture of a session is made unasked: it shows that everything works.
   const bool first = !newest_ && state_.resources;
-  return first || !captures_.empty() || session_->audience().wants_frame();
+  if (first || !captures_.empty()) return true;
+  // A resting picture gets better at full speed, since few of its samples are sent.
+  if (resting()) return session_->audience().watching();
+  return !broadcast_.behind() && session_->audience().wants_frame();
 }
 
 bool SessionView::final_due() const {
-  return newest_ && draws_whole() && newest_->frame.converged && !final_sent_ &&
-         !state_.animation.playing &&
-         !renderer_->needs_frame() && Clock::now() >= state_.changed_at + rest_before_final &&
-         session_->audience().watching();
+  return newest_ && draws_whole() && newest_->frame.converged && !broadcast_.finished() &&
+         !state_.animation.playing && !renderer_->needs_frame() &&
+         Clock::now() >= state_.changed_at + rest_before_final;
 }
 
 void SessionView::render_frame() {
   const Clock::time_point start = Clock::now();
   if (state_.animation.playing) adopt_pose();
-  auto picture = std::make_shared<Picture>();
   // Histories are counted in seconds. After a rest the time since the last picture means nothing.
   const std::chrono::duration<float> since = start - last_frame_;
   renderer_->set_frame_seconds(std::min(since.count(), longest_frame_seconds));
   last_frame_ = start;
-  picture->frame = renderer_->render();
+  render::Frame frame = renderer_->render();
   const Clock::time_point end = Clock::now();
   if (draws_whole()) whole_frame_ = end - start;
+  services_.measurements.rendered(std::chrono::duration<double>(end - start).count(),
+                                  to_protocol(frame.passes));
+  newest_ = describe(std::move(frame), start, end);
+  newest_version_ = state_.version;
+  broadcast_.rendered(newest_, resting());
+}
 
+std::shared_ptr<Picture> SessionView::describe(render::Frame frame, Clock::time_point start,
+                                               Clock::time_point end) {
   recent_frames_.push_back(end);
   while (recent_frames_.front() < end - std::chrono::seconds(1)) recent_frames_.pop_front();
-  services_.measurements.rendered(std::chrono::duration<double>(end - start).count(),
-                                  to_protocol(picture->frame.passes));
 
-  const auto width = static_cast<std::uint16_t>(picture->frame.width);
-  const auto height = static_cast<std::uint16_t>(picture->frame.height);
+  auto picture = std::make_shared<Picture>();
   protocol::FrameHeader& header = picture->header;
-  header.flags = protocol::frame_flag::key;
   if (std::exchange(cut_, false)) header.flags |= protocol::frame_flag::discontinuity;
   header.render_id = ++render_count_;
   header.state_rev = state_.rev;
-  header.width = width;
-  header.height = height;
   header.full_width = static_cast<std::uint16_t>(state_.width);
   header.full_height = static_cast<std::uint16_t>(state_.height);
   header.render_start_us =
       static_cast<std::uint64_t>(duration_cast<microseconds>(start.time_since_epoch()).count());
   header.render_us = microseconds_of(end - start);
-  header.sample_count = picture->frame.samples;
+  header.sample_count = frame.samples;
+  picture->frame = std::move(frame);
   picture->inputs = state_.inputs;
   picture->fps = static_cast<double>(recent_frames_.size());
-
-  newest_ = std::move(picture);
-  newest_version_ = state_.version;
-  final_sent_ = false;
-  if (!session_->audience().watching()) return;
-  const bool rested = draws_whole() && end >= state_.changed_at + rest_before_final;
-  encode(newest_->frame.converged && rested ? Encoding::final : Encoding::interactive);
-}
-
-void SessionView::encode(Encoding encoding) {
-  std::vector<int> qualities = session_->audience().quality_classes();
-  if (qualities.empty()) return;
-  const bool final = encoding == Encoding::final;
-  if (final) qualities.assign(1, std::max(final_quality, qualities.back()));
-  final_sent_ = final;
-
-  services_.encoder.post([session = session_, picture = newest_, qualities, final,
-                          tracer = engine_.tracer(), services = services_] {
-    const auto sampling = final ? stream::ChromaSampling::full : stream::ChromaSampling::half;
-    std::vector<stream::SharedFrame> frames;
-    double seconds = 0.0;
-    for (const int quality : qualities) {
-      const Clock::time_point start = Clock::now();
-      auto frame = std::make_shared<stream::EncodedFrame>();
-      frame->payload = services.jpeg.encode(view_of(picture->frame), quality, sampling);
-      frame->encoded_at = Clock::now();
-      frame->inputs = picture->inputs;
-      frame->header = picture->header;
-      frame->header.quality = static_cast<std::uint16_t>(quality);
-      frame->header.encode_us = microseconds_of(frame->encoded_at - start);
-      if (final) frame->header.flags |= protocol::frame_flag::final;
-      seconds = std::chrono::duration<double>(frame->encoded_at - start).count();
-      services.measurements.encoded(seconds);
-      frames.push_back(std::move(frame));
-    }
-    const std::size_t bytes = frames.back()->payload.size();
-    session->audience().publish(std::move(frames));
-    session->audience().publish_stats({.render_id = picture->header.render_id,
-                                       .fps = picture->fps,
-                                       .frame_ms = picture->frame.milliseconds,
-                                       .encode_ms = 1000.0 * seconds,
-                                       .bytes = bytes,
-                                       .width = picture->frame.width,
-                                       .height = picture->frame.height,
-                                       .samples = picture->frame.samples,
-                                       .tracer = tracer,
-                                       .passes = to_protocol(picture->frame.passes)});
-    services.wakeup.notify();
-  });
+  return picture;
 }
 
 }  // namespace heliograph::session

@@ -7,10 +7,8 @@
 #include <vector>
 
 #include "render/renderer.hpp"
-#include "session/measurements.hpp"
+#include "session/broadcast.hpp"
 #include "session/session.hpp"
-#include "session/worker.hpp"
-#include "stream/jpeg_encoder.hpp"
 
 namespace heliograph::session {
 
@@ -48,17 +46,16 @@ class SessionView {
   void refuse_captures();
 
  private:
-  struct Picture;
   struct PendingCapture {
     CaptureRequest request;
     Clock::time_point deadline;
   };
-  enum class Encoding { interactive, final };
 
   void adopt_state();
   void adopt_pose();
   void adopt_size();
   bool moving() const;
+  bool resting() const;
   bool draws_whole() const;
   void collect_captures();
   bool settle_captures();
@@ -67,13 +64,15 @@ class SessionView {
   bool frame_wanted();
   bool final_due() const;
   void render_frame();
-  void encode(Encoding encoding);
+  std::shared_ptr<Picture> describe(render::Frame frame, Clock::time_point start,
+                                    Clock::time_point end);
   double frames_in_last_second() const;
 
   render::Engine& engine_;
   ViewServices services_;
   std::unique_ptr<render::Renderer> renderer_;
   std::shared_ptr<Session> session_;
+  Broadcast broadcast_;
 
   RenderState state_;
   Clock::time_point moved_at_;         // when the camera last did
@@ -82,7 +81,6 @@ class SessionView {
   Clock::duration whole_frame_{};      // time of the newest frame of full size
   std::shared_ptr<const Picture> newest_;
   std::uint64_t newest_version_ = 0;
-  bool final_sent_ = false;
   bool cut_ = true;  // the next picture has nothing in common with the last
   std::uint32_t render_count_ = 0;
   std::deque<Clock::time_point> recent_frames_;

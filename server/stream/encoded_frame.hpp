@@ -4,10 +4,12 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "protocol/frame_header.hpp"
+#include "stream/form.hpp"
 
 namespace heliograph::stream {
 
@@ -26,6 +28,8 @@ struct EncodedFrame {
   protocol::FrameHeader header;
   std::vector<std::uint8_t> payload;
   std::vector<InputEcho> inputs;
+  Form form;
+  std::optional<VideoPosition> video;  // of frames that need each other
   Clock::time_point encoded_at;
 };
 

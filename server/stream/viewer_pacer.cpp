@@ -11,19 +11,40 @@ constexpr double newest_weight = 1.0 / 8.0;
 
 }  // namespace
 
+bool ViewerPacer::can_show(const EncodedFrame& frame) const {
+  if (!frame.video || (frame.header.flags & protocol::frame_flag::key)) return true;
+  // A newer frame takes the place of one that waits, and would miss it.
+  const bool breaks = waiting_ && waiting_->video;
+  return decoder_ && !breaks && frame.video->follows(*decoder_);
+}
+
 void ViewerPacer::offer(SharedFrame frame) {
   if (paused_) return;
   if (waiting_) {
     ++totals_.dropped;
     dropped_since_taken_ = true;
+    if (waiting_->video) decoder_.reset();
   }
+  if (frame->video) decoder_ = frame->video;
   waiting_ = std::move(frame);
-  ++last_offered_;
+  offered_ = ++last_number_;
+}
+
+void ViewerPacer::withdraw() {
+  waiting_ = nullptr;
+  decoder_.reset();
+}
+
+void ViewerPacer::skip() {
+  if (paused_) return;
+  ++last_number_;
+  ++totals_.dropped;
+  dropped_since_taken_ = true;
 }
 
 std::optional<ViewerPacer::Taken> ViewerPacer::take(Clock::time_point now) {
   if (!sendable(now)) return std::nullopt;
-  Taken taken{.frame_seq = last_offered_,
+  Taken taken{.frame_seq = offered_,
               .first_after_drop = std::exchange(dropped_since_taken_, false),
               .frame = std::exchange(waiting_, nullptr)};
   const std::uint64_t bytes = taken.frame->payload.size() + protocol::frame_header_bytes;
@@ -66,7 +87,9 @@ void ViewerPacer::set_max_rate(double frames_per_second) {
 
 void ViewerPacer::set_paused(bool paused) {
   paused_ = paused;
-  if (paused_) waiting_ = nullptr;
+  if (!paused_) return;
+  if (waiting_ && waiting_->video) decoder_.reset();
+  waiting_ = nullptr;
 }
 
 bool ViewerPacer::sendable(Clock::time_point now) const {

@@ -30,10 +30,14 @@ struct PacerTotals {
 /// the way and one in the slot. Pure logic: callers bring the time.
 class ViewerPacer {
  public:
-  /// Puts a frame into the slot, numbering it for this viewer.
+  /// Whether the viewer's decoder can show `frame` after everything it was offered so far.
+  bool can_show(const EncodedFrame& frame) const;
+  /// Puts a frame that the viewer can show into the slot, numbering it for this viewer.
   void offer(SharedFrame frame);
-  /// Empties the slot: what waits is of no interest any more.
-  void withdraw() { waiting_ = nullptr; }
+  /// Empties the slot: what waits is of no interest any more, and no video goes on.
+  void withdraw();
+  /// Counts a frame that this viewer cannot have.
+  void skip();
   /// The waiting frame's number, if the viewer may have it now; it then counts as on its way.
   struct Taken {
     std::uint32_t frame_seq;
@@ -51,6 +55,8 @@ class ViewerPacer {
   /// Whether a frame rendered now could be sent at once.
   bool has_room(Clock::time_point now) const;
   bool frame_waiting() const { return waiting_ != nullptr; }
+  /// The last frame of a video that the viewer was offered, if it can go on from there.
+  const std::optional<VideoPosition>& decoder() const { return decoder_; }
   /// Whether take() would give a frame.
   bool sendable(Clock::time_point now) const;
   /// When the rate limit next lets a frame through.
@@ -74,7 +80,9 @@ class ViewerPacer {
   void measure(const Sent& sent, std::chrono::microseconds held, Clock::time_point now);
 
   SharedFrame waiting_;
-  std::uint32_t last_offered_ = 0;
+  std::optional<VideoPosition> decoder_;
+  std::uint32_t offered_ = 0;      // number of the waiting frame
+  std::uint32_t last_number_ = 0;  // of any frame, skipped ones too
   bool dropped_since_taken_ = false;
   std::deque<Sent> on_the_way_;
   bool paused_ = false;

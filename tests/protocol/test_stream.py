@@ -66,6 +66,46 @@ class Frames(ServerTestCase):
             self.assertEqual(viewer.bytes_received, received, "something came after the final")
             self.assertLess(self.server.cpu_seconds() - cpu, 0.1, "an idle server computes")
 
+    async def test_a_resting_picture_is_sent_when_its_samples_have_doubled(self):
+        self.server.call("settings.patch", {"patch": {"accumulation": {"max_samples": 64}}})
+        async with Viewer(self.server) as viewer:
+            await viewer.call("camera.set", {"eye": [3, 2, 1]})
+            await viewer.rest()
+            # The picture that is there gets better once more, from its first sample on.
+            await viewer.call("camera.set", {"eye": [3, 2, 2]})
+            samples, final = [], None
+            while not final:
+                frame = await viewer.next_frame()
+                samples.append(frame.header["sample_count"])
+                final = frame if frame.final else None
+            self.assertEqual(samples[-1], 64)
+            # As they come at first, then ever fewer: 64 samples are a few doublings.
+            late = [count for count in samples if count >= 16]
+            self.assertLess(len(late), 24, samples)
+            self.assertLess(len(samples), 64, samples)
+
+    async def test_the_final_picture_can_be_a_png(self):
+        async with Viewer(self.server) as viewer:
+            state = await viewer.call("stream.configure", {"still": "png"})
+            self.assertEqual(state["still"], "png")
+            await viewer.call("camera.set", {"eye": [2, 2, 3]})
+            final = await viewer.rest()
+            self.assertEqual(final.header["codec"], 2)
+            capture = await viewer.call("frame.capture")
+            self.assertEqual(decode_png(final.payload).rgb,
+                             decode_png(base64.b64decode(capture["data"])).rgb)
+
+    async def test_statistics_tell_that_the_picture_is_done(self):
+        async with Viewer(self.server) as viewer:
+            await viewer.call("stats.subscribe", {"interval_ms": 60000})
+            await viewer.call("camera.set", {"eye": [2, 3, 3]})
+            await viewer.rest()
+            await asyncio.sleep(0.2)
+            last = [note["params"] for note in viewer.notifications
+                    if note["method"] == "stats.frame"][-1]
+            self.assertEqual(last["state"], "still")
+            self.assertEqual((last["codec"], last["quality"], last["scale"]), ("jpeg", 80, 1))
+
     async def test_the_final_picture_is_the_captured_one(self):
         async with Viewer(self.server) as viewer:
             await viewer.call("camera.set", {"eye": [2, 2, 3]})
@@ -99,17 +139,24 @@ class Frames(ServerTestCase):
     async def test_a_paused_viewer_gets_nothing_until_it_resumes(self):
         async with Viewer(self.server) as viewer:
             await viewer.rest()
-            await viewer.call("stream.configure", {"paused": True})
+            self.assertTrue((await viewer.call("stream.pause"))["paused"])
             camera = await viewer.call("camera.set", {"eye": [1, 3, 3]})
             before = viewer.frames_received
             await asyncio.sleep(1)
             self.assertEqual(viewer.frames_received, before)
-            await viewer.call("stream.configure", {"paused": False})
+            self.assertFalse((await viewer.call("stream.resume"))["paused"])
             await viewer.frame_where(lambda frame: frame.header["state_rev"] >= camera["rev"])
+            await viewer.rest()
+            before = viewer.frames_received
+            await viewer.call("stream.configure", {"paused": True})
+            await viewer.call("stream.configure", {"paused": False})
+            again = await viewer.next_frame()
+            self.assertTrue(again.final, "the picture that stays comes once more, and alone")
+            await asyncio.sleep(0.5)
+            self.assertEqual(viewer.frames_received, before + 1)
 
     async def test_the_rate_limit_holds(self):
-        self.server.call("settings.patch", {"patch": {"accumulation": {"max_samples": 10000}}})
-        async with Viewer(self.server) as viewer:
+        async with Viewer(self.server) as viewer, viewer.moving():
             await viewer.call("stream.configure", {"max_fps": 4})
             await viewer.next_frame()
             begin, before = time.monotonic(), viewer.frames_received
@@ -134,9 +181,7 @@ class Memory(ServerTestCase):
     async def test_many_pictures_need_no_more_memory_than_few(self):
         for scene in ("furnace", "mirror"):
             self.server.call("scene.load", {"name": scene})
-            self.server.call("settings.patch",
-                             {"patch": {"accumulation": {"max_samples": 60000}}})
-            async with Viewer(self.server) as viewer:
+            async with Viewer(self.server) as viewer, viewer.moving():
                 await self.pictures(viewer, 20)
                 before = self.server.memory_bytes()
                 await self.pictures(viewer, 80)
@@ -149,17 +194,14 @@ class Memory(ServerTestCase):
 
 
 class SlowViewers(ServerTestCase):
-    def setUp(self):
-        super().setUp()
-        self.server.call("settings.patch", {"patch": {"accumulation": {"max_samples": 60000}}})
-
     async def rate(self, viewer, seconds):
         before = viewer.frames_received
         await asyncio.sleep(seconds)
         return (viewer.frames_received - before) / seconds
 
     async def test_a_viewer_that_does_not_acknowledge_gets_a_window_and_later_the_latest(self):
-        async with Viewer(self.server, acknowledge=False) as lazy, Viewer(self.server) as brisk:
+        async with Viewer(self.server, acknowledge=False) as lazy, \
+                Viewer(self.server) as brisk, brisk.moving():
             await self.rate(brisk, 2)
             self.assertEqual(lazy.frames_received, lazy.hello["limits"]["ack_window"])
             newest = (await brisk.next_frame()).header["render_id"]
@@ -174,7 +216,7 @@ class SlowViewers(ServerTestCase):
             self.assertGreater(fresh.header["frame_seq"], last.header["frame_seq"] + 1)
 
     async def test_a_stalled_viewer_costs_the_others_nothing(self):
-        async with Viewer(self.server) as brisk:
+        async with Viewer(self.server) as brisk, brisk.moving():
             await brisk.call("stream.configure", {"width": 320, "height": 180, "quality": 100})
             await self.rate(brisk, 1)
             alone = await self.rate(brisk, 3)
@@ -193,7 +235,7 @@ class SlowViewers(ServerTestCase):
             self.assertLess(grown, 20e6)
 
     async def test_viewers_that_vanish_in_the_middle_of_frames_are_forgotten(self):
-        async with Viewer(self.server) as stays:
+        async with Viewer(self.server) as stays, stays.moving():
             for _ in range(5):
                 viewer = Viewer(self.server)
                 await viewer.__aenter__()

@@ -9,11 +9,28 @@ using protocol::Hello;
 using protocol::HelloResult;
 using protocol::Result;
 using protocol::StreamAck;
+using protocol::StreamCodec;
 using protocol::StreamConfigure;
 using protocol::StreamState;
 namespace error = protocol::error;
 
 namespace {
+
+struct Agreement {
+  StreamCodec codec = StreamCodec::jpeg;
+  std::optional<std::string> reason;  // why it is not what the client likes best
+};
+
+/// The codec that the client likes best out of those that the server has.
+Agreement agree(const std::vector<std::string>& codecs) {
+  Agreement agreement;
+  for (const std::string& name : codecs) {
+    const auto codec = protocol::enum_value<StreamCodec>(name);
+    if (codec == StreamCodec::jpeg) break;
+    if (!agreement.reason) agreement.reason = "this server does not encode " + name;
+  }
+  return agreement;
+}
 
 /// The session that a caller who introduces itself wants to be in.
 Result<std::shared_ptr<Session>> choose_session(SessionHost& host, const Hello& request,
@@ -32,7 +49,8 @@ Result<HelloResult> greet(SessionHost& host, const Hello& request,
   const Result<std::shared_ptr<Session>> chosen = choose_session(host, request, call);
   if (!chosen) return chosen.error();
   const std::shared_ptr<Session>& session = *chosen;
-  if (!call.viewer.empty()) session->audience().start(call.viewer);
+  const Agreement agreed = agree(codecs);
+  if (!call.viewer.empty()) session->audience().start(call.viewer, agreed.codec);
 
   const render::DeviceInfo& device = host.engine().device();
   const SessionLimits& limits = session->limits();
@@ -43,6 +61,10 @@ Result<HelloResult> greet(SessionHost& host, const Hello& request,
   result.session = session->name();
   result.viewer = call.viewer;
   result.codecs = {"jpeg"};
+  if (agreed.codec != StreamCodec::jpeg) {
+    result.codecs.insert(result.codecs.begin(), std::string(protocol::enum_name(agreed.codec)));
+  }
+  result.codec_reason = agreed.reason;
   result.limits = {
       .max_width = limits.max_width,
       .max_height = limits.max_height,
@@ -63,6 +85,16 @@ void add_stream_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
       dispatcher, host, "stream.configure",
       [](Session& session, const StreamConfigure& request, const std::string& viewer) {
         return session.configure_stream(request, viewer);
+      });
+  add_command<Empty, StreamState>(
+      dispatcher, host, "stream.pause",
+      [](Session& session, const Empty&, const std::string& viewer) {
+        return session.configure_stream({.paused = true}, viewer);
+      });
+  add_command<Empty, StreamState>(
+      dispatcher, host, "stream.resume",
+      [](Session& session, const Empty&, const std::string& viewer) {
+        return session.configure_stream({.paused = false}, viewer);
       });
   add_command<StreamAck, Empty>(
       dispatcher, host, "stream.ack",

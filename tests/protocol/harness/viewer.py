@@ -1,7 +1,9 @@
 """A viewer: one WebSocket, requests with answers, notifications, frames with acknowledgement."""
 
 import asyncio
+import contextlib
 import json
+import math
 import struct
 from dataclasses import dataclass
 
@@ -129,6 +131,24 @@ class Viewer:
                 if condition(frame):
                     return frame
         return await asyncio.wait_for(search(), timeout)
+
+    @contextlib.asynccontextmanager
+    async def moving(self, rate=60):
+        """The camera goes round in a circle meanwhile, so that pictures keep coming."""
+        async def orbit():
+            angle = 0.0
+            while True:
+                angle += 0.02
+                await self.notify("camera.set",
+                                  {"eye": [3 * math.cos(angle), 2, 3 * math.sin(angle)]})
+                await asyncio.sleep(1 / rate)
+        task = asyncio.create_task(orbit())
+        try:
+            yield
+        finally:
+            task.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await task
 
     async def rest(self, timeout=60):
         """Waits for the final picture of the present state, after which nothing should come."""

@@ -23,7 +23,7 @@ TEST(Methods, AreThoseOfTheContract) {
                 "hello", "scene.list", "scene.load", "scene.info", "camera.get", "camera.set",
                 "camera.fit", "animation.list", "animation.play",
                          "animation.pause", "animation.seek", "animation.rate", "settings.get", "settings.patch", "settings.presets",
-                "settings.preset", "settings.schema", "stream.configure", "stream.ack",
+                "settings.preset", "settings.schema", "stream.configure", "stream.pause", "stream.resume", "stream.ack",
                 "stats.subscribe", "frame.buffers", "frame.capture", "rpc.discover"}));
 }
 

@@ -220,89 +220,156 @@ TEST_F(SessionTest, CapturesAreCheckedAndLimited) {
   EXPECT_TRUE(session_.take_captures().empty());
 }
 
-std::vector<stream::SharedFrame> encoded(std::uint32_t render_id, std::vector<int> qualities) {
+/// What the encoder does, without pixels.
+std::shared_ptr<stream::EncodedFrame> encoded(std::uint32_t render_id, const stream::Form& form) {
+  auto frame = std::make_shared<stream::EncodedFrame>();
+  frame->form = form;
+  frame->header.render_id = render_id;
+  frame->header.quality = static_cast<std::uint16_t>(form.quality);
+  frame->header.width = frame->header.full_width = 16;
+  frame->header.height = frame->header.full_height = 16;
+  frame->payload.resize(100);
+  frame->encoded_at = Clock::now();
+  return frame;
+}
+
+/// Plans, encodes and hands out picture `number`; gives the forms it was encoded in.
+std::vector<stream::Form> show(Audience& audience, std::uint32_t number,
+                               Purpose purpose = Purpose::interactive) {
+  const EncodingPlan plan = audience.plan(number, purpose);
+  std::vector<stream::Form> forms;
   std::vector<stream::SharedFrame> frames;
-  for (const int quality : qualities) {
-    auto frame = std::make_shared<stream::EncodedFrame>();
-    frame->header.render_id = render_id;
-    frame->header.quality = static_cast<std::uint16_t>(quality);
-    frame->header.width = frame->header.full_width = 16;
-    frame->header.height = frame->header.full_height = 16;
-    frame->payload.resize(100);
-    frame->encoded_at = Clock::now();
+  for (const stream::FormRequest& request : plan.forms) {
+    forms.push_back(request.form);
+    frames.push_back(encoded(number, request.form));
+  }
+  for (const protocol::StillFormat format : plan.stills) {
+    const bool lossless = format == protocol::StillFormat::png;
+    auto frame = encoded(number, {.quality = lossless ? 100 : 95});
+    if (lossless) frame->header.codec = protocol::FrameCodec::png;
+    forms.push_back(frame->form);
     frames.push_back(frame);
   }
-  return frames;
+  audience.publish(number, purpose, frames);
+  return forms;
 }
 
 TEST_F(SessionTest, ViewersGetTheirQualityAndShareTheBytes) {
+  Audience& audience = session_.audience();
   const Joined first = join();
   const Joined second = join();
   ASSERT_TRUE(session_.configure_stream({.quality = 40}, first.id));
-  EXPECT_EQ(session_.audience().quality_classes(), (std::vector<int>{40, 80}));
-  session_.audience().publish(encoded(7, {40, 80}));
-  const auto low = session_.audience().take(first.id);
-  const auto high = session_.audience().take(second.id);
+  EXPECT_EQ(show(audience, 7), (std::vector<stream::Form>{{.quality = 40}, {.quality = 80}}));
+  const auto low = audience.take(first.id);
+  const auto high = audience.take(second.id);
   ASSERT_TRUE(low && high);
   EXPECT_EQ(protocol::decode_frame_header(low->header)->quality, 40);
   EXPECT_EQ(protocol::decode_frame_header(low->header)->frame_seq, 1u);
   EXPECT_EQ(protocol::decode_frame_header(high->header)->quality, 80);
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  session_.audience().publish(encoded(8, {95}));
-  EXPECT_EQ(session_.audience().take(first.id)->frame, session_.audience().take(second.id)->frame);
+  EXPECT_EQ(show(audience, 8, Purpose::final), (std::vector<stream::Form>{{.quality = 95}}));
+  EXPECT_EQ(audience.take(first.id)->frame, audience.take(second.id)->frame);
+}
+
+TEST_F(SessionTest, TheFinalPictureIsAPngForThoseWhoAskedForOne) {
+  Audience& audience = session_.audience();
+  const Joined first = join();
+  const Joined second = join();
+  const auto state = session_.configure_stream({.still = protocol::StillFormat::png}, second.id);
+  EXPECT_EQ(state->still, protocol::StillFormat::png);
+  EXPECT_EQ(show(audience, 1, Purpose::final).size(), 2u);
+  EXPECT_EQ(audience.take(first.id)->frame->header.codec, protocol::FrameCodec::jpeg);
+  EXPECT_EQ(audience.take(second.id)->frame->header.codec, protocol::FrameCodec::png);
+}
+
+TEST_F(SessionTest, AVideoIsOnlyForThoseWhoseHelloAgreedOnOne) {
+  const Joined viewer = join();
+  const auto refused =
+      session_.configure_stream({.codec = protocol::StreamCodec::h264}, viewer.id);
+  EXPECT_EQ(refused.error().path, "codec");
 }
 
 TEST_F(SessionTest, ANewcomerGetsTheLatestPicture) {
-  session_.audience().publish(encoded(3, {95}));
+  const Joined first = join();
+  show(session_.audience(), 3, Purpose::final);
   const Joined viewer = join();
   EXPECT_GT(viewer.link->announced, 0);
   EXPECT_EQ(session_.audience().take(viewer.id)->frame->header.render_id, 3u);
+  EXPECT_FALSE(session_.audience().awaits(3));
+}
+
+TEST_F(SessionTest, ANewcomerWhoWantsAnotherFormAwaitsThePicture) {
+  Audience& audience = session_.audience();
+  const Joined first = join();
+  show(audience, 3);
+  ASSERT_TRUE(audience.take(first.id));
+  const Joined viewer = join();
+  ASSERT_TRUE(session_.configure_stream({.quality = 40, .paused = true}, viewer.id));
+  ASSERT_TRUE(session_.configure_stream({.paused = false}, viewer.id));
+  EXPECT_TRUE(audience.awaits(3));
+  EXPECT_EQ(show(audience, 3), (std::vector<stream::Form>{{.quality = 40}}));
+  EXPECT_EQ(audience.take(viewer.id)->frame->header.quality, 40);
+  EXPECT_FALSE(audience.take(first.id)) << "it has this picture";
 }
 
 TEST_F(SessionTest, WhoPausesIsSentNothingAndResumesWithTheLatest) {
+  Audience& audience = session_.audience();
+  const Joined other = join();
   const Joined viewer = join();
   ASSERT_TRUE(session_.configure_stream({.paused = true}, viewer.id));
-  EXPECT_FALSE(session_.audience().watching());
-  session_.audience().publish(encoded(4, {80}));
-  EXPECT_FALSE(session_.audience().take(viewer.id));
+  show(audience, 4);
+  EXPECT_FALSE(audience.take(viewer.id));
   ASSERT_TRUE(session_.configure_stream({.paused = false}, viewer.id));
-  EXPECT_EQ(session_.audience().take(viewer.id)->frame->header.render_id, 4u);
+  EXPECT_EQ(audience.take(viewer.id)->frame->header.render_id, 4u);
+  session_.leave(other.id);
+  ASSERT_TRUE(session_.configure_stream({.paused = true}, viewer.id));
+  EXPECT_FALSE(audience.watching());
 }
 
 TEST_F(SessionTest, FramesAreWantedWhileTheWindowIsOpen) {
-  EXPECT_FALSE(session_.audience().wants_frame()) << "nobody is there";
+  Audience& audience = session_.audience();
+  EXPECT_FALSE(audience.wants_frame()) << "nobody is there";
   const Joined viewer = join();
   ASSERT_TRUE(session_.configure_stream({.max_fps = 240.0}, viewer.id));
   for (std::uint32_t id = 1; id <= stream::ack_window; ++id) {
-    session_.audience().publish(encoded(id, {80}));
-    ASSERT_TRUE(session_.audience().take(viewer.id));
+    show(audience, id);
+    ASSERT_TRUE(audience.take(viewer.id));
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  EXPECT_FALSE(session_.audience().wants_frame());
-  ASSERT_TRUE(session_.audience().acknowledge(viewer.id, {.frame_seq = 1}));
-  EXPECT_TRUE(session_.audience().wants_frame());
+  EXPECT_FALSE(audience.wants_frame());
+  EXPECT_TRUE(show(audience, 3).empty()) << "encoded for nobody";
+  ASSERT_TRUE(audience.acknowledge(viewer.id, {.frame_seq = 1}));
+  EXPECT_TRUE(audience.wants_frame());
+  EXPECT_TRUE(audience.awaits(3));
+  EXPECT_EQ(show(audience, 3).size(), 1u);
 }
 
 TEST_F(SessionTest, ADepartedViewerIsForgottenButCounted) {
+  Audience& audience = session_.audience();
   Joined viewer = join();
-  session_.audience().publish(encoded(1, {80}));
-  ASSERT_TRUE(session_.audience().take(viewer.id));
+  show(audience, 1);
+  ASSERT_TRUE(audience.take(viewer.id));
   session_.leave(viewer.id);
   viewer.link.reset();
-  session_.audience().publish(encoded(2, {80}));
-  EXPECT_FALSE(session_.audience().take(viewer.id));
-  EXPECT_EQ(session_.audience().acknowledge(viewer.id, {.frame_seq = 1}).error().code,
-            ErrorCode::not_ready);
-  EXPECT_EQ(session_.audience().totals().viewers, 0u);
-  EXPECT_EQ(session_.audience().totals().sent.frames, 1u);
+  show(audience, 2);
+  EXPECT_FALSE(audience.take(viewer.id));
+  EXPECT_EQ(audience.acknowledge(viewer.id, {.frame_seq = 1}).error().code, ErrorCode::not_ready);
+  EXPECT_EQ(audience.totals().viewers, 0u);
+  EXPECT_EQ(audience.totals().sent.frames, 1u);
 }
 
 TEST_F(SessionTest, StatsComeNoMoreOftenThanAskedFor) {
   const Joined viewer = join();
   ASSERT_TRUE(session_.audience().subscribe(viewer.id, std::chrono::hours(1)));
+  session_.audience().publish_stats({.render_id = 4});
+  EXPECT_TRUE(viewer.link->messages.empty()) << "it has not been sent a picture";
+  show(session_.audience(), 5);
   for (int i = 0; i < 3; ++i) session_.audience().publish_stats({.render_id = 5});
   ASSERT_EQ(viewer.link->messages.size(), 1u);
   EXPECT_EQ(viewer.link->messages[0]["params"]["render_id"], 5);
+  session_.audience().publish_stats({.state = protocol::StreamPhase::still});
+  ASSERT_EQ(viewer.link->messages.size(), 2u) << "how it ends is always told";
+  EXPECT_EQ(viewer.link->messages[1]["params"]["state"], "still");
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <memory>
 
-#include "stream/quality_classes.hpp"
 #include "stream/viewer_pacer.hpp"
 
 namespace heliograph::stream {
@@ -132,17 +131,53 @@ TEST_F(ViewerPacerTest, AnImpossibleClientTimeDoesNotMakeTheWayNegative) {
   EXPECT_EQ(pacer_.round_trip().count(), 0);
 }
 
-TEST(QualityClasses, AreFewAndHoldTheExtremes) {
-  EXPECT_EQ(quality_classes({80, 80, 60}), (std::vector<int>{60, 80}));
-  EXPECT_EQ(quality_classes({10, 90, 50, 70, 30}), (std::vector<int>{10, 50, 90}));
-  EXPECT_TRUE(quality_classes({}).empty());
+SharedFrame video_frame(std::uint64_t video, std::uint32_t index) {
+  auto made = std::make_shared<EncodedFrame>();
+  made->form.codec = protocol::StreamCodec::h264;
+  made->video = VideoPosition{.video = video, .index = index};
+  if (index == 0) made->header.flags = protocol::frame_flag::key;
+  return made;
 }
 
-TEST(QualityClasses, ViewersGetTheNearest) {
-  EXPECT_EQ(nearest_class({10, 50, 90}, 10), 0u);
-  EXPECT_EQ(nearest_class({10, 50, 90}, 62), 1u);
-  EXPECT_EQ(nearest_class({10, 50, 90}, 70), 1u) << "of two equally near the cheaper one";
-  EXPECT_EQ(nearest_class({95}, 1), 0u);
+TEST_F(ViewerPacerTest, AVideoIsShownFromAKeyFrameOnAndWithoutGaps) {
+  EXPECT_FALSE(pacer_.can_show(*video_frame(1, 5))) << "the beginning is missing";
+  pacer_.offer(video_frame(1, 0));
+  EXPECT_FALSE(pacer_.can_show(*video_frame(1, 1))) << "it would replace the frame it needs";
+  ASSERT_TRUE(take());
+  EXPECT_TRUE(pacer_.can_show(*video_frame(1, 1)));
+  EXPECT_FALSE(pacer_.can_show(*video_frame(1, 2)));
+  EXPECT_FALSE(pacer_.can_show(*video_frame(2, 1))) << "of another video";
+  EXPECT_TRUE(pacer_.can_show(*video_frame(2, 0)));
+  pacer_.offer(video_frame(1, 1));
+  EXPECT_TRUE(pacer_.can_show(*frame(3)));
+}
+
+TEST_F(ViewerPacerTest, AVideoFrameThatIsReplacedBreaksTheVideo) {
+  pacer_.offer(video_frame(1, 0));
+  pacer_.offer(frame(2));
+  ASSERT_TRUE(take());
+  EXPECT_FALSE(pacer_.decoder());
+  EXPECT_FALSE(pacer_.can_show(*video_frame(1, 1)));
+}
+
+TEST_F(ViewerPacerTest, APictureOfItsOwnLeavesTheVideoAsItIs) {
+  pacer_.offer(video_frame(1, 0));
+  ASSERT_TRUE(take());
+  pacer_.offer(frame(2));
+  ASSERT_TRUE(take());
+  EXPECT_TRUE(pacer_.can_show(*video_frame(1, 1)));
+}
+
+TEST_F(ViewerPacerTest, WhatAViewerCannotHaveIsADrop) {
+  pacer_.offer(frame(1));
+  EXPECT_EQ(take()->frame_seq, 1u);
+  acknowledge(1);
+  pacer_.skip();
+  pacer_.offer(frame(3));
+  const auto next = take();
+  EXPECT_EQ(next->frame_seq, 3u);
+  EXPECT_TRUE(next->first_after_drop);
+  EXPECT_EQ(pacer_.totals().dropped, 1u);
 }
 
 }  // namespace

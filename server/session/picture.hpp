@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "protocol/frame_header.hpp"
+#include "render/renderer.hpp"
+#include "stream/encoded_frame.hpp"
+#include "stream/picture_view.hpp"
+
+namespace heliograph::session {
+
+/// One rendered picture of a session and what it shows.
+struct Picture {
+  render::Frame frame;
+  protocol::FrameHeader header;  // without what encoding adds
+  std::vector<stream::InputEcho> inputs;
+  double fps = 0.0;  // rendered in the last second
+};
+
+inline stream::PictureView view_of(const render::Frame& frame) {
+  return {.width = frame.width, .height = frame.height, .rgba = frame.rgba};
+}
+
+}  // namespace heliograph::session
