@@ -1,17 +1,23 @@
 #include "cli/options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cctype>
 #include <iostream>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "cli/config_file.hpp"
 #include "cli/option_groups.hpp"
 #include "protocol/suggestions.hpp"
 
 namespace heliograph::cli {
 namespace {
+
+constexpr int wrong_usage = 2;
 
 constexpr const char* description =
     "Heliograph: renders glTF scenes and streams the pictures to browsers and programs.";
@@ -112,19 +118,6 @@ CLI::App* add_health(CLI::App& app, HealthOptions& options) {
   return command;
 }
 
-/// Every option of a command can stand in the environment: --max-viewers as HELIOGRAPH_MAX_VIEWERS.
-void name_variables(CLI::App& command) {
-  for (CLI::Option* option : command.get_options()) {
-    const bool named = !option->get_envname().empty();
-    if (named || option->get_lnames().empty() || !option->get_configurable()) continue;
-    std::string name = "HELIOGRAPH_" + option->get_lnames().front();
-    for (char& c : name) {
-      c = c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    }
-    option->envname(name);
-  }
-}
-
 /// "; did you mean --port?" for an argument that nobody expected.
 std::string hint(const CLI::App& app, const CLI::App* command) {
   std::vector<std::string> names;
@@ -144,14 +137,46 @@ std::string hint(const CLI::App& app, const CLI::App* command) {
   return {};
 }
 
-int report(const CLI::App& app, const CLI::App* command, const CLI::ParseError& error) {
+/// "heliograph.toml: " before an error about an option that stands there. CLI11 names options in the
+/// text of its errors only.
+std::string place(const CLI::App* command, const OptionSources* sources, const std::string& what) {
+  if (!command || !sources) return {};
+  for (const CLI::Option* option : command->get_options()) {
+    const std::size_t begin = what.find(option->get_name());
+    if (begin == std::string::npos) continue;
+    const std::size_t end = begin + option->get_name().size();
+    if (end < what.size() && (what[end] == '-' || std::isalpha(what[end]) != 0)) continue;
+    const std::string source = sources->source(*option);
+    return source.starts_with("in ") ? source.substr(3) + ": " : "";
+  }
+  return {};
+}
+
+int report(const CLI::App& app, const CLI::App* command, const OptionSources* sources,
+           const CLI::ParseError& error) {
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
     return app.exit(error, std::cout, std::cerr);
   }
   const std::string help = command ? "heliograph " + command->get_name() : "heliograph";
-  std::cerr << "heliograph: " << error.what() << hint(app, command) << " (" << help
-            << " --help explains)\n";
-  return 2;
+  std::cerr << "heliograph: " << place(command, sources, error.what()) << error.what()
+            << hint(app, command) << " (" << help << " --help explains)\n";
+  return wrong_usage;
+}
+
+bool asks_for_help(const std::vector<std::string>& arguments) {
+  return std::any_of(arguments.begin(), arguments.end(), [](const std::string& argument) {
+    return argument == "--help" || argument == "-h";
+  });
+}
+
+/// The command that the arguments name, or null.
+CLI::App* named_command(CLI::App& app, const std::vector<std::string>& arguments) {
+  for (const std::string& argument : arguments) {
+    for (CLI::App* command : app.get_subcommands({})) {
+      if (command->check_name(argument)) return command;
+    }
+  }
+  return nullptr;
 }
 
 }  // namespace
@@ -162,7 +187,10 @@ Command parse_command_line(int count, char** arguments) {
   app.require_subcommand(1);
   app.fallthrough();
   app.set_version_flag("--version", "heliograph " HELIOGRAPH_VERSION);
-  app.set_config("--config", "", "File with options (TOML)")->envname("HELIOGRAPH_CONFIG");
+  std::string config_file;
+  app.add_option("--config", config_file, "File with options (TOML): \"[serve]\", \"port=9000\"")
+      ->type_name("FILE")
+      ->envname("HELIOGRAPH_CONFIG");
 
   ServeOptions serve;
   RenderOptions render;
@@ -175,11 +203,27 @@ Command parse_command_line(int count, char** arguments) {
   const CLI::App* schema_command = add_schema(app, schema);
   const CLI::App* health_command = add_health(app, health);
   for (CLI::App* command : app.get_subcommands({})) name_variables(*command);
+
+  const std::vector<std::string> given(arguments + std::min(count, 1), arguments + count);
+  CLI::App* const command = named_command(app, given);
+  std::optional<OptionSources> sources;
+  std::vector<std::string> to_parse = given;
   try {
-    app.parse(count, arguments);
+    if (command && !asks_for_help(given)) {
+      sources.emplace(app, *command, given);
+      to_parse = sources->arguments();
+    }
+    std::reverse(to_parse.begin(), to_parse.end());
+    app.parse(std::move(to_parse));
   } catch (const CLI::ParseError& error) {
-    const auto chosen = app.get_subcommands();
-    return Finished{report(app, chosen.empty() ? nullptr : chosen.front(), error)};
+    return Finished{report(app, command, sources ? &*sources : nullptr, error)};
+  } catch (const std::invalid_argument& wrong_file) {
+    std::cerr << "heliograph: " << wrong_file.what() << "\n";
+    return Finished{wrong_usage};
+  }
+  if (*serve_command && serve.print_config) {
+    std::cout << effective_config(*serve_command, *sources);
+    return Finished{};
   }
   if (*serve_command) return serve;
   if (*render_command) return render;

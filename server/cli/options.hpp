@@ -54,6 +54,7 @@ struct ServeOptions {
   SettingsOptions settings;
   DeviceOptions device;
   LogOptions log;
+  bool print_config = false;  // instead of serving
 };
 
 struct RenderOptions {

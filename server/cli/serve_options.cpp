@@ -22,6 +22,7 @@ void add_network_options(CLI::App& command, ServeOptions& options) {
       ->capture_default_str()
       ->group(group);
   command.add_option("--port", options.port, "Port to listen on; 0 takes a free one")
+      ->check(CLI::Range(0, 65535))
       ->capture_default_str()
       ->group(group);
   auto* const certificate =
@@ -150,6 +151,10 @@ CLI::App* add_serve(CLI::App& app, ServeOptions& options) {
   add_device_options(*command, options.device);
   add_limit_options(*command, options.limits);
   add_log_options(*command, options.log);
+  command
+      ->add_flag("--print-config", options.print_config,
+                 "Print what is in effect and where it comes from, as a file for --config, and end")
+      ->configurable(false);
   command->footer(examples);
   return command;
 }

@@ -45,15 +45,20 @@ struct ServerContext {
   session::SessionHost& host;
   const AccessControl& access;
   Router& router;
+  Traffic& traffic;
   std::unique_ptr<TlsCertificate> certificate;  // null: no TLS
   std::function<void()> on_last_left;           // called while ending, when nobody is left
   std::set<Connection*> connections;
   bool draining = false;  // nobody new is let in
   bool ending = false;    // everybody is asked to leave
 
-  void enter(Connection& connection) { connections.insert(&connection); }
+  void enter(Connection& connection) {
+    connections.insert(&connection);
+    traffic.connections = connections.size();
+  }
   void leave(Connection& connection) {
     connections.erase(&connection);
+    traffic.connections = connections.size();
     if (ending && connections.empty()) on_last_left();
   }
 };

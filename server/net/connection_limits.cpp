@@ -72,10 +72,7 @@ std::optional<ConnectionLimits::Seat> ConnectionLimits::take(const std::string& 
   const auto found = counts_->by_client.find(client);
   const bool client_full =
       counted && found != counts_->by_client.end() && found->second >= per_client_;
-  if (counts_->in_all >= in_all_ || client_full) {
-    ++refused_;
-    return std::nullopt;
-  }
+  if (counts_->in_all >= in_all_ || client_full) return std::nullopt;
   ++counts_->in_all;
   ++counts_->by_client[client];
   Seat seat;

@@ -47,7 +47,6 @@ class ConnectionLimits {
   std::optional<Seat> take(const std::string& address);
 
   std::size_t open() const { return counts_->in_all; }
-  std::size_t refused() const { return refused_; }
 
  private:
   struct Counts {
@@ -59,7 +58,6 @@ class ConnectionLimits {
   const std::size_t per_client_;
   const std::vector<AddressRange> unlimited_;
   std::shared_ptr<Counts> counts_ = std::make_shared<Counts>();
-  std::size_t refused_ = 0;
 };
 
 }  // namespace heliograph::net

@@ -167,11 +167,13 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     if (auto refused = upgrade_refusal(request, context_.host.sessions())) {
       return send(*std::move(refused));
     }
+    ++context_.traffic.responses[101];
     stream_.next_layer().expires_never();
     start_viewer_connection(context_, std::move(stream_), request, admission.role);
   }
 
   void send(HttpResponse answer) {
+    ++context_.traffic.responses[answer.status];
     response_ = {};
     response_.version(11);
     response_.result(static_cast<unsigned>(answer.status));

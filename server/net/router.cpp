@@ -6,7 +6,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "net/metrics.hpp"
 #include "protocol/settings_json.hpp"
 #include "web_client/embedded_assets.hpp"
 
@@ -110,8 +109,12 @@ HttpResponse come_back_later(std::string_view why) {
 }
 
 Router::Router(session::SessionHost& host, const AccessControl& access,
-               const RouterOptions& options)
-    : host_(host), access_(access), options_(options), headers_(protecting_headers(options)) {}
+               const Traffic& traffic, const RouterOptions& options)
+    : host_(host),
+      access_(access),
+      traffic_(traffic),
+      options_(options),
+      headers_(protecting_headers(options)) {}
 
 void Router::handle(const HttpRequest& request, Reply reply) const {
   const bool health_check = request.path.starts_with("/health/");
@@ -173,7 +176,10 @@ std::optional<HttpResponse> Router::health(const HttpRequest& request) const {
 
 HttpResponse Router::metrics() const {
   return {.content_type = "text/plain; version=0.0.4; charset=utf-8",
-          .body = metrics_text(host_, started_)};
+          .body = metrics_text({.host = host_,
+                                .traffic = traffic_,
+                                .started = started_,
+                                .draining = draining_})};
 }
 
 void Router::call(const HttpRequest& request, Role role, Reply reply) const {

@@ -10,6 +10,7 @@
 
 #include "net/access_control.hpp"
 #include "net/http_message.hpp"
+#include "net/metrics.hpp"
 #include "session/session_host.hpp"
 
 namespace heliograph::net {
@@ -25,7 +26,8 @@ class Router {
  public:
   using Reply = std::function<void(HttpResponse)>;
 
-  Router(session::SessionHost& host, const AccessControl& access, const RouterOptions& options);
+  Router(session::SessionHost& host, const AccessControl& access, const Traffic& traffic,
+         const RouterOptions& options);
 
   /// Calls `reply` once, here or on another thread.
   void handle(const HttpRequest& request, Reply reply) const;
@@ -46,6 +48,7 @@ class Router {
 
   session::SessionHost& host_;
   const AccessControl& access_;
+  const Traffic& traffic_;
   const RouterOptions options_;
   const std::vector<std::pair<std::string, std::string>> headers_;
   const std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();

@@ -40,13 +40,14 @@ struct Server::State {
   State(session::SessionHost& host, const ServerOptions& settings)
       : options(settings),
         access(options.access),
-        router(host, access, options.router),
+        router(host, access, traffic, options.router),
         limits(options.max_connections, options.max_connections_per_client,
                address_ranges(options.access.trusted_proxies)),
         measuring_limits(most_measuring, most_measuring, {}),
         context{.host = host,
                 .access = access,
                 .router = router,
+                .traffic = traffic,
                 .certificate = certificate(options),
                 .on_last_left = [this] { io.stop(); },
                 .connections = {}},
@@ -70,6 +71,7 @@ struct Server::State {
     if (gone) return;
     auto seat = room.take(peer.address().to_string());
     if (!seat) {
+      ++traffic.connections_refused;
       // One line for each would let who floods fill the disk too.
       if (refusals.allow(RateLimit::Clock::now())) {
         spdlog::warn("a connection from {} was refused: {} are open", peer.address().to_string(),
@@ -134,6 +136,7 @@ struct Server::State {
 
   const ServerOptions options;
   const AccessControl access;
+  Traffic traffic;
   Router router;
   ConnectionLimits limits;
   ConnectionLimits measuring_limits;

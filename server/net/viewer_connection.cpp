@@ -137,6 +137,7 @@ class ViewerConnection : public Connection,
       close(websocket::close_code::unknown_data, "messages to the server are text");
       return read();
     }
+    ++context_.traffic.calls;
     if (calls_.allow(RateLimit::Clock::now())) {
       const std::weak_ptr<ViewerConnection> weak = weak_from_this();
       context_.host.dispatcher().handle(message, {.viewer = viewer_, .view_only = view_only_},
@@ -146,6 +147,7 @@ class ViewerConnection : public Connection,
                                           self->send(std::move(answer), {});
                                         });
     } else {
+      ++context_.traffic.calls_refused;
       enqueue(rate_limited, {});
     }
     read();
@@ -166,6 +168,7 @@ class ViewerConnection : public Connection,
     waiting_.push_back({.text = std::move(text), .key = std::move(key)});
     if (waiting_.size() > most_waiting_messages || waiting_bytes_ > most_waiting_bytes) {
       waiting_.clear();
+      ++context_.traffic.viewers_let_go;
       return close(slow_consumer, "messages are not being read");
     }
     write_next();

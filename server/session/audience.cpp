@@ -308,6 +308,8 @@ AudienceTotals Audience::totals() const {
   std::int64_t measured = 0;
   for (const auto& [id, viewer] : viewers_) {
     totals.sent += viewer.pacer.totals();
+    totals.waiting += viewer.pacer.frame_waiting() ? 1 : 0;
+    totals.on_the_way += viewer.pacer.on_the_way();
     totals.goodput += viewer.pacer.goodput();
     if (viewer.pacer.goodput() == 0.0) continue;
     totals.mean_round_trip += viewer.pacer.round_trip();

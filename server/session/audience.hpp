@@ -44,7 +44,9 @@ struct EncodingPlan {
 
 struct AudienceTotals {
   std::size_t viewers = 0;
-  stream::PacerTotals sent;  // those who left included
+  std::size_t waiting = 0;     // frames that could not be sent yet
+  std::size_t on_the_way = 0;  // frames sent and not yet acknowledged
+  stream::PacerTotals sent;    // those who left included
   std::chrono::microseconds mean_round_trip{0};
   double goodput = 0.0;  // bytes a second, all viewers together
 };

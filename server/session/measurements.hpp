@@ -1,18 +1,23 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <mutex>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "protocol/messages.hpp"
+#include "stream/histogram.hpp"
 
 namespace heliograph::session {
 
 struct RenderTotals {
-  std::uint64_t frames = 0;
-  double render_seconds = 0.0;
-  std::uint64_t encodings = 0;
-  double encode_seconds = 0.0;
+  using Pass = std::pair<std::string, protocol::PassKind>;
+
+  stream::Histogram frames;  // seconds each
+  stream::Histogram encodings;
+  std::map<Pass, stream::Histogram> by_pass;
   std::vector<protocol::PassTiming> passes;  // of the latest frame
 };
 
@@ -21,14 +26,15 @@ class Measurements {
  public:
   void rendered(double seconds, std::vector<protocol::PassTiming> passes) {
     const std::lock_guard lock(mutex_);
-    ++totals_.frames;
-    totals_.render_seconds += seconds;
+    totals_.frames.add(seconds);
+    for (const protocol::PassTiming& pass : passes) {
+      totals_.by_pass[{pass.name, pass.kind}].add(pass.ms / 1000.0);
+    }
     totals_.passes = std::move(passes);
   }
   void encoded(double seconds) {
     const std::lock_guard lock(mutex_);
-    ++totals_.encodings;
-    totals_.encode_seconds += seconds;
+    totals_.encodings.add(seconds);
   }
   RenderTotals totals() const {
     const std::lock_guard lock(mutex_);

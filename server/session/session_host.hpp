@@ -36,7 +36,7 @@ class SessionHost {
   const protocol::Dispatcher& dispatcher() const { return dispatcher_; }
   const protocol::DispatchLimits& dispatch_limits() const { return options_.dispatch; }
   const SceneCatalogue& catalogue() const { return catalogue_; }
-  render::Engine& engine() { return engine_; }
+  render::Engine& engine() const { return engine_; }
 
   SessionRegistry& sessions() { return sessions_; }
   const SessionRegistry& sessions() const { return sessions_; }

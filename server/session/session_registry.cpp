@@ -158,6 +158,8 @@ AudienceTotals SessionRegistry::totals() const {
   for (const auto& [name, session] : sessions_) {
     const AudienceTotals more = session->audience().totals();
     totals.viewers += more.viewers;
+    totals.waiting += more.waiting;
+    totals.on_the_way += more.on_the_way;
     totals.sent += more.sent;
     totals.goodput += more.goodput;
     if (more.mean_round_trip.count() == 0) continue;

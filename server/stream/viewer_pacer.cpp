@@ -62,6 +62,7 @@ bool ViewerPacer::acknowledge(std::uint32_t frame_seq, std::chrono::microseconds
                                   [&](const Sent& sent) { return sent.frame_seq == frame_seq; });
   if (known == on_the_way_.end()) return false;
   measure(*known, held, now);
+  totals_.acknowledged += static_cast<std::uint64_t>(known + 1 - on_the_way_.begin());
   on_the_way_.erase(on_the_way_.begin(), known + 1);
   return true;
 }
@@ -72,6 +73,7 @@ void ViewerPacer::measure(const Sent& sent, std::chrono::microseconds held, Cloc
   const auto total = std::max(duration_cast<microseconds>(now - sent.at), microseconds(1));
   // A client's own figure is trusted only as far as it is possible.
   const auto sample = total - std::clamp(held, microseconds(0), total);
+  totals_.round_trips.add(std::chrono::duration<double>(sample).count());
   const double rate = static_cast<double>(sent.bytes) * 1e6 / static_cast<double>(total.count());
   const bool first = goodput_ == 0.0;
   const double weight = first ? 1.0 : newest_weight;

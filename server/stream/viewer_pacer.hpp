@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "stream/encoded_frame.hpp"
+#include "stream/histogram.hpp"
 
 namespace heliograph::stream {
 
@@ -16,11 +17,15 @@ struct PacerTotals {
   std::uint64_t frames = 0;  // taken for sending
   std::uint64_t bytes = 0;
   std::uint64_t dropped = 0;  // replaced by a newer one before they could be sent
+  std::uint64_t acknowledged = 0;
+  Histogram round_trips;  // as round_trip(), one by one
 
   PacerTotals& operator+=(const PacerTotals& more) {
     frames += more.frames;
     bytes += more.bytes;
     dropped += more.dropped;
+    acknowledged += more.acknowledged;
+    round_trips.add(more.round_trips);
     return *this;
   }
 };
@@ -63,6 +68,7 @@ class ViewerPacer {
   Clock::time_point next_turn() const { return next_turn_; }
 
   const PacerTotals& totals() const { return totals_; }
+  std::size_t on_the_way() const { return on_the_way_.size(); }
   /// Smoothed time from sending to acknowledgement, less what the client says it held the frame;
   /// zero before the first.
   std::chrono::microseconds round_trip() const { return round_trip_; }
