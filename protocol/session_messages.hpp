@@ -92,6 +92,7 @@ struct HelloResult {
   std::optional<std::string> codec_reason;
   ServerLimits limits;
   std::uint32_t rev = 0;
+  std::string instance;
 
   static constexpr auto fields() {
     return std::tuple{
@@ -108,6 +109,9 @@ struct HelloResult {
             .or_null(),
         field("limits", &HelloResult::limits, "What the server refuses to exceed."),
         field("rev", &HelloResult::rev, "Revision of the session's state."),
+        field("instance", &HelloResult::instance,
+              "Differs with every run of a server: where it is another, the session starts anew "
+              "and a client that comes back says again what it wants."),
     };
   }
   bool operator==(const HelloResult&) const = default;

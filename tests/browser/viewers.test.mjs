@@ -154,9 +154,15 @@ test("where a canvas cannot be handed to the worker the page draws itself", asyn
   await context.close();
 });
 
-test("after a restart of the server the page comes back with its camera", async () => {
+test("after a restart of the server the page brings scene, settings and camera back", async () => {
   const { page, context, complaints } = await openViewer(browser, server.url);
   await firstPicture(page);
+  const { scenes, current } = await server.call("scene.list");
+  const scene = scenes.find(({ name }) => name.includes("shadow_objects")).name;
+  assert.notEqual(current, scene);
+  await server.call("scene.load", { name: scene });
+  await server.call("settings.patch", { patch: { exposure: { compensation: 0.75 } } });
+  await page.waitForFunction((name) => document.title.startsWith(name), scene);
   await dragPicture(page, { x: 300, y: 300 }, { x: 520, y: 360 });
   // The drag runs on a little after it ends: the camera to come back to is the one at rest.
   let eyeBefore = null;
@@ -177,9 +183,11 @@ test("after a restart of the server the page comes back with its camera", async 
   server = await startServer(port);
   await page.waitForSelector('#pill[data-state="live"]', { timeout: 40_000 });
   await eventually(async () => {
-    const { eye } = await server.call("camera.get");
-    return distance(eye, eyeBefore) < 1e-3;
+    const camera = await server.call("camera.get").catch(() => null); // no scene at first
+    return camera && distance(camera.eye, eyeBefore) < 1e-3;
   }, "the camera to be restored");
+  assert.equal((await server.call("scene.list")).current, scene);
+  assert.equal(await server.setting("exposure.compensation"), 0.75);
   await firstPicture(page);
   await settle(page);
   await screenshot(page, "connection_back");

@@ -2,6 +2,7 @@
 // except the canvas that the pictures go to.
 
 import {
+  type AnimationState,
   type BufferInfo,
   type Camera,
   type Capture,
@@ -15,6 +16,7 @@ import {
   ErrorCode,
 } from "./protocol/messages.ts";
 import { ChannelClosed, RpcError, type RpcPeer } from "./protocol/rpc.ts";
+import { type RestoreHost, restore } from "./restore.ts";
 import { SettingsStore } from "./settings_store.ts";
 import { Signal } from "./signal.ts";
 import { CanvasPainter } from "./stream/canvas_painter.ts";
@@ -22,9 +24,9 @@ import { Connection } from "./stream/connection.ts";
 import { LatencyMeter } from "./stream/latency.ts";
 import { RateMeter } from "./stream/rates.ts";
 import { type DrawnFrame, clockMs } from "./stream/worker_messages.ts";
-import { samePose } from "./view/camera.ts";
 import { length, subtract } from "./view/vector.ts";
 import type { PictureSize } from "./view/viewport.ts";
+import { type ViewState, changesOf, clipState } from "./view_state.ts";
 
 const statsIntervalMs = 250;
 const progressSilenceMs = 20_000;
@@ -38,7 +40,10 @@ export class Viewer {
   readonly scenes = new Signal<SceneList>({ scenes: [], current: null });
   readonly scene = new Signal<SceneInfo | null>(null);
   readonly loading = new Signal<SceneProgress | null>(null);
+  /** True while the session is being brought to a state that was asked for as a whole. */
+  readonly restoring = new Signal(false);
   readonly camera = new Signal<Camera | null>(null);
+  readonly animation = new Signal<AnimationState | null>(null);
   readonly buffers = new Signal<BufferInfo[]>([]);
   readonly stats = new Signal<FrameStats | null>(null);
   readonly frame = new Signal<DrawnFrame | null>(null);
@@ -55,8 +60,13 @@ export class Viewer {
   private askedSize: PictureSize | null = null;
   private wantedStream: Partial<StreamSettings> = {};
   private progressTimer = 0;
+  private animationReadAt = 0;
   /** The server's hello, from its arrival until the connection is gone. */
   private greeting: Hello | null = null;
+  /** The run of the server that this page was last in step with. */
+  private instance: string | null = null;
+  /** What the session still has to be brought to; a wish outlives lost connections. */
+  private wish: ViewState | null = null;
 
   constructor(base: string, canvas: HTMLCanvasElement) {
     const offscreen =
@@ -74,8 +84,12 @@ export class Viewer {
     this.rpc = this.connection.rpc;
     this.settings = new SettingsStore(this.rpc, (error) => this.report(error));
     this.connection.state.watch(({ kind }) => {
-      if (kind !== "live") this.greeting = null;
+      if (kind === "live") return;
+      this.greeting = null;
+      // The view that a new server starts with would flash by before the wish is carried out.
+      if (this.scene.value || this.wish) this.connection.hold();
     });
+    this.animation.watch(() => (this.animationReadAt = Date.now()));
   }
 
   get hello(): Hello | null {
@@ -90,9 +104,30 @@ export class Viewer {
     return size > 0 && Number.isFinite(size) ? size : 1;
   }
 
+  /** What the page shows, complete enough to be shown again elsewhere. */
+  viewState(): ViewState {
+    const scene = this.scene.value;
+    return {
+      scene: scene?.name,
+      variant: scene?.variant ?? undefined,
+      settings: changesOf(this.settings.schema.value, this.settings.tree.value),
+      clip: clipState(this.animation.value, this.animationReadAt),
+      camera: this.camera.value ?? undefined,
+    };
+  }
+
+  /** Brings the session to this state, now or when there is a connection. */
+  show(state: ViewState): Promise<void> {
+    this.wish = state;
+    if (this.greeting) return this.carryOutWish();
+    this.connection.hold();
+    return Promise.resolve();
+  }
+
   /** Sends an absolute pose. Call at most once per animation frame. */
   moveCamera(camera: Camera): void {
     this.camera.set(camera);
+    if (this.wish) this.wish.camera = camera;
     this.inputSeq += 1;
     this.latency.inputSent(this.inputSeq, clockMs());
     const { eye, target, up, vertical_fov } = camera;
@@ -108,6 +143,7 @@ export class Viewer {
   }
 
   async fitCamera(): Promise<void> {
+    if (this.wish) return;
     await this.attempt(async () => this.camera.set(await this.rpc.request<Camera>("camera.fit")));
   }
 
@@ -157,32 +193,61 @@ export class Viewer {
   }
 
   private async becomeLive(hello: Hello): Promise<void> {
+    const goesOn = hello.instance === this.instance;
+    if (this.instance && !goesOn && !this.wish && this.scene.value) this.wish = this.viewState();
     this.greeting = hello;
     this.latency.reset();
     this.inputSeq = 0;
     this.askedSize = this.chooseSize(hello);
+    const unseen = this.wish ? { paused: true } : {};
     await Promise.all([
-      this.configureStream({ ...this.wantedStream, ...this.askedSize }),
+      this.configureStream({ ...this.wantedStream, ...this.askedSize, ...unseen }),
       this.settings.load(),
       this.refreshScenes(),
-      this.readScene(),
       this.attempt(() => this.readBuffers()),
       this.attempt(() => this.rpc.request("stats.subscribe", { interval_ms: statsIntervalMs })),
     ]);
+    if (this.wish) {
+      void this.attempt(() => this.carryOutWish());
+    } else {
+      this.connection.release(true);
+      await this.readScene();
+      this.instance = hello.instance;
+    }
   }
 
-  /** Reads scene and camera; puts our camera back if the server came back with the same scene. */
+  private async carryOutWish(): Promise<void> {
+    const { greeting, wish } = this;
+    if (!greeting || !wish) return;
+    const host: RestoreHost = {
+      rpc: this.rpc,
+      schema: () => this.settings.schema.value,
+      wanted: () => this.greeting === greeting && this.wish === wish,
+      lost: (sentence) => this.onError(sentence),
+    };
+    this.restoring.set(true);
+    if (this.connection.state.value.kind !== "live") this.frame.set(null);
+    if (!(await restore(host, wish))) return;
+    this.wish = null;
+    this.instance = greeting.instance;
+    try {
+      await Promise.all([this.settings.load(), this.refreshScenes(), this.readScene()]);
+      this.connection.release(false);
+      await this.configureStream({ paused: this.wantedStream.paused ?? false });
+    } finally {
+      this.restoring.set(false);
+    }
+  }
+
+  /** Reads what is shown; there may be nothing yet. */
   private async readScene(): Promise<void> {
-    const before = { scene: this.scene.value?.name, camera: this.camera.value };
     try {
       const info = await this.rpc.request<SceneInfo>("scene.info");
       const camera = await this.rpc.request<Camera>("camera.get");
       this.scene.set(info);
       this.showProgress(null);
       this.camera.set(camera);
-      if (before.camera && before.scene === info.name && !samePose(before.camera, camera)) {
-        this.moveCamera(before.camera);
-      }
+      this.animation.set(await this.rpc.request<AnimationState>("animation.list"));
     } catch (error) {
       const waiting =
         error instanceof RpcError &&
@@ -197,12 +262,12 @@ export class Viewer {
   }
 
   private async sceneChanged(info: SceneInfo): Promise<void> {
+    // While a wish is carried out this may be a scene on the way: what is wished for stays.
+    if (this.wish) return;
     this.showProgress(null);
     this.scene.set(info);
     this.scenes.set({ ...this.scenes.value, current: info.name });
-    await this.attempt(async () => {
-      this.camera.set(await this.rpc.request<Camera>("camera.get"));
-    });
+    await this.attempt(() => this.readScene());
     await this.attempt(() => this.readBuffers());
   }
 
@@ -225,7 +290,8 @@ export class Viewer {
         this.settings.receive((params as { patch: JsonObject }).patch);
         break;
       case "camera.changed":
-        if (!this.cameraBusy()) this.camera.set((params as { camera: Camera }).camera);
+        if (this.wish || this.cameraBusy()) break;
+        this.camera.set((params as { camera: Camera }).camera);
         break;
       case "scene.changed":
         void this.sceneChanged((params as { scene: SceneInfo }).scene);

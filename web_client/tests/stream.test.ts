@@ -122,3 +122,17 @@ test("a message that is no frame is told and ignored", () => {
   frames.push(new ArrayBuffer(3));
   assert.deepEqual(log, ["frame message of 3 bytes has no full header"]);
 });
+
+test("held frames wait, and are shown or dropped on release; none goes unacknowledged", async () => {
+  const { frames, log, decoded } = pipeline();
+  frames.hold();
+  for (const seq of [1, 2]) frames.push(frameMessage(seq));
+  assert.deepEqual(log, ["ack 1"]);
+  frames.release(true);
+  await decoded();
+  assert.deepEqual(log.splice(0), ["ack 1", "decode 2", "draw 2", "ack 2"]);
+  frames.hold();
+  frames.push(frameMessage(3));
+  frames.release(false);
+  assert.deepEqual(log, ["ack 3"]);
+});

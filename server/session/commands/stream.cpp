@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cstdio>
+#include <random>
 
 #include "session/commands/commands.hpp"
 
@@ -32,12 +34,48 @@ Agreement agree(const std::vector<std::string>& codecs) {
   return agreement;
 }
 
+/// Made up once in a run: clients tell by it whether their session went on without them.
+const std::string& instance() {
+  static const std::string id = [] {
+    std::random_device random;
+    char text[17];
+    std::snprintf(text, sizeof text, "%08x%08x", random(), random());
+    return std::string(text);
+  }();
+  return id;
+}
+
 /// The session that a caller who introduces itself wants to be in.
 Result<std::shared_ptr<Session>> choose_session(SessionHost& host, const Hello& request,
                                                 const protocol::CallContext& call) {
   if (!request.session) return host.sessions().session_of(call);
   if (call.viewer.empty()) return host.sessions().find(*request.session);
   return host.sessions().move(call.viewer, *request.session);
+}
+
+HelloResult greeting(SessionHost& host, const Session& session, const std::string& viewer,
+                     const Agreement& agreed) {
+  const render::DeviceInfo& device = host.engine().device();
+  const SessionLimits& limits = session.limits();
+  HelloResult result;
+  result.version = HELIOGRAPH_VERSION;
+  result.device = {.name = device.name, .driver = device.driver, .type = device.type};
+  result.tracer = host.engine().tracer();
+  result.session = session.name();
+  result.viewer = viewer;
+  result.codecs = {"jpeg"};
+  if (agreed.codec != StreamCodec::jpeg) {
+    result.codecs.insert(result.codecs.begin(), std::string(protocol::enum_name(agreed.codec)));
+  }
+  result.codec_reason = agreed.reason;
+  result.limits = {
+      .max_width = limits.max_width,
+      .max_height = limits.max_height,
+      .max_message_bytes = static_cast<std::uint32_t>(host.dispatch_limits().max_message_bytes),
+      .ack_window = stream::ack_window};
+  result.rev = session.rev();
+  result.instance = instance();
+  return result;
 }
 
 Result<HelloResult> greet(SessionHost& host, const Hello& request,
@@ -52,26 +90,7 @@ Result<HelloResult> greet(SessionHost& host, const Hello& request,
   const Agreement agreed = agree(codecs);
   if (!call.viewer.empty()) session->audience().start(call.viewer, agreed.codec);
 
-  const render::DeviceInfo& device = host.engine().device();
-  const SessionLimits& limits = session->limits();
-  HelloResult result;
-  result.version = HELIOGRAPH_VERSION;
-  result.device = {.name = device.name, .driver = device.driver, .type = device.type};
-  result.tracer = host.engine().tracer();
-  result.session = session->name();
-  result.viewer = call.viewer;
-  result.codecs = {"jpeg"};
-  if (agreed.codec != StreamCodec::jpeg) {
-    result.codecs.insert(result.codecs.begin(), std::string(protocol::enum_name(agreed.codec)));
-  }
-  result.codec_reason = agreed.reason;
-  result.limits = {
-      .max_width = limits.max_width,
-      .max_height = limits.max_height,
-      .max_message_bytes = static_cast<std::uint32_t>(host.dispatch_limits().max_message_bytes),
-      .ack_window = stream::ack_window};
-  result.rev = session->rev();
-  return result;
+  return greeting(host, *session, call.viewer, agreed);
 }
 
 }  // namespace

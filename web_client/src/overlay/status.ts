@@ -29,14 +29,14 @@ export function mountStatus(viewer: Viewer, pill: HTMLElement, card: HTMLElement
   };
   viewer.connection.state.watch(update);
   viewer.loading.watch(update);
+  viewer.restoring.watch(update);
   viewer.scenes.watch(update);
   viewer.scene.watch(update);
   let hadPicture = false;
   viewer.frame.watch((frame) => {
-    if (frame && !hadPicture) {
-      hadPicture = true;
-      update();
-    }
+    if ((frame !== null) === hadPicture) return;
+    hadPicture = frame !== null;
+    update();
   });
   setInterval(() => {
     if ("retryAt" in viewer.connection.state.value) update();
@@ -107,6 +107,10 @@ function liveNotice(viewer: Viewer): Notice | null {
       progress: loading.fraction > 0 ? loading.fraction : null,
       dims: true,
     };
+  }
+  if (viewer.restoring.value) {
+    const detail = "Bringing back scene, settings and camera";
+    return { title: "Restoring the view", detail, progress: null, dims: true };
   }
   if (!viewer.scene.value) {
     return viewer.scenes.value.scenes.length > 0

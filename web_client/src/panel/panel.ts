@@ -61,10 +61,12 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
     content.inert = !open || !live;
     content.classList.toggle("idle", !live);
   };
-  viewer.connection.state.watch(({ kind }) => {
-    live = kind === "live";
+  const follow = (): void => {
+    live = viewer.connection.state.value.kind === "live" && !viewer.restoring.value;
     enable();
-  });
+  };
+  viewer.connection.state.watch(follow);
+  viewer.restoring.watch(follow);
   const show = (shown: boolean): void => {
     open = shown;
     root.classList.toggle("folded", !shown);

@@ -18,6 +18,8 @@ export interface Hello {
   codecs: string[];
   limits: { max_width: number; max_height: number; max_message_bytes: number; ack_window: number };
   rev: number;
+  /** Differs with every run of a server: another one has not kept the session. */
+  instance: string;
 }
 
 export interface SceneList {
@@ -34,7 +36,10 @@ export interface SceneInfo {
   textures: number;
   lights: number;
   cameras: string[];
+  clips: ClipInfo[];
   variants: string[];
+  /** The variant that is shown; servers without that choice leave it out. */
+  variant?: string | null;
   bounds: { min: Vector3; max: Vector3 };
   warnings: string[];
 }
@@ -52,6 +57,20 @@ export interface Camera {
   up: Vector3;
   vertical_fov: number;
   name: string | null;
+}
+
+/** `duration` in seconds. */
+export interface ClipInfo {
+  name: string;
+  duration: number;
+}
+
+export interface AnimationState {
+  clips: ClipInfo[];
+  clip: string | null;
+  playing: boolean;
+  seconds: number;
+  rate: number;
 }
 
 export interface StreamSettings {
@@ -99,7 +118,10 @@ export const ErrorCode = {
   methodNotFound: -32601,
   unauthenticated: -32000,
   forbidden: -32001,
+  tooManyCalls: -32002,
   notFound: -32004,
   full: -32029,
   notReady: -32050,
+  /** Never sent: no answer came in time. */
+  timedOut: 0,
 } as const;

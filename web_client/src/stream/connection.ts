@@ -67,6 +67,15 @@ export class Connection {
     this.post({ kind: "open", url: this.url, subprotocol });
   }
 
+  /** Pictures that arrive wait for `release`, which shows the newest of them or none. */
+  hold(): void {
+    this.post({ kind: "hold" });
+  }
+
+  release(showWaiting: boolean): void {
+    this.post({ kind: "release", showWaiting });
+  }
+
   /** Cuts a waiting time short, after a click or when the network is back. */
   retryNow(): void {
     if (this.retryTimer) this.open();

@@ -28,6 +28,7 @@ export class FramePipeline {
   private readonly decode: Decode;
   private waiting: Arrived | null = null;
   private busy = false;
+  private held = false;
 
   constructor(sink: FrameSink, decode: Decode) {
     this.sink = sink;
@@ -45,6 +46,22 @@ export class FramePipeline {
     }
     if (this.waiting) this.sink.acknowledge(this.waiting.header.frameSeq, 0, 0);
     this.waiting = { header, message, receivedAt: clockMs() };
+    if (!this.busy && !this.held) void this.run();
+  }
+
+  /** Keeps what arrives from being shown, until it is known whether it is wanted. */
+  hold(): void {
+    this.held = true;
+  }
+
+  /** Goes on showing, with the frame that waits or without it. */
+  release(showWaiting: boolean): void {
+    if (!this.held) return;
+    this.held = false;
+    if (!showWaiting && this.waiting) {
+      this.sink.acknowledge(this.waiting.header.frameSeq, 0, 0);
+      this.waiting = null;
+    }
     if (!this.busy) void this.run();
   }
 
@@ -55,7 +72,7 @@ export class FramePipeline {
 
   private async run(): Promise<void> {
     this.busy = true;
-    while (this.waiting) {
+    while (this.waiting && !this.held) {
       const frame = this.waiting;
       this.waiting = null;
       await this.show(frame);

@@ -77,6 +77,12 @@ scope.onmessage = ({ data }) => {
     case "close":
       close();
       break;
+    case "hold":
+      void pipeline.then((frames) => frames.hold());
+      break;
+    case "release":
+      void pipeline.then((frames) => frames.release(data.showWaiting));
+      break;
     case "send":
       send(data.text);
       break;

@@ -20,6 +20,9 @@ export type ToWorker =
   | { kind: "canvas"; canvas: OffscreenCanvas }
   | { kind: "open"; url: string; subprotocol: string }
   | { kind: "close" }
+  /** From now on pictures wait; `release` shows the newest of them or none. */
+  | { kind: "hold" }
+  | { kind: "release"; showWaiting: boolean }
   | { kind: "send"; text: string };
 
 export type FromWorker =
