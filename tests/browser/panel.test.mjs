@@ -6,8 +6,10 @@ import {
   eventually,
   firstPicture,
   launchBrowser,
+  openTab,
   openViewer,
   pictureScreenshot,
+  reveal,
   screenshot,
   settle,
 } from "./harness/browser.mjs";
@@ -85,6 +87,7 @@ test("each control patches its setting, is marked, and resets", async () => {
     if ((await row.count()) === 0) continue;
     const kind = (await row.getAttribute("class")).match(/row-(\w+)/)[1];
     if (!workers[kind]) continue;
+    await reveal(row);
     assert.deepEqual(await server.setting(path), node.default, `${path} before`);
     await workers[kind](row);
     await eventually(
@@ -108,6 +111,7 @@ test("a typed value arrives and brightens the picture", async () => {
   const { page } = viewer;
   await settle(page);
   const before = statistics(await lookAt("exposure_before")).mean;
+  await reveal(rowOf("exposure.compensation"));
   const entry = rowOf("exposure.compensation").locator("input.number");
   await entry.fill("1.5");
   await entry.press("Enter");
@@ -119,6 +123,45 @@ test("a typed value arrives and brightens the picture", async () => {
   await screenshot(page, "panel_changed");
   await rowOf("exposure.compensation").locator(".reset").click();
   await eventually(async () => (await server.setting("exposure.compensation")) === 0, "a reset");
+});
+
+test("undo and redo go back and forth, by button and by key", async () => {
+  const { page } = viewer;
+  const value = () => server.setting("tone_map.curve");
+  await reveal(rowOf("tone_map.curve"));
+  await rowOf("tone_map.curve").locator("select").selectOption("agx");
+  await eventually(async () => (await value()) === "agx", "the change");
+  await openTab(page, "settings");
+  await page.getByRole("button", { name: "Undo" }).click();
+  await eventually(async () => (await value()) === "neutral", "the step back");
+  await page.keyboard.press("Control+Shift+Z");
+  await eventually(async () => (await value()) === "agx", "the step forth");
+  await page.keyboard.press("Control+Z");
+  await eventually(async () => (await value()) === "neutral", "the step back by key");
+});
+
+test("the search finds settings by what they do and folds back afterwards", async () => {
+  const { page } = viewer;
+  const rows = () => page.locator('[data-tab="settings"] .row:visible').count();
+  const all = await rows();
+  await page.getByRole("searchbox", { name: "Search settings" }).fill("ghosts");
+  const found = await rows();
+  assert.ok(found > 0 && found < all / 2, `${found} of ${all}`);
+  await screenshot(page, "search");
+  await page.getByRole("searchbox", { name: "Search settings" }).fill("");
+  assert.equal(await rows(), all);
+});
+
+test("a preset of the ladder is chosen and marked until something of it changes", async () => {
+  const { page } = viewer;
+  const rung = page.getByRole("button", { name: "SVGF" });
+  await rung.click();
+  await eventually(async () => (await rung.getAttribute("aria-pressed")) === "true", "the mark");
+  assert.equal(await server.setting("shadow_blur.kernel"), "full");
+  await server.call("settings.patch", { patch: { shadow_blur: { iterations: 2 } } });
+  await eventually(async () => (await rung.getAttribute("aria-pressed")) === "false", "no mark");
+  await page.keyboard.press("Control+Z");
+  await eventually(async () => (await server.setting("shadow_blur.kernel")) === "separable", "undo");
 });
 
 test("a change made elsewhere is shown", async () => {
@@ -139,6 +182,7 @@ test("the buffer picker changes the picture", async () => {
     "the newest picture",
     60_000,
   );
+  await openTab(page, "inspect");
   const picker = page.locator("select[name=buffer]");
   const names = await picker
     .locator("option")
@@ -164,6 +208,7 @@ test("the scene picker loads another scene and shows a refusal in words", async 
   const { scenes, current } = await server.call("scene.list");
   const other = scenes.find(({ name }) => name !== current);
   assert.ok(other, "the scene folder holds only one scene");
+  await openTab(page, "scene");
   const picker = page.locator("select[name=scene]");
   await picker.selectOption(other.name);
   await eventually(
@@ -192,7 +237,8 @@ test("the scene picker loads another scene and shows a refusal in words", async 
 test("saving downloads a PNG of the session's picture", async () => {
   const { page } = viewer;
   const download = page.waitForEvent("download", { timeout: 130_000 });
-  await page.getByRole("button", { name: "Save this picture as PNG" }).click();
+  await page.getByRole("button", { name: "Save and share" }).click();
+  await page.getByRole("menuitem", { name: "Save picture as PNG" }).click();
   assert.match((await download).suggestedFilename(), /\.png$/);
 });
 

@@ -2,14 +2,23 @@
 
 import { mountStatus } from "./overlay/status.ts";
 import { Toasts } from "./overlay/toasts.ts";
+import { viewIn } from "./link_state.ts";
+import { outputActions } from "./output.ts";
 import { createHelp } from "./overlay/help.ts";
+import { mountTransport } from "./overlay/transport.ts";
 import { mountTooltips } from "./overlay/tooltip.ts";
 import { mountPanel } from "./panel/panel.ts";
+import { focusOn } from "./view/camera.ts";
 import { Navigation } from "./view/navigation.ts";
+import { mountThumbnails } from "./thumbnails.ts";
 import { pictureSize, watchSize } from "./view/viewport.ts";
 import { Viewer } from "./viewer.ts";
 
+const typedInto = "input:not([type=range], [type=checkbox])";
 const resizeQuietMs = 150;
+
+/** Focusing on a point leaves this part of the way to it. */
+const focusCloser = 0.6;
 
 /** What a processor that renders in software is asked for at most: about 1024 x 576. */
 const softwarePixels = 590_000;
@@ -35,14 +44,23 @@ function main(): void {
     sceneSize: () => viewer.sceneSize(),
     moved: (camera) => viewer.moveCamera(camera),
     fit: () => void viewer.fitCamera(),
+    focus: (x, y) => void focusAt(x, y),
   });
+  const focusAt = async (x: number, y: number): Promise<void> => {
+    const pick = await viewer.pick(x, y);
+    const camera = viewer.camera.value;
+    if (pick && camera) navigation.goTo(focusOn(camera, pick.position, pick.distance * focusCloser));
+  };
+  viewer.jumpTo = (camera) => navigation.goTo(camera);
   viewer.cameraBusy = () => navigation.active;
 
   const help = createHelp(find<HTMLDialogElement>("help"));
   const panel = mountPanel(find("panel"), viewer, {
+    output: outputActions(viewer, { tell: (message) => toasts.tell(message) }),
     help: help.open,
     fullscreen: document.fullscreenEnabled ? toggleFullscreen : null,
   });
+  mountTransport(viewer, find("transport"));
   mountStatus(viewer, find("pill"), find("notice"));
   mountTooltips();
 
@@ -68,15 +86,31 @@ function main(): void {
   document.addEventListener("visibilitychange", pauseUnseen);
   pauseUnseen();
   addEventListener("keydown", (event) => {
+    const undoing = (event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z";
+    if (undoing && !document.activeElement?.matches(typedInto)) {
+      if (event.shiftKey) viewer.settings.redo();
+      else viewer.settings.undo();
+      event.preventDefault();
+    }
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const focused = document.activeElement;
-    if (focused?.matches("input:not([type=range], [type=checkbox]), select, dialog *")) return;
+    if (focused?.matches(`${typedInto}, select, dialog *`)) return;
     if (event.key === "?") help.open();
     else if (event.key === "h" || event.key === "H") panel.toggle();
-    else if (event.key === "Enter" && focused === canvas) toggleFullscreen();
+    else if (event.key === "b" || event.key === "B") viewer.keepView();
+    else if (event.key === " " && (focused === canvas || focused === document.body)) {
+      viewer.togglePlay();
+    } else if (event.key === "Enter" && focused === canvas) toggleFullscreen();
     else return;
     event.preventDefault();
   });
+  const openLink = (): void => {
+    const linked = viewIn(location.href);
+    if (linked) void viewer.show(linked);
+  };
+  addEventListener("hashchange", openLink);
+  openLink();
+  mountThumbnails(viewer);
   viewer.connection.open();
 }
 

@@ -7,9 +7,9 @@ import {
   type JsonObject,
   type SceneInfo,
   ErrorCode,
-} from "./protocol/messages.ts";
-import { ChannelClosed, RpcError, type RpcPeer } from "./protocol/rpc.ts";
-import type { ControlGroup } from "./protocol/settings_schema.ts";
+} from "heliograph/messages.ts";
+import { ChannelClosed, RpcError, type RpcPeer } from "heliograph/rpc.ts";
+import type { ControlGroup } from "heliograph/settings_schema.ts";
 import { type ViewState, patchTowards, withoutPath } from "./view_state.ts";
 
 const retryMs = 300;

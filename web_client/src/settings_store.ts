@@ -1,16 +1,17 @@
 // The settings of the session as this page knows them: shown at once, confirmed by the server.
 
-import type { JsonObject, JsonValue } from "./protocol/messages.ts";
-import { ChannelClosed, type RpcPeer } from "./protocol/rpc.ts";
+import type { JsonObject, JsonValue } from "heliograph/messages.ts";
+import { ChannelClosed, type RpcPeer } from "heliograph/rpc.ts";
 import {
   type Control,
   type ControlGroup,
   allControls,
   defaultTree,
   describeControls,
-} from "./protocol/settings_schema.ts";
-import { joinPatches, mergePatch, patchOf, sameValue, valueAt } from "./protocol/settings_tree.ts";
+} from "heliograph/settings_schema.ts";
+import { joinPatches, mergePatch, patchOf, sameValue, valueAt } from "heliograph/settings_tree.ts";
 import { Signal } from "./signal.ts";
+import { UndoHistory, inverseOf } from "./undo_history.ts";
 
 const noControls: ControlGroup = {
   path: "",
@@ -24,6 +25,7 @@ const noControls: ControlGroup = {
 export class SettingsStore {
   readonly schema = new Signal<ControlGroup>(noControls);
   readonly tree = new Signal<JsonObject>({});
+  readonly history = new UndoHistory();
   private readonly rpc: RpcPeer;
   private readonly failed: (error: unknown) => void;
   private defaults: JsonObject = {};
@@ -67,11 +69,41 @@ export class SettingsStore {
   }
 
   change(path: string, value: JsonValue): void {
-    this.patch(patchOf(path, value));
+    this.apply(patchOf(path, value));
   }
 
   reset(path: string): void {
-    this.patch(patchOf(path, null));
+    this.apply(patchOf(path, null));
+  }
+
+  /** A change that can be undone. */
+  apply(patch: JsonObject): void {
+    this.history.add(patch, inverseOf(patch, this.tree.value));
+    this.patch(patch);
+  }
+
+  undo(): void {
+    const patch = this.history.undo();
+    if (patch) this.patch(patch);
+  }
+
+  redo(): void {
+    const patch = this.history.redo();
+    if (patch) this.patch(patch);
+  }
+
+  /** Chooses a preset on the server: a patch that only the server knows. */
+  async choosePreset(name: string): Promise<JsonObject> {
+    const before = this.tree.value;
+    const answer = await this.rpc.request<{ applied: JsonObject }>("settings.preset", { name });
+    this.history.add(answer.applied, inverseOf(answer.applied, before));
+    this.tree.set(mergePatch(this.tree.value, answer.applied, this.defaults));
+    return answer.applied;
+  }
+
+  /** Whether every one of these values is in effect. */
+  matches(settings: JsonObject): boolean {
+    return sameValue(mergePatch(this.tree.value, settings, this.defaults), this.tree.value);
   }
 
   /** Resets the changed settings below a group, except the named paths. */
@@ -83,7 +115,7 @@ export class SettingsStore {
       (joined, control) => joinPatches(joined, patchOf(control.path, null)),
       {},
     );
-    if (changed.length > 0) this.patch(patch);
+    if (changed.length > 0) this.apply(patch);
   }
 
   /** Takes a change made by another viewer. */

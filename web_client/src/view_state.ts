@@ -1,8 +1,8 @@
 // What a person sees, in a form that survives: a lost connection, a link, a bookmark.
 
-import type { AnimationState, Camera, JsonObject } from "./protocol/messages.ts";
-import { type ControlGroup, allControls } from "./protocol/settings_schema.ts";
-import { joinPatches, patchOf, sameValue, valueAt } from "./protocol/settings_tree.ts";
+import type { AnimationState, Camera, JsonObject } from "heliograph/messages.ts";
+import { type ControlGroup, allControls } from "heliograph/settings_schema.ts";
+import { joinPatches, patchOf, sameValue, valueAt } from "heliograph/settings_tree.ts";
 
 export interface ClipState {
   clip: string;

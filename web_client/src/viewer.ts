@@ -9,14 +9,19 @@ import {
   type FrameStats,
   type Hello,
   type JsonObject,
+  type Pick,
+  type PresetInfo,
   type SceneInfo,
   type SceneList,
   type SceneProgress,
   type StreamSettings,
   ErrorCode,
-} from "./protocol/messages.ts";
-import { ChannelClosed, RpcError, type RpcPeer } from "./protocol/rpc.ts";
+} from "heliograph/messages.ts";
+import { type OpenRpc, choicesOf } from "heliograph/openrpc.ts";
+import { ChannelClosed, RpcError, type RpcPeer } from "heliograph/rpc.ts";
+import { captureBlob, shrunk } from "./pictures.ts";
 import { type RestoreHost, restore } from "./restore.ts";
+import { SceneParts } from "./scene_parts.ts";
 import { SettingsStore } from "./settings_store.ts";
 import { Signal } from "./signal.ts";
 import { CanvasPainter } from "./stream/canvas_painter.ts";
@@ -37,6 +42,7 @@ export class Viewer {
   readonly connection: Connection;
   readonly rpc: RpcPeer;
   readonly settings: SettingsStore;
+  readonly parts: SceneParts;
   readonly scenes = new Signal<SceneList>({ scenes: [], current: null });
   readonly scene = new Signal<SceneInfo | null>(null);
   readonly loading = new Signal<SceneProgress | null>(null);
@@ -45,6 +51,11 @@ export class Viewer {
   readonly camera = new Signal<Camera | null>(null);
   readonly animation = new Signal<AnimationState | null>(null);
   readonly buffers = new Signal<BufferInfo[]>([]);
+  /** File formats of `capture`. */
+  readonly captureFormats = new Signal<ReadonlySet<string>>(new Set(["png"]));
+  readonly presets = new Signal<PresetInfo[]>([]);
+  /** Names of the methods that this server has; what it lacks is not offered. */
+  readonly methods = new Signal<ReadonlySet<string>>(new Set());
   readonly stats = new Signal<FrameStats | null>(null);
   readonly frame = new Signal<DrawnFrame | null>(null);
   readonly stream = new Signal<StreamSettings | null>(null);
@@ -52,6 +63,12 @@ export class Viewer {
   readonly rates = new RateMeter();
   /** Says in one sentence what went wrong. */
   onError: (message: string) => void = () => {};
+  /** Goes to a pose, on a way that one can follow. */
+  jumpTo: (camera: Camera) => void = (camera) => this.moveCamera(camera);
+  /** Starts or stops the clip. */
+  togglePlay: () => void = () => {};
+  /** Keeps the view of now as a bookmark. */
+  keepView: () => void = () => {};
   /** True while a hand is on the camera; poses from elsewhere then wait. */
   cameraBusy: () => boolean = () => false;
   /** The size of picture that suits the view and this server. */
@@ -83,6 +100,7 @@ export class Viewer {
     });
     this.rpc = this.connection.rpc;
     this.settings = new SettingsStore(this.rpc, (error) => this.report(error));
+    this.parts = new SceneParts(this);
     this.connection.state.watch(({ kind }) => {
       if (kind === "live") return;
       this.greeting = null;
@@ -110,6 +128,7 @@ export class Viewer {
     return {
       scene: scene?.name,
       variant: scene?.variant ?? undefined,
+      environment: this.parts.environment.value?.current ?? undefined,
       settings: changesOf(this.settings.schema.value, this.settings.tree.value),
       clip: clipState(this.animation.value, this.animationReadAt),
       camera: this.camera.value ?? undefined,
@@ -175,15 +194,34 @@ export class Viewer {
     void this.configureStream(size);
   }
 
+  /** What lies under a point of the picture, in fractions of its width and height from the top left. */
+  async pick(x: number, y: number): Promise<Pick | null> {
+    if (!this.methods.value.has("scene.pick")) return null;
+    try {
+      const pick = await this.rpc.request<Pick>("scene.pick", { x, y });
+      return pick.hit ? pick : null;
+    } catch (error) {
+      this.report(error);
+      return null;
+    }
+  }
+
+  /** A buffer of the frame as a small picture, a data address. */
+  async smallPicture(buffer: string, width: number): Promise<string> {
+    const capture = await this.capture(buffer, "png");
+    return shrunk(captureBlob(capture), width);
+  }
+
   /** Changes the stream; remembered for the next connection. */
   requestStream(change: Partial<StreamSettings>): void {
     this.wantedStream = { ...this.wantedStream, ...change };
     void this.configureStream(change);
   }
 
-  async capture(): Promise<Capture> {
-    const buffer = String(this.settings.value(bufferSetting) ?? "output");
-    return this.rpc.request<Capture>("frame.capture", { buffer, format: "png" }, 120_000);
+  /** A buffer as a file; the one that is shown unless another is named. */
+  async capture(name?: string, format = "png"): Promise<Capture> {
+    const buffer = name ?? String(this.settings.value(bufferSetting) ?? "output");
+    return this.rpc.request<Capture>("frame.capture", { buffer, format }, 120_000);
   }
 
   report(error: unknown): void {
@@ -205,12 +243,13 @@ export class Viewer {
       this.settings.load(),
       this.refreshScenes(),
       this.attempt(() => this.readBuffers()),
+      this.attempt(() => this.readOffers()),
       this.attempt(() => this.rpc.request("stats.subscribe", { interval_ms: statsIntervalMs })),
     ]);
     if (this.wish) {
       void this.attempt(() => this.carryOutWish());
     } else {
-      this.connection.release(true);
+      this.connection.release(0);
       await this.readScene();
       this.instance = hello.instance;
     }
@@ -232,7 +271,7 @@ export class Viewer {
     this.instance = greeting.instance;
     try {
       await Promise.all([this.settings.load(), this.refreshScenes(), this.readScene()]);
-      this.connection.release(false);
+      this.connection.release(this.camera.value?.rev ?? 0);
       await this.configureStream({ paused: this.wantedStream.paused ?? false });
     } finally {
       this.restoring.set(false);
@@ -259,6 +298,16 @@ export class Viewer {
   private async readBuffers(): Promise<void> {
     const answer = await this.rpc.request<{ buffers: BufferInfo[] }>("frame.buffers");
     this.buffers.set(answer.buffers);
+  }
+
+  private async readOffers(): Promise<void> {
+    const [openrpc, answer] = await Promise.all([
+      this.rpc.request<OpenRpc>("rpc.discover"),
+      this.rpc.request<{ presets: PresetInfo[] }>("settings.presets"),
+    ]);
+    this.methods.set(new Set(openrpc.methods.map(({ name }) => name)));
+    this.captureFormats.set(new Set(choicesOf(openrpc, "frame.capture", "format")));
+    this.presets.set(answer.presets);
   }
 
   private async sceneChanged(info: SceneInfo): Promise<void> {
@@ -295,6 +344,11 @@ export class Viewer {
         break;
       case "scene.changed":
         void this.sceneChanged((params as { scene: SceneInfo }).scene);
+        break;
+      case "lights.changed":
+      case "materials.changed":
+      case "environment.changed":
+        this.parts.notified(method, params);
         break;
       case "scene.progress":
         this.showProgress(params as SceneProgress);

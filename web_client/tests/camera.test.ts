@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { Camera, Vector3 } from "../src/protocol/messages.ts";
+import type { Camera, Vector3 } from "heliograph/messages.ts";
 import { dolly, orbit, pan, samePose, visibleHeight } from "../src/view/camera.ts";
 import { length, subtract } from "../src/view/vector.ts";
 

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { FrameFormatError, mimeType, parseFrameHeader } from "../src/protocol/frame_header.ts";
+import { FrameFormatError, mimeType, parseFrameHeader } from "heliograph/frame_header.ts";
 
 function message(headerBytes = 64, payload = 10): ArrayBuffer {
   const buffer = new ArrayBuffer(headerBytes + payload);

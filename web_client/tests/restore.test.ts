@@ -1,8 +1,8 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { JsonObject } from "../src/protocol/messages.ts";
-import { RpcPeer } from "../src/protocol/rpc.ts";
-import { describeControls } from "../src/protocol/settings_schema.ts";
+import type { JsonObject } from "heliograph/messages.ts";
+import { RpcPeer } from "heliograph/rpc.ts";
+import { describeControls } from "heliograph/settings_schema.ts";
 import { restore } from "../src/restore.ts";
 import { type ViewState, changesOf, patchTowards, withoutPath } from "../src/view_state.ts";
 

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { ChannelClosed, RpcError, RpcPeer } from "../src/protocol/rpc.ts";
+import { ChannelClosed, RpcError, RpcPeer } from "heliograph/rpc.ts";
 
 function peer() {
   const sent: { id?: number; method: string; params: unknown }[] = [];

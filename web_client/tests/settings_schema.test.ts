@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { JsonObject } from "../src/protocol/messages.ts";
+import type { JsonObject } from "heliograph/messages.ts";
 import {
   type Control,
   type SliderControl,
@@ -13,7 +13,7 @@ import {
   parseNumber,
   sliderPosition,
   sliderValue,
-} from "../src/protocol/settings_schema.ts";
+} from "heliograph/settings_schema.ts";
 
 const leaf = (extra: JsonObject): JsonObject => ({ description: "Help.", ...extra });
 

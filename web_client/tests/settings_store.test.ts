@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { JsonObject } from "../src/protocol/messages.ts";
-import { RpcPeer } from "../src/protocol/rpc.ts";
+import type { JsonObject } from "heliograph/messages.ts";
+import { RpcPeer } from "heliograph/rpc.ts";
 import { SettingsStore } from "../src/settings_store.ts";
 
 const schema: JsonObject = {

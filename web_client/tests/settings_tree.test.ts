@@ -6,7 +6,7 @@ import {
   patchOf,
   sameValue,
   valueAt,
-} from "../src/protocol/settings_tree.ts";
+} from "heliograph/settings_tree.ts";
 
 test("paths lead to values and patches", () => {
   assert.equal(valueAt({ a: { b: [1] } }, "a.c"), undefined);

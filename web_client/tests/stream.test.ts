@@ -60,12 +60,13 @@ test("rates are those of the window and zero at rest", () => {
   assert.deepEqual(meter.read(4000), { fps: 0, bytesPerSecond: 0 });
 });
 
-function frameMessage(seq: number): ArrayBuffer {
+function frameMessage(seq: number, rev = 0): ArrayBuffer {
   const buffer = new ArrayBuffer(68);
   new Uint8Array(buffer).set([0x48, 0x56, 0x52, 0x46, 1, 1, 1, 0]);
   const view = new DataView(buffer);
   view.setUint16(8, 64, true);
   view.setUint32(12, seq, true);
+  view.setUint32(24, rev, true);
   view.setUint8(64, seq);
   return buffer;
 }
@@ -126,13 +127,14 @@ test("a message that is no frame is told and ignored", () => {
 test("held frames wait, and are shown or dropped on release; none goes unacknowledged", async () => {
   const { frames, log, decoded } = pipeline();
   frames.hold();
-  for (const seq of [1, 2]) frames.push(frameMessage(seq));
+  for (const seq of [1, 2]) frames.push(frameMessage(seq, 7));
   assert.deepEqual(log, ["ack 1"]);
-  frames.release(true);
+  frames.release(7);
   await decoded();
   assert.deepEqual(log.splice(0), ["ack 1", "decode 2", "draw 2", "ack 2"]);
   frames.hold();
-  frames.push(frameMessage(3));
-  frames.release(false);
-  assert.deepEqual(log, ["ack 3"]);
+  frames.push(frameMessage(3, 7));
+  frames.release(8);
+  frames.push(frameMessage(4, 7));
+  assert.deepEqual(log, ["ack 3", "ack 4"]);
 });

@@ -57,9 +57,21 @@ export async function firstPicture(page, timeout = 120_000) {
   );
 }
 
+export async function openTab(page, name) {
+  await page.locator(`#tab-${name}`).click();
+}
+
+/** Opens the tab that something in the panel stands in. */
+export async function reveal(locator) {
+  const tab = await locator
+    .first()
+    .evaluate((node) => node.closest("[data-tab]").dataset.tab);
+  await openTab(locator.page(), tab);
+}
+
 /** The figure with this name as the performance section shows it. */
 export function figure(page, name) {
-  return page.locator(`[data-figure="${name}"] dd`).innerText();
+  return page.locator(`[data-figure="${name}"] dd`).textContent();
 }
 
 /** Waits until no more pictures come: the view rests and is fully sampled, or nearly so. */

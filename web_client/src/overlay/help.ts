@@ -8,7 +8,8 @@ const entries: [title: string, rows: [keys: string[], meaning: string][]][] = [
     [
       [["Drag"], "Orbit"],
       [["Right drag"], "Pan (also middle, or Shift and drag)"],
-      [["Wheel"], "Closer, farther"],
+      [["Wheel"], "Towards what is under the pointer, and away"],
+      [["Double click"], "Focus on what is there"],
     ],
   ],
   [
@@ -23,7 +24,11 @@ const entries: [title: string, rows: [keys: string[], meaning: string][]][] = [
     [
       [["←", "→", "↑", "↓"], "Orbit (with Shift: pan)"],
       [["+", "−"], "Closer, farther"],
+      [["W", "A", "S", "D"], "Fly (Q, E: down, up; Shift: faster; drag: look)"],
+      [["Space"], "Play or pause"],
       [["F"], "Fit the scene into view"],
+      [["B"], "Bookmark this view"],
+      [["Ctrl Z"], "Undo a setting (Ctrl Shift Z: redo)"],
       [["H"], "Hide or show the panel"],
       [["Enter"], "Fullscreen (with the picture focused)"],
       [["?"], "This help"],

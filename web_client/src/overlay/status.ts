@@ -1,7 +1,7 @@
 // Where the connection stands: a quiet pill while all is well, a card when there is no picture.
 
 import { element, setText } from "../panel/element.ts";
-import { humanise } from "../protocol/settings_schema.ts";
+import { humanise } from "heliograph/settings_schema.ts";
 import type { ConnectionState } from "../stream/connection.ts";
 import type { Viewer } from "../viewer.ts";
 

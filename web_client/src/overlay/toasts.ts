@@ -3,6 +3,7 @@
 import { element, icon, setText } from "../panel/element.ts";
 
 const shownMs = 8000;
+const quietMs = 3500;
 const mostAtOnce = 4;
 
 export class Toasts {
@@ -13,7 +14,12 @@ export class Toasts {
     this.container = container;
   }
 
-  show(message: string): void {
+  /** Something went well or is under way: quieter, and gone sooner. */
+  tell(message: string): void {
+    this.show(message, true);
+  }
+
+  show(message: string, quiet = false): void {
     const known = this.open.get(message);
     if (known) {
       known.renew();
@@ -27,7 +33,7 @@ export class Toasts {
     };
     const renew = (): void => {
       clearTimeout(timer);
-      timer = window.setTimeout(close, shownMs);
+      timer = window.setTimeout(close, quiet ? quietMs : shownMs);
     };
     const text = element("span", { class: "toast-text" });
     setText(text, message);
@@ -38,7 +44,7 @@ export class Toasts {
         mouseenter: () => clearTimeout(timer),
         mouseleave: renew,
       },
-      icon("warning"),
+      quiet ? null : icon("warning"),
       text,
       element(
         "button",

@@ -1,6 +1,6 @@
 // One row per setting: its widget, its changed mark and its reset button.
 
-import type { JsonValue } from "../protocol/messages.ts";
+import type { JsonValue } from "heliograph/messages.ts";
 import {
   type ChoiceControl,
   type Control,
@@ -12,8 +12,8 @@ import {
   parseNumber,
   sliderPosition,
   sliderValue,
-} from "../protocol/settings_schema.ts";
-import { sameValue } from "../protocol/settings_tree.ts";
+} from "heliograph/settings_schema.ts";
+import { sameValue } from "heliograph/settings_tree.ts";
 import { element, icon, uniqueId } from "./element.ts";
 
 export interface Row {
@@ -80,7 +80,7 @@ export function createRow(control: Control, report: Report, reset: () => void): 
   );
   const node = element(
     "div",
-    { class: `row row-${control.kind}`, "data-path": control.path },
+    { class: `row row-${control.kind}`, "data-path": control.path || undefined },
     element("div", { class: "row-line" }, label, resetButton, widget.node),
     widget.below,
   );
@@ -110,7 +110,7 @@ function describe(node: HTMLElement, control: Control): void {
   }
   if (control.default !== undefined) facts.push(`default ${describeValue(control)}`);
   node.dataset.tipFacts = facts.join(" · ");
-  node.dataset.tipPath = control.path;
+  if (control.path) node.dataset.tipPath = control.path;
 }
 
 function describeValue(control: Control): string {

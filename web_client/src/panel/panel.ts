@@ -3,14 +3,17 @@
 import { preferences } from "../preferences.ts";
 import { type Viewer, bufferSetting } from "../viewer.ts";
 import { button, element, icon } from "./element.ts";
-import { createPerformanceSection } from "./performance_section.ts";
-import { createSceneSection } from "./scene_section.ts";
-import { createSection } from "./section.ts";
-import { mountSettings } from "./settings_panel.ts";
+import { createInspectTab } from "./inspect_tab.ts";
+import { createSceneTab, lookGroups } from "./scene_tab.ts";
+import { type MenuItem, createMenu } from "./menu.ts";
+import { createSettingsTab } from "./settings_tab.ts";
+import { createStatsTab } from "./stats_tab.ts";
 import { type ResolutionChoice, createStreamSection } from "./stream_section.ts";
+import { createTabs } from "./tabs.ts";
 import type { Signal } from "../signal.ts";
 
 export interface PanelActions {
+  output: MenuItem[];
   help(): void;
   fullscreen: (() => void) | null;
 }
@@ -24,20 +27,18 @@ const narrow = matchMedia("(max-width: 640px)");
 
 export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActions): Panel {
   const stream = createStreamSection(viewer);
-  const settings = element("div", { class: "settings" });
-  const content = element(
-    "div",
-    { class: "panel-content", id: "panel-content" },
-    createSceneSection(viewer),
-    createSection({
-      id: "performance",
-      title: "Performance",
-      body: createPerformanceSection(viewer),
-      openAtFirst: true,
-    }),
-    settings,
-    createSection({ id: "stream", title: "Stream", body: stream.node, openAtFirst: false }),
-  );
+  const tabs = createTabs("Parts of the panel", [
+    { id: "scene", label: "Scene", icon: "scene", body: createSceneTab(viewer) },
+    {
+      id: "settings",
+      label: "Settings",
+      icon: "sliders",
+      body: createSettingsTab(viewer, [...lookGroups, bufferSetting]),
+    },
+    { id: "inspect", label: "Inspect", icon: "layers", body: createInspectTab(viewer) },
+    { id: "stats", label: "Timing", icon: "chart", body: createStatsTab(viewer, stream.node) },
+  ]);
+  const content = element("div", { class: "panel-body" }, tabs.list, tabs.pages);
   const fold = element(
     "button",
     { type: "button", class: "icon-button fold", "aria-controls": "panel-content" },
@@ -47,12 +48,12 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
     "header",
     {},
     element("span", { class: "brand" }, icon("sun"), "Heliograph"),
+    createMenu("Save and share", "share", actions.output),
     button("Help (?)", "help", actions.help),
     actions.fullscreen ? button("Fullscreen", "fullscreen", actions.fullscreen) : null,
     fold,
   );
   root.append(header, content);
-  mountSettings(settings, viewer.settings, [bufferSetting]);
 
   const key = (): string => (narrow.matches ? "sheet" : "panel");
   let open = false;

@@ -1,87 +1,101 @@
-// Where the time of a frame goes: one stacked bar and one line per pass. Times are smoothed and
-// lines stay where they first appeared, so that the eye can rest on them.
+// Where the time of a frame goes: a line per stage that unfolds into its passes. Times are
+// smoothed and lines stay where they first appeared, so that the eye can rest on them.
 
-import type { PassTiming } from "../protocol/messages.ts";
-import { humanise } from "../protocol/settings_schema.ts";
-import { element, setText } from "./element.ts";
-
-export type TimedPass = PassTiming;
+import { humanise } from "heliograph/settings_schema.ts";
+import { element, icon, setText } from "./element.ts";
+import type { Stage } from "./stage_times.ts";
 
 interface Line {
   node: HTMLElement;
-  segment: HTMLElement;
   bar: HTMLElement;
   value: HTMLElement;
   ms: number;
   seenAt: number;
 }
 
-const hues = 10;
+interface StageLine extends Line {
+  passes: HTMLElement;
+  lines: Map<string, Line>;
+}
+
+export const hues = 10;
 const smoothing = 0.35;
 const forgetAfterMs = 4000;
 
 export class PassTable {
   readonly node: HTMLElement;
-  private readonly stack = element("div", { class: "stack", "aria-hidden": "true" });
-  private readonly list = element("ul", { class: "passes", "aria-label": "Time per pass" });
-  private readonly lines = new Map<string, Line>();
-  private nextHue = 0;
+  private readonly list = element("ul", { class: "passes", "aria-label": "Time per stage" });
+  private readonly stages = new Map<string, StageLine>();
+  private readonly hueOf: (stage: string) => number;
 
-  constructor() {
+  /** The colours are those of the chart. */
+  constructor(hueOf: (stage: string) => number) {
+    this.hueOf = hueOf;
     const empty = element("p", { class: "facts empty" }, "Timings appear with the first frames.");
-    this.node = element("div", { class: "pass-table" }, this.stack, this.list, empty);
+    this.node = element("div", { class: "pass-table" }, this.list, empty);
   }
 
-  show(passes: TimedPass[]): void {
+  /** `exactly` shows one moment as it was, otherwise values glide. */
+  show(stages: Stage[], exactly = false): void {
     const now = performance.now();
-    for (const pass of passes) {
-      const line = this.lines.get(pass.name) ?? this.addLine(pass);
-      line.ms += (pass.ms - line.ms) * (line.seenAt === 0 ? 1 : smoothing);
-      line.seenAt = now;
+    const longest = Math.max(1e-6, ...stages.map(({ ms }) => ms));
+    for (const stage of stages) {
+      const line = this.stages.get(stage.name) ?? this.addStage(stage.name);
+      update(line, stage.ms, longest, now, exactly);
+      for (const pass of stage.passes) {
+        const inner = line.lines.get(pass.name) ?? this.addPass(line, stage.name, pass.name);
+        update(inner, pass.ms, longest, now, exactly);
+      }
+      forget(line.lines, now);
+      line.node.classList.toggle("single", stage.passes.length < 2);
     }
-    this.forget(now);
-    const all = [...this.lines.values()];
-    const total = Math.max(1e-6, sum(all));
-    const longest = Math.max(1e-6, ...all.map(({ ms }) => ms));
-    for (const line of all) {
-      line.segment.style.flexGrow = String(line.ms / total);
-      line.bar.style.transform = `scaleX(${line.ms / longest})`;
-      setText(line.value, line.ms.toFixed(line.ms < 9.95 ? 2 : 1));
-    }
+    forget(this.stages, now);
   }
 
-  private addLine({ name, kind }: TimedPass): Line {
-    const hue = `hue-${this.nextHue % hues}`;
-    this.nextHue += 1;
-    const label = humanise(name.replaceAll(".", " · "));
-    const place = kind === "host" ? "on the processor" : "on the device";
-    const value = element("span", { class: "pass-ms" });
-    const bar = element("span", { class: `pass-bar ${hue}` });
-    const node = element(
-      "li",
-      { class: "pass", "data-tip": `${label}, ${place}`, "data-pass": name },
-      element("span", { class: "pass-name" }, label),
-      element("span", { class: "pass-track" }, bar),
-      value,
-    );
-    const segment = element("div", { class: `segment ${hue}`, "data-tip": label });
-    this.list.append(node);
-    this.stack.append(segment);
-    const line = { node, segment, bar, value, ms: 0, seenAt: 0 };
-    this.lines.set(name, line);
+  private addStage(name: string): StageLine {
+    const passes = element("ul", { class: "passes inner" });
+    const line = createLine(humanise(name), this.hueOf(name));
+    line.node.prepend(icon("chevron"));
+    const fold = element("details", {}, element("summary", {}, line.node), passes);
+    this.list.append(element("li", { "data-stage": name }, fold));
+    const stage = { ...line, passes, lines: new Map<string, Line>() };
+    this.stages.set(name, stage);
+    return stage;
+  }
+
+  private addPass(stage: StageLine, stageName: string, name: string): Line {
+    const rest = name.slice(stageName.length + 1) || name;
+    const line = createLine(humanise(rest.replaceAll(".", " · ")), this.hueOf(stageName));
+    stage.passes.append(element("li", { "data-pass": name }, line.node));
+    stage.lines.set(name, line);
     return line;
-  }
-
-  private forget(now: number): void {
-    for (const [name, line] of this.lines) {
-      if (now - line.seenAt < forgetAfterMs) continue;
-      line.node.remove();
-      line.segment.remove();
-      this.lines.delete(name);
-    }
   }
 }
 
-function sum(lines: Line[]): number {
-  return lines.reduce((total, { ms }) => total + ms, 0);
+function createLine(label: string, hue: number): Line {
+  const value = element("span", { class: "pass-ms" });
+  const bar = element("span", { class: `pass-bar hue-${hue}` });
+  const node = element(
+    "div",
+    { class: "pass" },
+    element("span", { class: "pass-name" }, label),
+    element("span", { class: "pass-track" }, bar),
+    value,
+  );
+  return { node, bar, value, ms: 0, seenAt: 0 };
+}
+
+function update(line: Line, ms: number, longest: number, now: number, exactly: boolean): void {
+  line.ms += (ms - line.ms) * (exactly || line.seenAt === 0 ? 1 : smoothing);
+  line.seenAt = now;
+  line.bar.style.transform = `scaleX(${Math.min(1, line.ms / longest)})`;
+  setText(line.value, line.ms.toFixed(line.ms < 9.95 ? 2 : 1));
+}
+
+function forget(lines: Map<string, Line>, now: number): void {
+  for (const [name, line] of lines) {
+    if (now - line.seenAt < forgetAfterMs) continue;
+    line.node.closest("li")?.remove();
+    lines.delete(name);
+  }
 }

@@ -3,6 +3,8 @@ export class CanvasPainter {
   private readonly canvas: HTMLCanvasElement | OffscreenCanvas;
   private readonly context: CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D;
 
+  private drawn = false;
+
   constructor(canvas: HTMLCanvasElement | OffscreenCanvas) {
     const context = canvas.getContext("2d", { alpha: false }) as
       | CanvasRenderingContext2D
@@ -13,12 +15,18 @@ export class CanvasPainter {
     this.context = context;
   }
 
+  /** A copy of what is shown; null before the first picture. */
+  async copy(): Promise<ImageBitmap | null> {
+    return this.drawn ? createImageBitmap(this.canvas) : null;
+  }
+
   draw(picture: ImageBitmap | VideoFrame, width: number, height: number): void {
     if (this.canvas.width !== width || this.canvas.height !== height) {
       this.canvas.width = width;
       this.canvas.height = height;
     }
     this.context.drawImage(picture, 0, 0);
+    this.drawn = true;
     picture.close();
   }
 }

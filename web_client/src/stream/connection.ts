@@ -1,7 +1,7 @@
 // The connection to the server: opens it, says hello, notices loss, comes back.
 
-import { type Hello, ErrorCode, subprotocol } from "../protocol/messages.ts";
-import { ChannelClosed, RpcError, RpcPeer } from "../protocol/rpc.ts";
+import { type Hello, ErrorCode, subprotocol } from "heliograph/messages.ts";
+import { ChannelClosed, RpcError, RpcPeer } from "heliograph/rpc.ts";
 import { Signal } from "../signal.ts";
 import { Backoff } from "./backoff.ts";
 import type { DrawnFrame, FromWorker, ToWorker } from "./worker_messages.ts";
@@ -39,6 +39,9 @@ export class Connection {
   private retryTimer = 0;
   private stableTimer = 0;
   private heardAt = 0;
+  private lastCopy = 0;
+  private readonly copies = new Map<number, (picture: ImageBitmap | null) => void>();
+  private takeCopy: ((picture: ImageBitmap) => void) | null = null;
 
   constructor(base: string, canvas: OffscreenCanvas | null, events: ConnectionEvents) {
     const url = new URL("ws", base);
@@ -67,13 +70,28 @@ export class Connection {
     this.post({ kind: "open", url: this.url, subprotocol });
   }
 
-  /** Pictures that arrive wait for `release`, which shows the newest of them or none. */
+  /** A copy of the picture that is shown; null while there is none. */
+  copyPicture(): Promise<ImageBitmap | null> {
+    const id = ++this.lastCopy;
+    return new Promise((resolve) => {
+      this.copies.set(id, resolve);
+      this.post({ kind: "copy", id });
+    });
+  }
+
+  /** Takes a copy of every picture drawn from now on, and with it the duty to close it. */
+  set pictureCopies(take: ((picture: ImageBitmap) => void) | null) {
+    this.takeCopy = take;
+    this.post({ kind: "copies", wanted: take !== null });
+  }
+
+  /** Pictures that arrive wait for `release`, which shows those of this state and newer ones. */
   hold(): void {
     this.post({ kind: "hold" });
   }
 
-  release(showWaiting: boolean): void {
-    this.post({ kind: "release", showWaiting });
+  release(oldestRev: number): void {
+    this.post({ kind: "release", oldestRev });
   }
 
   /** Cuts a waiting time short, after a click or when the network is back. */
@@ -105,10 +123,21 @@ export class Connection {
         this.events.draw(message.picture, message.frame);
         this.events.drawn(message.frame);
         break;
+      case "copied":
+        this.copied(message.id, message.picture);
+        break;
       case "undecodable":
         this.events.warning(`A picture could not be shown: ${message.message}`);
         break;
     }
+  }
+
+  private copied(id: number, picture: ImageBitmap | null): void {
+    const asked = this.copies.get(id);
+    this.copies.delete(id);
+    if (asked) asked(picture);
+    else if (picture && this.takeCopy) this.takeCopy(picture);
+    else picture?.close();
   }
 
   private async sayHello(spoken: string): Promise<void> {

@@ -1,7 +1,7 @@
 // Decodes and draws the newest frame. A frame that arrives while another is being decoded
 // replaces any that still waits: what matters is the latest picture, not every picture.
 
-import { type FrameHeader, mimeType, parseFrameHeader } from "../protocol/frame_header.ts";
+import { type FrameHeader, mimeType, parseFrameHeader } from "heliograph/frame_header.ts";
 import { type DrawnFrame, clockMs } from "./worker_messages.ts";
 
 interface Arrived {
@@ -29,6 +29,7 @@ export class FramePipeline {
   private waiting: Arrived | null = null;
   private busy = false;
   private held = false;
+  private oldestRev = 0;
 
   constructor(sink: FrameSink, decode: Decode) {
     this.sink = sink;
@@ -44,6 +45,10 @@ export class FramePipeline {
       this.sink.failed((error as Error).message);
       return;
     }
+    if (header.stateRev < this.oldestRev) {
+      this.sink.acknowledge(header.frameSeq, 0, 0);
+      return;
+    }
     if (this.waiting) this.sink.acknowledge(this.waiting.header.frameSeq, 0, 0);
     this.waiting = { header, message, receivedAt: clockMs() };
     if (!this.busy && !this.held) void this.run();
@@ -54,11 +59,12 @@ export class FramePipeline {
     this.held = true;
   }
 
-  /** Goes on showing, with the frame that waits or without it. */
-  release(showWaiting: boolean): void {
+  /** Goes on showing, but nothing that shows an older state of the session than this. */
+  release(oldestRev: number): void {
     if (!this.held) return;
     this.held = false;
-    if (!showWaiting && this.waiting) {
+    this.oldestRev = oldestRev;
+    if (this.waiting && this.waiting.header.stateRev < oldestRev) {
       this.sink.acknowledge(this.waiting.header.frameSeq, 0, 0);
       this.waiting = null;
     }
@@ -68,6 +74,7 @@ export class FramePipeline {
   /** Forgets a waiting frame of a connection that is gone. */
   clear(): void {
     this.waiting = null;
+    this.oldestRev = 0;
   }
 
   private async run(): Promise<void> {
@@ -97,6 +104,7 @@ export class FramePipeline {
         width: header.width,
         height: header.height,
         samples: header.sampleCount,
+        quality: header.quality,
         bytes: message.byteLength,
         renderMs: header.renderUs / 1000,
         encodeMs: header.encodeUs / 1000,

@@ -12,12 +12,14 @@ const scope = self as unknown as WorkerScope;
 
 let socket: WebSocket | null = null;
 let painter: CanvasPainter | null = null;
+let copiesWanted = false;
 
 const sink: FrameSink = {
   draw(picture, frame) {
     if (painter) {
       painter.draw(picture, frame.width, frame.height);
       scope.postMessage({ kind: "drawn", frame });
+      if (copiesWanted) void postCopy(0);
     } else {
       scope.postMessage({ kind: "picture", picture, frame }, [picture]);
     }
@@ -34,6 +36,11 @@ const pipeline = chooseDecoder().then((decode) => new FramePipeline(sink, decode
 
 function send(text: string): void {
   if (socket?.readyState === WebSocket.OPEN) socket.send(text);
+}
+
+async function postCopy(id: number): Promise<void> {
+  const picture = (await painter?.copy()) ?? null;
+  scope.postMessage({ kind: "copied", id, picture }, picture ? [picture] : []);
 }
 
 function close(): void {
@@ -77,11 +84,17 @@ scope.onmessage = ({ data }) => {
     case "close":
       close();
       break;
+    case "copy":
+      void postCopy(data.id);
+      break;
+    case "copies":
+      copiesWanted = data.wanted;
+      break;
     case "hold":
       void pipeline.then((frames) => frames.hold());
       break;
     case "release":
-      void pipeline.then((frames) => frames.release(data.showWaiting));
+      void pipeline.then((frames) => frames.release(data.oldestRev));
       break;
     case "send":
       send(data.text);

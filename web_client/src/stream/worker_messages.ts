@@ -8,6 +8,7 @@ export interface DrawnFrame {
   width: number;
   height: number;
   samples: number;
+  quality: number;
   bytes: number;
   renderMs: number;
   encodeMs: number;
@@ -20,9 +21,12 @@ export type ToWorker =
   | { kind: "canvas"; canvas: OffscreenCanvas }
   | { kind: "open"; url: string; subprotocol: string }
   | { kind: "close" }
-  /** From now on pictures wait; `release` shows the newest of them or none. */
+  /** From now on pictures wait, until `release` says which state of the session is new enough. */
+  | { kind: "copy"; id: number }
+  /** Whether every drawn picture is copied to the page, for a recording. */
+  | { kind: "copies"; wanted: boolean }
   | { kind: "hold" }
-  | { kind: "release"; showWaiting: boolean }
+  | { kind: "release"; oldestRev: number }
   | { kind: "send"; text: string };
 
 export type FromWorker =
@@ -32,6 +36,8 @@ export type FromWorker =
   | { kind: "drawn"; frame: DrawnFrame }
   /** Only without OffscreenCanvas: the page draws the decoded picture itself. */
   | { kind: "picture"; picture: ImageBitmap | VideoFrame; frame: DrawnFrame }
+  /** An answer to `copy` (null: nothing was drawn yet), or with id 0 a picture just drawn. */
+  | { kind: "copied"; id: number; picture: ImageBitmap | null }
   | { kind: "undecodable"; message: string };
 
 /** One clock for the page and its workers, whose performance.now() start at different times. */

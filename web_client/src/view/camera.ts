@@ -1,6 +1,6 @@
 // Camera movements as pure functions: a pose in, a pose out. World space, metres, +Y up.
 
-import type { Camera, Vector3 } from "../protocol/messages.ts";
+import type { Camera, Vector3 } from "heliograph/messages.ts";
 import { add, cross, dot, length, normalize, scale, subtract } from "./vector.ts";
 
 const worldUp: Vector3 = [0, 1, 0];
@@ -56,6 +56,63 @@ export function dolly(camera: Camera, factor: number, nearest: number, farthest:
   const kept = Math.max(nearest, wanted);
   const eye = add(camera.eye, scale(backward, wanted - distance));
   return { ...camera, eye, target: subtract(eye, scale(backward, kept)), name: null };
+}
+
+/**
+ * Like `dolly`, but towards a point of the target's plane, which stays where it is in the picture.
+ * The point is given from the middle, in fractions of the viewport's height, right and down.
+ */
+export function dollyToPoint(
+  camera: Camera,
+  factor: number,
+  [nearest, farthest]: [number, number],
+  right: number,
+  down: number,
+): Camera {
+  const { rightward, upward, distance } = basis(camera);
+  if (distance === 0) return camera;
+  const moved = dolly(camera, factor, nearest, farthest);
+  const kept = Math.min(farthest, distance * factor) / distance;
+  const span = visibleHeight(camera.vertical_fov, distance) * (1 - kept);
+  const shift = add(scale(rightward, right * span), scale(upward, -down * span));
+  return { ...moved, eye: add(moved.eye, shift), target: add(moved.target, shift) };
+}
+
+/** Turns the head: the eye stays, the target swings. Angles in radians, right and up positive. */
+export function look(camera: Camera, right: number, up: number): Camera {
+  const turned = orbit({ ...camera, eye: camera.target, target: camera.eye }, -right, up);
+  return { ...turned, eye: camera.eye, target: turned.eye };
+}
+
+/** Moves eye and target along the view's own axes, metres. */
+export function fly(camera: Camera, right: number, up: number, forward: number): Camera {
+  const { rightward, upward } = basis(camera);
+  const ahead = normalize(subtract(camera.target, camera.eye));
+  const shift = add(add(scale(rightward, right), scale(upward, up)), scale(ahead, forward));
+  return {
+    ...camera,
+    eye: add(camera.eye, shift),
+    target: add(camera.target, shift),
+    name: null,
+  };
+}
+
+/** Puts a point of the world in the middle, seen from the same side from `distance` metres. */
+export function focusOn(camera: Camera, point: Vector3, distance: number): Camera {
+  const backward = normalize(subtract(camera.eye, camera.target));
+  return { ...camera, eye: add(point, scale(backward, distance)), target: point, name: null };
+}
+
+/** The pose at a part of the way from one to another. */
+export function between(from: Camera, to: Camera, part: number): Camera {
+  const mix = (a: Vector3, b: Vector3): Vector3 => add(a, scale(subtract(b, a), part));
+  return {
+    eye: mix(from.eye, to.eye),
+    target: mix(from.target, to.target),
+    up: mix(from.up, to.up),
+    vertical_fov: from.vertical_fov + (to.vertical_fov - from.vertical_fov) * part,
+    name: part >= 1 ? to.name : null,
+  };
 }
 
 /** Whether two poses show the same picture, up to single-precision noise. */

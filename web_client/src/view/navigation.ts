@@ -1,7 +1,7 @@
 // Mouse, touch and keyboard to camera poses: at most one absolute pose per animation frame.
 
-import type { Camera } from "../protocol/messages.ts";
-import { dolly, orbit, pan } from "./camera.ts";
+import type { Camera } from "heliograph/messages.ts";
+import { between, dolly, dollyToPoint, fly, look, orbit, pan } from "./camera.ts";
 
 export interface NavigationHost {
   /** The pose to start from; null while there is no scene. */
@@ -11,9 +11,11 @@ export interface NavigationHost {
   /** Takes the new pose, once per animation frame. */
   moved(camera: Camera): void;
   fit(): void;
+  /** Looks for what lies at a point of the view, in fractions of its width and height. */
+  focus(x: number, y: number): void;
 }
 
-type Gesture = "orbit" | "pan" | "pinch";
+type Gesture = "orbit" | "pan" | "pinch" | "look";
 interface Point {
   x: number;
   y: number;
@@ -26,6 +28,10 @@ const keyOrbitPerMs = 1.3e-3;
 const keyPanPerMs = 5e-4;
 const keyDollyPerMs = 1.4e-3;
 const firstKeyStepMs = 35;
+const lookPerHeight = 0.6 * Math.PI; // radians for a drag over the height of the view
+const flyPerMs = 2e-4; // sizes of the scene
+const flyFaster = 4;
+const glideToMs = 450;
 
 const navigationKeys = new Set([
   "ArrowLeft",
@@ -37,6 +43,16 @@ const navigationKeys = new Set([
   "-",
   "_",
 ]);
+
+/** By their place on the keyboard, whatever the letters on them are. */
+const flyKeys: Record<string, [right: number, up: number, forward: number]> = {
+  KeyW: [0, 0, 1],
+  KeyS: [0, 0, -1],
+  KeyA: [-1, 0, 0],
+  KeyD: [1, 0, 0],
+  KeyQ: [0, -1, 0],
+  KeyE: [0, 1, 0],
+};
 
 export class Navigation {
   private readonly surface: HTMLElement;
@@ -51,6 +67,7 @@ export class Navigation {
   private lastMoveAt = 0;
   private glide = { yaw: 0, pitch: 0 };
   private shiftHeld = false;
+  private journey: { from: Camera; to: Camera; startedAt: number } | null = null;
 
   constructor(surface: HTMLElement, host: NavigationHost) {
     this.surface = surface;
@@ -60,6 +77,7 @@ export class Navigation {
     surface.addEventListener("pointerup", this.pointerUp);
     surface.addEventListener("pointercancel", this.pointerUp);
     surface.addEventListener("wheel", this.wheel, { passive: false });
+    surface.addEventListener("dblclick", this.doubleClick);
     surface.addEventListener("contextmenu", (event) => event.preventDefault());
     surface.addEventListener("mousedown", (event) => {
       if (event.button === 1) event.preventDefault(); // no automatic scrolling
@@ -71,14 +89,35 @@ export class Navigation {
 
   /** True while a hand is on the camera; poses from elsewhere should wait. */
   get active(): boolean {
-    return this.pointers.size > 0 || this.heldKeys.size > 0 || this.next !== null;
+    const handOn = this.pointers.size > 0 || this.heldKeys.size > 0;
+    return handOn || this.next !== null || this.journey !== null;
+  }
+
+  /** Goes to a pose in a moment; at once where motion is unwelcome. */
+  goTo(camera: Camera): void {
+    const from = this.host.camera();
+    if (!from) return;
+    this.stopGliding();
+    if (this.reducedMotion.matches) this.change(() => camera);
+    else this.journey = { from, to: camera, startedAt: performance.now() };
+    this.schedule();
+  }
+
+  private get flying(): boolean {
+    return [...this.heldKeys].some((key) => key in flyKeys);
+  }
+
+  private stopGliding(): void {
+    this.glide = { yaw: 0, pitch: 0 };
+    this.journey = null;
   }
 
   private readonly pointerDown = (event: PointerEvent): void => {
     this.surface.setPointerCapture(event.pointerId);
     this.pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
-    this.glide = { yaw: 0, pitch: 0 };
+    this.stopGliding();
     if (this.pointers.size > 1) this.gesture = "pinch";
+    else if (this.flying) this.gesture = "look";
     else this.gesture = event.button !== 0 || event.shiftKey ? "pan" : "orbit";
     this.surface.classList.add("grabbing");
   };
@@ -92,6 +131,9 @@ export class Navigation {
     const down = (after.y - before.y) / height;
     if (this.gesture === "pinch") this.pinch(event.pointerId, before, after, height);
     else if (this.gesture === "pan") this.change((camera) => pan(camera, right, down));
+    else if (this.gesture === "look") {
+      this.change((camera) => look(camera, right * lookPerHeight, down * lookPerHeight));
+    }
     else this.dragOrbit(right * orbitPerHeight, down * orbitPerHeight, event.timeStamp);
     this.pointers.set(event.pointerId, after);
   };
@@ -141,18 +183,32 @@ export class Navigation {
     const pixels = Math.max(-240, Math.min(240, event.deltaY * unit));
     // Trackpads report a pinch as a wheel with ctrl, in much smaller steps.
     const rate = event.ctrlKey ? 0.01 : 0.0015;
-    this.change((camera) => this.zoom(camera, Math.exp(pixels * rate)));
+    const { left, top, width, height } = this.surface.getBoundingClientRect();
+    const right = (event.clientX - left - width / 2) / height;
+    const down = (event.clientY - top) / height - 0.5;
+    this.stopGliding();
+    this.change((camera) => {
+      const factor = Math.exp(pixels * rate);
+      return dollyToPoint(camera, factor, this.distances(), right, down);
+    });
+  };
+
+  private readonly doubleClick = (event: MouseEvent): void => {
+    const { left, top, width, height } = this.surface.getBoundingClientRect();
+    this.host.focus((event.clientX - left) / width, (event.clientY - top) / height);
   };
 
   private readonly keyDown = (event: KeyboardEvent): void => {
     const elsewhere = event.target !== this.surface && event.target !== document.body;
     if (elsewhere || event.ctrlKey || event.metaKey || event.altKey) return;
     this.shiftHeld = event.shiftKey;
+    const key = event.code in flyKeys ? event.code : event.key;
     if (event.key === "f" || event.key === "F") {
       this.host.fit();
-    } else if (navigationKeys.has(event.key)) {
-      if (!this.heldKeys.has(event.key)) {
-        this.heldKeys.add(event.key);
+    } else if (navigationKeys.has(key) || key in flyKeys) {
+      if (!this.heldKeys.has(key)) {
+        this.stopGliding();
+        this.heldKeys.add(key);
         this.applyKeys(firstKeyStepMs);
       }
     } else {
@@ -164,6 +220,7 @@ export class Navigation {
   private readonly keyUp = (event: KeyboardEvent): void => {
     this.shiftHeld = event.shiftKey;
     this.heldKeys.delete(event.key);
+    this.heldKeys.delete(event.code);
   };
 
   private applyKeys(elapsedMs: number): void {
@@ -178,13 +235,28 @@ export class Navigation {
       } else if (right || up) {
         moved = orbit(moved, right * keyOrbitPerMs * elapsedMs, up * keyOrbitPerMs * elapsedMs);
       }
-      return away ? this.zoom(moved, Math.exp(away * keyDollyPerMs * elapsedMs)) : moved;
+      if (away) moved = this.zoom(moved, Math.exp(away * keyDollyPerMs * elapsedMs));
+      return this.flying ? this.flown(moved, elapsedMs) : moved;
     });
   }
 
-  private zoom(camera: Camera, factor: number): Camera {
+  private flown(camera: Camera, elapsedMs: number): Camera {
+    const metres = this.host.sceneSize() * flyPerMs * elapsedMs * (this.shiftHeld ? flyFaster : 1);
+    const way = [0, 0, 0] as [number, number, number];
+    for (const key of this.heldKeys) {
+      flyKeys[key]?.forEach((part, axis) => (way[axis as 0 | 1 | 2] += part * metres));
+    }
+    return fly(camera, ...way);
+  }
+
+  /** How near and how far from the target one may go, metres. */
+  private distances(): [nearest: number, farthest: number] {
     const size = this.host.sceneSize();
-    return dolly(camera, factor, 0.02 * size, 20 * size);
+    return [0.02 * size, 20 * size];
+  }
+
+  private zoom(camera: Camera, factor: number): Camera {
+    return dolly(camera, factor, ...this.distances());
   }
 
   private change(move: (camera: Camera) => Camera): void {
@@ -204,7 +276,8 @@ export class Navigation {
     this.frameRequest = 0;
     const elapsed = Math.min(100, Math.max(0, now - this.lastFrameAt));
     if (this.heldKeys.size > 0) this.applyKeys(elapsed);
-    const gliding = this.pointers.size === 0 && this.continueGlide(elapsed);
+    const gliding =
+      this.continueJourney(now) || (this.pointers.size === 0 && this.continueGlide(elapsed));
     if (this.next) {
       const camera = this.next;
       this.next = null;
@@ -216,6 +289,15 @@ export class Navigation {
       this.frameRequest = requestAnimationFrame(this.frame);
     }
   };
+
+  private continueJourney(now: number): boolean {
+    if (!this.journey) return false;
+    const { from, to, startedAt } = this.journey;
+    const part = Math.min(1, Math.max(0, (now - startedAt) / glideToMs));
+    this.next = between(from, to, part * part * (3 - 2 * part));
+    if (part >= 1) this.journey = null;
+    return part < 1;
+  }
 
   private continueGlide(elapsedMs: number): boolean {
     const { yaw, pitch } = this.glide;

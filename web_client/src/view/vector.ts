@@ -1,6 +1,6 @@
 // Three-component vectors as the wire carries them.
 
-import type { Vector3 } from "../protocol/messages.ts";
+import type { Vector3 } from "heliograph/messages.ts";
 
 export const add = (a: Vector3, b: Vector3): Vector3 => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
 

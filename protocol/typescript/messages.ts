@@ -57,6 +57,8 @@ export interface Camera {
   up: Vector3;
   vertical_fov: number;
   name: string | null;
+  /** Revision of the session's state, where a server tells it. */
+  rev?: number;
 }
 
 /** `duration` in seconds. */
@@ -105,6 +107,21 @@ export interface BufferInfo {
   description: string;
 }
 
+/** What a ray through a point of the picture met; metres, world space. */
+export interface Pick {
+  hit: boolean;
+  position: Vector3;
+  normal: Vector3;
+  distance: number;
+  object: string;
+  material: string;
+}
+
+export interface PresetInfo {
+  name: string;
+  description: string;
+}
+
 export interface Capture {
   buffer: string;
   format: string;
@@ -125,3 +142,65 @@ export const ErrorCode = {
   /** Never sent: no answer came in time. */
   timedOut: 0,
 } as const;
+
+/** Members that a kind of light lacks are left out. Lengths in metres, angles in degrees. */
+export interface LightInfo {
+  name: string;
+  type: string;
+  enabled: boolean;
+  color: Vector3;
+  intensity: number;
+  position?: Vector3;
+  /** The way its light travels. */
+  direction?: Vector3;
+  radius?: number;
+  angular_diameter?: number;
+}
+
+export interface MaterialInfo {
+  name: string;
+  base_color: Vector3;
+  roughness: number;
+  metallic: number;
+  emissive: Vector3;
+  textures: string[];
+}
+
+export interface EnvironmentState {
+  environments: { name: string; bytes: number }[];
+  /** null: the one that goes with the scene. */
+  current: string | null;
+}
+
+export interface BufferValue {
+  name: string;
+  /** null is no finite number. */
+  value: (number | null)[];
+  unit: string;
+}
+
+/** Every buffer at one pixel; column and row count from the top left. */
+export interface Inspection {
+  column: number;
+  row: number;
+  width: number;
+  height: number;
+  buffers: BufferValue[];
+}
+
+export interface ViewerInfo {
+  viewer: string;
+  name: string | null;
+  control: boolean;
+  you: boolean;
+}
+
+export interface SessionInfo {
+  name: string;
+  scene: string | null;
+  viewers: ViewerInfo[];
+  /** Whether all viewers may change things or only one. */
+  control: "everyone" | "one";
+  rev: number;
+  idle_seconds: number;
+}

@@ -1,21 +1,28 @@
 // How fast it runs: the figures a person asks for first, then where a frame's time goes.
 
-import type { FrameStats } from "../protocol/messages.ts";
 import type { Viewer } from "../viewer.ts";
 import { element, setText } from "./element.ts";
-import { PassTable, type TimedPass } from "./pass_timings.ts";
+import { createSection } from "./section.ts";
+import { PassTable } from "./pass_timings.ts";
+import { type Stage, stagesOf } from "./stage_times.ts";
+import { TimeChart } from "./time_chart.ts";
 
 const refreshMs = 250;
 const restingAfterMs = 1200;
 
-export function createPerformanceSection(viewer: Viewer): HTMLElement {
+export function createStatsTab(viewer: Viewer, streamFields: HTMLElement): HTMLElement {
   const rate = figure("Frame rate", "Pictures drawn per second. At rest nothing is sent.");
   const latency = figure("Latency", "From moving the camera to drawing the picture that shows it.");
   const bandwidth = figure("Bandwidth", "What the stream needs right now.");
   const size = figure("Picture", "Pixels the server renders and sends.");
   const samples = figure("Samples", "Samples per pixel gathered while the view rests.");
   const frameTime = figure("Frame", "Time the server spends on one frame.");
-  const table = new PassTable();
+  const quality = figure("Quality", "Of the JPEG pictures, out of 100.");
+  const scale = figure("Scale", "Pixels sent for each pixel of the screen, in each direction.");
+  const decode = figure("Decoding", "Time this browser takes to decode and draw a picture.");
+  let newest: Stage[] = [];
+  const chart = new TimeChart((moment) => table.show(moment ?? newest, moment !== null));
+  const table = new PassTable((stage) => chart.hueOf(stage));
   const device = element("p", { class: "facts device" });
   const refresh = (): void => {
     const now = performance.timeOrigin + performance.now();
@@ -29,13 +36,18 @@ export function createPerformanceSection(viewer: Viewer): HTMLElement {
     setText(bandwidth.value, frame ? bytes : "–");
     setText(size.value, frame ? `${frame.width} × ${frame.height}` : "–");
     setText(samples.value, frame ? String(frame.samples) : "–");
+    setText(quality.value, frame ? String(frame.quality) : "–");
+    setText(scale.value, frame ? `${Math.round(100 * shownScale(frame.width))} %` : "–");
+    setText(decode.value, frame ? `${frame.decodeMs.toFixed(1)} ms` : "–");
   };
   setInterval(refresh, refreshMs);
   refresh();
   viewer.stats.watch((stats) => {
     if (!stats) return;
     setText(frameTime.value, `${formatMs(stats.frame_ms)} ms`);
-    table.show(timedPasses(stats));
+    newest = stagesOf(stats);
+    chart.add(newest);
+    table.show(newest);
   });
   viewer.connection.state.watch((state) => {
     if (state.kind === "live") {
@@ -43,13 +55,20 @@ export function createPerformanceSection(viewer: Viewer): HTMLElement {
     }
   });
   const figures = element("dl", { class: "figures" });
-  for (const { node } of [rate, latency, frameTime, bandwidth, size, samples]) figures.append(node);
-  return element("div", { class: "section-body" }, figures, table.node, device);
+  const all = [rate, latency, frameTime, bandwidth, size, samples, quality, scale, decode];
+  figures.append(...all.map(({ node }) => node));
+  const body = element("div", { class: "section-body" }, figures, chart.node, table.node, device);
+  return element(
+    "div",
+    { "data-section": "performance" },
+    body,
+    createSection({ id: "stream", title: "Stream", body: streamFields, openAtFirst: true }),
+  );
 }
 
-/** The passes of a frame, and the encoder, which works beside them. */
-function timedPasses(stats: FrameStats): TimedPass[] {
-  return [...stats.passes, { name: "encode", kind: "host", ms: stats.encode_ms }];
+/** Sent pixels per device pixel, along the width of the view. */
+function shownScale(width: number): number {
+  return width / Math.max(1, innerWidth * devicePixelRatio);
 }
 
 function figure(label: string, help: string): { node: HTMLElement; value: HTMLElement } {

@@ -1,0 +1,73 @@
+// A view in the fragment of an address: whoever opens the link sees the same. The fragment never
+// reaches the server's log.
+
+import type { Camera, JsonObject, JsonValue, Vector3 } from "heliograph/messages.ts";
+import { isObject } from "heliograph/settings_tree.ts";
+import type { ClipState, ViewState } from "./view_state.ts";
+
+const key = "view";
+const digits = 6;
+
+/** The page's address with a view in its fragment. */
+export function linkTo(page: string, state: ViewState): string {
+  const url = new URL(page);
+  url.hash = `${key}=${encode(state)}`;
+  return url.href;
+}
+
+/** The view in an address, or null when there is none or it is damaged. */
+export function viewIn(address: string): ViewState | null {
+  const text = new URLSearchParams(new URL(address).hash.slice(1)).get(key);
+  if (!text) return null;
+  try {
+    const json = new TextDecoder().decode(bytesOf(text));
+    return checked(JSON.parse(json));
+  } catch {
+    return null;
+  }
+}
+
+function encode(state: ViewState): string {
+  const text = JSON.stringify(state, (_, value: unknown) =>
+    typeof value === "number" ? Number(value.toPrecision(digits)) : value,
+  );
+  const letters = Array.from(new TextEncoder().encode(text), (byte) => String.fromCharCode(byte));
+  return btoa(letters.join("")).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
+}
+
+function bytesOf(text: string): Uint8Array {
+  const letters = atob(text.replaceAll("-", "+").replaceAll("_", "/"));
+  return Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
+}
+
+/** A link comes from anywhere: only members of the expected kind pass. */
+function checked(value: unknown): ViewState | null {
+  if (!isObject(value)) return null;
+  const { scene, variant, environment, settings, clip, camera } = value as JsonObject;
+  const state: ViewState = {};
+  if (typeof scene === "string") state.scene = scene;
+  if (typeof variant === "string") state.variant = variant;
+  if (typeof environment === "string") state.environment = environment;
+  if (isObject(settings)) state.settings = settings;
+  if (clip === null || isClip(clip)) state.clip = clip;
+  if (isCamera(camera)) state.camera = camera;
+  return state;
+}
+
+function isClip(value: unknown): value is ClipState {
+  if (!isObject(value)) return false;
+  const { clip, seconds, rate, playing } = value;
+  const numbers = typeof seconds === "number" && typeof rate === "number";
+  return typeof clip === "string" && numbers && typeof playing === "boolean";
+}
+
+function isCamera(value: JsonValue | undefined): value is JsonObject & Camera {
+  if (!isObject(value)) return false;
+  const { eye, target, up, vertical_fov, name } = value;
+  const pose = [eye, target, up].every(isVector) && typeof vertical_fov === "number";
+  return pose && (name === null || typeof name === "string");
+}
+
+function isVector(value: unknown): value is Vector3 {
+  return Array.isArray(value) && value.length === 3 && value.every(Number.isFinite);
+}
