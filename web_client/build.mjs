@@ -33,6 +33,7 @@ const options = {
   entryPoints: {
     app: "src/main.ts",
     worker: "src/stream/worker.ts",
+    similarity_worker: "src/similarity_worker.ts",
     style: "src/style.css",
   },
   outdir: folder,

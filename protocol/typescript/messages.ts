@@ -81,6 +81,8 @@ export interface StreamSettings {
   quality: number;
   max_fps: number;
   paused: boolean;
+  /** While something moves; servers with one codec leave it out. */
+  codec?: string;
 }
 
 export interface PassTiming {

@@ -2,15 +2,19 @@
 
 import { mountStatus } from "./overlay/status.ts";
 import { Toasts } from "./overlay/toasts.ts";
+import { Comparison } from "./compare.ts";
 import { viewIn } from "./link_state.ts";
 import { outputActions } from "./output.ts";
 import { createHelp } from "./overlay/help.ts";
+import { mountPeople } from "./overlay/people.ts";
 import { mountTransport } from "./overlay/transport.ts";
 import { mountTooltips } from "./overlay/tooltip.ts";
 import { mountPanel } from "./panel/panel.ts";
 import { focusOn } from "./view/camera.ts";
+import { createDivider } from "./view/divider.ts";
 import { Navigation } from "./view/navigation.ts";
 import { mountThumbnails } from "./thumbnails.ts";
+import { createPicker } from "./view/picker.ts";
 import { pictureSize, watchSize } from "./view/viewport.ts";
 import { Viewer } from "./viewer.ts";
 
@@ -40,7 +44,7 @@ function main(): void {
   const toasts = new Toasts(find("toasts"));
   viewer.onError = (message) => toasts.show(message);
   const navigation = new Navigation(canvas, {
-    camera: () => (viewer.hello ? viewer.camera.value : null),
+    camera: () => (viewer.hello && viewer.inControl ? viewer.camera.value : null),
     sceneSize: () => viewer.sceneSize(),
     moved: (camera) => viewer.moveCamera(camera),
     fit: () => void viewer.fitCamera(),
@@ -54,9 +58,16 @@ function main(): void {
   viewer.jumpTo = (camera) => navigation.goTo(camera);
   viewer.cameraBusy = () => navigation.active;
 
+  const divider = createDivider(find("compare"));
+  mountPeople(viewer, find("people"), (message) => toasts.tell(message));
   const help = createHelp(find<HTMLDialogElement>("help"));
   const panel = mountPanel(find("panel"), viewer, {
     output: outputActions(viewer, { tell: (message) => toasts.tell(message) }),
+    inspect: {
+      comparison: new Comparison(viewer, () => divider.newCanvas()),
+      divider,
+      inspector: createPicker(canvas, find("mark")),
+    },
     help: help.open,
     fullscreen: document.fullscreenEnabled ? toggleFullscreen : null,
   });

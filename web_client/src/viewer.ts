@@ -14,12 +14,14 @@ import {
   type SceneInfo,
   type SceneList,
   type SceneProgress,
+  type SessionInfo,
   type StreamSettings,
   ErrorCode,
 } from "heliograph/messages.ts";
 import { type OpenRpc, choicesOf } from "heliograph/openrpc.ts";
 import { ChannelClosed, RpcError, type RpcPeer } from "heliograph/rpc.ts";
 import { captureBlob, shrunk } from "./pictures.ts";
+import { preferences } from "./preferences.ts";
 import { type RestoreHost, restore } from "./restore.ts";
 import { SceneParts } from "./scene_parts.ts";
 import { SettingsStore } from "./settings_store.ts";
@@ -50,6 +52,8 @@ export class Viewer {
   readonly restoring = new Signal(false);
   readonly camera = new Signal<Camera | null>(null);
   readonly animation = new Signal<AnimationState | null>(null);
+  /** Who is here; null where the server does not tell. */
+  readonly session = new Signal<SessionInfo | null>(null);
   readonly buffers = new Signal<BufferInfo[]>([]);
   /** File formats of `capture`. */
   readonly captureFormats = new Signal<ReadonlySet<string>>(new Set(["png"]));
@@ -97,7 +101,7 @@ export class Viewer {
       drawn: (frame) => this.frameDrawn(frame),
       draw: (picture, frame) => painter?.draw(picture, frame.width, frame.height),
       warning: (message) => this.onError(message),
-    });
+    }, new URL(base).searchParams.get("session") ?? undefined);
     this.rpc = this.connection.rpc;
     this.settings = new SettingsStore(this.rpc, (error) => this.report(error));
     this.parts = new SceneParts(this);
@@ -113,6 +117,12 @@ export class Viewer {
   get hello(): Hello | null {
     const state = this.connection.state.value;
     return state.kind === "live" ? state.hello : null;
+  }
+
+  /** Whether this page may change what is shown; false while another viewer has control. */
+  get inControl(): boolean {
+    const me = this.session.value?.viewers.find(({ you }) => you);
+    return me?.control ?? true;
   }
 
   /** Largest extent of the scene in metres; 1 while none is known. */
@@ -238,8 +248,10 @@ export class Viewer {
     this.inputSeq = 0;
     this.askedSize = this.chooseSize(hello);
     const unseen = this.wish ? { paused: true } : {};
+    const codec = preferences.text("codec", isLocal() ? "jpeg" : "h264");
+    const coded = hello.codecs.length > 1 && hello.codecs.includes(codec) ? { codec } : {};
     await Promise.all([
-      this.configureStream({ ...this.wantedStream, ...this.askedSize, ...unseen }),
+      this.configureStream({ ...this.wantedStream, ...this.askedSize, ...coded, ...unseen }),
       this.settings.load(),
       this.refreshScenes(),
       this.attempt(() => this.readBuffers()),
@@ -308,6 +320,16 @@ export class Viewer {
     this.methods.set(new Set(openrpc.methods.map(({ name }) => name)));
     this.captureFormats.set(new Set(choicesOf(openrpc, "frame.capture", "format")));
     this.presets.set(answer.presets);
+    if (this.methods.value.has("session.info")) {
+      this.setSession(await this.rpc.request<SessionInfo>("session.info"));
+    }
+  }
+
+  /** The list is the same for all who get it; which entry is ours the greeting told. */
+  private setSession(session: SessionInfo): void {
+    const own = this.greeting?.viewer;
+    const viewers = session.viewers.map((one) => ({ ...one, you: one.viewer === own }));
+    this.session.set({ ...session, viewers });
   }
 
   private async sceneChanged(info: SceneInfo): Promise<void> {
@@ -345,6 +367,9 @@ export class Viewer {
       case "scene.changed":
         void this.sceneChanged((params as { scene: SceneInfo }).scene);
         break;
+      case "session.changed":
+        this.setSession(params as SessionInfo);
+        break;
       case "lights.changed":
       case "materials.changed":
       case "environment.changed":
@@ -375,4 +400,9 @@ export class Viewer {
       this.report(error);
     }
   }
+}
+
+/** JPEG is the sharper picture in motion; away from this machine bandwidth counts for more. */
+function isLocal(): boolean {
+  return ["localhost", "127.0.0.1", "[::1]"].includes(location.hostname);
 }

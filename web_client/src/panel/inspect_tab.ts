@@ -1,13 +1,25 @@
-// Looking into the renderer: its buffers one by one.
+// Looking into the renderer: its buffers, two ways of rendering side by side, single pixels.
 
+import type { Comparison } from "../compare.ts";
+import type { Divider } from "../view/divider.ts";
 import type { Viewer } from "../viewer.ts";
 import { createBufferFields } from "./buffer_fields.ts";
+import { createCompareFields } from "./compare_fields.ts";
 import { element } from "./element.ts";
+import { type InspectorHost, createInspector } from "./inspector.ts";
 
-export function createInspectTab(viewer: Viewer): HTMLElement {
+export interface InspectParts {
+  comparison: Comparison;
+  divider: Divider;
+  inspector: InspectorHost;
+}
+
+export function createInspectTab(viewer: Viewer, parts: InspectParts): HTMLElement {
   return element(
     "div",
     {},
     element("div", { class: "fields", "data-section": "buffers" }, ...createBufferFields(viewer)),
+    createCompareFields(viewer, parts.comparison, parts.divider),
+    createInspector(viewer, parts.inspector),
   );
 }

@@ -3,7 +3,7 @@
 import { preferences } from "../preferences.ts";
 import { type Viewer, bufferSetting } from "../viewer.ts";
 import { button, element, icon } from "./element.ts";
-import { createInspectTab } from "./inspect_tab.ts";
+import { type InspectParts, createInspectTab } from "./inspect_tab.ts";
 import { createSceneTab, lookGroups } from "./scene_tab.ts";
 import { type MenuItem, createMenu } from "./menu.ts";
 import { createSettingsTab } from "./settings_tab.ts";
@@ -14,6 +14,7 @@ import type { Signal } from "../signal.ts";
 
 export interface PanelActions {
   output: MenuItem[];
+  inspect: InspectParts;
   help(): void;
   fullscreen: (() => void) | null;
 }
@@ -35,7 +36,7 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
       icon: "sliders",
       body: createSettingsTab(viewer, [...lookGroups, bufferSetting]),
     },
-    { id: "inspect", label: "Inspect", icon: "layers", body: createInspectTab(viewer) },
+    { id: "inspect", label: "Inspect", icon: "layers", body: createInspectTab(viewer, actions.inspect) },
     { id: "stats", label: "Timing", icon: "chart", body: createStatsTab(viewer, stream.node) },
   ]);
   const content = element("div", { class: "panel-body" }, tabs.list, tabs.pages);

@@ -21,6 +21,8 @@ const presetLabels: Record<string, string> = {
   best: "Best",
 };
 
+export const presetLabel = (name: string): string => presetLabels[name] ?? name;
+
 export function createSettingsTab(viewer: Viewer, handled: string[]): HTMLElement {
   const sections = element("div", { class: "settings" });
   const mounted = mountSettings(sections, viewer.settings, {
@@ -100,7 +102,7 @@ function createLadder(viewer: Viewer): HTMLElement {
             "aria-pressed": "false",
             click: () => void choose(name),
           },
-          presetLabels[name] ?? name,
+          presetLabel(name),
         ),
       ),
     );

@@ -3,7 +3,7 @@
 import { preferences } from "../preferences.ts";
 import { Signal } from "../signal.ts";
 import type { Viewer } from "../viewer.ts";
-import { element } from "./element.ts";
+import { element, setOptions } from "./element.ts";
 import { field } from "./field.ts";
 
 export interface ResolutionChoice {
@@ -20,6 +20,8 @@ const resolutions: Record<string, { label: string; choice: ResolutionChoice }> =
   half: { label: "Half", choice: { scale: 0.5, automatic: false } },
   third: { label: "A third", choice: { scale: 1 / 3, automatic: false } },
 };
+
+const codecLabels: Record<string, string> = { jpeg: "JPEG", h264: "H.264", av1: "AV1" };
 
 const qualities: [value: number, label: string][] = [
   [60, "Low"],
@@ -53,6 +55,7 @@ export function createStreamSection(viewer: Viewer): {
     { class: "fields", "data-section": "stream" },
     field("Resolution", sizes),
     field("Quality", qualityPicker(viewer)),
+    codecField(viewer),
   );
   return { node, resolution };
 }
@@ -79,4 +82,31 @@ function qualityPicker(viewer: Viewer): HTMLSelectElement {
     if (nearest) select.value = String(nearest[0]);
   });
   return select;
+}
+
+/** There only where server and browser have a choice. */
+function codecField(viewer: Viewer): HTMLElement {
+  const select = element(
+    "select",
+    {
+      name: "codec",
+      "data-tip": "H.264 needs a fraction of the bandwidth, JPEG is sharper while things move.",
+      change: () => {
+        preferences.setText("codec", select.value);
+        viewer.requestStream({ codec: select.value });
+      },
+    },
+  );
+  const node = field("Codec", select);
+  viewer.connection.state.watch((state) => {
+    if (state.kind !== "live") return;
+    const { codecs } = state.hello;
+    node.hidden = codecs.length < 2;
+    setOptions(select, codecs.map((name) => ({ value: name, label: codecLabels[name] ?? name })));
+    select.value = viewer.stream.value?.codec ?? codecs[0] ?? "jpeg";
+  });
+  viewer.stream.watch((stream) => {
+    if (stream?.codec) select.value = stream.codec;
+  });
+  return node;
 }

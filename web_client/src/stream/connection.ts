@@ -3,7 +3,9 @@
 import { type Hello, ErrorCode, subprotocol } from "heliograph/messages.ts";
 import { ChannelClosed, RpcError, RpcPeer } from "heliograph/rpc.ts";
 import { Signal } from "../signal.ts";
+import { ownName } from "../overlay/people.ts";
 import { Backoff } from "./backoff.ts";
+import { decodableCodecs } from "./codecs.ts";
 import type { DrawnFrame, FromWorker, ToWorker } from "./worker_messages.ts";
 
 export type ConnectionState =
@@ -39,11 +41,21 @@ export class Connection {
   private retryTimer = 0;
   private stableTimer = 0;
   private heardAt = 0;
+  private session: string | undefined;
+  private readonly disposal = new AbortController();
+  private readonly aliveTimer: number;
   private lastCopy = 0;
   private readonly copies = new Map<number, (picture: ImageBitmap | null) => void>();
   private takeCopy: ((picture: ImageBitmap) => void) | null = null;
 
-  constructor(base: string, canvas: OffscreenCanvas | null, events: ConnectionEvents) {
+  /** `session` is the one to watch; left out, the server's own. */
+  constructor(
+    base: string,
+    canvas: OffscreenCanvas | null,
+    events: ConnectionEvents,
+    session?: string,
+  ) {
+    this.session = session;
     const url = new URL("ws", base);
     url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
     this.url = url.href;
@@ -57,11 +69,28 @@ export class Connection {
       (method, params) => this.events.notification(method, params),
     );
     if (canvas) this.post({ kind: "canvas", canvas }, [canvas]);
-    addEventListener("online", () => this.retryNow());
-    addEventListener("visibilitychange", () => {
+    const { signal } = this.disposal;
+    addEventListener("online", () => this.retryNow(), { signal });
+    const seen = (): void => {
       if (!document.hidden) this.retryNow();
-    });
-    setInterval(() => void this.checkAlive(), aliveCheckMs);
+    };
+    document.addEventListener("visibilitychange", seen, { signal });
+    this.aliveTimer = window.setInterval(() => void this.checkAlive(), aliveCheckMs);
+  }
+
+  /** Closes for good. */
+  dispose(): void {
+    this.disposal.abort();
+    clearInterval(this.aliveTimer);
+    clearTimeout(this.retryTimer);
+    clearTimeout(this.stableTimer);
+    this.rpc.close();
+    this.worker.terminate();
+  }
+
+  /** Tells the server anew what this person is called. */
+  reintroduce(): void {
+    if (this.state.value.kind === "live") void this.greet().catch(() => {});
   }
 
   open(): void {
@@ -146,10 +175,7 @@ export class Connection {
       return;
     }
     try {
-      const hello = await this.rpc.request<Hello>("hello", {
-        client: "heliograph-web",
-        codecs: ["jpeg"],
-      });
+      const hello = await this.greet();
       if (hello.protocol !== subprotocol) {
         this.stop({ kind: "wrong_version", detail: hello.protocol });
         return;
@@ -164,8 +190,23 @@ export class Connection {
     }
   }
 
+  private async greet(): Promise<Hello> {
+    return this.rpc.request<Hello>("hello", {
+      client: "heliograph-web",
+      codecs: await decodableCodecs(),
+      session: this.session,
+      name: ownName(),
+    });
+  }
+
   private helloRefused(error: Error): void {
     const code = error instanceof RpcError ? error.code : 0;
+    if (code === ErrorCode.notFound && this.session !== undefined) {
+      this.events.warning(`There is no session ${this.session} here; this is the main one`);
+      this.session = undefined;
+      void this.sayHello(subprotocol);
+      return;
+    }
     if (code === ErrorCode.unauthenticated || code === ErrorCode.forbidden) {
       this.stop({ kind: "forbidden", detail: error.message });
       return;

@@ -1,14 +1,9 @@
-// Decodes and draws the newest frame. A frame that arrives while another is being decoded
+// Decodes and draws the newest frame. A still picture that arrives while another is being decoded
 // replaces any that still waits: what matters is the latest picture, not every picture.
 
-import { type FrameHeader, mimeType, parseFrameHeader } from "heliograph/frame_header.ts";
+import { Codec, type FrameHeader, mimeType, parseFrameHeader } from "heliograph/frame_header.ts";
+import { type ArrivedFrame, VideoFrames } from "./video_frames.ts";
 import { type DrawnFrame, clockMs } from "./worker_messages.ts";
-
-interface Arrived {
-  header: FrameHeader;
-  message: ArrayBuffer;
-  receivedAt: number;
-}
 
 export interface FrameSink {
   /** Shows the picture and takes ownership of it. */
@@ -26,14 +21,24 @@ export type Decode = (
 export class FramePipeline {
   private readonly sink: FrameSink;
   private readonly decode: Decode;
-  private waiting: Arrived | null = null;
+  private readonly video: VideoFrames;
+  private waiting: ArrivedFrame | null = null;
   private busy = false;
   private held = false;
   private oldestRev = 0;
+  private newestDrawn = 0;
 
   constructor(sink: FrameSink, decode: Decode) {
     this.sink = sink;
     this.decode = decode;
+    this.video = new VideoFrames(
+      {
+        decoded: (picture, frame, startedAt) => this.present(picture, frame, startedAt),
+        skipped: (frame) => this.skip(frame),
+        failed: (message) => sink.failed(`the video could not be decoded: ${message}`),
+      },
+      clockMs,
+    );
   }
 
   /** Takes one binary message from the socket. */
@@ -45,12 +50,17 @@ export class FramePipeline {
       this.sink.failed((error as Error).message);
       return;
     }
-    if (header.stateRev < this.oldestRev) {
-      this.sink.acknowledge(header.frameSeq, 0, 0);
+    const frame = { header, message, receivedAt: clockMs() };
+    if (header.codec === Codec.h264) {
+      this.video.push(frame);
       return;
     }
-    if (this.waiting) this.sink.acknowledge(this.waiting.header.frameSeq, 0, 0);
-    this.waiting = { header, message, receivedAt: clockMs() };
+    if (header.stateRev < this.oldestRev) {
+      this.skip(frame);
+      return;
+    }
+    if (this.waiting) this.skip(this.waiting);
+    this.waiting = frame;
     if (!this.busy && !this.held) void this.run();
   }
 
@@ -65,16 +75,18 @@ export class FramePipeline {
     this.held = false;
     this.oldestRev = oldestRev;
     if (this.waiting && this.waiting.header.stateRev < oldestRev) {
-      this.sink.acknowledge(this.waiting.header.frameSeq, 0, 0);
+      this.skip(this.waiting);
       this.waiting = null;
     }
     if (!this.busy) void this.run();
   }
 
-  /** Forgets a waiting frame of a connection that is gone. */
+  /** Forgets what is left of a connection that is gone. */
   clear(): void {
     this.waiting = null;
     this.oldestRev = 0;
+    this.newestDrawn = 0;
+    this.video.clear();
   }
 
   private async run(): Promise<void> {
@@ -87,7 +99,8 @@ export class FramePipeline {
     this.busy = false;
   }
 
-  private async show({ header, message, receivedAt }: Arrived): Promise<void> {
+  private async show(frame: ArrivedFrame): Promise<void> {
+    const { header, message } = frame;
     const type = mimeType(header.codec);
     if (!type) {
       this.sink.failed(`the server sent a picture in codec ${header.codec}`);
@@ -96,33 +109,53 @@ export class FramePipeline {
     const startedAt = clockMs();
     try {
       const picture = await this.decode(new Uint8Array(message, header.headerBytes), type);
-      const decodedAt = clockMs();
-      this.sink.draw(picture, {
-        frameSeq: header.frameSeq,
-        inputSeqEcho: header.inputSeqEcho,
-        renderId: header.renderId,
-        width: header.width,
-        height: header.height,
-        samples: header.sampleCount,
-        quality: header.quality,
-        bytes: message.byteLength,
-        renderMs: header.renderUs / 1000,
-        encodeMs: header.encodeUs / 1000,
-        decodeMs: decodedAt - startedAt,
-        receivedAt,
-        drawnAt: clockMs(),
-      });
-      const decodeUs = Math.round((decodedAt - startedAt) * 1000);
-      const presentUs = Math.round((clockMs() - receivedAt) * 1000);
-      this.sink.acknowledge(header.frameSeq, decodeUs, presentUs);
+      this.present(picture, frame, startedAt);
     } catch {
       this.sink.failed(`it could not be decoded as ${type}`);
-      this.sink.acknowledge(header.frameSeq, 0, 0);
+      this.skip(frame);
     }
+  }
+
+  private present(
+    picture: ImageBitmap | VideoFrame,
+    { header, message, receivedAt }: ArrivedFrame,
+    startedAt: number,
+  ): void {
+    const unwanted = this.held || header.stateRev < this.oldestRev;
+    if (unwanted || header.frameSeq < this.newestDrawn) {
+      picture.close();
+      this.sink.acknowledge(header.frameSeq, 0, 0);
+      return;
+    }
+    this.newestDrawn = header.frameSeq;
+    const decodedAt = clockMs();
+    this.sink.draw(picture, {
+      frameSeq: header.frameSeq,
+      inputSeqEcho: header.inputSeqEcho,
+      renderId: header.renderId,
+      codec: header.codec,
+      width: header.width,
+      height: header.height,
+      samples: header.sampleCount,
+      quality: header.quality,
+      bytes: message.byteLength,
+      renderMs: header.renderUs / 1000,
+      encodeMs: header.encodeUs / 1000,
+      decodeMs: decodedAt - startedAt,
+      receivedAt,
+      drawnAt: clockMs(),
+    });
+    const decodeUs = Math.round((decodedAt - startedAt) * 1000);
+    const presentUs = Math.round((clockMs() - receivedAt) * 1000);
+    this.sink.acknowledge(header.frameSeq, decodeUs, presentUs);
+  }
+
+  private skip({ header }: ArrivedFrame): void {
+    this.sink.acknowledge(header.frameSeq, 0, 0);
   }
 }
 
-/** The fastest decoder this browser has. ImageDecoder reads the bytes where they lie. */
+/** The fastest decoder of still pictures this browser has. ImageDecoder reads them where they lie. */
 export async function chooseDecoder(): Promise<Decode> {
   if ("ImageDecoder" in globalThis && (await ImageDecoder.isTypeSupported("image/jpeg"))) {
     return async (bytes, type) => {

@@ -5,6 +5,7 @@ export interface DrawnFrame {
   frameSeq: number;
   inputSeqEcho: number;
   renderId: number;
+  codec: number;
   width: number;
   height: number;
   samples: number;

@@ -1,0 +1,177 @@
+// A second view of the same scene, beside or over the first: another preset, the path traced
+// reference, or a buffer. It is a session of its own on the server, which follows our camera.
+
+import type { Camera, Hello, JsonObject, SessionInfo, StreamSettings } from "heliograph/messages.ts";
+import { Signal } from "./signal.ts";
+import { Connection } from "./stream/connection.ts";
+import type { DrawnFrame } from "./stream/worker_messages.ts";
+import type { Viewer } from "./viewer.ts";
+
+export type Counterpart =
+  | { kind: "reference" }
+  | { kind: "preset"; name: string }
+  | { kind: "buffer"; name: string };
+
+export interface ComparisonState {
+  counterpart: Counterpart;
+  /** Its newest picture; null before the first. */
+  frame: DrawnFrame | null;
+  /** Structural similarity of both pictures; null before the first measurement. */
+  similarity: number | null;
+}
+
+/** Settings that both sides share: how a picture is shown, not how it is made. */
+const sharedGroups = ["exposure", "tone_map", "environment"];
+const measureMs = 1000;
+const createTimeoutMs = 120_000;
+
+export class Comparison {
+  readonly state = new Signal<ComparisonState | null>(null);
+  private readonly viewer: Viewer;
+  private readonly newCanvas: () => HTMLCanvasElement;
+  private running: RunningComparison | null = null;
+
+  /** `newCanvas` puts a fresh canvas in the place of the last one. */
+  constructor(viewer: Viewer, newCanvas: () => HTMLCanvasElement) {
+    this.viewer = viewer;
+    this.newCanvas = newCanvas;
+    viewer.camera.watch((camera) => camera && this.running?.follow(camera));
+    viewer.settings.tree.watch((tree) => this.running?.share(tree));
+    viewer.connection.state.watch(({ kind }) => {
+      if (kind !== "live") this.stop();
+    });
+    viewer.scene.watch(() => this.stop());
+  }
+
+  /** Whether this server and this browser can do it. */
+  get possible(): boolean {
+    const methods = this.viewer.methods.value;
+    const drawsAside = typeof HTMLCanvasElement.prototype.transferControlToOffscreen === "function";
+    return drawsAside && methods.has("session.create") && methods.has("session.close");
+  }
+
+  async start(counterpart: Counterpart): Promise<void> {
+    this.stop();
+    const session = await this.viewer.rpc.request<SessionInfo>(
+      "session.create",
+      { copy_of: this.viewer.hello?.session ?? "main" },
+      createTimeoutMs,
+    );
+    const running = new RunningComparison(this.viewer, counterpart, session.name, this.newCanvas());
+    this.running = running;
+    running.changed = () => {
+      if (this.running === running) this.state.set({ ...running.shown });
+    };
+    running.changed();
+  }
+
+  stop(): void {
+    if (!this.running) return;
+    this.running.end();
+    this.running = null;
+    this.state.set(null);
+  }
+}
+
+class RunningComparison {
+  readonly shown: ComparisonState;
+  changed: () => void = () => {};
+  private readonly viewer: Viewer;
+  private readonly session: string;
+  private readonly connection: Connection;
+  private readonly worker = new Worker(new URL("similarity_worker.js", document.baseURI));
+  private readonly timer: number;
+  private measuring = false;
+  private shared = "";
+
+  constructor(
+    viewer: Viewer,
+    counterpart: Counterpart,
+    session: string,
+    canvas: HTMLCanvasElement,
+  ) {
+    this.viewer = viewer;
+    this.session = session;
+    this.shown = { counterpart, frame: null, similarity: null };
+    this.connection = new Connection(
+      document.baseURI,
+      canvas.transferControlToOffscreen(),
+      {
+        live: (hello) => this.becomeLive(hello),
+        notification: () => {},
+        drawn: (frame) => {
+          this.shown.frame = frame;
+          this.changed();
+        },
+        draw: (picture) => picture.close(),
+        warning: (message) => viewer.onError(message),
+      },
+      session,
+    );
+    this.connection.open();
+    this.worker.onmessage = ({ data }: MessageEvent<{ similarity: number }>) => {
+      this.measuring = false;
+      this.shown.similarity = data.similarity;
+      this.changed();
+    };
+    this.timer = window.setInterval(() => void this.measure(), measureMs);
+  }
+
+  follow({ eye, target, up, vertical_fov }: Camera): void {
+    this.connection.rpc.notify("camera.set", { eye, target, up, vertical_fov });
+  }
+
+  share(tree: JsonObject): void {
+    const patch = Object.fromEntries(
+      sharedGroups.filter((group) => group in tree).map((group) => [group, tree[group]]),
+    );
+    const text = JSON.stringify(patch);
+    if (text === this.shared) return;
+    this.shared = text;
+    this.connection.rpc.notify("settings.patch", { patch });
+  }
+
+  end(): void {
+    clearInterval(this.timer);
+    this.worker.terminate();
+    this.connection.dispose();
+    const { rpc, methods } = this.viewer;
+    if (!methods.value.has("session.close")) return;
+    // Already gone with the connection, or closed when it has been idle for long enough.
+    void rpc.request("session.close", { session: this.session }).catch(() => {});
+  }
+
+  private async becomeLive(hello: Hello): Promise<void> {
+    const { rpc } = this.connection;
+    const size = this.viewer.chooseSize(hello);
+    await rpc.request<StreamSettings>("stream.configure", { ...size });
+    const { counterpart } = this.shown;
+    if (counterpart.kind === "preset") {
+      await rpc.request("settings.preset", { name: counterpart.name });
+    } else {
+      const patch =
+        counterpart.kind === "reference"
+          ? { reference: { use: "always" } }
+          : { view: { buffer: counterpart.name } };
+      await rpc.request("settings.patch", { patch });
+    }
+    this.shared = "";
+    this.share(this.viewer.settings.tree.value);
+    const camera = this.viewer.camera.value;
+    if (camera) this.follow(camera);
+  }
+
+  private async measure(): Promise<void> {
+    if (this.measuring || !this.shown.frame || this.shown.counterpart.kind === "buffer") return;
+    const pictures = await Promise.all([
+      this.viewer.connection.copyPicture(),
+      this.connection.copyPicture(),
+    ]);
+    if (pictures[0] && pictures[1] && !this.measuring) {
+      this.measuring = true;
+      this.worker.postMessage({ id: 0, pictures }, [pictures[0], pictures[1]]);
+    } else {
+      pictures.forEach((picture) => picture?.close());
+    }
+  }
+}

@@ -1,0 +1,81 @@
+// Pictures of a video stream (H.264, Annex B). Each builds on the one before, so that all are
+// decoded in turn; after a loss everything up to the next key picture is useless.
+
+import { type FrameHeader, FrameFlag } from "heliograph/frame_header.ts";
+
+/** Constrained baseline, level 4.2: no picture waits for a later one. */
+export const videoConfig: VideoDecoderConfig = {
+  codec: "avc1.42E02A",
+  optimizeForLatency: true,
+};
+
+export interface ArrivedFrame {
+  header: FrameHeader;
+  message: ArrayBuffer;
+  receivedAt: number;
+}
+
+export interface VideoSink {
+  /** Takes ownership of the picture. */
+  decoded(picture: VideoFrame, frame: ArrivedFrame, startedAt: number): void;
+  /** This frame will not be shown. */
+  skipped(frame: ArrivedFrame): void;
+  failed(message: string): void;
+}
+
+export class VideoFrames {
+  private readonly sink: VideoSink;
+  private readonly clock: () => number;
+  private decoder: VideoDecoder | null = null;
+  private readonly waiting = new Map<number, { frame: ArrivedFrame; startedAt: number }>();
+
+  constructor(sink: VideoSink, clock: () => number) {
+    this.sink = sink;
+    this.clock = clock;
+  }
+
+  push(frame: ArrivedFrame): void {
+    const key = (frame.header.flags & FrameFlag.key) !== 0;
+    if (key && (!this.decoder || this.decoder.state === "closed")) this.open();
+    if (!this.decoder || this.decoder.state !== "configured") {
+      this.sink.skipped(frame);
+      return;
+    }
+    const timestamp = frame.header.frameSeq;
+    this.waiting.set(timestamp, { frame, startedAt: this.clock() });
+    this.decoder.decode(
+      new EncodedVideoChunk({
+        type: key ? "key" : "delta",
+        timestamp,
+        data: new Uint8Array(frame.message, frame.header.headerBytes),
+      }),
+    );
+  }
+
+  /** Forgets a stream that has ended; the next begins with a key picture. */
+  clear(): void {
+    this.waiting.clear();
+    if (this.decoder && this.decoder.state !== "closed") this.decoder.close();
+    this.decoder = null;
+  }
+
+  private open(): void {
+    const decoder = new VideoDecoder({
+      output: (picture) => {
+        const entry = this.waiting.get(picture.timestamp);
+        this.waiting.delete(picture.timestamp);
+        if (entry) this.sink.decoded(picture, entry.frame, entry.startedAt);
+        else picture.close();
+      },
+      error: (error) => {
+        const lost = [...this.waiting.values()];
+        this.waiting.clear();
+        if (this.decoder === decoder) this.decoder = null;
+        lost.forEach(({ frame }) => this.sink.skipped(frame));
+        this.sink.failed(error.message);
+      },
+    });
+    decoder.configure(videoConfig);
+    this.decoder = decoder;
+  }
+}
