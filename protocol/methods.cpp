@@ -64,7 +64,7 @@ constexpr std::string_view scene = R"({
   "name": "atrium", "triangles": 344000, "instances": 210, "meshes": 34, "materials": 18,
   "textures": 41, "lights": 1, "cameras": ["entrance", "gallery"],
   "clips": [{"name": "moving_camera", "duration": 10.0}],
-  "variants": [],
+  "scenes": ["atrium"], "scene": 0, "variants": [], "variant": null,
   "bounds": {"min": [-12.0, 0.0, -6.5], "max": [12.0, 11.5, 6.5]}, "warnings": []})";
 
 constexpr std::string_view camera = R"({
@@ -111,6 +111,10 @@ std::vector<MethodDescriptor> session_methods() {
           "Loads a scene and shows it; scene.progress tells how far it is. On failure the scene "
           "that was shown stays.",
           {R"({"name": "atrium"})", scene}),
+      method<Empty, SceneCancelled>(
+          "scene.cancel", Call::command,
+          "Ends the load that the session waits for. What is shown stays.",
+          {no_params, R"({"cancelled": true})"}),
       method<Empty, SceneInfo>("scene.info", Call::query, "Describes the scene that is shown.",
                                {no_params, scene}),
       method<Empty, Camera>("camera.get", Call::query, "Tells where the camera is.",

@@ -145,13 +145,34 @@ struct SceneListResult {
 
 struct SceneLoad {
   std::string name;
+  std::optional<std::string> scene;
+  std::optional<std::string> variant;
 
   static constexpr auto fields() {
     return std::tuple{
         field("name", &SceneLoad::name, "A name that scene.list gave.").length(1, 512),
+        field("scene", &SceneLoad::scene,
+              "Which scene of a file that holds several: its name, or its number from 0. Left out: "
+              "the file's default.")
+            .length(1, 256),
+        field("variant", &SceneLoad::variant,
+              "Which of the file's material variants. Left out: the materials outside of them.")
+            .length(1, 256),
     };
   }
   bool operator==(const SceneLoad&) const = default;
+};
+
+struct SceneCancelled {
+  bool cancelled = false;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("cancelled", &SceneCancelled::cancelled,
+              "Whether a scene was being loaded; its scene.load is answered by an error."),
+    };
+  }
+  bool operator==(const SceneCancelled&) const = default;
 };
 
 struct Bounds {
@@ -177,7 +198,10 @@ struct SceneInfo {
   std::uint32_t lights = 0;
   std::vector<std::string> cameras;
   std::vector<ClipInfo> clips;
+  std::vector<std::string> scenes;
+  std::uint32_t scene = 0;
   std::vector<std::string> variants;
+  std::optional<std::string> variant;
   Bounds bounds;
   std::vector<std::string> warnings;
 
@@ -192,8 +216,11 @@ struct SceneInfo {
         field("lights", &SceneInfo::lights, "Punctual and directional lights."),
         field("cameras", &SceneInfo::cameras, "Names for camera.set."),
         field("clips", &SceneInfo::clips, "What animation.play can play."),
-        field("variants", &SceneInfo::variants,
-              "Names of the file's material variants; what is shown is its default."),
+        field("scenes", &SceneInfo::scenes, "Names of the file's scenes, which may be empty."),
+        field("scene", &SceneInfo::scene, "Number of the one that is shown."),
+        field("variants", &SceneInfo::variants, "Names of the file's material variants."),
+        field("variant", &SceneInfo::variant, "The one that is shown; null: the file's default.")
+            .or_null(),
         field("bounds", &SceneInfo::bounds, "Box around everything."),
         field("warnings", &SceneInfo::warnings, "What the importer left out, approximated or repaired."),
     };

@@ -51,6 +51,7 @@ struct ServeOptions {
   std::vector<std::string> trusted_proxies;
   std::vector<std::string> frame_ancestors;
   scene::ImportLimits limits;
+  std::uint64_t scene_cache_bytes = 1ull << 30;
   SettingsOptions settings;
   DeviceOptions device;
   LogOptions log;

@@ -28,6 +28,7 @@ session::HostOptions host_options(const ServeOptions& options) {
   result.scene_roots = choose_scene_roots(options.scene_roots);
   if (!options.environment.empty()) result.environment = options.environment;
   result.import_limits = options.limits;
+  result.scene_cache_bytes = options.scene_cache_bytes;
   return result;
 }
 
@@ -143,11 +144,12 @@ int run(const ServeOptions& options) {
   });
   StartFailure failure;
   const HostStop stop_first(host);
-  host.load_scene(host.sessions().main(), scene, {}, [&](const protocol::Result<protocol::SceneInfo>& loaded) {
-    if (loaded) return;
-    failure.set(scene + ": " + loaded.error().message);
-    server.stop();
-  });
+  host.load_scene(host.sessions().main(), {.name = scene}, {},
+                  [&](const protocol::Result<protocol::SceneInfo>& loaded) {
+                    if (loaded) return;
+                    failure.set(scene + ": " + loaded.error().message);
+                    server.stop();
+                  });
   server.run();
   if (const auto reason = failure.get()) throw std::runtime_error(*reason);
   return 0;

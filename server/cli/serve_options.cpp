@@ -123,6 +123,12 @@ void add_scene_options(CLI::App& command, ServeOptions& options) {
       ->type_name("FOLDER")
       ->allow_extra_args(false)
       ->group(group);
+  command
+      .add_option("--scene-cache-bytes", options.scene_cache_bytes,
+                  "Memory of loaded scenes beyond which those that nobody watches are dropped")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str()
+      ->group(group);
   add_environment_option(command, options.environment);
 }
 

@@ -174,6 +174,19 @@ void add_rendering(Page& page, const session::SessionHost& host) {
   }
 }
 
+void add_scenes(Page& page, const session::SessionHost& host) {
+  const session::CacheTotals cache = host.scene_cache_totals();
+  const auto number = [](std::uint64_t value) { return static_cast<double>(value); };
+  page.counter("heliograph_scene_cache_hits_total",
+               "Scenes that were asked for and needed no load of their own.", number(cache.hits));
+  page.counter("heliograph_scene_cache_misses_total", "Loads of scenes that were begun.",
+               number(cache.misses));
+  page.counter("heliograph_scene_cache_evictions_total",
+               "Scenes dropped to keep within the cache's limit.", number(cache.evictions));
+  page.gauge("heliograph_scene_cache_entries", "Scenes in memory.", number(cache.entries));
+  page.gauge("heliograph_scene_cache_bytes", "Memory of these scenes.", number(cache.bytes));
+}
+
 void add_traffic(Page& page, const Traffic& traffic) {
   const auto number = [](auto value) { return static_cast<double>(value); };
   page.gauge("heliograph_connections", "Open connections.", number(traffic.connections));
@@ -200,6 +213,7 @@ std::string metrics_text(const MetricsInput& input) {
   add_sessions(page, input.host);
   add_streams(page, input.host);
   add_rendering(page, input.host);
+  add_scenes(page, input.host);
   add_traffic(page, input.traffic);
   return std::move(page).text();
 }

@@ -63,10 +63,19 @@ std::uint64_t Engine::validation_messages() const {
 }
 
 std::shared_ptr<const SceneResources> Engine::upload(std::shared_ptr<const scene::Scene> scene,
-                                                     const scene::Environment& environment) {
+                                                     const scene::Environment& environment,
+                                                     const UploadProgress& progress) {
+  const auto tell = [&](std::string_view stage, float fraction) {
+    if (progress) progress(stage, fraction);
+  };
+  tell("environment", 0.0f);
+  auto around = parts_->environments.get(environment);
   return std::make_shared<const SceneResources>(parts_->device, parts_->programs, std::move(scene),
-                                                parts_->environments.get(environment),
-                                                *parts_->tracer);
+                                                std::move(around), *parts_->tracer, tell);
+}
+
+std::uint64_t memory_bytes(const SceneResources& resources) {
+  return resources.bytes();
 }
 
 std::string describe_devices(const EngineOptions& options) {

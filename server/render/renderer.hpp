@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -32,6 +33,12 @@ struct DeviceInfo {
 /// A scene and its environment on the device, with its acceleration structure. Shared, immutable.
 class SceneResources;
 
+/// Memory of the tables, images and the acceleration structure, not of the environment.
+std::uint64_t memory_bytes(const SceneResources& resources);
+
+/// Told as an upload proceeds: stage name and fraction of the whole, 0..1.
+using UploadProgress = std::function<void(std::string_view stage, float fraction)>;
+
 /// One device with its programs: made once, shared by every renderer.
 class Engine {
  public:
@@ -47,9 +54,10 @@ class Engine {
   std::uint64_t validation_messages() const;
 
   /// Uploads, prefilters the environment and builds the acceleration structure.
-  /// May run on any thread, beside rendering.
+  /// May run on any thread, beside rendering. What `progress` throws ends it and comes out.
   std::shared_ptr<const SceneResources> upload(std::shared_ptr<const scene::Scene> scene,
-                                               const scene::Environment& environment);
+                                               const scene::Environment& environment,
+                                               const UploadProgress& progress = {});
 
   struct Parts;
   Parts& parts() { return *parts_; }

@@ -66,13 +66,14 @@ gpu::Image constant_texture(const gpu::Device& device, const char* name,
 SceneResources::SceneResources(const gpu::Device& device, const Programs& programs,
                                std::shared_ptr<const scene::Scene> source,
                                std::shared_ptr<const LitEnvironment> around,
-                               const tracing::RayTracer& tracer)
+                               const tracing::RayTracer& tracer, const UploadProgress& progress)
     : scene(std::move(source)),
       environment(std::move(around)),
       white_(constant_texture(device, "white", {255, 255, 255, 255})),
       flat_normal_(constant_texture(device, "flat normal", {128, 128, 255, 255})) {
+  progress("tables", 0.1f);
   upload_tables(device);
-  upload_textures(device);
+  upload_textures(device, progress);
   texture_heap = make_texture_heap(device, *scene);
   if (device.is_cpu()) {
     const auto* const textures =
@@ -82,7 +83,27 @@ SceneResources::SceneResources(const gpu::Device& device, const Programs& progra
   }
   make_material_sets(device, programs);
   list_draws();
+  progress("acceleration structure", 0.5f);
   rest_structure = tracer.build(*scene, rest_tables);
+}
+
+std::uint64_t SceneResources::bytes() const {
+  std::uint64_t sum = rest_structure->bytes();
+  for (const gpu::Buffer* buffer :
+       {&rest_tables.vertices, &rest_tables.indices, &rest_tables.meshes, &rest_tables.instances,
+        &rest_tables.materials, &rest_tables.lights, &rest_tables.alpha_heap, &texture_heap.texels,
+        &texture_heap.textures, &material_blocks_}) {
+    sum += buffer->size();
+  }
+  for (const scene::Image& image : scene->images) {
+    std::uint64_t texels = 0;
+    for (std::uint32_t level = 0; level < image.levels; ++level) {
+      texels += std::uint64_t{std::max(image.width >> level, 1u)} *
+                std::max(image.height >> level, 1u);
+    }
+    sum += 4 * texels;
+  }
+  return sum;
 }
 
 void SceneResources::upload_tables(const gpu::Device& device) {
@@ -124,8 +145,10 @@ void SceneResources::upload_tables(const gpu::Device& device) {
       upload(device, "alpha masks", scene->alpha_heap, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
 }
 
-void SceneResources::upload_textures(const gpu::Device& device) {
+void SceneResources::upload_textures(const gpu::Device& device, const UploadProgress& progress) {
   for (const scene::Image& from : scene->images) {
+    progress("textures", 0.15f + 0.3f * static_cast<float>(images_.size()) /
+                                     static_cast<float>(scene->images.size()));
     gpu::ImageDesc desc{.name = from.name.empty() ? "texture" : from.name};
     desc.extent = {from.width, from.height};
     desc.format = from.srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;

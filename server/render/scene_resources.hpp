@@ -32,7 +32,10 @@ class SceneResources {
   SceneResources(const gpu::Device& device, const Programs& programs,
                  std::shared_ptr<const scene::Scene> scene,
                  std::shared_ptr<const LitEnvironment> environment,
-                 const tracing::RayTracer& tracer);
+                 const tracing::RayTracer& tracer, const UploadProgress& progress);
+
+  /// Memory of tables, images and the acceleration structure.
+  std::uint64_t bytes() const;
 
   std::shared_ptr<const scene::Scene> scene;
   tracing::SceneBuffers rest_tables;
@@ -47,7 +50,7 @@ class SceneResources {
 
  private:
   void upload_tables(const gpu::Device& device);
-  void upload_textures(const gpu::Device& device);
+  void upload_textures(const gpu::Device& device, const UploadProgress& progress);
   void make_material_sets(const gpu::Device& device, const Programs& programs);
   void list_draws();
 

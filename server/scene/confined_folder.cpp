@@ -51,6 +51,7 @@ std::vector<std::uint8_t> ConfinedFolder::read(const std::string& relative) {
   const std::filesystem::path resolved = std::filesystem::canonical(root_ / requested, error);
   if (error) throw ImportError(label + " is missing");
   if (!is_inside(resolved, root_)) outside();
+  files_.push_back(examine_file(resolved));
   std::vector<std::uint8_t> bytes = read_regular_file(resolved, budget_, label);
   budget_ -= bytes.size();
   return bytes;

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "scene/source_file.hpp"
+
 namespace heliograph::scene {
 
 /// The only folder a scene file may read from, with one byte budget for everything read.
@@ -18,9 +20,13 @@ class ConfinedFolder {
   /// budget
   std::vector<std::uint8_t> read(const std::string& relative);
 
+  /// What was read, as it was before.
+  const std::vector<SourceFile>& files() const { return files_; }
+
  private:
   std::filesystem::path root_;
   std::uint64_t budget_;
+  std::vector<SourceFile> files_;
 };
 
 /// Reads a whole regular file of at most `max_bytes`. `label` stands for it in errors.

@@ -100,7 +100,8 @@ std::string_view as_text(std::span<const std::uint8_t> bytes) {
 }  // namespace
 
 GltfFile::GltfFile(const std::filesystem::path& path, const ImportLimits& limits)
-    : folder_(path.parent_path(), limits.file_bytes),
+    : self_(examine_file(path)),
+      folder_(path.parent_path(), limits.file_bytes),
       file_(read_regular_file(path, limits.file_bytes, "the file")) {
   read_container(file_, limits);
   check_asset();
@@ -110,6 +111,12 @@ GltfFile::GltfFile(const std::filesystem::path& path, const ImportLimits& limits
 }
 
 GltfFile::~GltfFile() = default;
+
+std::vector<SourceFile> GltfFile::sources() const {
+  std::vector<SourceFile> sources{self_};
+  sources.insert(sources.end(), folder_.files().begin(), folder_.files().end());
+  return sources;
+}
 
 JsonValue GltfFile::root() const {
   return JsonValue(*json_, "");

@@ -41,6 +41,8 @@ class GltfFile {
   const std::vector<BufferView>& views() const { return views_; }
   /// Bytes behind a "uri" member: base64 data or a file beside the scene. @throws ImportError
   std::vector<std::uint8_t> resource(const JsonValue& owner);
+  /// The file itself and all that was read beside it, as they were before.
+  std::vector<SourceFile> sources() const;
   /// Extensions in use that change nothing here.
   const std::vector<std::string>& ignored_extensions() const { return ignored_extensions_; }
 
@@ -52,6 +54,7 @@ class GltfFile {
   void read_views(const ImportLimits& limits);
   BufferView read_view(const JsonValue& view, std::uint64_t& unpacked_budget);
 
+  SourceFile self_;
   ConfinedFolder folder_;
   std::vector<std::uint8_t> file_;
   std::span<const std::uint8_t> binary_chunk_;

@@ -25,6 +25,7 @@
 #include "scene/nodes.hpp"
 #include "scene/primitives.hpp"
 #include "scene/references.hpp"
+#include "scene/scene_choice.hpp"
 #include "scene/shapes.hpp"
 #include "scene/textures.hpp"
 #include "scene/variants.hpp"
@@ -81,8 +82,8 @@ class PartsDone {
 class Importer {
  public:
   Importer(const std::filesystem::path& path, const ImportLimits& limits,
-           const ImportProgress& progress)
-      : limits_(limits), progress_(progress), budget_(limits.scene_bytes) {
+           const ImportProgress& progress, const SceneChoice& choice)
+      : limits_(limits), progress_(progress), choice_(choice), budget_(limits.scene_bytes) {
     const Stopwatch watch;
     report("reading", 0.0f);
     file_.emplace(path, limits);
@@ -96,12 +97,9 @@ class Importer {
     for (const std::string& name : file_->ignored_extensions())
       warnings_.add("extension " + name + " is ignored");
 
-    const std::size_t scenes = root.objects("scenes").size();
-    if (scenes > 1) {
-      warnings_.add("of " + std::to_string(scenes) + " scenes in the file one is shown: number " +
-                    std::to_string(root.integer("scene", 0)));
-    }
-
+    const auto shown = choose_scene(root, choice_.scene);
+    scene_.scenes = read_scene_names(root);
+    scene_.shown_scene = shown.value_or(0);
     const std::vector<Accessor> accessors = read_accessors(*file_, limits_);
     check_skins(root, accessors);
     check_animations(root, accessors);
@@ -111,11 +109,12 @@ class Importer {
     scene_.material_names = std::move(materials.names);
     scene_.material_layers = std::move(materials.layers);
     scene_.variants = read_variants(root, scene_.materials.size());
-    const PrimitiveTable primitives =
-        read_primitives(*file_, accessors, scene_.materials.size(), limits_, budget_, warnings_);
+    scene_.variant = choose_variant(scene_.variants, choice_.variant);
+    const PrimitiveTable primitives = read_primitives(*file_, accessors, scene_.materials.size(),
+                                                      scene_.variant, limits_, budget_, warnings_);
     const std::vector<Light> lights = read_lights(root);
     const std::vector<Camera> cameras = read_cameras(root);
-    NodeTable nodes = read_nodes(root, accessors, lights.size(), limits_);
+    NodeTable nodes = read_nodes(root, accessors, lights.size(), shown, limits_);
     const std::vector<ImageSource> images = read_image_sources(*file_);
 
     times_.check = watch.lap();
@@ -145,6 +144,7 @@ class Importer {
     place_instances(nodes, primitives);
     place_lights_and_cameras(nodes, lights, cameras);
     scene_.warnings = warnings_.take();
+    scene_.sources = file_->sources();
     times_.place = watch.seconds();
     report("done", 1.0f);
     return std::move(scene_);
@@ -320,6 +320,7 @@ class Importer {
 
   const ImportLimits& limits_;
   const ImportProgress& progress_;
+  const SceneChoice& choice_;
   std::optional<GltfFile> file_;
   ByteBudget budget_;
   ImportTimes times_;
@@ -333,10 +334,11 @@ class Importer {
 }  // namespace
 
 Scene import_gltf(const std::filesystem::path& path, const ImportLimits& limits,
-                  const ImportProgress& progress, ImportTimes* times) {
+                  const ImportProgress& progress, ImportTimes* times,
+                  const SceneChoice& choice) {
   try {
     const Stopwatch watch;
-    Importer importer(path, limits, progress);
+    Importer importer(path, limits, progress, choice);
     Scene scene = importer.import();
     if (times) {
       *times = importer.times();

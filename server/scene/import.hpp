@@ -17,6 +17,27 @@ class ImportError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What of a file is wanted; empty: its defaults.
+struct SceneChoice {
+  std::string scene;    // the name of one of its scenes, or its number from 0
+  std::string variant;  // the name of one of its material variants
+  bool operator==(const SceneChoice&) const = default;
+};
+
+/// The file has no such scene or variant.
+class NoSuchChoice : public ImportError {
+ public:
+  /// `member` of SceneChoice; `names` are those there are.
+  NoSuchChoice(std::string member, const std::string& wanted, std::vector<std::string> names);
+
+  const std::string& member() const { return member_; }
+  const std::vector<std::string>& names() const { return names_; }
+
+ private:
+  std::string member_;
+  std::vector<std::string> names_;
+};
+
 /// What a file may cost. Exceeding one refuses the file with an error that names the limit.
 struct ImportLimits {
   std::uint64_t file_bytes = 512ull << 20;
@@ -47,9 +68,10 @@ struct ImportTimes {
 using ImportProgress = std::function<void(std::string_view stage, float fraction)>;
 
 /// Reads a .glb or .gltf file with everything it refers to; nothing outside `path`'s folder is
-/// opened. `times`, where given, is filled in.
+/// opened. `times`, where given, is filled in. What `progress` throws ends the import and comes out.
 /// @throws ImportError
 Scene import_gltf(const std::filesystem::path& path, const ImportLimits& limits = {},
-                  const ImportProgress& progress = {}, ImportTimes* times = nullptr);
+                  const ImportProgress& progress = {}, ImportTimes* times = nullptr,
+                  const SceneChoice& choice = {});
 
 }  // namespace heliograph::scene

@@ -150,8 +150,8 @@ void check_no_cycles(const std::vector<DocumentNode>& nodes, std::uint32_t max_d
   }
 }
 
-std::vector<std::uint32_t> read_roots(const JsonValue& root,
-                                      const std::vector<DocumentNode>& nodes) {
+std::vector<std::uint32_t> read_roots(const JsonValue& root, const std::vector<DocumentNode>& nodes,
+                                      std::optional<std::uint32_t> shown) {
   const std::vector<JsonValue> scenes = root.objects("scenes");
   std::vector<std::vector<std::uint32_t>> roots_of_scene;
   for (const JsonValue& scene : scenes) {
@@ -166,8 +166,7 @@ std::vector<std::uint32_t> read_roots(const JsonValue& root,
     }
     roots_of_scene.push_back(std::move(roots));
   }
-  const auto shown = root.index("scene", scenes.size(), "scenes");
-  if (!scenes.empty()) return roots_of_scene[shown.value_or(0)];
+  if (shown) return roots_of_scene[*shown];
   std::vector<std::uint32_t> all;
   for (std::uint32_t i = 0; i < nodes.size(); ++i) {
     if (!nodes[i].has_parent) all.push_back(i);
@@ -200,7 +199,8 @@ void add_places(NodeTable& table) {
 }  // namespace
 
 NodeTable read_nodes(const JsonValue& root, std::span<const Accessor> accessors,
-                     std::size_t light_count, const ImportLimits& limits) {
+                     std::size_t light_count, std::optional<std::uint32_t> shown,
+                     const ImportLimits& limits) {
   const std::vector<JsonValue> documents = root.objects("nodes");
   if (documents.size() > limits.nodes) {
     throw ImportError("nodes: " + std::to_string(documents.size()) + " exceed the limit of " +
@@ -227,7 +227,7 @@ NodeTable read_nodes(const JsonValue& root, std::span<const Accessor> accessors,
 
   NodeTable table;
   table.of_document.resize(nodes.size());
-  visit_hierarchy(nodes, read_roots(root, nodes), limits.node_depth,
+  visit_hierarchy(nodes, read_roots(root, nodes, shown), limits.node_depth,
                   [&](std::uint32_t index, std::optional<std::uint32_t> parent) {
                     Node node = nodes[index].node;
                     node.parent = parent;

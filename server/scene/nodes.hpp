@@ -30,11 +30,12 @@ struct NodeTable {
   std::vector<std::optional<std::uint32_t>> of_document;  // into `nodes`, by number in the file
 };
 
-/// Reads all nodes, refuses cycles, second parents and excessive depth, and keeps those that the
-/// document's default scene (or its first, or all root nodes) shows. A node that places its mesh
+/// Reads all nodes, refuses cycles, second parents and excessive depth, and keeps those that scene
+/// number `shown` shows, all where there is none. A node that places its mesh
 /// many times gets a child for each place instead of the mesh.
 /// @throws ImportError
 NodeTable read_nodes(const JsonValue& root, std::span<const Accessor> accessors,
-                     std::size_t light_count, const ImportLimits& limits);
+                     std::size_t light_count, std::optional<std::uint32_t> shown,
+                     const ImportLimits& limits);
 
 }  // namespace heliograph::scene

@@ -2,6 +2,7 @@
 
 #include "scene/draco.hpp"
 #include "scene/scene.hpp"
+#include "scene/variants.hpp"
 
 namespace heliograph::scene {
 namespace {
@@ -9,11 +10,12 @@ namespace {
 class PrimitiveReader {
  public:
   PrimitiveReader(const GltfFile& file, std::span<const Accessor> accessors,
-                  std::size_t material_count, const ImportLimits& limits, ByteBudget& budget,
-                  Warnings& warnings)
+                  std::size_t material_count, std::optional<std::uint32_t> variant,
+                  const ImportLimits& limits, ByteBudget& budget, Warnings& warnings)
       : file_(file),
         accessors_(accessors),
         material_count_(material_count),
+        variant_(variant),
         limits_(limits),
         budget_(budget),
         warnings_(warnings) {}
@@ -37,6 +39,10 @@ class PrimitiveReader {
     read_targets(json, primitive);
     primitive.indices = json.index("indices", accessors_.size(), "accessors");
     primitive.material = json.index("material", material_count_, "materials");
+    if (variant_) {
+      const auto other = material_of_variant(json, *variant_);
+      if (other) primitive.material = other;
+    }
     if (mode < 4) {
       warnings_.add("points and lines are not drawn");
       return std::nullopt;
@@ -189,6 +195,7 @@ class PrimitiveReader {
   const GltfFile& file_;
   std::span<const Accessor> accessors_;
   std::size_t material_count_;
+  std::optional<std::uint32_t> variant_;
   const ImportLimits& limits_;
   ByteBudget& budget_;
   Warnings& warnings_;
@@ -200,10 +207,10 @@ class PrimitiveReader {
 }  // namespace
 
 PrimitiveTable read_primitives(const GltfFile& file, std::span<const Accessor> accessors,
-                               std::size_t material_count, const ImportLimits& limits,
-                               ByteBudget& budget, Warnings& warnings) {
+                               std::size_t material_count, std::optional<std::uint32_t> variant,
+                               const ImportLimits& limits, ByteBudget& budget, Warnings& warnings) {
   PrimitiveTable table;
-  PrimitiveReader reader(file, accessors, material_count, limits, budget, warnings);
+  PrimitiveReader reader(file, accessors, material_count, variant, limits, budget, warnings);
   for (const JsonValue& mesh : file.root().objects("meshes")) {
     const std::vector<JsonValue> primitives = mesh.objects("primitives");
     if (primitives.empty()) mesh.refuse("has no primitives");

@@ -72,11 +72,12 @@ struct PrimitiveTable {
   std::vector<std::vector<std::uint32_t>> of_mesh;
 };
 
-/// Points and lines are left out with a warning. What the others will take once read is taken from
+/// Points and lines are left out with a warning. Materials are those of `variant`, where there is
+/// one. What the others will take once read is taken from
 /// `budget`.
 /// @throws ImportError
 PrimitiveTable read_primitives(const GltfFile& file, std::span<const Accessor> accessors,
-                               std::size_t material_count, const ImportLimits& limits,
-                               ByteBudget& budget, Warnings& warnings);
+                               std::size_t material_count, std::optional<std::uint32_t> variant,
+                               const ImportLimits& limits, ByteBudget& budget, Warnings& warnings);
 
 }  // namespace heliograph::scene

@@ -37,6 +37,23 @@ glm::mat4 Transform::matrix() const {
   return matrix;
 }
 
+std::uint64_t Scene::bytes() const {
+  const auto size = [](const auto& list) { return std::uint64_t{list.size() * sizeof(list[0])}; };
+  std::uint64_t sum = size(nodes) + size(materials) + size(instances) + size(alpha_heap);
+  for (const Mesh& mesh : meshes) sum += size(mesh.vertices) + size(mesh.indices);
+  for (const Image& image : images) sum += size(image.pixels);
+  for (const Shape& shape : shapes) {
+    sum += size(shape.vertices) + size(shape.influences);
+    for (const MorphTarget& target : shape.targets) {
+      sum += size(target.positions) + size(target.normals) + size(target.tangents);
+    }
+  }
+  for (const Clip& clip : clips) {
+    for (const Channel& channel : clip.channels) sum += size(channel.times) + size(channel.values);
+  }
+  return sum;
+}
+
 std::uint64_t Scene::triangle_count() const {
   std::uint64_t count = 0;
   for (const Instance& instance : instances) count += meshes[instance.mesh].indices.size() / 3;

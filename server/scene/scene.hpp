@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/source_file.hpp"
 #include "shaders/shared/scene.h"
 
 namespace heliograph::scene {
@@ -178,7 +179,10 @@ struct Scene {
   std::vector<std::string> material_names;
   std::vector<shared::Material> materials;      // at least one
   std::vector<MaterialLayers> material_layers;  // of each material
-  std::vector<std::string> variants;            // KHR_materials_variants; the default is shown
+  std::vector<std::string> variants;            // KHR_materials_variants
+  std::optional<std::uint32_t> variant;         // the one that is shown; none: the file's default
+  std::vector<std::string> scenes;              // names of the file's scenes, which may be empty
+  std::uint32_t shown_scene = 0;                // the one that this is
   std::vector<Image> images;
   std::vector<Texture> textures;
   std::vector<std::uint8_t> alpha_heap;  // alpha of masked base colours, one byte a texel
@@ -191,8 +195,10 @@ struct Scene {
   std::vector<Clip> clips;
   Bounds bounds;  // world space
   std::vector<std::string> warnings;
+  std::vector<SourceFile> sources;  // all that was read, the scene's own file first
 
   std::uint64_t triangle_count() const;  // as drawn: instances counted
+  std::uint64_t bytes() const;           // that its vertices, images and curves take
 };
 
 }  // namespace heliograph::scene

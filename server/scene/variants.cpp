@@ -1,5 +1,6 @@
 #include "scene/variants.hpp"
 
+#include <algorithm>
 #include <set>
 
 namespace heliograph::scene {
@@ -35,6 +36,19 @@ std::vector<std::string> read_variants(const JsonValue& root, std::size_t materi
     }
   }
   return names;
+}
+
+std::optional<std::uint32_t> material_of_variant(const JsonValue& primitive,
+                                                 std::uint32_t variant) {
+  constexpr auto any = std::size_t(-1);
+  const auto own = primitive.object("extensions", extension);
+  if (!own) return std::nullopt;
+  for (const JsonValue& mapping : own->objects("mappings")) {
+    const auto variants = mapping.indices("variants", any, "variants");
+    if (std::ranges::find(variants, variant) == variants.end()) continue;
+    return mapping.required_index("material", any, "materials");
+  }
+  return std::nullopt;
 }
 
 }  // namespace heliograph::scene

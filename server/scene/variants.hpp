@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,8 +10,12 @@
 namespace heliograph::scene {
 
 /// The names of KHR_materials_variants, in the document's order, with every mapping of a primitive
-/// to one of them checked. What is shown is the materials outside the extension.
+/// to one of them checked.
 /// @throws ImportError
 std::vector<std::string> read_variants(const JsonValue& root, std::size_t material_count);
+
+/// The material that a primitive, checked before, takes in `variant`; nothing where that changes
+/// nothing.
+std::optional<std::uint32_t> material_of_variant(const JsonValue& primitive, std::uint32_t variant);
 
 }  // namespace heliograph::scene

@@ -20,16 +20,17 @@ std::optional<fs::path> environment_beside(const fs::path& scene, const fs::path
 
 EnvironmentSource::EnvironmentSource(std::optional<fs::path> forced) : forced_(std::move(forced)) {}
 
-std::shared_ptr<const scene::Environment> EnvironmentSource::environment_for(
-    const CatalogueEntry& entry) {
-  const std::optional<fs::path> path =
-      forced_ ? forced_ : environment_beside(entry.path, entry.root);
+std::optional<fs::path> EnvironmentSource::path_for(const CatalogueEntry& entry) const {
+  return forced_ ? forced_ : environment_beside(entry.path, entry.root);
+}
+
+std::shared_ptr<const scene::Environment> EnvironmentSource::environment_at(const fs::path& path) {
   const std::lock_guard lock(mutex_);
-  if (last_ && last_path_ == path.value_or(fs::path())) return last_;
-  auto environment = std::make_shared<const scene::Environment>(
-      path ? scene::load_environment(*path) : scene::constant_environment(glm::vec3(1.0f)));
-  last_ = std::move(environment);
-  last_path_ = path.value_or(fs::path());
+  const scene::SourceFile file = scene::examine_file(path);
+  if (last_ && last_file_ == file) return last_;
+  last_ = std::make_shared<const scene::Environment>(
+      path.empty() ? scene::constant_environment(glm::vec3(1.0f)) : scene::load_environment(path));
+  last_file_ = file;
   return last_;
 }
 

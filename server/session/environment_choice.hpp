@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "scene/environment.hpp"
+#include "scene/source_file.hpp"
 #include "session/scene_catalogue.hpp"
 
 namespace heliograph::session {
@@ -21,14 +22,16 @@ class EnvironmentSource {
   /// `forced`: the environment of every scene.
   explicit EnvironmentSource(std::optional<std::filesystem::path> forced);
 
-  /// The forced environment, else the one beside the scene, else radiance 1 from everywhere.
+  /// The forced environment, else the one beside the scene, else nothing.
+  std::optional<std::filesystem::path> path_for(const CatalogueEntry& entry) const;
+  /// The environment in that file; radiance 1 from everywhere where `path` is empty.
   /// @throws scene::ImportError
-  std::shared_ptr<const scene::Environment> environment_for(const CatalogueEntry& entry);
+  std::shared_ptr<const scene::Environment> environment_at(const std::filesystem::path& path);
 
  private:
   const std::optional<std::filesystem::path> forced_;
   std::mutex mutex_;
-  std::filesystem::path last_path_;
+  scene::SourceFile last_file_;
   std::shared_ptr<const scene::Environment> last_;
 };
 

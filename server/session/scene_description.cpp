@@ -10,10 +10,11 @@ glm::vec3 from_protocol(const protocol::Vec3& vector) {
   return {vector[0], vector[1], vector[2]};
 }
 
-protocol::SceneInfo describe_scene(const std::string& name, const scene::Scene& scene) {
+protocol::SceneInfo describe_scene(const LoadedScene& loaded) {
+  const scene::Scene& scene = *loaded.scene;
   const auto count = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
   protocol::SceneInfo info;
-  info.name = name;
+  info.name = loaded.name;
   info.triangles = scene.triangle_count();
   info.instances = count(scene.instances);
   info.meshes = count(scene.meshes);
@@ -22,7 +23,10 @@ protocol::SceneInfo describe_scene(const std::string& name, const scene::Scene& 
   info.lights = count(scene.lights);
   for (const scene::Camera& camera : scene.cameras) info.cameras.push_back(camera.name);
   for (const scene::Clip& clip : scene.clips) info.clips.push_back({clip.name, clip.duration});
+  info.scenes = scene.scenes;
+  info.scene = scene.shown_scene;
   info.variants = scene.variants;
+  if (scene.variant) info.variant = scene.variants[*scene.variant];
   if (!scene.bounds.empty()) {
     info.bounds = {.min = to_protocol(scene.bounds.minimum),
                    .max = to_protocol(scene.bounds.maximum)};

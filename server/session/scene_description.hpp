@@ -3,12 +3,12 @@
 #include <string>
 
 #include "protocol/messages.hpp"
-#include "scene/scene.hpp"
+#include "session/loaded_scene.hpp"
 
 namespace heliograph::session {
 
 /// What clients are told about a scene that is called `name` in the catalogue.
-protocol::SceneInfo describe_scene(const std::string& name, const scene::Scene& scene);
+protocol::SceneInfo describe_scene(const LoadedScene& loaded);
 
 protocol::Vec3 to_protocol(const glm::vec3& vector);
 glm::vec3 from_protocol(const protocol::Vec3& vector);

@@ -2,10 +2,12 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <exception>
 #include <utility>
 
 #include "protocol/jsonrpc.hpp"
+#include "protocol/suggestions.hpp"
 #include "render/renderer.hpp"
 #include "session/scene_description.hpp"
 
@@ -17,23 +19,50 @@ namespace {
 
 /// Reading a file is this much of the whole; the rest is upload and acceleration structure.
 constexpr float import_share = 0.7f;
+/// How much is done between two reports of one stage.
+constexpr float report_step = 0.01f;
+/// How soon a cache that holds too much looks again whether all of it is still shown.
+constexpr std::chrono::seconds trim_interval{2};
+
+constexpr std::string_view progress_key = "scene.progress";
+
+std::string progress_text(const std::string& name, std::string_view stage, float fraction) {
+  return protocol::make_notification(
+      progress_key,
+      protocol::SceneProgress{.name = name, .stage = std::string(stage), .fraction = fraction});
+}
 
 /// Thrown through the importer to end it.
-struct Superseded {};
+struct Abandoned {};
 
 protocol::Error superseded() {
   return protocol::error::conflict("name", "another scene was asked for meanwhile");
 }
 
+protocol::Error cancelled() {
+  return protocol::error::conflict("name", "was cancelled");
+}
+
+protocol::Error stopped() {
+  return protocol::error::not_ready("the server is ending");
+}
+
+protocol::Error no_such(const scene::NoSuchChoice& failure, const scene::SceneChoice& choice) {
+  const std::string& wanted = failure.member() == "scene" ? choice.scene : choice.variant;
+  const std::vector<std::string_view> names(failure.names().begin(), failure.names().end());
+  return protocol::error::not_found(failure.member(),
+                                    "is not in the file" + protocol::suggestion(wanted, names));
+}
+
 }  // namespace
 
 SceneLoader::SceneLoader(render::Engine& engine, const SceneCatalogue& catalogue,
-                         std::optional<std::filesystem::path> environment,
-                         const scene::ImportLimits& limits)
+                         LoaderOptions options)
     : engine_(engine),
       catalogue_(catalogue),
-      environments_(std::move(environment)),
-      limits_(limits),
+      environments_(options.environment),
+      options_(std::move(options)),
+      cache_(options_.cache_bytes),
       thread_([this] { run(); }) {}
 
 void SceneLoader::stop() {
@@ -43,86 +72,187 @@ void SceneLoader::stop() {
   }
   condition_.notify_one();
   thread_.join();
-  waiting_.reset();
+  for (const auto& job : std::exchange(jobs_, {})) {
+    for (const Waiter& waiter : job->waiters) waiter.done(stopped());
+  }
 }
 
-void SceneLoader::load(std::shared_ptr<Session> session, const std::string& name,
+void SceneLoader::load(std::shared_ptr<Session> session, const protocol::SceneLoad& request,
                        const std::string& by, Completion done) {
-  Result<CatalogueEntry> entry = catalogue_.find(name);
+  Result<CatalogueEntry> entry = catalogue_.find(request.name);
   if (!entry) return done(entry.error());
-  std::optional<Request> displaced;
+  SceneKey key{.file = entry->path,
+               .choice = {request.scene.value_or(""), request.variant.value_or("")},
+               .environment = environments_.path_for(*entry).value_or("")};
+  std::vector<Waiter> displaced;
+  std::optional<LoadedScene> kept;
   {
     const std::lock_guard lock(mutex_);
-    displaced = std::exchange(waiting_, Request{.session = std::move(session),
-                                                .entry = *std::move(entry),
-                                                .by = by,
-                                                .done = std::move(done),
-                                                .number = ++newest_number_});
+    if (stopping_) return done(stopped());
+    std::shared_ptr<Job> job = find_job(key);
+    displaced = remove_waiters(*session, job.get());
+    if (!job) kept = cache_.find(key);
+    if (job || kept) {
+      cache_.count_hit();
+    } else {
+      cache_.count_miss();
+      job = jobs_.emplace_back(std::make_shared<Job>());
+      job->key = std::move(key);
+      job->entry = *std::move(entry);
+    }
+    if (kept) {
+      session->show(*kept, by);
+      session->audience().send_all(progress_text(kept->name, "ready", 1.0f), progress_key);
+    } else {
+      job->waiters.push_back({std::move(session), by, done});
+    }
   }
   condition_.notify_one();
-  if (displaced) displaced->done(superseded());
+  for (const Waiter& waiter : displaced) waiter.done(superseded());
+  if (kept) done(describe_scene(*kept));
+}
+
+protocol::SceneCancelled SceneLoader::cancel(const Session& session) {
+  std::vector<Waiter> removed;
+  {
+    const std::lock_guard lock(mutex_);
+    removed = remove_waiters(session, nullptr);
+  }
+  for (const Waiter& waiter : removed) waiter.done(cancelled());
+  return {.cancelled = !removed.empty()};
+}
+
+/// Takes away what waits for the session elsewhere than in `except`; a job that nobody waits for any
+/// more ends.
+std::vector<SceneLoader::Waiter> SceneLoader::remove_waiters(const Session& session,
+                                                             const Job* except) {
+  std::vector<Waiter> removed;
+  for (const auto& job : jobs_) {
+    if (job.get() == except) continue;
+    const auto own = std::stable_partition(
+        job->waiters.begin(), job->waiters.end(),
+        [&](const Waiter& waiter) { return waiter.session.get() != &session; });
+    removed.insert(removed.end(), std::make_move_iterator(own),
+                   std::make_move_iterator(job->waiters.end()));
+    job->waiters.erase(own, job->waiters.end());
+    job->abandoned = job->waiters.empty();
+  }
+  std::erase_if(jobs_, [](const auto& job) { return job->abandoned.load(); });
+  return removed;
+}
+
+std::shared_ptr<SceneLoader::Job> SceneLoader::find_job(const SceneKey& key) const {
+  const auto found =
+      std::ranges::find_if(jobs_, [&](const auto& job) { return job->key == key; });
+  return found == jobs_.end() ? nullptr : *found;
 }
 
 void SceneLoader::run() {
-  while (true) {
-    std::optional<Request> request;
-    {
-      std::unique_lock lock(mutex_);
-      condition_.wait(lock, [&] { return stopping_ || waiting_; });
-      if (stopping_) return;
-      request = std::exchange(waiting_, std::nullopt);
-    }
-    Result<protocol::SceneInfo> outcome = carry_out(*request);
-    if (!outcome) {
-      spdlog::warn("session {}: {} was not loaded: {}", request->session->name(),
-                   request->entry.name, outcome.error().message);
-    }
-    request->done(std::move(outcome));
-  }
+  while (const std::shared_ptr<Job> job = next_job()) carry_out(*job);
 }
 
-Result<protocol::SceneInfo> SceneLoader::carry_out(const Request& request) {
+/// Waits for a job, and for what the cache keeps too much of; null at the end.
+std::shared_ptr<SceneLoader::Job> SceneLoader::next_job() {
+  std::unique_lock lock(mutex_);
+  const auto called = [&] { return stopping_ || !jobs_.empty(); };
+  while (!called()) {
+    cache_too_full_ = !cache_.trim();
+    if (cache_too_full_) {
+      condition_.wait_for(lock, trim_interval);
+    } else {
+      condition_.wait(lock);
+    }
+  }
+  return stopping_ ? nullptr : jobs_.front();
+}
+
+void SceneLoader::carry_out(Job& job) {
   const Clock::time_point start = Clock::now();
   try {
-    const auto environment = environments_.environment_for(request.entry);
-    auto imported = scene::import_gltf(request.entry.path, limits_,
-                                       [&](std::string_view stage, float fraction) {
-                                         stop_if_superseded(request);
-                                         report_progress(request, stage, import_share * fraction);
-                                       });
-    const auto scene = std::make_shared<const scene::Scene>(std::move(imported));
-    stop_if_superseded(request);
-    report_progress(request, "uploading", import_share);
-    auto resources = engine_.upload(scene, *environment);
-    stop_if_superseded(request);
-    request.session->show(
-        {.name = request.entry.name, .scene = scene, .resources = std::move(resources)},
-        request.by);
-    report_progress(request, "ready", 1.0f);
-    spdlog::info("session {}: {} loaded in {:.2f} s, {} triangles", request.session->name(),
-                 request.entry.name, std::chrono::duration<double>(Clock::now() - start).count(),
-                 scene->triangle_count());
-    return describe_scene(request.entry.name, *scene);
-  } catch (const Superseded&) {
-    return superseded();
+    const LoadedScene loaded = make(job);
+    spdlog::info("{} loaded in {:.2f} s, {} triangles, {} MiB", job.entry.name,
+                 std::chrono::duration<double>(Clock::now() - start).count(),
+                 loaded.scene->triangle_count(), (loaded.host_bytes + loaded.device_bytes) >> 20);
+    finish(job, loaded);
+  } catch (const Abandoned&) {
+    spdlog::info("loading {} was ended after {:.2f} s", job.entry.name,
+                 std::chrono::duration<double>(Clock::now() - start).count());
+  } catch (const scene::NoSuchChoice& failure) {
+    finish(job, no_such(failure, job.key.choice));
   } catch (const scene::ImportError& failure) {
-    return protocol::error::invalid("name", "cannot be loaded: " + std::string(failure.what()));
+    finish(job,
+           protocol::error::invalid("name", "cannot be loaded: " + std::string(failure.what())));
   } catch (const std::exception& failure) {
-    spdlog::error("loading {}: {}", request.entry.name, failure.what());
-    return protocol::error::internal();
+    spdlog::error("loading {}: {}", job.entry.name, failure.what());
+    finish(job, protocol::error::internal());
   }
 }
 
-void SceneLoader::report_progress(const Request& request, std::string_view stage,
-                                  float fraction) const {
-  const protocol::SceneProgress progress{
-      .name = request.entry.name, .stage = std::string(stage), .fraction = fraction};
-  request.session->audience().send_all(protocol::make_notification("scene.progress", progress),
-                                       "scene.progress");
+LoadedScene SceneLoader::make(Job& job) {
+  const auto checkpoint = [&](std::string_view stage, float fraction) {
+    stop_if_abandoned(job);
+    report_progress(job, stage, fraction);
+  };
+  std::vector<scene::SourceFile> sources;
+  if (!job.key.environment.empty()) sources.push_back(scene::examine_file(job.key.environment));
+  checkpoint("reading", 0.0f);
+  const auto environment = environments_.environment_at(job.key.environment);
+  const auto scene = std::make_shared<const scene::Scene>(scene::import_gltf(
+      job.entry.path, options_.limits,
+      [&](std::string_view stage, float fraction) { checkpoint(stage, import_share * fraction); },
+      nullptr, job.key.choice));
+  sources.insert(sources.end(), scene->sources.begin(), scene->sources.end());
+  LoadedScene loaded{.name = job.entry.name, .scene = scene};
+  loaded.resources =
+      engine_.upload(scene, *environment, [&](std::string_view stage, float fraction) {
+        checkpoint(stage, import_share + (1.0f - import_share) * fraction);
+      });
+  stop_if_abandoned(job);
+  loaded.environment = job.key.environment.filename().string();
+  loaded.host_bytes = scene->bytes();
+  loaded.device_bytes = render::memory_bytes(*loaded.resources);
+  return cache_.add(job.key, std::move(loaded), std::move(sources));
 }
 
-void SceneLoader::stop_if_superseded(const Request& request) const {
-  if (stopping_ || request.number != newest_number_) throw Superseded();
+/// Shows the scene in every session that waits for it, and tells those who asked.
+void SceneLoader::finish(Job& job, const Result<LoadedScene>& outcome) {
+  std::vector<Waiter> waiters;
+  {
+    const std::lock_guard lock(mutex_);
+    waiters = std::exchange(job.waiters, {});
+    std::erase_if(jobs_, [&](const auto& other) { return other.get() == &job; });
+    if (outcome) {
+      const std::string text = progress_text(job.entry.name, "ready", 1.0f);
+      for (const Waiter& waiter : waiters) {
+        waiter.session->show(*outcome, waiter.by);
+        waiter.session->audience().send_all(text, progress_key);
+      }
+    }
+  }
+  for (const Waiter& waiter : waiters) {
+    if (outcome) {
+      waiter.done(describe_scene(*outcome));
+    } else {
+      spdlog::warn("session {}: {} was not loaded: {}", waiter.session->name(), job.entry.name,
+                   outcome.error().message);
+      waiter.done(outcome.error());
+    }
+  }
+}
+
+void SceneLoader::report_progress(Job& job, std::string_view stage, float fraction) {
+  if (stage == job.stage && fraction < job.fraction + report_step) return;
+  job.stage = stage;
+  job.fraction = fraction;
+  const std::string text = progress_text(job.entry.name, stage, fraction);
+  const std::lock_guard lock(mutex_);
+  for (const Waiter& waiter : job.waiters) {
+    waiter.session->audience().send_all(text, progress_key);
+  }
+}
+
+void SceneLoader::stop_if_abandoned(const Job& job) const {
+  if (stopping_ || job.abandoned) throw Abandoned();
 }
 
 }  // namespace heliograph::session

@@ -2,16 +2,20 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
+#include <vector>
 
 #include "protocol/messages.hpp"
 #include "scene/import.hpp"
 #include "session/environment_choice.hpp"
+#include "session/scene_cache.hpp"
 #include "session/scene_catalogue.hpp"
 #include "session/session.hpp"
 
@@ -21,49 +25,72 @@ class Engine;
 
 namespace heliograph::session {
 
-/// Loads scenes beside rendering and puts them into sessions when they are complete. On failure a
-/// session keeps what it has. A newer request takes the place of an older one, also of one that is
-/// under way.
+struct LoaderOptions {
+  std::optional<std::filesystem::path> environment;  // of every scene, instead of its own
+  scene::ImportLimits limits;
+  std::uint64_t cache_bytes = 1ull << 30;  // see SceneCache
+};
+
+/// Loads scenes beside rendering, one after the other, and puts them into sessions when they are
+/// complete. On failure a session keeps what it has. A newer request of a session takes the place
+/// of its older one, also of one that is under way. Requests for the same thing share one load, and
+/// what was loaded stays in a cache. Thread safe.
 class SceneLoader {
  public:
   using Completion = std::function<void(protocol::Result<protocol::SceneInfo>)>;
 
-  SceneLoader(render::Engine& engine, const SceneCatalogue& catalogue,
-              std::optional<std::filesystem::path> environment, const scene::ImportLimits& limits);
+  SceneLoader(render::Engine& engine, const SceneCatalogue& catalogue, LoaderOptions options);
   ~SceneLoader() { stop(); }
   SceneLoader(const SceneLoader&) = delete;
   SceneLoader& operator=(const SceneLoader&) = delete;
 
-  /// `done` is called once, here or on the loading thread.
-  void load(std::shared_ptr<Session> session, const std::string& name, const std::string& by,
-            Completion done);
+  /// `done` is called once, here or on the loading thread, without locks.
+  void load(std::shared_ptr<Session> session, const protocol::SceneLoad& request,
+            const std::string& by, Completion done);
+  /// Ends what `session` waits for: whoever asked for it is told so, and the load itself ends soon
+  /// unless others wait for it too.
+  protocol::SceneCancelled cancel(const Session& session);
 
-  /// Ends the thread and the load under way; what waits is dropped unanswered.
+  /// Ends the thread and the load under way; all that wait are told.
   void stop();
 
+  CacheTotals cache_totals() const { return cache_.totals(); }
+
  private:
-  struct Request {
+  struct Waiter {
     std::shared_ptr<Session> session;
-    CatalogueEntry entry;
     std::string by;
     Completion done;
-    std::uint64_t number = 0;
+  };
+  struct Job {
+    SceneKey key;
+    CatalogueEntry entry;
+    std::vector<Waiter> waiters;  // guarded by mutex_
+    std::atomic<bool> abandoned = false;
+    std::string stage;  // of the newest report; the loading thread's
+    float fraction = 0.0f;
   };
 
   void run();
-  protocol::Result<protocol::SceneInfo> carry_out(const Request& request);
-  void report_progress(const Request& request, std::string_view stage, float fraction) const;
-  void stop_if_superseded(const Request& request) const;
+  std::shared_ptr<Job> next_job();
+  void carry_out(Job& job);
+  LoadedScene make(Job& job);
+  void finish(Job& job, const protocol::Result<LoadedScene>& outcome);
+  std::vector<Waiter> remove_waiters(const Session& session, const Job* except);
+  std::shared_ptr<Job> find_job(const SceneKey& key) const;
+  void report_progress(Job& job, std::string_view stage, float fraction);
+  void stop_if_abandoned(const Job& job) const;
 
   render::Engine& engine_;
   const SceneCatalogue& catalogue_;
   EnvironmentSource environments_;
-  const scene::ImportLimits limits_;
+  const LoaderOptions options_;
+  SceneCache cache_;
 
   std::mutex mutex_;
   std::condition_variable condition_;
-  std::optional<Request> waiting_;
-  std::atomic<std::uint64_t> newest_number_ = 0;
+  std::deque<std::shared_ptr<Job>> jobs_;  // the first may be under way
+  bool cache_too_full_ = false;
   std::atomic<bool> stopping_ = false;
   std::thread thread_;
 };

@@ -70,8 +70,8 @@ Result<protocol::SceneInfo> Session::scene_info() const {
 
 void Session::show(LoadedScene scene, const std::string& by) {
   const std::lock_guard lock(mutex_);
-  scene_ = std::move(scene.scene);
-  scene_info_ = describe_scene(scene.name, *scene_);
+  scene_ = scene.scene;
+  scene_info_ = describe_scene(scene);
   state_.resources = std::move(scene.resources);
   state_.animation = {};
   if (scene_->cameras.empty()) {

@@ -15,12 +15,9 @@
 #include "session/animation_clock.hpp"
 #include "session/audience.hpp"
 #include "session/capture.hpp"
+#include "session/loaded_scene.hpp"
 #include "session/pixel_budget.hpp"
 #include "session/wakeup.hpp"
-
-namespace heliograph::render {
-class SceneResources;
-}
 
 namespace heliograph::session {
 
@@ -37,13 +34,6 @@ struct SessionOptions {
   std::uint32_t height = 720;
   protocol::Settings settings;
   SessionLimits limits;
-};
-
-/// A scene that is ready to be shown.
-struct LoadedScene {
-  std::string name;
-  std::shared_ptr<const scene::Scene> scene;
-  std::shared_ptr<const render::SceneResources> resources;
 };
 
 /// Everything a picture depends on, as of one moment.

@@ -20,7 +20,10 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
           },
           [this](const Session& session) { render_loop_.close(session); }),
       dispatcher_(options_.dispatch),
-      loader_(engine, catalogue_, options_.environment, options_.import_limits) {
+      loader_(engine, catalogue_,
+              {.environment = options_.environment,
+               .limits = options_.import_limits,
+               .cache_bytes = options_.scene_cache_bytes}) {
   add_scene_commands(dispatcher_, *this);
   add_camera_commands(dispatcher_, *this);
   add_animation_commands(dispatcher_, *this);
@@ -48,9 +51,9 @@ void SessionHost::stop() {
   render_loop_.stop();
 }
 
-void SessionHost::load_scene(std::shared_ptr<Session> session, const std::string& name,
+void SessionHost::load_scene(std::shared_ptr<Session> session, const protocol::SceneLoad& request,
                              const std::string& by, SceneLoader::Completion done) {
-  loader_.load(std::move(session), name, by, std::move(done));
+  loader_.load(std::move(session), request, by, std::move(done));
 }
 
 void SessionHost::on_first_frame(std::function<void()> callback) {

@@ -22,6 +22,7 @@ struct HostOptions {
   std::vector<std::filesystem::path> scene_roots;
   std::optional<std::filesystem::path> environment;  // for every scene, instead of its own
   scene::ImportLimits import_limits;
+  std::uint64_t scene_cache_bytes = 1ull << 30;
   protocol::DispatchLimits dispatch;
 };
 
@@ -41,8 +42,10 @@ class SessionHost {
   SessionRegistry& sessions() { return sessions_; }
   const SessionRegistry& sessions() const { return sessions_; }
 
-  void load_scene(std::shared_ptr<Session> session, const std::string& name, const std::string& by,
-                  SceneLoader::Completion done);
+  void load_scene(std::shared_ptr<Session> session, const protocol::SceneLoad& request,
+                  const std::string& by, SceneLoader::Completion done);
+  protocol::SceneCancelled cancel_load(const Session& session) { return loader_.cancel(session); }
+  CacheTotals scene_cache_totals() const { return loader_.cache_totals(); }
   void on_first_frame(std::function<void()> callback);
   /// Whether a picture has been rendered: everything works.
   bool ready() const { return render_loop_.has_rendered(); }

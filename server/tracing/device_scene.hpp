@@ -34,6 +34,7 @@ class RestingDeviceScene : public DeviceScene {
 
   const std::shared_ptr<const MaskTables>& masks() const { return masks_; }
   const MeshHierarchies& meshes() const { return meshes_; }
+  std::uint64_t bytes() const override { return meshes_.bytes(); }
 
  private:
   MeshHierarchies meshes_;

@@ -31,6 +31,7 @@ class MeshHierarchies {
 
   /// Where instances of the mesh lead; 0 where it has no triangles.
   VkDeviceAddress address(std::size_t mesh) const { return hierarchies_[mesh].address(); }
+  std::uint64_t bytes() const { return memory_.size() + scratch_.size(); }
 
   /// Builds those of deforming meshes anew, over positions that changed where they lie. Built, not
   /// refitted: as fast to trace in any pose, and corners may turn into nothing and back.

@@ -1,6 +1,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -23,9 +24,16 @@ class EmbreeStructure : public virtual AccelerationStructure {
       : scene_(device, scene, std::move(meshes)) {}
 
   const EmbreeScene& scene() const { return scene_; }
+  std::uint64_t bytes() const override { return bytes_; }
+  void set_bytes(std::int64_t bytes) {
+    bytes_ = static_cast<std::uint64_t>(std::max<std::int64_t>(bytes, 0));
+  }
 
  protected:
   EmbreeScene scene_;
+
+ private:
+  std::uint64_t bytes_ = 0;
 };
 
 class MovingEmbreeStructure : public EmbreeStructure, public MovingStructure {
@@ -67,6 +75,7 @@ void trace_batches(const gpu::FramePlan& plan, const RayStream& stream, gpu::Buf
 class EmbreeTracer : public RayTracer {
  public:
   explicit EmbreeTracer(const gpu::Device& device) : embree_(make_embree_device()) {
+    rtcSetDeviceMemoryMonitorFunction(embree_.get(), count_bytes, &bytes_);
     if (device.is_cpu()) return;
     throw gpu::GpuError("the tracer \"embree\" works on rays in the processor's memory, but " +
                         device.report().name + " is not a processor; use \"software\"");
@@ -76,9 +85,12 @@ class EmbreeTracer : public RayTracer {
 
   std::shared_ptr<const AccelerationStructure> build(const scene::Scene& scene,
                                                      const SceneBuffers& buffers) const override {
-    return std::make_shared<EmbreeStructure>(
+    const std::int64_t before = bytes_;
+    auto structure = std::make_shared<EmbreeStructure>(
         embree_.get(), scene,
         make_embree_meshes(embree_.get(), scene, mapped_bytes(buffers.alpha_heap)));
+    structure->set_bytes(bytes_ - before);
+    return structure;
   }
 
   // Shares the meshes that keep their shape; they hold on to what they need.
@@ -124,6 +136,12 @@ class EmbreeTracer : public RayTracer {
   }
 
  private:
+  static bool count_bytes(void* count, ssize_t bytes, bool) {
+    *static_cast<std::atomic<std::int64_t>*>(count) += bytes;
+    return true;
+  }
+
+  std::atomic<std::int64_t> bytes_ = 0;  // that Embree holds; outlives the device
   EmbreeHandle<RTCDevice> embree_;
 };
 

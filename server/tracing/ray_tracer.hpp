@@ -49,6 +49,8 @@ struct RayStream {
 class AccelerationStructure {
  public:
   virtual ~AccelerationStructure() = default;
+  /// Memory of a structure at rest, for limits on what is kept; 0 of one that moves.
+  virtual std::uint64_t bytes() const { return 0; }
 };
 
 /// What changed since a moving structure was last told.

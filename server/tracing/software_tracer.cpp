@@ -62,6 +62,7 @@ class RestingSoftwareStructure : public SoftwareStructure {
 
   SoftwareTables tables() const override { return {records_, triangles_, alpha_heap_}; }
   std::uint32_t root() const override { return root_; }
+  std::uint64_t bytes() const override { return records_.size() + triangles_.size(); }
   /// What moving copies start from; null for scenes without clips.
   const std::shared_ptr<const Bvh>& bvh() const { return bvh_; }
 

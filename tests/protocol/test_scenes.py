@@ -2,10 +2,13 @@
 
 import asyncio
 import os
+import re
 import shutil
 import struct
 import tempfile
+import time
 
+from harness.gltf import document, grid, write_glb, write_gltf
 from harness.server import Server, ServerTestCase
 from harness.viewer import Viewer
 
@@ -30,6 +33,11 @@ class Scenes(ServerTestCase):
             "lying_chunk": good[:12] + struct.pack("<I", 0xFFFFFFF0) + good[16:],
             "bad_json": good[:20] + b"}" * 40 + good[60:],
         }
+        cls.root = root
+        cls.write_choices(os.path.join(root, "choices.gltf"))
+        content, binary = document(*grid(500))
+        for name in ("slow", "other_slow"):
+            write_glb(os.path.join(root, name + ".glb"), content, binary)
         os.mkdir(os.path.join(root, "broken"))
         for name, data in cls.broken.items():
             with open(os.path.join(root, "broken", name + ".glb"), "wb") as file:
@@ -39,6 +47,26 @@ class Scenes(ServerTestCase):
                        '"byteLength": 4}]}')
         shutil.copy(os.path.join(given, "mirror.glb"), os.path.join(cls.folder.name, "secret.glb"))
         cls.server = Server("--scene", "mirror", scenes=root)
+
+    @staticmethod
+    def write_choices(path):
+        """Two scenes, the second of two triangles, and two variants of the first one's material."""
+        content, binary = document([0, 0, 0, 1, 0, 0, 0, 1, 0], [0, 1, 2])
+        content["extensionsUsed"] = ["KHR_materials_variants"]
+        content["extensions"] = {"KHR_materials_variants":
+                                 {"variants": [{"name": "day"}, {"name": "night"}]}}
+        content["materials"] = [{"name": name} for name in ("plain", "bright", "dark")]
+        content["meshes"][0]["primitives"][0].update(material=0, extensions={
+            "KHR_materials_variants": {"mappings": [{"material": 1, "variants": [0]},
+                                                    {"material": 2, "variants": [1]}]}})
+        content["nodes"] += [{"mesh": 0}, {"mesh": 0, "translation": [1, 0, 0]}]
+        content["scenes"].append({"name": "two", "nodes": [1, 2]})
+        write_gltf(path, content, binary)
+
+    def cache(self):
+        text = self.server.get("/metrics")[2].decode()
+        return {key: float(value) for key, value in
+                re.findall(r"^heliograph_scene_cache_(\w+) (\S+)$", text, re.MULTILINE)}
 
     @classmethod
     def tearDownClass(cls):
@@ -92,6 +120,56 @@ class Scenes(ServerTestCase):
                 if "error" in answer:
                     self.assert_error(answer, -32009, path="name")
             self.assertEqual((await viewer.call("scene.info"))["name"], "mirror")
+
+    def test_a_scene_and_a_variant_of_a_file_are_chosen(self):
+        info = self.server.call("scene.load", {"name": "choices"})
+        self.assertEqual((info["scenes"], info["scene"], info["triangles"]), (["one", "two"], 0, 1))
+        self.assertEqual((info["variants"], info["variant"]), (["day", "night"], None))
+        for scene in ("two", "1"):
+            info = self.server.call("scene.load", {"name": "choices", "scene": scene})
+            self.assertEqual((info["scene"], info["triangles"]), (1, 2))
+        info = self.server.call("scene.load", {"name": "choices", "variant": "night"})
+        self.assertEqual((info["scene"], info["variant"]), (0, "night"))
+        for member, wrong in (("scene", "tvo"), ("scene", "2"), ("variant", "nigth")):
+            answer = self.server.ask("scene.load", {"name": "choices", member: wrong})
+            self.assert_error(answer, -32004, path=member)
+        self.assertIn("night", answer["error"]["message"])
+        self.assertEqual(self.server.call("scene.info"), info)
+
+    async def test_a_load_is_cancelled(self):
+        async with Viewer(self.server) as viewer:
+            shown = await viewer.call("scene.info")
+            self.assertEqual(await viewer.call("scene.cancel"), {"cancelled": False})
+            load = asyncio.create_task(viewer.ask("scene.load", {"name": "slow"}))
+            await viewer.notification("scene.progress")
+            begun = time.monotonic()
+            self.assertEqual(await viewer.call("scene.cancel"), {"cancelled": True})
+            self.assert_error(await load, -32009, path="name")
+            self.assertLess(time.monotonic() - begun, 5)
+            self.assertEqual(await viewer.call("scene.info"), shown)
+            await viewer.call("scene.load", {"name": "furnace"})
+
+    async def test_one_load_serves_all_who_ask_for_the_same(self):
+        before = self.cache()
+        async with Viewer(self.server) as viewer:
+            answers = await asyncio.gather(
+                *[viewer.ask("scene.load", {"name": "other_slow"}) for _ in range(3)])
+            for answer in answers:
+                self.assertEqual(answer["result"]["name"], "other_slow")
+            await viewer.call("scene.load", {"name": "mirror"})
+            await viewer.call("scene.load", {"name": "other_slow"})
+        now = self.cache()
+        self.assertEqual(now["misses_total"] - before["misses_total"], 1)
+        self.assertEqual(now["hits_total"] - before["hits_total"], 4)
+        self.assertGreater(now["bytes"], before["bytes"])
+
+    def test_a_file_that_changed_is_read_again(self):
+        path = os.path.join(self.root, "changing.gltf")
+        self.write_choices(path)
+        self.assertEqual(self.server.call("scene.load", {"name": "changing"})["triangles"], 1)
+        content, binary = document(*grid(3))
+        write_gltf(path, content, binary)
+        self.assertEqual(self.server.call("scene.load", {"name": "changing"})["triangles"], 18)
 
     async def test_pictures_go_on_after_a_failed_load(self):
         async with Viewer(self.server) as viewer:

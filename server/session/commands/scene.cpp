@@ -4,6 +4,7 @@ namespace heliograph::session {
 
 using protocol::Empty;
 using protocol::Result;
+using protocol::SceneCancelled;
 using protocol::SceneInfo;
 using protocol::SceneListResult;
 using protocol::SceneLoad;
@@ -34,8 +35,12 @@ void add_scene_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
                         protocol::Completion<SceneInfo> done) {
         const auto session = host.sessions().session_of(context);
         if (!session) return done(session.error());
-        host.load_scene(*session, request.name, context.viewer, std::move(done));
+        host.load_scene(*session, request, context.viewer, std::move(done));
       });
+  add_command<Empty, SceneCancelled>(dispatcher, host, "scene.cancel",
+                                     [&](Session& session, const Empty&, const std::string&) {
+                                       return host.cancel_load(session);
+                                     });
 }
 
 }  // namespace heliograph::session

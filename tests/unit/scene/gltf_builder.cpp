@@ -130,9 +130,9 @@ Bytes GltfBuilder::glb() const {
   return file;
 }
 
-Scene GltfBuilder::import(const ImportLimits& limits) const {
+Scene GltfBuilder::import(const ImportLimits& limits, const SceneChoice& choice) const {
   const TemporaryFolder folder;
-  return import_gltf(folder.write("scene.glb", glb()), limits);
+  return import_gltf(folder.write("scene.glb", glb()), limits, {}, nullptr, choice);
 }
 
 GltfBuilder triangle() {

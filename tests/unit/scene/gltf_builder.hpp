@@ -57,7 +57,7 @@ struct GltfBuilder {
   std::uint32_t add_image(const Bytes& file);
 
   Bytes glb() const;
-  Scene import(const ImportLimits& limits = {}) const;
+  Scene import(const ImportLimits& limits = {}, const SceneChoice& choice = {}) const;
 };
 
 /// One triangle in the plane z = 0, counter-clockwise seen from +Z, without normals.

@@ -178,6 +178,14 @@ TEST(Materials, VariantsAreListedAndTheDefaultIsShown) {
   const Scene scene = builder.import();
   EXPECT_EQ(scene.variants, (std::vector<std::string>{"beach", "night"}));
   EXPECT_EQ(scene.material_names[scene.meshes[0].material], "plain");
+  EXPECT_EQ(scene.variant, std::nullopt);
+  const Scene golden = builder.import({}, {.scene = "", .variant = "night"});
+  EXPECT_EQ(golden.material_names[golden.meshes[0].material], "golden");
+  EXPECT_EQ(golden.variant, 1u);
+  mappings[0]["variants"] = {0};
+  const Scene unmapped = builder.import({}, {.scene = "", .variant = "night"});
+  EXPECT_EQ(unmapped.material_names[unmapped.meshes[0].material], "plain");
+  EXPECT_THROW(builder.import({}, {.scene = "", .variant = "day"}), NoSuchChoice);
   mappings[0]["variants"] = {2};
   EXPECT_NE(refusal_of(builder).find("variants: 2 is not an index"), std::string::npos);
   mappings[0]["variants"] = {1, 1};

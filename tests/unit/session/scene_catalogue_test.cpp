@@ -114,8 +114,8 @@ TEST(EnvironmentSource, WithoutAFileTheLightIsTheSameFromEverywhere) {
   TemporaryFolder folder;
   const auto scene = folder.write("chair.glb");
   EnvironmentSource source(std::nullopt);
-  const auto environment =
-      source.environment_for({.name = "chair", .path = scene, .root = folder.path()});
+  EXPECT_EQ(source.path_for({.name = "chair", .path = scene, .root = folder.path()}), std::nullopt);
+  const auto environment = source.environment_at({});
   ASSERT_FALSE(environment->radiance.empty());
   for (const glm::vec3& texel : environment->radiance) EXPECT_EQ(texel, glm::vec3(1.0f));
 }

@@ -1,0 +1,87 @@
+#include "session/scene_cache.hpp"
+
+#include <gtest/gtest.h>
+
+#include "temporary_folder.hpp"
+
+namespace heliograph::session {
+namespace {
+
+SceneKey key(const char* file) {
+  return {.file = file, .choice = {}, .environment = {}};
+}
+
+LoadedScene scene_of(std::uint64_t bytes) {
+  return {.name = "thing",
+          .scene = std::make_shared<const scene::Scene>(),
+          .resources = nullptr,
+          .environment = {},
+          .host_bytes = bytes / 4,
+          .device_bytes = bytes - bytes / 4};
+}
+
+TEST(SceneCache, FindsWhatWasLoadedForTheSameThingOnly) {
+  SceneCache cache(1000);
+  const LoadedScene shown = cache.add(key("a"), scene_of(100), {});
+  EXPECT_EQ(cache.find(key("a"))->scene, shown.scene);
+  EXPECT_FALSE(cache.find(key("b")));
+  SceneKey other = key("a");
+  other.choice.variant = "golden";
+  EXPECT_FALSE(cache.find(other));
+  other = key("a");
+  other.environment = "sky.hdr";
+  EXPECT_FALSE(cache.find(other));
+}
+
+TEST(SceneCache, DropsWhatNobodyShowsLongestUnusedFirst) {
+  SceneCache cache(250);
+  for (const char* name : {"a", "b", "c"}) cache.add(key(name), scene_of(100), {});
+  ASSERT_TRUE(cache.find(key("a"))) << "used again";
+  EXPECT_TRUE(cache.trim());
+  EXPECT_TRUE(cache.find(key("a")));
+  EXPECT_FALSE(cache.find(key("b")));
+  EXPECT_TRUE(cache.find(key("c")));
+  const CacheTotals totals = cache.totals();
+  EXPECT_EQ(totals.evictions, 1u);
+  EXPECT_EQ(totals.entries, 2u);
+  EXPECT_EQ(totals.bytes, 200u);
+}
+
+TEST(SceneCache, KeepsWhatIsShownWhateverTheLimit) {
+  SceneCache cache(0);
+  std::optional<LoadedScene> shown = cache.add(key("a"), scene_of(100), {});
+  EXPECT_FALSE(cache.trim());
+  EXPECT_TRUE(cache.find(key("a")));
+  shown.reset();
+  EXPECT_TRUE(cache.trim());
+  EXPECT_FALSE(cache.find(key("a")));
+  EXPECT_EQ(cache.totals().bytes, 0u);
+}
+
+TEST(SceneCache, APointerToAnyPartCountsAsShown) {
+  SceneCache cache(0);
+  const auto part = cache.add(key("a"), scene_of(100), {}).resources;
+  EXPECT_FALSE(cache.trim()) << "a null pointer that shares in the entry";
+}
+
+TEST(SceneCache, ForgetsAFileThatChanged) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.write("thing.glb", "first");
+  SceneCache cache(1000);
+  cache.add(key("a"), scene_of(100), {scene::examine_file(file)});
+  EXPECT_TRUE(cache.find(key("a")));
+  folder.write("thing.glb", "second");
+  EXPECT_FALSE(cache.find(key("a")));
+  EXPECT_EQ(cache.totals().bytes, 0u);
+}
+
+TEST(SceneCache, TheNewerOfTheSameThingTakesTheOlderOnesPlace) {
+  SceneCache cache(1000);
+  cache.add(key("a"), scene_of(100), {});
+  const LoadedScene newer = cache.add(key("a"), scene_of(300), {});
+  EXPECT_EQ(cache.find(key("a"))->scene, newer.scene);
+  EXPECT_EQ(cache.totals().bytes, 300u);
+}
+
+}  // namespace
+}  // namespace heliograph::session
