@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "scene/first_failure.hpp"
 #include "scene/image_decoder.hpp"
 #include "scene/mipmaps.hpp"
 #include "scene/quote.hpp"
@@ -82,10 +83,14 @@ std::vector<Image> decode_images(std::span<const ImageSource> sources,
                                  const std::function<void()>& decoded) {
   const std::vector<ImageSize> sizes = probe_images(sources, uses, limits);
   std::vector<Image> images(uses.size());
+  FirstFailure failure;
   tbb::parallel_for(std::size_t(0), uses.size(), [&](std::size_t i) {
-    images[i] = decode(sources[uses[i].source], sizes[i], uses[i].srgb);
-    decoded();
+    failure.guard([&] {
+      images[i] = decode(sources[uses[i].source], sizes[i], uses[i].srgb);
+      decoded();
+    });
   });
+  failure.rethrow();
   return images;
 }
 

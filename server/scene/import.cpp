@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <new>
 #include <optional>
 #include <set>
@@ -17,6 +18,7 @@
 #include "scene/cameras.hpp"
 #include "scene/deform.hpp"
 #include "scene/draco.hpp"
+#include "scene/first_failure.hpp"
 #include "scene/gltf_file.hpp"
 #include "scene/images.hpp"
 #include "scene/lights.hpp"
@@ -61,7 +63,8 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
-/// Counts what several threads have done, and tells of it on the one that made it.
+/// Counts what several threads have done, and tells of it on the one that made it. What that throws
+/// is thrown on all.
 class PartsDone {
  public:
   PartsDone(std::function<void(float fraction)> tell, std::size_t parts)
@@ -69,7 +72,15 @@ class PartsDone {
 
   void add_one() {
     const std::size_t done = ++done_;
-    if (std::this_thread::get_id() == home_) tell_(float(done) / float(parts_));
+    if (stopped_) std::rethrow_exception(reason_);
+    if (std::this_thread::get_id() != home_) return;
+    try {
+      tell_(float(done) / float(parts_));
+    } catch (...) {
+      reason_ = std::current_exception();
+      stopped_ = true;
+      throw;
+    }
   }
 
  private:
@@ -77,6 +88,8 @@ class PartsDone {
   const std::size_t parts_;
   const std::thread::id home_ = std::this_thread::get_id();
   std::atomic<std::size_t> done_ = 0;
+  std::atomic<bool> stopped_ = false;
+  std::exception_ptr reason_;  // once stopped
 };
 
 class Importer {
@@ -123,18 +136,24 @@ class Importer {
     const std::size_t parts = primitives.primitives.size() + textures.image_uses().size();
     PartsDone done([&](float fraction) { report("meshes and images", 0.1f + 0.85f * fraction); },
                    parts);
+    FirstFailure failure;
+    const auto guarded = [&](double& seconds, const auto& task) {
+      const Stopwatch own;
+      failure.guard(task);
+      seconds = own.seconds();
+    };
     tbb::parallel_invoke(
         [&] {
-          const Stopwatch own;
-          build_meshes(primitives, accessors, mesh_materials, done);
-          times_.geometry = own.seconds();
+          guarded(times_.geometry,
+                  [&] { build_meshes(primitives, accessors, mesh_materials, done); });
         },
         [&] {
-          const Stopwatch own;
-          scene_.images =
-              decode_images(images, textures.image_uses(), limits_, [&] { done.add_one(); });
-          times_.images = own.seconds();
+          guarded(times_.images, [&] {
+            scene_.images =
+                decode_images(images, textures.image_uses(), limits_, [&] { done.add_one(); });
+          });
         });
+    failure.rethrow();
     watch.lap();
     build_alpha_heap(scene_);
 
@@ -181,16 +200,21 @@ class Importer {
                     const std::vector<std::uint32_t>& materials, PartsDone& done) {
     scene_.meshes.resize(table.primitives.size());
     scene_.shapes.resize(table.primitives.size());
+    FirstFailure failure;
     tbb::parallel_for(std::size_t(0), table.primitives.size(), [&](std::size_t i) {
-      const Primitive& primitive = table.primitives[i];
-      if (primitive.draco) {
-        const UnpackedPrimitive unpacked = unpack_draco(primitive, accessors);
-        build(i, unpacked.primitive, unpacked.accessors, materials[i]);
-      } else {
-        build(i, primitive, accessors, materials[i]);
-      }
-      done.add_one();
+      failure.guard([&] {
+        unpack_and_build(i, table.primitives[i], accessors, materials[i]);
+        done.add_one();
+      });
     });
+    failure.rethrow();
+  }
+
+  void unpack_and_build(std::size_t index, const Primitive& primitive,
+                        std::span<const Accessor> accessors, std::uint32_t material) {
+    if (!primitive.draco) return build(index, primitive, accessors, material);
+    const UnpackedPrimitive unpacked = unpack_draco(primitive, accessors);
+    build(index, unpacked.primitive, unpacked.accessors, material);
   }
 
   void build(std::size_t index, const Primitive& primitive, std::span<const Accessor> accessors,

@@ -74,6 +74,7 @@ void Session::show(LoadedScene scene, const std::string& by) {
   scene_info_ = describe_scene(scene);
   state_.resources = std::move(scene.resources);
   state_.animation = {};
+  ++state_.cuts;
   if (scene_->cameras.empty()) {
     state_.camera = scene::fit_camera(scene_->bounds, scene::Camera().vertical_fov, aspect());
     camera_name_.reset();

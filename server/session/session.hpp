@@ -44,7 +44,7 @@ struct RenderState {
   std::shared_ptr<const render::SceneResources> resources;
   std::shared_ptr<const scene::Scene> scene;
   scene::Camera camera;
-  std::uint64_t cuts = 0;       // how often the camera jumped instead of moving
+  std::uint64_t cuts = 0;       // how often the picture jumped: camera, scene
   bool camera_follows = false;  // the clip carries the camera
   AnimationClock animation;
   protocol::Settings settings;
