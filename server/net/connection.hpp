@@ -26,6 +26,7 @@ constexpr std::chrono::seconds idle_timeout{30};
 constexpr std::chrono::seconds closing_timeout{2};
 constexpr std::size_t largest_request_head = 8 * 1024;
 constexpr int send_buffer_bytes = 256 * 1024;
+constexpr int unsent_bytes = 64 * 1024;
 constexpr double calls_per_second = 500.0;
 constexpr double calls_at_once = 1000.0;
 
@@ -65,6 +66,11 @@ struct ServerContext {
 
 /// Reads requests from a fresh connection and answers them, or hands it to a viewer.
 void start_http_connection(ServerContext& context, ClientStream stream, Door door);
+
+/// Answers a request that may be answered with a session's pictures without an end, as
+/// multipart/x-mixed-replace. `headers` are those of every answer.
+void start_picture_stream(ServerContext& context, ClientStream stream, const HttpRequest& request,
+                          const std::string& session);
 
 /// Carries on a connection whose client has asked for the viewers' WebSocket and may have it.
 void start_viewer_connection(ServerContext& context, ClientStream stream,

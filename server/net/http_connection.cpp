@@ -64,6 +64,18 @@ std::optional<HttpResponse> upgrade_refusal(const HttpRequest& request,
   return std::nullopt;
 }
 
+/// "/api/v1/sessions/main/stream.mjpg" -> main
+std::optional<std::string> picture_stream_address(const HttpRequest& request) {
+  constexpr std::string_view before = "/api/v1/sessions/";
+  constexpr std::string_view after = "/stream.mjpg";
+  const std::string_view path = request.path;
+  const std::size_t around = before.size() + after.size();
+  if (path.size() <= around || !path.starts_with(before) || !path.ends_with(after)) {
+    return std::nullopt;
+  }
+  return std::string(path.substr(before.size(), path.size() - around));
+}
+
 class HttpConnection : public Connection, public std::enable_shared_from_this<HttpConnection> {
  public:
   HttpConnection(ServerContext& context, ClientStream stream, Door door)
@@ -139,6 +151,9 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     if (!calls_.allow(RateLimit::Clock::now())) {
       return send(text_response(429, "Too many requests on this connection."));
     }
+    if (const auto session = picture_stream_address(request); session && request.method == "GET") {
+      return stream_pictures(request, *session);
+    }
     stream_.next_layer().expires_never();
     context_.router.handle(request, [self = shared_from_this()](HttpResponse response) {
       asio::post(self->stream_.get_executor(), [self, response = std::move(response)]() mutable {
@@ -170,6 +185,17 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     ++context_.traffic.responses[101];
     stream_.next_layer().expires_never();
     start_viewer_connection(context_, std::move(stream_), request, admission.role);
+  }
+
+  void stream_pictures(const HttpRequest& request, const std::string& session) {
+    keep_alive_ = false;
+    Admission admission = context_.access.admit(request);
+    if (admission.refusal) return send(*std::move(admission.refusal));
+    if (context_.draining) return send(come_back_later("The server is shutting down."));
+    const auto found = context_.host.sessions().find(session);
+    if (!found) return send(text_response(404, found.error().message));
+    stream_.next_layer().expires_never();
+    start_picture_stream(context_, std::move(stream_), request, session);
   }
 
   void send(HttpResponse answer) {

@@ -1,7 +1,10 @@
 #include "net/server.hpp"
 
 #include <fmt/format.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <spdlog/spdlog.h>
+#include <sys/socket.h>
 
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
@@ -83,6 +86,8 @@ struct Server::State {
     socket.set_option(tcp::no_delay(true), ignored);
     // Small, so that a finished write means the picture is nearly there.
     socket.set_option(asio::socket_base::send_buffer_size(send_buffer_bytes), ignored);
+    setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &unsent_bytes,
+               sizeof unsent_bytes);
     start_http_connection(context, ClientStream(std::move(socket), *std::move(seat)), by);
   }
 

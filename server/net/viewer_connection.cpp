@@ -34,6 +34,7 @@ constexpr std::size_t most_waiting_bytes = 128u << 20;
 constexpr std::uint16_t session_ended = 4001;
 constexpr std::uint16_t slow_consumer = 4004;
 constexpr int reconnect_after_ms = 1000;
+constexpr std::chrono::seconds longest_without_acknowledgement{15};
 
 constexpr const char* rate_limited =
     R"({"jsonrpc":"2.0","id":null,"error":{"code":-32002,)"
@@ -50,6 +51,7 @@ class ViewerConnection : public Connection,
         view_only_(role == Role::view),
         socket_(std::move(stream)),
         close_deadline_(socket_.get_executor()),
+        patience_(socket_.get_executor()),
         calls_(calls_per_second, calls_at_once, RateLimit::Clock::now()) {
     context_.enter(*this);
   }
@@ -197,6 +199,26 @@ class ViewerConnection : public Connection,
                                                   asio::buffer(frame_in_flight_->frame->payload)};
     socket_.binary(true);
     socket_.async_write(parts, done);
+    if (!std::exchange(patience_runs_, true)) {
+      expect_acknowledgement(std::chrono::steady_clock::now());
+    }
+  }
+
+  /// Lets a viewer go that takes frames but does not acknowledge them.
+  void expect_acknowledgement(std::chrono::steady_clock::time_point since) {
+    patience_.expires_at(since + longest_without_acknowledgement);
+    patience_.async_wait([self = shared_from_this()](error_code error) {
+      if (error || self->closing_ || self->viewer_.empty()) return;
+      const auto session = self->context_.host.sessions().session_watched_by(self->viewer_);
+      const auto waits =
+          session ? session->audience().unacknowledged_since(self->viewer_) : std::nullopt;
+      self->patience_runs_ = waits.has_value();
+      if (!waits) return;
+      if (std::chrono::steady_clock::now() < *waits + longest_without_acknowledgement) {
+        return self->expect_acknowledgement(*waits);
+      }
+      self->close(slow_consumer, "frames are not being acknowledged");
+    });
   }
 
   void written(error_code error) {
@@ -222,6 +244,7 @@ class ViewerConnection : public Connection,
   void ended(error_code error) {
     closing_ = true;
     close_deadline_.cancel();
+    patience_.cancel();
     waiting_.clear();
     error_code ignored;
     beast::get_lowest_layer(socket_).socket().close(ignored);
@@ -237,6 +260,8 @@ class ViewerConnection : public Connection,
   websocket::stream<ClientStream> socket_;
   http::request<http::empty_body> handshake_;
   asio::steady_timer close_deadline_;
+  asio::steady_timer patience_;  // runs while a frame is on its way
+  bool patience_runs_ = false;
   RateLimit calls_;
   beast::flat_buffer incoming_;
   std::string viewer_;

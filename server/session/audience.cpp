@@ -169,6 +169,12 @@ Result<void> Audience::subscribe(const std::string& viewer, std::chrono::millise
   return {};
 }
 
+std::optional<Clock::time_point> Audience::unacknowledged_since(const std::string& viewer) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = viewers_.find(viewer);
+  return found == viewers_.end() ? std::nullopt : found->second.pacer.unacknowledged_since();
+}
+
 std::optional<stream::OutgoingFrame> Audience::take(const std::string& viewer) {
   const std::lock_guard lock(mutex_);
   const Result<Viewer*> found = find(viewer);

@@ -72,6 +72,8 @@ class Audience {
                                            const protocol::StreamConfigure& change);
   protocol::Result<void> acknowledge(const std::string& viewer, const protocol::StreamAck& ack);
   protocol::Result<void> subscribe(const std::string& viewer, std::chrono::milliseconds interval);
+  /// Since when the oldest frame on its way to this viewer waits for its acknowledgement.
+  std::optional<Clock::time_point> unacknowledged_since(const std::string& viewer) const;
   /// The frame to send to this viewer now, if any.
   std::optional<stream::OutgoingFrame> take(const std::string& viewer);
 

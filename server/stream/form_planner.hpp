@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <limits>
 #include <map>
 #include <optional>
 #include <vector>
@@ -20,6 +21,7 @@ struct FormWish {
 struct FormRequest {
   Form form;
   bool key = false;  // a video has to begin anew
+  double max_bytes = std::numeric_limits<double>::infinity();  // of a video's frame, on average
 };
 
 /// Decides in which forms a picture is encoded. A viewer that cannot go on with its video, because

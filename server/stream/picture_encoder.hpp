@@ -1,10 +1,13 @@
 #pragma once
 
+#include <map>
 #include <memory>
 
 #include "stream/encoded_frame.hpp"
 #include "stream/form_planner.hpp"
+#include "stream/h264_encoder.hpp"
 #include "stream/jpeg_encoder.hpp"
+#include "stream/picture_scaler.hpp"
 #include "stream/picture_view.hpp"
 
 namespace heliograph::stream {
@@ -19,7 +22,8 @@ class PictureEncoder {
   /// `jpeg` is used by the same thread.
   explicit PictureEncoder(JpegEncoder& jpeg) : jpeg_(jpeg) {}
 
-  /// A picture out of many. @throws std::runtime_error
+  /// A picture out of many. A video that cannot be encoded, for instance because the picture is
+  /// one pixel wide, is replaced by its stand-in. @throws std::runtime_error
   std::shared_ptr<EncodedFrame> encode(const PictureView& picture, const FormRequest& request);
   /// The picture that stays: JPEG with all its colour, of `quality` or better, or PNG.
   /// @throws std::runtime_error
@@ -27,7 +31,24 @@ class PictureEncoder {
                                              protocol::StillFormat format, int quality);
 
  private:
+  /// One video: a new one begins when the size of the picture changes.
+  struct Video {
+    std::unique_ptr<H264Encoder> encoder;
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    VideoPosition next;
+    Clock::time_point used_at;
+  };
+
+  std::shared_ptr<EncodedFrame> encode_jpeg(const PictureView& picture, const Form& form);
+  std::shared_ptr<EncodedFrame> encode_video(const PictureView& picture,
+                                             const FormRequest& request);
+  Video& video_for(const Form& form, const PictureView& picture);
+
   JpegEncoder& jpeg_;
+  PictureScaler scaler_;
+  std::map<Form, Video> videos_;
+  std::uint64_t videos_so_far_ = 0;
 };
 
 }  // namespace heliograph::stream

@@ -67,6 +67,12 @@ class ViewerPacer {
   /// When the rate limit next lets a frame through.
   Clock::time_point next_turn() const { return next_turn_; }
 
+  /// When the oldest frame that is on its way was taken.
+  std::optional<Clock::time_point> unacknowledged_since() const {
+    if (on_the_way_.empty()) return std::nullopt;
+    return on_the_way_.front().at;
+  }
+
   const PacerTotals& totals() const { return totals_; }
   std::size_t on_the_way() const { return on_the_way_.size(); }
   /// Smoothed time from sending to acknowledgement, less what the client says it held the frame;

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "session/commands/commands.hpp"
+#include "stream/codec_choice.hpp"
 
 namespace heliograph::session {
 
@@ -14,25 +15,10 @@ using protocol::StreamAck;
 using protocol::StreamCodec;
 using protocol::StreamConfigure;
 using protocol::StreamState;
+using protocol::enum_name;
 namespace error = protocol::error;
 
 namespace {
-
-struct Agreement {
-  StreamCodec codec = StreamCodec::jpeg;
-  std::optional<std::string> reason;  // why it is not what the client likes best
-};
-
-/// The codec that the client likes best out of those that the server has.
-Agreement agree(const std::vector<std::string>& codecs) {
-  Agreement agreement;
-  for (const std::string& name : codecs) {
-    const auto codec = protocol::enum_value<StreamCodec>(name);
-    if (codec == StreamCodec::jpeg) break;
-    if (!agreement.reason) agreement.reason = "this server does not encode " + name;
-  }
-  return agreement;
-}
 
 /// Made up once in a run: clients tell by it whether their session went on without them.
 const std::string& instance() {
@@ -54,7 +40,7 @@ Result<std::shared_ptr<Session>> choose_session(SessionHost& host, const Hello& 
 }
 
 HelloResult greeting(SessionHost& host, const Session& session, const std::string& viewer,
-                     const Agreement& agreed) {
+                     const stream::CodecChoice& choice) {
   const render::DeviceInfo& device = host.engine().device();
   const SessionLimits& limits = session.limits();
   HelloResult result;
@@ -63,11 +49,9 @@ HelloResult greeting(SessionHost& host, const Session& session, const std::strin
   result.tracer = host.engine().tracer();
   result.session = session.name();
   result.viewer = viewer;
-  result.codecs = {"jpeg"};
-  if (agreed.codec != StreamCodec::jpeg) {
-    result.codecs.insert(result.codecs.begin(), std::string(protocol::enum_name(agreed.codec)));
-  }
-  result.codec_reason = agreed.reason;
+  if (choice.codec != StreamCodec::jpeg) result.codecs.emplace_back(enum_name(choice.codec));
+  result.codecs.emplace_back("jpeg");
+  result.codec_reason = choice.reason;
   result.limits = {
       .max_width = limits.max_width,
       .max_height = limits.max_height,
@@ -86,11 +70,9 @@ Result<HelloResult> greet(SessionHost& host, const Hello& request,
   }
   const Result<std::shared_ptr<Session>> chosen = choose_session(host, request, call);
   if (!chosen) return chosen.error();
-  const std::shared_ptr<Session>& session = *chosen;
-  const Agreement agreed = agree(codecs);
-  if (!call.viewer.empty()) session->audience().start(call.viewer, agreed.codec);
-
-  return greeting(host, *session, call.viewer, agreed);
+  const stream::CodecChoice choice = stream::choose_codec(codecs);
+  if (!call.viewer.empty()) (*chosen)->audience().start(call.viewer, choice.codec);
+  return greeting(host, **chosen, call.viewer, choice);
 }
 
 }  // namespace

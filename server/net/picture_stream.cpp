@@ -1,0 +1,198 @@
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <boost/asio/post.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/serializer.hpp>
+#include <boost/beast/http/write.hpp>
+#include <charconv>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "net/connection.hpp"
+#include "protocol/messages.hpp"
+#include "session/viewer_link.hpp"
+
+namespace heliograph::net {
+namespace {
+
+namespace http = beast::http;
+using boost::system::error_code;
+
+// A client that takes no data for so long is let go.
+constexpr std::chrono::seconds longest_write{15};
+
+// Browsers show a part only when the header of the next one arrives, so that header goes out with
+// each picture, and cannot tell the next picture's length.
+constexpr std::string_view first_part = "--picture\r\nContent-Type: image/jpeg\r\n\r\n";
+constexpr std::string_view next_part = "\r\n--picture\r\nContent-Type: image/jpeg\r\n\r\n";
+constexpr std::string_view last_part = "\r\n--picture--\r\n";
+
+std::optional<std::uint32_t> number(const HttpRequest& request, const std::string& name) {
+  const std::string text = request.parameter(name).value_or("");
+  std::uint32_t value = 0;
+  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (parsed.ec != std::errc() || parsed.ptr != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// A viewer that only takes pictures. What has been written counts as acknowledged: the small send
+/// buffer of its socket is all that lies between, and there is no queue.
+class PictureStream : public Connection,
+                      public session::ViewerLink,
+                      public std::enable_shared_from_this<PictureStream> {
+ public:
+  PictureStream(ServerContext& context, ClientStream stream)
+      : context_(context), stream_(std::move(stream)) {
+    context_.enter(*this);
+  }
+  ~PictureStream() override { context_.leave(*this); }
+
+  void start(const HttpRequest& request, const std::string& session) {
+    const auto joined = context_.host.sessions().enter(session, weak_from_this());
+    viewer_ = joined ? *joined : std::string();
+    headers_.version(11);
+    headers_.result(joined ? http::status::ok : http::status::service_unavailable);
+    for (const auto& [name, value] : context_.router.headers()) headers_.set(name, value);
+    headers_.set(http::field::cache_control, "no-store");
+    headers_.set("X-Accel-Buffering", "no");
+    headers_.keep_alive(false);
+    if (joined) {
+      spdlog::info("session {}: viewer {} takes pictures over HTTP", session, viewer_);
+      headers_.set(http::field::content_type, "multipart/x-mixed-replace; boundary=picture");
+      configure(request);
+    } else {
+      ending_ = true;
+    }
+    writing_ = true;
+    serializer_.emplace(headers_);
+    stream_.next_layer().expires_after(longest_write);
+    http::async_write_header(stream_, *serializer_,
+                             [self = shared_from_this()](error_code error, std::size_t) {
+                               if (error || self->viewer_.empty()) return self->ended();
+                               self->write(first_part);
+                             });
+    read();
+  }
+
+  void shut_down() override { finish(); }
+
+  void frame_ready() override {
+    if (announced_.exchange(true)) return;
+    asio::post(stream_.get_executor(), [self = shared_from_this()] {
+      self->announced_ = false;
+      self->write_next();
+    });
+  }
+
+  void send(std::string, std::string_view) override {}
+
+  void dismiss(std::string) override {
+    asio::post(stream_.get_executor(), [self = shared_from_this()] { self->finish(); });
+  }
+
+ private:
+  void configure(const HttpRequest& request) {
+    const auto session = context_.host.sessions().session_watched_by(viewer_);
+    if (!session) return;
+    protocol::StreamConfigure change;
+    if (const auto quality = number(request, "quality")) {
+      change.quality = std::clamp(*quality, 1u, 100u);
+    }
+    if (const auto rate = number(request, "max_fps")) {
+      change.max_fps = std::clamp(*rate, 1u, 240u);
+    }
+    if (session->audience().configure(viewer_, change)) session->audience().start(viewer_);
+  }
+
+  /// The client has nothing to say; its end is noticed here.
+  void read() {
+    stream_.async_read_some(asio::buffer(incoming_),
+                            [self = shared_from_this()](error_code error, std::size_t) {
+                              if (error) return self->ended();
+                              self->read();
+                            });
+  }
+
+  void write(std::string_view text) {
+    writing_ = true;
+    stream_.next_layer().expires_after(longest_write);
+    asio::async_write(stream_, asio::buffer(text.data(), text.size()),
+                      [self = shared_from_this()](error_code error, std::size_t) {
+                        self->written(error);
+                      });
+  }
+
+  void write_next() {
+    if (writing_ || viewer_.empty()) return;
+    if (ending_) return write(std::exchange(farewell_, {}));
+    const auto session = context_.host.sessions().session_watched_by(viewer_);
+    if (!session) return;
+    frame_ = session->audience().take(viewer_);
+    if (!frame_) return;
+    writing_ = true;
+    stream_.next_layer().expires_after(longest_write);
+    const std::array<asio::const_buffer, 2> parts{asio::buffer(frame_->frame->payload),
+                                                  asio::buffer(next_part)};
+    asio::async_write(stream_, parts, [self = shared_from_this()](error_code error, std::size_t) {
+      self->written(error);
+    });
+  }
+
+  void written(error_code error) {
+    writing_ = false;
+    stream_.next_layer().expires_never();
+    if (error || (ending_ && farewell_.empty())) return ended();
+    if (const auto sent = std::exchange(frame_, std::nullopt)) acknowledge(*sent);
+    write_next();
+  }
+
+  void acknowledge(const stream::OutgoingFrame& sent) {
+    const auto header = protocol::decode_frame_header(sent.header);
+    const auto session = context_.host.sessions().session_watched_by(viewer_);
+    if (!header || !session) return;
+    const auto known = session->audience().acknowledge(viewer_, {.frame_seq = header->frame_seq});
+    if (!known) finish();
+  }
+
+  /// Ends after the picture that is being written.
+  void finish() {
+    if (std::exchange(ending_, true)) return;
+    write_next();
+  }
+
+  void ended() {
+    ending_ = true;
+    stream_.next_layer().close();
+    if (viewer_.empty()) return;
+    context_.host.sessions().leave(viewer_);
+    spdlog::info("viewer {} left", viewer_);
+    viewer_.clear();
+  }
+
+  ServerContext& context_;
+  ClientStream stream_;
+  http::response<http::empty_body> headers_;
+  std::optional<http::response_serializer<http::empty_body>> serializer_;
+  std::array<char, 512> incoming_{};
+  std::string viewer_;
+  std::optional<stream::OutgoingFrame> frame_;
+  std::string_view farewell_ = last_part;
+  bool writing_ = false;
+  bool ending_ = false;
+  std::atomic<bool> announced_ = false;
+};
+
+}  // namespace
+
+void start_picture_stream(ServerContext& context, ClientStream stream, const HttpRequest& request,
+                          const std::string& session) {
+  std::make_shared<PictureStream>(context, std::move(stream))->start(request, session);
+}
+
+}  // namespace heliograph::net
