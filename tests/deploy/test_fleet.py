@@ -11,6 +11,7 @@ import websockets
 from harness.fleet import Fleet, add_images
 from harness.pictures import decode_jpeg, difference
 from harness.replaying_viewer import ReplayingViewer, Wish
+from harness.scenes import NAMES
 from harness.servers import TOKEN
 from harness.site import Site
 
@@ -19,7 +20,7 @@ MOST_SECONDS_AWAY = 5.0
 
 def wishes(count):
     """Different pictures: scene, camera and a setting that is not the default."""
-    return [Wish(scene=("pillars", "glossy_sponza_1")[i % 2], eye=(0.5 * i, 2.0, 8.0 - 0.5 * i),
+    return [Wish(NAMES[i % 2], eye=(0.5 * i, 2.0, 8.0 - 0.5 * i),
                  settings={"exposure": {"compensation": 0.125 * (i + 1)}}) for i in range(count)]
 
 
@@ -121,6 +122,7 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
         nodes = await self.nodes_of(viewers)
         victim, others = viewers[0], viewers[1:]
         before = await self.at_rest(victim)
+        self.assertGreater(before.deviation(), 5, "nothing to be seen")
         for viewer in viewers:
             viewer.forget_gaps()
         await self.docker("kill", nodes[0])
@@ -221,7 +223,7 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
 
 async def greeting(url):
     """One viewer that comes, greets and goes; None or what went wrong."""
-    viewer = ReplayingViewer(url, TOKEN, Wish())
+    viewer = ReplayingViewer(url, TOKEN, Wish(NAMES[0]))
     try:
         return await viewer.greet_once()
     except Exception as failure:  # whatever it is, it is reported

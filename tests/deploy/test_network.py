@@ -22,14 +22,14 @@ class BadLine(unittest.IsolatedAsyncioTestCase):
         cls.machine = cls.site.add_machine()
         images.add_base(cls.machine)
         images.add_server(cls.machine)
-        cls.container = Container(cls.machine, "far", serve=("--scene", "pillars"))
+        cls.container = Container(cls.machine, "far", serve=("--scene", "glossy_sponza_1"))
         cls.addClassCleanup(cls.container.remove)
         cls.container.wait_healthy()
 
     async def watch(self, line):
         """Moves the camera all the time; gives the seconds from each move to its picture."""
         with WideArea(self.machine, line):
-            viewer = ReplayingViewer(f"http://{FAR}:8080/", TOKEN, Wish(size=(640, 360)))
+            viewer = ReplayingViewer(f"http://{FAR}:8080/", TOKEN, Wish("glossy_sponza_1", size=(640, 360)))
             async with viewer:
                 viewer.round_trips.clear()
                 before, started = viewer.frames, time.monotonic()

@@ -90,9 +90,9 @@ class Package(unittest.TestCase):
         self.assertEqual(system.files() ^ before, set())
 
     def renders_as_on_the_host(self):
-        self.system.run("heliograph", "render", "/usr/share/heliograph/scenes/pillars.glb",
+        self.system.run("heliograph", "render", "/usr/share/heliograph/scenes/glossy_sponza_1.glb",
                         "-o", "/tmp/inside.png", "--width", "160", "--height", "90", "--samples", "64")
-        scene = os.path.join(self.system.folder, "usr/share/heliograph/scenes/pillars.glb")
+        scene = os.path.join(self.system.folder, "usr/share/heliograph/scenes/glossy_sponza_1.glb")
         outside = os.path.join(self.work, "outside.png")
         render(scene, outside, samples=64)
         self.assertLess(largest_difference_of_means(

@@ -42,7 +42,7 @@ class Packages(unittest.TestCase):
                 continue
             purpose, package, *_ = line.split()
             with self.subTest(package):
-                self.assertIn(purpose, {"build", "run", "test", "deploy"})
+                self.assertIn(purpose, {"build", "run", "image", "test", "deploy"})
                 self.assertNotIn(package, seen)
             seen.add(package)
 

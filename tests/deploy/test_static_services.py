@@ -25,7 +25,7 @@ class Options(unittest.TestCase):
                 self.assertEqual(sorted(given - known - balancers), [])
 
     def test_every_measurement_shown_is_one_that_the_program_takes(self):
-        known = set(re.findall(r'"([a-z_]+)"', server_sources()))
+        known = set(re.findall(r'"(?:heliograph_)?([a-z_]+)"', server_sources()))
         for path in files("*.json", os.path.join(DEPLOY, "grafana")) + files("alerts.yml"):
             shown = set(re.findall(r"\bheliograph_([a-z_]+)", text_of(path)))
             self.assertTrue(shown, path)

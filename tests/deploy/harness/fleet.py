@@ -3,9 +3,12 @@
 import os
 import time
 
+import yaml
+
 from . import images
 from .commands import program
 from .files import DEPLOY
+from .scenes import make_scenes, service_override
 from .servers import TOKEN, get
 
 
@@ -16,8 +19,12 @@ class Fleet:
         self.machine, self.count = machine, nodes
         self.url = f"http://{machine.address}:8080/"
         self.prometheus = f"http://{machine.address}:9090/"
-        # Nobody must need the source where the images are: the files are enough.
-        self._base = ("--file", os.path.join(DEPLOY, "compose.yaml"), "--project-name", "fleet")
+        override = os.path.join(machine.folder, "override.yaml")
+        with open(override, "w", encoding="utf-8") as file:
+            yaml.safe_dump({"services": {"heliograph": service_override(
+                make_scenes(machine.folder))}}, file)
+        self._base = ("--file", os.path.join(DEPLOY, "compose.yaml"), "--file", override,
+                      "--project-name", "fleet")
         self._environment = {"HELIOGRAPH_TOKEN": TOKEN, "HELIOGRAPH_ADDRESS": "0.0.0.0:8080",
                              "HELIOGRAPH_CPUS": "2"}
 
@@ -88,6 +95,6 @@ class Fleet:
 def add_images(machine, *, prometheus=False):
     images.add_base(machine)
     images.add_server(machine)
-    images.build_balancer(machine)
+    images.add_balancer(machine)
     if prometheus:
-        images.build_prometheus(machine)
+        images.add_prometheus(machine)

@@ -76,7 +76,7 @@ def build_server(machine):
     finally:
         _save_compiler_cache(machine)
     archive = _archive()
-    for old in glob.glob(os.path.join(cache_folder(), "heliograph-*.tar")):
+    for old in glob.glob(os.path.join(cache_folder(), "heliograph-server-*.tar")):
         os.remove(old)
     machine.docker("save", "--output", archive, SERVER, timeout=300)
 
@@ -92,7 +92,7 @@ def add_server(machine):
 
 def _archive():
     tree = run("git", "-C", ROOT, "rev-parse", "HEAD^{tree}")
-    return os.path.join(cache_folder(), f"heliograph-{tree}.tar")
+    return os.path.join(cache_folder(), f"heliograph-server-{tree}.tar")
 
 
 def build(machine, tag, dockerfile, *, folder="", arguments=None, timeout=900):
@@ -107,12 +107,23 @@ def build(machine, tag, dockerfile, *, folder="", arguments=None, timeout=900):
                        stdin=context, timeout=timeout)
 
 
-def build_balancer(machine):
-    build(machine, BALANCER, "Dockerfile", folder="deploy/balancer")
+def add_balancer(machine):
+    _add(machine, BALANCER, "deploy/balancer")
 
 
-def build_prometheus(machine):
-    build(machine, PROMETHEUS, "Dockerfile", folder="deploy/prometheus")
+def add_prometheus(machine):
+    _add(machine, PROMETHEUS, "deploy/prometheus")
+
+
+def _add(machine, tag, folder):
+    """Built once of the same files; then taken from the cache."""
+    tree = run("git", "-C", ROOT, "rev-parse", f"HEAD:{folder}")
+    archive = os.path.join(cache_folder(), f"{tag.split(':')[0]}-{tree}.tar")
+    if os.path.exists(archive):
+        machine.docker("load", "--input", archive, timeout=300)
+        return
+    build(machine, tag, "Dockerfile", folder=folder)
+    machine.docker("save", "--output", archive, tag, timeout=300)
 
 
 def copy_images(source, target, *tags):

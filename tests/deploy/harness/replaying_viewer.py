@@ -7,6 +7,7 @@ import json
 import struct
 import sys
 import time
+import uuid
 from dataclasses import dataclass, field
 from typing import Optional
 
@@ -20,7 +21,7 @@ FIRST_PAUSE, LONGEST_PAUSE = 0.1, 1.0
 class Wish:
     """The whole state of a viewer."""
 
-    scene: str = "pillars"
+    scene: str
     eye: tuple = (0.0, 2.0, 8.0)
     target: tuple = (0.0, 1.0, 0.0)
     settings: dict = field(default_factory=dict)
@@ -51,16 +52,20 @@ class ReplayingViewer:
         self.url = url  # http://host:port/
         self.token = token
         self.wish = wish
+        self.session = f"viewer-{uuid.uuid4().hex[:12]}"
         self.losses = []
         self.frames = 0
         self.last_picture = None
         self.longest_gap = 0.0  # seconds between two pictures while connected
         self.round_trips = []   # seconds from camera.set to its picture
         self.node = None        # the balancer's cookie
+        self.last_failure = None
         self.connected = asyncio.Event()
         self._sequence = 0
         self._sent_at = {}
-        self._wanted = None     # the input whose picture ends an interruption
+        self._wanted = None     # the input, or the state, whose picture ends an interruption
+        self._wanted_rev = None
+        self._shown_rev = 0
         self._last_frame_at = None
         self._answers = {}
         self._next_id = 1
@@ -86,7 +91,8 @@ class ReplayingViewer:
             if self._task.done():
                 self._task.result()
             if time.monotonic() > deadline:
-                raise AssertionError(f"no picture in {timeout} s; interruptions: {self.losses}")
+                raise AssertionError(f"no picture in {timeout} s; interruptions: {self.losses}, "
+                                     f"latest failure: {self.last_failure!r}")
             await asyncio.sleep(0.01)
 
     async def look(self, eye):
@@ -165,17 +171,31 @@ class ReplayingViewer:
 
     async def _say_everything(self):
         wish = self.wish
-        self._wanted = self._sequence + 1
+        self._wanted, self._wanted_rev, self._shown_rev = self._sequence + 1, None, 0
         self._sent_at.clear()
         hello = await self.call("hello", {"client": "replaying viewer"})
         self.viewer = hello["viewer"]
+        await self._enter_session()
         if (await self.call("scene.list"))["current"] != wish.scene:
             await self.call("scene.load", {"name": wish.scene})
         await self.call("stream.configure", {"width": wish.size[0], "height": wish.size[1]})
         if wish.settings:
             await self.call("settings.patch", {"patch": wish.settings})
         await self._send_camera()
+        # Where nothing had to change the picture that greeted this viewer is the right one.
+        self._wanted_rev = (await self.call("camera.get"))["rev"]
         self.connected.set()
+        self._notice_whole(time.monotonic())
+
+    async def _enter_session(self):
+        """One of its own, made where it is not: another node knows nothing of it."""
+        try:
+            await self.call("session.create", {"name": self.session})
+        except RuntimeError as exists:
+            if "-32601" in str(exists):
+                return  # a server that has one session only
+            self.last_failure = exists
+        await self.call("session.join", {"session": self.session})
 
     async def _send_camera(self):
         self._sequence += 1
@@ -197,10 +217,18 @@ class ReplayingViewer:
                 waiting.cancel()
             self._answers.clear()
 
+    def _notice_whole(self, now):
+        if self._wanted is None or self._wanted_rev is None or self._shown_rev < self._wanted_rev:
+            return
+        self._wanted = None
+        if self.losses and self.losses[-1].back_at is None:
+            self.losses[-1].back_at = now
+
     async def _take_picture(self, socket, message):
         header_bytes, = struct.unpack_from("<H", message, 8)
         frame, = struct.unpack_from("<I", message, 12)
         echo, = struct.unpack_from("<I", message, 20)
+        rev, = struct.unpack_from("<I", message, 24)
         now = time.monotonic()
         self.frames += 1
         self.last_picture = message[header_bytes:]
@@ -209,10 +237,10 @@ class ReplayingViewer:
         self._last_frame_at = now
         for sequence in [number for number in self._sent_at if number <= echo]:
             self.round_trips.append(now - self._sent_at.pop(sequence))
+        self._shown_rev = max(self._shown_rev, rev)
         if self._wanted is not None and echo >= self._wanted:
-            self._wanted = None
-            if self.losses and self.losses[-1].back_at is None:
-                self.losses[-1].back_at = now
+            self._wanted_rev = 0
+        self._notice_whole(now)
         await socket.send(json.dumps({"jsonrpc": "2.0", "method": "stream.ack",
                                       "params": {"frame_seq": frame}}))
 

@@ -1,14 +1,16 @@
 """Machines made of network namespaces, each with a container engine of its own, on one bridge that
 leads out by address translation. Leaves nothing behind."""
 
+import atexit
 import json
 import os
+import shutil
 import signal
 import socket
 import subprocess
+import sys
 import tempfile
 import time
-import shutil
 
 from .commands import Skip, program, run, succeeds
 
@@ -41,6 +43,11 @@ class Site:
         self._forwarding = None
 
     def __enter__(self):
+        if os.path.exists(f"/sys/class/net/{BRIDGE}"):
+            raise RuntimeError(f"{BRIDGE} exists: another run of these tests is under way")
+        # Whatever ends this program, but SIGKILL, what it made goes with it.
+        atexit.register(self.__exit__)
+        signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
         try:
             run("ip", "link", "add", BRIDGE, "type", "bridge")
             run("ip", "addr", "add", f"{GATEWAY}/24", "dev", BRIDGE)
@@ -56,8 +63,9 @@ class Site:
         return self
 
     def __exit__(self, *_):
-        for machine in self.machines:
-            machine.remove()
+        atexit.unregister(self.__exit__)
+        while self.machines:
+            self.machines.pop().remove()
         for table, chain, *rule in self._rules:
             while succeeds("iptables", "-t", table, "-D", chain, *rule):
                 pass
@@ -87,6 +95,7 @@ class Machine:
 
     def start(self):
         os.mkdir(self.folder)
+        os.chmod(os.path.dirname(self.folder), 0o755)
         run("ip", "netns", "add", self.name)
         run("ip", "link", "add", self._bridge_end, "type", "veth", "peer", "name", "eth0", "netns",
             self.name)

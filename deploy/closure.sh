@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# Copies the server, the software Vulkan device and what these two link, and nothing else of the
+# system but a shell of one file, into a folder that becomes the root of an image:
+#   closure.sh FOLDER
+set -euo pipefail
+if [ $# -ne 1 ]; then
+  echo "usage: closure.sh FOLDER" >&2
+  exit 2
+fi
+root=$1
+
+mkdir -p "$root"/usr/{bin,sbin,lib,lib64} "$root"/{dev,etc,proc,sys,run,tmp,var/cache}
+chmod 1777 "$root/tmp"
+for folder in bin sbin lib lib64; do
+  ln -s "usr/$folder" "$root/$folder"
+done
+
+driver=$(find /usr/lib -name libvulkan_lvp.so)
+loader=$(ldconfig -p | awk '/libvulkan\.so\.1 / { print $NF; exit }')
+programs=(/usr/bin/heliograph "$driver" "$loader")
+# Every library under the name that it is asked for by, and the loader of programs itself.
+ldd "${programs[@]}" | awk '$2 == "=>" { print $3 } $1 ~ /^\/lib.*ld-/ { print $1 }' | sort -u |
+  while read -r library; do
+    install -D -m 755 "$(readlink -f "$library")" "$root$library"
+  done
+for program in "${programs[@]}"; do
+  install -D -m 755 "$(readlink -f "$program")" "$root$program"
+done
+
+mkdir -p "$root/usr/share/vulkan/icd.d"
+cp /usr/share/vulkan/icd.d/lvp_icd*.json "$root/usr/share/vulkan/icd.d/"
+cp -r --parents /usr/share/heliograph /usr/share/doc/heliograph "$root"
+grep -E '^(root|nobody|heliograph):' /etc/passwd >"$root/etc/passwd"
+grep -E '^(root|nogroup|heliograph):' /etc/group >"$root/etc/group"
+# The licences of what was copied; dpkg-query fails where it knows one file of several by another
+# name, and still tells the rest.
+{ ldd "${programs[@]}" | awk '$2 == "=>" { print $3 }' | xargs readlink -f | sort -u |
+  xargs dpkg-query --search "$driver" 2>/dev/null || true; } | cut -d: -f1 | sort -u |
+  while read -r package; do
+    file=/usr/share/doc/$package/copyright
+    if [ -f "$file" ]; then install -D -m 644 "$file" "$root$file"; fi
+  done
+
+install -m 755 "$(command -v busybox)" "$root/usr/bin/busybox"
+"$root/usr/bin/busybox" --list | while read -r name; do
+  [ -e "$root/usr/bin/$name" ] || ln -s busybox "$root/usr/bin/$name"
+done

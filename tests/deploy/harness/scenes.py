@@ -1,0 +1,24 @@
+"""Small scenes for tests that are about connections, not pictures."""
+
+import os
+
+from .commands import run
+
+NAMES = ("mirror", "furnace")
+
+
+def make_scenes(folder):
+    """Generates them and gives their folder, which containers may read."""
+    scenes = os.path.join(folder, "scenes")
+    run(os.path.join(os.path.dirname(os.environ["HELIOGRAPH_BINARY"]), "heliograph-scenes"), scenes,
+        "--texture-size", "64", "--only", "tests", "--only", "sky")
+    os.chmod(folder, 0o755)
+    return scenes
+
+
+def service_override(scenes):
+    """For a compose file: the servers show these scenes, small."""
+    return {"volumes": [f"{scenes}:/scenes:ro"],
+            "environment": {"HELIOGRAPH_SCENE_ROOT": "/scenes", "HELIOGRAPH_SCENE": NAMES[0],
+                            "HELIOGRAPH_WIDTH": "160", "HELIOGRAPH_HEIGHT": "90",
+                            "HELIOGRAPH_DRAIN_NOTICE": "2"}}
