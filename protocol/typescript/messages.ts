@@ -37,6 +37,9 @@ export interface SceneInfo {
   lights: number;
   cameras: string[];
   clips: ClipInfo[];
+  /** Scenes of the file, and the number of the one that is shown. */
+  scenes?: string[];
+  scene?: number;
   variants: string[];
   /** The variant that is shown; servers without that choice leave it out. */
   variant?: string | null;

@@ -43,9 +43,10 @@ function bytesOf(text: string): Uint8Array {
 /** A link comes from anywhere: only members of the expected kind pass. */
 function checked(value: unknown): ViewState | null {
   if (!isObject(value)) return null;
-  const { scene, variant, environment, settings, clip, camera } = value as JsonObject;
+  const { scene, part, variant, environment, settings, clip, camera } = value as JsonObject;
   const state: ViewState = {};
   if (typeof scene === "string") state.scene = scene;
+  if (typeof part === "number") state.part = part;
   if (typeof variant === "string") state.variant = variant;
   if (typeof environment === "string") state.environment = environment;
   if (isObject(settings)) state.settings = settings;

@@ -6,8 +6,10 @@ import { Comparison } from "./compare.ts";
 import { viewIn } from "./link_state.ts";
 import { outputActions } from "./output.ts";
 import { createHelp } from "./overlay/help.ts";
+import { mountPlainPictures } from "./overlay/plain_pictures.ts";
 import { mountPeople } from "./overlay/people.ts";
 import { mountTransport } from "./overlay/transport.ts";
+import { mountUpload } from "./overlay/upload.ts";
 import { mountTooltips } from "./overlay/tooltip.ts";
 import { mountPanel } from "./panel/panel.ts";
 import { focusOn } from "./view/camera.ts";
@@ -59,6 +61,7 @@ function main(): void {
   viewer.cameraBusy = () => navigation.active;
 
   const divider = createDivider(find("compare"));
+  mountPlainPictures(viewer, find("plain"));
   mountPeople(viewer, find("people"), (message) => toasts.tell(message));
   const help = createHelp(find<HTMLDialogElement>("help"));
   const panel = mountPanel(find("panel"), viewer, {
@@ -122,6 +125,7 @@ function main(): void {
   addEventListener("hashchange", openLink);
   openLink();
   mountThumbnails(viewer);
+  mountUpload(viewer, document.body, toasts);
   viewer.connection.open();
 }
 

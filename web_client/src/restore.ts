@@ -59,12 +59,15 @@ function isPassing(error: unknown): boolean {
 }
 
 /** Also waits for the scene that the server starts with: loading another meanwhile would end it. */
-async function restoreScene({ rpc }: RestoreHost, { scene, variant }: ViewState): Promise<void> {
+async function restoreScene({ rpc }: RestoreHost, state: ViewState): Promise<void> {
   const info = await rpc.request<SceneInfo>("scene.info");
-  const sameScene = scene === undefined || info.name === scene;
-  const sameVariant = variant === undefined || info.variant === variant;
-  if (sameScene && sameVariant) return;
-  await rpc.request("scene.load", { name: scene ?? info.name, variant }, loadTimeoutMs);
+  const same = <Value>(wanted: Value | undefined, there: Value | undefined): boolean =>
+    wanted === undefined || wanted === there;
+  const { scene, part, variant } = state;
+  if (same(scene, info.name) && same(part, info.scene) && same(variant, info.variant)) return;
+  const chosen = part === undefined ? undefined : String(part);
+  const load = { name: scene ?? info.name, scene: chosen, variant };
+  await rpc.request("scene.load", load, loadTimeoutMs);
 }
 
 /** What this server does not know or accept is left out; the rest is put back all the same. */

@@ -14,6 +14,8 @@ export interface ClipState {
 /** Parts that are left out stay as the server has them. */
 export interface ViewState {
   scene?: string;
+  /** Which scene of a file that holds several. */
+  part?: number;
   variant?: string;
   environment?: string;
   /** Only what differs from the defaults; everything else means the default. */

@@ -137,6 +137,7 @@ export class Viewer {
     const scene = this.scene.value;
     return {
       scene: scene?.name,
+      part: scene?.scene || undefined,
       variant: scene?.variant ?? undefined,
       environment: this.parts.environment.value?.current ?? undefined,
       settings: changesOf(this.settings.schema.value, this.settings.tree.value),
@@ -176,16 +177,21 @@ export class Viewer {
     await this.attempt(async () => this.camera.set(await this.rpc.request<Camera>("camera.fit")));
   }
 
-  async loadScene(name: string): Promise<void> {
+  async loadScene(name: string, part: { scene?: string; variant?: string } = {}): Promise<void> {
     this.showProgress({ name, stage: "starting", fraction: 0 });
     try {
       const tenMinutes = 600_000;
-      const info = await this.rpc.request<SceneInfo>("scene.load", { name }, tenMinutes);
+      const info = await this.rpc.request<SceneInfo>("scene.load", { name, ...part }, tenMinutes);
       await this.sceneChanged(info);
     } catch (error) {
       this.showProgress(null);
       this.report(error);
     }
+  }
+
+  /** Ends the load that is under way. */
+  async cancelLoad(): Promise<void> {
+    await this.attempt(() => this.rpc.request("scene.cancel"));
   }
 
   async refreshScenes(): Promise<void> {

@@ -3,6 +3,7 @@
 import { element, setText } from "../panel/element.ts";
 import { humanise } from "heliograph/settings_schema.ts";
 import type { ConnectionState } from "../stream/connection.ts";
+import { thumbnailOf } from "../thumbnails.ts";
 import type { Viewer } from "../viewer.ts";
 
 interface Notice {
@@ -10,6 +11,8 @@ interface Notice {
   detail: string;
   /** In [0, 1]; undefined shows no bar, null an endless one. */
   progress?: number | null;
+  /** A picture of what is to come, where one is known. */
+  poster?: string | null;
   action?: { label: string; run: () => void };
   /** Whether the last picture stays visible, dimmed, behind the notice. */
   dims: boolean;
@@ -51,6 +54,8 @@ function pillLabel(state: ConnectionState): string {
       return "Live";
     case "lost":
       return "Reconnecting";
+    case "pictures_only":
+      return "Pictures only";
     case "full":
       return "Server full";
     case "wrong_version":
@@ -72,6 +77,8 @@ function noticeFor(viewer: Viewer, state: ConnectionState): Notice | null {
         action: retry,
         dims: true,
       };
+    case "pictures_only":
+      return null;
     case "full":
       return {
         title: "The server is full",
@@ -103,6 +110,10 @@ function liveNotice(viewer: Viewer): Notice | null {
   if (loading) {
     return {
       title: `Loading ${loading.name}`,
+      poster: thumbnailOf(loading.name),
+      action: viewer.methods.value.has("scene.cancel")
+        ? { label: "Cancel", run: () => void viewer.cancelLoad() }
+        : undefined,
       detail: humanise(loading.stage),
       progress: loading.fraction > 0 ? loading.fraction : null,
       dims: true,
@@ -142,13 +153,16 @@ function createCard(card: HTMLElement): { show(notice: Notice | null): void } {
   const action = element("button", { type: "button", class: "button" });
   let run: () => void = () => {};
   action.addEventListener("click", () => run());
-  card.append(element("div", { class: "card" }, title, detail, progress, action));
+  const poster = element("img", { class: "poster", alt: "" });
+  card.append(poster, element("div", { class: "card" }, title, detail, progress, action));
   return {
     show(notice) {
       card.hidden = notice === null;
       if (!notice) return;
       card.classList.toggle("dims", notice.dims);
       setText(title, notice.title);
+      poster.hidden = !notice.poster;
+      if (notice.poster && poster.src !== notice.poster) poster.src = notice.poster;
       setText(detail, notice.detail);
       progress.hidden = notice.progress === undefined;
       progress.classList.toggle("endless", notice.progress === null);

@@ -33,6 +33,7 @@ export function createInspector(viewer: Viewer, host: InspectorHost): HTMLElemen
   });
   const inspect = async (x: number, y: number): Promise<void> => {
     host.mark(x, y);
+    setText(where, "Reading the pixel");
     try {
       show(await viewer.rpc.request<Inspection>("frame.inspect", { x, y }));
     } catch (error) {

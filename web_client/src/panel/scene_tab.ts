@@ -7,6 +7,7 @@ import { element, icon, setText } from "./element.ts";
 import { createEnvironmentField } from "./environment_field.ts";
 import { createLightSection } from "./light_section.ts";
 import { createMaterialSection } from "./material_section.ts";
+import { createPartFields } from "./part_fields.ts";
 import { createScenePicker } from "./scene_picker.ts";
 import { mountSettings } from "./settings_panel.ts";
 
@@ -31,6 +32,7 @@ export function createSceneTab(viewer: Viewer): HTMLElement {
       ...createScenePicker(viewer),
       facts,
       warnings,
+      ...createPartFields(viewer),
       ...createCameraFields(viewer),
       createEnvironmentField(viewer.parts),
     ),

@@ -12,6 +12,8 @@ export type ConnectionState =
   | { kind: "connecting" }
   | { kind: "live"; hello: Hello }
   | { kind: "lost"; retryAt: number }
+  /** The server answers, but nothing between us lets a WebSocket through. */
+  | { kind: "pictures_only"; retryAt: number }
   | { kind: "wrong_version"; detail: string }
   | { kind: "full"; retryAt: number }
   | { kind: "forbidden"; detail: string };
@@ -27,6 +29,7 @@ export interface ConnectionEvents {
 
 const closeCode = { policy: 1008, tryAgainLater: 1013, unauthorised: 4001, version: 4005 };
 const stableAfterMs = 5000;
+const refusalsBeforeFallback = 2;
 const aliveCheckMs = 15_000;
 const aliveTimeoutMs = 10_000;
 
@@ -41,6 +44,7 @@ export class Connection {
   private retryTimer = 0;
   private stableTimer = 0;
   private heardAt = 0;
+  private refusals = 0;
   private session: string | undefined;
   private readonly disposal = new AbortController();
   private readonly aliveTimer: number;
@@ -136,6 +140,7 @@ export class Connection {
     this.heardAt = performance.now();
     switch (message.kind) {
       case "opened":
+        this.refusals = 0;
         this.rpc.open();
         void this.sayHello(message.subprotocol);
         break;
@@ -231,7 +236,8 @@ export class Connection {
       if (spoken && spoken !== subprotocol) {
         this.state.set({ kind: "wrong_version", detail: spoken });
       } else {
-        this.retryLater("lost");
+        this.refusals = spoken ? this.refusals + 1 : 0;
+        this.retryLater(this.refusals >= refusalsBeforeFallback ? "pictures_only" : "lost");
       }
     }
   }
@@ -254,7 +260,7 @@ export class Connection {
     }
   }
 
-  private retryLater(kind: "lost" | "full"): void {
+  private retryLater(kind: "lost" | "full" | "pictures_only"): void {
     const waitMs = this.backoff.next();
     this.state.set({ kind, retryAt: Date.now() + waitMs });
     clearTimeout(this.retryTimer);

@@ -1,6 +1,7 @@
 // Pictures of a video stream (H.264, Annex B). Each builds on the one before, so that all are
 // decoded in turn; after a loss everything up to the next key picture is useless.
 
+import { codecString } from "./annex_b.ts";
 import { type FrameHeader, FrameFlag } from "heliograph/frame_header.ts";
 
 /** Constrained baseline, level 4.2: no picture waits for a later one. */
@@ -27,6 +28,7 @@ export class VideoFrames {
   private readonly sink: VideoSink;
   private readonly clock: () => number;
   private decoder: VideoDecoder | null = null;
+  private codec = "";
   private readonly waiting = new Map<number, { frame: ArrivedFrame; startedAt: number }>();
 
   constructor(sink: VideoSink, clock: () => number) {
@@ -36,7 +38,8 @@ export class VideoFrames {
 
   push(frame: ArrivedFrame): void {
     const key = (frame.header.flags & FrameFlag.key) !== 0;
-    if (key && (!this.decoder || this.decoder.state === "closed")) this.open();
+    const data = new Uint8Array(frame.message, frame.header.headerBytes);
+    if (key) this.open(codecString(data) ?? videoConfig.codec);
     if (!this.decoder || this.decoder.state !== "configured") {
       this.sink.skipped(frame);
       return;
@@ -47,7 +50,7 @@ export class VideoFrames {
       new EncodedVideoChunk({
         type: key ? "key" : "delta",
         timestamp,
-        data: new Uint8Array(frame.message, frame.header.headerBytes),
+        data,
       }),
     );
   }
@@ -59,7 +62,15 @@ export class VideoFrames {
     this.decoder = null;
   }
 
-  private open(): void {
+  /** Sets the decoder up, unless it already takes such a stream. */
+  private open(codec: string): void {
+    if (this.decoder?.state === "configured" && this.codec === codec) return;
+    if (this.decoder?.state === "configured") {
+      this.codec = codec;
+      this.decoder.configure({ ...videoConfig, codec });
+      return;
+    }
+    this.codec = codec;
     const decoder = new VideoDecoder({
       output: (picture) => {
         const entry = this.waiting.get(picture.timestamp);
@@ -75,7 +86,7 @@ export class VideoFrames {
         this.sink.failed(error.message);
       },
     });
-    decoder.configure(videoConfig);
+    decoder.configure({ ...videoConfig, codec });
     this.decoder = decoder;
   }
 }

@@ -1,0 +1,160 @@
+// Everybody can use it: axe finds nothing serious in any part, keys reach everything, nothing
+// sticks out on a phone and nothing is lost on a large screen.
+
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import test, { after, before } from "node:test";
+import {
+  eventually,
+  firstPicture,
+  launchBrowser,
+  openTab,
+  openViewer,
+  screenshot,
+} from "./harness/browser.mjs";
+import { startServer } from "./harness/server.mjs";
+
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+const tabs = ["scene", "settings", "inspect", "stats"];
+
+let server;
+let browser;
+
+before(async () => {
+  server = await startServer();
+  browser = await launchBrowser();
+});
+
+after(async () => {
+  await browser?.close();
+  await server?.stop();
+});
+
+/** What axe calls serious or worse, one line each. */
+async function seriousFindings(page) {
+  await page.evaluate(axe);
+  const { violations } = await page.evaluate(() => window.axe.run());
+  return violations
+    .filter(({ impact }) => impact === "serious" || impact === "critical")
+    .flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) =>
+      `${id}: ${target.join(" ")}: ${failureSummary.split("\n").at(-1).trim()}`,
+    ));
+}
+
+async function unfoldAll(page) {
+  await page.evaluate(() => {
+    for (const fold of document.querySelectorAll(".section details")) fold.open = true;
+  });
+}
+
+for (const colorScheme of ["dark", "light"]) {
+  test(`axe finds nothing serious, ${colorScheme}`, async () => {
+    const { page, context, complaints } = await openViewer(browser, server.url, { colorScheme });
+    await firstPicture(page);
+    await unfoldAll(page);
+    for (const tab of tabs) {
+      await openTab(page, tab);
+      await page.mouse.move(10, 300);
+      await screenshot(page, `${colorScheme}_${tab}`);
+      assert.deepEqual(await seriousFindings(page), [], `${tab}, ${colorScheme}`);
+    }
+    await page.getByRole("button", { name: "Save and share" }).click();
+    await screenshot(page, `${colorScheme}_menu`);
+    assert.deepEqual(await seriousFindings(page), [], "the menu");
+    await page.keyboard.press("Escape");
+    await page.keyboard.press("?");
+    await screenshot(page, `${colorScheme}_help`);
+    assert.deepEqual(await seriousFindings(page), [], "the help");
+    assert.deepEqual(complaints, []);
+    await context.close();
+  });
+}
+
+test("the keyboard alone reaches picture, tabs, menu and settings, and shows where it is", async () => {
+  const { page, context } = await openViewer(browser, server.url);
+  await firstPicture(page);
+  const seen = new Set();
+  for (let i = 0; i < 40; i += 1) {
+    await page.keyboard.press("Tab");
+    const focus = await page.evaluate(() => {
+      const { activeElement: node } = document;
+      if (node === document.body) return null; // beyond the last, before the first
+      const style = getComputedStyle(node);
+      const ring = style.outlineStyle !== "none" || node.matches("input[type=range]");
+      const name = node.id || node.getAttribute("aria-label") || node.name || node.textContent;
+      return { name, ring };
+    });
+    if (!focus) continue;
+    assert.ok(focus.ring, `${focus.name} has the focus and does not show it`);
+    seen.add(focus.name);
+  }
+  for (const name of ["view", "tab-scene", "Save and share", "Fullscreen", "Play"]) {
+    assert.ok(seen.has(name), `no way to ${name}, only to ${[...seen].join(", ")}`);
+  }
+  await page.locator("#tab-scene").focus();
+  await page.keyboard.press("ArrowRight");
+  assert.equal(await page.evaluate(() => document.activeElement.id), "tab-settings");
+  assert.ok(await page.locator("#page-settings").isVisible());
+  await page.getByRole("button", { name: "Save and share" }).focus();
+  await page.keyboard.press("Enter");
+  await page.keyboard.press("ArrowDown");
+  assert.equal(await page.evaluate(() => document.activeElement.getAttribute("role")), "menuitem");
+  await page.keyboard.press("Escape");
+  const back = await page.evaluate(() => document.activeElement.getAttribute("aria-label"));
+  assert.equal(back, "Save and share");
+  await context.close();
+});
+
+test("who wants less motion gets no inertia and no sliding bars", async () => {
+  const { page, context } = await openViewer(browser, server.url, { reducedMotion: "reduce" });
+  await firstPicture(page);
+  const moving = await page.evaluate(() => {
+    const animations = document.getAnimations().filter(({ playState }) => playState === "running");
+    return animations.map(({ animationName }) => animationName).filter((name) => name === "sweep");
+  });
+  assert.deepEqual(moving, []);
+  await context.close();
+});
+
+test("on a 4K screen the panel stays readable and the picture fills the window", async () => {
+  const { page, context } = await openViewer(browser, server.url, {
+    viewport: { width: 3840, height: 2160 },
+  });
+  await firstPicture(page);
+  await screenshot(page, "4k");
+  const canvas = await page.locator("#view").boundingBox();
+  assert.deepEqual([canvas.width, canvas.height], [3840, 2160]);
+  const panel = await page.locator("#panel").boundingBox();
+  assert.ok(panel.width > 450, `a panel of ${panel.width} px is too small to read here`);
+  await context.close();
+});
+
+test("at 360 px nothing sticks out in any tab", async () => {
+  const { page, context } = await openViewer(browser, server.url, {
+    viewport: { width: 360, height: 740 },
+    deviceScaleFactor: 2,
+    hasTouch: true,
+    isMobile: true,
+  });
+  await firstPicture(page);
+  await page.getByRole("button", { name: "Show panel" }).tap();
+  await unfoldAll(page);
+  for (const tab of tabs) {
+    await page.locator(`#tab-${tab}`).tap();
+    await eventually(() => page.locator(`#page-${tab}`).isVisible(), `the tab ${tab}`);
+    await screenshot(page, `phone_${tab}`);
+    const widest = await page.evaluate(() =>
+      Math.max(
+        document.documentElement.scrollWidth,
+        ...[...document.querySelectorAll("#panel *, #transport *, #top-left *")]
+          .map((node) => node.getBoundingClientRect())
+          .filter(({ width }) => width > 0)
+          .map(({ right }) => right),
+      ),
+    );
+    assert.ok(widest <= 360, `something reaches to ${widest} px in ${tab}`);
+  }
+  assert.deepEqual(await seriousFindings(page), []);
+  await context.close();
+});
