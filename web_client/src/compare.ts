@@ -1,7 +1,14 @@
 // A second view of the same scene, beside or over the first: another preset, the path traced
 // reference, or a buffer. It is a session of its own on the server, which follows our camera.
 
-import type { Camera, Hello, JsonObject, SessionInfo, StreamSettings } from "heliograph/messages.ts";
+import type {
+  AnimationState,
+  Camera,
+  Hello,
+  JsonObject,
+  SessionInfo,
+  StreamSettings,
+} from "heliograph/messages.ts";
 import { Signal } from "./signal.ts";
 import { Connection } from "./stream/connection.ts";
 import type { DrawnFrame } from "./stream/worker_messages.ts";
@@ -37,6 +44,7 @@ export class Comparison {
     this.newCanvas = newCanvas;
     viewer.camera.watch((camera) => camera && this.running?.follow(camera));
     viewer.settings.tree.watch((tree) => this.running?.share(tree));
+    viewer.animation.watch((animation) => animation && this.running?.play(animation));
     viewer.connection.state.watch(({ kind }) => {
       if (kind !== "live") this.stop();
     });
@@ -83,6 +91,7 @@ class RunningComparison {
   private readonly timer: number;
   private measuring = false;
   private shared = "";
+  private clip = "";
 
   constructor(
     viewer: Viewer,
@@ -131,14 +140,26 @@ class RunningComparison {
     this.connection.rpc.notify("settings.patch", { patch });
   }
 
+  /** Follows the clip: when it starts, stops or jumps, not while it just goes on. */
+  play({ clip, playing, rate, seconds }: AnimationState): void {
+    const known = JSON.stringify([clip, playing, rate, playing ? 0 : seconds]);
+    if (known === this.clip || !clip) return;
+    this.clip = known;
+    const { rpc } = this.connection;
+    rpc.notify("animation.play", { clip, rate });
+    rpc.notify("animation.seek", { seconds });
+    if (!playing) rpc.notify("animation.pause", {});
+  }
+
   end(): void {
     clearInterval(this.timer);
     this.worker.terminate();
-    this.connection.dispose();
-    const { rpc, methods } = this.viewer;
-    if (!methods.value.has("session.close")) return;
-    // Already gone with the connection, or closed when it has been idle for long enough.
-    void rpc.request("session.close", { session: this.session }).catch(() => {});
+    // From inside, since a session that somebody is in cannot be closed by others. What cannot be
+    // closed any more ends when it has been idle for long enough.
+    void this.connection.rpc
+      .request("session.close", { session: this.session })
+      .catch(() => {})
+      .finally(() => this.connection.dispose());
   }
 
   private async becomeLive(hello: Hello): Promise<void> {

@@ -17,8 +17,8 @@ export class Server {
   }
 
   /** Asks one method and returns its result; throws with the server's message. */
-  async call(method, params = {}) {
-    const response = await fetch(new URL("rpc", this.url), {
+  async call(method, params = {}, session = "main") {
+    const response = await fetch(new URL(`rpc?session=${session}`, this.url), {
       method: "POST",
       headers: { "content-type": "application/json" },
       body: JSON.stringify({ jsonrpc: "2.0", id: 1, method, params }),

@@ -88,7 +88,8 @@ export function createCompareFields(
       return;
     }
     const alike = state.similarity === null ? "…" : state.similarity.toFixed(4);
-    const samples = state.frame ? ` · ${state.frame.samples} samples` : "";
+    const count = state.frame?.samples ?? 0;
+    const samples = count === 1 ? " · 1 sample" : ` · ${count} samples`;
     if (state.counterpart.kind === "buffer") setText(facts, "");
     else if (!state.frame) setText(facts, "The second session starts");
     else setText(facts, `SSIM ${alike}${samples}`);
@@ -96,7 +97,7 @@ export function createCompareFields(
   const node = element(
     "div",
     { class: "fields", "data-section": "compare" },
-    field("Compare with", select),
+    field("Compare", select),
     field("As", way),
     opacityRow.node,
     facts,

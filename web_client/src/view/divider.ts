@@ -1,6 +1,6 @@
 // The line between two pictures that lie over each other: drag it, or move it by keys.
 
-import { element } from "../panel/element.ts";
+import { element, icon } from "../panel/element.ts";
 
 const keyStep = 2; // per cent
 const largeStep = 10;
@@ -19,7 +19,7 @@ export function createDivider(root: HTMLElement): Divider {
   let seeThrough = 1;
   const label = element("span", { class: "second-label" });
   const first = element("span", { class: "first-label" }, "This session");
-  const handle = element("span", { class: "divider-handle", "aria-hidden": "true" });
+  const handle = element("span", { class: "divider-handle" }, icon("code"));
   const line = element(
     "div",
     {
