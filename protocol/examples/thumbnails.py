@@ -1,0 +1,49 @@
+#!/usr/bin/env python3
+"""Makes a small picture of every scene in a folder of the server's catalogue.
+
+    thumbnails.py --models props --folder thumbnails
+
+Scenes that cannot be loaded are told of and left out.
+"""
+
+import argparse
+import os
+import sys
+
+import heliograph
+
+
+def thumbnail(view, name, samples):
+    view.scene.load(name=name)
+    view.camera.fit()
+    return view.capture(samples=samples)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--url", default="http://127.0.0.1:8080")
+    parser.add_argument("--models", default="", help="a folder below the server's scene roots")
+    parser.add_argument("--size", type=int, default=256)
+    parser.add_argument("--samples", type=int, default=32)
+    parser.add_argument("--folder", default="thumbnails")
+    options = parser.parse_args()
+    below = options.models.rstrip("/") + "/" if options.models else ""
+    with heliograph.connect(options.url) as view:
+        view.stream.configure(width=options.size, height=options.size)
+        for scene in view.scene.list()["scenes"]:
+            name = scene["name"]
+            if not name.startswith(below):
+                continue
+            try:
+                picture = thumbnail(view, name, options.samples)
+            except heliograph.HeliographError as error:
+                print(f"{name}: {error}", file=sys.stderr)
+                continue
+            path = os.path.join(options.folder, name + ".png")
+            os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
+            picture.save(path)
+            print(path)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,79 @@
+#!/usr/bin/env python3
+"""Compares the cameras of a scene with pictures kept from before; fails when one looks different.
+
+    visual_regression.py --scene atrium --folder expected --update     keeps the pictures
+    visual_regression.py --scene atrium --folder expected              compares with them
+
+Where pictures differ, NAME.actual.npy and NAME.actual.png are left beside NAME.npy.
+"""
+
+import argparse
+import os
+import re
+import sys
+
+import numpy
+
+import heliograph
+
+
+def file_name(camera):
+    return re.sub(r"[^A-Za-z0-9_-]+", "_", camera) or "camera"
+
+
+def pictures(view, frames):
+    """Every camera of the scene, each drawn from a fresh start in lockstep: always the same."""
+    for camera in view.scene.info()["cameras"] or ["fit"]:
+        view.frame.run()
+        if camera == "fit":
+            view.camera.fit()
+        else:
+            view.camera.set(name=camera)
+        view.step(frames)
+        yield file_name(camera), view.array(), view.capture()
+    view.frame.run()
+
+
+def check(folder, name, actual, picture, tolerance):
+    """Whether the mean difference to what was kept is small enough; 255 is white against black."""
+    kept = os.path.join(folder, name + ".npy")
+    expected = numpy.load(kept) if os.path.exists(kept) else None
+    if expected is None or expected.shape != actual.shape:
+        difference = 255.0
+    else:
+        difference = float(numpy.abs(expected.astype(float) - actual).mean())
+    good = difference <= tolerance
+    print(f"{name}: {'same' if good else 'DIFFERENT'}, {difference:.4f}")
+    if not good:
+        numpy.save(os.path.join(folder, name + ".actual.npy"), actual)
+        picture.save(os.path.join(folder, name + ".actual.png"))
+    return good
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--url", default="http://127.0.0.1:8080")
+    parser.add_argument("--scene")
+    parser.add_argument("--size", type=int, nargs=2, default=(640, 360))
+    parser.add_argument("--frames", type=int, default=32)
+    parser.add_argument("--tolerance", type=float, default=0.5)
+    parser.add_argument("--folder", default="expected")
+    parser.add_argument("--update", action="store_true", help="keep what is drawn now")
+    options = parser.parse_args()
+    os.makedirs(options.folder, exist_ok=True)
+    good = True
+    with heliograph.connect(options.url) as view:
+        if options.scene:
+            view.scene.load(name=options.scene)
+        view.stream.configure(width=options.size[0], height=options.size[1])
+        for name, actual, picture in pictures(view, options.frames):
+            if options.update:
+                numpy.save(os.path.join(options.folder, name + ".npy"), actual)
+                print(f"{name}: kept")
+            else:
+                good &= check(options.folder, name, actual, picture, options.tolerance)
+    sys.exit(0 if good else 1)
+
+
+if __name__ == "__main__":
+    main()

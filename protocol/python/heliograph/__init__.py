@@ -1,0 +1,21 @@
+"""Client of the Heliograph render server: heliograph.v1 over one WebSocket.
+
+    import heliograph
+
+    with heliograph.connect("http://127.0.0.1:8080") as view:
+        view.scene.load(name="atrium")
+        view.camera.orbit(yaw=20)
+        view.capture().save("atrium.png")
+        depth = view.array("gbuffer.motion.view_z")      # NumPy
+
+`connect` is for scripts and notebooks, `connect_async` for asyncio. Every method of the protocol is
+a method here, under the same name; the ones below add what a call alone does not give. Needs
+python3-websockets; NumPy only where arrays are asked for.
+"""
+
+from .client import AsyncClient, Client, connect, connect_async
+from .errors import HeliographError
+from .pictures import Capture, Frame
+
+__all__ = ["AsyncClient", "Capture", "Client", "Frame", "HeliographError", "connect",
+           "connect_async"]

@@ -1,0 +1,157 @@
+"""The client as programs use it: with asyncio, or without."""
+
+import asyncio
+import threading
+
+from .connection import Connection
+from .methods import Methods
+from .pictures import Capture
+
+
+class AsyncClient(Methods):
+    """A viewer in a session. Every method of the protocol is one of its own or of its groups:
+    `await client.camera.orbit(yaw=15)`. No pictures are streamed until frames are asked for."""
+
+    def __init__(self, connection):
+        super().__init__(self._call)
+        self._connection = connection
+        self._streaming = False
+        self.info = None  # what hello answered
+
+    async def _call(self, method, params):
+        return await self._connection.call(method, params)
+
+    async def greet(self, name):
+        self.info = await self.hello(client=name)
+        await self.stream.configure(paused=True)
+
+    async def capture(self, buffer="output", *, format="png", samples=None):
+        """One buffer as a file; waits for so many samples, or for all that accumulation gives."""
+        wanted = {"buffer": buffer, "format": format}
+        if samples is not None:
+            wanted["samples"] = samples
+        return Capture.from_result(await self._call("frame.capture", wanted))
+
+    async def array(self, buffer="output", *, samples=None):
+        """One buffer as a NumPy array; frame.buffers tells what its channels are."""
+        return (await self.capture(buffer, format="npy", samples=samples)).numpy()
+
+    async def step(self, frames=1, dt=1 / 30):
+        """Renders exactly so many frames of `dt` seconds: the session's clock is the caller's from
+        now on, until `frame.run` gives it back."""
+        return await self._call("frame.step", {"frames": frames, "dt": dt})
+
+    async def next_frame(self, timeout=60):
+        """The next picture of the stream, which begins with the first call."""
+        await self._stream(True)
+        return await self._connection.next_frame(timeout)
+
+    async def stop_frames(self):
+        """Lets no more pictures be sent."""
+        await self._stream(False)
+
+    def listen(self, notification, callback):
+        """Calls `callback(params)` at every such notification. Gives a function that ends it."""
+        return self._connection.listen(notification, callback)
+
+    async def close(self):
+        await self._connection.close()
+
+    async def _stream(self, wanted):
+        if self._streaming != wanted:
+            await self.stream.configure(paused=not wanted)
+            self._streaming = wanted
+
+    async def __aenter__(self):
+        return self
+
+    async def __aexit__(self, *_):
+        await self.close()
+
+
+async def connect_async(url="http://127.0.0.1:8080", *, session=None, token=None,
+                        name="python"):
+    """A connection to the session of that name ("main" without one), as an AsyncClient."""
+    connection = await Connection.open(url, session=session, token=token)
+    client = AsyncClient(connection)
+    try:
+        await client.greet(name)
+    except BaseException:
+        await connection.close()
+        raise
+    return client
+
+
+class Client(Methods):
+    """The same without asyncio, which runs in a thread behind it: `client.camera.orbit(yaw=15)`.
+    In a notebook its name alone at the end of a cell shows the picture."""
+
+    def __init__(self, url, options):
+        super().__init__(self._call)
+        self._loop = asyncio.new_event_loop()
+        self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
+        self._thread.start()
+        try:
+            self._client = self._run(connect_async(url, **options))
+        except BaseException:
+            self._end_thread()
+            raise
+
+    @property
+    def info(self):
+        """What hello answered."""
+        return self._client.info
+
+    def capture(self, buffer="output", *, format="png", samples=None):
+        """See AsyncClient.capture."""
+        return self._run(self._client.capture(buffer, format=format, samples=samples))
+
+    def array(self, buffer="output", *, samples=None):
+        """See AsyncClient.array."""
+        return self._run(self._client.array(buffer, samples=samples))
+
+    def step(self, frames=1, dt=1 / 30):
+        """See AsyncClient.step."""
+        return self._run(self._client.step(frames, dt))
+
+    def next_frame(self, timeout=60):
+        """See AsyncClient.next_frame."""
+        return self._run(self._client.next_frame(timeout))
+
+    def stop_frames(self):
+        """See AsyncClient.stop_frames."""
+        self._run(self._client.stop_frames())
+
+    def listen(self, notification, callback):
+        """See AsyncClient.listen; the callback runs in the thread behind."""
+        return self._client.listen(notification, callback)
+
+    def close(self):
+        if self._thread.is_alive():
+            self._run(self._client.close())
+            self._end_thread()
+
+    def _repr_png_(self):
+        return self.capture(samples=1).data
+
+    def _call(self, method, params):
+        return self._run(self._client._call(method, params))
+
+    def _run(self, work):
+        return asyncio.run_coroutine_threadsafe(work, self._loop).result()
+
+    def _end_thread(self):
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join()
+        self._loop.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+
+def connect(url="http://127.0.0.1:8080", *, session=None, token=None, name="python"):
+    """A connection to the session of that name ("main" without one), as a Client."""
+    return Client(url, {"session": session, "token": token, "name": name})
