@@ -14,6 +14,7 @@
 
 #include "protocol/codec.hpp"
 #include "protocol/json_values.hpp"
+#include "protocol/suggestions.hpp"
 
 // The definitions behind codec.hpp. Included only where messages are instantiated.
 
@@ -26,6 +27,10 @@ template <class T>
 inline constexpr bool is_optional = false;
 template <class T>
 inline constexpr bool is_optional<std::optional<T>> = true;
+template <class T>
+inline constexpr bool is_change = false;
+template <class T>
+inline constexpr bool is_change<Change<T>> = true;
 template <class T>
 inline constexpr bool is_list = false;
 template <class T>
@@ -116,18 +121,36 @@ template <class Owner, class Member>
 Result<void> read_field(const json& in, Owner& out, const Field<Owner, Member>& field,
                         const std::string& prefix) {
   const auto found = in.find(std::string(field.name));
-  const bool absent = found == in.end() || (found->is_null() && !std::is_same_v<Member, RawJson>);
+  constexpr bool takes_null = std::is_same_v<Member, RawJson> || is_change<Member>;
+  const bool absent = found == in.end() || (found->is_null() && !takes_null);
   const std::string path =
       prefix.empty() ? std::string(field.name) : prefix + "." + std::string(field.name);
   if (!absent) return read(*found, out.*field.member, path, field.limits);
-  if (is_optional<Member> || field.presence == Presence::defaulted) return {};
+  constexpr bool may_lack = is_optional<Member> || is_change<Member>;
+  if (may_lack || field.presence == Presence::defaulted) return {};
   return error::invalid(path, "is required");
+}
+
+template <StrictMessage T>
+Result<void> check_members(const json& in, const std::string& path) {
+  const std::vector<std::string_view> names = std::apply(
+      [](const auto&... fields) { return std::vector<std::string_view>{fields.name...}; },
+      T::fields());
+  for (const auto& [name, value] : in.items()) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    return error::invalid(path.empty() ? name : path + "." + name,
+                          "is no member" + suggestion(name, names), choices_text(names));
+  }
+  return {};
 }
 
 template <Message T>
 Result<void> read_message(const json& in, T& out, const std::string& path) {
   if (!in.is_object()) {
     return error::invalid(path.empty() ? "params" : path, "must be an object");
+  }
+  if constexpr (StrictMessage<T>) {
+    if (const Result<void> known = check_members<T>(in, path); !known) return known;
   }
   Result<void> outcome;
   std::apply(
@@ -156,6 +179,9 @@ Result<void> read(const json& in, T& out, const std::string& path, const FieldLi
     return {};
   } else if constexpr (is_optional<T>) {
     return read(in, out.emplace(), path, limits);
+  } else if constexpr (is_change<T>) {
+    out.reset = in.is_null();
+    return out.reset ? Result<void>() : read(in, out.value.emplace(), path, limits);
   } else if constexpr (is_list<T>) {
     return read_list(in, out, path, limits);
   } else if constexpr (is_array<T>) {
@@ -175,6 +201,8 @@ json write(const T& value) {
     return value.value();
   } else if constexpr (is_optional<T>) {
     return value ? write(*value) : json();
+  } else if constexpr (is_change<T>) {
+    return write(value.value);
   } else if constexpr (is_list<T> || is_array<T>) {
     json list = json::array();
     for (const auto& element : value) list.push_back(write(element));
@@ -185,6 +213,10 @@ json write(const T& value) {
       json member = write(value.*field.member);
       using Member = std::remove_cvref_t<decltype(value.*field.member)>;
       if (is_optional<Member> && member.is_null() && field.presence != Presence::or_null) return;
+      if constexpr (is_change<Member>) {
+        const Member& change = value.*field.member;
+        if (!change.value && !change.reset) return;
+      }
       object[std::string(field.name)] = std::move(member);
     };
     std::apply([&](const auto&... fields) { (write_field(fields), ...); }, T::fields());
@@ -228,8 +260,9 @@ json message_schema() {
     json entry = schema<Member>(field.limits);
     entry["description"] = field.help;
     if (!field.unit_name.empty()) entry["x-unit"] = field.unit_name;
-    const bool optional = is_optional<Member> && field.presence != Presence::or_null;
-    if (field.presence == Presence::or_null) entry["type"] = {entry["type"], "null"};
+    const bool optional =
+        is_change<Member> || (is_optional<Member> && field.presence != Presence::or_null);
+    if (field.presence == Presence::or_null || is_change<Member>) entry["type"] = {entry["type"], "null"};
     if (field.presence == Presence::defaulted) {
       entry["default"] = write(initial.*field.member);
     } else if (!optional) {
@@ -239,6 +272,7 @@ json message_schema() {
   };
   std::apply([&](const auto&... fields) { (add(fields), ...); }, T::fields());
   json object{{"type", "object"}, {"properties", std::move(properties)}};
+  if constexpr (StrictMessage<T>) object["additionalProperties"] = false;
   if (!required.empty()) object["required"] = std::move(required);
   return object;
 }
@@ -265,8 +299,12 @@ json schema(const FieldLimits& limits) {
     return {{"type", "object"}};
   } else if constexpr (is_optional<T>) {
     return schema<typename T::value_type>(limits);
+  } else if constexpr (is_change<T>) {
+    return schema<typename decltype(T::value)::value_type>(limits);
   } else if constexpr (is_list<T>) {
-    json result{{"type", "array"}, {"items", schema<typename T::value_type>({})}};
+    json items = schema<typename T::value_type>({});
+    if constexpr (is_optional<typename T::value_type>) items["type"] = {items["type"], "null"};
+    json result{{"type", "array"}, {"items", std::move(items)}};
     put_length(result, limits, "minItems", "maxItems");
     return result;
   } else if constexpr (is_array<T>) {

@@ -3,6 +3,7 @@
 #include <concepts>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string_view>
 #include <tuple>
 
@@ -66,10 +67,19 @@ struct Field {
   }
 };
 
+/// A member of a patch (RFC 7386): absent, a new value, or null, which asks for the initial one.
+template <class T>
+struct Change {
+  std::optional<T> value;
+  bool reset = false;
+
+  bool operator==(const Change&) const = default;
+};
+
 /// Declares a member of a message, in its `static constexpr auto fields()`:
 ///   return std::tuple{field("width", &Size::width, "Picture width.").range(16, 8192)};
 /// Members may be bool, 32 or 64 bit integers, float, double, std::string, a HELIOGRAPH_ENUM,
-/// std::array and std::vector of those, std::optional, another message, or RawJson.
+/// std::array and std::vector of those, std::optional, Change, another message, or RawJson.
 template <class Struct, class Member>
 constexpr Field<Struct, Member> field(std::string_view name, Member Struct::*member,
                                       std::string_view help) {
@@ -81,5 +91,10 @@ template <class T>
 concept Message = requires {
   T::fields();
 };
+
+/// A message that refuses members it does not know (`static constexpr bool strict = true`), as a
+/// patch must: a mistyped name would silently change nothing.
+template <class T>
+concept StrictMessage = Message<T> && T::strict;
 
 }  // namespace heliograph::protocol

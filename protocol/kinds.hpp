@@ -7,6 +7,7 @@ namespace heliograph::protocol {
 HELIOGRAPH_ENUM(DeviceType, cpu, integrated, discrete, virtual_, other)
 HELIOGRAPH_ENUM(TracerKind, embree, software, ray_query, ray_pipeline)
 HELIOGRAPH_ENUM(PassKind, device, host)
-HELIOGRAPH_ENUM(ImageFormat, png)
+HELIOGRAPH_ENUM(ImageFormat, png, jpeg, npy, exr)
+HELIOGRAPH_ENUM(LightType, directional, point, spot, rectangle, disk)
 
 }  // namespace heliograph::protocol

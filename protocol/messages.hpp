@@ -4,5 +4,7 @@
 // in these files is all there is: parsing, validation, writing and the OpenRPC document come from
 // each message's `fields()`.
 
+#include "protocol/frame_messages.hpp"
+#include "protocol/scene_messages.hpp"
 #include "protocol/session_messages.hpp"
 #include "protocol/stream_messages.hpp"

@@ -115,6 +115,8 @@ std::vector<MethodDescriptor> session_methods() {
           "scene.cancel", Call::command,
           "Ends the load that the session waits for. What is shown stays.",
           {no_params, R"({"cancelled": true})"}),
+      method<Empty, Empty>("scene.unload", Call::command, "Shows no scene any more.",
+                           {no_params, "{}"}),
       method<Empty, SceneInfo>("scene.info", Call::query, "Describes the scene that is shown.",
                                {no_params, scene}),
       method<Empty, Camera>("camera.get", Call::query, "Tells where the camera is.",
@@ -123,6 +125,10 @@ std::vector<MethodDescriptor> session_methods() {
           "camera.set", Call::command,
           "Moves the camera; members that are left out stay as they are.",
           {R"({"eye": [8.0, 1.7, 0.0], "target": [0.0, 2.5, 0.0], "seq": 12})", camera}),
+      method<CameraOrbit, Camera>(
+          "camera.orbit", Call::command,
+          "Carries the camera about its target, nearer or farther.",
+          {R"({"yaw": 15.0, "pitch": -5.0, "dolly": 0.9, "seq": 13})", camera}),
       method<Empty, Camera>("camera.fit", Call::command,
                             "Moves the camera back until the whole scene is in the picture.",
                             {no_params, camera}),
@@ -191,15 +197,111 @@ std::vector<MethodDescriptor> stream_methods() {
   };
 }
 
+constexpr std::string_view light = R"({
+  "light": {"name": "sun", "type": "directional", "enabled": true, "color": [1.0, 0.9, 0.8],
+            "intensity": 6.0, "direction": [-0.6, -0.77, -0.2], "angular_diameter": 0.53},
+  "rev": 12})";
+
+constexpr std::string_view material = R"({
+  "material": {"name": "floor", "base_color": [0.8, 0.8, 0.8], "roughness": 0.2,
+               "metallic": 0.0, "emissive": [0.0, 0.0, 0.0], "normal_scale": 1.0,
+               "occlusion_strength": 1.0, "textures": []},
+  "rev": 13})";
+
+constexpr std::string_view environment = R"({
+  "environments": [{"name": "sky", "bytes": 524288}], "current": "sky", "rotation": 30.0,
+  "intensity": 1.0, "rev": 14})";
+
+std::vector<MethodDescriptor> edit_methods() {
+  return {
+      method<Empty, LightList>(
+          "lights.list", Call::query, "Lists the lights of the scene as this session has them.",
+          {no_params, R"({"lights": [{"name": "sun", "type": "directional", "enabled": true,
+              "color": [1.0, 0.9, 0.8], "intensity": 6.0, "direction": [-0.6, -0.77, -0.2],
+              "angular_diameter": 0.53}], "rev": 12})"}),
+      method<LightsPatch, LightState>(
+          "lights.patch", Call::command,
+          "Changes a light of this session's scene by a merge patch (RFC 7386).",
+          {R"({"light": "sun", "patch": {"intensity": 6.0, "angular_diameter": null}})", light}),
+      method<Empty, MaterialList>(
+          "materials.list", Call::query,
+          "Lists the materials of the scene as this session has them.",
+          {no_params, R"({"materials": [{"name": "floor", "base_color": [0.8, 0.8, 0.8],
+              "roughness": 0.2, "metallic": 0.0, "emissive": [0.0, 0.0, 0.0], "normal_scale": 1.0,
+              "occlusion_strength": 1.0, "textures": []}], "rev": 13})"}),
+      method<MaterialsPatch, MaterialState>(
+          "materials.patch", Call::command,
+          "Changes a material of this session's scene by a merge patch (RFC 7386).",
+          {R"({"material": "floor", "patch": {"roughness": 0.2}})", material}),
+      method<Empty, EnvironmentState>(
+          "environment.list", Call::query,
+          "Lists the environments that can be put around the scene and tells which one is.",
+          {no_params, environment}),
+      method<EnvironmentSet, EnvironmentState>(
+          "environment.set", Call::command,
+          "Puts another environment around this session's scene, or turns it.",
+          {R"({"name": "sky", "rotation": 30.0})", environment}),
+  };
+}
+
+constexpr std::string_view reference = R"({
+  "shown": true, "scope": "same_paths", "samples": 12, "wanted": 256, "finished": false,
+  "rev": 15})";
+
+std::vector<MethodDescriptor> frame_methods() {
+  return {
+      method<FrameStep, StepState>(
+          "frame.step", Call::command,
+          "Renders exactly so many frames of dt seconds and answers when they are done. Time "
+          "passes no other way until frame.run; the first call forgets every history.",
+          {R"({"frames": 4, "dt": 0.04})",
+           R"({"lockstep": true, "seconds": 0.16, "frames": 4, "samples": 4, "rev": 16})"}),
+      method<Empty, StepState>(
+          "frame.run", Call::command, "Lets time pass by itself again after frame.step.",
+          {no_params,
+           R"({"lockstep": false, "seconds": 0.0, "frames": 4, "samples": 4, "rev": 17})"}),
+      method<ReferenceStart, ReferenceState>(
+          "reference.start", Call::command,
+          "Shows the path traced truth and gathers its samples, whether anybody watches or not.",
+          {R"({"scope": "same_paths", "samples": 256})", reference}),
+      method<Empty, ReferenceState>("reference.status", Call::query,
+                                    "Tells how far the path traced truth is.",
+                                    {no_params, reference}),
+      method<Empty, ReferenceState>(
+          "reference.stop", Call::command,
+          "Shows the hybrid picture again, with as many samples as before reference.start.",
+          {no_params, R"({"shown": false, "scope": "same_paths", "samples": 0, "wanted": 64,
+                          "finished": false, "rev": 18})"}),
+  };
+}
+
+std::vector<MethodDescriptor> probe_methods() {
+  return {
+      method<PicturePoint, PickResult>(
+          "scene.pick", Call::query, "Tells what surface lies under a point of the picture.",
+          {R"({"x": 0.5, "y": 0.5})",
+           R"({"hit": true, "position": [0.0, 0.5, 1.0], "normal": [0.0, 0.0, 1.0],
+               "distance": 4.2, "object": "sphere", "material": "chrome"})"}),
+      method<PicturePoint, Inspection>(
+          "frame.inspect", Call::query,
+          "Gives the value of every buffer under a point of the picture.",
+          {R"({"x": 0.5, "y": 0.5})",
+           R"({"column": 640, "row": 360, "width": 1280, "height": 720,
+               "buffers": [{"name": "gbuffer.motion.view_z", "value": [4.2],
+                            "unit": "metres"}]})"}),
+  };
+}
+
 }  // namespace
 
 std::span<const MethodDescriptor> methods() {
   static const std::vector<MethodDescriptor> all = [] {
     std::vector<MethodDescriptor> list = session_methods();
-    const std::vector<MethodDescriptor> more = stream_methods();
-    list.insert(list.end(), more.begin(), more.end());
-    const std::vector<MethodDescriptor> moving = animation_methods();
-    list.insert(list.end(), moving.begin(), moving.end());
+    for (const auto& more :
+         {stream_methods(), animation_methods(), edit_methods(), probe_methods(),
+          frame_methods()}) {
+      list.insert(list.end(), more.begin(), more.end());
+    }
     return list;
   }();
   return all;
@@ -211,6 +313,11 @@ std::span<const NotificationDescriptor> notifications() {
       notification<CameraChanged>("camera.changed", "Another viewer moved the camera."),
       notification<SceneProgress>("scene.progress", "A scene is being loaded."),
       notification<SceneChanged>("scene.changed", "Another scene is shown now."),
+      notification<SceneUnloaded>("scene.unloaded", "No scene is shown now."),
+      notification<LightsChanged>("lights.changed", "Another viewer changed a light."),
+      notification<MaterialsChanged>("materials.changed", "Another viewer changed a material."),
+      notification<EnvironmentChanged>("environment.changed",
+                                       "Another viewer put another environment around the scene."),
       notification<StatsFrame>("stats.frame", "Timings of a picture, for subscribers."),
   };
   return all;

@@ -252,6 +252,19 @@ struct SceneChanged {
   bool operator==(const SceneChanged&) const = default;
 };
 
+struct SceneUnloaded {
+  std::string name;
+  std::string by;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("name", &SceneUnloaded::name, "The scene that was shown."),
+        field("by", &SceneUnloaded::by, "The viewer that unloaded it; empty: the server."),
+    };
+  }
+  bool operator==(const SceneUnloaded&) const = default;
+};
+
 struct Camera {
   Vec3 eye{};
   Vec3 target{};

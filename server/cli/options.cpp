@@ -53,7 +53,9 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options) {
   command->add_option("scene", options.scene, "A .glb or .gltf file")
       ->type_name("FILE")
       ->required();
-  command->add_option("-o,--output", options.output, "PNG file to write")
+  command
+      ->add_option("-o,--output", options.output,
+                   "File to write: .png or .jpg; .exr or .npy for values")
       ->type_name("FILE")
       ->required();
   add_size_options(*command, options.width, options.height, "1280x720");

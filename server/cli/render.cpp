@@ -15,8 +15,8 @@
 #include "scene/environment.hpp"
 #include "scene/import.hpp"
 #include "scene/pose.hpp"
+#include "session/capture_content.hpp"
 #include "session/environment_choice.hpp"
-#include "stream/png_encoder.hpp"
 
 namespace heliograph::cli {
 namespace {
@@ -116,7 +116,19 @@ void print_timings(render::Engine& engine, render::Renderer& renderer,
   std::printf("%s\n", line.dump().c_str());
 }
 
-render::Frame render_picture(render::Renderer& renderer, const RenderOptions& options) {
+/// What the file is by its name.
+protocol::ImageFormat format_of(const std::filesystem::path& file) {
+  const std::string extension = file.extension().string();
+  if (extension == ".jpg") return protocol::ImageFormat::jpeg;
+  if (const auto format = protocol::enum_value<protocol::ImageFormat>(
+          extension.substr(std::min<std::size_t>(extension.size(), 1)))) {
+    return *format;
+  }
+  throw std::runtime_error("pictures are .png, .jpg, .exr or .npy files, not " + file.string());
+}
+
+session::CaptureContent render_picture(render::Renderer& renderer, const RenderOptions& options,
+                                       protocol::ImageFormat format) {
   std::uint32_t samples = 0;
   bool converged = false;
   while (!converged && samples < options.samples.value_or(65536)) {
@@ -124,7 +136,7 @@ render::Frame render_picture(render::Renderer& renderer, const RenderOptions& op
     samples = frame.samples;
     converged = frame.converged;
   }
-  return accepted(renderer.capture_view(options.buffer));
+  return accepted(session::read_content(renderer, options.buffer, format));
 }
 
 void write_file(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes) {
@@ -156,6 +168,7 @@ std::filesystem::path numbered(const std::filesystem::path& path, std::uint32_t 
 }  // namespace
 
 int run(const RenderOptions& options) {
+  const protocol::ImageFormat format = format_of(options.output);
   protocol::Settings settings = parse_settings(options.settings);
   if (!options.reference.empty()) choose_reference(settings, options.reference);
   if (options.samples) settings.accumulation.max_samples = static_cast<int>(*options.samples);
@@ -183,10 +196,9 @@ int run(const RenderOptions& options) {
     const double seconds = options.time + i / options.fps;
     accept(renderer.set_pose(options.clip, seconds));
     renderer.set_camera(camera_in_clip(*scene, camera, options.clip, seconds));
-    const render::Frame picture = render_picture(renderer, options);
+    const session::CaptureContent picture = render_picture(renderer, options, format);
     write_file(pictures == 1 ? options.output : numbered(options.output, i),
-               stream::encode_png(
-                   {.width = picture.width, .height = picture.height, .rgba = picture.rgba}));
+               session::encode_content(picture, format));
   }
   return 0;
 }

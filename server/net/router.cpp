@@ -1,5 +1,6 @@
 #include "net/router.hpp"
 
+#include <array>
 #include <charconv>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -57,6 +58,26 @@ HttpResponse schema() {
   const nlohmann::json document{{"openrpc", protocol::openrpc_document().value()},
                                 {"settings", protocol::settings_schema()}};
   return json_response(document.dump());
+}
+
+struct PictureKind {
+  std::string_view extension;
+  protocol::ImageFormat format;
+  std::string_view content_type;
+};
+
+constexpr std::array picture_kinds{
+    PictureKind{"png", protocol::ImageFormat::png, "image/png"},
+    PictureKind{"jpg", protocol::ImageFormat::jpeg, "image/jpeg"},
+    PictureKind{"npy", protocol::ImageFormat::npy, "application/x-npy"},
+    PictureKind{"exr", protocol::ImageFormat::exr, "image/x-exr"},
+};
+
+const PictureKind* picture_kind(std::string_view extension) {
+  for (const PictureKind& kind : picture_kinds) {
+    if (kind.extension == extension) return &kind;
+  }
+  return nullptr;
 }
 
 /// "main/frame.jpg" -> main, jpg
@@ -195,11 +216,13 @@ void Router::picture(const HttpRequest& request, std::string_view session,
                      std::string_view extension, Reply reply) const {
   const auto found = host_.sessions().find(session);
   if (!found) return reply(error_response(found.error()));
-  if (extension != "png" && extension != "jpg") {
-    return reply(text_response(404, "Pictures are frame.jpg and frame.png."));
+  const PictureKind* const kind = picture_kind(extension);
+  if (!kind) {
+    return reply(
+        text_response(404, "Pictures are frame.jpg, frame.png, frame.exr and frame.npy."));
   }
   session::CaptureRequest capture;
-  capture.format = extension == "png" ? session::CaptureFormat::png : session::CaptureFormat::jpeg;
+  capture.format = kind->format;
   capture.buffer = request.parameter("buffer").value_or("output");
   const std::string samples = request.parameter("samples").value_or("1");
   std::uint32_t count = 0;
@@ -209,10 +232,10 @@ void Router::picture(const HttpRequest& request, std::string_view session,
     return reply(text_response(400, "samples must be a whole number from 1."));
   }
   capture.samples = count;
-  capture.done = [reply, type = extension == "png" ? "image/png" : "image/jpeg"](
-                     protocol::Result<session::Capture> result) {
+  capture.done = [reply, kind](protocol::Result<session::Capture> result) {
     if (!result) return reply(error_response(result.error()));
-    reply({.content_type = type, .body = {result->file.begin(), result->file.end()}});
+    reply({.content_type = std::string(kind->content_type),
+           .body = {result->file.begin(), result->file.end()}});
   };
   if (const auto accepted = (*found)->request_capture(std::move(capture)); !accepted) {
     reply(error_response(accepted.error()));

@@ -5,6 +5,7 @@
 
 #include "render/atrous.hpp"
 #include "render/denoise_constants.hpp"
+#include "render/moving_scene.hpp"
 #include "render/signals_host.hpp"
 #include "render/temporal.hpp"
 #include "shaders/embedded.hpp"
@@ -14,15 +15,15 @@ namespace {
 
 /// Apparent diameter of the softest light, degrees; local lights as seen from the scene's middle.
 float widest_light(const FrameInputs& in) {
-  const scene::Scene& scene = *in.scene.scene;
+  const glm::vec3 middle = in.scene.scene->bounds.center();
   const float override_degrees = in.settings.shadows.angular_diameter_override;
   float widest = 0.0f;
-  for (const scene::Light& light : scene.lights) {
-    float tangent = light.device.radius;
-    if (light.device.type == shared::light_directional) {
+  for (const shared::Light& light : in.moving.lights()) {
+    float tangent = light.radius;
+    if (light.type == shared::light_directional) {
       if (override_degrees >= 0.0f) tangent = std::tan(glm::radians(0.5f * override_degrees));
     } else {
-      tangent /= std::max(glm::distance(light.device.position, scene.bounds.center()), 1e-6f);
+      tangent /= std::max(glm::distance(light.position, middle), 1e-6f);
     }
     widest = std::max(widest, 2.0f * glm::degrees(std::atan(tangent)));
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "render/frame_set.hpp"
+#include "render/moving_scene.hpp"
 #include "render/scene_set.hpp"
 #include "render/view_table.hpp"
 
@@ -21,7 +22,7 @@ Drawing::Drawing(const Engine::Parts& parts, const FrameInputs& in,
 void Drawing::share_sets(const Engine::Parts& parts, const gpu::Buffer& constants_buffer) {
   const VkDescriptorSet set = pool.allocate(parts.programs.frame_layout.handle());
   write_frame_set(parts, set, constants_buffer, inputs.tables.lights,
-                  inputs.scene.environment->view(inputs.settings.environment.separate_sun));
+                  inputs.moving.environment().view(inputs.settings.environment.separate_sun));
   plan.share_set(frame_set, set);
   const VkDescriptorSet tables = pool.allocate(parts.programs.scene_layout.handle());
   write_scene_set(parts.device, tables, inputs.tables, inputs.scene.texture_heap);
@@ -36,6 +37,7 @@ void Drawing::list_buffers() {
     buffers.push_back({view, text});
   };
   buffers.push_back({std::string(picture_name), "The finished picture."});
+  list(std::string(radiance_name), "What it shows before exposure and tone mapping: linear.");
   for (const auto& view : plan.views()) {
     if (view.name == picture_name) continue;
     list(view.name, view.description);

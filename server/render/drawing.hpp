@@ -10,6 +10,7 @@
 namespace heliograph::render {
 
 inline constexpr std::string_view picture_name = "output";
+inline constexpr std::string_view radiance_name = "output.radiance";
 
 /// A compiled frame with all that it holds on to: one scene at one size, made of the passes that
 /// the settings asked for when it was made.

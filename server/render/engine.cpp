@@ -78,6 +78,10 @@ std::uint64_t memory_bytes(const SceneResources& resources) {
   return resources.bytes();
 }
 
+std::shared_ptr<const LitEnvironment> Engine::prefilter(const scene::Environment& environment) {
+  return parts_->environments.get(environment);
+}
+
 std::string describe_devices(const EngineOptions& options) {
   std::string text = "Driver files and what each finds alone:\n";
   try {

@@ -37,7 +37,8 @@ FrameOutputs declare_reference(gpu::FramePlan& plan, const FrameInputs& in) {
   const gpu::ImageRef sample = trace_reference(plan, in);
   const gpu::History accumulated = accumulate(plan, in, sample);
   const Exposure exposure = expose(plan, in, sample, accumulated.current);
-  return {accumulated, exposure, present(plan, in, exposure, sample, accumulated.current)};
+  return {accumulated, exposure, sample,
+          present(plan, in, exposure, sample, accumulated.current)};
 }
 
 }  // namespace
@@ -62,7 +63,7 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   const Exposure exposure = expose(plan, in, hdr, accumulated.current);
   const gpu::ImageRef resolved = temporal_antialias(plan, in, gbuffer, exposure, hdr);
   const gpu::ImageRef picture = present(plan, in, exposure, resolved, accumulated.current);
-  return {accumulated, exposure, picture};
+  return {accumulated, exposure, resolved, picture};
 }
 
 }  // namespace heliograph::render

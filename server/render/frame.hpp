@@ -40,6 +40,7 @@ inline bool on_host(const gpu::FramePlan& plan, const FrameInputs& in) {
 struct FrameOutputs {
   gpu::History accumulated;  // linear radiance
   Exposure exposure;
+  gpu::ImageRef radiance;    // of the frame alone, as the picture takes it in
   gpu::ImageRef picture;     // sRGB, RGBA8
 };
 

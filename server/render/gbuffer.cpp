@@ -26,7 +26,7 @@ class DrawRecorder {
     if (draw.material != material_) {
       material_ = draw.material;
       vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, material_set, 1,
-                              &in_.scene.material_sets[material_], 0, nullptr);
+                              &in_.moving.material_sets()[material_], 0, nullptr);
     }
     vkCmdPushConstants(commands_, layout_,
                        VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,

@@ -153,7 +153,7 @@ MaterialTable make_material_table(std::span<const shared::Material> materials,
 
 SceneView view_scene(const FrameInputs& in) {
   const auto mapped = [](const gpu::Buffer& buffer) { return buffer.mapped(); };
-  const MaterialTable& made = in.scene.host_materials;
+  const MaterialTable& made = in.moving.host_materials();
   return {reinterpret_cast<const shared::Vertex*>(mapped(in.tables.vertices)),
           reinterpret_cast<const std::uint32_t*>(mapped(in.tables.indices)),
           reinterpret_cast<const shared::Mesh*>(mapped(in.tables.meshes)),

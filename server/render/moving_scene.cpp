@@ -47,8 +47,6 @@ struct MovingScene::Moving {
   /// elsewhere.
   bool move_instances(const scene::Scene& scene, const scene::Pose& pose);
   bool deform(const scene::Scene& scene, const scene::Pose& before, const scene::Pose& pose);
-  bool move_lights(const scene::Scene& scene, const scene::Pose& before, const scene::Pose& pose,
-                   std::vector<shared::Light>& lights);
   void move_draws(const scene::Scene& scene);
   void update_structure();
 
@@ -62,7 +60,6 @@ struct MovingScene::Moving {
   std::vector<scene::Bounds> bounds;   // by mesh
 
   gpu::Buffer instance_table;
-  gpu::Buffer light_table;
   gpu::Buffer vertex_table;    // empty when no mesh deforms
   gpu::Buffer previous_table;
   std::unique_ptr<tracing::MovingStructure> structure;
@@ -84,7 +81,6 @@ MovingScene::Moving::Moving(const gpu::Device& device, const SceneResources& res
   for (std::uint32_t i = 0; i < draws.size(); ++i) draw_of[draws[i].constants.instance] = i;
   instance_table = writable_table(device, "instances now", std::span<const shared::Instance>(instances),
                                   VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-  light_table = make_light_table(device, scene.lights.size());
   if (scene.deformations.empty()) return;
 
   std::vector<std::size_t> first_vertex;
@@ -157,20 +153,6 @@ bool MovingScene::Moving::deform(const scene::Scene& scene, const scene::Pose& b
   return any;
 }
 
-bool MovingScene::Moving::move_lights(const scene::Scene& scene, const scene::Pose& before,
-                                      const scene::Pose& pose,
-                                      std::vector<shared::Light>& lights) {
-  bool any = false;
-  for (std::size_t i = 0; i < lights.size(); ++i) {
-    const auto node = scene.lights[i].node;
-    if (!node || before.worlds[*node] == pose.worlds[*node]) continue;
-    lights[i] = scene::place_light(scene.lights[i].device, pose.worlds[*node]);
-    any = true;
-  }
-  if (any) write_lights(light_table, lights);
-  return any;
-}
-
 void MovingScene::Moving::move_draws(const scene::Scene& scene) {
   const auto move = [&](std::uint32_t instance) {
     Draw& draw = draws[draw_of[instance]];
@@ -195,23 +177,73 @@ void MovingScene::Moving::update_structure() {
 
 MovingScene::MovingScene(const gpu::Device& device, const tracing::RayTracer& tracer,
                          std::shared_ptr<const SceneResources> rest)
-    : rest_(std::move(rest)), pose_(scene::rest_pose(*rest_->scene)) {
-  const tracing::SceneBuffers& shared = rest_->rest_tables;
-  for (const scene::Light& light : rest_->scene->lights) lights_.push_back(light.device);
+    : device_(device),
+      rest_(std::move(rest)),
+      environment_(rest_->environment),
+      pose_(scene::rest_pose(*rest_->scene)) {
+  for (const scene::Light& light : rest_->scene->lights) lights_at_rest_.push_back(light.device);
+  lights_ = lights_at_rest_;
   previous_lights_ = lights_;
   if (!rest_->scene->clips.empty()) {
     moving_ = std::make_unique<Moving>(device, *rest_);
-    write_lights(moving_->light_table, lights_);
+    own_lights_ = make_light_table(device, lights_.size());
+    write_lights(own_lights_, lights_);
   }
-  tables_.emplace(tracing::SceneTables{
-      moving_ && moving_->vertex_table ? moving_->vertex_table : shared.vertices, shared.indices,
-      shared.meshes, moving_ ? moving_->instance_table : shared.instances, shared.materials,
-      moving_ ? moving_->light_table : shared.lights, shared.alpha_heap});
+  bind_tables();
   if (!moving_) return;
   moving_->structure = tracer.build_moving(rest_->rest_structure, *rest_->scene, *tables_);
 }
 
 MovingScene::~MovingScene() = default;
+
+void MovingScene::bind_tables() {
+  const tracing::SceneBuffers& shared = rest_->rest_tables;
+  tables_.emplace(tracing::SceneTables{
+      moving_ && moving_->vertex_table ? moving_->vertex_table : shared.vertices, shared.indices,
+      shared.meshes, moving_ ? moving_->instance_table : shared.instances,
+      changed_materials_ ? changed_materials_->table : shared.materials,
+      own_lights_ ? own_lights_ : shared.lights, shared.alpha_heap});
+}
+
+const host::MaterialTable& MovingScene::host_materials() const {
+  return changed_materials_ ? changed_materials_->host : rest_->host_materials;
+}
+
+const std::vector<VkDescriptorSet>& MovingScene::material_sets() const {
+  return changed_materials_ ? changed_materials_->sets.sets : rest_->material_sets.sets;
+}
+
+bool MovingScene::set_lights(std::span<const shared::Light> lights) {
+  lights_at_rest_.assign(lights.begin(), lights.end());
+  lights_are_new_ = true;
+  if (own_lights_) return false;
+  own_lights_ = make_light_table(device_, lights.size());
+  write_lights(own_lights_, lights_);
+  bind_tables();
+  return true;
+}
+
+bool MovingScene::set_materials(const Programs& programs,
+                                std::span<const shared::Material> materials) {
+  host::MaterialTable host;
+  if (device_.is_cpu()) host = rest_->make_host_materials(materials);
+  if (changed_materials_) {
+    std::memcpy(changed_materials_->table.mapped(), materials.data(), materials.size_bytes());
+    changed_materials_->sets.write(materials);
+    changed_materials_->host = std::move(host);
+    return false;
+  }
+  changed_materials_ = std::make_unique<ChangedMaterials>(ChangedMaterials{
+      writable_table(device_, "materials now", materials, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT),
+      rest_->make_material_sets(device_, programs, materials, gpu::Memory::upload),
+      std::move(host)});
+  bind_tables();
+  return true;
+}
+
+void MovingScene::set_environment(std::shared_ptr<const LitEnvironment> environment) {
+  environment_ = std::move(environment);
+}
 
 const tracing::AccelerationStructure& MovingScene::structure() const {
   if (moving_) return *moving_->structure;
@@ -236,15 +268,21 @@ bool MovingScene::set_pose(const scene::Clip* clip, double seconds) {
 }
 
 bool MovingScene::needs_advance() const {
-  return moving_ && (moving_->pose_is_new || !moving_->settled);
+  return lights_are_new_ || (moving_ && (moving_->pose_is_new || !moving_->settled));
 }
 
 bool MovingScene::advance() {
   previous_lights_ = lights_;
   things_moved_ = false;
   if (!needs_advance()) return false;
-  const scene::Scene& scene = *rest_->scene;
   const scene::Pose before = pose_;
+  if (moving_) move_things(before);
+  const bool lights = move_lights(before);
+  return things_moved_ || lights;
+}
+
+void MovingScene::move_things(const scene::Pose& before) {
+  const scene::Scene& scene = *rest_->scene;
   if (moving_->pose_is_new) {
     if (moving_->clip) {
       scene::evaluate(scene, *moving_->clip, moving_->seconds, pose_);
@@ -255,13 +293,28 @@ bool MovingScene::advance() {
   moving_->pose_is_new = false;
   const bool instances = moving_->move_instances(scene, pose_);
   const bool shapes = moving_->deform(scene, before, pose_);
-  const bool lights = moving_->move_lights(scene, before, pose_, lights_);
   moving_->move_draws(scene);
   moving_->update_structure();
   moving_->settled =
       moving_->placed.empty() && std::ranges::none_of(moving_->deforming, &Moving::Deforming::moved);
   things_moved_ = instances || shapes;
-  return things_moved_ || lights;
+}
+
+bool MovingScene::move_lights(const scene::Pose& before) {
+  const scene::Scene& scene = *rest_->scene;
+  bool any = lights_are_new_;
+  for (std::size_t i = 0; i < lights_.size(); ++i) {
+    const auto node = scene.lights[i].node;
+    const bool moves = node && before.worlds[*node] != pose_.worlds[*node];
+    if (!moves && !lights_are_new_) continue;
+    const bool carried = node && pose_.worlds[*node] != scene.nodes[*node].world;
+    const shared::Light& rest = lights_at_rest_[i];
+    lights_[i] = carried || moves ? scene::place_light(rest, pose_.worlds[*node]) : rest;
+    any = true;
+  }
+  lights_are_new_ = false;
+  if (any) write_lights(own_lights_, lights_);
+  return any;
 }
 
 }  // namespace heliograph::render

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "render/scene_resources.hpp"
@@ -10,8 +11,9 @@
 
 namespace heliograph::render {
 
-/// A scene as one renderer sees it: the shared resources at rest, and over them what moves. Several
-/// renderers may show one scene at different times. A scene without clips costs nothing here.
+/// A scene as one renderer sees it: the shared resources at rest, and over them what moves and what
+/// was changed. Several renderers may show one scene at different times and in different light.
+/// A scene without clips or changes costs nothing here.
 ///
 /// What a pose changes, from one advance() to the next: matrices now and one frame ago in the table
 /// of instances, the vertices of meshes that deform (processor skinning, all cores), lights, the
@@ -36,6 +38,21 @@ class MovingScene {
   const std::vector<shared::Light>& lights() const { return lights_; }
   const std::vector<shared::Light>& previous_lights() const { return previous_lights_; }
 
+  const LitEnvironment& environment() const { return *environment_; }
+  const host::MaterialTable& host_materials() const;
+  const std::vector<VkDescriptorSet>& material_sets() const;
+
+  /// Other lights than the scene's, of the same number and kinds, where no clip moves them; from
+  /// the next advance() on. Never while a frame runs.
+  /// @return whether tables() changed: plans must be made anew
+  bool set_lights(std::span<const shared::Light> lights);
+  /// Other values for the scene's materials, with the same textures, alpha and flags, which rays
+  /// and draws go by. Never while a frame runs.
+  /// @return whether tables() changed: plans must be made anew
+  bool set_materials(const Programs& programs, std::span<const shared::Material> materials);
+  /// Another environment than the scene's own; plans must be made anew.
+  void set_environment(std::shared_ptr<const LitEnvironment> environment);
+
   /// What the next advance() goes to: a clip of this scene at `seconds`, or rest when null.
   /// @return whether that differs from where the scene is going already
   bool set_pose(const scene::Clip* clip, double seconds);
@@ -53,8 +70,23 @@ class MovingScene {
 
  private:
   struct Moving;
+  struct ChangedMaterials {
+    gpu::Buffer table;  // shared::Material each
+    MaterialSets sets;
+    host::MaterialTable host;
+  };
 
+  void bind_tables();
+  void move_things(const scene::Pose& before);
+  bool move_lights(const scene::Pose& before);
+
+  const gpu::Device& device_;
   std::shared_ptr<const SceneResources> rest_;
+  std::shared_ptr<const LitEnvironment> environment_;
+  std::unique_ptr<ChangedMaterials> changed_materials_;  // null: the scene's
+  std::vector<shared::Light> lights_at_rest_;
+  gpu::Buffer own_lights_;  // empty as long as they are the scene's and rest
+  bool lights_are_new_ = false;
   scene::Pose pose_;
   std::vector<shared::Light> lights_;
   std::vector<shared::Light> previous_lights_;

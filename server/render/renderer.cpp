@@ -6,9 +6,11 @@
 #include <optional>
 #include <utility>
 
+#include "render/accumulate.hpp"
 #include "render/debug_view.hpp"
 #include "render/drawing.hpp"
 #include "render/moving_scene.hpp"
+#include "render/probe.hpp"
 #include "render/scene_motion.hpp"
 #include "render/view_constants.hpp"
 #include "render/view_table.hpp"
@@ -28,6 +30,15 @@ scene::Scene empty_scene() {
     (scene.materials.back().*slot).texture = shared::no_texture;
   }
   return scene;
+}
+
+/// Whether lights differ in nothing but where they are and where they shine.
+bool only_move(std::span<const shared::Light> before, std::span<const shared::Light> after) {
+  return std::ranges::equal(before, after, [](const shared::Light& a, const shared::Light& b) {
+    return a.color == b.color && a.radius == b.radius && a.range == b.range &&
+           a.half_width == b.half_width && a.half_height == b.half_height &&
+           a.spot_scale == b.spot_scale && a.spot_offset == b.spot_offset;
+  });
 }
 
 }  // namespace
@@ -63,6 +74,7 @@ struct Renderer::State {
   std::uint32_t sequence = 0;  // frames since the last cut: where random sequences stand
   std::uint32_t samples = 0;   // in the accumulated picture
   float seconds = 1.0f / 60.0f;  // since the frame before
+  float share_of_mean = 0.0f;  // in the picture as of the last frame
   SceneMotion scene_motion;
   bool stale = true;          // something changed since the last frame
 
@@ -121,6 +133,7 @@ protocol::Result<void> Renderer::State::change_settings(const protocol::Settings
 }
 
 std::optional<FloatImage> Renderer::State::read(std::string_view view) const {
+  if (view == radiance_name) return shown_radiance(*drawing, share_of_mean);
   const std::string_view source = source_of(view);
   const gpu::Image* image = drawing->find(source.empty() ? view : source);
   if (!image) return std::nullopt;
@@ -157,6 +170,32 @@ void Renderer::set_scene(std::shared_ptr<const SceneResources> scene) {
   state_->redraw();
 }
 
+void Renderer::set_lights(std::span<const shared::Light> lights) {
+  const bool moves = only_move(state_->moving->lights(), lights);
+  if (state_->moving->set_lights(lights)) {
+    state_->redraw();
+  } else {
+    if (!moves) state_->has_previous = false;
+    state_->restart();
+  }
+}
+
+void Renderer::set_materials(std::span<const shared::Material> materials) {
+  if (state_->moving->set_materials(state_->parts.programs, materials)) {
+    state_->redraw();
+  } else {
+    state_->has_previous = false;
+    state_->restart();
+  }
+}
+
+void Renderer::set_environment(std::shared_ptr<const LitEnvironment> environment) {
+  state_->drawing.reset();
+  state_->moving->set_environment(environment ? std::move(environment)
+                                              : state_->scene->environment);
+  state_->redraw();
+}
+
 void Renderer::set_size(std::uint32_t width, std::uint32_t height) {
   if (state_->extent.width == width && state_->extent.height == height) return;
   state_->extent = {width, height};
@@ -186,6 +225,10 @@ void Renderer::cut() {
   state_->restart();
 }
 
+void Renderer::start_anew() {
+  state_->redraw();
+}
+
 void Renderer::set_frame_seconds(float seconds) {
   state_->seconds = std::max(seconds, 0.0f);
 }
@@ -207,17 +250,20 @@ Frame Renderer::render() {
   State& state = *state_;
   const auto start = std::chrono::steady_clock::now();
   state.stale = false;
-  const bool moves = state.moving->advance();
+  bool moves = state.moving->advance();
+  // Without a frame before there is no motion since.
+  if (!state.has_previous) moves |= state.moving->advance();
   const auto posed = std::chrono::steady_clock::now();
   if (!state.settings.accumulation.enabled) state.samples = 0;
   const shared::FrameConstants before = state.constants;
-  state.constants = make_frame_constants(state.camera, state.settings, *state.scene, state.extent,
+  state.constants = make_frame_constants(state.camera, state.settings, *state.moving, state.extent,
                                          state.sequence++, state.has_previous ? &before : nullptr);
   state.scene_motion =
       render::scene_motion(*state.moving, state.constants, state.has_previous ? &before : nullptr);
   state.has_previous = true;
   std::memcpy(state.constants_buffer.mapped(), &state.constants, sizeof state.constants);
   state.drawing->plan.execute();
+  state.share_of_mean = mean_share(state.drawing->inputs);
   ++state.samples;
 
   Frame frame = state.picture();
@@ -262,6 +308,17 @@ protocol::Result<Frame> Renderer::capture_view(std::string_view buffer) {
   Frame frame = visualise(buffer, values.value());
   frame.samples = state_->samples;
   return frame;
+}
+
+std::vector<BufferValue> Renderer::inspect(glm::vec2 point) const {
+  const Drawing& drawing = *state_->drawing;
+  return inspect_buffers(
+      drawing, {state_->constants, exposure_factor(drawing.plan, drawing.outputs.exposure)},
+      state_->share_of_mean, point);
+}
+
+protocol::Result<std::optional<SurfacePoint>> Renderer::pick(glm::vec2 point) const {
+  return surface_at(*state_->drawing, state_->constants, point);
 }
 
 }  // namespace heliograph::render

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,6 +34,8 @@ struct DeviceInfo {
 
 /// A scene and its environment on the device, with its acceleration structure. Shared, immutable.
 class SceneResources;
+/// An environment on the device, filtered. Shared, immutable.
+class LitEnvironment;
 
 /// Memory of the tables, images and the acceleration structure, not of the environment.
 std::uint64_t memory_bytes(const SceneResources& resources);
@@ -58,6 +62,9 @@ class Engine {
   std::shared_ptr<const SceneResources> upload(std::shared_ptr<const scene::Scene> scene,
                                                const scene::Environment& environment,
                                                const UploadProgress& progress = {});
+  /// Uploads and prefilters an environment, or finds it where it is in use already. May run on any
+  /// thread, beside rendering.
+  std::shared_ptr<const LitEnvironment> prefilter(const scene::Environment& environment);
 
   struct Parts;
   Parts& parts() { return *parts_; }
@@ -84,7 +91,24 @@ struct PassWork {
 struct FloatImage {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
-  std::vector<float> rgba;
+  std::vector<float> rgba{};
+  std::uint32_t channels = 4;  // the first so many of the four are the buffer's
+  bool counts = false;         // whole numbers from 0
+};
+
+/// The value of one buffer at one pixel.
+struct BufferValue {
+  std::string name;
+  std::vector<float> channels;
+  std::string unit;  // empty: plain numbers, or channels of different kinds
+};
+
+/// What is seen at one point of the picture, in world space, metres.
+struct SurfacePoint {
+  std::uint32_t instance;  // of the scene
+  glm::vec3 position;
+  glm::vec3 normal;  // of the triangle, toward the camera
+  float distance;    // from the eye; along the view for cameras without perspective
 };
 
 struct BufferInfo {
@@ -114,6 +138,13 @@ class Renderer {
 
   /// Null is the empty scene, which every renderer starts with.
   void set_scene(std::shared_ptr<const SceneResources> scene);
+  /// Other lights, as at rest, and other values of materials than those of the scene's file, for
+  /// this renderer alone: as many as the scene has, of the same kinds, with the same textures and
+  /// alpha. set_scene brings back the file's. Lights that only move keep the histories.
+  void set_lights(std::span<const shared::Light> lights);
+  void set_materials(std::span<const shared::Material> materials);
+  /// Another environment than the scene's own; null: its own again.
+  void set_environment(std::shared_ptr<const LitEnvironment> environment);
   void set_size(std::uint32_t width, std::uint32_t height);
   void set_camera(const scene::Camera& camera);
   /// Poses the scene by a clip of it, or as at rest when `clip` is empty, where set_scene leaves it.
@@ -122,6 +153,9 @@ class Renderer {
   /// Forgets every history and starts the random sequences anew: what follows are the frames of a
   /// fresh renderer.
   void cut();
+  /// As if nothing had been drawn before: what follows is what another renderer in the same state
+  /// would draw, whatever this one drew.
+  void start_anew();
   /// Time from frame to frame, which histories are measured by; 1/60 s until told otherwise.
   void set_frame_seconds(float seconds);
   /// Refused when a new `view.buffer` names no buffer; then nothing is applied.
@@ -141,6 +175,12 @@ class Renderer {
   protocol::Result<FloatImage> capture(std::string_view buffer);
   /// The same as a picture for people: the debug view of that buffer, as streamed.
   protocol::Result<Frame> capture_view(std::string_view buffer);
+  /// Every buffer of the last frame at one point of the picture: shares of its width and height
+  /// from the upper left corner, 0 to 1.
+  std::vector<BufferValue> inspect(glm::vec2 point) const;
+  /// The surface that the last frame shows there; nothing: the background. An error where the
+  /// frame keeps no surfaces: when it is all path traced.
+  protocol::Result<std::optional<SurfacePoint>> pick(glm::vec2 point) const;
 
  private:
   struct State;

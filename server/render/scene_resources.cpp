@@ -75,13 +75,8 @@ SceneResources::SceneResources(const gpu::Device& device, const Programs& progra
   upload_tables(device);
   upload_textures(device, progress);
   texture_heap = make_texture_heap(device, *scene);
-  if (device.is_cpu()) {
-    const auto* const textures =
-        reinterpret_cast<const shared::HeapTexture*>(texture_heap.textures.mapped());
-    host_materials =
-        host::make_material_table(scene->materials, {textures, scene->textures.size()});
-  }
-  make_material_sets(device, programs);
+  if (device.is_cpu()) host_materials = make_host_materials(scene->materials);
+  material_sets = make_material_sets(device, programs, scene->materials, gpu::Memory::device);
   list_draws();
   progress("acceleration structure", 0.5f);
   rest_structure = tracer.build(*scene, rest_tables);
@@ -92,7 +87,7 @@ std::uint64_t SceneResources::bytes() const {
   for (const gpu::Buffer* buffer :
        {&rest_tables.vertices, &rest_tables.indices, &rest_tables.meshes, &rest_tables.instances,
         &rest_tables.materials, &rest_tables.lights, &rest_tables.alpha_heap, &texture_heap.texels,
-        &texture_heap.textures, &material_blocks_}) {
+        &texture_heap.textures, &material_sets.blocks}) {
     sum += buffer->size();
   }
   for (const scene::Image& image : scene->images) {
@@ -168,22 +163,43 @@ void SceneResources::upload_textures(const gpu::Device& device, const UploadProg
   samplers_.emplace_back(device, sampler_info({}));  // for slots without a texture
 }
 
-void SceneResources::make_material_sets(const gpu::Device& device, const Programs& programs) {
-  const auto count = static_cast<std::uint32_t>(scene->materials.size());
-  pool_ = std::make_unique<gpu::DescriptorPool>(device, count, count * material_textures);
-  const VkDeviceSize alignment = device.limits().minUniformBufferOffsetAlignment;
-  const VkDeviceSize stride = (sizeof(shared::Material) + alignment - 1) / alignment * alignment;
-  std::vector<std::byte> blocks(stride * count);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    std::memcpy(blocks.data() + i * stride, &scene->materials[i], sizeof(shared::Material));
+host::MaterialTable SceneResources::make_host_materials(
+    std::span<const shared::Material> materials) const {
+  const auto* const textures =
+      reinterpret_cast<const shared::HeapTexture*>(texture_heap.textures.mapped());
+  return host::make_material_table(materials, {textures, scene->textures.size()});
+}
+
+void MaterialSets::write(std::span<const shared::Material> materials) const {
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    std::memcpy(blocks.mapped() + i * stride, &materials[i], sizeof(shared::Material));
   }
-  material_blocks_ =
-      gpu::upload_buffer(device, "material blocks", blocks, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
-  for (const shared::Material& material : scene->materials) {
+}
+
+MaterialSets SceneResources::make_material_sets(const gpu::Device& device, const Programs& programs,
+                                                std::span<const shared::Material> materials,
+                                                gpu::Memory memory) const {
+  MaterialSets made;
+  const auto count = static_cast<std::uint32_t>(materials.size());
+  made.pool = std::make_unique<gpu::DescriptorPool>(device, count, count * material_textures);
+  const VkDeviceSize alignment = device.limits().minUniformBufferOffsetAlignment;
+  made.stride = (sizeof(shared::Material) + alignment - 1) / alignment * alignment;
+  std::vector<std::byte> blocks(made.stride * count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    std::memcpy(blocks.data() + i * made.stride, &materials[i], sizeof(shared::Material));
+  }
+  constexpr auto usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
+  if (memory == gpu::Memory::upload) {
+    made.blocks = gpu::Buffer(device, "material blocks", blocks.size(), usage, memory);
+    std::memcpy(made.blocks.mapped(), blocks.data(), blocks.size());
+  } else {
+    made.blocks = gpu::upload_buffer(device, "material blocks", blocks, usage);
+  }
+  for (const shared::Material& material : materials) {
     const std::array slots{&material.base_color_texture, &material.metallic_roughness_texture,
                            &material.normal_texture, &material.occlusion_texture,
                            &material.emissive_texture};
-    const VkDescriptorSet set = pool_->allocate(programs.material_layout.handle());
+    const VkDescriptorSet set = made.pool->allocate(programs.material_layout.handle());
     gpu::DescriptorWriter writer(device, set);
     for (std::uint32_t i = 0; i < material_textures; ++i) {
       const std::uint32_t texture = slots[i]->texture;
@@ -195,11 +211,12 @@ void SceneResources::make_material_sets(const gpu::Device& device, const Program
                              samplers_[texture_sampler_[texture]].handle());
       }
     }
-    writer.buffer(material_textures, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, material_blocks_.handle(),
-                  material_sets.size() * stride, sizeof(shared::Material));
+    writer.buffer(material_textures, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, made.blocks.handle(),
+                  made.sets.size() * made.stride, sizeof(shared::Material));
     writer.apply();
-    material_sets.push_back(set);
+    made.sets.push_back(set);
   }
+  return made;
 }
 
 void SceneResources::list_draws() {

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "render/host_tables.hpp"
@@ -27,6 +28,17 @@ struct Draw {
   scene::Bounds bounds;  // world
 };
 
+/// Materials as the rasteriser reads them: a uniform block and a descriptor set each.
+struct MaterialSets {
+  gpu::Buffer blocks;  // shared::Material each, `stride` bytes apart
+  VkDeviceSize stride = 0;
+  std::unique_ptr<gpu::DescriptorPool> pool;
+  std::vector<VkDescriptorSet> sets;
+
+  /// Never while a frame runs; only where the blocks are memory that the host reaches.
+  void write(std::span<const shared::Material> materials) const;
+};
+
 class SceneResources {
  public:
   SceneResources(const gpu::Device& device, const Programs& programs,
@@ -46,12 +58,17 @@ class SceneResources {
   std::uint32_t features = 0;  // shared::scene_*
   std::vector<Draw> draws;     // opaque first, then by material
   std::uint32_t deforming_vertices = 0;
-  std::vector<VkDescriptorSet> material_sets;
+  MaterialSets material_sets;
+
+  /// Other values for the scene's materials, with its textures. The host's only on processors.
+  host::MaterialTable make_host_materials(std::span<const shared::Material> materials) const;
+  MaterialSets make_material_sets(const gpu::Device& device, const Programs& programs,
+                                  std::span<const shared::Material> materials,
+                                  gpu::Memory memory) const;
 
  private:
   void upload_tables(const gpu::Device& device);
   void upload_textures(const gpu::Device& device, const UploadProgress& progress);
-  void make_material_sets(const gpu::Device& device, const Programs& programs);
   void list_draws();
 
   std::vector<shared::Mesh> meshes_;
@@ -61,8 +78,6 @@ class SceneResources {
   gpu::Image flat_normal_;
   std::vector<gpu::Sampler> samplers_;
   std::vector<std::uint32_t> texture_sampler_;  // by texture, into samplers_
-  gpu::Buffer material_blocks_;  // shared::Material each, at the device's uniform alignment
-  std::unique_ptr<gpu::DescriptorPool> pool_;
 };
 
 }  // namespace heliograph::render

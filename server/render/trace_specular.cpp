@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "render/light_table.hpp"
+#include "render/moving_scene.hpp"
 #include "render/ray_stream.hpp"
 #include "render/sort_rays.hpp"
 #include "render/specular_host.hpp"
@@ -81,7 +82,7 @@ void shade_on_host(const gpu::FramePlan& plan, const FrameInputs& in, const GBuf
   const auto lights = frame_lights(in.tables.lights, in.constants);
   const bool separate_sun = in.settings.environment.separate_sun;
   host::shade_hits({in.constants, host::view_scene(in),
-                    *in.scene.environment->view(separate_sun).maps.host, lights, split_sum(in),
+                    *in.moving.environment().view(separate_sun).maps.host, lights, split_sum(in),
                     in.settings.specular.hit_shading == protocol::HitShading::traced, target.scale,
                     view(gbuffer.surface), view(gbuffer.motion), ray_source(plan, hits.rays),
                     mapped<const shared::Hit>(plan, hits.hits), ray_sink(plan, in, hits.shadows),

@@ -7,6 +7,8 @@
 #include <glm/glm.hpp>
 #include <utility>
 
+#include "render/octahedral.hpp"
+
 namespace heliograph::render {
 namespace {
 
@@ -41,14 +43,6 @@ glm::vec3 heat(float value) {
   const auto color = [](const std::array<float, 3>& c) { return glm::vec3(c[0], c[1], c[2]); };
   return glm::mix(color(colors[below]), color(colors[below + 1]),
                   place - static_cast<float>(below));
-}
-
-glm::vec3 octahedral_decode(const glm::vec2& p) {
-  glm::vec3 d{p, 1.0f - std::abs(p.x) - std::abs(p.y)};
-  const float below = std::max(-d.z, 0.0f);
-  d.x += d.x >= 0.0f ? -below : below;
-  d.y += d.y >= 0.0f ? -below : below;
-  return glm::normalize(d);
 }
 
 glm::vec3 direction_color(const glm::vec3& direction) {

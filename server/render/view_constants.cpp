@@ -3,6 +3,8 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "render/moving_scene.hpp"
+
 namespace heliograph::render {
 namespace {
 
@@ -53,7 +55,7 @@ glm::vec2 sample_jitter(std::uint32_t sample) {
 
 shared::FrameConstants make_frame_constants(const scene::Camera& camera,
                                             const protocol::Settings& settings,
-                                            const SceneResources& scene, VkExtent2D extent,
+                                            const MovingScene& scene, VkExtent2D extent,
                                             std::uint32_t sample,
                                             const shared::FrameConstants* before) {
   const glm::vec2 size(extent.width, extent.height);
@@ -73,7 +75,7 @@ shared::FrameConstants make_frame_constants(const scene::Camera& camera,
   constants.eye = glm::vec4(camera.eye, 1.0f);
   constants.extent = {extent.width, extent.height, sample,
                       static_cast<std::uint32_t>(settings.sampling.seed)};
-  constants.counts = {static_cast<std::uint32_t>(scene.scene->lights.size()),
+  constants.counts = {static_cast<std::uint32_t>(scene.lights().size()),
                       flags(settings, camera), 0u,
                       before ? 0u : 1u};
   const float rotation = glm::radians(settings.environment.rotation);
@@ -83,7 +85,7 @@ shared::FrameConstants make_frame_constants(const scene::Camera& camera,
   const float spread = diameter < 0.0f ? -1.0f : std::tan(glm::radians(0.5f * diameter));
   constants.exposure = {std::exp2(settings.exposure.compensation),
                         static_cast<float>(settings.tone_map.curve), spread, 0.0f};
-  add_environment(constants, scene.environment->view(settings.environment.separate_sun));
+  add_environment(constants, scene.environment().view(settings.environment.separate_sun));
   return constants;
 }
 

@@ -1,11 +1,13 @@
 #pragma once
 
+#include "gpu/image.hpp"
 #include "protocol/settings.hpp"
-#include "render/scene_resources.hpp"
 #include "scene/camera.hpp"
 #include "shaders/shared/frame_constants.h"
 
 namespace heliograph::render {
+
+class MovingScene;
 
 /// Offset of a sample inside its pixel, in pixels from the middle: sample 0 is the middle, the
 /// rest follow the R2 sequence (Roberts 2018).
@@ -15,7 +17,7 @@ glm::vec2 sample_jitter(std::uint32_t sample);
 /// `before`, which is this view's block of the frame before (or null for the first).
 shared::FrameConstants make_frame_constants(const scene::Camera& camera,
                                             const protocol::Settings& settings,
-                                            const SceneResources& scene, VkExtent2D extent,
+                                            const MovingScene& scene, VkExtent2D extent,
                                             std::uint32_t sample,
                                             const shared::FrameConstants* before);
 

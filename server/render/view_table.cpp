@@ -25,6 +25,7 @@ struct BufferRule {
   std::string_view pattern;
   ViewColors colors;
   std::string_view description = {};  // empty: what its pass says
+  std::string_view unit = {};
 };
 
 // The first that matches counts.
@@ -41,7 +42,7 @@ constexpr std::array buffer_rules{
                "height, view Z in metres; view Z now (w)."},
     BufferRule{"gbuffer.emissive", ViewColors::radiance, "Radiance that surfaces give off."},
     BufferRule{"gbuffer.depth_slope", ViewColors::difference,
-               "Change of view Z to the pixel on the right and below, metres."},
+               "Change of view Z to the pixel on the right and below, metres.", "metres"},
     BufferRule{"gbuffer.instance", ViewColors::identity, "Instance + 1."},
     BufferRule{"shadows.visibility", ViewColors::grey,
                "Share of the lights' light that one ray per pixel finds unshadowed."},
@@ -70,8 +71,10 @@ struct AspectRule {
   std::string_view buffer;  // pattern
   std::string_view name;
   ViewColors colors;
+  std::uint32_t channels;
   glm::vec4 (*extract)(const Pixel&, const ViewContext&);
   std::string_view description;
+  std::string_view unit = {};
 };
 
 glm::vec4 scalar(float value) {
@@ -114,41 +117,41 @@ glm::vec4 stops(const Pixel& pixel, const ViewContext& context) {
 }
 
 constexpr std::array aspect_rules{
-    AspectRule{"gbuffer.normals", "geometric", ViewColors::octahedral, second_pair,
+    AspectRule{"gbuffer.normals", "geometric", ViewColors::octahedral, 2, second_pair,
                "Normals of the triangles themselves, octahedral, world space."},
-    AspectRule{"gbuffer.base_color", "occlusion", ViewColors::share, take<3>,
+    AspectRule{"gbuffer.base_color", "occlusion", ViewColors::share, 1, take<3>,
                "Occlusion texture, 0..1."},
-    AspectRule{"gbuffer.surface", "roughness", ViewColors::share, take<0>,
+    AspectRule{"gbuffer.surface", "roughness", ViewColors::share, 1, take<0>,
                "Perceptual roughness, 0..1."},
-    AspectRule{"gbuffer.surface", "metallic", ViewColors::share, take<1>, "Metalness, 0..1."},
-    AspectRule{"gbuffer.motion", "view_z", ViewColors::distance, take<3>,
-               "Distance along the view, metres."},
-    AspectRule{"gbuffer.motion", "error", ViewColors::pixels, motion_error,
-               "How far the motion is from what it would be if only the camera moved, pixels."},
-    AspectRule{"visibility.temporal", "noise", ViewColors::deviation, second_pair,
+    AspectRule{"gbuffer.surface", "metallic", ViewColors::share, 1, take<1>, "Metalness, 0..1."},
+    AspectRule{"gbuffer.motion", "view_z", ViewColors::distance, 1, take<3>,
+               "Distance along the view, metres.", "metres"},
+    AspectRule{"gbuffer.motion", "error", ViewColors::pixels, 1, motion_error,
+               "How far the motion is from what it would be if only the camera moved, pixels.", "pixels"},
+    AspectRule{"visibility.temporal", "noise", ViewColors::deviation, 2, second_pair,
                "Standard deviation before the blur, of shadow or ambient visibility, the larger; "
                "captured: both variances."},
-    AspectRule{"visibility.denoised", "noise", ViewColors::deviation, second_pair,
+    AspectRule{"visibility.denoised", "noise", ViewColors::deviation, 2, second_pair,
                "Standard deviation that the blur leaves, of shadow or ambient visibility, the "
                "larger; captured: both variances."},
-    AspectRule{"visibility.history", "moved", ViewColors::heat, second_pair,
+    AspectRule{"visibility.history", "moved", ViewColors::heat, 2, second_pair,
                "How far rectification moved the remembered visibility: shadow, ambient."},
-    AspectRule{"denoise.reprojection", "offset", ViewColors::difference, offset,
-               "From each pixel to where its surface was one frame ago, pixels."},
-    AspectRule{"denoise.reprojection", "unseen", ViewColors::mark, take<3>,
+    AspectRule{"denoise.reprojection", "offset", ViewColors::difference, 2, offset,
+               "From each pixel to where its surface was one frame ago, pixels.", "pixels"},
+    AspectRule{"denoise.reprojection", "unseen", ViewColors::mark, 1, take<3>,
                "Surfaces that the frame before did not show: 1."},
-    AspectRule{"specular.radiance", "distance", ViewColors::distance, take<3>,
-               "Distance from the surface to what it mirrors, metres; 10000: the environment."},
-    AspectRule{"specular.history", "moved", ViewColors::heat, take<1>,
+    AspectRule{"specular.radiance", "distance", ViewColors::distance, 1, take<3>,
+               "Distance from the surface to what it mirrors, metres; 10000: the environment.", "metres"},
+    AspectRule{"specular.history", "moved", ViewColors::heat, 1, take<1>,
                "How far rectification moved the remembered reflection."},
-    AspectRule{"specular.temporal", "noise", ViewColors::deviation, take<3>,
+    AspectRule{"specular.temporal", "noise", ViewColors::deviation, 1, take<3>,
                "Standard deviation of the reflection's brightness before the blur; captured: "
                "variance."},
-    AspectRule{"specular.denoised", "noise", ViewColors::deviation, take<3>,
+    AspectRule{"specular.denoised", "noise", ViewColors::deviation, 1, take<3>,
                "Standard deviation of the reflection's brightness that the blur leaves; captured: "
                "variance."},
-    AspectRule{"accumulated", "stops", ViewColors::stops, stops,
-               "Luminance as exposed, in stops from middle grey."},
+    AspectRule{"accumulated", "stops", ViewColors::stops, 1, stops,
+               "Luminance as exposed, in stops from middle grey.", "EV"},
 };
 
 const AspectRule* find_aspect(std::string_view view) {
@@ -193,16 +196,26 @@ std::string_view source_of(std::string_view view) {
   return find_aspect(view) ? view.substr(0, view.rfind('.')) : std::string_view{};
 }
 
-FloatImage extract(std::string_view view, const FloatImage& source, const ViewContext& context) {
+std::string_view unit_of(std::string_view view) {
+  if (const AspectRule* aspect = find_aspect(view)) return aspect->unit;
+  for (const BufferRule& rule : buffer_rules) {
+    if (matches(view, rule.pattern)) return rule.unit;
+  }
+  return {};
+}
+
+FloatImage extract(std::string_view view, const FloatImage& source, const ViewContext& context,
+                   glm::uvec2 origin) {
   const AspectRule* rule = find_aspect(view);
   if (!rule) return source;
-  FloatImage values{source.width, source.height, {}};
+  FloatImage values{.width = source.width, .height = source.height, .channels = rule->channels};
   values.rgba.reserve(source.rgba.size());
   for (std::uint32_t y = 0; y < source.height; ++y) {
     for (std::uint32_t x = 0; x < source.width; ++x) {
       const float* texel = &source.rgba[(std::size_t{y} * source.width + x) * 4];
-      const Pixel pixel{{texel[0], texel[1], texel[2], texel[3]}, {x + 0.5f, y + 0.5f}};
-      const glm::vec4 value = rule->extract(pixel, context);
+      const glm::vec2 position(x + origin.x + 0.5f, y + origin.y + 0.5f);
+      const glm::vec4 value =
+          rule->extract({{texel[0], texel[1], texel[2], texel[3]}, position}, context);
       values.rgba.insert(values.rgba.end(), {value.x, value.y, value.z, value.w});
     }
   }

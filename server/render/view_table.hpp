@@ -28,7 +28,12 @@ struct ViewContext {
   float exposure_factor;
 };
 
-/// An aspect's values, from those of its source.
-FloatImage extract(std::string_view view, const FloatImage& source, const ViewContext& context);
+/// Unit of a view's values; empty: plain numbers, or channels of different kinds.
+std::string_view unit_of(std::string_view view);
+
+/// An aspect's values, from those of its source, which may be a part of the picture that begins at
+/// the pixel `origin`.
+FloatImage extract(std::string_view view, const FloatImage& source, const ViewContext& context,
+                   glm::uvec2 origin = glm::uvec2(0u));
 
 }  // namespace heliograph::render

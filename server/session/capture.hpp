@@ -6,12 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "protocol/kinds.hpp"
 #include "protocol/result.hpp"
-#include "stream/picture_view.hpp"
 
 namespace heliograph::session {
-
-enum class CaptureFormat { png, jpeg };
 
 /// One buffer as a file.
 struct Capture {
@@ -23,14 +21,11 @@ struct Capture {
 
 struct CaptureRequest {
   std::string buffer = "output";
-  CaptureFormat format = CaptureFormat::png;
+  protocol::ImageFormat format = protocol::ImageFormat::png;
   /// Samples to wait for; absent: all that accumulation gives.
   std::optional<std::uint32_t> samples;
   /// Called once, on any thread.
   std::function<void(protocol::Result<Capture>)> done;
 };
-
-/// @throws std::runtime_error when the picture cannot be encoded
-std::vector<std::uint8_t> encode_capture(const stream::PictureView& picture, CaptureFormat format);
 
 }  // namespace heliograph::session

@@ -21,11 +21,6 @@ bool is_inside(const fs::path& path, const fs::path& root) {
   return std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first == root.end();
 }
 
-bool is_scene_file(const fs::path& path) {
-  const fs::path extension = path.extension();
-  return extension == ".glb" || extension == ".gltf";
-}
-
 std::optional<CatalogueEntry> entry_of(const fs::path& file, const fs::path& root) {
   std::error_code error;
   const fs::path resolved = fs::canonical(file, error);
@@ -41,7 +36,11 @@ std::optional<CatalogueEntry> entry_of(const fs::path& file, const fs::path& roo
                         .root = root};
 }
 
-std::vector<CatalogueEntry> scenes_below(const fs::path& root) {
+std::vector<CatalogueEntry> files_below(const fs::path& root,
+                                        const std::vector<std::string>& extensions) {
+  const auto rank = [&](const fs::path& path) {
+    return std::find(extensions.begin(), extensions.end(), path.extension()) - extensions.begin();
+  };
   std::vector<CatalogueEntry> found;
   std::error_code error;
   std::size_t visited = 0;
@@ -50,13 +49,13 @@ std::vector<CatalogueEntry> scenes_below(const fs::path& root) {
   for (; !error && folder != fs::recursive_directory_iterator(); folder.increment(error)) {
     if (++visited > most_files_visited) break;
     if (folder.depth() >= deepest_folder) folder.disable_recursion_pending();
-    if (!is_scene_file(folder->path())) continue;
+    if (rank(folder->path()) == std::ssize(extensions)) continue;
     if (auto entry = entry_of(folder->path(), root)) found.push_back(*std::move(entry));
   }
-  // .glb before .gltf of the same name.
-  std::sort(found.begin(), found.end(), [](const CatalogueEntry& a, const CatalogueEntry& b) {
-    return a.path.extension() < b.path.extension();
-  });
+  std::stable_sort(found.begin(), found.end(),
+                   [&](const CatalogueEntry& a, const CatalogueEntry& b) {
+                     return rank(a.path) < rank(b.path);
+                   });
   return found;
 }
 
@@ -74,9 +73,14 @@ SceneCatalogue::SceneCatalogue(const std::vector<fs::path>& roots) {
 }
 
 std::vector<CatalogueEntry> SceneCatalogue::list() const {
+  return list_files({".glb", ".gltf"});
+}
+
+std::vector<CatalogueEntry> SceneCatalogue::list_files(
+    const std::vector<std::string>& extensions) const {
   std::map<std::string, CatalogueEntry> by_name;
   for (const fs::path& root : roots_) {
-    for (CatalogueEntry& entry : scenes_below(root)) by_name.emplace(entry.name, entry);
+    for (CatalogueEntry& entry : files_below(root, extensions)) by_name.emplace(entry.name, entry);
   }
   std::vector<CatalogueEntry> scenes;
   for (auto& [name, entry] : by_name) scenes.push_back(std::move(entry));

@@ -27,6 +27,8 @@ class SceneCatalogue {
   /// All scenes as they are on disk now, by name. Where two have the same name the earlier root
   /// wins, and .glb wins over .gltf.
   std::vector<CatalogueEntry> list() const;
+  /// The same of other files, the earlier extension winning.
+  std::vector<CatalogueEntry> list_files(const std::vector<std::string>& extensions) const;
   /// The scene called `name`; its file's extension may be part of it.
   protocol::Result<CatalogueEntry> find(const std::string& name) const;
 

@@ -72,7 +72,12 @@ void Session::show(LoadedScene scene, const std::string& by) {
   const std::lock_guard lock(mutex_);
   scene_ = scene.scene;
   scene_info_ = describe_scene(scene);
+  edits_ = SceneEdits(scene_);
   state_.resources = std::move(scene.resources);
+  state_.lights = nullptr;
+  state_.materials = nullptr;
+  state_.environment = nullptr;
+  environment_name_.reset();
   state_.animation = {};
   ++state_.cuts;
   if (scene_->cameras.empty()) {

@@ -17,7 +17,14 @@
 #include "session/capture.hpp"
 #include "session/loaded_scene.hpp"
 #include "session/pixel_budget.hpp"
+#include "session/probe.hpp"
+#include "session/scene_edits.hpp"
+#include "session/step.hpp"
 #include "session/wakeup.hpp"
+
+namespace heliograph::render {
+class LitEnvironment;
+}
 
 namespace heliograph::session {
 
@@ -43,6 +50,9 @@ struct RenderState {
   Clock::time_point changed_at;
   std::shared_ptr<const render::SceneResources> resources;
   std::shared_ptr<const scene::Scene> scene;
+  std::shared_ptr<const SceneEdits::Lights> lights;        // null: the scene's own
+  std::shared_ptr<const SceneEdits::Materials> materials;  // null: the scene's own
+  std::shared_ptr<const render::LitEnvironment> environment;  // null: the scene's own
   scene::Camera camera;
   std::uint64_t cuts = 0;       // how often the picture jumped: camera, scene
   bool camera_follows = false;  // the clip carries the camera
@@ -51,6 +61,11 @@ struct RenderState {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::vector<stream::InputEcho> inputs;
+  std::uint64_t fresh_starts = 0;  // how often everything drawn before was to be forgotten
+  std::optional<Clock::time_point> lockstep;  // what the time is where it passes by steps only
+  bool keep_drawing = false;  // the path traced truth, whether anybody watches or not
+
+  Clock::time_point now() const { return lockstep ? *lockstep : Clock::now(); }
 };
 
 /// The state that viewers share and steer: scene, camera, settings, picture size. Commands take
@@ -73,10 +88,27 @@ class Session {
 
   protocol::Result<protocol::SceneInfo> scene_info() const;
   void show(LoadedScene scene, const std::string& by);
+  /// Shows nothing.
+  void unload(const std::string& by);
+
+  protocol::Result<protocol::LightList> lights() const;
+  protocol::Result<protocol::LightState> patch_light(const protocol::LightsPatch& request,
+                                                     const std::string& by);
+  protocol::Result<protocol::MaterialList> materials() const;
+  protocol::Result<protocol::MaterialState> patch_material(const protocol::MaterialsPatch& request,
+                                                           const std::string& by);
+  /// What is in effect; the catalogue is not known here.
+  protocol::EnvironmentState environment() const;
+  /// `environment` goes with `name`; both empty: the scene's own.
+  protocol::Result<void> set_environment(
+      std::optional<std::string> name, std::shared_ptr<const render::LitEnvironment> environment,
+      const std::string& by);
 
   protocol::Result<protocol::Camera> camera() const;
   protocol::Result<protocol::Camera> set_camera(const protocol::CameraSet& request,
                                                 const std::string& by);
+  protocol::Result<protocol::Camera> orbit_camera(const protocol::CameraOrbit& request,
+                                                  const std::string& by);
   protocol::Result<protocol::Camera> fit_camera(const std::string& by);
 
   protocol::Result<protocol::AnimationState> animation() const;
@@ -98,6 +130,28 @@ class Session {
   protocol::Result<void> request_capture(CaptureRequest request);
   /// The captures asked for since the last call.
   std::vector<CaptureRequest> take_captures();
+  /// Enters lockstep, where the session is not in it yet: what is drawn from then on is as if
+  /// nothing had been drawn before, and depends on nothing but the state and the steps.
+  protocol::Result<void> request_step(StepRequest request);
+  /// Leaves lockstep.
+  protocol::StepState run_freely();
+  bool in_lockstep() const;
+  /// For the render thread: lets the time of the next frame pass and tells how much it is; nothing
+  /// where none is due. After it is drawn comes end_step.
+  std::optional<double> begin_step();
+  void end_step(std::uint32_t samples);
+  void fail_steps(const protocol::Error& why);
+
+  protocol::Result<protocol::ReferenceState> start_reference(
+      const protocol::ReferenceStart& request, const std::string& by);
+  protocol::Result<protocol::ReferenceState> stop_reference(const std::string& by);
+  protocol::ReferenceState reference() const;
+  /// What the newest picture is: of which version of the state, with how many samples.
+  void report_picture(std::uint64_t version, std::uint32_t samples, bool converged);
+
+  protocol::Result<void> request_probe(Probe probe);
+  /// The probes asked for since the last call.
+  std::vector<Probe> take_probes();
 
   std::uint64_t version() const;
   RenderState render_state() const;
@@ -109,6 +163,8 @@ class Session {
   protocol::Camera camera_message() const;
   protocol::Camera moved_camera(const scene::Camera& camera, std::optional<std::string> name,
                                 const std::string& by);
+  void enter_lockstep();
+  protocol::StepState step_message() const;
   AnimationClock rewound_clock() const;
   protocol::AnimationState set_clock(const AnimationClock& clock);
   protocol::AnimationState animation_message() const;
@@ -125,6 +181,22 @@ class Session {
   std::optional<std::string> camera_name_;
   std::shared_ptr<const scene::Scene> scene_;
   protocol::SceneInfo scene_info_;
+  SceneEdits edits_;
+  std::optional<std::string> environment_name_;
+  std::vector<Probe> probes_;
+  std::vector<StepRequest> steps_;
+  struct StepTotals {
+    std::uint64_t frames = 0;
+    std::uint32_t samples = 0;
+  };
+  StepTotals step_totals_;  // since lockstep was entered
+  struct PictureReport {
+    std::uint64_t version = 0;
+    std::uint32_t samples = 0;
+    bool converged = false;
+  };
+  PictureReport newest_picture_;
+  std::optional<int> samples_before_reference_;
   std::map<std::string, std::uint32_t> input_seqs_;  // by viewer
   std::vector<CaptureRequest> captures_;
 };

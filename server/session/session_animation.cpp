@@ -66,7 +66,7 @@ Result<AnimationState> Session::set_rate(const protocol::AnimationRate& request)
 /// The clock as it stands, told from now on.
 AnimationClock Session::rewound_clock() const {
   AnimationClock clock = state_.animation;
-  const Clock::time_point now = Clock::now();
+  const Clock::time_point now = state_.now();
   clock.seconds = clock.at(now);
   clock.since = now;
   return clock;

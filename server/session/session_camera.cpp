@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <glm/glm.hpp>
 #include <utility>
 
@@ -47,6 +49,32 @@ Result<scene::Camera> requested_camera(scene::Camera camera, const protocol::Cam
   return camera;
 }
 
+/// How near to straight above or below an orbit comes.
+constexpr float steepest = glm::radians(89.0f);
+
+/// The eye carried about the target; `up` is the axis.
+scene::Camera orbited(scene::Camera camera, const protocol::CameraOrbit& request) {
+  const glm::vec3 up = glm::normalize(camera.up);
+  const glm::vec3 arm = camera.eye - camera.target;
+  const float length = glm::length(arm);
+  const float height = glm::dot(arm, up);
+  glm::vec3 level = arm - up * height;
+  float pitch = std::atan2(height, glm::length(level));
+  if (glm::length(level) < 1e-5f * length) {
+    level = std::abs(up.z) < 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(1, 0, 0);
+    level -= up * glm::dot(level, up);
+  }
+  level = glm::normalize(level);
+  const float yaw = glm::radians(request.yaw.value_or(0.0f));
+  const glm::vec3 outward = level * std::cos(yaw) + glm::cross(up, level) * std::sin(yaw);
+  if (request.pitch) {
+    pitch = std::clamp(pitch + glm::radians(*request.pitch), -steepest, steepest);
+  }
+  const float distance = request.distance.value_or(length) * request.dolly.value_or(1.0f);
+  camera.eye = camera.target + distance * (outward * std::cos(pitch) + up * std::sin(pitch));
+  return camera;
+}
+
 }  // namespace
 
 Result<protocol::Camera> Session::camera() const {
@@ -73,6 +101,18 @@ Result<protocol::Camera> Session::set_camera(const protocol::CameraSet& request,
   if (request.name) ++state_.cuts;
   std::optional<std::string> name = request.name ? request.name : camera_name_;
   return moved_camera(*camera, adjusted ? std::nullopt : std::move(name), by);
+}
+
+Result<protocol::Camera> Session::orbit_camera(const protocol::CameraOrbit& request,
+                                               const std::string& by) {
+  const std::lock_guard lock(mutex_);
+  if (const Result<void> there = require_scene(); !there) return there.error();
+  const scene::Camera camera = orbited(state_.camera, request);
+  if (!has_direction(camera)) {
+    return error::invalid(request.distance ? "distance" : "dolly", "eye and target coincide");
+  }
+  if (request.seq) input_seqs_[by] = *request.seq;
+  return moved_camera(camera, std::nullopt, by);
 }
 
 Result<protocol::Camera> Session::fit_camera(const std::string& by) {

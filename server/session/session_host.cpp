@@ -23,7 +23,8 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
       loader_(engine, catalogue_,
               {.environment = options_.environment,
                .limits = options_.import_limits,
-               .cache_bytes = options_.scene_cache_bytes}) {
+               .cache_bytes = options_.scene_cache_bytes}),
+      environments_(engine, catalogue_) {
   add_scene_commands(dispatcher_, *this);
   add_camera_commands(dispatcher_, *this);
   add_animation_commands(dispatcher_, *this);
@@ -31,6 +32,9 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
   add_stream_commands(dispatcher_, *this);
   add_stats_commands(dispatcher_, *this);
   add_capture_commands(dispatcher_, *this);
+  add_frame_commands(dispatcher_, *this);
+  add_edit_commands(dispatcher_, *this);
+  add_probe_commands(dispatcher_, *this);
   dispatcher_.set_gate([this](const protocol::MethodDescriptor&,
                               const protocol::CallContext& call) -> protocol::Result<void> {
     const auto session = sessions_.session_of(call);
@@ -48,6 +52,7 @@ SessionHost::~SessionHost() {
 
 void SessionHost::stop() {
   loader_.stop();
+  environments_.stop();
   render_loop_.stop();
 }
 

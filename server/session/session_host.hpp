@@ -9,6 +9,7 @@
 
 #include "protocol/jsonrpc.hpp"
 #include "render/renderer.hpp"
+#include "session/environment_library.hpp"
 #include "session/render_loop.hpp"
 #include "session/scene_catalogue.hpp"
 #include "session/scene_loader.hpp"
@@ -41,6 +42,7 @@ class SessionHost {
 
   SessionRegistry& sessions() { return sessions_; }
   const SessionRegistry& sessions() const { return sessions_; }
+  EnvironmentLibrary& environments() { return environments_; }
 
   void load_scene(std::shared_ptr<Session> session, const protocol::SceneLoad& request,
                   const std::string& by, SceneLoader::Completion done);
@@ -62,6 +64,7 @@ class SessionHost {
   SessionRegistry sessions_;
   protocol::Dispatcher dispatcher_;
   SceneLoader loader_;
+  EnvironmentLibrary environments_;
 };
 
 }  // namespace heliograph::session

@@ -8,6 +8,7 @@
 
 #include "scene/camera.hpp"
 #include "scene/pose.hpp"
+#include "session/capture_content.hpp"
 
 namespace heliograph::session {
 
@@ -55,6 +56,12 @@ std::shared_ptr<Session> make_session(render::Renderer& renderer, SessionOptions
   return std::make_shared<Session>(std::move(options), std::move(wakeup), std::move(pixels));
 }
 
+SceneEdits::Lights file_lights(const scene::Scene& scene) {
+  SceneEdits::Lights lights;
+  for (const scene::Light& light : scene.lights) lights.push_back(light.device);
+  return lights;
+}
+
 }  // namespace
 
 SessionView::SessionView(render::Engine& engine, SessionOptions options, PixelShare pixels,
@@ -75,10 +82,12 @@ SessionView::~SessionView() = default;
 
 bool SessionView::advance() {
   if (Clock::now() < resting_until_) return false;
+  if (session_->in_lockstep()) return advance_step();
   adopt_state();
-  adopt_size();
   collect_captures();
+  adopt_size();
   session_->audience().announce_waiting();
+  settle_probes();
   if (settle_captures()) return true;
   if (final_due()) broadcast_.finish();
   if (broadcast_.pump()) return true;
@@ -89,6 +98,7 @@ bool SessionView::advance() {
 
 std::optional<Clock::time_point> SessionView::next_due() const {
   std::optional<Clock::time_point> due = session_->audience().next_turn();
+  if (session_->in_lockstep()) return due;
   const auto also = [&](Clock::time_point time) { due = due ? std::min(*due, time) : time; };
   if (newest_ && newest_->frame.converged && !broadcast_.finished() && !state_.animation.playing) {
     const Clock::time_point rested = state_.changed_at + rest_before_final;
@@ -104,11 +114,17 @@ void SessionView::recover() {
   resting_until_ = Clock::now() + rest_after_failure;
   for (PendingCapture& capture : captures_) capture.request.done(protocol::error::internal());
   captures_.clear();
+  for (const PendingProbe& pending : probes_) pending.probe.fail(protocol::error::internal());
+  probes_.clear();
+  session_->fail_steps(protocol::error::internal());
 }
 
 void SessionView::abandon_captures() {
   captures_.clear();
   session_->take_captures();
+  probes_.clear();
+  session_->take_probes();
+  session_->fail_steps(protocol::error::not_ready("the server is shutting down"));
 }
 
 void SessionView::refuse_captures() {
@@ -117,6 +133,10 @@ void SessionView::refuse_captures() {
     capture.request.done(protocol::error::not_found("session", "the session has ended"));
   }
   captures_.clear();
+  const protocol::Error ended = protocol::error::not_found("session", "the session has ended");
+  for (const PendingProbe& pending : probes_) pending.probe.fail(ended);
+  probes_.clear();
+  session_->fail_steps(ended);
 }
 
 void SessionView::adopt_state() {
@@ -125,6 +145,11 @@ void SessionView::adopt_state() {
   if (state_.resources != before.resources) {
     renderer_->set_scene(state_.resources);
     session_->set_buffers(to_protocol(renderer_->buffers()));
+  }
+  adopt_edits(before);
+  if (state_.fresh_starts != before.fresh_starts) {
+    renderer_->start_anew();
+    cut_ = true;
   }
   const bool same_scene = state_.resources == before.resources;
   const bool resized = state_.width != before.width || state_.height != before.height;
@@ -140,9 +165,24 @@ void SessionView::adopt_state() {
   }
 }
 
+/// What the session changed in the scene; a scene that is new to the renderer has no changes yet.
+void SessionView::adopt_edits(const RenderState& before) {
+  const bool same_scene = state_.resources == before.resources;
+  if (state_.lights != (same_scene ? before.lights : nullptr)) {
+    renderer_->set_lights(state_.lights ? *state_.lights : file_lights(*state_.scene));
+  }
+  if (state_.materials != (same_scene ? before.materials : nullptr)) {
+    renderer_->set_materials(state_.materials ? *state_.materials : state_.scene->materials);
+  }
+  if (state_.environment != (same_scene ? before.environment : nullptr)) {
+    renderer_->set_environment(state_.environment);
+    cut_ = true;
+  }
+}
+
 /// Where the clip stands now, and the camera with it.
 void SessionView::adopt_pose() {
-  const double seconds = state_.animation.at(Clock::now());
+  const double seconds = state_.animation.at(state_.now());
   if (const auto posed = renderer_->set_pose(state_.animation.clip, seconds); !posed) {
     spdlog::error("session {}: {}", session_->name(), posed.error().message);
   }
@@ -168,9 +208,10 @@ bool SessionView::resting() const {
          Clock::now() >= state_.changed_at + rest_before_refining;
 }
 
-/// Small while the camera moves and whole frames would stutter, whole again once it rests.
+/// Small while the camera moves and whole frames would stutter, whole again once it rests and for
+/// captures.
 void SessionView::adopt_size() {
-  const bool shrink = moving() && whole_frame_ > stuttering_frame &&
+  const bool shrink = moving() && captures_.empty() && whole_frame_ > stuttering_frame &&
                       state_.width * state_.height > smallest_to_shrink;
   const float scale = shrink ? state_.settings.motion.scale : 1.0f;
   const auto scaled = [&](std::uint32_t side) {
@@ -187,16 +228,37 @@ bool SessionView::draws_whole() const {
 
 void SessionView::collect_captures() {
   for (CaptureRequest& request : session_->take_captures()) {
-    captures_.push_back(
-        {.request = std::move(request), .deadline = Clock::now() + capture_patience});
+    captures_.push_back({.request = std::move(request),
+                         .requested = Clock::now(),
+                         .deadline = Clock::now() + capture_patience});
   }
+  for (Probe& probe : session_->take_probes()) {
+    probes_.push_back({.probe = std::move(probe), .requested = Clock::now()});
+  }
+}
+
+/// Whether the newest picture shows the state, and as it was no earlier than `moment` where time
+/// passes in it.
+bool SessionView::shows_state_since(Clock::time_point moment) const {
+  if (!newest_) return false;
+  if (state_.lockstep) return true;
+  if (state_.animation.playing) return newest_version_ == state_.version && last_frame_ >= moment;
+  return newest_version_ == state_.version || !renderer_->needs_frame();
+}
+
+void SessionView::settle_probes() {
+  std::erase_if(probes_, [&](const PendingProbe& pending) {
+    if (!shows_state_since(pending.requested)) return false;
+    pending.probe.read(*renderer_, state_);
+    return true;
+  });
 }
 
 bool SessionView::settle_captures() {
   const Clock::time_point now = Clock::now();
   std::vector<PendingCapture> open;
   for (PendingCapture& capture : captures_) {
-    if (capture_ready(capture.request) && write_capture(capture.request)) continue;
+    if (capture_ready(capture) && write_capture(capture.request)) continue;
     if (now < capture.deadline) {
       open.push_back(std::move(capture));
     } else {
@@ -208,30 +270,31 @@ bool SessionView::settle_captures() {
   return captures_.size() != open.size();
 }
 
-bool SessionView::capture_ready(const CaptureRequest& request) const {
-  if (!newest_ || !draws_whole()) return false;
-  if (state_.animation.playing) return newest_version_ == state_.version;
-  if (!renderer_->needs_frame()) return true;
-  return newest_version_ == state_.version && request.samples &&
-         newest_->frame.samples >= *request.samples;
+bool SessionView::capture_ready(const PendingCapture& capture) const {
+  if (state_.lockstep) return true;
+  if (!draws_whole() || !shows_state_since(capture.requested)) return false;
+  if (newest_->frame.width != state_.width || newest_->frame.height != state_.height) return false;
+  if (state_.animation.playing || !renderer_->needs_frame()) return true;
+  const std::optional<std::uint32_t>& samples = capture.request.samples;
+  return samples && newest_->frame.samples >= *samples;
 }
 
 /// False if too many files are being written already.
 bool SessionView::write_capture(CaptureRequest& request) {
   if (!services_.capture_writer.has_room()) return false;
-  auto view = renderer_->capture_view(request.buffer);
-  if (!view) {
-    request.done(view.error());
+  auto content = read_content(*renderer_, request.buffer, request.format);
+  if (!content) {
+    request.done(content.error());
     return true;
   }
   const std::uint32_t samples = newest_->frame.samples;
   services_.capture_writer.post([request = std::move(request), samples,
-                                 frame = std::make_shared<render::Frame>(*std::move(view)),
+                                 content = std::make_shared<CaptureContent>(*std::move(content)),
                                  &wakeup = services_.wakeup] {
-    request.done(Capture{.width = frame->width,
-                         .height = frame->height,
+    request.done(Capture{.width = content->width,
+                         .height = content->height,
                          .samples = samples,
-                         .file = encode_capture(view_of(*frame), request.format)});
+                         .file = encode_content(*content, request.format)});
     wakeup.notify();
   });
   return true;
@@ -241,7 +304,9 @@ bool SessionView::frame_wanted() {
   if (!renderer_->needs_frame() && !state_.animation.playing) return false;
   // The first picture of a session is made unasked: it shows that everything works.
   const bool first = !newest_ && state_.resources;
-  if (first || !captures_.empty()) return true;
+  const bool reference = state_.keep_drawing &&
+                         state_.settings.reference.use == protocol::ReferenceUse::always;
+  if (first || reference || !captures_.empty() || !probes_.empty()) return true;
   // A resting picture gets better at full speed, since few of its samples are sent.
   if (resting()) return session_->audience().watching();
   return !broadcast_.behind() && session_->audience().wants_frame();
@@ -253,12 +318,17 @@ bool SessionView::final_due() const {
          Clock::now() >= state_.changed_at + rest_before_final;
 }
 
+/// Histories are counted in seconds. After a rest the time since the last picture means nothing.
 void SessionView::render_frame() {
+  const std::chrono::duration<float> since = Clock::now() - last_frame_;
+  stepped_ = false;
+  render_frame(std::min(since.count(), longest_frame_seconds));
+}
+
+void SessionView::render_frame(double seconds) {
   const Clock::time_point start = Clock::now();
   if (state_.animation.playing) adopt_pose();
-  // Histories are counted in seconds. After a rest the time since the last picture means nothing.
-  const std::chrono::duration<float> since = start - last_frame_;
-  renderer_->set_frame_seconds(std::min(since.count(), longest_frame_seconds));
+  renderer_->set_frame_seconds(static_cast<float>(seconds));
   last_frame_ = start;
   render::Frame frame = renderer_->render();
   const Clock::time_point end = Clock::now();
@@ -267,7 +337,8 @@ void SessionView::render_frame() {
                                   to_protocol(frame.passes));
   newest_ = describe(std::move(frame), start, end);
   newest_version_ = state_.version;
-  broadcast_.rendered(newest_, resting());
+  session_->report_picture(newest_version_, newest_->frame.samples, newest_->frame.converged);
+  broadcast_.rendered(newest_, !state_.lockstep && resting());
 }
 
 std::shared_ptr<Picture> SessionView::describe(render::Frame frame, Clock::time_point start,

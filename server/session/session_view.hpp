@@ -48,10 +48,16 @@ class SessionView {
  private:
   struct PendingCapture {
     CaptureRequest request;
+    Clock::time_point requested;
     Clock::time_point deadline;
+  };
+  struct PendingProbe {
+    Probe probe;
+    Clock::time_point requested;
   };
 
   void adopt_state();
+  void adopt_edits(const RenderState& before);
   void adopt_pose();
   void adopt_size();
   bool moving() const;
@@ -59,11 +65,16 @@ class SessionView {
   bool draws_whole() const;
   void collect_captures();
   bool settle_captures();
-  bool capture_ready(const CaptureRequest& request) const;
+  void settle_probes();
+  bool shows_state_since(Clock::time_point moment) const;
+  bool capture_ready(const PendingCapture& capture) const;
   bool write_capture(CaptureRequest& request);
+  bool advance_step();
+  void settle_unstepped();
   bool frame_wanted();
   bool final_due() const;
   void render_frame();
+  void render_frame(double seconds);
   std::shared_ptr<Picture> describe(render::Frame frame, Clock::time_point start,
                                     Clock::time_point end);
   double frames_in_last_second() const;
@@ -86,7 +97,9 @@ class SessionView {
   std::deque<Clock::time_point> recent_frames_;
   Clock::time_point last_frame_{};  // when it began
   std::vector<PendingCapture> captures_;
+  std::vector<PendingProbe> probes_;
   Clock::time_point resting_until_;
+  bool stepped_ = false;  // the newest picture was drawn in lockstep
 };
 
 }  // namespace heliograph::session

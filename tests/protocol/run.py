@@ -19,9 +19,10 @@ def main():
         if not os.environ.get(variable):
             skip(f"{variable} is not set")
     try:
+        import numpy  # noqa: F401
         import websockets  # noqa: F401
-    except ImportError:
-        skip("python3-websockets is not installed")
+    except ImportError as missing:
+        skip(f"python3-{missing.name} is not installed")
     loader = unittest.defaultTestLoader
     names = sys.argv[1:]
     suite = loader.loadTestsFromNames(names) if names else loader.discover(HERE)

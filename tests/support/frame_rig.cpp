@@ -35,7 +35,7 @@ FrameRig::FrameRig(std::shared_ptr<const scene::Scene> scene, const scene::Camer
 
 void FrameRig::set_view(const scene::Camera& camera, std::uint32_t sample) {
   const shared::FrameConstants before = constants_;
-  constants_ = render::make_frame_constants(camera, settings_, moving_.rest(), options_.extent, sample,
+  constants_ = render::make_frame_constants(camera, settings_, moving_, options_.extent, sample,
                                             has_view_ ? &before : nullptr);
   has_view_ = true;
   std::memcpy(constants_buffer_.mapped(), &constants_, sizeof constants_);

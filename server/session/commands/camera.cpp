@@ -15,6 +15,11 @@ void add_camera_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
       [](Session& session, const CameraSet& request, const std::string& viewer) {
         return session.set_camera(request, viewer);
       });
+  add_command<protocol::CameraOrbit, Camera>(
+      dispatcher, host, "camera.orbit",
+      [](Session& session, const protocol::CameraOrbit& request, const std::string& viewer) {
+        return session.orbit_camera(request, viewer);
+      });
   add_command<Empty, Camera>(dispatcher, host, "camera.fit",
                              [](Session& session, const Empty&, const std::string& viewer) {
                                return session.fit_camera(viewer);

@@ -23,7 +23,10 @@ void capture(Session& session, const FrameCapture& request,
                        .data = stream::base64_encode(capture->file)});
   };
   const Result<void> accepted = session.request_capture(
-      {.buffer = request.buffer, .samples = request.samples, .done = answer});
+      {.buffer = request.buffer,
+       .format = request.format,
+       .samples = request.samples,
+       .done = answer});
   if (!accepted) done(accepted.error());
 }
 

@@ -30,6 +30,12 @@ void add_scene_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
   add_command<Empty, SceneInfo>(
       dispatcher, host, "scene.info",
       [](Session& session, const Empty&, const std::string&) { return session.scene_info(); });
+  add_command<Empty, Empty>(
+      dispatcher, host, "scene.unload",
+      [](Session& session, const Empty&, const std::string& viewer) -> Result<Empty> {
+        session.unload(viewer);
+        return Empty();
+      });
   dispatcher.add<SceneLoad, SceneInfo>(
       "scene.load", [&](const SceneLoad& request, const protocol::CallContext& context,
                         protocol::Completion<SceneInfo> done) {

@@ -213,6 +213,33 @@ TEST(MessageSchema, SaysWhatParsingChecks) {
   EXPECT_FALSE(is_required("names"));
 }
 
+TEST(Patch, TellsAbsentFromNullFromAValue) {
+  const auto patch = decode<LightsPatch>(
+      RawJson(json{{"light", "sun"}, {"patch", {{"intensity", 2}, {"color", nullptr}}}}));
+  ASSERT_TRUE(patch);
+  EXPECT_EQ(patch->patch.intensity, (Change<float>{.value = 2.0f}));
+  EXPECT_EQ(patch->patch.color, (Change<Vec3>{.reset = true}));
+  EXPECT_EQ(patch->patch.radius, Change<float>());
+  EXPECT_EQ(encode(*patch).value(),
+            (json{{"light", "sun"}, {"patch", {{"intensity", 2.0}, {"color", nullptr}}}}));
+}
+
+TEST(Patch, RefusesMembersItDoesNotKnowAndNamesTheNearest) {
+  const auto refused = decode<LightsPatch>(
+      RawJson(json{{"light", "sun"}, {"patch", {{"intesity", 2}}}}));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().path, "patch.intesity");
+  EXPECT_NE(refused.error().reason.find("intensity"), std::string::npos);
+}
+
+TEST(Patch, SaysSoInItsSchema) {
+  const RawJson holder = schema_of<LightsPatch>();
+  const json& patch = holder.value().at("properties").at("patch");
+  EXPECT_EQ(patch.at("additionalProperties"), false);
+  EXPECT_EQ(patch.at("properties").at("intensity").at("type"), (json{"number", "null"}));
+  EXPECT_FALSE(patch.contains("required"));
+}
+
 TEST(CameraSet, TakesAnyPartAndRefusesWhatNoCameraCanBe) {
   const auto read = [](const char* text) { return decode<CameraSet>(*RawJson::parse(text)); };
   EXPECT_TRUE(read("{}"));

@@ -24,7 +24,11 @@ TEST(Methods, AreThoseOfTheContract) {
                 "camera.fit", "animation.list", "animation.play",
                          "animation.pause", "animation.seek", "animation.rate", "settings.get", "settings.patch", "settings.presets",
                 "settings.preset", "settings.schema", "stream.configure", "stream.pause", "stream.resume", "stream.ack",
-                "stats.subscribe", "frame.buffers", "frame.capture", "rpc.discover"}));
+                "stats.subscribe", "frame.buffers", "frame.capture", "rpc.discover",
+                "scene.unload", "scene.pick", "camera.orbit", "lights.list", "lights.patch",
+                "materials.list", "materials.patch", "environment.list", "environment.set",
+                "frame.inspect", "frame.step", "frame.run", "reference.start", "reference.stop",
+                "reference.status"}));
 }
 
 TEST(Methods, ExamplesAreWhatTheMethodsTakeAndGive) {

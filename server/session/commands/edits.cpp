@@ -1,0 +1,90 @@
+#include <nlohmann/json.hpp>
+
+#include "session/commands/commands.hpp"
+
+// Lights, materials and the environment of a session's scene.
+
+namespace heliograph::session {
+
+using protocol::Empty;
+using protocol::EnvironmentSet;
+using protocol::EnvironmentState;
+using protocol::LightList;
+using protocol::LightsPatch;
+using protocol::LightState;
+using protocol::MaterialList;
+using protocol::MaterialsPatch;
+using protocol::MaterialState;
+using protocol::Result;
+
+namespace {
+
+EnvironmentState describe_environment(SessionHost& host, const Session& session) {
+  EnvironmentState state = session.environment();
+  for (const CatalogueEntry& entry : host.environments().list()) {
+    state.environments.push_back({.name = entry.name, .bytes = entry.bytes});
+  }
+  return state;
+}
+
+Result<void> rotate_environment(Session& session, float degrees, const std::string& by) {
+  const protocol::RawJson patch(nlohmann::json{{"environment", {{"rotation", degrees}}}});
+  const auto applied = session.patch_settings(patch, by);
+  if (!applied) return applied.error();
+  return {};
+}
+
+/// Answers when the other environment is there, if one was asked for.
+void set_environment(SessionHost& host, const std::shared_ptr<Session>& session,
+                     const EnvironmentSet& request, const std::string& by,
+                     protocol::Completion<EnvironmentState> done) {
+  const auto finish = [&host, session, rotation = request.rotation, by,
+                       done = std::move(done)](Result<void> outcome) {
+    if (outcome && rotation) outcome = rotate_environment(*session, *rotation, by);
+    if (!outcome) return done(outcome.error());
+    done(describe_environment(host, *session));
+  };
+  if (request.name.value) {
+    host.environments().show(session, *request.name.value, by, finish);
+  } else if (request.name.reset) {
+    finish(session->set_environment(std::nullopt, nullptr, by));
+  } else {
+    finish({});
+  }
+}
+
+}  // namespace
+
+void add_edit_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
+  add_command<Empty, LightList>(
+      dispatcher, host, "lights.list",
+      [](Session& session, const Empty&, const std::string&) { return session.lights(); });
+  add_command<LightsPatch, LightState>(
+      dispatcher, host, "lights.patch",
+      [](Session& session, const LightsPatch& request, const std::string& viewer) {
+        return session.patch_light(request, viewer);
+      });
+  add_command<Empty, MaterialList>(
+      dispatcher, host, "materials.list",
+      [](Session& session, const Empty&, const std::string&) { return session.materials(); });
+  add_command<MaterialsPatch, MaterialState>(
+      dispatcher, host, "materials.patch",
+      [](Session& session, const MaterialsPatch& request, const std::string& viewer) {
+        return session.patch_material(request, viewer);
+      });
+  add_command<Empty, EnvironmentState>(
+      dispatcher, host, "environment.list",
+      [&host](Session& session, const Empty&, const std::string&) -> Result<EnvironmentState> {
+        return describe_environment(host, session);
+      });
+  dispatcher.add<EnvironmentSet, EnvironmentState>(
+      "environment.set", [&host](const EnvironmentSet& request,
+                                 const protocol::CallContext& context,
+                                 protocol::Completion<EnvironmentState> done) {
+        const auto session = host.sessions().session_of(context);
+        if (!session) return done(session.error());
+        set_environment(host, *session, request, context.viewer, std::move(done));
+      });
+}
+
+}  // namespace heliograph::session

@@ -1,0 +1,101 @@
+#include <cmath>
+
+#include "render/renderer.hpp"
+#include "session/commands/commands.hpp"
+#include "session/scene_description.hpp"
+
+// What lies under a point of the picture.
+
+namespace heliograph::session {
+
+using protocol::Inspection;
+using protocol::PickResult;
+using protocol::PicturePoint;
+using protocol::Result;
+
+namespace {
+
+/// Name of what was placed: the nearest node with a name, else the mesh.
+std::string object_name(const scene::Scene& scene, const scene::Instance& instance) {
+  std::optional<std::uint32_t> node = instance.node;
+  for (; node; node = scene.nodes[*node].parent) {
+    if (!scene.nodes[*node].name.empty()) return scene.nodes[*node].name;
+  }
+  return scene.meshes[instance.mesh].name;
+}
+
+PickResult describe(const render::SurfacePoint& surface, const scene::Scene& scene) {
+  const scene::Instance& instance = scene.instances.at(surface.instance);
+  const std::uint32_t material = scene.meshes[instance.mesh].material;
+  return {.hit = true,
+          .position = to_protocol(surface.position),
+          .normal = to_protocol(surface.normal),
+          .distance = surface.distance,
+          .object = object_name(scene, instance),
+          .material = describe_materials(scene).at(material).name};
+}
+
+Result<PickResult> pick(const render::Renderer& renderer, const scene::Scene& scene,
+                        glm::vec2 point) {
+  const auto surface = renderer.pick(point);
+  if (!surface) return surface.error();
+  if (!*surface) return PickResult();
+  return describe(**surface, scene);
+}
+
+Inspection inspect(const render::Renderer& renderer, const RenderState& state, glm::vec2 point) {
+  const auto pixel = [](float share, std::uint32_t size) {
+    return std::min(static_cast<std::uint32_t>(share * static_cast<float>(size)), size - 1);
+  };
+  Inspection inspection{.column = pixel(point.x, state.width),
+                        .row = pixel(point.y, state.height),
+                        .width = state.width,
+                        .height = state.height,
+                        .buffers = {}};
+  for (const render::BufferValue& buffer : renderer.inspect(point)) {
+    protocol::BufferValue value{.name = buffer.name, .value = {}, .unit = buffer.unit};
+    for (const float channel : buffer.channels) {
+      value.value.push_back(std::isfinite(channel) ? std::optional(channel) : std::nullopt);
+    }
+    inspection.buffers.push_back(std::move(value));
+  }
+  return inspection;
+}
+
+/// Adds a method that reads something from the picture under a point.
+template <class Response, class Read>
+void add_probe(protocol::Dispatcher& dispatcher, SessionHost& host, std::string_view name,
+               Read read) {
+  dispatcher.add<PicturePoint, Response>(
+      name, [&host, read](const PicturePoint& request, const protocol::CallContext& context,
+                          protocol::Completion<Response> done) {
+        const auto session = host.sessions().session_of(context);
+        if (!session) return done(session.error());
+        const glm::vec2 point(request.x, request.y);
+        const Result<void> accepted = (*session)->request_probe(
+            {.read = [read, point, done](render::Renderer& renderer,
+                                         const RenderState& state) {
+               done(read(renderer, state, point));
+             },
+             .fail = [done](const protocol::Error& error) { done(error); }});
+        if (!accepted) done(accepted.error());
+      });
+}
+
+}  // namespace
+
+void add_probe_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
+  add_probe<PickResult>(dispatcher, host, "scene.pick",
+                        [](const render::Renderer& renderer, const RenderState& state,
+                           glm::vec2 point) -> Result<PickResult> {
+                          if (!state.scene) return protocol::error::not_ready("no scene is loaded");
+                          return pick(renderer, *state.scene, point);
+                        });
+  add_probe<Inspection>(dispatcher, host, "frame.inspect",
+                        [](const render::Renderer& renderer, const RenderState& state,
+                           glm::vec2 point) -> Result<Inspection> {
+                          return inspect(renderer, state, point);
+                        });
+}
+
+}  // namespace heliograph::session

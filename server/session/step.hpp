@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "protocol/frame_messages.hpp"
+#include "protocol/result.hpp"
+
+namespace heliograph::session {
+
+/// Frames to render in lockstep.
+struct StepRequest {
+  std::uint32_t frames = 1;
+  double dt = 0.0;  // seconds before each of them
+  /// Called once, on any thread.
+  std::function<void(protocol::Result<protocol::StepState>)> done;
+};
+
+}  // namespace heliograph::session

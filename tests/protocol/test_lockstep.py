@@ -1,0 +1,179 @@
+"""Lockstep: time passes frame by frame as it is asked for, and the same calls give the same bytes."""
+
+import asyncio
+import base64
+import hashlib
+import os
+import shutil
+import tempfile
+import time
+
+from harness.models import Model
+from harness.server import Server, ServerTestCase
+from harness.viewer import Viewer
+
+DT = 0.04
+
+
+def make_scenes(folder):
+    given = os.environ["HELIOGRAPH_SCENES"]
+    model = Model(os.path.join(given, "furnace.glb"))
+    model.add_light("sun", color=(1.0, 0.9, 0.8))
+    ball = model.node("diffuse")
+    model.add_clip("hop", ball, [0.0, 1.0, 2.0], [[0, 0.6, 0], [0.5, 1.0, 0], [0, 0.6, 0]])
+    model.save(os.path.join(folder, "hopping.glb"))
+    for name in ("mirror.glb", "sky.hdr"):
+        shutil.copy(os.path.join(given, name), folder)
+
+
+class Lockstep(ServerTestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        make_scenes(cls.folder.name)
+        cls.server = Server("--scene", "hopping", scenes=cls.folder.name)
+
+    @classmethod
+    def tearDownClass(cls):
+        super().tearDownClass()
+        cls.folder.cleanup()
+
+    def reset(self):
+        self.server.call("frame.run")
+        super().reset()
+        self.server.call("scene.load", {"name": "hopping"})
+
+    def step(self, frames, dt=DT):
+        return self.server.call("frame.step", {"frames": frames, "dt": dt})
+
+    def test_the_answer_comes_when_all_frames_are_done(self):
+        state = self.step(3)
+        self.assertEqual((state["lockstep"], state["frames"], state["samples"]), (True, 3, 3))
+        self.assertAlmostEqual(state["seconds"], 3 * DT)
+        state = self.step(2, 0.5)
+        self.assertEqual(state["frames"], 5)
+        self.assertAlmostEqual(state["seconds"], 3 * DT + 1.0)
+
+    def test_a_clip_goes_on_by_steps_alone(self):
+        self.step(0)
+        self.server.call("animation.play", {"clip": "hop", "rate": 2.0})
+        self.assertEqual(self.server.call("animation.list")["seconds"], 0)
+        time.sleep(0.2)
+        self.assertEqual(self.server.call("animation.list")["seconds"], 0)
+        self.step(10)
+        self.assertAlmostEqual(self.server.call("animation.list")["seconds"], 2 * 10 * DT)
+        self.server.call("animation.seek", {"seconds": 0.25})
+        self.step(1)
+        self.assertAlmostEqual(self.server.call("animation.list")["seconds"], 0.25 + 2 * DT)
+
+    def test_running_again_goes_on_from_there(self):
+        self.step(0)
+        self.server.call("animation.play", {"clip": "hop"})
+        self.step(10)
+        self.assertFalse(self.server.call("frame.run")["lockstep"])
+        time.sleep(0.3)
+        seconds = self.server.call("animation.list")["seconds"]
+        self.assertGreater(seconds, 10 * DT + 0.2)
+        self.assertFalse(self.server.call("frame.run")["lockstep"], "running twice is no harm")
+
+    def test_nothing_is_drawn_between_steps(self):
+        self.step(2)
+        first = self.capture("png")
+        self.server.call("camera.orbit", {"yaw": 40})
+        self.assertEqual(self.capture("png"), first)
+        self.step(1)
+        self.assertNotEqual(self.capture("png"), first)
+
+    def test_there_is_no_picture_before_the_first_step(self):
+        self.step(0)
+        self.assert_error(self.server.ask("frame.capture"), -32050)
+        self.assert_error(self.server.ask("scene.pick", {"x": 0.5, "y": 0.5}), -32050)
+
+    def test_bad_steps_are_refused(self):
+        for params, path in (({"frames": -1, "dt": 0.1}, "frames"), ({"frames": 1}, "dt"),
+                             ({"frames": 1, "dt": 11}, "dt"), ({"frames": 1e9, "dt": 0}, "frames")):
+            self.assert_error(self.server.ask("frame.step", params), -32602, path=path)
+
+    async def test_viewers_see_the_steps_and_only_them(self):
+        async with Viewer(self.server) as viewer:
+            await viewer.call("frame.step", {"frames": 1, "dt": DT})
+            await asyncio.sleep(0.5)
+            while not viewer.frames.empty():
+                viewer.frames.get_nowait()
+            await asyncio.sleep(0.5)
+            self.assertTrue(viewer.frames.empty(), "a frame nobody asked for")
+            await viewer.call("frame.step", {"frames": 3, "dt": DT})
+            frame = await asyncio.wait_for(viewer.frames.get(), 5)
+            self.assertEqual(frame.header["full_width"], 160)
+
+    async def test_steps_that_somebody_ends_are_told_so(self):
+        async with Viewer(self.server) as viewer:
+            stepping = asyncio.create_task(
+                viewer.ask("frame.step", {"frames": 100000, "dt": 0.001}))
+            await asyncio.sleep(0.5)
+            await viewer.call("frame.run")
+            self.assert_error(await stepping, -32009)
+
+    def capture(self, kind, buffer="output", server=None):
+        result = (server or self.server).call("frame.capture", {"format": kind, "buffer": buffer})
+        return base64.b64decode(result["data"])
+
+    def film(self, server):
+        """What a server makes of a fixed list of calls: everything on, camera and clip moving."""
+        server.call("settings.preset", {"name": "best"})
+        server.call("settings.patch", {"patch": {
+            "sampling": {"seed": 7}, "exposure": {"mode": "automatic"},
+            "accumulation": {"max_samples": 64}}})
+        server.call("camera.set", {"name": "main"})
+        server.call("frame.step", {"frames": 0, "dt": DT})
+        server.call("animation.play", {"clip": "hop", "rate": 1.0})
+        marks = []
+        for _ in range(4):
+            server.call("camera.orbit", {"yaw": 3})
+            server.call("frame.step", {"frames": 2, "dt": DT})
+            marks += [hashlib.sha256(self.capture(kind, server=server)).hexdigest()
+                      for kind in ("png", "exr", "npy")]
+        for buffer in ("gbuffer.motion", "specular.denoised", "visibility.denoised"):
+            marks.append(hashlib.sha256(self.capture("npy", buffer, server)).hexdigest())
+        server.call("animation.pause")
+        server.call("frame.step", {"frames": 4, "dt": DT})
+        marks.append(hashlib.sha256(self.capture("exr", server=server)).hexdigest())
+        return marks
+
+    def test_two_servers_make_the_same_bytes(self):
+        # This one has a past, and the clip stands anywhere when lockstep begins.
+        self.server.call("animation.play", {"clip": "hop", "rate": 3.7})
+        self.server.call("frame.capture", {"samples": 1})
+        first = self.film(self.server)
+        self.assertEqual(len(set(first)), len(first), "some pictures are the same")
+        self.server.call("frame.run")
+        again = self.film(self.server)
+        self.assertEqual(again, first)
+        with Server("--scene", "hopping", scenes=self.folder.name) as other:
+            other.call("stream.configure", {"width": 160, "height": 90})
+            self.assertEqual(self.film(other), first)
+
+
+class Reference(ServerTestCase):
+    def test_it_gathers_its_samples_unwatched(self):
+        before = self.server.call("settings.get")["settings"]
+        self.assertFalse(self.server.call("reference.status")["shown"])
+        state = self.server.call("reference.start", {"scope": "full", "samples": 12})
+        self.assertEqual((state["shown"], state["scope"], state["wanted"]), (True, "full", 12))
+        self.server.wait_for(lambda: self.server.call("reference.status")["finished"],
+                             "the end of the reference")
+        self.assertEqual(self.server.call("reference.status")["samples"], 12)
+        self.server.call("camera.orbit", {"yaw": 5})
+        self.server.wait_for(lambda: self.server.call("reference.status")["finished"],
+                             "the end of the reference from elsewhere")
+        state = self.server.call("reference.stop")
+        self.assertEqual((state["shown"], state["samples"], state["finished"]), (False, 0, False))
+        after = self.server.call("settings.get")["settings"]
+        self.assertEqual(after["accumulation"], before["accumulation"])
+        self.assertEqual(after["reference"]["use"], "never")
+
+    def test_bad_ones_are_refused(self):
+        self.assert_error(self.server.ask("reference.start", {"scope": "none"}), -32602,
+                          path="scope")
+        self.assert_error(self.server.ask("reference.start", {"samples": 0}), -32602,
+                          path="samples")

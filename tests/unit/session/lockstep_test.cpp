@@ -1,0 +1,111 @@
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "session/session.hpp"
+
+namespace heliograph::session {
+namespace {
+
+using protocol::ErrorCode;
+using protocol::Result;
+using protocol::StepState;
+
+LoadedScene clockwork() {
+  auto scene = std::make_shared<scene::Scene>();
+  scene->bounds.include(glm::vec3(-1.0f));
+  scene->bounds.include(glm::vec3(1.0f));
+  scene->nodes = {{.name = "hand"}};
+  scene->clips = {{.name = "tick", .duration = 100.0f, .channels = {}}};
+  return {.name = "clockwork", .scene = scene, .resources = nullptr};
+}
+
+class LockstepTest : public testing::Test {
+ protected:
+  LockstepTest() { session_.show(clockwork(), ""); }
+
+  /// Asks for frames; the answer is kept.
+  Result<void> ask(std::uint32_t frames, double dt) {
+    answer_.reset();
+    return session_.request_step(
+        {.frames = frames, .dt = dt, .done = [this](Result<StepState> state) {
+           answer_ = std::move(state);
+         }});
+  }
+  /// What the render thread does.
+  int draw_all() {
+    int drawn = 0;
+    for (; session_.begin_step(); ++drawn) session_.end_step(7);
+    return drawn;
+  }
+
+  Session session_{{}, std::make_shared<Wakeup>()};
+  std::optional<Result<StepState>> answer_;
+};
+
+TEST_F(LockstepTest, AnswersWhenTheLastFrameIsDone) {
+  ASSERT_TRUE(ask(2, 0.5));
+  EXPECT_DOUBLE_EQ(session_.begin_step().value(), 0.5);
+  session_.end_step(1);
+  EXPECT_FALSE(answer_);
+  session_.begin_step();
+  session_.end_step(2);
+  ASSERT_TRUE(answer_ && *answer_);
+  EXPECT_EQ((**answer_).frames, 2u);
+  EXPECT_EQ((**answer_).samples, 2u);
+  EXPECT_DOUBLE_EQ((**answer_).seconds, 1.0);
+  EXPECT_FALSE(session_.begin_step()) << "one frame too many";
+}
+
+TEST_F(LockstepTest, IsEnteredWithoutAFrame) {
+  ASSERT_TRUE(ask(0, 0.1));
+  ASSERT_TRUE(answer_ && *answer_);
+  EXPECT_TRUE((**answer_).lockstep);
+  EXPECT_TRUE(session_.in_lockstep());
+  EXPECT_EQ(draw_all(), 0);
+}
+
+TEST_F(LockstepTest, TimePassesByStepsAlone) {
+  ASSERT_TRUE(ask(0, 0.1));
+  ASSERT_TRUE(session_.play({.clip = "tick", .rate = 2.0}));
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_DOUBLE_EQ(session_.animation()->seconds, 0.0);
+  ASSERT_TRUE(ask(3, 0.25));
+  EXPECT_EQ(draw_all(), 3);
+  EXPECT_DOUBLE_EQ(session_.animation()->seconds, 1.5);
+  EXPECT_DOUBLE_EQ(session_.render_state().animation.at(session_.render_state().now()), 1.5);
+}
+
+TEST_F(LockstepTest, BeginsAnewOnceAndOnEveryReturn) {
+  const auto starts = [&] { return session_.render_state().fresh_starts; };
+  const auto before = starts();
+  ASSERT_TRUE(ask(1, 0.1));
+  ASSERT_TRUE(ask(1, 0.1));
+  EXPECT_EQ(starts(), before + 1);
+  draw_all();
+  session_.run_freely();
+  EXPECT_EQ(starts(), before + 1);
+  ASSERT_TRUE(ask(1, 0.1));
+  draw_all();
+  EXPECT_EQ(starts(), before + 2);
+  EXPECT_EQ((**answer_).frames, 1u);
+}
+
+TEST_F(LockstepTest, RunningFreelyEndsWhatIsDue) {
+  ASSERT_TRUE(ask(5, 0.1));
+  session_.begin_step();
+  session_.end_step(1);
+  EXPECT_FALSE(session_.run_freely().lockstep);
+  ASSERT_TRUE(answer_);
+  EXPECT_EQ(answer_->error().code, ErrorCode::conflict);
+  session_.end_step(2);
+  EXPECT_FALSE(session_.begin_step());
+}
+
+TEST_F(LockstepTest, NeedsAScene) {
+  session_.unload("");
+  EXPECT_EQ(ask(1, 0.1).error().code, ErrorCode::not_ready);
+}
+
+}  // namespace
+}  // namespace heliograph::session
