@@ -1,4 +1,4 @@
-// Runs every *.test.mjs in turn: they share the machine's few cores with a software renderer.
+// Runs every *.test.mjs in turn, or with --long every *.long.mjs: they share the machine's few cores with a software renderer.
 // Ends with 77, which test drivers read as "skipped", where a browser or a server is missing.
 
 import { spawnSync } from "node:child_process";
@@ -17,9 +17,10 @@ if (!existsSync(chromiumPath)) skip(`no Chromium at ${chromiumPath}`);
 if (!process.env.HELIOGRAPH_BINARY) skip("HELIOGRAPH_BINARY does not name the server");
 if (!process.env.HELIOGRAPH_SCENE_ROOT) skip("HELIOGRAPH_SCENE_ROOT does not name a scene folder");
 
-const wanted = process.argv.slice(2);
+const long = process.argv.includes("--long");
+const wanted = process.argv.slice(2).filter((argument) => argument !== "--long");
 const files = readdirSync(here)
-  .filter((name) => name.endsWith(".test.mjs"))
+  .filter((name) => name.endsWith(long ? ".long.mjs" : ".test.mjs"))
   .filter((name) => wanted.length === 0 || wanted.some((part) => name.includes(part)));
 let failed = files.length === 0;
 for (const name of files) {

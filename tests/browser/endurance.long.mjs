@@ -1,0 +1,79 @@
+// What only shows after a while: nothing is kept that is not needed, and the page stays free to
+// answer. Longer than the other tests; run by `ctest -C long -R browser_endurance`.
+
+import assert from "node:assert/strict";
+import test, { after, before } from "node:test";
+import { eventually, firstPicture, launchBrowser, openViewer } from "./harness/browser.mjs";
+import { startServer } from "./harness/server.mjs";
+
+const frames = 500;
+const mostGrowth = 4e6; // bytes
+const mostPicturesAlive = 4;
+const busiest = 0.2; // of the main thread's time
+
+let server;
+let browser;
+
+before(async () => {
+  server = await startServer();
+  await server.call("scene.load", { name: "shadow_objects" });
+  browser = await launchBrowser();
+});
+
+after(async () => {
+  await browser?.close();
+  await server?.stop();
+});
+
+/** Put before the stream worker's own source: counts decoded pictures that were not closed yet. */
+const counting = `
+self.pictures = { made: 0, closed: 0 };
+const decode = ImageDecoder.prototype.decode;
+ImageDecoder.prototype.decode = async function (...options) {
+  const result = await decode.apply(this, options);
+  self.pictures.made += 1;
+  return result;
+};
+const close = VideoFrame.prototype.close;
+VideoFrame.prototype.close = function () {
+  self.pictures.closed += 1;
+  close.call(this);
+};
+`;
+
+test(`${frames} frames leave no pictures and no heap behind, and the main thread is free`, async () => {
+  const context = await browser.newContext({ viewport: { width: 320, height: 180 } });
+  await context.route("**/worker.js", async (route) => {
+    const response = await route.fetch();
+    await route.fulfill({ response, body: counting + (await response.text()) });
+  });
+  const { page, complaints } = await openViewer(browser, server.url, { context });
+  await firstPicture(page);
+  const worker = page.workers().find((one) => one.url().endsWith("worker.js"));
+  const counts = () => worker.evaluate(() => self.pictures);
+  const session = await context.newCDPSession(page);
+  await session.send("Performance.enable");
+  const usedHeap = async () => {
+    await session.send("HeapProfiler.collectGarbage");
+    return (await session.send("Runtime.getHeapUsage")).usedSize;
+  };
+  const busySeconds = async () => {
+    const { metrics } = await session.send("Performance.getMetrics");
+    return metrics.find(({ name }) => name === "TaskDuration").value;
+  };
+  await server.call("animation.play", { clip: "moving_objects_light" });
+  await eventually(async () => (await counts()).made > 40, "forty frames", 120_000);
+
+  const [heapBefore, busyBefore, startedAt] = [await usedHeap(), await busySeconds(), Date.now()];
+  const { made } = await counts();
+  await eventually(async () => (await counts()).made > made + frames, "the frames", 480_000);
+  const busy = ((await busySeconds()) - busyBefore) / ((Date.now() - startedAt) / 1000);
+  const growth = (await usedHeap()) - heapBefore;
+  const after = await counts();
+  console.log(JSON.stringify({ frames, growth, busy, alive: after.made - after.closed }));
+  assert.ok(growth < mostGrowth, `the heap grew by ${growth} bytes`);
+  assert.ok(after.made - after.closed <= mostPicturesAlive, JSON.stringify(after));
+  assert.ok(busy < busiest, `the main thread is busy ${(busy * 100).toFixed(0)} % of the time`);
+  assert.deepEqual(complaints, []);
+  await context.close();
+});

@@ -1,0 +1,128 @@
+// What changes the scene itself: lights, materials, points of the picture.
+
+import assert from "node:assert/strict";
+import test, { after, before } from "node:test";
+import {
+  eventually,
+  firstPicture,
+  launchBrowser,
+  openTab,
+  openViewer,
+  screenshot,
+} from "./harness/browser.mjs";
+import { startServer } from "./harness/server.mjs";
+
+let server;
+let browser;
+let viewer;
+let methods;
+
+before(async () => {
+  server = await startServer();
+  await server.call("scene.load", { name: "shadow_objects" });
+  methods = (await server.call("rpc.discover")).methods.map(({ name }) => name);
+  browser = await launchBrowser();
+  viewer = await openViewer(browser, server.url, { viewport: { width: 1000, height: 900 } });
+  await firstPicture(viewer.page);
+});
+
+after(async () => {
+  await browser?.close();
+  await server?.stop();
+});
+
+/** Skips a test whose method the server lacks. */
+function lacks(t, method) {
+  if (methods.includes(method)) return false;
+  t.skip(`the server has no ${method}`);
+  return true;
+}
+
+const sun = async () =>
+  (await server.call("lights.list")).lights.find(({ type }) => type === "directional");
+
+test("the sun is dragged over its dial, resized, and put back", async (t) => {
+  if (lacks(t, "lights.patch")) return;
+  const { page } = viewer;
+  await openTab(page, "scene");
+  const before = await sun();
+  const dial = page.getByRole("slider", { name: "Direction of the sun" });
+  const { x, y, width } = await dial.boundingBox();
+  await page.mouse.move(x + width / 2, y + width / 2);
+  await page.mouse.down();
+  await page.mouse.move(x + width * 0.9, y + width / 2, { steps: 5 });
+  await page.mouse.up();
+  await eventually(async () => {
+    const { direction } = await sun();
+    return direction[0] < -0.8 && direction[1] < 0;
+  }, "a sun in the east");
+  await dial.focus();
+  await page.keyboard.press("Shift+ArrowUp");
+  const lifted = await eventually(async () => {
+    const { direction } = await sun();
+    return direction[1] < -0.3 && direction;
+  }, "a higher sun");
+  assert.ok(Math.abs(Math.hypot(...lifted) - 1) < 1e-3);
+  const diameter = page.getByRole("textbox", { name: "Angular diameter" }).first();
+  await diameter.fill("4");
+  await diameter.press("Enter");
+  await eventually(async () => Math.abs((await sun()).angular_diameter - 4) < 1e-4, "a large sun");
+  await screenshot(page, "sun");
+  await page.getByRole("button", { name: "Reset this light" }).click();
+  await eventually(
+    async () => JSON.stringify((await sun()).direction) === JSON.stringify(before.direction),
+    "the sun of the file",
+  );
+});
+
+test("a material is changed and its roughness swept and put back", async (t) => {
+  if (lacks(t, "materials.patch")) return;
+  const { page } = viewer;
+  await openTab(page, "scene");
+  await page.locator('[data-section="materials"] summary').click();
+  const select = page.locator("select[name=material]");
+  const { materials } = await server.call("materials.list");
+  const { name } = materials[1];
+  await select.selectOption(name);
+  const roughness = async () =>
+    (await server.call("materials.list")).materials.find((one) => one.name === name).roughness;
+  const section = page.locator('[data-section="materials"]');
+  const entry = section.getByRole("textbox", { name: "Roughness" });
+  await entry.fill("0.35");
+  await entry.press("Enter");
+  await eventually(async () => Math.abs((await roughness()) - 0.35) < 1e-5, "the roughness");
+  await page.getByRole("button", { name: "Sweep the roughness" }).click();
+  await eventually(async () => (await roughness()) > 0.5, "a rougher surface on the way");
+  await page.getByRole("button", { name: "Stop the sweep" }).click();
+  await eventually(async () => Math.abs((await roughness()) - 0.35) < 1e-5, "the one of before");
+});
+
+test("a click lists every buffer at that pixel", async (t) => {
+  if (lacks(t, "frame.inspect")) return;
+  const { page } = viewer;
+  await openTab(page, "inspect");
+  await page.getByRole("switch", { name: "Inspect pixels" }).click();
+  await page.mouse.click(300, 600);
+  await page.locator(".pixel-values dd").first().waitFor({ timeout: 60_000 });
+  const { buffers } = await server.call("frame.inspect", { x: 0.3, y: 600 / 900 });
+  const shown = await page
+    .locator(".pixel-values dd")
+    .evaluateAll((nodes) => nodes.map((node) => node.dataset.value));
+  assert.deepEqual(shown, buffers.map(({ name }) => name));
+  assert.ok(await page.locator("#mark").isVisible());
+  await screenshot(page, "inspector");
+  await page.getByRole("switch", { name: "Inspect pixels" }).click();
+  assert.equal(await page.locator("#mark").isVisible(), false);
+});
+
+test("a double click turns to what is there", async (t) => {
+  if (lacks(t, "scene.pick")) return;
+  const { page } = viewer;
+  const { position } = await server.call("scene.pick", { x: 0.3, y: 600 / 900 });
+  await page.mouse.dblclick(300, 600);
+  await eventually(async () => {
+    const { target } = await server.call("camera.get");
+    return Math.hypot(...target.map((value, axis) => value - position[axis])) < 0.05;
+  }, "a view of that point", 40_000);
+  assert.deepEqual(viewer.complaints, []);
+});
