@@ -112,14 +112,14 @@ export interface BufferInfo {
   description: string;
 }
 
-/** What a ray through a point of the picture met; metres, world space. */
+/** What a ray through a point of the picture met; metres, world space. Null without a hit. */
 export interface Pick {
   hit: boolean;
-  position: Vector3;
-  normal: Vector3;
-  distance: number;
-  object: string;
-  material: string;
+  position: Vector3 | null;
+  normal: Vector3 | null;
+  distance: number | null;
+  object: string | null;
+  material: string | null;
 }
 
 export interface PresetInfo {

@@ -55,7 +55,8 @@ function main(): void {
   const focusAt = async (x: number, y: number): Promise<void> => {
     const pick = await viewer.pick(x, y);
     const camera = viewer.camera.value;
-    if (pick && camera) navigation.goTo(focusOn(camera, pick.position, pick.distance * focusCloser));
+    if (!camera || !pick?.position || pick.distance === null) return;
+    navigation.goTo(focusOn(camera, pick.position, pick.distance * focusCloser));
   };
   viewer.jumpTo = (camera) => navigation.goTo(camera);
   viewer.cameraBusy = () => navigation.active;
