@@ -42,6 +42,7 @@ grep -E '^(root|nogroup|heliograph):' /etc/group >"$root/etc/group"
   done
 
 install -m 755 "$(command -v busybox)" "$root/usr/bin/busybox"
-"$root/usr/bin/busybox" --list | while read -r name; do
-  [ -e "$root/usr/bin/$name" ] || ln -s busybox "$root/usr/bin/$name"
+# What probes, hooks and people in a hurry call; the rest is there as "busybox NAME".
+for name in cat cp find grep id ls nc rm sh sleep timeout; do
+  ln -s busybox "$root/usr/bin/$name"
 done

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <utility>
 
+#include "net/resource_limits.hpp"
+
 namespace heliograph::net {
 namespace {
 
@@ -113,6 +115,15 @@ void add_process(Page& page, const MetricsInput& input) {
              input.host.ready() && !input.draining ? 1 : 0);
   page.gauge("heliograph_draining", "1 while the server shuts down.", input.draining ? 1 : 0);
   page.gauge("heliograph_resident_memory_bytes", "Memory in use.", resident_bytes());
+  const ResourceLimits limits = read_resource_limits("/sys/fs/cgroup");
+  if (limits.memory_bytes) {
+    page.gauge("heliograph_memory_limit_bytes", "Memory that the container may use.",
+               *limits.memory_bytes);
+  }
+  if (limits.processors) {
+    page.gauge("heliograph_cpu_limit_cores", "Processors that the container may use.",
+               *limits.processors);
+  }
   page.counter("process_cpu_seconds_total", "Processor time used.", processor_seconds());
   page.gauge("process_open_fds", "Open files and sockets.", open_files());
 }

@@ -66,7 +66,8 @@ class Swarm(unittest.IsolatedAsyncioTestCase):
         """Through the manager's balancer; enough of them that one is on every node."""
         found = []
         for i in range(3):
-            viewer = ReplayingViewer(self.url(self.manager), TOKEN, Wish(NAMES[i % 2], eye=(i, 2.0, 8.0)))
+            wish = Wish(NAMES[i % 2], eye=(i, 2.0, 8.0))
+            viewer = ReplayingViewer(self.url(self.manager), TOKEN, wish)
             await viewer.__aenter__()
             self.addAsyncCleanup(viewer.__aexit__)
             found.append(viewer)

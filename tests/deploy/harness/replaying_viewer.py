@@ -63,9 +63,9 @@ class ReplayingViewer:
         self.connected = asyncio.Event()
         self._sequence = 0
         self._sent_at = {}
-        self._wanted = None     # the input, or the state, whose picture ends an interruption
-        self._wanted_rev = None
-        self._shown_rev = 0
+        self._whole = None      # the state and the input whose picture ends an interruption
+        self._is_whole = False
+        self._shown_rev, self._shown_input = -1, 0
         self._last_frame_at = None
         self._answers = {}
         self._next_id = 1
@@ -87,7 +87,7 @@ class ReplayingViewer:
     async def whole(self, timeout=20):
         """Waits until a picture of the whole wish is there."""
         deadline = time.monotonic() + timeout
-        while not self.connected.is_set() or self._wanted is not None:
+        while not self.connected.is_set() or not self._is_whole:
             if self._task.done():
                 self._task.result()
             if time.monotonic() > deadline:
@@ -153,6 +153,7 @@ class ReplayingViewer:
             if self.connected.is_set():
                 self.losses.append(Loss(time.monotonic(), code))
             self.connected.clear()
+            self._is_whole = False
             await asyncio.sleep(pause)
             pause = min(2 * pause, LONGEST_PAUSE)
 
@@ -171,7 +172,7 @@ class ReplayingViewer:
 
     async def _say_everything(self):
         wish = self.wish
-        self._wanted, self._wanted_rev, self._shown_rev = self._sequence + 1, None, 0
+        self._whole, self._shown_rev, self._shown_input = None, -1, 0
         self._sent_at.clear()
         hello = await self.call("hello", {"client": "replaying viewer"})
         self.viewer = hello["viewer"]
@@ -179,11 +180,15 @@ class ReplayingViewer:
         if (await self.call("scene.list"))["current"] != wish.scene:
             await self.call("scene.load", {"name": wish.scene})
         await self.call("stream.configure", {"width": wish.size[0], "height": wish.size[1]})
-        if wish.settings:
-            await self.call("settings.patch", {"patch": wish.settings})
-        await self._send_camera()
-        # Where nothing had to change the picture that greeted this viewer is the right one.
-        self._wanted_rev = (await self.call("camera.get"))["rev"]
+        # Only what changes something brings a picture of it; else the one that greets is right.
+        rev = sequence = 0
+        present = (await self.call("settings.get"))["settings"]
+        if not _holds(present, wish.settings):
+            rev = (await self.call("settings.patch", {"patch": wish.settings}))["rev"]
+        if not _holds(await self.call("camera.get"), wish.camera()):
+            await self._send_camera()
+            sequence = self._sequence
+        self._whole = (rev, sequence)
         self.connected.set()
         self._notice_whole(time.monotonic())
 
@@ -218,9 +223,12 @@ class ReplayingViewer:
             self._answers.clear()
 
     def _notice_whole(self, now):
-        if self._wanted is None or self._wanted_rev is None or self._shown_rev < self._wanted_rev:
+        if self._is_whole or self._whole is None:
             return
-        self._wanted = None
+        rev, sequence = self._whole
+        if self._shown_rev < rev or self._shown_input < sequence:
+            return
+        self._is_whole = True
         if self.losses and self.losses[-1].back_at is None:
             self.losses[-1].back_at = now
 
@@ -237,12 +245,22 @@ class ReplayingViewer:
         self._last_frame_at = now
         for sequence in [number for number in self._sent_at if number <= echo]:
             self.round_trips.append(now - self._sent_at.pop(sequence))
-        self._shown_rev = max(self._shown_rev, rev)
-        if self._wanted is not None and echo >= self._wanted:
-            self._wanted_rev = 0
+        self._shown_rev, self._shown_input = max(self._shown_rev, rev), max(self._shown_input, echo)
         self._notice_whole(now)
         await socket.send(json.dumps({"jsonrpc": "2.0", "method": "stream.ack",
                                       "params": {"frame_seq": frame}}))
+
+
+def _holds(present, wanted):
+    """Whether `present` has every member of `wanted`, numbers nearly."""
+    if isinstance(wanted, dict):
+        return all(name in present and _holds(present[name], value)
+                   for name, value in wanted.items())
+    if isinstance(wanted, list):
+        return len(present) == len(wanted) and all(map(_holds, present, wanted))
+    if isinstance(wanted, float) or isinstance(present, float):
+        return abs(present - wanted) < 1e-4
+    return present == wanted
 
 
 def _connect(url, token, node):

@@ -25,8 +25,8 @@ _TUNSETIFF, _IFF_TUN, _IFF_NO_PI = 0x400454CA, 0x0001, 0x1000
 class Line:
     """Of each direction."""
 
-    bytes_per_second: float = 250e3
-    queue_bytes: int = 64 * 1024
+    bytes_per_second: float = 125e3
+    queue_bytes: int = 32 * 1024
     delay_seconds: float = 0.04
     jitter_seconds: float = 0.01
     loss: float = 0.01

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+namespace heliograph::net {
+
+/// What the control group of this process may use; absent where it is not limited or not told.
+struct ResourceLimits {
+  std::optional<double> memory_bytes;
+  std::optional<double> processors;  // shares of one processor's time
+};
+
+/// Reads both versions of control groups as a container sees its own.
+/// `folder` is where they are mounted, /sys/fs/cgroup.
+ResourceLimits read_resource_limits(const std::filesystem::path& folder);
+
+}  // namespace heliograph::net
