@@ -26,19 +26,20 @@ after(async () => {
 });
 
 /** Put before the stream worker's own source: counts decoded pictures that were not closed yet. */
-const counting = `
-self.pictures = { made: 0, closed: 0 };
-const decode = ImageDecoder.prototype.decode;
-ImageDecoder.prototype.decode = async function (...options) {
-  const result = await decode.apply(this, options);
-  self.pictures.made += 1;
-  return result;
-};
-const close = VideoFrame.prototype.close;
-VideoFrame.prototype.close = function () {
-  self.pictures.closed += 1;
-  close.call(this);
-};
+const counting = `{
+  self.pictures = { made: 0, closed: 0 };
+  const decode = ImageDecoder.prototype.decode;
+  ImageDecoder.prototype.decode = async function (...options) {
+    const result = await decode.apply(this, options);
+    self.pictures.made += 1;
+    return result;
+  };
+  const close = VideoFrame.prototype.close;
+  VideoFrame.prototype.close = function () {
+    self.pictures.closed += 1;
+    close.call(this);
+  };
+}
 `;
 
 test(`${frames} frames leave no pictures and no heap behind, and the main thread is free`, async () => {

@@ -240,6 +240,12 @@ test("saving downloads a PNG of the session's picture", async () => {
   await page.getByRole("button", { name: "Save and share" }).click();
   await page.getByRole("menuitem", { name: "Save picture as PNG" }).click();
   assert.match((await download).suggestedFilename(), /\.png$/);
+  await page.getByRole("button", { name: "Save and share" }).click();
+  const exr = page.getByRole("menuitem", { name: "Save picture as EXR" });
+  if (!(await exr.isVisible())) return; // a server that writes none
+  const values = page.waitForEvent("download", { timeout: 130_000 });
+  await exr.click();
+  assert.match((await values).suggestedFilename(), /\.exr$/);
 });
 
 test("nothing was written to the console and no policy was violated", () => {

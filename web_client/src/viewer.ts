@@ -224,7 +224,8 @@ export class Viewer {
 
   /** A buffer of the frame as a small picture, a data address. */
   async smallPicture(buffer: string, width: number): Promise<string> {
-    const capture = await this.capture(buffer, "png");
+    const format = this.captureFormats.value.has("jpeg") ? "jpeg" : "png";
+    const capture = await this.capture(buffer, format);
     return shrunk(captureBlob(capture), width);
   }
 
