@@ -3,7 +3,13 @@
 
 import assert from "node:assert/strict";
 import test, { after, before } from "node:test";
-import { eventually, firstPicture, launchBrowser, openViewer } from "./harness/browser.mjs";
+import {
+  eventually,
+  firstPicture,
+  launchBrowser,
+  openViewer,
+  prepareWorker,
+} from "./harness/browser.mjs";
 import { startServer } from "./harness/server.mjs";
 
 const frames = 500;
@@ -25,8 +31,8 @@ after(async () => {
   await server?.stop();
 });
 
-/** Put before the stream worker's own source: counts decoded pictures that were not closed yet. */
-const counting = `{
+/** Run in the stream worker before its own script: counts decoded pictures that were not closed yet. */
+const counting = `
   self.pictures = { made: 0, closed: 0 };
   const decode = ImageDecoder.prototype.decode;
   ImageDecoder.prototype.decode = async function (...options) {
@@ -39,18 +45,14 @@ const counting = `{
     self.pictures.closed += 1;
     close.call(this);
   };
-}
 `;
 
 test(`${frames} frames leave no pictures and no heap behind, and the main thread is free`, async () => {
   const context = await browser.newContext({ viewport: { width: 320, height: 180 } });
-  await context.route("**/worker.js", async (route) => {
-    const response = await route.fetch();
-    await route.fulfill({ response, body: counting + (await response.text()) });
-  });
+  await prepareWorker(context, counting);
   const { page, complaints } = await openViewer(browser, server.url, { context });
   await firstPicture(page);
-  const worker = page.workers().find((one) => one.url().endsWith("worker.js"));
+  const worker = page.workers()[0];
   const counts = () => worker.evaluate(() => self.pictures);
   const session = await context.newCDPSession(page);
   await session.send("Performance.enable");

@@ -8,6 +8,7 @@ import {
   launchBrowser,
   openViewer,
   pictureScreenshot,
+  prepareWorker,
   screenshot,
 } from "./harness/browser.mjs";
 import { statistics, thumbnail } from "./harness/pictures.mjs";
@@ -75,13 +76,14 @@ test("where no WebSocket gets through, the pictures still come", async (t) => {
   }
   const context = await browser.newContext({ viewport: { width: 800, height: 450 } });
   // A proxy that refuses upgrades looks to the page like an address where nobody speaks WebSocket.
-  await context.route("**/worker.js", async (route) => {
-    const response = await route.fetch();
-    const source = await response.text();
-    const refusing = "self.WebSocket = class extends WebSocket { " +
-      "constructor(url, protocol) { super(url.replace('/ws', '/nothing'), protocol); } };";
-    await route.fulfill({ response, body: refusing + source });
-  });
+  await prepareWorker(
+    context,
+    `self.WebSocket = class extends WebSocket {
+      constructor(url, protocol) {
+        super(url.replace("/ws", "/nothing"), protocol);
+      }
+    };`,
+  );
   const { page } = await openViewer(browser, server.url, { context });
   await page.waitForSelector('#pill[data-state="pictures_only"]', { timeout: 60_000 });
   await eventually(

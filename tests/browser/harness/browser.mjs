@@ -57,6 +57,21 @@ export async function firstPicture(page, timeout = 120_000) {
   );
 }
 
+/** Has a script run in the stream worker before its own. */
+export function prepareWorker(context, source) {
+  return context.addInitScript((prelude) => {
+    const Native = window.Worker;
+    window.Worker = class extends Native {
+      constructor(url, options) {
+        const own = String(url);
+        const parts = [`{${prelude}}\nimportScripts(${JSON.stringify(own)});`];
+        const blob = () => URL.createObjectURL(new Blob(parts, { type: "text/javascript" }));
+        super(own.endsWith("/worker.js") ? blob() : url, options);
+      }
+    };
+  }, source);
+}
+
 export async function openTab(page, name) {
   await page.locator(`#tab-${name}`).click();
 }
