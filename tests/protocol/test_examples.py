@@ -1,6 +1,7 @@
 """Every example in the protocol's description works on a real server, as it stands there, and gives
 what the description promises."""
 
+import asyncio
 import os
 import shutil
 import tempfile
@@ -86,7 +87,10 @@ class Examples(ServerTestCase):
             for method in self.in_order():
                 example = method["examples"][0]
                 params = {param["name"]: param["value"] for param in example["params"]}
-                answer = await viewer.ask(method["name"], params)
+                try:
+                    answer = await viewer.ask(method["name"], params)
+                except asyncio.TimeoutError:
+                    self.fail(f"{method['name']} {params} was not answered")
                 self.assertIn("result", answer, f"{method['name']} {params}: {answer}")
                 wrong = list(problems(method["result"]["schema"], answer["result"],
                                       method["name"]))

@@ -3,7 +3,10 @@
 import base64
 import io
 import math
+import os
 import struct
+import subprocess
+import tempfile
 import zlib
 
 import numpy
@@ -172,6 +175,27 @@ class Files(ServerTestCase):
                              ("main/frame.npy?buffer=nothing", 400),
                              ("main/frame.exr?samples=0", 400)):
             self.assertEqual(self.server.get("/api/v1/sessions/" + path)[0], status, path)
+
+    def render(self, name, *arguments):
+        """What `heliograph render` writes into a file of that name."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, name)
+            done = subprocess.run(
+                [os.environ["HELIOGRAPH_BINARY"], "render",
+                 os.path.join(os.environ["HELIOGRAPH_SCENES"], "mirror.glb"), "-o", path,
+                 "--width", "64", "--height", "36", "--samples", "2", *arguments],
+                capture_output=True, text=True, timeout=60)
+            if done.returncode:
+                return done.stderr
+            with open(path, "rb") as file:
+                return file.read()
+
+    def test_the_command_line_writes_them_too(self):
+        channels, _ = read_exr(self.render("picture.exr"))
+        radiance = numpy.load(io.BytesIO(self.render("it.npy", "--buffer", "output.radiance")))
+        numpy.testing.assert_array_equal(channels["G"], radiance[..., 1])
+        self.assertIn("depth.Z", channels)
+        self.assertIn(".bmp", self.render("picture.bmp"))
 
     def test_a_jpeg_has_full_colour(self):
         file, result = self.capture(format="jpeg")

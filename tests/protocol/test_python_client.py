@@ -2,10 +2,12 @@
 
 import asyncio
 import os
+import re
 import subprocess
 import sys
 import tempfile
 import threading
+import unittest
 import xml.etree.ElementTree
 
 import numpy
@@ -128,6 +130,22 @@ class Library(ServerTestCase):
                 self.assertEqual(view.scene.list()["current"], "mirror")
             with self.assertRaises(Exception):
                 heliograph.connect(server.url, token="another-token-altogether")
+
+
+class Readme(unittest.TestCase):
+    def test_the_client_on_the_page_works(self):
+        with open(os.path.join(PROTOCOL, "README.md"), encoding="utf-8") as file:
+            blocks = re.findall("```python\n(.*?)```", file.read(), re.DOTALL)
+        code = next(block for block in blocks if "asyncio.run" in block)
+        with Server("--scene", "mirror", "--set", "accumulation.max_samples=16") as server, \
+                tempfile.TemporaryDirectory() as folder:
+            code = code.replace("127.0.0.1:8080", f"{server.host}:{server.port}")
+            done = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True,
+                                  text=True, timeout=60)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn('"viewer"', done.stdout)
+            with open(os.path.join(folder, "frame.jpg"), "rb") as file:
+                self.assertEqual(decode_jpeg(file.read()).width, 640)
 
 
 class Examples(ServerTestCase):
