@@ -255,6 +255,13 @@ class SlowViewers(ServerTestCase):
             await asyncio.sleep(0.1)
         self.fail(f"there are not {count} viewers:\n{metrics}")
 
+    async def test_who_takes_pictures_but_acknowledges_nothing_is_let_go(self):
+        async with Viewer(self.server, acknowledge=False) as lazy, Viewer(self.server) as brisk:
+            await lazy.next_frame()
+            code, reason = await lazy.closed(timeout=20)
+            self.assertEqual(code, 4004, reason)
+            await brisk.call("camera.get")
+
     async def test_acknowledging_nonsense_does_no_harm(self):
         async with Viewer(self.server) as viewer:
             for seq in (0, 7, 4294967295):

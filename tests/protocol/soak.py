@@ -1,0 +1,129 @@
+"""Keeps a server busy for a long time and checks that nothing is lost, nothing comes in the wrong
+order and memory stays flat: soak.py --seconds 3600
+
+One viewer moves the camera and changes settings, others watch over WebSocket as JPEG and H.264, and
+one after the other comes, looks, and goes without a word. Ends with 1 if anything is wrong."""
+
+import argparse
+import asyncio
+import math
+import os
+import sys
+import time
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+
+from harness.server import Server  # noqa: E402
+from harness.viewer import Viewer  # noqa: E402
+
+MEGABYTE = 1e6
+
+
+class Watcher:
+    """Checks the order of everything that one viewer is sent."""
+
+    def __init__(self, name, viewer):
+        self.name = name
+        self.viewer = viewer
+        self.frames = 0
+        self.faults = []
+
+    async def run(self):
+        last = {"frame_seq": 0, "render_id": 0, "state_rev": 0, "input_seq_echo": 0}
+        while True:
+            header = (await self.viewer.next_frame(timeout=60)).header
+            self.frames += 1
+            for member in ("render_id", "state_rev", "input_seq_echo"):
+                if header[member] < last[member]:
+                    self.faults.append(f"{self.name}: {member} {last[member]} -> {header[member]}")
+            if header["frame_seq"] <= last["frame_seq"]:
+                self.faults.append(f"{self.name}: frame {header['frame_seq']} came twice")
+            last = header
+            self.check_notifications()
+
+    def check_notifications(self):
+        revisions = [note["params"]["rev"] for note in self.viewer.notifications
+                     if note["method"] == "settings.changed"]
+        if revisions != sorted(revisions):
+            self.faults.append(f"{self.name}: settings came in the order {revisions}")
+
+
+async def steer(viewer, state):
+    """Moves for a second, changes a setting, rests for half a second."""
+    while not state["ending"]:
+        for _ in range(50):
+            state["seq"] += 1
+            angle = 0.02 * state["seq"]
+            await viewer.notify("camera.set", {"seq": state["seq"], "eye": [
+                3 * math.cos(angle), 2, 3 * math.sin(angle)]})
+            await asyncio.sleep(0.02)
+        state["patches"] += 1  # so that each differs from the one before
+        compensation = 0.1 * (state["patches"] % 10)
+        await viewer.call("settings.patch",
+                          {"patch": {"exposure": {"compensation": compensation}}})
+        await asyncio.sleep(0.5)
+
+
+async def come_and_go(server):
+    while True:
+        visitor = Viewer(server)
+        await visitor.__aenter__()
+        await visitor.next_frame(timeout=60)
+        visitor.socket.transport.abort()
+        await asyncio.sleep(0.3)
+
+
+async def soak(server, seconds, report=print):
+    """Gives what was wrong, an empty list if nothing was."""
+    state = {"seq": 0, "patches": 0, "ending": False}
+    async with Viewer(server) as driver, Viewer(server) as jpeg, \
+            Viewer(server, greet=False) as video:
+        await video.call("hello", {"client": "soak", "codecs": ["h264", "jpeg"]})
+        watchers = [Watcher("driver", driver), Watcher("jpeg", jpeg), Watcher("video", video)]
+        tasks = [asyncio.create_task(watcher.run()) for watcher in watchers]
+        steering = asyncio.create_task(steer(driver, state))
+        tasks += [steering, asyncio.create_task(come_and_go(server))]
+        memory = []
+        begin = time.monotonic()
+        while time.monotonic() < begin + seconds:
+            await asyncio.sleep(min(10, seconds / 8))
+            memory.append(server.memory_bytes())
+            failed = [task for task in tasks if task.done()]
+            if failed:
+                return [repr(task.exception()) for task in failed]
+            report(f"{time.monotonic() - begin:6.0f} s, {sum(w.frames for w in watchers)} frames, "
+                   f"{memory[-1] / MEGABYTE:.1f} MB")
+        state["ending"] = True
+        await steering
+        faults = await check_end(jpeg, state, watchers)
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+    # The first quarter fills caches and pools.
+    settled = memory[len(memory) // 4:]
+    grown = settled[-1] - settled[0]
+    if grown > 20 * MEGABYTE + 0.02 * settled[0]:
+        faults.append(f"memory grew by {grown / MEGABYTE:.1f} MB")
+    return faults
+
+
+async def check_end(jpeg, state, watchers):
+    await asyncio.sleep(0.5)
+    faults = [fault for watcher in watchers for fault in watcher.faults]
+    heard = sum(note["method"] == "settings.changed" for note in jpeg.notifications)
+    if heard != state["patches"]:
+        faults.append(f"{state['patches']} patches, but {heard} were told")
+    return faults
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seconds", type=float, default=3600)
+    with Server() as server:
+        faults = asyncio.run(soak(server, parser.parse_args().seconds))
+    print("\n".join(faults) or "nothing lost, nothing out of order, memory flat")
+    sys.exit(1 if faults else 0)
+
+
+if __name__ == "__main__":
+    main()
