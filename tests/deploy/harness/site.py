@@ -73,6 +73,10 @@ class Site:
         if self._forwarding is not None:
             with open("/proc/sys/net/ipv4/ip_forward", "w", encoding="ascii") as file:
                 file.write(self._forwarding)
+        with open("/proc/mounts", encoding="utf-8") as file:
+            mounts = [line.split()[1] for line in file]
+        for mount in reversed([path for path in mounts if path.startswith(f"{self.folder}/")]):
+            run("umount", "--lazy", mount, check=False)
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def add_machine(self):
