@@ -20,6 +20,9 @@ class SpatialVariance {
   using DI = hn::RebindToSigned<D>;
 
   static constexpr int radius = 3;
+  // Of shaders/lib/spatial_variance.glsl
+  static constexpr float few_neighbours = 2.5f;
+  static constexpr float nearby_depth = 0.02f;
 
   struct Center {
     Triple<V> normal;
@@ -32,6 +35,8 @@ class SpatialVariance {
   struct Sums {
     Quad<V> moments;
     V total;
+    Quad<V> loose_moments;  // of neighbours of other planes, too
+    V loose_total;
   };
 
  public:
@@ -68,19 +73,34 @@ class SpatialVariance {
     if (hn::AllFalse(d_, wanted)) return;
     const Sums sums = gathered(center(view, guide, x, y), x, y);
     wanted = hn::And(wanted, hn::Gt(sums.total, hn::Zero(d_)));
-    const V share = set(1.0f) / sums.total;
-    const Quad<V> mean{sums.moments.x * share, sums.moments.y * share, sums.moments.z * share,
-                       sums.moments.w * share};
+    const V one = set(1.0f);
+    const V alone = clamped(set(few_neighbours) - sums.total, 0.0f, 1.0f);
+    const Quad<V> mean = mixed(sums, alone);
     float* const signal = row_of<float>(job_.signal, y) + 4 * x;
     const Quad<V> value = load4(d_, signal);
     Quad<V> changed = value;
     if (visibility_) {
       changed.z = hn::Max(variance(mean.x, mean.z, frames_x), value.z);
       changed.w = hn::Max(variance(mean.y, mean.w, frames_y), value.w);
+      changed.x = mixed(value.x, mean.x, alone / hn::Max(frames_x, one));
+      changed.y = mixed(value.y, mean.y, alone / hn::Max(frames_y, one));
     } else {
       changed.w = hn::Max(variance(mean.z, mean.w, frames_x), value.w);
     }
     store4(d_, select(wanted, changed, value), signal);
+  }
+
+  HWY_INLINE V mixed(V from, V to, V share) const {
+    return hn::MulAdd(to - from, share, from);
+  }
+  HWY_INLINE Quad<V> mixed(const Sums& sums, V alone) const {
+    const V strict = set(1.0f) / sums.total;
+    const V loose = set(1.0f) / hn::Max(sums.loose_total, set(1e-6f));
+    const auto mean = [&](V of_plane, V of_all) {
+      return mixed(of_plane * strict, of_all * loose, alone);
+    };
+    return {mean(sums.moments.x, sums.loose_moments.x), mean(sums.moments.y, sums.loose_moments.y),
+            mean(sums.moments.z, sums.loose_moments.z), mean(sums.moments.w, sums.loose_moments.w)};
   }
 
   HWY_INLINE V variance(V first, V second, V frames) const {
@@ -106,7 +126,8 @@ class SpatialVariance {
 
   HWY_INLINE Sums gathered(const Center& c, int x, int y) const {
     const V zero = hn::Zero(d_);
-    Sums sums{{zero, zero, zero, zero}, zero};
+    const Quad<V> none{zero, zero, zero, zero};
+    Sums sums{none, zero, none, zero};
     const int lanes = static_cast<int>(hn::Lanes(d_));
     const bool inside = x >= radius && x + lanes + radius <= job_.width;
     for (int dy = -radius; dy <= radius; ++dy) {
@@ -138,16 +159,24 @@ class SpatialVariance {
         hn::Abs(hn::NegMulAdd(rise, c.flattened, hn::MulSub(guide.w, straight, c.view_z)));
     const V allowed = hn::MulAdd(c.footprint, set(away), hn::Abs(rise));
     const Triple<V> normal{guide.x, guide.y, guide.z};
-    const V cosine = clamped(dot(c.normal, normal) / length(normal), 1e-6f, 1.0f);
-    const V exponent = hn::MulAdd(set(128.0f), hn::Log(d_, cosine),
+    const V zero = hn::Zero(d_);
+    const V cosine = dot(c.normal, normal) / length(normal);
+    const V exponent = hn::MulAdd(set(128.0f), hn::Log(d_, clamped(cosine, 1e-6f, 1.0f)),
                                   hn::Neg(off_plane / hn::Max(allowed, set(1e-30f))));
     // Below e^-80 a weight is nothing; the exponential stays in its range.
     const V weight = hn::IfThenElseZero(counts, hn::Exp(d_, hn::Max(exponent, set(-80.0f))));
-    sums.moments.x = hn::MulAdd(weight, moments.x, sums.moments.x);
-    sums.moments.y = hn::MulAdd(weight, moments.y, sums.moments.y);
-    sums.moments.z = hn::MulAdd(weight, moments.z, sums.moments.z);
-    sums.moments.w = hn::MulAdd(weight, moments.w, sums.moments.w);
-    sums.total = sums.total + weight;
+    add(weight, moments, sums.moments, sums.total);
+    const V apart = hn::Abs(guide.w - c.view_z) / (set(nearby_depth) * c.view_z);
+    const V loose = hn::Exp(d_, hn::Max(hn::Neg(apart), set(-80.0f))) * hn::Max(cosine, zero);
+    add(hn::IfThenElseZero(counts, loose), moments, sums.loose_moments, sums.loose_total);
+  }
+
+  static HWY_INLINE void add(V weight, const Quad<V>& moments, Quad<V>& sum, V& total) {
+    sum.x = hn::MulAdd(weight, moments.x, sum.x);
+    sum.y = hn::MulAdd(weight, moments.y, sum.y);
+    sum.z = hn::MulAdd(weight, moments.z, sum.z);
+    sum.w = hn::MulAdd(weight, moments.w, sum.w);
+    total = total + weight;
   }
 
   const D d_{};

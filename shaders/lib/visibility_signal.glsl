@@ -7,6 +7,9 @@ const float smallest_difference = 1e-3;
 vec2 brightness(vec4 signal) { return signal.xy; }
 vec2 variance_of(vec4 signal) { return signal.zw; }
 vec4 with_variance(vec4 signal, vec2 variance) { return vec4(signal.xy, variance); }
+vec4 with_mean(vec4 signal, vec2 mean, vec2 share) {
+  return vec4(mix(signal.xy, mean, share), signal.zw);
+}
 
 /// Of its memory: frames remembered, and moments of single samples.
 vec2 frames_of(vec4 history) { return history.xy; }
