@@ -21,7 +21,7 @@ class SpatialVariance {
 
   static constexpr int radius = 3;
   // Of shaders/lib/spatial_variance.glsl
-  static constexpr float few_neighbours = 2.5f;
+  static constexpr float enough_neighbours = 8.0f;
   static constexpr float nearby_depth = 0.02f;
 
   struct Center {
@@ -74,7 +74,9 @@ class SpatialVariance {
     const Sums sums = gathered(center(view, guide, x, y), x, y);
     wanted = hn::And(wanted, hn::Gt(sums.total, hn::Zero(d_)));
     const V one = set(1.0f);
-    const V alone = clamped(set(few_neighbours) - sums.total, 0.0f, 1.0f);
+    const V alone = clamped((set(enough_neighbours) - sums.total) *
+                                set(1.0f / (enough_neighbours - 2.0f)),
+                            0.0f, 1.0f);
     const Quad<V> mean = mixed(sums, alone);
     float* const signal = row_of<float>(job_.signal, y) + 4 * x;
     const Quad<V> value = load4(d_, signal);

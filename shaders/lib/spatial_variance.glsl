@@ -8,8 +8,8 @@
 #include "lib/reprojection.glsl"
 #include "shared/denoise.h"
 
-const float few_neighbours = 2.5;  // the pixel itself counts as one
-const float nearby_depth = 0.02;   // of the distance
+const float enough_neighbours = 8.0;  // the pixel itself counts as one
+const float nearby_depth = 0.02;      // of the distance
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D guide;
@@ -54,7 +54,7 @@ void main() {
     }
   }
   if (known || total <= 0.0) return;
-  float alone = clamp(few_neighbours - total, 0.0, 1.0);
+  float alone = clamp((enough_neighbours - total) / (enough_neighbours - 2.0), 0.0, 1.0);
   sum = mix(sum / total, loose_sum / max(loose_total, 1e-6), alone);
   vec2 longer = max(constants.spatial_variance_frames / max(frames, vec2(1.0)), vec2(1.0));
   vec2 variance = max(second_moment(sum) - first_moment(sum) * first_moment(sum), vec2(0.0));
