@@ -9,5 +9,7 @@ HELIOGRAPH_ENUM(TracerKind, embree, software, ray_query, ray_pipeline)
 HELIOGRAPH_ENUM(PassKind, device, host)
 HELIOGRAPH_ENUM(ImageFormat, png, jpeg, npy, exr)
 HELIOGRAPH_ENUM(LightType, directional, point, spot, rectangle, disk)
+HELIOGRAPH_ENUM(ControlMode, everyone, one)
+HELIOGRAPH_ENUM(ControlAction, take, give, release)
 
 }  // namespace heliograph::protocol

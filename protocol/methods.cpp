@@ -96,6 +96,51 @@ std::vector<MethodDescriptor> animation_methods() {
   };
 }
 
+constexpr std::string_view session = R"({
+  "name": "review", "scene": "atrium", "width": 1280, "height": 720,
+  "viewers": [{"viewer": "v1", "name": "Ada", "control": true, "you": true},
+              {"viewer": "v4", "name": null, "control": false, "you": false}],
+  "control": "one", "rev": 7, "idle_seconds": 0.0})";
+
+constexpr std::string_view joined = R"({
+  "session": "review", "viewer": "v1", "rev": 7, "info": {
+    "name": "review", "scene": null, "width": 1280, "height": 720,
+    "viewers": [{"viewer": "v1", "name": "Ada", "control": true, "you": true}],
+    "control": "everyone", "rev": 7, "idle_seconds": 0.0}})";
+
+constexpr std::string_view sessions = R"({
+  "sessions": [{"name": "main", "scene": "atrium", "width": 640, "height": 360, "viewers": [],
+                "control": "everyone", "rev": 3, "idle_seconds": 12.5}],
+  "limits": {"sessions": 64, "viewers": 256, "session_viewers": 32, "pixels": 66355200,
+             "pixels_used": 230400, "idle_timeout": 600}})";
+
+std::vector<MethodDescriptor> membership_methods() {
+  return {
+      method<SessionCreate, SessionInfo>(
+          "session.create", Call::personal,
+          "Makes a session of its own scene, camera, settings, clock and histories.",
+          {R"({"name": "review", "scene": "atrium", "width": 320, "height": 180})", session}),
+      method<SessionChoice, SessionJoined>(
+          "session.join", Call::personal,
+          "Brings this viewer, with its stream as it is, into another session.",
+          {R"({"session": "review"})", joined}),
+      method<Empty, SessionList>("session.list", Call::query, "Lists the sessions and limits.",
+                                 {no_params, sessions}),
+      method<Empty, SessionInfo>("session.info", Call::query,
+                                 "Tells who is in this session and who has control.",
+                                 {no_params, session}),
+      method<SessionControl, SessionInfo>(
+          "session.control", Call::personal,
+          "Decides who may change the session: everyone, or one viewer who takes, gives or "
+          "releases control.",
+          {R"({"mode": "one"})", session}),
+      method<SessionChoice, Empty>(
+          "session.close", Call::personal,
+          "Ends a session; its viewers are told and let go. main stays for ever.",
+          {R"({"session": "review"})", "{}"}),
+  };
+}
+
 std::vector<MethodDescriptor> session_methods() {
   return {
       method<Hello, HelloResult>(
@@ -298,7 +343,7 @@ std::span<const MethodDescriptor> methods() {
   static const std::vector<MethodDescriptor> all = [] {
     std::vector<MethodDescriptor> list = session_methods();
     for (const auto& more :
-         {stream_methods(), animation_methods(), edit_methods(), probe_methods(),
+         {membership_methods(), stream_methods(), animation_methods(), edit_methods(), probe_methods(),
           frame_methods()}) {
       list.insert(list.end(), more.begin(), more.end());
     }
@@ -309,6 +354,12 @@ std::span<const MethodDescriptor> methods() {
 
 std::span<const NotificationDescriptor> notifications() {
   static const std::vector<NotificationDescriptor> all{
+      notification<SessionInfo>("session.changed",
+                                "Somebody came, left or was given control of this session."),
+      notification<SessionClosed>(
+          "session.closed", "This session has ended; the connection is closed with code 4003."),
+      notification<DeviceChanged>(
+          "device.changed", "The device was lost, or is back; sessions keep all but histories."),
       notification<SettingsChanged>("settings.changed", "Another viewer changed settings."),
       notification<CameraChanged>("camera.changed", "Another viewer moved the camera."),
       notification<SceneProgress>("scene.progress", "A scene is being loaded."),

@@ -30,6 +30,7 @@ struct Hello {
   std::optional<std::string> client;
   std::vector<std::string> codecs{"jpeg"};
   std::optional<std::string> session;
+  std::optional<std::string> name;
 
   static constexpr auto fields() {
     return std::tuple{
@@ -40,6 +41,8 @@ struct Hello {
             .or_default(),
         field("session", &Hello::session,
               "The session to watch; left out: the one that /ws?session=NAME named, or main.")
+            .length(1, 64),
+        field("name", &Hello::name, "What the person is called, for the others in the session.")
             .length(1, 64),
     };
   }

@@ -39,7 +39,12 @@ struct ServeOptions {
   std::string metrics_listen;  // "address:port"
   double drain_notice = 0.0;   // seconds
   double drain_deadline = 5.0;
-  std::uint32_t max_viewers = 32;
+  std::uint32_t max_viewers = 32;  // of a session
+  std::uint32_t max_all_viewers = 256;
+  std::uint32_t max_sessions = 64;
+  std::uint64_t max_pixels = 8ull * 3840 * 2160;
+  std::uint32_t release_after = 120;         // seconds
+  std::uint32_t session_idle_timeout = 600;  // seconds; 0: never
   std::uint32_t max_connections = 256;
   std::uint32_t max_connections_per_client = 64;
   std::string token;

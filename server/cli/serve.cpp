@@ -24,7 +24,11 @@ session::HostOptions host_options(const ServeOptions& options) {
   result.session.height = options.height.value_or(result.session.height);
   result.session.settings = parse_settings(options.settings);
   result.session.limits.max_viewers = options.max_viewers;
-  result.limits.viewers = options.max_viewers;
+  result.release_after = std::chrono::seconds(options.release_after);
+  result.limits = {.sessions = options.max_sessions,
+                   .viewers = options.max_all_viewers,
+                   .pixels = options.max_pixels,
+                   .idle_timeout = std::chrono::seconds(options.session_idle_timeout)};
   result.scene_roots = choose_scene_roots(options.scene_roots);
   if (!options.environment.empty()) result.environment = options.environment;
   result.import_limits = options.limits;

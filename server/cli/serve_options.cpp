@@ -100,6 +100,36 @@ void add_capacity_options(CLI::App& command, ServeOptions& options) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str()
       ->group(group);
+  command
+      .add_option("--max-all-viewers", options.max_all_viewers,
+                  "Most viewers of all sessions together")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--max-sessions", options.max_sessions, "Most sessions, main included")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option("--max-pixels", options.max_pixels,
+                  "Most pixels of the pictures of all sessions together")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option("--release-after", options.release_after,
+                  "Seconds after which a session that nobody watches gives back the memory of its "
+                  "pictures; it starts anew with its next viewer")
+      ->check(CLI::Range(1, 31'536'000))
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option("--session-idle-timeout", options.session_idle_timeout,
+                  "Seconds after which a session other than main ends that has no viewers and no "
+                  "calls; 0: never")
+      ->check(CLI::Range(0, 31'536'000))
+      ->capture_default_str()
+      ->group(group);
   command.add_option("--max-connections", options.max_connections, "Most connections in all")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str()

@@ -1,6 +1,7 @@
 #include "gpu/device.hpp"
 
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -43,6 +44,12 @@ std::string cache_name(VkPhysicalDevice device) {
     name += digits;
   }
   return name + ".bin";
+}
+
+/// Lets tests lose the device: once for each time that they make the file that this names.
+bool loss_is_wanted() {
+  static const char* const file = std::getenv("HELIOGRAPH_TEST_DEVICE_LOSS");
+  return file && std::remove(file) == 0;
 }
 
 }  // namespace
@@ -174,7 +181,7 @@ void Device::submit(VkCommandBuffer commands) const {
   VkResult result;
   {
     const std::lock_guard lock(queue_mutex_);
-    result = vkQueueSubmit2(queue_, 1, &info, fence);
+    result = loss_is_wanted() ? VK_ERROR_DEVICE_LOST : vkQueueSubmit2(queue_, 1, &info, fence);
   }
   if (result == VK_SUCCESS) result = vkWaitForFences(handle_, 1, &fence, VK_TRUE, UINT64_MAX);
   vkDestroyFence(handle_, fence, nullptr);

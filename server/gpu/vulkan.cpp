@@ -1,5 +1,7 @@
 #include "gpu/vulkan.hpp"
 
+#include "gpu/device_lost.hpp"
+
 namespace heliograph::gpu {
 
 std::string to_string(VkResult result) {
@@ -26,6 +28,9 @@ std::string to_string(VkResult result) {
 }
 
 void check(VkResult result, const char* what) {
+  if (result == VK_ERROR_DEVICE_LOST) {
+    throw DeviceLost(std::string("could not ") + what + ": " + to_string(result));
+  }
   if (result < 0) throw GpuError(std::string("could not ") + what + ": " + to_string(result));
 }
 

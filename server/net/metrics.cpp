@@ -146,6 +146,16 @@ void add_streams(Page& page, const session::SessionHost& host) {
   page.gauge("heliograph_viewers", "Connected viewers.", number(audience.viewers));
   page.gauge("heliograph_viewers_limit", "Most viewers of all sessions.",
              number(host.sessions().limits().viewers));
+  const session::SessionRegistry& sessions = host.sessions();
+  page.gauge("heliograph_sessions", "Sessions, main included.", number(sessions.count()));
+  page.gauge("heliograph_sessions_limit", "Most sessions.", number(sessions.limits().sessions));
+  page.counter("heliograph_sessions_opened_total", "Sessions opened since the start.",
+               number(sessions.opened()));
+  page.gauge("heliograph_session_pixels", "Pixels of the pictures of all sessions.",
+             number(sessions.pixels_used()));
+  page.gauge("heliograph_session_pixels_limit", "Most of them.", number(sessions.limits().pixels));
+  page.counter("heliograph_device_losses_total", "How often the graphics device was lost.",
+               number(host.device_losses()));
   page.counter("heliograph_frames_sent_total", "Frames sent to viewers.",
                number(audience.sent.frames));
   page.counter("heliograph_sent_bytes_total", "Bytes of the frames sent to viewers.",

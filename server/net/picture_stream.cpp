@@ -54,7 +54,7 @@ class PictureStream : public Connection,
   ~PictureStream() override { context_.leave(*this); }
 
   void start(const HttpRequest& request, const std::string& session) {
-    const auto joined = context_.host.sessions().enter(session, weak_from_this());
+    const auto joined = context_.host.sessions().enter(session, weak_from_this(), true);
     viewer_ = joined ? *joined : std::string();
     headers_.version(11);
     headers_.result(joined ? http::status::ok : http::status::service_unavailable);

@@ -31,7 +31,7 @@ using boost::system::error_code;
 constexpr std::size_t most_waiting_messages = 256;
 constexpr std::size_t most_waiting_bytes = 128u << 20;
 
-constexpr std::uint16_t session_ended = 4001;
+constexpr std::uint16_t session_ended = 4003;
 constexpr std::uint16_t slow_consumer = 4004;
 constexpr int reconnect_after_ms = 1000;
 constexpr std::chrono::seconds longest_without_acknowledgement{15};
@@ -112,7 +112,7 @@ class ViewerConnection : public Connection,
   };
 
   void accepted() {
-    const auto joined = context_.host.sessions().enter(session_, weak_from_this());
+    const auto joined = context_.host.sessions().enter(session_, weak_from_this(), view_only_);
     if (!joined) {
       close(websocket::close_code::try_again_later, joined.error().message);
       return read();

@@ -29,6 +29,18 @@ std::string tracer_names(const gpu::DeviceReport& report) {
   return names;
 }
 
+/// What lives on a device keeps it alive.
+template <class Made>
+std::shared_ptr<const Made> with_device(std::shared_ptr<Engine::Parts> parts,
+                                        std::shared_ptr<const Made> made) {
+  struct Both {
+    std::shared_ptr<Engine::Parts> parts;
+    std::shared_ptr<const Made> made;
+  };
+  const Made* const it = made.get();
+  return {std::make_shared<const Both>(Both{std::move(parts), std::move(made)}), it};
+}
+
 }  // namespace
 
 Engine::Parts::Parts(const EngineOptions& options)
@@ -44,42 +56,83 @@ Engine::Parts::Parts(const EngineOptions& options)
       info{device.report().name, device.report().driver, device_type(device.report().type)},
       host_kernels(options.host_kernels) {}
 
-Engine::Engine(const EngineOptions& options) : parts_(std::make_unique<Parts>(options)) {}
+Engine::Engine(const EngineOptions& options)
+    : options_(options), parts_(std::make_shared<Parts>(options)) {}
 Engine::~Engine() = default;
 
-const DeviceInfo& Engine::device() const {
-  return parts_->info;
+std::shared_ptr<Engine::Parts> Engine::present() const {
+  const std::lock_guard lock(mutex_);
+  return parts_;
+}
+
+void Engine::recreate() {
+  auto made = std::make_shared<Parts>(options_);
+  const std::lock_guard lock(mutex_);
+  parts_.swap(made);
+}
+
+DeviceInfo Engine::device() const {
+  return present()->info;
 }
 protocol::TracerKind Engine::tracer() const {
-  return parts_->tracer->kind();
+  return present()->tracer->kind();
 }
 
 std::uint32_t Engine::max_image_size() const {
-  return std::min(parts_->device.limits().maxImageDimension2D, 8192u);
+  return std::min(present()->device.limits().maxImageDimension2D, 8192u);
 }
 
 std::uint64_t Engine::validation_messages() const {
-  return parts_->instance.validation_messages();
+  return present()->instance.validation_messages();
 }
 
 std::shared_ptr<const SceneResources> Engine::upload(std::shared_ptr<const scene::Scene> scene,
                                                      const scene::Environment& environment,
                                                      const UploadProgress& progress) {
+  return upload(std::move(scene), std::make_shared<const scene::Environment>(environment),
+                progress);
+}
+
+std::shared_ptr<const SceneResources> Engine::upload(
+    std::shared_ptr<const scene::Scene> scene,
+    std::shared_ptr<const scene::Environment> environment, const UploadProgress& progress) {
   const auto tell = [&](std::string_view stage, float fraction) {
     if (progress) progress(stage, fraction);
   };
   tell("environment", 0.0f);
-  auto around = parts_->environments.get(environment);
-  return std::make_shared<const SceneResources>(parts_->device, parts_->programs, std::move(scene),
-                                                std::move(around), *parts_->tracer, tell);
+  const std::shared_ptr<Parts> parts = present();
+  auto around = parts->environments.get(std::move(environment));
+  return with_device(parts, std::make_shared<const SceneResources>(
+                                parts->device, parts->programs, std::move(scene),
+                                std::move(around), *parts->tracer, tell));
+}
+
+std::shared_ptr<const LitEnvironment> Engine::renew(const LitEnvironment& lost) {
+  const std::shared_ptr<Parts> parts = present();
+  return with_device(parts, parts->environments.get(lost.source()));
+}
+
+std::shared_ptr<const SceneResources> Engine::renew(const SceneResources& lost) {
+  return upload(lost.scene, lost.environment->source());
+}
+
+bool Engine::owns(const SceneResources& resources) const {
+  return owns(*resources.environment);
+}
+
+bool Engine::owns(const LitEnvironment& environment) const {
+  return &environment.device() == &present()->device;
 }
 
 std::uint64_t memory_bytes(const SceneResources& resources) {
   return resources.bytes();
 }
 
-std::shared_ptr<const LitEnvironment> Engine::prefilter(const scene::Environment& environment) {
-  return parts_->environments.get(environment);
+std::shared_ptr<const LitEnvironment> Engine::prefilter(scene::Environment environment) {
+  const std::shared_ptr<Parts> parts = present();
+  return with_device(
+      parts, parts->environments.get(
+                 std::make_shared<const scene::Environment>(std::move(environment))));
 }
 
 std::string describe_devices(const EngineOptions& options) {

@@ -1,18 +1,18 @@
 #include "render/lit_environment.hpp"
 
 #include <cstring>
+#include <utility>
 
 namespace heliograph::render {
 
 LitEnvironment::LitEnvironment(const gpu::Device& device, const Programs& programs,
-                               const scene::Environment& environment)
-    : device_(device), programs_(programs) {
-  scene::SeparatedEnvironment separated = scene::separate_sun(environment);
+                               std::shared_ptr<const scene::Environment> source)
+    : device_(device), programs_(programs), source_(std::move(source)) {
+  scene::SeparatedEnvironment separated = scene::separate_sun(*source_);
   sun_ = separated.sun;
   sky_ = prefilter_environment(device, programs, separated.sky);
   if (!sun_) return;
-  whole_ = environment;
-  background_ = upload_environment(device, environment);
+  background_ = upload_environment(device, *source_);
 }
 
 EnvironmentView LitEnvironment::view(bool separate_sun) const {
@@ -20,7 +20,7 @@ EnvironmentView LitEnvironment::view(bool separate_sun) const {
   if (!sun_) return {sky_.map, sky_, none};
   if (separate_sun) return {*background_, sky_, sun_};
   const std::lock_guard lock(mutex_);
-  if (!maps_of_whole_) maps_of_whole_ = prefilter_environment(device_, programs_, *whole_);
+  if (!maps_of_whole_) maps_of_whole_ = prefilter_environment(device_, programs_, *source_);
   return {*background_, *maps_of_whole_, none};
 }
 
@@ -46,8 +46,9 @@ std::uint64_t content_hash(const scene::Environment& environment) {
   return hash ^ hash >> 47;
 }
 
-std::shared_ptr<const LitEnvironment> EnvironmentCache::get(const scene::Environment& environment) {
-  const std::uint64_t content = content_hash(environment);
+std::shared_ptr<const LitEnvironment> EnvironmentCache::get(
+    std::shared_ptr<const scene::Environment> environment) {
+  const std::uint64_t content = content_hash(*environment);
   const std::lock_guard lock(mutex_);
   entries_.remove_if([](const Entry& entry) { return entry.environment.expired(); });
   for (const Entry& entry : entries_) {
@@ -55,7 +56,7 @@ std::shared_ptr<const LitEnvironment> EnvironmentCache::get(const scene::Environ
     last_ = entry.environment.lock();
     if (last_) return last_;
   }
-  last_ = std::make_shared<const LitEnvironment>(device_, programs_, environment);
+  last_ = std::make_shared<const LitEnvironment>(device_, programs_, std::move(environment));
   entries_.push_back({content, last_});
   return last_;
 }

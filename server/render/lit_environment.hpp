@@ -21,17 +21,20 @@ struct EnvironmentView {
 class LitEnvironment {
  public:
   LitEnvironment(const gpu::Device& device, const Programs& programs,
-                 const scene::Environment& environment);
+                 std::shared_ptr<const scene::Environment> source);
 
+  const gpu::Device& device() const { return device_; }
+  /// What it was made from.
+  const std::shared_ptr<const scene::Environment>& source() const { return source_; }
   /// Where there is a sun, the first call that wants it in the map filters that as well.
   EnvironmentView view(bool separate_sun) const;
 
  private:
   const gpu::Device& device_;
   const Programs& programs_;
+  const std::shared_ptr<const scene::Environment> source_;
   std::optional<scene::Sun> sun_;
   EnvironmentMaps sky_;
-  std::optional<scene::Environment> whole_;  // with the sun, where there is one
   std::optional<gpu::Image> background_;
   mutable std::mutex mutex_;
   mutable std::optional<EnvironmentMaps> maps_of_whole_;
@@ -44,7 +47,7 @@ class EnvironmentCache {
   EnvironmentCache(const gpu::Device& device, const Programs& programs)
       : device_(device), programs_(programs) {}
 
-  std::shared_ptr<const LitEnvironment> get(const scene::Environment& environment);
+  std::shared_ptr<const LitEnvironment> get(std::shared_ptr<const scene::Environment> environment);
 
  private:
   struct Entry {

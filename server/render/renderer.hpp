@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -43,7 +44,8 @@ std::uint64_t memory_bytes(const SceneResources& resources);
 /// Told as an upload proceeds: stage name and fraction of the whole, 0..1.
 using UploadProgress = std::function<void(std::string_view stage, float fraction)>;
 
-/// One device with its programs: made once, shared by every renderer.
+/// One device with its programs, shared by every renderer. Where gpu::DeviceLost is thrown, by
+/// whatever works on the device, `recreate` makes another one.
 class Engine {
  public:
   /// @throws gpu::GpuError with the reasons when no device will do
@@ -52,7 +54,7 @@ class Engine {
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  const DeviceInfo& device() const;
+  DeviceInfo device() const;
   protocol::TracerKind tracer() const;
   std::uint32_t max_image_size() const;  // pixels, either side
   std::uint64_t validation_messages() const;
@@ -62,15 +64,33 @@ class Engine {
   std::shared_ptr<const SceneResources> upload(std::shared_ptr<const scene::Scene> scene,
                                                const scene::Environment& environment,
                                                const UploadProgress& progress = {});
+  std::shared_ptr<const SceneResources> upload(
+      std::shared_ptr<const scene::Scene> scene,
+      std::shared_ptr<const scene::Environment> environment, const UploadProgress& progress = {});
+
   /// Uploads and prefilters an environment, or finds it where it is in use already. May run on any
   /// thread, beside rendering.
-  std::shared_ptr<const LitEnvironment> prefilter(const scene::Environment& environment);
+  std::shared_ptr<const LitEnvironment> prefilter(scene::Environment environment);
+
+  /// Makes the device and its programs anew. There must be no renderer; what was uploaded before may
+  /// still be held but is of no use any more. @throws gpu::GpuError
+  void recreate();
+  /// Whether it lives on the present device.
+  bool owns(const SceneResources& resources) const;
+  bool owns(const LitEnvironment& environment) const;
+  /// The same on the present device.
+  std::shared_ptr<const SceneResources> renew(const SceneResources& lost);
+  std::shared_ptr<const LitEnvironment> renew(const LitEnvironment& lost);
 
   struct Parts;
   Parts& parts() { return *parts_; }
 
  private:
-  std::unique_ptr<Parts> parts_;
+  std::shared_ptr<Parts> present() const;
+
+  const EngineOptions options_;
+  mutable std::mutex mutex_;  // guards parts_
+  std::shared_ptr<Parts> parts_;
 };
 
 struct PassTime {

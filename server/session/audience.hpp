@@ -12,6 +12,7 @@
 
 #include "protocol/messages.hpp"
 #include "protocol/result.hpp"
+#include "session/control.hpp"
 #include "session/viewer_link.hpp"
 #include "session/wakeup.hpp"
 #include "stream/form_planner.hpp"
@@ -57,8 +58,9 @@ class Audience {
   /// `room` is notified when a frame can be sent again.
   Audience(std::size_t max_viewers, Wakeup& room);
 
-  /// Adds a viewer. It is sent nothing before `start`.
-  protocol::Result<void> join(const std::string& viewer, std::weak_ptr<ViewerLink> link);
+  /// Adds a viewer. It is sent nothing before `start`. Who only watches never has control.
+  protocol::Result<void> join(const std::string& viewer, std::weak_ptr<ViewerLink> link,
+                              bool only_watches = false);
   void leave(const std::string& viewer);
   /// Lets a viewer go over to `there` with its stream as it is; if there is no room it stays.
   protocol::Result<void> hand_over(const std::string& viewer, Audience& there);
@@ -67,6 +69,17 @@ class Audience {
   /// The viewer is ready for pictures; it gets the latest one there is. `codec` is the one it likes
   /// best, and it decodes JPEG.
   void start(const std::string& viewer, protocol::StreamCodec codec = protocol::StreamCodec::jpeg);
+
+  void set_name(const std::string& viewer, std::string name);
+  /// Whether a caller may change the session; empty for one without a stream.
+  bool may_change(const std::string& viewer) const;
+  protocol::Result<void> change_control(const protocol::SessionControl& request,
+                                        const std::string& by);
+  protocol::ControlMode control_mode() const;
+  /// Who is here, in order of arrival, as told to `you`.
+  std::vector<protocol::ViewerInfo> people(const std::string& you) const;
+  /// Tells everybody who is here, each about itself.
+  void announce_people(protocol::SessionInfo session);
 
   protocol::Result<ViewerStream> configure(const std::string& viewer,
                                            const protocol::StreamConfigure& change);
@@ -77,6 +90,7 @@ class Audience {
   /// The frame to send to this viewer now, if any.
   std::optional<stream::OutgoingFrame> take(const std::string& viewer);
 
+  bool empty() const;
   /// Whether somebody could be sent a frame that is rendered now.
   bool wants_frame() const;
   /// Whether somebody receives pictures at all.
@@ -85,6 +99,8 @@ class Audience {
   std::optional<Clock::time_point> next_turn() const;
   /// Tells those whose turn has come about waiting frames.
   void announce_waiting();
+  /// Newcomers get no picture until another is published.
+  void forget_latest();
   /// Whether somebody could be sent the picture of this number, and was not yet. Numbers grow.
   bool awaits(std::uint64_t number) const;
   /// How to encode the picture of this number for those who await it.
@@ -103,6 +119,9 @@ class Audience {
  private:
   struct Viewer {
     std::weak_ptr<ViewerLink> link;
+    bool only_watches = false;
+    std::uint64_t arrival = 0;
+    std::optional<std::string> name;
     stream::ViewerPacer pacer;
     ViewerStream stream;
     bool started = false;
@@ -120,6 +139,8 @@ class Audience {
 
   protocol::Result<void> check_room() const;
   protocol::Result<void> take_in(Viewers::node_type& viewer);
+  bool may_change_locked(const std::string& viewer) const;
+  std::vector<protocol::ViewerInfo> people_locked(const std::string& you) const;
   protocol::Result<Viewer*> find(const std::string& viewer);
   void offer_latest(Viewer& viewer);
   static void offer(Viewer& viewer, const stream::SharedFrame& frame);
@@ -134,6 +155,8 @@ class Audience {
   mutable std::mutex mutex_;
   Viewers viewers_;
   stream::FormPlanner planner_;
+  std::uint64_t arrivals_ = 0;
+  Control control_;
   std::vector<stream::SharedFrame> latest_;
   std::uint64_t latest_number_ = 0;
   Purpose latest_purpose_ = Purpose::interactive;

@@ -135,6 +135,14 @@ void Broadcast::rendered(std::shared_ptr<const Picture> picture, bool resting) {
   }
 }
 
+void Broadcast::forget() {
+  newest_.reset();
+  due_.reset();
+  due_samples_ = 0;
+  newer_than_due_ = false;
+  encoder_ = std::make_shared<stream::PictureEncoder>(services_.jpeg);
+}
+
 void Broadcast::finish() {
   due(Purpose::final);
 }

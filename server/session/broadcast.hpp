@@ -32,6 +32,8 @@ class Broadcast {
 
   /// A new picture. `resting`: nothing moves and it is drawn whole.
   void rendered(std::shared_ptr<const Picture> picture, bool resting);
+  /// Keeps no picture and nothing else of size until there is another.
+  void forget();
   /// The newest picture is final.
   void finish();
   bool finished() const { return newest_ && due_purpose_ == Purpose::final && !newer_than_due_; }

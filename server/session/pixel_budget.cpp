@@ -23,9 +23,11 @@ std::uint64_t PixelBudget::used() const {
   return used_;
 }
 
-PixelShare::~PixelShare() {
-  // Giving back is never refused.
+void PixelShare::give_back() {
+  // That is never refused.
   if (budget_) (void)budget_->exchange(held_, 0);
+  budget_.reset();
+  held_ = 0;
 }
 
 protocol::Result<void> PixelShare::resize(std::uint64_t pixels) {

@@ -33,9 +33,11 @@ class PixelShare {
   PixelShare(PixelShare&& other) noexcept
       : budget_(std::move(other.budget_)), held_(std::exchange(other.held_, 0)) {}
   PixelShare& operator=(PixelShare&&) = delete;
-  ~PixelShare();
+  ~PixelShare() { give_back(); }
 
   protocol::Result<void> resize(std::uint64_t pixels);
+  /// Gives everything back; from now on there is no budget.
+  void give_back();
 
  private:
   std::shared_ptr<PixelBudget> budget_;

@@ -1,10 +1,15 @@
 #include "session/render_loop.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <exception>
 #include <utility>
+
+#include "protocol/jsonrpc.hpp"
+#include "render/device_lost.hpp"
+#include "session/device_renewal.hpp"
 
 namespace heliograph::session {
 namespace {
@@ -15,8 +20,9 @@ constexpr std::size_t waiting_captures = 4;
 
 }  // namespace
 
-RenderLoop::RenderLoop(render::Engine& engine)
+RenderLoop::RenderLoop(render::Engine& engine, Clock::duration release_after)
     : engine_(engine),
+      release_after_(release_after),
       encoder_("encoder", waiting_pictures),
       capture_writer_("capture writer", waiting_captures),
       thread_([this] { run(); }) {}
@@ -33,12 +39,14 @@ void RenderLoop::stop() {
 std::shared_ptr<Session> RenderLoop::open(SessionOptions options, PixelShare pixels) {
   auto view = std::make_shared<SessionView>(engine_, std::move(options), std::move(pixels),
                                             ViewServices{.wakeup = *wakeup_,
+                                                         .release_after = release_after_,
                                                          .encoder = encoder_,
                                                          .jpeg = jpeg_,
                                                          .capture_writer = capture_writer_,
                                                          .measurements = measurements_},
                                             std::make_shared<Wakeup>(wakeup_));
   std::shared_ptr<Session> session = view->session();
+  if (open_views().empty()) view->prepare();
   {
     const std::lock_guard lock(mutex_);
     views_.push_back(std::move(view));
@@ -68,14 +76,20 @@ void RenderLoop::on_first_frame(std::function<void()> callback) {
 void RenderLoop::run() {
   while (!stopping_) {
     dismiss_closed();
-    Views views;
-    {
-      const std::lock_guard lock(mutex_);
-      views = views_;
-    }
-    if (advance_all(views)) continue;
-    wakeup_->wait_until(next_due(views));
+    if (loss_reported_.exchange(false) && device_ready_) lose_device("while a scene was loaded");
+    const Views views = open_views();
+    if (!device_ready_ && !mend_device(views)) continue;
+    if (advance_next(views) || !device_ready_) continue;
+    const auto due = next_due(views);
+    wakeup_->wait_until(due && held_back_until_ ? std::min(due, held_back_until_)
+                        : due                   ? due
+                                                : held_back_until_);
   }
+}
+
+RenderLoop::Views RenderLoop::open_views() {
+  const std::lock_guard lock(mutex_);
+  return views_;
 }
 
 void RenderLoop::dismiss_closed() {
@@ -84,26 +98,108 @@ void RenderLoop::dismiss_closed() {
     const std::lock_guard lock(mutex_);
     closed.swap(closed_);
   }
-  for (const auto& view : closed) view->refuse_captures();
+  for (const auto& view : closed) {
+    view->refuse_captures();
+    share_.forget(view.get());
+  }
 }
 
-bool RenderLoop::advance_all(const Views& views) {
-  bool worked = false;
+/// Lets the first session in order of turns work that has something to do.
+bool RenderLoop::advance_next(const Views& views) {
+  std::vector<FairShare::Key> ready;
   for (const auto& view : views) {
-    if (stopping_) return false;
-    worked |= advance(*view);
-    if (!has_rendered_ && view->has_rendered()) report_first_frame();
+    if (view->awake()) ready.push_back(view.get());
   }
-  return worked;
+  share_.arrange(ready);
+  held_back_until_.reset();
+  for (const FairShare::Key key : ready) {
+    if (stopping_ || !device_ready_) return false;
+    if (const auto until = share_.hold_back(key, Clock::now())) {
+      held_back_until_ = held_back_until_ ? std::min(*held_back_until_, *until) : *until;
+      continue;
+    }
+    SessionView& view = *std::find_if(views.begin(), views.end(), [&](const auto& candidate) {
+                           return candidate.get() == key;
+                         })->get();
+    const Clock::time_point start = Clock::now();
+    const bool worked = advance(view);
+    if (!has_rendered_ && view.has_rendered()) report_first_frame();
+    if (!worked) continue;
+    share_.charge(key, start, Clock::now());
+    return true;
+  }
+  return false;
 }
 
 bool RenderLoop::advance(SessionView& view) {
   try {
     return view.advance();
+  } catch (const render::DeviceLost& failure) {
+    lose_device("session " + view.session()->name() + ": " + failure.what());
+    return false;
   } catch (const std::exception& failure) {
     spdlog::error("session {}: rendering failed: {}", view.session()->name(), failure.what());
     view.recover();
     return false;
+  }
+}
+
+void RenderLoop::report_device_loss() {
+  loss_reported_ = true;
+  wakeup_->notify();
+}
+
+void RenderLoop::on_new_device(std::function<void()> callback) {
+  const std::lock_guard lock(mutex_);
+  on_new_device_ = std::move(callback);
+}
+
+void RenderLoop::lose_device(const std::string& why) {
+  device_ready_ = false;
+  ++device_losses_;
+  const Clock::duration pause = recovery_pause_.after_loss(Clock::now());
+  mend_at_ = Clock::now() + pause;
+  const std::string when =
+      pause == Clock::duration::zero()
+          ? "at once"
+          : fmt::format("in {} s", std::chrono::duration_cast<std::chrono::seconds>(pause).count());
+  spdlog::error("the device was lost and is made anew {} ({})", when, why);
+  tell_viewers(false, "the device was lost and is made anew " + when);
+}
+
+/// Makes the device anew once its time has come. Sessions keep everything but their histories.
+bool RenderLoop::mend_device(const Views& views) {
+  if (Clock::now() < mend_at_) {
+    wakeup_->wait_until(mend_at_);
+    return false;
+  }
+  try {
+    for (const auto& view : views) view->release_renderer();
+    engine_.recreate();
+    DeviceRenewal renewal(engine_);
+    for (const auto& view : views) view->session()->renew(renewal);
+  } catch (const std::exception& failure) {
+    lose_device(failure.what());
+    return false;
+  }
+  std::function<void()> callback;
+  {
+    const std::lock_guard lock(mutex_);
+    callback = on_new_device_;
+  }
+  if (callback) callback();
+  recovery_pause_.recovered(Clock::now());
+  device_ready_ = true;
+  spdlog::info("the device is back, {} sessions with it", views.size());
+  tell_viewers(true, "the device is back");
+  return true;
+}
+
+void RenderLoop::tell_viewers(bool ready, const std::string& message) {
+  const std::string text = protocol::make_notification(
+      "device.changed", protocol::DeviceChanged{.ready = ready, .message = message});
+  for (const auto& view : open_views()) {
+    view->session()->audience().send_all(text, "device.changed");
   }
 }
 

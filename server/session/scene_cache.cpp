@@ -48,6 +48,11 @@ LoadedScene SceneCache::add(const SceneKey& key, LoadedScene scene,
   return handed_out(entries_.back().scene);
 }
 
+void SceneCache::clear() {
+  const std::lock_guard lock(mutex_);
+  while (!entries_.empty()) drop(entries_.begin());
+}
+
 void SceneCache::count_hit() {
   const std::lock_guard lock(mutex_);
   ++totals_.hits;

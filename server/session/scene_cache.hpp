@@ -42,8 +42,9 @@ class SceneCache {
   std::optional<LoadedScene> find(const SceneKey& key);
   /// Keeps `scene`, read from `sources`, and gives what is to be shown of it: only so the cache
   /// knows whether it still is.
-  LoadedScene add(const SceneKey& key, LoadedScene scene,
-                  std::vector<scene::SourceFile> sources);
+  LoadedScene add(const SceneKey& key, LoadedScene scene, std::vector<scene::SourceFile> sources);
+  /// Forgets everything, since the device it was on is gone.
+  void clear();
   void count_hit();
   void count_miss();
 

@@ -8,6 +8,7 @@
 
 #include "protocol/jsonrpc.hpp"
 #include "protocol/suggestions.hpp"
+#include "render/device_lost.hpp"
 #include "render/renderer.hpp"
 #include "session/scene_description.hpp"
 
@@ -182,6 +183,10 @@ void SceneLoader::carry_out(Job& job) {
   } catch (const scene::ImportError& failure) {
     finish(job,
            protocol::error::invalid("name", "cannot be loaded: " + std::string(failure.what())));
+  } catch (const render::DeviceLost& failure) {
+    spdlog::error("loading {}: {}", job.entry.name, failure.what());
+    if (on_device_loss_) on_device_loss_();
+    finish(job, protocol::error::not_ready("the device was lost meanwhile; try again"));
   } catch (const std::exception& failure) {
     spdlog::error("loading {}: {}", job.entry.name, failure.what());
     finish(job, protocol::error::internal());
@@ -204,7 +209,7 @@ LoadedScene SceneLoader::make(Job& job) {
   sources.insert(sources.end(), scene->sources.begin(), scene->sources.end());
   LoadedScene loaded{.name = job.entry.name, .scene = scene};
   loaded.resources =
-      engine_.upload(scene, *environment, [&](std::string_view stage, float fraction) {
+      engine_.upload(scene, environment, [&](std::string_view stage, float fraction) {
         checkpoint(stage, import_share + (1.0f - import_share) * fraction);
       });
   stop_if_abandoned(job);

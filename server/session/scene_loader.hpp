@@ -54,6 +54,11 @@ class SceneLoader {
   /// Ends the thread and the load under way; all that wait are told.
   void stop();
 
+  /// Called on the loading thread when a load meets render::DeviceLost. Set before the first load.
+  void on_device_loss(std::function<void()> callback) { on_device_loss_ = std::move(callback); }
+  /// There is another device: what is kept of the last one is of no use.
+  void forget_kept() { cache_.clear(); }
+
   CacheTotals cache_totals() const { return cache_.totals(); }
 
  private:
@@ -86,6 +91,7 @@ class SceneLoader {
   EnvironmentSource environments_;
   const LoaderOptions options_;
   SceneCache cache_;
+  std::function<void()> on_device_loss_;
 
   std::mutex mutex_;
   std::condition_variable condition_;

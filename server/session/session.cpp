@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <tuple>
 #include <utility>
 
 #include "protocol/jsonrpc.hpp"
@@ -9,12 +10,18 @@
 #include "protocol/suggestions.hpp"
 #include "scene/camera.hpp"
 #include "scene/pose.hpp"
+#include "session/device_renewal.hpp"
 #include "session/scene_description.hpp"
 
 namespace heliograph::session {
 
 using protocol::Result;
 namespace error = protocol::error;
+
+protocol::Error no_control() {
+  return error::make(protocol::ErrorCode::forbidden, "control",
+                     "another viewer has control of this session", "session.control");
+}
 
 Session::Session(SessionOptions options, std::shared_ptr<Wakeup> changed, PixelShare pixels)
     : options_(std::move(options)),
@@ -32,6 +39,68 @@ Session::Session(SessionOptions options, std::shared_ptr<Wakeup> changed, PixelS
 std::uint32_t Session::rev() const {
   const std::lock_guard lock(mutex_);
   return state_.rev;
+}
+
+protocol::SessionInfo Session::info(const std::string& you) const {
+  const std::lock_guard lock(mutex_);
+  protocol::SessionInfo info = info_locked();
+  info.viewers = audience_.people(you);
+  return info;
+}
+
+void Session::announce() {
+  // Under the lock, so that nobody hears the older of two states last.
+  const std::lock_guard lock(mutex_);
+  audience_.announce_people(info_locked());
+}
+
+protocol::SessionInfo Session::info_locked() const {
+  protocol::SessionInfo info{.name = options_.name,
+                             .scene = std::nullopt,
+                             .width = state_.width,
+                             .height = state_.height,
+                             .viewers = {},
+                             .control = audience_.control_mode(),
+                             .rev = state_.rev,
+                             .idle_seconds = std::chrono::duration<double>(idle()).count()};
+  if (scene_) info.scene = scene_info_.name;
+  return info;
+}
+
+bool Session::works_unwatched() const {
+  const std::lock_guard lock(mutex_);
+  return state_.lockstep || state_.keep_drawing;
+}
+
+Clock::duration Session::idle() const {
+  if (!audience_.empty()) return {};
+  return Clock::now() - needed_at_.load();
+}
+
+void Session::end() {
+  const std::lock_guard lock(mutex_);
+  pixels_.give_back();
+}
+
+void Session::copy_from(const Session& other) {
+  const std::scoped_lock lock(mutex_, other.mutex_);
+  const std::uint64_t version = state_.version;
+  const auto [width, height, rev] = std::tuple(state_.width, state_.height, state_.rev);
+  state_ = other.state_;
+  std::tie(state_.width, state_.height, state_.rev) = std::tie(width, height, rev);
+  state_.version = version;
+  ++state_.cuts;
+  state_.animation = other.rewound_clock();
+  state_.animation.since = Clock::now();
+  state_.lockstep.reset();
+  state_.keep_drawing = false;
+  edits_ = other.edits_;
+  environment_name_ = other.environment_name_;
+  camera_name_ = other.camera_name_;
+  scene_ = other.scene_;
+  scene_info_ = other.scene_info_;
+  buffers_ = other.buffers_;
+  changed();
 }
 
 void Session::set_buffers(std::vector<protocol::BufferInfo> buffers) {
@@ -134,6 +203,7 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
   const std::uint32_t height =
       std::min(request.height.value_or(state_.height), options_.limits.max_height);
   if (width != state_.width || height != state_.height) {
+    if (!audience_.may_change(by)) return no_control();
     const auto fits = pixels_.resize(static_cast<std::uint64_t>(width) * height);
     if (!fits) return fits.error();
     state_.width = width;
@@ -151,12 +221,14 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
 
 void Session::leave(const std::string& viewer) {
   audience_.leave(viewer);
+  touch();
   const std::lock_guard lock(mutex_);
   input_seqs_.erase(viewer);
 }
 
 Result<void> Session::hand_over(const std::string& viewer, Session& there) {
   if (const auto moved = audience_.hand_over(viewer, there.audience_); !moved) return moved;
+  touch();
   const std::lock_guard lock(mutex_);
   input_seqs_.erase(viewer);
   return {};
@@ -180,6 +252,17 @@ Result<void> Session::request_capture(CaptureRequest request) {
 std::vector<CaptureRequest> Session::take_captures() {
   const std::lock_guard lock(mutex_);
   return std::exchange(captures_, {});
+}
+
+void Session::renew(DeviceRenewal& renewal) {
+  const RenderState before = render_state();
+  const auto resources = renewal(before.resources);
+  const auto environment = renewal(before.environment);
+  if (resources == before.resources && environment == before.environment) return;
+  const std::lock_guard lock(mutex_);
+  if (state_.resources == before.resources) state_.resources = resources;
+  if (state_.environment == before.environment) state_.environment = environment;
+  changed(false);
 }
 
 void Session::changed(bool new_revision) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -68,6 +69,11 @@ struct RenderState {
   Clock::time_point now() const { return lockstep ? *lockstep : Clock::now(); }
 };
 
+class DeviceRenewal;
+
+/// What a caller is told who may not change the session.
+protocol::Error no_control();
+
 /// The state that viewers share and steer: scene, camera, settings, picture size. Commands take
 /// effect at once, whatever the renderer is doing; it takes the newest state for its next frame, so
 /// nothing queues up. Thread safe. `by` is the viewer that asks, empty for callers without stream.
@@ -81,6 +87,21 @@ class Session {
   const SessionLimits& limits() const { return options_.limits; }
   Audience& audience() { return audience_; }
   std::uint32_t rev() const;
+
+  /// The session as told to a viewer.
+  protocol::SessionInfo info(const std::string& you) const;
+  /// Tells everybody in the session who is in it and has control.
+  void announce();
+  /// Begins with the scene, camera, clip and settings of another session.
+  void copy_from(const Session& other);
+  /// It is no longer among the sessions, though somebody may still hold it.
+  void end();
+  /// Whether pictures are due though nobody watches: lockstep, or a reference.
+  bool works_unwatched() const;
+  /// Somebody needs the session: its idle time begins anew.
+  void touch() { needed_at_ = Clock::now(); }
+  /// How long nobody has needed it; zero while it has viewers.
+  Clock::duration idle() const;
 
   /// What `view.buffer` and captures may name; the renderer knows it.
   void set_buffers(std::vector<protocol::BufferInfo> buffers);
@@ -153,11 +174,15 @@ class Session {
   /// The probes asked for since the last call.
   std::vector<Probe> take_probes();
 
+  /// Brings everything that is on a lost device onto the present one.
+  void renew(DeviceRenewal& renewal);
+
   std::uint64_t version() const;
   RenderState render_state() const;
 
  private:
   void changed(bool new_revision = true);
+  protocol::SessionInfo info_locked() const;
   protocol::Result<void> check_buffer(const std::string& buffer, const std::string& path) const;
   protocol::Result<void> require_scene() const;
   protocol::Camera camera_message() const;
@@ -172,6 +197,7 @@ class Session {
 
   const SessionOptions options_;
   const std::shared_ptr<Wakeup> changed_;
+  std::atomic<Clock::time_point> needed_at_ = Clock::now();
   Audience audience_;
 
   mutable std::mutex mutex_;

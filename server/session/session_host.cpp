@@ -8,11 +8,13 @@
 
 namespace heliograph::session {
 
+using protocol::Result;
+
 SessionHost::SessionHost(render::Engine& engine, HostOptions options)
     : engine_(engine),
       options_(std::move(options)),
       catalogue_(options_.scene_roots),
-      render_loop_(engine),
+      render_loop_(engine, options_.release_after),
       sessions_(
           options_.limits, options_.session,
           [this](SessionOptions session, PixelShare pixels) {
@@ -25,6 +27,9 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
                .limits = options_.import_limits,
                .cache_bytes = options_.scene_cache_bytes}),
       environments_(engine, catalogue_) {
+  loader_.on_device_loss([this] { render_loop_.report_device_loss(); });
+  render_loop_.on_new_device([this] { loader_.forget_kept(); });
+  add_session_commands(dispatcher_, *this);
   add_scene_commands(dispatcher_, *this);
   add_camera_commands(dispatcher_, *this);
   add_animation_commands(dispatcher_, *this);
@@ -35,15 +40,26 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
   add_frame_commands(dispatcher_, *this);
   add_edit_commands(dispatcher_, *this);
   add_probe_commands(dispatcher_, *this);
-  dispatcher_.set_gate([this](const protocol::MethodDescriptor&,
+  dispatcher_.set_gate([this](const protocol::MethodDescriptor& method,
                               const protocol::CallContext& call) -> protocol::Result<void> {
     const auto session = sessions_.session_of(call);
     if (!session) return session.error();
+    (*session)->touch();
+    if (method.needs_control && !(*session)->audience().may_change(call.viewer)) {
+      return no_control();
+    }
     return {};
   });
   dispatcher_.on_handler_failure([](std::string_view method, std::string_view reason) {
     spdlog::error("{} failed: {}", method, reason);
   });
+  if (options_.limits.idle_timeout.count() > 0) {
+    idle_watch_ = std::thread([this] { watch_idle(); });
+  }
+}
+
+void SessionHost::watch_idle() {
+  while (!stopping_) stop_watching_.wait_until(Clock::now() + sessions_.close_idle());
 }
 
 SessionHost::~SessionHost() {
@@ -51,9 +67,54 @@ SessionHost::~SessionHost() {
 }
 
 void SessionHost::stop() {
+  stopping_ = true;
+  stop_watching_.notify();
+  if (idle_watch_.joinable()) idle_watch_.join();
   loader_.stop();
   environments_.stop();
   render_loop_.stop();
+}
+
+void SessionHost::create_session(const protocol::SessionCreate& request, const std::string& by,
+                                 Created done) {
+  SessionOptions options = options_.session;
+  options.name = request.name.value_or("");
+  std::shared_ptr<Session> model = sessions_.main();
+  if (request.copy_of) {
+    const auto found = sessions_.find(*request.copy_of);
+    if (!found) return done(protocol::error::not_found("copy_of", found.error().reason));
+    model = *found;
+    const protocol::SessionInfo info = model->info({});
+    options.width = info.width;
+    options.height = info.height;
+  }
+  options.width = request.width.value_or(options.width);
+  options.height = request.height.value_or(options.height);
+  const auto made = sessions_.create(std::move(options));
+  if (!made) return done(made.error());
+  const std::shared_ptr<Session>& session = *made;
+  session->set_buffers(model->buffers());
+  if (request.copy_of) session->copy_from(*model);
+  if (request.settings) {
+    const auto patched = session->patch_settings(*request.settings, by);
+    if (!patched) return give_up(session, patched.error(), done);
+  }
+  if (!request.scene) return done(session);
+  load_scene(session, {.name = *request.scene}, by,
+             [this, session, done](const Result<protocol::SceneInfo>& loaded) {
+               if (loaded) return done(session);
+               protocol::Error why = loaded.error();
+               if (why.path == "name") why.path = "scene";
+               give_up(session, why, done);
+             });
+}
+
+/// A session that cannot be as it was wanted ends before anybody has seen it.
+void SessionHost::give_up(const std::shared_ptr<Session>& session, const protocol::Error& why,
+                          const Created& done) {
+  // Somebody else may have closed it meanwhile.
+  (void)sessions_.close(session->name(), why.message);
+  done(why);
 }
 
 void SessionHost::load_scene(std::shared_ptr<Session> session, const protocol::SceneLoad& request,

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "protocol/jsonrpc.hpp"
@@ -25,6 +27,8 @@ struct HostOptions {
   scene::ImportLimits import_limits;
   std::uint64_t scene_cache_bytes = 1ull << 30;
   protocol::DispatchLimits dispatch;
+  /// Pictures and histories of a session that nobody watches are let go after so long.
+  std::chrono::seconds release_after{120};
 };
 
 /// Everything of the server but its sockets: the sessions, what renders them and loads their
@@ -44,19 +48,33 @@ class SessionHost {
   const SessionRegistry& sessions() const { return sessions_; }
   EnvironmentLibrary& environments() { return environments_; }
 
+  /// Makes a session as `request` wants it. `done` is called once, here or when its scene is
+  /// loaded; if that fails there is no such session.
+  using Created = std::function<void(protocol::Result<std::shared_ptr<Session>>)>;
+  void create_session(const protocol::SessionCreate& request, const std::string& by, Created done);
   void load_scene(std::shared_ptr<Session> session, const protocol::SceneLoad& request,
                   const std::string& by, SceneLoader::Completion done);
   protocol::SceneCancelled cancel_load(const Session& session) { return loader_.cancel(session); }
   CacheTotals scene_cache_totals() const { return loader_.cache_totals(); }
   void on_first_frame(std::function<void()> callback);
   /// Whether a picture has been rendered: everything works.
-  bool ready() const { return render_loop_.has_rendered(); }
+  bool ready() const { return render_loop_.has_rendered() && render_loop_.device_ready(); }
+  /// A sentence for people, while it is not.
+  std::string why_not_ready() const {
+    return render_loop_.device_ready() ? "no picture has been rendered yet"
+                                       : "the device was lost and is being made anew";
+  }
+  std::uint64_t device_losses() const { return render_loop_.device_losses(); }
   /// Ends all threads. Answers that are still due come as errors before this returns, so that it
   /// must come before the end of whoever takes them.
   void stop();
   RenderTotals render_totals() const { return render_loop_.totals(); }
 
  private:
+  void watch_idle();
+  void give_up(const std::shared_ptr<Session>& session, const protocol::Error& why,
+               const Created& done);
+
   render::Engine& engine_;
   const HostOptions options_;
   SceneCatalogue catalogue_;
@@ -65,6 +83,9 @@ class SessionHost {
   protocol::Dispatcher dispatcher_;
   SceneLoader loader_;
   EnvironmentLibrary environments_;
+  Wakeup stop_watching_;
+  std::atomic<bool> stopping_ = false;
+  std::thread idle_watch_;
 };
 
 }  // namespace heliograph::session

@@ -61,6 +61,8 @@ Result<std::shared_ptr<Session>> SessionRegistry::create(SessionOptions options)
   const std::string name = options.name;
   std::shared_ptr<Session> session = open_(std::move(options), std::move(share));
   sessions_[name] = session;
+  ++opened_;
+  spdlog::info("session {}: opened", name);
   return session;
 }
 
@@ -68,15 +70,45 @@ Result<void> SessionRegistry::close(const std::string& name, const std::string& 
   const std::lock_guard lock(mutex_);
   const Result<std::shared_ptr<Session>> found = find_locked(name);
   if (!found) return found.error();
-  const std::shared_ptr<Session> session = *found;
-  if (session == main_) return error::conflict("session", "the main session always exists");
+  if (*found == main_) return main_stays();
+  end(*found, why);
+  return {};
+}
+
+protocol::Error SessionRegistry::main_stays() {
+  return error::conflict("session", "the main session always exists");
+}
+
+Clock::duration SessionRegistry::close_idle() {
+  const std::lock_guard lock(mutex_);
+  const Clock::duration timeout = limits_.idle_timeout;
+  Clock::duration next = timeout;
+  std::vector<std::shared_ptr<Session>> idle;
+  for (const auto& [name, session] : sessions_) {
+    if (session == main_) continue;
+    const Clock::duration left = timeout - session->idle();
+    if (left <= Clock::duration::zero()) {
+      idle.push_back(session);
+    } else {
+      next = std::min(next, left);
+    }
+  }
+  for (const auto& session : idle) end(session, "nobody needed the session");
+  return next;
+}
+
+void SessionRegistry::end(const std::shared_ptr<Session>& session, const std::string& why) {
+  const std::string& name = session->name();
   sessions_.erase(name);
+  const protocol::SessionClosed closed{.session = name, .reason = why};
+  session->audience().send_all(protocol::make_notification("session.closed", closed), {});
   for (const std::string& viewer : session->audience().dismiss_all(why)) {
     session_of_viewer_.erase(viewer);
   }
   ended_.sent += session->audience().totals().sent;
+  session->end();
   close_(*session);
-  return {};
+  spdlog::info("session {}: ended: {}", name, why);
 }
 
 Result<std::shared_ptr<Session>> SessionRegistry::find(std::string_view name) const {
@@ -113,7 +145,7 @@ std::vector<std::shared_ptr<Session>> SessionRegistry::all() const {
 }
 
 Result<std::string> SessionRegistry::enter(const std::string& session,
-                                           std::weak_ptr<ViewerLink> link) {
+                                           std::weak_ptr<ViewerLink> link, bool only_watches) {
   const std::lock_guard lock(mutex_);
   const Result<std::shared_ptr<Session>> found = find_locked(session);
   if (!found) return found.error();
@@ -122,7 +154,7 @@ Result<std::string> SessionRegistry::enter(const std::string& session,
                        std::to_string(limits_.viewers) + " viewers");
   }
   const std::string id = "v" + std::to_string(++viewers_so_far_);
-  if (const auto joined = (*found)->audience().join(id, std::move(link)); !joined) {
+  if (const auto joined = (*found)->audience().join(id, std::move(link), only_watches); !joined) {
     return joined.error();
   }
   session_of_viewer_[id] = *found;
@@ -139,7 +171,9 @@ Result<std::shared_ptr<Session>> SessionRegistry::move(const std::string& viewer
   const Result<std::shared_ptr<Session>> there = find_locked(session);
   if (!there || *there == here->second) return there;
   if (const auto moved = here->second->hand_over(viewer, **there); !moved) return moved.error();
-  here->second = *there;
+  const std::shared_ptr<Session> before = std::exchange(here->second, *there);
+  before->announce();
+  (*there)->announce();
   return there;
 }
 
@@ -148,7 +182,18 @@ void SessionRegistry::leave(const std::string& viewer) {
   const auto found = session_of_viewer_.find(viewer);
   if (found == session_of_viewer_.end()) return;
   found->second->leave(viewer);
+  found->second->announce();
   session_of_viewer_.erase(found);
+}
+
+std::size_t SessionRegistry::count() const {
+  const std::lock_guard lock(mutex_);
+  return sessions_.size();
+}
+
+std::uint64_t SessionRegistry::opened() const {
+  const std::lock_guard lock(mutex_);
+  return opened_;
 }
 
 AudienceTotals SessionRegistry::totals() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -21,6 +22,8 @@ struct RegistryLimits {
   std::size_t sessions = 64;
   std::size_t viewers = 256;
   std::uint64_t pixels = 8ull * 3840 * 2160;
+  /// A session other than main without viewers and calls for so long is closed; zero: never.
+  std::chrono::seconds idle_timeout{600};
 };
 
 /// The sessions by name, and which viewer is in which of them. "main" is there from the start and
@@ -36,8 +39,12 @@ class SessionRegistry {
 
   /// A new session; without a name in `options` it gets one.
   protocol::Result<std::shared_ptr<Session>> create(SessionOptions options);
+  /// What who wants to close the main session is told.
+  static protocol::Error main_stays();
   /// Ends a session. Its viewers are told why and let go.
   protocol::Result<void> close(const std::string& name, const std::string& why);
+  /// Ends the sessions that nobody has needed for so long; gives the time until another look.
+  Clock::duration close_idle();
 
   protocol::Result<std::shared_ptr<Session>> find(std::string_view name) const;
   /// The session that a call belongs to.
@@ -49,7 +56,8 @@ class SessionRegistry {
   std::vector<std::shared_ptr<Session>> all() const;
 
   /// Takes in a new viewer; gives its id.
-  protocol::Result<std::string> enter(const std::string& session, std::weak_ptr<ViewerLink> link);
+  protocol::Result<std::string> enter(const std::string& session, std::weak_ptr<ViewerLink> link,
+                                      bool only_watches = false);
   /// Brings a viewer into another session, with its stream as it is.
   protocol::Result<std::shared_ptr<Session>> move(const std::string& viewer,
                                                   const std::string& session);
@@ -57,6 +65,8 @@ class SessionRegistry {
 
   /// Of all sessions, those that have ended included.
   AudienceTotals totals() const;
+  std::size_t count() const;
+  std::uint64_t opened() const;
   const RegistryLimits& limits() const { return limits_; }
   std::uint64_t pixels_used() const { return pixels_->used(); }
 
@@ -64,6 +74,7 @@ class SessionRegistry {
   using Sessions = std::map<std::string, std::shared_ptr<Session>, std::less<>>;
 
   protocol::Result<std::shared_ptr<Session>> find_locked(std::string_view name) const;
+  void end(const std::shared_ptr<Session>& session, const std::string& why);
   std::string free_name();
 
   const RegistryLimits limits_;
@@ -76,6 +87,7 @@ class SessionRegistry {
   std::map<std::string, std::shared_ptr<Session>> session_of_viewer_;
   std::uint64_t viewers_so_far_ = 0;
   std::uint64_t names_so_far_ = 0;
+  std::uint64_t opened_ = 0;
   AudienceTotals ended_;
   std::shared_ptr<Session> main_;
 };

@@ -9,9 +9,11 @@
 #include "scene/camera.hpp"
 #include "scene/pose.hpp"
 #include "session/capture_content.hpp"
+#include "session/device_renewal.hpp"
 
 namespace heliograph::session {
 
+using protocol::Result;
 using std::chrono::duration_cast;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
@@ -48,14 +50,6 @@ std::vector<protocol::PassTiming> to_protocol(const std::vector<render::PassTime
   return result;
 }
 
-/// @throws std::invalid_argument when the renderer refuses the settings
-std::shared_ptr<Session> make_session(render::Renderer& renderer, SessionOptions options,
-                                      std::shared_ptr<Wakeup> wakeup, PixelShare pixels) {
-  const auto accepted = renderer.set_settings(options.settings);
-  if (!accepted) throw std::invalid_argument(accepted.error().message);
-  return std::make_shared<Session>(std::move(options), std::move(wakeup), std::move(pixels));
-}
-
 SceneEdits::Lights file_lights(const scene::Scene& scene) {
   SceneEdits::Lights lights;
   for (const scene::Light& light : scene.lights) lights.push_back(light.device);
@@ -68,25 +62,73 @@ SessionView::SessionView(render::Engine& engine, SessionOptions options, PixelSh
                          ViewServices services, std::shared_ptr<Wakeup> wakeup)
     : engine_(engine),
       services_(services),
-      renderer_(std::make_unique<render::Renderer>(engine)),
-      session_(make_session(*renderer_, std::move(options), wakeup, std::move(pixels))),
+      wakeup_(std::move(wakeup)),
+      session_(std::make_shared<Session>(std::move(options), wakeup_, std::move(pixels))),
       broadcast_(session_, {.encoder = services.encoder,
                             .jpeg = services.jpeg,
                             .measurements = services.measurements,
-                            .wakeup = wakeup,
-                            .tracer = engine.tracer()}) {
-  session_->set_buffers(to_protocol(renderer_->buffers()));
-}
+                            .wakeup = wakeup_,
+                            .tracer = engine.tracer()}) {}
 
 SessionView::~SessionView() = default;
 
+void SessionView::prepare() {
+  if (const auto accepted = make_renderer(); !accepted) {
+    throw std::invalid_argument(accepted.error().message);
+  }
+  draws_unasked_ = true;
+}
+
+bool SessionView::awake() const {
+  return renderer_ || wakeup_->is_notified() || needed();
+}
+
+/// Whether somebody is there for pictures, or waits for one.
+bool SessionView::needed() const {
+  return draws_unasked_ || !captures_.empty() || !probes_.empty() ||
+         session_->audience().watching() || session_->works_unwatched();
+}
+
+Result<void> SessionView::make_renderer() {
+  renderer_ = std::make_unique<render::Renderer>(engine_);
+  needed_at_ = Clock::now();
+  state_ = {};
+  auto accepted = renderer_->set_settings(session_->render_state().settings);
+  session_->set_buffers(to_protocol(renderer_->buffers()));
+  return accepted;
+}
+
+void SessionView::release_renderer() {
+  if (!renderer_) return;
+  renderer_.reset();
+  newest_.reset();
+  stepped_ = false;
+  broadcast_.forget();
+  state_ = {};
+  session_->audience().forget_latest();
+  spdlog::info("session {}: pictures let go", session_->name());
+}
+
 bool SessionView::advance() {
   if (Clock::now() < resting_until_) return false;
+  wakeup_->take();
+  collect_captures();
+  session_->audience().announce_waiting();
+  if (!renderer_) {
+    if (!needed()) return false;
+    // What the renderer refuses is told when the state is taken over.
+    (void)make_renderer();
+  }
+  if (needed()) {
+    needed_at_ = Clock::now();
+    session_->touch();
+  } else if (Clock::now() >= needed_at_ + services_.release_after) {
+    release_renderer();
+    return false;
+  }
   if (session_->in_lockstep()) return advance_step();
   adopt_state();
-  collect_captures();
   adopt_size();
-  session_->audience().announce_waiting();
   settle_probes();
   if (settle_captures()) return true;
   if (final_due()) broadcast_.finish();
@@ -107,6 +149,7 @@ std::optional<Clock::time_point> SessionView::next_due() const {
   const Clock::time_point rests = moved_at_ + rest_before_final;
   if (!draws_whole() && rests > Clock::now()) also(rests);
   if (resting_until_ > Clock::now()) also(resting_until_);
+  if (renderer_) also(std::max(needed_at_ + services_.release_after, resting_until_));
   return due;
 }
 
@@ -142,6 +185,13 @@ void SessionView::refuse_captures() {
 void SessionView::adopt_state() {
   if (session_->version() == state_.version) return;
   const RenderState before = std::exchange(state_, session_->render_state());
+  const auto lost = [&](const auto& object) { return object && !engine_.owns(*object); };
+  if (lost(state_.resources) || lost(state_.environment)) {
+    // It was loaded just before the device was lost.
+    DeviceRenewal renewal(engine_);
+    session_->renew(renewal);
+    state_ = session_->render_state();
+  }
   if (state_.resources != before.resources) {
     renderer_->set_scene(state_.resources);
     session_->set_buffers(to_protocol(renderer_->buffers()));
@@ -302,8 +352,7 @@ bool SessionView::write_capture(CaptureRequest& request) {
 
 bool SessionView::frame_wanted() {
   if (!renderer_->needs_frame() && !state_.animation.playing) return false;
-  // The first picture of a session is made unasked: it shows that everything works.
-  const bool first = !newest_ && state_.resources;
+  const bool first = draws_unasked_ && state_.resources;
   const bool reference = state_.keep_drawing &&
                          state_.settings.reference.use == protocol::ReferenceUse::always;
   if (first || reference || !captures_.empty() || !probes_.empty()) return true;
@@ -336,6 +385,7 @@ void SessionView::render_frame(double seconds) {
   services_.measurements.rendered(std::chrono::duration<double>(end - start).count(),
                                   to_protocol(frame.passes));
   newest_ = describe(std::move(frame), start, end);
+  draws_unasked_ = false;
   newest_version_ = state_.version;
   session_->report_picture(newest_version_, newest_->frame.samples, newest_->frame.converged);
   broadcast_.rendered(newest_, !state_.lockstep && resting());

@@ -14,30 +14,39 @@ namespace heliograph::session {
 
 /// What all views of one device share.
 struct ViewServices {
-  Wakeup& wakeup;             // of the render thread
-  Worker& encoder;            // pictures for the stream
-  stream::JpegEncoder& jpeg;  // used by `encoder` only
-  Worker& capture_writer;     // files, which take longer
+  Wakeup& wakeup;                 // of the render thread
+  Clock::duration release_after;  // nobody has watched for so long: histories are let go
+  Worker& encoder;                // pictures for the stream
+  stream::JpegEncoder& jpeg;      // used by `encoder` only
+  Worker& capture_writer;         // files, which take longer
   Measurements& measurements;
 };
 
 /// One session as the render thread sees it: takes over the session's state, draws while somebody
-/// wants frames, has them encoded, answers captures. Used by the render thread only, apart from
-/// construction.
+/// wants frames, has them encoded, answers captures. Its renderer, with all images and histories,
+/// is made when the first picture is wanted and let go when nobody has watched for a while. Used by
+/// the render thread only, apart from construction and `prepare`.
 class SessionView {
  public:
-  /// @throws std::invalid_argument when the renderer refuses the settings
   SessionView(render::Engine& engine, SessionOptions options, PixelShare pixels,
               ViewServices services, std::shared_ptr<Wakeup> wakeup);
   ~SessionView();
 
+  /// Makes the renderer before it is drawn with; the first picture then comes unasked.
+  /// @throws std::invalid_argument when the renderer refuses the settings
+  void prepare();
+
   const std::shared_ptr<Session>& session() const { return session_; }
   bool has_rendered() const { return newest_ != nullptr; }
 
+  /// Whether there may be something to do.
+  bool awake() const;
   /// Does what is most pressing: at most one frame. False if there was nothing to do.
   bool advance();
   /// When there may be something to do without anybody's asking.
   std::optional<Clock::time_point> next_due() const;
+  /// Lets go of the renderer with all its images and histories.
+  void release_renderer();
   /// After an exception out of `advance`: fails what waits for pictures and rests for a while.
   void recover();
   /// Drops all captures unanswered.
@@ -56,6 +65,8 @@ class SessionView {
     Clock::time_point requested;
   };
 
+  bool needed() const;
+  protocol::Result<void> make_renderer();
   void adopt_state();
   void adopt_edits(const RenderState& before);
   void adopt_pose();
@@ -81,15 +92,18 @@ class SessionView {
 
   render::Engine& engine_;
   ViewServices services_;
-  std::unique_ptr<render::Renderer> renderer_;
+  const std::shared_ptr<Wakeup> wakeup_;  // of this session
   std::shared_ptr<Session> session_;
   Broadcast broadcast_;
+  std::unique_ptr<render::Renderer> renderer_;  // null while nobody needs pictures
+  Clock::time_point needed_at_;                 // when somebody last did
+  bool draws_unasked_ = false;
 
   RenderState state_;
-  Clock::time_point moved_at_;         // when the camera last did
-  std::uint32_t drawn_width_ = 0;      // what the renderer draws now: smaller while moving
+  Clock::time_point moved_at_;     // when the camera last did
+  std::uint32_t drawn_width_ = 0;  // what the renderer draws now: smaller while moving
   std::uint32_t drawn_height_ = 0;
-  Clock::duration whole_frame_{};      // time of the newest frame of full size
+  Clock::duration whole_frame_{};  // time of the newest frame of full size
   std::shared_ptr<const Picture> newest_;
   std::uint64_t newest_version_ = 0;
   bool cut_ = true;  // the next picture has nothing in common with the last

@@ -7,8 +7,6 @@ namespace heliograph::session {
 /// One frame of those that were asked for, whole whatever it takes; between steps the picture is
 /// there to be read.
 bool SessionView::advance_step() {
-  collect_captures();
-  session_->audience().announce_waiting();
   if (const std::optional<double> dt = session_->begin_step()) {
     adopt_state();
     drawn_width_ = state_.width;

@@ -13,6 +13,11 @@ void Wakeup::notify() {
   if (all_) all_->notify();
 }
 
+bool Wakeup::is_notified() const {
+  const std::lock_guard lock(mutex_);
+  return notified_;
+}
+
 bool Wakeup::take() {
   const std::lock_guard lock(mutex_);
   return std::exchange(notified_, false);

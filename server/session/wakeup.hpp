@@ -20,14 +20,15 @@ class Wakeup {
   explicit Wakeup(std::shared_ptr<Wakeup> all = nullptr) : all_(std::move(all)) {}
 
   void notify();
-  /// Whether there was a notification since the last look or wait.
+  /// Whether there was a notification since the last `take` or wait.
+  bool is_notified() const;
   bool take();
   /// Returns after a notification or at `deadline`, whichever is first.
   void wait_until(std::optional<Clock::time_point> deadline);
 
  private:
   const std::shared_ptr<Wakeup> all_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable condition_;
   bool notified_ = false;
 };

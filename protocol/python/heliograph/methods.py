@@ -322,6 +322,83 @@ class Scene(_Group):
         return self._call("scene.pick", _given({"x": x, "y": y}))
 
 
+class Session(_Group):
+    def create(
+            self,
+            *,
+            copy_of: str = _UNSET,
+            height: int = _UNSET,
+            name: str = _UNSET,
+            scene: str = _UNSET,
+            settings: Dict[str, Any] = _UNSET,
+            width: int = _UNSET) -> Dict[str, Any]:
+        """Makes a session of its own scene, camera, settings, clock and histories.
+
+        copy_of: A session whose scene, camera, clip, settings and size it starts with.
+        height: Picture height. [pixels]
+        name: Letters, digits, dots, hyphens and underscores; left out: the server chooses.
+        scene: A name that scene.list gave; it is loaded before the answer comes.
+        settings: Part of the settings tree (RFC 7386), on top of the server's own or the
+            copied.
+        width: Picture width. [pixels]
+
+        Gives: control, height, idle_seconds, name, rev, scene, viewers, width.
+        """
+        return self._call("session.create", _given({
+            "copy_of": copy_of, "height": height, "name": name, "scene": scene,
+            "settings": settings, "width": width}))
+
+    def join(self, *, session: str) -> Dict[str, Any]:
+        """Brings this viewer, with its stream as it is, into another session.
+
+        session: A name that session.list gave.
+
+        Gives: info, rev, session, viewer.
+        """
+        return self._call("session.join", _given({"session": session}))
+
+    def list(self) -> Dict[str, Any]:
+        """Lists the sessions and limits.
+
+        Gives: limits, sessions.
+        """
+        return self._call("session.list", {})
+
+    def info(self) -> Dict[str, Any]:
+        """Tells who is in this session and who has control.
+
+        Gives: control, height, idle_seconds, name, rev, scene, viewers, width.
+        """
+        return self._call("session.info", {})
+
+    def control(
+            self,
+            *,
+            action: Literal["take", "give", "release"] = _UNSET,
+            mode: Literal["everyone", "one"] = _UNSET,
+            viewer: str = _UNSET) -> Dict[str, Any]:
+        """Decides who may change the session: everyone, or one viewer who takes, gives or
+        releases control.
+
+        action: Where one has control: take it while nobody has it, give it to `viewer`, or
+            release it for anybody to take.
+        mode: Whether everyone has control or one viewer: the one that `viewer` names, else the
+            caller.
+        viewer: The id of who is to have control.
+
+        Gives: control, height, idle_seconds, name, rev, scene, viewers, width.
+        """
+        return self._call("session.control", _given({
+            "action": action, "mode": mode, "viewer": viewer}))
+
+    def close(self, *, session: str) -> Dict[str, Any]:
+        """Ends a session; its viewers are told and let go. main stays for ever.
+
+        session: A name that session.list gave.
+        """
+        return self._call("session.close", _given({"session": session}))
+
+
 class Settings(_Group):
     def get(self) -> Dict[str, Any]:
         """Gives the whole tree of settings.
@@ -442,6 +519,7 @@ class Methods:
         self.reference = Reference(call)
         self.rpc = Rpc(call)
         self.scene = Scene(call)
+        self.session = Session(call)
         self.settings = Settings(call)
         self.stats = Stats(call)
         self.stream = Stream(call)
@@ -451,15 +529,17 @@ class Methods:
             *,
             client: str = _UNSET,
             codecs: List[str] = _UNSET,
+            name: str = _UNSET,
             session: str = _UNSET) -> Dict[str, Any]:
         """Introduces a viewer: says what it can decode and learns who serves it.
 
         client: Name and version of the client, for the log.
         codecs: Picture codecs the client can decode, best first.
+        name: What the person is called, for the others in the session.
         session: The session to watch; left out: the one that /ws?session=NAME named, or main.
 
         Gives: codec_reason, codecs, device, instance, limits, protocol, rev, session, tracer,
             version, viewer.
         """
         return self._call("hello", _given({
-            "client": client, "codecs": codecs, "session": session}))
+            "client": client, "codecs": codecs, "name": name, "session": session}))

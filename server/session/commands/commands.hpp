@@ -8,6 +8,7 @@
 
 namespace heliograph::session {
 
+void add_session_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_scene_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_camera_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_animation_commands(protocol::Dispatcher& dispatcher, SessionHost& host);

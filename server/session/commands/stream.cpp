@@ -70,9 +70,14 @@ Result<HelloResult> greet(SessionHost& host, const Hello& request,
   }
   const Result<std::shared_ptr<Session>> chosen = choose_session(host, request, call);
   if (!chosen) return chosen.error();
+  const std::shared_ptr<Session>& session = *chosen;
   const stream::CodecChoice choice = stream::choose_codec(codecs);
-  if (!call.viewer.empty()) (*chosen)->audience().start(call.viewer, choice.codec);
-  return greeting(host, **chosen, call.viewer, choice);
+  if (!call.viewer.empty()) {
+    if (request.name) session->audience().set_name(call.viewer, *request.name);
+    session->audience().start(call.viewer, choice.codec);
+    session->announce();
+  }
+  return greeting(host, *session, call.viewer, choice);
 }
 
 }  // namespace

@@ -79,20 +79,21 @@ class Server:
     def get(self, path, **headers):
         return self.request("GET", path, headers=headers)
 
-    def post_rpc(self, payload):
+    def post_rpc(self, payload, session=None):
         """Sends any JSON value, or bytes as they are; gives the status and the parsed answer."""
+        path = "/rpc" + (f"?session={session}" if session else "")
         body = payload if isinstance(payload, bytes) else json.dumps(payload).encode()
-        status, _, answer = self.request("POST", "/rpc", body,
+        status, _, answer = self.request("POST", path, body,
                                          {"Content-Type": "application/json"}, timeout=120)
         return status, json.loads(answer) if answer else None
 
-    def ask(self, method, params=None):
+    def ask(self, method, params=None, session=None):
         """The whole JSON-RPC answer, be it a result or an error."""
         call = {"jsonrpc": "2.0", "id": 1, "method": method, "params": params or {}}
-        return self.post_rpc(call)[1]
+        return self.post_rpc(call, session)[1]
 
-    def call(self, method, params=None):
-        answer = self.ask(method, params)
+    def call(self, method, params=None, session=None):
+        answer = self.ask(method, params, session)
         if "error" in answer:
             raise AssertionError(f"{method}: {answer['error']}")
         return answer["result"]

@@ -41,10 +41,12 @@ class Frame:
 class Viewer:
     """Use with `async with`. Acknowledges every frame unless told otherwise."""
 
-    def __init__(self, server, *, acknowledge=True, greet=True):
+    def __init__(self, server, *, acknowledge=True, greet=True, session=None, name=None):
         self.server = server
         self.acknowledge = acknowledge
         self.greet = greet
+        self.session = session
+        self.name = name
         self.frames = asyncio.Queue()
         self.frames_received = 0
         self.bytes_received = 0
@@ -54,11 +56,13 @@ class Viewer:
         self._next_id = 1
 
     async def __aenter__(self):
-        self.socket = await websockets.connect(self.server.websocket_url, max_size=None,
+        url = self.server.websocket_url + (f"?session={self.session}" if self.session else "")
+        self.socket = await websockets.connect(url, max_size=None,
                                                subprotocols=[SUBPROTOCOL], compression=None)
         self._reader = asyncio.create_task(self._read())
         if self.greet:
-            self.hello = await self.call("hello", {"client": "protocol tests"})
+            person = {"name": self.name} if self.name else {}
+            self.hello = await self.call("hello", {"client": "protocol tests", **person})
         return self
 
     async def __aexit__(self, *_):

@@ -20,7 +20,8 @@ TEST(Methods, AreThoseOfTheContract) {
   EXPECT_EQ(names.size(), methods().size());
   EXPECT_EQ(names,
             (std::set<std::string_view>{
-                "hello", "scene.list", "scene.load", "scene.cancel", "scene.info", "camera.get", "camera.set",
+                "hello", "session.create", "session.join", "session.list",
+                "session.info", "session.control", "session.close", "scene.list", "scene.load", "scene.cancel", "scene.info", "camera.get", "camera.set",
                 "camera.fit", "animation.list", "animation.play",
                          "animation.pause", "animation.seek", "animation.rate", "settings.get", "settings.patch", "settings.presets",
                 "settings.preset", "settings.schema", "stream.configure", "stream.pause", "stream.resume", "stream.ack",

@@ -1,0 +1,112 @@
+#include "session/commands/commands.hpp"
+
+namespace heliograph::session {
+
+using protocol::Completion;
+using protocol::Empty;
+using protocol::Result;
+using protocol::SessionChoice;
+using protocol::SessionControl;
+using protocol::SessionCreate;
+using protocol::SessionInfo;
+using protocol::SessionJoined;
+using protocol::SessionList;
+namespace error = protocol::error;
+
+namespace {
+
+Result<SessionJoined> join(SessionHost& host, const SessionChoice& request,
+                           const std::string& viewer) {
+  const auto session = host.sessions().move(viewer, request.session);
+  if (!session) return session.error();
+  SessionJoined joined;
+  joined.info = (*session)->info(viewer);
+  joined.session = joined.info.name;
+  joined.viewer = viewer;
+  joined.rev = joined.info.rev;
+  return joined;
+}
+
+SessionList list_sessions(const SessionHost& host, const std::string& viewer) {
+  const RegistryLimits& limits = host.sessions().limits();
+  SessionList list;
+  for (const auto& session : host.sessions().all()) list.sessions.push_back(session->info(viewer));
+  list.limits = {
+      .sessions = static_cast<std::uint32_t>(limits.sessions),
+      .viewers = static_cast<std::uint32_t>(limits.viewers),
+      .session_viewers = static_cast<std::uint32_t>(host.sessions().main()->limits().max_viewers),
+      .pixels = limits.pixels,
+      .pixels_used = host.sessions().pixels_used(),
+      .idle_timeout = static_cast<std::uint32_t>(limits.idle_timeout.count())};
+  return list;
+}
+
+/// Viewers end what they are in control of; an empty session, anybody.
+Result<void> may_close(SessionHost& host, const SessionChoice& request,
+                       const std::string& viewer) {
+  const auto session = host.sessions().find(request.session);
+  if (!session) return session.error();
+  if (*session == host.sessions().main()) return SessionRegistry::main_stays();
+  const bool inside = host.sessions().session_watched_by(viewer) == *session;
+  const bool empty = (*session)->audience().empty();
+  if (!viewer.empty() && !empty && !inside) {
+    return error::make(protocol::ErrorCode::forbidden, "session", "others are in this session");
+  }
+  if (inside && !(*session)->audience().may_change(viewer)) return no_control();
+  return {};
+}
+
+/// Answers first: who is inside is let go.
+void close(SessionHost& host, const SessionChoice& request, const std::string& viewer,
+           const Completion<Empty>& done) {
+  if (const auto may = may_close(host, request, viewer); !may) return done(may.error());
+  done(Empty());
+  // Whoever was faster has closed it.
+  (void)host.sessions().close(request.session, "the session was closed");
+}
+
+}  // namespace
+
+void add_session_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
+  dispatcher.add<SessionCreate, SessionInfo>(
+      "session.create", [&](const SessionCreate& request, const protocol::CallContext& context,
+                            Completion<SessionInfo> done) {
+        host.create_session(request, context.viewer,
+                            [done = std::move(done), viewer = context.viewer](
+                                const Result<std::shared_ptr<Session>>& session) {
+                              if (!session) return done(session.error());
+                              done((*session)->info(viewer));
+                            });
+      });
+  add_command<SessionChoice, SessionJoined>(
+      dispatcher, host, "session.join",
+      [&](Session&, const SessionChoice& request, const std::string& viewer) {
+        return join(host, request, viewer);
+      });
+  add_command<Empty, SessionList>(
+      dispatcher, host, "session.list",
+      [&](Session&, const Empty&, const std::string& viewer) -> Result<SessionList> {
+        return list_sessions(host, viewer);
+      });
+  add_command<Empty, SessionInfo>(
+      dispatcher, host, "session.info",
+      [](Session& session, const Empty&, const std::string& viewer) -> Result<SessionInfo> {
+        return session.info(viewer);
+      });
+  add_command<SessionControl, SessionInfo>(dispatcher, host, "session.control",
+                                           [](Session& session, const SessionControl& request,
+                                              const std::string& viewer) -> Result<SessionInfo> {
+                                             const auto changed =
+                                                 session.audience().change_control(request, viewer);
+                                             if (!changed) return changed.error();
+                                             session.announce();
+                                             return session.info(viewer);
+                                           });
+  dispatcher.add<SessionChoice, Empty>(
+      "session.close", [&](const SessionChoice& request, const protocol::CallContext& context,
+                           const Completion<Empty>& done) {
+        close(host, request, context.viewer, done);
+      });
+}
+
+}  // namespace heliograph::session
