@@ -79,8 +79,13 @@ void store(ivec2 pixel, Hit hit, HitSurface s) {
   float view_z = -(frame.view * vec4(s.position, 1.0)).z;
   imageStore(normals, pixel, vec4(octahedral_encode(s.normal), octahedral_encode(s.geometric)));
   imageStore(base_color, pixel, vec4(sqrt(s.base_color), s.occlusion));
+  vec2 rough = vec2(s.roughness, 0.0);  // of what mirrors the sharper image; under the coat
+  if (scene_has(scene_layers) && (s.flags & material_coated) != 0u) {
+    rough = vec2(min(s.roughness, layers[s.layer].coat_roughness), s.roughness * (254.0 / 255.0));
+  }
   float unlit = (s.flags & material_unlit) != 0u ? 1.0 : 0.0;
-  imageStore(surface, pixel, vec4(s.roughness, s.metallic, unlit, 0.0));
+  imageStore(surface, pixel,
+             vec4(rough.x, s.metallic, max(unlit, rough.y), float(s.layer) / 255.0));
   imageStore(motion, pixel, motion_of(hit, s, view_z));
   imageStore(emissive, pixel, vec4(s.emissive, 1.0));
   imageStore(depth_slope, pixel, vec4(plane_slope(pixel, s, view_z), 0.0, 0.0));

@@ -36,26 +36,29 @@ float specular_share(SurfaceMaterial m) {
   return specular / max(specular + luminance(m.diffuse_albedo), 1e-6);
 }
 
-/// What the specular lobe sends to the eye of light along -l, BRDF x cos, and how likely
+/// What a specular lobe sends to the eye of light along -l, BRDF x cos, and how likely
 /// sample_specular() draws it.
 struct SpecularValue {
   vec3 reflected;
   float density;
 };
 
-SpecularValue specular_value(SurfaceMaterial m, vec3 l) {
+SpecularValue specular_value(SurfaceMaterial m, vec3 l, bool of_coat) {
   vec3 normal = reflecting_normal(m);
   vec3 tangent, bitangent;
   orthonormal_basis(normal, tangent, bitangent);
-  float alpha = m.roughness * m.roughness;
+  float roughness = of_coat ? m.coat_roughness : m.roughness;
+  float alpha = roughness * roughness;
   vec3 view = normalize(vec3(dot(m.eye, tangent), dot(m.eye, bitangent),
                              max(dot(m.eye, normal), 1e-3)));
   vec3 light = vec3(dot(l, tangent), dot(l, bitangent), dot(l, normal));
   if (light.z <= 0.0) return SpecularValue(vec3(0.0), 0.0);
   float density = visible_normal_pdf(view, light, alpha);
-  vec3 reflected = microfacet_reflectance(m, dot(view, normalize(view + light))) *
-                   (visible_normal_weight(view, light, alpha) * density);
-  return SpecularValue(reflected, density);
+  float v_dot_h = dot(view, normalize(view + light));
+  vec3 reflectance = of_coat ? vec3(coat_reflectance(m, v_dot_h)) : microfacet_reflectance(m, v_dot_h);
+  float drawn = has_coat(m) ? clamp(coat_share(m), 0.05, 0.95) : 0.0;
+  return SpecularValue(reflectance * (visible_normal_weight(view, light, alpha) * density),
+                       density * (of_coat ? drawn : 1.0 - drawn));
 }
 
 /// Light of the environment from a direction drawn from its own table, lobe by lobe: each with the
@@ -73,7 +76,11 @@ Ray sky_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pixel) {
     sent += m.diffuse_albedo * (cosine / pi) / (sky.density + density);
   }
   if (m.roughness >= least_roughness && enabled(frame_environment_specular)) {
-    SpecularValue value = specular_value(m, l);
+    SpecularValue value = specular_value(m, l, false);
+    sent += value.reflected / (sky.density + share * value.density);
+  }
+  if (has_coat(m) && m.coat_roughness >= least_roughness && enabled(frame_environment_specular)) {
+    SpecularValue value = specular_value(m, l, true);
     sent += value.reflected / (sky.density + share * value.density);
   }
   if (sent == vec3(0.0)) return no_ray();
@@ -111,8 +118,8 @@ bool scatter(inout ReferencePath path, SurfaceMaterial m, RayCone cone, float t,
     direction = drawn.direction;
     path.throughput *= drawn.weight / share;
     path.flags = path_mirrored;
-    path.density = m.roughness >= least_roughness ? share * drawn.density : 0.0;
-    next = mirrored_cone(cone, t, m.roughness);
+    path.density = drawn.roughness >= least_roughness ? share * drawn.density : 0.0;
+    next = mirrored_cone(cone, t, drawn.roughness);
   } else {
     direction = sample_cosine(m.normal, u);
     bool open = dot(direction, m.geometric) > 0.0;

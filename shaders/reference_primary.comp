@@ -74,12 +74,12 @@ void main() {
       SurfaceMaterial m = material_of(s, ray.direction);
       shadow = shadow_ray(m, s.position, pixel);
       vec3 open = enabled(frame_environment_diffuse) ? environment_diffuse(m) : vec3(0.0);
-      if (mirrors_rays(m.roughness, constants.max_roughness)) {
+      if (mirrors_rays(mirror_roughness(m), constants.max_roughness)) {
         SpecularSample drawn = sample_specular(m, path_pair(pixel, constants.round, 4u));
         if (any(greaterThan(drawn.weight, vec3(0.0)))) {
           mirror = ray_from(s.position, s.geometric, drawn.direction, 1e30);
         }
-        RayCone mirrored = mirrored_cone(cone, hit.t, s.roughness);
+        RayCone mirrored = mirrored_cone(cone, hit.t, mirror_roughness(m));
         paths[index] = ReferencePath(drawn.weight, 1u, mirrored.width, mirrored.spread,
                                      path_mirrored, 0.0);
       } else if (enabled(frame_environment_specular)) {

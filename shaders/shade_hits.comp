@@ -79,7 +79,7 @@ void main() {
                                    imageLoad(surface, pixel).x);
       HitSurface s = hit_surface(hit, ray.direction, cone_width(cone, hit.t));
       SurfaceMaterial m = surface_material(s.base_color, s.metallic, s.roughness, s.normal,
-                                           s.geometric, -ray.direction);
+                                           s.geometric, -ray.direction, s.layer);
       light = steady_light(s, m);
       if (lamps != 0u && enabled(frame_direct) && (s.flags & material_unlit) == 0u) {
         shadow = lamp_ray(m, s.position, weight, pixel, wanted);

@@ -23,7 +23,7 @@ const float smooth_roughness = 0.15;  // below, lobes are too narrow to be anybo
 
 /// BRDF x cos of the pixel's lobe without Fresnel's term, over the density of the cell's.
 float lobe_ratio(SurfaceMaterial m, vec4 direction) {
-  if (m.roughness < smooth_roughness) return 1.0;
+  if (has_coat(m) || m.roughness < smooth_roughness) return 1.0;
   vec3 l = direction.xyz;
   float n_dot_l = dot(m.normal, l);
   if (n_dot_l <= 0.0) return 0.0;
@@ -39,7 +39,7 @@ float likeness(SurfaceMaterial m, vec3 position, float view_z, ivec2 pixel, ivec
   if (other_z <= 0.0) return 0.0;
   vec3 normal = octahedral_decode(imageLoad(normals, other).xy);
   float off_plane = abs(dot(m.geometric, world_position(other, other_z) - position));
-  float roughness = imageLoad(surface, other).x - m.roughness;
+  float roughness = imageLoad(surface, other).x - mirror_roughness(m);
   vec2 apart = vec2(other - pixel);
   return pow(max(dot(normal, m.normal), 0.0), 64.0) * exp(-off_plane / (0.01 * view_z)) *
          exp(-64.0 * roughness * roughness) * exp(-0.25 * dot(apart, apart));
@@ -66,7 +66,7 @@ vec4 gathered(SurfaceMaterial m, ivec2 pixel, float view_z) {
   if (total < 1e-4) {
     vec3 mirrored = reflect(-m.eye, m.normal);
     vec3 light = enabled(frame_environment_specular)
-                     ? environment_reflection(mirrored, m.roughness) : vec3(0.0);
+                     ? environment_reflection(mirrored, mirror_roughness(m)) : vec3(0.0);
     return vec4(light, 1e4);
   }
   return sum / total;
@@ -79,7 +79,7 @@ void main() {
   vec4 result = vec4(0.0);
   if (view_z > 0.0 && !is_unlit(pixel)) {
     SurfaceMaterial m = material_at(pixel);
-    if (mirrors_rays(m.roughness, max_roughness)) result = gathered(m, pixel, view_z);
+    if (mirrors_rays(mirror_roughness(m), max_roughness)) result = gathered(m, pixel, view_z);
   }
   imageStore(radiance, pixel, result);
 }

@@ -85,7 +85,7 @@ Composed compose(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbu
   const auto roughness = [&s = in.settings.specular, mirrors] {
     return mirrors ? s.max_roughness : -1.0f;
   };
-  const bool hosted = on_host(plan, in) && (in.scene.features & shared::scene_area_lights) == 0;
+  const bool hosted = shades_on_host(plan, in) && (in.scene.features & shared::scene_area_lights) == 0;
   const auto by_host = [in, roughness, hosted] {
     return hosted && host::can_compose(in.constants, roughness());
   };

@@ -36,6 +36,11 @@ inline bool on_host(const gpu::FramePlan& plan, const FrameInputs& in) {
   return in.host_kernels && plan.device().is_cpu();
 }
 
+/// The same for passes whose kernels know glTF's own material model alone.
+inline bool shades_on_host(const gpu::FramePlan& plan, const FrameInputs& in) {
+  return on_host(plan, in) && (in.scene.features & shared::scene_layers) == 0;
+}
+
 /// The buffers that outlive the frame or leave it.
 struct FrameOutputs {
   gpu::History accumulated;  // linear radiance

@@ -19,7 +19,8 @@ std::vector<gpu::DescriptorLayout::Binding> frame_bindings() {
           {5, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
           {6, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
           {7, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
-          {8, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER}};
+          {8, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
+          {9, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}};
 }
 
 std::vector<gpu::DescriptorLayout::Binding> material_bindings() {

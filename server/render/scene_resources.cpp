@@ -8,6 +8,7 @@
 
 #include "render/light_table.hpp"
 #include "render/placement.hpp"
+#include "scene/layer_table.hpp"
 
 namespace heliograph::render {
 namespace {
@@ -73,6 +74,7 @@ SceneResources::SceneResources(const gpu::Device& device, const Programs& progra
       flat_normal_(constant_texture(device, "flat normal", {128, 128, 255, 255})) {
   progress("tables", 0.1f);
   upload_tables(device);
+  upload_layers(device);
   upload_textures(device, progress);
   texture_heap = make_texture_heap(device, *scene);
   if (device.is_cpu()) host_materials = make_host_materials(scene->materials);
@@ -133,11 +135,19 @@ void SceneResources::upload_tables(const gpu::Device& device) {
   features = (areas ? shared::scene_area_lights : 0u) |
              (lights.size() > shared::uniform_lights ? shared::scene_many_lights : 0u) |
              (scene->deformations.empty() ? 0u : shared::scene_deforms) |
-             (blends ? shared::scene_blends : 0u);
+             (blends ? shared::scene_blends : 0u) |
+             (scene->layers.size() > 1 ? shared::scene_layers : 0u);
   rest_tables.lights = make_light_table(device, lights.size());
   write_lights(rest_tables.lights, lights);
   rest_tables.alpha_heap =
       upload(device, "alpha masks", scene->alpha_heap, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+}
+
+void SceneResources::upload_layers(const gpu::Device& device) {
+  std::vector<shared::MaterialLayer> all(shared::most_layers, scene::plain_layer());
+  std::ranges::copy(scene->layers, all.begin());
+  layers = gpu::upload_buffer(device, "material layers", std::as_bytes(std::span(all)),
+                              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
 }
 
 void SceneResources::upload_textures(const gpu::Device& device, const UploadProgress& progress) {

@@ -54,6 +54,7 @@ class SceneResources {
   std::shared_ptr<const tracing::AccelerationStructure> rest_structure;
   std::shared_ptr<const LitEnvironment> environment;
   TextureHeap texture_heap;
+  gpu::Buffer layers;  // shared::MaterialLayer, most_layers of them
   host::MaterialTable host_materials;  // on devices that are processors
   std::uint32_t features = 0;  // shared::scene_*
   std::vector<Draw> draws;     // opaque first, then by material
@@ -68,6 +69,7 @@ class SceneResources {
 
  private:
   void upload_tables(const gpu::Device& device);
+  void upload_layers(const gpu::Device& device);
   void upload_textures(const gpu::Device& device, const UploadProgress& progress);
   void list_draws();
 

@@ -70,7 +70,7 @@ void shade(gpu::FramePlan& plan, const FrameInputs& in, const Round& round) {
         .write(round.gbuffer.instance);
   };
   const std::string name = round.name + ".shade";
-  if (by_host(plan, in)) {
+  if (shades_on_host(plan, in)) {
     bind(plan.host(name, [&plan, in, round] { shade_on_host(plan, in, round); }));
     return;
   }

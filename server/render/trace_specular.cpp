@@ -57,12 +57,12 @@ tracing::RayStream generate_rays(gpu::FramePlan& plan, const FrameInputs& in,
                               view(gbuffer.surface), view(gbuffer.motion), ray_sink(plan, in, rays),
                               view(target.radiance), directions});
   };
-  if (by_host(plan, in)) {
+  if (shades_on_host(plan, in)) {
     bind(plan.host("specular.rays", run_host));
   } else {
     const auto& shader = target.directions ? shaders::specular_rays_half : shaders::specular_rays;
     begin_rays(plan, in, "specular", rays);
-    bind(plan.pass("specular.rays", in.programs.compute(shader)))
+    bind(plan.pass("specular.rays", in.programs.compute(shader, in.scene.features)))
         .constants([&s = in.settings.specular] { return s.max_roughness; })
         .dispatch(target.extent);
   }
@@ -107,7 +107,7 @@ void shade(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer, 
         .write(target.radiance);
   };
   // The kernel knows punctual lights alone.
-  if (by_host(plan, in) && (in.scene.features & shared::scene_area_lights) == 0) {
+  if (shades_on_host(plan, in) && (in.scene.features & shared::scene_area_lights) == 0) {
     bind(plan.host("specular.shade", [&plan, in, gbuffer, hits, target] {
       shade_on_host(plan, in, gbuffer, hits, target);
     }));
@@ -149,7 +149,8 @@ void resolve_lamps(gpu::FramePlan& plan, const FrameInputs& in, const tracing::R
 gpu::ImageRef upsample(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                        const Target& half) {
   const auto radiance = plan.image("specular.radiance", four_floats);
-  plan.pass("specular.upsample", in.programs.compute(shaders::upsample_specular))
+  plan.pass("specular.upsample",
+            in.programs.compute(shaders::upsample_specular, in.scene.features))
       .read(gbuffer.normals)
       .read(gbuffer.base_color)
       .read(gbuffer.surface)

@@ -94,7 +94,7 @@ gpu::ImageRef trace_shadows(gpu::FramePlan& plan, const FrameInputs& in, const G
                                    gbuffer.surface},
                         .flag = shared::frame_shadows,
                         .kernel = {}};
-  if ((in.scene.features & shared::scene_area_lights) == 0) {
+  if ((in.scene.features & (shared::scene_area_lights | shared::scene_layers)) == 0) {
     generation.kernel = [&plan, in, gbuffer](const host::VisibilityRaysJob& common) {
       const auto lights = frame_lights(in.tables.lights, in.constants);
       host::shadow_rays({common, lights, plan.get(gbuffer.base_color).host(),

@@ -21,6 +21,7 @@
 #include "scene/first_failure.hpp"
 #include "scene/gltf_file.hpp"
 #include "scene/images.hpp"
+#include "scene/layer_table.hpp"
 #include "scene/lights.hpp"
 #include "scene/materials.hpp"
 #include "scene/meshes.hpp"
@@ -155,6 +156,7 @@ class Importer {
         });
     failure.rethrow();
     watch.lap();
+    build_layers(scene_, warnings_);
     build_alpha_heap(scene_);
 
     scene_.clips = read_clips(root, accessors, nodes, budget_, warnings_);

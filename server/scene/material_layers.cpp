@@ -13,12 +13,12 @@ class LayerReader {
 
   MaterialLayers read() {
     MaterialLayers layers;
-    if (const auto json = open("KHR_materials_specular", "dielectrics reflect as usual")) {
+    if (const auto json = extensions_.object("KHR_materials_specular")) {
       layers.specular = unit(*json, "specularFactor", 1.0f);
       layers.specular_color = color(*json, "specularColorFactor", glm::vec3(1.0f), no_limit);
       check_textures(*json, {"specularTexture", "specularColorTexture"});
     }
-    if (const auto json = open("KHR_materials_clearcoat", "the coat is left out")) {
+    if (const auto json = extensions_.object("KHR_materials_clearcoat")) {
       layers.clearcoat = unit(*json, "clearcoatFactor", 0.0f);
       layers.clearcoat_roughness = unit(*json, "clearcoatRoughnessFactor", 0.0f);
       check_textures(*json,
@@ -29,11 +29,11 @@ class LayerReader {
       layers.sheen_roughness = unit(*json, "sheenRoughnessFactor", 0.0f);
       check_textures(*json, {"sheenColorTexture", "sheenRoughnessTexture"});
     }
-    if (const auto json = open("KHR_materials_transmission", "the surface is opaque")) {
+    if (const auto json = open("KHR_materials_transmission", "light passes straight on, dimmed by the colour's luminance")) {
       layers.transmission = unit(*json, "transmissionFactor", 0.0f);
       check_textures(*json, {"transmissionTexture"});
     }
-    if (const auto json = open("KHR_materials_volume", "nothing is seen through it")) {
+    if (const auto json = open("KHR_materials_volume", "walls are thin and refract nothing")) {
       layers.thickness = at_least_zero(*json, "thicknessFactor", 0.0f);
       layers.attenuation_distance = at_least_zero(*json, "attenuationDistance", 0.0f);
       if (json->has("attenuationDistance") && layers.attenuation_distance == 0.0f) {
@@ -85,6 +85,7 @@ class LayerReader {
       if (!texture) continue;
       texture->required_index("index", textures_, "textures");
       texture->integer("texCoord");
+      warnings_.add(json.path() + "." + std::string(slot) + " is left out; its factor counts");
     }
   }
 

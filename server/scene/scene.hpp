@@ -178,7 +178,8 @@ struct Scene {
   std::vector<Mesh> meshes;
   std::vector<std::string> material_names;
   std::vector<shared::Material> materials;      // at least one
-  std::vector<MaterialLayers> material_layers;  // of each material
+  std::vector<MaterialLayers> material_layers;  // of each material, as the file has them
+  std::vector<shared::MaterialLayer> layers;    // as drawn; at least one, glTF's own model
   std::vector<std::string> variants;            // KHR_materials_variants
   std::optional<std::uint32_t> variant;         // the one that is shown; none: the file's default
   std::vector<std::string> scenes;              // names of the file's scenes, which may be empty

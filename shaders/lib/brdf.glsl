@@ -6,7 +6,10 @@
 // Perceptual roughness; alpha = roughness^2.
 #ifndef HELIOGRAPH_BRDF_GLSL
 #define HELIOGRAPH_BRDF_GLSL
+// A clear coat (KHR_materials_clearcoat) is one more lobe of the same kind, white and without metal,
+// and leaves to what lies under it what it does not give back itself.
 #include "lib/geometry.glsl"
+#include "shared/scene.h"
 
 const float dielectric_f0 = 0.04;  // index of refraction 1.5
 
@@ -20,8 +23,11 @@ struct SurfaceMaterial {
   // What a microfacet reflects: facing + grazing x (1 - v.h)^5, multiple scattering included.
   vec3 facing;
   vec3 grazing;
-  vec3 specular_albedo;  // share of white light from everywhere that the specular lobe gives back
+  vec3 specular_albedo;  // share of white light from everywhere that the specular lobes give back
   vec3 diffuse_albedo;   // and the diffuse lobe
+  float coat_roughness;
+  vec2 coat;          // like facing and grazing
+  float coat_albedo;  // its part of specular_albedo; 0: there is no coat
 };
 
 vec3 fresnel_schlick(vec3 f0, float cosine) {
@@ -48,10 +54,15 @@ float smith_visibility(float n_dot_l, float n_dot_v, float alpha) {
 /// Where to look up the split sum that make_material() needs.
 float material_n_dot_v(vec3 normal, vec3 eye) { return clamp(dot(normal, eye), 1e-3, 1.0); }
 
-/// The material toward `eye`. `split` holds scale and bias of F0 at material_n_dot_v() and the
+/// glTF's own model.
+MaterialLayer plain_layer() {
+  return MaterialLayer(vec3(dielectric_f0), 1.0, 1.0, 0.0, 0.0, 0.0);
+}
+
+/// The material toward `eye`, without its coat. `split` holds scale and bias of F0 at material_n_dot_v() and the
 /// roughness. glTF mixes a dielectric and a metal; so does each of their lobes.
 SurfaceMaterial make_material(vec3 base_color, float metallic, float roughness, vec3 normal,
-                              vec3 geometric, vec3 eye, vec2 split) {
+                              vec3 geometric, vec3 eye, vec2 split, MaterialLayer layer) {
   SurfaceMaterial m;
   m.normal = normal;
   m.geometric = geometric;
@@ -60,34 +71,83 @@ SurfaceMaterial make_material(vec3 base_color, float metallic, float roughness, 
   m.roughness = roughness;
   // 1 + F0 x regained: the multiple scattering of Turquin 2019, exact for F0 = 1.
   float regained = 1.0 / max(split.x + split.y, 1e-3) - 1.0;
-  float dielectric_scale = 1.0 + dielectric_f0 * regained;
-  vec3 dielectric_share = vec3((1.0 - metallic) * dielectric_scale);
+  vec3 dielectric_scale = 1.0 + layer.facing * regained;
+  vec3 dielectric_share = (1.0 - metallic) * dielectric_scale;
   vec3 metal_share = metallic * (1.0 + base_color * regained);
-  m.facing = dielectric_share * dielectric_f0 + metal_share * base_color;
-  m.grazing = dielectric_share * (1.0 - dielectric_f0) + metal_share * (1.0 - base_color);
+  m.facing = dielectric_share * layer.facing + metal_share * base_color;
+  m.grazing = dielectric_share * (layer.grazing - layer.facing) + metal_share * (1.0 - base_color);
   m.specular_albedo = m.facing * (split.x + split.y) + m.grazing * split.y;
-  float dielectric_albedo = (dielectric_f0 * split.x + split.y) * dielectric_scale;
-  m.diffuse_albedo = (1.0 - metallic) * (1.0 - min(dielectric_albedo, 1.0)) * base_color;
+  vec3 dielectric_albedo = (layer.facing * split.x + layer.grazing * split.y) * dielectric_scale;
+  float taken = max(dielectric_albedo.r, max(dielectric_albedo.g, dielectric_albedo.b));
+  m.diffuse_albedo = (1.0 - metallic) * (1.0 - min(taken, 1.0)) * layer.diffuse * base_color;
+  m.coat_roughness = 0.0;
+  m.coat = vec2(0.0);
+  m.coat_albedo = 0.0;
   return m;
 }
 
-/// What a microfacet reflects of light that meets it at this cosine.
-vec3 microfacet_reflectance(SurfaceMaterial m, float v_dot_h) {
-  float x = clamp(1.0 - v_dot_h, 0.0, 1.0);
-  float x2 = x * x;
-  return m.facing + m.grazing * (x2 * x2 * x);
+/// Lays the coat over the material. `split` is looked up at the coat's roughness.
+void add_coat(inout SurfaceMaterial m, MaterialLayer layer, vec2 split) {
+  float regained = 1.0 / max(split.x + split.y, 1e-3) - 1.0;
+  float scale = layer.coat * (1.0 + dielectric_f0 * regained);
+  m.coat_roughness = layer.coat_roughness;
+  m.coat = scale * vec2(dielectric_f0, 1.0 - dielectric_f0);
+  m.coat_albedo = min(m.coat.x * (split.x + split.y) + m.coat.y * split.y, 1.0);
+  float under = 1.0 - m.coat_albedo;
+  m.facing *= under;
+  m.grazing *= under;
+  m.diffuse_albedo *= under;
+  m.specular_albedo = m.specular_albedo * under + m.coat_albedo;
 }
 
-/// Specular BRDF x cos for light arriving along -l. Smooth surfaces keep a narrow lobe: a point
-/// light in a perfect mirror is a pole.
+bool has_coat(SurfaceMaterial m) { return m.coat_albedo > 0.0; }
+
+/// Of the lobe that mirrors the sharper image.
+float mirror_roughness(SurfaceMaterial m) {
+  return has_coat(m) ? min(m.coat_roughness, m.roughness) : m.roughness;
+}
+
+/// Part of specular_albedo that is not the coat's.
+vec3 under_coat_albedo(SurfaceMaterial m) { return m.specular_albedo - m.coat_albedo; }
+
+/// (1 - v.h)^5
+float schlick_weight(float v_dot_h) {
+  float x = clamp(1.0 - v_dot_h, 0.0, 1.0);
+  float x2 = x * x;
+  return x2 * x2 * x;
+}
+
+/// What a microfacet under the coat reflects of light that meets it at this cosine.
+vec3 microfacet_reflectance(SurfaceMaterial m, float v_dot_h) {
+  return m.facing + m.grazing * schlick_weight(v_dot_h);
+}
+
+/// What one of the coat reflects.
+float coat_reflectance(SurfaceMaterial m, float v_dot_h) {
+  return m.coat.x + m.coat.y * schlick_weight(v_dot_h);
+}
+
+/// D V n.l of one lobe. Smooth surfaces keep a narrow lobe: a point light in a perfect mirror is a
+/// pole.
+float specular_lobe(float n_dot_h, float n_dot_l, float n_dot_v, float roughness) {
+  float alpha = max(roughness * roughness, 2e-3);
+  return ggx_distribution(n_dot_h, alpha) * smith_visibility(n_dot_l, n_dot_v, alpha) * n_dot_l;
+}
+
+/// Specular BRDF x cos for light arriving along -l.
 vec3 specular_light(SurfaceMaterial m, vec3 l) {
   float n_dot_l = dot(m.normal, l);
   if (n_dot_l <= 0.0) return vec3(0.0);
   vec3 h = normalize(l + m.eye);
-  float alpha = max(m.roughness * m.roughness, 2e-3);
-  return microfacet_reflectance(m, dot(m.eye, h)) *
-         (ggx_distribution(clamp(dot(m.normal, h), 0.0, 1.0), alpha) *
-          smith_visibility(n_dot_l, m.n_dot_v, alpha) * n_dot_l);
+  float n_dot_h = clamp(dot(m.normal, h), 0.0, 1.0);
+  float v_dot_h = dot(m.eye, h);
+  vec3 light = microfacet_reflectance(m, v_dot_h) *
+               specular_lobe(n_dot_h, n_dot_l, m.n_dot_v, m.roughness);
+  if (has_coat(m)) {
+    light += coat_reflectance(m, v_dot_h) *
+             specular_lobe(n_dot_h, n_dot_l, m.n_dot_v, m.coat_roughness);
+  }
+  return light;
 }
 
 /// BRDF x cos for light arriving along -l.

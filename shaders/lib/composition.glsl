@@ -41,7 +41,7 @@ Shares lit_shares(ivec2 pixel, float view_z) {
   Shares shares = Shares(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
   if (enabled(frame_direct)) shares.direct = direct_light(m, world_position(pixel, view_z));
   if (enabled(frame_environment_diffuse)) shares.ambient = environment_diffuse(m);
-  if (mirrors_rays(m.roughness, max_roughness)) {
+  if (mirrors_rays(mirror_roughness(m), max_roughness)) {
     shares.mirror = specular_demodulator(m);
   } else if (enabled(frame_environment_specular)) {
     shares.ambient += environment_specular(m);

@@ -9,11 +9,17 @@ SurfaceMaterial material_at(ivec2 pixel) {
   vec4 encoded = imageLoad(normals, pixel);
   vec4 color = imageLoad(base_color, pixel);
   vec4 packed_surface = imageLoad(surface, pixel);
-  return surface_material(color.rgb * color.rgb, packed_surface.y, packed_surface.x,
+  float roughness = packed_surface.x;
+  uint layer = 0u;
+  if (scene_has(scene_layers)) {
+    layer = uint(packed_surface.w * 255.0 + 0.5);
+    if (layers[layer].coat > 0.0) roughness = packed_surface.z * (255.0 / 254.0);
+  }
+  return surface_material(color.rgb * color.rgb, packed_surface.y, roughness,
                           octahedral_decode(encoded.xy), octahedral_decode(encoded.zw),
-                          to_eye(pixel));
+                          to_eye(pixel), layer);
 }
 
-bool is_unlit(ivec2 pixel) { return imageLoad(surface, pixel).z > 0.5; }
+bool is_unlit(ivec2 pixel) { return imageLoad(surface, pixel).z > 254.5 / 255.0; }
 
 #endif

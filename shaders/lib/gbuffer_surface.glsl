@@ -14,7 +14,9 @@ layout(location = 7) in vec3 world_point;
 
 layout(location = 0) out vec4 normals;     // octahedral: shading xy, geometric zw
 layout(location = 1) out vec4 base_color;  // square root of linear rgb, occlusion
-layout(location = 2) out vec4 surface;     // roughness, metallic, unlit, unused
+// Roughness of what mirrors the sharper image; metallic; 1: unlit, less: roughness under the coat x
+// 254/255; number of the layer / 255.
+layout(location = 2) out vec4 surface;
 layout(location = 3) out vec4 motion;      // to the previous frame: uv, view Z; and view Z now
 layout(location = 4) out vec4 emissive;    // linear radiance
 layout(location = 5) out vec2 depth_slope; // view Z per pixel in x and y
@@ -77,8 +79,12 @@ void main() {
   normals = vec4(octahedral_encode(shading), octahedral_encode(geometric));
   base_color = vec4(sqrt(clamp(color.rgb, 0.0, 1.0)),
                     mix(1.0, occlusion, material.occlusion_strength));
-  surface = vec4(material.roughness * packed_surface.g, material.metallic * packed_surface.b,
-                 flag(material.flags, material_unlit), 0.0);
+  float roughness = material.roughness * packed_surface.g;
+  float coated = flag(material.flags, material_coated);
+  surface = vec4(mix(roughness, min(roughness, material.coat_roughness), coated),
+                 material.metallic * packed_surface.b,
+                 max(flag(material.flags, material_unlit), roughness * coated * (254.0 / 255.0)),
+                 float(material.layer) / 255.0);
   vec2 uv_now = clip_now.xy / clip_now.z * 0.5;
   vec2 uv_before = clip_before.xy / clip_before.z * 0.5;
   motion = vec4(uv_before - uv_now, view_depths.y - view_depths.x, view_depths.x);

@@ -40,6 +40,7 @@ struct HitSurface {
   float occlusion;
   vec3 emissive;  // linear radiance
   uint flags;     // material_*
+  uint layer;     // number of its MaterialLayer
 };
 
 /// A triangle of an instance, corner by corner.
@@ -152,6 +153,7 @@ void evaluate_material(inout HitSurface s, HitTriangle t, TexturePlace place) {
   s.emissive = materials[m].emissive;
   if (s.emissive != vec3(0.0)) s.emissive *= slot_texel(materials[m].emissive_texture, place).rgb;
   s.flags = materials[m].flags;
+  s.layer = scene_has(scene_layers) ? materials[m].layer : 0u;
 }
 
 /// `hit` of a ray along `direction` whose footprint at the hit is `width` metres.

@@ -136,7 +136,12 @@ LightSample sample_light(Light light, vec3 position, vec2 u) {
 vec3 light_contribution(Light light, SurfaceMaterial m, vec3 position) {
   if (has_area(light)) {
     vec2 share = area_light_shares(light, m.normal, m.eye, m.n_dot_v, m.roughness, position);
-    return light.color * (m.diffuse_albedo * share.x + m.specular_albedo * share.y);
+    vec3 shares = m.diffuse_albedo * share.x + under_coat_albedo(m) * share.y;
+    if (has_coat(m)) {
+      shares += m.coat_albedo * area_light_shares(light, m.normal, m.eye, m.n_dot_v,
+                                                  m.coat_roughness, position).y;
+    }
+    return light.color * shares;
   }
   LightSample s = light_at(light, position);
   if (dot(m.geometric, s.direction) <= 0.0) return vec3(0.0);

@@ -62,7 +62,8 @@ vec3 own_light(HitSurface s) {
 }
 
 SurfaceMaterial material_of(HitSurface s, vec3 direction) {
-  return surface_material(s.base_color, s.metallic, s.roughness, s.normal, s.geometric, -direction);
+  return surface_material(s.base_color, s.metallic, s.roughness, s.normal, s.geometric, -direction,
+                          s.layer);
 }
 
 /// What the camera sees where nothing is.

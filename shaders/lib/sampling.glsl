@@ -58,29 +58,46 @@ vec3 reflecting_normal(SurfaceMaterial m) {
 }
 
 /// One direction of the specular lobe, world space, and what its light is multiplied by: BRDF x cos
-/// / pdf. A weight of 0 ends the path: below the horizon of the surface or of its triangle.
+/// / pdf. A weight of 0 ends the path: below the horizon of the surface or of its triangle. Of a
+/// coated surface one of the two lobes is drawn, in proportion to what each gives back.
 struct SpecularSample {
   vec3 direction;
   vec3 weight;
-  float density;  // the pdf, per solid angle; finite for mirrors too
+  float density;    // the pdf of the lobe drawn x its share, per solid angle; finite for mirrors too
+  float roughness;  // of the lobe
 };
+
+/// How likely the coat's lobe is drawn.
+float coat_share(SurfaceMaterial m) {
+  return m.coat_albedo / max(dot(m.specular_albedo, vec3(1.0 / 3.0)), 1e-6);
+}
 
 SpecularSample sample_specular(SurfaceMaterial m, vec2 u) {
   vec3 normal = reflecting_normal(m);
   vec3 tangent, bitangent;
   orthonormal_basis(normal, tangent, bitangent);
-  float alpha = m.roughness * m.roughness;
+  SpecularSample s;
+  s.roughness = m.roughness;
+  float share = 1.0;
+  bool coated = false;
+  if (has_coat(m)) {
+    float of_coat = clamp(coat_share(m), 0.05, 0.95);
+    coated = u.x < of_coat;
+    share = coated ? of_coat : 1.0 - of_coat;
+    u.x = coated ? u.x / of_coat : (u.x - of_coat) / share;
+    if (coated) s.roughness = m.coat_roughness;
+  }
+  float alpha = s.roughness * s.roughness;
   vec3 view = vec3(dot(m.eye, tangent), dot(m.eye, bitangent), max(dot(m.eye, normal), 1e-3));
   view = normalize(view);
   vec3 microfacet = sample_visible_normal(view, alpha, u);
   float v_dot_h = dot(view, microfacet);
   vec3 light = 2.0 * v_dot_h * microfacet - view;
-  SpecularSample s;
   s.direction = normalize(tangent * light.x + bitangent * light.y + normal * light.z);
   bool open = dot(s.direction, m.geometric) > 0.0;
-  s.weight = open ? microfacet_reflectance(m, v_dot_h) * visible_normal_weight(view, light, alpha)
-                  : vec3(0.0);
-  s.density = visible_normal_pdf(view, light, max(alpha, 1e-4));
+  vec3 reflectance = coated ? vec3(coat_reflectance(m, v_dot_h)) : microfacet_reflectance(m, v_dot_h);
+  s.weight = open ? reflectance * (visible_normal_weight(view, light, alpha) / share) : vec3(0.0);
+  s.density = share * visible_normal_pdf(view, light, max(alpha, 1e-4));
   return s;
 }
 

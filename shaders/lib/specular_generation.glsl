@@ -43,7 +43,7 @@ void main() {
     taken = vec4(s.direction, s.density);
     if (weight != vec3(0.0)) weight = vec3(1.0);
 #endif
-    wanted = mirrors_rays(m.roughness, max_roughness) && any(greaterThan(weight, vec3(0.0)));
+    wanted = mirrors_rays(mirror_roughness(m), max_roughness) && any(greaterThan(weight, vec3(0.0)));
     ray.origin = offset_origin(world_position(pixel, view_z), m.geometric, view_z);
     ray.t_min = 0.0;
     ray.direction = s.direction;

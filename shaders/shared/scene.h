@@ -21,6 +21,7 @@ SHARED_CONSTANT uint material_alpha_mask = 1u;
 SHARED_CONSTANT uint material_alpha_blend = 2u;
 SHARED_CONSTANT uint material_double_sided = 4u;
 SHARED_CONSTANT uint material_unlit = 8u;
+SHARED_CONSTANT uint material_coated = 16u;
 
 // A texture slot: `uv = transform * (uvN, 1)` with the rows of KHR_texture_transform's 2x3 matrix.
 struct TextureSlot {
@@ -30,6 +31,18 @@ struct TextureSlot {
   uint uv_set;          // 0 or 1
   uint padding0;
   uint padding1;
+};
+
+SHARED_CONSTANT uint most_layers = 256u;
+
+// What extensions make of a material's lobes; the first of a scene is glTF's own model.
+struct MaterialLayer {
+  vec3 facing;     // reflectance of the dielectric, F0
+  float grazing;   // and its F90
+  float diffuse;   // factor on the diffuse lobe
+  float coat;      // share of the surface that lies under a clear coat
+  float coat_roughness;
+  float padding0;
 };
 
 // glTF 2.0 metallic-roughness material; factors are linear.
@@ -46,9 +59,9 @@ struct Material {
   uint alpha_mask;  // offset in bytes into the alpha heap read by rays, or no_texture
   uint alpha_mask_size;  // width | height << 16
   uint alpha_mask_wrap;  // wrap_s | wrap_t << 8, values of Wrap
+  uint layer;            // its MaterialLayer's number
+  float coat_roughness;  // that layer's
   uint padding0;
-  uint padding1;
-  uint padding2;
   TextureSlot base_color_texture;
   TextureSlot metallic_roughness_texture;
   TextureSlot normal_texture;
@@ -99,6 +112,7 @@ SHARED_CONSTANT uint scene_area_lights = 1u;
 SHARED_CONSTANT uint scene_many_lights = 2u;  // more than uniform_lights
 SHARED_CONSTANT uint scene_deforms = 4u;
 SHARED_CONSTANT uint scene_blends = 8u;  // has surfaces of partial coverage
+SHARED_CONSTANT uint scene_layers = 16u;  // has materials with layers other than the first
 
 SHARED_CONSTANT uint light_directional = 0u;
 SHARED_CONSTANT uint light_point = 1u;

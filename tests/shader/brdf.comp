@@ -13,7 +13,8 @@ ShaderOutput evaluate(uint which, ShaderInput given) {
       // a: colour, metallic; b: view, roughness; c: light; d: split sum; the normal is +z.
       vec3 n = vec3(0.0, 0.0, 1.0);
       SurfaceMaterial m =
-          make_material(given.a.rgb, given.a.w, given.b.w, n, n, given.b.xyz, given.d.xy);
+          make_material(given.a.rgb, given.a.w, given.b.w, n, n, given.b.xyz, given.d.xy,
+                        plain_layer());
       return ShaderOutput(vec4(shade_light(m, given.c.xyz), 0.0),
                           vec4(specular_light(m, given.c.xyz), 0.0));
     }

@@ -4,6 +4,8 @@
 #include <glm/gtc/packing.hpp>
 #include <numbers>
 
+#include "scene/layer_table.hpp"
+
 namespace heliograph::test {
 namespace {
 
@@ -135,6 +137,22 @@ SceneBuilder& SceneBuilder::add_lamp(const glm::vec3& position, const glm::vec3&
   light.radius = radius;
   scene_.lights.push_back({"lamp", light, 0.0f});
   return *this;
+}
+
+shared::Material SceneBuilder::with_layers(shared::Material material,
+                                           const scene::MaterialLayers& layers) {
+  scene::Scene one;
+  one.materials = {material};
+  one.material_layers = {layers};
+  scene::Warnings warnings;
+  scene::build_layers(one, warnings);
+  material = one.materials[0];
+  if (scene_.layers.empty()) scene_.layers = {scene::plain_layer()};
+  if (material.layer != 0) {
+    material.layer = static_cast<std::uint32_t>(scene_.layers.size());
+    scene_.layers.push_back(one.layers[1]);
+  }
+  return material;
 }
 
 std::shared_ptr<const scene::Scene> SceneBuilder::build() {

@@ -16,6 +16,8 @@ shared::Material surface(const glm::vec3& color, float roughness = 1.0f, float m
 class SceneBuilder {
  public:
   std::uint32_t add_material(const shared::Material& material);
+  /// `material` with what an extension adds to it.
+  shared::Material with_layers(shared::Material material, const scene::MaterialLayers& layers);
   /// Four corners, counter-clockwise from outside; uv (0,0) (1,0) (1,1) (0,1), tangent along u.
   std::uint32_t add_quad(const std::array<glm::vec3, 4>& corners, const shared::Material& material);
   /// About the origin, with exact normals.

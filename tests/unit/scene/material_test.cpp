@@ -142,7 +142,7 @@ TEST(Materials, LayersAreReadAndSaidToBeApproximated) {
   EXPECT_EQ(layers.thickness, 0.5f);
   EXPECT_EQ(layers.attenuation_distance, 2.0f);
   EXPECT_EQ(layers.attenuation_color, glm::vec3(1.0f, 0.5f, 0.25f));
-  EXPECT_EQ(scene.warnings.size(), 5u);
+  EXPECT_EQ(scene.warnings.size(), 3u);
   for (const std::string& warning : scene.warnings) {
     EXPECT_NE(warning.find("is approximated"), std::string::npos) << warning;
   }
@@ -165,6 +165,53 @@ TEST(Materials, LayersOutsideTheirRangeAreRefused) {
   expect(refusal_with("KHR_materials_volume", {{"attenuationDistance", 0}}), "more than 0");
   expect(refusal_with("KHR_materials_volume", {{"thicknessFactor", -3}}), "negative");
   expect(refusal_with("KHR_materials_volume", 5), "must be an object");
+}
+
+/// The one material's layer as drawn.
+shared::MaterialLayer drawn_layer(const Scene& scene) {
+  return scene.layers.at(scene.materials.at(0).layer);
+}
+
+TEST(Layers, OfPlainMaterialsAreTheModelsOwn) {
+  const Scene scene = with_material({{"name", "plain"}}).import();
+  EXPECT_EQ(scene.layers.size(), 1u);
+  EXPECT_EQ(drawn_layer(scene).facing, glm::vec3(0.04f));
+  const Scene usual = with_material(
+      {{"extensions", {{"KHR_materials_ior", {{"ior", 1.5}}},
+                       {"KHR_materials_specular", {{"specularFactor", 1.0}}}}}}).import();
+  EXPECT_EQ(usual.layers.size(), 1u) << "said, but nothing else";
+}
+
+TEST(Layers, TakeIndexStrengthAndColourOfTheDielectric) {
+  const Scene scene = with_material(
+      {{"extensions", {{"KHR_materials_ior", {{"ior", 2.0}}},
+                       {"KHR_materials_specular",
+                        {{"specularFactor", 0.5}, {"specularColorFactor", {0.5, 1, 30}}}}}}}).import();
+  const shared::MaterialLayer layer = drawn_layer(scene);
+  EXPECT_NEAR(layer.facing.x, 0.5f * 0.5f / 9.0f, 1e-6f);
+  EXPECT_NEAR(layer.facing.y, 0.5f / 9.0f, 1e-6f);
+  EXPECT_NEAR(layer.facing.z, 0.5f, 1e-6f) << "never more than everything";
+  EXPECT_EQ(layer.grazing, 0.5f);
+}
+
+TEST(Layers, CoatsAreMarked) {
+  const Scene scene = with_material(
+      {{"extensions", {{"KHR_materials_clearcoat",
+                        {{"clearcoatFactor", 0.8}, {"clearcoatRoughnessFactor", 0.2}}}}}}).import();
+  EXPECT_TRUE(scene.materials[0].flags & shared::material_coated);
+  EXPECT_FLOAT_EQ(drawn_layer(scene).coat, 0.8f);
+  EXPECT_FLOAT_EQ(scene.materials[0].coat_roughness, 0.2f);
+}
+
+TEST(Layers, LightThatPassesIsPartialCoverage) {
+  const Scene scene = with_material(
+      {{"pbrMetallicRoughness", {{"metallicFactor", 0.0}}},
+       {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 0.5}}}}}}).import();
+  const shared::Material& material = scene.materials[0];
+  EXPECT_TRUE(material.flags & shared::material_alpha_blend);
+  EXPECT_NEAR(material.base_color.w, 0.5f, 1e-6f);
+  EXPECT_NEAR(drawn_layer(scene).facing.x, 0.08f, 1e-6f) << "as much as the whole would mirror";
+  EXPECT_NEAR(drawn_layer(scene).diffuse, 1.0f, 1e-6f);
 }
 
 TEST(Materials, VariantsAreListedAndTheDefaultIsShown) {
