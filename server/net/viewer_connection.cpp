@@ -34,7 +34,7 @@ constexpr std::size_t most_waiting_bytes = 128u << 20;
 constexpr std::uint16_t session_ended = 4003;
 constexpr std::uint16_t slow_consumer = 4004;
 constexpr int reconnect_after_ms = 1000;
-constexpr std::chrono::seconds longest_without_acknowledgement{15};
+constexpr std::chrono::seconds longest_without_acknowledgement{10};
 
 constexpr const char* rate_limited =
     R"({"jsonrpc":"2.0","id":null,"error":{"code":-32002,)"

@@ -32,9 +32,9 @@ template <class Viewer>
 void complete(protocol::StatsFrame& stats, const Viewer& viewer) {
   stats.bytes = viewer.last_bytes;
   stats.encode_ms = viewer.last_encode_us / 1000.0;
-  stats.codec = viewer.form.codec;
-  stats.quality = static_cast<std::uint32_t>(viewer.form.quality);
-  stats.scale = viewer.form.scale / 100.0;
+  stats.codec = viewer.moving.codec;
+  stats.quality = static_cast<std::uint32_t>(viewer.moving.quality);
+  stats.scale = viewer.moving.scale / 100.0;
   stats.round_trip_ms = static_cast<double>(viewer.pacer.round_trip().count()) / 1000.0;
   stats.goodput = viewer.pacer.goodput();
 }
@@ -309,9 +309,10 @@ bool Audience::awaits(std::uint64_t number) const {
                      [&](const auto& entry) { return awaits(entry.second, number, now); });
 }
 
-EncodingPlan Audience::plan(std::uint64_t number, Purpose purpose) {
+EncodingPlan Audience::plan(std::uint64_t number, Purpose purpose, std::uint64_t pixels) {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
+  pixels_ = pixels;
   EncodingPlan plan;
   std::vector<Viewer*> watching;
   std::vector<stream::FormWish> wishes;
@@ -325,14 +326,17 @@ EncodingPlan Audience::plan(std::uint64_t number, Purpose purpose) {
       if (ready && known == plan.stills.end()) plan.stills.push_back(viewer.stream.still);
       continue;
     }
-    stream::Form form = wish(viewer);
-    // Pictures at rest are few and each is better than the last: a video gains nothing.
-    if (purpose == Purpose::refining) form.codec = protocol::StreamCodec::jpeg;
     watching.push_back(&viewer);
-    wishes.push_back({.form = form, .ready = ready, .decoder = viewer.pacer.decoder()});
+    wishes.push_back({.form = wish(viewer, purpose),
+                      .ready = ready,
+                      .decoder = viewer.pacer.decoder(),
+                      .budget = viewer.pacer.link().budget()});
   }
   stream::FormPlanner::Plan chosen = planner_.plan(wishes, now);
-  for (std::size_t i = 0; i < watching.size(); ++i) watching[i]->form = chosen.assigned[i];
+  for (std::size_t i = 0; i < watching.size(); ++i) {
+    watching[i]->form = chosen.assigned[i];
+    if (purpose == Purpose::interactive) watching[i]->moving = chosen.assigned[i];
+  }
   plan.forms = std::move(chosen.requests);
   return plan;
 }
@@ -342,7 +346,7 @@ void Audience::publish(std::uint64_t number, Purpose purpose,
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
   for (auto& [id, viewer] : viewers_) {
-    if (!viewer.started || viewer.stream.paused) continue;
+    if (!viewer.started || viewer.stream.paused || viewer.offered >= number) continue;
     const bool planned = viewer.planned == number;
     const stream::SharedFrame frame = suited(viewer, purpose, frames);
     if (frame) {
@@ -412,7 +416,7 @@ Result<Audience::Viewer*> Audience::find(const std::string& viewer) {
 
 void Audience::offer_latest(Viewer& viewer) {
   if (latest_.empty() || viewer.stream.paused) return;
-  viewer.form = wish(viewer);
+  viewer.form = wish(viewer, latest_purpose_);
   const stream::SharedFrame frame = suited(viewer, latest_purpose_, latest_);
   // Otherwise the newest picture is encoded once more, for this viewer.
   if (!frame) return;
@@ -431,8 +435,11 @@ bool Audience::awaits(const Viewer& viewer, std::uint64_t number, Clock::time_po
   return viewer.started && viewer.offered < number && viewer.pacer.has_room(now);
 }
 
-stream::Form Audience::wish(const Viewer& viewer) {
-  return {.codec = viewer.stream.codec, .quality = viewer.stream.quality};
+stream::Form Audience::wish(Viewer& viewer, Purpose purpose) const {
+  const stream::Form wanted{.codec = viewer.stream.codec, .quality = viewer.stream.quality};
+  // Pictures at rest are few and each is better than the last: a video gains nothing.
+  if (purpose != Purpose::interactive) return viewer.pacer.link().resting(wanted);
+  return viewer.pacer.link().choose(wanted, pixels_);
 }
 
 stream::SharedFrame Audience::suited(const Viewer& viewer, Purpose purpose,

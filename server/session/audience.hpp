@@ -103,8 +103,8 @@ class Audience {
   void forget_latest();
   /// Whether somebody could be sent the picture of this number, and was not yet. Numbers grow.
   bool awaits(std::uint64_t number) const;
-  /// How to encode the picture of this number for those who await it.
-  EncodingPlan plan(std::uint64_t number, Purpose purpose);
+  /// How to encode the picture of this number, which has so many pixels, for those who await it.
+  EncodingPlan plan(std::uint64_t number, Purpose purpose, std::uint64_t pixels);
   /// Hands out the encodings of the picture that the last plan was for.
   void publish(std::uint64_t number, Purpose purpose, std::vector<stream::SharedFrame> frames);
   /// To subscribers whose turn it is; completes `stats` with what concerns each of them. A finished
@@ -128,7 +128,8 @@ class Audience {
     bool came_over = false;  // its next frame has nothing in common with the last
     std::uint64_t offered = 0;  // number of the newest picture that it was offered or cannot have
     std::uint64_t planned = 0;  // number of the newest picture that was encoded for it
-    stream::Form form;          // what it gets while something moves
+    stream::Form form;          // of the pictures that it gets at present
+    stream::Form moving;        // of those that it gets while something moves
     std::uint64_t last_bytes = 0;  // of the newest frame that it was offered
     std::uint32_t last_encode_us = 0;
     std::chrono::milliseconds stats_interval{0};
@@ -145,7 +146,7 @@ class Audience {
   void offer_latest(Viewer& viewer);
   static void offer(Viewer& viewer, const stream::SharedFrame& frame);
   bool awaits(const Viewer& viewer, std::uint64_t number, Clock::time_point now) const;
-  static stream::Form wish(const Viewer& viewer);
+  stream::Form wish(Viewer& viewer, Purpose purpose) const;
   static stream::SharedFrame suited(const Viewer& viewer, Purpose purpose,
                                     const std::vector<stream::SharedFrame>& frames);
   static void announce(const Viewer& viewer);
@@ -160,6 +161,7 @@ class Audience {
   std::vector<stream::SharedFrame> latest_;
   std::uint64_t latest_number_ = 0;
   Purpose latest_purpose_ = Purpose::interactive;
+  std::uint64_t pixels_ = 0;  // of the newest picture
   stream::PacerTotals departed_;
 };
 

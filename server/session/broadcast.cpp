@@ -88,8 +88,8 @@ struct Broadcast::Encoding {
   }
 
   std::vector<stream::SharedFrame> encode() {
-    const EncodingPlan plan = session->audience().plan(number, purpose);
     const stream::PictureView view = view_of(picture->frame);
+    const EncodingPlan plan = session->audience().plan(number, purpose, view.rgba.size() / 4);
     std::vector<stream::SharedFrame> frames;
     for (const stream::FormRequest& request : plan.forms) {
       frames.push_back(timed([&] { return encoder->encode(view, request); }));
@@ -107,6 +107,7 @@ struct Broadcast::Encoding {
     const std::shared_ptr<stream::EncodedFrame> frame = encode();
     frame->encoded_at = Clock::now();
     frame->inputs = picture->inputs;
+    frame->moving = purpose == Purpose::interactive;
     frame->header = merged(picture->header, frame->header);
     const auto taken = frame->encoded_at - start;
     frame->header.encode_us = static_cast<std::uint32_t>(duration_cast<microseconds>(taken).count());

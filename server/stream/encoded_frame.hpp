@@ -30,6 +30,7 @@ struct EncodedFrame {
   std::vector<InputEcho> inputs;
   Form form;
   std::optional<VideoPosition> video;  // of frames that need each other
+  bool moving = false;                 // one of many, made to fit the way to its viewers
   Clock::time_point encoded_at;
 };
 

@@ -8,14 +8,11 @@ using protocol::StreamCodec;
 
 namespace {
 
-void request(std::vector<FormRequest>& requests, const Form& form, bool key) {
-  const auto same = std::find_if(requests.begin(), requests.end(),
-                                 [&](const FormRequest& other) { return other.form == form; });
-  if (same != requests.end()) {
-    same->key |= key;
-  } else {
-    requests.push_back({.form = form, .key = key});
-  }
+void add(std::vector<FormRequest>& requests, const FormRequest& request) {
+  const auto same = std::find_if(requests.begin(), requests.end(), [&](const FormRequest& other) {
+    return other.form == request.form;
+  });
+  if (same == requests.end()) requests.push_back(request);
 }
 
 }  // namespace
@@ -32,9 +29,11 @@ FormPlanner::Plan FormPlanner::plan(const std::vector<FormWish>& wishes,
     bool ready_in_step = false;
     bool ready_lost = false;
     bool any_in_step = false;
+    double budget = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < wishes.size(); ++i) {
       if (plan.assigned[i] != form) continue;
       const bool follows = form.codec == StreamCodec::jpeg || in_step(wishes[i], form);
+      budget = std::min(budget, wishes[i].budget);
       any_in_step |= follows;
       ready_in_step |= follows && wishes[i].ready;
       ready_lost |= !follows && wishes[i].ready;
@@ -43,8 +42,8 @@ FormPlanner::Plan FormPlanner::plan(const std::vector<FormWish>& wishes,
     const bool key_allowed = !any_in_step || video == videos_.end() ||
                              now >= video->second.key_at + least_key_interval;
     const bool key = ready_lost && key_allowed;
-    if (ready_in_step || key) request(plan.requests, form, key);
-    if (ready_lost && !key) request(plan.requests, stand_in(form), false);
+    if (ready_in_step || key) add(plan.requests, {.form = form, .key = key, .max_bytes = budget});
+    if (ready_lost && !key) add(plan.requests, {.form = stand_in(form)});
   }
   return plan;
 }

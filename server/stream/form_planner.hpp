@@ -15,6 +15,7 @@ struct FormWish {
   Form form;
   bool ready = false;                    // it could be sent at once
   std::optional<VideoPosition> decoder;  // the last frame of a video that the viewer has
+  double budget = std::numeric_limits<double>::infinity();  // bytes of a frame of its video
 };
 
 /// One encoding of a picture.

@@ -47,8 +47,18 @@ std::optional<ViewerPacer::Taken> ViewerPacer::take(Clock::time_point now) {
   Taken taken{.frame_seq = offered_,
               .first_after_drop = std::exchange(dropped_since_taken_, false),
               .frame = std::exchange(waiting_, nullptr)};
-  const std::uint64_t bytes = taken.frame->payload.size() + protocol::frame_header_bytes;
-  on_the_way_.push_back({.frame_seq = taken.frame_seq, .bytes = bytes, .at = now});
+  const EncodedFrame& frame = *taken.frame;
+  const std::uint64_t bytes = frame.payload.size() + protocol::frame_header_bytes;
+  const bool key_of_video = frame.video && (frame.header.flags & protocol::frame_flag::key);
+  const bool undisturbed =
+      std::all_of(on_the_way_.begin(), on_the_way_.end(),
+                  [](const Sent& sent) { return sent.telling; });
+  on_the_way_.push_back({.frame_seq = taken.frame_seq,
+                         .bytes = bytes,
+                         .at = now,
+                         .form = frame.form,
+                         .rendering = std::chrono::microseconds(frame.header.render_us),
+                         .telling = frame.moving && !key_of_video && undisturbed});
   // Turns keep their rhythm when one came a little late, but do not pile up over a pause.
   next_turn_ = std::max(next_turn_ + least_interval_, now + least_interval_ / 2);
   ++totals_.frames;
@@ -74,12 +84,22 @@ void ViewerPacer::measure(const Sent& sent, std::chrono::microseconds held, Cloc
   // A client's own figure is trusted only as far as it is possible.
   const auto sample = total - std::clamp(held, microseconds(0), total);
   totals_.round_trips.add(std::chrono::duration<double>(sample).count());
-  const double rate = static_cast<double>(sent.bytes) * 1e6 / static_cast<double>(total.count());
+  // A frame that waits behind another one begins its way when that has arrived.
+  const auto alone = now - std::max(sent.at, last_acknowledgement_);
+  last_acknowledgement_ = now;
+  const auto taken = std::max(duration_cast<microseconds>(alone), microseconds(1));
+  const double rate = static_cast<double>(sent.bytes) * 1e6 / static_cast<double>(taken.count());
   const bool first = goodput_ == 0.0;
   const double weight = first ? 1.0 : newest_weight;
   goodput_ += weight * (rate - goodput_);
   round_trip_ += microseconds(
       static_cast<std::int64_t>(weight * static_cast<double>((sample - round_trip_).count())));
+  if (!sent.telling) return;
+  link_.arrived({.bytes = sent.bytes,
+                 .form = sent.form,
+                 .delay = sample,
+                 .interval = std::max(sent.rendering, least_interval_)},
+                now);
 }
 
 void ViewerPacer::set_max_rate(double frames_per_second) {

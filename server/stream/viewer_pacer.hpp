@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "stream/encoded_frame.hpp"
+#include "stream/link_controller.hpp"
 #include "stream/histogram.hpp"
 
 namespace heliograph::stream {
@@ -78,14 +79,20 @@ class ViewerPacer {
   /// Smoothed time from sending to acknowledgement, less what the client says it held the frame;
   /// zero before the first.
   std::chrono::microseconds round_trip() const { return round_trip_; }
-  /// Smoothed bytes a second that were acknowledged while the window was in use; zero before any.
+  /// Smoothed bytes a second that reach the viewer while frames are on their way; zero before any.
   double goodput() const { return goodput_; }
+  /// Chooses the form of the moving picture by what the way to this viewer carries.
+  LinkController& link() { return link_; }
+  const LinkController& link() const { return link_; }
 
  private:
   struct Sent {
     std::uint32_t frame_seq;
     std::uint64_t bytes;
     Clock::time_point at;
+    Form form;
+    std::chrono::microseconds rendering;
+    bool telling;  // of the moving picture, with only such frames before it on the way
   };
 
   bool window_open() const { return on_the_way_.size() < ack_window; }
@@ -103,6 +110,8 @@ class ViewerPacer {
   PacerTotals totals_;
   std::chrono::microseconds round_trip_{0};
   double goodput_ = 0.0;
+  Clock::time_point last_acknowledgement_;
+  LinkController link_;
 };
 
 }  // namespace heliograph::stream

@@ -2,6 +2,8 @@
 
 import asyncio
 import base64
+import contextlib
+import socket
 import time
 
 from harness.pictures import decode_jpeg, decode_png, difference
@@ -191,6 +193,54 @@ class Memory(ServerTestCase):
     async def pictures(self, viewer, count):
         for _ in range(count):
             await viewer.next_frame()
+
+
+class NarrowWays(ServerTestCase):
+    """A viewer behind a relay that passes only so many bytes a second."""
+
+    async def relay(self, rate):
+        async def pump(reader, writer, limit):
+            with contextlib.suppress(ConnectionError):
+                while data := await reader.read(4096):
+                    writer.write(data)
+                    await writer.drain()
+                    if limit:
+                        await asyncio.sleep(len(data) / limit)
+            writer.close()
+
+        async def serve(reader, writer):
+            there = socket.socket()
+            # Small, so that what waits here is felt by the server.
+            there.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 8192)
+            there.connect((self.server.host, self.server.port))
+            server_reader, server_writer = await asyncio.open_connection(sock=there, limit=4096)
+            await asyncio.gather(pump(reader, server_writer, None),
+                                 pump(server_reader, writer, rate))
+        return await asyncio.start_server(serve, "127.0.0.1", 0)
+
+    async def test_pictures_become_smaller_until_they_come_in_time(self):
+        relay = await self.relay(rate=60_000)
+        port = relay.sockets[0].getsockname()[1]
+        async with relay:
+            async with Viewer(self.server, port=port) as viewer, viewer.moving(20):
+                await viewer.call("stream.configure",
+                                  {"width": 320, "height": 180, "quality": 100, "max_fps": 10})
+                await viewer.call("stats.subscribe", {"interval_ms": 200})
+                chosen = []
+                for _ in range(150):
+                    await asyncio.sleep(0.1)
+                    chosen = [note["params"] for note in viewer.notifications
+                              if note["method"] == "stats.frame"]
+                    if chosen and (chosen[-1]["scale"] < 1 or chosen[-1]["quality"] <= 70):
+                        break
+                last = chosen[-1]
+                print(f"quality {last['quality']}, scale {last['scale']}, "
+                      f"{chosen[0]['round_trip_ms']:.0f} -> {last['round_trip_ms']:.0f} ms ",
+                      end="")
+                self.assertLess((last["scale"], last["quality"]), (1, 100))
+                self.assertEqual(last["state"], "interactive")
+                self.assertLess(last["goodput"], 200_000)
+                await viewer.call("stream.configure", {"quality": 80, "max_fps": 60})
 
 
 class SlowViewers(ServerTestCase):

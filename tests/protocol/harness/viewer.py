@@ -41,8 +41,10 @@ class Frame:
 class Viewer:
     """Use with `async with`. Acknowledges every frame unless told otherwise."""
 
-    def __init__(self, server, *, acknowledge=True, greet=True, session=None, name=None):
+    def __init__(self, server, *, acknowledge=True, greet=True, session=None, name=None,
+                 port=None):
         self.server = server
+        self.url = f"ws://{server.host}:{port}/ws" if port else server.websocket_url
         self.acknowledge = acknowledge
         self.greet = greet
         self.session = session
@@ -56,7 +58,7 @@ class Viewer:
         self._next_id = 1
 
     async def __aenter__(self):
-        url = self.server.websocket_url + (f"?session={self.session}" if self.session else "")
+        url = self.url + (f"?session={self.session}" if self.session else "")
         self.socket = await websockets.connect(url, max_size=None,
                                                subprotocols=[SUBPROTOCOL], compression=None)
         self._reader = asyncio.create_task(self._read())

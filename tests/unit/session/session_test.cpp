@@ -236,7 +236,7 @@ std::shared_ptr<stream::EncodedFrame> encoded(std::uint32_t render_id, const str
 /// Plans, encodes and hands out picture `number`; gives the forms it was encoded in.
 std::vector<stream::Form> show(Audience& audience, std::uint32_t number,
                                Purpose purpose = Purpose::interactive) {
-  const EncodingPlan plan = audience.plan(number, purpose);
+  const EncodingPlan plan = audience.plan(number, purpose, 16 * 16);
   std::vector<stream::Form> forms;
   std::vector<stream::SharedFrame> frames;
   for (const stream::FormRequest& request : plan.forms) {
@@ -310,6 +310,19 @@ TEST_F(SessionTest, ANewcomerWhoWantsAnotherFormAwaitsThePicture) {
   EXPECT_EQ(show(audience, 3), (std::vector<stream::Form>{{.quality = 40}}));
   EXPECT_EQ(audience.take(viewer.id)->frame->header.quality, 40);
   EXPECT_FALSE(audience.take(first.id)) << "it has this picture";
+}
+
+TEST_F(SessionTest, WhoHasAPictureIsNotSentItAgainWithANewcomer) {
+  Audience& audience = session_.audience();
+  const Joined first = join();
+  show(audience, 1, Purpose::final);
+  ASSERT_TRUE(audience.take(first.id));
+  const Joined second = join();
+  ASSERT_TRUE(session_.configure_stream({.still = protocol::StillFormat::png}, second.id));
+  EXPECT_TRUE(audience.awaits(1));
+  show(audience, 1, Purpose::final);
+  EXPECT_FALSE(audience.take(first.id));
+  EXPECT_EQ(audience.take(second.id)->frame->header.codec, protocol::FrameCodec::png);
 }
 
 TEST_F(SessionTest, WhoPausesIsSentNothingAndResumesWithTheLatest) {

@@ -123,6 +123,22 @@ TEST_F(ViewerPacerTest, MeasuresTheWayWithoutTheClientsOwnTime) {
   EXPECT_NEAR(pacer_.goodput(), 1000.0 / 0.030, 300.0);
 }
 
+TEST_F(ViewerPacerTest, LateFramesOfTheMovingPictureLowerItsBudgetButStillsDoNot) {
+  const auto send = [&](bool moving) {
+    auto made = std::make_shared<EncodedFrame>();
+    made->payload.resize(50'000);
+    made->moving = moving;
+    pacer_.offer(made);
+    const auto taken = take();
+    now_ += milliseconds(150);
+    acknowledge(taken->frame_seq);
+  };
+  for (int i = 0; i < 20; ++i) send(false);
+  EXPECT_EQ(pacer_.link().choose({}, 1280 * 720), Form{});
+  for (int i = 0; i < 8; ++i) send(true);
+  EXPECT_LT(pacer_.link().budget(), 50'000);
+}
+
 TEST_F(ViewerPacerTest, AnImpossibleClientTimeDoesNotMakeTheWayNegative) {
   pacer_.offer(frame(1));
   const auto taken = take();

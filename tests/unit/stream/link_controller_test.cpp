@@ -1,0 +1,159 @@
+#include "stream/link_controller.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <deque>
+
+#include "stream/viewer_pacer.hpp"
+
+namespace heliograph::stream {
+namespace {
+
+using std::chrono::duration;
+using std::chrono::duration_cast;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+/// A link that passes `rate` bytes a second, one frame after another, and takes `way` there and
+/// back besides; a renderer that makes a picture every `interval` while the viewer has room.
+struct Link {
+  double rate;
+  microseconds way;
+};
+
+class LinkControllerTest : public testing::Test {
+ protected:
+  struct Sent {
+    std::uint64_t bytes;
+    Form form;
+    Clock::time_point at;
+    Clock::time_point back;
+  };
+
+  /// Lets time pass; gives the last second's frames.
+  std::vector<Sent> run(const Link& link, seconds time, Form wanted = {},
+                        microseconds interval = milliseconds(33)) {
+    const Clock::time_point end = now_ + time;
+    std::vector<Sent> last;
+    while (now_ < end) {
+      while (!on_the_way_.empty() && on_the_way_.front().back <= now_) {
+        const Sent& sent = on_the_way_.front();
+        controller_.arrived({.bytes = sent.bytes,
+                             .form = sent.form,
+                             .delay = duration_cast<microseconds>(sent.back - sent.at),
+                             .interval = interval},
+                            now_);
+        if (now_ > end - seconds(1)) last.push_back(sent);
+        on_the_way_.pop_front();
+      }
+      if (on_the_way_.size() < ack_window && now_ >= next_picture_) {
+        const Form form = controller_.choose(wanted, pixels_);
+        double bytes = whole_bytes_ * relative_bytes(form);
+        if (form.codec == protocol::StreamCodec::h264) {
+          bytes = std::min(0.2 * whole_bytes_, controller_.budget());
+        }
+        busy_until_ = std::max(busy_until_, now_) +
+                      duration_cast<Clock::duration>(duration<double>(bytes / link.rate));
+        on_the_way_.push_back({.bytes = static_cast<std::uint64_t>(bytes),
+                               .form = form,
+                               .at = now_,
+                               .back = busy_until_ + link.way});
+        next_picture_ = now_ + interval;
+      }
+      now_ += milliseconds(1);
+    }
+    return last;
+  }
+
+  static double longest_delay_ms(const std::vector<Sent>& frames) {
+    double longest = 0.0;
+    for (const Sent& sent : frames) {
+      longest = std::max(longest, duration<double, std::milli>(sent.back - sent.at).count());
+    }
+    return longest;
+  }
+
+  LinkController controller_;
+  std::deque<Sent> on_the_way_;
+  Clock::time_point now_ = Clock::time_point() + std::chrono::hours(1);
+  Clock::time_point next_picture_;
+  Clock::time_point busy_until_;
+  double whole_bytes_ = 100'000;
+  std::uint64_t pixels_ = 1280 * 720;
+};
+
+const Form whole{};
+
+TEST_F(LinkControllerTest, AFastLinkChangesNothing) {
+  const auto frames = run({.rate = 50e6, .way = milliseconds(2)}, seconds(10));
+  EXPECT_EQ(controller_.choose(whole, pixels_), whole);
+  EXPECT_GT(frames.size(), 28u);
+}
+
+TEST_F(LinkControllerTest, ALongWayIsNotTakenForANarrowOne) {
+  const auto frames = run({.rate = 50e6, .way = milliseconds(200)}, seconds(20));
+  EXPECT_EQ(controller_.choose(whole, pixels_), whole);
+  EXPECT_NEAR(static_cast<double>(controller_.base_delay().count()), 200e3, 15e3);
+  EXPECT_GE(frames.size(), 8u) << "a window of two every 200 ms";
+}
+
+TEST_F(LinkControllerTest, ANarrowLinkGetsSmallerPicturesThatComeSoon) {
+  const Link link{.rate = 1e6, .way = milliseconds(20)};
+  const auto before = run(link, seconds(1));
+  const auto frames = run(link, seconds(15));
+  EXPECT_LT(longest_delay_ms(frames), 0.5 * longest_delay_ms(before));
+  EXPECT_GT(frames.size(), 25u) << "every picture that is rendered";
+  double bytes = 0.0;
+  for (const Sent& sent : frames) bytes += static_cast<double>(sent.bytes);
+  EXPECT_GT(bytes, 0.4 * link.rate) << "most of the link is used";
+}
+
+TEST_F(LinkControllerTest, ALinkThatBecomesNarrowIsFollowedSoonAndBackAgain) {
+  run({.rate = 50e6, .way = milliseconds(10)}, seconds(5));
+  run({.rate = 1e6, .way = milliseconds(10)}, seconds(4));
+  EXPECT_LT(relative_bytes(controller_.choose(whole, pixels_)), 0.6);
+  run({.rate = 50e6, .way = milliseconds(10)}, seconds(30));
+  EXPECT_EQ(controller_.choose(whole, pixels_), whole);
+}
+
+TEST_F(LinkControllerTest, AFullQueueIsNeverTakenForTheLengthOfTheWay) {
+  // So narrow that the smallest pictures do not fit: late for ever.
+  run({.rate = 60e3, .way = milliseconds(20)}, std::chrono::minutes(2));
+  EXPECT_LT(controller_.base_delay(), milliseconds(120));
+  EXPECT_LE(controller_.choose(whole, pixels_).scale, 50);
+}
+
+TEST_F(LinkControllerTest, ChangesAreRareOnceTheFormIsFound) {
+  const Link link{.rate = 1.2e6, .way = milliseconds(15)};
+  run(link, seconds(20));
+  int changes = 0;
+  Form last = controller_.choose(whole, pixels_);
+  for (int second = 0; second < 20; ++second) {
+    run(link, seconds(1));
+    const Form form = controller_.choose(whole, pixels_);
+    changes += form != last ? 1 : 0;
+    last = form;
+  }
+  EXPECT_LE(changes, 8);
+}
+
+TEST_F(LinkControllerTest, AVideoIsGivenABudgetBeforeItIsMadeSmaller) {
+  Form video = whole;
+  video.codec = protocol::StreamCodec::h264;
+  run({.rate = 400e3, .way = milliseconds(20)}, seconds(10), video);
+  EXPECT_LT(controller_.budget(), 20'000);
+  EXPECT_GT(controller_.budget(), 4'000);
+  EXPECT_EQ(controller_.choose(video, pixels_).scale, 100);
+  EXPECT_NE(controller_.choose(video, pixels_), video) << "those on better ways must not share it";
+}
+
+TEST_F(LinkControllerTest, WhoAsksForLessNeverGetsMore) {
+  run({.rate = 500e3, .way = milliseconds(20)}, seconds(10));
+  const Form low{.quality = 8};
+  EXPECT_LE(controller_.choose(low, pixels_).quality, 8);
+}
+
+}  // namespace
+}  // namespace heliograph::stream
