@@ -31,6 +31,9 @@ struct ServeOptions {
   std::uint16_t port = 8080;
   std::string scene;
   std::vector<std::filesystem::path> scene_roots;
+  std::string uploads;  // folder; empty: nothing can be uploaded
+  std::uint64_t max_upload_bytes = 256ull << 20;
+  std::uint64_t upload_quota = 4ull << 30;
   std::string environment;
   std::optional<std::uint32_t> width;  // absent: as the device can bear
   std::optional<std::uint32_t> height;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -97,6 +98,15 @@ net::ServerOptions server_options(const ServeOptions& options) {
           .drain_deadline = milliseconds(options.drain_deadline)};
 }
 
+std::unique_ptr<session::UploadStore> upload_store(const ServeOptions& options) {
+  if (options.uploads.empty()) return nullptr;
+  return std::make_unique<session::UploadStore>(
+      session::UploadOptions{.folder = options.uploads,
+                             .max_bytes = options.max_upload_bytes,
+                             .quota = options.upload_quota,
+                             .import_limits = options.limits});
+}
+
 /// Why the first scene could not be shown. Written by the loading thread, read after it.
 class StartFailure {
  public:
@@ -117,13 +127,18 @@ class StartFailure {
 /// Ends the threads of the host while those who get its answers still exist.
 class HostStop {
  public:
-  explicit HostStop(session::SessionHost& host) : host_(host) {}
-  ~HostStop() { host_.stop(); }
+  HostStop(session::SessionHost& host, session::UploadStore* uploads)
+      : host_(host), uploads_(uploads) {}
+  ~HostStop() {
+    if (uploads_) uploads_->stop();
+    host_.stop();
+  }
   HostStop(const HostStop&) = delete;
   HostStop& operator=(const HostStop&) = delete;
 
  private:
   session::SessionHost& host_;
+  session::UploadStore* uploads_;
 };
 
 }  // namespace
@@ -131,6 +146,8 @@ class HostStop {
 int run(const ServeOptions& options) {
   set_up_log(options.log);
   session::HostOptions hosting = host_options(options);
+  const std::unique_ptr<session::UploadStore> uploads = upload_store(options);
+  if (uploads) hosting.scene_roots.push_back(uploads->scenes());
   const std::string scene =
       choose_scene(session::SceneCatalogue(hosting.scene_roots), options.scene);
 
@@ -139,7 +156,9 @@ int run(const ServeOptions& options) {
                protocol::enum_name(engine.tracer()));
   if (!options.width && !options.height) fit_size(hosting.session, engine.device());
   session::SessionHost host(engine, hosting);
-  net::Server server(host, server_options(options));
+  net::ServerOptions serving = server_options(options);
+  if (uploads) serving.router.uploads = uploads->scenes();
+  net::Server server(host, serving, uploads.get());
 
   host.on_first_frame([url = server.url(), metrics = server.metrics_url()] {
     std::printf("listening on %s\n", url.c_str());
@@ -147,7 +166,7 @@ int run(const ServeOptions& options) {
     std::fflush(stdout);
   });
   StartFailure failure;
-  const HostStop stop_first(host);
+  const HostStop stop_first(host, uploads.get());
   host.load_scene(host.sessions().main(), {.name = scene}, {},
                   [&](const protocol::Result<protocol::SceneInfo>& loaded) {
                     if (loaded) return;

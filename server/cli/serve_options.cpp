@@ -160,6 +160,19 @@ void add_scene_options(CLI::App& command, ServeOptions& options) {
       ->capture_default_str()
       ->group(group);
   add_environment_option(command, options.environment);
+  command
+      .add_option("--uploads", options.uploads,
+                  "Folder for scenes that clients may send with PUT /api/v1/scenes/NAME [none may]")
+      ->type_name("FOLDER")
+      ->group(group);
+  command.add_option("--max-upload-bytes", options.max_upload_bytes, "Most bytes of one of them")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--upload-quota", options.upload_quota, "Most bytes of them together")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->group(group);
 }
 
 void add_log_options(CLI::App& command, LogOptions& options) {

@@ -13,6 +13,7 @@
 #include "net/router.hpp"
 #include "net/tls.hpp"
 #include "session/session_host.hpp"
+#include "session/upload_store.hpp"
 
 // What the server and its connections share. For the sources of this folder only: it brings Boost.
 
@@ -29,6 +30,11 @@ constexpr int send_buffer_bytes = 256 * 1024;
 constexpr int unsent_bytes = 64 * 1024;
 constexpr double calls_per_second = 500.0;
 constexpr double calls_at_once = 1000.0;
+// Who goes on after this many refusals is let go.
+constexpr double refusals_per_second = 50.0;
+constexpr double refusals_at_once = 1000.0;
+constexpr double pings_per_second = 50.0;
+constexpr double pings_at_once = 200.0;
 
 /// Registers a connection for the end of the server.
 class Connection {
@@ -47,6 +53,7 @@ struct ServerContext {
   const AccessControl& access;
   Router& router;
   Traffic& traffic;
+  session::UploadStore* uploads;                // null: nothing can be uploaded
   std::unique_ptr<TlsCertificate> certificate;  // null: no TLS
   std::function<void()> on_last_left;           // called while ending, when nobody is left
   std::set<Connection*> connections;

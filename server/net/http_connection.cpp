@@ -6,6 +6,7 @@
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <cctype>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
@@ -53,6 +54,11 @@ HttpRequest to_request(http::request<http::string_body>&& message) {
 std::optional<HttpResponse> upgrade_refusal(const HttpRequest& request,
                                             const session::SessionRegistry& sessions) {
   if (request.path != "/ws") return text_response(404, "The WebSocket is at /ws.");
+  // 16 bytes in base64, RFC 6455 section 4.1. The version is the WebSocket's own matter.
+  const std::string_view key = request.header("sec-websocket-key");
+  if (key.size() != 24 || !key.ends_with("==")) {
+    return text_response(400, "Sec-WebSocket-Key must be 16 bytes in base64.");
+  }
   const auto offered = header_elements(request.header("sec-websocket-protocol"));
   if (std::find(offered.begin(), offered.end(), protocol::protocol_name) == offered.end()) {
     return text_response(400,
@@ -74,6 +80,23 @@ std::optional<std::string> picture_stream_address(const HttpRequest& request) {
     return std::nullopt;
   }
   return std::string(path.substr(before.size(), path.size() - around));
+}
+
+constexpr std::chrono::minutes longest_upload{10};
+
+/// NAME of "/api/v1/scenes/NAME"; empty for other paths.
+std::string_view uploaded_name(std::string_view path) {
+  constexpr std::string_view prefix = "/api/v1/scenes/";
+  return path.starts_with(prefix) ? path.substr(prefix.size()) : std::string_view();
+}
+
+HttpResponse upload_response(const session::UploadedScene& scene) {
+  HttpResponse response = json_response(nlohmann::json{{"name", scene.name},
+                                                       {"bytes", scene.bytes},
+                                                       {"triangles", scene.triangles}}
+                                            .dump());
+  response.status = 201;
+  return response;
 }
 
 class HttpConnection : public Connection, public std::enable_shared_from_this<HttpConnection> {
@@ -115,13 +138,91 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   void read() {
     parser_.emplace();
     parser_->header_limit(largest_request_head);
-    parser_->body_limit(context_.host.dispatch_limits().max_message_bytes);
+    parser_->body_limit(context_.uploads ? context_.uploads->max_bytes() : largest_body());
     // The first request must come soon; later ones may take their time.
     stream_.next_layer().expires_after(std::exchange(first_, false) ? handshake_timeout
                                                                     : idle_timeout);
+    http::async_read_header(stream_, buffer_, *parser_,
+                            [self = shared_from_this()](error_code error, std::size_t) {
+                              self->received_header(error);
+                            });
+  }
+
+  std::size_t largest_body() const { return context_.host.dispatch_limits().max_message_bytes; }
+
+  void received_header(error_code error) {
+    if (error) return received(error);
+    if (context_.uploads && door_ == Door::main && parser_->get().method() == http::verb::put) {
+      return begin_upload();
+    }
+    if (parser_->content_length().value_or(0) > largest_body()) {
+      return received(http::error::body_limit);
+    }
+    parser_->body_limit(largest_body());
     http::async_read(
         stream_, buffer_, *parser_,
-        [self = shared_from_this()](error_code error, std::size_t) { self->received(error); });
+        [self = shared_from_this()](error_code failed, std::size_t) { self->received(failed); });
+  }
+
+  /// Lets the body go to a file, if it may.
+  void begin_upload() {
+    keep_alive_ = false;
+    answering_ = true;
+    HttpRequest request = to_request(http::request<http::string_body>(parser_->get()));
+    request.peer = stream_.peer();
+    request.secure = stream_.is_secure();
+    const auto size = parser_->content_length();
+    if (auto refused = upload_refusal(request, size.has_value())) return send(*std::move(refused));
+    auto begun = context_.uploads->begin(std::string(uploaded_name(request.path)), *size);
+    if (!begun) return send(error_response(begun.error()));
+    upload_ = *begun;
+    upload_parser_.emplace(std::move(*parser_));
+    error_code error;
+    upload_parser_->get().body().open(upload_->path().c_str(), beast::file_mode::write, error);
+    if (error) return send(error_response(protocol::error::internal()));
+    upload_deadline_ = std::chrono::steady_clock::now() + longest_upload;
+    receive_upload();
+  }
+
+  std::optional<HttpResponse> upload_refusal(const HttpRequest& request, bool has_length) const {
+    if (context_.certificate && !request.secure) return text_response(400, "Use HTTPS.");
+    Admission admission = context_.access.admit(request);
+    if (admission.refusal) return *std::move(admission.refusal);
+    if (admission.role != Role::control) {
+      return text_response(403, "This token lets watch but not upload.");
+    }
+    if (context_.draining) return come_back_later("The server is shutting down.");
+    if (uploaded_name(request.path).empty()) {
+      return text_response(404, "Scenes go to /api/v1/scenes/NAME.");
+    }
+    if (!has_length) return text_response(411, "An upload must say its length.");
+    return context_.router.name_conflict(uploaded_name(request.path));
+  }
+
+  void receive_upload() {
+    stream_.next_layer().expires_after(handshake_timeout);
+    http::async_read_some(stream_, buffer_, *upload_parser_,
+                          [self = shared_from_this()](error_code error, std::size_t) {
+                            self->received_upload(error);
+                          });
+  }
+
+  void received_upload(error_code error) {
+    const bool late = std::chrono::steady_clock::now() > upload_deadline_;
+    if (error || late) return upload_.reset();
+    if (!upload_parser_->is_done()) return receive_upload();
+    upload_parser_->get().body().close();
+    stream_.next_layer().expires_never();
+    context_.uploads->finish(
+        std::exchange(upload_, nullptr),
+        [self = shared_from_this()](const protocol::Result<session::UploadedScene>& accepted) {
+          HttpResponse response = accepted ? upload_response(*accepted)
+                                           : error_response(accepted.error());
+          asio::post(self->stream_.get_executor(),
+                     [self, response = std::move(response)]() mutable {
+                       self->send(std::move(response));
+                     });
+        });
   }
 
   void received(error_code error) {
@@ -242,6 +343,9 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   ClientStream stream_;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
+  std::shared_ptr<session::UploadStore::Incoming> upload_;
+  std::optional<http::request_parser<http::file_body>> upload_parser_;
+  std::chrono::steady_clock::time_point upload_deadline_;
   http::response<http::string_body> response_;
   RateLimit calls_;
   bool first_ = true;

@@ -25,21 +25,6 @@ HttpResponse method_not_allowed(std::string allowed) {
                      allowed);
 }
 
-HttpResponse error_response(const protocol::Error& error) {
-  using protocol::ErrorCode;
-  switch (error.code) {
-    case ErrorCode::not_found:
-      return text_response(404, error.message);
-    case ErrorCode::invalid_params:
-      return text_response(400, error.message);
-    case ErrorCode::full:
-    case ErrorCode::not_ready:
-      return text_response(503, error.message);
-    default:
-      return text_response(500, error.message);
-  }
-}
-
 std::optional<HttpResponse> asset(const HttpRequest& request) {
   const web::Asset* file = web::find_asset(request.path);
   if (!file) return std::nullopt;
@@ -125,6 +110,23 @@ Headers protecting_headers(const RouterOptions& options) {
 
 }  // namespace
 
+HttpResponse error_response(const protocol::Error& error) {
+  using protocol::ErrorCode;
+  switch (error.code) {
+    case ErrorCode::not_found:
+      return text_response(404, error.message);
+    case ErrorCode::invalid_params:
+      return text_response(400, error.message);
+    case ErrorCode::too_large:
+      return text_response(413, error.message);
+    case ErrorCode::full:
+    case ErrorCode::not_ready:
+      return text_response(503, error.message);
+    default:
+      return text_response(500, error.message);
+  }
+}
+
 HttpResponse come_back_later(std::string_view why) {
   return with_header(text_response(503, why), "Retry-After", "1");
 }
@@ -163,6 +165,12 @@ void Router::handle(const HttpRequest& request, Reply reply) const {
   HttpResponse response = answer_get(request);
   if (request.method == "HEAD") response.body.clear();
   reply(std::move(response));
+}
+
+std::optional<HttpResponse> Router::name_conflict(std::string_view scene) const {
+  const auto found = host_.catalogue().find(std::string(scene));
+  if (!found || found->root == options_.uploads) return std::nullopt;
+  return text_response(409, "Another scene has this name.");
 }
 
 HttpResponse Router::answer_measurer(const HttpRequest& request) const {

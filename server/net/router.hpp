@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -18,6 +19,7 @@ namespace heliograph::net {
 struct RouterOptions {
   std::vector<std::string> frame_ancestors;  // origins whose pages may embed ours, or 'self'
   bool metrics = true;                       // at /metrics
+  std::filesystem::path uploads;             // where uploaded scenes are; empty: there are none
 };
 
 /// Answers everything over HTTP but the WebSocket: the web client, JSON-RPC, single pictures, the
@@ -31,6 +33,8 @@ class Router {
 
   /// Calls `reply` once, here or on another thread.
   void handle(const HttpRequest& request, Reply reply) const;
+  /// Why a scene of this name cannot be uploaded: one that was not is called so.
+  std::optional<HttpResponse> name_conflict(std::string_view scene) const;
   /// What the door for measuring tools answers: metrics and health, to everybody.
   HttpResponse answer_measurer(const HttpRequest& request) const;
   /// Every response's protection against misuse of the page: content security policy and the like.
@@ -55,6 +59,7 @@ class Router {
   std::atomic<bool> draining_ = false;
 };
 
+HttpResponse error_response(const protocol::Error& error);
 /// The response while the server shuts down: come back in a while.
 HttpResponse come_back_later(std::string_view why);
 

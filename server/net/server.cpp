@@ -16,6 +16,7 @@
 
 #include "net/connection.hpp"
 #include "net/listener.hpp"
+#include "session/event_log.hpp"
 
 namespace heliograph::net {
 
@@ -40,7 +41,7 @@ std::unique_ptr<TlsCertificate> certificate(const ServerOptions& options) {
 }  // namespace
 
 struct Server::State {
-  State(session::SessionHost& host, const ServerOptions& settings)
+  State(session::SessionHost& host, const ServerOptions& settings, session::UploadStore* uploads)
       : options(settings),
         access(options.access),
         router(host, access, traffic, options.router),
@@ -51,6 +52,7 @@ struct Server::State {
                 .access = access,
                 .router = router,
                 .traffic = traffic,
+                .uploads = uploads,
                 .certificate = certificate(options),
                 .on_last_left = [this] { io.stop(); },
                 .connections = {}},
@@ -77,8 +79,8 @@ struct Server::State {
       ++traffic.connections_refused;
       // One line for each would let who floods fill the disk too.
       if (refusals.allow(RateLimit::Clock::now())) {
-        spdlog::warn("a connection from {} was refused: {} are open", peer.address().to_string(),
-                     room.open());
+        session::log_warning({.client = peer.address().to_string()},
+                             fmt::format("a connection was refused: {} are open", room.open()));
       }
       return;
     }
@@ -155,8 +157,9 @@ struct Server::State {
   asio::signal_set reload_signal{io};
 };
 
-Server::Server(session::SessionHost& host, const ServerOptions& options)
-    : state_(std::make_unique<State>(host, options)) {}
+Server::Server(session::SessionHost& host, const ServerOptions& options,
+               session::UploadStore* uploads)
+    : state_(std::make_unique<State>(host, options, uploads)) {}
 
 Server::~Server() = default;
 

@@ -12,6 +12,7 @@
 #include "net/access_control.hpp"
 #include "net/router.hpp"
 #include "session/session_host.hpp"
+#include "session/upload_store.hpp"
 
 namespace heliograph::net {
 
@@ -40,7 +41,8 @@ struct ServerOptions {
 class Server {
  public:
   /// Opens the ports. @throws std::runtime_error, std::invalid_argument
-  Server(session::SessionHost& host, const ServerOptions& options);
+  Server(session::SessionHost& host, const ServerOptions& options,
+         session::UploadStore* uploads = nullptr);
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;

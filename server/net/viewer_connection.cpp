@@ -1,5 +1,3 @@
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -17,6 +15,7 @@
 #include "net/connection.hpp"
 #include "net/rate_limit.hpp"
 #include "protocol/messages.hpp"
+#include "session/event_log.hpp"
 #include "session/viewer_link.hpp"
 
 namespace heliograph::net {
@@ -52,7 +51,9 @@ class ViewerConnection : public Connection,
         socket_(std::move(stream)),
         close_deadline_(socket_.get_executor()),
         patience_(socket_.get_executor()),
-        calls_(calls_per_second, calls_at_once, RateLimit::Clock::now()) {
+        calls_(calls_per_second, calls_at_once, RateLimit::Clock::now()),
+        refusals_(refusals_per_second, refusals_at_once, RateLimit::Clock::now()),
+        pings_(pings_per_second, pings_at_once, RateLimit::Clock::now()) {
     context_.enter(*this);
   }
   ~ViewerConnection() override { context_.leave(*this); }
@@ -69,6 +70,12 @@ class ViewerConnection : public Connection,
     socket_.read_message_max(context_.host.dispatch_limits().max_message_bytes);
     // One WebSocket frame per picture, written from where it lies.
     socket_.auto_fragment(false);
+    socket_.control_callback([this](websocket::frame_type kind, beast::string_view) {
+      if (kind == websocket::frame_type::ping && !pings_.allow(RateLimit::Clock::now())) {
+        flooded("too many pings");
+      }
+    });
+    client_ = context_.access.client_of(request);
 
     handshake_.method(http::verb::get);
     handshake_.target(request.path);
@@ -118,7 +125,8 @@ class ViewerConnection : public Connection,
       return read();
     }
     viewer_ = *joined;
-    spdlog::info("session {}: viewer {} connected", session_, viewer_);
+    session::log_info({.session = session_, .viewer = viewer_, .client = client_},
+                      view_only_ ? "a viewer connected, to watch only" : "a viewer connected");
     if (context_.ending) shut_down();
     read();
   }
@@ -151,8 +159,19 @@ class ViewerConnection : public Connection,
     } else {
       ++context_.traffic.calls_refused;
       enqueue(rate_limited, {});
+      if (!refusals_.allow(RateLimit::Clock::now())) flooded("too many messages");
     }
     read();
+  }
+
+  /// Lets go of somebody who does not heed the limits. From within the control callback too, where
+  /// the close frame must wait until Beast is done with what it reads.
+  void flooded(const char* what) {
+    if (closing_ || std::exchange(flooded_, true)) return;
+    session::log_warning({.viewer = viewer_, .client = client_}, what);
+    asio::post(socket_.get_executor(), [self = shared_from_this(), what] {
+      self->close(websocket::close_code::policy_error, what);
+    });
   }
 
   void enqueue(std::string text, std::string key) {
@@ -250,7 +269,7 @@ class ViewerConnection : public Connection,
     beast::get_lowest_layer(socket_).socket().close(ignored);
     if (viewer_.empty()) return;
     context_.host.sessions().leave(viewer_);
-    spdlog::info("viewer {} left: {}", viewer_, error.message());
+    session::log_info({.viewer = viewer_, .client = client_}, "a viewer left: " + error.message());
     viewer_.clear();
   }
 
@@ -263,6 +282,10 @@ class ViewerConnection : public Connection,
   asio::steady_timer patience_;  // runs while a frame is on its way
   bool patience_runs_ = false;
   RateLimit calls_;
+  RateLimit refusals_;
+  RateLimit pings_;
+  bool flooded_ = false;
+  std::string client_;  // address
   beast::flat_buffer incoming_;
   std::string viewer_;
   std::deque<Message> waiting_;

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "protocol/result.hpp"
+#include "scene/import.hpp"
+#include "session/worker.hpp"
+
+namespace heliograph::session {
+
+struct UploadOptions {
+  std::filesystem::path folder;
+  std::uint64_t max_bytes = 256ull << 20;  // of one file
+  std::uint64_t quota = 4ull << 30;        // of all files together
+  scene::ImportLimits import_limits;
+};
+
+struct UploadedScene {
+  std::string name;
+  std::uint64_t bytes = 0;
+  std::uint64_t triangles = 0;
+};
+
+/// Scenes that clients send. One is checked by importing it whole, away from all others, and only
+/// then moved, in one step, to where the catalogue finds it. Thread safe.
+class UploadStore {
+ public:
+  /// Makes the folder with what it needs and clears what an earlier process left unfinished.
+  /// @throws std::runtime_error when that fails
+  explicit UploadStore(UploadOptions options);
+
+  /// Where accepted scenes are: a root for the catalogue.
+  const std::filesystem::path& scenes() const { return scenes_; }
+  std::uint64_t max_bytes() const { return options_.max_bytes; }
+
+  /// A file that is being received. What it holds room for is given back at its end, and what was
+  /// not accepted is removed.
+  class Incoming;
+  /// Whether a scene of this name and size may come; its bytes go to `path()` then.
+  protocol::Result<std::shared_ptr<Incoming>> begin(const std::string& name, std::uint64_t bytes);
+  /// Checks what was received, on a thread of its own, and puts it into place.
+  void finish(std::shared_ptr<Incoming> incoming,
+              std::function<void(protocol::Result<UploadedScene>)> done);
+  /// Ends the thread; `done` is not called any more.
+  void stop() { checker_.stop(); }
+
+ private:
+  protocol::Result<UploadedScene> accept(const Incoming& incoming);
+  std::uint64_t bytes_kept() const;
+
+  const UploadOptions options_;
+  std::filesystem::path scenes_;
+  std::filesystem::path incoming_;
+  std::mutex mutex_;
+  std::uint64_t promised_bytes_ = 0;  // to files that are being received
+  std::uint64_t uploads_so_far_ = 0;
+  Worker checker_;
+};
+
+class UploadStore::Incoming {
+ public:
+  Incoming(UploadStore& store, std::string name, std::uint64_t bytes,
+           std::filesystem::path folder);
+  ~Incoming();
+  Incoming(const Incoming&) = delete;
+  Incoming& operator=(const Incoming&) = delete;
+
+  const std::string& name() const { return name_; }
+  std::filesystem::path path() const { return folder_ / (name_ + ".glb"); }
+
+ private:
+  UploadStore& store_;
+  const std::string name_;
+  const std::uint64_t bytes_;
+  const std::filesystem::path folder_;
+};
+
+}  // namespace heliograph::session
