@@ -116,6 +116,11 @@ CLI::App* add_health(CLI::App& app, HealthOptions& options) {
   command->add_option("--url", options.url, "Address to ask")
       ->capture_default_str()
       ->envname("HELIOGRAPH_HEALTH_URL");
+  command
+      ->add_option("--tls-ca", options.authorities,
+                   "Certificates (PEM) to trust with https:// [the system's; on loopback any]")
+      ->type_name("FILE")
+      ->check(CLI::ExistingFile);
   command->footer(health_examples);
   return command;
 }

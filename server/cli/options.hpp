@@ -96,6 +96,7 @@ struct SchemaOptions {
 
 struct HealthOptions {
   std::string url = "http://127.0.0.1:8080/health/ready";
+  std::string authorities;  // file; empty: those of the system
 };
 
 /// What remains to be done when parsing was all there is to it: text was asked for, or the command

@@ -10,7 +10,10 @@ struct HealthAnswer {
   std::string text;  // one line for people
 };
 
-/// Asks `url` ("http://127.0.0.1:8080/health/ready") and waits at most `patience`.
-HealthAnswer ask_health(const std::string& url, std::chrono::milliseconds patience);
+/// Asks `url` ("http://127.0.0.1:8080/health/ready") and waits at most `patience`. Over HTTPS the
+/// server's certificate must be signed by one in the file `authorities`, or, if it is empty, by one
+/// that the system trusts; on loopback addresses it is then not looked at.
+HealthAnswer ask_health(const std::string& url, const std::string& authorities,
+                        std::chrono::milliseconds patience);
 
 }  // namespace heliograph::net

@@ -83,6 +83,7 @@ std::optional<std::string> picture_stream_address(const HttpRequest& request) {
 }
 
 constexpr std::chrono::minutes longest_upload{10};
+constexpr std::size_t discarded_at_once = 16 * 1024;
 
 /// NAME of "/api/v1/scenes/NAME"; empty for other paths.
 std::string_view uploaded_name(std::string_view path) {
@@ -122,7 +123,10 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
 
   void shut_down() override {
     leaving_ = true;
-    if (!answering_) close();
+    if (answering_) return;
+    // A read is under way, which ends by this.
+    error_code ignored;
+    stream_.next_layer().socket().shutdown(asio::ip::tcp::socket::shutdown_both, ignored);
   }
 
  private:
@@ -172,7 +176,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     request.peer = stream_.peer();
     request.secure = stream_.is_secure();
     const auto size = parser_->content_length();
-    if (auto refused = upload_refusal(request, size.has_value())) return send(*std::move(refused));
+    if (auto refused = upload_refusal(request, size)) return send(*std::move(refused));
     auto begun = context_.uploads->begin(std::string(uploaded_name(request.path)), *size);
     if (!begun) return send(error_response(begun.error()));
     upload_ = *begun;
@@ -184,7 +188,8 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     receive_upload();
   }
 
-  std::optional<HttpResponse> upload_refusal(const HttpRequest& request, bool has_length) const {
+  std::optional<HttpResponse> upload_refusal(const HttpRequest& request,
+                                             boost::optional<std::uint64_t> length) const {
     if (context_.certificate && !request.secure) return text_response(400, "Use HTTPS.");
     Admission admission = context_.access.admit(request);
     if (admission.refusal) return *std::move(admission.refusal);
@@ -195,7 +200,8 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     if (uploaded_name(request.path).empty()) {
       return text_response(404, "Scenes go to /api/v1/scenes/NAME.");
     }
-    if (!has_length) return text_response(411, "An upload must say its length.");
+    if (!length) return text_response(411, "An upload must say its length.");
+    if (*length == 0) return text_response(400, "There is nothing in this upload.");
     return context_.router.name_conflict(uploaded_name(request.path));
   }
 
@@ -327,15 +333,26 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   }
 
   void close() {
+    stream_.next_layer().expires_after(closing_timeout);
     if (!stream_.is_secure()) {
       error_code ignored;
-      stream_.next_layer().socket().shutdown(asio::ip::tcp::socket::shutdown_both, ignored);
-      return;
+      stream_.next_layer().socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+      return discard();
     }
-    stream_.next_layer().expires_after(closing_timeout);
     async_teardown(beast::role_type::server, stream_, [self = shared_from_this()](error_code) {
       self->stream_.next_layer().close();
     });
+  }
+
+  /// Reads on for a while: closing on what nobody has read resets the connection, and the answer
+  /// with it.
+  void discard() {
+    buffer_.clear();
+    stream_.async_read_some(buffer_.prepare(discarded_at_once),
+                            [self = shared_from_this()](error_code error, std::size_t) {
+                              if (!error) return self->discard();
+                              self->stream_.next_layer().close();
+                            });
   }
 
   ServerContext& context_;

@@ -34,10 +34,6 @@ std::shared_ptr<ssl::context> read(const TlsFiles& files) {
   check(error, "the certificate", files.certificate);
   context->use_private_key_file(files.key.string(), ssl::context::pem, error);
   check(error, "the key", files.key);
-  if (SSL_CTX_check_private_key(context->native_handle()) != 1) {
-    throw std::runtime_error("the key " + files.key.string() + " is not that of the certificate " +
-                             files.certificate.string());
-  }
   return context;
 }
 

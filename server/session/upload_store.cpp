@@ -46,16 +46,15 @@ std::string_view header_fault(const fs::path& file) {
 
 UploadStore::UploadStore(UploadOptions options)
     : options_(std::move(options)), checker_("upload checker", waiting_checks) {
-  std::error_code error;
-  fs::create_directories(options_.folder / "scenes", error);
-  const fs::path folder = fs::canonical(options_.folder, error);
-  scenes_ = folder / "scenes";
-  incoming_ = folder / "incoming";
-  fs::remove_all(incoming_, error);
-  fs::create_directories(incoming_, error);
-  if (error || !fs::is_directory(scenes_, error)) {
+  try {
+    fs::create_directories(options_.folder / "scenes");
+    scenes_ = fs::canonical(options_.folder / "scenes");
+    incoming_ = scenes_.parent_path() / "incoming";
+    fs::remove_all(incoming_);
+    fs::create_directories(incoming_);
+  } catch (const fs::filesystem_error& failure) {
     throw std::runtime_error("the folder for uploads, " + options_.folder.string() +
-                             ", cannot be written");
+                             ", cannot be used: " + failure.code().message());
   }
 }
 

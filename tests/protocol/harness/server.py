@@ -6,6 +6,7 @@ import os
 import queue
 import re
 import signal
+import ssl
 import subprocess
 import tempfile
 import threading
@@ -18,7 +19,9 @@ START_TIMEOUT = 120
 class Server:
     """A running server on a free port of the loopback interface."""
 
-    def __init__(self, *arguments, scenes=None, environment=None):
+    def __init__(self, *arguments, scenes=None, environment=None, certificate=None):
+        """`certificate` is the one to trust where the server speaks TLS."""
+        self.tls = ssl.create_default_context(cafile=certificate) if certificate else None
         self.log = tempfile.TemporaryFile(mode="w+")
         command = [os.environ["HELIOGRAPH_BINARY"], "serve", "--port", "0", "--width", "160",
                    "--height", "90", "--set", "accumulation.max_samples=4",
@@ -30,7 +33,7 @@ class Server:
         except Exception:
             self.process.kill()
             raise
-        self.host, self.port = re.fullmatch(r"http://(.+):(\d+)/", self.url).groups()
+        self.host, self.port = re.fullmatch(r"https?://(.+):(\d+)/", self.url).groups()
         self.port = int(self.port)
 
     def _wait_for_address(self):
@@ -39,7 +42,7 @@ class Server:
                                   daemon=True)
         reader.start()
         line = lines.get(timeout=START_TIMEOUT)
-        found = re.match(r"listening on (http://\S+)", line)
+        found = re.match(r"listening on (https?://\S+)", line)
         if not found:
             raise RuntimeError(f"the server said {line!r} and logged:\n{self.log_text()}")
         return found.group(1)
@@ -54,7 +57,7 @@ class Server:
 
     @property
     def websocket_url(self):
-        return f"ws://{self.host}:{self.port}/ws"
+        return f"{'wss' if self.tls else 'ws'}://{self.host}:{self.port}/ws"
 
     def memory_bytes(self):
         with open(f"/proc/{self.process.pid}/statm", encoding="ascii") as file:
@@ -67,7 +70,9 @@ class Server:
 
     def request(self, method, path, body=None, headers=None, timeout=60):
         """One HTTP exchange: status, headers with lower-case names, body."""
-        connection = http.client.HTTPConnection(self.host, self.port, timeout=timeout)
+        connection = (
+            http.client.HTTPSConnection(self.host, self.port, timeout=timeout, context=self.tls)
+            if self.tls else http.client.HTTPConnection(self.host, self.port, timeout=timeout))
         try:
             connection.request(method, path, body, headers or {})
             response = connection.getresponse()

@@ -59,7 +59,7 @@ class Viewer:
 
     async def __aenter__(self):
         url = self.url + (f"?session={self.session}" if self.session else "")
-        self.socket = await websockets.connect(url, max_size=None,
+        self.socket = await websockets.connect(url, max_size=None, ssl=self.server.tls,
                                                subprotocols=[SUBPROTOCOL], compression=None)
         self._reader = asyncio.create_task(self._read())
         if self.greet:

@@ -1,0 +1,50 @@
+// A viewer by the library ws: greets, asks, pings, looks at a picture, closes. Prints what it saw
+// as one line of JSON.
+import WebSocket from "ws";
+
+const socket = new WebSocket(process.argv[2], ["heliograph.v1"], { perMessageDeflate: true });
+const saw = { pictures: 0 };
+
+function call(id, method, params = {}) {
+  socket.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
+}
+
+const failure = setTimeout(() => {
+  console.log(JSON.stringify({ ...saw, error: "timed out" }));
+  process.exit(1);
+}, 30000);
+
+socket.on("upgrade", (response) => {
+  saw.status = response.statusCode;
+});
+socket.on("open", () => {
+  saw.protocol = socket.protocol;
+  saw.extensions = socket.extensions;
+  call(1, "hello", { client: "ws" });
+  call(2, "rpc.discover");
+  socket.ping("are you there?");
+});
+socket.on("pong", (data) => {
+  saw.pong = data.toString();
+});
+socket.on("message", (data, isBinary) => {
+  if (isBinary) {
+    saw.pictures += 1;
+    saw.magic = data.toString("latin1", 0, 4);
+    const frame_seq = data.readUInt32LE(12);
+    socket.send(JSON.stringify({ jsonrpc: "2.0", method: "stream.ack", params: { frame_seq } }));
+  } else {
+    const message = JSON.parse(data.toString());
+    if (message.id === 1) saw.hello = message.result.protocol;
+    if (message.id === 2) saw.methods = message.result.methods.length;
+  }
+  if (saw.pictures > 0 && saw.methods && saw.hello && saw.pong) socket.close(1000, "enough");
+});
+socket.on("close", (code) => {
+  clearTimeout(failure);
+  console.log(JSON.stringify({ ...saw, code }));
+});
+socket.on("error", (error) => {
+  console.log(JSON.stringify({ ...saw, error: error.message }));
+  process.exit(1);
+});
