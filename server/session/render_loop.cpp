@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <exception>
+#include <string>
 #include <utility>
 
 #include "protocol/jsonrpc.hpp"
 #include "render/device_lost.hpp"
 #include "session/device_renewal.hpp"
+#include "session/event_log.hpp"
 
 namespace heliograph::session {
 namespace {
@@ -138,7 +140,8 @@ bool RenderLoop::advance(SessionView& view) {
     lose_device("session " + view.session()->name() + ": " + failure.what());
     return false;
   } catch (const std::exception& failure) {
-    spdlog::error("session {}: rendering failed: {}", view.session()->name(), failure.what());
+    log_error({.session = view.session()->name()},
+              std::string("rendering failed: ") + failure.what());
     view.recover();
     return false;
   }

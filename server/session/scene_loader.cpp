@@ -10,6 +10,7 @@
 #include "protocol/suggestions.hpp"
 #include "render/device_lost.hpp"
 #include "render/renderer.hpp"
+#include "session/event_log.hpp"
 #include "session/scene_description.hpp"
 
 namespace heliograph::session {
@@ -238,8 +239,8 @@ void SceneLoader::finish(Job& job, const Result<LoadedScene>& outcome) {
     if (outcome) {
       waiter.done(describe_scene(*outcome));
     } else {
-      spdlog::warn("session {}: {} was not loaded: {}", waiter.session->name(), job.entry.name,
-                   outcome.error().message);
+      log_warning({.session = waiter.session->name()},
+                  job.entry.name + " was not loaded: " + outcome.error().message);
       waiter.done(outcome.error());
     }
   }

@@ -1,7 +1,5 @@
 #include "session/session_view.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
@@ -10,6 +8,7 @@
 #include "scene/pose.hpp"
 #include "session/capture_content.hpp"
 #include "session/device_renewal.hpp"
+#include "session/event_log.hpp"
 
 namespace heliograph::session {
 
@@ -210,8 +209,8 @@ void SessionView::adopt_state() {
   if (same_scene && !scene::same_view(state_.camera, before.camera)) moved_at_ = Clock::now();
   adopt_pose();
   if (const auto accepted = renderer_->set_settings(state_.settings); !accepted) {
-    spdlog::error("session {}: the renderer refused settings: {}", session_->name(),
-                  accepted.error().message);
+    log_error({.session = session_->name()},
+              "the renderer refused settings: " + accepted.error().message);
   }
 }
 
@@ -234,7 +233,7 @@ void SessionView::adopt_edits(const RenderState& before) {
 void SessionView::adopt_pose() {
   const double seconds = state_.animation.at(state_.now());
   if (const auto posed = renderer_->set_pose(state_.animation.clip, seconds); !posed) {
-    spdlog::error("session {}: {}", session_->name(), posed.error().message);
+    log_error({.session = session_->name()}, posed.error().message);
   }
   const scene::Clip* const clip =
       state_.camera_follows ? scene::find_clip(*state_.scene, state_.animation.clip) : nullptr;

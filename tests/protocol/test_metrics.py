@@ -28,6 +28,7 @@ class Metrics(ServerTestCase):
                      "heliograph_frames_acknowledged_total", "heliograph_frames_waiting",
                      "heliograph_ack_round_trip_seconds", "heliograph_render_seconds",
                      "heliograph_encode_seconds", "heliograph_pass_seconds",
+                     "heliograph_scene_cache_hits_total", "heliograph_scene_cache_bytes",
                      "heliograph_connections", "heliograph_http_responses_total",
                      "heliograph_resident_memory_bytes", "process_cpu_seconds_total"):
             self.assertIn(name, families)
