@@ -22,7 +22,7 @@ constexpr std::size_t glb_header_bytes = 12;
 
 bool is_acceptable(const std::string& name) {
   const bool characters = std::all_of(name.begin(), name.end(), [](unsigned char c) {
-    return std::islower(c) != 0 || std::isdigit(c) != 0 || c == '_' || c == '-';
+    return std::isalnum(c) != 0 || c == '_' || c == '-';
   });
   return characters && !name.empty() && name.size() <= longest_name && name.front() != '-';
 }
@@ -62,7 +62,7 @@ protocol::Result<std::shared_ptr<UploadStore::Incoming>> UploadStore::begin(
     const std::string& name, std::uint64_t bytes) {
   if (!is_acceptable(name)) {
     return protocol::error::invalid("name", "is not the name of a scene",
-                                    "1 to 64 small letters, digits, _ and -");
+                                    "1 to 64 letters, digits, _ and -");
   }
   if (bytes > options_.max_bytes) {
     return protocol::error::too_large("body", "is too large",

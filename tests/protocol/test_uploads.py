@@ -75,7 +75,7 @@ class Uploads(ServerTestCase):
         self.assertEqual(self.left_over(), [])
 
     def test_names_lead_nowhere_and_take_nobody_elses_place(self):
-        for name in ("..", "../x", "a/b", "%2e%2e%2fx", ".hidden", "Big", "a.glb", "x" * 65, "-rf"):
+        for name in ("..", "../x", "a/b", "%2e%2e%2fx", ".hidden", "a.glb", "x" * 65, "-rf"):
             self.assertIn(self.put(name, self.mirror)[0], (400, 404), name)
         self.assertEqual(self.put("mirror", self.mirror)[0], 409)
         self.assertEqual(os.listdir(os.path.join(self.folder.name, "scenes")), [])
