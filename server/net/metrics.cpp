@@ -139,20 +139,6 @@ void add_sessions(Page& page, const session::SessionHost& host) {
              static_cast<double>(sessions.limits().pixels));
 }
 
-void add_scene_cache(Page& page, const session::SessionHost& host) {
-  const session::CacheTotals cache = host.scene_cache_totals();
-  const auto number = [](std::uint64_t value) { return static_cast<double>(value); };
-  page.counter("heliograph_scene_cache_hits_total", "Scenes that were there when asked for.",
-               number(cache.hits));
-  page.counter("heliograph_scene_cache_misses_total", "Scenes that had to be loaded.",
-               number(cache.misses));
-  page.counter("heliograph_scene_cache_evictions_total", "Scenes let go of for their memory.",
-               number(cache.evictions));
-  page.gauge("heliograph_scene_cache_entries", "Scenes that are kept.", number(cache.entries));
-  page.gauge("heliograph_scene_cache_bytes", "Memory of the scenes that are kept.",
-             number(cache.bytes));
-}
-
 void add_streams(Page& page, const session::SessionHost& host) {
   const session::AudienceTotals audience = host.sessions().totals();
   const std::chrono::duration<double> round_trip = audience.mean_round_trip;
@@ -246,7 +232,6 @@ std::string metrics_text(const MetricsInput& input) {
   Page page;
   add_process(page, input);
   add_sessions(page, input.host);
-  add_scene_cache(page, input.host);
   add_streams(page, input.host);
   add_rendering(page, input.host);
   add_scenes(page, input.host);
