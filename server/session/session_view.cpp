@@ -105,7 +105,7 @@ void SessionView::release_renderer() {
   broadcast_.forget();
   state_ = {};
   session_->audience().forget_latest();
-  spdlog::info("session {}: pictures let go", session_->name());
+  log_info({.session = session_->name()}, "pictures let go");
 }
 
 bool SessionView::advance() {
