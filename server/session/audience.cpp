@@ -198,6 +198,7 @@ Result<ViewerStream> Audience::configure(const std::string& viewer,
   if (change.still && it.stream.still != *change.still) {
     it.stream.still = *change.still;
     it.offered = 0;
+    if (it.pacer.frame_waiting()) it.pacer.withdraw();
   }
   if (change.quality) it.stream.quality = static_cast<int>(*change.quality);
   if (change.max_fps) {
