@@ -128,17 +128,6 @@ void add_process(Page& page, const MetricsInput& input) {
   page.gauge("process_open_fds", "Open files and sockets.", open_files());
 }
 
-void add_sessions(Page& page, const session::SessionHost& host) {
-  const session::SessionRegistry& sessions = host.sessions();
-  page.gauge("heliograph_sessions", "Open sessions.", static_cast<double>(sessions.all().size()));
-  page.gauge("heliograph_sessions_limit", "Most sessions at one time.",
-             static_cast<double>(sessions.limits().sessions));
-  page.gauge("heliograph_picture_pixels", "Pixels of the pictures of all sessions.",
-             static_cast<double>(sessions.pixels_used()));
-  page.gauge("heliograph_picture_pixels_limit", "Most pixels at one time.",
-             static_cast<double>(sessions.limits().pixels));
-}
-
 void add_streams(Page& page, const session::SessionHost& host) {
   const session::AudienceTotals audience = host.sessions().totals();
   const std::chrono::duration<double> round_trip = audience.mean_round_trip;
@@ -231,7 +220,6 @@ void add_traffic(Page& page, const Traffic& traffic) {
 std::string metrics_text(const MetricsInput& input) {
   Page page;
   add_process(page, input);
-  add_sessions(page, input.host);
   add_streams(page, input.host);
   add_rendering(page, input.host);
   add_scenes(page, input.host);

@@ -126,6 +126,7 @@ bool SessionView::advance() {
     return false;
   }
   if (session_->in_lockstep()) return advance_step();
+  stepped_ = false;
   adopt_state();
   adopt_size();
   settle_probes();

@@ -128,9 +128,8 @@ class Framing(ServerTestCase):
         self.assertLess(self.server.memory_bytes(), 2e9)
 
     async def test_random_bytes_beside_a_viewer(self):
-        self.server.call("settings.patch", {"patch": {"accumulation": {"max_samples": 60000}}})
         chance = random.Random(7)
-        async with Viewer(self.server) as viewer:
+        async with Viewer(self.server) as viewer, viewer.moving():
             for _ in range(60):
                 with RawSocket(self.server) as raw:
                     raw.upgrade()

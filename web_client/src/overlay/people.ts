@@ -96,6 +96,7 @@ export function mountPeople(
     if (!session) return;
     const me = session.viewers.find(({ you }) => you);
     setText(count, String(session.viewers.length));
+    opener.setAttribute("aria-label", `Who is here: ${session.viewers.length}`);
     setText(room, `Session ${session.name}`);
     const one = session.control === "one";
     setText(mode, one ? "Let everyone change things" : "Only I change things");
