@@ -124,7 +124,7 @@ test("timings of the passes are shown", async () => {
   const { buffers } = await server.call("frame.buffers");
   assert.equal(buffers[0].name, "output");
   await dragPicture(page, { x: 400, y: 400 }, { x: 430, y: 400 });
-  await openTab(page, "timing");
+  await openTab(page, "stats");
   await page.waitForSelector(".pass", { timeout: 20_000 });
   const rows = await page.locator(".pass .pass-ms").allInnerTexts();
   assert.ok(rows.length >= 3, `only ${rows.length} passes`);
