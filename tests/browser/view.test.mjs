@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import test, { after, before } from "node:test";
 import {
+  distance,
   eventually,
   firstPicture,
   launchBrowser,
@@ -25,8 +26,6 @@ after(async () => {
   await browser?.close();
   await server?.stop();
 });
-
-const distance = (a, b) => Math.hypot(...a.map((value, axis) => value - b[axis]));
 
 async function restingCamera() {
   let before = null;

@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import test, { after, before } from "node:test";
 import {
+  distance,
   dragPicture,
   eventually,
   firstPicture,
@@ -88,8 +89,6 @@ async function pinch(page, middle) {
   }
   await session.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
 }
-
-const distance = (a, b) => Math.hypot(...a.map((value, axis) => value - b[axis]));
 
 test("on a phone the panel is a sheet and a finger orbits", async () => {
   const { page, context, complaints } = await openViewer(browser, server.url, {

@@ -57,6 +57,9 @@ export async function firstPicture(page, timeout = 120_000) {
   );
 }
 
+/** Between two points of space, as arrays. */
+export const distance = (a, b) => Math.hypot(...a.map((value, axis) => value - b[axis]));
+
 /** Has a script run in the stream worker before its own. */
 export function prepareWorker(context, source) {
   return context.addInitScript((prelude) => {
