@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <map>
 #include <memory>
+#include <string_view>
 
 namespace heliograph::test {
 namespace {
@@ -21,8 +22,13 @@ render::Engine& engine(const std::string& tracer) {
   auto& wanted = engines()[tracer];
   if (!wanted) {
     const char* device = std::getenv("HELIOGRAPH_TEST_DEVICE");
+    const char* kernels = std::getenv("HELIOGRAPH_TEST_HOST_KERNELS");
     wanted = std::make_unique<render::Engine>(render::EngineOptions{
-        .device = device ? device : "", .tracer = tracer, .validation = true, .cache_folder = {}});
+        .device = device ? device : "",
+        .tracer = tracer,
+        .validation = true,
+        .cache_folder = {},
+        .host_kernels = !kernels || std::string_view(kernels) != "off"});
     std::printf("device: %s, %s, tracer %s\n", wanted->device().name.c_str(),
                 wanted->device().driver.c_str(), tracer.c_str());
   }

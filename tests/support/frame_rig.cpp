@@ -22,7 +22,7 @@ FrameRig::FrameRig(std::shared_ptr<const scene::Scene> scene, const scene::Camer
       scene_set_(pool_.allocate(parts_.programs.scene_layout.handle())),
       inputs_{parts_.programs, moving_.rest(), moving_.tables(), *parts_.tracer, moving_.structure(),
               constants_, settings_, samples_, seconds_, moving_, scene_motion_,
-              parts_.split_sum_table},
+              parts_.split_sum_table, parts_.host_kernels},
       plan_(parts_.device, options.extent) {
   render::write_frame_set(parts_, frame_set_, constants_buffer_, moving_.tables().lights,
                           moving_.rest().environment->view(settings_.environment.separate_sun),
