@@ -74,6 +74,7 @@ def made(source, mistake):
 
 def judge(source, build, mistake):
     """Whether the tests pass without the mistake and fail with it, and which do."""
+    must("ninja", "-C", build, mistake.program)
     ran, failed = test(build, mistake)
     if not ran or failed:
         return False, f"without it {len(ran)} tests run, of which fail: {' '.join(failed) or 'none'}"

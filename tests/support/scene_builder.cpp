@@ -52,16 +52,26 @@ std::uint32_t SceneBuilder::add_material(const shared::Material& material) {
 
 std::uint32_t SceneBuilder::add_quad(const std::array<glm::vec3, 4>& corners,
                                      const shared::Material& material) {
+  return add_quads({&corners, 1}, material);
+}
+
+std::uint32_t SceneBuilder::add_quads(std::span<const std::array<glm::vec3, 4>> quads,
+                                      const shared::Material& material) {
   scene::Mesh mesh;
   mesh.material = add_material(material);
-  const glm::vec3 tangent = glm::normalize(corners[1] - corners[0]);
-  const glm::vec3 normal = glm::normalize(glm::cross(tangent, corners[3] - corners[0]));
   constexpr std::array<glm::vec2, 4> uv{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
-  for (std::size_t i = 0; i < 4; ++i) {
-    mesh.vertices.push_back(make_vertex(corners[i], normal, tangent, uv[i]));
-    mesh.bounds.include(corners[i]);
+  for (const auto& corners : quads) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    const glm::vec3 tangent = glm::normalize(corners[1] - corners[0]);
+    const glm::vec3 normal = glm::normalize(glm::cross(tangent, corners[3] - corners[0]));
+    for (std::size_t i = 0; i < 4; ++i) {
+      mesh.vertices.push_back(make_vertex(corners[i], normal, tangent, uv[i]));
+      mesh.bounds.include(corners[i]);
+    }
+    for (const std::uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) {
+      mesh.indices.push_back(first + corner);
+    }
   }
-  mesh.indices = {0, 1, 2, 0, 2, 3};
   scene_.meshes.push_back(std::move(mesh));
   return static_cast<std::uint32_t>(scene_.meshes.size() - 1);
 }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <glm/glm.hpp>
 #include <memory>
+#include <span>
 
 #include "scene/environment.hpp"
 #include "scene/scene.hpp"
@@ -20,6 +22,9 @@ class SceneBuilder {
   shared::Material with_layers(shared::Material material, const scene::MaterialLayers& layers);
   /// Four corners, counter-clockwise from outside; uv (0,0) (1,0) (1,1) (0,1), tangent along u.
   std::uint32_t add_quad(const std::array<glm::vec3, 4>& corners, const shared::Material& material);
+  /// Several of them as one thing.
+  std::uint32_t add_quads(std::span<const std::array<glm::vec3, 4>> quads,
+                          const shared::Material& material);
   /// About the origin, with exact normals.
   std::uint32_t add_sphere(float radius, const shared::Material& material);
   SceneBuilder& place(std::uint32_t mesh, const glm::mat4& world = glm::mat4(1.0f));
