@@ -52,7 +52,8 @@ def prepare(work):
 def test(build, mistake):
     """What GoogleTest says of the mistake's tests: those that ran and those that failed."""
     binary = next(build.rglob(mistake.program))
-    environment = {**os.environ, "HELIOGRAPH_TEST_HOST_KERNELS": "off"}
+    kernels = "on" if mistake.host_kernels else "off"
+    environment = {**os.environ, "HELIOGRAPH_TEST_HOST_KERNELS": kernels}
     done = run(binary, f"--gtest_filter={mistake.tests}", cwd=build, env=environment, timeout=600)
     ran = re.findall(r"^\[ RUN +\] (\S+)", done.stdout, re.MULTILINE)
     ok = re.findall(r"^\[ +OK \] (\S+)", done.stdout, re.MULTILINE)
