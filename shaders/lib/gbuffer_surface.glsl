@@ -55,6 +55,24 @@ vec3 mapped_normal(vec3 normal) {
   return normalize(tangent * texel.x + bitangent * texel.y + normal * texel.z);
 }
 
+/// View Z where the ray through the pixel's middle meets the plane of the triangle. Rasterisers snap
+/// corners to a grid, and corners of large triangles lie far outside of the picture: what is
+/// interpolated is a point of the triangle, but up to half a pixel beside the one that is looked at,
+/// and a point rebuilt from its depth would lie above or below the surface.
+float exact_view_z(vec3 geometric) {
+  vec2 ndc = gl_FragCoord.xy / vec2(frame.extent.xy) * 2.0 - 1.0;
+  vec2 slope = ndc * frame.unproject.xy + frame.unproject.zw;
+  float perspective = 1.0 - flag(frame.counts.y, frame_orthographic);
+  vec3 through = vec3(slope * perspective, -1.0);  // for a metre of Z
+  vec3 passed = vec3(slope * mix(1.0, view_depths.x, perspective), -view_depths.x);
+  vec3 normal = mat3(frame.view) * geometric;
+  vec3 beside = (frame.view * vec4(world_point, 1.0)).xyz - passed;
+  float along = dot(normal, through);
+  float apart = dot(normal, beside) / (abs(along) < 1e-4 ? 1e-4 : along);
+  float most = 4.0 * (abs(dFdx(view_depths.x)) + abs(dFdy(view_depths.x)));  // a few pixels away
+  return view_depths.x + clamp(apart, -most, most);
+}
+
 void main() {
   vec4 color = material.base_color * vertex_color *
                texture(base_color_map, slot_uv(material.base_color_texture));
@@ -87,7 +105,7 @@ void main() {
                  float(material.layer) / 255.0);
   vec2 uv_now = clip_now.xy / clip_now.z * 0.5;
   vec2 uv_before = clip_before.xy / clip_before.z * 0.5;
-  motion = vec4(uv_before - uv_now, view_depths.y - view_depths.x, view_depths.x);
+  motion = vec4(uv_before - uv_now, view_depths.y - view_depths.x, exact_view_z(geometric));
   emissive = vec4(material.emissive * texture(emissive_map, slot_uv(material.emissive_texture)).rgb,
                   1.0);
   depth_slope = vec2(dFdx(view_depths.x), dFdy(view_depths.x));
