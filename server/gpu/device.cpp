@@ -60,6 +60,7 @@ Device::Device(const Instance& instance, const DeviceOptions& options) {
     if (report.chosen) report_ = report;
   }
   if (!report_.chosen) throw GpuError(refusal(reports));
+  if (options.as_gpu) report_.type = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
   create(instance);
   load_pipeline_cache(options.cache_folder);
 }

@@ -13,6 +13,7 @@ namespace heliograph::gpu {
 struct DeviceOptions {
   std::string wanted;                  // part of the device's name, or empty
   std::filesystem::path cache_folder;  // where the pipeline cache is kept; empty: nowhere
+  bool as_gpu = false;                 // a processor too has memory of its own: tests that path
 };
 
 /// A logical device with one queue that does everything, and its pipeline cache.

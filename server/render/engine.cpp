@@ -45,7 +45,7 @@ std::shared_ptr<const Made> with_device(std::shared_ptr<Engine::Parts> parts,
 
 Engine::Parts::Parts(const EngineOptions& options)
     : instance(options.validation),
-      device(instance, {options.device, options.cache_folder}),
+      device(instance, {options.device, options.cache_folder, options.as_gpu}),
       programs(device),
       environments(device, programs),
       tracer(tracing::make_tracer(options.tracer, device)),

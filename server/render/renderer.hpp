@@ -25,6 +25,7 @@ struct EngineOptions {
   bool validation = false;             // Vulkan validation layers on, every message an error
   std::filesystem::path cache_folder;  // pipeline cache; empty: none
   bool host_kernels = true;            // on devices that are processors, where a pass has one
+  bool as_gpu = false;                 // treat a processor as a GPU, for tests of that path
 };
 
 struct DeviceInfo {

@@ -28,7 +28,8 @@ render::Engine& engine(const std::string& tracer) {
         .tracer = tracer,
         .validation = true,
         .cache_folder = {},
-        .host_kernels = !kernels || std::string_view(kernels) != "off"});
+        .host_kernels = !kernels || std::string_view(kernels) != "off",
+        .as_gpu = std::getenv("HELIOGRAPH_TEST_AS_GPU") != nullptr});
     std::printf("device: %s, %s, tracer %s\n", wanted->device().name.c_str(),
                 wanted->device().driver.c_str(), tracer.c_str());
   }

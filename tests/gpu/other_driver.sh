@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# Runs a command on Chromium's software device as if that were a GPU: another driver than Mesa's, with
+# a coarser rasteriser, and the ways that only devices with memory of their own take.
+set -euo pipefail
+driver=/usr/lib/chromium/vk_swiftshader_icd.json
+if [ ! -f "$driver" ]; then
+  echo "there is no $driver: not run"
+  exit 77
+fi
+export VK_DRIVER_FILES=$driver
+export VK_ICD_FILENAMES=$driver
+export HELIOGRAPH_TEST_AS_GPU=1
+exec "$@"
