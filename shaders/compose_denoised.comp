@@ -4,10 +4,10 @@ layout(local_size_x = 8, local_size_y = 8) in;
 // The picture from denoised signals, and the same from this frame's as they were traced.
 #include "lib/composition.glsl"
 
-layout(set = 1, binding = 9, rgba32f) readonly uniform image2D denoised_visibility;
-layout(set = 1, binding = 10, rgba32f) readonly uniform image2D denoised_specular;
-layout(set = 1, binding = 11, rgba32f) writeonly uniform image2D hdr;
-layout(set = 1, binding = 12, rgba32f) writeonly uniform image2D hdr_raw;
+layout(set = 1, binding = 10, rgba32f) readonly uniform image2D denoised_visibility;
+layout(set = 1, binding = 11, rgba32f) readonly uniform image2D denoised_specular;
+layout(set = 1, binding = 12, rgba32f) writeonly uniform image2D hdr;
+layout(set = 1, binding = 13, rgba32f) writeonly uniform image2D hdr_raw;
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

@@ -33,7 +33,19 @@ vec3 environment_at_miss(ReferencePath path, vec3 direction) {
 /// How likely scatter() takes the specular lobe.
 float specular_share(SurfaceMaterial m) {
   float specular = luminance(m.specular_albedo);
-  return specular / max(specular + luminance(m.diffuse_albedo), 1e-6);
+  return specular / max(specular + luminance(wide_albedo(m)), 1e-6);
+}
+
+/// BRDF x cos of the lobes that scatter() draws by the cosine: diffuse, sheen.
+vec3 wide_light(SurfaceMaterial m, vec3 l) {
+  vec3 light = m.diffuse_albedo * (dot(m.normal, l) / pi);
+  return has_sheen(m) ? light + sheen_light(m, l) : light;
+}
+
+/// The same over that density.
+vec3 wide_weight(SurfaceMaterial m, vec3 l) {
+  if (!has_sheen(m)) return m.diffuse_albedo;
+  return m.diffuse_albedo + sheen_light(m, l) * (pi / max(dot(m.normal, l), 1e-4));
 }
 
 /// What a specular lobe sends to the eye of light along -l, BRDF x cos, and how likely
@@ -44,7 +56,7 @@ struct SpecularValue {
 };
 
 SpecularValue specular_value(SurfaceMaterial m, vec3 l, bool of_coat) {
-  vec3 normal = reflecting_normal(m);
+  vec3 normal = reflecting_normal(m, of_coat ? m.coat_normal : m.normal);
   vec3 tangent, bitangent;
   orthonormal_basis(normal, tangent, bitangent);
   float roughness = of_coat ? m.coat_roughness : m.roughness;
@@ -73,7 +85,7 @@ Ray sky_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pixel) {
   float cosine = dot(l, m.normal);
   if (cosine > 0.0 && enabled(frame_environment_diffuse)) {
     float density = (1.0 - share) * cosine / pi;
-    sent += m.diffuse_albedo * (cosine / pi) / (sky.density + density);
+    sent += wide_light(m, l) / (sky.density + density);
   }
   if (m.roughness >= least_roughness && enabled(frame_environment_specular)) {
     SpecularValue value = specular_value(m, l, false);
@@ -123,7 +135,7 @@ bool scatter(inout ReferencePath path, SurfaceMaterial m, RayCone cone, float t,
   } else {
     direction = sample_cosine(m.normal, u);
     bool open = dot(direction, m.geometric) > 0.0;
-    path.throughput *= open ? m.diffuse_albedo / (1.0 - share) : vec3(0.0);
+    path.throughput *= open ? wide_weight(m, direction) / (1.0 - share) : vec3(0.0);
     path.flags = 0u;
     path.density = (1.0 - share) * max(dot(direction, m.normal), 0.0) / pi;
     next = mirrored_cone(cone, t, 1.0);
@@ -159,13 +171,14 @@ void main() {
     } else {
       RayCone cone = RayCone(path.cone_width, path.cone_spread);
       HitSurface s = hit_surface(hit, ray.direction, cone_width(cone, hit.t));
+      SurfaceMaterial m = material_of(s, ray.direction);
       bool open = path.bounces == 0u && is_open(s, ray.direction);
-      if (open || passes_through(s, pixel, constants.round)) {
+      if (open || passes_through(s, m, pixel, constants.round, path.throughput)) {
         rays[index] = beyond(ray, hit);
       } else {
+        arrived = path.throughput;
         radiance = own_light(s);
         if (!is_unlit(s)) {
-          SurfaceMaterial m = material_of(s, ray.direction);
           shadow = lamp_ray(m, s.position, arrived, pixel);
           if (path.bounces < constants.limit) {
             sky = sky_ray(m, s.position, arrived, pixel);

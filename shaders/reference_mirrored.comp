@@ -43,6 +43,7 @@ void main() {
     } else {
       RayCone cone = RayCone(path.cone_width, path.cone_spread);
       HitSurface s = hit_surface(hit, ray.direction, cone_width(cone, hit.t));
+      path.throughput *= stopped_weight(s);
       radiance = own_light(s);
       if (!is_unlit(s)) {
         SurfaceMaterial m = material_of(s, ray.direction);

@@ -18,7 +18,7 @@ layout(set = 1, binding = 8, std430) writeonly buffer MirrorRays { Ray mirror_ra
 layout(set = 1, binding = 9, rgba32f) uniform image2D reference;
 layout(push_constant) uniform Constants { ReferenceConstants constants; };
 
-Ray shadow_ray(SurfaceMaterial m, vec3 position, ivec2 pixel) {
+Ray shadow_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pixel) {
   if (!enabled(frame_direct)) return no_ray();
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < frame.counts.x; ++i) {
@@ -32,7 +32,7 @@ Ray shadow_ray(SurfaceMaterial m, vec3 position, ivec2 pixel) {
                       path_pair(pixel, constants.round, 2u), pick, found);
   if (!found && enabled(frame_shadows)) return no_ray();
   // All light of all lamps times the share that is not hidden, as one ray at a time finds it.
-  carry(ray, sum);
+  carry(ray, throughput * sum);
   if (!enabled(frame_shadows)) ray.t_max = 0.0;
   return ray;
 }
@@ -58,21 +58,23 @@ void main() {
   Ray shadow = no_ray(), ambient = no_ray(), mirror = no_ray();
   Hit hit = hits[index];
   vec3 radiance = vec3(0.0);
+  ReferencePath path = paths[index];
   if (hit.instance == hit_none) {
-    radiance = background(ray.direction);
+    radiance = path.throughput * background(ray.direction);
   } else {
-    ReferencePath path = paths[index];
     RayCone cone = RayCone(path.cone_width, path.cone_spread);
     HitSurface s = hit_surface(hit, ray.direction, cone_width(cone, hit.t));
-    bool passes = is_open(s, ray.direction) || passes_through(s, pixel, constants.round);
-    if (passes && constants.round + 1u < constants.limit) {
+    SurfaceMaterial m = material_of(s, ray.direction);
+    if (constants.round + 1u < constants.limit &&
+        (is_open(s, ray.direction) ||
+         passes_through(s, m, pixel, constants.round, path.throughput))) {
       rays[index] = beyond(ray, hit);
+      paths[index] = path;
       return;
     }
-    radiance = own_light(s);
+    radiance = path.throughput * own_light(s);
     if (!is_unlit(s)) {
-      SurfaceMaterial m = material_of(s, ray.direction);
-      shadow = shadow_ray(m, s.position, pixel);
+      shadow = shadow_ray(m, s.position, path.throughput, pixel);
       vec3 open = enabled(frame_environment_diffuse) ? environment_diffuse(m) : vec3(0.0);
       if (mirrors_rays(mirror_roughness(m), constants.max_roughness)) {
         SpecularSample drawn = sample_specular(m, path_pair(pixel, constants.round, 4u));
@@ -80,12 +82,12 @@ void main() {
           mirror = ray_from(s.position, s.geometric, drawn.direction, 1e30);
         }
         RayCone mirrored = mirrored_cone(cone, hit.t, mirror_roughness(m));
-        paths[index] = ReferencePath(drawn.weight, 1u, mirrored.width, mirrored.spread,
+        paths[index] = ReferencePath(path.throughput * drawn.weight, 1u, mirrored.width, mirrored.spread,
                                      path_mirrored, 0.0);
       } else if (enabled(frame_environment_specular)) {
         open += environment_specular(m);
       }
-      ambient = ambient_ray(m, s.position, open * s.occlusion, pixel);
+      ambient = ambient_ray(m, s.position, path.throughput * open * s.occlusion, pixel);
     }
   }
   shadow_rays[index] = shadow;

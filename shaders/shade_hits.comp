@@ -4,8 +4,7 @@ layout(local_size_x = 64) in;
 // Light that comes back along specular rays: from what they met, or from the environment. Light of
 // lamps at the hit waits for a shadow ray of its own.
 #define TEXTURE_ONE_LEVEL
-#include "lib/environment.glsl"
-#include "lib/hit_surface.glsl"
+#include "lib/hit_material.glsl"
 #include "lib/light_choice.glsl"
 #include "lib/moments.glsl"
 #include "lib/ray_index.glsl"
@@ -78,8 +77,8 @@ void main() {
       RayCone cone = mirrored_cone(camera_cone(), imageLoad(motion, pixel).w,
                                    imageLoad(surface, pixel).x);
       HitSurface s = hit_surface(hit, ray.direction, cone_width(cone, hit.t));
-      SurfaceMaterial m = surface_material(s.base_color, s.metallic, s.roughness, s.normal,
-                                           s.geometric, -ray.direction, s.layer);
+      SurfaceMaterial m = material_of(s, ray.direction);
+      if (scene_has(scene_blends)) weight *= stopped_weight(s);
       light = steady_light(s, m);
       if (lamps != 0u && enabled(frame_direct) && (s.flags & material_unlit) == 0u) {
         shadow = lamp_ray(m, s.position, weight, pixel, wanted);

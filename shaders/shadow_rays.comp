@@ -12,9 +12,10 @@ layout(set = 1, binding = 0, rgba32f) readonly uniform image2D normals;
 layout(set = 1, binding = 1, rgba32f) readonly uniform image2D motion;
 layout(set = 1, binding = 2, rgba8) readonly uniform image2D base_color;
 layout(set = 1, binding = 3, rgba8) readonly uniform image2D surface;
-layout(set = 1, binding = 4, std430) buffer Count { RayCount ray_count; };
-layout(set = 1, binding = 5, std430) writeonly buffer Rays { Ray rays[]; };
-layout(set = 1, binding = 6, r32f) writeonly uniform image2D visibility;
+layout(set = 1, binding = 4, rgba32ui) readonly uniform uimage2D surface_layers;
+layout(set = 1, binding = 5, std430) buffer Count { RayCount ray_count; };
+layout(set = 1, binding = 6, std430) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 7, r32f) writeonly uniform image2D visibility;
 
 #include "lib/gbuffer_material.glsl"
 

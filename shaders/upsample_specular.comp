@@ -11,10 +11,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D normals;
 layout(set = 1, binding = 1, rgba8) readonly uniform image2D base_color;
 layout(set = 1, binding = 2, rgba8) readonly uniform image2D surface;
-layout(set = 1, binding = 3, rgba32f) readonly uniform image2D motion;
-layout(set = 1, binding = 4, rgba32f) readonly uniform image2D half_radiance;
-layout(set = 1, binding = 5, rgba32f) readonly uniform image2D directions;
-layout(set = 1, binding = 6, rgba32f) writeonly uniform image2D radiance;
+layout(set = 1, binding = 3, rgba32ui) readonly uniform uimage2D surface_layers;
+layout(set = 1, binding = 4, rgba32f) readonly uniform image2D motion;
+layout(set = 1, binding = 5, rgba32f) readonly uniform image2D half_radiance;
+layout(set = 1, binding = 6, rgba32f) readonly uniform image2D directions;
+layout(set = 1, binding = 7, rgba32f) writeonly uniform image2D radiance;
 layout(push_constant) uniform Constants { float max_roughness; };
 
 #include "lib/gbuffer_material.glsl"

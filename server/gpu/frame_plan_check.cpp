@@ -136,6 +136,7 @@ void FramePlan::list_views() {
       const Resource& resource = resources_[use.resource];
       const Image* image = resource.images[0];
       if (!use.writes || !image || is_depth(image->desc().format)) continue;
+      if (image->desc().format == VK_FORMAT_R32G32B32A32_UINT) continue;  // packed: nothing to see
       if (resource.level || !listed.insert(use.resource).second) continue;
       const std::string text =
           pass.description.empty() ? "Written by the pass " + pass.name + "." : pass.description;

@@ -21,6 +21,7 @@ gpu::PassBuilder bind(gpu::PassBuilder pass, const Images& images) {
   pass.read(images.gbuffer.normals)
       .read(images.gbuffer.base_color)
       .read(images.gbuffer.surface)
+      .read(images.gbuffer.layers)
       .read(images.gbuffer.motion)
       .read(images.gbuffer.emissive)
       .read(images.background)

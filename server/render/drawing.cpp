@@ -22,11 +22,11 @@ Drawing::Drawing(const Engine::Parts& parts, const FrameInputs& in,
 void Drawing::share_sets(const Engine::Parts& parts, const gpu::Buffer& constants_buffer) {
   const VkDescriptorSet set = pool.allocate(parts.programs.frame_layout.handle());
   write_frame_set(parts, set, constants_buffer, inputs.tables.lights,
-                  inputs.moving.environment().view(inputs.settings.environment.separate_sun),
-                  inputs.scene.layers);
+                  inputs.moving.environment().view(inputs.settings.environment.separate_sun));
   plan.share_set(frame_set, set);
   const VkDescriptorSet tables = pool.allocate(parts.programs.scene_layout.handle());
-  write_scene_set(parts.device, tables, inputs.tables, inputs.scene.texture_heap);
+  write_scene_set(parts.device, tables, inputs.tables, inputs.scene.texture_heap,
+                  inputs.scene.layers);
   plan.share_set(scene_set, tables);
 }
 

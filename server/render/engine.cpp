@@ -50,6 +50,7 @@ Engine::Parts::Parts(const EngineOptions& options)
       environments(device, programs),
       tracer(tracing::make_tracer(options.tracer, device)),
       split_sum_table(make_split_sum_table(device, programs)),
+      sheen_table(make_sheen_table(device, programs)),
       ltc_table(make_ltc_image(device)),
       around(make_environment_sampler(device, true)),
       clamped(make_environment_sampler(device, false)),

@@ -19,6 +19,7 @@ struct Engine::Parts {
   EnvironmentCache environments;
   std::unique_ptr<tracing::RayTracer> tracer;
   gpu::Image split_sum_table;
+  gpu::Image sheen_table;
   gpu::Image ltc_table;
   gpu::Sampler around;  // wraps in u: equirectangular maps
   gpu::Sampler clamped;

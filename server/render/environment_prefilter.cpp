@@ -17,6 +17,7 @@ constexpr std::uint32_t smallest_cube = 16;
 constexpr std::uint32_t smallest_level = 8;
 constexpr std::uint32_t samples_per_texel = 512;
 constexpr std::uint32_t table_size = 128;
+constexpr std::uint32_t sheen_size = 32;
 
 struct PrefilterConstants {
   float roughness;
@@ -123,6 +124,20 @@ EnvironmentMaps prefilter_environment(const gpu::Device& device, const Programs&
         host::copy_environment(environment, maps.prefiltered));
   }
   return maps;
+}
+
+gpu::Image make_sheen_table(const gpu::Device& device, const Programs& programs) {
+  gpu::ImageDesc desc{.name = "sheen albedo", .extent = {sheen_size, sheen_size}};
+  desc.format = VK_FORMAT_R32_SFLOAT;
+  desc.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+  gpu::Image table(device, desc);
+  gpu::FramePlan plan(device, desc.extent);
+  plan.pass("sheen_table", programs.compute(shaders::sheen_table))
+      .write(plan.import(table, 0, VK_NULL_HANDLE))
+      .dispatch(desc.extent);
+  plan.compile();
+  plan.execute();
+  return table;
 }
 
 gpu::Image make_split_sum_table(const gpu::Device& device, const Programs& programs) {

@@ -30,6 +30,9 @@ EnvironmentMaps prefilter_environment(const gpu::Device& device, const Programs&
 /// The split-sum's second half over (n.v, roughness): scale and bias of F0. Once per device.
 gpu::Image make_split_sum_table(const gpu::Device& device, const Programs& programs);
 
+/// What white sheen gives back of light from everywhere, over (n.v, roughness). Once per device.
+gpu::Image make_sheen_table(const gpu::Device& device, const Programs& programs);
+
 /// Linear filtering; repeats around the equator where `wrap_u`, clamps otherwise.
 gpu::Sampler make_environment_sampler(const gpu::Device& device, bool wrap_u);
 

@@ -2,6 +2,7 @@
 
 #include "render/accumulate.hpp"
 #include "render/antialias.hpp"
+#include "render/blend_surfaces.hpp"
 #include "render/compose.hpp"
 #include "render/denoise_specular.hpp"
 #include "render/denoise_visibility.hpp"
@@ -55,13 +56,16 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   const auto denoised = denoise(plan, in, gbuffer, raw);
 
   const gpu::ImageRef background = draw_skybox(plan, in, gbuffer);
-  const auto [hdr, hdr_raw] = compose(plan, in, gbuffer, raw, denoised, background);
+  const Composed composed = compose(plan, in, gbuffer, raw, denoised, background);
+  const auto& [hdr, hdr_raw] = composed;
+  GBuffer seen = gbuffer;
+  seen.motion = blend_surfaces(plan, in, gbuffer, composed);
 
   const bool truth = reference == protocol::ReferenceUse::resting;
   const gpu::History accumulated =
       accumulate(plan, in, truth ? trace_reference(plan, in) : hdr_raw);
   const Exposure exposure = expose(plan, in, hdr, accumulated.current);
-  const gpu::ImageRef resolved = temporal_antialias(plan, in, gbuffer, exposure, hdr);
+  const gpu::ImageRef resolved = temporal_antialias(plan, in, seen, exposure, hdr);
   const gpu::ImageRef picture = present(plan, in, exposure, resolved, accumulated.current);
   return {accumulated, exposure, resolved, picture};
 }

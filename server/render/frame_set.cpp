@@ -5,8 +5,7 @@
 namespace heliograph::render {
 
 void write_frame_set(const Engine::Parts& parts, VkDescriptorSet set, const gpu::Buffer& constants,
-                     const gpu::Buffer& lights, const EnvironmentView& environment,
-                     const gpu::Buffer& layers) {
+                     const gpu::Buffer& lights, const EnvironmentView& environment) {
   constexpr auto uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
   gpu::DescriptorWriter(parts.device, set)
       .buffer(0, uniform, constants.handle())
@@ -18,7 +17,7 @@ void write_frame_set(const Engine::Parts& parts, VkDescriptorSet set, const gpu:
       .sampled_image(6, parts.ltc_table.view(), parts.clamped.handle())
       .sampled_image(7, environment.background.view(), parts.around.handle())
       .texel_buffer(8, environment.maps.cells.texel_view(VK_FORMAT_R32G32B32A32_UINT))
-      .buffer(9, uniform, layers.handle())
+      .sampled_image(9, parts.sheen_table.view(), parts.clamped.handle())
       .apply();
 }
 

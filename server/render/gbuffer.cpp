@@ -20,7 +20,7 @@ class DrawRecorder {
   void draw(const Draw& draw) {
     if (draw.masked != masked_) {
       masked_ = draw.masked;
-      const auto& program = masked_ ? in_.programs.gbuffer_masked : in_.programs.gbuffer;
+      const auto& program = in_.programs.gbuffer(in_.scene.features, masked_);
       vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, program.pipeline());
     }
     if (draw.material != material_) {
@@ -66,7 +66,7 @@ class DrawRecorder {
 
 }  // namespace
 
-GBuffer declare_gbuffer(gpu::FramePlan& plan) {
+GBuffer declare_gbuffer(gpu::FramePlan& plan, std::uint32_t features) {
   constexpr VkImageUsageFlags attachment = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
   const auto signal = [&](const char* name, std::size_t index) {
     return plan.image(name, GBuffer::formats[index], attachment);
@@ -80,6 +80,9 @@ GBuffer declare_gbuffer(gpu::FramePlan& plan) {
   gbuffer.normals = remembered("gbuffer.normals", 0, gbuffer.previous_normals);
   gbuffer.base_color = signal("gbuffer.base_color", 1);
   gbuffer.surface = remembered("gbuffer.surface", 2, gbuffer.previous_surface);
+  const bool layered = (features & shared::scene_layers) != 0;
+  gbuffer.layers = plan.image("gbuffer.layers", GBuffer::layers_format, attachment,
+                              layered ? plan.extent() : VkExtent2D{1, 1});
   gbuffer.motion = remembered("gbuffer.motion", 3, gbuffer.previous_motion);
   gbuffer.emissive = signal("gbuffer.emissive", 4);
   gbuffer.depth_slope = signal("gbuffer.depth_slope", 5);
@@ -89,19 +92,20 @@ GBuffer declare_gbuffer(gpu::FramePlan& plan) {
 }
 
 GBuffer rasterize_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
-  const GBuffer gbuffer = declare_gbuffer(plan);
+  const GBuffer gbuffer = declare_gbuffer(plan, in.scene.features);
   constexpr std::array<float, 4> nothing{};
   // Beyond the octahedron, whose middle is a normal like any other.
   constexpr std::array<float, 4> no_normal{2.0f, 2.0f, 2.0f, 2.0f};
-  plan.raster("gbuffer", in.programs.gbuffer)
-      .color(gbuffer.normals, no_normal)
+  gpu::PassBuilder pass = plan.raster("gbuffer", in.programs.gbuffer(in.scene.features, false));
+  pass.color(gbuffer.normals, no_normal)
       .color(gbuffer.base_color, nothing)
       .color(gbuffer.surface, nothing)
       .color(gbuffer.motion, nothing)
       .color(gbuffer.emissive, nothing)
       .color(gbuffer.depth_slope, nothing)
-      .color(gbuffer.instance, nothing)
-      .depth(gbuffer.depth, 0.0f)
+      .color(gbuffer.instance, nothing);
+  if (in.scene.features & shared::scene_layers) pass.color(gbuffer.layers, nothing);
+  pass.depth(gbuffer.depth, 0.0f)
       .constants(shared::DrawConstants{})  // every draw pushes its own
       .draw([in](VkCommandBuffer commands, VkPipelineLayout layout) {
         const Frustum frustum(in.constants.view_projection);

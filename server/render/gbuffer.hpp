@@ -12,7 +12,9 @@ struct FrameInputs;
 struct GBuffer {
   gpu::ImageRef normals;     // octahedral: shading xy, geometric zw; world space
   gpu::ImageRef base_color;  // square root of linear rgb; a: occlusion
-  gpu::ImageRef surface;     // perceptual roughness, metallic, unlit
+  gpu::ImageRef surface;     // perceptual roughness of the smoother lobe, metallic, unlit
+  gpu::ImageRef layers;      // what extensions add (shaders/lib/layers.glsl); a placeholder of one
+                             // pixel in scenes without
   gpu::ImageRef motion;    // previous uv - uv, previous view Z - view Z; w: view Z, metres, 0: none
   gpu::ImageRef emissive;  // linear radiance
   gpu::ImageRef depth_slope;  // change of view Z per pixel in x and y
@@ -25,7 +27,7 @@ struct GBuffer {
   gpu::ImageRef previous_motion;
   gpu::ImageRef previous_instance;
 
-  /// Of the colour attachments, in the order above.
+  /// Of the colour attachments, in the order above, but for the layers, which come last.
   static constexpr std::array formats{VK_FORMAT_R32G32B32A32_SFLOAT,
                                       VK_FORMAT_R8G8B8A8_UNORM,
                                       VK_FORMAT_R8G8B8A8_UNORM,
@@ -33,10 +35,11 @@ struct GBuffer {
                                       VK_FORMAT_R16G16B16A16_SFLOAT,
                                       VK_FORMAT_R32G32_SFLOAT,
                                       VK_FORMAT_R32_UINT};
+  static constexpr VkFormat layers_format = VK_FORMAT_R32G32B32A32_UINT;
 };
 
-/// Its images, without a pass that writes them.
-GBuffer declare_gbuffer(gpu::FramePlan& plan);
+/// Its images, without a pass that writes them, for a scene with these features.
+GBuffer declare_gbuffer(gpu::FramePlan& plan, std::uint32_t features);
 
 /// Draws every visible instance. Motion is un-jittered; Z is linear along the view.
 GBuffer rasterize_gbuffer(gpu::FramePlan& plan, const FrameInputs& in);

@@ -7,7 +7,6 @@
 // After the line above, which compiles this file once for each instruction set.
 #include "render/host_stream.hpp"
 #include "render/host_surface.hpp"
-#include "render/random_host.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::host::HWY_NAMESPACE {
@@ -56,7 +55,7 @@ class Shading {
     if (none(hit.met)) return 0;
     const Float width = hn::MulAdd(hit.t, number(cone_.y), number(cone_.x));
     const SurfaceLanes s = hit_surface<false>(job_.scene, hit, ray.direction, width);
-    const Mask passes = job_.last_round ? hn::Lt(one(), zero()) : goes_on(ray, pixel, hit, s);
+    const Mask passes = job_.last_round ? hn::Lt(one(), zero()) : goes_on(ray, hit, s);
     store(pixel, hit, s, hn::AndNot(passes, hit.met));
     if (none(passes)) return 0;
     ray.t_min = hit.t + hn::Max(hit.t * number(1e-6f), number(1e-7f));
@@ -64,32 +63,17 @@ class Shading {
   }
 
  private:
-  HWY_INLINE Mask goes_on(const RayLanes& ray, const PixelLanes& pixel, const HitLanes& hit,
+  HWY_INLINE Mask goes_on(const RayLanes& ray, const HitLanes& hit,
                           const SurfaceLanes& s) const {
     const Mask back = hn::Gt(dot(s.front, ray.direction), zero());
     Mask passes = hn::AndNot(s.has(shared::material_double_sided), back);
     // Tracers ask the nearest texel; the picture shows the filtered one, as drawn triangles do.
     const Mask masked = s.has(shared::material_alpha_mask);
     passes = hn::Or(passes, hn::And(masked, hn::Lt(s.alpha, s.alpha_cutoff)));
-    const Mask blends = hn::And(hit.met, s.has(shared::material_alpha_blend));
-    if (!none(blends)) {
-      passes = hn::Or(passes, hn::And(blends, hn::Lt(s.alpha, share_of(pixel, hit, blends))));
-    }
+    // Of blended surfaces only what hides all behind it: the rest is drawn over the picture.
+    const Mask blends = s.has(shared::material_alpha_blend);
+    passes = hn::Or(passes, hn::And(blends, hn::Lt(s.alpha, number(shared::least_solid))));
     return hn::And(passes, hit.met);
-  }
-
-  /// Of the samples that a blended surface lets through. Instances have one of 16 sequences.
-  HWY_INLINE Float share_of(const PixelLanes& pixel, const HitLanes& hit, Mask blends) const {
-    Float share = zero();
-    const Integer sequence = hn::And(hit.instance, integer(15));
-    for (int i = 0; i < 16; ++i) {
-      const Mask mine = hn::And(blends, float_mask(hn::Eq(sequence, integer(i))));
-      if (none(mine)) continue;
-      const RandomNumbers numbers(unsigned_tag, frame_.extent.z, 40u + static_cast<unsigned>(i),
-                                  frame_.extent.w);
-      share = select(mine, numbers.at(as_unsigned(pixel.x), as_unsigned(pixel.y)), share);
-    }
-    return share;
   }
 
   /// Change of view Z from one pixel to the next on the surface's plane.

@@ -20,22 +20,29 @@ std::vector<gpu::DescriptorLayout::Binding> frame_bindings() {
           {6, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
           {7, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
           {8, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
-          {9, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}};
+          {9, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}};
 }
 
-std::vector<gpu::DescriptorLayout::Binding> material_bindings() {
+std::vector<gpu::DescriptorLayout::Binding> material_bindings(bool layered) {
   std::vector<gpu::DescriptorLayout::Binding> bindings;
-  for (std::uint32_t i = 0; i < material_textures; ++i) {
-    bindings.push_back({i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER});
-  }
-  bindings.push_back({material_textures, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER});
+  const auto add = [&](std::uint32_t textures) {
+    for (std::uint32_t i = 0; i < textures; ++i) {
+      const auto number = static_cast<std::uint32_t>(bindings.size());
+      bindings.push_back({number, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER});
+    }
+    const auto number = static_cast<std::uint32_t>(bindings.size());
+    bindings.push_back({number, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER});
+  };
+  add(material_textures);
+  if (layered) add(shared::layer_textures);
   return bindings;
 }
 
-gpu::RasterState gbuffer_state() {
+gpu::RasterState gbuffer_state(bool layered) {
   using shared::Vertex;
   gpu::RasterState state;
   state.color_formats.assign(GBuffer::formats.begin(), GBuffer::formats.end());
+  if (layered) state.color_formats.push_back(GBuffer::layers_format);
   state.depth_format = VK_FORMAT_D32_SFLOAT;
   // The same vertices now and one frame ago.
   state.vertex_bindings = {{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX},
@@ -56,13 +63,30 @@ gpu::RasterState gbuffer_state() {
 
 Programs::Programs(const gpu::Device& device)
     : frame_layout(device, "frame", frame_bindings()),
-      material_layout(device, "material", material_bindings()),
       scene_layout(device, "scene", scene_bindings()),
-      gbuffer(device, shaders::gbuffer_vert, shaders::gbuffer_frag, gbuffer_state(),
-              {{frame_set, &frame_layout}, {material_set, &material_layout}}),
-      gbuffer_masked(device, shaders::gbuffer_vert, shaders::gbuffer_masked_frag, gbuffer_state(),
-                     {{frame_set, &frame_layout}, {material_set, &material_layout}}),
+      material_layout_(device, "material", material_bindings(false)),
+      layered_material_layout_(device, "layered material", material_bindings(true)),
+      gbuffer_(device, shaders::gbuffer_vert, shaders::gbuffer_frag, gbuffer_state(false),
+               {{frame_set, &frame_layout}, {material_set, &material_layout_}}),
+      gbuffer_masked_(device, shaders::gbuffer_vert, shaders::gbuffer_masked_frag,
+                      gbuffer_state(false),
+                      {{frame_set, &frame_layout}, {material_set, &material_layout_}}),
       device_(device) {}
+
+const gpu::RasterProgram& Programs::gbuffer(std::uint32_t features, bool masked) const {
+  if (!(features & shared::scene_layers)) return masked ? gbuffer_masked_ : gbuffer_;
+  const std::lock_guard lock(mutex_);
+  auto& program = layered_gbuffer_[masked];
+  if (!program) {
+    const gpu::ShaderBinary& fragment =
+        masked ? shaders::gbuffer_layered_masked_frag : shaders::gbuffer_layered_frag;
+    const gpu::SharedLayouts layouts{{frame_set, &frame_layout},
+                                     {material_set, &layered_material_layout_}};
+    program = std::make_unique<gpu::RasterProgram>(device_, shaders::gbuffer_vert, fragment,
+                                                   gbuffer_state(true), layouts);
+  }
+  return *program;
+}
 
 const gpu::ComputeProgram& Programs::compute(const gpu::ShaderBinary& shader,
                                              std::uint32_t features) const {

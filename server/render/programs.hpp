@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -10,7 +11,8 @@ namespace heliograph::render {
 
 /// Set 0: the frame's constants and the scene's small tables (shaders/lib/frame.glsl).
 inline constexpr std::uint32_t frame_set = 0;
-/// Set 2: the five textures of one material, then its values (shaders/lib/gbuffer_surface.glsl).
+/// Set 2: the five textures of one material, then its values (shaders/lib/gbuffer_surface.glsl); in
+/// scenes with layers the textures and values of its layer after them.
 inline constexpr std::uint32_t material_set = 2;
 inline constexpr std::uint32_t material_textures = 5;
 /// Set 3: the whole scene, for compute shaders (shaders/lib/scene_tables.glsl).
@@ -27,18 +29,26 @@ class Programs {
   const gpu::ComputeProgram& compute(const gpu::ShaderBinary& shader,
                                      std::uint32_t features = ~0u) const;
 
+  /// Draws the G-buffer of a scene with these features; `masked` surfaces may have holes.
+  const gpu::RasterProgram& gbuffer(std::uint32_t features, bool masked) const;
+
+  const gpu::DescriptorLayout& material_layout(bool layered) const {
+    return layered ? layered_material_layout_ : material_layout_;
+  }
+
   gpu::DescriptorLayout frame_layout;
-  gpu::DescriptorLayout material_layout;
   gpu::DescriptorLayout scene_layout;
 
-  gpu::RasterProgram gbuffer;
-  gpu::RasterProgram gbuffer_masked;
-
  private:
+  gpu::DescriptorLayout material_layout_;
+  gpu::DescriptorLayout layered_material_layout_;
+  gpu::RasterProgram gbuffer_;
+  gpu::RasterProgram gbuffer_masked_;
   const gpu::Device& device_;
   mutable std::mutex mutex_;
   using Key = std::pair<const gpu::ShaderBinary*, std::uint32_t>;
   mutable std::map<Key, std::unique_ptr<gpu::ComputeProgram>> compute_;
+  mutable std::array<std::unique_ptr<gpu::RasterProgram>, 2> layered_gbuffer_;  // by `masked`
 };
 
 }  // namespace heliograph::render

@@ -1,5 +1,6 @@
 #include "render/reference.hpp"
 
+#include "render/blend_surfaces.hpp"
 #include "render/ray_stream.hpp"
 #include "shaders/embedded.hpp"
 #include "shaders/shared/ray.h"
@@ -8,7 +9,7 @@
 namespace heliograph::render {
 namespace {
 
-constexpr std::uint32_t passed_layers = 4;  // that a path goes straight on through
+constexpr std::uint32_t passed_layers = most_blended;  // that a path goes straight on through
 constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 
 auto constants(const FrameInputs& in, std::uint32_t round, std::uint32_t limit) {

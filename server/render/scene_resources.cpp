@@ -62,6 +62,40 @@ gpu::Image constant_texture(const gpu::Device& device, const char* name,
   return image;
 }
 
+VkDeviceSize aligned(VkDeviceSize size, VkDeviceSize alignment) {
+  return (size + alignment - 1) / alignment * alignment;
+}
+
+/// Uniform blocks, `stride` bytes apart.
+template <typename Element>
+gpu::Buffer make_blocks(const gpu::Device& device, std::span<const Element> elements,
+                        VkDeviceSize stride, gpu::Memory memory) {
+  std::vector<std::byte> blocks(stride * elements.size());
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    std::memcpy(blocks.data() + i * stride, &elements[i], sizeof(Element));
+  }
+  constexpr auto usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
+  if (memory != gpu::Memory::upload) {
+    return gpu::upload_buffer(device, "material blocks", blocks, usage);
+  }
+  gpu::Buffer buffer(device, "material blocks", blocks.size(), usage, memory);
+  std::memcpy(buffer.mapped(), blocks.data(), blocks.size());
+  return buffer;
+}
+
+/// In the order of the shader's bindings.
+std::array<const shared::TextureSlot*, material_textures> slots_of(const shared::Material& m) {
+  return {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture,
+          &m.occlusion_texture, &m.emissive_texture};
+}
+
+std::array<const shared::TextureSlot*, shared::layer_textures> slots_of(
+    const shared::MaterialLayer& l) {
+  return {&l.specular_texture,    &l.specular_color_texture,  &l.coat_texture,
+          &l.coat_roughness_texture, &l.coat_normal_texture,  &l.sheen_color_texture,
+          &l.sheen_roughness_texture, &l.transmission_texture, &l.thickness_texture};
+}
+
 }  // namespace
 
 SceneResources::SceneResources(const gpu::Device& device, const Programs& programs,
@@ -74,7 +108,6 @@ SceneResources::SceneResources(const gpu::Device& device, const Programs& progra
       flat_normal_(constant_texture(device, "flat normal", {128, 128, 255, 255})) {
   progress("tables", 0.1f);
   upload_tables(device);
-  upload_layers(device);
   upload_textures(device, progress);
   texture_heap = make_texture_heap(device, *scene);
   if (device.is_cpu()) host_materials = make_host_materials(scene->materials);
@@ -89,7 +122,7 @@ std::uint64_t SceneResources::bytes() const {
   for (const gpu::Buffer* buffer :
        {&rest_tables.vertices, &rest_tables.indices, &rest_tables.meshes, &rest_tables.instances,
         &rest_tables.materials, &rest_tables.lights, &rest_tables.alpha_heap, &texture_heap.texels,
-        &texture_heap.textures, &material_sets.blocks}) {
+        &texture_heap.textures, &layers, &material_sets.blocks, &material_sets.layer_blocks}) {
     sum += buffer->size();
   }
   for (const scene::Image& image : scene->images) {
@@ -137,17 +170,12 @@ void SceneResources::upload_tables(const gpu::Device& device) {
              (scene->deformations.empty() ? 0u : shared::scene_deforms) |
              (blends ? shared::scene_blends : 0u) |
              (scene->layers.size() > 1 ? shared::scene_layers : 0u);
+  layers = upload(device, "material layers",
+                  scene->layers.empty() ? std::vector{scene::plain_layer()} : scene->layers);
   rest_tables.lights = make_light_table(device, lights.size());
   write_lights(rest_tables.lights, lights);
   rest_tables.alpha_heap =
       upload(device, "alpha masks", scene->alpha_heap, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
-}
-
-void SceneResources::upload_layers(const gpu::Device& device) {
-  std::vector<shared::MaterialLayer> all(shared::most_layers, scene::plain_layer());
-  std::ranges::copy(scene->layers, all.begin());
-  layers = gpu::upload_buffer(device, "material layers", std::as_bytes(std::span(all)),
-                              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
 }
 
 void SceneResources::upload_textures(const gpu::Device& device, const UploadProgress& progress) {
@@ -186,43 +214,50 @@ void MaterialSets::write(std::span<const shared::Material> materials) const {
   }
 }
 
+void SceneResources::write_slots(gpu::DescriptorWriter& writer, std::uint32_t first_binding,
+                                 std::span<const shared::TextureSlot* const> slots,
+                                 const shared::TextureSlot* normal) const {
+  for (std::uint32_t i = 0; i < slots.size(); ++i) {
+    const std::uint32_t texture = slots[i]->texture;
+    if (texture == shared::no_texture) {
+      const gpu::Image& constant = slots[i] == normal ? flat_normal_ : white_;
+      writer.sampled_image(first_binding + i, constant.view(), samplers_.back().handle());
+    } else {
+      writer.sampled_image(first_binding + i, images_[scene->textures[texture].image].view(),
+                           samplers_[texture_sampler_[texture]].handle());
+    }
+  }
+}
+
 MaterialSets SceneResources::make_material_sets(const gpu::Device& device, const Programs& programs,
                                                 std::span<const shared::Material> materials,
                                                 gpu::Memory memory) const {
+  const bool layered = (features & shared::scene_layers) != 0;
   MaterialSets made;
   const auto count = static_cast<std::uint32_t>(materials.size());
-  made.pool = std::make_unique<gpu::DescriptorPool>(device, count, count * material_textures);
+  constexpr std::uint32_t most_textures = material_textures + shared::layer_textures;
+  made.pool = std::make_unique<gpu::DescriptorPool>(device, count, count * most_textures);
   const VkDeviceSize alignment = device.limits().minUniformBufferOffsetAlignment;
-  made.stride = (sizeof(shared::Material) + alignment - 1) / alignment * alignment;
-  std::vector<std::byte> blocks(made.stride * count);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    std::memcpy(blocks.data() + i * made.stride, &materials[i], sizeof(shared::Material));
-  }
-  constexpr auto usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
-  if (memory == gpu::Memory::upload) {
-    made.blocks = gpu::Buffer(device, "material blocks", blocks.size(), usage, memory);
-    std::memcpy(made.blocks.mapped(), blocks.data(), blocks.size());
-  } else {
-    made.blocks = gpu::upload_buffer(device, "material blocks", blocks, usage);
+  made.stride = aligned(sizeof(shared::Material), alignment);
+  made.blocks = make_blocks(device, materials, made.stride, memory);
+  const VkDeviceSize layer_stride = aligned(sizeof(shared::MaterialLayer), alignment);
+  if (layered) {
+    made.layer_blocks =
+        make_blocks(device, std::span(scene->layers), layer_stride, gpu::Memory::device);
   }
   for (const shared::Material& material : materials) {
-    const std::array slots{&material.base_color_texture, &material.metallic_roughness_texture,
-                           &material.normal_texture, &material.occlusion_texture,
-                           &material.emissive_texture};
-    const VkDescriptorSet set = made.pool->allocate(programs.material_layout.handle());
+    const VkDescriptorSet set = made.pool->allocate(programs.material_layout(layered).handle());
     gpu::DescriptorWriter writer(device, set);
-    for (std::uint32_t i = 0; i < material_textures; ++i) {
-      const std::uint32_t texture = slots[i]->texture;
-      if (texture == shared::no_texture) {
-        const gpu::Image& constant = slots[i] == &material.normal_texture ? flat_normal_ : white_;
-        writer.sampled_image(i, constant.view(), samplers_.back().handle());
-      } else {
-        writer.sampled_image(i, images_[scene->textures[texture].image].view(),
-                             samplers_[texture_sampler_[texture]].handle());
-      }
+    write_slots(writer, 0, slots_of(material), &material.normal_texture);
+    constexpr auto uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    writer.buffer(material_textures, uniform, made.blocks.handle(), made.sets.size() * made.stride,
+                  sizeof(shared::Material));
+    if (layered) {
+      const shared::MaterialLayer& layer = scene->layers[material.layer];
+      write_slots(writer, material_textures + 1, slots_of(layer), &layer.coat_normal_texture);
+      writer.buffer(most_textures + 1, uniform, made.layer_blocks.handle(),
+                    material.layer * layer_stride, sizeof(shared::MaterialLayer));
     }
-    writer.buffer(material_textures, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, made.blocks.handle(),
-                  made.sets.size() * made.stride, sizeof(shared::Material));
     writer.apply();
     made.sets.push_back(set);
   }

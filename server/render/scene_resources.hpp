@@ -31,6 +31,7 @@ struct Draw {
 /// Materials as the rasteriser reads them: a uniform block and a descriptor set each.
 struct MaterialSets {
   gpu::Buffer blocks;  // shared::Material each, `stride` bytes apart
+  gpu::Buffer layer_blocks;  // shared::MaterialLayer each likewise, in scenes with layers
   VkDeviceSize stride = 0;
   std::unique_ptr<gpu::DescriptorPool> pool;
   std::vector<VkDescriptorSet> sets;
@@ -54,7 +55,7 @@ class SceneResources {
   std::shared_ptr<const tracing::AccelerationStructure> rest_structure;
   std::shared_ptr<const LitEnvironment> environment;
   TextureHeap texture_heap;
-  gpu::Buffer layers;  // shared::MaterialLayer, most_layers of them
+  gpu::Buffer layers;  // shared::MaterialLayer each
   host::MaterialTable host_materials;  // on devices that are processors
   std::uint32_t features = 0;  // shared::scene_*
   std::vector<Draw> draws;     // opaque first, then by material
@@ -69,9 +70,12 @@ class SceneResources {
 
  private:
   void upload_tables(const gpu::Device& device);
-  void upload_layers(const gpu::Device& device);
   void upload_textures(const gpu::Device& device, const UploadProgress& progress);
   void list_draws();
+
+  void write_slots(gpu::DescriptorWriter& writer, std::uint32_t first_binding,
+                   std::span<const shared::TextureSlot* const> slots,
+                   const shared::TextureSlot* normal) const;
 
   std::vector<shared::Mesh> meshes_;
   std::vector<shared::Instance> instances_;

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "render/blend_surfaces.hpp"
 #include "render/gbuffer_host.hpp"
 #include "render/moving_scene.hpp"
 #include "render/ray_stream.hpp"
@@ -10,7 +11,6 @@
 namespace heliograph::render {
 namespace {
 
-constexpr int rounds = 4;
 constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 
 void camera_rays(gpu::FramePlan& plan, const FrameInputs& in, const tracing::RayStream& rays) {
@@ -69,6 +69,7 @@ void shade(gpu::FramePlan& plan, const FrameInputs& in, const Round& round) {
         .write(round.gbuffer.depth_slope)
         .write(round.gbuffer.instance);
   };
+  const bool layered = (in.scene.features & shared::scene_layers) != 0;
   const std::string name = round.name + ".shade";
   if (shades_on_host(plan, in)) {
     bind(plan.host(name, [&plan, in, round] { shade_on_host(plan, in, round); }));
@@ -76,8 +77,11 @@ void shade(gpu::FramePlan& plan, const FrameInputs& in, const Round& round) {
   }
   // Camera rays decide for themselves, by the filtered texel: as drawn triangles do.
   begin_rays(plan, in, round.name, round.passed, Blending::stops);
-  bind(plan.pass(name, in.programs.compute(shaders::gbuffer_hits, in.scene.features)))
-      .constants(static_cast<std::uint32_t>(round.last))
+  const auto& shader = layered ? shaders::gbuffer_hits_layered : shaders::gbuffer_hits;
+  gpu::PassBuilder pass = plan.pass(name, in.programs.compute(shader, in.scene.features));
+  bind(pass);
+  if (layered) pass.write(round.gbuffer.layers);
+  pass.constants(static_cast<std::uint32_t>(round.last))
       .dispatch_indirect(round.rays.count, ray_groups_offset);
 }
 
@@ -95,7 +99,7 @@ bool traces_gbuffer(const gpu::Device& device, const FrameInputs& in) {
 }
 
 GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
-  GBuffer gbuffer = declare_gbuffer(plan);
+  GBuffer gbuffer = declare_gbuffer(plan, in.scene.features);
   const VkExtent2D extent = plan.extent();
   // Whole tiles of 8 x 8.
   const std::uint32_t capacity = ((extent.width + 7) / 8) * ((extent.height + 7) / 8) * 64;
@@ -106,6 +110,7 @@ GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
   tracing::RayStream next = declare_rays(plan, "gbuffer.passed", capacity);
 
   camera_rays(plan, in, current);
+  const int rounds = (in.scene.features & shared::scene_blends) != 0 ? 2 + most_blended : 4;
   for (int round = 0; round < rounds; ++round) {
     const std::string name = round == 0 ? "gbuffer" : "gbuffer." + std::to_string(round + 1);
     in.tracer.trace_closest(plan, name + ".trace", in.structure, current, hits);

@@ -9,7 +9,7 @@ namespace heliograph::render {
 /// The same G-buffer as rasterize_gbuffer, found by rays through the pixels: its cost follows the
 /// pixels, not the triangles. Depth slopes are those of the surface's plane, texture detail that of
 /// a ray cone (Akenine-Möller et al. 2021). Behind three surfaces that let a ray pass, the fourth
-/// is taken as it is. `depth` stays empty.
+/// is taken as it is; in scenes with blended surfaces the eighth. `depth` stays empty.
 GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in);
 
 /// Whether rays find the G-buffer sooner than drawing does.

@@ -42,6 +42,7 @@ tracing::RayStream generate_rays(gpu::FramePlan& plan, const FrameInputs& in,
     pass.read(gbuffer.normals)
         .read(gbuffer.base_color)
         .read(gbuffer.surface)
+        .read(gbuffer.layers)
         .read(gbuffer.motion)
         .read_write(rays.count)
         .write(rays.rays)
@@ -71,6 +72,7 @@ tracing::RayStream generate_rays(gpu::FramePlan& plan, const FrameInputs& in,
 
 /// What the rays met, and the shadow rays of its lamps.
 struct Hits {
+  std::string name;
   tracing::RayStream rays;
   gpu::BufferRef hits;
   tracing::RayStream shadows;
@@ -108,13 +110,13 @@ void shade(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer, 
   };
   // The kernel knows punctual lights alone.
   if (shades_on_host(plan, in) && (in.scene.features & shared::scene_area_lights) == 0) {
-    bind(plan.host("specular.shade", [&plan, in, gbuffer, hits, target] {
+    bind(plan.host(hits.name + ".shade", [&plan, in, gbuffer, hits, target] {
       shade_on_host(plan, in, gbuffer, hits, target);
     }));
     return;
   }
-  begin_rays(plan, in, "specular.shadows", hits.shadows);
-  bind(plan.pass("specular.shade", in.programs.compute(shaders::shade_hits, in.scene.features)))
+  begin_rays(plan, in, hits.name + ".shadows", hits.shadows);
+  bind(plan.pass(hits.name + ".shade", in.programs.compute(shaders::shade_hits, in.scene.features)))
       .constants([&s = in.settings.specular, scale = target.scale] {
         return Constants{s.hit_shading == protocol::HitShading::traced, scale};
       })
@@ -122,28 +124,39 @@ void shade(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer, 
 }
 
 /// Adds the light of lamps that are in view from where the rays ended.
-void resolve_lamps(gpu::FramePlan& plan, const FrameInputs& in, const tracing::RayStream& shadows,
-                   const Target& target) {
-  const auto occluded = plan.buffer("specular.occluded", sizeof(std::uint32_t) * shadows.capacity,
+void resolve_lamps(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
+                   const tracing::RayStream& shadows, const Target& target) {
+  const auto occluded = plan.buffer(name + ".occluded", sizeof(std::uint32_t) * shadows.capacity,
                                     storage, gpu::Memory::device);
-  in.tracer.trace_any(plan, "specular.shadows.trace", in.structure, shadows, occluded);
+  in.tracer.trace_any(plan, name + ".shadows.trace", in.structure, shadows, occluded);
   const auto bind = [&](gpu::PassBuilder pass) {
     return pass.read(shadows.count)
         .read(shadows.rays)
         .read(occluded)
-        .read_write(target.radiance)
-        .describe("Reflections of this frame, demodulated; w: how far their rays went, metres.");
+        .read_write(target.radiance);
   };
   if (by_host(plan, in)) {
-    bind(plan.host("specular.resolve", [&plan, shadows, occluded, target] {
+    bind(plan.host(name + ".resolve", [&plan, shadows, occluded, target] {
       host::resolve_lamps(ray_source(plan, shadows), mapped<const std::uint32_t>(plan, occluded),
                           target.scale, plan.get(target.radiance).host());
     }));
     return;
   }
-  bind(plan.pass("specular.resolve", in.programs.compute(shaders::resolve_specular)))
+  bind(plan.pass(name + ".resolve", in.programs.compute(shaders::resolve_specular)))
       .constants(target.scale)
       .dispatch_indirect(shadows.count, ray_groups_offset);
+}
+
+/// What the rays meet, lit.
+void trace_and_shade(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
+                     const tracing::RayStream& rays, const GBuffer& gbuffer,
+                     const Target& target) {
+  const auto hits = plan.buffer(name + ".hits", sizeof(shared::Hit) * rays.capacity, storage,
+                                gpu::Memory::device);
+  in.tracer.trace_closest(plan, name + ".trace", in.structure, rays, hits);
+  const auto shadows = declare_rays(plan, name + ".shadows", rays.capacity);
+  shade(plan, in, gbuffer, {name, rays, hits, shadows}, target);
+  resolve_lamps(plan, in, name, shadows, target);
 }
 
 gpu::ImageRef upsample(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
@@ -154,6 +167,7 @@ gpu::ImageRef upsample(gpu::FramePlan& plan, const FrameInputs& in, const GBuffe
       .read(gbuffer.normals)
       .read(gbuffer.base_color)
       .read(gbuffer.surface)
+      .read(gbuffer.layers)
       .read(gbuffer.motion)
       .read(half.radiance)
       .read(*half.directions)
@@ -169,13 +183,22 @@ gpu::ImageRef upsample(gpu::FramePlan& plan, const FrameInputs& in, const GBuffe
 gpu::ImageRef trace_specular(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer) {
   const Target target = make_target(plan, in.settings.specular.half_resolution);
   const auto rays = generate_rays(plan, in, gbuffer, target);
-  const auto hits = plan.buffer("specular.hits", sizeof(shared::Hit) * rays.capacity, storage,
-                                gpu::Memory::device);
-  in.tracer.trace_closest(plan, "specular.trace", in.structure, rays, hits);
-  const auto shadows = declare_rays(plan, "specular.shadows", rays.capacity);
-  shade(plan, in, gbuffer, {rays, hits, shadows}, target);
-  resolve_lamps(plan, in, shadows, target);
+  trace_and_shade(plan, in, "specular", rays, gbuffer, target);
   return target.directions ? upsample(plan, in, gbuffer, target) : target.radiance;
+}
+
+void trace_mirrored(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
+                    const tracing::RayStream& rays, gpu::ImageRef surface, gpu::ImageRef distance,
+                    gpu::ImageRef radiance) {
+  GBuffer mirrors;
+  mirrors.surface = surface;
+  mirrors.motion = distance;
+  trace_and_shade(plan, in, name, rays, mirrors, {radiance, {}, plan.extent(), 1});
+}
+
+void add_unhidden_light(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
+                        const tracing::RayStream& rays, gpu::ImageRef radiance) {
+  resolve_lamps(plan, in, name, rays, {radiance, {}, plan.extent(), 1});
 }
 
 }  // namespace heliograph::render

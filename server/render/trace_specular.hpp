@@ -1,6 +1,7 @@
 #pragma once
 
 #include "render/gbuffer.hpp"
+#include "tracing/ray_tracer.hpp"
 
 namespace heliograph::render {
 
@@ -9,5 +10,15 @@ namespace heliograph::render {
 /// specular albedo (rgb), and how far the ray went (w, metres; 10 km where it met nothing, 0 where
 /// there was none).
 gpu::ImageRef trace_specular(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer);
+
+/// What `rays` mirror, each with its weight: stored in `radiance` at the rays' pixels. `surface`
+/// holds the roughness that they come from, `distance` how far from the eye that is (a; metres).
+void trace_mirrored(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
+                    const tracing::RayStream& rays, gpu::ImageRef surface, gpu::ImageRef distance,
+                    gpu::ImageRef radiance);
+
+/// Adds what `rays` carry to `radiance`, at the pixels of those that meet nothing.
+void add_unhidden_light(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
+                        const tracing::RayStream& rays, gpu::ImageRef radiance);
 
 }  // namespace heliograph::render

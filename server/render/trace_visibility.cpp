@@ -91,7 +91,7 @@ gpu::ImageRef trace_shadows(gpu::FramePlan& plan, const FrameInputs& in, const G
   Generation generation{.name = "shadows",
                         .shader = in.programs.compute(shaders::shadow_rays, in.scene.features),
                         .images = {gbuffer.normals, gbuffer.motion, gbuffer.base_color,
-                                   gbuffer.surface},
+                                   gbuffer.surface, gbuffer.layers},
                         .flag = shared::frame_shadows,
                         .kernel = {}};
   if ((in.scene.features & (shared::scene_area_lights | shared::scene_layers)) == 0) {

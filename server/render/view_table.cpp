@@ -51,6 +51,16 @@ constexpr std::array buffer_rules{
     BufferRule{"specular.radiance", ViewColors::radiance,
                "What one mirrored ray per pixel brings, without the surface's colour; its length "
                "in metres (w)."},
+    BufferRule{"blended.radiance", ViewColors::radiance,
+               "Light of blended surfaces, as far as it reaches the eye; linear."},
+    BufferRule{"blended.behind", ViewColors::channels,
+               "How much of what lies behind them blended surfaces let show."},
+    BufferRule{"blended.motion", ViewColors::difference,
+               "Like gbuffer.motion, of the surface that shows most."},
+    BufferRule{"blended.mirrored", ViewColors::radiance,
+               "What one mirrored ray per pixel brings to blended surfaces; linear."},
+    BufferRule{"blended.surface", ViewColors::channels,
+               "Perceptual roughness and metalness of the blended surface that rays light."},
     BufferRule{"skybox", ViewColors::radiance, "Radiance of the environment behind the scene."},
     BufferRule{"hdr", ViewColors::radiance,
                "The frame's radiance, without noise, before "

@@ -156,7 +156,7 @@ class Importer {
         });
     failure.rethrow();
     watch.lap();
-    build_layers(scene_, warnings_);
+    build_layers(scene_);
     build_alpha_heap(scene_);
 
     scene_.clips = read_clips(root, accessors, nodes, budget_, warnings_);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "scene/scene.hpp"
-#include "scene/warnings.hpp"
 
 namespace heliograph::scene {
 
@@ -9,8 +8,8 @@ namespace heliograph::scene {
 shared::MaterialLayer plain_layer();
 
 /// Makes scene.layers of what the materials' extensions say, each kind once, and points the
-/// materials at them. Light that passes through a surface (KHR_materials_transmission) becomes
-/// partial coverage: see README.md.
-void build_layers(Scene& scene, Warnings& warnings);
+/// materials at them. Surfaces that let light through (KHR_materials_transmission) become blended
+/// ones: see README.md. The scene's images must be there: what passes on average depends on them.
+void build_layers(Scene& scene);
 
 }  // namespace heliograph::scene

@@ -1,52 +1,78 @@
 #include "scene/material_layers.hpp"
 
-#include <cmath>
-#include <initializer_list>
+#include "scene/texture_slot.hpp"
 
 namespace heliograph::scene {
 namespace {
 
 class LayerReader {
  public:
-  LayerReader(const JsonValue& extensions, std::size_t textures, Warnings& warnings)
+  LayerReader(const JsonValue& extensions, TextureTable& textures, Warnings& warnings)
       : extensions_(extensions), textures_(textures), warnings_(warnings) {}
 
   MaterialLayers read() {
     MaterialLayers layers;
-    if (const auto json = extensions_.object("KHR_materials_specular")) {
-      layers.specular = unit(*json, "specularFactor", 1.0f);
-      layers.specular_color = color(*json, "specularColorFactor", glm::vec3(1.0f), no_limit);
-      check_textures(*json, {"specularTexture", "specularColorTexture"});
-    }
-    if (const auto json = extensions_.object("KHR_materials_clearcoat")) {
-      layers.clearcoat = unit(*json, "clearcoatFactor", 0.0f);
-      layers.clearcoat_roughness = unit(*json, "clearcoatRoughnessFactor", 0.0f);
-      check_textures(*json,
-                     {"clearcoatTexture", "clearcoatRoughnessTexture", "clearcoatNormalTexture"});
-    }
-    if (const auto json = open("KHR_materials_sheen", "the sheen is left out")) {
-      layers.sheen_color = color(*json, "sheenColorFactor", glm::vec3(0.0f), 1.0f);
-      layers.sheen_roughness = unit(*json, "sheenRoughnessFactor", 0.0f);
-      check_textures(*json, {"sheenColorTexture", "sheenRoughnessTexture"});
-    }
-    if (const auto json = open("KHR_materials_transmission", "light passes straight on, dimmed by the colour's luminance")) {
-      layers.transmission = unit(*json, "transmissionFactor", 0.0f);
-      check_textures(*json, {"transmissionTexture"});
-    }
-    if (const auto json = open("KHR_materials_volume", "walls are thin and refract nothing")) {
-      layers.thickness = at_least_zero(*json, "thicknessFactor", 0.0f);
-      layers.attenuation_distance = at_least_zero(*json, "attenuationDistance", 0.0f);
-      if (json->has("attenuationDistance") && layers.attenuation_distance == 0.0f) {
-        json->refuse("attenuationDistance", "must be more than 0");
-      }
-      layers.attenuation_color = color(*json, "attenuationColor", glm::vec3(1.0f), 1.0f);
-      check_textures(*json, {"thicknessTexture"});
-    }
+    read_specular(layers);
+    read_clearcoat(layers);
+    read_sheen(layers);
+    read_transmission(layers);
+    read_volume(layers);
     return layers;
   }
 
  private:
   static constexpr float no_limit = 3e38f;
+
+  void read_specular(MaterialLayers& layers) {
+    const auto json = extensions_.object("KHR_materials_specular");
+    if (!json) return;
+    layers.specular = unit(*json, "specularFactor", 1.0f);
+    layers.specular_color = color(*json, "specularColorFactor", glm::vec3(1.0f), no_limit);
+    layers.specular_texture = texture(*json, "specularTexture");
+    layers.specular_color_texture = texture(*json, "specularColorTexture", true);
+  }
+
+  void read_clearcoat(MaterialLayers& layers) {
+    const auto json = extensions_.object("KHR_materials_clearcoat");
+    if (!json) return;
+    layers.clearcoat = unit(*json, "clearcoatFactor", 0.0f);
+    layers.clearcoat_roughness = unit(*json, "clearcoatRoughnessFactor", 0.0f);
+    layers.clearcoat_texture = texture(*json, "clearcoatTexture");
+    layers.clearcoat_roughness_texture = texture(*json, "clearcoatRoughnessTexture");
+    layers.clearcoat_normal_texture = texture(*json, "clearcoatNormalTexture");
+    if (const auto normal = json->object("clearcoatNormalTexture")) {
+      layers.clearcoat_normal_scale = normal->number("scale", 1.0f);
+    }
+  }
+
+  void read_sheen(MaterialLayers& layers) {
+    const auto json = extensions_.object("KHR_materials_sheen");
+    if (!json) return;
+    layers.sheen_color = color(*json, "sheenColorFactor", glm::vec3(0.0f), 1.0f);
+    layers.sheen_roughness = unit(*json, "sheenRoughnessFactor", 0.0f);
+    layers.sheen_color_texture = texture(*json, "sheenColorTexture", true);
+    layers.sheen_roughness_texture = texture(*json, "sheenRoughnessTexture");
+  }
+
+  void read_transmission(MaterialLayers& layers) {
+    const auto json = open("KHR_materials_transmission",
+                           "light passes straight on, rough surfaces do not blur it");
+    if (!json) return;
+    layers.transmission = unit(*json, "transmissionFactor", 0.0f);
+    layers.transmission_texture = texture(*json, "transmissionTexture");
+  }
+
+  void read_volume(MaterialLayers& layers) {
+    const auto json = open("KHR_materials_volume", "walls are thin and refract nothing");
+    if (!json) return;
+    layers.thickness = at_least_zero(*json, "thicknessFactor", 0.0f);
+    layers.attenuation_distance = at_least_zero(*json, "attenuationDistance", 0.0f);
+    if (json->has("attenuationDistance") && layers.attenuation_distance == 0.0f) {
+      json->refuse("attenuationDistance", "must be more than 0");
+    }
+    layers.attenuation_color = color(*json, "attenuationColor", glm::vec3(1.0f), 1.0f);
+    layers.thickness_texture = texture(*json, "thicknessTexture");
+  }
 
   std::optional<JsonValue> open(std::string_view name, std::string_view effect) {
     auto found = extensions_.object(name);
@@ -79,24 +105,19 @@ class LayerReader {
     return {values[0], values[1], values[2]};
   }
 
-  void check_textures(const JsonValue& json, std::initializer_list<std::string_view> slots) {
-    for (const std::string_view slot : slots) {
-      const auto texture = json.object(slot);
-      if (!texture) continue;
-      texture->required_index("index", textures_, "textures");
-      texture->integer("texCoord");
-      warnings_.add(json.path() + "." + std::string(slot) + " is left out; its factor counts");
-    }
+  shared::TextureSlot texture(const JsonValue& json, std::string_view key, bool srgb = false) {
+    const auto slot = json.object(key);
+    return slot ? read_texture_slot(*slot, srgb, textures_, warnings_) : no_texture_slot();
   }
 
   const JsonValue& extensions_;
-  std::size_t textures_;
+  TextureTable& textures_;
   Warnings& warnings_;
 };
 
 }  // namespace
 
-MaterialLayers read_material_layers(const JsonValue& extensions, std::size_t textures,
+MaterialLayers read_material_layers(const JsonValue& extensions, TextureTable& textures,
                                     Warnings& warnings) {
   return LayerReader(extensions, textures, warnings).read();
 }

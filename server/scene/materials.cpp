@@ -5,30 +5,10 @@
 #include <map>
 
 #include "scene/material_layers.hpp"
+#include "scene/texture_slot.hpp"
 
 namespace heliograph::scene {
 namespace {
-
-shared::TextureSlot empty_slot() {
-  shared::TextureSlot slot{};
-  slot.transform_row0 = {1.0f, 0.0f, 0.0f, 0.0f};
-  slot.transform_row1 = {0.0f, 1.0f, 0.0f, 0.0f};
-  slot.texture = shared::no_texture;
-  return slot;
-}
-
-// KHR_texture_transform: translation * rotation * scale, the rotation counter-clockwise as seen
-// with v pointing down. The sample matrix in the extension's text turns the other way; its test
-// model and the implementations agree on this one (github.com/KhronosGroup/glTF/issues/1563).
-void apply_transform(const JsonValue& transform, shared::TextureSlot& slot) {
-  const auto offset = transform.numbers<2>("offset", {0.0f, 0.0f});
-  const auto scale = transform.numbers<2>("scale", {1.0f, 1.0f});
-  const float rotation = transform.number("rotation", 0.0f);
-  const float cosine = std::cos(rotation);
-  const float sine = std::sin(rotation);
-  slot.transform_row0 = {cosine * scale[0], sine * scale[1], offset[0], 0.0f};
-  slot.transform_row1 = {-sine * scale[0], cosine * scale[1], offset[1], 0.0f};
-}
 
 class MaterialReader {
  public:
@@ -126,24 +106,7 @@ class MaterialReader {
   }
 
   shared::TextureSlot read_slot(const JsonValue& json, bool srgb) {
-    shared::TextureSlot slot = empty_slot();
-    const std::uint32_t texture = json.required_index("index", textures_.size(), "textures");
-    std::uint64_t uv_set = json.integer("texCoord", 0);
-    if (const auto transform = json.object("extensions", "KHR_texture_transform")) {
-      apply_transform(*transform, slot);
-      uv_set = transform->integer("texCoord", uv_set);
-    }
-    if (uv_set > 1) {
-      warnings_.add(json.path() + ".texCoord: only the sets 0 and 1 are kept, 0 is used");
-      uv_set = 0;
-    }
-    slot.uv_set = static_cast<std::uint32_t>(uv_set);
-    slot.texture = textures_.use(texture, srgb);
-    if (slot.texture == shared::no_texture) {
-      warnings_.add("textures[" + std::to_string(texture) +
-                    "] has no PNG, JPEG or WebP image and was left out");
-    }
-    return slot;
+    return read_texture_slot(json, srgb, textures_, warnings_);
   }
 
   TextureTable& textures_;
@@ -170,22 +133,21 @@ shared::Material default_material() {
   material.occlusion_strength = 1.0f;
   material.ior = 1.5f;
   material.alpha_mask = shared::no_texture;
-  material.base_color_texture = empty_slot();
-  material.metallic_roughness_texture = empty_slot();
-  material.normal_texture = empty_slot();
-  material.occlusion_texture = empty_slot();
-  material.emissive_texture = empty_slot();
+  material.base_color_texture = no_texture_slot();
+  material.metallic_roughness_texture = no_texture_slot();
+  material.normal_texture = no_texture_slot();
+  material.occlusion_texture = no_texture_slot();
+  material.emissive_texture = no_texture_slot();
   return material;
 }
 
 MaterialTable read_materials(const JsonValue& root, TextureTable& textures, Warnings& warnings) {
   MaterialTable table;
   MaterialReader reader(textures, warnings);
-  const std::size_t texture_count = textures.size();
   for (const JsonValue& json : root.objects("materials")) {
     table.materials.push_back(reader.read(json));
     const auto extensions = json.object("extensions");
-    table.layers.push_back(extensions ? read_material_layers(*extensions, texture_count, warnings)
+    table.layers.push_back(extensions ? read_material_layers(*extensions, textures, warnings)
                                       : MaterialLayers());
     table.names.push_back(json.text("name"));
   }
@@ -197,7 +159,8 @@ void build_alpha_heap(Scene& scene) {
   for (shared::Material& material : scene.materials) {
     const std::uint32_t index = material.base_color_texture.texture;
     const std::uint32_t partial = shared::material_alpha_mask | shared::material_alpha_blend;
-    if (!(material.flags & partial) || index == shared::no_texture) continue;
+    const bool whole = (material.flags & shared::material_whole_alpha) != 0;
+    if (!(material.flags & partial) || whole || index == shared::no_texture) continue;
     const Texture& texture = scene.textures[index];
     const Image& image = scene.images[texture.image];
     const auto known = offset_of_image.find(texture.image);

@@ -137,19 +137,40 @@ struct Deformation {
   std::optional<std::uint32_t> skin;
 };
 
-/// What a material's extensions say beyond metallic and roughness, textures aside. Values that are
-/// absent are those that change nothing.
+/// A slot that holds no texture.
+inline shared::TextureSlot no_texture_slot() {
+  return {.transform_row0 = {1.0f, 0.0f, 0.0f, 0.0f},
+          .transform_row1 = {0.0f, 1.0f, 0.0f, 0.0f},
+          .texture = shared::no_texture,
+          .uv_set = 0,
+          .padding0 = 0,
+          .padding1 = 0};
+}
+
+/// What a material's extensions say beyond metallic and roughness. Values that are absent are those
+/// that change nothing.
 struct MaterialLayers {
   float specular = 1.0f;  // KHR_materials_specular
   glm::vec3 specular_color{1.0f};
   float clearcoat = 0.0f;
   float clearcoat_roughness = 0.0f;
+  float clearcoat_normal_scale = 1.0f;
   glm::vec3 sheen_color{0.0f};
   float sheen_roughness = 0.0f;
   float transmission = 0.0f;
   float thickness = 0.0f;             // metres in the mesh's space; 0: thin walled
   float attenuation_distance = 0.0f;  // metres; 0: endless
   glm::vec3 attenuation_color{1.0f};
+
+  shared::TextureSlot specular_texture = no_texture_slot();
+  shared::TextureSlot specular_color_texture = no_texture_slot();
+  shared::TextureSlot clearcoat_texture = no_texture_slot();
+  shared::TextureSlot clearcoat_roughness_texture = no_texture_slot();
+  shared::TextureSlot clearcoat_normal_texture = no_texture_slot();
+  shared::TextureSlot sheen_color_texture = no_texture_slot();
+  shared::TextureSlot sheen_roughness_texture = no_texture_slot();
+  shared::TextureSlot transmission_texture = no_texture_slot();
+  shared::TextureSlot thickness_texture = no_texture_slot();
 };
 
 enum class Interpolation { step, linear, cubic_spline };

@@ -21,7 +21,7 @@ std::uint32_t lowest_alpha(const shared::Material& material) {
 
 // Of a blended surface's alpha, of 65535.
 std::uint32_t blend_factor(const shared::Material& material) {
-  const float factor = std::clamp(material.base_color.w, 0.0f, 1.0f);
+  const float factor = std::clamp(material.base_color.w * (1.0f - material.passing), 0.0f, 1.0f);
   return static_cast<std::uint32_t>(std::lround(factor * static_cast<float>(shared::mask_factor)));
 }
 

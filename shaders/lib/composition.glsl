@@ -7,12 +7,13 @@
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D normals;
 layout(set = 1, binding = 1, rgba8) readonly uniform image2D base_color;
 layout(set = 1, binding = 2, rgba8) readonly uniform image2D surface;
-layout(set = 1, binding = 3, rgba32f) readonly uniform image2D motion;
-layout(set = 1, binding = 4, rgba16f) readonly uniform image2D emissive;
-layout(set = 1, binding = 5, rgba32f) readonly uniform image2D background;
-layout(set = 1, binding = 6, r32f) readonly uniform image2D shadow_visibility;
-layout(set = 1, binding = 7, r32f) readonly uniform image2D ambient_visibility;
-layout(set = 1, binding = 8, rgba32f) readonly uniform image2D specular_radiance;
+layout(set = 1, binding = 3, rgba32ui) readonly uniform uimage2D surface_layers;
+layout(set = 1, binding = 4, rgba32f) readonly uniform image2D motion;
+layout(set = 1, binding = 5, rgba16f) readonly uniform image2D emissive;
+layout(set = 1, binding = 6, rgba32f) readonly uniform image2D background;
+layout(set = 1, binding = 7, r32f) readonly uniform image2D shadow_visibility;
+layout(set = 1, binding = 8, r32f) readonly uniform image2D ambient_visibility;
+layout(set = 1, binding = 9, rgba32f) readonly uniform image2D specular_radiance;
 layout(push_constant) uniform Constants { float max_roughness; };  // below 0: nothing was traced
 
 #include "lib/gbuffer_material.glsl"

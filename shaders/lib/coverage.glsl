@@ -11,7 +11,11 @@ bool is_open(HitSurface s, vec3 direction) {
   return (s.flags & material_alpha_mask) != 0u && s.alpha < s.alpha_cutoff;
 }
 
-bool is_blended(HitSurface s) { return (s.flags & material_alpha_blend) != 0u; }
+/// Whether something of what is behind shows through the surface.
+bool is_blended(HitSurface s) {
+  return (s.flags & material_alpha_blend) != 0u &&
+         s.alpha * (1.0 - s.layer.transmission) < least_solid;
+}
 
 /// The rest of the ray behind what it has met.
 Ray beyond(Ray ray, Hit hit) {

@@ -50,32 +50,36 @@ vec3 environment_irradiance(vec3 world) {
   return max(sum, vec3(0.0)) * frame.environment.x;
 }
 
-/// The material of a surface toward `eye`, with its split sums looked up. `layer` is its number.
+/// The material of a surface toward `eye`, with the albedos of its lobes looked up.
 SurfaceMaterial surface_material(vec3 base_color, float metallic, float roughness, vec3 normal,
-                                 vec3 geometric, vec3 eye, uint number) {
+                                 vec3 geometric, vec3 eye, SurfaceLayer layer) {
   float n_dot_v = material_n_dot_v(normal, eye);
   vec2 split = textureLod(split_sum_table, vec2(n_dot_v, roughness), 0.0).rg;
-  MaterialLayer layer = plain_layer();
-  if (scene_has(scene_layers)) layer = layers[min(number, most_layers - 1u)];
   SurfaceMaterial m =
       make_material(base_color, metallic, roughness, normal, geometric, eye, split, layer);
+  if (scene_has(scene_layers) && layer.sheen != vec3(0.0)) {
+    add_sheen(m, layer, textureLod(sheen_table, vec2(n_dot_v, layer.sheen_roughness), 0.0).r);
+  }
   if (scene_has(scene_layers) && layer.coat > 0.0) {
-    vec2 at = vec2(n_dot_v, layer.coat_roughness);
+    vec2 at = vec2(material_n_dot_v(layer.coat_normal, eye), layer.coat_roughness);
     add_coat(m, layer, textureLod(split_sum_table, at, 0.0).rg);
   }
   return m;
 }
 
-/// The environment's diffuse light, as if nothing hid it.
+/// The environment's diffuse light, as if nothing hid it. Sheen is wide enough to see it likewise.
 vec3 environment_diffuse(SurfaceMaterial m) {
-  return m.diffuse_albedo * environment_irradiance(m.normal);
+  return wide_albedo(m) * environment_irradiance(m.normal);
 }
 
 /// The environment's mirrored light by the split sum (Karis 2013), as if nothing hid it.
 vec3 environment_specular(SurfaceMaterial m) {
   vec3 mirrored = reflect(-m.eye, m.normal);
   vec3 light = under_coat_albedo(m) * environment_reflection(mirrored, m.roughness);
-  if (has_coat(m)) light += m.coat_albedo * environment_reflection(mirrored, m.coat_roughness);
+  if (has_coat(m)) {
+    light += m.coat_albedo *
+             environment_reflection(reflect(-m.eye, m.coat_normal), m.coat_roughness);
+  }
   return light;
 }
 

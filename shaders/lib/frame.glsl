@@ -13,7 +13,7 @@ layout(set = 0, binding = 5) uniform usamplerBuffer light_texels;
 layout(set = 0, binding = 6) uniform sampler2D ltc_table;
 layout(set = 0, binding = 7) uniform sampler2D background_map;
 layout(set = 0, binding = 8) uniform usamplerBuffer environment_cells;
-layout(set = 0, binding = 9, std140) uniform LayerBlock { MaterialLayer layers[most_layers]; };
+layout(set = 0, binding = 9) uniform sampler2D sheen_table;
 
 layout(constant_id = 0) const uint scene_features = 0xffffffffu;
 /// Whether the scene may have something; known when the shader is made.

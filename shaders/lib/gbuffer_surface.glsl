@@ -1,7 +1,7 @@
 // Fragment stage of the G-buffer: the glTF material evaluated at a pixel, into its signals.
+// GBUFFER_OPAQUE: without holes; GBUFFER_LAYERED: with what extensions add to materials.
 #include "lib/frame.glsl"
-#include "lib/octahedral.glsl"
-#include "lib/random.glsl"
+#include "lib/layers.glsl"
 
 layout(location = 0) in vec3 world_normal;
 layout(location = 1) in vec4 world_tangent;
@@ -14,13 +14,14 @@ layout(location = 7) in vec3 world_point;
 
 layout(location = 0) out vec4 normals;     // octahedral: shading xy, geometric zw
 layout(location = 1) out vec4 base_color;  // square root of linear rgb, occlusion
-// Roughness of what mirrors the sharper image; metallic; 1: unlit, less: roughness under the coat x
-// 254/255; number of the layer / 255.
-layout(location = 2) out vec4 surface;
+layout(location = 2) out vec4 surface;     // roughness of the smoother lobe, metallic, unlit
 layout(location = 3) out vec4 motion;      // to the previous frame: uv, view Z; and view Z now
 layout(location = 4) out vec4 emissive;    // linear radiance
 layout(location = 5) out vec2 depth_slope; // view Z per pixel in x and y
 layout(location = 6) out uint instance_id;
+#ifdef GBUFFER_LAYERED
+layout(location = 7) out uvec4 surface_layers;  // pack_layer()
+#endif
 
 layout(push_constant) uniform Constants { DrawConstants draw; };
 
@@ -31,6 +32,18 @@ layout(set = 2, binding = 3) uniform sampler2D occlusion_map;
 layout(set = 2, binding = 4) uniform sampler2D emissive_map;
 // Uniform, not storage: helper lanes must see it too, or the texture's level of detail is wrong.
 layout(set = 2, binding = 5, std140) uniform MaterialBlock { Material material; };
+#ifdef GBUFFER_LAYERED
+layout(set = 2, binding = 6) uniform sampler2D specular_map;
+layout(set = 2, binding = 7) uniform sampler2D specular_color_map;
+layout(set = 2, binding = 8) uniform sampler2D coat_map;
+layout(set = 2, binding = 9) uniform sampler2D coat_roughness_map;
+layout(set = 2, binding = 10) uniform sampler2D coat_normal_map;
+layout(set = 2, binding = 11) uniform sampler2D sheen_color_map;
+layout(set = 2, binding = 12) uniform sampler2D sheen_roughness_map;
+layout(set = 2, binding = 13) uniform sampler2D transmission_map;
+layout(set = 2, binding = 14) uniform sampler2D thickness_map;
+layout(set = 2, binding = 15, std140) uniform LayerBlock { MaterialLayer layer; };
+#endif
 
 // No condition here hangs on constants and uniforms alone: lavapipe would make a new shader of every
 // value they take, draw by draw, and keep them all.
@@ -41,12 +54,11 @@ vec2 slot_uv(TextureSlot slot) {
   return vec2(dot(slot.transform_row0.xyz, uv), dot(slot.transform_row1.xyz, uv));
 }
 
-/// The normal map about the front face's `normal`; a back face reverses the result as a whole.
-vec3 mapped_normal(vec3 normal) {
-  vec2 uv = slot_uv(material.normal_texture);
-  vec3 texel = texture(normal_map, uv).xyz * 2.0 - 1.0;
+/// A normal map's texel about the front face's `normal`; a back face reverses the result as a whole.
+vec3 mapped_normal(vec3 normal, vec3 texel, float scale, uint map) {
+  texel = texel * 2.0 - 1.0;
   // Without a map the normal stays: a whole number divides to 1 only by itself.
-  texel.xy *= material.normal_scale * (1.0 - float(material.normal_texture.texture / no_texture));
+  texel.xy *= scale * (1.0 - float(map / no_texture));
   vec3 tangent = world_tangent.xyz - normal * dot(normal, world_tangent.xyz);
   float size = dot(tangent, tangent);
   if (size < 1e-12) return normal;
@@ -73,23 +85,47 @@ float exact_view_z(vec3 geometric) {
   return view_depths.x + clamp(apart, -most, most);
 }
 
+#ifdef GBUFFER_LAYERED
+/// At the front face's `normal`.
+SurfaceLayer layer_here(vec3 normal) {
+  LayerTexels texels;
+  texels.specular = texture(specular_map, slot_uv(layer.specular_texture)).a;
+  texels.specular_color = texture(specular_color_map, slot_uv(layer.specular_color_texture)).rgb;
+  texels.coat = texture(coat_map, slot_uv(layer.coat_texture)).r;
+  texels.coat_roughness = texture(coat_roughness_map, slot_uv(layer.coat_roughness_texture)).g;
+  texels.sheen = texture(sheen_color_map, slot_uv(layer.sheen_color_texture)).rgb;
+  texels.sheen_roughness = texture(sheen_roughness_map, slot_uv(layer.sheen_roughness_texture)).a;
+  texels.transmission = texture(transmission_map, slot_uv(layer.transmission_texture)).r;
+  texels.thickness = texture(thickness_map, slot_uv(layer.thickness_texture)).g;
+  vec3 coat_texel = texture(coat_normal_map, slot_uv(layer.coat_normal_texture)).xyz;
+  return surface_layer(layer, texels,
+                       mapped_normal(normal, coat_texel, layer.coat_normal_scale,
+                                     layer.coat_normal_texture.texture));
+}
+#endif
+
 void main() {
   vec4 color = material.base_color * vertex_color *
                texture(base_color_map, slot_uv(material.base_color_texture));
-#ifndef GBUFFER_OPAQUE
-  // Blended surfaces cover a random share of the samples: accumulation makes it the right share.
-  float share = random_number(uvec2(gl_FragCoord.xy), frame.extent.z, 40u + (draw.instance & 15u),
-                              frame.extent.w);
-  float cutoff = mix(material.alpha_cutoff, share, flag(material.flags, material_alpha_blend));
-  bool hole = color.a < cutoff;
-#endif
   vec3 across = cross(dFdy(world_point), dFdx(world_point));
   vec3 vertex_normal = normalize(world_normal);
+#ifdef GBUFFER_LAYERED
+  SurfaceLayer extended = layer_here(vertex_normal);
+  color.a = mix(color.a, 1.0, flag(material.flags, material_whole_alpha)) *
+            (1.0 - extended.transmission);
+#endif
+#ifndef GBUFFER_OPAQUE
+  // Of blended surfaces only what hides all behind it: the rest is drawn over the composed picture.
+  bool hole = color.a < mix(material.alpha_cutoff, least_solid,
+                            flag(material.flags, material_alpha_blend));
+#endif
   float side = gl_FrontFacing ? 1.0 : -1.0;
   float area = dot(across, across);
   vec3 geometric = area > 0.0 ? across * inversesqrt(area) : vertex_normal * side;
   if (dot(geometric, vertex_normal) * side < 0.0) geometric = -geometric;
-  vec3 shading = mapped_normal(vertex_normal) * side;
+  vec3 texel = texture(normal_map, slot_uv(material.normal_texture)).xyz;
+  vec3 shading = mapped_normal(vertex_normal, texel, material.normal_scale,
+                               material.normal_texture.texture) * side;
   vec4 packed_surface = texture(metallic_roughness_map,
                                 slot_uv(material.metallic_roughness_texture));
   float occlusion = texture(occlusion_map, slot_uv(material.occlusion_texture)).r;
@@ -98,11 +134,13 @@ void main() {
   base_color = vec4(sqrt(clamp(color.rgb, 0.0, 1.0)),
                     mix(1.0, occlusion, material.occlusion_strength));
   float roughness = material.roughness * packed_surface.g;
-  float coated = flag(material.flags, material_coated);
-  surface = vec4(mix(roughness, min(roughness, material.coat_roughness), coated),
-                 material.metallic * packed_surface.b,
-                 max(flag(material.flags, material_unlit), roughness * coated * (254.0 / 255.0)),
-                 float(material.layer) / 255.0);
+#ifdef GBUFFER_LAYERED
+  extended.coat_normal *= side;
+  surface_layers = pack_layer(extended, roughness);
+  roughness = smoother_roughness(extended, roughness);
+#endif
+  surface = vec4(roughness, material.metallic * packed_surface.b,
+                 flag(material.flags, material_unlit), 0.0);
   vec2 uv_now = clip_now.xy / clip_now.z * 0.5;
   vec2 uv_before = clip_before.xy / clip_before.z * 0.5;
   motion = vec4(uv_before - uv_now, view_depths.y - view_depths.x, exact_view_z(geometric));

@@ -3,6 +3,7 @@
 #ifndef HELIOGRAPH_HIT_SURFACE_GLSL
 #define HELIOGRAPH_HIT_SURFACE_GLSL
 #include "lib/frame.glsl"
+#include "lib/layers.glsl"
 #include "lib/texture_heap.glsl"
 #include "shared/ray.h"
 
@@ -40,7 +41,8 @@ struct HitSurface {
   float occlusion;
   vec3 emissive;  // linear radiance
   uint flags;     // material_*
-  uint layer;     // number of its MaterialLayer
+  float passing;  // share of the rays that tracers let go on where it covers
+  SurfaceLayer layer;
 };
 
 /// A triangle of an instance, corner by corner.
@@ -116,11 +118,11 @@ vec4 slot_texel(TextureSlot slot, TexturePlace place) {
                                            dot(slot.transform_row1.xyz, uv)), lod);
 }
 
-/// The normal map about the front face's `normal`.
-vec3 mapped_normal(HitTriangle t, uint material, TexturePlace place, vec3 normal) {
-  if (materials[material].normal_texture.texture == no_texture) return normal;
-  vec3 texel = slot_texel(materials[material].normal_texture, place).xyz * 2.0 - 1.0;
-  texel.xy *= materials[material].normal_scale;
+/// A normal map about the front face's `normal`.
+vec3 mapped_normal(HitTriangle t, TextureSlot map, float scale, TexturePlace place, vec3 normal) {
+  if (map.texture == no_texture) return normal;
+  vec3 texel = slot_texel(map, place).xyz * 2.0 - 1.0;
+  texel.xy *= scale;
   vec3 tangent = transform_direction(t, t.a.tangent.xyz) * t.weights.x +
                  transform_direction(t, t.b.tangent.xyz) * t.weights.y +
                  transform_direction(t, t.c.tangent.xyz) * t.weights.z;
@@ -134,6 +136,25 @@ vec3 mapped_normal(HitTriangle t, uint material, TexturePlace place, vec3 normal
 
 vec4 vertex_color(Vertex v) {
   return vec4(unpackUnorm2x16(v.color_rg), unpackUnorm2x16(v.color_ba));
+}
+
+/// What extensions add at the front face's `normal`.
+SurfaceLayer evaluate_layer(HitTriangle t, TexturePlace place, vec3 normal) {
+  uint number = materials[t.material].layer;
+  if (number == 0u) return plain_layer();
+  MaterialLayer from = layers[number];
+  LayerTexels texels;
+  texels.specular = slot_texel(from.specular_texture, place).a;
+  texels.specular_color = slot_texel(from.specular_color_texture, place).rgb;
+  texels.coat = slot_texel(from.coat_texture, place).r;
+  texels.coat_roughness = slot_texel(from.coat_roughness_texture, place).g;
+  texels.sheen = slot_texel(from.sheen_color_texture, place).rgb;
+  texels.sheen_roughness = slot_texel(from.sheen_roughness_texture, place).a;
+  texels.transmission = slot_texel(from.transmission_texture, place).r;
+  texels.thickness = slot_texel(from.thickness_texture, place).g;
+  return surface_layer(from, texels,
+                       mapped_normal(t, from.coat_normal_texture, from.coat_normal_scale, place,
+                                     normal));
 }
 
 void evaluate_material(inout HitSurface s, HitTriangle t, TexturePlace place) {
@@ -153,7 +174,8 @@ void evaluate_material(inout HitSurface s, HitTriangle t, TexturePlace place) {
   s.emissive = materials[m].emissive;
   if (s.emissive != vec3(0.0)) s.emissive *= slot_texel(materials[m].emissive_texture, place).rgb;
   s.flags = materials[m].flags;
-  s.layer = scene_has(scene_layers) ? materials[m].layer : 0u;
+  if ((s.flags & material_whole_alpha) != 0u) s.alpha = 1.0;
+  s.passing = scene_has(scene_layers) ? materials[m].passing : 0.0;
 }
 
 /// `hit` of a ray along `direction` whose footprint at the hit is `width` metres.
@@ -175,8 +197,14 @@ HitSurface hit_surface(Hit hit, vec3 direction, float width) {
   // Like the G-buffer: where winding and normals disagree, the normals say which side this is.
   s.geometric = front * (dot(front, vertex_normal) < 0.0 ? -side : side);
   TexturePlace place = texture_place(t, twice_world_area, width, abs(cosine));
-  s.normal = mapped_normal(t, t.material, place, vertex_normal) * side;
+  s.normal = mapped_normal(t, materials[t.material].normal_texture,
+                           materials[t.material].normal_scale, place, vertex_normal) * side;
   evaluate_material(s, t, place);
+  s.layer = plain_layer();
+  if (scene_has(scene_layers)) {
+    s.layer = evaluate_layer(t, place, vertex_normal);
+    s.layer.coat_normal *= side;
+  }
   return s;
 }
 

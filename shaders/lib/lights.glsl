@@ -136,9 +136,9 @@ LightSample sample_light(Light light, vec3 position, vec2 u) {
 vec3 light_contribution(Light light, SurfaceMaterial m, vec3 position) {
   if (has_area(light)) {
     vec2 share = area_light_shares(light, m.normal, m.eye, m.n_dot_v, m.roughness, position);
-    vec3 shares = m.diffuse_albedo * share.x + under_coat_albedo(m) * share.y;
+    vec3 shares = wide_albedo(m) * share.x + under_coat_albedo(m) * share.y;
     if (has_coat(m)) {
-      shares += m.coat_albedo * area_light_shares(light, m.normal, m.eye, m.n_dot_v,
+      shares += m.coat_albedo * area_light_shares(light, m.coat_normal, m.eye, m.coat_n_dot_v,
                                                   m.coat_roughness, position).y;
     }
     return light.color * shares;

@@ -7,7 +7,10 @@
 shared uint group_rays;
 shared uint group_base;
 
-#define APPEND_RAY(wanted, ray)                                                     \
+#define APPEND_RAY(wanted, ray) APPEND_RAY_TO(ray_count, rays, wanted, ray)
+
+/// For passes with several streams.
+#define APPEND_RAY_TO(ray_count, rays, wanted, ray)                                 \
   {                                                                                 \
     if (gl_LocalInvocationIndex == 0u) group_rays = 0u;                             \
     barrier();                                                                      \

@@ -3,9 +3,8 @@
 // writes another pixel's radiance.
 #ifndef HELIOGRAPH_REFERENCE_PATH_GLSL
 #define HELIOGRAPH_REFERENCE_PATH_GLSL
-#include "lib/coverage.glsl"
-#include "lib/environment.glsl"
 #include "lib/frame_blending.glsl"
+#include "lib/hit_material.glsl"
 #include "lib/light_choice.glsl"
 #include "lib/random.glsl"
 #include "lib/ray_index.glsl"
@@ -48,22 +47,16 @@ float path_number(ivec2 pixel, uint round, uint which) {
   return random_number(uvec2(pixel), frame.extent.z, dimension(round, which), frame.extent.w);
 }
 
-/// Whether a path goes straight on through a blended surface.
-bool passes_through(HitSurface s, ivec2 pixel, uint round) {
-  return is_blended(s) && path_number(pixel, round, 0u) >= s.alpha;
-}
-
-bool is_unlit(HitSurface s) { return (s.flags & material_unlit) != 0u; }
-
-/// What the surface sends out by itself.
-vec3 own_light(HitSurface s) {
-  vec3 light = is_unlit(s) ? s.base_color : vec3(0.0);
-  return enabled(frame_emissive) ? light + s.emissive : light;
-}
-
-SurfaceMaterial material_of(HitSurface s, vec3 direction) {
-  return surface_material(s.base_color, s.metallic, s.roughness, s.normal, s.geometric, -direction,
-                          s.layer);
+/// Whether a path goes straight on through a blended surface; its throughput becomes that of the
+/// way it takes.
+bool passes_through(HitSurface s, SurfaceMaterial m, ivec2 pixel, uint round,
+                    inout vec3 throughput) {
+  if (!scene_has(scene_blends) || !is_blended(s)) return false;
+  vec3 behind = seen_behind(s, m);
+  float share = dot(behind, vec3(1.0 / 3.0));
+  bool passes = path_number(pixel, round, 0u) < share;
+  throughput *= passes ? behind / share : vec3(s.alpha / (1.0 - share));
+  return passes;
 }
 
 /// What the camera sees where nothing is.

@@ -45,14 +45,14 @@ float visible_normal_weight(vec3 view, vec3 light, float alpha) {
 /// taken out before it is filtered and put back by composition.
 vec3 specular_demodulator(SurfaceMaterial m) { return max(m.specular_albedo, vec3(1e-3)); }
 
-/// The shading normal, or as close to it as the mirror direction stays above the triangle (Keller
+/// The lobe's normal, or as close to it as the mirror direction stays above the triangle (Keller
 /// et al. 2017, appendix A.3): rims of coarse meshes and steep texels of normal maps mirror what
 /// lies along the surface, instead of nothing.
-vec3 reflecting_normal(SurfaceMaterial m) {
-  vec3 mirrored = reflect(-m.eye, m.normal);
+vec3 reflecting_normal(SurfaceMaterial m, vec3 normal) {
+  vec3 mirrored = reflect(-m.eye, normal);
   const float least = 0.01;
   float above = dot(mirrored, m.geometric);
-  if (above >= least || dot(m.eye, m.geometric) <= 0.0) return m.normal;
+  if (above >= least || dot(m.eye, m.geometric) <= 0.0) return normal;
   vec3 lifted = normalize(mirrored + m.geometric * (least - above));
   return normalize(m.eye + lifted);
 }
@@ -73,9 +73,6 @@ float coat_share(SurfaceMaterial m) {
 }
 
 SpecularSample sample_specular(SurfaceMaterial m, vec2 u) {
-  vec3 normal = reflecting_normal(m);
-  vec3 tangent, bitangent;
-  orthonormal_basis(normal, tangent, bitangent);
   SpecularSample s;
   s.roughness = m.roughness;
   float share = 1.0;
@@ -87,6 +84,9 @@ SpecularSample sample_specular(SurfaceMaterial m, vec2 u) {
     u.x = coated ? u.x / of_coat : (u.x - of_coat) / share;
     if (coated) s.roughness = m.coat_roughness;
   }
+  vec3 normal = reflecting_normal(m, coated ? m.coat_normal : m.normal);
+  vec3 tangent, bitangent;
+  orthonormal_basis(normal, tangent, bitangent);
   float alpha = s.roughness * s.roughness;
   vec3 view = vec3(dot(m.eye, tangent), dot(m.eye, bitangent), max(dot(m.eye, normal), 1e-3));
   view = normalize(view);

@@ -11,5 +11,6 @@ layout(set = 3, binding = 3, std430) readonly buffer Instances { Instance instan
 layout(set = 3, binding = 4, std430) readonly buffer Materials { Material materials[]; };
 layout(set = 3, binding = 5, std430) readonly buffer Textures { HeapTexture textures[]; };
 layout(set = 3, binding = 6) uniform usamplerBuffer texture_heap;
+layout(set = 3, binding = 7, std430) readonly buffer Layers { MaterialLayer layers[]; };
 
 #endif

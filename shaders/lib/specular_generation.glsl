@@ -11,12 +11,13 @@
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D normals;
 layout(set = 1, binding = 1, rgba8) readonly uniform image2D base_color;
 layout(set = 1, binding = 2, rgba8) readonly uniform image2D surface;
-layout(set = 1, binding = 3, rgba32f) readonly uniform image2D motion;
-layout(set = 1, binding = 4, std430) buffer Count { RayCount ray_count; };
-layout(set = 1, binding = 5, std430) writeonly buffer Rays { Ray rays[]; };
-layout(set = 1, binding = 6, rgba32f) writeonly uniform image2D radiance;
+layout(set = 1, binding = 3, rgba32ui) readonly uniform uimage2D surface_layers;
+layout(set = 1, binding = 4, rgba32f) readonly uniform image2D motion;
+layout(set = 1, binding = 5, std430) buffer Count { RayCount ray_count; };
+layout(set = 1, binding = 6, std430) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 7, rgba32f) writeonly uniform image2D radiance;
 #ifdef HALF_RESOLUTION
-layout(set = 1, binding = 7, rgba32f) writeonly uniform image2D directions;
+layout(set = 1, binding = 8, rgba32f) writeonly uniform image2D directions;
 const int scale = 2;
 #else
 const int scale = 1;

@@ -21,7 +21,7 @@ SHARED_CONSTANT uint material_alpha_mask = 1u;
 SHARED_CONSTANT uint material_alpha_blend = 2u;
 SHARED_CONSTANT uint material_double_sided = 4u;
 SHARED_CONSTANT uint material_unlit = 8u;
-SHARED_CONSTANT uint material_coated = 16u;
+SHARED_CONSTANT uint material_whole_alpha = 16u;  // alpha is 1, whatever textures and vertices say
 
 // A texture slot: `uv = transform * (uvN, 1)` with the rows of KHR_texture_transform's 2x3 matrix.
 struct TextureSlot {
@@ -33,17 +33,33 @@ struct TextureSlot {
   uint padding1;
 };
 
-SHARED_CONSTANT uint most_layers = 256u;
+// Blended surfaces that cover so much are drawn like others.
+SHARED_CONSTANT float least_solid = 0.998;
 
-// What extensions make of a material's lobes; the first of a scene is glTF's own model.
+// What extensions add to a material: factors, then their textures. The first of a scene adds
+// nothing.
 struct MaterialLayer {
-  vec3 facing;     // reflectance of the dielectric, F0
-  float grazing;   // and its F90
-  float diffuse;   // factor on the diffuse lobe
-  float coat;      // share of the surface that lies under a clear coat
+  vec3 specular_color;
+  float specular;
+  vec3 sheen;
+  float sheen_roughness;
+  vec3 absorption;  // of light that passes: exponents, after the whole thickness
+  float transmission;
+  float dielectric;  // reflectance by the index of refraction, head on
+  float coat;        // share of the surface that lies under a clear coat
   float coat_roughness;
-  float padding0;
+  float coat_normal_scale;
+  TextureSlot specular_texture;        // a
+  TextureSlot specular_color_texture;  // rgb
+  TextureSlot coat_texture;            // r
+  TextureSlot coat_roughness_texture;  // g
+  TextureSlot coat_normal_texture;
+  TextureSlot sheen_color_texture;      // rgb
+  TextureSlot sheen_roughness_texture;  // a
+  TextureSlot transmission_texture;     // r
+  TextureSlot thickness_texture;        // g
 };
+SHARED_CONSTANT uint layer_textures = 9u;
 
 // glTF 2.0 metallic-roughness material; factors are linear.
 struct Material {
@@ -59,8 +75,8 @@ struct Material {
   uint alpha_mask;  // offset in bytes into the alpha heap read by rays, or no_texture
   uint alpha_mask_size;  // width | height << 16
   uint alpha_mask_wrap;  // wrap_s | wrap_t << 8, values of Wrap
-  uint layer;            // its MaterialLayer's number
-  float coat_roughness;  // that layer's
+  uint layer;     // its MaterialLayer's number
+  float passing;  // share of rays that go on where it covers, because light passes through it
   uint padding0;
   TextureSlot base_color_texture;
   TextureSlot metallic_roughness_texture;

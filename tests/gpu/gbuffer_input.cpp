@@ -17,6 +17,7 @@ render::GBuffer make_gbuffer(FrameRig& rig, const SurfacePixel& pixel) {
   gbuffer.surface = everywhere(
       "surface", 2,
       glm::packUnorm4x8({pixel.roughness, pixel.metallic, pixel.unlit ? 1.0f : 0.0f, 0.0f}));
+  gbuffer.layers = rig.plan().image("layers", render::GBuffer::layers_format, 0, VkExtent2D{1, 1});
   gbuffer.motion = everywhere("motion", 3, glm::vec4(0, 0, 0, pixel.view_z));
   gbuffer.emissive = everywhere("emissive", 4, glm::packHalf4x16(glm::vec4(pixel.emissive, 1)));
   gbuffer.depth_slope = everywhere("depth_slope", 5, glm::vec2(0.0f));

@@ -58,6 +58,7 @@ render::GBuffer RandomFrame::gbuffer() {
   made.normals = image("normals", 0, now.normals);
   made.base_color = image("base_color", 1, now.base_color);
   made.surface = image("surface", 2, now.surface);
+  made.layers = rig_.plan().image("layers", render::GBuffer::layers_format, 0, VkExtent2D{1, 1});
   made.motion = image("motion", 3, now.motion);
   made.emissive = image("emissive", 4, now.emissive);
   made.depth_slope = image("slope", 5, now.slope);

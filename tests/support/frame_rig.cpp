@@ -25,10 +25,10 @@ FrameRig::FrameRig(std::shared_ptr<const scene::Scene> scene, const scene::Camer
               parts_.split_sum_table, parts_.host_kernels},
       plan_(parts_.device, options.extent) {
   render::write_frame_set(parts_, frame_set_, constants_buffer_, moving_.tables().lights,
-                          moving_.rest().environment->view(settings_.environment.separate_sun),
-                          moving_.rest().layers);
+                          moving_.rest().environment->view(settings_.environment.separate_sun));
   plan_.share_set(render::frame_set, frame_set_);
-  render::write_scene_set(parts_.device, scene_set_, moving_.tables(), moving_.rest().texture_heap);
+  render::write_scene_set(parts_.device, scene_set_, moving_.tables(), moving_.rest().texture_heap,
+                          moving_.rest().layers);
   plan_.share_set(render::scene_set, scene_set_);
   set_view(camera);
 }

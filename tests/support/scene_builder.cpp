@@ -154,8 +154,9 @@ shared::Material SceneBuilder::with_layers(shared::Material material,
   scene::Scene one;
   one.materials = {material};
   one.material_layers = {layers};
-  scene::Warnings warnings;
-  scene::build_layers(one, warnings);
+  one.images = scene_.images;
+  one.textures = scene_.textures;
+  scene::build_layers(one);
   material = one.materials[0];
   if (scene_.layers.empty()) scene_.layers = {scene::plain_layer()};
   if (material.layer != 0) {

@@ -142,7 +142,7 @@ TEST(Materials, LayersAreReadAndSaidToBeApproximated) {
   EXPECT_EQ(layers.thickness, 0.5f);
   EXPECT_EQ(layers.attenuation_distance, 2.0f);
   EXPECT_EQ(layers.attenuation_color, glm::vec3(1.0f, 0.5f, 0.25f));
-  EXPECT_EQ(scene.warnings.size(), 3u);
+  EXPECT_EQ(scene.warnings.size(), 2u) << "transmission and volume";
   for (const std::string& warning : scene.warnings) {
     EXPECT_NE(warning.find("is approximated"), std::string::npos) << warning;
   }
@@ -175,7 +175,7 @@ shared::MaterialLayer drawn_layer(const Scene& scene) {
 TEST(Layers, OfPlainMaterialsAreTheModelsOwn) {
   const Scene scene = with_material({{"name", "plain"}}).import();
   EXPECT_EQ(scene.layers.size(), 1u);
-  EXPECT_EQ(drawn_layer(scene).facing, glm::vec3(0.04f));
+  EXPECT_EQ(drawn_layer(scene).dielectric, 0.04f);
   const Scene usual = with_material(
       {{"extensions", {{"KHR_materials_ior", {{"ior", 1.5}}},
                        {"KHR_materials_specular", {{"specularFactor", 1.0}}}}}}).import();
@@ -188,30 +188,80 @@ TEST(Layers, TakeIndexStrengthAndColourOfTheDielectric) {
                        {"KHR_materials_specular",
                         {{"specularFactor", 0.5}, {"specularColorFactor", {0.5, 1, 30}}}}}}}).import();
   const shared::MaterialLayer layer = drawn_layer(scene);
-  EXPECT_NEAR(layer.facing.x, 0.5f * 0.5f / 9.0f, 1e-6f);
-  EXPECT_NEAR(layer.facing.y, 0.5f / 9.0f, 1e-6f);
-  EXPECT_NEAR(layer.facing.z, 0.5f, 1e-6f) << "never more than everything";
-  EXPECT_EQ(layer.grazing, 0.5f);
+  EXPECT_NEAR(layer.dielectric, 1.0f / 9.0f, 1e-6f);
+  EXPECT_EQ(layer.specular_color, glm::vec3(0.5f, 1.0f, 30.0f));
+  EXPECT_EQ(layer.specular, 0.5f);
 }
 
-TEST(Layers, CoatsAreMarked) {
+TEST(Layers, OfCoatAndSheenAreThoseOfTheFile) {
   const Scene scene = with_material(
       {{"extensions", {{"KHR_materials_clearcoat",
-                        {{"clearcoatFactor", 0.8}, {"clearcoatRoughnessFactor", 0.2}}}}}}).import();
-  EXPECT_TRUE(scene.materials[0].flags & shared::material_coated);
+                        {{"clearcoatFactor", 0.8}, {"clearcoatRoughnessFactor", 0.2}}},
+                       {"KHR_materials_sheen",
+                        {{"sheenColorFactor", {1, 0.5, 0.25}},
+                         {"sheenRoughnessFactor", 0.75}}}}}}).import();
   EXPECT_FLOAT_EQ(drawn_layer(scene).coat, 0.8f);
-  EXPECT_FLOAT_EQ(scene.materials[0].coat_roughness, 0.2f);
+  EXPECT_FLOAT_EQ(drawn_layer(scene).coat_roughness, 0.2f);
+  EXPECT_EQ(drawn_layer(scene).sheen, glm::vec3(1.0f, 0.5f, 0.25f));
+  EXPECT_EQ(drawn_layer(scene).sheen_roughness, 0.75f);
 }
 
-TEST(Layers, LightThatPassesIsPartialCoverage) {
+TEST(Layers, TexturesAreColourOrDataAsTheirExtensionsSay) {
+  const auto slot = [](int set) { return nlohmann::json{{"index", 0}, {"texCoord", set}}; };
+  nlohmann::json normal = slot(1);
+  normal["scale"] = 0.5;
+  GltfBuilder builder = with_material(
+      {{"extensions",
+        {{"KHR_materials_specular", {{"specularTexture", slot(0)}, {"specularColorTexture", slot(1)}}},
+         {"KHR_materials_clearcoat",
+          {{"clearcoatFactor", 1},
+           {"clearcoatTexture", slot(0)},
+           {"clearcoatRoughnessTexture", slot(1)},
+           {"clearcoatNormalTexture", normal}}},
+         {"KHR_materials_sheen",
+          {{"sheenColorFactor", {1, 1, 1}},
+           {"sheenColorTexture", slot(0)},
+           {"sheenRoughnessTexture", slot(1)}}},
+         {"KHR_materials_transmission",
+          {{"transmissionFactor", 1}, {"transmissionTexture", slot(1)}}},
+         {"KHR_materials_volume", {{"thicknessTexture", slot(0)}}}}}});
+  const Scene scene = builder.import();
+  const shared::MaterialLayer layer = drawn_layer(scene);
+  const auto expect = [&](const shared::TextureSlot& drawn, bool srgb, std::uint32_t set) {
+    ASSERT_NE(drawn.texture, shared::no_texture);
+    EXPECT_EQ(scene.images[scene.textures[drawn.texture].image].srgb, srgb);
+    EXPECT_EQ(drawn.uv_set, set);
+  };
+  expect(layer.specular_texture, false, 0);
+  expect(layer.specular_color_texture, true, 1);
+  expect(layer.coat_texture, false, 0);
+  expect(layer.coat_roughness_texture, false, 1);
+  expect(layer.coat_normal_texture, false, 1);
+  expect(layer.sheen_color_texture, true, 0);
+  expect(layer.sheen_roughness_texture, false, 1);
+  expect(layer.transmission_texture, false, 1);
+  expect(layer.thickness_texture, false, 0);
+  EXPECT_EQ(layer.coat_normal_scale, 0.5f);
+}
+
+TEST(Layers, LightThatPassesMakesABlendedSurface) {
   const Scene scene = with_material(
-      {{"pbrMetallicRoughness", {{"metallicFactor", 0.0}}},
+      {{"pbrMetallicRoughness", {{"metallicFactor", 0.0}, {"baseColorFactor", {1, 1, 1, 0.25}}}},
        {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 0.5}}}}}}).import();
   const shared::Material& material = scene.materials[0];
   EXPECT_TRUE(material.flags & shared::material_alpha_blend);
-  EXPECT_NEAR(material.base_color.w, 0.5f, 1e-6f);
-  EXPECT_NEAR(drawn_layer(scene).facing.x, 0.08f, 1e-6f) << "as much as the whole would mirror";
-  EXPECT_NEAR(drawn_layer(scene).diffuse, 1.0f, 1e-6f);
+  EXPECT_TRUE(material.flags & shared::material_whole_alpha) << "opaque: alpha says nothing";
+  EXPECT_EQ(material.base_color.w, 1.0f);
+  EXPECT_NEAR(material.passing, 0.5f, 1e-6f);
+  EXPECT_EQ(drawn_layer(scene).transmission, 0.5f);
+}
+
+TEST(Layers, MasksLetNoLightThrough) {
+  const Scene scene = with_material(
+      {{"alphaMode", "MASK"},
+       {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}}).import();
+  EXPECT_FALSE(scene.materials[0].flags & shared::material_alpha_blend);
+  EXPECT_EQ(scene.layers.size(), 1u);
 }
 
 TEST(Materials, VariantsAreListedAndTheDefaultIsShown) {
