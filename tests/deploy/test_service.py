@@ -50,7 +50,8 @@ class ServiceTest:
 
     def setUp(self):
         """Every test begins with a service that takes viewers."""
-        self.systemctl("reset-failed", UNIT)
+        # Starts that other tests made do not count against the limit of this one's.
+        self.booted.run("systemctl", "reset-failed", UNIT, check=False)
         self.systemctl("start", UNIT)
         self.wait_ready()
 
