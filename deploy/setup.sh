@@ -39,6 +39,13 @@ fail() {
 export DEBIAN_FRONTEND=noninteractive
 echo "==> installing ${#missing[@]} packages: ${missing[*]}"
 apt-get update >"$log" 2>&1 || fail "apt-get update failed"
+unknown=()
+for package in "${missing[@]}"; do
+  apt-cache show "$package" >/dev/null 2>&1 || unknown+=("$package")
+done
+: >"$log"
+[ ${#unknown[@]} -eq 0 ] ||
+  fail "apt does not know ${unknown[*]}; on Ubuntu, universe must be enabled"
 apt-get install -y --no-install-recommends "${missing[@]}" >"$log" 2>&1 ||
   fail "apt-get could not install the packages"
 rm -f "$log"

@@ -2,11 +2,17 @@
 
 import asyncio
 import json
+import math
+import os
+import shutil
 import time
 import unittest
+import urllib.parse
 
 import websockets
 
+from harness import images
+from harness.files import DEPLOY
 from harness.fleet import Fleet, add_images
 from harness.pictures import decode_jpeg, difference
 from harness.replaying_viewer import ReplayingViewer, Wish
@@ -32,7 +38,8 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
         add_images(cls.machine, prometheus=True)
         started = time.monotonic()
         cls.fleet = cls.enterClassContext(Fleet(cls.machine, NODES))
-        print(f"fleet: {NODES} nodes take viewers after {time.monotonic() - started:.1f} s", flush=True)
+        print(f"fleet: {NODES} nodes take viewers after {time.monotonic() - started:.1f} s",
+              flush=True)
 
     async def asyncTearDown(self):
         """Every test begins with all nodes taking viewers."""
@@ -207,21 +214,72 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
                   f"{[round(loss.seconds, 2) for loss in viewer.losses]} s", flush=True)
             await self.assert_as_wished(viewer)
 
-    async def test_prometheus_finds_every_node(self):
-        await self.compose("up", "--detach", "--no-build", "prometheus")
-        deadline = time.monotonic() + 60
+    async def query(self, expression):
+        """What Prometheus answers at this moment: a list of series."""
+        words = urllib.parse.urlencode({"query": expression})
+        body = await asyncio.to_thread(self.machine.inside, "curl", "--silent", "--fail",
+                                       f"http://127.0.0.1:9090/api/v1/query?{words}")
+        return json.loads(body)["data"]["result"]
+
+    async def eventually(self, condition, what, timeout=90):
+        deadline = time.monotonic() + timeout
         while True:
             try:
-                body = await asyncio.to_thread(
-                    self.machine.inside, "curl", "--silent",
-                    "http://127.0.0.1:9090/api/v1/query?query=heliograph_ready")
-                values = [result["value"][1] for result in json.loads(body)["data"]["result"]]
-                if values == ["1"] * NODES:
-                    break
-            except (ValueError, KeyError, RuntimeError):
-                values = None
-            self.assertLess(time.monotonic(), deadline, f"Prometheus sees {values}")
+                if await condition():
+                    return
+            except RuntimeError:
+                pass  # Prometheus is still starting
+            self.assertLess(time.monotonic(), deadline, what)
             await asyncio.sleep(1)
+
+    async def test_prometheus_measures_what_the_dashboard_shows(self):
+        """The provisioned configuration in Debian's Prometheus, while viewers look around: it finds
+        every node, every panel has numbers and every alert can be judged."""
+        await self.compose("up", "--detach", "--no-build", "prometheus")
+
+        async def every_node():
+            rows = await self.query("heliograph_ready")
+            return [row["value"][1] for row in rows] == ["1"] * NODES
+
+        await self.eventually(every_node, "Prometheus does not see every node")
+        viewers = await self.viewers(2)
+        looking = asyncio.create_task(self.move(viewers, 3600))
+        try:
+            for title, expression in panels():
+                async def has_numbers(expression=expression):
+                    rows = await self.query(expression)
+                    return any(math.isfinite(float(row["value"][1])) for row in rows)
+
+                await self.eventually(has_numbers, f"{title}: no numbers for {expression}")
+        finally:
+            looking.cancel()
+            await asyncio.gather(looking, return_exceptions=True)
+        print(f"fleet: {len(list(panels()))} expressions of the dashboard have numbers", flush=True)
+        rules = json.loads(await asyncio.to_thread(
+            self.machine.inside, "curl", "--silent", "http://127.0.0.1:9090/api/v1/rules"))
+        found = [rule for group in rules["data"]["groups"] for rule in group["rules"]]
+        self.assertGreater(len(found), 4)
+        self.assertEqual([(rule["name"], rule["health"], rule.get("lastError", ""))
+                          for rule in found if rule["health"] != "ok"], [])
+
+    async def test_alerts_come_when_they_should(self):
+        """By the tool of Debian's Prometheus."""
+        folder = os.path.join(self.site.folder, "alerts")
+        shutil.copytree(os.path.join(DEPLOY, "prometheus"), folder)
+        shutil.copy(os.path.join(os.path.dirname(__file__), "prometheus/alerts_test.yml"), folder)
+        said = await self.docker("run", "--rm", "--network", "none",
+                                 "--volume", f"{folder}:/alerts:ro", "--workdir", "/alerts",
+                                 "--entrypoint", "promtool", images.PROMETHEUS, "test", "rules",
+                                 "alerts_test.yml")
+        self.assertIn("SUCCESS", said)
+
+
+def panels():
+    """Title and expression of everything that the dashboard shows."""
+    with open(os.path.join(DEPLOY, "grafana/dashboards/heliograph.json"), encoding="utf-8") as file:
+        for panel in json.load(file)["panels"]:
+            for target in panel["targets"]:
+                yield panel["title"], target["expr"]
 
 
 async def greeting(url):

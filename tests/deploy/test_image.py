@@ -163,11 +163,11 @@ class Image(unittest.IsolatedAsyncioTestCase):
         print(f"container: {share:.2f} of {cpus} processors while moving", flush=True)
         self.assertLess(share, cpus * 1.15)
         self.assertFalse(container.state()["OOMKilled"])
-        resident = measurement(container.url, "resident_memory_bytes")
+        resident = measurement(container.url, "heliograph_resident_memory_bytes")
         print(f"container: {resident / 2 ** 20:.0f} MiB resident", flush=True)
         self.assertLess(resident, memory)
-        self.assertEqual(measurement(container.url, "memory_limit_bytes"), memory)
-        self.assertEqual(measurement(container.url, "cpu_limit_cores"), cpus)
+        self.assertEqual(measurement(container.url, "heliograph_memory_limit_bytes"), memory)
+        self.assertEqual(measurement(container.url, "heliograph_cpu_limit_cores"), cpus)
 
     def _cpu_seconds(self, name):
         process = self.machine.inspect(name, "{{.State.Pid}}")

@@ -1,6 +1,5 @@
-"""The Debian package: installs into a bare system, runs there and leaves nothing behind."""
+"""The Debian packages: each installs into a bare system, runs there and leaves nothing behind."""
 
-import glob
 import os
 import shutil
 import signal
@@ -10,59 +9,25 @@ import time
 import unittest
 import urllib.request
 
-from harness.commands import Skip, run, succeeds
-from harness.images import bootstrap
+from harness import packages
+from harness.commands import run, succeeds
 from harness.pictures import largest_difference_of_means, render
-
-# What apt, dpkg and the loader keep of every installation, and what is no file of the system.
-TRACES = ("var/lib/dpkg/", "var/cache/", "var/log/", "var/lib/apt/", "var/lib/systemd/", "tmp/",
-          "proc/", "dev/", "sys/", "run/", "etc/ld.so.cache", "etc/resolv.conf", "var/lib/pam/")
+from harness.servers import free_port
+from harness.system import System, check_machine, release_of_this_machine
 
 
-class System:
-    """A folder with a Debian in it. Mounts are private to each command, so that none stay."""
+class PackageTest:
+    """What holds for every package; `suite` and `package` tell which."""
 
-    def __init__(self, folder):
-        self.folder = folder
-
-    def command(self, *words):
-        script = ('mount -t proc proc "$0/proc" && mount --rbind /dev "$0/dev" && '
-                  'cp /etc/resolv.conf "$0/etc/resolv.conf" && exec chroot "$0" "$@"')
-        return ["unshare", "--mount", "--propagation", "private", "sh", "-c", script, self.folder,
-                *words]
-
-    def run(self, *words, timeout=300):
-        return run(*self.command("env", "DEBIAN_FRONTEND=noninteractive", "LC_ALL=C.UTF-8",
-                                 "XDG_CACHE_HOME=/tmp/cache", *words),
-                   timeout=timeout)
-
-    def files(self):
-        found = set()
-        for folder, folders, names in os.walk(self.folder):
-            for name in folders + names:
-                path = os.path.relpath(os.path.join(folder, name), self.folder)
-                if not (path + "/").startswith(TRACES) and not path.startswith(TRACES):
-                    found.add(path)
-        return found
-
-
-class Package(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        if os.geteuid() != 0:
-            raise Skip("packages are installed by root")
-        if not succeeds("unshare", "--mount", "true"):
-            raise Skip("new namespaces are forbidden here")
+        check_machine()
         cls.work = tempfile.mkdtemp(prefix="heliograph-package-", dir="/var/tmp")
         cls.addClassCleanup(shutil.rmtree, cls.work, ignore_errors=True)
-        run("cpack", "--config", os.path.join(os.environ["HELIOGRAPH_BUILD"], "CPackConfig.cmake"),
-            "-B", cls.work, timeout=600)
-        cls.package, = glob.glob(os.path.join(cls.work, "*.deb"))
-        release = dict(line.split("=", 1) for line in run("cat", "/etc/os-release").splitlines())
-        root = os.path.join(cls.work, "root")
-        bootstrap(release["VERSION_CODENAME"], root, "directory")
-        cls.system = System(root)
+        cls.choose()
+        cls.system = System.unpack(cls.suite, os.path.join(cls.work, "root"))
         cls.system.run("apt-get", "update")
+        print(f"package: {os.path.getsize(cls.package) / 1e6:.1f} MB for {cls.suite}", flush=True)
 
     def test_has_what_a_package_needs(self):
         fields = run("dpkg-deb", "--field", self.package)
@@ -76,13 +41,9 @@ class Package(unittest.TestCase):
     def test_installs_runs_and_goes_without_trace(self):
         system = self.system
         # Its drivers and libraries stay when it goes: they came first.
-        depends = run("dpkg-deb", "--field", self.package, "Depends")
-        names = [entry.split()[0] for entry in depends.split(",")]
-        system.run("apt-get", "install", "--yes", "--no-install-recommends", "mesa-vulkan-drivers",
-                   *names, timeout=900)
+        system.install("mesa-vulkan-drivers", *packages.dependencies(self.package))
         before = system.files()
-        shutil.copy(self.package, os.path.join(system.folder, "tmp/heliograph.deb"))
-        system.run("apt-get", "install", "--yes", "--no-install-recommends", "/tmp/heliograph.deb")
+        system.install(self.package)
         self.assertIn("usr/bin/heliograph", system.files())
         self.renders_as_on_the_host()
         self.serves()
@@ -90,22 +51,23 @@ class Package(unittest.TestCase):
         self.assertEqual(system.files() ^ before, set())
 
     def renders_as_on_the_host(self):
-        self.system.run("heliograph", "render", "/usr/share/heliograph/scenes/glossy_sponza_1.glb",
-                        "-o", "/tmp/inside.png", "--width", "160", "--height", "90", "--samples", "64")
-        scene = os.path.join(self.system.folder, "usr/share/heliograph/scenes/glossy_sponza_1.glb")
+        scene = "/usr/share/heliograph/scenes/glossy_sponza_1.glb"
+        self.system.run("heliograph", "render", scene, "-o", "/tmp/inside.png", "--width", "160",
+                        "--height", "90", "--samples", "64")
         outside = os.path.join(self.work, "outside.png")
-        render(scene, outside, samples=64)
-        self.assertLess(largest_difference_of_means(
-            os.path.join(self.system.folder, "tmp/inside.png"), outside), 2.0)
+        render(self.system.path(scene), outside, samples=64)
+        self.assertLess(largest_difference_of_means(self.system.path("/tmp/inside.png"), outside),
+                        2.5)
 
     def serves(self):
         """As a user without rights, for a while."""
+        port = free_port()
         server = subprocess.Popen(self.system.command(
             "setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", "--no-new-privs", "env",
-            "XDG_CACHE_HOME=/tmp/cache", "heliograph", "serve", "--port", "8471", "--width", "160",
-            "--height", "90"))
+            "XDG_CACHE_HOME=/tmp/cache", "heliograph", "serve", "--port", str(port), "--width",
+            "160", "--height", "90"))
         try:
-            address = "http://127.0.0.1:8471"
+            address = f"http://127.0.0.1:{port}"
             deadline = time.monotonic() + 120
             while not succeeds(*self.system.command("heliograph", "health", "--url",
                                                     f"{address}/health/ready")):
@@ -117,6 +79,20 @@ class Package(unittest.TestCase):
         finally:
             server.send_signal(signal.SIGTERM)
             self.assertEqual(server.wait(timeout=20), 0)
+
+
+class OfThisBuild(PackageTest, unittest.TestCase):
+    @classmethod
+    def choose(cls):
+        cls.suite = release_of_this_machine()
+        cls.package = packages.of_this_build(cls.work)
+
+
+class OfTheImage(PackageTest, unittest.TestCase):
+    @classmethod
+    def choose(cls):
+        cls.suite = "trixie"
+        cls.package = packages.of_the_image()
 
 
 if __name__ == "__main__":

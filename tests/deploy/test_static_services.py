@@ -4,10 +4,13 @@ import json
 import os
 import re
 import shutil
+import tempfile
 import unittest
 
 from harness.commands import run, succeeds
 from harness.files import DEPLOY, documents, files, server_sources, text_of
+
+HERE = os.path.dirname(os.path.abspath(__file__))
 
 
 class Options(unittest.TestCase):
@@ -82,6 +85,30 @@ class Containers(unittest.TestCase):
                     self.assertTrue(all(target["expr"] for target in panel["targets"]))
 
 
+class ByTheirOwnPrograms(unittest.TestCase):
+    """Where these are installed; the images are checked by theirs while they are built."""
+
+    def check(self, name, *words, **environment):
+        found = shutil.which(name, path="/usr/bin:/usr/sbin")
+        if not found:
+            self.skipTest(f"{name} is not installed")
+        return run(found, *words, env={**os.environ, **environment})
+
+    def test_the_balancer_is_right(self):
+        self.check("haproxy", "-c", "-f", os.path.join(DEPLOY, "balancer/haproxy.cfg"),
+                   HELIOGRAPH_NODES="localhost", HELIOGRAPH_COOKIE_KEY="check")
+
+    def test_measuring_is_right(self):
+        self.check("promtool", "check", "config", os.path.join(DEPLOY, "prometheus/prometheus.yml"))
+
+    def test_alerts_come_when_they_should(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for path in (os.path.join(DEPLOY, "prometheus/alerts.yml"),
+                         os.path.join(HERE, "prometheus/alerts_test.yml")):
+                shutil.copy(path, folder)
+            self.check("promtool", "test", "rules", os.path.join(folder, "alerts_test.yml"))
+
+
 class Kubernetes(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -125,7 +152,7 @@ class Kubernetes(unittest.TestCase):
             self.assertIn(container[probe]["httpGet"]["port"], names)
 
     def test_pods_are_restricted(self):
-        """The profile "restricted" of the pod security standards, and a root that stays as it is."""
+        """The profile "restricted" of the pod security standards, and a root that never changes."""
         spec = self.pod()["spec"]
         self.assertTrue(spec["securityContext"]["runAsNonRoot"])
         self.assertEqual(spec["securityContext"]["seccompProfile"]["type"], "RuntimeDefault")

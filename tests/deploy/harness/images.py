@@ -27,15 +27,20 @@ def cache_folder():
 
 
 def add_base(machine, suite="trixie"):
-    """Imports Debian, as small as the registry's slim image and trusting whom this machine does."""
-    archive = os.path.join(cache_folder(), f"debian-{suite}-slim.tar")
-    if not os.path.exists(archive):
-        bootstrap(suite, archive, "tar")
-    machine.docker("import", "--change", 'CMD ["bash"]', archive, f"debian:{suite}-slim")
+    machine.docker("import", "--change", 'CMD ["bash"]', base_archive(suite),
+                   f"debian:{suite}-slim")
 
 
-def bootstrap(suite, target, form):
-    """Makes a system of Debian's essential packages: an archive or a folder."""
+def base_archive(suite, mirror=None):
+    """Debian's essential packages, as small as the registry's slim image and trusting whom this
+    machine does. Made once."""
+    target = os.path.join(cache_folder(), f"debian-{suite}-slim.tar")
+    if not os.path.exists(target):
+        _bootstrap(suite, target, mirror or debian_mirror())
+    return target
+
+
+def _bootstrap(suite, target, mirror):
     partial = target + ".partial"
     excluded = ["/usr/share/man/*", "/usr/share/doc/*", "/usr/share/locale/*"]
     options = [f"--dpkgopt=path-exclude={pattern}" for pattern in excluded]
@@ -47,11 +52,10 @@ def bootstrap(suite, target, form):
     options.append('--customize-hook=rm -rf "$1"/var/lib/apt/lists/* "$1"/etc/resolv.conf '
                    '"$1"/etc/hostname')
     try:
-        run(program("mmdebstrap"), "--quiet", f"--format={form}", "--variant=minbase", "--mode=root",
-            "--include=ca-certificates", *options, suite, partial, debian_mirror(),
-            timeout=600)
+        run(program("mmdebstrap"), "--quiet", "--format=tar", "--variant=minbase", "--mode=root",
+            "--include=ca-certificates", *options, suite, partial, mirror, timeout=600)
     except RuntimeError as failure:
-        raise Skip(f"Debian {suite} cannot be bootstrapped: {failure}") from failure
+        raise Skip(f"{suite} cannot be bootstrapped: {failure}") from failure
     os.rename(partial, target)
 
 
@@ -66,19 +70,22 @@ def debian_mirror():
 
 
 def build_server(machine):
-    """Builds the server's image from a clean checkout of what is committed."""
+    """Builds the server's image from a clean checkout of what is committed, and takes the package
+    that it is made of along."""
+    arguments = {"JOBS": os.environ.get("HELIOGRAPH_DEPLOY_JOBS", ""),
+                 "REVISION": run("git", "-C", ROOT, "rev-parse", "HEAD")}
     _seed_compiler_cache(machine)
     try:
-        build(machine, SERVER, "deploy/Dockerfile",
-              arguments={"JOBS": os.environ.get("HELIOGRAPH_DEPLOY_JOBS", ""),
-                         "REVISION": run("git", "-C", ROOT, "rev-parse", "HEAD")},
-              timeout=3600)
+        build(machine, "deploy/Dockerfile", "--tag", SERVER, arguments=arguments, timeout=3600)
     finally:
         _save_compiler_cache(machine)
-    archive = _archive()
-    for old in glob.glob(os.path.join(cache_folder(), "heliograph-server-*.tar")):
+    for old in glob.glob(os.path.join(cache_folder(), "heliograph-server-*")):
         os.remove(old)
-    machine.docker("save", "--output", archive, SERVER, timeout=300)
+    machine.docker("save", "--output", _archive(), SERVER, timeout=300)
+    with tempfile.TemporaryDirectory(dir=cache_folder()) as folder:
+        build(machine, "deploy/Dockerfile", "--target", "package", "--output", folder,
+              arguments=arguments, timeout=3600)
+        os.rename(os.path.join(folder, "heliograph.deb"), package_path())
 
 
 def add_server(machine):
@@ -90,21 +97,30 @@ def add_server(machine):
         build_server(machine)
 
 
+def package_path():
+    """Of the image's Debian package, once the image has been built of these files."""
+    return _of_these_files("deb")
+
+
 def _archive():
+    return _of_these_files("tar")
+
+
+def _of_these_files(form):
     tree = run("git", "-C", ROOT, "rev-parse", "HEAD^{tree}")
-    return os.path.join(cache_folder(), f"heliograph-server-{tree}.tar")
+    return os.path.join(cache_folder(), f"heliograph-server-{tree}.{form}")
 
 
-def build(machine, tag, dockerfile, *, folder="", arguments=None, timeout=900):
+def build(machine, dockerfile, *options, folder="", arguments=None, timeout=900):
     """`folder` of the checkout is all that the build sees."""
-    options = []
+    options = list(options)
     for name, value in (arguments or {}).items():
         options += ["--build-arg", f"{name}={value}"]
     with tempfile.TemporaryFile() as context:
         subprocess.run(["git", "-C", ROOT, "archive", f"HEAD:{folder}"], stdout=context, check=True)
         context.seek(0)
-        machine.docker("build", "--file", dockerfile, "--tag", tag, *options, "-",
-                       stdin=context, timeout=timeout)
+        machine.docker("build", "--file", dockerfile, *options, "-", stdin=context,
+                       timeout=timeout)
 
 
 def add_balancer(machine):
@@ -122,7 +138,9 @@ def _add(machine, tag, folder):
     if os.path.exists(archive):
         machine.docker("load", "--input", archive, timeout=300)
         return
-    build(machine, tag, "Dockerfile", folder=folder)
+    for old in glob.glob(os.path.join(cache_folder(), f"{tag.split(':')[0]}-*.tar")):
+        os.remove(old)
+    build(machine, "Dockerfile", "--tag", tag, folder=folder)
     machine.docker("save", "--output", archive, tag, timeout=300)
 
 
@@ -136,9 +154,16 @@ def copy_images(source, target, *tags):
 _CACHE_MOUNT = "--mount=type=cache,target=/cache,id=heliograph-ccache"
 
 
+def compiler_cache():
+    """What the compilers of the image's distribution remember."""
+    folder = os.path.join(cache_folder(), "ccache")
+    os.makedirs(folder, exist_ok=True)
+    return folder
+
+
 def _seed_compiler_cache(machine):
-    saved = os.path.join(cache_folder(), "ccache")
-    if os.path.isdir(saved):
+    saved = compiler_cache()
+    if os.listdir(saved):
         _small_build(machine, f"FROM {BASE}\nRUN {_CACHE_MOUNT} --mount=type=bind,target=/saved "
                      "cp -r /saved/. /cache/\n", saved)
 
@@ -148,9 +173,9 @@ def _save_compiler_cache(machine):
         _small_build(machine, f"FROM {BASE} AS copy\nRUN {_CACHE_MOUNT} cp -r /cache /saved\n"
                      "FROM scratch\nCOPY --from=copy /saved /\n", None, "--no-cache", "--output",
                      folder)
-        saved = os.path.join(cache_folder(), "ccache")
-        shutil.rmtree(saved, ignore_errors=True)
-        shutil.copytree(folder, saved)
+        if os.listdir(folder):
+            shutil.rmtree(compiler_cache())
+            shutil.copytree(folder, compiler_cache())
 
 
 def _small_build(machine, dockerfile, context, *options):

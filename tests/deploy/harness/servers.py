@@ -2,6 +2,7 @@
 
 import http.client
 import json
+import socket
 import time
 import urllib.parse
 
@@ -47,6 +48,12 @@ class Container:
         return get(self.url + path, **options)
 
 
+def free_port():
+    """On this machine's loopback, at this moment."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        return server.getsockname()[1]
+
+
 def get(url, *, token=TOKEN, headers=None, timeout=60):
     """Status, headers and body of one exchange on a connection of its own."""
     address = urllib.parse.urlsplit(url)
@@ -77,10 +84,10 @@ def call(url, method, params=None, *, token=TOKEN, timeout=60):
 
 
 def measurement(url, name, *, token=TOKEN):
-    """A value of /metrics without labels; None where there is none."""
+    """A value of /metrics without labels, by its full name; None where there is none."""
     status, _, page = get(url + "metrics", token=token)
     assert status == 200, status
     for line in page.decode().splitlines():
-        if line.startswith(f"heliograph_{name} "):
+        if line.startswith(f"{name} "):
             return float(line.split()[1])
     return None

@@ -1,0 +1,108 @@
+"""The README's command on systems that have nothing but themselves: a fresh checkout becomes a
+server with pictures. Everything is fetched and built anew, but for what compilers remember."""
+
+import os
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+from harness import images
+from harness.commands import run
+from harness.files import DEPLOY, ROOT, text_of
+from harness.servers import free_port, get
+from harness.system import System, check_machine
+
+MOST_SECONDS = 3000
+# Of Ubuntu 24.04, for example http://archive.ubuntu.com/ubuntu; Debian's is known to apt.
+UBUNTU = "HELIOGRAPH_UBUNTU_MIRROR"
+
+
+def listed():
+    """Every package, whatever it is for."""
+    lines = [line.split() for line in text_of(os.path.join(DEPLOY, "packages")).splitlines()
+             if line and not line.startswith("#")]
+    return [words[1] for words in lines]
+
+
+class SetupTest:
+    suite = mirror = None
+
+    @classmethod
+    def setUpClass(cls):
+        check_machine()
+        cls.work = tempfile.mkdtemp(prefix="heliograph-setup-", dir="/var/tmp")
+        cls.addClassCleanup(shutil.rmtree, cls.work, ignore_errors=True)
+        images.base_archive(cls.suite, cls.mirror)
+        cls.system = System.unpack(cls.suite, os.path.join(cls.work, "root"))
+        cls.system.run("apt-get", "update")
+
+    def test_every_listed_package_can_be_installed(self):
+        self.system.run("apt-get", "install", "--simulate", "--no-install-recommends", *listed())
+
+    def test_a_fresh_checkout_becomes_a_server(self):
+        source = self.system.path("/src")
+        os.mkdir(source)
+        with subprocess.Popen(["git", "-C", ROOT, "archive", "HEAD"],
+                              stdout=subprocess.PIPE) as archive:
+            run("tar", "--extract", "--directory", source, stdin=archive.stdout)
+        started, port = time.monotonic(), free_port()
+        address = f"http://127.0.0.1:{port}/"
+        # Where the image is built, so that compilers remember the same names.
+        binds = [(images.compiler_cache(), "/root/.cache/ccache")]
+        with open(os.path.join(self.work, "log"), "w+", encoding="utf-8") as log:
+            server = subprocess.Popen(
+                self.system.command("env", "HELIOGRAPH_BUILD=/build", "/src/deploy/run.sh",
+                                    "--port", str(port), "--width", "160", "--height", "90",
+                                    binds=binds),
+                stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True)
+            try:
+                self.wait_ready(server, log, address)
+                print(f"setup: from nothing to a picture on {self.suite} in "
+                      f"{time.monotonic() - started:.0f} s", flush=True)
+                status, _, picture = get(address + "api/v1/sessions/main/frame.jpg")
+                self.assertEqual((status, picture[:3]), (200, b"\xff\xd8\xff"))
+            finally:
+                if server.poll() is None:
+                    os.killpg(server.pid, signal.SIGTERM)
+                server.wait(timeout=30)
+        self.does_nothing_twice()
+
+    def wait_ready(self, server, log, address):
+        deadline = time.monotonic() + MOST_SECONDS
+        while time.monotonic() < deadline:
+            try:
+                if get(address + "health/ready", timeout=5)[0] == 200:
+                    return
+            except OSError:
+                pass  # still installing or building
+            if server.poll() is not None:
+                log.seek(0)
+                raise AssertionError(f"run.sh ended with {server.returncode}: {log.read()[-4000:]}")
+            time.sleep(0.5)
+        raise AssertionError(f"no picture after {MOST_SECONDS} s")
+
+    def does_nothing_twice(self):
+        self.assertIn("every package is installed",
+                      self.system.run("/src/deploy/setup.sh", "build", "run"))
+
+
+class Debian13(SetupTest, unittest.TestCase):
+    suite = "trixie"
+
+
+class Ubuntu2404(SetupTest, unittest.TestCase):
+    suite = "noble"
+    mirror = os.environ.get(UBUNTU)
+
+    @classmethod
+    def setUpClass(cls):
+        if not cls.mirror:
+            raise unittest.SkipTest(f"{UBUNTU} names no mirror")
+        super().setUpClass()
+
+
+if __name__ == "__main__":
+    unittest.main()
