@@ -5,6 +5,7 @@
 // each message's `fields()`.
 
 #include "protocol/frame_messages.hpp"
+#include "protocol/loading_messages.hpp"
 #include "protocol/membership_messages.hpp"
 #include "protocol/scene_messages.hpp"
 #include "protocol/session_messages.hpp"

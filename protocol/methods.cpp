@@ -62,10 +62,13 @@ constexpr std::string_view greeting = R"({
 
 constexpr std::string_view scene = R"({
   "name": "atrium", "triangles": 344000, "instances": 210, "meshes": 34, "materials": 18,
-  "textures": 41, "lights": 1, "cameras": ["entrance", "gallery"],
+  "textures": 41, "lights": 1, "vertices": 51230, "nodes": 230, "images": 40, "texels": 9437184,
+  "deforming": 0, "material_names": ["marble"], "light_names": ["sun"], "environment": "atrium.hdr",
+  "cameras": ["entrance", "gallery"],
   "clips": [{"name": "moving_camera", "duration": 10.0}],
   "scenes": ["atrium"], "scene": 0, "variants": [], "variant": null,
-  "bounds": {"min": [-12.0, 0.0, -6.5], "max": [12.0, 11.5, 6.5]}, "warnings": []})";
+  "bounds": {"min": [-12.0, 0.0, -6.5], "max": [12.0, 11.5, 6.5]},
+  "memory": {"file": 18874368, "host": 9437184, "device": 104857600}, "warnings": []})";
 
 constexpr std::string_view camera = R"({
   "eye": [8.0, 1.7, 0.0], "target": [0.0, 2.5, 0.0], "up": [0.0, 1.0, 0.0],

@@ -35,6 +35,15 @@ export interface SceneInfo {
   materials: number;
   textures: number;
   lights: number;
+  vertices: number;
+  nodes: number;
+  images: number;
+  texels: number;
+  deforming: number;
+  material_names: string[];
+  light_names: string[];
+  /** Name of the environment's file; null: none came with the scene. */
+  environment: string | null;
   cameras: string[];
   clips: ClipInfo[];
   /** Scenes of the file, and the number of the one that is shown. */
@@ -44,6 +53,8 @@ export interface SceneInfo {
   /** The variant that is shown; servers without that choice leave it out. */
   variant?: string | null;
   bounds: { min: Vector3; max: Vector3 };
+  /** Bytes. */
+  memory: { file: number; host: number; device: number };
   warnings: string[];
 }
 

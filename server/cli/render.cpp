@@ -172,14 +172,14 @@ int run(const RenderOptions& options) {
   protocol::Settings settings = parse_settings(options.settings);
   if (!options.reference.empty()) choose_reference(settings, options.reference);
   if (options.samples) settings.accumulation.max_samples = static_cast<int>(*options.samples);
-  const auto scene =
-      std::make_shared<const scene::Scene>(scene::import_gltf(options.scene, options.limits));
-  const scene::Environment environment = choose_environment(options);
-  const scene::Camera camera = choose_camera(*scene, options);
+  auto imported = std::make_unique<scene::Scene>(scene::import_gltf(options.scene, options.limits));
+  auto environment = std::make_shared<const scene::Environment>(choose_environment(options));
+  const scene::Camera camera = choose_camera(*imported, options);
 
   render::Engine engine(engine_options(options.device));
   render::Renderer renderer(engine);
-  const auto resources = engine.upload(scene, environment);
+  const auto resources = engine.upload(std::move(imported), std::move(environment));
+  const std::shared_ptr<const scene::Scene>& scene = render::scene_of(*resources);
   renderer.set_scene(resources);
   renderer.set_size(options.width, options.height);
   renderer.set_camera(camera);

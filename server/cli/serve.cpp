@@ -169,7 +169,9 @@ int run(const ServeOptions& options) {
   const HostStop stop_first(host, uploads.get());
   host.load_scene(host.sessions().main(), {.name = scene}, {},
                   [&](const protocol::Result<protocol::SceneInfo>& loaded) {
-                    if (loaded) return;
+                    // Clients may ask for another scene before the first is there, or cancel it.
+                    const auto conflict = protocol::ErrorCode::conflict;
+                    if (loaded || loaded.error().code == conflict) return;
                     failure.set(scene + ": " + loaded.error().message);
                     server.stop();
                   });

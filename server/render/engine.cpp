@@ -97,6 +97,22 @@ std::shared_ptr<const SceneResources> Engine::upload(std::shared_ptr<const scene
 std::shared_ptr<const SceneResources> Engine::upload(
     std::shared_ptr<const scene::Scene> scene,
     std::shared_ptr<const scene::Environment> environment, const UploadProgress& progress) {
+  return upload(std::move(scene), std::move(environment), progress, [](std::size_t) {});
+}
+
+std::shared_ptr<const SceneResources> Engine::upload(
+    std::unique_ptr<scene::Scene> scene, std::shared_ptr<const scene::Environment> environment,
+    const UploadProgress& progress) {
+  const std::shared_ptr<scene::Scene> own = std::move(scene);
+  return upload(own, std::move(environment), progress, [&images = own->images](std::size_t i) {
+    if (images[i].file) std::vector<std::uint8_t>().swap(images[i].pixels);
+  });
+}
+
+std::shared_ptr<const SceneResources> Engine::upload(
+    std::shared_ptr<const scene::Scene> scene,
+    std::shared_ptr<const scene::Environment> environment, const UploadProgress& progress,
+    const std::function<void(std::size_t image)>& image_done) {
   const auto tell = [&](std::string_view stage, float fraction) {
     if (progress) progress(stage, fraction);
   };
@@ -105,7 +121,7 @@ std::shared_ptr<const SceneResources> Engine::upload(
   auto around = parts->environments.get(std::move(environment));
   return with_device(parts, std::make_shared<const SceneResources>(
                                 parts->device, parts->programs, std::move(scene),
-                                std::move(around), *parts->tracer, tell));
+                                std::move(around), *parts->tracer, tell, image_done));
 }
 
 std::shared_ptr<const LitEnvironment> Engine::renew(const LitEnvironment& lost) {
@@ -123,6 +139,10 @@ bool Engine::owns(const SceneResources& resources) const {
 
 bool Engine::owns(const LitEnvironment& environment) const {
   return &environment.device() == &present()->device;
+}
+
+const std::shared_ptr<const scene::Scene>& scene_of(const SceneResources& resources) {
+  return resources.scene;
 }
 
 std::uint64_t memory_bytes(const SceneResources& resources) {

@@ -11,7 +11,7 @@ namespace {
 class DrawRecorder {
  public:
   DrawRecorder(const FrameInputs& in, VkCommandBuffer commands, VkPipelineLayout layout)
-      : in_(in), commands_(commands), layout_(layout) {
+      : in_(in), material_sets_(in.moving.material_sets()), commands_(commands), layout_(layout) {
     vkCmdBindIndexBuffer(commands, in.tables.indices.handle(), 0, VK_INDEX_TYPE_UINT32);
     vkCmdSetCullMode(commands, VK_CULL_MODE_BACK_BIT);
     vkCmdSetFrontFace(commands, VK_FRONT_FACE_COUNTER_CLOCKWISE);
@@ -26,7 +26,7 @@ class DrawRecorder {
     if (draw.material != material_) {
       material_ = draw.material;
       vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, material_set, 1,
-                              &in_.moving.material_sets()[material_], 0, nullptr);
+                              &material_sets_[material_], 0, nullptr);
     }
     vkCmdPushConstants(commands_, layout_,
                        VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
@@ -57,6 +57,7 @@ class DrawRecorder {
   }
 
   const FrameInputs& in_;
+  const std::vector<VkDescriptorSet>& material_sets_;
   VkCommandBuffer commands_;
   VkPipelineLayout layout_;
   bool masked_ = false;
@@ -92,6 +93,7 @@ GBuffer declare_gbuffer(gpu::FramePlan& plan, std::uint32_t features) {
 }
 
 GBuffer rasterize_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
+  in.moving.material_sets();  // before the first frame, which should not have to make them
   const GBuffer gbuffer = declare_gbuffer(plan, in.scene.features);
   constexpr std::array<float, 4> nothing{};
   // Beyond the octahedron, whose middle is a normal like any other.

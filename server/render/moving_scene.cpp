@@ -210,7 +210,13 @@ const host::MaterialTable& MovingScene::host_materials() const {
 }
 
 const std::vector<VkDescriptorSet>& MovingScene::material_sets() const {
-  return changed_materials_ ? changed_materials_->sets.sets : rest_->material_sets.sets;
+  if (!changed_materials_) return rest_->material_sets().sets;
+  auto& [table, count, host, sets] = *changed_materials_;
+  if (!sets) {
+    const auto* const now = reinterpret_cast<const shared::Material*>(table.mapped());
+    sets = rest_->make_material_sets({now, count}, gpu::Memory::upload);
+  }
+  return sets->sets;
 }
 
 bool MovingScene::set_lights(std::span<const shared::Light> lights) {
@@ -223,20 +229,18 @@ bool MovingScene::set_lights(std::span<const shared::Light> lights) {
   return true;
 }
 
-bool MovingScene::set_materials(const Programs& programs,
-                                std::span<const shared::Material> materials) {
+bool MovingScene::set_materials(std::span<const shared::Material> materials) {
   host::MaterialTable host;
   if (device_.is_cpu()) host = rest_->make_host_materials(materials);
   if (changed_materials_) {
     std::memcpy(changed_materials_->table.mapped(), materials.data(), materials.size_bytes());
-    changed_materials_->sets.write(materials);
+    if (changed_materials_->sets) changed_materials_->sets->write(materials);
     changed_materials_->host = std::move(host);
     return false;
   }
   changed_materials_ = std::make_unique<ChangedMaterials>(ChangedMaterials{
       writable_table(device_, "materials now", materials, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT),
-      rest_->make_material_sets(device_, programs, materials, gpu::Memory::upload),
-      std::move(host)});
+      materials.size(), std::move(host)});
   bind_tables();
   return true;
 }

@@ -40,6 +40,7 @@ class MovingScene {
 
   const LitEnvironment& environment() const { return *environment_; }
   const host::MaterialTable& host_materials() const;
+  /// For the rasteriser; the first call may make them. Not while a frame runs.
   const std::vector<VkDescriptorSet>& material_sets() const;
 
   /// Other lights than the scene's, of the same number and kinds, where no clip moves them; from
@@ -49,7 +50,7 @@ class MovingScene {
   /// Other values for the scene's materials, with the same textures, alpha and flags, which rays
   /// and draws go by. Never while a frame runs.
   /// @return whether tables() changed: plans must be made anew
-  bool set_materials(const Programs& programs, std::span<const shared::Material> materials);
+  bool set_materials(std::span<const shared::Material> materials);
   /// Another environment than the scene's own; plans must be made anew.
   void set_environment(std::shared_ptr<const LitEnvironment> environment);
 
@@ -71,9 +72,10 @@ class MovingScene {
  private:
   struct Moving;
   struct ChangedMaterials {
-    gpu::Buffer table;  // shared::Material each
-    MaterialSets sets;
+    gpu::Buffer table;  // shared::Material each, `count` of them
+    std::size_t count;
     host::MaterialTable host;
+    std::optional<MaterialSets> sets = std::nullopt;  // once the rasteriser wanted them
   };
 
   void bind_tables();

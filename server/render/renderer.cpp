@@ -181,7 +181,7 @@ void Renderer::set_lights(std::span<const shared::Light> lights) {
 }
 
 void Renderer::set_materials(std::span<const shared::Material> materials) {
-  if (state_->moving->set_materials(state_->parts.programs, materials)) {
+  if (state_->moving->set_materials(materials)) {
     state_->redraw();
   } else {
     state_->has_previous = false;

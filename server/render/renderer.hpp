@@ -39,6 +39,8 @@ class SceneResources;
 /// An environment on the device, filtered. Shared, immutable.
 class LitEnvironment;
 
+/// The scene that was uploaded.
+const std::shared_ptr<const scene::Scene>& scene_of(const SceneResources& resources);
 /// Memory of the tables, images and the acceleration structure, not of the environment.
 std::uint64_t memory_bytes(const SceneResources& resources);
 
@@ -68,6 +70,11 @@ class Engine {
   std::shared_ptr<const SceneResources> upload(
       std::shared_ptr<const scene::Scene> scene,
       std::shared_ptr<const scene::Environment> environment, const UploadProgress& progress = {});
+  /// The same of a scene that is given away: its images that came from files let go of their pixels
+  /// as soon as these are on the device, so that they are never there twice.
+  std::shared_ptr<const SceneResources> upload(
+      std::unique_ptr<scene::Scene> scene, std::shared_ptr<const scene::Environment> environment,
+      const UploadProgress& progress = {});
 
   /// Uploads and prefilters an environment, or finds it where it is in use already. May run on any
   /// thread, beside rendering.
@@ -88,6 +95,10 @@ class Engine {
 
  private:
   std::shared_ptr<Parts> present() const;
+  std::shared_ptr<const SceneResources> upload(
+      std::shared_ptr<const scene::Scene> scene,
+      std::shared_ptr<const scene::Environment> environment, const UploadProgress& progress,
+      const std::function<void(std::size_t image)>& image_done);
 
   const EngineOptions options_;
   mutable std::mutex mutex_;  // guards parts_

@@ -3,26 +3,55 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <future>
 #include <map>
 #include <tuple>
 
 #include "render/light_table.hpp"
 #include "render/placement.hpp"
+#include "scene/images.hpp"
 #include "scene/layer_table.hpp"
+#include "scene/mipmaps.hpp"
 
 namespace heliograph::render {
 namespace {
+
+void check_size(const gpu::Device& device, const char* name, std::uint64_t bytes) {
+  if (bytes <= device.limits().maxStorageBufferRange) return;
+  throw gpu::GpuError("the scene's " + std::string(name) + " take " + std::to_string(bytes >> 20) +
+                      " MiB; this device binds at most " +
+                      std::to_string(device.limits().maxStorageBufferRange >> 20) + " MiB");
+}
 
 template <typename Element>
 gpu::Buffer upload(const gpu::Device& device, const char* name,
                    const std::vector<Element>& elements, VkBufferUsageFlags usage = 0) {
   const auto bytes = std::as_bytes(std::span(elements));
-  if (bytes.size() > device.limits().maxStorageBufferRange) {
-    throw gpu::GpuError("the scene's " + std::string(name) + " take " +
-                        std::to_string(bytes.size() >> 20) + " MiB; this device binds at most " +
-                        std::to_string(device.limits().maxStorageBufferRange >> 20) + " MiB");
-  }
+  check_size(device, name, bytes.size());
   return gpu::upload_buffer(device, name, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | usage);
+}
+
+/// One list of all meshes, one after the other, without a copy in between where the device's memory
+/// is ours.
+template <typename Element>
+gpu::Buffer upload_of_meshes(const gpu::Device& device, const char* name,
+                             const std::vector<scene::Mesh>& meshes,
+                             std::vector<Element> scene::Mesh::*list, VkBufferUsageFlags usage) {
+  std::size_t count = 0;
+  for (const scene::Mesh& mesh : meshes) count += (mesh.*list).size();
+  check_size(device, name, count * sizeof(Element));
+  const auto gather = [&](Element* to) {
+    for (const scene::Mesh& mesh : meshes) to = std::ranges::copy(mesh.*list, to).out;
+  };
+  usage |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  if (device.is_cpu()) {
+    gpu::Buffer buffer(device, name, count * sizeof(Element), usage, gpu::Memory::device);
+    gather(reinterpret_cast<Element*>(buffer.mapped()));
+    return buffer;
+  }
+  std::vector<Element> gathered(count);
+  gather(gathered.data());
+  return gpu::upload_buffer(device, name, std::as_bytes(std::span(gathered)), usage);
 }
 
 VkSamplerAddressMode address_mode(std::uint32_t wrap) {
@@ -96,25 +125,46 @@ std::array<const shared::TextureSlot*, shared::layer_textures> slots_of(
           &l.sheen_roughness_texture, &l.transmission_texture, &l.thickness_texture};
 }
 
+gpu::Image make_texture(const gpu::Device& device, const scene::Image& from,
+                        std::span<const std::uint8_t> pixels) {
+  gpu::ImageDesc desc{.name = from.name.empty() ? "texture" : from.name};
+  desc.extent = {from.width, from.height};
+  desc.format = from.srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
+  desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+  desc.levels = from.levels;
+  gpu::Image image(device, desc);
+  image.upload(std::as_bytes(pixels));
+  return image;
+}
+
 }  // namespace
 
 SceneResources::SceneResources(const gpu::Device& device, const Programs& programs,
                                std::shared_ptr<const scene::Scene> source,
                                std::shared_ptr<const LitEnvironment> around,
-                               const tracing::RayTracer& tracer, const UploadProgress& progress)
+                               const tracing::RayTracer& tracer, const UploadProgress& progress,
+                               const ImageDone& image_done)
     : scene(std::move(source)),
       environment(std::move(around)),
+      device_(device),
+      programs_(programs),
       white_(constant_texture(device, "white", {255, 255, 255, 255})),
       flat_normal_(constant_texture(device, "flat normal", {128, 128, 255, 255})) {
   progress("tables", 0.1f);
   upload_tables(device);
-  upload_textures(device, progress);
-  texture_heap = make_texture_heap(device, *scene);
-  if (device.is_cpu()) host_materials = make_host_materials(scene->materials);
-  material_sets = make_material_sets(device, programs, scene->materials, gpu::Memory::device);
+  make_samplers();
+  // Beside the textures, which one thread copies.
+  auto structure =
+      std::async(std::launch::async, [&] { return tracer.build(*scene, rest_tables); });
+  upload_textures(progress, image_done);
+  if (device.is_cpu()) {
+    host_materials = make_host_materials(scene->materials);
+  } else {
+    material_sets();
+  }
   list_draws();
   progress("acceleration structure", 0.5f);
-  rest_structure = tracer.build(*scene, rest_tables);
+  rest_structure = structure.get();
 }
 
 std::uint64_t SceneResources::bytes() const {
@@ -122,29 +172,26 @@ std::uint64_t SceneResources::bytes() const {
   for (const gpu::Buffer* buffer :
        {&rest_tables.vertices, &rest_tables.indices, &rest_tables.meshes, &rest_tables.instances,
         &rest_tables.materials, &rest_tables.lights, &rest_tables.alpha_heap, &texture_heap.texels,
-        &texture_heap.textures, &layers, &material_sets.blocks, &material_sets.layer_blocks}) {
+        &texture_heap.textures, &layers}) {
     sum += buffer->size();
   }
-  for (const scene::Image& image : scene->images) {
-    std::uint64_t texels = 0;
-    for (std::uint32_t level = 0; level < image.levels; ++level) {
-      texels += std::uint64_t{std::max(image.width >> level, 1u)} *
-                std::max(image.height >> level, 1u);
-    }
-    sum += 4 * texels;
+  const std::lock_guard lock(sampled_mutex_);
+  if (material_sets_) sum += material_sets_->blocks.size() + material_sets_->layer_blocks.size();
+  for (const gpu::Image& image : images_) {
+    const auto [width, height] = image.desc().extent;
+    sum += scene::mip_chain_bytes(width, height);
   }
   return sum;
 }
 
 void SceneResources::upload_tables(const gpu::Device& device) {
-  std::vector<shared::Vertex> vertices;
-  std::vector<std::uint32_t> indices;
+  std::uint64_t vertices = 0, indices = 0;
   for (const scene::Mesh& mesh : scene->meshes) {
-    meshes_.push_back({static_cast<std::uint32_t>(indices.size()),
+    meshes_.push_back({static_cast<std::uint32_t>(indices),
                        static_cast<std::uint32_t>(mesh.indices.size()),
-                       static_cast<std::uint32_t>(vertices.size()), mesh.material});
-    vertices.insert(vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
-    indices.insert(indices.end(), mesh.indices.begin(), mesh.indices.end());
+                       static_cast<std::uint32_t>(vertices), mesh.material});
+    vertices += mesh.vertices.size();
+    indices += mesh.indices.size();
   }
   for (const scene::Instance& from : scene->instances) {
     instances_.push_back(place_mesh(from.mesh, scene->nodes[from.node].world));
@@ -152,8 +199,10 @@ void SceneResources::upload_tables(const gpu::Device& device) {
   std::vector<shared::Light> lights;
   for (const scene::Light& light : scene->lights) lights.push_back(light.device);
 
-  rest_tables.vertices = upload(device, "vertices", vertices, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
-  rest_tables.indices = upload(device, "indices", indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+  rest_tables.vertices = upload_of_meshes(device, "vertices", scene->meshes,
+                                          &scene::Mesh::vertices, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+  rest_tables.indices = upload_of_meshes(device, "indices", scene->meshes, &scene::Mesh::indices,
+                                         VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
   rest_tables.meshes = upload(device, "meshes", meshes_);
   rest_tables.instances = upload(device, "instances", instances_);
   rest_tables.materials = upload(device, "materials", scene->materials);
@@ -178,27 +227,37 @@ void SceneResources::upload_tables(const gpu::Device& device) {
       upload(device, "alpha masks", scene->alpha_heap, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
 }
 
-void SceneResources::upload_textures(const gpu::Device& device, const UploadProgress& progress) {
-  for (const scene::Image& from : scene->images) {
-    progress("textures", 0.15f + 0.3f * static_cast<float>(images_.size()) /
-                                     static_cast<float>(scene->images.size()));
-    gpu::ImageDesc desc{.name = from.name.empty() ? "texture" : from.name};
-    desc.extent = {from.width, from.height};
-    desc.format = from.srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
-    desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
-    desc.levels = from.levels;
-    images_.emplace_back(device, desc);
-    images_.back().upload(std::as_bytes(std::span(from.pixels)));
+void SceneResources::upload_textures(const UploadProgress& progress, const ImageDone& image_done) {
+  const auto& images = scene->images;
+  TextureHeapWriter heap(device_, *scene);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    progress("textures",
+             0.15f + 0.3f * static_cast<float>(i) / static_cast<float>(images.size()));
+    const scene::ImagePixels pixels(images[i]);
+    heap.add(i, pixels.get());
+    if (!device_.is_cpu()) images_.push_back(make_texture(device_, images[i], pixels.get()));
+    image_done(i);
   }
+  texture_heap = heap.finish();
+}
+
+void SceneResources::make_missing_images() const {
+  while (images_.size() < scene->images.size()) {
+    const scene::Image& image = scene->images[images_.size()];
+    images_.push_back(make_texture(device_, image, scene::ImagePixels(image).get()));
+  }
+}
+
+void SceneResources::make_samplers() {
   std::vector<scene::Sampler> known;
   for (const scene::Texture& texture : scene->textures) {
     const auto found = std::find(known.begin(), known.end(), texture.sampler);
     texture_sampler_.push_back(static_cast<std::uint32_t>(found - known.begin()));
     if (found != known.end()) continue;
     known.push_back(texture.sampler);
-    samplers_.emplace_back(device, sampler_info(texture.sampler));
+    samplers_.emplace_back(device_, sampler_info(texture.sampler));
   }
-  samplers_.emplace_back(device, sampler_info({}));  // for slots without a texture
+  samplers_.emplace_back(device_, sampler_info({}));  // for slots without a texture
 }
 
 host::MaterialTable SceneResources::make_host_materials(
@@ -212,6 +271,17 @@ void MaterialSets::write(std::span<const shared::Material> materials) const {
   for (std::size_t i = 0; i < materials.size(); ++i) {
     std::memcpy(blocks.mapped() + i * stride, &materials[i], sizeof(shared::Material));
   }
+}
+
+const MaterialSets& SceneResources::material_sets() const {
+  {
+    const std::lock_guard lock(sampled_mutex_);
+    if (material_sets_) return *material_sets_;
+  }
+  MaterialSets made = make_material_sets(scene->materials, gpu::Memory::device);
+  const std::lock_guard lock(sampled_mutex_);
+  if (!material_sets_) material_sets_ = std::move(made);
+  return *material_sets_;
 }
 
 void SceneResources::write_slots(gpu::DescriptorWriter& writer, std::uint32_t first_binding,
@@ -229,25 +299,26 @@ void SceneResources::write_slots(gpu::DescriptorWriter& writer, std::uint32_t fi
   }
 }
 
-MaterialSets SceneResources::make_material_sets(const gpu::Device& device, const Programs& programs,
-                                                std::span<const shared::Material> materials,
+MaterialSets SceneResources::make_material_sets(std::span<const shared::Material> materials,
                                                 gpu::Memory memory) const {
+  const std::lock_guard lock(sampled_mutex_);
+  make_missing_images();
   const bool layered = (features & shared::scene_layers) != 0;
   MaterialSets made;
   const auto count = static_cast<std::uint32_t>(materials.size());
   constexpr std::uint32_t most_textures = material_textures + shared::layer_textures;
-  made.pool = std::make_unique<gpu::DescriptorPool>(device, count, count * most_textures);
-  const VkDeviceSize alignment = device.limits().minUniformBufferOffsetAlignment;
+  made.pool = std::make_unique<gpu::DescriptorPool>(device_, count, count * most_textures);
+  const VkDeviceSize alignment = device_.limits().minUniformBufferOffsetAlignment;
   made.stride = aligned(sizeof(shared::Material), alignment);
-  made.blocks = make_blocks(device, materials, made.stride, memory);
+  made.blocks = make_blocks(device_, materials, made.stride, memory);
   const VkDeviceSize layer_stride = aligned(sizeof(shared::MaterialLayer), alignment);
   if (layered) {
     made.layer_blocks =
-        make_blocks(device, std::span(scene->layers), layer_stride, gpu::Memory::device);
+        make_blocks(device_, std::span(scene->layers), layer_stride, gpu::Memory::device);
   }
   for (const shared::Material& material : materials) {
-    const VkDescriptorSet set = made.pool->allocate(programs.material_layout(layered).handle());
-    gpu::DescriptorWriter writer(device, set);
+    const VkDescriptorSet set = made.pool->allocate(programs_.material_layout(layered).handle());
+    gpu::DescriptorWriter writer(device_, set);
     write_slots(writer, 0, slots_of(material), &material.normal_texture);
     constexpr auto uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     writer.buffer(material_textures, uniform, made.blocks.handle(), made.sets.size() * made.stride,

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
@@ -40,12 +42,16 @@ struct MaterialSets {
   void write(std::span<const shared::Material> materials) const;
 };
 
+/// Told of every image whose pixels are not needed any more.
+using ImageDone = std::function<void(std::size_t image)>;
+
 class SceneResources {
  public:
   SceneResources(const gpu::Device& device, const Programs& programs,
                  std::shared_ptr<const scene::Scene> scene,
                  std::shared_ptr<const LitEnvironment> environment,
-                 const tracing::RayTracer& tracer, const UploadProgress& progress);
+                 const tracing::RayTracer& tracer, const UploadProgress& progress,
+                 const ImageDone& image_done);
 
   /// Memory of tables, images and the acceleration structure.
   std::uint64_t bytes() const;
@@ -60,26 +66,33 @@ class SceneResources {
   std::uint32_t features = 0;  // shared::scene_*
   std::vector<Draw> draws;     // opaque first, then by material
   std::uint32_t deforming_vertices = 0;
-  MaterialSets material_sets;
 
+  /// What the rasteriser reads. On processors, where rays find most G-buffers, images that samplers
+  /// read are made at the first call of either: they take as much memory as the heap. Thread safe.
+  const MaterialSets& material_sets() const;
   /// Other values for the scene's materials, with its textures. The host's only on processors.
-  host::MaterialTable make_host_materials(std::span<const shared::Material> materials) const;
-  MaterialSets make_material_sets(const gpu::Device& device, const Programs& programs,
-                                  std::span<const shared::Material> materials,
+  MaterialSets make_material_sets(std::span<const shared::Material> materials,
                                   gpu::Memory memory) const;
+  host::MaterialTable make_host_materials(std::span<const shared::Material> materials) const;
 
  private:
   void upload_tables(const gpu::Device& device);
-  void upload_textures(const gpu::Device& device, const UploadProgress& progress);
+  void upload_textures(const UploadProgress& progress, const ImageDone& image_done);
+  void make_samplers();
   void list_draws();
+  void make_missing_images() const;
 
   void write_slots(gpu::DescriptorWriter& writer, std::uint32_t first_binding,
                    std::span<const shared::TextureSlot* const> slots,
                    const shared::TextureSlot* normal) const;
 
+  const gpu::Device& device_;
+  const Programs& programs_;
   std::vector<shared::Mesh> meshes_;
   std::vector<shared::Instance> instances_;
-  std::vector<gpu::Image> images_;
+  mutable std::mutex sampled_mutex_;  // guards the two below
+  mutable std::vector<gpu::Image> images_;  // of the scene, as far as they are made
+  mutable std::optional<MaterialSets> material_sets_;
   gpu::Image white_;
   gpu::Image flat_normal_;
   std::vector<gpu::Sampler> samplers_;

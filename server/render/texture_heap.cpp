@@ -7,6 +7,7 @@ namespace heliograph::render {
 namespace {
 
 constexpr std::uint32_t largest_side = 1024;
+constexpr VkBufferUsageFlags texel_usage = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
 
 std::uint32_t side(std::uint32_t size, std::uint32_t level) {
   return std::max(size >> level, 1u);
@@ -51,41 +52,69 @@ std::uint32_t flags(const scene::Image& image, const scene::Sampler& sampler) {
          bit(sampler.mip_filter == scene::Filter::nearest, shared::texture_levels_nearest);
 }
 
+void copy_texels(const HeapPlan::Place& place, std::span<const std::uint8_t> pixels,
+                 std::uint32_t* heap) {
+  std::memcpy(heap + place.first, &pixels[place.skipped * 4], place.kept * 4);
+}
+
 }  // namespace
 
-PackedTextures pack_textures(const scene::Scene& scene, std::uint64_t most_texels) {
+HeapPlan plan_heap(const scene::Scene& scene, std::uint64_t most_texels) {
   const std::uint32_t longest = longest_side_that_fits(scene, most_texels);
-  PackedTextures packed;
-  std::vector<std::uint32_t> first_texel;
+  HeapPlan plan;
   for (const scene::Image& image : scene.images) {
     const std::uint32_t level = first_level(image, longest);
-    const std::uint64_t skipped = texels(image, 0, level);
-    const std::uint64_t kept = texels(image, level, image.levels);
-    first_texel.push_back(static_cast<std::uint32_t>(packed.texels.size()));
-    packed.texels.resize(packed.texels.size() + kept);
-    std::memcpy(&packed.texels[first_texel.back()], &image.pixels[skipped * 4], kept * 4);
+    plan.places.push_back(
+        {texels(image, 0, level), texels(image, level, image.levels), plan.texels});
+    plan.texels += plan.places.back().kept;
   }
   for (const scene::Texture& texture : scene.textures) {
     const scene::Image& image = scene.images[texture.image];
     const std::uint32_t level = first_level(image, longest);
     shared::HeapTexture entry{};
-    entry.first_texel = first_texel[texture.image];
+    entry.first_texel = static_cast<std::uint32_t>(plan.places[texture.image].first);
     entry.width = side(image.width, level);
     entry.height = side(image.height, level);
     entry.levels = texture.sampler.mipmapped ? image.levels - level : 1;
     entry.wrap_s = texture.sampler.wrap_s;
     entry.wrap_t = texture.sampler.wrap_t;
     entry.flags = flags(image, texture.sampler);
-    packed.textures.push_back(entry);
+    plan.textures.push_back(entry);
+  }
+  return plan;
+}
+
+PackedTextures pack_textures(const scene::Scene& scene, std::uint64_t most_texels) {
+  HeapPlan plan = plan_heap(scene, most_texels);
+  PackedTextures packed{std::vector<std::uint32_t>(plan.texels), std::move(plan.textures)};
+  for (std::size_t i = 0; i < scene.images.size(); ++i) {
+    copy_texels(plan.places[i], scene.images[i].pixels, packed.texels.data());
   }
   return packed;
 }
 
-TextureHeap make_texture_heap(const gpu::Device& device, const scene::Scene& scene) {
-  const PackedTextures packed = pack_textures(scene, device.limits().maxTexelBufferElements);
-  return {gpu::upload_buffer(device, "texture heap", std::as_bytes(std::span(packed.texels)),
-                             VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT),
-          gpu::upload_buffer(device, "textures", std::as_bytes(std::span(packed.textures)),
+TextureHeapWriter::TextureHeapWriter(const gpu::Device& device, const scene::Scene& scene)
+    : device_(device), plan_(plan_heap(scene, device.limits().maxTexelBufferElements)) {
+  if (device.is_cpu()) {
+    texels_ = gpu::Buffer(device, "texture heap", 4 * plan_.texels, texel_usage,
+                          gpu::Memory::device);
+  } else {
+    gathered_.resize(plan_.texels);
+  }
+}
+
+void TextureHeapWriter::add(std::size_t image, std::span<const std::uint8_t> pixels) {
+  copy_texels(plan_.places[image], pixels,
+              texels_ ? reinterpret_cast<std::uint32_t*>(texels_.mapped()) : gathered_.data());
+}
+
+TextureHeap TextureHeapWriter::finish() {
+  if (!texels_) {
+    texels_ = gpu::upload_buffer(device_, "texture heap", std::as_bytes(std::span(gathered_)),
+                                 texel_usage);
+  }
+  return {std::move(texels_),
+          gpu::upload_buffer(device_, "textures", std::as_bytes(std::span(plan_.textures)),
                              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT)};
 }
 

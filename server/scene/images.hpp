@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,7 +16,7 @@ namespace heliograph::scene {
 struct ImageSource {
   std::string path;  // for errors: "images[2]"
   std::string name;
-  std::vector<std::uint8_t> loaded;  // when not part of a buffer
+  std::shared_ptr<const std::vector<std::uint8_t>> file;  // when not part of a buffer
   std::span<const std::uint8_t> bytes;
 };
 
@@ -34,5 +35,18 @@ std::vector<ImageSource> read_image_sources(GltfFile& file);
 std::vector<Image> decode_images(std::span<const ImageSource> sources,
                                  std::span<const ImageUse> uses, const ImportLimits& limits,
                                  const std::function<void()>& decoded);
+
+/// All levels of an image, decoded again where it has let go of its own.
+class ImagePixels {
+ public:
+  /// `image` outlives this.
+  explicit ImagePixels(const Image& image);
+
+  std::span<const std::uint8_t> get() const { return pixels_; }
+
+ private:
+  std::vector<std::uint8_t> decoded_;
+  std::span<const std::uint8_t> pixels_;
+};
 
 }  // namespace heliograph::scene

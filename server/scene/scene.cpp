@@ -1,6 +1,7 @@
 #include "scene/scene.hpp"
 
 #include <cstddef>
+#include <set>
 
 namespace heliograph::scene {
 namespace {
@@ -41,7 +42,11 @@ std::uint64_t Scene::bytes() const {
   const auto size = [](const auto& list) { return std::uint64_t{list.size() * sizeof(list[0])}; };
   std::uint64_t sum = size(nodes) + size(materials) + size(instances) + size(alpha_heap);
   for (const Mesh& mesh : meshes) sum += size(mesh.vertices) + size(mesh.indices);
-  for (const Image& image : images) sum += size(image.pixels);
+  std::set<const void*> files;  // one may serve as colour and as data
+  for (const Image& image : images) {
+    sum += size(image.pixels);
+    if (image.file && files.insert(image.file.get()).second) sum += size(*image.file);
+  }
   for (const Shape& shape : shapes) {
     sum += size(shape.vertices) + size(shape.influences);
     for (const MorphTarget& target : shape.targets) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,7 +24,8 @@ struct Bounds {
 };
 
 /// RGBA8 pixels, row 0 on top; every mip level follows the one before, the last is 1x1.
-/// `srgb`: colour channels are sRGB encoded; mips were filtered in linear space.
+/// `srgb`: colour channels are sRGB encoded; mips were filtered in linear space. Who has an image on
+/// a device may let go of its pixels; ImagePixels brings them back.
 struct Image {
   std::string name;
   std::uint32_t width = 0;
@@ -31,6 +33,7 @@ struct Image {
   std::uint32_t levels = 1;
   bool srgb = false;
   std::vector<std::uint8_t> pixels;
+  std::shared_ptr<const std::vector<std::uint8_t>> file = nullptr;  // that they were decoded from
 };
 
 enum class Filter { nearest, linear };
@@ -220,7 +223,7 @@ struct Scene {
   std::vector<SourceFile> sources;  // all that was read, the scene's own file first
 
   std::uint64_t triangle_count() const;  // as drawn: instances counted
-  std::uint64_t bytes() const;           // that its vertices, images and curves take
+  std::uint64_t bytes() const;           // that its vertices, images and curves take now
 };
 
 }  // namespace heliograph::scene

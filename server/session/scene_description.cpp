@@ -21,6 +21,19 @@ protocol::SceneInfo describe_scene(const LoadedScene& loaded) {
   info.materials = count(scene.materials);
   info.textures = count(scene.textures);
   info.lights = count(scene.lights);
+  for (const scene::Mesh& mesh : scene.meshes) info.vertices += mesh.vertices.size();
+  info.nodes = count(scene.nodes);
+  info.images = count(scene.images);
+  for (const scene::Image& image : scene.images) {
+    info.texels += std::uint64_t{image.width} * image.height;
+  }
+  info.deforming = count(scene.deformations);
+  info.material_names = scene.material_names;
+  for (const scene::Light& light : scene.lights) info.light_names.push_back(light.name);
+  if (!loaded.environment.empty()) info.environment = loaded.environment;
+  for (const scene::SourceFile& source : scene.sources) info.memory.file += source.bytes;
+  info.memory.host = loaded.host_bytes;
+  info.memory.device = loaded.device_bytes;
   for (const scene::Camera& camera : scene.cameras) info.cameras.push_back(camera.name);
   for (const scene::Clip& clip : scene.clips) info.clips.push_back({clip.name, clip.duration});
   info.scenes = scene.scenes;

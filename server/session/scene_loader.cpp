@@ -1,5 +1,6 @@
 #include "session/scene_loader.hpp"
 
+#include <malloc.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -23,7 +24,8 @@ namespace {
 constexpr float import_share = 0.7f;
 /// How much is done between two reports of one stage.
 constexpr float report_step = 0.01f;
-/// How soon a cache that holds too much looks again whether all of it is still shown.
+/// How soon a cache that holds too much looks again whether all of it is still shown, and how long
+/// after a load its first pictures are drawn and what both have left behind can go.
 constexpr std::chrono::seconds trim_interval{2};
 
 constexpr std::string_view progress_key = "scene.progress";
@@ -45,6 +47,10 @@ protocol::Error cancelled() {
   return protocol::error::conflict("name", "was cancelled");
 }
 
+protocol::Error session_ended() {
+  return protocol::error::not_found("session", "the session has ended");
+}
+
 protocol::Error stopped() {
   return protocol::error::not_ready("the server is ending");
 }
@@ -54,6 +60,14 @@ protocol::Error no_such(const scene::NoSuchChoice& failure, const scene::SceneCh
   const std::vector<std::string_view> names(failure.names().begin(), failure.names().end());
   return protocol::error::not_found(failure.member(),
                                     "is not in the file" + protocol::suggestion(wanted, names));
+}
+
+/// Pictures and meshes on their way leave holes between what stays. The C library keeps them unless
+/// told: a third of the server's memory after a large scene.
+void return_free_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 
 }  // namespace
@@ -92,7 +106,8 @@ void SceneLoader::load(std::shared_ptr<Session> session, const protocol::SceneLo
     const std::lock_guard lock(mutex_);
     if (stopping_) return done(stopped());
     std::shared_ptr<Job> job = find_job(key);
-    displaced = remove_waiters(*session, job.get());
+    displaced = remove_waiters([&](const Session& own) { return &own == session.get(); },
+                               job.get());
     if (!job) kept = cache_.find(key);
     if (job || kept) {
       cache_.count_hit();
@@ -118,22 +133,22 @@ protocol::SceneCancelled SceneLoader::cancel(const Session& session) {
   std::vector<Waiter> removed;
   {
     const std::lock_guard lock(mutex_);
-    removed = remove_waiters(session, nullptr);
+    removed = remove_waiters([&](const Session& own) { return &own == &session; });
   }
   for (const Waiter& waiter : removed) waiter.done(cancelled());
   return {.cancelled = !removed.empty()};
 }
 
-/// Takes away what waits for the session elsewhere than in `except`; a job that nobody waits for any
-/// more ends.
-std::vector<SceneLoader::Waiter> SceneLoader::remove_waiters(const Session& session,
-                                                             const Job* except) {
+/// Takes away what waits for such sessions elsewhere than in `except`; a job that nobody waits for
+/// any more ends.
+std::vector<SceneLoader::Waiter> SceneLoader::remove_waiters(
+    const std::function<bool(const Session&)>& whose, const Job* except) {
   std::vector<Waiter> removed;
   for (const auto& job : jobs_) {
     if (job.get() == except) continue;
-    const auto own = std::stable_partition(
-        job->waiters.begin(), job->waiters.end(),
-        [&](const Waiter& waiter) { return waiter.session.get() != &session; });
+    const auto own =
+        std::stable_partition(job->waiters.begin(), job->waiters.end(),
+                              [&](const Waiter& waiter) { return !whose(*waiter.session); });
     removed.insert(removed.end(), std::make_move_iterator(own),
                    std::make_move_iterator(job->waiters.end()));
     job->waiters.erase(own, job->waiters.end());
@@ -143,6 +158,16 @@ std::vector<SceneLoader::Waiter> SceneLoader::remove_waiters(const Session& sess
   return removed;
 }
 
+/// Called often, by the loading thread: sessions end without telling the loader.
+void SceneLoader::dismiss_ended() {
+  std::vector<Waiter> removed;
+  {
+    const std::lock_guard lock(mutex_);
+    removed = remove_waiters([](const Session& own) { return own.ended(); });
+  }
+  for (const Waiter& waiter : removed) waiter.done(session_ended());
+}
+
 std::shared_ptr<SceneLoader::Job> SceneLoader::find_job(const SceneKey& key) const {
   const auto found =
       std::ranges::find_if(jobs_, [&](const auto& job) { return job->key == key; });
@@ -150,19 +175,26 @@ std::shared_ptr<SceneLoader::Job> SceneLoader::find_job(const SceneKey& key) con
 }
 
 void SceneLoader::run() {
-  while (const std::shared_ptr<Job> job = next_job()) carry_out(*job);
+  while (const std::shared_ptr<Job> job = next_job()) {
+    dismiss_ended();
+    if (!job->abandoned) carry_out(*job);
+    memory_is_loose_ = true;
+  }
 }
 
-/// Waits for a job, and for what the cache keeps too much of; null at the end.
+/// Waits for a job, tidying up meanwhile; null at the end.
 std::shared_ptr<SceneLoader::Job> SceneLoader::next_job() {
   std::unique_lock lock(mutex_);
   const auto called = [&] { return stopping_ || !jobs_.empty(); };
   while (!called()) {
-    cache_too_full_ = !cache_.trim();
-    if (cache_too_full_) {
-      condition_.wait_for(lock, trim_interval);
-    } else {
+    const bool cache_too_full = !cache_.trim();
+    if (!cache_too_full && !memory_is_loose_) {
       condition_.wait(lock);
+    } else if (condition_.wait_for(lock, trim_interval) == std::cv_status::timeout &&
+               std::exchange(memory_is_loose_, false)) {
+      lock.unlock();
+      return_free_memory();
+      lock.lock();
     }
   }
   return stopping_ ? nullptr : jobs_.front();
@@ -203,19 +235,20 @@ LoadedScene SceneLoader::make(Job& job) {
   if (!job.key.environment.empty()) sources.push_back(scene::examine_file(job.key.environment));
   checkpoint("reading", 0.0f);
   const auto environment = environments_.environment_at(job.key.environment);
-  const auto scene = std::make_shared<const scene::Scene>(scene::import_gltf(
+  auto imported = std::make_unique<scene::Scene>(scene::import_gltf(
       job.entry.path, options_.limits,
       [&](std::string_view stage, float fraction) { checkpoint(stage, import_share * fraction); },
       nullptr, job.key.choice));
-  sources.insert(sources.end(), scene->sources.begin(), scene->sources.end());
-  LoadedScene loaded{.name = job.entry.name, .scene = scene};
-  loaded.resources =
-      engine_.upload(scene, environment, [&](std::string_view stage, float fraction) {
+  sources.insert(sources.end(), imported->sources.begin(), imported->sources.end());
+  LoadedScene loaded{.name = job.entry.name};
+  loaded.resources = engine_.upload(
+      std::move(imported), environment, [&](std::string_view stage, float fraction) {
         checkpoint(stage, import_share + (1.0f - import_share) * fraction);
       });
+  loaded.scene = render::scene_of(*loaded.resources);
   stop_if_abandoned(job);
   loaded.environment = job.key.environment.filename().string();
-  loaded.host_bytes = scene->bytes();
+  loaded.host_bytes = loaded.scene->bytes();
   loaded.device_bytes = render::memory_bytes(*loaded.resources);
   return cache_.add(job.key, std::move(loaded), std::move(sources));
 }
@@ -257,7 +290,8 @@ void SceneLoader::report_progress(Job& job, std::string_view stage, float fracti
   }
 }
 
-void SceneLoader::stop_if_abandoned(const Job& job) const {
+void SceneLoader::stop_if_abandoned(const Job& job) {
+  dismiss_ended();
   if (stopping_ || job.abandoned) throw Abandoned();
 }
 

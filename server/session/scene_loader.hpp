@@ -33,8 +33,8 @@ struct LoaderOptions {
 
 /// Loads scenes beside rendering, one after the other, and puts them into sessions when they are
 /// complete. On failure a session keeps what it has. A newer request of a session takes the place
-/// of its older one, also of one that is under way. Requests for the same thing share one load, and
-/// what was loaded stays in a cache. Thread safe.
+/// of its older one, also of one that is under way, and what a session waited for ends with it.
+/// Requests for the same thing share one load, and what was loaded stays in a cache. Thread safe.
 class SceneLoader {
  public:
   using Completion = std::function<void(protocol::Result<protocol::SceneInfo>)>;
@@ -81,10 +81,12 @@ class SceneLoader {
   void carry_out(Job& job);
   LoadedScene make(Job& job);
   void finish(Job& job, const protocol::Result<LoadedScene>& outcome);
-  std::vector<Waiter> remove_waiters(const Session& session, const Job* except);
+  std::vector<Waiter> remove_waiters(const std::function<bool(const Session&)>& whose,
+                                     const Job* except = nullptr);
+  void dismiss_ended();
   std::shared_ptr<Job> find_job(const SceneKey& key) const;
   void report_progress(Job& job, std::string_view stage, float fraction);
-  void stop_if_abandoned(const Job& job) const;
+  void stop_if_abandoned(const Job& job);
 
   render::Engine& engine_;
   const SceneCatalogue& catalogue_;
@@ -96,7 +98,7 @@ class SceneLoader {
   std::mutex mutex_;
   std::condition_variable condition_;
   std::deque<std::shared_ptr<Job>> jobs_;  // the first may be under way
-  bool cache_too_full_ = false;
+  bool memory_is_loose_ = false;  // the loading thread's
   std::atomic<bool> stopping_ = false;
   std::thread thread_;
 };

@@ -78,6 +78,7 @@ Clock::duration Session::idle() const {
 }
 
 void Session::end() {
+  ended_ = true;
   const std::lock_guard lock(mutex_);
   pixels_.give_back();
 }

@@ -96,6 +96,7 @@ class Session {
   void copy_from(const Session& other);
   /// It is no longer among the sessions, though somebody may still hold it.
   void end();
+  bool ended() const { return ended_; }
   /// Whether pictures are due though nobody watches: lockstep, or a reference.
   bool works_unwatched() const;
   /// Somebody needs the session: its idle time begins anew.
@@ -198,6 +199,7 @@ class Session {
   const SessionOptions options_;
   const std::shared_ptr<Wakeup> changed_;
   std::atomic<Clock::time_point> needed_at_ = Clock::now();
+  std::atomic<bool> ended_ = false;
   Audience audience_;
 
   mutable std::mutex mutex_;

@@ -112,8 +112,8 @@ void SessionHost::create_session(const protocol::SessionCreate& request, const s
 /// A session that cannot be as it was wanted ends before anybody has seen it.
 void SessionHost::give_up(const std::shared_ptr<Session>& session, const protocol::Error& why,
                           const Created& done) {
-  // Somebody else may have closed it meanwhile.
-  (void)sessions_.close(session->name(), why.message);
+  // Somebody else may have closed it meanwhile, and another of its name may be there.
+  if (!session->ended()) (void)sessions_.close(session->name(), why.message);
   done(why);
 }
 

@@ -1,10 +1,15 @@
 // From a scene's file to its first picture, stage by stage: one line of JSON for each time it is
 // loaded. The first time pays for pipelines that later scenes find made. "processor_seconds" is the
-// time of all threads together, which holds on a busy machine too.
+// time of all threads together, which holds on a busy machine too. Peaks of memory count from what
+// was resident before; "decoded_bytes" are geometry, pictures and their levels, once each.
+#include <malloc.h>
+
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <fstream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -31,6 +36,28 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// A line of /proc/self/status, bytes.
+std::uint64_t status_bytes(const std::string& key) {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    std::uint64_t kibibytes = 0;
+    if (word == key && status >> kibibytes) return kibibytes << 10;
+  }
+  return 0;
+}
+
+/// Most memory that was resident since restart_peak().
+std::uint64_t peak_bytes() {
+  return status_bytes("VmHWM:");
+}
+
+/// Forgets the peak so far; gives what is resident now.
+std::uint64_t restart_peak() {
+  malloc_trim(0);
+  std::ofstream("/proc/self/clear_refs") << 5;
+  return status_bytes("VmRSS:");
+}
+
 /// Time of one thread, for meshes that are given a normal map and no tangents of their own: part of
 /// "geometry", where all threads share it.
 double time_tangents(const scene::Scene& scene) {
@@ -45,16 +72,47 @@ double time_tangents(const scene::Scene& scene) {
   return seconds_since(start);
 }
 
+/// Seconds between the first report of a stage and that of the next.
+class StageTimes {
+ public:
+  void enter(std::string_view stage) {
+    if (stage == stage_) return;
+    leave();
+    stage_ = stage;
+    since_ = Clock::now();
+  }
+  void leave() {
+    if (!stage_.empty()) seconds_[stage_] += seconds_since(since_);
+    stage_.clear();
+  }
+  const std::map<std::string, double>& seconds() const { return seconds_; }
+
+ private:
+  std::string stage_;
+  Clock::time_point since_;
+  std::map<std::string, double> seconds_;
+};
+
 nlohmann::json load(render::Engine& engine, const std::filesystem::path& path,
-                    const scene::Environment& environment, const Options& options) {
+                    const std::shared_ptr<const scene::Environment>& environment,
+                    const Options& options) {
+  const std::uint64_t before = restart_peak();
   const Clock::time_point start = Clock::now();
   const std::clock_t spent_before = std::clock();
   scene::ImportTimes times;
-  const auto scene = std::make_shared<const scene::Scene>(scene::import_gltf(path, {}, {}, &times));
+  auto whole = std::make_unique<scene::Scene>(scene::import_gltf(path, {}, {}, &times));
   const Clock::time_point imported = Clock::now();
-  const auto resources = engine.upload(scene, environment);
+  const std::uint64_t decoded = whole->bytes();
+  const std::uint64_t import_peak = peak_bytes() - before;
+  StageTimes stages;
+  const auto resources =
+      engine.upload(std::move(whole), environment,
+                    [&](std::string_view stage, float) { stages.enter(stage); });
+  stages.leave();
+  const std::shared_ptr<const scene::Scene>& scene = render::scene_of(*resources);
   const double upload = seconds_since(imported);
   const Clock::time_point uploaded = Clock::now();
+  const std::uint64_t loading_peak = peak_bytes() - before;
   render::Renderer renderer(engine);
   renderer.set_scene(resources);
   renderer.set_size(options.width, options.height);
@@ -66,20 +124,35 @@ nlohmann::json load(render::Engine& engine, const std::filesystem::path& path,
   const double frame = seconds_since(uploaded);
   const double total = seconds_since(start);
   const auto spent = static_cast<double>(std::clock() - spent_before) / CLOCKS_PER_SEC;
-  return {{"scene", path.stem().string()},  {"triangles", scene->triangle_count()},
-          {"images", scene->images.size()}, {"parse", times.parse},
-          {"check", times.check},           {"geometry", times.geometry},
-          {"images_decoded", times.images}, {"place", times.place},
-          {"import", times.total},          {"upload_and_bvh", upload},
-          {"first_frame", frame},           {"file_to_first_frame", total},
-          {"processor_seconds", spent},     {"tangents_of_one_thread", time_tangents(*scene)}};
+  return {{"scene", path.stem().string()},
+          {"triangles", scene->triangle_count()},
+          {"images", scene->images.size()},
+          {"parse", times.parse},
+          {"check", times.check},
+          {"geometry", times.geometry},
+          {"images_decoded", times.images},
+          {"place", times.place},
+          {"import", times.total},
+          {"upload_stages", stages.seconds()},
+          {"upload_and_bvh", upload},
+          {"first_frame", frame},
+          {"file_to_first_frame", total},
+          {"processor_seconds", spent},
+          {"tangents_of_one_thread", time_tangents(*scene)},
+          {"decoded_bytes", decoded},
+          {"import_peak_bytes", import_peak},
+          {"loading_peak_bytes", loading_peak},
+          {"loading_peak_of_decoded", double(loading_peak) / double(decoded)},
+          {"kept_bytes", scene->bytes() + render::memory_bytes(*resources)},
+          {"program_bytes_before", before},
+          {"program_bytes_after", status_bytes("VmRSS:")}};
 }
 
 void run(const Options& options) {
   render::Engine engine({.device = options.device});
-  const scene::Environment environment = options.environment.empty()
-                                             ? scene::constant_environment(glm::vec3(1.0f))
-                                             : scene::load_environment(options.environment);
+  const auto environment = std::make_shared<const scene::Environment>(
+      options.environment.empty() ? scene::constant_environment(glm::vec3(1.0f))
+                                  : scene::load_environment(options.environment));
   for (const std::filesystem::path& path : options.scenes) {
     for (int i = 0; i < options.repeats; ++i) {
       std::printf("%s\n", load(engine, path, environment, options).dump().c_str());

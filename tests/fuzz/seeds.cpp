@@ -1,5 +1,8 @@
 // Writes the files that the fuzzers begin with: heliograph-fuzz-seeds gltf|pictures FOLDER
 #include <ImfRgbaFile.h>
+#include <ImfTiledRgbaFile.h>
+#include <png.h>
+#include <turbojpeg.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -73,6 +76,54 @@ Bytes radiance(bool encoded) {
   return file;
 }
 
+/// Runs as Radiance wrote them at first: a pixel of ones repeats the one before.
+Bytes old_radiance() {
+  Bytes file;
+  const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 16\n";
+  file.assign(header.begin(), header.end());
+  for (std::uint8_t y = 0; y < 4; ++y) {
+    file.insert(file.end(), {9, y, 200, 129, 1, 1, 1, 14, 7, 7, 7, 128});
+  }
+  return file;
+}
+
+/// A palette with transparency, interlaced, with what else a PNG file may hold.
+Bytes palette_png() {
+  Bytes file;
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png_create_info_struct(png);
+  const auto append = [](png_structp writer, png_bytep bytes, png_size_t size) {
+    auto& to = *static_cast<Bytes*>(png_get_io_ptr(writer));
+    to.insert(to.end(), bytes, bytes + size);
+  };
+  png_set_write_fn(png, &file, append, nullptr);
+  png_set_IHDR(png, info, 16, 16, 4, PNG_COLOR_TYPE_PALETTE, PNG_INTERLACE_ADAM7,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  const png_color colors[] = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {9, 9, 9}};
+  png_set_PLTE(png, info, colors, 4);
+  const png_byte alphas[] = {255, 128, 0};
+  png_set_tRNS(png, info, alphas, 3, nullptr);
+  png_set_gAMA(png, info, 0.45455);
+  Bytes row(8, 0x12);
+  std::vector<png_bytep> rows(16, row.data());
+  png_set_rows(png, info, rows.data());
+  png_write_png(png, info, PNG_TRANSFORM_IDENTITY, nullptr);
+  png_destroy_write_struct(&png, &info);
+  return file;
+}
+
+/// `format`: TJPF_GRAY or TJPF_CMYK.
+Bytes other_jpeg(int format, int sampling, const Bytes& pixels) {
+  const tjhandle handle = tjInitCompress();
+  unsigned char* data = nullptr;
+  unsigned long size = 0;
+  tjCompress2(handle, pixels.data(), 16, 0, 16, format, &data, &size, sampling, 80, 0);
+  const Bytes file(data, data + size);
+  tjFree(data);
+  tjDestroy(handle);
+  return file;
+}
+
 void write_pictures(const std::filesystem::path& folder) {
   Bytes rgba;
   for (int i = 0; i < 16 * 16 * 4; ++i) rgba.push_back(std::uint8_t(i * i >> 5));
@@ -82,6 +133,13 @@ void write_pictures(const std::filesystem::path& folder) {
   write(folder / "rgb.png", png(16, 16, 3, rgb));
   write(folder / "grey.png", png(16, 16, 1, grey));
   write(folder / "deep.png", png(8, 16, 4, rgba, 16));
+  write(folder / "grey_alpha.png", png(16, 16, 2, Bytes(rgba.begin(), rgba.begin() + 512)));
+  write(folder / "palette.png", palette_png());
+  write(folder / "grey.jpg", other_jpeg(TJPF_GRAY, TJSAMP_GRAY, grey));
+  write(folder / "cmyk.jpg", other_jpeg(TJPF_CMYK, TJSAMP_420, rgba));
+  write(folder / "old.hdr", old_radiance());
+  const std::string ktx = "\xabKTX 20\xbb\r\n\x1a\n";
+  write(folder / "other.ktx2", Bytes(ktx.begin(), ktx.end()));
   write(folder / "baseline.jpg", jpeg(16, 16, rgb));
   write(folder / "progressive.jpg", jpeg(16, 16, rgb, true));
   write(folder / "lossless.webp", webp(16, 16, rgba));
@@ -90,6 +148,12 @@ void write_pictures(const std::filesystem::path& folder) {
   write(folder / "encoded.hdr", radiance(true));
   std::vector<Imf::Rgba> pixels;
   for (int i = 0; i < 32 * 16; ++i) pixels.emplace_back(0.1f * float(i % 32), 0.2f, 3.0f, 1.0f);
+  Imf::TiledRgbaOutputFile tiled((folder / "tiled.exr").c_str(), 32, 16, 8, 8, Imf::MIPMAP_LEVELS,
+                                 Imf::ROUND_DOWN);
+  tiled.setFrameBuffer(pixels.data(), 1, 32);
+  for (int level = 0; level < tiled.numLevels(); ++level) {
+    tiled.writeTiles(0, tiled.numXTiles(level) - 1, 0, tiled.numYTiles(level) - 1, level);
+  }
   for (int compression = 0; compression < Imf::NUM_COMPRESSION_METHODS; ++compression) {
     for (const auto channels : {Imf::WRITE_RGB, Imf::WRITE_YC}) {
       const std::string name =

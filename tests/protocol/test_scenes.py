@@ -7,6 +7,7 @@ import shutil
 import struct
 import tempfile
 import time
+import unittest
 
 from harness.gltf import document, grid, write_glb, write_gltf
 from harness.server import Server, ServerTestCase
@@ -52,7 +53,7 @@ class Scenes(ServerTestCase):
     def write_choices(path):
         """Two scenes, the second of two triangles, and two variants of the first one's material."""
         content, binary = document([0, 0, 0, 1, 0, 0, 0, 1, 0], [0, 1, 2])
-        content["extensionsUsed"] = ["KHR_materials_variants"]
+        content["extensionsUsed"] = ["KHR_materials_variants", "EXT_unheard_of"]
         content["extensions"] = {"KHR_materials_variants":
                                  {"variants": [{"name": "day"}, {"name": "night"}]}}
         content["materials"] = [{"name": name} for name in ("plain", "bright", "dark")]
@@ -85,6 +86,13 @@ class Scenes(ServerTestCase):
         info = self.server.call("scene.load", {"name": "furnace"})
         self.assertEqual(info["name"], "furnace")
         self.assertGreater(info["triangles"], 100)
+        self.assertEqual(info["environment"], "sky.hdr")
+        self.assertEqual(len(info["material_names"]), info["materials"])
+        self.assertEqual(len(info["light_names"]), info["lights"])
+        self.assertGreater(info["nodes"], 0)
+        self.assertGreater(info["vertices"], 50)
+        for part in ("file", "host", "device"):
+            self.assertGreater(info["memory"][part], 1000, part)
         self.assertEqual(self.server.call("scene.info"), info)
         self.assertEqual(self.server.call("scene.list")["current"], "furnace")
 
@@ -125,6 +133,7 @@ class Scenes(ServerTestCase):
         info = self.server.call("scene.load", {"name": "choices"})
         self.assertEqual((info["scenes"], info["scene"], info["triangles"]), (["one", "two"], 0, 1))
         self.assertEqual((info["variants"], info["variant"]), (["day", "night"], None))
+        self.assertIn("EXT_unheard_of", " ".join(info["warnings"]))
         for scene in ("two", "1"):
             info = self.server.call("scene.load", {"name": "choices", "scene": scene})
             self.assertEqual((info["scene"], info["triangles"]), (1, 2))
@@ -148,6 +157,20 @@ class Scenes(ServerTestCase):
             self.assertLess(time.monotonic() - begun, 5)
             self.assertEqual(await viewer.call("scene.info"), shown)
             await viewer.call("scene.load", {"name": "furnace"})
+
+    async def test_a_session_that_ends_takes_its_load_with_it(self):
+        ended = self.server.log_text().count("loading slow was ended")
+        self.server.call("session.create", {"name": "passing"})
+        async with Viewer(self.server, session="passing") as viewer:
+            load = asyncio.create_task(asyncio.to_thread(
+                self.server.ask, "scene.load", {"name": "slow"}, "passing"))
+            await viewer.notification("scene.progress")
+            begun = time.monotonic()
+            self.server.call("session.close", {"session": "passing"})
+            self.assert_error(await load, -32004, path="session")
+            self.assertLess(time.monotonic() - begun, 5)
+        self.server.wait_for(
+            lambda: self.server.log_text().count("loading slow was ended") > ended, "its end")
 
     async def test_one_load_serves_all_who_ask_for_the_same(self):
         before = self.cache()
@@ -176,3 +199,31 @@ class Scenes(ServerTestCase):
             await viewer.ask("scene.load", {"name": "broken/truncated"})
             camera = await viewer.call("camera.set", {"eye": [3, 3, 3]})
             await viewer.frame_where(lambda frame: frame.header["state_rev"] >= camera["rev"])
+
+
+class FirstScene(unittest.TestCase):
+    """Clients who are there before the first scene is."""
+
+    def test_a_wrong_request_does_not_end_the_server(self):
+        with tempfile.TemporaryDirectory() as root:
+            content, binary = document(*grid(700))
+            write_glb(os.path.join(root, "first.glb"), content, binary)
+            shutil.copy(os.path.join(os.environ["HELIOGRAPH_SCENES"], "mirror.glb"), root)
+            with open(os.path.join(root, "broken.glb"), "wb") as file:
+                file.write(b"this is not glTF")
+            with Server("--scene", "first", scenes=root, early=True) as server:
+                self.assertEqual(server.ask("scene.load", {"name": "nowhere"})["error"]["code"],
+                                 -32004)
+                self.assertEqual(server.ask("scene.load", {"name": "broken"})["error"]["code"],
+                                 -32602)
+                self.assertEqual(server.call("scene.load", {"name": "mirror"})["name"], "mirror")
+                server.wait_for(lambda: server.get("/health/ready")[0] == 200, "the first picture")
+                self.assertEqual(server.stop(), 0)
+
+    def test_one_that_cannot_be_shown_ends_it_with_the_reason(self):
+        with tempfile.TemporaryDirectory() as root:
+            with open(os.path.join(root, "broken.glb"), "wb") as file:
+                file.write(b"this is not glTF")
+            server = Server("--scene", "broken", scenes=root, early=True)
+            self.assertNotEqual(server.wait(), 0)
+            self.assertIn("not a glTF file", server.log_text())

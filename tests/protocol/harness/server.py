@@ -6,6 +6,7 @@ import os
 import queue
 import re
 import signal
+import socket
 import ssl
 import subprocess
 import tempfile
@@ -19,17 +20,19 @@ START_TIMEOUT = 120
 class Server:
     """A running server on a free port of the loopback interface."""
 
-    def __init__(self, *arguments, scenes=None, environment=None, certificate=None):
-        """`certificate` is the one to trust where the server speaks TLS."""
+    def __init__(self, *arguments, scenes=None, environment=None, certificate=None, early=False):
+        """`certificate` is the one to trust where the server speaks TLS; `early`: not to wait for
+        the first picture, only until somebody answers."""
         self.tls = ssl.create_default_context(cafile=certificate) if certificate else None
         self.log = tempfile.TemporaryFile(mode="w+")
-        command = [os.environ["HELIOGRAPH_BINARY"], "serve", "--port", "0", "--width", "160",
+        port = self._free_port() if early else 0
+        command = [os.environ["HELIOGRAPH_BINARY"], "serve", "--port", str(port), "--width", "160",
                    "--height", "90", "--set", "accumulation.max_samples=4",
                    "--scene-root", scenes or os.environ["HELIOGRAPH_SCENES"], *arguments]
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=self.log, text=True,
                                         env={**os.environ, **(environment or {})})
         try:
-            self.url = self._wait_for_address()
+            self.url = self._wait_for_listener(port) if early else self._wait_for_address()
         except Exception:
             self.process.kill()
             raise
@@ -46,6 +49,21 @@ class Server:
         if not found:
             raise RuntimeError(f"the server said {line!r} and logged:\n{self.log_text()}")
         return found.group(1)
+
+    @staticmethod
+    def _free_port():
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            return probe.getsockname()[1]
+
+    def _wait_for_listener(self, port):
+        deadline = time.monotonic() + START_TIMEOUT
+        while self.alive and time.monotonic() < deadline:
+            with socket.socket() as probe:
+                if probe.connect_ex(("127.0.0.1", port)) == 0:
+                    break
+            time.sleep(0.02)
+        return f"http://127.0.0.1:{port}/"
 
     def log_text(self):
         self.log.seek(0)

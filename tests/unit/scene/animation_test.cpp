@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "gltf_builder.hpp"
+#include "scene/pose.hpp"
 
 namespace heliograph::scene::test {
 namespace {
@@ -166,6 +169,64 @@ TEST(Clips, OfNormalisedWeightsAreMappedToFloats) {
   const Scene scene = b.import();
   ASSERT_EQ(scene.clips.size(), 1u);
   EXPECT_EQ(scene.clips[0].channels[0].values, (Numbers{0.0f, 1.0f}));
+}
+
+TEST(Clips, OfNormalisedRotationsAreMappedToFloats) {
+  GltfBuilder b = skinned_triangle();
+  const auto times = b.add_accessor(Numbers{0, 1}, 5126, "SCALAR", 2);
+  const auto with_values = [&](std::uint32_t values) {
+    b.json["animations"][0]["samplers"][0] = {{"input", times}, {"output", values}};
+    b.json["animations"][0]["channels"][0]["target"]["path"] = "rotation";
+    return b.import().clips.at(0).channels.at(0).values;
+  };
+  const auto bytes = b.add_view(std::vector<std::int8_t>{0, 0, 0, 127, -127, 0, 0, 0});
+  EXPECT_EQ(with_values(b.add_accessor(bytes, 5120, "VEC4", 2, true)),
+            (Numbers{0, 0, 0, 1, -1, 0, 0, 0}));
+  const auto words = b.add_view(std::vector<std::int16_t>{0, 0, 0, 32767, -32767, 0, 0, 0});
+  EXPECT_EQ(with_values(b.add_accessor(words, 5122, "VEC4", 2, true)),
+            (Numbers{0, 0, 0, 1, -1, 0, 0, 0}));
+}
+
+TEST(Clips, OfEveryInterpolationMoveEveryProperty) {
+  const struct {
+    const char* path;
+    const char* type;
+    Numbers first, second;
+  } properties[] = {{"translation", "VEC3", {1, 2, 3}, {5, 4, 3}},
+                    {"rotation", "VEC4", {0, 0, 0, 1}, {0, 0, 1, 0}},
+                    {"scale", "VEC3", {1, 1, 1}, {3, 2, 1}},
+                    {"weights", "SCALAR", {0.25f}, {0.75f}}};
+  for (const auto& [path, type, first, second] : properties) {
+    for (const char* const interpolation : {"STEP", "LINEAR", "CUBICSPLINE"}) {
+      const bool spline = std::string_view(interpolation) == "CUBICSPLINE";
+      const Numbers flat(first.size(), 0.0f);
+      Numbers values;
+      for (const Numbers* key : {&first, &second}) {
+        if (spline) values.insert(values.end(), flat.begin(), flat.end());
+        values.insert(values.end(), key->begin(), key->end());
+        if (spline) values.insert(values.end(), flat.begin(), flat.end());
+      }
+      GltfBuilder b = morphing_triangle();
+      const auto times = b.add_accessor(Numbers{0, 2}, 5126, "SCALAR", 2);
+      const std::size_t keys = spline ? 6 : 2;
+      const auto output = b.add_accessor(values, 5126, type, keys);
+      b.add("animations",
+            {{"samplers",
+              {{{"input", times}, {"output", output}, {"interpolation", interpolation}}}},
+             {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", path}}}}}}});
+      const Channel channel = b.import().clips.at(0).channels.at(0);
+      Numbers found(first.size());
+      sample(channel, 1.0f, found.data());
+      const bool step = std::string_view(interpolation) == "STEP";
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        // Half way, with tangents of zero, a spline is where a line is; a half turn is an arc.
+        const float straight = 0.5f * (first[i] + second[i]);
+        const bool arc = std::string_view(path) == "rotation" && straight != 0.0f;
+        const float expected = step ? first[i] : arc ? std::sqrt(0.5f) : straight;
+        EXPECT_NEAR(found[i], expected, 1e-5f) << path << " " << interpolation << " " << i;
+      }
+    }
+  }
 }
 
 TEST(LightsAndCameras, KnowTheirNodes) {
