@@ -130,6 +130,54 @@ TEST_P(BlendOver, MotionIsThatOfWhatHidesMost) {
   EXPECT_NEAR(at(6)[0] / at(26)[0], 8.0f / 3.0f, 0.05f);
 }
 
+/// Mean error of the last frame of a sideways move past a checkered pane far in front of a wall, to
+/// a resting picture of the same view.
+double error_in_motion(PrimaryVisibility source, float alpha) {
+  SceneBuilder builder;
+  std::vector<std::uint8_t> checks;
+  for (int i = 0; i < 256; ++i) {
+    const auto level = static_cast<std::uint8_t>((i + i / 16) % 2 ? 230 : 40);
+    checks.insert(checks.end(), {level, level, level, 255});
+  }
+  shared::Material pane = veil(glm::vec3(1.0f), alpha);
+  pane.base_color_texture.texture = builder.add_texture(16, 16, true, checks);
+  shared::Material board = surface(glm::vec3(0.3f));
+  board.flags = shared::material_unlit;
+  builder.place(builder.add_quad(wall(0, 1.5f), pane)).place(builder.add_quad(wall(-20, 40), board));
+  const auto scene = builder.build();
+  const auto camera = [](int frame) {
+    const float x = 0.04f * static_cast<float>(frame);
+    return look({x, 0, 4}, {x, 0, 0}, 30.0f);
+  };
+  const auto still = [&] {
+    return Still(scene, scene::constant_environment(glm::vec3(0.5f)), camera(-12), 64, 64);
+  };
+  protocol::Settings settings = undenoised(source);
+  Still moving = still(), resting = still();
+  settings.antialiasing.jitter = settings.antialiasing.temporal = true;
+  moving.apply(settings);
+  render::Frame shown;
+  for (int i = -12; i <= 0; ++i) {
+    moving.renderer.set_camera(camera(i));
+    shown = moving.renderer.render();
+  }
+  settings.antialiasing.temporal = false;
+  resting.apply(settings);
+  resting.renderer.set_camera(camera(0));
+  const render::Frame truth = resting.accumulate(64);
+  save_picture("blend_over_moving", shown);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < truth.rgba.size(); ++i) {
+    sum += std::abs(double(shown.rgba[i]) - double(truth.rgba[i]));
+  }
+  return sum / static_cast<double>(truth.rgba.size());
+}
+
+TEST_P(BlendOver, DoesNotSmearInMotion) {
+  const double solid = error_in_motion(GetParam(), 1.0f);
+  EXPECT_LT(error_in_motion(GetParam(), 0.9f), 1.2 * solid + 0.1);
+}
+
 /// Panes, a smooth tinted one and a rough one, over a floor and balls, under sun, lamp and sky.
 std::shared_ptr<const scene::Scene> veiled_room() {
   SceneBuilder builder;
