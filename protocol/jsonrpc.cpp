@@ -63,15 +63,6 @@ Error invalid_request(std::string path, std::string reason, std::string limit = 
                      std::move(limit));
 }
 
-/// Whether those who may only watch may call it: whatever has no effect, or none on others. The
-/// size of the pictures is the same for all.
-bool is_for_watching(const MethodDescriptor& method, const json& params) {
-  if (!method.may_be_notification) return true;
-  if (params.contains("width") || params.contains("height")) return false;
-  return method.name.starts_with("stream.") || method.name.starts_with("stats.") ||
-         method.name == "session.join";
-}
-
 /// The parts of one request that has the shape of JSON-RPC.
 struct Call {
   std::optional<json> id;  ///< none: a notification
@@ -302,7 +293,7 @@ void Dispatcher::invoke(const Entry& entry, const RawJson& params, const CallCon
   if (!params.value().is_object()) {
     return done(error::invalid("params", "must be an object", "parameters go by name"));
   }
-  if (context.view_only && !is_for_watching(*entry.method, params.value())) {
+  if (context.view_only && !entry.method->for_watchers) {
     return done(error::make(ErrorCode::forbidden, "method",
                             "the token of this client lets it watch but not steer"));
   }

@@ -10,6 +10,7 @@ HELIOGRAPH_ENUM(PassKind, device, host)
 HELIOGRAPH_ENUM(ImageFormat, png, jpeg, npy, exr)
 HELIOGRAPH_ENUM(LightType, directional, point, spot, rectangle, disk)
 HELIOGRAPH_ENUM(ControlMode, everyone, one)
+HELIOGRAPH_ENUM(ViewerRole, view, control)
 HELIOGRAPH_ENUM(ControlAction, take, give, release)
 
 }  // namespace heliograph::protocol

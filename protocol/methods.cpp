@@ -19,9 +19,10 @@ struct Example {
   std::string_view result;
 };
 
-/// A query changes nothing; a command changes the session, for all who are in it; a personal
-/// command changes something for its caller only.
-enum class Call { query, command, personal };
+/// A query changes nothing; a command changes the session, for all who are in it, and needs control
+/// of it; a personal command changes something for its caller only; one about sessions is for who
+/// may steer, whoever has control.
+enum class Call { query, command, personal, sessions };
 
 template <class Params, class ResultType>
 MethodDescriptor method(std::string_view name, Call call, std::string_view summary,
@@ -32,6 +33,7 @@ MethodDescriptor method(std::string_view name, Call call, std::string_view summa
           .result = typeid(ResultType),
           .may_be_notification = call != Call::query,
           .needs_control = call == Call::command,
+          .for_watchers = call == Call::query || call == Call::personal,
           .example_params = example.params,
           .example_result = example.result,
           .params_schema = schema_of<Params>,
@@ -54,7 +56,7 @@ constexpr std::string_view greeting = R"({
   "protocol": "heliograph.v1", "version": "0.1.0",
   "device": {"name": "llvmpipe", "driver": "llvmpipe 22.3.6",
              "type": "cpu"},
-  "tracer": "embree", "session": "main", "viewer": "v1", "codecs": ["jpeg"],
+  "tracer": "embree", "session": "main", "viewer": "v1", "role": "control", "codecs": ["jpeg"],
   "codec_reason": null,
   "limits": {"max_width": 3840, "max_height": 2160, "max_message_bytes": 65536,
              "ack_window": 2},
@@ -120,7 +122,7 @@ constexpr std::string_view sessions = R"({
 std::vector<MethodDescriptor> membership_methods() {
   return {
       method<SessionCreate, SessionInfo>(
-          "session.create", Call::personal,
+          "session.create", Call::sessions,
           "Makes a session of its own scene, camera, settings, clock and histories.",
           {R"({"name": "review", "scene": "atrium", "width": 320, "height": 180})", session}),
       method<SessionChoice, SessionJoined>(
@@ -133,12 +135,12 @@ std::vector<MethodDescriptor> membership_methods() {
                                  "Tells who is in this session and who has control.",
                                  {no_params, session}),
       method<SessionControl, SessionInfo>(
-          "session.control", Call::personal,
+          "session.control", Call::sessions,
           "Decides who may change the session: everyone, or one viewer who takes, gives or "
           "releases control.",
           {R"({"mode": "one"})", session}),
       method<SessionChoice, Empty>(
-          "session.close", Call::personal,
+          "session.close", Call::sessions,
           "Ends a session; its viewers are told and let go. main stays for ever.",
           {R"({"session": "review"})", "{}"}),
   };
@@ -214,12 +216,12 @@ std::vector<MethodDescriptor> stream_methods() {
            R"({"width": 1280, "height": 720, "quality": 80, "max_fps": 60.0,
                "paused": false, "codec": "jpeg", "still": "jpeg"})"}),
       method<Empty, StreamState>(
-          "stream.pause", Call::command,
+          "stream.pause", Call::personal,
           "Stops this viewer's pictures, for instance while nobody can see them.",
           {no_params, R"({"width": 1280, "height": 720, "quality": 80, "max_fps": 60.0,
                "paused": true, "codec": "jpeg", "still": "jpeg"})"}),
       method<Empty, StreamState>(
-          "stream.resume", Call::command,
+          "stream.resume", Call::personal,
           "Lets this viewer's pictures come again, beginning with the newest.",
           {no_params, R"({"width": 1280, "height": 720, "quality": 80, "max_fps": 60.0,
                "paused": false, "codec": "jpeg", "still": "jpeg"})"}),

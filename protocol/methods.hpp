@@ -23,6 +23,8 @@ struct MethodDescriptor {
   bool may_be_notification;
   /// Whether it changes what all viewers of a session share.
   bool needs_control;
+  /// Whether those may call it who may only watch: it changes nothing for others.
+  bool for_watchers;
   std::string_view example_params;  ///< JSON text
   std::string_view example_result;  ///< JSON text
   RawJson (*params_schema)();

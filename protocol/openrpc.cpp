@@ -105,7 +105,8 @@ json method_of(const MethodDescriptor& method) {
           {"errors", std::move(errors)},
           {"examples", json::array({example_of(method)})},
           {"x-may-be-notification", method.may_be_notification},
-          {"x-needs-control", method.needs_control}};
+          {"x-needs-control", method.needs_control},
+          {"x-for-watchers", method.for_watchers}};
 }
 
 }  // namespace

@@ -78,7 +78,8 @@ struct ServerLimits {
               "Longest message the server reads.")
             .unit("bytes"),
         field("ack_window", &ServerLimits::ack_window,
-              "Frames the server sends ahead of the newest stream.ack."),
+              "Frames the server sends ahead of the newest stream.ack; on a long way more, but no "
+              "more than 8."),
     };
   }
   bool operator==(const ServerLimits&) const = default;
@@ -91,6 +92,7 @@ struct HelloResult {
   TracerKind tracer = TracerKind::software;
   std::string session;
   std::string viewer;
+  ViewerRole role = ViewerRole::control;
   std::vector<std::string> codecs;
   std::optional<std::string> codec_reason;
   ServerLimits limits;
@@ -106,6 +108,9 @@ struct HelloResult {
         field("session", &HelloResult::session, "The session that is watched."),
         field("viewer", &HelloResult::viewer,
               "This viewer's id: the `by` of notifications to the others."),
+        field("role", &HelloResult::role,
+              "Whether this client's token lets it steer or only watch; session.info tells who "
+              "has control."),
         field("codecs", &HelloResult::codecs, "Codecs of the frames that will come, best first."),
         field("codec_reason", &HelloResult::codec_reason,
               "Why the client's best codec is not used; null if it is.")

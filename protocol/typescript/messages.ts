@@ -15,6 +15,8 @@ export interface Hello {
   tracer: string;
   session: string;
   viewer: string | number;
+  /** With "view" the server refuses whatever would change the session. */
+  role: "view" | "control";
   codecs: string[];
   limits: { max_width: number; max_height: number; max_message_bytes: number; ack_window: number };
   rev: number;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <boost/asio/post.hpp>
+#include <boost/asio/write.hpp>
 #include <boost/beast/core/detect_ssl.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
@@ -163,9 +164,25 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
       return received(http::error::body_limit);
     }
     parser_->body_limit(largest_body());
-    http::async_read(
-        stream_, buffer_, *parser_,
-        [self = shared_from_this()](error_code failed, std::size_t) { self->received(failed); });
+    invite(parser_->get(), [self = shared_from_this()] {
+      http::async_read(
+          self->stream_, self->buffer_, *self->parser_,
+          [self](error_code failed, std::size_t) { self->received(failed); });
+    });
+  }
+
+  /// Tells a client that asks so before it sends its body that it may, RFC 9110 section 10.1.1.
+  template <class Header, class Next>
+  void invite(const Header& header, Next next) {
+    const bool asks = header.version() >= 11 &&
+                      beast::iequals(header[http::field::expect], "100-continue");
+    if (!asks) return next();
+    constexpr std::string_view invitation = "HTTP/1.1 100 Continue\r\n\r\n";
+    asio::async_write(stream_, asio::buffer(invitation),
+                      [next = std::move(next)](error_code error, std::size_t) {
+                        // Who cannot be told cannot be answered either.
+                        if (!error) next();
+                      });
   }
 
   /// Lets the body go to a file, if it may.
@@ -183,9 +200,12 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     upload_parser_.emplace(std::move(*parser_));
     error_code error;
     upload_parser_->get().body().open(upload_->path().c_str(), beast::file_mode::write, error);
-    if (error) return send(error_response(protocol::error::internal()));
+    if (error) {
+      upload_.reset();
+      return send(error_response(protocol::error::internal()));
+    }
     upload_deadline_ = std::chrono::steady_clock::now() + longest_upload;
-    receive_upload();
+    invite(upload_parser_->get(), [self = shared_from_this()] { self->receive_upload(); });
   }
 
   std::optional<HttpResponse> upload_refusal(const HttpRequest& request,

@@ -172,6 +172,10 @@ void add_rendering(Page& page, const session::SessionHost& host) {
   const session::RenderTotals render = host.render_totals();
   page.histogram("heliograph_render_seconds", "Rendering, each frame.", render.frames);
   page.histogram("heliograph_encode_seconds", "Encoding, each picture.", render.encodings);
+  page.histogram("heliograph_capture_seconds", "From asking for a capture to its file.",
+                 render.captures);
+  page.counter("heliograph_captures_failed_total", "Captures that were answered by an error.",
+               static_cast<double>(render.failed_captures));
   page.describe("heliograph_pass_seconds", "Each pass of the frames.", "histogram");
   for (const auto& [pass, seconds] : render.by_pass) {
     page.buckets("heliograph_pass_seconds",

@@ -126,6 +126,7 @@ class Audience {
     ViewerStream stream;
     bool started = false;
     bool came_over = false;  // its next frame has nothing in common with the last
+    std::uint64_t cuts = 0;  // of the last frame that it took
     std::uint64_t offered = 0;  // number of the newest picture that it was offered or cannot have
     std::uint64_t planned = 0;  // number of the newest picture that was encoded for it
     stream::Form form;          // of the pictures that it gets at present

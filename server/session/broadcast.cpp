@@ -107,6 +107,7 @@ struct Broadcast::Encoding {
     const std::shared_ptr<stream::EncodedFrame> frame = encode();
     frame->encoded_at = Clock::now();
     frame->inputs = picture->inputs;
+    frame->cuts = picture->cuts;
     frame->moving = purpose == Purpose::interactive;
     frame->header = merged(picture->header, frame->header);
     const auto taken = frame->encoded_at - start;

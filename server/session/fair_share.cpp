@@ -10,8 +10,8 @@ using std::chrono::milliseconds;
 
 /// Longer pauses are not worth waiting for.
 constexpr milliseconds most_patience{40};
-/// Who did not come back in time is not waited for again so soon.
-constexpr milliseconds disappointment{500};
+/// How often it doubles for how many turns nobody waits for who was awaited in vain.
+constexpr int most_doublings = 6;
 
 }  // namespace
 
@@ -28,29 +28,42 @@ std::optional<Clock::time_point> FairShare::hold_back(Key key, Clock::time_point
   const Account candidate = account(key);
   std::optional<Clock::time_point> until;
   for (auto& [other, it] : accounts_) {
-    if (other == key || it.turn == 0) continue;
+    if (other == key || it.turn == 0 || it.given_up || turns_ < it.awaited_from_turn) continue;
     const bool before = std::max(it.next_start, now_) < candidate.next_start;
-    if (!before || candidate.last_work <= patience(it) || now < it.not_awaited_until) continue;
+    if (!before || candidate.last_work <= patience(it)) continue;
     const Clock::time_point deadline = it.ended + patience(it);
     if (now < deadline) {
+      if (!it.awaited_since) it.awaited_since = now;
       until = until ? std::max(*until, deadline) : deadline;
-    } else if (it.turn == turns_) {
-      it.not_awaited_until = now + disappointment;
+    } else if (it.awaited_since) {
+      give_up(it, now);
     }
   }
   return until;
 }
 
+void FairShare::give_up(Account& account, Clock::time_point now) const {
+  account.next_start = std::max(account.next_start, now_) + (now - *account.awaited_since);
+  account.awaited_since.reset();
+  account.given_up = true;
+  account.waits_in_vain = std::min(account.waits_in_vain + 1, most_doublings);
+  account.awaited_from_turn = turns_ + (std::uint64_t{1} << account.waits_in_vain);
+  // Perhaps it only takes longer than it was given.
+  account.pause = std::min<Duration>(2 * account.pause, most_patience / 2);
+}
+
 void FairShare::charge(Key key, Clock::time_point begin, Clock::time_point end) {
   Account paid = account(key);
   now_ = std::max(now_, paid.next_start);
-  // The device was kept free for it if it was the last to work.
-  const bool awaited = paid.turn > 0 && paid.turn == turns_;
   const Duration pause = begin - paid.ended;
-  if (awaited && pause <= most_patience) {
-    paid.pause += (pause - paid.pause) / 4;
-    paid.next_start += pause;
+  const bool undisturbed = paid.turn > 0 && paid.turn == turns_;
+  if (undisturbed && pause <= most_patience) paid.pause += (pause - paid.pause) / 4;
+  if (paid.awaited_since) {
+    paid.next_start += begin - *paid.awaited_since;
+    paid.waits_in_vain = 0;
+    paid.awaited_since.reset();
   }
+  paid.given_up = false;
   paid.last_work = end - begin;
   paid.next_start += paid.last_work;
   paid.turn = ++turns_;

@@ -21,7 +21,8 @@ using stream::Clock;
 /// A piece is never interrupted. Somebody with short pieces, who needs a moment between them (its
 /// picture is encoded, its viewer answers), would wait for a long piece of another after each of its
 /// own. So the device waits that moment, at the expense of who it waits for, before it begins a long
-/// piece (anticipatory scheduling: Iyer and Druschel, SOSP 2001). Pure logic; not thread safe.
+/// piece (anticipatory scheduling: Iyer and Druschel, SOSP 2001). Who was awaited in vain is given
+/// up until it has worked again, and ever more seldom awaited. Pure logic; not thread safe.
 class FairShare {
  public:
   using Key = const void*;
@@ -29,10 +30,10 @@ class FairShare {
 
   /// Puts those who may want to work into the order of their turns.
   void arrange(std::vector<Key>& keys) const;
-  /// Until when `key`, which could begin now, has to wait for one who is before it and will be back
-  /// in a moment.
+  /// Until when `key`, which could begin a piece now, has to wait for one who is before it and will
+  /// be back in a moment.
   std::optional<Clock::time_point> hold_back(Key key, Clock::time_point now);
-  /// `key` had its turn.
+  /// `key` did a piece of work.
   void charge(Key key, Clock::time_point begin, Clock::time_point end);
   void forget(Key key) { accounts_.erase(key); }
 
@@ -43,10 +44,14 @@ class FairShare {
     Duration last_work{0};
     Duration pause{std::chrono::milliseconds(4)};  // between its pieces, smoothed
     Clock::time_point ended{};           // its last piece
-    Clock::time_point not_awaited_until{};
+    std::optional<Clock::time_point> awaited_since;  // others have been held back for it
+    int waits_in_vain = 0;               // since the last that was not
+    std::uint64_t awaited_from_turn = 0;
+    bool given_up = false;               // until its next piece
   };
 
   Account account(Key key) const;
+  void give_up(Account& account, Clock::time_point now) const;
   static Duration patience(const Account& account);
 
   std::unordered_map<Key, Account> accounts_;

@@ -17,11 +17,13 @@ struct RenderTotals {
 
   stream::Histogram frames;  // seconds each
   stream::Histogram encodings;
+  stream::Histogram captures;  // from being asked for to the file
+  std::uint64_t failed_captures = 0;
   std::map<Pass, stream::Histogram> by_pass;
   std::vector<protocol::PassTiming> passes;  // of the latest frame
 };
 
-/// Counts what rendering and encoding cost, for metrics. Thread safe.
+/// Counts what rendering, encoding and captures cost, for metrics. Thread safe.
 class Measurements {
  public:
   void rendered(double seconds, std::vector<protocol::PassTiming> passes) {
@@ -35,6 +37,14 @@ class Measurements {
   void encoded(double seconds) {
     const std::lock_guard lock(mutex_);
     totals_.encodings.add(seconds);
+  }
+  void captured(double seconds, bool succeeded) {
+    const std::lock_guard lock(mutex_);
+    if (succeeded) {
+      totals_.captures.add(seconds);
+    } else {
+      ++totals_.failed_captures;
+    }
   }
   RenderTotals totals() const {
     const std::lock_guard lock(mutex_);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "protocol/frame_header.hpp"
@@ -15,6 +16,7 @@ struct Picture {
   protocol::FrameHeader header;  // without what encoding adds
   std::vector<stream::InputEcho> inputs;
   double fps = 0.0;  // rendered in the last second
+  std::uint64_t cuts = 0;  // how often the picture jumped up to this one
 };
 
 inline stream::PictureView view_of(const render::Frame& frame) {

@@ -106,7 +106,8 @@ void RenderLoop::dismiss_closed() {
   }
 }
 
-/// Lets the first session in order of turns work that has something to do.
+/// Does the small things of all sessions, so that none waits for another's frame with them, and then
+/// lets the first in order of turns draw that wants to.
 bool RenderLoop::advance_next(const Views& views) {
   std::vector<FairShare::Key> ready;
   for (const auto& view : views) {
@@ -114,36 +115,45 @@ bool RenderLoop::advance_next(const Views& views) {
   }
   share_.arrange(ready);
   held_back_until_.reset();
+  std::vector<SessionView*> drawing;
   for (const FairShare::Key key : ready) {
     if (stopping_ || !device_ready_) return false;
-    if (const auto until = share_.hold_back(key, Clock::now())) {
-      held_back_until_ = held_back_until_ ? std::min(*held_back_until_, *until) : *until;
-      continue;
-    }
     SessionView& view = *std::find_if(views.begin(), views.end(), [&](const auto& candidate) {
                            return candidate.get() == key;
                          })->get();
-    const Clock::time_point start = Clock::now();
-    const bool worked = advance(view);
-    if (!has_rendered_ && view.has_rendered()) report_first_frame();
-    if (!worked) continue;
-    share_.charge(key, start, Clock::now());
-    return true;
+    const SessionView::Work work = advance(view, false);
+    if (work == SessionView::Work::small) return true;
+    if (work == SessionView::Work::held_back) drawing.push_back(&view);
   }
-  return false;
+  return std::any_of(drawing.begin(), drawing.end(),
+                     [&](SessionView* view) { return draw_in_turn(*view); });
 }
 
-bool RenderLoop::advance(SessionView& view) {
+/// False if it has to wait for another, or had nothing to draw after all.
+bool RenderLoop::draw_in_turn(SessionView& view) {
+  if (stopping_ || !device_ready_) return false;
+  const Clock::time_point start = Clock::now();
+  if (const auto until = share_.hold_back(&view, start)) {
+    held_back_until_ = held_back_until_ ? std::min(*held_back_until_, *until) : *until;
+    return false;
+  }
+  const SessionView::Work work = advance(view, true);
+  if (!has_rendered_ && view.has_rendered()) report_first_frame();
+  if (work == SessionView::Work::drawing) share_.charge(&view, start, Clock::now());
+  return work != SessionView::Work::none;
+}
+
+SessionView::Work RenderLoop::advance(SessionView& view, bool may_draw) {
   try {
-    return view.advance();
+    return view.advance(may_draw);
   } catch (const render::DeviceLost& failure) {
     lose_device("session " + view.session()->name() + ": " + failure.what());
-    return false;
+    return SessionView::Work::none;
   } catch (const std::exception& failure) {
     log_error({.session = view.session()->name()},
               std::string("rendering failed: ") + failure.what());
     view.recover();
-    return false;
+    return SessionView::Work::none;
   }
 }
 

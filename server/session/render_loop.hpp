@@ -53,7 +53,8 @@ class RenderLoop {
   Views open_views();
   void dismiss_closed();
   bool advance_next(const Views& views);
-  bool advance(SessionView& view);
+  bool draw_in_turn(SessionView& view);
+  SessionView::Work advance(SessionView& view, bool may_draw);
   std::optional<Clock::time_point> next_due(const Views& views) const;
   void report_first_frame();
   void lose_device(const std::string& why);

@@ -189,24 +189,33 @@ Result<protocol::SettingsApplied> Session::patch_settings(const protocol::RawJso
 }
 
 Result<protocol::StreamState> Session::configure_stream(const protocol::StreamConfigure& request,
-                                                        const std::string& by) {
-  ViewerStream stream;
-  const bool only_size = !request.quality && !request.max_fps && !request.paused &&
-                         !request.codec && !request.still;
-  if (!by.empty() || !only_size) {
-    const Result<ViewerStream> configured = audience_.configure(by, request);
-    if (!configured) return configured.error();
-    stream = *configured;
-  }
+                                                        const std::string& by, bool may_steer) {
   const std::lock_guard lock(mutex_);
   const std::uint32_t width =
       std::min(request.width.value_or(state_.width), options_.limits.max_width);
   const std::uint32_t height =
       std::min(request.height.value_or(state_.height), options_.limits.max_height);
-  if (width != state_.width || height != state_.height) {
-    if (!audience_.may_change(by)) return no_control();
-    const auto fits = pixels_.resize(static_cast<std::uint64_t>(width) * height);
-    if (!fits) return fits.error();
+  const bool resized = width != state_.width || height != state_.height;
+  if (resized && (!may_steer || !audience_.may_change(by))) return no_control();
+  // Fewer pixels are never refused: more are taken before anything is changed, fewer after it.
+  const auto pixels_before = static_cast<std::uint64_t>(state_.width) * state_.height;
+  const auto pixels = static_cast<std::uint64_t>(width) * height;
+  if (pixels > pixels_before) {
+    if (const auto fits = pixels_.resize(pixels); !fits) return fits.error();
+  }
+  ViewerStream stream;
+  const bool only_size = !request.quality && !request.max_fps && !request.paused &&
+                         !request.codec && !request.still;
+  if (!by.empty() || !only_size) {
+    const Result<ViewerStream> configured = audience_.configure(by, request);
+    if (!configured) {
+      if (pixels > pixels_before) (void)pixels_.resize(pixels_before);
+      return configured.error();
+    }
+    stream = *configured;
+  }
+  if (resized) {
+    if (pixels < pixels_before) (void)pixels_.resize(pixels);
     state_.width = width;
     state_.height = height;
     changed(false);

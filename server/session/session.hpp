@@ -143,8 +143,10 @@ class Session {
   protocol::Result<protocol::SettingsApplied> patch_settings(const protocol::RawJson& patch,
                                                              const std::string& by);
 
+  /// The size of the pictures is everybody's: changing it takes control, and `may_steer`.
   protocol::Result<protocol::StreamState> configure_stream(const protocol::StreamConfigure& request,
-                                                           const std::string& by);
+                                                           const std::string& by,
+                                                           bool may_steer = true);
   void leave(const std::string& viewer);
   /// Lets a viewer go over to another session; if that has no room it stays.
   protocol::Result<void> hand_over(const std::string& viewer, Session& there);
@@ -161,6 +163,8 @@ class Session {
   /// For the render thread: lets the time of the next frame pass and tells how much it is; nothing
   /// where none is due. After it is drawn comes end_step.
   std::optional<double> begin_step();
+  /// Whether begin_step would give a frame.
+  bool step_due() const;
   void end_step(std::uint32_t samples);
   void fail_steps(const protocol::Error& why);
 

@@ -78,6 +78,11 @@ std::optional<double> Session::begin_step() {
   return dt;
 }
 
+bool Session::step_due() const {
+  const std::lock_guard lock(mutex_);
+  return state_.lockstep && !steps_.empty();
+}
+
 void Session::end_step(std::uint32_t samples) {
   std::function<void(Result<StepState>)> done;
   StepState state;

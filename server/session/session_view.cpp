@@ -6,7 +6,6 @@
 
 #include "scene/camera.hpp"
 #include "scene/pose.hpp"
-#include "session/capture_content.hpp"
 #include "session/device_renewal.hpp"
 #include "session/event_log.hpp"
 
@@ -28,7 +27,6 @@ constexpr milliseconds rest_before_refining{150};
 /// How long everything must rest before the final picture is sent.
 constexpr milliseconds rest_before_final{300};
 constexpr float longest_frame_seconds = 1.0f;
-constexpr std::chrono::minutes capture_patience{5};
 constexpr std::chrono::seconds rest_after_failure{1};
 
 std::uint32_t microseconds_of(Clock::duration duration) {
@@ -108,13 +106,13 @@ void SessionView::release_renderer() {
   log_info({.session = session_->name()}, "pictures let go");
 }
 
-bool SessionView::advance() {
-  if (Clock::now() < resting_until_) return false;
+SessionView::Work SessionView::advance(bool may_draw) {
+  if (Clock::now() < resting_until_) return Work::none;
   wakeup_->take();
   collect_captures();
   session_->audience().announce_waiting();
   if (!renderer_) {
-    if (!needed()) return false;
+    if (!needed()) return Work::none;
     // What the renderer refuses is told when the state is taken over.
     (void)make_renderer();
   }
@@ -123,19 +121,20 @@ bool SessionView::advance() {
     session_->touch();
   } else if (Clock::now() >= needed_at_ + services_.release_after) {
     release_renderer();
-    return false;
+    return Work::none;
   }
-  if (session_->in_lockstep()) return advance_step();
+  if (session_->in_lockstep()) return advance_step(may_draw);
   stepped_ = false;
   adopt_state();
   adopt_size();
   settle_probes();
-  if (settle_captures()) return true;
+  if (settle_captures()) return Work::small;
   if (final_due()) broadcast_.finish();
-  if (broadcast_.pump()) return true;
-  if (!frame_wanted()) return false;
+  if (broadcast_.pump()) return Work::small;
+  if (!frame_wanted()) return Work::none;
+  if (!may_draw) return Work::held_back;
   render_frame();
-  return true;
+  return Work::drawing;
 }
 
 std::optional<Clock::time_point> SessionView::next_due() const {
@@ -160,26 +159,6 @@ void SessionView::recover() {
   for (const PendingProbe& pending : probes_) pending.probe.fail(protocol::error::internal());
   probes_.clear();
   session_->fail_steps(protocol::error::internal());
-}
-
-void SessionView::abandon_captures() {
-  captures_.clear();
-  session_->take_captures();
-  probes_.clear();
-  session_->take_probes();
-  session_->fail_steps(protocol::error::not_ready("the server is shutting down"));
-}
-
-void SessionView::refuse_captures() {
-  collect_captures();
-  for (PendingCapture& capture : captures_) {
-    capture.request.done(protocol::error::not_found("session", "the session has ended"));
-  }
-  captures_.clear();
-  const protocol::Error ended = protocol::error::not_found("session", "the session has ended");
-  for (const PendingProbe& pending : probes_) pending.probe.fail(ended);
-  probes_.clear();
-  session_->fail_steps(ended);
 }
 
 void SessionView::adopt_state() {
@@ -276,80 +255,6 @@ bool SessionView::draws_whole() const {
   return drawn_width_ == state_.width && drawn_height_ == state_.height;
 }
 
-void SessionView::collect_captures() {
-  for (CaptureRequest& request : session_->take_captures()) {
-    captures_.push_back({.request = std::move(request),
-                         .requested = Clock::now(),
-                         .deadline = Clock::now() + capture_patience});
-  }
-  for (Probe& probe : session_->take_probes()) {
-    probes_.push_back({.probe = std::move(probe), .requested = Clock::now()});
-  }
-}
-
-/// Whether the newest picture shows the state, and as it was no earlier than `moment` where time
-/// passes in it.
-bool SessionView::shows_state_since(Clock::time_point moment) const {
-  if (!newest_) return false;
-  if (state_.lockstep) return true;
-  if (state_.animation.playing) return newest_version_ == state_.version && last_frame_ >= moment;
-  return newest_version_ == state_.version || !renderer_->needs_frame();
-}
-
-void SessionView::settle_probes() {
-  std::erase_if(probes_, [&](const PendingProbe& pending) {
-    if (!shows_state_since(pending.requested)) return false;
-    pending.probe.read(*renderer_, state_);
-    return true;
-  });
-}
-
-bool SessionView::settle_captures() {
-  const Clock::time_point now = Clock::now();
-  std::vector<PendingCapture> open;
-  for (PendingCapture& capture : captures_) {
-    if (capture_ready(capture) && write_capture(capture.request)) continue;
-    if (now < capture.deadline) {
-      open.push_back(std::move(capture));
-    } else {
-      capture.request.done(
-          protocol::error::not_ready("the picture did not rest long enough to be captured"));
-    }
-  }
-  captures_.swap(open);
-  return captures_.size() != open.size();
-}
-
-bool SessionView::capture_ready(const PendingCapture& capture) const {
-  if (state_.lockstep) return true;
-  if (!draws_whole() || !shows_state_since(capture.requested)) return false;
-  if (newest_->frame.width != state_.width || newest_->frame.height != state_.height) return false;
-  if (state_.animation.playing || !renderer_->needs_frame()) return true;
-  const std::optional<std::uint32_t>& samples = capture.request.samples;
-  return samples && newest_->frame.samples >= *samples;
-}
-
-/// False if too many files are being written already.
-bool SessionView::write_capture(CaptureRequest& request) {
-  if (!services_.capture_writer.has_room()) return false;
-  auto content = read_content(*renderer_, request.buffer, request.format);
-  if (!content) {
-    request.done(content.error());
-    return true;
-  }
-  const std::uint32_t samples = newest_->frame.samples;
-  services_.capture_writer.post([request = std::move(request), samples,
-                                 content = std::make_shared<CaptureContent>(*std::move(content)),
-                                 &wakeup = services_.wakeup] {
-    request.done(Capture{.width = content->width,
-                         .height = content->height,
-                         .samples = samples,
-                         .file = encode_content(*content, request.format)});
-    wakeup.notify();
-  });
-  return true;
-}
-
 bool SessionView::frame_wanted() {
   if (!renderer_->needs_frame() && !state_.animation.playing) return false;
   const bool first = draws_unasked_ && state_.resources;
@@ -398,7 +303,7 @@ std::shared_ptr<Picture> SessionView::describe(render::Frame frame, Clock::time_
 
   auto picture = std::make_shared<Picture>();
   protocol::FrameHeader& header = picture->header;
-  if (std::exchange(cut_, false)) header.flags |= protocol::frame_flag::discontinuity;
+  if (std::exchange(cut_, false)) ++cuts_;
   header.render_id = ++render_count_;
   header.state_rev = state_.rev;
   header.full_width = static_cast<std::uint16_t>(state_.width);
@@ -409,6 +314,7 @@ std::shared_ptr<Picture> SessionView::describe(render::Frame frame, Clock::time_
   header.sample_count = frame.samples;
   picture->frame = std::move(frame);
   picture->inputs = state_.inputs;
+  picture->cuts = cuts_;
   picture->fps = static_cast<double>(recent_frames_.size());
   return picture;
 }

@@ -41,8 +41,11 @@ class SessionView {
 
   /// Whether there may be something to do.
   bool awake() const;
-  /// Does what is most pressing: at most one frame. False if there was nothing to do.
-  bool advance();
+  /// What came of `advance`: nothing to do, something small, a frame, or only a frame that had to be
+  /// left undone.
+  enum class Work { none, small, drawing, held_back };
+  /// Does what is most pressing: at most one frame, and none unless it `may_draw`.
+  Work advance(bool may_draw);
   /// When there may be something to do without anybody's asking.
   std::optional<Clock::time_point> next_due() const;
   /// Lets go of the renderer with all its images and histories.
@@ -80,7 +83,7 @@ class SessionView {
   bool shows_state_since(Clock::time_point moment) const;
   bool capture_ready(const PendingCapture& capture) const;
   bool write_capture(CaptureRequest& request);
-  bool advance_step();
+  Work advance_step(bool may_draw);
   void settle_unstepped();
   bool frame_wanted();
   bool final_due() const;
@@ -107,6 +110,7 @@ class SessionView {
   std::shared_ptr<const Picture> newest_;
   std::uint64_t newest_version_ = 0;
   bool cut_ = true;  // the next picture has nothing in common with the last
+  std::uint64_t cuts_ = 0;
   std::uint32_t render_count_ = 0;
   std::deque<Clock::time_point> recent_frames_;
   Clock::time_point last_frame_{};  // when it began

@@ -6,7 +6,8 @@ namespace heliograph::session {
 
 /// One frame of those that were asked for, whole whatever it takes; between steps the picture is
 /// there to be read.
-bool SessionView::advance_step() {
+SessionView::Work SessionView::advance_step(bool may_draw) {
+  if (!may_draw && session_->step_due()) return broadcast_.pump() ? Work::small : Work::held_back;
   if (const std::optional<double> dt = session_->begin_step()) {
     adopt_state();
     drawn_width_ = state_.width;
@@ -16,15 +17,15 @@ bool SessionView::advance_step() {
     stepped_ = true;
     broadcast_.pump();
     session_->end_step(newest_->frame.samples);
-    return true;
+    return Work::drawing;
   }
-  if (broadcast_.pump()) return true;
+  if (broadcast_.pump()) return Work::small;
   if (!stepped_) {
     settle_unstepped();
-    return false;
+    return Work::none;
   }
   settle_probes();
-  return settle_captures();
+  return settle_captures() ? Work::small : Work::none;
 }
 
 /// Nothing was drawn in lockstep yet, and nothing will be unasked.

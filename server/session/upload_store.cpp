@@ -83,11 +83,16 @@ protocol::Result<std::shared_ptr<UploadStore::Incoming>> UploadStore::begin(
 
 void UploadStore::finish(std::shared_ptr<Incoming> incoming,
                          std::function<void(protocol::Result<UploadedScene>)> done) {
-  const bool taken = checker_.post([this, incoming, done] { done(accept(*incoming)); });
+  // Its only owner, so that it is gone, and its room with it, before anybody hears of it.
+  const bool taken = checker_.post([this, incoming = std::move(incoming), done]() mutable {
+    protocol::Result<UploadedScene> result = accept(*incoming);
+    incoming.reset();
+    done(std::move(result));
+  });
   if (!taken) done(protocol::error::full("too many scenes are being checked"));
 }
 
-protocol::Result<UploadedScene> UploadStore::accept(const Incoming& incoming) {
+protocol::Result<UploadedScene> UploadStore::accept(Incoming& incoming) {
   const auto refused = [&](const std::string& why) {
     log_warning({}, "the upload " + incoming.name() + " was refused: " + why);
     return protocol::error::invalid("body", why);
@@ -100,7 +105,7 @@ protocol::Result<UploadedScene> UploadStore::accept(const Incoming& incoming) {
     const UploadedScene uploaded{.name = incoming.name(),
                                  .bytes = fs::file_size(file),
                                  .triangles = imported.triangle_count()};
-    fs::rename(file, scenes_ / file.filename());
+    incoming.keep_in(scenes_);
     log_info({}, "the upload " + incoming.name() + " was accepted: " +
                      std::to_string(uploaded.bytes) + " bytes");
     return uploaded;
@@ -127,10 +132,16 @@ UploadStore::Incoming::Incoming(UploadStore& store, std::string name, std::uint6
     : store_(store), name_(std::move(name)), bytes_(bytes), folder_(std::move(folder)) {}
 
 UploadStore::Incoming::~Incoming() {
+  const std::lock_guard lock(store_.mutex_);
   std::error_code ignored;
   fs::remove_all(folder_, ignored);
-  const std::lock_guard lock(store_.mutex_);
   store_.promised_bytes_ -= bytes_;
+}
+
+void UploadStore::Incoming::keep_in(const fs::path& folder) {
+  const std::lock_guard lock(store_.mutex_);
+  fs::rename(path(), folder / path().filename());
+  store_.promised_bytes_ -= std::exchange(bytes_, 0);
 }
 
 }  // namespace heliograph::session

@@ -43,14 +43,15 @@ class UploadStore {
   class Incoming;
   /// Whether a scene of this name and size may come; its bytes go to `path()` then.
   protocol::Result<std::shared_ptr<Incoming>> begin(const std::string& name, std::uint64_t bytes);
-  /// Checks what was received, on a thread of its own, and puts it into place.
+  /// Checks what was received, on a thread of its own, and puts it into place. When `done` is called
+  /// nothing of the upload is left but what was accepted.
   void finish(std::shared_ptr<Incoming> incoming,
               std::function<void(protocol::Result<UploadedScene>)> done);
   /// Ends the thread; `done` is not called any more.
   void stop() { checker_.stop(); }
 
  private:
-  protocol::Result<UploadedScene> accept(const Incoming& incoming);
+  protocol::Result<UploadedScene> accept(Incoming& incoming);
   std::uint64_t bytes_kept() const;
 
   const UploadOptions options_;
@@ -72,11 +73,14 @@ class UploadStore::Incoming {
 
   const std::string& name() const { return name_; }
   std::filesystem::path path() const { return folder_ / (name_ + ".glb"); }
+  /// Moves the file to where it stays; from then on it counts as kept, in the same moment no longer
+  /// as promised. @throws std::filesystem::filesystem_error
+  void keep_in(const std::filesystem::path& folder);
 
  private:
   UploadStore& store_;
   const std::string name_;
-  const std::uint64_t bytes_;
+  std::uint64_t bytes_;  // promised
   const std::filesystem::path folder_;
 };
 

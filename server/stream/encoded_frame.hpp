@@ -22,8 +22,8 @@ struct InputEcho {
 };
 
 /// One encoded picture, made once and shared by all who see it. The members of the header that
-/// differ between viewers (frame_seq, input_seq_echo, queue_us, flags about drops) are filled in
-/// when a viewer takes it.
+/// differ between viewers (frame_seq, input_seq_echo, queue_us, flags about what came before) are
+/// filled in when a viewer takes it.
 struct EncodedFrame {
   protocol::FrameHeader header;
   std::vector<std::uint8_t> payload;
@@ -31,6 +31,7 @@ struct EncodedFrame {
   Form form;
   std::optional<VideoPosition> video;  // of frames that need each other
   bool moving = false;                 // one of many, made to fit the way to its viewers
+  std::uint64_t cuts = 0;  // how often the picture jumped up to this one
   Clock::time_point encoded_at;
 };
 

@@ -58,6 +58,7 @@ std::optional<ViewerPacer::Taken> ViewerPacer::take(Clock::time_point now) {
                          .at = now,
                          .form = frame.form,
                          .rendering = std::chrono::microseconds(frame.header.render_us),
+                         .ahead = on_the_way_.size(),
                          .telling = frame.moving && !key_of_video && undisturbed});
   // Turns keep their rhythm when one came a little late, but do not pile up over a pause.
   next_turn_ = std::max(next_turn_ + least_interval_, now + least_interval_ / 2);
@@ -95,10 +96,9 @@ void ViewerPacer::measure(const Sent& sent, std::chrono::microseconds held, Cloc
   round_trip_ += microseconds(
       static_cast<std::int64_t>(weight * static_cast<double>((sample - round_trip_).count())));
   if (!sent.telling) return;
-  link_.arrived({.bytes = sent.bytes,
-                 .form = sent.form,
-                 .delay = sample,
-                 .interval = std::max(sent.rendering, least_interval_)},
+  const auto interval = std::max(sent.rendering, least_interval_);
+  window_.arrived({.delay = sample, .interval = interval, .ahead = sent.ahead}, now);
+  link_.arrived({.bytes = sent.bytes, .form = sent.form, .delay = sample, .interval = interval},
                 now);
 }
 

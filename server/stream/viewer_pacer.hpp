@@ -5,14 +5,12 @@
 #include <deque>
 #include <optional>
 
+#include "stream/ack_window.hpp"
 #include "stream/encoded_frame.hpp"
 #include "stream/link_controller.hpp"
 #include "stream/histogram.hpp"
 
 namespace heliograph::stream {
-
-/// Frames that may be on their way to a viewer without its stream.ack.
-inline constexpr std::uint32_t ack_window = 2;
 
 struct PacerTotals {
   std::uint64_t frames = 0;  // taken for sending
@@ -32,8 +30,8 @@ struct PacerTotals {
 };
 
 /// Decides what one viewer gets, and when. There is no queue: one slot holds the latest frame, a
-/// newer one replaces it. A viewer that stops acknowledging keeps at most `ack_window` frames on
-/// the way and one in the slot. Pure logic: callers bring the time.
+/// newer one replaces it. A viewer that stops acknowledging keeps at most a window of frames on the
+/// way and one in the slot. Pure logic: callers bring the time.
 class ViewerPacer {
  public:
   /// Whether the viewer's decoder can show `frame` after everything it was offered so far.
@@ -92,10 +90,11 @@ class ViewerPacer {
     Clock::time_point at;
     Form form;
     std::chrono::microseconds rendering;
+    std::size_t ahead;  // frames that were on the way already
     bool telling;  // of the moving picture, with only such frames before it on the way
   };
 
-  bool window_open() const { return on_the_way_.size() < ack_window; }
+  bool window_open() const { return on_the_way_.size() < window_.size(); }
   void measure(const Sent& sent, std::chrono::microseconds held, Clock::time_point now);
 
   SharedFrame waiting_;
@@ -112,6 +111,7 @@ class ViewerPacer {
   double goodput_ = 0.0;
   Clock::time_point last_acknowledgement_;
   LinkController link_;
+  AckWindow window_;
 };
 
 }  // namespace heliograph::stream

@@ -1,8 +1,9 @@
 """Keeps a server busy for a long time and checks that nothing is lost, nothing comes in the wrong
 order and memory stays flat: soak.py --seconds 3600
 
-One viewer moves the camera and changes settings, others watch over WebSocket as JPEG and H.264, and
-one after the other comes, looks, and goes without a word. Ends with 1 if anything is wrong."""
+One viewer moves the camera and changes settings, others watch over WebSocket as JPEG and H.264, one
+after the other comes, looks, and goes without a word, sessions are made, watched and closed, pictures
+are captured. Ends with 1 if anything is wrong."""
 
 import argparse
 import asyncio
@@ -27,6 +28,8 @@ class Watcher:
         self.viewer = viewer
         self.frames = 0
         self.faults = []
+        self._heard = 0
+        self._revision = 0
 
     async def run(self):
         last = {"frame_seq": 0, "render_id": 0, "state_rev": 0, "input_seq_echo": 0}
@@ -42,10 +45,15 @@ class Watcher:
             self.check_notifications()
 
     def check_notifications(self):
-        revisions = [note["params"]["rev"] for note in self.viewer.notifications
-                     if note["method"] == "settings.changed"]
-        if revisions != sorted(revisions):
-            self.faults.append(f"{self.name}: settings came in the order {revisions}")
+        news = self.viewer.notifications[self._heard:]
+        self._heard += len(news)
+        for note in news:
+            if note["method"] != "settings.changed":
+                continue
+            revision = note["params"]["rev"]
+            if revision <= self._revision:
+                self.faults.append(f"{self.name}: settings of {revision} after {self._revision}")
+            self._revision = revision
 
 
 async def steer(viewer, state):
@@ -73,16 +81,31 @@ async def come_and_go(server):
         await asyncio.sleep(0.3)
 
 
+async def make_and_close(server, state):
+    """A session with its own camera and a viewer, again and again."""
+    async with Viewer(server, greet=False) as outside:
+        while not state["ending"]:
+            name = (await outside.call("session.create", {"copy_of": "main"}))["name"]
+            async with Viewer(server, session=name) as inside:
+                await inside.call("camera.orbit", {"yaw": 30})
+                await inside.next_frame(timeout=60)
+                await inside.call("frame.capture", {"samples": 1})
+                state["captures"] += 1
+                await inside.call("session.close", {"session": name})
+            await asyncio.sleep(1)
+
+
 async def soak(server, seconds, report=print):
     """Gives what was wrong, an empty list if nothing was."""
-    state = {"seq": 0, "patches": 0, "ending": False}
+    state = {"seq": 0, "patches": 0, "captures": 0, "ending": False}
     async with Viewer(server) as driver, Viewer(server) as jpeg, \
             Viewer(server, greet=False) as video:
         await video.call("hello", {"client": "soak", "codecs": ["h264", "jpeg"]})
         watchers = [Watcher("driver", driver), Watcher("jpeg", jpeg), Watcher("video", video)]
         tasks = [asyncio.create_task(watcher.run()) for watcher in watchers]
-        steering = asyncio.create_task(steer(driver, state))
-        tasks += [steering, asyncio.create_task(come_and_go(server))]
+        working = [asyncio.create_task(steer(driver, state)),
+                   asyncio.create_task(make_and_close(server, state))]
+        tasks += [*working, asyncio.create_task(come_and_go(server))]
         memory = []
         begin = time.monotonic()
         while time.monotonic() < begin + seconds:
@@ -92,9 +115,10 @@ async def soak(server, seconds, report=print):
             if failed:
                 return [repr(task.exception()) for task in failed]
             report(f"{time.monotonic() - begin:6.0f} s, {sum(w.frames for w in watchers)} frames, "
+                   f"{state['patches']} patches, {state['captures']} captures, "
                    f"{memory[-1] / MEGABYTE:.1f} MB")
         state["ending"] = True
-        await steering
+        await asyncio.gather(*working)
         faults = await check_end(jpeg, state, watchers)
         for task in tasks:
             task.cancel()
@@ -108,9 +132,12 @@ async def soak(server, seconds, report=print):
 
 
 async def check_end(jpeg, state, watchers):
-    await asyncio.sleep(0.5)
+    for _ in range(100):
+        heard = sum(note["method"] == "settings.changed" for note in jpeg.notifications)
+        if heard == state["patches"]:
+            break
+        await asyncio.sleep(0.1)
     faults = [fault for watcher in watchers for fault in watcher.faults]
-    heard = sum(note["method"] == "settings.changed" for note in jpeg.notifications)
     if heard != state["patches"]:
         faults.append(f"{state['patches']} patches, but {heard} were told")
     return faults

@@ -137,9 +137,8 @@ class Draining(unittest.IsolatedAsyncioTestCase):
                 self.assertEqual(server.get("/health/ready")[0], 200)
                 begin = time.monotonic()
                 server.process.send_signal(signal.SIGTERM)
-                await asyncio.sleep(0.3)
-                status, headers, _ = server.get("/health/ready")
-                self.assertEqual(status, 503)
+                server.wait_for(lambda: server.get("/health/ready")[0] == 503, "the notice")
+                headers = server.get("/health/ready")[1]
                 self.assertGreater(int(headers["retry-after"]), 0)
                 self.assertEqual(server.get("/health/live")[0], 200)
                 for path in ("/", "/metrics"):
@@ -162,7 +161,7 @@ class Draining(unittest.IsolatedAsyncioTestCase):
     async def test_a_second_signal_ends_it_at_once(self):
         with await asyncio.to_thread(Server, "--drain-notice", "60") as server:
             server.process.send_signal(signal.SIGTERM)
-            await asyncio.sleep(0.5)
+            server.wait_for(lambda: "shutting down after" in server.log_text(), "the first signal")
             self.assertTrue(server.alive)
             begin = time.monotonic()
             self.assertNotEqual(await asyncio.to_thread(server.stop), 0)

@@ -73,6 +73,20 @@ class Metrics(ServerTestCase):
         self.assertLessEqual(total, families["heliograph_render_seconds"].samples["_sum", ()] * 3)
         self.assertGreater(families["heliograph_ack_round_trip_seconds"].samples["_count", ()], 0)
 
+    def test_captures_are_counted(self):
+        def figures():
+            families = self.families()
+            return (families["heliograph_capture_seconds"].samples["_count", ()],
+                    families["heliograph_captures_failed_total"].samples["", ()])
+        before = figures()
+        self.server.call("frame.capture", {"samples": 1})
+        self.server.get("/api/v1/sessions/main/frame.png?buffer=gbuffer.base_color")
+        self.server.call("frame.step", {"frames": 0, "dt": 0.1})
+        self.server.ask("frame.capture")
+        self.server.call("frame.run")
+        after = figures()
+        self.assertEqual((after[0] - before[0], after[1] - before[1]), (2, 1))
+
     def test_responses_are_counted_by_status(self):
         def missing():
             samples = self.families()["heliograph_http_responses_total"].samples

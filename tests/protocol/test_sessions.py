@@ -101,6 +101,23 @@ class Sessions(ServerTestCase):
                               path="session")
         self.assert_error(self.server.ask("session.join", {"session": "away"}), -32050)
 
+    async def test_who_was_cut_off_finds_everything_as_it_was(self):
+        self.create("kept", copy_of="main", settings={"exposure": {"compensation": 1}})
+        viewer = Viewer(self.server, session="kept")
+        await viewer.__aenter__()
+        instance = viewer.hello["instance"]
+        await viewer.call("camera.set", {"eye": [4, 1, 1]})
+        before = await viewer.rest()
+        viewer.socket.transport.abort()
+        async with Viewer(self.server, session="kept") as again:
+            self.assertEqual((again.hello["session"], again.hello["instance"]), ("kept", instance))
+            self.assertEqual((await again.call("camera.get"))["eye"], [4, 1, 1])
+            settings = (await again.call("settings.get"))["settings"]
+            self.assertEqual(settings["exposure"]["compensation"], 1)
+            after = await again.rest()
+        self.assertEqual(after.header["state_rev"], before.header["state_rev"])
+        self.assertEqual(after.payload, before.payload)
+
     async def test_everybody_hears_who_comes_and_goes(self):
         self.create("room", copy_of="main")
         async with Viewer(self.server, session="room", name="Ada") as first:
@@ -138,6 +155,12 @@ class Sessions(ServerTestCase):
             for method in ("camera.get", "settings.get", "session.info", "frame.buffers"):
                 await other.call(method)
             await other.call("stream.configure", {"quality": 40})
+            self.assertTrue((await other.call("stream.pause"))["paused"])
+            self.assertFalse((await other.call("stream.resume"))["paused"])
+            answer = await other.ask("stream.configure", {"quality": 90, "width": 80})
+            self.assert_error(answer, FORBIDDEN, path="control")
+            self.assertEqual((await other.call("stream.configure", {}))["quality"], 40,
+                             "a refused call changes nothing")
             self.assert_error(self.server.ask("camera.fit", session="led"), FORBIDDEN)
             await leader.call("camera.set", {"eye": [4, 4, 4]})
 
@@ -188,14 +211,14 @@ class Sessions(ServerTestCase):
 
 
 class IdleSessions(ServerTestCase):
-    arguments = ("--session-idle-timeout", "2")
+    arguments = ("--session-idle-timeout", "3")
 
     async def test_a_session_that_nobody_needs_ends(self):
         for name in ("watched", "called", "idle"):
             self.server.call("session.create", {"name": name, "copy_of": "main"})
         async with Viewer(self.server, session="watched"):
-            for _ in range(8):
-                await asyncio.sleep(0.5)
+            for _ in range(10):
+                await asyncio.sleep(0.4)
                 self.server.call("camera.get", session="called")
             names = {one["name"] for one in self.server.call("session.list")["sessions"]}
             self.assertEqual(names, {"main", "watched", "called"})
@@ -209,6 +232,8 @@ class SharesOfTheDevice(ServerTestCase):
         return Viewer(self.server, session=name)
 
     async def test_a_heavy_session_takes_no_more_than_its_share(self):
+        """The light one, whose pictures take a few milliseconds, gets several between two of the
+        heavy one's, and the heavy one still about half of the time."""
         endless = {"accumulation": {"max_samples": 60000}}
         for name, (width, height) in {"light": (32, 18), "heavy": (960, 540)}.items():
             self.server.call("session.create", {"name": name, "copy_of": "main", "width": width,
@@ -219,19 +244,21 @@ class SharesOfTheDevice(ServerTestCase):
                 await self.keep_moving(name, viewer, 1.0)
                 alone[name] = await self.keep_moving(name, viewer, 2.0)
         async with self.watch("light") as light, self.watch("heavy") as heavy:
-            await asyncio.gather(self.keep_moving("light", light, 1.0),
-                                 self.keep_moving("heavy", heavy, 1.0))
-            rates = await asyncio.gather(self.keep_moving("light", light, 4.0),
-                                         self.keep_moving("heavy", heavy, 4.0))
-        beside = dict(zip(("light", "heavy"), rates))
-        print(f"frames a second: light {alone['light']:.1f} alone, {beside['light']:.1f} beside "
-              f"heavy; heavy {alone['heavy']:.1f} alone, {beside['heavy']:.1f} ", end="")
-        # At least a turn for every turn of the other: how much more the light one gets depends on
-        # how soon its viewer, on the same processors, answers.
-        self.assertGreater(beside["light"], 0.8 * beside["heavy"])
-        self.assertGreater(beside["heavy"], 0.2 * alone["heavy"])
+            # How much more the light one gets depends on how soon its viewer, on the same
+            # processors, answers.
+            for _ in range(4):
+                rates = await asyncio.gather(self.keep_moving("light", light, 3.0),
+                                             self.keep_moving("heavy", heavy, 3.0))
+                beside = dict(zip(("light", "heavy"), rates))
+                print(f"frames a second: light {alone['light']:.1f} alone, {beside['light']:.1f} "
+                      f"beside heavy; heavy {alone['heavy']:.1f} alone, {beside['heavy']:.1f} ",
+                      end="")
+                if beside["light"] > 2.5 * beside["heavy"] > alone["heavy"]:
+                    break
         for name in ("light", "heavy"):
             self.server.call("session.close", {"session": name})
+        self.assertGreater(beside["light"], 2 * beside["heavy"])
+        self.assertGreater(beside["heavy"], 0.3 * alone["heavy"])
 
     async def keep_moving(self, name, viewer, seconds):
         """Pictures a second while the camera moves all the time."""

@@ -94,6 +94,26 @@ class Uploads(ServerTestCase):
         self.assertNotIn("broken", self.catalogue())
         self.assertEqual(self.left_over(), [])
 
+    def test_who_asks_first_is_invited_or_refused(self):
+        """As curl does for larger files, and then waits a second where nobody answers."""
+        expect = b"\r\nExpect: 100-continue\r\n\r\n"
+        with RawSocket(self.server) as raw:
+            raw.send(self.head("asked", len(self.mirror)).strip() + expect)
+            self.assertEqual(raw.read_until(b"\r\n\r\n"), b"HTTP/1.1 100 Continue\r\n\r\n")
+            raw.send(self.mirror)
+            self.assertIn(b" 201 ", raw.read_until(b"\r\n"))
+        with RawSocket(self.server) as raw:
+            raw.send(self.head("asked", len(self.mirror) + 1001).strip() + expect)
+            self.assertIn(b" 413 ", raw.read_until(b"\r\n"))
+        call = json.dumps({"jsonrpc": "2.0", "id": 1, "method": "camera.get"}).encode()
+        head = (f"POST /rpc HTTP/1.1\r\nHost: {self.server.host}:{self.server.port}\r\n"
+                f"Authorization: Bearer {CONTROL}\r\nContent-Length: {len(call)}").encode()
+        with RawSocket(self.server) as raw:
+            raw.send(head + expect)
+            self.assertEqual(raw.read_until(b"\r\n\r\n"), b"HTTP/1.1 100 Continue\r\n\r\n")
+            raw.send(call)
+            self.assertIn(b" 200 ", raw.read_until(b"\r\n"))
+
     def test_too_large_is_refused_before_it_is_sent(self):
         with RawSocket(self.server) as raw:
             raw.send(self.head("large", len(self.mirror) + 1001))
@@ -145,6 +165,7 @@ class Uploads(ServerTestCase):
         finally:
             stop.set()
             watcher.join()
+        self.server.wait_for(lambda: not self.left_over(), "the end of the broken upload")
         self.assertFalse(seen & {"broken", "half"})
 
 

@@ -538,8 +538,8 @@ class Methods:
         name: What the person is called, for the others in the session.
         session: The session to watch; left out: the one that /ws?session=NAME named, or main.
 
-        Gives: codec_reason, codecs, device, instance, limits, protocol, rev, session, tracer,
-            version, viewer.
+        Gives: codec_reason, codecs, device, instance, limits, protocol, rev, role, session,
+            tracer, version, viewer.
         """
         return self._call("hello", _given({
             "client": client, "codecs": codecs, "name": name, "session": session}))

@@ -39,8 +39,8 @@ Result<std::shared_ptr<Session>> choose_session(SessionHost& host, const Hello& 
   return host.sessions().move(call.viewer, *request.session);
 }
 
-HelloResult greeting(SessionHost& host, const Session& session, const std::string& viewer,
-                     const stream::CodecChoice& choice) {
+HelloResult greeting(SessionHost& host, const Session& session,
+                     const protocol::CallContext& call, const stream::CodecChoice& choice) {
   const render::DeviceInfo& device = host.engine().device();
   const SessionLimits& limits = session.limits();
   HelloResult result;
@@ -48,7 +48,8 @@ HelloResult greeting(SessionHost& host, const Session& session, const std::strin
   result.device = {.name = device.name, .driver = device.driver, .type = device.type};
   result.tracer = host.engine().tracer();
   result.session = session.name();
-  result.viewer = viewer;
+  result.viewer = call.viewer;
+  result.role = call.view_only ? protocol::ViewerRole::view : protocol::ViewerRole::control;
   if (choice.codec != StreamCodec::jpeg) result.codecs.emplace_back(enum_name(choice.codec));
   result.codecs.emplace_back("jpeg");
   result.codec_reason = choice.reason;
@@ -77,7 +78,7 @@ Result<HelloResult> greet(SessionHost& host, const Hello& request,
     session->audience().start(call.viewer, choice.codec);
     session->announce();
   }
-  return greeting(host, *session, call.viewer, choice);
+  return greeting(host, *session, call, choice);
 }
 
 }  // namespace
@@ -87,10 +88,13 @@ void add_stream_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
       "hello",
       [&](const Hello& request, const protocol::CallContext& context,
           protocol::Completion<HelloResult> done) { done(greet(host, request, context)); });
-  add_command<StreamConfigure, StreamState>(
-      dispatcher, host, "stream.configure",
-      [](Session& session, const StreamConfigure& request, const std::string& viewer) {
-        return session.configure_stream(request, viewer);
+  dispatcher.add<StreamConfigure, StreamState>(
+      "stream.configure",
+      [&](const StreamConfigure& request, const protocol::CallContext& context,
+          protocol::Completion<StreamState> done) {
+        const auto session = host.sessions().session_of(context);
+        if (!session) return done(session.error());
+        done((*session)->configure_stream(request, context.viewer, !context.view_only));
       });
   add_command<Empty, StreamState>(
       dispatcher, host, "stream.pause",

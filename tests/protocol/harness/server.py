@@ -69,6 +69,13 @@ class Server:
         self.log.seek(0)
         return self.log.read()
 
+    def complaints(self):
+        """What the sanitizers say that the program may have been built with."""
+        text = self.log_text()
+        found = re.search(r"^.*(runtime error: |ERROR: \w+Sanitizer|WARNING: ThreadSanitizer)", text,
+                          re.MULTILINE)
+        return text[found.start():] if found else ""
+
     @property
     def alive(self):
         return self.process.poll() is None
@@ -150,7 +157,10 @@ class Server:
 
     def __exit__(self, *_):
         self.stop()
+        complaints = self.complaints()
         self.log.close()
+        if complaints:
+            raise AssertionError(complaints)
 
 
 class ServerTestCase(unittest.IsolatedAsyncioTestCase):

@@ -50,6 +50,7 @@ class Viewer:
         self.session = session
         self.name = name
         self.frames = asyncio.Queue()
+        self.last = None  # the newest frame that was looked at
         self.frames_received = 0
         self.bytes_received = 0
         self.notifications = []
@@ -127,15 +128,16 @@ class Viewer:
         return answer["result"]
 
     async def next_frame(self, timeout=30):
-        return await asyncio.wait_for(self.frames.get(), timeout)
+        self.last = await asyncio.wait_for(self.frames.get(), timeout)
+        return self.last
 
     async def frame_where(self, condition, timeout=60):
         """The next frame that fulfils the condition; others are skipped."""
         async def search():
             while True:
-                frame = await self.frames.get()
-                if condition(frame):
-                    return frame
+                self.last = await self.frames.get()
+                if condition(self.last):
+                    return self.last
         return await asyncio.wait_for(search(), timeout)
 
     @contextlib.asynccontextmanager
@@ -157,10 +159,15 @@ class Viewer:
                 await task
 
     async def rest(self, timeout=60):
-        """Waits for the final picture of the present state, after which nothing should come."""
+        """Waits for the final picture of the present state, after which nothing should come. It may
+        have been looked at already."""
         rev = (await self.call("camera.get"))["rev"]
-        return await self.frame_where(
-            lambda frame: frame.final and frame.header["state_rev"] >= rev, timeout)
+
+        def stays(frame):
+            return frame.final and frame.header["state_rev"] >= rev
+        if self.last and stays(self.last) and self.frames.empty():
+            return self.last
+        return await self.frame_where(stays, timeout)
 
     async def notification(self, method, timeout=15):
         """The first notification of this name."""

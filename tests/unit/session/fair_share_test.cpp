@@ -82,6 +82,34 @@ TEST_F(FairShareTest, ShortPiecesAreAwaitedBeforeALongOne) {
   EXPECT_NEAR(static_cast<double>(workers_["heavy"].worked.count()), 10000.0, 1000.0);
 }
 
+TEST_F(FairShareTest, WhoDrawsSixtyTimesASecondIsAwaitedToo) {
+  workers_["heavy"] = {.cost = 100ms};
+  workers_["light"] = {.cost = 5ms, .interval = 16ms};
+  run_for(20s);
+  EXPECT_GE(workers_["light"].pieces, 550) << "half of the time, one piece in 16 ms";
+  EXPECT_GE(workers_["heavy"].worked, 9000ms);
+}
+
+TEST_F(FairShareTest, WhoComesBackLateAtTimesLosesLittle) {
+  workers_["heavy"] = {.cost = 100ms};
+  Worker& light = workers_["light"] = {.cost = 5ms, .interval = 16ms};
+  for (int second = 0; second < 20; ++second) {
+    run_for(1s);
+    light.ready = time_ + 300ms;
+  }
+  EXPECT_GE(light.pieces, 300);
+}
+
+TEST_F(FairShareTest, WhoWentAwayIsNotAwaitedAgain) {
+  workers_["heavy"] = {.cost = 100ms};
+  Worker& light = workers_["light"] = {.cost = 5ms, .interval = 16ms};
+  run_for(2s);
+  light.ready = time_ + 1h;
+  const auto before = workers_["heavy"].worked;
+  run_for(10s);
+  EXPECT_GE(workers_["heavy"].worked - before, 9900ms);
+}
+
 TEST_F(FairShareTest, NobodyIsAwaitedInVain) {
   workers_["heavy"] = {.cost = 200ms};
   workers_["seldom"] = {.cost = 5ms, .pause = 60ms};
