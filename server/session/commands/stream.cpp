@@ -39,8 +39,8 @@ Result<std::shared_ptr<Session>> choose_session(SessionHost& host, const Hello& 
   return host.sessions().move(call.viewer, *request.session);
 }
 
-HelloResult greeting(SessionHost& host, const Session& session, const std::string& viewer,
-                     const stream::CodecChoice& choice) {
+HelloResult greeting(SessionHost& host, const Session& session,
+                     const protocol::CallContext& call, const stream::CodecChoice& choice) {
   const render::DeviceInfo& device = host.engine().device();
   const SessionLimits& limits = session.limits();
   HelloResult result;
@@ -48,7 +48,7 @@ HelloResult greeting(SessionHost& host, const Session& session, const std::strin
   result.device = {.name = device.name, .driver = device.driver, .type = device.type};
   result.tracer = host.engine().tracer();
   result.session = session.name();
-  result.viewer = viewer;
+  result.viewer = call.viewer;
   if (choice.codec != StreamCodec::jpeg) result.codecs.emplace_back(enum_name(choice.codec));
   result.codecs.emplace_back("jpeg");
   result.codec_reason = choice.reason;
@@ -56,7 +56,8 @@ HelloResult greeting(SessionHost& host, const Session& session, const std::strin
       .max_width = limits.max_width,
       .max_height = limits.max_height,
       .max_message_bytes = static_cast<std::uint32_t>(host.dispatch_limits().max_message_bytes),
-      .ack_window = stream::ack_window};
+      .ack_window = stream::ack_window,
+      .max_upload_bytes = call.view_only ? 0 : host.max_upload_bytes()};
   result.rev = session.rev();
   result.instance = instance();
   return result;
@@ -77,7 +78,7 @@ Result<HelloResult> greet(SessionHost& host, const Hello& request,
     session->audience().start(call.viewer, choice.codec);
     session->announce();
   }
-  return greeting(host, *session, call.viewer, choice);
+  return greeting(host, *session, call, choice);
 }
 
 }  // namespace
