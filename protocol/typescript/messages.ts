@@ -15,8 +15,17 @@ export interface Hello {
   tracer: string;
   session: string;
   viewer: string | number;
+  /** What the token lets this client do; servers that do not tell let it steer. */
+  role?: "view" | "control";
   codecs: string[];
-  limits: { max_width: number; max_height: number; max_message_bytes: number; ack_window: number };
+  limits: {
+    max_width: number;
+    max_height: number;
+    max_message_bytes: number;
+    ack_window: number;
+    /** 0: the server takes no scenes from viewers; servers that do not tell leave it out. */
+    max_upload_bytes?: number;
+  };
   rev: number;
   /** Differs with every run of a server: another one has not kept the session. */
   instance: string;
@@ -160,6 +169,8 @@ export interface LightInfo {
   direction?: Vector3;
   radius?: number;
   angular_diameter?: number;
+  /** Members that differ from the scene's file. */
+  changed?: string[];
 }
 
 export interface MaterialInfo {
@@ -169,6 +180,8 @@ export interface MaterialInfo {
   metallic: number;
   emissive: Vector3;
   textures: string[];
+  /** Members that differ from the scene's file. */
+  changed?: string[];
 }
 
 export interface EnvironmentState {
@@ -203,6 +216,9 @@ export interface ViewerInfo {
 export interface SessionInfo {
   name: string;
   scene: string | null;
+  /** Of its pictures, pixels. */
+  width?: number;
+  height?: number;
   viewers: ViewerInfo[];
   /** Whether all viewers may change things or only one. */
   control: "everyone" | "one";
