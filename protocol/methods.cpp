@@ -59,7 +59,7 @@ constexpr std::string_view greeting = R"({
   "tracer": "embree", "session": "main", "viewer": "v1", "role": "control", "codecs": ["jpeg"],
   "codec_reason": null,
   "limits": {"max_width": 3840, "max_height": 2160, "max_message_bytes": 65536,
-             "ack_window": 2},
+             "ack_window": 2, "max_upload_bytes": 0},
   "rev": 1, "instance": "5f0c1d7a93b2e648"})";
 
 constexpr std::string_view scene = R"({
@@ -249,13 +249,14 @@ std::vector<MethodDescriptor> stream_methods() {
 
 constexpr std::string_view light = R"({
   "light": {"name": "sun", "type": "directional", "enabled": true, "color": [1.0, 0.9, 0.8],
-            "intensity": 6.0, "direction": [-0.6, -0.77, -0.2], "angular_diameter": 0.53},
+            "intensity": 6.0, "direction": [-0.6, -0.77, -0.2], "angular_diameter": 0.53,
+            "changed": ["intensity"]},
   "rev": 12})";
 
 constexpr std::string_view material = R"({
   "material": {"name": "floor", "base_color": [0.8, 0.8, 0.8], "roughness": 0.2,
                "metallic": 0.0, "emissive": [0.0, 0.0, 0.0], "normal_scale": 1.0,
-               "occlusion_strength": 1.0, "textures": []},
+               "occlusion_strength": 1.0, "textures": [], "changed": ["roughness"]},
   "rev": 13})";
 
 constexpr std::string_view environment = R"({
@@ -268,7 +269,7 @@ std::vector<MethodDescriptor> edit_methods() {
           "lights.list", Call::query, "Lists the lights of the scene as this session has them.",
           {no_params, R"({"lights": [{"name": "sun", "type": "directional", "enabled": true,
               "color": [1.0, 0.9, 0.8], "intensity": 6.0, "direction": [-0.6, -0.77, -0.2],
-              "angular_diameter": 0.53}], "rev": 12})"}),
+              "angular_diameter": 0.53, "changed": []}], "rev": 12})"}),
       method<LightsPatch, LightState>(
           "lights.patch", Call::command,
           "Changes a light of this session's scene by a merge patch (RFC 7386).",
@@ -278,7 +279,7 @@ std::vector<MethodDescriptor> edit_methods() {
           "Lists the materials of the scene as this session has them.",
           {no_params, R"({"materials": [{"name": "floor", "base_color": [0.8, 0.8, 0.8],
               "roughness": 0.2, "metallic": 0.0, "emissive": [0.0, 0.0, 0.0], "normal_scale": 1.0,
-              "occlusion_strength": 1.0, "textures": []}], "rev": 13})"}),
+              "occlusion_strength": 1.0, "textures": [], "changed": []}], "rev": 13})"}),
       method<MaterialsPatch, MaterialState>(
           "materials.patch", Call::command,
           "Changes a material of this session's scene by a merge patch (RFC 7386).",

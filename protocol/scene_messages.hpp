@@ -28,6 +28,7 @@ struct LightInfo {
   std::optional<float> angular_diameter;
   std::optional<float> width;
   std::optional<float> height;
+  std::vector<std::string> changed;
 
   static constexpr auto fields() {
     return std::tuple{
@@ -51,6 +52,7 @@ struct LightInfo {
             .unit("degrees"),
         field("width", &LightInfo::width, "Of a rectangle.").unit("metres"),
         field("height", &LightInfo::height, "Of a rectangle.").unit("metres"),
+        field("changed", &LightInfo::changed, "Members that differ from the scene's file."),
     };
   }
   bool operator==(const LightInfo&) const = default;
@@ -161,6 +163,7 @@ struct MaterialInfo {
   float normal_scale = 1.0f;
   float occlusion_strength = 1.0f;
   std::vector<std::string> textures;
+  std::vector<std::string> changed;
 
   static constexpr auto fields() {
     return std::tuple{
@@ -175,6 +178,7 @@ struct MaterialInfo {
         field("occlusion_strength", &MaterialInfo::occlusion_strength,
               "How dark the occlusion texture gets."),
         field("textures", &MaterialInfo::textures, "Which values have a texture."),
+        field("changed", &MaterialInfo::changed, "Members that differ from the scene's file."),
     };
   }
   bool operator==(const MaterialInfo&) const = default;

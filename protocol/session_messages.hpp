@@ -69,6 +69,7 @@ struct ServerLimits {
   std::uint32_t max_height = 0;
   std::uint32_t max_message_bytes = 0;
   std::uint32_t ack_window = 0;
+  std::uint64_t max_upload_bytes = 0;
 
   static constexpr auto fields() {
     return std::tuple{
@@ -80,6 +81,9 @@ struct ServerLimits {
         field("ack_window", &ServerLimits::ack_window,
               "Frames the server sends ahead of the newest stream.ack; on a long way more, but no "
               "more than 8."),
+        field("max_upload_bytes", &ServerLimits::max_upload_bytes,
+              "Largest scene that the client may send; 0: it may send none.")
+            .unit("bytes"),
     };
   }
   bool operator==(const ServerLimits&) const = default;

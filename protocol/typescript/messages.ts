@@ -15,10 +15,17 @@ export interface Hello {
   tracer: string;
   session: string;
   viewer: string | number;
-  /** With "view" the server refuses whatever would change the session. */
-  role: "view" | "control";
+  /** With "view" the server refuses whatever would change the session; servers that do not tell let it steer. */
+  role?: "view" | "control";
   codecs: string[];
-  limits: { max_width: number; max_height: number; max_message_bytes: number; ack_window: number };
+  limits: {
+    max_width: number;
+    max_height: number;
+    max_message_bytes: number;
+    ack_window: number;
+    /** 0: the server takes no scenes from viewers; servers that do not tell leave it out. */
+    max_upload_bytes?: number;
+  };
   rev: number;
   /** Differs with every run of a server: another one has not kept the session. */
   instance: string;
@@ -173,6 +180,8 @@ export interface LightInfo {
   direction?: Vector3;
   radius?: number;
   angular_diameter?: number;
+  /** Members that differ from the scene's file. */
+  changed?: string[];
 }
 
 export interface MaterialInfo {
@@ -182,6 +191,8 @@ export interface MaterialInfo {
   metallic: number;
   emissive: Vector3;
   textures: string[];
+  /** Members that differ from the scene's file. */
+  changed?: string[];
 }
 
 export interface EnvironmentState {
@@ -216,6 +227,9 @@ export interface ViewerInfo {
 export interface SessionInfo {
   name: string;
   scene: string | null;
+  /** Of its pictures, pixels. */
+  width?: number;
+  height?: number;
   viewers: ViewerInfo[];
   /** Whether all viewers may change things or only one. */
   control: "everyone" | "one";

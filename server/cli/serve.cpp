@@ -147,7 +147,10 @@ int run(const ServeOptions& options) {
   set_up_log(options.log);
   session::HostOptions hosting = host_options(options);
   const std::unique_ptr<session::UploadStore> uploads = upload_store(options);
-  if (uploads) hosting.scene_roots.push_back(uploads->scenes());
+  if (uploads) {
+    hosting.scene_roots.push_back(uploads->scenes());
+    hosting.max_upload_bytes = uploads->max_bytes();
+  }
   const std::string scene =
       choose_scene(session::SceneCatalogue(hosting.scene_roots), options.scene);
 

@@ -102,6 +102,19 @@ shared::Light device_form(const LightInfo& info, shared::Light light) {
   return light;
 }
 
+/// Names of the members of `now` that are not as in `initial`.
+template <class Info>
+std::vector<std::string> differences(const Info& now, const Info& initial) {
+  std::vector<std::string> names;
+  const auto compare = [&](const auto& field) {
+    if (field.name != "changed" && now.*field.member != initial.*field.member) {
+      names.emplace_back(field.name);
+    }
+  };
+  std::apply([&](const auto&... fields) { (compare(fields), ...); }, Info::fields());
+  return names;
+}
+
 template <class T, class Member>
 void change(const protocol::Change<T>& wanted, Member& member, const Member& initial) {
   if (wanted.reset) member = initial;
@@ -234,6 +247,7 @@ Result<LightInfo> SceneEdits::patch(const protocol::LightsPatch& request) {
   initial.name = lights_[*index].name;
   Result<LightInfo> light = patched(lights_[*index], initial, request.patch);
   if (!light || *light == lights_[*index]) return light;
+  light->changed = differences(*light, initial);
   lights_[*index] = *light;
   auto lights = std::make_shared<Lights>();
   for (const scene::Light& it : scene_->lights) lights->push_back(it.device);
@@ -246,7 +260,8 @@ Result<LightInfo> SceneEdits::patch(const protocol::LightsPatch& request) {
 Result<MaterialInfo> SceneEdits::patch(const protocol::MaterialsPatch& request) {
   const Result<std::size_t> index = find(materials_, request.material, "material");
   if (!index) return index.error();
-  const MaterialInfo initial = describe(scene_->materials[*index]);
+  MaterialInfo initial = describe(scene_->materials[*index]);
+  initial.name = materials_[*index].name;
   const protocol::MaterialPatch& patch = request.patch;
   MaterialInfo material = materials_[*index];
   change(patch.base_color, material.base_color, initial.base_color);
@@ -256,6 +271,7 @@ Result<MaterialInfo> SceneEdits::patch(const protocol::MaterialsPatch& request) 
   change(patch.normal_scale, material.normal_scale, initial.normal_scale);
   change(patch.occlusion_strength, material.occlusion_strength, initial.occlusion_strength);
   if (material == materials_[*index]) return material;
+  material.changed = differences(material, initial);
   materials_[*index] = material;
   auto materials =
       std::make_shared<Materials>(device_materials_ ? *device_materials_ : scene_->materials);

@@ -27,6 +27,8 @@ struct HostOptions {
   scene::ImportLimits import_limits;
   std::uint64_t scene_cache_bytes = 1ull << 30;
   protocol::DispatchLimits dispatch;
+  /// Largest scene that clients may send; 0: none.
+  std::uint64_t max_upload_bytes = 0;
   /// Pictures and histories of a session that nobody watches are let go after so long.
   std::chrono::seconds release_after{120};
 };
@@ -41,6 +43,7 @@ class SessionHost {
 
   const protocol::Dispatcher& dispatcher() const { return dispatcher_; }
   const protocol::DispatchLimits& dispatch_limits() const { return options_.dispatch; }
+  std::uint64_t max_upload_bytes() const { return options_.max_upload_bytes; }
   const SceneCatalogue& catalogue() const { return catalogue_; }
   render::Engine& engine() const { return engine_; }
 

@@ -4,32 +4,12 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
-import test, { after, before } from "node:test";
-import {
-  eventually,
-  firstPicture,
-  launchBrowser,
-  openTab,
-  openViewer,
-  screenshot,
-} from "./harness/browser.mjs";
-import { startServer } from "./harness/server.mjs";
+import { eventually, openTab, screenshot, unfoldAll } from "./harness/browser.mjs";
+import { Stage } from "./harness/stage.mjs";
 
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const tabs = ["scene", "settings", "inspect", "stats"];
-
-let server;
-let browser;
-
-before(async () => {
-  server = await startServer();
-  browser = await launchBrowser();
-});
-
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-});
+const stage = new Stage({ view: { viewport: { width: 1280, height: 800 } } });
 
 /** What axe calls serious or worse, one line each. */
 async function seriousFindings(page) {
@@ -42,16 +22,9 @@ async function seriousFindings(page) {
     ));
 }
 
-async function unfoldAll(page) {
-  await page.evaluate(() => {
-    for (const fold of document.querySelectorAll(".section details")) fold.open = true;
-  });
-}
-
 for (const colorScheme of ["dark", "light"]) {
-  test(`axe finds nothing serious, ${colorScheme}`, async () => {
-    const { page, context, complaints } = await openViewer(browser, server.url, { colorScheme });
-    await firstPicture(page);
+  stage.test(`axe finds nothing serious, ${colorScheme}`, async () => {
+    const { page } = await stage.watch({ colorScheme });
     await unfoldAll(page);
     for (const tab of tabs) {
       await openTab(page, tab);
@@ -66,14 +39,11 @@ for (const colorScheme of ["dark", "light"]) {
     await page.keyboard.press("?");
     await screenshot(page, `${colorScheme}_help`);
     assert.deepEqual(await seriousFindings(page), [], "the help");
-    assert.deepEqual(complaints, []);
-    await context.close();
   });
 }
 
-test("the keyboard alone reaches picture, tabs, menu and settings, and shows where it is", async () => {
-  const { page, context } = await openViewer(browser, server.url);
-  await firstPicture(page);
+stage.test("the keyboard alone reaches picture, tabs, menu and settings, and shows where it is", async () => {
+  const { page } = await stage.watch();
   const seen = new Set();
   for (let i = 0; i < 40; i += 1) {
     await page.keyboard.press("Tab");
@@ -103,41 +73,35 @@ test("the keyboard alone reaches picture, tabs, menu and settings, and shows whe
   await page.keyboard.press("Escape");
   const back = await page.evaluate(() => document.activeElement.getAttribute("aria-label"));
   assert.equal(back, "Save and share");
-  await context.close();
 });
 
-test("who wants less motion gets no inertia and no sliding bars", async () => {
-  const { page, context } = await openViewer(browser, server.url, { reducedMotion: "reduce" });
-  await firstPicture(page);
+stage.test("who wants less motion gets no inertia and no sliding bars", async () => {
+  const { page } = await stage.watch({ reducedMotion: "reduce" });
   const moving = await page.evaluate(() => {
     const animations = document.getAnimations().filter(({ playState }) => playState === "running");
     return animations.map(({ animationName }) => animationName).filter((name) => name === "sweep");
   });
   assert.deepEqual(moving, []);
-  await context.close();
 });
 
-test("on a 4K screen the panel stays readable and the picture fills the window", async () => {
-  const { page, context } = await openViewer(browser, server.url, {
+stage.test("on a 4K screen the panel stays readable and the picture fills the window", async () => {
+  const { page } = await stage.watch({
     viewport: { width: 3840, height: 2160 },
   });
-  await firstPicture(page);
   await screenshot(page, "4k");
   const canvas = await page.locator("#view").boundingBox();
   assert.deepEqual([canvas.width, canvas.height], [3840, 2160]);
   const panel = await page.locator("#panel").boundingBox();
   assert.ok(panel.width > 450, `a panel of ${panel.width} px is too small to read here`);
-  await context.close();
 });
 
-test("at 360 px nothing sticks out in any tab", async () => {
-  const { page, context } = await openViewer(browser, server.url, {
+stage.test("at 360 px nothing sticks out in any tab", async () => {
+  const { page } = await stage.watch({
     viewport: { width: 360, height: 740 },
     deviceScaleFactor: 2,
     hasTouch: true,
     isMobile: true,
   });
-  await firstPicture(page);
   await page.getByRole("button", { name: "Show panel" }).tap();
   await unfoldAll(page);
   for (const tab of tabs) {
@@ -156,5 +120,4 @@ test("at 360 px nothing sticks out in any tab", async () => {
     assert.ok(widest <= 360, `something reaches to ${widest} px in ${tab}`);
   }
   assert.deepEqual(await seriousFindings(page), []);
-  await context.close();
 });

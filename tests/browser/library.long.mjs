@@ -4,27 +4,14 @@
 import assert from "node:assert/strict";
 import { createRequire } from "node:module";
 import { fileURLToPath } from "node:url";
-import test, { after, before } from "node:test";
-import { launchBrowser } from "./harness/browser.mjs";
-import { startServer } from "./harness/server.mjs";
+import { Stage } from "./harness/stage.mjs";
 
 const repository = new URL("../../", import.meta.url);
 const esbuild = createRequire(new URL("web_client/package.json", repository))("esbuild");
 
-let server;
-let browser;
+const stage = new Stage({ scene: "mirror" });
 
-before(async () => {
-  server = await startServer();
-  browser = await launchBrowser();
-});
-
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-});
-
-test("a program connects, gets pictures of the size it asks for and hears refusals", async () => {
+stage.test("a program connects, gets pictures of the size it asks for and hears refusals", async () => {
   const { outputFiles } = await esbuild.build({
     entryPoints: [fileURLToPath(new URL("protocol/typescript/client.ts", repository))],
     bundle: true,
@@ -32,8 +19,8 @@ test("a program connects, gets pictures of the size it asks for and hears refusa
     format: "iife",
     globalName: "heliograph",
   });
-  const page = await browser.newPage();
-  await page.goto(new URL("icon.svg", server.url).href);
+  const page = await (await stage.context()).newPage();
+  await page.goto(new URL("icon.svg", stage.server.url).href);
   await page.evaluate(`${outputFiles[0].text}; window.heliograph = heliograph; 0`);
   const seen = await page.evaluate(
     async (url) => {
@@ -55,7 +42,7 @@ test("a program connects, gets pictures of the size it asks for and hears refusa
       client.close();
       return { protocol: client.hello.protocol, last: sizes.at(-1), refusal };
     },
-    server.url.replace("http", "ws") + "ws",
+    stage.server.url.replace("http", "ws") + "ws",
   );
   assert.equal(seen.protocol, "heliograph.v1");
   assert.deepEqual(seen.last, { width: 320, height: 180, start: [0xff, 0xd8] });

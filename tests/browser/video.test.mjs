@@ -1,80 +1,94 @@
 // Moving pictures as H.264, decoded by the browser; where no WebSocket gets through, as motion JPEG.
 
 import assert from "node:assert/strict";
-import test, { after, before } from "node:test";
 import {
   eventually,
-  firstPicture,
-  launchBrowser,
-  openViewer,
   pictureScreenshot,
   prepareWorker,
   screenshot,
 } from "./harness/browser.mjs";
 import { statistics, thumbnail } from "./harness/pictures.mjs";
-import { startServer } from "./harness/server.mjs";
+import { Stage } from "./harness/stage.mjs";
 
-let server;
-let browser;
+const [jpeg, h264] = [1, 16]; // codecs of frames
 
-before(async () => {
-  server = await startServer();
-  await server.call("scene.load", { name: "shadow_objects" });
-  browser = await launchBrowser();
+const stage = new Stage({
+  view: { viewport: { width: 800, height: 450 } },
 });
 
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-});
-
-/** Counts, in the page, drawn frames by their codec. */
-function countCodecs() {
-  localStorage.setItem("heliograph.codec", "h264");
-  window.drawn = {};
-  const handler = Object.getOwnPropertyDescriptor(Worker.prototype, "onmessage");
-  Object.defineProperty(Worker.prototype, "onmessage", {
-    set(listener) {
-      handler.set.call(this, (event) => {
-        const { kind, frame } = event.data;
-        if (kind === "drawn") window.drawn[frame.codec] = (window.drawn[frame.codec] ?? 0) + 1;
-        listener(event);
-      });
-    },
-  });
+/** A page that asks for video; null, the test being skipped, where there is none to be had. */
+async function watchVideo(t, prelude = "") {
+  const context = await stage.context();
+  if (prelude) await prepareWorker(context, prelude);
+  await context.addInitScript(() => localStorage.setItem("heliograph.codec", "h264"));
+  const viewer = await stage.watch({ context });
+  if ((await viewer.page.locator("select[name=codec] option").count()) > 1) return viewer;
+  t.skip("server or browser has no H.264");
+  return null;
 }
 
-test("a playing clip comes as H.264 and is decoded, the resting picture by itself", async (t) => {
-  const context = await browser.newContext({ viewport: { width: 800, height: 450 } });
-  await context.addInitScript(countCodecs);
-  const { page, complaints } = await openViewer(browser, server.url, { context });
-  await firstPicture(page);
-  const choices = await page.locator("select[name=codec] option").count();
-  if (choices < 2) {
-    await context.close();
-    t.skip("server or browser has no H.264");
-    return;
-  }
-  await server.call("animation.play", { clip: "moving_objects_light" });
-  const drawn = () => page.evaluate(() => window.drawn);
-  await eventually(async () => (await drawn())[16] >= 4, "four pictures of the video", 60_000);
+stage.test("a playing clip comes as H.264 and is decoded, the resting picture by itself", async (t) => {
+  const viewer = await watchVideo(t);
+  if (!viewer) return;
+  const { page } = viewer;
+  await stage.server.call("animation.play", { clip: "moving_objects_light" });
+  const drawn = () => page.evaluate(() => window.seen.drawn);
+  await eventually(async () => (await drawn())[h264] >= 4, "four pictures of the video", 60_000);
   const { deviation } = statistics(await thumbnail(page, await pictureScreenshot(page, "h264")));
   assert.ok(deviation > 0.03, "the video's picture is nearly blank");
-  await server.call("animation.pause");
-  const stills = (await drawn())[1] ?? 0;
-  await eventually(async () => ((await drawn())[1] ?? 0) > stills, "a still picture", 60_000);
-  assert.deepEqual(complaints, []);
-  await context.close();
+  await stage.server.call("animation.pause");
+  const stills = (await drawn())[jpeg] ?? 0;
+  await eventually(async () => ((await drawn())[jpeg] ?? 0) > stills, "a still picture", 60_000);
 });
 
-test("where no WebSocket gets through, the pictures still come", async (t) => {
-  const answer = await fetch(new URL("api/v1/sessions/main/stream.mjpg", server.url));
+const played = (page) => page.evaluate(() => window.seen);
+
+/** Breaks one picture of the video, or all of them, on the way into the decoder. */
+const breaking = (which) => `
+  let chunks = 0;
+  const decode = VideoDecoder.prototype.decode;
+  VideoDecoder.prototype.decode = function (chunk) {
+    chunks += 1;
+    if (!(${which})(chunks)) return decode.call(this, chunk);
+    const noise = new Uint8Array(chunk.byteLength).map((_, index) => (index * 151) % 255);
+    const { type, timestamp } = chunk;
+    return decode.call(this, new EncodedVideoChunk({ type, timestamp, data: noise }));
+  };
+`;
+
+stage.test("after a broken picture the video starts anew at once, without a word", async (t) => {
+  const viewer = await watchVideo(t, breaking("(number) => number === 4"));
+  if (!viewer) return;
+  const { page } = viewer;
+  await stage.server.call("animation.play", { clip: "moving_objects_light" });
+  await eventually(async () => (await played(page)).drawn[h264] >= 10, "the video", 60_000);
+  const configured = (await played(page)).sent["stream.configure"];
+  assert.ok(configured >= 3, `asked ${configured} times, not for a fresh start`);
+  assert.equal(await page.locator(".toast").count(), 0);
+  assert.equal((await played(page)).drawn[h264] >= 10, true);
+  await stage.server.call("animation.pause");
+});
+
+stage.test("a video that keeps breaking gives way to single pictures, with a word", async (t) => {
+  const viewer = await watchVideo(t, breaking("() => true"));
+  if (!viewer) return;
+  const { page } = viewer;
+  await stage.server.call("animation.play", { clip: "moving_objects_light" });
+  await page.locator(".toast", { hasText: "single pictures come instead" }).waitFor();
+  const before = (await played(page)).drawn[jpeg] ?? 0;
+  await eventually(async () => (await played(page)).drawn[jpeg] > before + 4, "JPEGs", 60_000);
+  assert.equal(await page.locator("select[name=codec]").inputValue(), "jpeg");
+  await stage.server.call("animation.pause");
+});
+
+stage.test("where no WebSocket gets through, the pictures still come", async (t) => {
+  const answer = await fetch(new URL("api/v1/sessions/main/stream.mjpg", stage.server.url));
   await answer.body?.cancel();
   if (!answer.ok) {
     t.skip("the server has no motion JPEG");
     return;
   }
-  const context = await browser.newContext({ viewport: { width: 800, height: 450 } });
+  const context = await stage.context();
   // A proxy that refuses upgrades looks to the page like an address where nobody speaks WebSocket.
   await prepareWorker(
     context,
@@ -84,7 +98,7 @@ test("where no WebSocket gets through, the pictures still come", async (t) => {
       }
     };`,
   );
-  const { page } = await openViewer(browser, server.url, { context });
+  const { page } = await stage.open({ context, complaining: true });
   await page.waitForSelector('#pill[data-state="pictures_only"]', { timeout: 60_000 });
   await eventually(
     () => page.locator("#plain").evaluate((image) => image.naturalWidth > 0),
@@ -92,5 +106,4 @@ test("where no WebSocket gets through, the pictures still come", async (t) => {
     30_000,
   );
   await screenshot(page, "pictures_only");
-  await context.close();
 });

@@ -1,111 +1,93 @@
 // What one sees and how one gets there: links, bookmarks, flying, clips, what a newer server offers.
 
 import assert from "node:assert/strict";
-import test, { after, before } from "node:test";
 import {
+  chooseOutput,
   distance,
   eventually,
   firstPicture,
-  launchBrowser,
   openTab,
-  openViewer,
+  restingCamera,
   screenshot,
+  setCamera,
 } from "./harness/browser.mjs";
-import { startServer } from "./harness/server.mjs";
+import { Stage } from "./harness/stage.mjs";
 
-let server;
-let browser;
+const stage = new Stage();
 
-before(async () => {
-  server = await startServer();
-  await server.call("scene.load", { name: "shadow_objects" });
-  browser = await launchBrowser();
-});
-
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-});
-
-async function restingCamera() {
-  let before = null;
-  return eventually(async () => {
-    const camera = await server.call("camera.get");
-    const rests = before !== null && distance(camera.eye, before.eye) === 0;
-    before = camera;
-    await new Promise((resolve) => setTimeout(resolve, 400));
-    return rests && camera;
-  }, "the camera to rest");
+/** The directional light and the second material, as the session has them. */
+async function editedParts() {
+  const { lights } = await stage.server.call("lights.list");
+  const { materials } = await stage.server.call("materials.list");
+  return { sun: lights.find(({ type }) => type === "directional"), material: materials[1] };
 }
 
-test("a copied link brings back scene, settings and camera", async () => {
-  const context = await browser.newContext({
-    viewport: { width: 960, height: 540 },
-    permissions: ["clipboard-read", "clipboard-write"],
-  });
-  const { page } = await openViewer(browser, server.url, { context });
+stage.test("a copied link brings back scene, settings, light, material and camera", async () => {
+  const permissions = ["clipboard-read", "clipboard-write"];
+  const { page } = await stage.watch({ permissions });
+  await stage.server.call("settings.patch", { patch: { tone_map: { curve: "agx" } } });
+  await setCamera(page, stage.server, { eye: [1, 2, 6], target: [0, 1, 0], vertical_fov: 40 });
+  const { sun, material } = await editedParts();
+  const patch = { intensity: 2.5, direction: [0.6, -0.8, 0] };
+  await stage.server.call("lights.patch", { light: sun.name, patch });
+  await stage.server.call("materials.patch", { material: material.name, patch: { roughness: 0.7 } });
+  // A page that comes later knows of the changes, too: the server tells what differs.
+  await page.reload();
   await firstPicture(page);
-  await server.call("settings.patch", { patch: { tone_map: { curve: "agx" } } });
-  await server.call("camera.set", { eye: [1, 2, 6], target: [0, 1, 0], vertical_fov: 40 });
-  await page.waitForFunction(
-    () => document.querySelector('[data-path="tone_map.curve"] select').value === "agx",
-  );
-  await page.getByRole("button", { name: "Save and share" }).click();
-  await page.getByRole("menuitem", { name: "Copy link" }).click();
+  await eventually(async () => (await figureOf(page, "Intensity")) === "2.5", "the light to be read");
+  await chooseOutput(page, "Copy link");
   const link = await eventually(async () => {
     const text = await page.evaluate(() => navigator.clipboard.readText());
     return text.includes("#view=") && text;
   }, "the link in the clipboard");
 
-  await server.call("settings.patch", { patch: { tone_map: null } });
-  await server.call("camera.fit");
-  await server.call("scene.load", { name: "mirror" });
-  const other = await openViewer(browser, link, { context });
+  await stage.server.call("settings.patch", { patch: { tone_map: null } });
+  await stage.server.call("camera.fit");
+  await stage.server.call("scene.load", { name: "mirror" });
+  const other = await stage.open({ url: link });
   await eventually(async () => {
-    const { eye } = await server.call("camera.get").catch(() => ({ eye: [0, 0, 0] }));
+    const { eye } = await stage.server.call("camera.get").catch(() => ({ eye: [0, 0, 0] }));
     return distance(eye, [1, 2, 6]) < 1e-3;
   }, "the camera of the link", 60_000);
-  assert.equal((await server.call("scene.list")).current, "shadow_objects");
-  assert.equal(await server.setting("tone_map.curve"), "agx");
+  assert.equal((await stage.server.call("scene.list")).current, "shadow_objects");
+  assert.equal(await stage.server.setting("tone_map.curve"), "agx");
+  const there = await editedParts();
+  assert.ok(Math.abs(there.sun.intensity - 2.5) < 1e-4 && there.sun.direction[0] > 0.59);
+  assert.ok(Math.abs(there.material.roughness - 0.7) < 1e-4);
   await firstPicture(other.page);
   await screenshot(other.page, "from_link");
-  await server.call("settings.patch", { patch: { tone_map: null } });
-  assert.deepEqual(other.complaints, []);
-  await context.close();
+  await stage.server.call("settings.patch", { patch: { tone_map: null } });
 });
 
-test("a bookmark is kept between visits and leads back on a visible way", async () => {
-  const context = await browser.newContext({ viewport: { width: 960, height: 540 } });
-  const { page } = await openViewer(browser, server.url, { context });
-  await firstPicture(page);
-  const kept = await restingCamera();
+/** The number that the light's row of this name shows. */
+const figureOf = (page, name) =>
+  page.locator("[data-section=lights]").getByRole("textbox", { name }).inputValue();
+
+stage.test("a bookmark is kept between visits and leads back on a visible way", async () => {
+  const { page } = await stage.watch();
+  const kept = await restingCamera(page, stage.server);
   await page.locator("#view").focus();
   await page.keyboard.press("b");
   await page.getByRole("button", { name: "View 1", exact: true }).waitFor();
   await page.reload();
   await firstPicture(page);
-  await server.call("camera.set", { eye: [4, 3, 4] });
+  await setCamera(page, stage.server, { eye: [4, 3, 4] });
   await page.getByRole("button", { name: "View 1", exact: true }).click();
-  const back = await restingCamera();
+  const back = await restingCamera(page, stage.server);
   assert.ok(distance(back.eye, kept.eye) < 1e-3, `${back.eye} instead of ${kept.eye}`);
   await page.getByRole("button", { name: "Forget View 1" }).click();
   assert.equal(await page.getByRole("button", { name: "View 1", exact: true }).count(), 0);
-  await context.close();
 });
 
-test("W flies ahead, D to the right, and dragging meanwhile looks around", async () => {
-  const { page, context } = await openViewer(browser, server.url, {
-    viewport: { width: 960, height: 540 },
-  });
-  await firstPicture(page);
-  await server.call("camera.set", { eye: [0, 1, 6], target: [0, 1, 0] });
-  await page.waitForTimeout(500);
+stage.test("W flies ahead, D to the right, and dragging meanwhile looks around", async () => {
+  const { page } = await stage.watch();
+  await setCamera(page, stage.server, { eye: [0, 1, 6], target: [0, 1, 0] });
   await page.locator("#view").focus();
   await page.keyboard.press("w", { delay: 200 });
-  const ahead = await restingCamera();
+  const ahead = await restingCamera(page, stage.server);
   assert.ok(ahead.eye[2] < 5.99 && Math.abs(ahead.eye[0]) < 1e-3, `${ahead.eye}`);
   await page.keyboard.press("d", { delay: 200 });
-  const right = await restingCamera();
+  const right = await restingCamera(page, stage.server);
   assert.ok(right.eye[0] > 0.01, `${right.eye}`);
   assert.ok(Math.abs(right.target[0] - right.eye[0]) < 1e-3, "the view turned");
   await page.keyboard.down("e");
@@ -114,37 +96,28 @@ test("W flies ahead, D to the right, and dragging meanwhile looks around", async
   await page.mouse.move(420, 300, { steps: 4 });
   await page.mouse.up();
   await page.keyboard.up("e");
-  const looked = await restingCamera();
+  const looked = await restingCamera(page, stage.server);
   assert.ok(looked.eye[1] > right.eye[1], "E did not lift the eye");
   assert.ok(distance(looked.eye, right.eye) < 3, "the eye did not stay about where it was");
   assert.ok(Math.abs(looked.target[0] - looked.eye[0]) > 0.05, "the view did not turn");
-  await context.close();
 });
 
-test("the wheel goes towards what is under the pointer", async () => {
-  const { page, context } = await openViewer(browser, server.url, {
-    viewport: { width: 960, height: 540 },
-  });
-  await firstPicture(page);
-  await server.call("camera.set", { eye: [0, 1, 6], target: [0, 1, 0] });
-  await page.waitForTimeout(500);
+stage.test("the wheel goes towards what is under the pointer", async () => {
+  const { page } = await stage.watch();
+  await setCamera(page, stage.server, { eye: [0, 1, 6], target: [0, 1, 0] });
   await page.mouse.move(120, 270);
   await page.mouse.wheel(0, -240);
-  const camera = await restingCamera();
+  const camera = await restingCamera(page, stage.server);
   assert.ok(camera.eye[2] < 5.9 && camera.eye[0] < -0.05, `${camera.eye}`);
-  await context.close();
 });
 
-test("a clip plays, pauses and is scrubbed", async () => {
-  const { page, context, complaints } = await openViewer(browser, server.url, {
-    viewport: { width: 960, height: 540 },
-  });
-  await firstPicture(page);
+stage.test("a clip plays, pauses and is scrubbed", async () => {
+  const { page } = await stage.watch();
   await page.locator("#transport select[name=clip]").selectOption("moving_objects_light");
-  await eventually(async () => (await server.call("animation.list")).playing, "the clip to play");
-  assert.equal((await server.call("animation.list")).clip, "moving_objects_light");
+  await eventually(async () => (await stage.server.call("animation.list")).playing, "the clip to play");
+  assert.equal((await stage.server.call("animation.list")).clip, "moving_objects_light");
   await page.getByRole("button", { name: "Pause" }).click();
-  await eventually(async () => !(await server.call("animation.list")).playing, "a pause");
+  await eventually(async () => !(await stage.server.call("animation.list")).playing, "a pause");
   const scrub = page.getByRole("slider", { name: "Moment of the clip" });
   await scrub.evaluate((node) => {
     node.value = "500";
@@ -152,19 +125,17 @@ test("a clip plays, pauses and is scrubbed", async () => {
     node.dispatchEvent(new Event("change", { bubbles: true }));
   });
   await eventually(async () => {
-    const { seconds, clips, clip } = await server.call("animation.list");
+    const { seconds, clips, clip } = await stage.server.call("animation.list");
     const { duration } = clips.find(({ name }) => name === clip);
     return Math.abs(seconds - duration / 2) < 0.05;
   }, "the middle of the clip");
   await page.locator("#transport select[name=rate]").selectOption("2");
-  await eventually(async () => (await server.call("animation.list")).rate === 2, "twice the speed");
+  await eventually(async () => (await stage.server.call("animation.list")).rate === 2, "twice the speed");
   await screenshot(page, "transport");
-  assert.deepEqual(complaints, []);
-  await context.close();
 });
 
-test("a setting that this client has never heard of gets its control", async () => {
-  const context = await browser.newContext({ viewport: { width: 960, height: 540 } });
+stage.test("a setting that this client has never heard of gets its control", async () => {
+  const context = await stage.context();
   await context.addInitScript(() => {
     const parse = JSON.parse;
     JSON.parse = (text, ...rest) => {
@@ -183,8 +154,7 @@ test("a setting that this client has never heard of gets its control", async () 
       return value;
     };
   });
-  const { page } = await openViewer(browser, server.url, { context });
-  await firstPicture(page);
+  const { page } = await stage.watch({ context });
   await openTab(page, "settings");
   await page.getByRole("searchbox").fill("aurora");
   const strength = page.locator('[data-path="aurora.strength"]');
@@ -195,18 +165,35 @@ test("a setting that this client has never heard of gets its control", async () 
   // The server knows no such setting: it refuses in words, and the page takes it back.
   await page.locator(".toast-text").waitFor({ timeout: 20_000 });
   await screenshot(page, "unknown_setting");
-  await context.close();
 });
 
-test("all scenes are shown as pictures, a seen one with its own", async () => {
-  const { page, context } = await openViewer(browser, server.url, {
-    viewport: { width: 1280, height: 720 },
-  });
-  await firstPicture(page);
+stage.test("all scenes are shown as pictures, those never seen once nothing moves", async () => {
+  const { page } = await stage.watch({ viewport: { width: 1280, height: 720 } });
+  await stage.server.call("animation.play", { clip: "moving_objects_light" });
+  await page.waitForFunction(() => window.seen.frame && !window.seen.frame.final);
   await page.getByRole("button", { name: "Show all scenes as pictures" }).click();
   const tile = page.locator(".tile", { hasText: "shadow_objects" });
-  await tile.locator("img").waitFor({ timeout: 30_000 });
+  await tile.waitFor();
   assert.equal(await tile.getAttribute("aria-pressed"), "true");
+  const drawn = () =>
+    page.evaluate(() => Object.values(window.seen.drawn).reduce((sum, count) => sum + count, 0));
+  const before = await drawn();
+  await eventually(async () => (await drawn()) > before + 8, "moving pictures", 60_000);
+  const asked = () => page.evaluate(() => window.seen.sent["session.create"] ?? 0);
+  assert.equal(await asked(), 0, "the server is loaded while somebody watches moving pictures");
+
+  await stage.server.call("animation.pause");
+  await tile.locator("img").waitFor({ timeout: 60_000 });
+  const unseen = page.locator(".tile", { hasText: "mirror" }).locator("img");
+  await unseen.waitFor({ timeout: 60_000 });
+  assert.ok(await unseen.evaluate((image) => image.naturalWidth >= 200));
+  await page.locator(".tile", { hasText: "furnace" }).locator("img").waitFor({ timeout: 60_000 });
   await screenshot(page, "scene_gallery");
-  await context.close();
+  assert.equal((await stage.server.call("scene.list")).current, "shadow_objects");
+  const made = await asked();
+  await page.reload();
+  await firstPicture(page);
+  await page.getByRole("button", { name: "Show all scenes as pictures" }).click();
+  await unseen.waitFor();
+  assert.ok(made >= 2, `${made} pictures were made`);
 });

@@ -1,44 +1,30 @@
 // Several viewers, small screens, and a server that goes away and comes back.
 
 import assert from "node:assert/strict";
-import test, { after, before } from "node:test";
 import {
   distance,
   dragPicture,
   eventually,
   firstPicture,
-  launchBrowser,
-  openViewer,
   pictureScreenshot,
+  restingCamera,
   screenshot,
   settle,
+  unfoldAll,
 } from "./harness/browser.mjs";
 import { difference, statistics, thumbnail } from "./harness/pictures.mjs";
-import { startServer } from "./harness/server.mjs";
+import { Stage } from "./harness/stage.mjs";
 
-let server;
-let browser;
-
-before(async () => {
-  server = await startServer();
-  browser = await launchBrowser();
-});
-
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-});
+const stage = new Stage();
 
 async function lookAt(page, name) {
   return thumbnail(page, await pictureScreenshot(page, name));
 }
 
-test("a second viewer joins and sees what the first one does", async () => {
-  const first = await openViewer(browser, server.url);
-  await firstPicture(first.page);
-  const second = await openViewer(browser, server.url);
-  await firstPicture(second.page);
-  await settle(second.page);
+stage.test("a second viewer joins and sees what the first one does", async () => {
+  const first = await stage.watch();
+  const second = await stage.watch();
+  await settle(second.page, stage.server);
   const before = await lookAt(second.page, "second_viewer_before");
   assert.ok(statistics(before).deviation > 0.03, "the second viewer's picture is nearly blank");
   await dragPicture(first.page, { x: 300, y: 300 }, { x: 560, y: 330 });
@@ -46,16 +32,15 @@ test("a second viewer joins and sees what the first one does", async () => {
     async () => difference(before, await lookAt(second.page, "second_viewer_after")) > 0.01,
     "a changed picture at the second viewer",
   );
-  await first.context.close();
-  await settle(second.page);
+  await restingCamera(first.page, stage.server);
+  await first.page.close();
+  await settle(second.page, stage.server);
   const alone = await lookAt(second.page, "second_viewer_alone");
   await dragPicture(second.page, { x: 560, y: 330 }, { x: 300, y: 300 });
   await eventually(
     async () => difference(alone, await lookAt(second.page, "second_viewer_moved")) > 0.01,
     "the second viewer to go on alone",
   );
-  assert.deepEqual([...first.complaints, ...second.complaints], []);
-  await second.context.close();
 });
 
 /** One finger from one point to another, as the browser hears it from a touch screen. */
@@ -90,40 +75,36 @@ async function pinch(page, middle) {
   await session.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
 }
 
-test("on a phone the panel is a sheet and a finger orbits", async () => {
-  const { page, context, complaints } = await openViewer(browser, server.url, {
+stage.test("on a phone the panel is a sheet and a finger orbits", async () => {
+  const { page } = await stage.watch({
     viewport: { width: 360, height: 740 },
     deviceScaleFactor: 2,
     hasTouch: true,
     isMobile: true,
   });
-  await firstPicture(page);
-  await settle(page);
+  await settle(page, stage.server);
   await screenshot(page, "phone");
   const panel = page.locator("#panel");
   const folded = await panel.boundingBox();
   assert.ok(folded.y > 600, "the sheet covers the picture at first");
 
-  const eyeBefore = JSON.stringify((await server.call("camera.get")).eye);
+  const eyeBefore = JSON.stringify((await stage.server.call("camera.get")).eye);
   await swipe(page, { x: 120, y: 300 }, { x: 260, y: 320 });
   await eventually(
-    async () => JSON.stringify((await server.call("camera.get")).eye) !== eyeBefore,
+    async () => JSON.stringify((await stage.server.call("camera.get")).eye) !== eyeBefore,
     "an orbit by finger",
   );
-  await page.waitForTimeout(1000);
-  const apart = await server.call("camera.get");
+  const apart = await restingCamera(page, stage.server);
   await pinch(page, { x: 180, y: 300 });
   await eventually(async () => {
-    const { eye, target } = await server.call("camera.get");
+    const { eye, target } = await stage.server.call("camera.get");
     const closer = distance(eye, target) < 0.9 * distance(apart.eye, apart.target);
     return closer && distance(target, apart.target) > 0;
   }, "a pinch to move closer and aside");
 
   await page.getByRole("button", { name: "Show panel" }).tap();
   await eventually(async () => (await panel.boundingBox()).y < 500, "an open sheet");
-  await page.evaluate(() => {
-    for (const fold of document.querySelectorAll(".section details")) fold.open = true;
-  });
+  await unfoldAll(page);
   await screenshot(page, "phone_sheet");
   const widest = await page.evaluate(() =>
     Math.max(
@@ -135,61 +116,44 @@ test("on a phone the panel is a sheet and a finger orbits", async () => {
     ),
   );
   assert.ok(widest <= 360, `something reaches to ${widest} px`);
-  assert.deepEqual(complaints, []);
-  await context.close();
 });
 
-test("where a canvas cannot be handed to the worker the page draws itself", async () => {
-  const context = await browser.newContext();
+stage.test("where a canvas cannot be handed to the worker the page draws itself", async () => {
+  const context = await stage.context();
   await context.addInitScript(() => {
     delete HTMLCanvasElement.prototype.transferControlToOffscreen;
   });
-  const { page, complaints } = await openViewer(browser, server.url, { context });
-  await firstPicture(page);
-  await settle(page);
+  const { page } = await stage.watch({ context });
+  await settle(page, stage.server);
   const { deviation } = statistics(await lookAt(page, "drawn_by_page"));
   assert.ok(deviation > 0.03, "the picture is nearly blank");
-  assert.deepEqual(complaints, []);
-  await context.close();
 });
 
-test("after a restart of the server the page brings scene, settings and camera back", async () => {
-  const { page, context, complaints } = await openViewer(browser, server.url);
-  await firstPicture(page);
-  const { scenes, current } = await server.call("scene.list");
-  const scene = scenes.find(({ name }) => name.includes("shadow_objects")).name;
-  assert.notEqual(current, scene);
-  await server.call("scene.load", { name: scene });
-  await server.call("settings.patch", { patch: { exposure: { compensation: 0.75 } } });
-  await page.waitForFunction((name) => document.title.startsWith(name), scene);
+stage.test("after a restart of the server the page brings scene, settings and camera back", async () => {
+  const { page, complaints } = await stage.watch({ complaining: true });
+  await stage.server.call("settings.patch", { patch: { exposure: { compensation: 0.75 } } });
+  const { name: light } = (await stage.server.call("lights.list")).lights[0];
+  await stage.server.call("lights.patch", { light, patch: { intensity: 2.25 } });
+  await page.waitForFunction(() => window.seen.heard["lights.changed"] > 0);
   await dragPicture(page, { x: 300, y: 300 }, { x: 520, y: 360 });
-  // The drag runs on a little after it ends: the camera to come back to is the one at rest.
-  let eyeBefore = null;
-  await eventually(async () => {
-    const seen = (await server.call("camera.get")).eye;
-    const rests = eyeBefore !== null && distance(seen, eyeBefore) === 0;
-    eyeBefore = seen;
-    await page.waitForTimeout(500);
-    return rests;
-  }, "the camera to rest");
-  assert.deepEqual(complaints, []);
+  const { eye } = await restingCamera(page, stage.server);
 
-  const { port } = server;
-  await server.stop();
+  assert.deepEqual(complaints, []);
+  await stage.server.stop();
   await page.waitForSelector('#pill[data-state="lost"]', { timeout: 20_000 });
   await page.getByText("Connection lost").waitFor();
   await screenshot(page, "connection_lost");
-  server = await startServer(port);
+  await stage.restartServer(["--scene", "mirror"]);
   await page.waitForSelector('#pill[data-state="live"]', { timeout: 40_000 });
   await eventually(async () => {
-    const camera = await server.call("camera.get").catch(() => null); // no scene at first
-    return camera && distance(camera.eye, eyeBefore) < 1e-3;
+    const camera = await stage.server.call("camera.get").catch(() => null); // no scene at first
+    return camera && distance(camera.eye, eye) < 1e-3;
   }, "the camera to be restored");
-  assert.equal((await server.call("scene.list")).current, scene);
-  assert.equal(await server.setting("exposure.compensation"), 0.75);
+  assert.equal((await stage.server.call("scene.list")).current, "shadow_objects");
+  assert.equal(await stage.server.setting("exposure.compensation"), 0.75);
+  assert.equal((await stage.server.call("lights.list")).lights[0].intensity, 2.25);
   await firstPicture(page);
-  await settle(page);
+  await settle(page, stage.server);
   await screenshot(page, "connection_back");
   assert.ok(statistics(await lookAt(page, "after_restart")).deviation > 0.03);
-  await context.close();
 });

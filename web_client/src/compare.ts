@@ -44,6 +44,9 @@ export class Comparison {
     this.newCanvas = newCanvas;
     viewer.camera.watch((camera) => camera && this.running?.follow(camera));
     viewer.settings.tree.watch((tree) => this.running?.share(tree));
+    viewer.parts.lights.watch(() => this.running?.light());
+    viewer.parts.materials.watch(() => this.running?.light());
+    viewer.parts.environment.watch(() => this.running?.light());
     viewer.animation.watch((animation) => animation && this.running?.play(animation));
     viewer.connection.state.watch(({ kind }) => {
       if (kind !== "live") this.stop();
@@ -53,9 +56,10 @@ export class Comparison {
 
   /** Whether this server and this browser can do it. */
   get possible(): boolean {
-    const methods = this.viewer.methods.value;
+    const { offers, standing } = this.viewer;
     const drawsAside = typeof HTMLCanvasElement.prototype.transferControlToOffscreen === "function";
-    return drawsAside && methods.has("session.create") && methods.has("session.close");
+    const mayOpen = standing.value.kind !== "watching" && offers.has("session.create");
+    return drawsAside && mayOpen && offers.has("session.close");
   }
 
   async start(counterpart: Counterpart): Promise<void> {
@@ -91,6 +95,7 @@ class RunningComparison {
   private readonly timer: number;
   private measuring = false;
   private shared = "";
+  private lit = "";
   private clip = "";
 
   constructor(
@@ -114,6 +119,11 @@ class RunningComparison {
         },
         draw: (picture) => picture.close(),
         warning: (message) => viewer.onError(message),
+        undecodable: (_, video) => {
+          if (!video) return;
+          this.connection.rpc.notify("stream.pause", {});
+          this.connection.rpc.notify("stream.resume", {});
+        },
       },
       session,
     );
@@ -128,6 +138,24 @@ class RunningComparison {
 
   follow({ eye, target, up, vertical_fov }: Camera): void {
     this.connection.rpc.notify("camera.set", { eye, target, up, vertical_fov });
+  }
+
+  /** Has the same lights, materials and environment there. */
+  light(): void {
+    const { parts } = this.viewer;
+    const { lights = {}, materials = {} } = parts.edits();
+    const environment = parts.environment.value?.current;
+    const text = JSON.stringify([lights, materials, environment]);
+    if (text === this.lit) return;
+    this.lit = text;
+    const { rpc } = this.connection;
+    for (const [light, patch] of Object.entries(lights)) {
+      rpc.notify("lights.patch", { light, patch });
+    }
+    for (const [material, patch] of Object.entries(materials)) {
+      rpc.notify("materials.patch", { material, patch });
+    }
+    if (environment !== undefined) rpc.notify("environment.set", { name: environment });
   }
 
   share(tree: JsonObject): void {
@@ -164,7 +192,7 @@ class RunningComparison {
 
   private async becomeLive(hello: Hello): Promise<void> {
     const { rpc } = this.connection;
-    const size = this.viewer.chooseSize(hello);
+    const size = this.viewer.stream.chooseSize(hello);
     await rpc.request<StreamSettings>("stream.configure", { ...size });
     const { counterpart } = this.shown;
     if (counterpart.kind === "preset") {
@@ -177,7 +205,9 @@ class RunningComparison {
       await rpc.request("settings.patch", { patch });
     }
     this.shared = "";
+    this.lit = "";
     this.share(this.viewer.settings.tree.value);
+    this.light();
     const camera = this.viewer.camera.value;
     if (camera) this.follow(camera);
   }

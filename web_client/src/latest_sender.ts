@@ -19,6 +19,11 @@ export class LatestSender {
     return this.busy.has(key) || this.waiting.has(key);
   }
 
+  /** Whether something newer than what is under way has still to be sent. */
+  waits(key: string): boolean {
+    return this.waiting.has(key);
+  }
+
   push(key: string, patch: JsonObject): void {
     this.waiting.set(key, joinPatches(this.waiting.get(key) ?? {}, patch));
     if (!this.busy.has(key)) void this.run(key);

@@ -3,13 +3,35 @@
 
 import type { Camera, JsonObject, JsonValue, Vector3 } from "heliograph/messages.ts";
 import { isObject } from "heliograph/settings_tree.ts";
+import { checkedEdits, mostEdits } from "./scene_edits.ts";
 import type { ClipState, ViewState } from "./view_state.ts";
 
 const key = "view";
 const digits = 6;
 
-/** The page's address with a view in its fragment. */
-export function linkTo(page: string, state: ViewState): string {
+/** Longer ones are cut by mail programs and messengers. */
+const longestLink = 8000;
+
+export interface Link {
+  href: string;
+  /** Whether changes of lights or materials had to be left out. */
+  shortened: boolean;
+}
+
+/** The page's address with a view in its fragment, of a length that can be passed on. */
+export function linkTo(page: string, state: ViewState): Link {
+  const [lights, materials] = [state.lights, state.materials];
+  const [full, lit, bare] = [
+    state,
+    { ...state, materials: undefined },
+    { ...state, materials: undefined, lights: undefined },
+  ].map((one) => hrefOf(page, one)) as [string, string, string];
+  const href = [full, lit].find(({ length }) => length <= longestLink) ?? bare;
+  const most = Math.max(...[lights, materials].map((edits) => Object.keys(edits ?? {}).length));
+  return { href, shortened: href !== full || most >= mostEdits };
+}
+
+function hrefOf(page: string, state: ViewState): string {
   const url = new URL(page);
   url.hash = `${key}=${encode(state)}`;
   return url.href;
@@ -44,11 +66,14 @@ function bytesOf(text: string): Uint8Array {
 function checked(value: unknown): ViewState | null {
   if (!isObject(value)) return null;
   const { scene, part, variant, environment, settings, clip, camera } = value as JsonObject;
+  const [lights, materials] = [checkedEdits(value.lights), checkedEdits(value.materials)];
   const state: ViewState = {};
   if (typeof scene === "string") state.scene = scene;
   if (typeof part === "number") state.part = part;
   if (typeof variant === "string") state.variant = variant;
-  if (typeof environment === "string") state.environment = environment;
+  if (environment === null || typeof environment === "string") state.environment = environment;
+  if (lights) state.lights = lights;
+  if (materials) state.materials = materials;
   if (isObject(settings)) state.settings = settings;
   if (clip === null || isClip(clip)) state.clip = clip;
   if (isCamera(camera)) state.camera = camera;

@@ -9,7 +9,7 @@ import { createHelp } from "./overlay/help.ts";
 import { mountPlainPictures } from "./overlay/plain_pictures.ts";
 import { mountPeople } from "./overlay/people.ts";
 import { mountTransport } from "./overlay/transport.ts";
-import { mountUpload } from "./overlay/upload.ts";
+import { bringScene, mountUpload } from "./overlay/upload.ts";
 import { mountTooltips } from "./overlay/tooltip.ts";
 import { mountPanel } from "./panel/panel.ts";
 import { focusOn } from "./view/camera.ts";
@@ -45,14 +45,16 @@ function main(): void {
   const viewer = new Viewer(document.baseURI, canvas);
   const toasts = new Toasts(find("toasts"));
   viewer.onError = (message) => toasts.show(message);
+  viewer.onNews = (message) => toasts.tell(message);
   const navigation = new Navigation(canvas, {
-    camera: () => (viewer.hello && viewer.inControl ? viewer.camera.value : null),
+    camera: () => (viewer.hello && viewer.mayChange ? viewer.camera.value : null),
     sceneSize: () => viewer.sceneSize(),
     moved: (camera) => viewer.moveCamera(camera),
     fit: () => void viewer.fitCamera(),
     focus: (x, y) => void focusAt(x, y),
   });
   const focusAt = async (x: number, y: number): Promise<void> => {
+    if (!viewer.mayChange) return;
     const pick = await viewer.pick(x, y);
     const camera = viewer.camera.value;
     if (!camera || !pick?.position || pick.distance === null) return;
@@ -72,6 +74,7 @@ function main(): void {
       divider,
       inspector: createPicker(canvas, find("mark")),
     },
+    bring: (file) => void bringScene(viewer, file, toasts),
     help: help.open,
     fullscreen: document.fullscreenEnabled ? toggleFullscreen : null,
   });
@@ -79,7 +82,7 @@ function main(): void {
   mountStatus(viewer, find("pill"), find("notice"));
   mountTooltips();
 
-  viewer.chooseSize = ({ limits, device }) => {
+  viewer.stream.chooseSize = ({ limits, device }) => {
     const { scale, automatic } = panel.resolution.value;
     return pictureSize(canvas.clientWidth, canvas.clientHeight, devicePixelRatio * scale, {
       maxWidth: limits.max_width,
@@ -90,19 +93,20 @@ function main(): void {
   let resizeTimer = 0;
   watchSize(canvas, () => {
     clearTimeout(resizeTimer);
-    resizeTimer = window.setTimeout(() => viewer.updateSize(), resizeQuietMs);
+    resizeTimer = window.setTimeout(() => viewer.stream.updateSize(), resizeQuietMs);
   });
-  panel.resolution.watch(() => viewer.updateSize());
+  panel.resolution.watch(() => viewer.stream.updateSize());
 
+  viewer.standing.watch(({ kind }) => canvas.classList.toggle("still", kind !== "may_change"));
   viewer.scene.watch((scene) => {
     document.title = scene ? `${scene.name} · Heliograph` : "Heliograph";
   });
-  const pauseUnseen = (): void => viewer.requestStream({ paused: document.hidden });
+  const pauseUnseen = (): void => viewer.stream.request({ paused: document.hidden });
   document.addEventListener("visibilitychange", pauseUnseen);
   pauseUnseen();
   addEventListener("keydown", (event) => {
     const undoing = (event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z";
-    if (undoing && !document.activeElement?.matches(typedInto)) {
+    if (undoing && viewer.mayChange && !document.activeElement?.matches(typedInto)) {
       if (event.shiftKey) viewer.settings.redo();
       else viewer.settings.undo();
       event.preventDefault();

@@ -29,7 +29,7 @@ export function outputActions(viewer: Viewer, host: OutputHost): MenuItem[] {
       label: "Save picture as EXR",
       icon: "save",
       run: save("exr"),
-      offered: () => viewer.captureFormats.value.has("exr"),
+      offered: () => viewer.offers.captureFormats.value.has("exr"),
     },
     {
       label: "Copy picture",
@@ -59,15 +59,20 @@ export function outputActions(viewer: Viewer, host: OutputHost): MenuItem[] {
       label: "Copy link to this view",
       icon: "link",
       run: attempt(async () => {
-        await copyText(linkTo(location.href, viewer.viewState()));
-        host.tell("The link to this view is in the clipboard");
+        const { href, shortened } = linkTo(location.href, viewer.viewState());
+        await copyText(href);
+        host.tell(
+          shortened
+            ? "The link is in the clipboard, without all the changed materials: they are too many"
+            : "The link to this view is in the clipboard",
+        );
       }),
     },
     {
       label: "Copy code to embed",
       icon: "code",
       run: attempt(async () => {
-        const link = linkTo(location.href, viewer.viewState()).replaceAll("&", "&amp;");
+        const link = linkTo(location.href, viewer.viewState()).href.replaceAll("&", "&amp;");
         const title = (viewer.scene.value?.name ?? "Heliograph").replaceAll('"', "&quot;");
         await copyText(
           `<iframe src="${link}" title="${title}" width="960" height="540" ` +

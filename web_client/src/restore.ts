@@ -4,12 +4,14 @@
 import {
   type AnimationState,
   type Camera,
+  type EnvironmentState,
   type JsonObject,
   type SceneInfo,
   ErrorCode,
 } from "heliograph/messages.ts";
 import { ChannelClosed, RpcError, type RpcPeer } from "heliograph/rpc.ts";
 import type { ControlGroup } from "heliograph/settings_schema.ts";
+import { type Edits, type Part, patchesTowards } from "./scene_edits.ts";
 import { type ViewState, patchTowards, withoutPath } from "./view_state.ts";
 
 const retryMs = 300;
@@ -19,6 +21,8 @@ const mostRefusals = 12;
 export interface RestoreHost {
   rpc: RpcPeer;
   schema(): ControlGroup;
+  /** Whether the server has this method. */
+  offers(method: string): boolean;
   /** Whether this state is still wanted: not after a newer wish or on a newer connection. */
   wanted(): boolean;
   /** Tells what could not be put back. */
@@ -27,7 +31,15 @@ export interface RestoreHost {
 
 /** Resolves with true when every part is acknowledged, false when it is no longer wanted. */
 export async function restore(host: RestoreHost, state: ViewState): Promise<boolean> {
-  const steps = [restoreScene, restoreSettings, restoreEnvironment, restoreClip, restoreCamera];
+  const steps = [
+    restoreScene,
+    restoreSettings,
+    restoreEnvironment,
+    restoreLights,
+    restoreMaterials,
+    restoreClip,
+    restoreCamera,
+  ];
   for (const step of steps) {
     if (!(await insist(host, () => step(host, state)))) return false;
   }
@@ -89,8 +101,42 @@ async function restoreSettings(host: RestoreHost, { settings }: ViewState): Prom
   }
 }
 
-async function restoreEnvironment({ rpc }: RestoreHost, state: ViewState): Promise<void> {
-  if (state.environment) await rpc.request("environment.set", { name: state.environment });
+async function restoreEnvironment(host: RestoreHost, { environment }: ViewState): Promise<void> {
+  if (environment === undefined || !host.offers("environment.set")) return;
+  const { current } = await host.rpc.request<EnvironmentState>("environment.list");
+  if (current !== environment) await host.rpc.request("environment.set", { name: environment });
+}
+
+async function restoreLights(host: RestoreHost, { lights }: ViewState): Promise<void> {
+  if (!lights || !host.offers("lights.patch")) return;
+  const there = await host.rpc.request<{ lights: Part[] }>("lights.list");
+  await restoreParts(host, patchesTowards(there.lights, lights), (light, patch) =>
+    host.rpc.request("lights.patch", { light, patch }),
+  );
+}
+
+async function restoreMaterials(host: RestoreHost, { materials }: ViewState): Promise<void> {
+  if (!materials || !host.offers("materials.patch")) return;
+  const there = await host.rpc.request<{ materials: Part[] }>("materials.list");
+  await restoreParts(host, patchesTowards(there.materials, materials), (material, patch) =>
+    host.rpc.request("materials.patch", { material, patch }),
+  );
+}
+
+/** What the server does not take of one light or material leaves the others in place. */
+async function restoreParts(
+  host: RestoreHost,
+  patches: Edits,
+  send: (name: string, patch: JsonObject) => Promise<unknown>,
+): Promise<void> {
+  for (const [name, patch] of Object.entries(patches)) {
+    try {
+      await send(name, patch);
+    } catch (error) {
+      if (!(error instanceof RpcError) || isPassing(error)) throw error;
+      host.lost(`The server does not take ${name} as it was`);
+    }
+  }
 }
 
 async function restoreClip({ rpc }: RestoreHost, { clip }: ViewState): Promise<void> {

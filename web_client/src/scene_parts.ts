@@ -8,12 +8,9 @@ import type {
 } from "heliograph/messages.ts";
 import { ChannelClosed } from "heliograph/rpc.ts";
 import { LatestSender } from "./latest_sender.ts";
+import { type Edits, type Part, editsOf } from "./scene_edits.ts";
 import { Signal } from "./signal.ts";
 import type { Viewer } from "./viewer.ts";
-
-interface Named {
-  name: string;
-}
 
 export class SceneParts {
   readonly lights = new Signal<LightInfo[]>([]);
@@ -25,14 +22,14 @@ export class SceneParts {
 
   constructor(viewer: Viewer) {
     this.viewer = viewer;
-    this.lightSender = new LatestSender((light, patch) =>
-      this.attempt("lights.patch", { light, patch }),
-    );
-    this.materialSender = new LatestSender((material, patch) =>
-      this.attempt("materials.patch", { material, patch }),
-    );
+    this.lightSender = new LatestSender(async (light, patch) => {
+      this.takeLight(await this.attempt("lights.patch", { light, patch }));
+    });
+    this.materialSender = new LatestSender(async (material, patch) => {
+      this.takeMaterial(await this.attempt("materials.patch", { material, patch }));
+    });
     viewer.scene.watch(() => void this.read());
-    viewer.methods.watch(() => void this.read());
+    viewer.offers.methods.watch(() => void this.read());
   }
 
   patchLight(name: string, patch: Partial<LightInfo>): void {
@@ -45,17 +42,23 @@ export class SceneParts {
     this.materialSender.push(name, patch as unknown as JsonObject);
   }
 
+  /** What differs from the file, as far as the server tells. */
+  edits(): { lights?: Edits; materials?: Edits } {
+    return { lights: editsOf(this.lights.value), materials: editsOf(this.materials.value) };
+  }
+
   /** Back to what the file says. */
   async resetLight(name: string): Promise<void> {
-    const patch = { direction: null, angular_diameter: null, intensity: null, enabled: null };
-    await this.attempt("lights.patch", { light: name, patch });
-    await this.read();
+    const light = this.lights.value.find((one) => one.name === name);
+    const shown = ["direction", "angular_diameter", "radius", "intensity", "enabled"];
+    const patch = resetting(light, shown);
+    this.takeLight(await this.attempt("lights.patch", { light: name, patch }));
   }
 
   async resetMaterial(name: string): Promise<void> {
-    const patch = { base_color: null, roughness: null, metallic: null };
-    await this.attempt("materials.patch", { material: name, patch });
-    await this.read();
+    const material = this.materials.value.find((one) => one.name === name);
+    const patch = resetting(material, ["base_color", "roughness", "metallic"]);
+    this.takeMaterial(await this.attempt("materials.patch", { material: name, patch }));
   }
 
   async chooseEnvironment(name: string | null): Promise<void> {
@@ -65,15 +68,23 @@ export class SceneParts {
 
   /** Takes a change made by another viewer. */
   notified(method: string, params: unknown): void {
-    const { light, material } = params as { light?: LightInfo; material?: MaterialInfo };
-    if (method === "lights.changed" && light && !this.lightSender.unsettled(light.name)) {
-      this.lights.set(merged(this.lights.value, light.name, light));
-    } else if (method === "materials.changed" && material) {
-      if (this.materialSender.unsettled(material.name)) return;
-      this.materials.set(merged(this.materials.value, material.name, material));
-    } else if (method === "environment.changed") {
-      void this.read();
-    }
+    const { light, material } = params as Partial<LightAnswer & MaterialAnswer>;
+    if (light && !this.lightSender.unsettled(light.name)) this.takeLight({ light });
+    if (material && !this.materialSender.unsettled(material.name)) this.takeMaterial({ material });
+    if (method === "environment.changed") void this.read();
+  }
+
+  /** What the server has, unless something newer has still to be sent there. */
+  private takeLight(answer: LightAnswer | null): void {
+    const light = answer?.light;
+    if (!light || this.lightSender.waits(light.name)) return;
+    this.lights.set(merged(this.lights.value, light.name, light));
+  }
+
+  private takeMaterial(answer: MaterialAnswer | null): void {
+    const material = answer?.material;
+    if (!material || this.materialSender.waits(material.name)) return;
+    this.materials.set(merged(this.materials.value, material.name, material));
   }
 
   private async read(): Promise<void> {
@@ -89,7 +100,7 @@ export class SceneParts {
   }
 
   private async ask<Answer>(method: string): Promise<Answer | null> {
-    if (!this.viewer.methods.value.has(method)) return null;
+    if (!this.viewer.offers.has(method)) return null;
     try {
       return await this.viewer.rpc.request<Answer>(method);
     } catch {
@@ -97,16 +108,31 @@ export class SceneParts {
     }
   }
 
-  private async attempt(method: string, params: object): Promise<void> {
+  private async attempt<Answer>(method: string, params: object): Promise<Answer | null> {
     try {
-      await this.viewer.rpc.request(method, params);
+      return await this.viewer.rpc.request<Answer>(method, params);
     } catch (error) {
       this.viewer.report(error);
       if (!(error instanceof ChannelClosed)) await this.read();
+      return null;
     }
   }
 }
 
-function merged<Part extends Named>(parts: Part[], name: string, patch: Partial<Part>): Part[] {
+interface LightAnswer {
+  light: LightInfo;
+}
+
+interface MaterialAnswer {
+  material: MaterialInfo;
+}
+
+function merged<One extends Part>(parts: One[], name: string, patch: Partial<One>): One[] {
   return parts.map((part) => (part.name === name ? { ...part, ...patch } : part));
+}
+
+/** Resets what differs; where the server does not tell, what can be changed here and is there. */
+function resetting(part: Part | undefined, shown: string[]): JsonObject {
+  const members = part?.changed ?? shown.filter((member) => part && member in part);
+  return Object.fromEntries(members.map((member) => [member, null]));
 }

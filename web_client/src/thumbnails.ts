@@ -16,6 +16,11 @@ export function thumbnailOf(scene: string): string | null {
   return preferences.text(keyOf(scene), "") || null;
 }
 
+export function keepThumbnail(scene: string, picture: string): void {
+  preferences.setText(keyOf(scene), picture);
+  thumbnailChanged.set(scene);
+}
+
 /** Takes a thumbnail whenever a view of the finished picture has come to rest. */
 export function mountThumbnails(viewer: Viewer): void {
   let timer = 0;
@@ -42,8 +47,7 @@ async function take(viewer: Viewer): Promise<void> {
   if (context) {
     context.imageSmoothingQuality = "high";
     context.drawImage(picture, left, top, wide, high, 0, 0, canvas.width, canvas.height);
-    preferences.setText(keyOf(scene), canvas.toDataURL("image/jpeg", 0.75));
-    thumbnailChanged.set(scene);
+    keepThumbnail(scene, canvas.toDataURL("image/jpeg", 0.75));
   }
   picture.close();
 }

@@ -3,6 +3,7 @@
 import type { AnimationState, Camera, JsonObject } from "heliograph/messages.ts";
 import { type ControlGroup, allControls } from "heliograph/settings_schema.ts";
 import { joinPatches, patchOf, sameValue, valueAt } from "heliograph/settings_tree.ts";
+import type { Edits } from "./scene_edits.ts";
 
 export interface ClipState {
   clip: string;
@@ -17,7 +18,11 @@ export interface ViewState {
   /** Which scene of a file that holds several. */
   part?: number;
   variant?: string;
-  environment?: string;
+  /** null: the one that goes with the scene. */
+  environment?: string | null;
+  /** What differs from the scene's file; all else is as there. */
+  lights?: Edits;
+  materials?: Edits;
   /** Only what differs from the defaults; everything else means the default. */
   settings?: JsonObject;
   /** null: the scene rests in the pose of its file. */

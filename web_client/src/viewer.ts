@@ -3,36 +3,33 @@
 
 import {
   type AnimationState,
-  type BufferInfo,
   type Camera,
   type Capture,
   type FrameStats,
   type Hello,
   type JsonObject,
   type Pick,
-  type PresetInfo,
   type SceneInfo,
   type SceneList,
   type SceneProgress,
   type SessionInfo,
-  type StreamSettings,
   ErrorCode,
 } from "heliograph/messages.ts";
-import { type OpenRpc, choicesOf } from "heliograph/openrpc.ts";
 import { ChannelClosed, RpcError, type RpcPeer } from "heliograph/rpc.ts";
+import { Offers } from "./offers.ts";
 import { captureBlob, shrunk } from "./pictures.ts";
-import { preferences } from "./preferences.ts";
 import { type RestoreHost, restore } from "./restore.ts";
 import { SceneParts } from "./scene_parts.ts";
 import { SettingsStore } from "./settings_store.ts";
 import { Signal } from "./signal.ts";
+import { type Standing, explained, standingOf } from "./standing.ts";
 import { CanvasPainter } from "./stream/canvas_painter.ts";
 import { Connection } from "./stream/connection.ts";
 import { LatencyMeter } from "./stream/latency.ts";
 import { RateMeter } from "./stream/rates.ts";
 import { type DrawnFrame, clockMs } from "./stream/worker_messages.ts";
+import { StreamRequests } from "./stream_requests.ts";
 import { length, subtract } from "./view/vector.ts";
-import type { PictureSize } from "./view/viewport.ts";
 import { type ViewState, changesOf, clipState } from "./view_state.ts";
 
 const statsIntervalMs = 250;
@@ -44,7 +41,9 @@ export class Viewer {
   readonly connection: Connection;
   readonly rpc: RpcPeer;
   readonly settings: SettingsStore;
+  readonly offers: Offers;
   readonly parts: SceneParts;
+  readonly stream: StreamRequests;
   readonly scenes = new Signal<SceneList>({ scenes: [], current: null });
   readonly scene = new Signal<SceneInfo | null>(null);
   readonly loading = new Signal<SceneProgress | null>(null);
@@ -54,19 +53,16 @@ export class Viewer {
   readonly animation = new Signal<AnimationState | null>(null);
   /** Who is here; null where the server does not tell. */
   readonly session = new Signal<SessionInfo | null>(null);
-  readonly buffers = new Signal<BufferInfo[]>([]);
-  /** File formats of `capture`. */
-  readonly captureFormats = new Signal<ReadonlySet<string>>(new Set(["png"]));
-  readonly presets = new Signal<PresetInfo[]>([]);
-  /** Names of the methods that this server has; what it lacks is not offered. */
-  readonly methods = new Signal<ReadonlySet<string>>(new Set());
+  /** Whether this page may change what is shown. */
+  readonly standing = new Signal<Standing>({ kind: "may_change" });
   readonly stats = new Signal<FrameStats | null>(null);
   readonly frame = new Signal<DrawnFrame | null>(null);
-  readonly stream = new Signal<StreamSettings | null>(null);
   readonly latency = new LatencyMeter();
   readonly rates = new RateMeter();
   /** Says in one sentence what went wrong. */
   onError: (message: string) => void = () => {};
+  /** Says in one sentence what is worth knowing. */
+  onNews: (message: string) => void = () => {};
   /** Goes to a pose, on a way that one can follow. */
   jumpTo: (camera: Camera) => void = (camera) => this.moveCamera(camera);
   /** Starts or stops the clip. */
@@ -75,11 +71,7 @@ export class Viewer {
   keepView: () => void = () => {};
   /** True while a hand is on the camera; poses from elsewhere then wait. */
   cameraBusy: () => boolean = () => false;
-  /** The size of picture that suits the view and this server. */
-  chooseSize: (hello: Hello) => PictureSize = () => ({ width: 640, height: 360 });
   private inputSeq = 0;
-  private askedSize: PictureSize | null = null;
-  private wantedStream: Partial<StreamSettings> = {};
   private progressTimer = 0;
   private animationReadAt = 0;
   /** The server's hello, from its arrival until the connection is gone. */
@@ -101,15 +93,26 @@ export class Viewer {
       drawn: (frame) => this.frameDrawn(frame),
       draw: (picture, frame) => painter?.draw(picture, frame.width, frame.height),
       warning: (message) => this.onError(message),
+      undecodable: (message, video) => {
+        if (video) this.stream.videoBroke();
+        else this.onError(`A picture could not be shown: ${message}`);
+      },
     }, new URL(base).searchParams.get("session") ?? undefined);
     this.rpc = this.connection.rpc;
     this.settings = new SettingsStore(this.rpc, (error) => this.report(error));
+    this.offers = new Offers(this.rpc);
     this.parts = new SceneParts(this);
+    this.stream = new StreamRequests(this.rpc, {
+      mayResize: () => this.mayChange,
+      report: (error) => this.report(error),
+      tell: (sentence) => this.onNews(sentence),
+    });
     this.connection.state.watch(({ kind }) => {
       if (kind === "live") return;
       this.greeting = null;
-      // The view that a new server starts with would flash by before the wish is carried out.
-      if (this.scene.value || this.wish) this.connection.hold();
+      this.stream.end();
+      // What a server has at first, of another size or another view, would flash by.
+      this.connection.hold();
     });
     this.animation.watch(() => (this.animationReadAt = Date.now()));
   }
@@ -119,10 +122,8 @@ export class Viewer {
     return state.kind === "live" ? state.hello : null;
   }
 
-  /** Whether this page may change what is shown; false while another viewer has control. */
-  get inControl(): boolean {
-    const me = this.session.value?.viewers.find(({ you }) => you);
-    return me?.control ?? true;
+  get mayChange(): boolean {
+    return this.standing.value.kind === "may_change";
   }
 
   /** Largest extent of the scene in metres; 1 while none is known. */
@@ -139,7 +140,8 @@ export class Viewer {
       scene: scene?.name,
       part: scene?.scene || undefined,
       variant: scene?.variant ?? undefined,
-      environment: this.parts.environment.value?.current ?? undefined,
+      environment: this.parts.environment.value?.current,
+      ...this.parts.edits(),
       settings: changesOf(this.settings.schema.value, this.settings.tree.value),
       clip: clipState(this.animation.value, this.animationReadAt),
       camera: this.camera.value ?? undefined,
@@ -149,7 +151,10 @@ export class Viewer {
   /** Brings the session to this state, now or when there is a connection. */
   show(state: ViewState): Promise<void> {
     this.wish = state;
-    if (this.greeting) return this.carryOutWish();
+    if (this.greeting) {
+      this.dropForbiddenWish();
+      return this.carryOutWish();
+    }
     this.connection.hold();
     return Promise.resolve();
   }
@@ -173,7 +178,7 @@ export class Viewer {
   }
 
   async fitCamera(): Promise<void> {
-    if (this.wish) return;
+    if (this.wish || !this.mayChange) return;
     await this.attempt(async () => this.camera.set(await this.rpc.request<Camera>("camera.fit")));
   }
 
@@ -200,19 +205,9 @@ export class Viewer {
     });
   }
 
-  /** Asks for pictures of another size if the view, the screen or the choice has changed. */
-  updateSize(): void {
-    if (!this.greeting) return;
-    const size = this.chooseSize(this.greeting);
-    const before = this.askedSize;
-    if (before && before.width === size.width && before.height === size.height) return;
-    this.askedSize = size;
-    void this.configureStream(size);
-  }
-
   /** What lies under a point of the picture, in fractions of its width and height from the top left. */
   async pick(x: number, y: number): Promise<Pick | null> {
-    if (!this.methods.value.has("scene.pick")) return null;
+    if (!this.offers.has("scene.pick")) return null;
     try {
       const pick = await this.rpc.request<Pick>("scene.pick", { x, y });
       return pick.hit ? pick : null;
@@ -224,21 +219,22 @@ export class Viewer {
 
   /** A buffer of the frame as a small picture, a data address. */
   async smallPicture(buffer: string, width: number): Promise<string> {
-    const format = this.captureFormats.value.has("jpeg") ? "jpeg" : "png";
+    const format = this.offers.captureFormats.value.has("jpeg") ? "jpeg" : "png";
     const capture = await this.capture(buffer, format);
     return shrunk(captureBlob(capture), width);
-  }
-
-  /** Changes the stream; remembered for the next connection. */
-  requestStream(change: Partial<StreamSettings>): void {
-    this.wantedStream = { ...this.wantedStream, ...change };
-    void this.configureStream(change);
   }
 
   /** A buffer as a file; the one that is shown unless another is named. */
   async capture(name?: string, format = "png"): Promise<Capture> {
     const buffer = name ?? String(this.settings.value(bufferSetting) ?? "output");
     return this.rpc.request<Capture>("frame.capture", { buffer, format }, 120_000);
+  }
+
+  /** Says who may change things. */
+  async control(wanted: object): Promise<void> {
+    await this.attempt(async () => {
+      this.setSession(await this.rpc.request<SessionInfo>("session.control", wanted));
+    });
   }
 
   report(error: unknown): void {
@@ -248,30 +244,35 @@ export class Viewer {
   }
 
   private async becomeLive(hello: Hello): Promise<void> {
-    const goesOn = hello.instance === this.instance;
-    if (this.instance && !goesOn && !this.wish && this.scene.value) this.wish = this.viewState();
     this.greeting = hello;
     this.latency.reset();
     this.inputSeq = 0;
-    this.askedSize = this.chooseSize(hello);
-    const unseen = this.wish ? { paused: true } : {};
-    const codec = preferences.text("codec", isLocal() ? "jpeg" : "h264");
-    const coded = hello.codecs.length > 1 && hello.codecs.includes(codec) ? { codec } : {};
+    await this.readSession();
+    const isNew = this.instance !== null && hello.instance !== this.instance;
+    if (isNew && !this.wish && this.scene.value && this.mayChange) this.wish = this.viewState();
+    this.dropForbiddenWish();
     await Promise.all([
-      this.configureStream({ ...this.wantedStream, ...this.askedSize, ...coded, ...unseen }),
+      this.stream.begin(hello, this.wish !== null),
       this.settings.load(),
       this.refreshScenes(),
-      this.attempt(() => this.readBuffers()),
-      this.attempt(() => this.readOffers()),
+      this.attempt(() => this.offers.readBuffers()),
+      this.attempt(() => this.offers.read()),
       this.attempt(() => this.rpc.request("stats.subscribe", { interval_ms: statsIntervalMs })),
     ]);
     if (this.wish) {
       void this.attempt(() => this.carryOutWish());
     } else {
-      this.connection.release(0);
+      this.connection.release({ oldestRev: 0, size: this.stream.askedSize });
       await this.readScene();
       this.instance = hello.instance;
     }
+  }
+
+  /** Who has no control gets to see what others chose, whatever a link says. */
+  private dropForbiddenWish(): void {
+    if (!this.wish || this.mayChange) return;
+    this.wish = null;
+    this.onNews(`The view of the link is not shown. ${explained(this.standing.value)}`);
   }
 
   private async carryOutWish(): Promise<void> {
@@ -280,6 +281,7 @@ export class Viewer {
     const host: RestoreHost = {
       rpc: this.rpc,
       schema: () => this.settings.schema.value,
+      offers: (method) => this.offers.has(method),
       wanted: () => this.greeting === greeting && this.wish === wish,
       lost: (sentence) => this.onError(sentence),
     };
@@ -290,8 +292,8 @@ export class Viewer {
     this.instance = greeting.instance;
     try {
       await Promise.all([this.settings.load(), this.refreshScenes(), this.readScene()]);
-      this.connection.release(this.camera.value?.rev ?? 0);
-      await this.configureStream({ paused: this.wantedStream.paused ?? false });
+      this.connection.release({ oldestRev: this.camera.value?.rev ?? 0 });
+      await this.stream.show();
     } finally {
       this.restoring.set(false);
     }
@@ -314,21 +316,12 @@ export class Viewer {
     }
   }
 
-  private async readBuffers(): Promise<void> {
-    const answer = await this.rpc.request<{ buffers: BufferInfo[] }>("frame.buffers");
-    this.buffers.set(answer.buffers);
-  }
-
-  private async readOffers(): Promise<void> {
-    const [openrpc, answer] = await Promise.all([
-      this.rpc.request<OpenRpc>("rpc.discover"),
-      this.rpc.request<{ presets: PresetInfo[] }>("settings.presets"),
-    ]);
-    this.methods.set(new Set(openrpc.methods.map(({ name }) => name)));
-    this.captureFormats.set(new Set(choicesOf(openrpc, "frame.capture", "format")));
-    this.presets.set(answer.presets);
-    if (this.methods.value.has("session.info")) {
+  /** Nothing, where the server has no sessions to tell of. */
+  private async readSession(): Promise<void> {
+    try {
       this.setSession(await this.rpc.request<SessionInfo>("session.info"));
+    } catch (error) {
+      if (error instanceof ChannelClosed) throw error;
     }
   }
 
@@ -337,6 +330,8 @@ export class Viewer {
     const own = this.greeting?.viewer;
     const viewers = session.viewers.map((one) => ({ ...one, you: one.viewer === own }));
     this.session.set({ ...session, viewers });
+    this.standing.set(standingOf(this.session.value, this.greeting?.role));
+    this.stream.updateSize();
   }
 
   private async sceneChanged(info: SceneInfo): Promise<void> {
@@ -346,14 +341,7 @@ export class Viewer {
     this.scene.set(info);
     this.scenes.set({ ...this.scenes.value, current: info.name });
     await this.attempt(() => this.readScene());
-    await this.attempt(() => this.readBuffers());
-  }
-
-  private async configureStream(change: Partial<StreamSettings>): Promise<void> {
-    if (Object.keys(change).length === 0 || !this.greeting) return;
-    await this.attempt(async () => {
-      this.stream.set(await this.rpc.request<StreamSettings>("stream.configure", change));
-    });
+    await this.attempt(() => this.offers.readBuffers());
   }
 
   private frameDrawn(frame: DrawnFrame): void {
@@ -407,9 +395,4 @@ export class Viewer {
       this.report(error);
     }
   }
-}
-
-/** JPEG is the sharper picture in motion; away from this machine bandwidth counts for more. */
-function isLocal(): boolean {
-  return ["localhost", "127.0.0.1", "[::1]"].includes(location.hostname);
 }

@@ -50,6 +50,11 @@ function startingServer(refusals: (method: string, params: JsonObject) => Answer
     calls.push(`${method} ${JSON.stringify(params)}`);
     if (method === "scene.load") scene = params.name as string;
     if (method === "settings.get") return { result: { settings: defaults } };
+    if (method === "lights.list") {
+      const sun = { name: "sun", intensity: 3, enabled: false, changed: ["enabled"] };
+      return { result: { lights: [sun, { name: "lamp", intensity: 1, changed: [] }] } };
+    }
+    if (method === "environment.list") return { result: { environments: [], current: "dusk" } };
     if (method === "animation.list") {
       return { result: { clips: [{ name: "walk", duration: 3 }], clip: null, playing: false } };
     }
@@ -68,6 +73,7 @@ function startingServer(refusals: (method: string, params: JsonObject) => Answer
   const host = {
     rpc,
     schema: () => schema,
+    offers: () => true,
     wanted: () => true,
     lost: (sentence: string) => void lost.push(sentence),
   };
@@ -111,6 +117,23 @@ test("what another version refuses is left out, the rest arrives", async () => {
   await restore(host, { settings: { exposure: { ev: 2, old: 7 } } });
   assert.ok(calls.includes('settings.patch {"patch":{"exposure":{"ev":2}}}'));
   assert.match(lost.join(), /exposure\.old/);
+});
+
+test("lights become as they were: what differs is sent, other changes are taken back", async () => {
+  const { host, calls, lost } = startingServer((method, params) =>
+    method === "lights.patch" && params.light === "lamp"
+      ? { error: { code: -32004, message: "no such light" } }
+      : null,
+  );
+  const lights = { sun: { intensity: 3.5 }, lamp: { intensity: 2 }, gone: { intensity: 1 } };
+  assert.equal(await restore(host, { lights, environment: null }), true);
+  assert.deepEqual(calls, [
+    "environment.list {}",
+    'environment.set {"name":null}',
+    "lights.list {}",
+    'lights.patch {"light":"sun","patch":{"enabled":null,"intensity":3.5}}',
+  ]);
+  assert.deepEqual(lost, ["The server does not take lamp as it was"]);
 });
 
 test("a state that is no longer wanted stops", async () => {

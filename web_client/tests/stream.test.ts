@@ -60,19 +60,20 @@ test("rates are those of the window and zero at rest", () => {
   assert.deepEqual(meter.read(4000), { fps: 0, bytesPerSecond: 0 });
 });
 
-function frameMessage(seq: number, rev = 0): ArrayBuffer {
+function frameMessage(seq: number, rev = 0, width = 0): ArrayBuffer {
   const buffer = new ArrayBuffer(68);
   new Uint8Array(buffer).set([0x48, 0x56, 0x52, 0x46, 1, 1, 1, 0]);
   const view = new DataView(buffer);
   view.setUint16(8, 64, true);
   view.setUint32(12, seq, true);
   view.setUint32(24, rev, true);
+  view.setUint16(36, width, true);
   view.setUint8(64, seq);
   return buffer;
 }
 
 /** A pipeline whose decoder finishes when the test says so. */
-function pipeline() {
+function pipeline(sizePatienceMs?: number) {
   const log: string[] = [];
   const finish: ((works: boolean) => void)[] = [];
   const frames = new FramePipeline(
@@ -86,6 +87,7 @@ function pipeline() {
         log.push(`decode ${bytes[0]}`);
         finish.push((works) => (works ? resolve({} as ImageBitmap) : reject(new Error("bad"))));
       }),
+    sizePatienceMs,
   );
   const decoded = async (works = true): Promise<void> => {
     finish.shift()?.(works);
@@ -129,12 +131,38 @@ test("held frames wait, and are shown or dropped on release; none goes unacknowl
   frames.hold();
   for (const seq of [1, 2]) frames.push(frameMessage(seq, 7));
   assert.deepEqual(log, ["ack 1"]);
-  frames.release(7);
+  frames.release({ oldestRev: 7 });
   await decoded();
   assert.deepEqual(log.splice(0), ["ack 1", "decode 2", "draw 2", "ack 2"]);
   frames.hold();
   frames.push(frameMessage(3, 7));
-  frames.release(8);
+  frames.release({ oldestRev: 8 });
   frames.push(frameMessage(4, 7));
   assert.deepEqual(log, ["ack 3", "ack 4"]);
+});
+
+test("a new page waits for a picture of the size that it asked for", async () => {
+  const { frames, log, decoded } = pipeline();
+  frames.hold();
+  frames.push(frameMessage(1, 3, 640));
+  frames.release({ oldestRev: 0, size: { width: 800, height: 0 } });
+  frames.push(frameMessage(2, 3, 640));
+  frames.push(frameMessage(3, 3, 800));
+  await decoded();
+  assert.deepEqual(log.splice(0), ["ack 1", "ack 2", "decode 3", "draw 3", "ack 3"]);
+  frames.push(frameMessage(4, 3, 640)); // others may choose another size later
+  await decoded();
+  assert.deepEqual(log, ["decode 4", "draw 4", "ack 4"]);
+  frames.clear();
+});
+
+test("where no picture of that size comes, any is better than none", async () => {
+  const { frames, log } = pipeline(1);
+  frames.hold();
+  frames.release({ oldestRev: 0, size: { width: 800, height: 0 } });
+  frames.push(frameMessage(1, 3, 640));
+  assert.equal(log[0], "ack 1");
+  while (log.length < 2) await new Promise((resolve) => setTimeout(resolve, 1));
+  assert.deepEqual(log, ["ack 1", "decode 1"]);
+  frames.clear();
 });

@@ -57,7 +57,8 @@ HelloResult greeting(SessionHost& host, const Session& session,
       .max_width = limits.max_width,
       .max_height = limits.max_height,
       .max_message_bytes = static_cast<std::uint32_t>(host.dispatch_limits().max_message_bytes),
-      .ack_window = stream::ack_window};
+      .ack_window = stream::ack_window,
+      .max_upload_bytes = call.view_only ? 0 : host.max_upload_bytes()};
   result.rev = session.rev();
   result.instance = instance();
   return result;

@@ -1,8 +1,10 @@
-// A headless Chromium and pages that remember everything that went wrong in them.
+// A headless Chromium, pages that remember everything that went wrong in them, and what tests do
+// with both.
 
 import { join } from "node:path";
 import { chromium } from "playwright-core";
 import { chromiumPath, outputFolder } from "./environment.mjs";
+import { observer } from "./observer.mjs";
 
 export function launchBrowser() {
   return chromium.launch({
@@ -20,15 +22,8 @@ export function launchBrowser() {
   });
 }
 
-/** Opens the client, in a new context if none is given. `complaints` collects console errors, exceptions and CSP violations. */
-export async function openViewer(browser, url, { context: given, ...options } = {}) {
-  const context =
-    given ??
-    (await browser.newContext({
-      viewport: { width: 1280, height: 720 },
-      colorScheme: "dark",
-      ...options,
-    }));
+/** Opens the client. `complaints` collects console errors, exceptions and CSP violations. */
+export async function openViewer(context, url) {
   const page = await context.newPage();
   const complaints = [];
   page.on("console", (message) => {
@@ -36,6 +31,7 @@ export async function openViewer(browser, url, { context: given, ...options } = 
   });
   page.on("pageerror", (error) => complaints.push(error.message));
   await page.exposeFunction("reportViolation", (text) => complaints.push(text));
+  await page.addInitScript(observer);
   await page.addInitScript(() => {
     document.addEventListener("securitypolicyviolation", (event) => {
       window.reportViolation(`CSP: ${event.violatedDirective} ${event.blockedURI}`);
@@ -55,6 +51,52 @@ export async function firstPicture(page, timeout = 120_000) {
     undefined,
     { timeout },
   );
+}
+
+/** Waits until the page shows the newest state of its session, final or nearly so. */
+export async function settle(page, server, timeout = 120_000) {
+  const { rev } = await server.call("session.info");
+  await page.waitForFunction(
+    (wanted) => {
+      const { frame } = window.seen;
+      return frame && frame.stateRev >= wanted && (frame.final || frame.samples >= 16);
+    },
+    rev,
+    { timeout, polling: 100 },
+  );
+}
+
+/** Moves the session's camera from outside and waits until the page has heard of it. */
+export async function setCamera(page, server, pose) {
+  const { eye } = await server.call("camera.set", pose);
+  await page.waitForFunction(
+    (wanted) => window.seen.camera?.eye.every((value, axis) => value === wanted[axis]),
+    eye,
+    { timeout: 30_000 },
+  );
+}
+
+/** Waits until the page moves the camera no more and the server has its last pose. */
+export async function restingCamera(page, server) {
+  await page.evaluate(
+    (quietFrames) =>
+      new Promise((resolve) => {
+        let [poses, quiet] = [-1, 0];
+        const look = () => {
+          quiet = window.seen.poses === poses ? quiet + 1 : 0;
+          poses = window.seen.poses;
+          if (quiet >= quietFrames) resolve();
+          else requestAnimationFrame(look);
+        };
+        look();
+      }),
+    10,
+  );
+  return eventually(async () => {
+    const camera = await server.call("camera.get");
+    const pose = await page.evaluate(() => window.seen.pose);
+    return (!pose || distance(camera.eye, pose.eye) < 1e-3) && camera;
+  }, "the server to have the last pose");
 }
 
 /** Between two points of space, as arrays. */
@@ -87,24 +129,25 @@ export async function reveal(locator) {
   await openTab(locator.page(), tab);
 }
 
+/** Unfolds every section of the panel. */
+export function unfoldAll(page) {
+  return page.evaluate(() => {
+    for (const fold of document.querySelectorAll(".section details")) fold.open = true;
+  });
+}
+
+/** Opens the menu for saving and sharing and chooses an entry. */
+export async function chooseOutput(page, name) {
+  await page.getByRole("button", { name: "Save and share" }).click();
+  await page.getByRole("menuitem", { name }).click();
+}
+
 /** The figure with this name as the performance section shows it. */
 export function figure(page, name) {
   return page.locator(`[data-figure="${name}"] dd`).textContent();
 }
 
-/** Waits until no more pictures come: the view rests and is fully sampled, or nearly so. */
-export async function settle(page, timeout = 60_000) {
-  await page.waitForFunction(
-    () => {
-      const samples = document.querySelector('[data-figure="samples"] dd').textContent;
-      const rate = document.querySelector('[data-figure="frame_rate"] dd').textContent;
-      return rate === "at rest" || Number(samples) >= 16;
-    },
-    undefined,
-    { timeout, polling: 250 },
-  );
-}
-
+/** The pauses are the hand's own: nothing is waited for. */
 export async function dragPicture(page, from, to, steps = 12) {
   await page.mouse.move(from.x, from.y);
   await page.mouse.down();
@@ -135,13 +178,13 @@ export async function pictureScreenshot(page, name) {
 }
 
 /** Calls until the result is truthy; throws with the last result otherwise. */
-export async function eventually(read, what, timeout = 20_000) {
+export async function eventually(read, what, timeout = 30_000) {
   const deadline = Date.now() + timeout;
   let last;
-  while (Date.now() < deadline) {
+  do {
     last = await read();
     if (last) return last;
-    await new Promise((resolve) => setTimeout(resolve, 150));
-  }
+    await new Promise((resolve) => setTimeout(resolve, 100));
+  } while (Date.now() < deadline);
   throw new Error(`${what} did not happen within ${timeout / 1000} s (last: ${last})`);
 }

@@ -5,11 +5,15 @@ import { once } from "node:events";
 import { sceneRoot, serverBinary } from "./environment.mjs";
 
 const startTimeoutMs = 90_000;
+const keptOutput = 4000; // characters
 
 export class Server {
-  constructor(child, url) {
+  constructor(child) {
     this.child = child;
-    this.url = url;
+    this.url = "";
+    this.lastWords = "";
+    /** Headers that every call carries, such as a token's. */
+    this.headers = {};
   }
 
   get port() {
@@ -20,7 +24,7 @@ export class Server {
   async call(method, params = {}, session = "main") {
     const response = await fetch(new URL(`rpc?session=${session}`, this.url), {
       method: "POST",
-      headers: { "content-type": "application/json" },
+      headers: { "content-type": "application/json", ...this.headers },
       body: JSON.stringify({ jsonrpc: "2.0", id: 1, method, params }),
     });
     const { result, error } = await response.json();
@@ -41,29 +45,43 @@ export class Server {
     await exited;
     clearTimeout(patience);
   }
+
+  /** Takes what the process writes. */
+  hear(chunk) {
+    this.lastWords = (this.lastWords + chunk).slice(-keptOutput);
+  }
+}
+
+/** The token in a list of arguments, as the header that shows it. */
+function headersFor(args) {
+  const token = args[args.indexOf("--token") + 1];
+  return args.includes("--token") ? { authorization: `Bearer ${token}` } : {};
 }
 
 /** Port 0 takes any free one. Resolves when the server has printed its address. */
-export function startServer(port = 0) {
+export function startServer(port = 0, args = []) {
   const child = spawn(
     serverBinary,
-    ["serve", "--port", String(port), "--scene-root", sceneRoot],
+    ["serve", "--port", String(port), "--scene-root", sceneRoot, ...args],
     { stdio: ["ignore", "pipe", "pipe"] },
   );
-  let output = "";
+  const server = new Server(child);
+  server.headers = headersFor(args);
   return new Promise((resolve, reject) => {
     const fail = (reason) => {
       clearTimeout(timer);
       child.kill("SIGKILL");
-      reject(new Error(`${reason}; it said:\n${output.slice(-3000)}`));
+      reject(new Error(`${reason}; it said:\n${server.lastWords}`));
     };
     const timer = setTimeout(() => fail("the server did not say where it listens"), startTimeoutMs);
     const read = (chunk) => {
-      output += chunk;
-      const address = /listening on (http:\/\/\S+)/.exec(output);
+      server.hear(chunk);
+      if (server.url) return;
+      const address = /listening on (http:\/\/\S+)\n/.exec(server.lastWords);
       if (!address) return;
       clearTimeout(timer);
-      resolve(new Server(child, address[1]));
+      server.url = address[1];
+      resolve(server);
     };
     child.stdout.on("data", read);
     child.stderr.on("data", read);

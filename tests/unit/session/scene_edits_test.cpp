@@ -99,6 +99,21 @@ TEST(SceneEdits, NullBringsBackTheFilesValue) {
   EXPECT_EQ(light->color, (Vec3{1.0f, 0.5f, 0.25f}));
 }
 
+TEST(SceneEdits, TellsWhatDiffersFromTheFile) {
+  SceneEdits edits(a_scene());
+  EXPECT_TRUE(edits.lights()[0].changed.empty());
+  ASSERT_TRUE(edits.patch({.light = "lamp",
+                           .patch = {.enabled = {false}, .angular_diameter = {10.0f}}}));
+  EXPECT_EQ(edits.lights()[0].changed, (std::vector<std::string>{"enabled", "angular_diameter"}));
+  EXPECT_TRUE(edits.lights()[1].changed.empty());
+  const auto half = edits.patch({.light = "lamp", .patch = {.enabled = {true}}});
+  EXPECT_EQ(half->changed, std::vector<std::string>{"angular_diameter"});
+  ASSERT_TRUE(edits.patch({.material = "paint 2", .patch = {.roughness = {0.9f}}}));
+  EXPECT_EQ(edits.materials()[1].changed, std::vector<std::string>{"roughness"});
+  const auto back = edits.patch({.material = "paint 2", .patch = {.roughness = {0.4f}}});
+  EXPECT_TRUE(back->changed.empty());
+}
+
 TEST(SceneEdits, TurnedPanelsKeepTheirWidthAcross) {
   SceneEdits edits(a_scene());
   for (const Vec3 direction : {Vec3{1, 0, 0}, Vec3{0, 0, 5}, Vec3{-1, 2, 3}}) {

@@ -1,9 +1,10 @@
 // Who watches with us and who may change things: a list that opens from the pill.
 
-import type { SessionInfo, ViewerInfo } from "heliograph/messages.ts";
+import type { ViewerInfo } from "heliograph/messages.ts";
 import { copyText } from "../output.ts";
 import { button, element, icon, setText } from "../panel/element.ts";
 import { preferences } from "../preferences.ts";
+import { nameOf } from "../standing.ts";
 import type { Viewer } from "../viewer.ts";
 
 const nameKey = "name";
@@ -82,14 +83,9 @@ export function mountPeople(
   });
   root.append(opener, card);
 
-  const control = (params: object): void => {
-    void viewer.rpc
-      .request<SessionInfo>("session.control", params)
-      .then((session) => viewer.session.set(session))
-      .catch((error: unknown) => viewer.report(error));
-  };
   mode.addEventListener("click", () => {
-    control({ mode: viewer.session.value?.control === "one" ? "everyone" : "one" });
+    const one = viewer.session.value?.control === "one";
+    void viewer.control({ mode: one ? "everyone" : "one" });
   });
   viewer.session.watch((session) => {
     root.hidden = session === null;
@@ -100,19 +96,21 @@ export function mountPeople(
     setText(room, `Session ${session.name}`);
     const one = session.control === "one";
     setText(mode, one ? "Let everyone change things" : "Only I change things");
-    mode.disabled = one && !me?.control;
-    opener.classList.toggle("without-control", me?.control === false);
+    mode.hidden = !me?.control;
     const taken = session.viewers.some((person) => person.control);
     list.replaceChildren(
       ...session.viewers.map((person, index) => personLine(person, index)),
-      ...(one && !taken ? [element("li", {}, takeButton())] : []),
+      ...(one && !taken && viewer.standing.value.kind !== "watching" ? [takeLine()] : []),
     );
+  });
+  viewer.standing.watch(({ kind }) => {
+    opener.classList.toggle("without-control", kind !== "may_change");
   });
 
   const personLine = (person: ViewerInfo, index: number): HTMLElement => {
     const session = viewer.session.value;
     const me = session?.viewers.find(({ you }) => you);
-    const name = person.name || `Viewer ${index + 1}`;
+    const name = nameOf(person, index);
     const inControl = session?.control === "one" && person.control;
     const givable = session?.control === "one" && me?.control && !person.you;
     return element(
@@ -122,17 +120,25 @@ export function mountPeople(
       inControl ? element("span", { class: "in-control" }, "in control") : null,
       givable
         ? button(`Hand over to ${name}`, "target", () =>
-            control({ action: "give", viewer: person.viewer }),
+            void viewer.control({ action: "give", viewer: person.viewer }),
           )
         : null,
     );
   };
-  const takeButton = (): HTMLElement =>
-    element(
-      "button",
-      { type: "button", class: "button quiet", click: () => control({ action: "take" }) },
-      "Take control",
-    );
+  const takeLine = (): HTMLElement => element("li", {}, takeButton(viewer));
+}
+
+/** Takes the place that nobody has. */
+export function takeButton(viewer: Viewer): HTMLButtonElement {
+  return element(
+    "button",
+    {
+      type: "button",
+      class: "button quiet",
+      click: () => void viewer.control({ action: "take" }),
+    },
+    "Take control",
+  );
 }
 
 /** What this person is called, as far as they said. */

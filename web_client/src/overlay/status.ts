@@ -2,6 +2,7 @@
 
 import { element, setText } from "../panel/element.ts";
 import { humanise } from "heliograph/settings_schema.ts";
+import type { Standing } from "../standing.ts";
 import type { ConnectionState } from "../stream/connection.ts";
 import { thumbnailOf } from "../thumbnails.ts";
 import type { Viewer } from "../viewer.ts";
@@ -27,10 +28,11 @@ export function mountStatus(viewer: Viewer, pill: HTMLElement, card: HTMLElement
   const update = (): void => {
     const state = viewer.connection.state.value;
     pill.dataset.state = state.kind;
-    setText(pillText, pillLabel(state));
+    setText(pillText, pillLabel(state, viewer.standing.value));
     view.show(noticeFor(viewer, state));
   };
   viewer.connection.state.watch(update);
+  viewer.standing.watch(update);
   viewer.loading.watch(update);
   viewer.restoring.watch(update);
   viewer.scenes.watch(update);
@@ -46,12 +48,12 @@ export function mountStatus(viewer: Viewer, pill: HTMLElement, card: HTMLElement
   }, retryRefreshMs);
 }
 
-function pillLabel(state: ConnectionState): string {
+function pillLabel(state: ConnectionState, standing: Standing): string {
   switch (state.kind) {
     case "connecting":
       return "Connecting";
     case "live":
-      return "Live";
+      return liveLabel(standing);
     case "lost":
       return "Reconnecting";
     case "pictures_only":
@@ -62,6 +64,19 @@ function pillLabel(state: ConnectionState): string {
       return "Other version";
     case "forbidden":
       return "No access";
+  }
+}
+
+function liveLabel(standing: Standing): string {
+  switch (standing.kind) {
+    case "may_change":
+      return "Live";
+    case "watching":
+      return "Live, to watch";
+    case "other":
+      return `Live, ${standing.name} is in control`;
+    case "nobody":
+      return "Live, nobody is in control";
   }
 }
 
@@ -111,7 +126,7 @@ function liveNotice(viewer: Viewer): Notice | null {
     return {
       title: `Loading ${loading.name}`,
       poster: thumbnailOf(loading.name),
-      action: viewer.methods.value.has("scene.cancel")
+      action: viewer.offers.has("scene.cancel")
         ? { label: "Cancel", run: () => void viewer.cancelLoad() }
         : undefined,
       detail: humanise(loading.stage),

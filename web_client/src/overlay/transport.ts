@@ -1,6 +1,7 @@
 // Play, pause, scrub and rate of the scene's clips; there only when the scene has any.
 
 import type { AnimationState } from "heliograph/messages.ts";
+import { changeable } from "../panel/changeable.ts";
 import { button, element, icon, setOptions, setText } from "../panel/element.ts";
 import type { Viewer } from "../viewer.ts";
 
@@ -50,7 +51,7 @@ export function mountTransport(viewer: Viewer, root: HTMLElement): void {
     ...rates.map((value) => element("option", { value: String(value) }, `${value}×`)),
   );
   const time = element("span", { class: "time" });
-  root.append(play, clip, scrub, time, rate);
+  root.append(changeable(viewer, play, clip, scrub, time, rate));
 
   const duration = (state: AnimationState): number => {
     const name = state.clip ?? clip.value;

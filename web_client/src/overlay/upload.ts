@@ -1,22 +1,23 @@
-// A scene file dropped on the page goes to the server, where that is allowed, and is shown.
+// A scene file dropped on the page or chosen goes to the server, where that is allowed, and is shown.
 
-import { Toasts } from "./toasts.ts";
-import { element } from "../panel/element.ts";
+import { element, setText } from "../panel/element.ts";
+import { explained } from "../standing.ts";
 import type { Viewer } from "../viewer.ts";
+import type { Toasts } from "./toasts.ts";
 
-const notOffered = [404, 405];
+const off = "This server takes no files from viewers";
+const megabyte = 1024 * 1024;
 
 export function mountUpload(viewer: Viewer, root: HTMLElement, toasts: Toasts): void {
-  const veil = element(
-    "div",
-    { class: "drop-veil", hidden: true },
-    element("p", {}, "Drop a .glb file to show it"),
-  );
+  const words = element("p");
+  const veil = element("div", { class: "drop-veil", hidden: true }, words);
   root.append(veil);
   const carriesFile = (event: DragEvent): boolean =>
     event.dataTransfer?.types.includes("Files") ?? false;
   addEventListener("dragenter", (event) => {
-    if (carriesFile(event) && viewer.hello && viewer.inControl) veil.hidden = false;
+    if (!carriesFile(event) || !viewer.hello) return;
+    setText(words, refusalNow(viewer) ?? "Drop a .glb file to show it");
+    veil.hidden = false;
   });
   addEventListener("dragover", (event) => {
     if (carriesFile(event)) event.preventDefault();
@@ -29,13 +30,15 @@ export function mountUpload(viewer: Viewer, root: HTMLElement, toasts: Toasts): 
     event.preventDefault();
     veil.hidden = true;
     const file = event.dataTransfer?.files[0];
-    if (file) void bring(viewer, file, toasts);
+    if (file) void bringScene(viewer, file, toasts);
   });
 }
 
-async function bring(viewer: Viewer, file: File, toasts: Toasts): Promise<void> {
-  if (!file.name.toLowerCase().endsWith(".glb")) {
-    toasts.show("Only .glb files can be brought along: they hold everything in one.");
+/** Sends a scene file to the server and shows it; says in one sentence why not. */
+export async function bringScene(viewer: Viewer, file: File, toasts: Toasts): Promise<void> {
+  const refused = refusalNow(viewer) ?? refusalOf(viewer, file);
+  if (refused) {
+    toasts.show(refused);
     return;
   }
   const name = sceneName(file.name);
@@ -51,10 +54,36 @@ async function bring(viewer: Viewer, file: File, toasts: Toasts): Promise<void> 
   }
 }
 
+/** Why no file at all can be brought at the moment; null if it can. */
+function refusalNow(viewer: Viewer): string | null {
+  const { hello } = viewer;
+  if (!hello) return "There is no connection to the server";
+  if (!viewer.mayChange) return explained(viewer.standing.value);
+  return hello.limits.max_upload_bytes === 0 ? off : null;
+}
+
+/** Why this file cannot be brought, as far as one can tell without sending it. */
+function refusalOf(viewer: Viewer, file: File): string | null {
+  if (!file.name.toLowerCase().endsWith(".glb")) {
+    return "Only .glb files can be brought along: they hold everything in one";
+  }
+  const most = viewer.hello?.limits.max_upload_bytes ?? Infinity;
+  if (file.size > most) {
+    return `${file.name} has ${spoken(file.size)}; the server takes up to ${spoken(most)}`;
+  }
+  return file.size === 0 ? `${file.name} is empty` : null;
+}
+
+function spoken(bytes: number): string {
+  const [size, unit] = bytes < megabyte ? [bytes / 1024, "kB"] : [bytes / megabyte, "MB"];
+  return `${size.toFixed(size < 10 ? 1 : 0)} ${unit}`;
+}
+
 /** "My model (1).glb" -> "My_model_1": what servers take for a name. */
 export function sceneName(file: string): string {
   const stem = file.replace(/\.[^.]*$/, "");
-  return stem.replace(/[^\w.-]+/g, "_").replace(/^[_.]+|[_.]+$/g, "") || "scene";
+  const name = stem.replace(/[^A-Za-z0-9-]+/g, "_").replace(/^[_-]+|[_-]+$/g, "");
+  return name.slice(0, 64) || "scene";
 }
 
 /** Rejects with a sentence for the person. XMLHttpRequest, because fetch tells no progress. */
@@ -66,22 +95,25 @@ function upload(name: string, file: File, progress: (fraction: number) => void):
     request.onerror = () => reject(new Error("The file could not be sent"));
     request.onload = () => {
       if (request.status === 201) resolve();
-      else reject(new Error(refusal(request)));
+      else reject(new Error(refusalSentence(name, request.status, request.responseText.trim())));
     };
     progress(0);
     request.send(file);
   });
 }
 
-function refusal({ status, responseText }: XMLHttpRequest): string {
-  if (notOffered.includes(status)) return "This server takes no files from viewers";
-  try {
-    const { error, message } = JSON.parse(responseText) as {
-      error?: { message?: string };
-      message?: string;
-    };
-    return error?.message ?? message ?? `The server refused the file (${status})`;
-  } catch {
-    return responseText.trim() || `The server refused the file (${status})`;
+function refusalSentence(name: string, status: number, text: string): string {
+  switch (status) {
+    case 400:
+      return `The server cannot read this file: ${text}`;
+    case 404:
+    case 405:
+      return off;
+    case 409:
+      return `The server has a scene called ${name} of its own: give the file another name`;
+    case 413:
+      return "The file is larger than the server takes";
+    default:
+      return text || `The server refused the file (${status})`;
   }
 }

@@ -16,7 +16,7 @@ export function createBufferFields(viewer: Viewer): HTMLElement[] {
   const fill = (): void => {
     tiles.clear();
     gallery.replaceChildren(
-      ...viewer.buffers.value.map(({ name, description }) => {
+      ...viewer.offers.buffers.value.map(({ name, description }) => {
         const tile = element(
           "button",
           {
@@ -57,7 +57,7 @@ export function createBufferFields(viewer: Viewer): HTMLElement[] {
   });
   toggle.setAttribute("aria-expanded", "false");
   toggle.setAttribute("aria-controls", gallery.id);
-  viewer.buffers.watch(() => {
+  viewer.offers.buffers.watch(() => {
     fill();
     if (!gallery.hidden) void photograph();
   });
@@ -72,7 +72,7 @@ function bufferPicker(viewer: Viewer): HTMLSelectElement {
   });
   const update = (): void => {
     const shown = String(viewer.settings.value(bufferSetting) ?? "output");
-    const buffers = viewer.buffers.value;
+    const buffers = viewer.offers.buffers.value;
     const known = buffers.some(({ name }) => name === shown);
     const names = known ? buffers.map(({ name }) => name) : [shown, ...buffers.map((b) => b.name)];
     setOptions(select, names.map((name) => ({ value: name, label: bufferLabel(name) })));
@@ -80,7 +80,7 @@ function bufferPicker(viewer: Viewer): HTMLSelectElement {
     select.dataset.tip =
       buffers.find(({ name }) => name === shown)?.description || "Which picture to show";
   };
-  viewer.buffers.watch(update);
+  viewer.offers.buffers.watch(update);
   viewer.settings.tree.watch(update);
   return select;
 }

@@ -66,17 +66,17 @@ export function createCompareFields(
     setOptions(select, [
       { value: nothing, label: "Nothing" },
       { value: "reference", label: "Path traced reference" },
-      ...viewer.presets.value.map(({ name }) => ({
+      ...viewer.offers.presets.value.map(({ name }) => ({
         value: `preset:${name}`,
         label: `Preset ${presetLabel(name)}`,
       })),
-      ...viewer.buffers.value
+      ...viewer.offers.buffers.value
         .filter(({ name }) => name !== "output")
         .map(({ name }) => ({ value: `buffer:${name}`, label: `Buffer ${bufferLabel(name)}` })),
     ]);
   };
-  viewer.presets.watch(fill);
-  viewer.buffers.watch(fill);
+  viewer.offers.presets.watch(fill);
+  viewer.offers.buffers.watch(fill);
   comparison.state.watch((state) => {
     const label = state ? (select.selectedOptions[0]?.textContent ?? "") : "";
     divider.show(state !== null, label);
@@ -104,7 +104,11 @@ export function createCompareFields(
   );
   way.closest<HTMLElement>(".field")?.setAttribute("hidden", "");
   opacityRow.node.hidden = true;
-  viewer.methods.watch(() => (node.hidden = !comparison.possible));
+  const offer = (): void => {
+    node.hidden = !comparison.possible;
+  };
+  viewer.offers.methods.watch(offer);
+  viewer.standing.watch(offer);
   return node;
 }
 

@@ -4,6 +4,7 @@ import type { Comparison } from "../compare.ts";
 import type { Divider } from "../view/divider.ts";
 import type { Viewer } from "../viewer.ts";
 import { createBufferFields } from "./buffer_fields.ts";
+import { changeable } from "./changeable.ts";
 import { createCompareFields } from "./compare_fields.ts";
 import { element } from "./element.ts";
 import { type InspectorHost, createInspector } from "./inspector.ts";
@@ -18,7 +19,10 @@ export function createInspectTab(viewer: Viewer, parts: InspectParts): HTMLEleme
   return element(
     "div",
     {},
-    element("div", { class: "fields", "data-section": "buffers" }, ...createBufferFields(viewer)),
+    changeable(
+      viewer,
+      element("div", { class: "fields", "data-section": "buffers" }, ...createBufferFields(viewer)),
+    ),
     createCompareFields(viewer, parts.comparison, parts.divider),
     createInspector(viewer, parts.inspector),
   );

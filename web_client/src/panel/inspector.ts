@@ -61,7 +61,7 @@ export function createInspector(viewer: Viewer, host: InspectorHost): HTMLElemen
     where,
     rows,
   );
-  viewer.methods.watch((methods) => (node.hidden = !methods.has("frame.inspect")));
+  viewer.offers.methods.watch((methods) => (node.hidden = !methods.has("frame.inspect")));
   return node;
 }
 

@@ -7,6 +7,7 @@ import { type InspectParts, createInspectTab } from "./inspect_tab.ts";
 import { createSceneTab, lookGroups } from "./scene_tab.ts";
 import { type MenuItem, createMenu } from "./menu.ts";
 import { createSettingsTab } from "./settings_tab.ts";
+import { createStandingNote } from "./standing_note.ts";
 import { createStatsTab } from "./stats_tab.ts";
 import { type ResolutionChoice, createStreamSection } from "./stream_section.ts";
 import { createTabs } from "./tabs.ts";
@@ -15,6 +16,8 @@ import type { Signal } from "../signal.ts";
 export interface PanelActions {
   output: MenuItem[];
   inspect: InspectParts;
+  /** Sends a scene file to the server and shows it. */
+  bring(file: File): void;
   help(): void;
   fullscreen: (() => void) | null;
 }
@@ -29,7 +32,7 @@ const narrow = matchMedia("(max-width: 640px)");
 export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActions): Panel {
   const stream = createStreamSection(viewer);
   const tabs = createTabs("Parts of the panel", [
-    { id: "scene", label: "Scene", icon: "scene", body: createSceneTab(viewer) },
+    { id: "scene", label: "Scene", icon: "scene", body: createSceneTab(viewer, actions.bring) },
     {
       id: "settings",
       label: "Settings",
@@ -39,7 +42,8 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
     { id: "inspect", label: "Inspect", icon: "layers", body: createInspectTab(viewer, actions.inspect) },
     { id: "stats", label: "Timing", icon: "chart", body: createStatsTab(viewer, stream.node) },
   ]);
-  const content = element("div", { class: "panel-body" }, tabs.list, tabs.pages);
+  const note = createStandingNote(viewer);
+  const content = element("div", { class: "panel-body" }, note, tabs.list, tabs.pages);
   const fold = element(
     "button",
     { type: "button", class: "icon-button fold", "aria-controls": "panel-content" },

@@ -3,6 +3,7 @@
 import type { SceneInfo } from "heliograph/messages.ts";
 import type { Viewer } from "../viewer.ts";
 import { createCameraFields } from "./camera_fields.ts";
+import { changeable } from "./changeable.ts";
 import { element, icon, setText } from "./element.ts";
 import { createEnvironmentField } from "./environment_field.ts";
 import { createLightSection } from "./light_section.ts";
@@ -14,7 +15,7 @@ import { mountSettings } from "./settings_panel.ts";
 /** Settings of the scene's look, which stand here instead of among the renderer's. */
 export const lookGroups = ["exposure", "tone_map", "environment"];
 
-export function createSceneTab(viewer: Viewer): HTMLElement {
+export function createSceneTab(viewer: Viewer, bring: (file: File) => void): HTMLElement {
   const facts = element("p", { class: "facts" });
   const warnings = element("details", { class: "warnings", hidden: true });
   viewer.scene.watch((scene) => {
@@ -23,13 +24,12 @@ export function createSceneTab(viewer: Viewer): HTMLElement {
   });
   const look = element("div", { class: "settings" });
   mountSettings(look, viewer.settings, { id: "look", only: lookGroups });
-  return element(
-    "div",
-    {},
+  return changeable(
+    viewer,
     element(
       "div",
       { class: "fields", "data-section": "scene" },
-      ...createScenePicker(viewer),
+      ...createScenePicker(viewer, bring),
       facts,
       warnings,
       ...createPartFields(viewer),

@@ -3,6 +3,7 @@
 
 import type { JsonObject } from "heliograph/messages.ts";
 import type { Viewer } from "../viewer.ts";
+import { changeable } from "./changeable.ts";
 import { button, element, icon, setText } from "./element.ts";
 import { mountSettings } from "./settings_panel.ts";
 
@@ -53,18 +54,20 @@ export function createSettingsTab(viewer: Viewer, handled: string[]): HTMLElemen
   const { settings } = viewer;
   const undo = button("Undo (Ctrl Z)", "undo", () => settings.undo());
   const redo = button("Redo (Ctrl Shift Z)", "redo", () => settings.redo());
-  settings.tree.watch(() => {
-    undo.disabled = !settings.history.canUndo;
-    redo.disabled = !settings.history.canRedo;
-  });
+  const enable = (): void => {
+    undo.disabled = !viewer.mayChange || !settings.history.canUndo;
+    redo.disabled = !viewer.mayChange || !settings.history.canRedo;
+  };
+  settings.tree.watch(enable);
+  viewer.standing.watch(enable);
   const searchBox = element("div", { class: "search" }, icon("search"), search);
   return element(
     "div",
     { class: "settings-tab" },
-    createLadder(viewer),
+    changeable(viewer, createLadder(viewer)),
     element("div", { class: "toolbar" }, searchBox, undo, redo),
     nothing,
-    sections,
+    changeable(viewer, sections),
   );
 }
 
@@ -88,7 +91,7 @@ function createLadder(viewer: Viewer): HTMLElement {
       viewer.report(error);
     }
   };
-  viewer.presets.watch((presets: Preset[]) => {
+  viewer.offers.presets.watch((presets: Preset[]) => {
     ladder.hidden = presets.length === 0;
     ladder.replaceChildren(
       ...presets.map(({ name, description }) =>

@@ -68,14 +68,14 @@ function qualityPicker(viewer: Viewer): HTMLSelectElement {
       "data-tip": "JPEG quality of the stream. Saved pictures are always lossless.",
       change: () => {
         preferences.setText("quality", select.value);
-        viewer.requestStream({ quality: Number(select.value) });
+        viewer.stream.request({ quality: Number(select.value) });
       },
     },
     ...qualities.map(([value, label]) => element("option", { value: String(value) }, label)),
   );
   const stored = Number(preferences.text("quality", ""));
-  if (qualities.some(([value]) => value === stored)) viewer.requestStream({ quality: stored });
-  viewer.stream.watch((stream) => {
+  if (qualities.some(([value]) => value === stored)) viewer.stream.request({ quality: stored });
+  viewer.stream.settings.watch((stream) => {
     if (!stream) return;
     const distance = (value: number): number => Math.abs(value - stream.quality);
     const nearest = [...qualities].sort((a, b) => distance(a[0]) - distance(b[0]))[0];
@@ -93,7 +93,7 @@ function codecField(viewer: Viewer): HTMLElement {
       "data-tip": "H.264 needs a fraction of the bandwidth, JPEG is sharper while things move.",
       change: () => {
         preferences.setText("codec", select.value);
-        viewer.requestStream({ codec: select.value });
+        viewer.stream.request({ codec: select.value });
       },
     },
   );
@@ -103,9 +103,9 @@ function codecField(viewer: Viewer): HTMLElement {
     const { codecs } = state.hello;
     node.hidden = codecs.length < 2;
     setOptions(select, codecs.map((name) => ({ value: name, label: codecLabels[name] ?? name })));
-    select.value = viewer.stream.value?.codec ?? codecs[0] ?? "jpeg";
+    select.value = viewer.stream.settings.value?.codec ?? codecs[0] ?? "jpeg";
   });
-  viewer.stream.watch((stream) => {
+  viewer.stream.settings.watch((stream) => {
     if (stream?.codec) select.value = stream.codec;
   });
   return node;

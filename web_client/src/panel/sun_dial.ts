@@ -3,6 +3,7 @@
 
 import type { Vector3 } from "heliograph/messages.ts";
 import { normalize, scale } from "../view/vector.ts";
+import { isDisabled } from "./changeable.ts";
 import { element } from "./element.ts";
 
 const keyStep = 2; // degrees
@@ -47,6 +48,7 @@ export function createSunDial(label: string, changed: (direction: Vector3) => vo
       "aria-valuemax": "180",
       "data-tip": "Drag the sun; arrow keys turn and lift it, with Shift in larger steps",
       pointerdown: (event: PointerEvent) => {
+        if (isDisabled(disc)) return;
         disc.setPointerCapture(event.pointerId);
         place(event);
       },
@@ -80,6 +82,7 @@ export function createSunDial(label: string, changed: (direction: Vector3) => vo
     }[event.key] ?? [0, 0];
     if (!turn && !lift) return;
     event.preventDefault();
+    if (isDisabled(disc)) return;
     set({ azimuth: position.azimuth + (turn ?? 0), elevation: position.elevation + (lift ?? 0) });
   };
   const draw = (): void => {

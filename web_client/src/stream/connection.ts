@@ -6,7 +6,7 @@ import { Signal } from "../signal.ts";
 import { ownName } from "../overlay/people.ts";
 import { Backoff } from "./backoff.ts";
 import { decodableCodecs } from "./codecs.ts";
-import type { DrawnFrame, FromWorker, ToWorker } from "./worker_messages.ts";
+import type { DrawnFrame, Freshness, FromWorker, ToWorker } from "./worker_messages.ts";
 
 export type ConnectionState =
   | { kind: "connecting" }
@@ -25,6 +25,8 @@ export interface ConnectionEvents {
   /** Only where the worker cannot draw: shows the picture and takes ownership of it. */
   draw(picture: ImageBitmap | VideoFrame, frame: DrawnFrame): void;
   warning(message: string): void;
+  /** A picture was lost; of a video also those that would have built on it. */
+  undecodable(message: string, video: boolean): void;
 }
 
 const closeCode = { policy: 1008, tryAgainLater: 1013, unauthorised: 4001, version: 4005 };
@@ -118,13 +120,13 @@ export class Connection {
     this.post({ kind: "copies", wanted: take !== null });
   }
 
-  /** Pictures that arrive wait for `release`, which shows those of this state and newer ones. */
+  /** Pictures that arrive wait for `release`, which shows those that are new enough. */
   hold(): void {
     this.post({ kind: "hold" });
   }
 
-  release(oldestRev: number): void {
-    this.post({ kind: "release", oldestRev });
+  release(from: Freshness): void {
+    this.post({ kind: "release", from });
   }
 
   /** Cuts a waiting time short, after a click or when the network is back. */
@@ -161,7 +163,7 @@ export class Connection {
         this.copied(message.id, message.picture);
         break;
       case "undecodable":
-        this.events.warning(`A picture could not be shown: ${message.message}`);
+        this.events.undecodable(message.message, message.video);
         break;
     }
   }

@@ -1,16 +1,23 @@
 // Decodes and draws the newest frame. A still picture that arrives while another is being decoded
 // replaces any that still waits: what matters is the latest picture, not every picture.
 
-import { Codec, type FrameHeader, mimeType, parseFrameHeader } from "heliograph/frame_header.ts";
+import {
+  Codec,
+  FrameFlag,
+  type FrameHeader,
+  mimeType,
+  parseFrameHeader,
+} from "heliograph/frame_header.ts";
 import { type ArrivedFrame, VideoFrames } from "./video_frames.ts";
-import { type DrawnFrame, clockMs } from "./worker_messages.ts";
+import { type DrawnFrame, type Freshness, clockMs } from "./worker_messages.ts";
 
 export interface FrameSink {
   /** Shows the picture and takes ownership of it. */
   draw(picture: ImageBitmap | VideoFrame, frame: DrawnFrame): void;
   /** Tells the server that a frame is dealt with, shown or skipped. */
   acknowledge(frameSeq: number, decodeUs: number, presentUs: number): void;
-  failed(message: string): void;
+  /** A picture is lost; with one of a video all up to the next key picture. */
+  failed(message: string, video: boolean): void;
 }
 
 export type Decode = (
@@ -22,20 +29,26 @@ export class FramePipeline {
   private readonly sink: FrameSink;
   private readonly decode: Decode;
   private readonly video: VideoFrames;
+  /** So long a picture of the size that was asked for is waited for; then any is better than none. */
+  private readonly sizePatienceMs: number;
   private waiting: ArrivedFrame | null = null;
   private busy = false;
   private held = false;
-  private oldestRev = 0;
+  private fresh: Freshness = { oldestRev: 0 };
   private newestDrawn = 0;
+  /** The newest picture of another size, and when it is shown for want of a better one. */
+  private aside: ArrivedFrame | null = null;
+  private asideTimer: ReturnType<typeof setTimeout> | undefined;
 
-  constructor(sink: FrameSink, decode: Decode) {
+  constructor(sink: FrameSink, decode: Decode, sizePatienceMs = 10_000) {
+    this.sizePatienceMs = sizePatienceMs;
     this.sink = sink;
     this.decode = decode;
     this.video = new VideoFrames(
       {
         decoded: (picture, frame, startedAt) => this.present(picture, frame, startedAt),
         skipped: (frame) => this.skip(frame),
-        failed: (message) => sink.failed(`the video could not be decoded: ${message}`),
+        failed: (message) => sink.failed(`the video could not be decoded: ${message}`, true),
       },
       clockMs,
     );
@@ -47,7 +60,7 @@ export class FramePipeline {
     try {
       header = parseFrameHeader(message);
     } catch (error) {
-      this.sink.failed((error as Error).message);
+      this.sink.failed((error as Error).message, false);
       return;
     }
     const frame = { header, message, receivedAt: clockMs() };
@@ -55,7 +68,11 @@ export class FramePipeline {
       this.video.push(frame);
       return;
     }
-    if (header.stateRev < this.oldestRev) {
+    if (!this.held && this.hasOtherSize(header)) {
+      this.setAside(frame);
+      return;
+    }
+    if (header.stateRev < this.fresh.oldestRev) {
       this.skip(frame);
       return;
     }
@@ -69,14 +86,19 @@ export class FramePipeline {
     this.held = true;
   }
 
-  /** Goes on showing, but nothing that shows an older state of the session than this. */
-  release(oldestRev: number): void {
+  /** Goes on showing, but nothing older than this. */
+  release(from: Freshness): void {
     if (!this.held) return;
     this.held = false;
-    this.oldestRev = oldestRev;
-    if (this.waiting && this.waiting.header.stateRev < oldestRev) {
-      this.skip(this.waiting);
+    this.fresh = from;
+    this.asideTimer = setTimeout(() => this.showAside(), this.sizePatienceMs);
+    const { waiting } = this;
+    if (waiting && this.hasOtherSize(waiting.header)) {
       this.waiting = null;
+      this.setAside(waiting);
+    } else if (waiting && waiting.header.stateRev < from.oldestRev) {
+      this.waiting = null;
+      this.skip(waiting);
     }
     if (!this.busy) void this.run();
   }
@@ -84,7 +106,9 @@ export class FramePipeline {
   /** Forgets what is left of a connection that is gone. */
   clear(): void {
     this.waiting = null;
-    this.oldestRev = 0;
+    this.aside = null;
+    clearTimeout(this.asideTimer);
+    this.fresh = { oldestRev: 0 };
     this.newestDrawn = 0;
     this.video.clear();
   }
@@ -103,7 +127,8 @@ export class FramePipeline {
     const { header, message } = frame;
     const type = mimeType(header.codec);
     if (!type) {
-      this.sink.failed(`the server sent a picture in codec ${header.codec}`);
+      this.sink.failed(`the server sent a picture in codec ${header.codec}`, false);
+      this.skip(frame);
       return;
     }
     const startedAt = clockMs();
@@ -111,7 +136,7 @@ export class FramePipeline {
       const picture = await this.decode(new Uint8Array(message, header.headerBytes), type);
       this.present(picture, frame, startedAt);
     } catch {
-      this.sink.failed(`it could not be decoded as ${type}`);
+      this.sink.failed(`it could not be decoded as ${type}`, false);
       this.skip(frame);
     }
   }
@@ -121,13 +146,15 @@ export class FramePipeline {
     { header, message, receivedAt }: ArrivedFrame,
     startedAt: number,
   ): void {
-    const unwanted = this.held || header.stateRev < this.oldestRev;
-    if (unwanted || header.frameSeq < this.newestDrawn) {
+    const { fresh, held, newestDrawn } = this;
+    const unwanted = held || this.hasOtherSize(header) || header.stateRev < fresh.oldestRev;
+    if (unwanted || header.frameSeq < newestDrawn) {
       picture.close();
       this.sink.acknowledge(header.frameSeq, 0, 0);
       return;
     }
     this.newestDrawn = header.frameSeq;
+    this.fresh.size = undefined;
     const decodedAt = clockMs();
     this.sink.draw(picture, {
       frameSeq: header.frameSeq,
@@ -137,6 +164,8 @@ export class FramePipeline {
       width: header.width,
       height: header.height,
       samples: header.sampleCount,
+      final: (header.flags & FrameFlag.final) !== 0,
+      stateRev: header.stateRev,
       quality: header.quality,
       bytes: message.byteLength,
       renderMs: header.renderUs / 1000,
@@ -148,6 +177,25 @@ export class FramePipeline {
     const decodeUs = Math.round((decodedAt - startedAt) * 1000);
     const presentUs = Math.round((clockMs() - receivedAt) * 1000);
     this.sink.acknowledge(header.frameSeq, decodeUs, presentUs);
+  }
+
+  private hasOtherSize({ fullWidth, fullHeight }: FrameHeader): boolean {
+    const { size } = this.fresh;
+    return size !== undefined && (fullWidth !== size.width || fullHeight !== size.height);
+  }
+
+  private setAside(frame: ArrivedFrame): void {
+    this.skip(frame);
+    this.aside = frame;
+  }
+
+  private showAside(): void {
+    const frame = this.aside;
+    this.aside = null;
+    this.fresh.size = undefined;
+    if (!frame || this.held || frame.header.frameSeq < this.newestDrawn) return;
+    this.waiting ??= frame;
+    if (!this.busy) void this.run();
   }
 
   private skip({ header }: ArrivedFrame): void {

@@ -46,13 +46,12 @@ export class VideoFrames {
     }
     const timestamp = frame.header.frameSeq;
     this.waiting.set(timestamp, { frame, startedAt: this.clock() });
-    this.decoder.decode(
-      new EncodedVideoChunk({
-        type: key ? "key" : "delta",
-        timestamp,
-        data,
-      }),
-    );
+    try {
+      this.decoder.decode(new EncodedVideoChunk({ type: key ? "key" : "delta", timestamp, data }));
+    } catch (error) {
+      // A key picture that is none is found out at once, everything else by the decoder's own word.
+      this.broke(this.decoder, error as Error);
+    }
   }
 
   /** Forgets a stream that has ended; the next begins with a key picture. */
@@ -60,6 +59,16 @@ export class VideoFrames {
     this.waiting.clear();
     if (this.decoder && this.decoder.state !== "closed") this.decoder.close();
     this.decoder = null;
+  }
+
+  /** What is under way is lost, and all up to the next key picture. */
+  private broke(decoder: VideoDecoder, error: Error): void {
+    const lost = [...this.waiting.values()];
+    this.waiting.clear();
+    if (this.decoder === decoder) this.decoder = null;
+    if (decoder.state !== "closed") decoder.close();
+    lost.forEach(({ frame }) => this.sink.skipped(frame));
+    this.sink.failed(error.message);
   }
 
   /** Sets the decoder up, unless it already takes such a stream. */
@@ -78,13 +87,7 @@ export class VideoFrames {
         if (entry) this.sink.decoded(picture, entry.frame, entry.startedAt);
         else picture.close();
       },
-      error: (error) => {
-        const lost = [...this.waiting.values()];
-        this.waiting.clear();
-        if (this.decoder === decoder) this.decoder = null;
-        lost.forEach(({ frame }) => this.sink.skipped(frame));
-        this.sink.failed(error.message);
-      },
+      error: (error) => this.broke(decoder, error),
     });
     decoder.configure({ ...videoConfig, codec });
     this.decoder = decoder;

@@ -28,8 +28,8 @@ const sink: FrameSink = {
     const params = { frame_seq: frameSeq, decode_us: decodeUs, present_us: presentUs };
     send(JSON.stringify({ jsonrpc: "2.0", method: "stream.ack", params }));
   },
-  failed(message) {
-    scope.postMessage({ kind: "undecodable", message });
+  failed(message, video) {
+    scope.postMessage({ kind: "undecodable", message, video });
   },
 };
 const pipeline = chooseDecoder().then((decode) => new FramePipeline(sink, decode));
@@ -94,7 +94,7 @@ scope.onmessage = ({ data }) => {
       void pipeline.then((frames) => frames.hold());
       break;
     case "release":
-      void pipeline.then((frames) => frames.release(data.oldestRev));
+      void pipeline.then((frames) => frames.release(data.from));
       break;
     case "send":
       send(data.text);

@@ -9,6 +9,10 @@ export interface DrawnFrame {
   width: number;
   height: number;
   samples: number;
+  /** Nothing better follows until something changes. */
+  final: boolean;
+  /** Revision of the session's state that it shows. */
+  stateRev: number;
   quality: number;
   bytes: number;
   renderMs: number;
@@ -18,16 +22,23 @@ export interface DrawnFrame {
   drawnAt: number;
 }
 
+/** Which pictures are new enough to be shown. */
+export interface Freshness {
+  oldestRev: number;
+  /** The full size that was asked for: older pictures may have another one. */
+  size?: { width: number; height: number };
+}
+
 export type ToWorker =
   | { kind: "canvas"; canvas: OffscreenCanvas }
   | { kind: "open"; url: string; subprotocol: string }
   | { kind: "close" }
-  /** From now on pictures wait, until `release` says which state of the session is new enough. */
   | { kind: "copy"; id: number }
   /** Whether every drawn picture is copied to the page, for a recording. */
   | { kind: "copies"; wanted: boolean }
+  /** From now on pictures wait, until `release` says which of them are new enough. */
   | { kind: "hold" }
-  | { kind: "release"; oldestRev: number }
+  | { kind: "release"; from: Freshness }
   | { kind: "send"; text: string };
 
 export type FromWorker =
@@ -39,7 +50,8 @@ export type FromWorker =
   | { kind: "picture"; picture: ImageBitmap | VideoFrame; frame: DrawnFrame }
   /** An answer to `copy` (null: nothing was drawn yet), or with id 0 a picture just drawn. */
   | { kind: "copied"; id: number; picture: ImageBitmap | null }
-  | { kind: "undecodable"; message: string };
+  /** A picture that was lost; of a video also those that would have built on it. */
+  | { kind: "undecodable"; message: string; video: boolean };
 
 /** One clock for the page and its workers, whose performance.now() start at different times. */
 export function clockMs(): number {

@@ -1,0 +1,113 @@
+// Firefox by its own remote protocol, Marionette: lengths and JSON over a TCP connection. Enough of
+// it to open a page, look into it and take a picture.
+
+import { spawn } from "node:child_process";
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { connect } from "node:net";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+
+const startTimeoutMs = 60_000;
+
+const preferences = `
+user_pref("marionette.port", 0);
+user_pref("datareporting.policy.dataSubmissionEnabled", false);
+user_pref("toolkit.telemetry.enabled", false);
+user_pref("app.update.enabled", false);
+user_pref("browser.shell.checkDefaultBrowser", false);
+user_pref("browser.startup.homepage_override.mstone", "ignore");
+user_pref("network.captive-portal-service.enabled", false);
+user_pref("network.connectivity-service.enabled", false);
+user_pref("extensions.getAddons.cache.enabled", false);
+user_pref("services.settings.server", "");
+`;
+
+export class Firefox {
+  constructor(child, socket, profile) {
+    this.child = child;
+    this.socket = socket;
+    this.profile = profile;
+    this.waiting = new Map();
+    this.lastId = 0;
+    this.received = Buffer.alloc(0);
+    socket.on("data", (chunk) => this.read(chunk));
+  }
+
+  static async launch(path) {
+    const profile = mkdtempSync(join(tmpdir(), "heliograph-firefox-"));
+    writeFileSync(join(profile, "user.js"), preferences);
+    const args = ["--headless", "--marionette", "--no-remote", "--profile", profile];
+    const child = spawn(path, args, { stdio: "ignore", env: { ...process.env, HOME: profile } });
+    const port = await portOf(profile);
+    const socket = connect(port, "127.0.0.1");
+    await new Promise((resolve, reject) => socket.once("connect", resolve).once("error", reject));
+    const firefox = new Firefox(child, socket, profile);
+    await firefox.ask("WebDriver:NewSession", { strictFileInteractability: true });
+    await firefox.ask("WebDriver:SetWindowRect", { width: 1000, height: 700 });
+    return firefox;
+  }
+
+  open(url) {
+    return this.ask("WebDriver:Navigate", { url });
+  }
+
+  /** Runs the body of a function in the page and gives what it returns. */
+  async evaluate(script, ...args) {
+    const { value } = await this.ask("WebDriver:ExecuteScript", { script, args });
+    return value;
+  }
+
+  async screenshot(path) {
+    const { value } = await this.ask("WebDriver:TakeScreenshot", { full: false });
+    writeFileSync(path, Buffer.from(value, "base64"));
+    return value;
+  }
+
+  async close() {
+    await this.ask("Marionette:Quit", { flags: ["eForceQuit"] }).catch(() => {});
+    this.socket.destroy();
+    this.child.kill("SIGKILL");
+    rmSync(this.profile, { recursive: true, force: true, maxRetries: 5 });
+  }
+
+  ask(command, parameters) {
+    const id = ++this.lastId;
+    const text = JSON.stringify([0, id, command, parameters]);
+    this.socket.write(`${Buffer.byteLength(text)}:${text}`);
+    return new Promise((resolve, reject) => this.waiting.set(id, { resolve, reject }));
+  }
+
+  read(chunk) {
+    this.received = Buffer.concat([this.received, chunk]);
+    for (;;) {
+      const colon = this.received.indexOf(":");
+      if (colon < 0) return;
+      const end = colon + 1 + Number(this.received.subarray(0, colon));
+      if (this.received.length < end) return;
+      const message = JSON.parse(this.received.subarray(colon + 1, end));
+      this.received = this.received.subarray(end);
+      if (Array.isArray(message)) this.answered(message); // the first one is a greeting
+    }
+  }
+
+  answered([, id, error, result]) {
+    const { resolve, reject } = this.waiting.get(id);
+    this.waiting.delete(id);
+    if (error) reject(new Error(error.message));
+    else resolve(result);
+  }
+}
+
+/** Firefox writes down which port it took. */
+async function portOf(profile) {
+  const file = join(profile, "MarionetteActivePort");
+  const deadline = Date.now() + startTimeoutMs;
+  while (Date.now() < deadline) {
+    if (existsSync(file)) {
+      const port = Number(readFileSync(file, "utf8"));
+      if (port > 0) return port;
+    }
+    await new Promise((resolve) => setTimeout(resolve, 200));
+  }
+  throw new Error("Firefox did not say where it listens");
+}

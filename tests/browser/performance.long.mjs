@@ -1,0 +1,110 @@
+// How fast the client is: from the address to the first picture, from a picture's bytes to the
+// screen, and how much of the main thread thirty pictures a second take.
+
+import assert from "node:assert/strict";
+import { appendFileSync } from "node:fs";
+import { join } from "node:path";
+import { eventually } from "./harness/browser.mjs";
+import { outputFolder } from "./harness/environment.mjs";
+import { Stage } from "./harness/stage.mjs";
+
+const longestLoad = 500; // ms
+const oneFrame = 1000 / 30; // ms
+const busiest = 0.2; // of the main thread's time
+const watchedMs = 10_000;
+
+/** The cheapest picture there is: what is measured here is the client, not the renderer. */
+const everythingOff = {
+  shadows: { enabled: false },
+  ambient: { enabled: false },
+  specular: { enabled: false },
+  antialiasing: { enabled: false },
+  motion: { scale: 1 },
+};
+
+const stage = new Stage({
+  view: { viewport: { width: 1280, height: 720 } },
+});
+
+function report(name, figures) {
+  const line = JSON.stringify({ name, ...figures });
+  console.log(line);
+  appendFileSync(join(outputFolder, "performance.jsonl"), `${line}\n`);
+}
+
+const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
+
+stage.test("the page is there, live and shows its first picture", async () => {
+  const context = await stage.context();
+  await context.addInitScript(() => {
+    window.moments = {};
+    new MutationObserver(() => {
+      const live = document.querySelector('#pill[data-state="live"]');
+      if (live) window.moments.live ??= performance.now();
+    }).observe(document, { subtree: true, childList: true, attributes: true });
+  });
+  const seen = [];
+  for (let visit = 0; visit < 5; visit += 1) {
+    const { page } = await stage.watch({ context });
+    seen.push(
+      await page.evaluate(() => {
+        const [{ loadEventEnd, domContentLoadedEventEnd }] =
+          performance.getEntriesByType("navigation");
+        const { live } = window.moments;
+        const drawn = window.seen.firstDrawnAt - performance.timeOrigin;
+        return { ready: domContentLoadedEventEnd, loaded: loadEventEnd, live, drawn };
+      }),
+    );
+    await page.close();
+  }
+  const of = (moment) => Math.round(median(seen.map((one) => one[moment])));
+  const figures = { ready: of("ready"), loaded: of("loaded"), live: of("live"), drawn: of("drawn") };
+  report("loading_ms", figures);
+  assert.ok(figures.live < longestLoad, `live after ${figures.live} ms`);
+});
+
+stage.test("thirty pictures a second leave the main thread free, and each is on the screen soon", async () => {
+  await stage.server.call("settings.patch", { patch: everythingOff });
+  const context = await stage.context();
+  await context.addInitScript(() => localStorage.setItem("heliograph.resolution", "full"));
+  const { page } = await stage.watch({ context });
+  const session = await context.newCDPSession(page);
+  // The thread's own clock: what other processes take of the machine does not count.
+  await session.send("Performance.enable", { timeDomain: "threadTicks" });
+  const busySeconds = async () => {
+    const { metrics } = await session.send("Performance.getMetrics");
+    return metrics.find(({ name }) => name === "TaskDuration").value;
+  };
+  await page.evaluate(() => {
+    window.longTasks = 0;
+    new PerformanceObserver((list) => (window.longTasks += list.getEntries().length)).observe({
+      type: "longtask",
+    });
+  });
+  await stage.server.call("animation.play", { clip: "moving_objects_light" });
+  const drawn = () => page.evaluate(() => window.seen.drawn[1] ?? 0);
+  const first = await drawn();
+  await eventually(async () => (await drawn()) > first + 20, "moving pictures", 60_000);
+  const [busyBefore, drawnBefore, startedAt] = [await busySeconds(), await drawn(), Date.now()];
+  await page.waitForTimeout(watchedMs);
+  const seconds = (Date.now() - startedAt) / 1000;
+  const pictures = (await drawn()) - drawnBefore;
+  const busy = (await busySeconds()) - busyBefore;
+  const { delays, longTasks, frame } = await page.evaluate(() => ({
+    delays: window.seen.delays,
+    longTasks: window.longTasks,
+    frame: window.seen.frame,
+  }));
+  const perPicture = busy / pictures;
+  const figures = {
+    size: `${frame.width}x${frame.height}`,
+    fps: Number((pictures / seconds).toFixed(1)),
+    busy: Number((busy / seconds).toFixed(4)),
+    busyAtThirty: Number((perPicture * 30).toFixed(4)),
+    toScreenMs: Number(median(delays).toFixed(2)),
+    longTasks,
+  };
+  report("streaming", figures);
+  assert.ok(figures.busyAtThirty < busiest, JSON.stringify(figures));
+  assert.ok(figures.toScreenMs < oneFrame, JSON.stringify(figures));
+});

@@ -1,0 +1,96 @@
+// What a person is told when there is nothing to see, or not yet: each state by its words.
+
+import assert from "node:assert/strict";
+import { firstPicture, screenshot, settle } from "./harness/browser.mjs";
+import { Stage } from "./harness/stage.mjs";
+
+const view = { viewport: { width: 720, height: 450 } };
+const limited = new Stage({ serverArguments: ["--max-viewers", "1"], view });
+const stage = new Stage({ view });
+
+const stateOf = (page) => page.locator("#pill").getAttribute("data-state");
+
+limited.test("a full server is named, and joined when somebody leaves", async () => {
+  const first = await limited.watch();
+  const { page } = await limited.open({ complaining: true });
+  await page.locator('#pill[data-state="full"]').waitFor();
+  await page.getByText("The server is full").waitFor();
+  await screenshot(page, "full");
+  await first.page.close();
+  await page.getByRole("button", { name: "Try now" }).click();
+  await firstPicture(page);
+  assert.equal(await stateOf(page), "live");
+});
+
+stage.test("a page of another version says so", async () => {
+  const context = await stage.context();
+  await context.route("**/app.js", async (route) => {
+    const response = await route.fetch();
+    const body = (await response.text()).replaceAll("heliograph.v1", "heliograph.v0");
+    await route.fulfill({ response, body });
+  });
+  const { page } = await stage.open({ context, complaining: true });
+  await page.locator('#pill[data-state="wrong_version"]').waitFor();
+  await page.getByText("This page is of another version").waitFor();
+  await screenshot(page, "wrong_version");
+});
+
+stage.test("a refused greeting is no access", async () => {
+  const context = await stage.context();
+  // The page never gets here without a token; one that is withdrawn later is found out by hello.
+  await context.addInitScript(() => {
+    const parse = JSON.parse;
+    JSON.parse = (text, ...rest) => {
+      const value = parse(text, ...rest);
+      if (value?.result?.protocol) {
+        delete value.result;
+        value.error = { code: -32001, message: "the token is not valid any more" };
+      }
+      return value;
+    };
+  });
+  const { page } = await stage.open({ context });
+  await page.locator('#pill[data-state="forbidden"]').waitFor();
+  await page.getByText("the token is not valid any more").waitFor();
+  await screenshot(page, "no_access");
+});
+
+stage.test("a scene that loads shows its name, how far it is and its picture", async () => {
+  const { page } = await stage.watch();
+  await settle(page, stage.server);
+  const { scenes, current } = await stage.server.call("scene.list");
+  const other = scenes.find(({ name }) => name !== current).name;
+  // Loading is over in a moment here: what was shown meanwhile is written down.
+  await page.evaluate(() => {
+    window.notices = [];
+    const card = document.querySelector("#notice");
+    new MutationObserver(() => {
+      if (!card.hidden) window.notices.push(card.querySelector("h1").textContent);
+    }).observe(card, { attributes: true, childList: true, subtree: true, characterData: true });
+  });
+  await page.locator("select[name=scene]").selectOption(other);
+  await page.waitForFunction((name) => document.title.startsWith(name), other);
+  assert.ok((await page.evaluate(() => window.notices)).includes(`Loading ${other}`));
+});
+
+stage.test("the first picture of a new page has the size that the page asked for", async () => {
+  await stage.watch({ viewport: { width: 900, height: 300 } });
+  const context = await stage.context({ viewport: { width: 400, height: 400 } });
+  await context.addInitScript(() => {
+    window.shapes = [];
+    const handler = Object.getOwnPropertyDescriptor(Worker.prototype, "onmessage");
+    Object.defineProperty(Worker.prototype, "onmessage", {
+      set(listener) {
+        handler.set.call(this, (event) => {
+          const { kind, frame } = event.data;
+          if (kind === "drawn") window.shapes.push(frame.width / frame.height);
+          listener(event);
+        });
+      },
+    });
+  });
+  const { page } = await stage.watch({ context });
+  await settle(page, stage.server);
+  const shapes = await page.evaluate(() => window.shapes);
+  assert.ok(shapes.length > 0 && shapes.every((shape) => Math.abs(shape - 1) < 0.05), `${shapes}`);
+});
