@@ -18,7 +18,8 @@ ShaderOutput evaluate(uint which, ShaderInput given) {
       // a: metallic, roughness, n.v; a white surface that faces +z.
       vec3 n = vec3(0.0, 0.0, 1.0);
       vec3 eye = vec3(sqrt(1.0 - given.a.z * given.a.z), 0.0, given.a.z);
-      SurfaceMaterial m = surface_material(vec3(1.0), given.a.x, given.a.y, n, n, eye, 0u);
+      SurfaceMaterial m = surface_material(vec3(1.0), given.a.x, given.a.y, n, n, eye,
+                                           plain_layer());
       return ShaderOutput(vec4(m.specular_albedo, 0.0), vec4(m.diffuse_albedo, 0.0));
     }
     default: {
