@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint32_t largest_cube = 256;
 constexpr std::uint32_t smallest_cube = 16;
 constexpr std::uint32_t smallest_level = 8;
-constexpr std::uint32_t samples_per_texel = 512;
+constexpr std::uint32_t most_samples = 512;  // a texel
 constexpr std::uint32_t table_size = 128;
 constexpr std::uint32_t sheen_size = 32;
 
@@ -28,6 +28,12 @@ struct PrefilterConstants {
 /// A face spans a quarter of the map's width: no more texels than there is detail.
 std::uint32_t cube_size_for(const scene::Environment& environment) {
   return std::bit_floor(std::clamp(environment.width / 4, smallest_cube, largest_cube));
+}
+
+/// Narrow lobes need fewer: each sample reads the level that its part of the lobe covers (Krivanek
+/// and Colbert, GPU Gems 3, chapter 20, are content with 40), and their levels have most texels.
+std::uint32_t samples_for(std::uint32_t level) {
+  return level == 0 ? 1 : std::min(64u << (level - 1), most_samples);
 }
 
 gpu::Image make_cube(const gpu::Device& device, const char* name, std::uint32_t cube_size) {
@@ -114,7 +120,7 @@ EnvironmentMaps prefilter_environment(const gpu::Device& device, const Programs&
         .read(filter_source)
         .write(target)
         .constants(PrefilterConstants{roughness, static_cast<float>(cube_size),
-                                      level ? samples_per_texel : 1u})
+                                      samples_for(level)})
         .dispatch({cube_size >> level, cube_size >> level}, 6);
   }
   filter.compile();

@@ -1,5 +1,7 @@
 #include "render/moving_scene.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cstring>
 
@@ -39,6 +41,7 @@ struct MovingScene::Moving {
     std::size_t first_vertex = 0;     // in the table of all vertices
     std::size_t previous_vertex = 0;  // in the table of vertices one frame ago
     bool moved = false;               // by the last advance
+    bool moved_before = false;        // by the one before that
   };
 
   Moving(const gpu::Device& device, const SceneResources& rest);
@@ -133,24 +136,23 @@ bool MovingScene::Moving::move_instances(const scene::Scene& scene, const scene:
 
 bool MovingScene::Moving::deform(const scene::Scene& scene, const scene::Pose& before,
                                  const scene::Pose& pose) {
-  bool any = false;
   auto* const table = reinterpret_cast<shared::Vertex*>(vertex_table.mapped());
   auto* const previous = reinterpret_cast<shared::Vertex*>(previous_table.mapped());
-  for (std::size_t i = 0; i < deforming.size(); ++i) {
+  tbb::parallel_for(std::size_t(0), deforming.size(), [&](std::size_t i) {
     const scene::Deformation& deformation = scene.deformations[i];
     Deforming& mesh = deforming[i];
-    const bool moved_before = mesh.moved;
+    mesh.moved_before = mesh.moved;
     mesh.moved = scene::shape_differs(scene, deformation, before, pose);
-    any = any || mesh.moved || moved_before;
-    if (mesh.moved || moved_before) {
+    if (mesh.moved || mesh.moved_before) {
       std::ranges::copy(mesh.vertices, previous + mesh.previous_vertex);
     }
-    if (!mesh.moved) continue;
+    if (!mesh.moved) return;
     mesh.bounds = scene::deform(scene, deformation, pose, mesh.vertices);
     bounds[deformation.mesh] = mesh.bounds;
     std::ranges::copy(mesh.vertices, table + mesh.first_vertex);
-  }
-  return any;
+  });
+  return std::ranges::any_of(
+      deforming, [](const Deforming& mesh) { return mesh.moved || mesh.moved_before; });
 }
 
 void MovingScene::Moving::move_draws(const scene::Scene& scene) {

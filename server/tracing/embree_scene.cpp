@@ -9,10 +9,10 @@
 namespace heliograph::tracing {
 namespace {
 
-EmbreeHandle<RTCScene> new_scene(RTCDevice device) {
+EmbreeHandle<RTCScene> new_scene(RTCDevice device, RTCBuildQuality quality) {
   EmbreeHandle<RTCScene> scene(rtcNewScene(device));
   check_embree(device, "start a scene");
-  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_MEDIUM);
+  rtcSetSceneBuildQuality(scene.get(), quality);
   return scene;
 }
 
@@ -39,7 +39,10 @@ EmbreeMesh::EmbreeMesh(RTCDevice device, const scene::Mesh& mesh, const shared::
     rtcSetGeometryIntersectFilterFunction(geometry_.get(), let_through);
     rtcSetGeometryOccludedFilterFunction(geometry_.get(), let_through);
   }
-  scene_ = new_scene(device);
+  // Only scenes of low quality let a geometry be refitted, others build it anew with every commit.
+  // The tree that is refitted is one of medium quality all the same.
+  scene_ = new_scene(device,
+                     use == Use::deforming ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM);
   if (use == Use::deforming) {
     rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_DYNAMIC);
     rtcSetGeometryBuildQuality(geometry_.get(), RTC_BUILD_QUALITY_REFIT);
@@ -71,7 +74,9 @@ std::vector<std::shared_ptr<EmbreeMesh>> make_embree_meshes(
 
 EmbreeScene::EmbreeScene(RTCDevice device, const scene::Scene& scene,
                          std::vector<std::shared_ptr<EmbreeMesh>> meshes)
-    : device_(device), meshes_(std::move(meshes)), top_(new_scene(device)) {
+    : device_(device),
+      meshes_(std::move(meshes)),
+      top_(new_scene(device, RTC_BUILD_QUALITY_MEDIUM)) {
   for (const auto& [mesh, node] : scene.instances) {
     placed_.push_back({mesh, nullptr});
     if (!meshes_[mesh]->handle()) continue;
@@ -98,10 +103,14 @@ void EmbreeScene::place(std::size_t instance, const glm::mat4& world) {
   rtcCommitGeometry(geometry);
 }
 
-void EmbreeScene::refit(std::uint32_t mesh, std::span<const shared::Vertex> vertices) {
-  meshes_[mesh]->refit(vertices);
-  for (const auto& [own, geometry] : placed_) {
-    if (own == mesh && geometry) rtcCommitGeometry(geometry.get());
+void EmbreeScene::refit(std::span<const Movement::Mesh> deformed) {
+  tbb::parallel_for(std::size_t(0), deformed.size(), [&](std::size_t i) {
+    meshes_[deformed[i].mesh]->refit(deformed[i].vertices);
+  });
+  std::vector<bool> changed(meshes_.size());
+  for (const Movement::Mesh& mesh : deformed) changed[mesh.mesh] = true;
+  for (const auto& [mesh, geometry] : placed_) {
+    if (changed[mesh] && geometry) rtcCommitGeometry(geometry.get());
   }
 }
 

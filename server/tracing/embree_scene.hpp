@@ -8,6 +8,7 @@
 #include "scene/scene.hpp"
 #include "tracing/alpha_mask.hpp"
 #include "tracing/embree.hpp"
+#include "tracing/ray_tracer.hpp"
 
 namespace heliograph::tracing {
 
@@ -55,7 +56,7 @@ class EmbreeScene {
 
   /// What follows takes effect with commit().
   void place(std::size_t instance, const glm::mat4& world);
-  void refit(std::uint32_t mesh, std::span<const shared::Vertex> vertices);
+  void refit(std::span<const Movement::Mesh> deformed);
   void commit();
 
  private:

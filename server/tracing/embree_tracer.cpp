@@ -41,7 +41,7 @@ class MovingEmbreeStructure : public EmbreeStructure, public MovingStructure {
   using EmbreeStructure::EmbreeStructure;
 
   void update(const Movement& movement) override {
-    for (const Movement::Mesh& mesh : movement.deformed) scene_.refit(mesh.mesh, mesh.vertices);
+    if (!movement.deformed.empty()) scene_.refit(movement.deformed);
     for (const std::uint32_t i : movement.moved) scene_.place(i, movement.worlds[i]);
     if (!movement.deformed.empty() || !movement.moved.empty()) scene_.commit();
   }
