@@ -87,7 +87,10 @@ class Viewer:
                     self.frames_received += 1
                     self.frames.put_nowait(frame)
                     if self.acknowledge:
-                        await self.notify("stream.ack", {"frame_seq": frame.header["frame_seq"]})
+                        # What came before the end of the connection is still to be read.
+                        with contextlib.suppress(websockets.ConnectionClosed):
+                            await self.notify("stream.ack",
+                                              {"frame_seq": frame.header["frame_seq"]})
                 else:
                     self._take(json.loads(message))
         except websockets.ConnectionClosed:
