@@ -6,9 +6,9 @@ import { preferences } from "./preferences.ts";
 import { Signal } from "./signal.ts";
 import type { PictureSize } from "./view/viewport.ts";
 
-/** Video that breaks this often within that time is given up. */
+/** Video that breaks this often, with fewer good pictures between, is given up. */
 const mostBreaks = 3;
-const breaksWithinMs = 10_000;
+const goodPictures = 60;
 
 export interface StreamHost {
   /** Whether the size, which all viewers share, is this page's to choose. */
@@ -27,7 +27,8 @@ export class StreamRequests {
   private hello: Hello | null = null;
   private asked: PictureSize | null = null;
   private wanted: Partial<StreamSettings> = {};
-  private breaks: number[] = [];
+  private breaks = 0;
+  private goodSince = 0;
 
   constructor(rpc: RpcPeer, host: StreamHost) {
     this.rpc = rpc;
@@ -38,7 +39,7 @@ export class StreamRequests {
   async begin(hello: Hello, unseen: boolean): Promise<void> {
     this.hello = hello;
     this.asked = null;
-    this.breaks = [];
+    this.breaks = 0;
     const codec = preferences.text("codec", isLocal() ? "jpeg" : "h264");
     const coded = hello.codecs.length > 1 && hello.codecs.includes(codec) ? { codec } : {};
     const paused = unseen ? { paused: true } : {};
@@ -74,16 +75,21 @@ export class StreamRequests {
   /** A picture of a video was lost: the next ones are useless until it starts anew. */
   videoBroke(): void {
     if (this.wanted.paused) return;
-    const now = performance.now();
-    this.breaks = [...this.breaks.filter((at) => now - at < breaksWithinMs), now];
-    if (this.breaks.length > mostBreaks) {
-      this.breaks = [];
+    this.breaks = this.goodSince >= goodPictures ? 1 : this.breaks + 1;
+    this.goodSince = 0;
+    if (this.breaks > mostBreaks) {
+      this.breaks = 0;
       this.host.tell("The video breaks too often; single pictures come instead");
       this.request({ codec: "jpeg" });
     } else {
       // A viewer that comes back gets a key picture first.
       void this.configure({ paused: true }).then(() => this.show());
     }
+  }
+
+  /** A picture of a video is on the screen. */
+  videoWorked(): void {
+    this.goodSince += 1;
   }
 
   /** The size to ask for; nothing where it is known already or for others to choose. */

@@ -15,6 +15,7 @@ import {
   type SessionInfo,
   ErrorCode,
 } from "heliograph/messages.ts";
+import { Codec } from "heliograph/frame_header.ts";
 import { ChannelClosed, RpcError, type RpcPeer } from "heliograph/rpc.ts";
 import { Offers } from "./offers.ts";
 import { captureBlob, shrunk } from "./pictures.ts";
@@ -347,6 +348,7 @@ export class Viewer {
   private frameDrawn(frame: DrawnFrame): void {
     this.rates.add(frame.drawnAt, frame.bytes);
     this.latency.frameDrawn(frame.inputSeqEcho, frame.drawnAt);
+    if (frame.codec === Codec.h264) this.stream.videoWorked();
     this.frame.set(frame);
   }
 

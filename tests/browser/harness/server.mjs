@@ -4,7 +4,7 @@ import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { sceneRoot, serverBinary } from "./environment.mjs";
 
-const startTimeoutMs = 90_000;
+const startTimeoutMs = 180_000;
 const keptOutput = 4000; // characters
 
 export class Server {

@@ -76,6 +76,7 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
   const show = (shown: boolean): void => {
     open = shown;
     root.classList.toggle("folded", !shown);
+    document.body.classList.toggle("with-panel", shown);
     enable();
     fold.setAttribute("aria-expanded", String(shown));
     const label = shown ? "Hide panel (H)" : "Show panel (H)";

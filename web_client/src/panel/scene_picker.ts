@@ -70,6 +70,7 @@ function fileButton(viewer: Viewer, bring: (file: File) => void): HTMLElement {
     },
   });
   const opener = button("Bring a .glb file", "upload", () => input.click());
+  opener.hidden = true;
   viewer.connection.state.watch((state) => {
     if (state.kind === "live") opener.hidden = !state.hello.limits.max_upload_bytes;
   });

@@ -28,9 +28,10 @@ export function createStatsTab(viewer: Viewer, streamFields: HTMLElement): HTMLE
     const now = performance.timeOrigin + performance.now();
     const frame = viewer.frame.value;
     const resting = !frame || now - frame.drawnAt > restingAfterMs;
+    const rest = frame?.final ? "at rest" : "refining";
     const { fps, bytesPerSecond } = viewer.rates.read(now);
     const median = viewer.latency.median;
-    setText(rate.value, resting ? (frame ? "at rest" : "–") : `${formatRate(fps)} fps`);
+    setText(rate.value, resting ? (frame ? rest : "–") : `${formatRate(fps)} fps`);
     setText(latency.value, median === null ? "–" : `${median.toFixed(0)} ms`);
     const bytes = formatBandwidth(resting ? 0 : bytesPerSecond);
     setText(bandwidth.value, frame ? bytes : "–");
