@@ -69,14 +69,14 @@ class Site:
         for table, chain, *rule in self._rules:
             while succeeds("iptables", "-t", table, "-D", chain, *rule):
                 pass
-        run("ip", "link", "del", BRIDGE, check=False)
+        succeeds("ip", "link", "del", BRIDGE)
         if self._forwarding is not None:
             with open("/proc/sys/net/ipv4/ip_forward", "w", encoding="ascii") as file:
                 file.write(self._forwarding)
         with open("/proc/mounts", encoding="utf-8") as file:
             mounts = [line.split()[1] for line in file]
         for mount in reversed([path for path in mounts if path.startswith(f"{self.folder}/")]):
-            run("umount", "--lazy", mount, check=False)
+            succeeds("umount", "--lazy", mount)
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def add_machine(self):
@@ -153,32 +153,46 @@ class Machine:
         run("ip", "link", "set", self._bridge_end, "up")
 
     def remove(self):
-        """Ends every container, the engine and the namespace."""
+        """Ends every container, the engine and the namespace, however slow the machine is."""
         if self._engine and self._engine.poll() is None:
-            containers = self.docker("ps", "--all", "--quiet", check=False).split()
-            if containers:
-                self.docker("rm", "--force", "--volumes", *containers, check=False)
+            docker = (program("docker"), "--host", f"unix://{self.socket}")
+            # A swarm would make anew what is removed.
+            succeeds(*docker, "swarm", "leave", "--force")
+            succeeds("sh", "-c", '"$@" ps --all --quiet | xargs --no-run-if-empty "$@" rm --force '
+                     "--volumes", "sh", *docker)
             self._engine.send_signal(signal.SIGTERM)
             try:
-                self._engine.wait(timeout=20)
+                self._engine.wait(timeout=60)
             except subprocess.TimeoutExpired:
                 self._engine.kill()
                 self._engine.wait()
         self._end_what_is_left()
-        run("ip", "link", "del", self._bridge_end, check=False)
-        run("ip", "netns", "del", self.name, check=False)
+        succeeds("ip", "link", "del", self._bridge_end)
+        succeeds("ip", "netns", "del", self.name)
 
     def _end_what_is_left(self):
-        """Processes that name this machine's own folder: containerd and its shims."""
+        """Processes that name this machine's own folder, as containerd and its shims do, and those
+        whose root lies in it: containers that nobody watches any more."""
+        mark = f"{self.folder}/".encode()
         for entry in os.listdir("/proc"):
             if not entry.isdigit() or int(entry) == os.getpid():
                 continue
             try:
-                with open(f"/proc/{entry}/cmdline", "rb") as file:
-                    if f"{self.folder}/".encode() in file.read():
-                        os.kill(int(entry), signal.SIGKILL)
+                if mark in _contents(f"/proc/{entry}/cmdline") or mark in _root_mount(entry):
+                    os.kill(int(entry), signal.SIGKILL)
             except OSError:
                 continue
+
+
+def _contents(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def _root_mount(process):
+    """The kernel's line about what is mounted at the root that the process sees."""
+    lines = _contents(f"/proc/{process}/mountinfo").splitlines()
+    return b"".join(line for line in lines if line.split()[4] == b"/")
 
 
 def _smallest_mtu():
