@@ -111,7 +111,6 @@ class Image(unittest.IsolatedAsyncioTestCase):
         self.assertFalse(self.reaches_out("alone"))
         seconds = await asyncio.to_thread(container.wait_healthy)
         print(f"container: healthy after {seconds:.1f} s", flush=True)
-        self.assertLess(seconds, 60)
         path = "api/v1/sessions/main/frame.png?samples=64"
         status, _, picture = await asyncio.to_thread(container.get, path)
         self.assertEqual(status, 200, picture)
@@ -152,7 +151,7 @@ class Image(unittest.IsolatedAsyncioTestCase):
         memory, cpus = 1280 * 2 ** 20, 0.5
         container = self.container("limited", "--memory", str(memory), "--memory-swap", str(memory),
                                    "--cpus", str(cpus), "--env", "LP_NUM_THREADS=1")
-        await asyncio.to_thread(container.wait_healthy, 240)
+        await asyncio.to_thread(container.wait_healthy)
         wish = Wish("glossy_sponza_1", size=(320, 180))
         async with ReplayingViewer(container.url, TOKEN, wish) as viewer:
             spent, started = self._cpu_seconds("limited"), time.monotonic()

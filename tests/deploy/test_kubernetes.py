@@ -116,7 +116,7 @@ class Pod(unittest.TestCase):
         address = "http://127.0.0.1:8080/health/ready"
         while not succeeds("nsenter", f"--net=/run/netns/{self.machine.name}", "curl", "--silent",
                            "--fail", address):
-            if time.monotonic() - started > 120:
+            if time.monotonic() - started > 300:
                 raise AssertionError(self.podman("logs", "heliograph-heliograph", check=False))
             time.sleep(0.3)
         print(f"pod: ready after {time.monotonic() - started:.1f} s", flush=True)

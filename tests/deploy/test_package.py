@@ -68,7 +68,7 @@ class PackageTest:
             "160", "--height", "90"))
         try:
             address = f"http://127.0.0.1:{port}"
-            deadline = time.monotonic() + 120
+            deadline = time.monotonic() + 300
             while not succeeds(*self.system.command("heliograph", "health", "--url",
                                                     f"{address}/health/ready")):
                 self.assertIsNone(server.poll(), "the server ended")

@@ -61,7 +61,7 @@ class ServiceTest:
     def properties(self, *names):
         return self.booted.properties(UNIT, *names)
 
-    def wait_ready(self, timeout=120):
+    def wait_ready(self, timeout=300):
         deadline = time.monotonic() + timeout
         while True:
             try:

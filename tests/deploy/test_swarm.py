@@ -45,7 +45,7 @@ class Swarm(unittest.IsolatedAsyncioTestCase):
         return {line.split()[0]: line.split()[1] for line in lines.splitlines()}
 
     @classmethod
-    def wait_for_replicas(cls, wanted, timeout=300):
+    def wait_for_replicas(cls, wanted, timeout=600):
         deadline = time.monotonic() + timeout
         while {name: cls.replicas().get(name) for name in wanted} != wanted:
             if time.monotonic() > deadline:

@@ -86,7 +86,7 @@ class Booted:
                 ["unshare", "--mount", "--uts", "--ipc", "--net", "--pid", "--cgroup", "--fork",
                  "--kill-child", "sh", "-c", _BOOT, self.system.folder], stdin=subprocess.DEVNULL,
                 stdout=file, stderr=file, preexec_fn=join)
-        deadline = time.monotonic() + 30
+        deadline = time.monotonic() + 120
         while not self._is_systemd():
             if self._process.poll() is not None or time.monotonic() > deadline:
                 with open(log, encoding="utf-8") as file:
@@ -112,13 +112,13 @@ class Booted:
 
     def _wait(self):
         """Until the system has come up, with units that cannot work here failed or not."""
-        deadline = time.monotonic() + 60
+        deadline = time.monotonic() + 300
         while True:
             state = self.run("systemctl", "is-system-running", check=False)
             if state in ("running", "degraded"):
                 return
             if time.monotonic() > deadline:
-                raise AssertionError(f"systemd is {state or 'not to be asked'} after 60 s")
+                raise AssertionError(f"systemd is {state or 'not to be asked'} after 300 s")
             time.sleep(0.1)
 
     def run(self, *words, **options):

@@ -76,7 +76,7 @@ class Fleet:
     def _balancer(self):
         return self.address("fleet_balancer_1")
 
-    def wait_ready(self, count, timeout=240):
+    def wait_ready(self, count, timeout=600):
         """Until as many nodes take viewers."""
         deadline = time.monotonic() + timeout
         while True:

@@ -19,7 +19,7 @@ BLOCKS = 8
 def render(scene, output, *, size=(160, 90), samples=8):
     """By the program of this build, on this machine."""
     run(os.environ["HELIOGRAPH_BINARY"], "render", scene, "-o", output, "--width", str(size[0]),
-        "--height", str(size[1]), "--samples", str(samples), timeout=120)
+        "--height", str(size[1]), "--samples", str(samples), timeout=600)
 
 
 def read(path):

@@ -74,7 +74,7 @@ class ReplayingViewer:
 
     async def __aenter__(self):
         self._task = asyncio.create_task(self._live())
-        await self.whole(timeout=60)
+        await self.whole(timeout=180)
         return self
 
     async def __aexit__(self, *_):

@@ -23,7 +23,7 @@ class Container:
         machine.docker("run", "--detach", "--name", name, *HARDENED, "--publish", f"{port}:8080",
                        "--env", f"HELIOGRAPH_TOKEN={TOKEN}", *options, SERVER, "serve", *serve)
 
-    def wait_healthy(self, timeout=120):
+    def wait_healthy(self, timeout=300):
         """Gives the seconds that it took."""
         while self.machine.docker("inspect", "--format", "{{.State.Health.Status}}",
                                   self.name) != "healthy":

@@ -121,7 +121,7 @@ class Machine:
              f"unix://{self.socket}", "--mtu", str(_smallest_mtu())],
             stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True)
         log.close()
-        deadline = time.monotonic() + 60
+        deadline = time.monotonic() + 180
         while not succeeds(program("docker"), "--host", f"unix://{self.socket}", "info"):
             if self._engine.poll() is not None or time.monotonic() > deadline:
                 with open(log.name, encoding="utf-8") as file:
@@ -133,12 +133,12 @@ class Machine:
         """Runs a program in the machine's network."""
         return run("nsenter", f"--net=/run/netns/{self.name}", *command, **options)
 
-    def docker(self, *command, timeout=120, **options):
+    def docker(self, *command, timeout=300, **options):
         environment = {**os.environ, "DOCKER_BUILDKIT": "1", **options.pop("environment", {})}
         return run(program("docker"), "--host", f"unix://{self.socket}", *command, timeout=timeout,
                    env=environment, **options)
 
-    def compose(self, *command, environment=None, timeout=300):
+    def compose(self, *command, environment=None, timeout=600):
         return run(program("docker-compose"), *command, timeout=timeout,
                    env={**os.environ, "DOCKER_HOST": f"unix://{self.socket}",
                         **(environment or {})})

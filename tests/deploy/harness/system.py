@@ -46,7 +46,7 @@ class System:
         return ["unshare", "--mount", "--propagation", "private", "sh", "-c", script, self.folder,
                 *words]
 
-    def run(self, *words, timeout=300, environment=(), binds=()):
+    def run(self, *words, timeout=600, environment=(), binds=()):
         """As root. The variables are given as NAME=VALUE."""
         return run(*self.command("env", "DEBIAN_FRONTEND=noninteractive", "LC_ALL=C.UTF-8",
                                  "XDG_CACHE_HOME=/tmp/cache", *environment, *words, binds=binds),
@@ -60,7 +60,7 @@ class System:
                 shutil.copy(package, os.path.join(self.folder, "tmp"))
                 package = "/tmp/" + os.path.basename(package)
             names.append(package)
-        self.run("apt-get", "install", "--yes", "--no-install-recommends", *names, timeout=900)
+        self.run("apt-get", "install", "--yes", "--no-install-recommends", *names, timeout=1800)
 
     def path(self, inside):
         return os.path.join(self.folder, inside.lstrip("/"))
