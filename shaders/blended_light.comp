@@ -1,26 +1,27 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 64) in;
 // The rays that light the chosen blended surface of each pixel, as all others are lit: toward a light,
 // into the hemisphere, along its mirrored lobe. Each carries what it brings.
-#include "lib/camera_ray.glsl"
 #include "lib/hit_material.glsl"
 #include "lib/light_choice.glsl"
+#include "lib/ray_index.glsl"
 #include "lib/ray_stream.glsl"
 #include "lib/sampling.glsl"
 #include "lib/specular_pixels.glsl"
 
-layout(set = 1, binding = 0, std430) readonly buffer Chosen { Hit chosen[]; };
-layout(set = 1, binding = 1, rgba32f) uniform image2D radiance;
-layout(set = 1, binding = 2, rgba32f) uniform image2D behind;  // a: from weight to view Z
-layout(set = 1, binding = 3, rgba8) writeonly uniform image2D surface;
-layout(set = 1, binding = 4, rgba32f) writeonly uniform image2D mirrored;
-layout(set = 1, binding = 5, std430) buffer ShadowCount { RayCount shadow_count; };
-layout(set = 1, binding = 6, std430) writeonly buffer ShadowRays { Ray shadow_rays[]; };
-layout(set = 1, binding = 7, std430) buffer AmbientCount { RayCount ambient_count; };
-layout(set = 1, binding = 8, std430) writeonly buffer AmbientRays { Ray ambient_rays[]; };
-layout(set = 1, binding = 9, std430) buffer MirrorCount { RayCount mirror_count; };
-layout(set = 1, binding = 10, std430) writeonly buffer MirrorRays { Ray mirror_rays[]; };
+layout(set = 1, binding = 0, std430) readonly buffer LitCount { RayCount lit_count; };
+layout(set = 1, binding = 1, std430) readonly buffer LitRays { Ray lit_rays[]; };
+layout(set = 1, binding = 2, std430) readonly buffer Chosen { Hit chosen[]; };
+layout(set = 1, binding = 3, rgba32f) readonly uniform image2D radiance;
+layout(set = 1, binding = 4, rgba32f) uniform image2D behind;  // a: from weight to view Z
+layout(set = 1, binding = 5, rgba8) writeonly uniform image2D surface;
+layout(set = 1, binding = 6, std430) buffer ShadowCount { RayCount shadow_count; };
+layout(set = 1, binding = 7, std430) writeonly buffer ShadowRays { Ray shadow_rays[]; };
+layout(set = 1, binding = 8, std430) buffer AmbientCount { RayCount ambient_count; };
+layout(set = 1, binding = 9, std430) writeonly buffer AmbientRays { Ray ambient_rays[]; };
+layout(set = 1, binding = 10, std430) buffer MirrorCount { RayCount mirror_count; };
+layout(set = 1, binding = 11, std430) writeonly buffer MirrorRays { Ray mirror_rays[]; };
 layout(push_constant) uniform Constants { float max_roughness; };  // below 0: nothing is traced
 
 vec2 pair(ivec2 pixel, uint dimension) {
@@ -73,16 +74,16 @@ Ray ambient_ray(HitSurface s, SurfaceMaterial m, float view_z, vec3 light, ivec2
 }
 
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  uint index = ray_index();
   bool lit = false, open = false, mirrors = false;
   Ray shadow, ambient, mirror;
-  vec4 own = vec4(0.0);
-  float total = outside_frame(pixel) ? 0.0 : imageLoad(radiance, pixel).a;
-  if (total > 0.0) {
+  if (index < lit_count.count) {
+    Ray view = lit_rays[index];
+    ivec2 pixel = ivec2(view.pixel & 0xffffu, view.pixel >> 16u);
     Hit hit = chosen[uint(pixel.y) * frame.extent.x + uint(pixel.x)];
     vec4 seen = imageLoad(behind, pixel);
-    vec3 share = uintBitsToFloat(uvec3(hit.padding0, hit.padding1, hit.padding2)) * (total / seen.a);
-    Ray view = camera_ray(pixel);
+    vec3 share = uintBitsToFloat(uvec3(hit.padding0, hit.padding1, hit.padding2)) *
+                 (imageLoad(radiance, pixel).a / seen.a);
     HitSurface s = hit_surface(hit, view.direction, cone_width(camera_cone(), hit.t));
     SurfaceMaterial m = material_of(s, view.direction);
     float view_z = -(frame.view * vec4(s.position, 1.0)).z;
@@ -97,11 +98,7 @@ void main() {
     }
     ambient = ambient_ray(s, m, view_z, share * around * s.occlusion, pixel, open);
     imageStore(behind, pixel, vec4(seen.rgb, view_z));
-    own = vec4(mirror_roughness(m), s.metallic, 0.0, 0.0);
-  }
-  if (!outside_frame(pixel)) {
-    imageStore(surface, pixel, own);
-    imageStore(mirrored, pixel, vec4(0.0));
+    imageStore(surface, pixel, vec4(mirror_roughness(m), s.metallic, 0.0, 0.0));
   }
   APPEND_RAY_TO(shadow_count, shadow_rays, lit, shadow)
   APPEND_RAY_TO(ambient_count, ambient_rays, open, ambient)

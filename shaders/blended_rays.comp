@@ -12,6 +12,8 @@ layout(set = 1, binding = 2, std430) writeonly buffer Rays { Ray rays[]; };
 layout(set = 1, binding = 3, rgba32f) writeonly uniform image2D radiance;
 layout(set = 1, binding = 4, rgba32f) writeonly uniform image2D behind;
 layout(set = 1, binding = 5, rgba32f) writeonly uniform image2D front_motion;
+layout(set = 1, binding = 6, rgba8) writeonly uniform image2D surface;
+layout(set = 1, binding = 7, rgba32f) writeonly uniform image2D mirrored;
 layout(push_constant) uniform Constants { uvec4 region; };  // of pixels: first, behind the last
 
 void main() {
@@ -25,6 +27,8 @@ void main() {
     imageStore(radiance, pixel, vec4(0.0));
     imageStore(behind, pixel, vec4(1.0, 1.0, 1.0, 0.0));
     imageStore(front_motion, pixel, moved);
+    imageStore(surface, pixel, vec4(0.0));
+    imageStore(mirrored, pixel, vec4(0.0));
     ray = camera_ray(pixel);
     float stretch = enabled(frame_orthographic) ? 1.0 : length(view_position(pixel, 1.0));
     // Not the surface itself, whose depth has been rounded.

@@ -20,6 +20,8 @@ layout(set = 1, binding = 6, rgba32f) uniform image2D radiance;  // a: sum of al
 layout(set = 1, binding = 7, rgba32f) uniform image2D behind;    // a: weight of the chosen one
 layout(set = 1, binding = 8, rgba32f) writeonly uniform image2D front_motion;
 layout(set = 1, binding = 9, std430) writeonly buffer Chosen { Hit chosen[]; };  // by pixel
+layout(set = 1, binding = 10, std430) buffer LitCount { RayCount lit_count; };
+layout(set = 1, binding = 11, std430) writeonly buffer LitRays { Ray lit_rays[]; };
 layout(push_constant) uniform Constants {
   uint round;
   uint last_round;
@@ -55,13 +57,15 @@ void choose(ivec2 pixel, Hit hit, HitSurface s, SurfaceMaterial m, vec3 share, i
   chosen[uint(pixel.y) * frame.extent.x + uint(pixel.x)] = hit;
 }
 
-/// Whether anything behind it still shows.
-bool lay_over(ivec2 pixel, Hit hit, HitSurface s, SurfaceMaterial m) {
+/// Whether anything behind it still shows. `first`: whether it is the first of its pixel to be lit.
+bool lay_over(ivec2 pixel, Hit hit, HitSurface s, SurfaceMaterial m, out bool first) {
   vec4 light = imageLoad(radiance, pixel);
   vec4 seen = imageLoad(behind, pixel);
   vec3 share = seen.rgb * s.alpha;
   light.rgb += share * own_light(s);
+  first = light.a == 0.0;
   if (!is_unlit(s)) choose(pixel, hit, s, m, share, light.a, seen.a);
+  first = first && light.a > 0.0;
   bool most_seen = luminance(seen.rgb) >= 0.5;
   seen.rgb *= seen_behind(s, m);
   if (most_seen && luminance(seen.rgb) < 0.5) {
@@ -75,19 +79,20 @@ bool lay_over(ivec2 pixel, Hit hit, HitSurface s, SurfaceMaterial m) {
 
 void main() {
   uint index = ray_index();
-  bool goes_on = false;
-  Ray ray;
+  bool goes_on = false, lit = false;
+  Ray ray, view;
   if (index < met_count.count && hits[index].instance != hit_none) {
-    ray = met_rays[index];
+    ray = view = met_rays[index];
     Hit hit = hits[index];
     ivec2 pixel = ivec2(ray.pixel & 0xffffu, ray.pixel >> 16u);
     HitSurface s = hit_surface(hit, ray.direction, cone_width(camera_cone(), hit.t));
     goes_on = is_open(s, ray.direction);
     if (!goes_on && is_blended(s)) {
-      goes_on = lay_over(pixel, hit, s, material_of(s, ray.direction));
+      goes_on = lay_over(pixel, hit, s, material_of(s, ray.direction), lit);
     }
     goes_on = goes_on && last_round == 0u;
     ray = beyond(ray, hit);
   }
   APPEND_RAY(goes_on, ray)
+  APPEND_RAY_TO(lit_count, lit_rays, lit, view)
 }

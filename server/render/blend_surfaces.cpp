@@ -56,6 +56,7 @@ class BlendedSurfaces {
         surface_(plan.image("blended.surface", VK_FORMAT_R8G8B8A8_UNORM)),
         hits_(plan.buffer("blended.hits", sizeof(shared::Hit) * pixels_, storage,
                           gpu::Memory::device)),
+        lit_(declare_rays(plan, "blended.lit", pixels_)),
         chosen_(plan.buffer("blended.chosen", sizeof(shared::Hit) * pixels_, storage,
                             gpu::Memory::device)) {}
 
@@ -66,6 +67,7 @@ class BlendedSurfaces {
     tracing::RayStream current = declare_rays(plan_, "blended", pixels_);
     tracing::RayStream next = declare_rays(plan_, "blended.next", pixels_);
     begin_rays(plan_, in_, "blended", current, Blending::stops);
+    begin_rays(plan_, in_, "blended.lit", lit_, Blending::stops);
     plan_.pass("blended.rays", in_.programs.compute(shaders::blended_rays))
         .read(gbuffer_.motion)
         .read_write(current.count)
@@ -73,6 +75,8 @@ class BlendedSurfaces {
         .write(radiance_)
         .write(behind_)
         .write(motion_)
+        .write(surface_)
+        .write(mirrored_)
         .constants([in = in_] { return blended_region(in); })
         .dispatch(plan_.extent())
         .describe("Blended surfaces alone.");
@@ -94,11 +98,12 @@ class BlendedSurfaces {
     }
     const bool traced = in_.settings.specular.enabled;
     pass("blended.light", shaders::blended_light)
+        .read(lit_.count)
+        .read(lit_.rays)
         .read(chosen_)
-        .read_write(radiance_)
+        .read(radiance_)
         .read_write(behind_)
         .write(surface_)
-        .write(mirrored_)
         .read_write(shadows.count)
         .write(shadows.rays)
         .read_write(ambient.count)
@@ -106,7 +111,7 @@ class BlendedSurfaces {
         .read_write(mirrors.count)
         .write(mirrors.rays)
         .constants([&s = in_.settings.specular, traced] { return traced ? s.max_roughness : -1.0f; })
-        .dispatch(plan_.extent());
+        .dispatch_indirect(lit_.count, ray_groups_offset);
     add_unhidden_light(plan_, in_, "blended.shadows", shadows, radiance_);
     add_unhidden_light(plan_, in_, "blended.ambient", ambient, radiance_);
     if (traced) trace_mirrored(plan_, in_, "blended.mirrors", mirrors, surface_, behind_, mirrored_);
@@ -142,6 +147,8 @@ class BlendedSurfaces {
         .read_write(behind_)
         .write(motion_)
         .write(chosen_)
+        .read_write(lit_.count)
+        .write(lit_.rays)
         .constants(Constants{round, round + 1 == most_blended})
         .dispatch_indirect(met.count, ray_groups_offset);
   }
@@ -156,6 +163,7 @@ class BlendedSurfaces {
   gpu::ImageRef mirrored_;
   gpu::ImageRef surface_;
   gpu::BufferRef hits_;
+  tracing::RayStream lit_;  // the pixels that have a surface to light, each once
   gpu::BufferRef chosen_;
 };
 
