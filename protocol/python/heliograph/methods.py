@@ -287,8 +287,9 @@ class Scene(_Group):
             out: the file's default.
         variant: Which of the file's material variants. Left out: the materials outside of them.
 
-        Gives: bounds, cameras, clips, instances, lights, materials, meshes, name, scene,
-            scenes, textures, triangles, variant, variants, warnings.
+        Gives: bounds, cameras, clips, deforming, environment, images, instances, light_names,
+            lights, material_names, materials, memory, meshes, name, nodes, scene, scenes,
+            texels, textures, triangles, variant, variants, vertices, warnings.
         """
         return self._call("scene.load", _given({"name": name, "scene": scene, "variant": variant}))
 
@@ -306,8 +307,9 @@ class Scene(_Group):
     def info(self) -> Dict[str, Any]:
         """Describes the scene that is shown.
 
-        Gives: bounds, cameras, clips, instances, lights, materials, meshes, name, scene,
-            scenes, textures, triangles, variant, variants, warnings.
+        Gives: bounds, cameras, clips, deforming, environment, images, instances, light_names,
+            lights, material_names, materials, memory, meshes, name, nodes, scene, scenes,
+            texels, textures, triangles, variant, variants, vertices, warnings.
         """
         return self._call("scene.info", {})
 
