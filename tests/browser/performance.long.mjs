@@ -16,9 +16,9 @@ const watchedMs = 10_000;
 /** The cheapest picture there is: what is measured here is the client, not the renderer. */
 const everythingOff = {
   shadows: { enabled: false },
-  ambient: { enabled: false },
   specular: { enabled: false },
-  antialiasing: { enabled: false },
+  ambient: { occlusion: false },
+  antialiasing: { temporal: false },
   motion: { scale: 1 },
 };
 
