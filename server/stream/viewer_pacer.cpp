@@ -110,7 +110,9 @@ void ViewerPacer::set_max_rate(double frames_per_second) {
 void ViewerPacer::set_paused(bool paused) {
   paused_ = paused;
   if (!paused_) return;
-  if (waiting_ && waiting_->video) decoder_.reset();
+  // Who comes back gets a key frame first, even if no frame was missed: that is how a viewer whose
+  // decoder failed asks for a fresh start.
+  decoder_.reset();
   waiting_ = nullptr;
 }
 
