@@ -33,7 +33,7 @@ std::uint32_t cube_size_for(const scene::Environment& environment) {
 /// Narrow lobes need fewer: each sample reads the level that its part of the lobe covers (Krivanek
 /// and Colbert, GPU Gems 3, chapter 20, are content with 40), and their levels have most texels.
 std::uint32_t samples_for(std::uint32_t level) {
-  return level == 0 ? 1 : std::min(64u << (level - 1), most_samples);
+  return level == 0 ? 1 : std::min(256u << (level - 1), most_samples);
 }
 
 gpu::Image make_cube(const gpu::Device& device, const char* name, std::uint32_t cube_size) {
