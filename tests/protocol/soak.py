@@ -82,7 +82,8 @@ async def come_and_go(server):
 
 
 async def make_and_close(server, state):
-    """A session with its own camera and a viewer, again and again."""
+    """A session with its own camera and a viewer, again and again. Memory is compared from one to
+    the next, while each is there."""
     async with Viewer(server, greet=False) as outside:
         while not state["ending"]:
             name = (await outside.call("session.create", {"copy_of": "main"}))["name"]
@@ -91,13 +92,14 @@ async def make_and_close(server, state):
                 await inside.next_frame(timeout=60)
                 await inside.call("frame.capture", {"samples": 1})
                 state["captures"] += 1
+                state["memory"].append(server.memory_bytes())
                 await inside.call("session.close", {"session": name})
             await asyncio.sleep(1)
 
 
 async def soak(server, seconds, report=print):
     """Gives what was wrong, an empty list if nothing was."""
-    state = {"seq": 0, "patches": 0, "captures": 0, "ending": False}
+    state = {"seq": 0, "patches": 0, "captures": 0, "memory": [], "ending": False}
     async with Viewer(server) as driver, Viewer(server) as jpeg, \
             Viewer(server, greet=False) as video:
         await video.call("hello", {"client": "soak", "codecs": ["h264", "jpeg"]})
@@ -106,27 +108,30 @@ async def soak(server, seconds, report=print):
         working = [asyncio.create_task(steer(driver, state)),
                    asyncio.create_task(make_and_close(server, state))]
         tasks += [*working, asyncio.create_task(come_and_go(server))]
-        memory = []
         begin = time.monotonic()
         while time.monotonic() < begin + seconds:
             await asyncio.sleep(min(10, seconds / 8))
-            memory.append(server.memory_bytes())
             failed = [task for task in tasks if task.done()]
             if failed:
                 return [repr(task.exception()) for task in failed]
             report(f"{time.monotonic() - begin:6.0f} s, {sum(w.frames for w in watchers)} frames, "
                    f"{state['patches']} patches, {state['captures']} captures, "
-                   f"{memory[-1] / MEGABYTE:.1f} MB")
+                   f"{server.memory_bytes() / MEGABYTE:.1f} MB")
         state["ending"] = True
         await asyncio.gather(*working)
         faults = await check_end(jpeg, state, watchers)
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
-    # The first quarter fills caches and pools.
-    settled = memory[len(memory) // 4:]
-    grown = settled[-1] - settled[0]
-    if grown > 20 * MEGABYTE + 0.02 * settled[0]:
+    # Peaks, once pools have filled: after half of a short run, after a quarter of a long one.
+    memory = state["memory"]
+    settled = memory[len(memory) // (4 if len(memory) > 100 else 2):]
+    if len(settled) < 4:
+        return [*faults, "too few sessions came and went to compare"]
+    half = len(settled) // 2
+    before = max(settled[:half])
+    grown = max(settled[half:]) - before
+    if grown > 20 * MEGABYTE + 0.02 * before:
         faults.append(f"memory grew by {grown / MEGABYTE:.1f} MB")
     return faults
 
