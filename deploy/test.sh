@@ -11,4 +11,5 @@ if [ -z "${HELIOGRAPH_NEWER_MESA:-}" ] && deploy/newer_mesa.sh "$build/newer_mes
   export HELIOGRAPH_NEWER_MESA
 fi
 echo "==> running the tests"
-exec ctest --test-dir "$build" --output-on-failure "$@"
+# What measures time or fills the machine by itself runs alone; the rest in pairs.
+exec ctest --test-dir "$build" --output-on-failure --parallel 2 "$@"

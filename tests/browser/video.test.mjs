@@ -43,16 +43,21 @@ stage.test("a playing clip comes as H.264 and is decoded, the resting picture by
 
 const played = (page) => page.evaluate(() => window.seen);
 
-/** Breaks one picture of the video, or all of them, on the way into the decoder. */
+/** Has the decoder fail as it does where it meets what it cannot decode, at one picture or at all.
+ * Noise instead of a picture would not do: what comes of that differs from run to run. */
 const breaking = (which) => `
   let chunks = 0;
-  const decode = VideoDecoder.prototype.decode;
-  VideoDecoder.prototype.decode = function (chunk) {
-    chunks += 1;
-    if (!(${which})(chunks)) return decode.call(this, chunk);
-    const noise = new Uint8Array(chunk.byteLength).map((_, index) => (index * 151) % 255);
-    const { type, timestamp } = chunk;
-    return decode.call(this, new EncodedVideoChunk({ type, timestamp, data: noise }));
+  self.VideoDecoder = class extends VideoDecoder {
+    constructor(callbacks) {
+      super(callbacks);
+      this.failed = callbacks.error;
+    }
+    decode(chunk) {
+      chunks += 1;
+      if (!(${which})(chunks)) return super.decode(chunk);
+      this.close();
+      queueMicrotask(() => this.failed(new DOMException("Decoding error.", "EncodingError")));
+    }
   };
 `;
 

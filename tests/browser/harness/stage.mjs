@@ -23,6 +23,7 @@ export class Stage {
   } = {}) {
     this.serverArguments = [...serverArguments, "--scene", scene];
     if (samples) this.serverArguments.push("--set", `accumulation.max_samples=${samples}`);
+    this.samples = samples;
     this.view = view;
     this.prepare = prepare;
     this.contexts = new Set();
