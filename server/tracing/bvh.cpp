@@ -60,7 +60,7 @@ MeshBvh build_mesh(RTCDevice device, const scene::Mesh& mesh, const shared::Mate
     const std::uint32_t link = leaf_link(result.triangles.size(), items.size());
     for (const std::uint32_t item : items) {
       const auto [a, b, c] = corners(mesh, item);
-      result.triangles.push_back({a, number(item), b - a, 0, c - a, 0});
+      result.triangles.push_back({a, number(item), b, 0, c, 0});
     }
     return link;
   };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <limits>
 
 #include "tracing/alpha_mask.hpp"
 
@@ -13,7 +14,13 @@ namespace {
 constexpr float dead_from = 1.0f;
 constexpr float dead_to = 0.0f;
 
-// Embree counts hits at the far end in, we do not. `t_max` > 0.
+// Embree, when robust, counts hits at both ends in, we do not. `t_min` >= 0, `t_max` > 0. Embree takes
+// numbers too small to be normal for zero.
+float first_after(float t_min) {
+  const float next = std::bit_cast<float>(std::bit_cast<std::uint32_t>(t_min) + 1);
+  return std::max(next, std::numeric_limits<float>::min());
+}
+
 float last_before(float t_max) {
   return std::bit_cast<float>(std::bit_cast<std::uint32_t>(t_max) - 1);
 }
@@ -44,7 +51,7 @@ RTCRay to_embree(const shared::Ray& ray, std::uint32_t blending) {
   result.org_x = ray.origin.x;
   result.org_y = ray.origin.y;
   result.org_z = ray.origin.z;
-  result.tnear = alive ? ray.t_min : dead_from;
+  result.tnear = alive ? first_after(ray.t_min) : dead_from;
   result.dir_x = ray.direction.x;
   result.dir_y = ray.direction.y;
   result.dir_z = ray.direction.z;
@@ -102,7 +109,7 @@ Lanes load(std::span<const shared::Ray> rays, std::uint32_t blending, RTCRay16& 
     lanes.org_x[i] = ray.origin.x;
     lanes.org_y[i] = ray.origin.y;
     lanes.org_z[i] = ray.origin.z;
-    lanes.tnear[i] = result.valid[i] ? ray.t_min : dead_from;
+    lanes.tnear[i] = result.valid[i] ? first_after(ray.t_min) : dead_from;
     lanes.dir_x[i] = ray.direction.x;
     lanes.dir_y[i] = ray.direction.y;
     lanes.dir_z[i] = ray.direction.z;

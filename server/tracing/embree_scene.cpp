@@ -9,10 +9,13 @@
 namespace heliograph::tracing {
 namespace {
 
-EmbreeHandle<RTCScene> new_scene(RTCDevice device, RTCBuildQuality quality) {
+/// Robust: no ray slips through between two triangles.
+EmbreeHandle<RTCScene> new_scene(RTCDevice device, RTCBuildQuality quality,
+                                 RTCSceneFlags flags = RTC_SCENE_FLAG_NONE) {
   EmbreeHandle<RTCScene> scene(rtcNewScene(device));
   check_embree(device, "start a scene");
   rtcSetSceneBuildQuality(scene.get(), quality);
+  rtcSetSceneFlags(scene.get(), flags | RTC_SCENE_FLAG_ROBUST);
   return scene;
 }
 
@@ -41,12 +44,10 @@ EmbreeMesh::EmbreeMesh(RTCDevice device, const scene::Mesh& mesh, const shared::
   }
   // Only scenes of low quality let a geometry be refitted, others build it anew with every commit.
   // The tree that is refitted is one of medium quality all the same.
-  scene_ = new_scene(device,
-                     use == Use::deforming ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM);
-  if (use == Use::deforming) {
-    rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_DYNAMIC);
-    rtcSetGeometryBuildQuality(geometry_.get(), RTC_BUILD_QUALITY_REFIT);
-  }
+  const bool deforms = use == Use::deforming;
+  scene_ = new_scene(device, deforms ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM,
+                     deforms ? RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_NONE);
+  if (deforms) rtcSetGeometryBuildQuality(geometry_.get(), RTC_BUILD_QUALITY_REFIT);
   rtcCommitGeometry(geometry_.get());
   rtcAttachGeometry(scene_.get(), geometry_.get());
   rtcCommitScene(scene_.get());

@@ -26,9 +26,9 @@ void set_boxes(shared::BvhNode& node, const scene::Bounds& left, const scene::Bo
 scene::Bounds box_of(std::span<const shared::BvhTriangle> triangles) {
   scene::Bounds box;
   for (const shared::BvhTriangle& triangle : triangles) {
-    box.include(triangle.corner);
-    box.include(triangle.corner + triangle.edge1);
-    box.include(triangle.corner + triangle.edge2);
+    box.include(triangle.corner0);
+    box.include(triangle.corner1);
+    box.include(triangle.corner2);
   }
   return box;
 }
@@ -36,9 +36,9 @@ scene::Bounds box_of(std::span<const shared::BvhTriangle> triangles) {
 void move_triangle(shared::BvhTriangle& triangle, std::span<const std::uint32_t> indices,
                    std::span<const shared::Vertex> vertices) {
   const std::size_t first = 3 * std::size_t(triangle.triangle & shared::bvh_number_mask);
-  triangle.corner = vertices[indices[first]].position;
-  triangle.edge1 = vertices[indices[first + 1]].position - triangle.corner;
-  triangle.edge2 = vertices[indices[first + 2]].position - triangle.corner;
+  triangle.corner0 = vertices[indices[first]].position;
+  triangle.corner1 = vertices[indices[first + 1]].position;
+  triangle.corner2 = vertices[indices[first + 2]].position;
 }
 
 }  // namespace

@@ -67,21 +67,35 @@ bool mask_stops(uint mask, uint place, vec3 tuv, uint instance, uint triangle) {
   return alpha_stops(alpha, texels.w, blending, instance, triangle);
 }
 
-// Möller and Trumbore (1997), both faces: (t, u, v) where the plane is met, and whether inside.
+// On which side of the edge from a to b, both seen from the line's origin, the line passes: six times
+// the volume between them. The same edge the other way round gives exactly the opposite, so that no
+// line slips through between two triangles (Davidovic, Engelhardt, Georgiev and Slusallek, GI 2012).
+float side_of_edge(vec3 a, vec3 b, vec3 direction) {
+  const vec3 along = b - a, sum = a + b;
+  precise const float x = fma(along.y, sum.z, -(along.z * sum.y));
+  precise const float y = fma(along.z, sum.x, -(along.x * sum.z));
+  precise const float z = fma(along.x, sum.y, -(along.y * sum.x));
+  precise const float side = fma(x, direction.x, fma(y, direction.y, z * direction.z));
+  return side;
+}
+
+// Both faces: (t, u, v) where the plane is met, and whether inside.
 bool triangle_hit(uint place, Line line, vec2 range, out vec3 tuv, out uint triangle) {
   const int texel = int(place * bvh_texels_per_triangle);
-  const vec4 corner = texelFetch(triangles, texel);
-  const vec3 edge1 = texelFetch(triangles, texel + 1).xyz;
-  const vec3 edge2 = texelFetch(triangles, texel + 2).xyz;
-  triangle = floatBitsToUint(corner.w) & bvh_number_mask;
-  const vec3 p = cross(line.direction, edge2);
-  const float determinant = dot(edge1, p);
-  const float scale = 1.0 / determinant;
-  const vec3 s = line.origin - corner.xyz;
-  const vec3 q = cross(s, edge1);
-  tuv = scale * vec3(dot(edge2, q), dot(s, p), dot(line.direction, q));
-  return determinant != 0.0 && tuv.y >= 0.0 && tuv.z >= 0.0 && tuv.y + tuv.z <= 1.0 &&
-         tuv.x > range.x && tuv.x < range.y;
+  const vec4 first = texelFetch(triangles, texel);
+  triangle = floatBitsToUint(first.w) & bvh_number_mask;
+  const vec3 corner0 = first.xyz;
+  const vec3 corner1 = texelFetch(triangles, texel + 1).xyz;
+  const vec3 corner2 = texelFetch(triangles, texel + 2).xyz;
+  const vec3 a = corner0 - line.origin, b = corner1 - line.origin, c = corner2 - line.origin;
+  const vec3 sides = vec3(side_of_edge(b, c, line.direction), side_of_edge(c, a, line.direction),
+                          side_of_edge(a, b, line.direction));
+  const vec3 normal = cross(corner1 - corner0, corner2 - corner0);
+  const float slope = dot(normal, line.direction);
+  const float total = sides.x + sides.y + sides.z;
+  tuv = vec3(dot(normal, a) / slope, sides.yz / total);
+  const bool inside = all(greaterThanEqual(sides, vec3(0.0))) || all(lessThanEqual(sides, vec3(0.0)));
+  return inside && slope != 0.0 && total != 0.0 && tuv.x > range.x && tuv.x < range.y;
 }
 
 // Links still to be visited. Both levels share the stack; bvh_no_link ends each of them.

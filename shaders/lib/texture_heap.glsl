@@ -8,7 +8,8 @@ int wrapped_texel(int texel, int size, uint mode) {
   if (mode == wrap_clamp) return clamp(texel, 0, size - 1);
   int period = mode == wrap_mirror ? 2 * size : size;
   texel -= int(floor(float(texel) / float(period))) * period;
-  texel = clamp(texel, 0, period - 1);
+  // Where the quotient is whole, devices may round it down.
+  if (texel >= period) texel -= period;
   return texel < size ? texel : period - 1 - texel;
 }
 

@@ -61,11 +61,11 @@ struct BvhMask {
 
 // Mesh space.
 struct BvhTriangle {
-  vec3 corner;
+  vec3 corner0;
   uint triangle;  // number: index within the mesh
-  vec3 edge1;     // second corner - first
+  vec3 corner1;
   uint padding0;
-  vec3 edge2;     // third corner - first
+  vec3 corner2;
   uint padding1;
 };
 

@@ -196,19 +196,24 @@ void expect_exact_motion(std::shared_ptr<const scene::Scene> source, const std::
   EXPECT_LE(both.wrong, both.covered / 200);
   EXPECT_LE(both.rays_differ, 3);
 
-  // The motion ends with the frame after the last: exactly, whatever the jitter.
+  // The motion ends with the frame after the last: whatever the jitter, but for what
+  // a compiler that contracts two equal sums differently leaves: less than 0.001 pixels.
   EXPECT_TRUE(stage.moving().needs_advance());
   stage.show(clip, from, around(*source, 0.55f), 5);
   EXPECT_FALSE(stage.moving().needs_advance());
   for (std::uint32_t y = 0; y < extent.height; ++y) {
     for (std::uint32_t x = 0; x < extent.width; ++x) {
-      ASSERT_EQ(glm::vec3(stage.motion(x, y)), glm::vec3(0.0f)) << x << " " << y;
+      ASSERT_LE(glm::length(glm::vec3(stage.motion(x, y))), 1e-7f) << x << " " << y;
     }
   }
 }
 
 class Motion : public testing::TestWithParam<std::string> {
  protected:
+  void SetUp() override {
+    if (!is_offered(GetParam())) GTEST_SKIP() << lacking(GetParam());
+  }
+
   static void expect_exact_motion_in(const std::string& file, const std::string& clip, double from,
                                      double to) {
     const char* assets = std::getenv("HELIOGRAPH_TEST_ASSETS");
@@ -272,8 +277,8 @@ INSTANTIATE_TEST_SUITE_P(, Motion, testing::Values("embree", "software"),
 TEST(MovingScene, TwoRenderersShowOneSceneAtTheirOwnTimes) {
   const auto scene = rigid_scene();
   const auto resources =
-      engine("embree").upload(scene, scene::constant_environment(glm::vec3(1.0f)));
-  auto& parts = engine("embree").parts();
+      engine().upload(scene, scene::constant_environment(glm::vec3(1.0f)));
+  auto& parts = engine().parts();
   render::MovingScene first(parts.device, *parts.tracer, resources);
   render::MovingScene second(parts.device, *parts.tracer, resources);
   EXPECT_TRUE(first.set_pose(&scene->clips[0], 0.5));
@@ -298,10 +303,10 @@ TEST(MovingScene, LightsRideOnTheirNodes) {
   rise.times = {0, 1};
   rise.values = {0, 0, 0, 0, 4, 0};
   scene->clips[0].channels.push_back(rise);
-  auto& parts = engine("embree").parts();
+  auto& parts = engine().parts();
   render::MovingScene moving(
       parts.device, *parts.tracer,
-      engine("embree").upload(scene, scene::constant_environment(glm::vec3(1.0f))));
+      engine().upload(scene, scene::constant_environment(glm::vec3(1.0f))));
   moving.set_pose(&scene->clips[0], 0.5);
   moving.advance();
   shared::Light light;
@@ -309,7 +314,12 @@ TEST(MovingScene, LightsRideOnTheirNodes) {
   EXPECT_LE(glm::distance(light.position, {0, 2, 0}), 1e-6f);
 }
 
-class MovingCost : public testing::TestWithParam<std::string> {};
+class MovingCost : public testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override {
+    if (!is_offered(GetParam())) GTEST_SKIP() << lacking(GetParam());
+  }
+};
 
 TEST_P(MovingCost, OfAHundredRigidInstances) {
   SceneBuilder builder;

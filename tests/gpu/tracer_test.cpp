@@ -251,6 +251,37 @@ TEST_P(TracerTest, SeesBothFacesOfMirroredInstances) {
   }
 }
 
+/// From inside a closed mesh, toward its corners and toward points of its edges.
+std::vector<shared::Ray> rays_at_edges(const scene::Mesh& mesh, const glm::mat4& world,
+                                       std::uint32_t seed) {
+  Random random(seed);
+  std::vector<shared::Ray> rays;
+  for (std::size_t i = 0; i < 20'000; ++i) {
+    const std::size_t triangle = random() % (mesh.indices.size() / 3);
+    const auto corner = [&](std::size_t c) {
+      const std::uint32_t index = mesh.indices[3 * triangle + c % 3];
+      return glm::vec3(world * glm::vec4(mesh.vertices[index].position, 1.0f));
+    };
+    const float share = i % 4 == 0 ? 0.0f : uniform(random, 0.0f, 1.0f);
+    const glm::vec3 target = glm::mix(corner(i), corner(i + 1), share);
+    const glm::vec3 inside = glm::vec3(world * glm::vec4(uniform_vector(random, 0.5f), 1.0f));
+    rays.push_back({inside, 0.0f, glm::normalize(target - inside), 1e6f, 0, 0, 0, 0});
+  }
+  return rays;
+}
+
+TEST_P(TracerTest, LetsNothingThroughBetweenTriangles) {
+  scene::Scene scene;
+  glm::mat4 world = glm::translate(glm::mat4(1.0f), {13.1f, -7.7f, 31.3f});
+  world = glm::rotate(world, 0.7f, glm::normalize(glm::vec3(1, 2, 3)));
+  world = glm::scale(world, {1.3f, 0.9f, 1.1f});
+  place(scene, add_mesh(scene, sphere(24), plain_material()), world);
+  const std::vector<shared::Ray> rays = rays_at_edges(scene.meshes[0], world, 10);
+  const Answers answers = traced(scene, GetParam()).trace(rays);
+  EXPECT_EQ(hit_count(answers), rays.size());
+  EXPECT_EQ(std::ranges::count(answers.occluded, 0u), 0);
+}
+
 INSTANTIATE_TEST_SUITE_P(, TracerTest, testing::ValuesIn(all_tracers), test_name);
 
 class AssetTest : public TracersTest {

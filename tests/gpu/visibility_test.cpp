@@ -76,7 +76,12 @@ std::uint32_t add_roof(SceneBuilder& builder, float height) {
       surface(glm::vec3(1.0f)));
 }
 
-class Shadows : public testing::TestWithParam<std::string> {};
+class Shadows : public testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override {
+    if (!is_offered(GetParam())) GTEST_SKIP() << lacking(GetParam());
+  }
+};
 
 // A sun straight above seen past a straight edge: the uncovered part of its disk.
 TEST_P(Shadows, PenumbraIsAsWideAsTheSunAndAsTallAsTheDiskSays) {

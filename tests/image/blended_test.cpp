@@ -54,6 +54,10 @@ shared::Material pane(bool unlit) {
 
 class Blended : public testing::TestWithParam<const char*> {
  protected:
+  void SetUp() override {
+    if (!is_offered(GetParam())) GTEST_SKIP() << lacking(GetParam());
+  }
+
   static void expect_all(Still& still, float expected, float tolerance, const std::string& what) {
     using enum protocol::ReferenceScope;
     const std::vector<std::pair<const char*, protocol::Settings>> ways{

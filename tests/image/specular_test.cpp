@@ -212,7 +212,7 @@ scene::Camera floor_camera(float size) {
 
 struct Pictured : Still {
   Pictured(float size, const protocol::Settings& settings, std::uint32_t width = 96,
-           std::uint32_t height = 64, const std::string& tracer = "embree")
+           std::uint32_t height = 64, const std::string& tracer = "auto")
       : Still(spheres_on_a_floor(size, 0.2f), make_environment(128, gradient_sky),
               floor_camera(size), width, height, tracer) {
     apply(settings);
@@ -252,7 +252,7 @@ std::pair<int, double> differing(Still& one, Still& other, const char* buffer) {
 // Rays stand beside other neighbours, and texture filters of some drivers round by what the lanes
 // beside them read: radiance may differ in its last bit, the picture in none.
 TEST(SpecularRays, SortedRaysMakeTheSamePicture) {
-  for (const std::string tracer : {"embree", "software"}) {
+  for (const std::string& tracer : offered_tracers()) {
     protocol::Settings settings = undenoised();
     Pictured plain(1.0f, settings, 96, 64, tracer);
     const render::Frame expected = plain.accumulate(3);

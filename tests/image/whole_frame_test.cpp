@@ -43,7 +43,7 @@ scene::Camera eye(float size, int frame) {
 
 struct Scaled : Still {
   explicit Scaled(float size, const protocol::Settings& settings, std::uint32_t width = 96,
-                  std::uint32_t height = 54, const std::string& tracer = "embree")
+                  std::uint32_t height = 54, const std::string& tracer = "auto")
       : Still(still_life(size), make_environment(64, sky), eye(size, 0), width, height, tracer) {
     apply(settings);
   }
@@ -115,9 +115,9 @@ class WholeFrameSizes : public testing::TestWithParam<Way> {};
 
 INSTANTIATE_TEST_SUITE_P(
     Ways, WholeFrameSizes,
-    testing::Values(Way{"embree", "embree", protocol::PrimaryVisibility::rays, as_it_is},
+    testing::Values(Way{"best", "auto", protocol::PrimaryVisibility::rays, as_it_is},
                     Way{"software", "software", protocol::PrimaryVisibility::raster, as_it_is},
-                    Way{"others", "embree", protocol::PrimaryVisibility::raster, everything_else}),
+                    Way{"others", "auto", protocol::PrimaryVisibility::raster, everything_else}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
 // Rows and columns that no group of 8 x 8 fills, a picture that is all border, and one above 1080p
@@ -126,7 +126,7 @@ TEST_P(WholeFrameSizes, OddOnesAreWholeAndAllNumbers) {
   protocol::Settings settings = sized(1.0f);
   settings.gbuffer.source = GetParam().source;
   GetParam().change(settings);
-  const bool large = std::string(GetParam().name) == "embree";
+  const bool large = std::string(GetParam().name) == "best";
   std::vector<std::pair<std::uint32_t, std::uint32_t>> sizes{{1, 1}, {17, 31}, {203, 5}};
   if (large) sizes.emplace_back(1919, 1079);
   for (const auto& [width, height] : sizes) {

@@ -128,9 +128,10 @@ TEST(VisibleNormals, EveryPartOfTheCircleIsReached) {
 TEST(VisibleNormals, NoRoughnessIsAMirror) {
   for (const float degrees : {0.0f, 30.0f, 89.0f, 89.99f}) {
     for (const ShaderOutput& output : grid_samples(view_at(degrees), 0.0f, 16)) {
-      EXPECT_EQ(glm::vec3(output.x), glm::vec3(0, 0, 1)) << degrees;
+      // Exact but for the last bits, which devices may round as they like.
+      EXPECT_LE(glm::distance(glm::vec3(output.x), glm::vec3(0, 0, 1)), 1e-6f) << degrees;
       const glm::vec3 view = view_at(degrees);
-      EXPECT_EQ(glm::vec3(output.y), glm::vec3(-view.x, -view.y, view.z));
+      EXPECT_LE(glm::distance(glm::vec3(output.y), glm::vec3(-view.x, -view.y, view.z)), 1e-6f);
       EXPECT_FLOAT_EQ(output.x.w, 1.0f);
     }
   }

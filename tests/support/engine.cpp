@@ -1,10 +1,13 @@
 #include "tests/support/engine.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <memory>
 #include <string_view>
+
+#include "tracing/tracer_choice.hpp"
 
 namespace heliograph::test {
 namespace {
@@ -34,6 +37,23 @@ render::Engine& engine(const std::string& tracer) {
                 wanted->device().driver.c_str(), tracer.c_str());
   }
   return *wanted;
+}
+
+std::vector<std::string> offered_tracers() {
+  std::vector<std::string> names;
+  for (const protocol::TracerKind kind : tracing::offered_tracers(device().report())) {
+    names.emplace_back(protocol::enum_name(kind));
+  }
+  return names;
+}
+
+bool is_offered(const std::string& tracer) {
+  const std::vector<std::string> names = offered_tracers();
+  return std::find(names.begin(), names.end(), tracer) != names.end();
+}
+
+std::string lacking(const std::string& tracer) {
+  return device().report().name + " does not offer the tracer " + tracer;
 }
 
 std::uint64_t validation_messages() {

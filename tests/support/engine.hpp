@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "render/engine_parts.hpp"
 
@@ -15,6 +16,12 @@ render::Engine& engine(const std::string& tracer = "auto");
 inline const gpu::Device& device() {
   return engine().parts().device;
 }
+
+/// What answers rays on this run's device, the best first.
+std::vector<std::string> offered_tracers();
+bool is_offered(const std::string& tracer);
+/// Why a test of a tracer that the device does not offer is skipped.
+std::string lacking(const std::string& tracer);
 
 /// What the validation layers have said to all engines so far.
 std::uint64_t validation_messages();

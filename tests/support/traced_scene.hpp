@@ -67,9 +67,8 @@ inline scene::Mesh sphere(int rings) {
     for (int x = 0; x <= columns; ++x) {
       const float theta = 3.14159265f * static_cast<float>(y) / static_cast<float>(rings);
       const float phi = 6.28318531f * static_cast<float>(x % columns) / static_cast<float>(columns);
-      add_vertex(
-          mesh, {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)},
-          {});
+      const float around = y % rings ? std::sin(theta) : 0.0f;  // a pole is one point
+      add_vertex(mesh, {around * std::cos(phi), std::cos(theta), around * std::sin(phi)}, {});
     }
   }
   const auto at = [&](int x, int y) { return static_cast<std::uint32_t>(y * (columns + 1) + x); };

@@ -65,7 +65,7 @@ void check_mesh(const Bvh& bvh, std::uint32_t link, const Box& box, float slack,
     const shared::BvhTriangle triangle = triangle_at(bvh, i);
     ++seen[triangle.triangle & shared::bvh_number_mask];
     for (const glm::vec3& corner :
-         {triangle.corner, triangle.corner + triangle.edge1, triangle.corner + triangle.edge2}) {
+         {triangle.corner0, triangle.corner1, triangle.corner2}) {
       for (int axis = 0; axis < 3; ++axis) {
         EXPECT_GE(corner[axis], box.low[axis] - slack);
         EXPECT_LE(corner[axis], box.high[axis] + slack);
