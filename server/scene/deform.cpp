@@ -31,9 +31,12 @@ std::vector<glm::mat4> joint_matrices(const Skin& skin, const Pose& pose) {
   return matrices;
 }
 
-glm::vec3 unit_or(const glm::vec3& vector, const glm::vec3& fallback) {
-  const float length = glm::length(vector);
-  return length > 0.0f && std::isfinite(length) ? vector / length : fallback;
+inline glm::vec3 unit_or(const glm::vec3& vector, const glm::vec3& fallback) {
+  const float squared = glm::dot(vector, vector);
+  if (squared > 1e-30f && squared < 1e30f) return vector * (1.0f / std::sqrt(squared));
+  const glm::dvec3 wide(vector);  // whose square neither vanishes nor overflows
+  const double length = glm::length(wide);
+  return length > 0.0 && std::isfinite(length) ? glm::vec3(wide / length) : fallback;
 }
 
 void add(glm::vec3& sum, const std::vector<glm::vec3>& differences, std::size_t vertex,
@@ -43,6 +46,7 @@ void add(glm::vec3& sum, const std::vector<glm::vec3>& differences, std::size_t 
 
 shared::Vertex morphed(const shared::Vertex& base, std::size_t index,
                        std::span<const ActiveTarget> targets) {
+  if (targets.empty()) return base;
   shared::Vertex vertex = base;
   glm::vec3 tangent(base.tangent);
   for (const auto& [target, weight] : targets) {
@@ -67,9 +71,11 @@ void skin(shared::Vertex& vertex, std::span<const JointWeight> influences,
     if (weight != 0.0f) blended += weight * joints[joint];
   }
   const glm::mat3 linear(blended);
-  const float mirror = glm::determinant(linear) < 0.0f ? -1.0f : 1.0f;
+  const glm::mat3 turned = cofactors(linear);
+  const float determinant = glm::dot(linear[0], turned[0]);
+  const float mirror = determinant < 0.0f ? -1.0f : 1.0f;
   vertex.position = glm::vec3(blended * glm::vec4(vertex.position, 1.0f));
-  vertex.normal = unit_or(mirror * (cofactors(linear) * vertex.normal), vertex.normal);
+  vertex.normal = unit_or(mirror * (turned * vertex.normal), vertex.normal);
   const glm::vec3 tangent(vertex.tangent);
   vertex.tangent = glm::vec4(unit_or(linear * tangent, tangent), mirror * vertex.tangent.w);
 }

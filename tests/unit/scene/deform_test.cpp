@@ -101,6 +101,21 @@ TEST(Skinning, MirroredJointsKeepNormalsOutside) {
   EXPECT_EQ(moved[0].tangent, glm::vec4(0, 1, 0, -1));
 }
 
+TEST(Skinning, NormalsAreUnitVectorsWhateverTheScale) {
+  for (const float size : {1e-12f, 1e-6f, 1e6f, 1e12f}) {  // their squares have no place in a float
+    Scene scene = puppet(1, 4);
+    scene.nodes[1].world = glm::scale(glm::mat4(1.0f), glm::vec3(2.0f * size, size, size));
+    Shape& shape = scene.shapes[0];
+    shape.vertices[0] = vertex_at({1, 0, 0}, glm::normalize(glm::vec3(1, 1, 0)));
+    std::ranges::fill(shape.influences, JointWeight{});
+    shape.influences[0] = {0, 1.0f};
+    std::vector<shared::Vertex> moved(1);
+    deform(scene, scene.deformations[0], rest_pose(scene), moved);
+    EXPECT_LE(glm::distance(moved[0].normal, glm::normalize(glm::vec3(1, 2, 0))), 1e-5f) << size;
+    EXPECT_LE(glm::distance(glm::vec3(moved[0].tangent), glm::vec3(1, 0, 0)), 1e-5f) << size;
+  }
+}
+
 TEST(Morphing, AddsWeightedDifferences) {
   Scene scene;
   scene.nodes.resize(1);
