@@ -372,9 +372,8 @@ const Buffer& FramePlan::get(BufferRef buffer) const {
 }
 
 std::vector<std::uint8_t> FramePlan::read() const {
-  std::vector<std::uint8_t> bytes(readback_.size());
-  if (readback_) readback_.read(latest(read_back_), std::as_writable_bytes(std::span(bytes)));
-  return bytes;
+  if (!readback_) return {};
+  return readback_.read<std::uint8_t>(latest(read_back_));
 }
 
 void FramePlan::reset(const History& history) {

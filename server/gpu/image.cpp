@@ -196,9 +196,7 @@ std::vector<std::byte> Image::download(std::uint32_t layer) const {
     device_->submit_once(
         [&](VkCommandBuffer commands) { readback.record(commands, *this, layer); });
   }
-  std::vector<std::byte> bytes(readback.size());
-  readback.read(*this, bytes, layer);
-  return bytes;
+  return readback.read<std::byte>(*this, layer);
 }
 
 std::vector<std::byte> Image::download_level(std::uint32_t level, std::uint32_t layer) const {

@@ -1,7 +1,5 @@
 #include "gpu/readback.hpp"
 
-#include <cstring>
-
 namespace heliograph::gpu {
 namespace {
 
@@ -35,15 +33,24 @@ void Readback::record(VkCommandBuffer commands, const Image& image, std::uint32_
   full_barrier(commands);
 }
 
-void Readback::read(const Image& image, std::span<std::byte> to, std::uint32_t layer) const {
+template <typename Byte>
+std::vector<Byte> Readback::read(const Image& image, std::uint32_t layer) const {
+  std::vector<Byte> bytes;
+  bytes.reserve(size_);  // not filled first: that takes as long as the copy
+  const auto append = [&](const Byte* from, std::size_t count) {
+    bytes.insert(bytes.end(), from, from + count);
+  };
   if (!is_mapped(image, layer)) {
-    std::memcpy(to.data(), staging_.mapped(), size_);
-    return;
+    append(reinterpret_cast<const Byte*>(staging_.mapped()), size_);
+    return bytes;
   }
-  const std::size_t row = row_bytes(image.desc());
   for (std::uint32_t y = 0; y < image.desc().extent.height; ++y) {
-    std::memcpy(to.data() + y * row, image.host().row<const std::byte>(y), row);
+    append(image.host().row<const Byte>(y), row_bytes(image.desc()));
   }
+  return bytes;
 }
+
+template std::vector<std::uint8_t> Readback::read(const Image&, std::uint32_t) const;
+template std::vector<std::byte> Readback::read(const Image&, std::uint32_t) const;
 
 }  // namespace heliograph::gpu

@@ -1,6 +1,8 @@
 #pragma once
 
-#include <span>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "gpu/buffer.hpp"
 #include "gpu/image.hpp"
@@ -21,8 +23,9 @@ class Readback {
   /// Records the copy of level 0 of `layer`, behind all commands before it. Nothing to do for layer
   /// 0 of mapped images.
   void record(VkCommandBuffer commands, const Image& image, std::uint32_t layer = 0) const;
-  /// What record() copied, once its commands are done; `to` has size() bytes.
-  void read(const Image& image, std::span<std::byte> to, std::uint32_t layer = 0) const;
+  /// What record() copied, once its commands are done; size() bytes, as std::uint8_t or std::byte.
+  template <typename Byte>
+  std::vector<Byte> read(const Image& image, std::uint32_t layer = 0) const;
 
  private:
   std::size_t size_ = 0;

@@ -211,19 +211,25 @@ TEST_P(Atrous, LeavesAConstantAloneWithEitherKernel) {
 }
 
 TEST_P(Atrous, KeepsTheEdgeBetweenTwoSurfaces) {
-  Input in(1);
-  for (std::size_t i = 0; i < pixels; ++i) {
-    const bool floor = i / width > 11;
-    in.guide[i] = glm::vec4((floor ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, 1)) * 1.5f, 5.0f);
-    in.slope[i] = glm::vec2(0.0f);
-    in.signal[i] = floor ? glm::vec4(1, 1, 1, 9) : glm::vec4(0, 0, 0, 9);
-    if (!GetParam()) in.signal[i].z = in.signal[i].w;
-  }
-  for (const auto kernel : {protocol::BlurKernel::full, protocol::BlurKernel::separable}) {
-    Filter filter(in, plain(), GetParam(), 4, kernel);
-    const render::FloatImage got = filter.run();
+  const std::array upper{glm::vec4(0, 0, 1.5f, 5), glm::vec4(0, 0, 1.5f, 5)};
+  const std::array lower{glm::vec4(0, 1.5f, 0, 5), glm::vec4(0, 0, 1.5f, 50)};  // turned, far behind
+  for (std::size_t edge = 0; edge < upper.size(); ++edge) {
+    Input in(1);
     for (std::size_t i = 0; i < pixels; ++i) {
-      EXPECT_NEAR(got.rgba[4 * i], i / width > 11 ? 1.0f : 0.0f, 1e-4f) << i;
+      const bool below = i / width > 11;
+      in.guide[i] = below ? lower[edge] : upper[edge];
+      in.slope[i] = glm::vec2(0.0f);
+      in.signal[i] = below ? glm::vec4(1, 1, 1, 9) : glm::vec4(0, 0, 0, 9);
+      if (!GetParam()) in.signal[i].z = in.signal[i].w;
+    }
+    for (const auto kernel : {protocol::BlurKernel::full, protocol::BlurKernel::separable}) {
+      Filter filter(in, plain(), GetParam(), 4, kernel);
+      const render::FloatImage got = filter.run();
+      for (std::size_t i = 0; i < pixels; ++i) {
+        // Depth alone leaves a trace where the steps are widest; without it half would come over.
+        EXPECT_NEAR(got.rgba[4 * i], i / width > 11 ? 1.0f : 0.0f, edge == 0 ? 1e-4f : 0.01f)
+            << i << ", edge " << edge;
+      }
     }
   }
 }

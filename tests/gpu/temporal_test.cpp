@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
+#include <optional>
 
 #include "render/scene_motion.hpp"
 #include "tests/support/frame_rig.hpp"
@@ -103,6 +104,45 @@ TEST(Reprojection, FindsNoHistoryExactlyWhereThePostHidTheWallOrThePictureEnded)
   for (const bool joined : {false, true}) {
     SCOPED_TRACE(joined ? "one thing" : "two things");
     expect_exact_history(joined);
+  }
+}
+
+/// Whether a pixel's middle shows the post; none where it is too close to its edge to tell.
+std::optional<bool> shows_post(double x, double eye) {
+  const double focal = 0.5 * height / std::tan(glm::radians(22.5));  // pixels
+  const double place = eye + 4.0 * (x - 0.5 * width) / focal;
+  if (std::abs(std::abs(place) - 0.4) / 4.0 * focal < 0.02) return std::nullopt;
+  return std::abs(place) < 0.4;
+}
+
+/// Of the four pixels about an old position, only those are taken that show the same surface.
+void expect_own_taps(bool joined) {
+  PostAndWall scene(1.0f, joined);
+  const float before = 0.0f, now = 0.17f;
+  const render::FloatImage found = reprojected(scene, before, now);
+  int shared = 0;
+  for (std::uint32_t i = 0; i < pixels; ++i) {
+    const float* texel = &found.rgba[4 * i];
+    const std::optional<bool> own = shows_post(i % width + 0.5, now);
+    if (texel[3] != 0.0f || !own) continue;
+    const auto mask = static_cast<unsigned>(texel[2]);
+    const double left = std::floor(texel[0] - 0.5);
+    const std::optional<bool> sides[2] = {shows_post(left + 0.5, before),
+                                          shows_post(left + 1.5, before)};
+    for (unsigned tap = 0; tap < 4; ++tap) {
+      const std::optional<bool> shown = sides[tap & 1];
+      if (!(mask >> tap & 1) || !shown) continue;
+      EXPECT_EQ(*shown, *own) << i % width << ", tap " << tap;
+    }
+    shared += sides[0] && sides[1] && *sides[0] != *sides[1];
+  }
+  EXPECT_GT(shared, 20) << "the test must see some at the edges";
+}
+
+TEST(Reprojection, TakesNoTapOfAnotherSurface) {
+  for (const bool joined : {false, true}) {
+    SCOPED_TRACE(joined ? "one thing" : "two things");
+    expect_own_taps(joined);
   }
 }
 

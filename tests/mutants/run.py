@@ -61,16 +61,14 @@ def test(build, mistake):
     return ran, [name for name in ran if name not in ok and name not in skipped]
 
 
-def made(source, mistake):
-    """The mistake in the copy; gives what was there before."""
-    file = source / mistake.file
-    before = text = file.read_text()
+def mistaken(source, mistake):
+    """The file's text with the mistake."""
+    text = (source / mistake.file).read_text()
     for old, new in ((mistake.old, mistake.new), *mistake.more):
         if text.count(old) != 1:
             sys.exit(f"{mistake.number}: {mistake.file} has not once: {old}")
         text = text.replace(old, new)
-    file.write_text(text)
-    return file, before
+    return text
 
 
 def judge(source, build, mistake):
@@ -79,7 +77,9 @@ def judge(source, build, mistake):
     ran, failed = test(build, mistake)
     if not ran or failed:
         return False, f"without it {len(ran)} tests run, of which fail: {' '.join(failed) or 'none'}"
-    file, before = made(source, mistake)
+    file = source / mistake.file
+    before = file.read_text()
+    file.write_text(mistaken(source, mistake))
     try:
         must("ninja", "-C", build, mistake.program)
         _, failed = test(build, mistake)
@@ -95,10 +95,12 @@ def main():
     arguments = parser.parse_args()
     arguments.work.mkdir(parents=True, exist_ok=True)
     source, build = prepare(arguments.work.resolve())
+    wanted = [mistake for mistake in MISTAKES
+              if not arguments.only or mistake.number in arguments.only]
+    for mistake in wanted:
+        mistaken(source, mistake)  # a list that has gone stale ends this at once
     passed = []
-    for mistake in MISTAKES:
-        if arguments.only and mistake.number not in arguments.only:
-            continue
+    for mistake in wanted:
         start = time.monotonic()
         found, says = judge(source, build, mistake)
         print(f"{mistake.number:4} {'found ' if found else 'PASSED'} {mistake.what}: {says} "
