@@ -127,9 +127,10 @@ void Broadcast::rendered(std::shared_ptr<const Picture> picture, bool resting) {
   newest_ = std::move(picture);
   newer_than_due_ = true;
   const std::uint32_t samples = newest_->header.sample_count;
+  const bool anew = samples < due_samples_ || newest_->header.state_rev != due_rev_;
   if (!resting) {
     due(Purpose::interactive);
-  } else if (samples < due_samples_ || samples >= 2 * due_samples_) {
+  } else if (anew || samples >= 2 * due_samples_) {
     due(Purpose::refining);
   } else {
     session_->audience().publish_stats(
@@ -153,6 +154,7 @@ void Broadcast::due(Purpose purpose) {
   due_ = newest_;
   due_purpose_ = purpose;
   due_samples_ = newest_->header.sample_count;
+  due_rev_ = newest_->header.state_rev;
   newer_than_due_ = false;
   ++number_;
 }

@@ -231,9 +231,10 @@ bool SessionView::moving() const {
   return Clock::now() < moved_at_ + rest_before_final;
 }
 
-/// Nothing changes, and what is drawn is what stays.
+/// Nothing changes, and what is drawn is what stays. A change that came while a slow picture was
+/// drawn is still to be taken over.
 bool SessionView::resting() const {
-  return !state_.animation.playing && draws_whole() &&
+  return session_->version() == state_.version && !state_.animation.playing && draws_whole() &&
          Clock::now() >= state_.changed_at + rest_before_refining;
 }
 

@@ -86,6 +86,15 @@ class Frames(ServerTestCase):
             self.assertLess(len(late), 24, samples)
             self.assertLess(len(samples), 64, samples)
 
+    async def test_pictures_that_take_long_follow_the_camera_all_the_same(self):
+        async with Viewer(self.server) as viewer:
+            await viewer.call("settings.patch", {"patch": {"motion": {"scale": 1}}})
+            await viewer.call("stream.configure", {"width": 1600, "height": 900})
+            async with viewer.moving(rate=20):
+                shown = set()
+                while len(shown) < 4:  # of a camera that never comes to rest
+                    shown.add((await viewer.next_frame(timeout=60)).header["state_rev"])
+
     async def test_the_final_picture_can_be_a_png(self):
         async with Viewer(self.server) as viewer:
             state = await viewer.call("stream.configure", {"still": "png"})
