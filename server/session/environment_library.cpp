@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "protocol/suggestions.hpp"
+#include "render/device_lost.hpp"
 #include "render/renderer.hpp"
 #include "scene/environment.hpp"
 #include "scene/import.hpp"
@@ -18,19 +19,6 @@ using protocol::Result;
 namespace {
 
 constexpr std::size_t waiting_environments = 8;
-
-Result<void> put_around(render::Engine& engine, Session& session, const CatalogueEntry& entry,
-                        const std::string& by) {
-  try {
-    return session.set_environment(entry.name,
-                                   engine.prefilter(scene::load_environment(entry.path)), by);
-  } catch (const scene::ImportError& failure) {
-    return protocol::error::invalid("name", "cannot be loaded: " + std::string(failure.what()));
-  } catch (const std::exception& failure) {
-    spdlog::error("loading {}: {}", entry.name, failure.what());
-    return protocol::error::internal();
-  }
-}
 
 }  // namespace
 
@@ -54,14 +42,31 @@ Result<CatalogueEntry> EnvironmentLibrary::find(const std::string& name) const {
                                     "is not in the catalogue" + protocol::suggestion(name, names));
 }
 
+Result<void> EnvironmentLibrary::put_around(Session& session, const CatalogueEntry& entry,
+                                            const std::string& by) {
+  try {
+    return session.set_environment(entry.name,
+                                   engine_.prefilter(scene::load_environment(entry.path)), by);
+  } catch (const scene::ImportError& failure) {
+    return protocol::error::invalid("name", "cannot be loaded: " + std::string(failure.what()));
+  } catch (const render::DeviceLost& failure) {
+    spdlog::error("loading {}: {}", entry.name, failure.what());
+    if (on_device_loss_) on_device_loss_();
+    return protocol::error::not_ready("the device was lost meanwhile; try again");
+  } catch (const std::exception& failure) {
+    spdlog::error("loading {}: {}", entry.name, failure.what());
+    return protocol::error::internal();
+  }
+}
+
 void EnvironmentLibrary::show(std::shared_ptr<Session> session, const std::string& name,
                               const std::string& by,
                               std::function<void(Result<void>)> done) {
   Result<CatalogueEntry> entry = find(name);
   if (!entry) return done(entry.error());
   const bool taken = loader_.post(
-      [&engine = engine_, session = std::move(session), entry = *std::move(entry), by, done] {
-        done(put_around(engine, *session, entry, by));
+      [this, session = std::move(session), entry = *std::move(entry), by, done] {
+        done(put_around(*session, entry, by));
       });
   if (!taken) {
     done(protocol::error::full("too many environments are being loaded",

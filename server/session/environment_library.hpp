@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "protocol/result.hpp"
@@ -28,14 +29,19 @@ class EnvironmentLibrary {
   /// Puts one around the session's scene. `done` is called once, here or on the loading thread.
   void show(std::shared_ptr<Session> session, const std::string& name, const std::string& by,
             std::function<void(protocol::Result<void>)> done);
+  /// Called where filtering one meets render::DeviceLost. Set before the first.
+  void on_device_loss(std::function<void()> callback) { on_device_loss_ = std::move(callback); }
   /// Waits for the one under way; the others stay unanswered.
   void stop() { loader_.stop(); }
 
  private:
   protocol::Result<CatalogueEntry> find(const std::string& name) const;
+  protocol::Result<void> put_around(Session& session, const CatalogueEntry& entry,
+                                    const std::string& by);
 
   render::Engine& engine_;
   const SceneCatalogue& catalogue_;
+  std::function<void()> on_device_loss_;
   Worker loader_;
 };
 

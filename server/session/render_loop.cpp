@@ -48,7 +48,14 @@ std::shared_ptr<Session> RenderLoop::open(SessionOptions options, PixelShare pix
                                                          .measurements = measurements_},
                                             std::make_shared<Wakeup>(wakeup_));
   std::shared_ptr<Session> session = view->session();
-  if (open_views().empty()) view->prepare();
+  if (open_views().empty()) {
+    try {
+      view->prepare();
+    } catch (const render::DeviceLost&) {
+      view->release_renderer();  // it is made on the next device
+      report_device_loss();
+    }
+  }
   {
     const std::lock_guard lock(mutex_);
     views_.push_back(std::move(view));
@@ -78,7 +85,7 @@ void RenderLoop::on_first_frame(std::function<void()> callback) {
 void RenderLoop::run() {
   while (!stopping_) {
     dismiss_closed();
-    if (loss_reported_.exchange(false) && device_ready_) lose_device("while a scene was loaded");
+    if (loss_reported_.exchange(false) && device_ready_) lose_device("beside rendering");
     const Views views = open_views();
     if (!device_ready_ && !mend_device(views)) continue;
     if (advance_next(views) || !device_ready_) continue;

@@ -27,6 +27,8 @@ constexpr float report_step = 0.01f;
 /// How soon a cache that holds too much looks again whether all of it is still shown, and how long
 /// after a load its first pictures are drawn and what both have left behind can go.
 constexpr std::chrono::seconds trim_interval{2};
+/// A scene may be what the device is lost to, so it is not tried for ever.
+constexpr int most_losses = 3;
 
 constexpr std::string_view progress_key = "scene.progress";
 
@@ -185,7 +187,7 @@ void SceneLoader::run() {
 /// Waits for a job, tidying up meanwhile; null at the end.
 std::shared_ptr<SceneLoader::Job> SceneLoader::next_job() {
   std::unique_lock lock(mutex_);
-  const auto called = [&] { return stopping_ || !jobs_.empty(); };
+  const auto called = [&] { return stopping_ || (device_ready_ && !jobs_.empty()); };
   while (!called()) {
     const bool cache_too_full = !cache_.trim();
     if (!cache_too_full && !memory_is_loose_) {
@@ -218,12 +220,32 @@ void SceneLoader::carry_out(Job& job) {
            protocol::error::invalid("name", "cannot be loaded: " + std::string(failure.what())));
   } catch (const render::DeviceLost& failure) {
     spdlog::error("loading {}: {}", job.entry.name, failure.what());
-    if (on_device_loss_) on_device_loss_();
-    finish(job, protocol::error::not_ready("the device was lost meanwhile; try again"));
+    report_device_loss(job);
   } catch (const std::exception& failure) {
     spdlog::error("loading {}: {}", job.entry.name, failure.what());
     finish(job, protocol::error::internal());
   }
+}
+
+/// The job stays the first of all and is carried out again on the next device.
+void SceneLoader::report_device_loss(Job& job) {
+  {
+    const std::lock_guard lock(mutex_);
+    device_ready_ = false;  // before the loss is told: another device may be there at once
+  }
+  if (on_device_loss_) on_device_loss_();
+  if (++job.losses == most_losses) {
+    finish(job, protocol::error::not_ready("the device was lost to it again and again"));
+  }
+}
+
+void SceneLoader::take_new_device() {
+  cache_.clear();
+  {
+    const std::lock_guard lock(mutex_);
+    device_ready_ = true;
+  }
+  condition_.notify_one();
 }
 
 LoadedScene SceneLoader::make(Job& job) {

@@ -54,10 +54,12 @@ class SceneLoader {
   /// Ends the thread and the load under way; all that wait are told.
   void stop();
 
-  /// Called on the loading thread when a load meets render::DeviceLost. Set before the first load.
+  /// Called on the loading thread when a load meets render::DeviceLost; `take_new_device` must
+  /// follow. Set before the first load.
   void on_device_loss(std::function<void()> callback) { on_device_loss_ = std::move(callback); }
-  /// There is another device: what is kept of the last one is of no use.
-  void forget_kept() { cache_.clear(); }
+  /// There is another device: what is kept of the last one is of no use, and a load that met its
+  /// end begins anew.
+  void take_new_device();
 
   CacheTotals cache_totals() const { return cache_.totals(); }
 
@@ -72,14 +74,16 @@ class SceneLoader {
     CatalogueEntry entry;
     std::vector<Waiter> waiters;  // guarded by mutex_
     std::atomic<bool> abandoned = false;
-    std::string stage;  // of the newest report; the loading thread's
+    std::string stage;  // of the newest report; this and the rest are the loading thread's
     float fraction = 0.0f;
+    int losses = 0;  // of the device meanwhile
   };
 
   void run();
   std::shared_ptr<Job> next_job();
   void carry_out(Job& job);
   LoadedScene make(Job& job);
+  void report_device_loss(Job& job);
   void finish(Job& job, const protocol::Result<LoadedScene>& outcome);
   std::vector<Waiter> remove_waiters(const std::function<bool(const Session&)>& whose,
                                      const Job* except = nullptr);
@@ -98,7 +102,8 @@ class SceneLoader {
   std::mutex mutex_;
   std::condition_variable condition_;
   std::deque<std::shared_ptr<Job>> jobs_;  // the first may be under way
-  bool memory_is_loose_ = false;  // the loading thread's
+  bool device_ready_ = true;               // guarded by mutex_
+  bool memory_is_loose_ = false;           // the loading thread's
   std::atomic<bool> stopping_ = false;
   std::thread thread_;
 };

@@ -28,7 +28,8 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
                .cache_bytes = options_.scene_cache_bytes}),
       environments_(engine, catalogue_) {
   loader_.on_device_loss([this] { render_loop_.report_device_loss(); });
-  render_loop_.on_new_device([this] { loader_.forget_kept(); });
+  environments_.on_device_loss([this] { render_loop_.report_device_loss(); });
+  render_loop_.on_new_device([this] { loader_.take_new_device(); });
   add_session_commands(dispatcher_, *this);
   add_scene_commands(dispatcher_, *this);
   add_camera_commands(dispatcher_, *this);

@@ -70,10 +70,10 @@ SessionView::SessionView(render::Engine& engine, SessionOptions options, PixelSh
 SessionView::~SessionView() = default;
 
 void SessionView::prepare() {
+  draws_unasked_ = true;
   if (const auto accepted = make_renderer(); !accepted) {
     throw std::invalid_argument(accepted.error().message);
   }
-  draws_unasked_ = true;
 }
 
 bool SessionView::awake() const {

@@ -33,7 +33,7 @@ class SessionView {
   ~SessionView();
 
   /// Makes the renderer before it is drawn with; the first picture then comes unasked.
-  /// @throws std::invalid_argument when the renderer refuses the settings
+  /// @throws std::invalid_argument when the renderer refuses the settings, render::DeviceLost
   void prepare();
 
   const std::shared_ptr<Session>& session() const { return session_; }

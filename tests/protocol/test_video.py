@@ -5,9 +5,11 @@ import base64
 import functools
 import http.client
 import math
+import os
 import shutil
 import signal
 import subprocess
+import tempfile
 import unittest
 
 from harness.pictures import Picture, decode_jpeg, decode_png
@@ -16,6 +18,9 @@ from harness.viewer import FLAG_KEY, Viewer
 
 JPEG, H264 = 1, 16
 FFMPEG = shutil.which("ffmpeg")
+VLC = shutil.which("cvlc")
+# VLC does not run as root.
+AS_NOBODY = ["setpriv", "--reuid", "65534", "--regid", "65534", "--clear-groups"]
 
 
 class VideoViewer(Viewer):
@@ -160,6 +165,11 @@ class Video(ServerTestCase):
             self.assertIn("av1", viewer.hello["codec_reason"])
 
 
+def read_file(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
 class Parts:
     """Reads multipart/x-mixed-replace as its bytes come."""
 
@@ -225,6 +235,38 @@ class PicturesOverHttp(ServerTestCase):
         self.assertEqual(len(output), 6 * 3 * 160 * 90, complaints)
         picture = Picture(160, 90, output[-3 * 160 * 90:])
         self.assertGreater(picture.deviation(), 5)
+
+    @unittest.skipUnless(VLC, "cvlc is not installed (Debian: vlc-bin, vlc-plugin-base)")
+    async def test_vlc_plays_it(self):
+        url = f"{self.server.url}api/v1/sessions/main/stream.mjpg"
+        with tempfile.TemporaryDirectory() as folder:
+            os.chmod(folder, 0o777)
+
+            def newest():
+                names = sorted(name for name in os.listdir(folder) if name.endswith(".png"))
+                return [read_file(os.path.join(folder, name)) for name in names[-1:]]
+            shown = set()
+            async with Viewer(self.server) as viewer, viewer.moving():
+                player = await asyncio.create_subprocess_exec(
+                    *(AS_NOBODY if os.geteuid() == 0 else []), "env", f"HOME={folder}",
+                    VLC, "--intf", "dummy", "--no-audio", "--vout", "dummy", "--video-filter",
+                    "scene", "--scene-format", "png", "--scene-ratio", "1", "--scene-path", folder,
+                    url, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                try:
+                    for _ in range(600):
+                        shown.update(newest())
+                        if len(shown) > 3 or player.returncode is not None:
+                            break
+                        await asyncio.sleep(0.1)
+                finally:
+                    if player.returncode is None:
+                        player.kill()
+                    await player.wait()
+        self.assertGreater(len(shown), 3, f"VLC ended with {player.returncode}")
+        for picture in map(decode_png, shown):
+            # It writes whole blocks of 16 rows.
+            self.assertEqual((picture.width, picture.height), (160, 96))
+            self.assertGreater(picture.deviation(), 5)
 
 
 class PicturesOverHttpAtTheEnd(unittest.TestCase):
