@@ -10,6 +10,7 @@
 #include "render/light_table.hpp"
 #include "render/placement.hpp"
 #include "scene/images.hpp"
+#include "scene/import.hpp"
 #include "scene/layer_table.hpp"
 #include "scene/mipmaps.hpp"
 
@@ -18,9 +19,9 @@ namespace {
 
 void check_size(const gpu::Device& device, const char* name, std::uint64_t bytes) {
   if (bytes <= device.limits().maxStorageBufferRange) return;
-  throw gpu::GpuError("the scene's " + std::string(name) + " take " + std::to_string(bytes >> 20) +
-                      " MiB; this device binds at most " +
-                      std::to_string(device.limits().maxStorageBufferRange >> 20) + " MiB");
+  throw scene::ImportError("the scene's " + std::string(name) + " take " +
+                           std::to_string(bytes >> 20) + " MiB; this device binds at most " +
+                           std::to_string(device.limits().maxStorageBufferRange >> 20) + " MiB");
 }
 
 template <typename Element>

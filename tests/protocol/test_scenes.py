@@ -109,6 +109,15 @@ class Scenes(ServerTestCase):
         self.assertEqual(self.server.call("camera.get"), camera)
         self.assertEqual(self.server.call("frame.capture")["samples"], 4)
 
+    def test_what_the_device_cannot_hold_is_told(self):
+        content, binary = document(*grid(700))
+        write_glb(os.path.join(self.root, "vast.glb"), content, binary)
+        answer = self.server.ask("scene.load", {"name": "vast"})
+        if "result" in answer:
+            self.skipTest("this device holds a million triangles without shared normals")
+        self.assert_error(answer, -32602, path="name")
+        self.assertIn("MiB; this device", answer["error"]["message"])
+
     async def test_progress_and_change_are_announced(self):
         async with Viewer(self.server) as loader, Viewer(self.server) as other:
             info = await loader.call("scene.load", {"name": "furnace"})
