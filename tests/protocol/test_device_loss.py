@@ -19,7 +19,8 @@ class DeviceLoss(ServerTestCase):
         cls.fault = os.path.join(cls.folder.name, "lose")
         cls.scenes = os.path.join(cls.folder.name, "scenes")
         shutil.copytree(os.environ["HELIOGRAPH_SCENES"], cls.scenes)
-        cls.server = Server(scenes=cls.scenes, environment={"HELIOGRAPH_TEST_DEVICE_LOSS": cls.fault})
+        cls.server = Server(scenes=cls.scenes,
+                            environment={"HELIOGRAPH_TEST_DEVICE_LOSS": cls.fault})
 
     @classmethod
     def tearDownClass(cls):

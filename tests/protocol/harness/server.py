@@ -29,8 +29,11 @@ class Server:
         command = [os.environ["HELIOGRAPH_BINARY"], "serve", "--port", str(port), "--width", "160",
                    "--height", "90", "--set", "accumulation.max_samples=4",
                    "--scene-root", scenes or os.environ["HELIOGRAPH_SCENES"], *arguments]
+        surroundings = {**os.environ, **(environment or {})}
+        if os.environ.get("HELIOGRAPH_TEST_PRELOAD"):
+            surroundings["LD_PRELOAD"] = os.environ["HELIOGRAPH_TEST_PRELOAD"]
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=self.log, text=True,
-                                        env={**os.environ, **(environment or {})})
+                                        env=surroundings)
         try:
             self.url = self._wait_for_listener(port) if early else self._wait_for_address()
         except Exception:
