@@ -55,7 +55,8 @@ stage.test("a refused greeting is no access", async () => {
   });
   const { page } = await stage.open({ context });
   await page.locator('#pill[data-state="forbidden"]').waitFor();
-  await page.getByText("the token is not valid any more").waitFor();
+  await page.getByText("The token is not valid any more.").waitFor();
+  assert.equal(await page.locator("#people").isVisible(), false);
   await screenshot(page, "no_access");
   assert.deepEqual(await seriousFindings(page), []);
 });
