@@ -63,6 +63,60 @@ stage.test("a preset is compared in a session of its own that follows the camera
   assert.equal(await divider.isVisible(), false);
 });
 
+stage.test("the other side follows light, material, sky, size and scene", async (t) => {
+  if (await stage.lacks(t, "session.create")) return;
+  const { server } = stage;
+  const { page } = await stage.watch();
+  await openTab(page, "inspect");
+  const select = page.locator("select[name=compare]");
+  await select.selectOption("preset:svgf");
+  const { name } = await eventually(otherSession, "a second session");
+  const there = (method) => server.call(method, {}, name);
+  const kernelOf = async (session) =>
+    (await server.call("settings.get", {}, session)).settings.shadow_blur.kernel;
+  await eventually(async () => (await kernelOf(name)) === "full", "the preset over there");
+
+  const [{ name: light, intensity }] = (await server.call("lights.list")).lights;
+  const [{ name: material }] = (await server.call("materials.list")).materials;
+  const lightThere = async () => (await there("lights.list")).lights[0];
+  const materialThere = async () => (await there("materials.list")).materials[0];
+  await server.call("lights.patch", { light, patch: { intensity: 1.5, enabled: false } });
+  await server.call("materials.patch", { material, patch: { roughness: 0.75 } });
+  await server.call("environment.set", { name: "white" });
+  await server.call("settings.patch", { patch: { exposure: { compensation: 1.25 } } });
+  await page.setViewportSize({ width: 640, height: 360 });
+  await eventually(async () => {
+    const sun = await lightThere();
+    return sun.intensity === 1.5 && !sun.enabled;
+  }, "the light over there");
+  await eventually(async () => (await materialThere()).roughness === 0.75, "the material");
+  await eventually(async () => (await there("environment.list")).current === "white", "the sky");
+  await eventually(
+    async () => (await there("settings.get")).settings.exposure.compensation === 1.25,
+    "the exposure",
+  );
+  await eventually(async () => (await there("session.info")).width === 640, "the size");
+
+  // What goes back to the file's here goes back there.
+  await server.call("lights.patch", { light, patch: { intensity: null, enabled: null } });
+  await server.call("environment.set", { name: null });
+  await eventually(async () => {
+    const sun = await lightThere();
+    return sun.intensity === intensity && sun.enabled;
+  }, "the file's light over there");
+  await eventually(async () => (await there("environment.list")).current !== "white", "its sky");
+
+  await server.call("scene.load", { name: "furnace" });
+  const next = await eventually(async () => {
+    const other = await otherSession();
+    return other?.name !== name && other;
+  }, "another session for another scene");
+  assert.equal(next.scene, "furnace");
+  await eventually(async () => (await kernelOf(next.name)) === "full", "the preset once more");
+  assert.equal(await select.inputValue(), "preset:svgf");
+  await server.call("scene.load", { name: "shadow_objects" });
+});
+
 stage.test("a buffer of history lies over the picture", async (t) => {
   if (await stage.lacks(t, "session.create")) return;
   const { page } = await stage.watch();

@@ -2,6 +2,7 @@
 // only watch.
 
 import assert from "node:assert/strict";
+import { seriousFindings } from "./harness/axe.mjs";
 import {
   distance,
   dragPicture,
@@ -70,6 +71,7 @@ stage.test("viewers see who is here, take control, hand it over and free it", as
   await first.page.getByRole("button", { name: "Only I change things" }).click();
   await second.page.locator(".in-control").waitFor();
   await screenshot(second.page, "people");
+  assert.deepEqual(await seriousFindings(second.page), []);
   await open(second);
 
   const note = second.page.locator(".standing-note");

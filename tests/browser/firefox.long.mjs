@@ -1,5 +1,6 @@
-// The client in Firefox: it connects, draws the scene and follows the keyboard. Skipped, saying so,
-// where there is no Firefox (HELIOGRAPH_FIREFOX names one).
+// The client in Firefox: it connects, draws the scene, follows the keyboard and shows every tab, and
+// the browser has nothing against it. Skipped, saying so, where there is no Firefox
+// (HELIOGRAPH_FIREFOX names one).
 
 import assert from "node:assert/strict";
 import { existsSync } from "node:fs";
@@ -60,9 +61,15 @@ stage.test("Firefox connects, draws the scene and steers", async (t) => {
       async () => String((await stage.server.call("camera.get")).eye) !== String(eye),
       "an orbit",
     );
-    await firefox.screenshot(join(outputFolder, "firefox.png"));
-    const version = await firefox.evaluate("return navigator.userAgent");
-    console.log(version);
+    for (const tab of ["settings", "inspect", "stats", "scene"]) {
+      await firefox.evaluate(`document.querySelector("#tab-" + arguments[0]).click()`, tab);
+      await firefox.screenshot(join(outputFolder, `firefox_${tab}.png`));
+    }
+    const codecs = await firefox.evaluate(`
+      return [...document.querySelectorAll("select[name=codec] option")].map(({ value }) => value);
+    `);
+    console.log(await firefox.evaluate("return navigator.userAgent"), codecs.join());
+    assert.deepEqual(await firefox.complaints(stage.server.url), []);
   } finally {
     await firefox.close();
   }

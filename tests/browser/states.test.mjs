@@ -1,10 +1,12 @@
 // What a person is told when there is nothing to see, or not yet: each state by its words.
 
 import assert from "node:assert/strict";
+import { seriousFindings } from "./harness/axe.mjs";
 import { firstPicture, screenshot, settle } from "./harness/browser.mjs";
 import { Stage } from "./harness/stage.mjs";
 
 const view = { viewport: { width: 720, height: 450 } };
+const bright = { ...view, colorScheme: "light" };
 const limited = new Stage({ serverArguments: ["--max-viewers", "1"], view });
 const stage = new Stage({ view });
 
@@ -16,6 +18,7 @@ limited.test("a full server is named, and joined when somebody leaves", async ()
   await page.locator('#pill[data-state="full"]').waitFor();
   await page.getByText("The server is full").waitFor();
   await screenshot(page, "full");
+  assert.deepEqual(await seriousFindings(page), []);
   await first.page.close();
   await page.getByRole("button", { name: "Try now" }).click();
   await firstPicture(page);
@@ -23,7 +26,7 @@ limited.test("a full server is named, and joined when somebody leaves", async ()
 });
 
 stage.test("a page of another version says so", async () => {
-  const context = await stage.context();
+  const context = await stage.context(bright);
   await context.route("**/app.js", async (route) => {
     const response = await route.fetch();
     const body = (await response.text()).replaceAll("heliograph.v1", "heliograph.v0");
@@ -33,6 +36,7 @@ stage.test("a page of another version says so", async () => {
   await page.locator('#pill[data-state="wrong_version"]').waitFor();
   await page.getByText("This page is of another version").waitFor();
   await screenshot(page, "wrong_version");
+  assert.deepEqual(await seriousFindings(page), []);
 });
 
 stage.test("a refused greeting is no access", async () => {
@@ -51,8 +55,10 @@ stage.test("a refused greeting is no access", async () => {
   });
   const { page } = await stage.open({ context });
   await page.locator('#pill[data-state="forbidden"]').waitFor();
-  await page.getByText("the token is not valid any more").waitFor();
+  await page.getByText("The token is not valid any more.").waitFor();
+  assert.equal(await page.locator("#people").isVisible(), false);
   await screenshot(page, "no_access");
+  assert.deepEqual(await seriousFindings(page), []);
 });
 
 stage.test("a scene that loads shows its name, how far it is and its picture", async () => {

@@ -43,7 +43,7 @@ stage.test("a playing clip comes as H.264 and is decoded, the resting picture by
 
 const played = (page) => page.evaluate(() => window.seen);
 
-/** Has the decoder fail as it does where it meets what it cannot decode.
+/** Has the decoder fail as it does where it meets what it cannot decode, at one picture or at all.
  * Noise instead of a picture would not do: what comes of that differs from run to run. */
 const breaking = (which) => `
   let chunks = 0;
@@ -70,6 +70,21 @@ stage.test("after a broken picture the video starts anew at once, without a word
   const configured = (await played(page)).sent["stream.configure"];
   assert.ok(configured >= 3, `asked ${configured} times, not for a fresh start`);
   assert.equal(await page.locator(".toast").count(), 0);
+  await stage.server.call("animation.pause");
+});
+
+stage.test("a video that keeps breaking gives way to single pictures, with a word", async (t) => {
+  const viewer = await watchVideo(t, breaking("() => true"));
+  if (!viewer) return;
+  const { page, context } = viewer;
+  await stage.server.call("animation.play", { clip: "moving_objects_light" });
+  await page.locator(".toast", { hasText: "single pictures come instead" }).waitFor({ timeout: 120_000 });
+  const before = (await played(page)).drawn[jpeg] ?? 0;
+  await eventually(async () => (await played(page)).drawn[jpeg] > before + 4, "JPEGs", 60_000);
+  assert.equal(await page.locator("select[name=codec]").inputValue(), "jpeg");
+  await page.close();
+  // While the clip plays the first picture is of the video, and breaks before the page is live.
+  await stage.watch({ context });
   await stage.server.call("animation.pause");
 });
 

@@ -1,16 +1,9 @@
 // A second view of the same scene, beside or over the first: another preset, the path traced
-// reference, or a buffer. It is a session of its own on the server, which follows our camera.
+// reference, or a buffer.
 
-import type {
-  AnimationState,
-  Camera,
-  Hello,
-  JsonObject,
-  SessionInfo,
-  StreamSettings,
-} from "heliograph/messages.ts";
+import type { SceneInfo, SessionInfo } from "heliograph/messages.ts";
+import { ComparedSession } from "./compared_session.ts";
 import { Signal } from "./signal.ts";
-import { Connection } from "./stream/connection.ts";
 import type { DrawnFrame } from "./stream/worker_messages.ts";
 import type { Viewer } from "./viewer.ts";
 
@@ -27,31 +20,32 @@ export interface ComparisonState {
   similarity: number | null;
 }
 
-/** Settings that both sides share: how a picture is shown, not how it is made. */
-const sharedGroups = ["exposure", "tone_map", "environment"];
-const measureMs = 1000;
 const createTimeoutMs = 120_000;
 
 export class Comparison {
   readonly state = new Signal<ComparisonState | null>(null);
   private readonly viewer: Viewer;
   private readonly newCanvas: () => HTMLCanvasElement;
-  private running: RunningComparison | null = null;
+  private running: ComparedSession | null = null;
+  /** Of starts and stops: what was begun before the last one is not wanted any more. */
+  private wanted = 0;
+  private scene = "";
 
   /** `newCanvas` puts a fresh canvas in the place of the last one. */
   constructor(viewer: Viewer, newCanvas: () => HTMLCanvasElement) {
     this.viewer = viewer;
     this.newCanvas = newCanvas;
-    viewer.camera.watch((camera) => camera && this.running?.follow(camera));
-    viewer.settings.tree.watch((tree) => this.running?.share(tree));
-    viewer.parts.lights.watch(() => this.running?.light());
-    viewer.parts.materials.watch(() => this.running?.light());
-    viewer.parts.environment.watch(() => this.running?.light());
-    viewer.animation.watch((animation) => animation && this.running?.play(animation));
+    viewer.camera.watch(() => this.running?.followCamera());
+    viewer.animation.watch(() => this.running?.followClip());
+    viewer.settings.tree.watch(() => this.running?.followSettings());
+    for (const part of [viewer.parts.lights, viewer.parts.materials, viewer.parts.environment]) {
+      part.watch(() => this.running?.followScene());
+    }
+    viewer.stream.settings.watch(() => this.running?.followStream());
     viewer.connection.state.watch(({ kind }) => {
       if (kind !== "live") this.stop();
     });
-    viewer.scene.watch(() => this.stop());
+    viewer.scene.watch((scene) => this.sceneChanged(scene));
   }
 
   /** Whether this server and this browser can do it. */
@@ -63,166 +57,56 @@ export class Comparison {
   }
 
   async start(counterpart: Counterpart): Promise<void> {
-    this.stop();
-    const session = await this.viewer.rpc.request<SessionInfo>(
-      "session.create",
-      { copy_of: this.viewer.hello?.session ?? "main" },
-      createTimeoutMs,
-    );
-    const running = new RunningComparison(this.viewer, counterpart, session.name, this.newCanvas());
-    this.running = running;
-    running.changed = () => {
-      if (this.running === running) this.state.set({ ...running.shown });
-    };
-    running.changed();
+    this.end();
+    const wanted = this.wanted;
+    const canvas = this.newCanvas();
+    this.state.set({ counterpart, frame: null, similarity: null });
+    try {
+      const { rpc, parts, hello } = this.viewer;
+      const model = hello?.session ?? "main";
+      const copied = parts.edits();
+      const { name } = await rpc.request<SessionInfo>(
+        "session.create",
+        { copy_of: model },
+        createTimeoutMs,
+      );
+      if (wanted !== this.wanted) {
+        rpc.notify("session.close", { session: name });
+        return;
+      }
+      this.running = new ComparedSession(this.viewer, name, { counterpart, copied }, canvas, {
+        changed: (state) => {
+          if (wanted === this.wanted) this.state.set(state);
+        },
+        gone: () => {
+          if (wanted === this.wanted) this.stop();
+        },
+      });
+    } catch (error) {
+      if (wanted !== this.wanted) return;
+      this.stop();
+      this.viewer.report(error);
+    }
   }
 
   stop(): void {
-    if (!this.running) return;
-    this.running.end();
-    this.running = null;
+    if (!this.state.value) return;
+    this.end();
     this.state.set(null);
   }
-}
 
-class RunningComparison {
-  readonly shown: ComparisonState;
-  changed: () => void = () => {};
-  private readonly viewer: Viewer;
-  private readonly session: string;
-  private readonly connection: Connection;
-  private readonly worker = new Worker(new URL("similarity_worker.js", document.baseURI));
-  private readonly timer: number;
-  private measuring = false;
-  private shared = "";
-  private lit = "";
-  private clip = "";
-
-  constructor(
-    viewer: Viewer,
-    counterpart: Counterpart,
-    session: string,
-    canvas: HTMLCanvasElement,
-  ) {
-    this.viewer = viewer;
-    this.session = session;
-    this.shown = { counterpart, frame: null, similarity: null };
-    this.connection = new Connection(
-      document.baseURI,
-      canvas.transferControlToOffscreen(),
-      {
-        live: (hello) => this.becomeLive(hello),
-        notification: () => {},
-        drawn: (frame) => {
-          this.shown.frame = frame;
-          this.changed();
-        },
-        draw: (picture) => picture.close(),
-        warning: (message) => viewer.onError(message),
-        undecodable: (_, video) => {
-          if (!video) return;
-          this.connection.rpc.notify("stream.pause", {});
-          this.connection.rpc.notify("stream.resume", {});
-        },
-      },
-      session,
-    );
-    this.connection.open();
-    this.worker.onmessage = ({ data }: MessageEvent<{ similarity: number }>) => {
-      this.measuring = false;
-      this.shown.similarity = data.similarity;
-      this.changed();
-    };
-    this.timer = window.setInterval(() => void this.measure(), measureMs);
+  private end(): void {
+    this.wanted += 1;
+    this.running?.end();
+    this.running = null;
   }
 
-  follow({ eye, target, up, vertical_fov }: Camera): void {
-    this.connection.rpc.notify("camera.set", { eye, target, up, vertical_fov });
-  }
-
-  /** Has the same lights, materials and environment there. */
-  light(): void {
-    const { parts } = this.viewer;
-    const { lights = {}, materials = {} } = parts.edits();
-    const environment = parts.environment.value?.current;
-    const text = JSON.stringify([lights, materials, environment]);
-    if (text === this.lit) return;
-    this.lit = text;
-    const { rpc } = this.connection;
-    for (const [light, patch] of Object.entries(lights)) {
-      rpc.notify("lights.patch", { light, patch });
-    }
-    for (const [material, patch] of Object.entries(materials)) {
-      rpc.notify("materials.patch", { material, patch });
-    }
-    if (environment !== undefined) rpc.notify("environment.set", { name: environment });
-  }
-
-  share(tree: JsonObject): void {
-    const patch = Object.fromEntries(
-      sharedGroups.filter((group) => group in tree).map((group) => [group, tree[group]]),
-    );
-    const text = JSON.stringify(patch);
-    if (text === this.shared) return;
-    this.shared = text;
-    this.connection.rpc.notify("settings.patch", { patch });
-  }
-
-  /** Follows the clip: when it starts, stops or jumps, not while it just goes on. */
-  play({ clip, playing, rate, seconds }: AnimationState): void {
-    const known = JSON.stringify([clip, playing, rate, playing ? 0 : seconds]);
-    if (known === this.clip || !clip) return;
-    this.clip = known;
-    const { rpc } = this.connection;
-    rpc.notify("animation.play", { clip, rate });
-    rpc.notify("animation.seek", { seconds });
-    if (!playing) rpc.notify("animation.pause", {});
-  }
-
-  end(): void {
-    clearInterval(this.timer);
-    this.worker.terminate();
-    // From inside, since a session that somebody is in cannot be closed by others. What cannot be
-    // closed any more ends when it has been idle for long enough.
-    void this.connection.rpc
-      .request("session.close", { session: this.session })
-      .catch(() => {})
-      .finally(() => this.connection.dispose());
-  }
-
-  private async becomeLive(hello: Hello): Promise<void> {
-    const { rpc } = this.connection;
-    const size = this.viewer.stream.chooseSize(hello);
-    await rpc.request<StreamSettings>("stream.configure", { ...size });
-    const { counterpart } = this.shown;
-    if (counterpart.kind === "preset") {
-      await rpc.request("settings.preset", { name: counterpart.name });
-    } else {
-      const patch =
-        counterpart.kind === "reference"
-          ? { reference: { use: "always" } }
-          : { view: { buffer: counterpart.name } };
-      await rpc.request("settings.patch", { patch });
-    }
-    this.shared = "";
-    this.lit = "";
-    this.share(this.viewer.settings.tree.value);
-    this.light();
-    const camera = this.viewer.camera.value;
-    if (camera) this.follow(camera);
-  }
-
-  private async measure(): Promise<void> {
-    if (this.measuring || !this.shown.frame || this.shown.counterpart.kind === "buffer") return;
-    const pictures = await Promise.all([
-      this.viewer.connection.copyPicture(),
-      this.connection.copyPicture(),
-    ]);
-    if (pictures[0] && pictures[1] && !this.measuring) {
-      this.measuring = true;
-      this.worker.postMessage({ id: 0, pictures }, [pictures[0], pictures[1]]);
-    } else {
-      pictures.forEach((picture) => picture?.close());
-    }
+  /** Another scene is compared in the same way as the last. */
+  private sceneChanged(scene: SceneInfo | null): void {
+    const key = JSON.stringify(scene && { ...scene, memory: null });
+    if (key === this.scene) return;
+    this.scene = key;
+    const counterpart = this.state.value?.counterpart;
+    if (counterpart) void this.start(counterpart);
   }
 }

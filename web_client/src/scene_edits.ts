@@ -45,6 +45,19 @@ export function patchesTowards(parts: readonly Part[], edits: Edits): Edits {
   return patches;
 }
 
+/** The patches that lead from the file with `before` to the file with `after`. */
+export function editsBetween(before: Edits, after: Edits): Edits {
+  const patches: Edits = {};
+  for (const name of new Set([...Object.keys(before), ...Object.keys(after)])) {
+    const [had, has] = [before[name] ?? {}, after[name] ?? {}];
+    const gone = Object.keys(had).filter((member) => !(member in has));
+    const other = Object.entries(has).filter(([member, value]) => !sameValue(had[member], value));
+    const patch = Object.fromEntries([...gone.map((member) => [member, null]), ...other]);
+    if (Object.keys(patch).length > 0) patches[name] = patch as JsonObject;
+  }
+  return patches;
+}
+
 /** The edits in a message from anywhere: what is no such thing is left out. */
 export function checkedEdits(value: JsonValue | undefined): Edits | undefined {
   if (!isObject(value)) return undefined;

@@ -29,6 +29,8 @@ export class StreamRequests {
   private wanted: Partial<StreamSettings> = {};
   private breaks = 0;
   private goodSince = 0;
+  /** The server sends from its hello on, so that a video can break before anything can be asked. */
+  private brokeEarly = false;
 
   constructor(rpc: RpcPeer, host: StreamHost) {
     this.rpc = rpc;
@@ -39,15 +41,19 @@ export class StreamRequests {
   async begin(hello: Hello, unseen: boolean): Promise<void> {
     this.hello = hello;
     this.asked = null;
-    this.breaks = 0;
+    const anew = this.brokeEarly;
+    this.brokeEarly = false;
     const codec = preferences.text("codec", isLocal() ? "jpeg" : "h264");
     const coded = hello.codecs.length > 1 && hello.codecs.includes(codec) ? { codec } : {};
-    const paused = unseen ? { paused: true } : {};
+    const paused = unseen || anew ? { paused: true } : {};
     await this.configure({ ...this.wanted, ...this.size(), ...coded, ...paused });
+    if (anew && !unseen) await this.show();
   }
 
   end(): void {
     this.hello = null;
+    this.breaks = 0;
+    this.brokeEarly = false;
   }
 
   /** Lets pictures come that `begin` held back, unless nobody looks at the page. */
@@ -81,6 +87,8 @@ export class StreamRequests {
       this.breaks = 0;
       this.host.tell("The video breaks too often; single pictures come instead");
       this.request({ codec: "jpeg" });
+    } else if (!this.hello) {
+      this.brokeEarly = true;
     } else {
       // A viewer that comes back gets a key picture first.
       void this.configure({ paused: true }).then(() => this.show());

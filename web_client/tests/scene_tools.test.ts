@@ -3,6 +3,7 @@ import test from "node:test";
 import type { Vector3 } from "heliograph/messages.ts";
 import { LatestSender } from "../src/latest_sender.ts";
 import { displayColour, linearColour } from "../src/panel/material_section.ts";
+import { editsBetween } from "../src/scene_edits.ts";
 import { sunDirection, sunPosition } from "../src/panel/sun_dial.ts";
 
 test("a sun high in the south-east shines down to the north-west", () => {
@@ -40,4 +41,18 @@ test("patches of one thing are joined while one is under way, others go at once"
   finish.splice(0).forEach((done) => done());
   await new Promise((resolve) => setTimeout(resolve, 0));
   assert.equal(sender.unsettled("sun"), false);
+});
+
+test("what follows a scene's edits is told what is new, and what is as in the file again", () => {
+  const before = { sun: { intensity: 2, enabled: false }, lamp: { intensity: 3 } };
+  const after = { sun: { intensity: 2.5 }, lamp: { intensity: 3 }, spot: { radius: 0.1 } };
+  assert.deepEqual(editsBetween(before, after), {
+    sun: { enabled: null, intensity: 2.5 },
+    spot: { radius: 0.1 },
+  });
+  assert.deepEqual(editsBetween(before, {}), {
+    sun: { intensity: null, enabled: null },
+    lamp: { intensity: null },
+  });
+  assert.deepEqual(editsBetween(before, before), {});
 });

@@ -1,5 +1,5 @@
 // Firefox by its own remote protocol, Marionette: lengths and JSON over a TCP connection. Enough of
-// it to open a page, look into it and take a picture.
+// it to open a page, look into it, take a picture and hear what the browser has against the page.
 
 import { spawn } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -36,7 +36,8 @@ export class Firefox {
   static async launch(path) {
     const profile = mkdtempSync(join(tmpdir(), "heliograph-firefox-"));
     writeFileSync(join(profile, "user.js"), preferences);
-    const args = ["--headless", "--marionette", "--no-remote", "--profile", profile];
+    const args = ["--headless", "--marionette", "--remote-allow-system-access", "--no-remote"];
+    args.push("--profile", profile);
     const child = spawn(path, args, { stdio: "ignore", env: { ...process.env, HOME: profile } });
     const port = await portOf(profile);
     const socket = connect(port, "127.0.0.1");
@@ -55,6 +56,16 @@ export class Firefox {
   async evaluate(script, ...args) {
     const { value } = await this.ask("WebDriver:ExecuteScript", { script, args });
     return value;
+  }
+
+  /** Errors, warnings, exceptions and violations of the content security policy in pages of `url`. */
+  async complaints(url) {
+    await this.ask("Marionette:SetContext", { value: "chrome" });
+    try {
+      return await this.evaluate(readComplaints, url);
+    } finally {
+      await this.ask("Marionette:SetContext", { value: "content" });
+    }
   }
 
   async screenshot(path) {
@@ -97,6 +108,21 @@ export class Firefox {
     else resolve(result);
   }
 }
+
+/** Runs beside the browser's own interface, which alone may read what all pages were told. */
+const readComplaints = `
+  const [url] = arguments;
+  const messages = Services.console
+    .getMessageArray()
+    .filter((message) => message instanceof Ci.nsIScriptError && message.sourceName.startsWith(url))
+    .map(({ errorMessage }) => errorMessage);
+  const calls = Cc["@mozilla.org/consoleAPI-storage;1"]
+    .getService(Ci.nsIConsoleAPIStorage)
+    .getEvents()
+    .filter(({ level, filename }) => ["error", "warn"].includes(level) && filename.startsWith(url))
+    .map((call) => call.arguments.join(" "));
+  return [...messages, ...calls];
+`;
 
 /** Firefox writes down which port it took. */
 async function portOf(profile) {

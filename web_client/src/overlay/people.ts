@@ -87,8 +87,14 @@ export function mountPeople(
     const one = viewer.session.value?.control === "one";
     void viewer.control({ mode: one ? "everyone" : "one" });
   });
+  // Who was here last means nothing to who is not here.
+  const appear = (): void => {
+    const { kind } = viewer.connection.state.value;
+    root.hidden = viewer.session.value === null || (kind !== "live" && kind !== "connecting");
+  };
+  viewer.connection.state.watch(appear);
   viewer.session.watch((session) => {
-    root.hidden = session === null;
+    appear();
     if (!session) return;
     const me = session.viewers.find(({ you }) => you);
     setText(count, String(session.viewers.length));

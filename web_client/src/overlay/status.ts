@@ -111,7 +111,7 @@ function noticeFor(viewer: Viewer, state: ConnectionState): Notice | null {
     case "forbidden":
       return {
         title: "No access",
-        detail: state.detail || "The server does not let this page in.",
+        detail: state.detail ? asSentence(state.detail) : "The server does not let this page in.",
         action: { label: "Reload", run: () => location.reload() },
         dims: true,
       };
@@ -193,4 +193,10 @@ function createCard(card: HTMLElement): { show(notice: Notice | null): void } {
       run = notice.action?.run ?? (() => {});
     },
   };
+}
+
+/** A server's reason, as the page's own words are written. */
+function asSentence(reason: string): string {
+  const begun = reason.charAt(0).toUpperCase() + reason.slice(1);
+  return /[.!?]$/.test(begun) ? begun : `${begun}.`;
 }

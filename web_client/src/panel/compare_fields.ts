@@ -17,7 +17,7 @@ export function createCompareFields(
   comparison: Comparison,
   divider: Divider,
 ): HTMLElement {
-  const select = element("select", { name: "compare", change: () => void choose() });
+  const select = element("select", { name: "compare", change: () => choose() });
   const way = element(
     "select",
     { name: "compare_way", change: () => arrange() },
@@ -46,7 +46,7 @@ export function createCompareFields(
     opacityRow.show(opacity);
     divider.arrange(split ? "split" : "overlay", opacity);
   };
-  const choose = async (): Promise<void> => {
+  const choose = (): void => {
     const counterpart = parsed(select.value);
     if (!counterpart) {
       comparison.stop();
@@ -55,12 +55,7 @@ export function createCompareFields(
     if (counterpart.kind === "buffer" && overlaid.test(counterpart.name)) way.value = "overlay";
     if (counterpart.kind !== "buffer") way.value = "split";
     arrange();
-    try {
-      await comparison.start(counterpart);
-    } catch (error) {
-      select.value = nothing;
-      viewer.report(error);
-    }
+    void comparison.start(counterpart);
   };
   const fill = (): void => {
     setOptions(select, [
@@ -78,11 +73,11 @@ export function createCompareFields(
   viewer.offers.presets.watch(fill);
   viewer.offers.buffers.watch(fill);
   comparison.state.watch((state) => {
+    select.value = state ? valueOf(state.counterpart) : nothing;
     const label = state ? (select.selectedOptions[0]?.textContent ?? "") : "";
     divider.show(state !== null, label);
     way.closest<HTMLElement>(".field")?.toggleAttribute("hidden", state === null);
     if (!state) {
-      select.value = nothing;
       opacityRow.node.hidden = true;
       setText(facts, "");
       return;
@@ -110,6 +105,10 @@ export function createCompareFields(
   viewer.offers.methods.watch(offer);
   viewer.standing.watch(offer);
   return node;
+}
+
+function valueOf(counterpart: Counterpart): string {
+  return counterpart.kind === "reference" ? "reference" : `${counterpart.kind}:${counterpart.name}`;
 }
 
 function parsed(value: string): Counterpart | null {

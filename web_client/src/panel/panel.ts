@@ -42,6 +42,11 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
     { id: "inspect", label: "Inspect", icon: "layers", body: createInspectTab(viewer, actions.inspect) },
     { id: "stats", label: "Timing", icon: "chart", body: createStatsTab(viewer, stream.node) },
   ]);
+  viewer.standing.watch(({ kind }) => {
+    // Keys scroll it by what is in it, unless all of that is locked.
+    if (kind === "may_change") tabs.pages.removeAttribute("tabindex");
+    else tabs.pages.tabIndex = 0;
+  });
   const note = createStandingNote(viewer);
   const content = element("div", { class: "panel-body" }, note, tabs.list, tabs.pages);
   const fold = element(

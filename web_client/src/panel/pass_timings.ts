@@ -89,7 +89,7 @@ function update(line: Line, ms: number, longest: number, now: number, exactly: b
   line.ms += (ms - line.ms) * (exactly || line.seenAt === 0 ? 1 : smoothing);
   line.seenAt = now;
   line.bar.style.transform = `scaleX(${Math.min(1, line.ms / longest)})`;
-  setText(line.value, line.ms.toFixed(line.ms < 9.95 ? 2 : 1));
+  setText(line.value, line.ms.toFixed(line.ms < 9.95 ? 2 : line.ms < 999.5 ? 1 : 0));
 }
 
 function forget(lines: Map<string, Line>, now: number): void {

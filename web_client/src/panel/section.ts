@@ -15,19 +15,15 @@ export interface SectionParts {
   action?: HTMLElement;
 }
 
-/** Longer titles are cut; the tooltip tells all of them. */
-const longestTitle = 28;
-
 export function createSection(parts: SectionParts): HTMLElement {
   const key = `open.${parts.id}`;
-  const tip = parts.title.length > longestTitle ? parts.title : undefined;
   const fold = element(
     "details",
     {
       open: preferences.flag(key, parts.openAtFirst),
       toggle: () => preferences.setFlag(key, fold.open),
     },
-    element("summary", {}, icon("chevron"), element("h2", { "data-tip": tip }, parts.title), parts.note),
+    element("summary", {}, icon("chevron"), element("h2", {}, parts.title), parts.note),
     parts.body,
   );
   return element(
