@@ -8,10 +8,10 @@ import shutil
 import subprocess
 import tempfile
 
+from .checkout import Checkout
 from .commands import Skip, program, run
+from .files import ROOT
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-ROOT = os.path.normpath(os.path.join(HERE, "../../.."))
 BASE = "debian:trixie-slim"
 SERVER = "heliograph:latest"
 BALANCER = "heliograph-balancer:latest"
@@ -44,7 +44,9 @@ def _bootstrap(suite, target, mirror):
     partial = target + ".partial"
     excluded = ["/usr/share/man/*", "/usr/share/doc/*", "/usr/share/locale/*"]
     options = [f"--dpkgopt=path-exclude={pattern}" for pattern in excluded]
-    options += ["--dpkgopt=path-include=/usr/share/doc/*/copyright", "--dpkgopt=force-unsafe-io"]
+    options += ["--dpkgopt=path-include=/usr/share/doc/*/copyright", "--dpkgopt=force-unsafe-io",
+                # As in the registry's images.
+                '--customize-hook=echo force-unsafe-io >"$1"/etc/dpkg/dpkg.cfg.d/docker-apt-speedup']
     trusted = glob.glob("/usr/local/share/ca-certificates/*.crt")
     if trusted:
         options += [f"--customize-hook=copy-in {' '.join(trusted)} /usr/local/share/ca-certificates",
@@ -107,8 +109,7 @@ def _archive():
 
 
 def _of_these_files(form):
-    tree = run("git", "-C", ROOT, "rev-parse", "HEAD^{tree}")
-    return os.path.join(cache_folder(), f"heliograph-server-{tree}.{form}")
+    return os.path.join(cache_folder(), f"heliograph-server-{Checkout().key()}.{form}")
 
 
 def build(machine, dockerfile, *options, folder="", arguments=None, timeout=900):
@@ -117,7 +118,7 @@ def build(machine, dockerfile, *options, folder="", arguments=None, timeout=900)
     for name, value in (arguments or {}).items():
         options += ["--build-arg", f"{name}={value}"]
     with tempfile.TemporaryFile() as context:
-        subprocess.run(["git", "-C", ROOT, "archive", f"HEAD:{folder}"], stdout=context, check=True)
+        Checkout(folder).write(context)
         context.seek(0)
         machine.docker("build", "--file", dockerfile, *options, "-", stdin=context,
                        timeout=timeout)
@@ -133,8 +134,7 @@ def add_prometheus(machine):
 
 def _add(machine, tag, folder):
     """Built once of the same files; then taken from the cache."""
-    tree = run("git", "-C", ROOT, "rev-parse", f"HEAD:{folder}")
-    archive = os.path.join(cache_folder(), f"{tag.split(':')[0]}-{tree}.tar")
+    archive = os.path.join(cache_folder(), f"{tag.split(':')[0]}-{Checkout(folder).key()}.tar")
     if os.path.exists(archive):
         machine.docker("load", "--input", archive, timeout=300)
         return
