@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import tempfile
+import time
 
 from .checkout import Checkout
 from .commands import Skip, program, run
@@ -170,9 +171,11 @@ def _seed_compiler_cache(machine):
 
 def _save_compiler_cache(machine):
     with tempfile.TemporaryDirectory(dir=cache_folder()) as folder:
-        _small_build(machine, f"FROM {BASE} AS copy\nRUN {_CACHE_MOUNT} cp -r /cache /saved\n"
-                     "FROM scratch\nCOPY --from=copy /saved /\n", None, "--no-cache", "--output",
-                     folder)
+        # An argument makes it run each time; with --no-cache it would see an empty mount.
+        _small_build(machine, f"FROM {BASE} AS copy\nARG TIME\n"
+                     f"RUN {_CACHE_MOUNT} cp -r /cache /saved\n"
+                     "FROM scratch\nCOPY --from=copy /saved /\n", None, "--build-arg",
+                     f"TIME={time.time()}", "--output", folder)
         if os.listdir(folder):
             shutil.rmtree(compiler_cache())
             shutil.copytree(folder, compiler_cache())
