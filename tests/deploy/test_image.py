@@ -11,7 +11,8 @@ import unittest
 
 from harness import images
 from harness.files import DEPLOY, documents
-from harness.pictures import decode_png, largest_difference_of_means, read, render
+from harness.pictures import (SAME_PICTURE, decode_png, largest_difference_of_means, read,
+                              render)
 from harness.replaying_viewer import ReplayingViewer, Wish
 from harness.scenes import generate
 from harness.servers import TOKEN, Container, measurement
@@ -126,7 +127,7 @@ class Image(unittest.IsolatedAsyncioTestCase):
         await asyncio.to_thread(render, scene, host, samples=64)
         difference = largest_difference_of_means(decode_png(picture), read(host))
         print(f"container: at most {difference:.2f} of 255 from the host's picture", flush=True)
-        self.assertLess(difference, 2.5)
+        self.assertLess(difference, SAME_PICTURE)
 
         async with ReplayingViewer(container.url, TOKEN, Wish("glossy_sponza_1")) as viewer:
             self.assertIn(SOFTWARE_DEVICE, (await viewer.call("hello"))["device"]["name"])
