@@ -16,6 +16,9 @@ from harness.servers import free_port, get
 from harness.system import System, check_machine
 
 MOST_SECONDS = 3000
+# That of the image's build: what compilers remember depends on the language, too.
+ENVIRONMENT = ("PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin", "HOME=/root",
+               "HELIOGRAPH_BUILD=/build")
 # Of Ubuntu 24.04, for example http://archive.ubuntu.com/ubuntu; Debian's is known to apt.
 UBUNTU = "HELIOGRAPH_UBUNTU_MIRROR"
 
@@ -54,9 +57,9 @@ class SetupTest:
         binds = [(images.compiler_cache(), "/root/.cache/ccache")]
         with open(os.path.join(self.work, "log"), "w+", encoding="utf-8") as log:
             server = subprocess.Popen(
-                self.system.command("env", "HELIOGRAPH_BUILD=/build", "/src/deploy/run.sh",
-                                    "--port", str(port), "--width", "160", "--height", "90",
-                                    binds=binds),
+                self.system.command("env", "--ignore-environment", *ENVIRONMENT,
+                                    "/src/deploy/run.sh", "--port", str(port), "--width", "160",
+                                    "--height", "90", binds=binds),
                 stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True)
             try:
                 self.wait_ready(server, log, address)

@@ -56,6 +56,18 @@ class Containers(unittest.TestCase):
                 else:
                     self.assertIn("memory", service["deploy"]["resources"]["limits"])
 
+    def test_allow_the_pixels_that_the_pod_allows(self):
+        """Those that the image's tests find room for."""
+        deployment = documents(os.path.join(DEPLOY, "kubernetes/deployment.yaml"))[0]
+        environment = deployment["spec"]["template"]["spec"]["containers"][0]["env"]
+        pixels, = [entry["value"] for entry in environment
+                   if entry["name"] == "HELIOGRAPH_MAX_PIXELS"]
+        for label, _, service in self.services():
+            if label.endswith(": heliograph"):
+                with self.subTest(label):
+                    self.assertEqual(service["environment"]["HELIOGRAPH_MAX_PIXELS"],
+                                     f"${{HELIOGRAPH_MAX_PIXELS:-{pixels}}}")
+
     def test_open_only_the_balancer_to_others(self):
         published = [port for _, name, service in self.services() if name == "compose.yaml"
                      for port in service.get("ports", [])]

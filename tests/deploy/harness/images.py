@@ -7,11 +7,12 @@ import re
 import shutil
 import subprocess
 import tempfile
+import time
 
+from .checkout import Checkout
 from .commands import Skip, program, run
+from .files import ROOT
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-ROOT = os.path.normpath(os.path.join(HERE, "../../.."))
 BASE = "debian:trixie-slim"
 SERVER = "heliograph:latest"
 BALANCER = "heliograph-balancer:latest"
@@ -44,7 +45,9 @@ def _bootstrap(suite, target, mirror):
     partial = target + ".partial"
     excluded = ["/usr/share/man/*", "/usr/share/doc/*", "/usr/share/locale/*"]
     options = [f"--dpkgopt=path-exclude={pattern}" for pattern in excluded]
-    options += ["--dpkgopt=path-include=/usr/share/doc/*/copyright", "--dpkgopt=force-unsafe-io"]
+    options += ["--dpkgopt=path-include=/usr/share/doc/*/copyright", "--dpkgopt=force-unsafe-io",
+                # As in the registry's images.
+                '--customize-hook=echo force-unsafe-io >"$1"/etc/dpkg/dpkg.cfg.d/docker-apt-speedup']
     trusted = glob.glob("/usr/local/share/ca-certificates/*.crt")
     if trusted:
         options += [f"--customize-hook=copy-in {' '.join(trusted)} /usr/local/share/ca-certificates",
@@ -107,8 +110,7 @@ def _archive():
 
 
 def _of_these_files(form):
-    tree = run("git", "-C", ROOT, "rev-parse", "HEAD^{tree}")
-    return os.path.join(cache_folder(), f"heliograph-server-{tree}.{form}")
+    return os.path.join(cache_folder(), f"heliograph-server-{Checkout().key()}.{form}")
 
 
 def build(machine, dockerfile, *options, folder="", arguments=None, timeout=900):
@@ -117,7 +119,7 @@ def build(machine, dockerfile, *options, folder="", arguments=None, timeout=900)
     for name, value in (arguments or {}).items():
         options += ["--build-arg", f"{name}={value}"]
     with tempfile.TemporaryFile() as context:
-        subprocess.run(["git", "-C", ROOT, "archive", f"HEAD:{folder}"], stdout=context, check=True)
+        Checkout(folder).write(context)
         context.seek(0)
         machine.docker("build", "--file", dockerfile, *options, "-", stdin=context,
                        timeout=timeout)
@@ -133,8 +135,7 @@ def add_prometheus(machine):
 
 def _add(machine, tag, folder):
     """Built once of the same files; then taken from the cache."""
-    tree = run("git", "-C", ROOT, "rev-parse", f"HEAD:{folder}")
-    archive = os.path.join(cache_folder(), f"{tag.split(':')[0]}-{tree}.tar")
+    archive = os.path.join(cache_folder(), f"{tag.split(':')[0]}-{Checkout(folder).key()}.tar")
     if os.path.exists(archive):
         machine.docker("load", "--input", archive, timeout=300)
         return
@@ -170,9 +171,11 @@ def _seed_compiler_cache(machine):
 
 def _save_compiler_cache(machine):
     with tempfile.TemporaryDirectory(dir=cache_folder()) as folder:
-        _small_build(machine, f"FROM {BASE} AS copy\nRUN {_CACHE_MOUNT} cp -r /cache /saved\n"
-                     "FROM scratch\nCOPY --from=copy /saved /\n", None, "--no-cache", "--output",
-                     folder)
+        # An argument makes it run each time; with --no-cache it would see an empty mount.
+        _small_build(machine, f"FROM {BASE} AS copy\nARG TIME\n"
+                     f"RUN {_CACHE_MOUNT} cp -r /cache /saved\n"
+                     "FROM scratch\nCOPY --from=copy /saved /\n", None, "--build-arg",
+                     f"TIME={time.time()}", "--output", folder)
         if os.listdir(folder):
             shutil.rmtree(compiler_cache())
             shutil.copytree(folder, compiler_cache())

@@ -100,6 +100,14 @@ class ReplayingViewer:
         self.wish.eye = tuple(eye)
         await self._send_camera()
 
+    async def pictures(self, count, timeout=60):
+        """Waits until as many more have come."""
+        wanted, deadline = self.frames + count, time.monotonic() + timeout
+        while self.frames < wanted:
+            if time.monotonic() > deadline:
+                raise AssertionError(f"no {count} pictures in {timeout} s")
+            await asyncio.sleep(0.01)
+
     async def call(self, method, params=None, timeout=60):
         number, self._next_id = self._next_id, self._next_id + 1
         waiting = asyncio.get_running_loop().create_future()

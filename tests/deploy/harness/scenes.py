@@ -10,10 +10,14 @@ NAMES = ("mirror", "furnace")
 def make_scenes(folder):
     """Generates them and gives their folder, which containers may read."""
     scenes = os.path.join(folder, "scenes")
-    run(os.path.join(os.path.dirname(os.environ["HELIOGRAPH_BINARY"]), "heliograph-scenes"), scenes,
-        "--texture-size", "64", "--only", "tests", "--only", "sky")
+    generate(scenes, "--texture-size", "64", "--only", "tests", "--only", "sky")
     os.chmod(folder, 0o755)
     return scenes
+
+
+def generate(folder, *options):
+    program = os.path.join(os.path.dirname(os.environ["HELIOGRAPH_BINARY"]), "heliograph-scenes")
+    run(program, folder, *options, timeout=600)
 
 
 def service_override(scenes):

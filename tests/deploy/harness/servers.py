@@ -2,10 +2,12 @@
 
 import http.client
 import json
+import os
 import socket
 import time
 import urllib.parse
 
+from .files import text_of
 from .images import SERVER
 
 TOKEN = "deployment-test-token"
@@ -31,6 +33,43 @@ class Container:
                 raise AssertionError(f"{self.name} is not healthy:\n{self.log()}")
             time.sleep(0.1)
         return time.monotonic() - self.started_at
+
+    def wait_ready(self, timeout=300):
+        """Until it takes viewers, which is after its first picture. Gives the seconds of processor
+        time that this took: unlike those of the clock they tell of the server, not of what else
+        the machine has to do."""
+        while not self._is_ready():
+            if time.monotonic() - self.started_at > timeout or not self.running():
+                raise AssertionError(f"{self.name} is not ready:\n{self.log()}")
+            time.sleep(0.02)
+        return self.processor_seconds()
+
+    def _is_ready(self):
+        try:
+            return self.get("health/ready", timeout=5)[0] == 200
+        except OSError:
+            return False  # it does not listen yet
+
+    def processor_seconds(self):
+        """What the server, with all its threads, has used by now."""
+        process = self.machine.inspect(self.name, "{{.State.Pid}}")
+        with open(f"/proc/{process}/stat", encoding="ascii") as file:
+            fields = file.read().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def memory_bytes(self):
+        """What its control group holds: all but what the kernel can take back by reading files
+        again."""
+        identity = self.machine.inspect(self.name, '"{{.Id}}"')
+        for folder, usage in (("/sys/fs/cgroup/memory/docker", "memory.usage_in_bytes"),
+                              ("/sys/fs/cgroup/docker", "memory.current")):
+            group = os.path.join(folder, identity)
+            if os.path.isdir(group):
+                held = int(text_of(os.path.join(group, usage)))
+                counts = dict(line.split() for line in
+                              text_of(os.path.join(group, "memory.stat")).splitlines())
+                return held - int(counts.get("total_inactive_file", counts["inactive_file"]))
+        raise AssertionError(f"no control group of {identity}")
 
     def running(self):
         return self.state()["Running"]

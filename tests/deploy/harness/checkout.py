@@ -1,0 +1,50 @@
+"""What is committed, as an image's builder sees it."""
+
+import fnmatch
+import hashlib
+import os
+import subprocess
+
+from .commands import run
+from .files import DEPLOY, ROOT, text_of
+
+
+class Checkout:
+    """A clean checkout of a folder of the repository. Of all of it the builder is told to leave some
+    out, which it does not do of an archive."""
+
+    def __init__(self, folder=""):
+        self._tree = f"HEAD:{folder}"
+        ignored = os.path.join(DEPLOY, "Dockerfile.dockerignore")
+        self._left_out = [] if folder else text_of(ignored).split()
+
+    def write(self, file):
+        """As a tar archive."""
+        words = [f":(exclude,glob){pattern}{end}" for pattern in self._left_out
+                 for end in ("", "/**")]
+        subprocess.run(["git", "-C", ROOT, "archive", self._tree, "--", ".", *words], stdout=file,
+                       check=True)
+
+    def files(self):
+        return list(self._objects())
+
+    def key(self):
+        """Another one when any file is another."""
+        lines = "\n".join(f"{path} {words}" for path, words in self._objects().items())
+        return hashlib.sha256(lines.encode()).hexdigest()[:40]
+
+    def _objects(self):
+        lines = run("git", "-C", ROOT, "ls-tree", "-r", "--full-tree", self._tree).splitlines()
+        found = (line.split("\t", 1) for line in lines)
+        return {path: words for words, path in found if not self._is_left_out(path)}
+
+    def _is_left_out(self, path):
+        parts = path.split("/")
+        above = ["/".join(parts[:count]) for count in range(1, len(parts) + 1)]
+        return any(_matches(name, pattern) for name in above for pattern in self._left_out)
+
+
+def _matches(path, pattern):
+    if pattern.startswith("**/"):
+        return fnmatch.fnmatch(os.path.basename(path), pattern[3:])
+    return path.count("/") == pattern.count("/") and fnmatch.fnmatch(path, pattern)
