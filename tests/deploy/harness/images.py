@@ -178,7 +178,7 @@ def _save_compiler_cache(machine):
                      f"TIME={time.time()}", "--output", folder)
         if os.listdir(folder):
             shutil.rmtree(compiler_cache())
-            shutil.copytree(folder, compiler_cache())
+            shutil.copytree(folder, compiler_cache(), dirs_exist_ok=True)
 
 
 def _small_build(machine, dockerfile, context, *options):
