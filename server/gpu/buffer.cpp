@@ -8,10 +8,11 @@ namespace heliograph::gpu {
 
 Buffer::Buffer(const Device& device, std::string name, VkDeviceSize size, VkBufferUsageFlags usage,
                Memory memory)
-    : device_(&device),
-      name_(std::move(name)),
-      // Whole texels of any format, so that a view covers the last bytes too.
-      size_(std::max<VkDeviceSize>((size + 15) / 16 * 16, 16)) {
+    : Buffer() {  // what is made is the destructor's when a step fails
+  device_ = &device;
+  name_ = std::move(name);
+  // Whole texels of any format, so that a view covers the last bytes too.
+  size_ = std::max<VkDeviceSize>((size + 15) / 16 * 16, 16);
   VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
   info.size = size_;
   info.usage = usage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;

@@ -48,7 +48,7 @@ std::string cache_name(VkPhysicalDevice device) {
 
 /// Lets tests lose the device: once for each time that they make the file that this names.
 bool loss_is_wanted() {
-  static const char* const file = std::getenv("HELIOGRAPH_TEST_DEVICE_LOSS");
+  const char* const file = std::getenv("HELIOGRAPH_TEST_DEVICE_LOSS");
   return file && std::remove(file) == 0;
 }
 

@@ -72,7 +72,10 @@ const char* format_name(VkFormat format) {
   }
 }
 
-Image::Image(const Device& device, ImageDesc desc) : device_(&device), desc_(std::move(desc)) {
+// A constructor that delegates leaves what it has made to the destructor when it fails half way.
+Image::Image(const Device& device, ImageDesc desc) : Image() {
+  device_ = &device;
+  desc_ = std::move(desc);
   VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
   info.flags = desc_.cube ? VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT : 0;
   info.imageType = VK_IMAGE_TYPE_2D;

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
+#include "gpu/device_lost.hpp"
 #include "gpu/frame_plan.hpp"
 #include "tests/gpu/embedded.hpp"
 #include "tests/support/engine.hpp"
@@ -53,6 +56,37 @@ TEST(Reflection, TellsTypesFormatsAndAccess) {
   EXPECT_EQ(access(1), std::pair(true, false)) << "readonly buffer";
   EXPECT_EQ(access(5), std::pair(false, true)) << "writeonly buffer";
   EXPECT_EQ(access(7), std::pair(true, true)) << "buffer";
+}
+
+/// Has the next submission find the device lost, while it lives.
+class WantedLoss {
+ public:
+  WantedLoss() : file_(std::filesystem::temp_directory_path() / "heliograph_wanted_loss") {
+    std::ofstream(file_).put(' ');
+    setenv("HELIOGRAPH_TEST_DEVICE_LOSS", file_.c_str(), 1);
+  }
+  ~WantedLoss() {
+    unsetenv("HELIOGRAPH_TEST_DEVICE_LOSS");
+    std::filesystem::remove(file_);
+  }
+  WantedLoss(const WantedLoss&) = delete;
+  WantedLoss& operator=(const WantedLoss&) = delete;
+
+ private:
+  std::filesystem::path file_;
+};
+
+// The validation layers name what is left when a device goes.
+TEST(DeviceLoss, LeavesNothingOfWhatWasBeingMade) {
+  const char* const wanted = std::getenv("HELIOGRAPH_TEST_DEVICE");
+  const Instance instance(true);
+  {
+    const Device device(instance, {.wanted = wanted ? wanted : "", .cache_folder = {}});
+    const WantedLoss loss;
+    EXPECT_THROW(Image(device, {.name = "image", .extent = {8, 8}, .format = VK_FORMAT_R8_UNORM}),
+                 DeviceLost);
+  }
+  EXPECT_EQ(instance.validation_messages(), 0u);
 }
 
 TEST(Program, NamesASetThatNobodyProvides) {
