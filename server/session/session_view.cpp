@@ -257,7 +257,9 @@ bool SessionView::draws_whole() const {
 }
 
 bool SessionView::frame_wanted() {
-  if (!renderer_->needs_frame() && !state_.animation.playing) return false;
+  // A change and its opposite make no other picture, but who made them waits for one of that state.
+  const bool shown = !newest_ || newest_->header.state_rev == state_.rev;
+  if (shown && !renderer_->needs_frame() && !state_.animation.playing) return false;
   const bool first = draws_unasked_ && state_.resources;
   const bool reference = state_.keep_drawing &&
                          state_.settings.reference.use == protocol::ReferenceUse::always;

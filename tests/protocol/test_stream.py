@@ -95,6 +95,21 @@ class Frames(ServerTestCase):
                 while len(shown) < 4:  # of a camera that never comes to rest
                     shown.add((await viewer.next_frame(timeout=60)).header["state_rev"])
 
+    async def test_a_change_and_its_opposite_are_answered_by_a_picture(self):
+        async with Viewer(self.server) as viewer:
+            await viewer.call("stream.configure", {"width": 960, "height": 540})
+            await viewer.rest()
+
+            def compensate(stops):
+                return viewer.call("settings.patch",
+                                   {"patch": {"exposure": {"compensation": stops}}})
+            for stops in (1, 0, 1):
+                await compensate(stops)
+                await asyncio.sleep(0.02)  # a picture of it is being drawn
+                _, back = await asyncio.gather(compensate(2), compensate(stops))
+                await viewer.frame_where(
+                    lambda frame, rev=back["rev"]: frame.header["state_rev"] >= rev, timeout=30)
+
     async def test_the_final_picture_can_be_a_png(self):
         async with Viewer(self.server) as viewer:
             state = await viewer.call("stream.configure", {"still": "png"})
