@@ -67,8 +67,8 @@ bool mask_stops(uint mask, uint place, vec3 tuv, uint instance, uint triangle) {
   return alpha_stops(alpha, texels.w, blending, instance, triangle);
 }
 
-// On which side of the edge from a to b, both seen from the line's origin, the line passes: six times
-// the volume between them. The same edge the other way round gives exactly the opposite, so that no
+// On which side of the edge from a to b, both seen from the line's origin, the line passes: in
+// proportion to the volume between them. The same edge the other way round gives exactly the opposite, so that no
 // line slips through between two triangles (Davidovic, Engelhardt, Georgiev and Slusallek, GI 2012).
 float side_of_edge(vec3 a, vec3 b, vec3 direction) {
   const vec3 along = b - a, sum = a + b;

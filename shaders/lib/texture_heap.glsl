@@ -10,6 +10,7 @@ int wrapped_texel(int texel, int size, uint mode) {
   texel -= int(floor(float(texel) / float(period))) * period;
   // Where the quotient is whole, devices may round it down.
   if (texel >= period) texel -= period;
+  texel = clamp(texel, 0, period - 1);
   return texel < size ? texel : period - 1 - texel;
 }
 
