@@ -257,12 +257,20 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
             looking.cancel()
             await asyncio.gather(looking, return_exceptions=True)
         print(f"fleet: {len(list(panels()))} expressions of the dashboard have numbers", flush=True)
-        rules = json.loads(await asyncio.to_thread(
-            self.machine.inside, "curl", "--silent", "http://127.0.0.1:9090/api/v1/rules"))
-        found = [rule for group in rules["data"]["groups"] for rule in group["rules"]]
-        self.assertGreater(len(found), 4)
+        found = []
+
+        async def judged():
+            found[:] = await self.rules()
+            return len(found) > 4 and all(rule["health"] != "unknown" for rule in found)
+
+        await self.eventually(judged, "the alerts are not judged")
         self.assertEqual([(rule["name"], rule["health"], rule.get("lastError", ""))
                           for rule in found if rule["health"] != "ok"], [])
+
+    async def rules(self):
+        answer = json.loads(await asyncio.to_thread(
+            self.machine.inside, "curl", "--silent", "http://127.0.0.1:9090/api/v1/rules"))
+        return [rule for group in answer["data"]["groups"] for rule in group["rules"]]
 
     async def test_alerts_come_when_they_should(self):
         """By the tool of Debian's Prometheus."""
