@@ -123,18 +123,15 @@ async def soak(server, seconds, report=print):
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
-    # Peaks, once pools have filled: after half of a short run, after a quarter of a long one. In a
-    # short one the session that goes and the one that comes may overlap for the first time at its end.
+    # Peaks, once pools have filled.
     memory = state["memory"]
-    short = len(memory) <= 100
-    settled = memory[len(memory) // (2 if short else 4):]
-    allowed = (64 if short else 20) * MEGABYTE
+    settled = memory[len(memory) // 4:]
     if len(settled) < 4:
         return [*faults, "too few sessions came and went to compare"]
     half = len(settled) // 2
     before = max(settled[:half])
     grown = max(settled[half:]) - before
-    if grown > allowed + 0.02 * before:
+    if grown > 20 * MEGABYTE + 0.02 * before:
         faults.append(f"memory grew by {grown / MEGABYTE:.1f} MB")
     return faults
 
