@@ -24,9 +24,13 @@ struct Example {
 /// may steer, whoever has control.
 enum class Call { query, command, personal, sessions };
 
+/// `errors`: besides what every call may answer, and what follows from who may call it.
 template <class Params, class ResultType>
-MethodDescriptor method(std::string_view name, Call call, std::string_view summary,
-                        Example example) {
+MethodDescriptor method(std::string_view name, Call call, std::string_view summary, Example example,
+                        std::vector<ErrorCode> errors = {}) {
+  if (call == Call::command || call == Call::sessions) {
+    errors.insert(errors.begin(), ErrorCode::forbidden);
+  }
   return {.name = name,
           .summary = summary,
           .params = typeid(Params),
@@ -34,6 +38,7 @@ MethodDescriptor method(std::string_view name, Call call, std::string_view summa
           .may_be_notification = call != Call::query,
           .needs_control = call == Call::command,
           .for_watchers = call == Call::query || call == Call::personal,
+          .errors = std::move(errors),
           .example_params = example.params,
           .example_result = example.result,
           .params_schema = schema_of<Params>,
@@ -90,8 +95,8 @@ std::vector<MethodDescriptor> animation_methods() {
           "Lets time pass in a clip. A camera that the clip moves follows it until it is taken by "
           "hand.",
           {R"({"clip": "moving_camera", "rate": 1.0})", animation}),
-      method<Empty, AnimationState>("animation.pause", Call::command,
-                                    "Stops time; the pose stays.", {no_params, animation}),
+      method<Empty, AnimationState>("animation.pause", Call::command, "Stops time; the pose stays.",
+                                    {no_params, animation}),
       method<AnimationSeek, AnimationState>("animation.seek", Call::command,
                                             "Goes to a moment of the clip.",
                                             {R"({"seconds": 2.5})", animation}),
@@ -124,11 +129,12 @@ std::vector<MethodDescriptor> membership_methods() {
       method<SessionCreate, SessionInfo>(
           "session.create", Call::sessions,
           "Makes a session of its own scene, camera, settings, clock and histories.",
-          {R"({"name": "review", "scene": "atrium", "width": 320, "height": 180})", session}),
+          {R"({"name": "review", "scene": "atrium", "width": 320, "height": 180})", session},
+          {ErrorCode::conflict, ErrorCode::full}),
       method<SessionChoice, SessionJoined>(
           "session.join", Call::personal,
           "Brings this viewer, with its stream as it is, into another session.",
-          {R"({"session": "review"})", joined}),
+          {R"({"session": "review"})", joined}, {ErrorCode::full}),
       method<Empty, SessionList>("session.list", Call::query, "Lists the sessions and limits.",
                                  {no_params, sessions}),
       method<Empty, SessionInfo>("session.info", Call::query,
@@ -138,11 +144,11 @@ std::vector<MethodDescriptor> membership_methods() {
           "session.control", Call::sessions,
           "Decides who may change the session: everyone, or one viewer who takes, gives or "
           "releases control.",
-          {R"({"mode": "one"})", session}),
+          {R"({"mode": "one"})", session}, {ErrorCode::conflict}),
       method<SessionChoice, Empty>(
           "session.close", Call::sessions,
           "Ends a session; its viewers are told and let go. main stays for ever.",
-          {R"({"session": "review"})", "{}"}),
+          {R"({"session": "review"})", "{}"}, {ErrorCode::conflict}),
   };
 }
 
@@ -151,7 +157,7 @@ std::vector<MethodDescriptor> session_methods() {
       method<Hello, HelloResult>(
           "hello", Call::query,
           "Introduces a viewer: says what it can decode and learns who serves it.",
-          {R"({"client": "example 1.0", "codecs": ["jpeg"]})", greeting}),
+          {R"({"client": "example 1.0", "codecs": ["jpeg"]})", greeting}, {ErrorCode::full}),
       method<Empty, SceneListResult>(
           "scene.list", Call::query, "Lists the scenes that can be loaded.",
           {no_params,
@@ -160,7 +166,7 @@ std::vector<MethodDescriptor> session_methods() {
           "scene.load", Call::command,
           "Loads a scene and shows it; scene.progress tells how far it is. On failure the scene "
           "that was shown stays.",
-          {R"({"name": "atrium"})", scene}),
+          {R"({"name": "atrium"})", scene}, {ErrorCode::conflict}),
       method<Empty, SceneCancelled>(
           "scene.cancel", Call::command,
           "Ends the load that the session waits for. What is shown stays.",
@@ -176,8 +182,7 @@ std::vector<MethodDescriptor> session_methods() {
           "Moves the camera; members that are left out stay as they are.",
           {R"({"eye": [8.0, 1.7, 0.0], "target": [0.0, 2.5, 0.0], "seq": 12})", camera}),
       method<CameraOrbit, Camera>(
-          "camera.orbit", Call::command,
-          "Carries the camera about its target, nearer or farther.",
+          "camera.orbit", Call::command, "Carries the camera about its target, nearer or farther.",
           {R"({"yaw": 15.0, "pitch": -5.0, "dolly": 0.9, "seq": 13})", camera}),
       method<Empty, Camera>("camera.fit", Call::command,
                             "Moves the camera back until the whole scene is in the picture.",
@@ -214,7 +219,8 @@ std::vector<MethodDescriptor> stream_methods() {
           "Sets size, quality and pace of this viewer's pictures; gives what is in effect.",
           {R"({"width": 1280, "height": 720, "quality": 80})",
            R"({"width": 1280, "height": 720, "quality": 80, "max_fps": 60.0,
-               "paused": false, "codec": "jpeg", "still": "jpeg"})"}),
+               "paused": false, "codec": "jpeg", "still": "jpeg"})"},
+          {ErrorCode::forbidden, ErrorCode::full}),
       method<Empty, StreamState>(
           "stream.pause", Call::personal,
           "Stops this viewer's pictures, for instance while nobody can see them.",
@@ -241,7 +247,8 @@ std::vector<MethodDescriptor> stream_methods() {
           "frame.capture", Call::query, "Renders one buffer and gives it as a file.",
           {R"({"buffer": "output", "samples": 16})",
            R"({"buffer": "output", "format": "png", "width": 1280, "height": 720, "samples": 16,
-               "data": "iVBORw0KGgo="})"}),
+               "data": "iVBORw0KGgo="})"},
+          {ErrorCode::full}),
       method<Empty, RawJson>("rpc.discover", Call::query, "Gives this document.",
                              {no_params, R"({"openrpc": "1.3.2"})"}),
   };
@@ -291,7 +298,7 @@ std::vector<MethodDescriptor> edit_methods() {
       method<EnvironmentSet, EnvironmentState>(
           "environment.set", Call::command,
           "Puts another environment around this session's scene, or turns it.",
-          {R"({"name": "sky", "rotation": 30.0})", environment}),
+          {R"({"name": "sky", "rotation": 30.0})", environment}, {ErrorCode::full}),
   };
 }
 
@@ -306,7 +313,8 @@ std::vector<MethodDescriptor> frame_methods() {
           "Renders exactly so many frames of dt seconds and answers when they are done. Time "
           "passes no other way until frame.run; the first call forgets every history.",
           {R"({"frames": 4, "dt": 0.04})",
-           R"({"lockstep": true, "seconds": 0.16, "frames": 4, "samples": 4, "rev": 16})"}),
+           R"({"lockstep": true, "seconds": 0.16, "frames": 4, "samples": 4, "rev": 16})"},
+          {ErrorCode::conflict, ErrorCode::full}),
       method<Empty, StepState>(
           "frame.run", Call::command, "Lets time pass by itself again after frame.step.",
           {no_params,
@@ -332,14 +340,16 @@ std::vector<MethodDescriptor> probe_methods() {
           "scene.pick", Call::query, "Tells what surface lies under a point of the picture.",
           {R"({"x": 0.5, "y": 0.5})",
            R"({"hit": true, "position": [0.0, 0.5, 1.0], "normal": [0.0, 0.0, 1.0],
-               "distance": 4.2, "object": "sphere", "material": "chrome"})"}),
+               "distance": 4.2, "object": "sphere", "material": "chrome"})"},
+          {ErrorCode::conflict, ErrorCode::full}),
       method<PicturePoint, Inspection>(
           "frame.inspect", Call::query,
           "Gives the value of every buffer under a point of the picture.",
           {R"({"x": 0.5, "y": 0.5})",
            R"({"column": 640, "row": 360, "width": 1280, "height": 720,
                "buffers": [{"name": "gbuffer.motion.view_z", "value": [4.2],
-                            "unit": "metres"}]})"}),
+                            "unit": "metres"}]})"},
+          {ErrorCode::full}),
   };
 }
 
@@ -348,9 +358,8 @@ std::vector<MethodDescriptor> probe_methods() {
 std::span<const MethodDescriptor> methods() {
   static const std::vector<MethodDescriptor> all = [] {
     std::vector<MethodDescriptor> list = session_methods();
-    for (const auto& more :
-         {membership_methods(), stream_methods(), animation_methods(), edit_methods(), probe_methods(),
-          frame_methods()}) {
+    for (const auto& more : {membership_methods(), stream_methods(), animation_methods(),
+                             edit_methods(), probe_methods(), frame_methods()}) {
       list.insert(list.end(), more.begin(), more.end());
     }
     return list;

@@ -3,8 +3,10 @@
 #include <span>
 #include <string_view>
 #include <typeindex>
+#include <vector>
 
 #include "protocol/raw_json.hpp"
+#include "protocol/result.hpp"
 
 namespace heliograph::protocol {
 
@@ -25,6 +27,8 @@ struct MethodDescriptor {
   bool needs_control;
   /// Whether those may call it who may only watch: it changes nothing for others.
   bool for_watchers;
+  /// What it may answer besides what every call may.
+  std::vector<ErrorCode> errors;
   std::string_view example_params;  ///< JSON text
   std::string_view example_result;  ///< JSON text
   RawJson (*params_schema)();

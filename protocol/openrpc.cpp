@@ -34,9 +34,10 @@ constexpr auto error_descriptions = std::to_array<ErrorDescription>({
     {"NotReady", ErrorCode::not_ready, "What the call needs is not there yet."},
 });
 
-/// Errors that any call may get; a method's own faults are among them.
-constexpr std::array<std::string_view, 5> usual_errors{"InvalidParams", "NotFound", "TooLarge",
-                                                       "NotReady", "Internal"};
+/// Errors that any call may get.
+constexpr std::array usual_errors{ErrorCode::invalid_params, ErrorCode::not_found,
+                                  ErrorCode::too_large,      ErrorCode::not_ready,
+                                  ErrorCode::rate_limited,   ErrorCode::internal};
 
 json parsed(std::string_view text) {
   return json::parse(text);
@@ -92,17 +93,25 @@ json example_of(const MethodDescriptor& method) {
           {"result", {{"name", "result"}, {"value", parsed(method.example_result)}}}};
 }
 
-json method_of(const MethodDescriptor& method) {
+json errors_of(const MethodDescriptor& method) {
   json errors = json::array();
-  for (const std::string_view name : usual_errors) {
-    errors.push_back({{"$ref", "#/components/errors/" + std::string(name)}});
+  for (const ErrorDescription& description : error_descriptions) {
+    const auto is_it = [&](ErrorCode code) { return code == description.code; };
+    if (!std::ranges::any_of(usual_errors, is_it) && !std::ranges::any_of(method.errors, is_it)) {
+      continue;
+    }
+    errors.push_back({{"$ref", "#/components/errors/" + std::string(description.name)}});
   }
+  return errors;
+}
+
+json method_of(const MethodDescriptor& method) {
   return {{"name", method.name},
           {"summary", method.summary},
           {"paramStructure", "by-name"},
           {"params", params_of(method.params_schema().value())},
           {"result", {{"name", "result"}, {"schema", method.result_schema().value()}}},
-          {"errors", std::move(errors)},
+          {"errors", errors_of(method)},
           {"examples", json::array({example_of(method)})},
           {"x-may-be-notification", method.may_be_notification},
           {"x-needs-control", method.needs_control},

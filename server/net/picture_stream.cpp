@@ -1,5 +1,3 @@
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -16,6 +14,7 @@
 
 #include "net/connection.hpp"
 #include "protocol/messages.hpp"
+#include "session/event_log.hpp"
 #include "session/viewer_link.hpp"
 
 namespace heliograph::net {
@@ -63,7 +62,10 @@ class PictureStream : public Connection,
     headers_.set("X-Accel-Buffering", "no");
     headers_.keep_alive(false);
     if (joined) {
-      spdlog::info("session {}: viewer {} takes pictures over HTTP", session, viewer_);
+      session_ = session;
+      client_ = context_.access.client_of(request);
+      session::log_info({.session = session_, .viewer = viewer_, .client = client_},
+                        "a viewer takes pictures over HTTP");
       headers_.set(http::field::content_type, "multipart/x-mixed-replace; boundary=picture");
       configure(request);
     } else {
@@ -122,10 +124,9 @@ class PictureStream : public Connection,
   void write(std::string_view text) {
     writing_ = true;
     stream_.next_layer().expires_after(longest_write);
-    asio::async_write(stream_, asio::buffer(text.data(), text.size()),
-                      [self = shared_from_this()](error_code error, std::size_t) {
-                        self->written(error);
-                      });
+    asio::async_write(
+        stream_, asio::buffer(text.data(), text.size()),
+        [self = shared_from_this()](error_code error, std::size_t) { self->written(error); });
   }
 
   void write_next() {
@@ -171,7 +172,7 @@ class PictureStream : public Connection,
     stream_.next_layer().close();
     if (viewer_.empty()) return;
     context_.host.sessions().leave(viewer_);
-    spdlog::info("viewer {} left", viewer_);
+    session::log_info({.session = session_, .viewer = viewer_, .client = client_}, "a viewer left");
     viewer_.clear();
   }
 
@@ -180,7 +181,9 @@ class PictureStream : public Connection,
   http::response<http::empty_body> headers_;
   std::optional<http::response_serializer<http::empty_body>> serializer_;
   std::array<char, 512> incoming_{};
+  std::string session_;
   std::string viewer_;
+  std::string client_;  // address
   std::optional<stream::OutgoingFrame> frame_;
   std::string_view farewell_ = last_part;
   bool writing_ = false;

@@ -268,8 +268,12 @@ class ViewerConnection : public Connection,
     error_code ignored;
     beast::get_lowest_layer(socket_).socket().close(ignored);
     if (viewer_.empty()) return;
+    // It may have joined another since it came.
+    const auto session = context_.host.sessions().session_watched_by(viewer_);
     context_.host.sessions().leave(viewer_);
-    session::log_info({.viewer = viewer_, .client = client_}, "a viewer left: " + error.message());
+    session::log_info(
+        {.session = session ? session->name() : session_, .viewer = viewer_, .client = client_},
+        "a viewer left: " + error.message());
     viewer_.clear();
   }
 

@@ -78,7 +78,7 @@ Result<ViewerStream> Audience::configure(const std::string& viewer,
   if (change.paused) {
     const bool resumes = it.stream.paused && !*change.paused;
     it.stream.paused = *change.paused;
-    it.pacer.set_paused(it.stream.paused);
+    it.pacer.set_paused(it.stream.paused, Clock::now());
     if (resumes) it.offered = 0;
     if (resumes && it.started) offer_latest(it);
   }
@@ -110,7 +110,8 @@ Result<void> Audience::subscribe(const std::string& viewer, std::chrono::millise
 std::optional<Clock::time_point> Audience::unacknowledged_since(const std::string& viewer) const {
   const std::lock_guard lock(mutex_);
   const auto found = viewers_.find(viewer);
-  return found == viewers_.end() ? std::nullopt : found->second.pacer.unacknowledged_since();
+  return found == viewers_.end() ? std::nullopt
+                                 : found->second.pacer.unacknowledged_since(Clock::now());
 }
 
 std::optional<stream::OutgoingFrame> Audience::take(const std::string& viewer) {
@@ -133,6 +134,11 @@ std::optional<stream::OutgoingFrame> Audience::take(const std::string& viewer) {
 bool Audience::empty() const {
   const std::lock_guard lock(mutex_);
   return viewers_.empty();
+}
+
+bool Audience::has(const std::string& viewer) const {
+  const std::lock_guard lock(mutex_);
+  return viewers_.contains(viewer);
 }
 
 bool Audience::wants_frame() const {

@@ -91,6 +91,7 @@ class Audience {
   std::optional<stream::OutgoingFrame> take(const std::string& viewer);
 
   bool empty() const;
+  bool has(const std::string& viewer) const;
   /// Whether somebody could be sent a frame that is rendered now.
   bool wants_frame() const;
   /// Whether somebody receives pictures at all.
@@ -125,8 +126,8 @@ class Audience {
     stream::ViewerPacer pacer;
     ViewerStream stream;
     bool started = false;
-    bool came_over = false;  // its next frame has nothing in common with the last
-    std::uint64_t cuts = 0;  // of the last frame that it took
+    bool came_over = false;     // its next frame has nothing in common with the last
+    std::uint64_t cuts = 0;     // of the last frame that it took
     std::uint64_t offered = 0;  // number of the newest picture that it was offered or cannot have
     std::uint64_t planned = 0;  // number of the newest picture that was encoded for it
     stream::Form form;          // of the pictures that it gets at present

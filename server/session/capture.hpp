@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,8 +25,12 @@ struct CaptureRequest {
   protocol::ImageFormat format = protocol::ImageFormat::png;
   /// Samples to wait for; absent: all that accumulation gives.
   std::optional<std::uint32_t> samples;
+  /// Who asked; empty for one without a stream. Who leaves the session wants it no more.
+  std::string viewer;
   /// Called once, on any thread.
   std::function<void(protocol::Result<Capture>)> done;
+  /// Counts among those that wait for as long as it is held.
+  std::shared_ptr<void> seat;
 };
 
 }  // namespace heliograph::session

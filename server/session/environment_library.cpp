@@ -1,6 +1,6 @@
 #include "session/environment_library.hpp"
 
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
 #include <exception>
 #include <string_view>
@@ -11,6 +11,7 @@
 #include "render/renderer.hpp"
 #include "scene/environment.hpp"
 #include "scene/import.hpp"
+#include "session/event_log.hpp"
 
 namespace heliograph::session {
 
@@ -23,9 +24,7 @@ constexpr std::size_t waiting_environments = 8;
 }  // namespace
 
 EnvironmentLibrary::EnvironmentLibrary(render::Engine& engine, const SceneCatalogue& catalogue)
-    : engine_(engine),
-      catalogue_(catalogue),
-      loader_("environment loader", waiting_environments) {}
+    : engine_(engine), catalogue_(catalogue), loader_("environment loader", waiting_environments) {}
 
 std::vector<CatalogueEntry> EnvironmentLibrary::list() const {
   return catalogue_.list_files({".hdr", ".exr"});
@@ -50,24 +49,23 @@ Result<void> EnvironmentLibrary::put_around(Session& session, const CatalogueEnt
   } catch (const scene::ImportError& failure) {
     return protocol::error::invalid("name", "cannot be loaded: " + std::string(failure.what()));
   } catch (const render::DeviceLost& failure) {
-    spdlog::error("loading {}: {}", entry.name, failure.what());
+    log_error({.session = session.name()},
+              fmt::format("loading {}: {}", entry.name, failure.what()));
     if (on_device_loss_) on_device_loss_();
     return protocol::error::not_ready("the device was lost meanwhile; try again");
   } catch (const std::exception& failure) {
-    spdlog::error("loading {}: {}", entry.name, failure.what());
+    log_error({.session = session.name()},
+              fmt::format("loading {}: {}", entry.name, failure.what()));
     return protocol::error::internal();
   }
 }
 
 void EnvironmentLibrary::show(std::shared_ptr<Session> session, const std::string& name,
-                              const std::string& by,
-                              std::function<void(Result<void>)> done) {
+                              const std::string& by, std::function<void(Result<void>)> done) {
   Result<CatalogueEntry> entry = find(name);
   if (!entry) return done(entry.error());
-  const bool taken = loader_.post(
-      [this, session = std::move(session), entry = *std::move(entry), by, done] {
-        done(put_around(*session, entry, by));
-      });
+  const bool taken = loader_.post([this, session = std::move(session), entry = *std::move(entry),
+                                   by, done] { done(put_around(*session, entry, by)); });
   if (!taken) {
     done(protocol::error::full("too many environments are being loaded",
                                std::to_string(waiting_environments)));

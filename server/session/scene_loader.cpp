@@ -1,7 +1,7 @@
 #include "session/scene_loader.hpp"
 
+#include <fmt/format.h>
 #include <malloc.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <exception>
@@ -64,6 +64,10 @@ protocol::Error no_such(const scene::NoSuchChoice& failure, const scene::SceneCh
                                     "is not in the file" + protocol::suggestion(wanted, names));
 }
 
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
 /// Pictures and meshes on their way leave holes between what stays. The C library keeps them unless
 /// told: a third of the server's memory after a large scene.
 void return_free_memory() {
@@ -108,8 +112,8 @@ void SceneLoader::load(std::shared_ptr<Session> session, const protocol::SceneLo
     const std::lock_guard lock(mutex_);
     if (stopping_) return done(stopped());
     std::shared_ptr<Job> job = find_job(key);
-    displaced = remove_waiters([&](const Session& own) { return &own == session.get(); },
-                               job.get());
+    displaced =
+        remove_waiters([&](const Session& own) { return &own == session.get(); }, job.get());
     if (!job) kept = cache_.find(key);
     if (job || kept) {
       cache_.count_hit();
@@ -171,8 +175,7 @@ void SceneLoader::dismiss_ended() {
 }
 
 std::shared_ptr<SceneLoader::Job> SceneLoader::find_job(const SceneKey& key) const {
-  const auto found =
-      std::ranges::find_if(jobs_, [&](const auto& job) { return job->key == key; });
+  const auto found = std::ranges::find_if(jobs_, [&](const auto& job) { return job->key == key; });
   return found == jobs_.end() ? nullptr : *found;
 }
 
@@ -206,25 +209,38 @@ void SceneLoader::carry_out(Job& job) {
   const Clock::time_point start = Clock::now();
   try {
     const LoadedScene loaded = make(job);
-    spdlog::info("{} loaded in {:.2f} s, {} triangles, {} MiB", job.entry.name,
-                 std::chrono::duration<double>(Clock::now() - start).count(),
-                 loaded.scene->triangle_count(), (loaded.host_bytes + loaded.device_bytes) >> 20);
+    log_info({.session = sessions_of(job)},
+             fmt::format("{} loaded in {:.2f} s, {} triangles, {} MiB", job.entry.name,
+                         seconds_since(start), loaded.scene->triangle_count(),
+                         (loaded.host_bytes + loaded.device_bytes) >> 20));
     finish(job, loaded);
   } catch (const Abandoned&) {
-    spdlog::info("loading {} was ended after {:.2f} s", job.entry.name,
-                 std::chrono::duration<double>(Clock::now() - start).count());
+    log_info({}, fmt::format("loading {} was ended after {:.2f} s", job.entry.name,
+                             seconds_since(start)));
   } catch (const scene::NoSuchChoice& failure) {
     finish(job, no_such(failure, job.key.choice));
   } catch (const scene::ImportError& failure) {
     finish(job,
            protocol::error::invalid("name", "cannot be loaded: " + std::string(failure.what())));
   } catch (const render::DeviceLost& failure) {
-    spdlog::error("loading {}: {}", job.entry.name, failure.what());
+    log_error({.session = sessions_of(job)},
+              fmt::format("loading {}: {}", job.entry.name, failure.what()));
     report_device_loss(job);
   } catch (const std::exception& failure) {
-    spdlog::error("loading {}: {}", job.entry.name, failure.what());
+    log_error({.session = sessions_of(job)},
+              fmt::format("loading {}: {}", job.entry.name, failure.what()));
     finish(job, protocol::error::internal());
   }
+}
+
+/// The names of all who wait for it.
+std::string SceneLoader::sessions_of(const Job& job) {
+  const std::lock_guard lock(mutex_);
+  std::string names;
+  for (const Waiter& waiter : job.waiters) {
+    names += (names.empty() ? "" : " ") + waiter.session->name();
+  }
+  return names;
 }
 
 /// The job stays the first of all and is carried out again on the next device.
@@ -263,8 +279,8 @@ LoadedScene SceneLoader::make(Job& job) {
       nullptr, job.key.choice));
   sources.insert(sources.end(), imported->sources.begin(), imported->sources.end());
   LoadedScene loaded{.name = job.entry.name};
-  loaded.resources = engine_.upload(
-      std::move(imported), environment, [&](std::string_view stage, float fraction) {
+  loaded.resources =
+      engine_.upload(std::move(imported), environment, [&](std::string_view stage, float fraction) {
         checkpoint(stage, import_share + (1.0f - import_share) * fraction);
       });
   loaded.scene = render::scene_of(*loaded.resources);

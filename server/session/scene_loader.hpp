@@ -82,6 +82,7 @@ class SceneLoader {
   void run();
   std::shared_ptr<Job> next_job();
   void carry_out(Job& job);
+  std::string sessions_of(const Job& job);
   LoadedScene make(Job& job);
   void report_device_loss(Job& job);
   void finish(Job& job, const protocol::Result<LoadedScene>& outcome);

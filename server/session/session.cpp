@@ -196,7 +196,11 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
   const std::uint32_t height =
       std::min(request.height.value_or(state_.height), options_.limits.max_height);
   const bool resized = width != state_.width || height != state_.height;
-  if (resized && (!may_steer || !audience_.may_change(by))) return no_control();
+  if (resized && !may_steer) {
+    return error::make(protocol::ErrorCode::forbidden, "width",
+                       "is everybody's, and this access may only watch");
+  }
+  if (resized && !audience_.may_change(by)) return no_control();
   // Fewer pixels are never refused: more are taken before anything is changed, fewer after it.
   const auto pixels_before = static_cast<std::uint64_t>(state_.width) * state_.height;
   const auto pixels = static_cast<std::uint64_t>(width) * height;
@@ -204,8 +208,8 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
     if (const auto fits = pixels_.resize(pixels); !fits) return fits.error();
   }
   ViewerStream stream;
-  const bool only_size = !request.quality && !request.max_fps && !request.paused &&
-                         !request.codec && !request.still;
+  const bool only_size =
+      !request.quality && !request.max_fps && !request.paused && !request.codec && !request.still;
   if (!by.empty() || !only_size) {
     const Result<ViewerStream> configured = audience_.configure(by, request);
     if (!configured) {
@@ -231,17 +235,22 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
 
 void Session::leave(const std::string& viewer) {
   audience_.leave(viewer);
-  touch();
-  const std::lock_guard lock(mutex_);
-  input_seqs_.erase(viewer);
+  forget(viewer);
 }
 
 Result<void> Session::hand_over(const std::string& viewer, Session& there) {
   if (const auto moved = audience_.hand_over(viewer, there.audience_); !moved) return moved;
-  touch();
-  const std::lock_guard lock(mutex_);
-  input_seqs_.erase(viewer);
+  forget(viewer);
   return {};
+}
+
+void Session::forget(const std::string& viewer) {
+  touch();
+  {
+    const std::lock_guard lock(mutex_);
+    input_seqs_.erase(viewer);
+  }
+  changed_->notify();  // it may have waited for a picture
 }
 
 Result<void> Session::request_capture(CaptureRequest request) {
@@ -249,10 +258,12 @@ Result<void> Session::request_capture(CaptureRequest request) {
     const std::lock_guard lock(mutex_);
     if (const Result<void> there = require_scene(); !there) return there.error();
     if (const auto known = check_buffer(request.buffer, "buffer"); !known) return known.error();
-    if (captures_.size() >= options_.limits.max_captures) {
+    if (*open_captures_ >= options_.limits.max_captures) {
       return error::full("too many captures are waiting",
                          std::to_string(options_.limits.max_captures));
     }
+    ++*open_captures_;
+    request.seat = std::shared_ptr<void>(nullptr, [open = open_captures_](void*) { --*open; });
     captures_.push_back(std::move(request));
   }
   changed_->notify();

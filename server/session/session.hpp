@@ -33,7 +33,7 @@ struct SessionLimits {
   std::uint32_t max_width = 3840;
   std::uint32_t max_height = 2160;
   std::size_t max_viewers = 32;
-  std::size_t max_captures = 16;  // waiting at one time
+  std::size_t max_captures = 16;  // asked for and not yet answered
 };
 
 struct SessionOptions {
@@ -51,8 +51,8 @@ struct RenderState {
   Clock::time_point changed_at;
   std::shared_ptr<const render::SceneResources> resources;
   std::shared_ptr<const scene::Scene> scene;
-  std::shared_ptr<const SceneEdits::Lights> lights;        // null: the scene's own
-  std::shared_ptr<const SceneEdits::Materials> materials;  // null: the scene's own
+  std::shared_ptr<const SceneEdits::Lights> lights;           // null: the scene's own
+  std::shared_ptr<const SceneEdits::Materials> materials;     // null: the scene's own
   std::shared_ptr<const render::LitEnvironment> environment;  // null: the scene's own
   scene::Camera camera;
   std::uint64_t cuts = 0;       // how often the picture jumped: camera, scene
@@ -99,7 +99,7 @@ class Session {
   bool ended() const { return ended_; }
   /// Whether pictures are due though nobody watches: lockstep, or a reference.
   bool works_unwatched() const;
-  /// Somebody needs the session: its idle time begins anew.
+  /// Somebody needs the session, or it draws: its idle time begins anew.
   void touch() { needed_at_ = Clock::now(); }
   /// How long nobody has needed it; zero while it has viewers.
   Clock::duration idle() const;
@@ -122,9 +122,9 @@ class Session {
   /// What is in effect; the catalogue is not known here.
   protocol::EnvironmentState environment() const;
   /// `environment` goes with `name`; both empty: the scene's own.
-  protocol::Result<void> set_environment(
-      std::optional<std::string> name, std::shared_ptr<const render::LitEnvironment> environment,
-      const std::string& by);
+  protocol::Result<void> set_environment(std::optional<std::string> name,
+                                         std::shared_ptr<const render::LitEnvironment> environment,
+                                         const std::string& by);
 
   protocol::Result<protocol::Camera> camera() const;
   protocol::Result<protocol::Camera> set_camera(const protocol::CameraSet& request,
@@ -188,6 +188,8 @@ class Session {
  private:
   void changed(bool new_revision = true);
   protocol::SessionInfo info_locked() const;
+  /// Of a viewer that is gone.
+  void forget(const std::string& viewer);
   protocol::Result<void> check_buffer(const std::string& buffer, const std::string& path) const;
   protocol::Result<void> require_scene() const;
   protocol::Camera camera_message() const;
@@ -231,6 +233,9 @@ class Session {
   std::optional<int> samples_before_reference_;
   std::map<std::string, std::uint32_t> input_seqs_;  // by viewer
   std::vector<CaptureRequest> captures_;
+  /// How many are not yet answered, wherever they are.
+  const std::shared_ptr<std::atomic<std::size_t>> open_captures_ =
+      std::make_shared<std::atomic<std::size_t>>(0);
 };
 
 }  // namespace heliograph::session

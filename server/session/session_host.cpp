@@ -105,7 +105,9 @@ void SessionHost::create_session(const protocol::SessionCreate& request, const s
              [this, session, done](const Result<protocol::SceneInfo>& loaded) {
                if (loaded) return done(session);
                protocol::Error why = loaded.error();
-               if (why.path == "name") why.path = "scene";
+               if (why.path == "name") {
+                 why = protocol::error::make(why.code, "scene", why.reason, why.limit);
+               }
                give_up(session, why, done);
              });
 }

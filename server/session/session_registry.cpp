@@ -1,13 +1,12 @@
 #include "session/session_registry.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <cctype>
 #include <stdexcept>
 #include <utility>
 
 #include "protocol/suggestions.hpp"
+#include "session/event_log.hpp"
 
 namespace heliograph::session {
 
@@ -62,7 +61,7 @@ Result<std::shared_ptr<Session>> SessionRegistry::create(SessionOptions options)
   std::shared_ptr<Session> session = open_(std::move(options), std::move(share));
   sessions_[name] = session;
   ++opened_;
-  spdlog::info("session {}: opened", name);
+  log_info({.session = name}, "the session was opened");
   return session;
 }
 
@@ -108,7 +107,7 @@ void SessionRegistry::end(const std::shared_ptr<Session>& session, const std::st
   ended_.sent += session->audience().totals().sent;
   session->end();
   close_(*session);
-  spdlog::info("session {}: ended: {}", name, why);
+  log_info({.session = name}, "the session ended: " + why);
 }
 
 Result<std::shared_ptr<Session>> SessionRegistry::find(std::string_view name) const {

@@ -80,10 +80,15 @@ bool SessionView::awake() const {
   return renderer_ || wakeup_->is_notified() || needed();
 }
 
-/// Whether somebody is there for pictures, or waits for one.
+/// Whether the renderer must stay: for somebody, for what is to be drawn unwatched, or for the
+/// histories that the next step builds on.
 bool SessionView::needed() const {
-  return draws_unasked_ || !captures_.empty() || !probes_.empty() ||
-         session_->audience().watching() || session_->works_unwatched();
+  return draws_unasked_ || watched() || session_->works_unwatched();
+}
+
+/// Whether somebody is there for pictures, or waits for one.
+bool SessionView::watched() const {
+  return !captures_.empty() || !probes_.empty() || session_->audience().watching();
 }
 
 Result<void> SessionView::make_renderer() {
@@ -116,9 +121,9 @@ SessionView::Work SessionView::advance(bool may_draw) {
     // What the renderer refuses is told when the state is taken over.
     (void)make_renderer();
   }
+  if (watched()) session_->touch();
   if (needed()) {
     needed_at_ = Clock::now();
-    session_->touch();
   } else if (Clock::now() >= needed_at_ + services_.release_after) {
     release_renderer();
     return Work::none;
@@ -261,8 +266,8 @@ bool SessionView::frame_wanted() {
   const bool shown = !newest_ || newest_->header.state_rev == state_.rev;
   if (shown && !renderer_->needs_frame() && !state_.animation.playing) return false;
   const bool first = draws_unasked_ && state_.resources;
-  const bool reference = state_.keep_drawing &&
-                         state_.settings.reference.use == protocol::ReferenceUse::always;
+  const bool reference =
+      state_.keep_drawing && state_.settings.reference.use == protocol::ReferenceUse::always;
   if (first || reference || !captures_.empty() || !probes_.empty()) return true;
   // A resting picture gets better at full speed, since few of its samples are sent.
   if (resting()) return session_->audience().watching();
@@ -284,6 +289,7 @@ void SessionView::render_frame() {
 
 void SessionView::render_frame(double seconds) {
   const Clock::time_point start = Clock::now();
+  session_->touch();
   if (state_.animation.playing) adopt_pose();
   renderer_->set_frame_seconds(static_cast<float>(seconds));
   last_frame_ = start;

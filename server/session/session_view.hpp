@@ -41,8 +41,8 @@ class SessionView {
 
   /// Whether there may be something to do.
   bool awake() const;
-  /// What came of `advance`: nothing to do, something small, a frame, or only a frame that had to be
-  /// left undone.
+  /// What came of `advance`: nothing to do, something small, a frame, or only a frame that had to
+  /// be left undone.
   enum class Work { none, small, drawing, held_back };
   /// Does what is most pressing: at most one frame, and none unless it `may_draw`.
   Work advance(bool may_draw);
@@ -69,6 +69,7 @@ class SessionView {
   };
 
   bool needed() const;
+  bool watched() const;
   protocol::Result<void> make_renderer();
   void adopt_state();
   void adopt_edits(const RenderState& before);
@@ -78,6 +79,7 @@ class SessionView {
   bool resting() const;
   bool draws_whole() const;
   void collect_captures();
+  void drop_unwanted_captures();
   bool settle_captures();
   void settle_probes();
   bool shows_state_since(Clock::time_point moment) const;

@@ -30,6 +30,18 @@ void SessionView::collect_captures() {
   for (Probe& probe : session_->take_probes()) {
     probes_.push_back({.probe = std::move(probe), .requested = Clock::now()});
   }
+  drop_unwanted_captures();
+}
+
+/// Who went has nobody to answer to, and who is in another session learns it.
+void SessionView::drop_unwanted_captures() {
+  std::erase_if(captures_, [&](const PendingCapture& capture) {
+    const std::string& viewer = capture.request.viewer;
+    if (viewer.empty() || session_->audience().has(viewer)) return false;
+    capture.request.done(
+        protocol::error::not_found("session", "the viewer has left the session of the capture"));
+    return true;
+  });
 }
 
 /// Whether the newest picture shows the state, and as it was no earlier than `moment` where time

@@ -50,9 +50,8 @@ std::optional<ViewerPacer::Taken> ViewerPacer::take(Clock::time_point now) {
   const EncodedFrame& frame = *taken.frame;
   const std::uint64_t bytes = frame.payload.size() + protocol::frame_header_bytes;
   const bool key_of_video = frame.video && (frame.header.flags & protocol::frame_flag::key);
-  const bool undisturbed =
-      std::all_of(on_the_way_.begin(), on_the_way_.end(),
-                  [](const Sent& sent) { return sent.telling; });
+  const bool undisturbed = std::all_of(on_the_way_.begin(), on_the_way_.end(),
+                                       [](const Sent& sent) { return sent.telling; });
   on_the_way_.push_back({.frame_seq = taken.frame_seq,
                          .bytes = bytes,
                          .at = now,
@@ -107,7 +106,8 @@ void ViewerPacer::set_max_rate(double frames_per_second) {
   next_turn_ = {};
 }
 
-void ViewerPacer::set_paused(bool paused) {
+void ViewerPacer::set_paused(bool paused, Clock::time_point now) {
+  if (paused_ && !paused) resumed_at_ = now;
   paused_ = paused;
   if (!paused_) return;
   // Who comes back gets a key frame first, even if no frame was missed: that is how a viewer whose

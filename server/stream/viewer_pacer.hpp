@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <deque>
@@ -7,8 +8,8 @@
 
 #include "stream/ack_window.hpp"
 #include "stream/encoded_frame.hpp"
-#include "stream/link_controller.hpp"
 #include "stream/histogram.hpp"
+#include "stream/link_controller.hpp"
 
 namespace heliograph::stream {
 
@@ -53,7 +54,7 @@ class ViewerPacer {
   bool acknowledge(std::uint32_t frame_seq, std::chrono::microseconds held, Clock::time_point now);
 
   void set_max_rate(double frames_per_second);
-  void set_paused(bool paused);
+  void set_paused(bool paused, Clock::time_point now);
   bool paused() const { return paused_; }
 
   /// Whether a frame rendered now could be sent at once.
@@ -66,10 +67,11 @@ class ViewerPacer {
   /// When the rate limit next lets a frame through.
   Clock::time_point next_turn() const { return next_turn_; }
 
-  /// When the oldest frame that is on its way was taken.
-  std::optional<Clock::time_point> unacknowledged_since() const {
+  /// Since when the viewer owes the acknowledgement of a frame, if it owes one. It owes none while
+  /// it is paused, and has all its time again afterwards.
+  std::optional<Clock::time_point> unacknowledged_since(Clock::time_point now) const {
     if (on_the_way_.empty()) return std::nullopt;
-    return on_the_way_.front().at;
+    return paused_ ? now : std::max(on_the_way_.front().at, resumed_at_);
   }
 
   const PacerTotals& totals() const { return totals_; }
@@ -91,7 +93,7 @@ class ViewerPacer {
     Form form;
     std::chrono::microseconds rendering;
     std::size_t ahead;  // frames that were on the way already
-    bool telling;  // of the moving picture, with only such frames before it on the way
+    bool telling;       // of the moving picture, with only such frames before it on the way
   };
 
   bool window_open() const { return on_the_way_.size() < window_.size(); }
@@ -104,6 +106,7 @@ class ViewerPacer {
   bool dropped_since_taken_ = false;
   std::deque<Sent> on_the_way_;
   bool paused_ = false;
+  Clock::time_point resumed_at_;
   std::chrono::microseconds least_interval_{0};
   Clock::time_point next_turn_;
   PacerTotals totals_;

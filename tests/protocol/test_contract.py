@@ -119,6 +119,22 @@ class Methods(ServerTestCase):
         self.assertEqual(self.server.call("frame.capture")["samples"], 4)
         self.assertEqual(self.server.call("frame.capture", {"samples": 1000})["samples"], 4)
 
+    async def test_captures_that_wait_have_a_limit_and_end_with_who_asked(self):
+        self.server.call("settings.patch", {"patch": {"accumulation": {"max_samples": 65536}}})
+        endless = [{"jsonrpc": "2.0", "id": number, "method": "frame.capture",
+                    "params": {"samples": 65536}} for number in range(16)]
+        async with Viewer(self.server) as viewer:
+            await viewer.send(json.dumps(endless))
+            await viewer.call("camera.get")
+            self.assert_error(await viewer.ask("frame.capture", {"samples": 1}), -32029,
+                              limit="16")
+            answer = await asyncio.to_thread(self.server.ask, "frame.capture", {"samples": 1})
+            self.assert_error(answer, -32029, limit="16")
+
+        def there_is_room():
+            return "result" in self.server.ask("frame.capture", {"samples": 1})
+        await asyncio.to_thread(self.server.wait_for, there_is_room, "room for another capture")
+
     def test_captures_of_what_is_not_there_are_refused(self):
         self.assert_error(self.server.ask("frame.capture", {"buffer": "outptu"}), -32602,
                           path="buffer")

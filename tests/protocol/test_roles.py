@@ -124,6 +124,32 @@ class Roles(ServerTestCase):
         self.assertEqual(second["error"]["code"], -32001)
         self.assertNotEqual(self.over_http(VIEW, "camera.get")["result"]["eye"], [9, 9, 9])
 
+    def test_the_log_tells_of_whom(self):
+        """Every line about one session or one viewer names it in members of its own."""
+        self.over_websocket(CONTROL, ("session.create", {"name": "logged", "scene": "furnace",
+                                                         "width": 16, "height": 16}),
+                            ("session.close", {"session": "logged"}))
+        with RawSocket(self.server) as raw:
+            raw.send(b"GET /api/v1/sessions/main/stream.mjpg HTTP/1.1\r\nHost: localhost\r\n"
+                     b"Authorization: Bearer " + VIEW.encode() + b"\r\n\r\n")
+            self.server.wait_for(lambda: "over HTTP" in self.server.log_text(), "pictures")
+        self.server.wait_for(lambda: "the session ended" in self.server.log_text(), "the end")
+        lines = [json.loads(line) for line in self.server.log_text().splitlines()]
+
+        def members(part):
+            found = [line for line in lines if part in line["message"]]
+            self.assertTrue(found, part)
+            return [{name for name in ("session", "viewer", "client") if line.get(name)}
+                    for line in found]
+
+        for part in ("the session was opened", "the session ended", " loaded in "):
+            for told in members(part):
+                self.assertIn("session", told, part)
+        for part in ("a viewer connected", "a viewer left", "a viewer takes pictures over HTTP"):
+            for told in members(part):
+                self.assertEqual(told, {"session", "viewer", "client"}, part)
+        self.assertIn("logged", {line.get("session") for line in lines})
+
     def test_the_log_tells_no_token(self):
         self.server.get("/?token=" + CONTROL)
         self.server.get("/?token=" + CONTROL[:-1])

@@ -214,17 +214,18 @@ class IdleSessions(ServerTestCase):
     arguments = ("--session-idle-timeout", "3")
 
     async def test_a_session_that_nobody_needs_ends(self):
-        for name in ("watched", "called", "idle"):
+        for name in ("watched", "called", "idle", "stepped"):
             self.server.call("session.create", {"name": name, "copy_of": "main"})
+        self.server.call("frame.step", {"frames": 1, "dt": 0.04}, session="stepped")
         async with Viewer(self.server, session="watched"):
             for _ in range(10):
                 await asyncio.sleep(0.4)
-                self.server.call("camera.get", session="called")
+                self.server.call("camera.orbit", {"yaw": 5}, session="called")
             names = {one["name"] for one in self.server.call("session.list")["sessions"]}
             self.assertEqual(names, {"main", "watched", "called"})
         self.server.wait_for(lambda: len(self.server.call("session.list")["sessions"]) == 1,
                              "the end of idle sessions", timeout=6)
-        self.assertIn("session watched", self.server.log_text())
+        self.assertRegex(self.server.log_text(), "the session ended: .* session=watched")
 
 
 class SharesOfTheDevice(ServerTestCase):

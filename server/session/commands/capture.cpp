@@ -11,7 +11,7 @@ using protocol::Result;
 
 namespace {
 
-void capture(Session& session, const FrameCapture& request,
+void capture(Session& session, const FrameCapture& request, const std::string& viewer,
              protocol::Completion<CapturedFrame> done) {
   const auto answer = [request, done](Result<Capture> capture) {
     if (!capture) return done(capture.error());
@@ -26,7 +26,9 @@ void capture(Session& session, const FrameCapture& request,
       {.buffer = request.buffer,
        .format = request.format,
        .samples = request.samples,
-       .done = answer});
+       .viewer = viewer,
+       .done = answer,
+       .seat = {}});
   if (!accepted) done(accepted.error());
 }
 
@@ -43,7 +45,7 @@ void add_capture_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
                            protocol::Completion<CapturedFrame> done) {
         const auto session = host.sessions().session_of(context);
         if (!session) return done(session.error());
-        capture(**session, request, std::move(done));
+        capture(**session, request, context.viewer, std::move(done));
       });
 }
 

@@ -1,5 +1,6 @@
 """Starts the real server and asks it things over HTTP."""
 
+import functools
 import http.client
 import json
 import os
@@ -15,6 +16,7 @@ import time
 import unittest
 
 START_TIMEOUT = 120
+UNKNOWN_METHOD = -32601
 
 
 class Server:
@@ -23,6 +25,7 @@ class Server:
     def __init__(self, *arguments, scenes=None, environment=None, certificate=None, early=False):
         """`certificate` is the one to trust where the server speaks TLS; `early`: not to wait for
         the first picture, only until somebody answers."""
+        self.errors_seen = set()  # (method, code) of answers
         self.tls = ssl.create_default_context(cafile=certificate) if certificate else None
         self.log = tempfile.TemporaryFile(mode="w+")
         port = self._free_port() if early else 0
@@ -123,7 +126,13 @@ class Server:
     def ask(self, method, params=None, session=None):
         """The whole JSON-RPC answer, be it a result or an error."""
         call = {"jsonrpc": "2.0", "id": 1, "method": method, "params": params or {}}
-        return self.post_rpc(call, session)[1]
+        return self.seen(method, self.post_rpc(call, session)[1])
+
+    def seen(self, method, answer):
+        """Takes down which errors a method gave."""
+        if "error" in answer and answer["error"]["code"] != UNKNOWN_METHOD:
+            self.errors_seen.add((method, answer["error"]["code"]))
+        return answer
 
     def call(self, method, params=None, session=None):
         answer = self.ask(method, params, session)
@@ -166,6 +175,16 @@ class Server:
             raise AssertionError(complaints)
 
 
+@functools.cache
+def declared_errors():
+    """(method, code) for everything that the protocol's description says a method may answer."""
+    document = json.loads(subprocess.run([os.environ["HELIOGRAPH_BINARY"], "schema"], check=True,
+                                         stdout=subprocess.PIPE).stdout)["openrpc"]
+    codes = {name: error["code"] for name, error in document["components"]["errors"].items()}
+    return {(method["name"], codes[error["$ref"].rsplit("/", 1)[1]])
+            for method in document["methods"] for error in method["errors"]}
+
+
 class ServerTestCase(unittest.IsolatedAsyncioTestCase):
     """Tests that share one server, which must survive each of them."""
 
@@ -178,7 +197,9 @@ class ServerTestCase(unittest.IsolatedAsyncioTestCase):
     @classmethod
     def tearDownClass(cls):
         with cls.server:
-            pass
+            undeclared = cls.server.errors_seen - declared_errors()
+        if undeclared:
+            raise AssertionError(f"rpc.discover does not tell of {sorted(undeclared)}")
 
     def setUp(self):
         self.reset()

@@ -122,7 +122,7 @@ class Viewer:
         self._answers[number] = waiting
         await self.send(json.dumps(
             {"jsonrpc": "2.0", "id": number, "method": method, "params": params or {}}))
-        return await asyncio.wait_for(waiting, timeout)
+        return self.server.seen(method, await asyncio.wait_for(waiting, timeout))
 
     async def call(self, method, params=None, timeout=60):
         answer = await self.ask(method, params, timeout)

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -94,6 +95,13 @@ TEST(OpenRpc, EveryErrorThatIsReferredToExists) {
   }
   for (const json& error : document.at("components").at("errors")) {
     codes.insert(error.at("code").get<int>());
+  }
+  for (const MethodDescriptor& method : methods()) {
+    const auto also = [&](ErrorCode code) {
+      return std::count(method.errors.begin(), method.errors.end(), code) == 1;
+    };
+    EXPECT_TRUE(!method.needs_control || also(ErrorCode::forbidden)) << method.name;
+    EXPECT_TRUE(method.for_watchers || also(ErrorCode::forbidden)) << method.name;
   }
   EXPECT_EQ(codes, (std::set<int>{-32700, -32600, -32601, -32602, -32603, -32000, -32001, -32002,
                                   -32004, -32009, -32013, -32029, -32050}));

@@ -87,14 +87,32 @@ TEST_F(ViewerPacerTest, IgnoresAcknowledgementsOfWhatWasNeverSent) {
 
 TEST_F(ViewerPacerTest, WhilePausedNothingIsKeptOrSent) {
   pacer_.offer(frame(1));
-  pacer_.set_paused(true);
+  pacer_.set_paused(true, now_);
   EXPECT_FALSE(pacer_.has_room(now_));
   pacer_.offer(frame(2));
   EXPECT_FALSE(take());
-  pacer_.set_paused(false);
+  pacer_.set_paused(false, now_);
   EXPECT_FALSE(take());
   pacer_.offer(frame(3));
   EXPECT_EQ(take()->frame->header.render_id, 3u);
+}
+
+TEST_F(ViewerPacerTest, OwesNoAcknowledgementWhilePaused) {
+  EXPECT_FALSE(pacer_.unacknowledged_since(now_));
+  pacer_.offer(frame(1));
+  take();
+  const auto sent = now_;
+  now_ += milliseconds(5000);
+  EXPECT_EQ(pacer_.unacknowledged_since(now_), sent);
+  pacer_.set_paused(true, now_);
+  now_ += milliseconds(60'000);
+  EXPECT_EQ(pacer_.unacknowledged_since(now_), now_);
+  pacer_.set_paused(false, now_);
+  const auto resumed = now_;
+  now_ += milliseconds(5000);
+  EXPECT_EQ(pacer_.unacknowledged_since(now_), resumed) << "it has all its time again";
+  EXPECT_TRUE(acknowledge(1));
+  EXPECT_FALSE(pacer_.unacknowledged_since(now_));
 }
 
 TEST_F(ViewerPacerTest, KeepsToTheMostFramesInASecond) {
