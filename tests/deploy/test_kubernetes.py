@@ -12,7 +12,7 @@ import unittest
 import yaml
 
 from harness import images
-from harness.commands import program, run, succeeds
+from harness.commands import Skip, program, run, succeeds
 from harness.files import DEPLOY, documents
 from harness.servers import TOKEN
 from harness.site import Site
@@ -42,7 +42,7 @@ class Schema(unittest.TestCase):
             shutil.copy(os.path.join(HERE, name), cls.folder)
         if not succeeds(program("npm"), "ci", "--no-progress", "--loglevel=error", cwd=cls.folder,
                         timeout=300):
-            raise unittest.SkipTest("the packages of the check cannot be had by npm")
+            raise Skip("the packages of the check cannot be had by npm")
 
     def check(self, checked):
         return subprocess.run([program("node"), os.path.join(self.folder, "check.mjs")],
