@@ -64,14 +64,15 @@ class Objects(unittest.TestCase):
         for probe in ("startupProbe", "readinessProbe", "livenessProbe"):
             self.assertIn(container[probe]["httpGet"]["port"], names)
         path, = self.one("Ingress")["spec"]["rules"][0]["http"]["paths"]
-        service = path["backend"]["service"]
-        self.assertIn(service["port"]["name"],
-                      [port["name"] for port in self.one("Service", service["name"])["spec"]["ports"]])
+        asked = path["backend"]["service"]
+        service = self.one("Service", asked["name"])["spec"]
+        self.assertIn(asked["port"]["name"], [port["name"] for port in service["ports"]])
 
     def test_pods_are_restricted(self):
         """The profile "restricted" of the pod security standards, which their namespace enforces,
         and a root that never changes."""
-        labels = self.one("Namespace", kubernetes.kustomization()["namespace"])["metadata"]["labels"]
+        namespace = self.one("Namespace", kubernetes.kustomization()["namespace"])
+        labels = namespace["metadata"]["labels"]
         self.assertEqual(labels["pod-security.kubernetes.io/enforce"], "restricted")
         spec = self.pod()["spec"]
         self.assertTrue(spec["securityContext"]["runAsNonRoot"])
@@ -134,7 +135,7 @@ class Scaling(unittest.TestCase):
         acts_at = TOLERANCE * int(target[:-1]) / 1000
         self.assertLessEqual(acts_at * limit + most, limit)
         least = self.scaler["minReplicas"]
-        self.assertLessEqual(acts_at * least / (least - 1), 1, "no room for a failed node's viewers")
+        self.assertLessEqual(acts_at * least / (least - 1), 1, "no room if a node fails")
 
     def test_it_acts_before_a_session_is_full_of_viewers(self):
         most = number_in("server/cli/options.hpp", r"max_viewers = (\d+);")
@@ -163,6 +164,16 @@ class Overlay(unittest.TestCase):
         self.assertEqual({container["image"]
                           for container in spec["containers"] + spec["initContainers"]},
                          {"registry.example.org/heliograph:0.1.0"})
+
+    def test_only_the_ingress_reaches_the_server_that_believes_it(self):
+        policy = kubernetes.one(self.objects, "NetworkPolicy")["spec"]
+        comes_from = {port["port"]: [peer["namespaceSelector"]["matchLabels"]
+                                     for peer in rule["from"]]
+                      for rule in policy["ingress"] for port in rule["ports"]}
+        label = "kubernetes.io/metadata.name"
+        self.assertEqual(comes_from, {"http": [{label: "ingress-nginx"}],
+                                      "metrics": [{label: "monitoring"}]})
+        self.assertEqual(policy["policyTypes"], ["Ingress", "Egress"])
 
     def test_has_what_the_components_bring_and_the_overlay_sets(self):
         deployment = kubernetes.one(self.objects, "Deployment")
