@@ -238,7 +238,11 @@ class Image(unittest.IsolatedAsyncioTestCase):
         while container.running():
             self.assertLess(time.monotonic(), deadline, "it lives in 48 MiB")
             time.sleep(0.2)
-        self.assertTrue(container.state()["OOMKilled"] or container.state()["ExitCode"] != 0)
+        # By the kernel, for this reason: a server that falls over for another one ends, too. The
+        # engine may hear of the end before it hears of the reason.
+        while not container.state()["OOMKilled"]:
+            self.assertLess(time.monotonic(), deadline, f"{container.state()}\n{container.log()}")
+            time.sleep(0.2)
 
     async def test_sends_its_viewers_away_when_it_ends(self):
         container = self.container("ending", "--env", "HELIOGRAPH_DRAIN_NOTICE=1")

@@ -12,18 +12,12 @@ import unittest
 import yaml
 
 from harness import images
-from harness.commands import program, run, succeeds
-from harness.files import DEPLOY, documents
+from harness.commands import Skip, program, succeeds
+from harness.kubernetes import objects, one, rendered_overlay
 from harness.servers import TOKEN
 from harness.site import Site
 
 HERE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "kubernetes")
-
-
-def objects():
-    folder = os.path.join(DEPLOY, "kubernetes")
-    listed = documents(os.path.join(folder, "kustomization.yaml"))[0]["resources"]
-    return [document for name in listed for document in documents(os.path.join(folder, name))]
 
 
 def pod_of(deployment):
@@ -42,7 +36,7 @@ class Schema(unittest.TestCase):
             shutil.copy(os.path.join(HERE, name), cls.folder)
         if not succeeds(program("npm"), "ci", "--no-progress", "--loglevel=error", cwd=cls.folder,
                         timeout=300):
-            raise unittest.SkipTest("the packages of the check cannot be had by npm")
+            raise Skip("the packages of the check cannot be had by npm")
 
     def check(self, checked):
         return subprocess.run([program("node"), os.path.join(self.folder, "check.mjs")],
@@ -52,11 +46,16 @@ class Schema(unittest.TestCase):
         done = self.check(objects())
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
+    def test_the_documented_overlay_is_right(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = self.check(rendered_overlay(folder))
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
     def test_the_check_finds_what_is_wrong(self):
         for change in (lambda spec: spec.update(replicas="three"),
                        lambda spec: spec["template"]["spec"].update(runAsNobody=True),
                        lambda spec: spec["template"]["spec"]["containers"][0].pop("name")):
-            deployment = copy.deepcopy(objects()[0])
+            deployment = copy.deepcopy(one(objects(), "Deployment"))
             change(deployment["spec"])
             with self.subTest(str(change)):
                 self.assertNotEqual(self.check([deployment]).returncode, 0)
@@ -94,7 +93,7 @@ class Pod(unittest.TestCase):
             env={**os.environ, "CONTAINERS_CONF": f"{cls.folder}/containers.conf"}, **options)
 
     def test_runs_with_its_security_context_and_limits(self):
-        pod = pod_of(objects()[0])
+        pod = pod_of(one(objects(), "Deployment"))
         for container in pod["spec"]["containers"] + pod["spec"]["initContainers"]:
             container["image"] = "localhost/heliograph:latest"
             # In the machine's own network there are no ports to map, and nobody probes.

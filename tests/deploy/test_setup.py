@@ -10,7 +10,7 @@ import time
 import unittest
 
 from harness import images
-from harness.commands import run
+from harness.commands import OutOfReach, run
 from harness.files import DEPLOY, ROOT, text_of
 from harness.servers import free_port, get
 from harness.system import System, check_machine
@@ -103,7 +103,7 @@ class Ubuntu2404(SetupTest, unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         if not cls.mirror:
-            raise unittest.SkipTest(f"{UBUNTU} names no mirror")
+            raise OutOfReach(f"the archive of Ubuntu 24.04 ({UBUNTU} names no mirror)")
         super().setUpClass()
 
 

@@ -3,10 +3,21 @@
 import os
 import shutil
 import subprocess
+import unittest
 
 
-class Skip(Exception):
-    """Why a test cannot run on this machine."""
+class Skip(unittest.SkipTest):
+    """Why a test cannot run on this machine. With REQUIRE_CONTAINERS=1 it counts as a failure."""
+
+
+class OutOfReach(Skip):
+    """Names what no package of this machine can bring, such as another distribution's archive: no
+    failure, whatever is required, but told at the end of every run."""
+
+    MARK = "out of reach: "
+
+    def __str__(self):
+        return self.MARK + super().__str__()
 
 
 def run(*command, timeout=120, check=True, **options):

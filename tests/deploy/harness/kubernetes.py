@@ -1,0 +1,59 @@
+"""The Kubernetes objects, as they stand in their files and as an overlay makes them."""
+
+import json
+import os
+import re
+import shutil
+
+import yaml
+
+from .commands import OutOfReach, run
+from .files import DEPLOY, ROOT, documents, text_of
+
+FOLDER = os.path.join(DEPLOY, "kubernetes")
+COMPONENTS = ("gpu", "ingress")
+
+
+def kustomization(folder=""):
+    return documents(os.path.join(FOLDER, folder, "kustomization.yaml"))[0]
+
+
+def objects():
+    """All that is applied, components included; what these patch is not changed."""
+    return [document for folder in ("", *COMPONENTS)
+            for name in kustomization(folder).get("resources", [])
+            for document in documents(os.path.join(FOLDER, folder, name))]
+
+
+def one(listed, kind, name="heliograph"):
+    found, = [o for o in listed if o["kind"] == kind and o["metadata"]["name"] == name]
+    return found
+
+
+def examples():
+    """The documentation's blocks that are YAML, as text."""
+    blocks = re.findall(r"(?ms)^```\n(.*?)^```$", text_of(os.path.join(DEPLOY, "README.md")))
+    return [block for block in blocks if re.match(r"(#.*\n)?\w+:( |\n)", block)]
+
+
+def adapter_rules():
+    """The documentation's, of prometheus-adapter."""
+    rules, = [block for block in examples() if block.startswith("rules:")]
+    return yaml.safe_load(rules)["rules"]
+
+
+def rendered_overlay(folder):
+    """What kubectl makes of the documentation's overlay; `folder` is empty."""
+    overlay, = [block for block in examples() if "\ncomponents:" in block]
+    checkout = os.path.relpath(os.path.realpath(ROOT), os.path.realpath(folder))
+    with open(os.path.join(folder, "kustomization.yaml"), "w", encoding="utf-8") as file:
+        file.write(overlay.replace("heliograph/deploy", f"{checkout}/deploy"))
+    return [o for o in yaml.safe_load_all(run(_kubectl(), "kustomize", folder)) if o]
+
+
+def _kubectl():
+    found = shutil.which("kubectl", path="/usr/bin:/usr/sbin:" + os.environ.get("PATH", ""))
+    version = run(found, "version", "--client", "--output=json") if found else "{}"
+    if "kustomizeVersion" not in json.loads(version):
+        raise OutOfReach("kubectl with components (1.21), which not every distribution has")
+    return found

@@ -1,0 +1,193 @@
+"""What can be told of the Kubernetes objects from their files alone."""
+
+import os
+import re
+import tempfile
+import unittest
+
+from harness import kubernetes
+from harness.files import DEPLOY, ROOT, documents, files, text_of
+
+# An autoscaler does nothing while what it measures is within a tenth of its target.
+TOLERANCE = 1.1
+# For documents (RFC 5737): nobody has one of these addresses.
+NOBODY = "192.0.2.0/24"
+
+
+def number_in(path, pattern):
+    return int(re.search(pattern, text_of(os.path.join(ROOT, path))).group(1).replace("_", ""))
+
+
+def environment_of(deployment):
+    container, = deployment["spec"]["template"]["spec"]["containers"]
+    return {entry["name"]: entry.get("value") for entry in container["env"]}
+
+
+class Objects(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.objects = kubernetes.objects()
+
+    def one(self, kind, name="heliograph"):
+        return kubernetes.one(self.objects, kind, name)
+
+    def pod(self):
+        return self.one("Deployment")["spec"]["template"]
+
+    def test_every_file_is_applied(self):
+        listed = set()
+        for folder in ("", *kubernetes.COMPONENTS):
+            found = kubernetes.kustomization(folder)
+            names = found.get("resources", []) + [p["path"] for p in found.get("patches", [])]
+            listed |= {os.path.join(kubernetes.FOLDER, folder, name) for name in names}
+        present = {path for path in files("*.yaml", kubernetes.FOLDER)
+                   if not path.endswith("/kustomization.yaml")}
+        self.assertEqual(present, listed)
+
+    def test_selectors_find_the_pods(self):
+        labels = self.pod()["metadata"]["labels"].items()
+        selectors = [o["spec"]["selector"].get("matchLabels", o["spec"]["selector"])
+                     for o in self.objects if "selector" in o.get("spec", {})]
+        selectors.append(self.one("NetworkPolicy")["spec"]["podSelector"]["matchLabels"])
+        self.assertEqual(len(selectors), 5)
+        for selector in selectors:
+            self.assertLessEqual(selector.items(), labels)
+
+    def test_ports_are_those_of_the_container(self):
+        container, = self.pod()["spec"]["containers"]
+        names = {port["name"]: port["containerPort"] for port in container["ports"]}
+        listen = environment_of(self.one("Deployment"))["HELIOGRAPH_METRICS_LISTEN"]
+        self.assertTrue(listen.endswith(f":{names['metrics']}"))
+        for service in (o for o in self.objects if o["kind"] == "Service"):
+            for port in service["spec"]["ports"]:
+                self.assertIn(port["targetPort"], names)
+        for probe in ("startupProbe", "readinessProbe", "livenessProbe"):
+            self.assertIn(container[probe]["httpGet"]["port"], names)
+        path, = self.one("Ingress")["spec"]["rules"][0]["http"]["paths"]
+        asked = path["backend"]["service"]
+        service = self.one("Service", asked["name"])["spec"]
+        self.assertIn(asked["port"]["name"], [port["name"] for port in service["ports"]])
+
+    def test_pods_are_restricted(self):
+        """The profile "restricted" of the pod security standards, which their namespace enforces,
+        and a root that never changes."""
+        namespace = self.one("Namespace", kubernetes.kustomization()["namespace"])
+        labels = namespace["metadata"]["labels"]
+        self.assertEqual(labels["pod-security.kubernetes.io/enforce"], "restricted")
+        spec = self.pod()["spec"]
+        self.assertTrue(spec["securityContext"]["runAsNonRoot"])
+        self.assertEqual(spec["securityContext"]["seccompProfile"]["type"], "RuntimeDefault")
+        self.assertFalse(spec["automountServiceAccountToken"])
+        for container in spec["containers"] + spec["initContainers"]:
+            with self.subTest(container["name"]):
+                context = container["securityContext"]
+                self.assertFalse(context["allowPrivilegeEscalation"])
+                self.assertTrue(context["readOnlyRootFilesystem"])
+                self.assertEqual(context["capabilities"], {"drop": ["ALL"]})
+                self.assertIn("memory", container["resources"]["limits"])
+        self.assertLessEqual({tuple(volume)[1] for volume in spec["volumes"]}, {"emptyDir"})
+
+    def test_the_same_user_as_in_the_image(self):
+        user = re.search(r"(?m)^USER (\d+):", text_of(os.path.join(DEPLOY, "Dockerfile"))).group(1)
+        self.assertEqual(self.pod()["spec"]["securityContext"]["runAsUser"], int(user))
+
+    def test_there_is_time_to_end(self):
+        pod = self.pod()["spec"]
+        pause = int(pod["containers"][0]["lifecycle"]["preStop"]["exec"]["command"][1])
+        self.assertGreaterEqual(pod["terminationGracePeriodSeconds"], pause + 20)
+
+    def test_nobody_is_believed_until_an_ingress_is_named(self):
+        self.assertNotIn("HELIOGRAPH_TRUST_PROXY", environment_of(self.one("Deployment")))
+        patch, = documents(os.path.join(kubernetes.FOLDER, "ingress/trusted-proxy.yaml"))
+        self.assertEqual(environment_of(patch), {"HELIOGRAPH_TRUST_PROXY": NOBODY})
+
+    def test_the_plugin_says_which_gpu_it_is(self):
+        patch, = documents(os.path.join(kubernetes.FOLDER, "gpu/deployment.yaml"))
+        for deployment in (self.one("Deployment"), patch):
+            self.assertNotIn("NVIDIA_VISIBLE_DEVICES", environment_of(deployment))
+        container, = patch["spec"]["template"]["spec"]["containers"]
+        self.assertEqual(container["resources"]["limits"], {"nvidia.com/gpu": 1})
+        self.assertGreaterEqual(int(environment_of(patch)["HELIOGRAPH_MAX_PIXELS"]),
+                                8 * 1920 * 1080)
+
+
+class Scaling(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.objects = kubernetes.objects()
+        cls.scaler = kubernetes.one(cls.objects, "HorizontalPodAutoscaler")["spec"]
+        cls.targets = {m["pods"]["metric"]["name"]: m["pods"]["target"]["averageValue"]
+                       for m in cls.scaler["metrics"]}
+
+    def test_the_autoscaler_alone_says_how_many_pods_there_are(self):
+        deployment = kubernetes.one(self.objects, "Deployment")
+        self.assertEqual(self.scaler["scaleTargetRef"]["name"], deployment["metadata"]["name"])
+        self.assertNotIn("replicas", deployment["spec"])
+        budget = kubernetes.one(self.objects, "PodDisruptionBudget")["spec"]
+        self.assertLess(budget["maxUnavailable"], self.scaler["minReplicas"])
+
+    def test_it_acts_while_there_is_room_for_another_browser(self):
+        most = number_in("web_client/src/main.ts", r"softwarePixels = ([\d_]+)")
+        limit = int(environment_of(kubernetes.one(self.objects, "Deployment"))
+                    ["HELIOGRAPH_MAX_PIXELS"])
+        target = self.targets["heliograph_session_pixels_share"]
+        self.assertRegex(target, r"^\d+m$")
+        acts_at = TOLERANCE * int(target[:-1]) / 1000
+        self.assertLessEqual(acts_at * limit + most, limit)
+        least = self.scaler["minReplicas"]
+        self.assertLessEqual(acts_at * least / (least - 1), 1, "no room if a node fails")
+
+    def test_it_acts_before_a_session_is_full_of_viewers(self):
+        most = number_in("server/cli/options.hpp", r"max_viewers = (\d+);")
+        self.assertLess(TOLERANCE * int(self.targets["heliograph_viewers"]), most)
+
+    def test_the_documented_adapter_gives_what_it_asks_for(self):
+        given = {rule.get("name", {}).get("as") or rule["seriesQuery"].split("{")[0]
+                 for rule in kubernetes.adapter_rules()}
+        self.assertEqual(set(self.targets), given)
+
+
+class Overlay(unittest.TestCase):
+    """The documentation's, by kubectl."""
+
+    @classmethod
+    def setUpClass(cls):
+        folder = cls.enterClassContext(tempfile.TemporaryDirectory())
+        cls.objects = kubernetes.rendered_overlay(folder)
+
+    def test_has_everything(self):
+        self.assertEqual(sorted((o["kind"], o["metadata"]["name"]) for o in self.objects),
+                         sorted((o["kind"], o["metadata"]["name"]) for o in kubernetes.objects()))
+
+    def test_takes_every_image_from_its_registry(self):
+        spec = kubernetes.one(self.objects, "Deployment")["spec"]["template"]["spec"]
+        self.assertEqual({container["image"]
+                          for container in spec["containers"] + spec["initContainers"]},
+                         {"registry.example.org/heliograph:0.1.0"})
+
+    def test_only_the_ingress_reaches_the_server_that_believes_it(self):
+        policy = kubernetes.one(self.objects, "NetworkPolicy")["spec"]
+        comes_from = {port["port"]: [peer["namespaceSelector"]["matchLabels"]
+                                     for peer in rule["from"]]
+                      for rule in policy["ingress"] for port in rule["ports"]}
+        label = "kubernetes.io/metadata.name"
+        self.assertEqual(comes_from, {"http": [{label: "ingress-nginx"}],
+                                      "metrics": [{label: "monitoring"}]})
+        self.assertEqual(policy["policyTypes"], ["Ingress", "Egress"])
+
+    def test_has_what_the_components_bring_and_the_overlay_sets(self):
+        deployment = kubernetes.one(self.objects, "Deployment")
+        environment = environment_of(deployment)
+        self.assertEqual(environment["HELIOGRAPH_TRUST_PROXY"], "10.244.0.0/16")
+        self.assertEqual(environment["HELIOGRAPH_MAX_PIXELS"], "16600000")
+        self.assertIn("HELIOGRAPH_METRICS_LISTEN", environment)
+        spec = deployment["spec"]["template"]["spec"]
+        self.assertEqual(spec["runtimeClassName"], "nvidia")
+        self.assertEqual(spec["containers"][0]["resources"]["limits"],
+                         {"cpu": "2", "memory": "2Gi", "nvidia.com/gpu": 1})
+        self.assertNotIn("heliograph.example.org",
+                         str(kubernetes.one(self.objects, "Ingress")["spec"]))
+
+
+if __name__ == "__main__":
+    unittest.main()
