@@ -69,7 +69,9 @@ class Viewer:
         return self
 
     async def __aexit__(self, *_):
-        await self.socket.close()
+        # One that reads nothing may have been let go before it could say goodbye.
+        with contextlib.suppress(websockets.ConnectionClosed):
+            await self.socket.close()
         await self._reader
 
     async def closed(self, timeout=15):
