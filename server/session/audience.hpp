@@ -91,6 +91,8 @@ class Audience {
   std::optional<stream::OutgoingFrame> take(const std::string& viewer);
 
   bool empty() const;
+  /// Whether anybody but `viewer` is here who does not only watch and has said hello.
+  bool greeted_but(const std::string& viewer) const;
   /// Whether somebody could be sent a frame that is rendered now.
   bool wants_frame() const;
   /// Whether somebody receives pictures at all.
