@@ -17,15 +17,21 @@ import { Stage } from "./harness/stage.mjs";
 
 const view = { viewport: { width: 720, height: 450 } };
 const permissions = ["clipboard-read", "clipboard-write"];
-const stage = new Stage({ view, serverArguments: ["--width", "320", "--height", "200"] });
+const small = ["--width", "320", "--height", "200"];
+const open = new Stage({ view, serverArguments: small });
+const [steering, watching] = ["steering-0123456789", "watching-0123456789"];
+const guarded = new Stage({
+  view,
+  serverArguments: [...small, "--token", steering, "--view-token", watching],
+});
 
 /** A test with a second server, which may die, and a balancer before both. */
-function testWithTwo(name, body) {
+function testWithTwo(name, body, stage = open) {
   stage.test(name, async () => {
     const other = await startServer(0, stage.serverArguments);
     const balancer = await new Balancer([stage.server, other], other).start();
     try {
-      await body({ here: stage.server, other, balancer });
+      await body({ stage, here: stage.server, other, balancer });
       await Promise.all([...stage.contexts].map((context) => context.close()));
     } finally {
       balancer.stop();
@@ -62,7 +68,7 @@ async function lose(server, ...pages) {
 }
 
 testWithTwo("a named session is found on the server that its name leads to", async (nodes) => {
-  const { here, other, balancer } = nodes;
+  const { stage, here, other, balancer } = nodes;
   balancer.home = here;
   const name = balancer.nameFor(other);
   await other.call("session.create", { name, copy_of: "main" });
@@ -77,7 +83,7 @@ testWithTwo("a named session is found on the server that its name leads to", asy
 });
 
 testWithTwo("a link to join leads to the author's own main session", async (nodes) => {
-  const { here, other, balancer } = nodes;
+  const { stage, here, other, balancer } = nodes;
   for (const home of [other, here]) {
     balancer.home = home;
     const author = await stage.watch({ url: balancer.url, permissions });
@@ -93,7 +99,7 @@ testWithTwo("a link to join leads to the author's own main session", async (node
 });
 
 testWithTwo("who loses a server meets again apart from those on the other", async (nodes) => {
-  const { here, other, balancer } = nodes;
+  const { stage, here, other, balancer } = nodes;
   const stranger = await stage.watch({ url: here.url });
   await stranger.page.getByRole("button", { name: "Who is here" }).click();
   await stranger.page.getByRole("button", { name: "Only I change things" }).click();
@@ -137,7 +143,7 @@ testWithTwo("who loses a server meets again apart from those on the other", asyn
 });
 
 testWithTwo("a named session that is gone is there again under its name", async (nodes) => {
-  const { here, other, balancer } = nodes;
+  const { stage, here, other, balancer } = nodes;
   const name = balancer.nameFor(other, "review");
   await other.call("session.create", { name, copy_of: "main" });
   const watching = { url: `${balancer.url}?session=${name}`, complaining: true };
@@ -156,7 +162,7 @@ testWithTwo("a named session that is gone is there again under its name", async 
   assert.equal((await here.call("session.info")).rev, before.rev);
 });
 
-testWithTwo("motion JPEG that breaks is loaded again", async ({ balancer }) => {
+testWithTwo("motion JPEG that breaks is loaded again", async ({ stage, balancer }) => {
   balancer.upgrades = false;
   const { page } = await stage.open({ url: balancer.url, complaining: true });
   await page.waitForSelector('#pill[data-state="pictures_only"]', { timeout: 60_000 });
@@ -169,3 +175,14 @@ testWithTwo("motion JPEG that breaks is loaded again", async ({ balancer }) => {
   await eventually(() => loads() > before, "another load");
   await eventually(shown, "a picture again");
 });
+
+async function watchersFollow({ stage, here, other, balancer }) {
+  await here.call("camera.fit"); // so that its main session is somebody's
+  const address = (token) => ({ url: `${balancer.url}?token=${token}`, complaining: true });
+  const watcher = await stage.watch(address(watching));
+  const steerer = await stage.watch(address(steering));
+  const { instance } = await other.call("hello");
+  await lose(other, steerer.page, watcher.page);
+  assert.equal(await peopleIn(here, `main-${instance.slice(0, 8)}`), 2);
+}
+testWithTwo("who may only watch follows those who lost their server too", watchersFollow, guarded);
