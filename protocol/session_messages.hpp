@@ -30,6 +30,7 @@ struct Hello {
   std::optional<std::string> client;
   std::vector<std::string> codecs{"jpeg"};
   std::optional<std::string> session;
+  std::optional<std::string> instance;
   std::optional<std::string> name;
 
   static constexpr auto fields() {
@@ -41,6 +42,10 @@ struct Hello {
             .or_default(),
         field("session", &Hello::session,
               "The session to watch; left out: the one that /ws?session=NAME named, or main.")
+            .length(1, 64),
+        field("instance", &Hello::instance,
+              "Of who comes back: the run of the server that `session` was on. Where it is another "
+              "one, a place that disturbs nobody is found; `bring` tells of it.")
             .length(1, 64),
         field("name", &Hello::name, "What the person is called, for the others in the session.")
             .length(1, 64),
@@ -102,6 +107,7 @@ struct HelloResult {
   ServerLimits limits;
   std::uint32_t rev = 0;
   std::string instance;
+  std::optional<bool> bring;
 
   static constexpr auto fields() {
     return std::tuple{
@@ -124,6 +130,10 @@ struct HelloResult {
         field("instance", &HelloResult::instance,
               "Differs with every run of a server: where it is another, the session starts anew "
               "and a client that comes back says again what it wants."),
+        field("bring", &HelloResult::bring,
+              "To who comes back from another run: true, to bring the session's state into this "
+              "one; false, that somebody who was there too does; null, that no place was found.")
+            .or_null(),
     };
   }
   bool operator==(const HelloResult&) const = default;

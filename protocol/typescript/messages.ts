@@ -29,6 +29,8 @@ export interface Hello {
   rev: number;
   /** Differs with every run of a server: another one has not kept the session. */
   instance: string;
+  /** To who comes back from another run: whether to bring the state; null: no place was found. */
+  bring?: boolean | null;
 }
 
 export interface SceneList {

@@ -52,6 +52,8 @@ HttpResponse json_response(std::string body) {
 }
 
 std::string session_of(const HttpRequest& request) {
+  const auto entered = request.parameter("enter");
+  if (entered) return *entered;
   return request.parameter("session").value_or(std::string(protocol::main_session));
 }
 
@@ -64,6 +66,23 @@ std::map<std::string, std::string> parse_query(std::string_view query) {
     parameters.insert_or_assign(decode(pair.substr(0, equals)), decode(value));
   }
   return parameters;
+}
+
+std::string encode_query(std::string_view text) {
+  constexpr std::string_view digits = "0123456789ABCDEF";
+  std::string encoded;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    // RFC 3986 section 2.3, whatever the locale.
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '-' || c == '.' || c == '_' || c == '~';
+    if (plain) {
+      encoded.push_back(c);
+    } else {
+      encoded += {'%', digits[byte >> 4], digits[byte & 15]};
+    }
+  }
+  return encoded;
 }
 
 std::vector<std::string_view> header_elements(std::string_view value, char separator) {

@@ -38,7 +38,11 @@ HttpResponse json_response(std::string body);
 /// The name and value pairs of a query string (without '?'), percent and plus decoded.
 std::map<std::string, std::string> parse_query(std::string_view query);
 
-/// The session that a request is about: ?session=NAME, or the main one.
+/// A name or value as it stands in a query string: all but unreserved characters percent encoded.
+std::string encode_query(std::string_view text);
+
+/// The session that a request is about: ?enter=NAME, else ?session=NAME, else the main one. With
+/// both, the latter is for a balancer, which leads requests with the same value to the same server.
 std::string session_of(const HttpRequest& request);
 
 /// The elements of a comma separated header, without white space around them.

@@ -2,6 +2,7 @@
 #include <array>
 #include <atomic>
 #include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/serializer.hpp>
@@ -25,6 +26,9 @@ using boost::system::error_code;
 
 // A client that takes no data for so long is let go.
 constexpr std::chrono::seconds longest_write{15};
+// The picture is sent again where nothing changes for so long: proxies cut off what is silent for
+// longer, often 60 s or 30 s.
+constexpr std::chrono::seconds longest_silence{20};
 
 // Browsers show a part only when the header of the next one arrives, so that header goes out with
 // each picture, and cannot tell the next picture's length.
@@ -47,7 +51,7 @@ class PictureStream : public Connection,
                       public std::enable_shared_from_this<PictureStream> {
  public:
   PictureStream(ServerContext& context, ClientStream stream)
-      : context_(context), stream_(std::move(stream)) {
+      : context_(context), stream_(std::move(stream)), rest_(stream_.get_executor()) {
     context_.enter(*this);
   }
   ~PictureStream() override { context_.leave(*this); }
@@ -73,13 +77,13 @@ class PictureStream : public Connection,
     }
     writing_ = true;
     serializer_.emplace(headers_);
+    read();  // before there is a time limit: what waits for the client's end must not run into it
     stream_.next_layer().expires_after(longest_write);
     http::async_write_header(stream_, *serializer_,
                              [self = shared_from_this()](error_code error, std::size_t) {
                                if (error || self->viewer_.empty()) return self->ended();
                                self->write(first_part);
                              });
-    read();
   }
 
   void shut_down() override { finish(); }
@@ -136,9 +140,15 @@ class PictureStream : public Connection,
     if (!session) return;
     frame_ = session->audience().take(viewer_);
     if (!frame_) return;
+    shown_ = frame_->frame;
+    write_picture();
+  }
+
+  void write_picture() {
     writing_ = true;
+    rest_.cancel();
     stream_.next_layer().expires_after(longest_write);
-    const std::array<asio::const_buffer, 2> parts{asio::buffer(frame_->frame->payload),
+    const std::array<asio::const_buffer, 2> parts{asio::buffer(shown_->payload),
                                                   asio::buffer(next_part)};
     asio::async_write(stream_, parts, [self = shared_from_this()](error_code error, std::size_t) {
       self->written(error);
@@ -151,6 +161,14 @@ class PictureStream : public Connection,
     if (error || (ending_ && farewell_.empty())) return ended();
     if (const auto sent = std::exchange(frame_, std::nullopt)) acknowledge(*sent);
     write_next();
+    if (!writing_ && shown_ && !viewer_.empty()) repeat_after_silence();
+  }
+
+  void repeat_after_silence() {
+    rest_.expires_after(longest_silence);
+    rest_.async_wait([self = shared_from_this()](error_code error) {
+      if (!error && !self->writing_ && !self->viewer_.empty()) self->write_picture();
+    });
   }
 
   void acknowledge(const stream::OutgoingFrame& sent) {
@@ -169,6 +187,7 @@ class PictureStream : public Connection,
 
   void ended() {
     ending_ = true;
+    rest_.cancel();
     stream_.next_layer().close();
     if (viewer_.empty()) return;
     context_.host.sessions().leave(viewer_);
@@ -185,6 +204,8 @@ class PictureStream : public Connection,
   std::string viewer_;
   std::string client_;  // address
   std::optional<stream::OutgoingFrame> frame_;
+  stream::SharedFrame shown_;  // sent last
+  asio::steady_timer rest_;    // runs while nothing is sent
   std::string_view farewell_ = last_part;
   bool writing_ = false;
   bool ending_ = false;

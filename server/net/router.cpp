@@ -20,6 +20,16 @@ HttpResponse with_header(HttpResponse response, std::string name, std::string va
   return response;
 }
 
+/// The query of a request with its '?', less one parameter; empty where nothing is left.
+std::string query_without(const HttpRequest& request, std::string_view name) {
+  std::string query;
+  for (const auto& [key, value] : request.query) {
+    if (key == name) continue;
+    query += (query.empty() ? '?' : '&') + encode_query(key) + '=' + encode_query(value);
+  }
+  return query;
+}
+
 HttpResponse method_not_allowed(std::string allowed) {
   return with_header(text_response(405, "This address takes " + allowed + " only."), "Allow",
                      allowed);
@@ -147,8 +157,8 @@ void Router::handle(const HttpRequest& request, Reply reply) const {
       token ? access_.admit_by(*token, request) : access_.admit(request, !health_check);
   if (admission.refusal) return reply(*std::move(admission.refusal));
   if (token) {
-    HttpResponse redirect = text_response(303, "Go on to /");
-    redirect.headers = {{"Location", "/"}, {"Set-Cookie", access_.token_cookie(*token, request)}};
+    HttpResponse redirect = text_response(303, "Go on without the token.");
+    redirect.headers = {{"Location", "/" + query_without(request, "token")}, {"Set-Cookie", access_.token_cookie(*token, request)}};
     return reply(std::move(redirect));
   }
   if (draining_ && !health_check) return reply(come_back_later("The server is shutting down."));

@@ -92,6 +92,8 @@ class Audience {
 
   bool empty() const;
   bool has(const std::string& viewer) const;
+  /// Whether anybody but `viewer` is here who does not only watch and has said hello.
+  bool greeted_but(const std::string& viewer) const;
   /// Whether somebody could be sent a frame that is rendered now.
   bool wants_frame() const;
   /// Whether somebody receives pictures at all.

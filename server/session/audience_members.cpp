@@ -82,6 +82,13 @@ void Audience::leave(const std::string& viewer) {
   control_.left(viewer);
 }
 
+bool Audience::greeted_but(const std::string& viewer) const {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(viewers_.begin(), viewers_.end(), [&](const auto& entry) {
+    return entry.first != viewer && entry.second.started && !entry.second.only_watches;
+  });
+}
+
 void Audience::set_name(const std::string& viewer, std::string name) {
   const std::lock_guard lock(mutex_);
   if (const Result<Viewer*> found = find(viewer)) (*found)->name = std::move(name);

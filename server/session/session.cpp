@@ -72,6 +72,11 @@ bool Session::works_unwatched() const {
   return state_.lockstep || state_.keep_drawing;
 }
 
+bool Session::untouched(const std::string& viewer) const {
+  return !touched_ && audience_.control_mode() == protocol::ControlMode::everyone &&
+         !audience_.greeted_but(viewer);
+}
+
 Clock::duration Session::idle() const {
   if (!audience_.empty()) return {};
   return Clock::now() - needed_at_.load();

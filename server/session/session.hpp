@@ -99,6 +99,11 @@ class Session {
   bool ended() const { return ended_; }
   /// Whether pictures are due though nobody watches: lockstep, or a reference.
   bool works_unwatched() const;
+  /// Somebody is about to change what all see.
+  void note_change() { touched_ = true; }
+  /// Whether the session is as it began, belongs to nobody, and has nobody in it but `viewer`,
+  /// those who only watch and those who have not said hello yet.
+  bool untouched(const std::string& viewer) const;
   /// Somebody needs the session, or it draws: its idle time begins anew.
   void touch() { needed_at_ = Clock::now(); }
   /// How long nobody has needed it; zero while it has viewers.
@@ -206,6 +211,7 @@ class Session {
   const std::shared_ptr<Wakeup> changed_;
   std::atomic<Clock::time_point> needed_at_ = Clock::now();
   std::atomic<bool> ended_ = false;
+  std::atomic<bool> touched_ = false;
   Audience audience_;
 
   mutable std::mutex mutex_;

@@ -49,6 +49,7 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
     if (method.needs_control && !(*session)->audience().may_change(call.viewer)) {
       return no_control();
     }
+    if (method.needs_control) (*session)->note_change();
     return {};
   });
   dispatcher_.on_handler_failure([](std::string_view method, std::string_view reason) {
@@ -110,6 +111,14 @@ void SessionHost::create_session(const protocol::SessionCreate& request, const s
                }
                give_up(session, why, done);
              });
+}
+
+Result<Settled> SessionHost::settle(const std::string& viewer, const Origin& from,
+                                    bool only_watches) {
+  if (only_watches) return sessions_.settle(viewer, from, std::nullopt);
+  const auto settled = sessions_.settle(viewer, from, options_.session);
+  if (settled) settled->session->set_buffers(sessions_.main()->buffers());
+  return settled;
 }
 
 /// A session that cannot be as it was wanted ends before anybody has seen it.

@@ -55,6 +55,9 @@ class SessionHost {
   /// loaded; if that fails there is no such session.
   using Created = std::function<void(protocol::Result<std::shared_ptr<Session>>)>;
   void create_session(const protocol::SessionCreate& request, const std::string& by, Created done);
+  /// Finds a place for a viewer that was in a session of another run; see SessionRegistry::settle.
+  protocol::Result<Settled> settle(const std::string& viewer, const Origin& from,
+                                   bool only_watches);
   void load_scene(std::shared_ptr<Session> session, const protocol::SceneLoad& request,
                   const std::string& by, SceneLoader::Completion done);
   protocol::SceneCancelled cancel_load(const Session& session) { return loader_.cancel(session); }

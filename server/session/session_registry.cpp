@@ -39,6 +39,10 @@ SessionRegistry::SessionRegistry(const RegistryLimits& limits, SessionOptions ma
 
 Result<std::shared_ptr<Session>> SessionRegistry::create(SessionOptions options) {
   const std::lock_guard lock(mutex_);
+  return create_locked(std::move(options));
+}
+
+Result<std::shared_ptr<Session>> SessionRegistry::create_locked(SessionOptions options) {
   if (options.name.empty()) options.name = free_name();
   if (!is_name(options.name)) {
     return error::invalid("name", "is no name for a session",
@@ -99,6 +103,7 @@ Clock::duration SessionRegistry::close_idle() {
 void SessionRegistry::end(const std::shared_ptr<Session>& session, const std::string& why) {
   const std::string& name = session->name();
   sessions_.erase(name);
+  origins_.erase(name);
   const protocol::SessionClosed closed{.session = name, .reason = why};
   session->audience().send_all(protocol::make_notification("session.closed", closed), {});
   for (const std::string& viewer : session->audience().dismiss_all(why)) {
@@ -163,6 +168,11 @@ Result<std::string> SessionRegistry::enter(const std::string& session,
 Result<std::shared_ptr<Session>> SessionRegistry::move(const std::string& viewer,
                                                        const std::string& session) {
   const std::lock_guard lock(mutex_);
+  return move_locked(viewer, session);
+}
+
+Result<std::shared_ptr<Session>> SessionRegistry::move_locked(const std::string& viewer,
+                                                              const std::string& session) {
   const auto here = session_of_viewer_.find(viewer);
   if (here == session_of_viewer_.end()) {
     return error::not_ready("only a viewer on a WebSocket can join a session");
@@ -174,6 +184,43 @@ Result<std::shared_ptr<Session>> SessionRegistry::move(const std::string& viewer
   before->announce();
   (*there)->announce();
   return there;
+}
+
+Result<Settled> SessionRegistry::settle(const std::string& viewer, const Origin& from,
+                                        std::optional<SessionOptions> options) {
+  const std::lock_guard lock(mutex_);
+  const auto known = std::find_if(origins_.begin(), origins_.end(),
+                                  [&](const auto& entry) { return entry.second == from; });
+  std::string name = known == origins_.end() ? from.session : known->first;
+  if (!options) {
+    const auto watched = move_locked(viewer, name);
+    if (!watched) return watched.error();
+    return Settled{.session = *watched};
+  }
+  if (known == origins_.end() && !is_free_for(viewer, name)) {
+    options->name = name_for(from);
+    const auto made = create_locked(*std::move(options));
+    if (!made) return made.error();
+    name = (*made)->name();
+  }
+  const bool first = sessions_.at(name)->untouched(viewer);
+  const auto moved = move_locked(viewer, name);
+  if (!moved) return moved.error();
+  origins_[name] = from;
+  return Settled{.session = *moved, .first = first};
+}
+
+/// Whether there is a session of this name whose state is nobody's yet.
+bool SessionRegistry::is_free_for(const std::string& viewer, const std::string& name) const {
+  const auto found = sessions_.find(name);
+  return found != sessions_.end() && !origins_.contains(name) && found->second->untouched(viewer);
+}
+
+/// The name that the session had, or one that tells of it.
+std::string SessionRegistry::name_for(const Origin& from) {
+  if (!sessions_.contains(from.session)) return from.session;
+  const std::string name = from.session.substr(0, 55) + "-" + from.instance.substr(0, 8);
+  return sessions_.contains(name) || !is_name(name) ? free_name() : name;
 }
 
 void SessionRegistry::leave(const std::string& viewer) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +25,19 @@ struct RegistryLimits {
   std::uint64_t pixels = 8ull * 3840 * 2160;
   /// A session other than main without viewers and calls for so long is closed; zero: never.
   std::chrono::seconds idle_timeout{600};
+};
+
+/// A session of some run of the server.
+struct Origin {
+  std::string instance;
+  std::string session;
+  bool operator==(const Origin&) const = default;
+};
+
+/// Where somebody who came from another run is now.
+struct Settled {
+  std::shared_ptr<Session> session;
+  bool first = false;  // nobody has brought its state yet
 };
 
 /// The sessions by name, and which viewer is in which of them. "main" is there from the start and
@@ -61,6 +75,12 @@ class SessionRegistry {
   /// Brings a viewer into another session, with its stream as it is.
   protocol::Result<std::shared_ptr<Session>> move(const std::string& viewer,
                                                   const std::string& session);
+  /// Brings a viewer that was in a session of another run of the server, perhaps elsewhere, to
+  /// where it disturbs nobody: to those who were there with it; else into the session of that name,
+  /// while it is untouched; else into a new one, of that name if it is free, made with `options`.
+  /// Without them, for who may only watch, into the one of that name as it is.
+  protocol::Result<Settled> settle(const std::string& viewer, const Origin& from,
+                                   std::optional<SessionOptions> options);
   void leave(const std::string& viewer);
 
   /// Of all sessions, those that have ended included.
@@ -73,6 +93,11 @@ class SessionRegistry {
  private:
   using Sessions = std::map<std::string, std::shared_ptr<Session>, std::less<>>;
 
+  protocol::Result<std::shared_ptr<Session>> create_locked(SessionOptions options);
+  protocol::Result<std::shared_ptr<Session>> move_locked(const std::string& viewer,
+                                                         const std::string& session);
+  bool is_free_for(const std::string& viewer, const std::string& name) const;
+  std::string name_for(const Origin& from);
   protocol::Result<std::shared_ptr<Session>> find_locked(std::string_view name) const;
   void end(const std::shared_ptr<Session>& session, const std::string& why);
   std::string free_name();
@@ -85,6 +110,7 @@ class SessionRegistry {
   mutable std::mutex mutex_;
   Sessions sessions_;
   std::map<std::string, std::shared_ptr<Session>> session_of_viewer_;
+  std::map<std::string, Origin> origins_;  // of sessions that took the place of lost ones
   std::uint64_t viewers_so_far_ = 0;
   std::uint64_t names_so_far_ = 0;
   std::uint64_t opened_ = 0;

@@ -124,6 +124,8 @@ class Token(ServerTestCase):
     def test_a_browser_trades_it_for_a_cookie(self):
         status, headers, body = self.server.get("/?token=" + TOKEN)
         self.assertEqual((status, headers["location"]), (303, "/"))
+        more = self.server.get(f"/?session=a%26b&token={TOKEN}&enter=main")[1]["location"]
+        self.assertEqual(more, "/?enter=main&session=a%26b")
         cookie = headers["set-cookie"]
         self.assertIn("HttpOnly", cookie)
         self.assertIn("SameSite=Strict", cookie)

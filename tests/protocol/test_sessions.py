@@ -49,6 +49,30 @@ class Sessions(ServerTestCase):
         self.assert_error(self.server.ask("camera.get", session="othr"), NOT_FOUND, path="session")
         self.assertEqual(self.server.get("/api/v1/sessions/othr/frame.jpg")[0], 404)
 
+    async def test_an_address_may_name_one_session_and_enter_another(self):
+        async with Viewer(self.server, session="for-a-balancer&enter=main") as viewer:
+            self.assertEqual(viewer.hello["session"], "main")
+            self.assertIsNone(viewer.hello["bring"])
+        self.assertEqual(self.server.call("session.info", session="elsewhere&enter=main")["name"],
+                         "main")
+        self.assert_error(self.server.ask("session.info", session="main&enter=elsewhere"),
+                          NOT_FOUND)
+
+    async def test_who_comes_back_from_another_run_disturbs_nobody(self):
+        self.server.call("camera.fit")  # main is somebody's now
+        lost = {"instance": "0123456789abcdef", "session": "main"}
+        async with Viewer(self.server, greet=False) as first, \
+                Viewer(self.server, greet=False) as second:
+            hello = await first.call("hello", lost)
+            self.assertEqual((hello["session"], hello["bring"]), ("main-01234567", True))
+            hello = await second.call("hello", lost)
+            self.assertEqual((hello["session"], hello["bring"]), ("main-01234567", False))
+            self.assertEqual(self.server.call("session.info")["viewers"], [])
+        async with Viewer(self.server) as viewer:
+            same = {"instance": viewer.hello["instance"], "session": "main"}
+            hello = await viewer.call("hello", same)
+            self.assertEqual((hello["session"], hello["bring"]), ("main", None))
+
     def test_names_and_models_are_checked(self):
         self.create("taken")
         self.assert_error(self.server.ask("session.create", {"name": "taken"}), CONFLICT,

@@ -173,8 +173,8 @@ def read_file(path):
 class Parts:
     """Reads multipart/x-mixed-replace as its bytes come."""
 
-    def __init__(self, server, path="/api/v1/sessions/main/stream.mjpg", **headers):
-        self.connection = http.client.HTTPConnection(server.host, server.port, timeout=20)
+    def __init__(self, server, path="/api/v1/sessions/main/stream.mjpg", timeout=20, **headers):
+        self.connection = http.client.HTTPConnection(server.host, server.port, timeout=timeout)
         self.connection.request("GET", path, headers=headers)
         self.response = self.connection.getresponse()
         self.received = b""
@@ -196,7 +196,7 @@ class Parts:
         return decode_jpeg(file)
 
     def close(self):
-        self.connection.close()
+        self.response.close()  # which has taken the socket over: nothing else comes on it
 
 
 class PicturesOverHttp(ServerTestCase):

@@ -5,6 +5,7 @@ import type { Hello, JsonObject, StreamSettings } from "heliograph/messages.ts";
 import type { ComparisonState, Counterpart } from "./compare.ts";
 import { type Edits, editsBetween } from "./scene_edits.ts";
 import { Connection } from "./stream/connection.ts";
+import { Place } from "./stream/place.ts";
 import type { Viewer } from "./viewer.ts";
 
 /** Settings that both sides share: how a picture is shown, not how it is made. */
@@ -65,7 +66,7 @@ export class ComparedSession {
         warning: (message) => viewer.onError(message),
         undecodable: (_, video) => video && this.beginVideoAnew(),
       },
-      name,
+      new Place(document.baseURI, viewer.connection.place.route, name),
     );
     this.connection.state.watch(({ kind }) => {
       if (kind !== "live") this.live = false;

@@ -83,9 +83,10 @@ export class Portraits {
       const asked = { scene, settings, ...size };
       const { rpc } = this.viewer;
       session = (await rpc.request<SessionInfo>("session.create", asked, createTimeoutMs)).name;
-      const address = `api/v1/sessions/${session}/frame.jpg?samples=${samples}`;
+      const address = this.viewer.connection.place.address(`api/v1/sessions/${session}/frame.jpg`);
+      address.searchParams.set("samples", String(samples));
       const { signal } = interruption;
-      const response = await fetch(new URL(address, document.baseURI), { signal });
+      const response = await fetch(address, { signal });
       if (!response.ok) throw new Error(await response.text());
       keepThumbnail(scene, await shrunk(await response.blob(), size.width));
     } catch {

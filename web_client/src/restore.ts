@@ -25,6 +25,8 @@ export interface RestoreHost {
   offers(method: string): boolean;
   /** Whether this state is still wanted: not after a newer wish or on a newer connection. */
   wanted(): boolean;
+  /** Whether the session was made for this state, so that nothing is loaded there by others. */
+  isOwn(): boolean;
   /** Tells what could not be put back. */
   lost(sentence: string): void;
 }
@@ -71,14 +73,18 @@ function isPassing(error: unknown): boolean {
 }
 
 /** Also waits for the scene that the server starts with: loading another meanwhile would end it. */
-async function restoreScene({ rpc }: RestoreHost, state: ViewState): Promise<void> {
-  const info = await rpc.request<SceneInfo>("scene.info");
+async function restoreScene({ rpc, isOwn }: RestoreHost, state: ViewState): Promise<void> {
+  const info = await rpc.request<SceneInfo>("scene.info").catch((error: unknown) => {
+    if (!isOwn() || state.scene === undefined || !isPassing(error)) throw error;
+    return null;
+  });
   const same = <Value>(wanted: Value | undefined, there: Value | undefined): boolean =>
     wanted === undefined || wanted === there;
   const { scene, part, variant } = state;
-  if (same(scene, info.name) && same(part, info.scene) && same(variant, info.variant)) return;
+  const there = info && same(scene, info.name) && same(part, info.scene);
+  if (there && same(variant, info.variant)) return;
   const chosen = part === undefined ? undefined : String(part);
-  const load = { name: scene ?? info.name, scene: chosen, variant };
+  const load = { name: scene ?? info?.name, scene: chosen, variant };
   await rpc.request("scene.load", load, loadTimeoutMs);
 }
 

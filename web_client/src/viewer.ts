@@ -17,6 +17,7 @@ import {
 } from "heliograph/messages.ts";
 import { Codec } from "heliograph/frame_header.ts";
 import { ChannelClosed, RpcError, type RpcPeer } from "heliograph/rpc.ts";
+import { Homecoming } from "./homecoming.ts";
 import { Offers } from "./offers.ts";
 import { captureBlob, shrunk } from "./pictures.ts";
 import { type RestoreHost, restore } from "./restore.ts";
@@ -77,10 +78,9 @@ export class Viewer {
   private animationReadAt = 0;
   /** The server's hello, from its arrival until the connection is gone. */
   private greeting: Hello | null = null;
-  /** The run of the server that this page was last in step with. */
-  private instance: string | null = null;
   /** What the session still has to be brought to; a wish outlives lost connections. */
   private wish: ViewState | null = null;
+  private readonly homecoming = new Homecoming(this);
 
   constructor(base: string, canvas: HTMLCanvasElement) {
     const offscreen =
@@ -98,7 +98,7 @@ export class Viewer {
         if (video) this.stream.videoBroke();
         else this.onError(`A picture could not be shown: ${message}`);
       },
-    }, new URL(base).searchParams.get("session") ?? undefined);
+    });
     this.rpc = this.connection.rpc;
     this.settings = new SettingsStore(this.rpc, (error) => this.report(error));
     this.offers = new Offers(this.rpc);
@@ -249,8 +249,7 @@ export class Viewer {
     this.latency.reset();
     this.inputSeq = 0;
     await this.readSession();
-    const isNew = this.instance !== null && hello.instance !== this.instance;
-    if (isNew && !this.wish && this.scene.value && this.mayChange) this.wish = this.viewState();
+    this.wish = this.homecoming.wishAt(hello, this.wish);
     this.dropForbiddenWish();
     await Promise.all([
       this.stream.begin(hello, this.wish !== null),
@@ -265,7 +264,7 @@ export class Viewer {
     } else {
       this.connection.release({ oldestRev: 0, size: this.stream.askedSize });
       await this.readScene();
-      this.instance = hello.instance;
+      this.homecoming.arrived(hello);
     }
   }
 
@@ -285,12 +284,13 @@ export class Viewer {
       offers: (method) => this.offers.has(method),
       wanted: () => this.greeting === greeting && this.wish === wish,
       lost: (sentence) => this.onError(sentence),
+      isOwn: () => this.homecoming.hasOwn(greeting),
     };
     this.restoring.set(true);
     if (this.connection.state.value.kind !== "live") this.frame.set(null);
     if (!(await restore(host, wish))) return;
     this.wish = null;
-    this.instance = greeting.instance;
+    this.homecoming.arrived(greeting);
     try {
       await Promise.all([this.settings.load(), this.refreshScenes(), this.readScene()]);
       this.connection.release({ oldestRev: this.camera.value?.rev ?? 0 });

@@ -75,6 +75,7 @@ function startingServer(refusals: (method: string, params: JsonObject) => Answer
     schema: () => schema,
     offers: () => true,
     wanted: () => true,
+    isOwn: () => false,
     lost: (sentence: string) => void lost.push(sentence),
   };
   return { host, calls, lost };
@@ -93,6 +94,17 @@ test("a new server is brought to the old state, its own first scene waited for",
     "animation.pause {}",
     'camera.set {"eye":[1,2,3],"target":[0,0,0],"up":[0,1,0],"vertical_fov":40}',
   ]);
+  assert.deepEqual(lost, []);
+});
+
+test("a session of its own is given its scene at once: nobody else loads one there", async () => {
+  const { host, calls, lost } = startingServer((method) =>
+    method === "scene.info" && calls.length === 0
+      ? { error: { code: -32050, message: "no scene is loaded" } }
+      : null,
+  );
+  assert.equal(await restore({ ...host, isOwn: () => true }, state), true);
+  assert.equal(calls[0], 'scene.load {"name":"b.glb"}');
   assert.deepEqual(lost, []);
 });
 

@@ -531,17 +531,21 @@ class Methods:
             *,
             client: str = _UNSET,
             codecs: List[str] = _UNSET,
+            instance: str = _UNSET,
             name: str = _UNSET,
             session: str = _UNSET) -> Dict[str, Any]:
         """Introduces a viewer: says what it can decode and learns who serves it.
 
         client: Name and version of the client, for the log.
         codecs: Picture codecs the client can decode, best first.
+        instance: Of who comes back: the run of the server that `session` was on. Where it is
+            another one, a place that disturbs nobody is found; `bring` tells of it.
         name: What the person is called, for the others in the session.
         session: The session to watch; left out: the one that /ws?session=NAME named, or main.
 
-        Gives: codec_reason, codecs, device, instance, limits, protocol, rev, role, session,
-            tracer, version, viewer.
+        Gives: bring, codec_reason, codecs, device, instance, limits, protocol, rev, role,
+            session, tracer, version, viewer.
         """
         return self._call("hello", _given({
-            "client": client, "codecs": codecs, "name": name, "session": session}))
+            "client": client, "codecs": codecs, "instance": instance, "name": name,
+            "session": session}))

@@ -39,8 +39,32 @@ Result<std::shared_ptr<Session>> choose_session(SessionHost& host, const Hello& 
   return host.sessions().move(call.viewer, *request.session);
 }
 
-HelloResult greeting(SessionHost& host, const Session& session,
+struct Chosen {
+  std::shared_ptr<Session> session;
+  std::optional<bool> bring;
+};
+
+/// Where who introduces itself is from now on. Who comes back from another run of the server finds
+/// those who were there too, or a place that is nobody else's; the main session if there is none.
+Result<Chosen> choose_place(SessionHost& host, const Hello& request,
+                            const protocol::CallContext& call) {
+  const bool comes_back = request.instance && *request.instance != instance() && request.session;
+  if (!comes_back || call.viewer.empty()) {
+    const auto session = choose_session(host, request, call);
+    if (!session) return session.error();
+    return Chosen{.session = *session, .bring = {}};
+  }
+  const Origin from{.instance = *request.instance, .session = *request.session};
+  const auto settled = host.settle(call.viewer, from, call.view_only);
+  if (settled) return Chosen{.session = settled->session, .bring = settled->first};
+  const auto main = host.sessions().move(call.viewer, std::string(protocol::main_session));
+  if (!main) return main.error();
+  return Chosen{.session = *main, .bring = {}};
+}
+
+HelloResult greeting(SessionHost& host, const Chosen& chosen,
                      const protocol::CallContext& call, const stream::CodecChoice& choice) {
+  const Session& session = *chosen.session;
   const render::DeviceInfo& device = host.engine().device();
   const SessionLimits& limits = session.limits();
   HelloResult result;
@@ -61,6 +85,7 @@ HelloResult greeting(SessionHost& host, const Session& session,
       .max_upload_bytes = call.view_only ? 0 : host.max_upload_bytes()};
   result.rev = session.rev();
   result.instance = instance();
+  result.bring = chosen.bring;
   return result;
 }
 
@@ -70,16 +95,16 @@ Result<HelloResult> greet(SessionHost& host, const Hello& request,
   if (std::find(codecs.begin(), codecs.end(), "jpeg") == codecs.end()) {
     return error::invalid("codecs", "must hold one that the server has", "jpeg");
   }
-  const Result<std::shared_ptr<Session>> chosen = choose_session(host, request, call);
+  const Result<Chosen> chosen = choose_place(host, request, call);
   if (!chosen) return chosen.error();
-  const std::shared_ptr<Session>& session = *chosen;
+  const std::shared_ptr<Session>& session = chosen->session;
   const stream::CodecChoice choice = stream::choose_codec(codecs);
   if (!call.viewer.empty()) {
     if (request.name) session->audience().set_name(call.viewer, *request.name);
     session->audience().start(call.viewer, choice.codec);
     session->announce();
   }
-  return greeting(host, *session, call, choice);
+  return greeting(host, *chosen, call, choice);
 }
 
 }  // namespace

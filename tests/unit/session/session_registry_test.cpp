@@ -69,6 +69,50 @@ TEST_F(SessionRegistryTest, SessionsAreFoundByTheirNames) {
   }
 }
 
+TEST_F(SessionRegistryTest, WhoLostASessionTakesTheOneOfItsNameOnlyWhileItIsUntouched) {
+  const std::string viewer = enter("main");
+  const auto settled = registry_.settle(viewer, {"before", "main"}, named({}));
+  ASSERT_TRUE(settled);
+  EXPECT_EQ(settled->session->name(), "main");
+  EXPECT_TRUE(settled->first);
+
+  const std::string stranger = enter("main");
+  const auto apart = registry_.settle(stranger, {"elsewhere", "main"}, named({}));
+  ASSERT_TRUE(apart) << apart.error().message;
+  EXPECT_EQ(apart->session->name(), "main-elsewher");
+  EXPECT_TRUE(apart->first);
+}
+
+TEST_F(SessionRegistryTest, WhatSomebodyChangedIsNotTakenByWhoLostASession) {
+  registry_.main()->note_change();
+  const auto settled = registry_.settle(enter("main"), {"before", "main"}, named({}));
+  ASSERT_TRUE(settled) << settled.error().message;
+  EXPECT_EQ(settled->session->name(), "main-before");
+}
+
+TEST_F(SessionRegistryTest, ThoseWhoWereTogetherMeetAgainAndOneBringsTheState) {
+  const std::string first = enter("main");
+  const std::string second = enter("main");
+  const Origin from{"before", "review"};
+  const auto made = registry_.settle(first, from, named({}));
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_EQ(made->session->name(), "review");
+  made->session->audience().start(first);
+  const auto followed = registry_.settle(second, from, named({}));
+  ASSERT_TRUE(followed) << followed.error().message;
+  EXPECT_EQ(followed->session, made->session);
+  EXPECT_FALSE(followed->first);
+  EXPECT_EQ(registry_.session_watched_by(second), made->session);
+}
+
+TEST_F(SessionRegistryTest, WhoMayOnlyWatchMakesNoSession) {
+  const std::string watcher = enter("main");
+  const std::size_t before = registry_.count();
+  EXPECT_EQ(registry_.settle(watcher, {"before", "review"}, {}).error().code,
+            ErrorCode::not_found);
+  EXPECT_EQ(registry_.count(), before);
+}
+
 TEST_F(SessionRegistryTest, SessionsWithoutANameGetOne) {
   ASSERT_TRUE(registry_.create(named("session-1")));
   const auto session = registry_.create(named(""));

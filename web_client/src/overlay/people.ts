@@ -36,10 +36,8 @@ export function mountPeople(
       type: "button",
       class: "button",
       click: () => {
-        const link = new URL(location.href);
-        link.hash = "";
-        link.searchParams.set("session", viewer.session.value?.name ?? "main");
-        void copyText(link.href)
+        void linkToJoin(viewer)
+          .then(copyText)
           .then(() => tell("The link to join is in the clipboard"))
           .catch((error: unknown) => viewer.report(error));
       },
@@ -150,4 +148,13 @@ export function takeButton(viewer: Viewer): HTMLButtonElement {
 /** What this person is called, as far as they said. */
 export function ownName(): string | undefined {
   return preferences.text(nameKey, "") || undefined;
+}
+
+/** The page's address as it leads everybody to the session that is watched here. */
+async function linkToJoin({ connection, hello }: Viewer): Promise<string> {
+  if (!hello) throw new Error("There is no session to join at the moment");
+  const place = await connection.place.shareable(hello);
+  const link = place.addressOfPage(location.href);
+  link.hash = "";
+  return link.href;
 }

@@ -43,7 +43,8 @@ export async function bringScene(viewer: Viewer, file: File, toasts: Toasts): Pr
   }
   const name = sceneName(file.name);
   try {
-    await upload(name, file, (fraction) => {
+    const address = viewer.connection.place.address(`api/v1/scenes/${name}`);
+    await upload(address, name, file, (fraction) => {
       viewer.loading.set({ name, stage: "sending the file", fraction });
     });
     await viewer.refreshScenes();
@@ -87,10 +88,15 @@ export function sceneName(file: string): string {
 }
 
 /** Rejects with a sentence for the person. XMLHttpRequest, because fetch tells no progress. */
-function upload(name: string, file: File, progress: (fraction: number) => void): Promise<void> {
+function upload(
+  address: URL,
+  name: string,
+  file: File,
+  progress: (fraction: number) => void,
+): Promise<void> {
   return new Promise((resolve, reject) => {
     const request = new XMLHttpRequest();
-    request.open("PUT", new URL(`api/v1/scenes/${name}`, document.baseURI));
+    request.open("PUT", address);
     request.upload.onprogress = ({ loaded, total }) => progress(total > 0 ? loaded / total : 0);
     request.onerror = () => reject(new Error("The file could not be sent"));
     request.onload = () => {

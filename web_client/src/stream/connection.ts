@@ -6,6 +6,7 @@ import { Signal } from "../signal.ts";
 import { ownName } from "../overlay/people.ts";
 import { Backoff } from "./backoff.ts";
 import { decodableCodecs } from "./codecs.ts";
+import { type Origin, Place, mainSession, meetingRoute } from "./place.ts";
 import type { DrawnFrame, Freshness, FromWorker, ToWorker } from "./worker_messages.ts";
 
 export type ConnectionState =
@@ -34,38 +35,36 @@ const stableAfterMs = 5000;
 const refusalsBeforeFallback = 2;
 const aliveCheckMs = 15_000;
 const aliveTimeoutMs = 10_000;
+/** Who may only watch finds the others on another server once they have found their place. */
+const watchersComeAfterMs = 2000;
 
 export class Connection {
   readonly state = new Signal<ConnectionState>({ kind: "connecting" });
   readonly rpc: RpcPeer;
+  readonly place: Place;
+  /** The session to come back to. On another server whose place is taken, it finds a new one. */
+  origin: Origin | null = null;
   private readonly worker: Worker;
-  private readonly url: string;
-  private readonly probeUrl: string;
   private readonly events: ConnectionEvents;
   private readonly backoff = new Backoff();
   private retryTimer = 0;
   private stableTimer = 0;
   private heardAt = 0;
   private refusals = 0;
-  private session: string | undefined;
+  private watches = false;
   private readonly disposal = new AbortController();
   private readonly aliveTimer: number;
   private lastCopy = 0;
   private readonly copies = new Map<number, (picture: ImageBitmap | null) => void>();
   private takeCopy: ((picture: ImageBitmap) => void) | null = null;
 
-  /** `session` is the one to watch; left out, the server's own. */
   constructor(
     base: string,
     canvas: OffscreenCanvas | null,
     events: ConnectionEvents,
-    session?: string,
+    place = Place.ofPage(base),
   ) {
-    this.session = session;
-    const url = new URL("ws", base);
-    url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
-    this.url = url.href;
-    this.probeUrl = new URL("rpc", base).href;
+    this.place = place;
     this.events = events;
     this.worker = new Worker(new URL("worker.js", base), { name: "stream" });
     this.worker.onmessage = ({ data }: MessageEvent<FromWorker>) => this.receive(data);
@@ -102,7 +101,31 @@ export class Connection {
   open(): void {
     clearTimeout(this.retryTimer);
     this.retryTimer = 0;
-    this.post({ kind: "open", url: this.url, subprotocol });
+    void this.findWay().then(() => {
+      const url = this.place.address("ws");
+      url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
+      this.post({ kind: "open", url: url.href, subprotocol });
+    });
+  }
+
+  /** Another server than before: there we go where the others from that session go too. */
+  private async findWay(): Promise<void> {
+    const { origin, place } = this;
+    if (!origin) return;
+    const there = await place.whoAnswers();
+    if (!there || there.instance === origin.instance) return;
+    place.route = meetingRoute(origin);
+    if (this.watches) await new Promise((resolve) => setTimeout(resolve, watchersComeAfterMs));
+  }
+
+  /** Has the page's address lead to the session that was found, after a reload too. */
+  async keepPlace({ instance, session }: Origin): Promise<void> {
+    const { place } = this;
+    place.session = session;
+    if (session === mainSession && (await place.whoAnswers(null))?.instance === instance) {
+      place.route = null; // the page's bare address leads here
+    }
+    history.replaceState(null, "", place.addressOfPage(location.href));
   }
 
   /** A copy of the picture that is shown; null while there is none. */
@@ -187,6 +210,7 @@ export class Connection {
         this.stop({ kind: "wrong_version", detail: hello.protocol });
         return;
       }
+      this.watches = hello.role === "view";
       await this.events.live(hello);
       this.state.set({ kind: "live", hello });
       clearTimeout(this.stableTimer);
@@ -201,16 +225,19 @@ export class Connection {
     return this.rpc.request<Hello>("hello", {
       client: "heliograph-web",
       codecs: await decodableCodecs(),
-      session: this.session,
+      session: this.origin?.session ?? this.place.session,
+      instance: this.origin?.instance,
       name: ownName(),
     });
   }
 
   private helloRefused(error: Error): void {
     const code = error instanceof RpcError ? error.code : 0;
-    if (code === ErrorCode.notFound && this.session !== undefined) {
-      this.events.warning(`There is no session ${this.session} here; this is the main one`);
-      this.session = undefined;
+    const wanted = this.origin?.session ?? this.place.session;
+    if (code === ErrorCode.notFound && wanted !== undefined) {
+      this.events.warning(`There is no session ${wanted} here; this is the main one`);
+      this.place.session = undefined;
+      this.origin = null;
       void this.sayHello(subprotocol);
       return;
     }
@@ -234,31 +261,15 @@ export class Connection {
     } else if (code === closeCode.tryAgainLater) {
       this.retryLater("full");
     } else {
-      const spoken = wasOpen ? null : await this.probeVersion();
+      // A browser does not tell why an upgrade was refused. Plain HTTP does: a server that answers
+      // there but names another protocol is alive and merely of another version.
+      const spoken = wasOpen ? null : ((await this.place.whoAnswers())?.protocol ?? null);
       if (spoken && spoken !== subprotocol) {
         this.state.set({ kind: "wrong_version", detail: spoken });
       } else {
         this.refusals = spoken ? this.refusals + 1 : 0;
         this.retryLater(this.refusals >= refusalsBeforeFallback ? "pictures_only" : "lost");
       }
-    }
-  }
-
-  /**
-   * A browser does not tell why an upgrade was refused. Plain HTTP does: a server that answers
-   * there but names another protocol is alive and merely of another version.
-   */
-  private async probeVersion(): Promise<string | null> {
-    try {
-      const response = await fetch(this.probeUrl, {
-        method: "POST",
-        headers: { "content-type": "application/json" },
-        body: JSON.stringify({ jsonrpc: "2.0", id: 1, method: "hello", params: {} }),
-      });
-      const answer = (await response.json()) as { result?: Partial<Hello> };
-      return answer.result?.protocol ?? null;
-    } catch {
-      return null;
     }
   }
 
