@@ -169,9 +169,11 @@ class Library(ServerTestCase):
                 moved = self.server.call("camera.orbit", {"yaw": 2})
                 time.sleep(0.02)
             self.assertLessEqual(frames_sent(self.server) - before, 8)
+            taken = 1
+            while view.next_frame().header["state_rev"] < moved["rev"]:
+                taken += 1
             # The newest that had come, one that waited in the server, one drawn since.
-            newer = [view.next_frame() for _ in range(3)]
-            self.assertGreaterEqual(newer[2].header["state_rev"], moved["rev"])
+            self.assertLessEqual(taken, 3)
 
     def test_a_token(self):
         with Server("--scene", "mirror", "--token", TOKEN) as server:
