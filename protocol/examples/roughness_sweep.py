@@ -6,7 +6,7 @@
 
 import argparse
 
-import heliograph
+from own_session import add_options, open_view
 
 LUMINANCE = (0.2126, 0.7152, 0.0722)
 
@@ -17,6 +17,18 @@ def measure(view, material, roughness, samples):
     light = view.array("output.radiance", samples=samples)[..., :3] @ LUMINANCE
     shown = light[view.array("gbuffer.instance", samples=1) > 0]
     return float(shown.mean()), float(shown.std())
+
+
+def sweep(view, material, steps, samples):
+    rows = []
+    try:
+        for step in range(steps):
+            roughness = step / max(steps - 1, 1)
+            rows.append((roughness, *measure(view, material, roughness, samples)))
+            print("roughness {:.2f}: mean {:.4f}, deviation {:.4f}".format(*rows[-1]))
+    finally:
+        view.materials.patch(material=material, patch={"roughness": None})
+    return rows
 
 
 def curve(values, most, color):
@@ -41,7 +53,7 @@ def plot(rows, title):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--url", default="http://127.0.0.1:8080")
+    add_options(parser)
     parser.add_argument("--scene")
     parser.add_argument("--material", help="by name; the first one if left out")
     parser.add_argument("--steps", type=int, default=11)
@@ -49,17 +61,9 @@ def main():
     parser.add_argument("--samples", type=int, default=64)
     parser.add_argument("--plot", default="sweep.svg")
     options = parser.parse_args()
-    with heliograph.connect(options.url) as view:
-        if options.scene:
-            view.scene.load(name=options.scene)
-        view.stream.configure(width=options.size[0], height=options.size[1])
+    with open_view(options, *options.size, options.scene) as view:
         material = options.material or view.materials.list()["materials"][0]["name"]
-        rows = []
-        for step in range(options.steps):
-            roughness = step / max(options.steps - 1, 1)
-            rows.append((roughness, *measure(view, material, roughness, options.samples)))
-            print("roughness {:.2f}: mean {:.4f}, deviation {:.4f}".format(*rows[-1]))
-        view.materials.patch(material=material, patch={"roughness": None})
+        rows = sweep(view, material, options.steps, options.samples)
     with open(options.plot, "w", encoding="utf-8") as file:
         file.write(plot(rows, material))
 

@@ -11,6 +11,7 @@ import os
 import sys
 
 import heliograph
+from own_session import add_options, open_view
 
 
 def thumbnail(view, name, samples):
@@ -21,15 +22,14 @@ def thumbnail(view, name, samples):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--url", default="http://127.0.0.1:8080")
+    add_options(parser)
     parser.add_argument("--models", default="", help="a folder below the server's scene roots")
     parser.add_argument("--size", type=int, default=256)
     parser.add_argument("--samples", type=int, default=32)
     parser.add_argument("--folder", default="thumbnails")
     options = parser.parse_args()
     below = options.models.rstrip("/") + "/" if options.models else ""
-    with heliograph.connect(options.url) as view:
-        view.stream.configure(width=options.size, height=options.size)
+    with open_view(options, options.size, options.size) as view:
         for scene in view.scene.list()["scenes"]:
             name = scene["name"]
             if not name.startswith(below):

@@ -14,7 +14,7 @@ import sys
 
 import numpy
 
-import heliograph
+from own_session import add_options, open_view
 
 
 def file_name(camera):
@@ -23,15 +23,18 @@ def file_name(camera):
 
 def pictures(view, frames):
     """Every camera of the scene, each drawn from a fresh start in lockstep: always the same."""
+    view.frame.run()
     for camera in view.scene.info()["cameras"] or ["fit"]:
-        view.frame.run()
         if camera == "fit":
             view.camera.fit()
         else:
             view.camera.set(name=camera)
-        view.step(frames)
-        yield file_name(camera), view.array(), view.capture()
-    view.frame.run()
+        try:
+            view.step(frames)
+            drawn = view.array(), view.capture()
+        finally:
+            view.frame.run()
+        yield file_name(camera), *drawn
 
 
 def check(folder, name, actual, picture, tolerance):
@@ -52,7 +55,7 @@ def check(folder, name, actual, picture, tolerance):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--url", default="http://127.0.0.1:8080")
+    add_options(parser)
     parser.add_argument("--scene")
     parser.add_argument("--size", type=int, nargs=2, default=(640, 360))
     parser.add_argument("--frames", type=int, default=32)
@@ -62,10 +65,7 @@ def main():
     options = parser.parse_args()
     os.makedirs(options.folder, exist_ok=True)
     good = True
-    with heliograph.connect(options.url) as view:
-        if options.scene:
-            view.scene.load(name=options.scene)
-        view.stream.configure(width=options.size[0], height=options.size[1])
+    with open_view(options, *options.size, options.scene) as view:
         for name, actual, picture in pictures(view, options.frames):
             if options.update:
                 numpy.save(os.path.join(options.folder, name + ".npy"), actual)

@@ -99,11 +99,16 @@ export class RpcPeer {
   /** Fails every waiting request and all later ones: the channel is gone. */
   close(): void {
     this.connected = false;
-    for (const { reject, timer } of this.pending.values()) {
-      clearTimeout(timer);
-      reject(new ChannelClosed("The connection was lost"));
-    }
+    this.failAll(() => new ChannelClosed("The connection was lost"));
+  }
+
+  private failAll(error: () => Error): void {
+    const waiting = [...this.pending.values()];
     this.pending.clear();
+    for (const { reject, timer } of waiting) {
+      clearTimeout(timer);
+      reject(error());
+    }
   }
 
   private dispatch(entry: JsonObject): void {
@@ -112,15 +117,23 @@ export class RpcPeer {
       if (entry.id === undefined) this.onNotification(entry.method, entry.params ?? {});
       return;
     }
+    if (entry.id === null && entry.error !== undefined) {
+      // Whose it is was not to be read: better all are told than one waits in vain.
+      return this.failAll(() => errorOf(entry));
+    }
     const waiting = this.pending.get(entry.id as number);
     if (!waiting) return;
     this.pending.delete(entry.id as number);
     clearTimeout(waiting.timer);
     if (entry.error !== undefined) {
-      const { code, message, data } = entry.error as unknown as RpcErrorObject;
-      waiting.reject(new RpcError(code, message, data ?? {}));
+      waiting.reject(errorOf(entry));
     } else {
       waiting.resolve(entry.result as never);
     }
   }
+}
+
+function errorOf(entry: JsonObject): RpcError {
+  const { code, message, data } = entry.error as unknown as RpcErrorObject;
+  return new RpcError(code, message, data ?? {});
 }

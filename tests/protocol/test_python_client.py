@@ -7,11 +7,13 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 import unittest
 import xml.etree.ElementTree
 
 import numpy
 
+from harness.exposition import parse
 from harness.pictures import decode_jpeg, decode_png
 from harness.server import Server, ServerTestCase
 from test_lockstep import make_scenes
@@ -21,6 +23,41 @@ LIBRARY = os.path.join(PROTOCOL, "python")
 sys.path.insert(0, LIBRARY)
 
 import heliograph  # noqa: E402
+
+TOKEN = "a-token-of-the-library"
+SILENCE = 12.0  # seconds; the server waits 10 for an acknowledgement
+
+
+class Thinkers:
+    """Programs that have connected and ask for nothing for a while, beside the other tests."""
+
+    def __init__(self):
+        self.server = Server("--scene", "mirror")
+        self.never = heliograph.connect(self.server.url)
+        self.once = heliograph.connect(self.server.url)
+        self.first = self.once.next_frame()
+        self.since = time.monotonic()
+
+    def wait(self):
+        time.sleep(max(0.0, self.since + SILENCE - time.monotonic()))
+
+    def close(self):
+        with self.server:
+            self.never.close()
+            self.once.close()
+
+
+def setUpModule():
+    global thinkers
+    thinkers = Thinkers()
+
+
+def tearDownModule():
+    thinkers.close()
+
+
+def frames_sent(server):
+    return parse(server.get("/metrics")[2].decode())["heliograph_frames_sent_total"].samples["", ()]
 
 
 class Generated(ServerTestCase):
@@ -124,9 +161,23 @@ class Library(ServerTestCase):
                 view.scene.list()
             view.close()
 
+    def test_a_slow_program_gets_few_pictures_and_new_ones(self):
+        with self.connect() as view:
+            view.next_frame()
+            before = frames_sent(self.server)
+            for _ in range(40):
+                moved = self.server.call("camera.orbit", {"yaw": 2})
+                time.sleep(0.02)
+            self.assertLessEqual(frames_sent(self.server) - before, 8)
+            taken = 1
+            while view.next_frame().header["state_rev"] < moved["rev"]:
+                taken += 1
+            # The newest that had come, one that waited in the server, one drawn since.
+            self.assertLessEqual(taken, 3)
+
     def test_a_token(self):
-        with Server("--scene", "mirror", "--token", "a-token-of-the-library") as server:
-            with heliograph.connect(server.url, token="a-token-of-the-library") as view:
+        with Server("--scene", "mirror", "--token", TOKEN) as server:
+            with heliograph.connect(server.url, token=TOKEN) as view:
                 self.assertEqual(view.scene.list()["current"], "mirror")
             with self.assertRaises(Exception):
                 heliograph.connect(server.url, token="another-token-altogether")
@@ -158,7 +209,8 @@ class Examples(ServerTestCase):
         os.rename(os.path.join(scenes, "mirror.glb"), os.path.join(scenes, "props", "mirror.glb"))
         with open(os.path.join(scenes, "props", "broken.glb"), "wb") as file:
             file.write(b"nothing")
-        cls.server = Server("--scene", "hopping", scenes=scenes)
+        cls.server = Server("--scene", "hopping", "--token", TOKEN, scenes=scenes)
+        cls.server.headers = {"Authorization": "Bearer " + TOKEN}
 
     @classmethod
     def tearDownClass(cls):
@@ -168,11 +220,28 @@ class Examples(ServerTestCase):
     def setUp(self):
         pass
 
-    def run_example(self, name, *arguments):
+    def state(self):
+        """What of the server a program must leave as it is."""
+        state = {name: self.server.call(name) for name in
+                 ("scene.list", "camera.get", "settings.get", "materials.list")}
+        state["sessions"] = [(one["name"], one["width"], one["height"])
+                             for one in self.server.call("session.list")["sessions"]]
+        return state
+
+    def run_example(self, name, *arguments, environment=None):
         return subprocess.run(
             [sys.executable, os.path.join(PROTOCOL, "examples", name + ".py"), "--url",
              self.server.url, *arguments], cwd=self.folder.name, capture_output=True, text=True,
-            env={**os.environ, "PYTHONPATH": LIBRARY}, timeout=60)
+            env={**os.environ, "PYTHONPATH": LIBRARY, "HELIOGRAPH_TOKEN": TOKEN,
+                 **(environment or {})}, timeout=60)
+
+    def run_aside(self, name, *arguments, returns=0):
+        """Runs one in a session of its own, which nobody notices afterwards."""
+        before = self.state()
+        done = self.run_example(name, *arguments)
+        self.assertEqual(done.returncode, returns, done.stdout + done.stderr)
+        self.assertEqual(self.state(), before)
+        return done
 
     def path(self, *parts):
         return os.path.join(self.folder.name, *parts)
@@ -185,8 +254,7 @@ class Examples(ServerTestCase):
         arguments = ("--scene", "hopping", "--size", "64", "36", "--pictures", "4",
                      "--frames-each", "2", "--folder")
         for folder in ("turn", "again"):
-            done = self.run_example("turntable", *arguments, folder)
-            self.assertEqual(done.returncode, 0, done.stderr)
+            self.run_aside("turntable", *arguments, folder)
         self.assertEqual(sorted(os.listdir(self.path("turn"))),
                          ["000.png", "001.png", "002.png", "003.png"])
         pictures = [self.picture("turn", f"{i:03d}.png").rgb for i in range(4)]
@@ -194,17 +262,15 @@ class Examples(ServerTestCase):
         self.assertEqual(pictures, [self.picture("again", f"{i:03d}.png").rgb for i in range(4)])
 
     def test_thumbnails(self):
-        done = self.run_example("thumbnails", "--models", "props", "--size", "48", "--samples",
-                                "2", "--folder", "thumbs")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.run_aside("thumbnails", "--models", "props", "--size", "48", "--samples", "2",
+                              "--folder", "thumbs")
         self.assertIn("props/broken", done.stderr)
         self.assertEqual(os.listdir(self.path("thumbs", "props")), ["mirror.png"])
         self.assertEqual(self.picture("thumbs", "props", "mirror.png").width, 48)
 
     def test_roughness_sweep(self):
-        done = self.run_example("roughness_sweep", "--scene", "hopping", "--material", "metal_000",
-                                "--steps", "3", "--size", "64", "36", "--samples", "2")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.run_aside("roughness_sweep", "--material", "metal_000", "--steps", "3",
+                              "--size", "64", "36", "--samples", "2")
         self.assertEqual(done.stdout.count("roughness"), 3)
         root = xml.etree.ElementTree.parse(self.path("sweep.svg")).getroot()
         lines = root.findall("{http://www.w3.org/2000/svg}polyline")
@@ -213,15 +279,56 @@ class Examples(ServerTestCase):
     def test_visual_regression(self):
         arguments = ("--scene", "hopping", "--size", "64", "36", "--frames", "2", "--folder",
                      "expected")
-        done = self.run_example("visual_regression", *arguments, "--update")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        done = self.run_example("visual_regression", *arguments)
-        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.run_aside("visual_regression", *arguments, "--update")
+        done = self.run_aside("visual_regression", *arguments)
         self.assertIn("same, 0.0000", done.stdout)
         kept = next(name for name in os.listdir(self.path("expected")) if name.endswith(".npy"))
         pixels = numpy.load(self.path("expected", kept))
         numpy.save(self.path("expected", kept), 255 - pixels)
-        done = self.run_example("visual_regression", *arguments)
-        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        done = self.run_aside("visual_regression", *arguments, returns=1)
         self.assertIn("DIFFERENT", done.stdout)
         self.assertTrue(os.path.exists(self.path("expected", kept[:-4] + ".actual.png")))
+
+    def test_a_session_that_is_named_and_a_program_that_dies_in_it(self):
+        self.server.call("session.create", {"name": "shared", "copy_of": "main"})
+        in_the_way = self.path("dying", "001.png")
+        os.makedirs(in_the_way)
+        done = self.run_example(
+            "turntable", "--session", "shared", "--size", "64", "36", "--pictures", "4",
+            "--frames-each", "2", "--folder", "dying", "--token", TOKEN,
+            environment={"HELIOGRAPH_TOKEN": "not-the-right-token"})
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("001.png", done.stderr)
+        info = self.server.call("session.info", session="shared")
+        self.assertEqual((info["width"], info["height"]), (64, 36))
+        # Pictures come again without being stepped.
+        pictures = set()
+        for _ in range(2):
+            self.server.call("camera.orbit", {"yaw": 60}, "shared")
+            pictures.add(self.server.call("frame.capture", {"samples": 1}, "shared")["data"])
+        self.assertEqual(len(pictures), 2)
+        self.server.call("session.close", {"session": "shared"})
+
+    def test_without_the_token(self):
+        done = self.run_example("turntable", environment={"HELIOGRAPH_TOKEN": ""})
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("401", done.stderr)
+
+
+class Thinking(unittest.TestCase):
+    """Comes last: the time that it needs has passed by then."""
+
+    def test_who_thinks_is_neither_let_go_nor_drawn_for(self):
+        thinkers.wait()
+        for view in (thinkers.never, thinkers.once):
+            self.assertEqual(view.scene.list()["current"], "mirror")
+        before = frames_sent(thinkers.server)
+        for _ in range(20):
+            moved = thinkers.server.call("camera.orbit", {"yaw": 2})
+            time.sleep(0.02)
+        self.assertEqual(frames_sent(thinkers.server), before)
+        frame = thinkers.once.next_frame()
+        self.assertGreater(frame.header["frame_seq"], thinkers.first.header["frame_seq"])
+        while frame.header["state_rev"] < moved["rev"]:
+            frame = thinkers.once.next_frame()
+        self.assertEqual(thinkers.never.next_frame().width, 160)

@@ -60,6 +60,19 @@ test("a lost channel fails what waits, nonsense and stray answers are ignored", 
   await assert.rejects(rpc.request("b"), ChannelClosed);
 });
 
+test("an error of no known request fails all that wait", async () => {
+  const { rpc, sent } = peer();
+  const waiting = [rpc.request("a"), rpc.request("b")];
+  const error = { code: -32002, message: "too many messages" };
+  rpc.receive(JSON.stringify({ jsonrpc: "2.0", id: null, error }));
+  for (const one of waiting) {
+    await assert.rejects(one, (caught: RpcError) => caught.code === -32002);
+  }
+  const later = rpc.request("c");
+  rpc.receive(JSON.stringify({ jsonrpc: "2.0", id: sent[2]?.id, result: 3 }));
+  assert.equal(await later, 3);
+});
+
 test("silence ends in an error that names the method", async () => {
   const { rpc } = peer();
   await assert.rejects(rpc.request("slow.method", {}, 10), /slow\.method/);

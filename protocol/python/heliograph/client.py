@@ -10,12 +10,12 @@ from .pictures import Capture
 
 class AsyncClient(Methods):
     """A viewer in a session. Every method of the protocol is one of its own or of its groups:
-    `await client.camera.orbit(yaw=15)`. No pictures are streamed until frames are asked for."""
+    `await client.camera.orbit(yaw=15)`. No pictures are streamed until frames are asked for, nor
+    when none has been for a while: a client may think as long as it likes."""
 
     def __init__(self, connection):
         super().__init__(self._call)
         self._connection = connection
-        self._streaming = False
         self.info = None  # what hello answered
 
     async def _call(self, method, params):
@@ -23,7 +23,7 @@ class AsyncClient(Methods):
 
     async def greet(self, name):
         self.info = await self.hello(client=name)
-        await self.stream.configure(paused=True)
+        await self._connection.pictures.pause()
 
     async def capture(self, buffer="output", *, format="png", samples=None):
         """One buffer as a file; waits for so many samples, or for all that accumulation gives."""
@@ -42,25 +42,22 @@ class AsyncClient(Methods):
         return await self._call("frame.step", {"frames": frames, "dt": dt})
 
     async def next_frame(self, timeout=60):
-        """The next picture of the stream, which begins with the first call."""
-        await self._stream(True)
-        return await self._connection.next_frame(timeout)
+        """The newest picture of the stream that was not given yet. The stream begins with the first
+        call, and pauses by itself while pictures come that nobody asks for; the next call then
+        begins with the newest of that moment."""
+        return await asyncio.wait_for(self._connection.pictures.next(), timeout)
 
     async def stop_frames(self):
         """Lets no more pictures be sent."""
-        await self._stream(False)
+        await self._connection.pictures.pause()
 
     def listen(self, notification, callback):
-        """Calls `callback(params)` at every such notification. Gives a function that ends it."""
+        """Calls `callback(params)` at every such notification. Gives a function that ends it. What
+        the callback raises goes to the log of the name "heliograph" and ends nothing."""
         return self._connection.listen(notification, callback)
 
     async def close(self):
         await self._connection.close()
-
-    async def _stream(self, wanted):
-        if self._streaming != wanted:
-            await self.stream.configure(paused=not wanted)
-            self._streaming = wanted
 
     async def __aenter__(self):
         return self
@@ -69,10 +66,15 @@ class AsyncClient(Methods):
         await self.close()
 
 
-async def connect_async(url="http://127.0.0.1:8080", *, session=None, token=None,
+async def connect_async(url="http://127.0.0.1:8080", *, session=None, token=None, ssl=None,
                         name="python"):
-    """A connection to the session of that name ("main" without one), as an AsyncClient."""
-    connection = await Connection.open(url, session=session, token=token)
+    """A connection to the session of that name ("main" without one), as an AsyncClient.
+
+    token: What a server with tokens asks for.
+    ssl: For https: an ssl.SSLContext in place of Python's own, for instance
+        ssl.create_default_context(cafile="private-ca.pem").
+    """
+    connection = await Connection.open(url, session=session, token=token, ssl=ssl)
     client = AsyncClient(connection)
     try:
         await client.greet(name)
@@ -123,7 +125,8 @@ class Client(Methods):
         self._run(self._client.stop_frames())
 
     def listen(self, notification, callback):
-        """See AsyncClient.listen; the callback runs in the thread behind."""
+        """See AsyncClient.listen. The callback runs in the thread behind, where the calls of this
+        client are refused: their answers come by that very thread."""
         return self._client.listen(notification, callback)
 
     def close(self):
@@ -138,6 +141,9 @@ class Client(Methods):
         return self._run(self._client._call(method, params))
 
     def _run(self, work):
+        if threading.current_thread() is self._thread:
+            work.close()
+            raise RuntimeError("a listener cannot wait for its own client: call from elsewhere")
         return asyncio.run_coroutine_threadsafe(work, self._loop).result()
 
     def _end_thread(self):
@@ -152,6 +158,7 @@ class Client(Methods):
         self.close()
 
 
-def connect(url="http://127.0.0.1:8080", *, session=None, token=None, name="python"):
-    """A connection to the session of that name ("main" without one), as a Client."""
-    return Client(url, {"session": session, "token": token, "name": name})
+def connect(url="http://127.0.0.1:8080", *, session=None, token=None, ssl=None, name="python"):
+    """A connection to the session of that name ("main" without one), as a Client. See
+    connect_async."""
+    return Client(url, {"session": session, "token": token, "ssl": ssl, "name": name})

@@ -4,14 +4,20 @@ import asyncio
 import base64
 import collections
 import json
+import logging
 import urllib.parse
 
 import websockets
 
 from .errors import HeliographError
+from .picture_stream import PictureStream
 from .pictures import Frame
 
 SUBPROTOCOL = "heliograph.v1"
+# A little more than the longest that a capture waits in the server.
+CALL_TIMEOUT = 310  # seconds
+
+log = logging.getLogger("heliograph")
 
 
 def websocket_address(url, session):
@@ -33,62 +39,59 @@ def offered_subprotocols(token):
 
 
 class Connection:
-    """Frames are acknowledged when they are taken: whoever is slow gets fewer, not later ones."""
+    """Ends with the socket and not before: what goes wrong in a listener is logged."""
 
     def __init__(self, socket):
         self._socket = socket
         self._answers = {}
         self._next_id = 0
-        self._frames = collections.deque()
-        self._frame_came = asyncio.Event()
         self._listeners = collections.defaultdict(list)
         self._ended = None
+        self.pictures = PictureStream(self)
         self._reader = asyncio.ensure_future(self._read())
 
     @classmethod
-    async def open(cls, url, *, session=None, token=None, timeout=30):
+    async def open(cls, url, *, session=None, token=None, ssl=None, timeout=30):
+        options = {"ssl": ssl} if ssl else {}
         socket = await asyncio.wait_for(
             websockets.connect(websocket_address(url, session), max_size=None, compression=None,
-                               subprotocols=offered_subprotocols(token)), timeout)
+                               subprotocols=offered_subprotocols(token), **options), timeout)
         return cls(socket)
 
     async def close(self):
         await self._socket.close()
         await self._reader
 
-    async def call(self, method, params, timeout=300):
-        """Gives the result. Raises HeliographError when the server refuses, ConnectionError when
-        there is no connection any more."""
+    def check(self):
+        """Raises ConnectionError when there is no connection any more."""
         if self._ended:
             raise ConnectionError(self._ended)
+
+    async def call(self, method, params, timeout=CALL_TIMEOUT):
+        """Gives the result. Raises HeliographError when the server refuses, ConnectionError when
+        there is no connection any more."""
+        self.check()
         self._next_id += 1
         number = self._next_id
         answer = self._answers[number] = asyncio.get_running_loop().create_future()
-        await self._send({"jsonrpc": "2.0", "id": number, "method": method, "params": params})
         try:
-            return await asyncio.wait_for(answer, timeout)
+            await self._send({"jsonrpc": "2.0", "id": number, "method": method, "params": params})
+            result = await asyncio.wait_for(answer, timeout)
         finally:
             self._answers.pop(number, None)
+        if method.startswith("stream.") and "paused" in result:
+            self.pictures.paused = result["paused"]
+        return result
+
+    async def notify(self, method, params):
+        """A call without an answer."""
+        await self._send({"jsonrpc": "2.0", "method": method, "params": params})
 
     def listen(self, method, callback):
         """Calls `callback(params)` at every notification of that name. Gives a function that ends
         it."""
         self._listeners[method].append(callback)
         return lambda: self._listeners[method].remove(callback)
-
-    async def next_frame(self, timeout=60):
-        """Waits for a picture of the stream and acknowledges it."""
-        async def wait():
-            while not self._frames:
-                if self._ended:
-                    raise ConnectionError(self._ended)
-                self._frame_came.clear()
-                await self._frame_came.wait()
-        await asyncio.wait_for(wait(), timeout)
-        frame = self._frames.popleft()
-        await self._send({"jsonrpc": "2.0", "method": "stream.ack",
-                          "params": {"frame_seq": frame.header["frame_seq"]}})
-        return frame
 
     async def _send(self, message):
         try:
@@ -97,27 +100,50 @@ class Connection:
             raise ConnectionError(str(closed)) from closed
 
     async def _read(self):
+        ended = "the connection was lost"
         try:
             async for message in self._socket:
-                if isinstance(message, str):
-                    self._take(json.loads(message))
-                else:
-                    self._frames.append(Frame.parse(message))
-                    self._frame_came.set()
-            self._ended = "the server closed the connection"
+                self._receive(message)
+            ended = "the server closed the connection"
         except websockets.ConnectionClosed as closed:
-            self._ended = str(closed)
+            ended = str(closed)
+        finally:
+            self._ended = ended
+            self._fail_all(lambda: ConnectionError(ended))
+            self.pictures.end()
+
+    def _fail_all(self, error):
         for answer in self._answers.values():
             if not answer.done():
-                answer.set_exception(ConnectionError(self._ended))
-        self._frame_came.set()
+                answer.set_exception(error())
+
+    def _receive(self, message):
+        try:
+            if isinstance(message, str):
+                self._take(json.loads(message))
+            else:
+                self.pictures.put(Frame.parse(message))
+        except Exception:
+            log.exception("what the server sent could not be read")
 
     def _take(self, message):
         if "method" in message:
-            for callback in list(self._listeners[message["method"]]):
-                callback(message.get("params", {}))
-            return
-        answer = self._answers.get(message.get("id"))
+            self._tell(message["method"], message.get("params", {}))
+        elif "error" in message and message.get("id") is None:
+            # Whose it is was not to be read: better all are told than one waits in vain.
+            self._fail_all(lambda: HeliographError(message["error"]))
+        else:
+            self._answer(message)
+
+    def _tell(self, method, params):
+        for callback in list(self._listeners[method]):
+            try:
+                callback(params)
+            except Exception:
+                log.exception("a listener to %s failed", method)
+
+    def _answer(self, message):
+        answer = self._answers.get(message["id"])
         if answer is None or answer.done():
             return
         if "error" in message:

@@ -26,6 +26,7 @@ class Server:
         """`certificate` is the one to trust where the server speaks TLS; `early`: not to wait for
         the first picture, only until somebody answers."""
         self.errors_seen = set()  # (method, code) of answers
+        self.headers = {}  # that every request carries, such as a token's
         self.tls = ssl.create_default_context(cafile=certificate) if certificate else None
         self.log = tempfile.TemporaryFile(mode="w+")
         port = self._free_port() if early else 0
@@ -105,7 +106,7 @@ class Server:
             http.client.HTTPSConnection(self.host, self.port, timeout=timeout, context=self.tls)
             if self.tls else http.client.HTTPConnection(self.host, self.port, timeout=timeout))
         try:
-            connection.request(method, path, body, headers or {})
+            connection.request(method, path, body, {**self.headers, **(headers or {})})
             response = connection.getresponse()
             names = {name.lower(): value for name, value in response.getheaders()}
             return response.status, names, response.read()

@@ -9,6 +9,11 @@ function call(id, method, params = {}) {
   socket.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
 }
 
+/** In whatever order it all came. */
+function closeWhenAllIsSeen() {
+  if (saw.pictures > 0 && saw.methods && saw.hello && saw.pong) socket.close(1000, "enough");
+}
+
 const failure = setTimeout(() => {
   console.log(JSON.stringify({ ...saw, error: "timed out" }));
   process.exit(1);
@@ -26,6 +31,7 @@ socket.on("open", () => {
 });
 socket.on("pong", (data) => {
   saw.pong = data.toString();
+  closeWhenAllIsSeen();
 });
 socket.on("message", (data, isBinary) => {
   if (isBinary) {
@@ -38,7 +44,7 @@ socket.on("message", (data, isBinary) => {
     if (message.id === 1) saw.hello = message.result.protocol;
     if (message.id === 2) saw.methods = message.result.methods.length;
   }
-  if (saw.pictures > 0 && saw.methods && saw.hello && saw.pong) socket.close(1000, "enough");
+  closeWhenAllIsSeen();
 });
 socket.on("close", (code) => {
   clearTimeout(failure);
