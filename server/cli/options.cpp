@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "cli/config_file.hpp"
@@ -45,7 +46,8 @@ constexpr const char* schema_examples = R"text(Examples:
   heliograph schema > heliograph.json    the methods (OpenRPC) and the settings (JSON Schema)
   heliograph schema --markdown           the settings as a page to read)text";
 
-constexpr const char* health_examples = R"text(Example:
+constexpr const char* health_examples = R"text(Examples:
+  heliograph health                             the server that the same environment and file make
   heliograph health --url http://127.0.0.1:9000/health/ready)text";
 
 CLI::App* add_render(CLI::App& app, RenderOptions& options) {
@@ -113,8 +115,10 @@ CLI::App* add_schema(CLI::App& app, SchemaOptions& options) {
 CLI::App* add_health(CLI::App& app, HealthOptions& options) {
   CLI::App* command =
       app.add_subcommand("health", "Ask a running server whether it is ready; exits 0 or 1");
-  command->add_option("--url", options.url, "Address to ask")
-      ->capture_default_str()
+  command
+      ->add_option("--url", options.url,
+                   "Address to ask [that of \"heliograph serve\" with the same environment and "
+                   "--config]")
       ->envname("HELIOGRAPH_HEALTH_URL");
   command
       ->add_option("--tls-ca", options.authorities,
@@ -176,6 +180,20 @@ bool asks_for_help(const std::vector<std::string>& arguments) {
   });
 }
 
+/// Where a server of these options answers on this machine. @throws std::invalid_argument
+std::string health_url(const ServeOptions& serve) {
+  if (serve.port == 0) {
+    throw std::invalid_argument("port 0 is another one at each start: give --url");
+  }
+  std::string host = serve.host;
+  // Who listens on every address is asked on the one that only this machine can reach.
+  if (host == "0.0.0.0") host = "127.0.0.1";
+  if (host == "::") host = "::1";
+  if (host.find(':') != std::string::npos) host = "[" + host + "]";
+  const std::string scheme = serve.tls_certificate.empty() ? "http" : "https";
+  return scheme + "://" + host + ":" + std::to_string(serve.port) + "/health/ready";
+}
+
 /// The command that the arguments name, or null.
 CLI::App* named_command(CLI::App& app, const std::vector<std::string>& arguments) {
   for (const std::string& argument : arguments) {
@@ -186,9 +204,20 @@ CLI::App* named_command(CLI::App& app, const std::vector<std::string>& arguments
   return nullptr;
 }
 
-}  // namespace
+Command parse(const std::vector<std::string>& given);
 
-Command parse_command_line(int count, char** arguments) {
+/// The options with the address of the server that the environment and `config_file` describe.
+Command with_url_of_server(HealthOptions options, const std::string& config_file) {
+  std::vector<std::string> serving{"serve"};
+  if (!config_file.empty()) serving.push_back("--config=" + config_file);
+  const Command command = parse(serving);
+  const auto* const serve = std::get_if<ServeOptions>(&command);
+  if (!serve) return command;
+  options.url = health_url(*serve);
+  return options;
+}
+
+Command parse(const std::vector<std::string>& given) {
   CLI::App app(description, "heliograph");
   app.footer(examples);
   app.require_subcommand(1);
@@ -211,7 +240,6 @@ Command parse_command_line(int count, char** arguments) {
   const CLI::App* health_command = add_health(app, health);
   for (CLI::App* command : app.get_subcommands({})) name_variables(*command);
 
-  const std::vector<std::string> given(arguments + std::min(count, 1), arguments + count);
   CLI::App* const command = named_command(app, given);
   std::optional<OptionSources> sources;
   std::vector<std::string> to_parse = given;
@@ -236,8 +264,16 @@ Command parse_command_line(int count, char** arguments) {
   if (*render_command) return render;
   if (*devices_command) return devices;
   if (*schema_command) return schema;
-  if (*health_command) return health;
+  if (*health_command) {
+    return health.url.empty() ? with_url_of_server(health, config_file) : Command(health);
+  }
   return Finished{};
+}
+
+}  // namespace
+
+Command parse_command_line(int count, char** arguments) {
+  return parse({arguments + std::min(count, 1), arguments + count});
 }
 
 }  // namespace heliograph::cli

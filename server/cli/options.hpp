@@ -95,7 +95,7 @@ struct SchemaOptions {
 };
 
 struct HealthOptions {
-  std::string url = "http://127.0.0.1:8080/health/ready";
+  std::string url;          // without --url, that of the server by the same configuration
   std::string authorities;  // file; empty: those of the system
 };
 

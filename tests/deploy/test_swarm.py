@@ -8,12 +8,12 @@ import unittest
 import yaml
 
 from harness import images
-from harness.files import DEPLOY
+from harness.files import DEPLOY, text_of
 from harness.fleet import add_images
 from harness.replaying_viewer import ReplayingViewer, Wish
 from harness.scenes import NAMES, make_scenes, service_override
-from harness.servers import TOKEN
-from harness.site import Site
+from harness.servers import TOKEN, get
+from harness.site import GATEWAY, Site
 
 
 class Swarm(unittest.IsolatedAsyncioTestCase):
@@ -30,12 +30,15 @@ class Swarm(unittest.IsolatedAsyncioTestCase):
             worker.docker("swarm", "join", "--token", token, f"{cls.manager.address}:2377")
         override = os.path.join(cls.manager.folder, "override.yaml")
         with open(override, "w", encoding="utf-8") as file:
-            yaml.safe_dump({"version": "3.8", "services": {"heliograph": service_override(
+            yaml.safe_dump({"version": "3.9", "services": {"heliograph": service_override(
                 make_scenes(cls.site.folder))}}, file)
+        tokens = os.path.join(cls.manager.folder, "tokens")
+        with open(tokens, "w", encoding="ascii") as file:
+            file.write(f"control {TOKEN}\n")
+        cls.manager.docker("secret", "create", "heliograph-tokens", tokens)
         started = time.monotonic()
         cls.manager.docker("stack", "deploy", "--resolve-image", "never", "--compose-file",
-                           f"{DEPLOY}/stack.yaml", "--compose-file", override, "heliograph",
-                           environment={"HELIOGRAPH_TOKEN": TOKEN})
+                           f"{DEPLOY}/stack.yaml", "--compose-file", override, "heliograph")
         cls.wait_for_replicas({"heliograph_heliograph": "3/3", "heliograph_balancer": "3/3"})
         print(f"swarm: all services up after {time.monotonic() - started:.1f} s", flush=True)
 
@@ -62,6 +65,65 @@ class Swarm(unittest.IsolatedAsyncioTestCase):
     def url(self, machine):
         return f"http://{machine.address}:8080/"
 
+    def test_a_session_is_on_one_node_whichever_balancer_is_asked(self):
+        """Also of a balancer that began when others had seen nodes come and go, and so counts them
+        in another order."""
+        lost = self.workers[0]
+        for service in ("heliograph", "balancer"):
+            name, = lost.docker("ps", "--filter", f"name=heliograph_{service}.", "--format",
+                                "{{.Names}}").split()
+            lost.docker("kill", name)
+        machines = (self.manager, *self.workers)
+        self.wait_for_the_same_nodes(machines)
+        nodes = set()
+        for number in range(12):
+            served = {self.served_by(machine, path) for machine in machines for path in
+                      (f"?session=s{number}", f"api/v1/sessions/s{number}/frame.jpg")}
+            self.assertEqual(len(served), 1, f"s{number}")
+            nodes |= served
+        self.assertGreater(len(nodes), 1, "nothing is balanced")
+
+    def wait_for_the_same_nodes(self, machines):
+        """Until the balancer of each leads viewers to all three, and to no other."""
+        known, deadline = {}, time.monotonic() + 120
+        while len(known) != len(machines) or len(set(known.values())) != 1 or any(
+                None in nodes or len(nodes) != 3 for nodes in known.values()):
+            self.assertLess(time.monotonic(), deadline, f"{known}")
+            for machine in machines:
+                known[machine.name] = frozenset(
+                    self.served_by(machine, "api/v1/schema") for _ in range(9))
+            time.sleep(0.2)
+
+    def served_by(self, machine, path):
+        """The node's address, or None where none can be reached."""
+        try:
+            return get(self.url(machine) + path)[1].get("X-Heliograph-Node")
+        except OSError:
+            return None
+
+    async def test_nodes_are_told_where_viewers_come_from(self):
+        await self.viewers()
+        name, = self.manager.docker("ps", "--filter", "name=heliograph_heliograph.", "--format",
+                                    "{{.Names}}").split()
+        log = text_of(self.manager.inspect(name, "{{json .LogPath}}"))
+        self.assertIn(f'"client":"{GATEWAY}"', log.replace("\\", "").replace(": ", ":"))
+
+    def test_what_compose_limits_is_limited_here(self):
+        for service, pids in (("heliograph", 256), ("balancer", 64)):
+            name, = self.manager.docker("ps", "--filter", f"name=heliograph_{service}.", "--format",
+                                        "{{.Names}}").split()
+            host = self.manager.inspect(name, "{{json .HostConfig}}")
+            self.assertEqual(host["PidsLimit"], pids)
+            self.assertEqual(host["CapDrop"], ["ALL"])
+            self.assertTrue(host["ReadonlyRootfs"])
+            if service == "heliograph":
+                mounts = self.manager.docker("exec", name, "cat", "/proc/mounts").splitlines()
+                options, = [line.split()[3].split(",") for line in mounts
+                            if line.split()[1] == "/tmp"]
+                self.assertLessEqual({"size=65536k", "noexec", "nosuid", "nodev"}, set(options))
+                environment = self.manager.inspect(name)["Config"]["Env"]
+                self.assertFalse([entry for entry in environment if TOKEN in entry])
+
     async def viewers(self):
         """Through the manager's balancer; enough of them that one is on every node."""
         found = []
@@ -73,7 +135,7 @@ class Swarm(unittest.IsolatedAsyncioTestCase):
             found.append(viewer)
         return found
 
-    async def test_a_machine_is_unplugged_and_the_service_goes_on(self):
+    async def test_when_a_machine_is_unplugged_the_service_goes_on(self):
         self.assertEqual(self.machines_of("heliograph_heliograph"), ["hg1", "hg2", "hg3"])
         viewers = await self.viewers()
         self.assertEqual(len({viewer.node for viewer in viewers}), 3)

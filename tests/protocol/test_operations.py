@@ -187,6 +187,24 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("refused", err)
 
+    def test_health_asks_where_the_server_would_listen(self):
+        with socket.socket() as unused:
+            unused.bind(("127.0.0.1", 0))
+            port = unused.getsockname()[1]
+            for host, asked in (("127.0.0.1", "127.0.0.1"), ("0.0.0.0", "127.0.0.1"),
+                                ("::", "[::1]"), ("127.0.0.2", "127.0.0.2")):
+                code, _, err = run("health", environment={"HELIOGRAPH_HOST": host,
+                                                          "HELIOGRAPH_PORT": str(port)})
+                self.assertEqual(code, 1)
+                self.assertIn(f"http://{asked}:{port}/health/ready: ", err)
+        code, _, err = run("health", environment={"HELIOGRAPH_HEALTH_URL": "http://127.0.0.1:1/a",
+                                                  "HELIOGRAPH_PORT": str(port)})
+        self.assertEqual(code, 1)
+        self.assertIn("http://127.0.0.1:1/a: ", err)
+        code, _, err = run("health", environment={"HELIOGRAPH_PORT": "0"})
+        self.assertEqual(code, 1)
+        self.assertIn("--url", err)
+
     def test_render_writes_a_picture(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "out.png")

@@ -139,6 +139,26 @@ class Tls(ServerTestCase):
         self.assertEqual(code, 1)
         self.assertIn("verify", err)
 
+    def test_health_finds_the_server_by_its_own_configuration(self):
+        """As in a container whose health is asked for without any option."""
+        environment = {"HELIOGRAPH_PORT": str(self.server.port),
+                       "HELIOGRAPH_TLS_CERTIFICATE": self.certificate,
+                       "HELIOGRAPH_TLS_KEY": self.key}
+        expected = f"https://127.0.0.1:{self.server.port}/health/ready: 200"
+        code, out, err = run("health", environment=environment)
+        self.assertEqual((code, err), (0, ""))
+        self.assertIn(expected, out)
+        path = os.path.join(self.folder.name, "heliograph.toml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("[serve]\n" + "".join(f'{name[11:].lower().replace("_", "-")} = "{value}"\n'
+                                             for name, value in environment.items()))
+        for arguments, more in ((("--config", path), {}), ((), {"HELIOGRAPH_CONFIG": path})):
+            code, out, err = run("health", *arguments, environment=more)
+            self.assertEqual((code, err), (0, ""))
+            self.assertIn(expected, out)
+        del environment["HELIOGRAPH_TLS_CERTIFICATE"], environment["HELIOGRAPH_TLS_KEY"]
+        self.assertEqual(run("health", environment=environment)[0], 1, "it speaks TLS only")
+
 
 class Reload(unittest.IsolatedAsyncioTestCase):
     async def test_a_new_certificate_is_used_without_losing_anybody(self):

@@ -6,8 +6,8 @@ import time
 import yaml
 
 from . import images
-from .commands import program
-from .files import DEPLOY
+from .commands import program, run
+from .files import DEPLOY, text_of
 from .scenes import make_scenes, service_override
 from .servers import TOKEN, get
 
@@ -18,15 +18,20 @@ class Fleet:
     def __init__(self, machine, nodes):
         self.machine, self.count = machine, nodes
         self.url = f"http://{machine.address}:8080/"
+        self.secure_url = f"https://{machine.address}:8443/"
+        self.certificate = os.path.join(machine.folder, "heliograph.pem")
+        self.renew_certificate()
         self.prometheus = f"http://{machine.address}:9090/"
         override = os.path.join(machine.folder, "override.yaml")
         with open(override, "w", encoding="utf-8") as file:
             yaml.safe_dump({"services": {"heliograph": service_override(
                 make_scenes(machine.folder))}}, file)
-        self._base = ("--file", os.path.join(DEPLOY, "compose.yaml"), "--file", override,
+        self._base = ("--file", os.path.join(DEPLOY, "compose.yaml"),
+                      "--file", os.path.join(DEPLOY, "compose.tls.yaml"), "--file", override,
                       "--project-name", "fleet")
         self._environment = {"HELIOGRAPH_TOKEN": TOKEN, "HELIOGRAPH_ADDRESS": "0.0.0.0:8080",
-                             "HELIOGRAPH_CPUS": "2"}
+                             "HELIOGRAPH_TLS_ADDRESS": "0.0.0.0:8443",
+                             "HELIOGRAPH_CERTIFICATE": self.certificate, "HELIOGRAPH_CPUS": "2"}
 
     def __enter__(self):
         program("docker-compose")
@@ -88,8 +93,25 @@ class Fleet:
                                      self.compose("logs", "--tail", "15"))
             time.sleep(0.2)
 
+    def renew_certificate(self):
+        """In place: a container has the file itself, not its folder."""
+        _make_certificate(self.certificate, self.machine.address)
+
     def ask(self, path, **options):
         return get(self.url + path, **options)
+
+    def ask_securely(self, path, **options):
+        return get(self.secure_url + path, certificate=self.certificate, **options)
+
+
+def _make_certificate(path, address):
+    """Signed by itself, with its key in the same file, which the balancer's user may read."""
+    run(program("openssl"), "req", "-x509", "-newkey", "ec", "-pkeyopt",
+        "ec_paramgen_curve:prime256v1", "-nodes", "-days", "2", "-subj", "/CN=heliograph", "-addext",
+        f"subjectAltName=IP:{address}", "-keyout", path, "-out", f"{path}.certificate")
+    with open(path, "a", encoding="ascii") as file:
+        file.write(text_of(f"{path}.certificate"))
+    os.chmod(path, 0o644)
 
 
 def add_images(machine, *, prometheus=False):

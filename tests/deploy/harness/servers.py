@@ -4,6 +4,7 @@ import http.client
 import json
 import os
 import socket
+import ssl
 import time
 import urllib.parse
 
@@ -93,18 +94,34 @@ def free_port():
         return server.getsockname()[1]
 
 
-def get(url, *, token=TOKEN, headers=None, timeout=60):
-    """Status, headers and body of one exchange on a connection of its own."""
+def get(url, *, token=TOKEN, headers=None, timeout=60, certificate=None):
+    """Status, headers and body of one exchange on a connection of its own; by TLS where the file is
+    given with the server's certificate."""
     address = urllib.parse.urlsplit(url)
-    connection = http.client.HTTPConnection(address.hostname, address.port, timeout=timeout)
+    if certificate:
+        connection = http.client.HTTPSConnection(
+            address.hostname, address.port, timeout=timeout,
+            context=ssl.create_default_context(cafile=certificate))
+    else:
+        connection = http.client.HTTPConnection(address.hostname, address.port, timeout=timeout)
     try:
         path = address.path + ("?" + address.query if address.query else "")
         connection.request("GET", path, headers={"Authorization": f"Bearer {token}",
                                                  **(headers or {})})
         answer = connection.getresponse()
-        return answer.status, dict(answer.getheaders()), answer.read()
+        return answer.status, _by_name(answer.getheaders()), answer.read()
     finally:
         connection.close()
+
+
+def _by_name(headers):
+    """By names as in Set-Cookie, however they were sent; those that came more than once have a line
+    for each."""
+    found = {}
+    for name, value in headers:
+        name = name.title()
+        found[name] = f"{found[name]}\n{value}" if name in found else value
+    return found
 
 
 def call(url, method, params=None, *, token=TOKEN, timeout=60):
