@@ -14,6 +14,7 @@
 #include <string>
 #include <utility>
 
+#include "net/beast_messages.hpp"
 #include "net/connection.hpp"
 #include "protocol/messages.hpp"
 #include "session/viewer_link.hpp"
@@ -55,20 +56,20 @@ class PictureStream : public Connection,
 
   void start(const HttpRequest& request, const std::string& session) {
     const auto joined = context_.host.sessions().enter(session, weak_from_this(), true);
-    viewer_ = joined ? *joined : std::string();
+    const auto sharing = context_.access.sharing_headers(request);
+    if (!joined) return refuse(joined.error().message, sharing);
+    viewer_ = *joined;
+    ++context_.traffic.responses[200];
     headers_.version(11);
-    headers_.result(joined ? http::status::ok : http::status::service_unavailable);
+    headers_.result(http::status::ok);
     for (const auto& [name, value] : context_.router.headers()) headers_.set(name, value);
+    for (const auto& [name, value] : sharing) headers_.set(name, value);
     headers_.set(http::field::cache_control, "no-store");
     headers_.set("X-Accel-Buffering", "no");
     headers_.keep_alive(false);
-    if (joined) {
-      spdlog::info("session {}: viewer {} takes pictures over HTTP", session, viewer_);
-      headers_.set(http::field::content_type, "multipart/x-mixed-replace; boundary=picture");
-      configure(request);
-    } else {
-      ending_ = true;
-    }
+    spdlog::info("session {}: viewer {} takes pictures over HTTP", session, viewer_);
+    headers_.set(http::field::content_type, "multipart/x-mixed-replace; boundary=picture");
+    configure(request);
     writing_ = true;
     serializer_.emplace(headers_);
     stream_.next_layer().expires_after(longest_write);
@@ -97,6 +98,16 @@ class PictureStream : public Connection,
   }
 
  private:
+  /// There is no room: the usual answer, and the end.
+  void refuse(std::string_view why, const Headers& sharing) {
+    ending_ = true;
+    refusal_ = to_message(context_, come_back_later(why), {.sharing = sharing});
+    stream_.next_layer().expires_after(longest_write);
+    http::async_write(stream_, refusal_, [self = shared_from_this()](error_code, std::size_t) {
+      self->ended();
+    });
+  }
+
   void configure(const HttpRequest& request) {
     const auto session = context_.host.sessions().session_watched_by(viewer_);
     if (!session) return;
@@ -179,6 +190,7 @@ class PictureStream : public Connection,
   ClientStream stream_;
   http::response<http::empty_body> headers_;
   std::optional<http::response_serializer<http::empty_body>> serializer_;
+  BeastResponse refusal_;  // instead of the pictures
   std::array<char, 512> incoming_{};
   std::string viewer_;
   std::optional<stream::OutgoingFrame> frame_;
