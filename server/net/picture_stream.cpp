@@ -16,6 +16,7 @@
 
 #include "net/beast_messages.hpp"
 #include "net/connection.hpp"
+#include "net/reader_progress.hpp"
 #include "protocol/messages.hpp"
 #include "session/viewer_link.hpp"
 
@@ -49,7 +50,7 @@ class PictureStream : public Connection,
                       public std::enable_shared_from_this<PictureStream> {
  public:
   PictureStream(ServerContext& context, ClientStream stream)
-      : context_(context), stream_(std::move(stream)) {
+      : context_(context), stream_(std::move(stream)), watch_(stream_.get_executor()) {
     context_.enter(*this);
   }
   ~PictureStream() override { context_.leave(*this); }
@@ -78,6 +79,7 @@ class PictureStream : public Connection,
                                if (error || self->viewer_.empty()) return self->ended();
                                self->write(first_part);
                              });
+    watch();
     read();
   }
 
@@ -119,6 +121,18 @@ class PictureStream : public Connection,
       change.max_fps = std::clamp(*rate, 1u, 240u);
     }
     if (session->audience().configure(viewer_, change)) session->audience().start(viewer_);
+  }
+
+  /// Who vanished leaves pictures in the socket that nobody takes; they fit there, and block nothing.
+  void watch() {
+    watch_.expires_after(longest_write);
+    watch_.async_wait([self = shared_from_this()](error_code error) {
+      if (error || self->viewer_.empty()) return;
+      const int socket = self->stream_.next_layer().socket().native_handle();
+      const std::uint64_t before = std::exchange(self->taken_, bytes_taken(socket));
+      if (self->taken_ == before && bytes_not_taken(socket) > 0) return self->ended();
+      self->watch();
+    });
   }
 
   /// The client has nothing to say; its end is noticed here.
@@ -179,6 +193,7 @@ class PictureStream : public Connection,
 
   void ended() {
     ending_ = true;
+    watch_.cancel();
     stream_.next_layer().close();
     if (viewer_.empty()) return;
     context_.host.sessions().leave(viewer_);
@@ -190,6 +205,8 @@ class PictureStream : public Connection,
   ClientStream stream_;
   http::response<http::empty_body> headers_;
   std::optional<http::response_serializer<http::empty_body>> serializer_;
+  asio::steady_timer watch_;
+  std::uint64_t taken_ = 0;  // bytes, when it was looked last
   BeastResponse refusal_;  // instead of the pictures
   std::array<char, 512> incoming_{};
   std::string viewer_;

@@ -1,8 +1,10 @@
 #include "net/reader_progress.hpp"
 
 // The kernel's own header, which contradicts that of the C library: its tcp_info is the whole one.
+#include <linux/sockios.h>
 #include <linux/tcp.h>
 #include <netinet/in.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
 namespace heliograph::net {
@@ -14,6 +16,11 @@ std::uint64_t bytes_taken(int socket) {
   return info.tcpi_bytes_acked;
 }
 
+std::size_t bytes_not_taken(int socket) {
+  int bytes = 0;
+  return ioctl(socket, SIOCOUTQ, &bytes) == 0 ? static_cast<std::size_t>(bytes) : 0;
+}
+
 void notice_absence(int socket) {
   const auto set = [socket](int level, int name, int value) {
     setsockopt(socket, level, name, &value, sizeof value);
@@ -22,7 +29,6 @@ void notice_absence(int socket) {
   set(IPPROTO_TCP, TCP_KEEPIDLE, 15);
   set(IPPROTO_TCP, TCP_KEEPINTVL, 5);
   set(IPPROTO_TCP, TCP_KEEPCNT, 3);
-  set(IPPROTO_TCP, TCP_USER_TIMEOUT, 30'000);
 }
 
 }  // namespace heliograph::net

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace heliograph::net {
@@ -8,8 +9,11 @@ namespace heliograph::net {
 /// Does not grow where the system does not tell.
 std::uint64_t bytes_taken(int socket);
 
-/// Sees to it that who vanishes without a word is noticed within half a minute, also where nothing is
-/// sent: the system asks by itself, and gives up what is not acknowledged.
+/// Bytes that were written and that the other end has not taken yet.
+std::size_t bytes_not_taken(int socket);
+
+/// Sees to it that who vanishes without a word while nothing is sent is noticed within half a minute:
+/// the system asks by itself. Where something was sent it only repeats that, for a quarter of an hour.
 void notice_absence(int socket);
 
 }  // namespace heliograph::net
