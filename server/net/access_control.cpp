@@ -15,6 +15,7 @@ namespace heliograph::net {
 namespace {
 
 constexpr std::string_view cookie_name = "heliograph_token";
+constexpr std::string_view bearer = "Bearer ";
 constexpr std::string_view token_protocol = "heliograph.v1.token.";
 // A request is one guess, not hundreds in as many cookies.
 constexpr std::size_t most_tokens_shown = 3;
@@ -66,7 +67,6 @@ std::string_view without_port_of_address(std::string_view text) {
 std::vector<std::string> tokens_shown(const HttpRequest& request) {
   std::vector<std::string> shown;
   const std::string_view authorization = request.header("authorization");
-  constexpr std::string_view bearer = "Bearer ";
   if (authorization.starts_with(bearer)) shown.emplace_back(authorization.substr(bearer.size()));
   for (const std::string_view cookie : header_elements(request.header("cookie"), ';')) {
     const std::size_t equals = std::min(cookie.find('='), cookie.size());
@@ -84,6 +84,17 @@ std::vector<std::string> tokens_shown(const HttpRequest& request) {
 }
 
 }  // namespace
+
+bool embedded_elsewhere(const HttpRequest& request) {
+  const std::string_view site = request.header("sec-fetch-site");
+  if (site != "cross-site" && site != "same-site") return false;
+  // With an origin the allow-list decides. A bearer token is never sent but by who has it; a cookie
+  // is, by every port of its host.
+  if (request.headers.contains("origin")) return false;
+  if (request.header("authorization").starts_with(bearer)) return false;
+  const bool page = request.path == "/" && request.header("sec-fetch-mode") == "navigate";
+  return !page && !request.path.starts_with("/health/");
+}
 
 bool is_loopback(std::string_view address) {
   return address == "localhost" || address == "::1" ||
@@ -141,6 +152,36 @@ std::string AccessControl::token_cookie(const std::string& token,
   return cookie;
 }
 
+std::optional<HttpResponse> AccessControl::preflight(const HttpRequest& request) const {
+  const bool asks = request.method == "OPTIONS" &&
+                    request.headers.contains("access-control-request-method");
+  if (!asks || !origin_listed(request.header("origin"))) return std::nullopt;
+  if (auto refused = wrong_place(request)) return refused;
+  HttpResponse response{.status = 204, .content_type = {}, .body = {}, .headers = {}};
+  response.headers = {
+      {"Access-Control-Allow-Methods", "GET, HEAD, POST, PUT"},
+      {"Access-Control-Allow-Headers", "Authorization, Content-Type, If-None-Match"},
+      {"Access-Control-Max-Age", "600"},
+  };
+  // From the wide network into a private one, or to loopback.
+  if (request.header("access-control-request-private-network") == "true") {
+    response.headers.emplace_back("Access-Control-Allow-Private-Network", "true");
+  }
+  return response;
+}
+
+Headers AccessControl::sharing_headers(const HttpRequest& request) const {
+  if (options_.allowed_origins.empty()) return {};
+  if (!origin_listed(request.header("origin"))) return {{"Vary", "Origin"}};
+  return {
+      {"Vary", "Origin"},
+      {"Access-Control-Allow-Origin", std::string(request.header("origin"))},
+      {"Access-Control-Allow-Credentials", "true"},
+      {"Access-Control-Expose-Headers", "ETag, Retry-After, X-Heliograph-Samples"},
+      {"Cross-Origin-Resource-Policy", "cross-origin"},
+  };
+}
+
 std::string AccessControl::client_of(const HttpRequest& request) const {
   if (!is_proxy(request.peer)) return request.peer;
   // The last proxy adds at the end; what stands before the first untrusted one is hearsay.
@@ -168,6 +209,9 @@ std::optional<HttpResponse> AccessControl::wrong_place(const HttpRequest& reques
   const bool from_page = request.headers.contains("origin");
   if (from_page && !origin_allowed(request.header("origin"), host, request.secure)) {
     return text_response(403, "Pages of this origin may not use the server; see --allow-origin.");
+  }
+  if (embedded_elsewhere(request)) {
+    return text_response(403, "Pages of other origins may not embed this; see --allow-origin.");
   }
   return std::nullopt;
 }
@@ -210,11 +254,15 @@ bool AccessControl::host_allowed(std::string_view host) const {
 /// Without TLS of our own a proxy may have some, so that the scheme of the page tells nothing.
 bool AccessControl::origin_allowed(std::string_view origin, std::string_view host,
                                    bool secure) const {
-  const auto& allowed = options_.allowed_origins;
-  if (std::find(allowed.begin(), allowed.end(), origin) != allowed.end()) return true;
+  if (origin_listed(origin)) return true;
   if (secure && !origin.starts_with("https://")) return false;
   const std::string_view authority = authority_of(origin);
   return !authority.empty() && lower(authority) == lower(host);
+}
+
+bool AccessControl::origin_listed(std::string_view origin) const {
+  const auto& allowed = options_.allowed_origins;
+  return std::find(allowed.begin(), allowed.end(), origin) != allowed.end();
 }
 
 bool AccessControl::is_proxy(std::string_view address) const {

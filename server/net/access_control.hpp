@@ -34,6 +34,8 @@ struct Admission {
 /// it must be an address, this machine's name or one that is allowed.
 /// Origin: browsers send it with every WebSocket and every cross-site request. It must be the very
 /// host and port that the request went to, or on the allow-list; compared whole, never by prefix.
+/// Sec-Fetch-Site: what pages merely embed (pictures, frames) comes without Origin but with this. From
+/// other sites, and from other ports of the same host, only what leads to the viewer's page passes.
 /// Token: see TokenSet. A client that shows wrong ones is soon not listened to for a while.
 class AccessControl {
  public:
@@ -51,6 +53,12 @@ class AccessControl {
   /// The Set-Cookie header of a browser that has shown the token.
   std::string token_cookie(const std::string& token, const HttpRequest& request) const;
 
+  /// The answer to a page of another origin that asks whether it may ask (CORS preflight); nothing
+  /// if the request is no such question or the origin is not on the allow-list.
+  std::optional<HttpResponse> preflight(const HttpRequest& request) const;
+  /// Headers by which the browser lets a page on the allow-list read the answer.
+  Headers sharing_headers(const HttpRequest& request) const;
+
   /// The address that the request comes from, as told by proxies that are trusted.
   std::string client_of(const HttpRequest& request) const;
   /// Whether the client speaks TLS, with us or with a proxy that is trusted.
@@ -60,6 +68,7 @@ class AccessControl {
   std::optional<HttpResponse> wrong_place(const HttpRequest& request) const;
   bool host_allowed(std::string_view host) const;
   bool origin_allowed(std::string_view origin, std::string_view host, bool secure) const;
+  bool origin_listed(std::string_view origin) const;
   bool is_proxy(std::string_view address) const;
   Admission judge(const std::vector<std::string>& shown, const HttpRequest& request) const;
 
@@ -69,6 +78,11 @@ class AccessControl {
   std::vector<AddressRange> proxies_;
   mutable FailureLimit failures_;
 };
+
+/// Whether a page of another origin, this host's other ports included, asks for something that is not
+/// for it by way of an element that names no origin: a picture, a frame, a link. Browsers say so to
+/// hosts that they trust: loopback and HTTPS.
+bool embedded_elsewhere(const HttpRequest& request);
 
 bool is_loopback(std::string_view address);
 /// Whether `text` is "http://" or "https://" and a host, with or without port, and nothing else.

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <set>
+#include <utility>
 
 #include "net/access_control.hpp"
 #include "net/client_stream.hpp"
@@ -25,6 +26,11 @@ namespace beast = boost::beast;
 constexpr std::chrono::seconds handshake_timeout{10};
 constexpr std::chrono::seconds idle_timeout{30};
 constexpr std::chrono::seconds closing_timeout{2};
+// Bytes a second; who takes less than that of a large answer is let go.
+constexpr double slowest_reader = 8 * 1024;
+// Of all connections together: answers that wait to be read. Small ones always find room.
+constexpr std::size_t most_outgoing_bytes = 1u << 30;
+constexpr std::size_t small_answer = 64u << 10;
 constexpr std::size_t largest_request_head = 8 * 1024;
 constexpr int send_buffer_bytes = 256 * 1024;
 constexpr int unsent_bytes = 64 * 1024;
@@ -35,6 +41,26 @@ constexpr double refusals_per_second = 50.0;
 constexpr double refusals_at_once = 1000.0;
 constexpr double pings_per_second = 50.0;
 constexpr double pings_at_once = 200.0;
+
+/// What one connection holds of the memory of answers, given back at its end.
+class OutgoingBytes {
+ public:
+  explicit OutgoingBytes(std::size_t& in_all) : in_all_(in_all) {}
+  ~OutgoingBytes() { hold(0); }
+  OutgoingBytes(const OutgoingBytes&) = delete;
+  OutgoingBytes& operator=(const OutgoingBytes&) = delete;
+
+  bool has_room(std::size_t more) const {
+    return more <= small_answer || in_all_ + more <= most_outgoing_bytes;
+  }
+  void hold(std::size_t bytes) {
+    in_all_ += bytes - std::exchange(held_, bytes);
+  }
+
+ private:
+  std::size_t& in_all_;
+  std::size_t held_ = 0;
+};
 
 /// Registers a connection for the end of the server.
 class Connection {
@@ -57,6 +83,7 @@ struct ServerContext {
   std::unique_ptr<TlsCertificate> certificate;  // null: no TLS
   std::function<void()> on_last_left;           // called while ending, when nobody is left
   std::set<Connection*> connections;
+  std::size_t outgoing_bytes = 0;  // see OutgoingBytes
   bool draining = false;  // nobody new is let in
   bool ending = false;    // everybody is asked to leave
 

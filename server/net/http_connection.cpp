@@ -5,13 +5,14 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
-#include <cctype>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
+#include "net/beast_messages.hpp"
 #include "net/connection.hpp"
+#include "net/paced_write.hpp"
 #include "net/rate_limit.hpp"
 #include "protocol/messages.hpp"
 
@@ -20,36 +21,6 @@ namespace {
 
 namespace http = beast::http;
 using boost::system::error_code;
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
-
-template <class View>
-std::string to_string(const View& view) {
-  return std::string(view.data(), view.size());
-}
-
-HttpRequest to_request(http::request<http::string_body>&& message) {
-  HttpRequest request;
-  request.method = to_string(message.method_string());
-  const std::string target = to_string(message.target());
-  const std::size_t question = std::min(target.find('?'), target.size());
-  request.path = target.substr(0, question);
-  request.query =
-      parse_query(std::string_view(target).substr(std::min(question + 1, target.size())));
-  for (const auto& field : message) {
-    const std::string name = lower(to_string(field.name_string()));
-    std::string value = to_string(field.value());
-    // Repeated fields are one list, RFC 9110 section 5.2; two hosts or origins then match nothing.
-    const auto [entry, first] = request.headers.emplace(name, value);
-    if (!first) entry->second += ", " + value;
-  }
-  request.body = std::move(message.body());
-  return request;
-}
 
 /// Why an upgrade that may otherwise pass cannot become a viewer.
 std::optional<HttpResponse> upgrade_refusal(const HttpRequest& request,
@@ -141,6 +112,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   }
 
   void read() {
+    framing_ = {};
     parser_.emplace();
     parser_->header_limit(largest_request_head);
     parser_->body_limit(context_.uploads ? context_.uploads->max_bytes() : largest_body());
@@ -156,6 +128,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   std::size_t largest_body() const { return context_.host.dispatch_limits().max_message_bytes; }
 
   void received_header(error_code error) {
+    framing_.head_only = parser_->get().method() == http::verb::head;
     if (error) return received(error);
     if (context_.uploads && door_ == Door::main && parser_->get().method() == http::verb::put) {
       return begin_upload();
@@ -187,11 +160,10 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
 
   /// Lets the body go to a file, if it may.
   void begin_upload() {
-    keep_alive_ = false;
+    framing_.keep_alive = false;
     answering_ = true;
-    HttpRequest request = to_request(http::request<http::string_body>(parser_->get()));
-    request.peer = stream_.peer();
-    request.secure = stream_.is_secure();
+    const HttpRequest request = to_request(BeastRequest(parser_->get()), stream_);
+    framing_.sharing = context_.access.sharing_headers(request);
     const auto size = parser_->content_length();
     if (auto refused = upload_refusal(request, size)) return send(*std::move(refused));
     auto begun = context_.uploads->begin(std::string(uploaded_name(request.path)), *size);
@@ -253,13 +225,13 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
 
   void received(error_code error) {
     if (error == http::error::body_limit || error == http::error::header_limit) {
-      keep_alive_ = false;
+      framing_.keep_alive = false;
       return send(text_response(413, "The request is too large."));
     }
     if (!error) return answer();
     if (error == http::error::end_of_stream) return close();
     if (error.category() == http::make_error_code(http::error::bad_method).category()) {
-      keep_alive_ = false;
+      framing_.keep_alive = false;
       return send(text_response(400, "This is not an HTTP request."));
     }
     // Timed out or gone: nobody is left to answer.
@@ -267,17 +239,17 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
 
   void answer() {
     const bool upgrade = beast::websocket::is_upgrade(parser_->get());
-    keep_alive_ = parser_->keep_alive() && !upgrade && !leaving_ && !context_.draining;
+    framing_.keep_alive = parser_->keep_alive() && !upgrade && !leaving_ && !context_.draining;
     answering_ = true;
-    HttpRequest request = to_request(parser_->release());
-    request.peer = stream_.peer();
-    request.secure = stream_.is_secure();
+    const HttpRequest request = to_request(parser_->release(), stream_);
     if (door_ == Door::measuring) return send(context_.router.answer_measurer(request));
+    framing_.sharing = context_.access.sharing_headers(request);
     if (context_.certificate && !request.secure) return send(to_https(request));
     if (upgrade) return become_viewer(request);
     if (!calls_.allow(RateLimit::Clock::now())) {
       return send(text_response(429, "Too many requests on this connection."));
     }
+    if (auto allowed = context_.access.preflight(request)) return send(*std::move(allowed));
     if (const auto session = picture_stream_address(request); session && request.method == "GET") {
       return stream_pictures(request, *session);
     }
@@ -291,7 +263,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
 
   /// What somebody gets who speaks plain HTTP where TLS is spoken.
   HttpResponse to_https(const HttpRequest& request) {
-    keep_alive_ = false;
+    framing_.keep_alive = false;
     if (auto refusal = context_.access.admit(request, false).refusal) return *std::move(refusal);
     HttpResponse response = text_response(400, "This port speaks HTTPS.");
     if (request.method != "GET" && request.method != "HEAD") return response;
@@ -315,7 +287,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   }
 
   void stream_pictures(const HttpRequest& request, const std::string& session) {
-    keep_alive_ = false;
+    framing_.keep_alive = false;
     Admission admission = context_.access.admit(request);
     if (admission.refusal) return send(*std::move(admission.refusal));
     if (context_.draining) return send(come_back_later("The server is shutting down."));
@@ -326,29 +298,25 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   }
 
   void send(HttpResponse answer) {
-    ++context_.traffic.responses[answer.status];
-    response_ = {};
-    response_.version(11);
-    response_.result(static_cast<unsigned>(answer.status));
-    for (const auto& [name, value] : context_.router.headers()) response_.set(name, value);
-    response_.set(http::field::cache_control, "no-store");
-    if (!answer.content_type.empty()) {
-      response_.set(http::field::content_type, answer.content_type);
+    if (!outgoing_.has_room(answer.body.size())) {
+      answer = come_back_later("Too much waits to be read by others.");
     }
-    for (const auto& [name, value] : answer.headers) response_.set(name, value);
-    response_.keep_alive(keep_alive_);
-    response_.body() = std::move(answer.body);
-    response_.prepare_payload();
-    stream_.next_layer().expires_after(idle_timeout);
-    http::async_write(
-        stream_, response_,
-        [self = shared_from_this()](error_code error, std::size_t) { self->sent(error); });
+    response_ = to_message(context_, std::move(answer), framing_);
+    outgoing_.hold(response_.body().size());
+    serializer_.emplace(response_);
+    const PaceKeeper keeper({.patience = idle_timeout, .bytes_per_second = slowest_reader},
+                            PaceKeeper::Clock::now());
+    write_paced(stream_, *serializer_, keeper,
+                [self = shared_from_this()](error_code error) { self->sent(error); });
   }
 
   void sent(error_code error) {
     answering_ = false;
+    serializer_.reset();
+    response_ = {};
+    outgoing_.hold(0);
     if (error) return;
-    if (!keep_alive_ || leaving_) return close();
+    if (!framing_.keep_alive || leaving_) return close();
     read();
   }
 
@@ -383,10 +351,12 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   std::shared_ptr<session::UploadStore::Incoming> upload_;
   std::optional<http::request_parser<http::file_body>> upload_parser_;
   std::chrono::steady_clock::time_point upload_deadline_;
-  http::response<http::string_body> response_;
+  Framing framing_;
+  OutgoingBytes outgoing_{context_.outgoing_bytes};
+  BeastResponse response_;
+  std::optional<http::response_serializer<http::string_body>> serializer_;
   RateLimit calls_;
   bool first_ = true;
-  bool keep_alive_ = false;
   bool answering_ = false;
   bool leaving_ = false;
 };

@@ -24,11 +24,13 @@ struct HttpRequest {
   std::optional<std::string> parameter(const std::string& name) const;
 };
 
+using Headers = std::vector<std::pair<std::string, std::string>>;
+
 struct HttpResponse {
   int status = 200;
   std::string content_type = "text/plain; charset=utf-8";
   std::string body;
-  std::vector<std::pair<std::string, std::string>> headers;
+  Headers headers;
 };
 
 /// One line of plain text for people.

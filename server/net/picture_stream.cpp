@@ -13,7 +13,9 @@
 #include <string>
 #include <utility>
 
+#include "net/beast_messages.hpp"
 #include "net/connection.hpp"
+#include "net/reader_progress.hpp"
 #include "protocol/messages.hpp"
 #include "session/event_log.hpp"
 #include "session/viewer_link.hpp"
@@ -51,30 +53,33 @@ class PictureStream : public Connection,
                       public std::enable_shared_from_this<PictureStream> {
  public:
   PictureStream(ServerContext& context, ClientStream stream)
-      : context_(context), stream_(std::move(stream)), rest_(stream_.get_executor()) {
+      : context_(context),
+        stream_(std::move(stream)),
+        watch_(stream_.get_executor()),
+        rest_(stream_.get_executor()) {
     context_.enter(*this);
   }
   ~PictureStream() override { context_.leave(*this); }
 
   void start(const HttpRequest& request, const std::string& session) {
     const auto joined = context_.host.sessions().enter(session, weak_from_this(), true);
-    viewer_ = joined ? *joined : std::string();
+    const auto sharing = context_.access.sharing_headers(request);
+    if (!joined) return refuse(joined.error().message, sharing);
+    viewer_ = *joined;
+    ++context_.traffic.responses[200];
     headers_.version(11);
-    headers_.result(joined ? http::status::ok : http::status::service_unavailable);
+    headers_.result(http::status::ok);
     for (const auto& [name, value] : context_.router.headers()) headers_.set(name, value);
+    for (const auto& [name, value] : sharing) headers_.set(name, value);
     headers_.set(http::field::cache_control, "no-store");
     headers_.set("X-Accel-Buffering", "no");
     headers_.keep_alive(false);
-    if (joined) {
-      session_ = session;
-      client_ = context_.access.client_of(request);
-      session::log_info({.session = session_, .viewer = viewer_, .client = client_},
-                        "a viewer takes pictures over HTTP");
-      headers_.set(http::field::content_type, "multipart/x-mixed-replace; boundary=picture");
-      configure(request);
-    } else {
-      ending_ = true;
-    }
+    session_ = session;
+    client_ = context_.access.client_of(request);
+    session::log_info({.session = session_, .viewer = viewer_, .client = client_},
+                      "a viewer takes pictures over HTTP");
+    headers_.set(http::field::content_type, "multipart/x-mixed-replace; boundary=picture");
+    configure(request);
     writing_ = true;
     serializer_.emplace(headers_);
     read();  // before there is a time limit: what waits for the client's end must not run into it
@@ -84,6 +89,7 @@ class PictureStream : public Connection,
                                if (error || self->viewer_.empty()) return self->ended();
                                self->write(first_part);
                              });
+    watch();
   }
 
   void shut_down() override { finish(); }
@@ -103,6 +109,16 @@ class PictureStream : public Connection,
   }
 
  private:
+  /// There is no room: the usual answer, and the end.
+  void refuse(std::string_view why, const Headers& sharing) {
+    ending_ = true;
+    refusal_ = to_message(context_, come_back_later(why), {.sharing = sharing});
+    stream_.next_layer().expires_after(longest_write);
+    http::async_write(stream_, refusal_, [self = shared_from_this()](error_code, std::size_t) {
+      self->ended();
+    });
+  }
+
   void configure(const HttpRequest& request) {
     const auto session = context_.host.sessions().session_watched_by(viewer_);
     if (!session) return;
@@ -114,6 +130,18 @@ class PictureStream : public Connection,
       change.max_fps = std::clamp(*rate, 1u, 240u);
     }
     if (session->audience().configure(viewer_, change)) session->audience().start(viewer_);
+  }
+
+  /// Who vanished leaves pictures in the socket that nobody takes; they fit there, and block nothing.
+  void watch() {
+    watch_.expires_after(longest_write);
+    watch_.async_wait([self = shared_from_this()](error_code error) {
+      if (error || self->viewer_.empty()) return;
+      const int socket = self->stream_.next_layer().socket().native_handle();
+      const std::uint64_t before = std::exchange(self->taken_, bytes_taken(socket));
+      if (self->taken_ == before && bytes_not_taken(socket) > 0) return self->ended();
+      self->watch();
+    });
   }
 
   /// The client has nothing to say; its end is noticed here.
@@ -188,6 +216,7 @@ class PictureStream : public Connection,
   void ended() {
     ending_ = true;
     rest_.cancel();
+    watch_.cancel();
     stream_.next_layer().close();
     if (viewer_.empty()) return;
     context_.host.sessions().leave(viewer_);
@@ -199,6 +228,9 @@ class PictureStream : public Connection,
   ClientStream stream_;
   http::response<http::empty_body> headers_;
   std::optional<http::response_serializer<http::empty_body>> serializer_;
+  asio::steady_timer watch_;
+  std::uint64_t taken_ = 0;  // bytes, when it was looked last
+  BeastResponse refusal_;  // instead of the pictures
   std::array<char, 512> incoming_{};
   std::string session_;
   std::string viewer_;

@@ -86,7 +86,13 @@ std::optional<std::pair<std::string_view, std::string_view>> picture_address(
   return std::pair{path.substr(0, split), path.substr(split + file.size())};
 }
 
-using Headers = std::vector<std::pair<std::string, std::string>>;
+std::optional<std::uint32_t> whole_number(std::string_view text) {
+  std::uint32_t value = 0;
+  const char* const end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, value);
+  if (parsed.ec != std::errc() || parsed.ptr != end) return std::nullopt;
+  return value;
+}
 
 /// The value of frame-ancestors. @throws std::invalid_argument
 std::string frame_ancestors(const std::vector<std::string>& allowed) {
@@ -172,9 +178,7 @@ void Router::handle(const HttpRequest& request, Reply reply) const {
   if (const auto address = picture_address(request.path)) {
     return picture(request, address->first, address->second, std::move(reply));
   }
-  HttpResponse response = answer_get(request);
-  if (request.method == "HEAD") response.body.clear();
-  reply(std::move(response));
+  reply(answer_get(request));
 }
 
 std::optional<HttpResponse> Router::name_conflict(std::string_view scene) const {
@@ -185,7 +189,7 @@ std::optional<HttpResponse> Router::name_conflict(std::string_view scene) const 
 
 HttpResponse Router::answer_measurer(const HttpRequest& request) const {
   if (request.method != "GET" && request.method != "HEAD") return method_not_allowed("GET");
-  if (request.headers.contains("origin")) {
+  if (request.headers.contains("origin") || embedded_elsewhere(request)) {
     return text_response(403, "Pages have no business here.");
   }
   if (auto state = health(request)) return *std::move(state);
@@ -242,18 +246,17 @@ void Router::picture(const HttpRequest& request, std::string_view session,
   session::CaptureRequest capture;
   capture.format = kind->format;
   capture.buffer = request.parameter("buffer").value_or("output");
-  const std::string samples = request.parameter("samples").value_or("1");
-  std::uint32_t count = 0;
-  const char* end = samples.data() + samples.size();
-  const auto parsed = std::from_chars(samples.data(), end, count);
-  if (parsed.ec != std::errc() || parsed.ptr != end || count == 0) {
-    return reply(text_response(400, "samples must be a whole number from 1."));
+  if (const auto samples = request.parameter("samples")) {
+    capture.samples = whole_number(*samples);
+    if (capture.samples.value_or(0) == 0) {
+      return reply(text_response(400, "samples must be a whole number from 1."));
+    }
   }
-  capture.samples = count;
   capture.done = [reply, kind](protocol::Result<session::Capture> result) {
     if (!result) return reply(error_response(result.error()));
     reply({.content_type = std::string(kind->content_type),
-           .body = {result->file.begin(), result->file.end()}});
+           .body = {result->file.begin(), result->file.end()},
+           .headers = {{"X-Heliograph-Samples", std::to_string(result->samples)}}});
   };
   if (const auto accepted = (*found)->request_capture(std::move(capture)); !accepted) {
     reply(error_response(accepted.error()));

@@ -38,7 +38,7 @@ class Router {
   /// What the door for measuring tools answers: metrics and health, to everybody.
   HttpResponse answer_measurer(const HttpRequest& request) const;
   /// Every response's protection against misuse of the page: content security policy and the like.
-  const std::vector<std::pair<std::string, std::string>>& headers() const { return headers_; }
+  const Headers& headers() const { return headers_; }
   /// From now on the server is not ready for new work.
   void drain() { draining_ = true; }
 
@@ -54,7 +54,7 @@ class Router {
   const AccessControl& access_;
   const Traffic& traffic_;
   const RouterOptions options_;
-  const std::vector<std::pair<std::string, std::string>> headers_;
+  const Headers headers_;
   const std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
   std::atomic<bool> draining_ = false;
 };

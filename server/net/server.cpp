@@ -16,6 +16,7 @@
 
 #include "net/connection.hpp"
 #include "net/listener.hpp"
+#include "net/reader_progress.hpp"
 #include "session/event_log.hpp"
 
 namespace heliograph::net {
@@ -90,6 +91,7 @@ struct Server::State {
     socket.set_option(asio::socket_base::send_buffer_size(send_buffer_bytes), ignored);
     setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &unsent_bytes,
                sizeof unsent_bytes);
+    notice_absence(socket.native_handle());
     start_http_connection(context, ClientStream(std::move(socket), *std::move(seat)), by);
   }
 

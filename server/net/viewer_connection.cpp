@@ -13,7 +13,10 @@
 #include <utility>
 
 #include "net/connection.hpp"
+#include "net/presence.hpp"
 #include "net/rate_limit.hpp"
+#include "net/reader_progress.hpp"
+#include "net/refused_calls.hpp"
 #include "protocol/messages.hpp"
 #include "session/event_log.hpp"
 #include "session/viewer_link.hpp"
@@ -25,20 +28,19 @@ namespace http = beast::http;
 namespace websocket = beast::websocket;
 using boost::system::error_code;
 
-// A viewer that does not take its messages is let go before they fill the memory. Large enough for
-// a captured picture of the largest size.
-constexpr std::size_t most_waiting_messages = 256;
-constexpr std::size_t most_waiting_bytes = 128u << 20;
+// What may wait behind the message that is being written: more is only for who goes on taking it.
+constexpr std::size_t patient_messages = 256;
+constexpr std::size_t most_messages = 4096;
+// An answer that would not fit behind what waits is replaced by an error. Large enough for a captured
+// picture of the largest size.
+constexpr std::size_t most_waiting_bytes = 256u << 20;
+constexpr std::chrono::seconds longest_stall{2};
+constexpr std::chrono::seconds watch_interval{5};
 
 constexpr std::uint16_t session_ended = 4003;
 constexpr std::uint16_t slow_consumer = 4004;
 constexpr int reconnect_after_ms = 1000;
 constexpr std::chrono::seconds longest_without_acknowledgement{10};
-
-constexpr const char* rate_limited =
-    R"({"jsonrpc":"2.0","id":null,"error":{"code":-32002,)"
-    R"("message":"too many messages on this connection",)"
-    R"("data":{"path":"","reason":"too many messages","limit":"500 in a second"}}})";
 
 class ViewerConnection : public Connection,
                          public session::ViewerLink,
@@ -51,6 +53,8 @@ class ViewerConnection : public Connection,
         socket_(std::move(stream)),
         close_deadline_(socket_.get_executor()),
         patience_(socket_.get_executor()),
+        watch_(socket_.get_executor()),
+        stall_(socket_.get_executor()),
         calls_(calls_per_second, calls_at_once, RateLimit::Clock::now()),
         refusals_(refusals_per_second, refusals_at_once, RateLimit::Clock::now()),
         pings_(pings_per_second, pings_at_once, RateLimit::Clock::now()) {
@@ -61,8 +65,9 @@ class ViewerConnection : public Connection,
   void accept(const HttpRequest& request) {
     websocket::stream_base::timeout timeouts{};
     timeouts.handshake_timeout = handshake_timeout;
-    timeouts.idle_timeout = idle_timeout;
-    timeouts.keep_alive_pings = true;
+    // Beast would give up a peer that is busy reading a long message; see watch.
+    timeouts.idle_timeout = websocket::stream_base::none();
+    timeouts.keep_alive_pings = false;
     socket_.set_option(timeouts);
     socket_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
       response.set(http::field::sec_websocket_protocol, std::string(protocol::protocol_name));
@@ -71,6 +76,7 @@ class ViewerConnection : public Connection,
     // One WebSocket frame per picture, written from where it lies.
     socket_.auto_fragment(false);
     socket_.control_callback([this](websocket::frame_type kind, beast::string_view) {
+      presence_.heard(Presence::Clock::now());
       if (kind == websocket::frame_type::ping && !pings_.allow(RateLimit::Clock::now())) {
         flooded("too many pings");
       }
@@ -128,6 +134,8 @@ class ViewerConnection : public Connection,
     session::log_info({.session = session_, .viewer = viewer_, .client = client_},
                       view_only_ ? "a viewer connected, to watch only" : "a viewer connected");
     if (context_.ending) shut_down();
+    presence_.heard(Presence::Clock::now());
+    watch();
     read();
   }
 
@@ -139,8 +147,9 @@ class ViewerConnection : public Connection,
 
   void received(error_code error) {
     if (error) return ended(error);
+    presence_.heard(Presence::Clock::now());
     const bool text = socket_.got_text();
-    const std::string message = beast::buffers_to_string(incoming_.data());
+    std::string message = beast::buffers_to_string(incoming_.data());
     incoming_.consume(incoming_.size());
     if (closing_) return read();
     if (!text) {
@@ -149,19 +158,36 @@ class ViewerConnection : public Connection,
     }
     ++context_.traffic.calls;
     if (calls_.allow(RateLimit::Clock::now())) {
-      const std::weak_ptr<ViewerConnection> weak = weak_from_this();
-      context_.host.dispatcher().handle(message, {.viewer = viewer_, .view_only = view_only_},
-                                        [weak](std::string answer) {
-                                          const auto self = weak.lock();
-                                          if (!self || answer.empty()) return;
-                                          self->send(std::move(answer), {});
-                                        });
+      call(std::move(message));
     } else {
       ++context_.traffic.calls_refused;
-      enqueue(rate_limited, {});
+      enqueue(refuse_calls(message, too_many_messages()), {});
       if (!refusals_.allow(RateLimit::Clock::now())) flooded("too many messages");
     }
     read();
+  }
+
+  void call(std::string message) {
+    const auto text = std::make_shared<const std::string>(std::move(message));
+    context_.host.dispatcher().handle(
+        *text, {.viewer = viewer_, .view_only = view_only_},
+        [text, weak = weak_from_this()](std::string answer) {
+          const auto self = weak.lock();
+          if (!self || answer.empty()) return;
+          if (answer.size() <= small_answer) return self->send(std::move(answer), {});
+          asio::post(self->socket_.get_executor(),
+                     [self, text, answer = std::move(answer)]() mutable {
+                       self->enqueue_large(std::move(answer), *text);
+                     });
+        });
+  }
+
+  void enqueue_large(std::string answer, std::string_view message) {
+    if (waiting_bytes_ + answer.size() > most_waiting_bytes ||
+        !outgoing_.has_room(answer.size())) {
+      answer = refuse_calls(message, answer_too_large("256 MiB"));
+    }
+    enqueue(std::move(answer), {});
   }
 
   /// Lets go of somebody who does not heed the limits. From within the control callback too, where
@@ -187,12 +213,51 @@ class ViewerConnection : public Connection,
     }
     waiting_bytes_ += text.size();
     waiting_.push_back({.text = std::move(text), .key = std::move(key)});
-    if (waiting_.size() > most_waiting_messages || waiting_bytes_ > most_waiting_bytes) {
-      waiting_.clear();
-      ++context_.traffic.viewers_let_go;
-      return close(slow_consumer, "messages are not being read");
-    }
+    if (waiting_.size() > most_messages) return let_go_slow();
+    if (waiting_.size() > patient_messages) expect_progress();
+    outgoing_.hold(waiting_bytes_ + text_in_flight_.size());
     write_next();
+  }
+
+  /// Lets a viewer go that lets messages pile up while it takes none of what is being sent.
+  void expect_progress() {
+    if (std::exchange(stall_runs_, true)) return;
+    stall_.expires_after(longest_stall);
+    stall_.async_wait([self = shared_from_this(), before = taken()](error_code error) {
+      self->stall_runs_ = false;
+      if (error || self->closing_ || self->waiting_.size() <= patient_messages) return;
+      if (self->taken() == before) return self->let_go_slow();
+      self->expect_progress();
+    });
+  }
+
+  void let_go_slow() {
+    waiting_.clear();
+    ++context_.traffic.viewers_let_go;
+    close(slow_consumer, "messages are not being read");
+  }
+
+  /// Bytes that the viewer's system has taken so far.
+  std::uint64_t taken() {
+    return bytes_taken(beast::get_lowest_layer(socket_).socket().native_handle());
+  }
+
+  /// Looks now and then whether the viewer is still there.
+  void watch() {
+    watch_.expires_after(watch_interval);
+    watch_.async_wait([self = shared_from_this()](error_code error) {
+      if (error || self->closing_) return;
+      const std::uint64_t write = self->writing_ ? self->writes_ : 0;
+      const auto verdict = self->presence_.look(Presence::Clock::now(), write, self->taken());
+      if (verdict == Presence::Verdict::gone) return self->ended(beast::error::timeout);
+      if (verdict == Presence::Verdict::silent && !self->pinging_) self->ping();
+      self->watch();
+    });
+  }
+
+  void ping() {
+    pinging_ = true;
+    socket_.async_ping({}, [self = shared_from_this()](error_code) { self->pinging_ = false; });
   }
 
   void write_next() {
@@ -202,6 +267,7 @@ class ViewerConnection : public Connection,
     };
     if (!waiting_.empty()) {
       writing_ = true;
+      ++writes_;
       text_in_flight_ = std::move(waiting_.front().text);
       waiting_.pop_front();
       waiting_bytes_ -= text_in_flight_.size();
@@ -214,6 +280,7 @@ class ViewerConnection : public Connection,
     frame_in_flight_ = session->audience().take(viewer_);
     if (!frame_in_flight_) return;
     writing_ = true;
+    ++writes_;
     const std::array<asio::const_buffer, 2> parts{asio::buffer(frame_in_flight_->header),
                                                   asio::buffer(frame_in_flight_->frame->payload)};
     socket_.binary(true);
@@ -242,6 +309,8 @@ class ViewerConnection : public Connection,
 
   void written(error_code error) {
     writing_ = false;
+    text_in_flight_ = {};
+    outgoing_.hold(waiting_bytes_);
     frame_in_flight_.reset();
     if (!error) write_next();
   }
@@ -264,6 +333,8 @@ class ViewerConnection : public Connection,
     closing_ = true;
     close_deadline_.cancel();
     patience_.cancel();
+    watch_.cancel();
+    stall_.cancel();
     waiting_.clear();
     error_code ignored;
     beast::get_lowest_layer(socket_).socket().close(ignored);
@@ -285,6 +356,12 @@ class ViewerConnection : public Connection,
   asio::steady_timer close_deadline_;
   asio::steady_timer patience_;  // runs while a frame is on its way
   bool patience_runs_ = false;
+  asio::steady_timer watch_;
+  asio::steady_timer stall_;  // runs while too much waits
+  bool stall_runs_ = false;
+  Presence presence_{idle_timeout, slowest_reader, watch_interval, Presence::Clock::now()};
+  std::uint64_t writes_ = 0;  // messages and frames so far
+  bool pinging_ = false;
   RateLimit calls_;
   RateLimit refusals_;
   RateLimit pings_;
@@ -294,6 +371,7 @@ class ViewerConnection : public Connection,
   std::string viewer_;
   std::deque<Message> waiting_;
   std::size_t waiting_bytes_ = 0;
+  OutgoingBytes outgoing_{context_.outgoing_bytes};
   std::string text_in_flight_;
   std::optional<stream::OutgoingFrame> frame_in_flight_;
   std::optional<std::string> farewell_;  // why to close once everything is sent

@@ -263,7 +263,7 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
             while not stop.is_set():
                 try:
                     status, _, body = await asyncio.to_thread(
-                        self.fleet.ask, "api/v1/sessions/main/frame.jpg", timeout=30)
+                        self.fleet.ask, "api/v1/sessions/main/frame.jpg?samples=1", timeout=30)
                     answers.append(status if status == 200 else (status, body[:80]))
                 except OSError as failure:
                     answers.append(repr(failure))

@@ -335,6 +335,7 @@ class Floods(ServerTestCase):
                 answered += 1
             elif "error" in message:
                 self.assertEqual(message["error"]["code"], -32002)
+                self.assertEqual(message["id"], 1)
                 self.assertIn("500", message["error"]["data"]["limit"])
                 refused += 1
         return answered, refused

@@ -53,6 +53,70 @@ TEST(AccessControl, AnyAddressIsAHostNameWhereAnyInterfaceIsBound) {
   EXPECT_EQ(status(access, {{"host", "10.1.2.3:1"}, {"origin", "http://10.1.2.3:2"}}), 403);
 }
 
+// What <img src> on a page of another origin sends: no Origin, but this.
+TEST(AccessControl, WhatOtherOriginsEmbedIsRefused) {
+  const AccessControl access({.allowed_origins = {"https://good.example"}});
+  const auto get = [&](std::string path, std::map<std::string, std::string> headers) {
+    HttpRequest asked = request(std::move(headers));
+    asked.path = std::move(path);
+    const Admission admission = access.admit(asked);
+    return admission.refusal ? admission.refusal->status : 200;
+  };
+  for (const char* site : {"cross-site", "same-site"}) {
+    for (const char* path : {"/api/v1/sessions/main/stream.mjpg", "/metrics", "/app.js", "/"}) {
+      EXPECT_EQ(get(path, {{"host", "localhost"}, {"sec-fetch-site", site}}), 403) << path;
+    }
+    EXPECT_EQ(get("/", {{"host", "localhost"},
+                        {"sec-fetch-site", site},
+                        {"sec-fetch-mode", "navigate"}}),
+              200);
+    EXPECT_EQ(get("/metrics", {{"host", "localhost"},
+                               {"sec-fetch-site", site},
+                               {"sec-fetch-mode", "navigate"}}),
+              403);
+    EXPECT_EQ(get("/health/live", {{"host", "localhost"}, {"sec-fetch-site", site}}), 200);
+    EXPECT_EQ(get("/metrics", {{"host", "localhost"},
+                               {"sec-fetch-site", site},
+                               {"origin", "https://good.example"}}),
+              200);
+  }
+  for (const char* site : {"none", "same-origin"}) {
+    EXPECT_EQ(get("/metrics", {{"host", "localhost"}, {"sec-fetch-site", site}}), 200);
+  }
+}
+
+TEST(AccessControl, ATokenIsItsOwnersRightButACookieIsNot) {
+  const AccessControl access({.tokens = {{"correct-horse", Role::control}}});
+  const std::map<std::string, std::string> elsewhere{{"host", "localhost"},
+                                                     {"sec-fetch-site", "same-site"}};
+  auto bearer = elsewhere;
+  bearer["authorization"] = "Bearer correct-horse";
+  HttpRequest asked = request(bearer);
+  asked.path = "/metrics";
+  EXPECT_FALSE(access.admit(asked).refusal);
+  auto cookie = elsewhere;
+  cookie["cookie"] = "heliograph_token=correct-horse";
+  asked = request(cookie);
+  asked.path = "/metrics";
+  EXPECT_EQ(access.admit(asked).refusal->status, 403);
+}
+
+// Browsers show no token when they ask beforehand.
+TEST(AccessControl, AllowedOriginsMayAskBeforehandWithoutToken) {
+  const AccessControl access({.tokens = {{"correct-horse", Role::control}},
+                              .allowed_origins = {"https://good.example"}});
+  HttpRequest asked = request({{"host", "localhost"},
+                               {"origin", "https://good.example"},
+                               {"access-control-request-method", "POST"}});
+  EXPECT_FALSE(access.preflight(asked));
+  asked.method = "OPTIONS";
+  ASSERT_TRUE(access.preflight(asked));
+  EXPECT_EQ(access.preflight(asked)->status, 204);
+  EXPECT_EQ(access.admit(asked).refusal->status, 401);
+  asked.headers["origin"] = "https://evil.example";
+  EXPECT_FALSE(access.preflight(asked));
+}
+
 TEST(TokenSet, ComparesTokensWhole) {
   const TokenSet tokens({{"correct-horse", Role::control}, {"only-watching", Role::view}});
   EXPECT_EQ(tokens.role_of("correct-horse"), Role::control);
