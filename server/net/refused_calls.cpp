@@ -25,7 +25,10 @@ class IdReader : public nlohmann::json_sax<json> {
   bool number_float(number_float_t number, const string_t&) override { return value(number); }
   bool string(string_t& text) override { return value(text); }
   bool binary(binary_t&) override { return value(nullptr); }
-  bool start_object(std::size_t) override { return open(); }
+  bool start_object(std::size_t) override {
+    is_call_ |= depth_ == (batch ? 1u : 0u);
+    return open();
+  }
   bool end_object() override { return close(); }
   bool start_array(std::size_t) override {
     if (depth_ == 0) batch = true;
@@ -34,11 +37,15 @@ class IdReader : public nlohmann::json_sax<json> {
   bool end_array() override { return close(); }
   bool key(string_t& name) override {
     of_id_ = depth_ == (batch ? 2u : 1u) && name == "id";
+    wants_answer_ |= of_id_;
     return true;
   }
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override {
     return false;
   }
+
+  /// Of a message that was read to its end: nobody waits for what becomes of it.
+  bool notifies() const { return is_call_ && !wants_answer_; }
 
  private:
   bool open() {
@@ -59,6 +66,8 @@ class IdReader : public nlohmann::json_sax<json> {
 
   std::size_t depth_ = 0;
   bool of_id_ = false;
+  bool is_call_ = false;
+  bool wants_answer_ = false;
 };
 
 json answer_to(json id, const protocol::Error& error) {
@@ -76,12 +85,13 @@ json answer_to(json id, const protocol::Error& error) {
 
 std::string refuse_calls(std::string_view message, const protocol::Error& error) {
   IdReader reader;
-  json::sax_parse(message.begin(), message.end(), &reader);
+  const bool whole = json::sax_parse(message.begin(), message.end(), &reader);
+  if (whole && reader.notifies()) return {};
   json answers = json::array();
   for (json& id : reader.ids) answers.push_back(answer_to(std::move(id), error));
   if (answers.empty()) answers.push_back(answer_to(nullptr, error));
-  const json& whole = reader.batch && !reader.ids.empty() ? answers : answers.front();
-  return whole.dump(-1, ' ', false, json::error_handler_t::replace);
+  const json& answer = reader.batch && !reader.ids.empty() ? answers : answers.front();
+  return answer.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 protocol::Error too_many_messages() {

@@ -161,7 +161,8 @@ class ViewerConnection : public Connection,
       call(std::move(message));
     } else {
       ++context_.traffic.calls_refused;
-      enqueue(refuse_calls(message, too_many_messages()), {});
+      std::string refusal = refuse_calls(message, too_many_messages());
+      if (!refusal.empty()) enqueue(std::move(refusal), {});
       if (!refusals_.allow(RateLimit::Clock::now())) flooded("too many messages");
     }
     read();

@@ -35,9 +35,16 @@ TEST(RefusedCalls, AreAnsweredWithTheirOwnId) {
 }
 
 TEST(RefusedCalls, HaveNoIdWhereNoneCanBeRead) {
-  for (const char* text : {R"({"method":"stream.ack","params":{"id":1}})", "", "{", "7", "[]", "[1]",
+  for (const char* text : {"", "{", R"({"method":"stream.ack","params":{"id":1})", "7", "[]", "[1]",
                            R"({"id":{"id":1}})", R"({"id":[3]})", R"({"id":null})", R"([["id",1]])"}) {
     EXPECT_EQ(ids(text), nullptr) << text;
+  }
+}
+
+TEST(RefusedCalls, WithoutIdGetNoAnswer) {
+  for (const char* text : {R"({"method":"stream.ack","params":{"id":1}})", "{}",
+                           R"([{"method":"x"},{"method":"y","params":{"id":2}}])"}) {
+    EXPECT_EQ(refuse_calls(text, too_many_messages()), "") << text;
   }
 }
 
