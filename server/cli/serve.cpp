@@ -1,3 +1,4 @@
+#include <malloc.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -42,6 +43,22 @@ void fit_size(session::SessionOptions& session, const render::DeviceInfo& device
   if (device.type != protocol::DeviceType::cpu) return;
   session.width = 640;
   session.height = 360;
+}
+
+/// A processor's images are pieces of this process's memory. Left alone, the C library takes ever
+/// larger ones from the arenas that small pieces come from, up to 32 MB, and keeps what is freed
+/// among them. Mapped for themselves they go back to the system at once: after a dozen sessions
+/// have come and gone the process takes 240 MB that way and 460 without. What is free at an arena's
+/// end is kept up to a size, or every frame would pay for its working memory anew. With a GPU only
+/// pictures on their way would be mapped, 2 to 3 ms for each of 1920x1080.
+void map_images_for_themselves(const render::DeviceInfo& device) {
+  if (device.type != protocol::DeviceType::cpu) return;
+#ifdef __GLIBC__
+  constexpr int own_mapping_bytes = 1 << 20;
+  constexpr int kept_free_bytes = 16 << 20;
+  mallopt(M_MMAP_THRESHOLD, own_mapping_bytes);
+  mallopt(M_TRIM_THRESHOLD, kept_free_bytes);
+#endif
 }
 
 std::vector<net::Token> tokens(const ServeOptions& options) {
@@ -157,6 +174,7 @@ int run(const ServeOptions& options) {
   render::Engine engine(engine_options(options.device));
   spdlog::info("rendering on {} ({}), rays by {}", engine.device().name, engine.device().driver,
                protocol::enum_name(engine.tracer()));
+  map_images_for_themselves(engine.device());
   if (!options.width && !options.height) fit_size(hosting.session, engine.device());
   session::SessionHost host(engine, hosting);
   net::ServerOptions serving = server_options(options);
