@@ -65,7 +65,7 @@ constexpr std::string_view greeting = R"({
   "codec_reason": null,
   "limits": {"max_width": 3840, "max_height": 2160, "max_message_bytes": 65536,
              "ack_window": 2, "max_upload_bytes": 0},
-  "rev": 1, "instance": "5f0c1d7a93b2e648"})";
+  "rev": 1, "instance": "5f0c1d7a93b2e648", "bring": null})";
 
 constexpr std::string_view scene = R"({
   "name": "atrium", "triangles": 344000, "instances": 210, "meshes": 34, "materials": 18,
