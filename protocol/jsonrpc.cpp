@@ -43,17 +43,6 @@ std::string dump(const json& value) {
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-std::string error_text(const json& id, const Error& error) {
-  json data{{"path", error.path}, {"reason", error.reason}};
-  if (!error.limit.empty()) data["limit"] = error.limit;
-  return dump({{"jsonrpc", "2.0"},
-               {"id", id},
-               {"error",
-                {{"code", static_cast<int>(error.code)},
-                 {"message", error.message},
-                 {"data", std::move(data)}}}});
-}
-
 std::string result_text(const json& id, const RawJson& result) {
   return dump({{"jsonrpc", "2.0"}, {"id", id}, {"result", result.value()}});
 }
@@ -106,6 +95,17 @@ bool valid_id(const json& request) {
 
 }  // namespace
 
+std::string error_answer(const RawJson& id, const Error& error) {
+  json data{{"path", error.path}, {"reason", error.reason}};
+  if (!error.limit.empty()) data["limit"] = error.limit;
+  return dump({{"jsonrpc", "2.0"},
+               {"id", id.value()},
+               {"error",
+                {{"code", static_cast<int>(error.code)},
+                 {"message", error.message},
+                 {"data", std::move(data)}}}});
+}
+
 /// Gathers the answers to one message and replies when the last one is there.
 class Dispatcher::Exchange : public std::enable_shared_from_this<Exchange> {
  public:
@@ -142,8 +142,8 @@ class Dispatcher::Exchange : public std::enable_shared_from_this<Exchange> {
     void finish(Result<RawJson> result) noexcept {
       if (finished_.exchange(true)) return;
       try {
-        exchange_->settle(slot_,
-                          result ? result_text(id_, *result) : error_text(id_, result.error()));
+        exchange_->settle(slot_, result ? result_text(id_, *result)
+                                        : error_answer(RawJson(id_), result.error()));
       } catch (...) {
         // Out of memory or a transport that fails: there is nobody left to tell.
       }
@@ -226,7 +226,7 @@ void Dispatcher::on_handler_failure(
 void Dispatcher::handle(std::string_view text, const CallContext& context, Reply reply) const {
   try {
     const Result<RawJson> message = read_message(text);
-    if (!message) return reply(error_text(nullptr, message.error()));
+    if (!message) return reply(error_answer(RawJson(nullptr), message.error()));
 
     const json& value = message->value();
     const auto exchange = std::make_shared<Exchange>(value.is_array(), reply);

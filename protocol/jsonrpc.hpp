@@ -32,6 +32,9 @@ using Completion = std::function<void(Result<Response>)>;
 template <class Request, class Response>
 using Handler = std::function<void(Request, const CallContext&, Completion<Response>)>;
 
+/// The text that answers a call with an error; `id` is null where the call's could not be read.
+std::string error_answer(const RawJson& id, const Error& error);
+
 struct DispatchLimits {
   std::size_t max_message_bytes = 64 * 1024;
   std::size_t max_depth = 64;  ///< of nested arrays and objects, checked before anything is built

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <stdexcept>
 #include <utility>
 
@@ -34,12 +33,6 @@ std::string_view without_port(std::string_view authority) {
     return end == std::string_view::npos ? std::string_view() : authority.substr(1, end - 1);
   }
   return authority.substr(0, authority.find(':'));
-}
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
 }
 
 /// "http://host:8080" -> "host:8080"; empty if it is no web origin.

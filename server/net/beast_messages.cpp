@@ -1,7 +1,6 @@
 #include "net/beast_messages.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <utility>
 
 namespace heliograph::net {
@@ -9,19 +8,15 @@ namespace {
 
 namespace http = beast::http;
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
-
 template <class View>
 std::string to_string(const View& view) {
   return std::string(view.data(), view.size());
 }
 
 /// Answers of these kinds have no body and tell no length, RFC 9110 section 8.6.
-bool is_bare(int status) { return status == 204 || status == 304; }
+bool is_bare(int status) {
+  return status == 204 || status == 304;
+}
 
 }  // namespace
 
@@ -46,16 +41,21 @@ HttpRequest to_request(BeastRequest&& message, const ClientStream& stream) {
   return request;
 }
 
+void set_usual_headers(http::fields& message, const ServerContext& context,
+                       const Headers& sharing) {
+  for (const auto& [name, value] : context.router.headers()) message.set(name, value);
+  message.set(http::field::cache_control, "no-store");
+  for (const auto& [name, value] : sharing) message.set(name, value);
+}
+
 BeastResponse to_message(ServerContext& context, HttpResponse answer, const Framing& framing) {
   ++context.traffic.responses[answer.status];
   BeastResponse message;
   message.version(11);
   message.result(static_cast<unsigned>(answer.status));
-  for (const auto& [name, value] : context.router.headers()) message.set(name, value);
-  message.set(http::field::cache_control, "no-store");
+  set_usual_headers(message, context, framing.sharing);
   if (!answer.content_type.empty()) message.set(http::field::content_type, answer.content_type);
   for (const auto& [name, value] : answer.headers) message.set(name, value);
-  for (const auto& [name, value] : framing.sharing) message.set(name, value);
   message.keep_alive(framing.keep_alive);
   if (is_bare(answer.status)) return message;
   message.content_length(answer.body.size());

@@ -24,6 +24,10 @@ struct Framing {
   Headers sharing;
 };
 
+/// What every answer carries, and what lets pages of other sites read it.
+void set_usual_headers(beast::http::fields& message, const ServerContext& context,
+                       const Headers& sharing);
+
 /// The answer as it is written, with the headers that all have. Counts it.
 BeastResponse to_message(ServerContext& context, HttpResponse answer, const Framing& framing);
 

@@ -43,6 +43,12 @@ std::map<std::string, std::string> parse_query(std::string_view query);
 /// A name or value as it stands in a query string: all but unreserved characters percent encoded.
 std::string encode_query(std::string_view text);
 
+/// A number of decimal digits and nothing else.
+std::optional<std::uint32_t> whole_number(std::string_view text);
+
+/// Host names, header names and origins are compared so.
+std::string lower(std::string_view text);
+
 /// The session that a request is about: ?enter=NAME, else ?session=NAME, else the main one. With
 /// both, the latter is for a balancer, which leads requests with the same value to the same server.
 std::string session_of(const HttpRequest& request);

@@ -7,7 +7,6 @@
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/serializer.hpp>
 #include <boost/beast/http/write.hpp>
-#include <charconv>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,11 +38,7 @@ constexpr std::string_view next_part = "\r\n--picture\r\nContent-Type: image/jpe
 constexpr std::string_view last_part = "\r\n--picture--\r\n";
 
 std::optional<std::uint32_t> number(const HttpRequest& request, const std::string& name) {
-  const std::string text = request.parameter(name).value_or("");
-  std::uint32_t value = 0;
-  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (parsed.ec != std::errc() || parsed.ptr != text.data() + text.size()) return std::nullopt;
-  return value;
+  return whole_number(request.parameter(name).value_or(""));
 }
 
 /// A viewer that only takes pictures. What has been written counts as acknowledged: the small send
@@ -69,9 +64,7 @@ class PictureStream : public Connection,
     ++context_.traffic.responses[200];
     headers_.version(11);
     headers_.result(http::status::ok);
-    for (const auto& [name, value] : context_.router.headers()) headers_.set(name, value);
-    for (const auto& [name, value] : sharing) headers_.set(name, value);
-    headers_.set(http::field::cache_control, "no-store");
+    set_usual_headers(headers_, context_, sharing);
     headers_.set("X-Accel-Buffering", "no");
     headers_.keep_alive(false);
     session_ = session;

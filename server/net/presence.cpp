@@ -8,11 +8,9 @@ Presence::Presence(std::chrono::milliseconds patience, double slowest,
                    std::chrono::milliseconds interval, Clock::time_point now)
     : patience_(patience), slowest_(slowest), interval_(interval), heard_(now) {}
 
-Presence::Verdict Presence::look(Clock::time_point now, std::uint64_t write,
-                                 std::uint64_t taken) {
-  const bool same_message = write != 0 && std::exchange(write_, write) == write;
+Presence::Verdict Presence::look(Clock::time_point now, std::uint64_t write, std::uint64_t taken) {
+  const bool same_message = std::exchange(write_, write) == write && write != 0;
   if (!same_message) {
-    write_ = write;
     taken_ = taken;
   } else {
     const std::chrono::duration<double> silence = now - heard_;

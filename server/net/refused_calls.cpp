@@ -5,12 +5,14 @@
 #include <utility>
 #include <vector>
 
+#include "protocol/jsonrpc.hpp"
+
 namespace heliograph::net {
 namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t most_ids = 32;  // calls in a batch
+constexpr std::size_t most_ids = protocol::DispatchLimits().max_batch;
 
 /// Listens to a message's parser for the ids of its calls.
 class IdReader : public nlohmann::json_sax<json> {
@@ -70,28 +72,19 @@ class IdReader : public nlohmann::json_sax<json> {
   bool wants_answer_ = false;
 };
 
-json answer_to(json id, const protocol::Error& error) {
-  json data{{"path", error.path}, {"reason", error.reason}};
-  if (!error.limit.empty()) data["limit"] = error.limit;
-  return {{"jsonrpc", "2.0"},
-          {"id", std::move(id)},
-          {"error",
-           {{"code", static_cast<int>(error.code)},
-            {"message", error.message},
-            {"data", std::move(data)}}}};
-}
-
 }  // namespace
 
 std::string refuse_calls(std::string_view message, const protocol::Error& error) {
   IdReader reader;
   const bool whole = json::sax_parse(message.begin(), message.end(), &reader);
   if (whole && reader.notifies()) return {};
-  json answers = json::array();
-  for (json& id : reader.ids) answers.push_back(answer_to(std::move(id), error));
-  if (answers.empty()) answers.push_back(answer_to(nullptr, error));
-  const json& answer = reader.batch && !reader.ids.empty() ? answers : answers.front();
-  return answer.dump(-1, ' ', false, json::error_handler_t::replace);
+  if (reader.ids.empty()) return protocol::error_answer(protocol::RawJson(nullptr), error);
+  std::string answers;
+  for (json& id : reader.ids) {
+    if (!answers.empty()) answers += ',';
+    answers += protocol::error_answer(protocol::RawJson(std::move(id)), error);
+  }
+  return reader.batch ? '[' + answers + ']' : answers;
 }
 
 protocol::Error too_many_messages() {

@@ -1,7 +1,6 @@
 #include "net/router.hpp"
 
 #include <array>
-#include <charconv>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
@@ -86,14 +85,6 @@ std::optional<std::pair<std::string_view, std::string_view>> picture_address(
   return std::pair{path.substr(0, split), path.substr(split + file.size())};
 }
 
-std::optional<std::uint32_t> whole_number(std::string_view text) {
-  std::uint32_t value = 0;
-  const char* const end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data(), end, value);
-  if (parsed.ec != std::errc() || parsed.ptr != end) return std::nullopt;
-  return value;
-}
-
 /// The value of frame-ancestors. @throws std::invalid_argument
 std::string frame_ancestors(const std::vector<std::string>& allowed) {
   if (allowed.empty()) return "'none'";
@@ -164,7 +155,8 @@ void Router::handle(const HttpRequest& request, Reply reply) const {
   if (admission.refusal) return reply(*std::move(admission.refusal));
   if (token) {
     HttpResponse redirect = text_response(303, "Go on without the token.");
-    redirect.headers = {{"Location", "/" + query_without(request, "token")}, {"Set-Cookie", access_.token_cookie(*token, request)}};
+    redirect.headers = {{"Location", "/" + query_without(request, "token")},
+                        {"Set-Cookie", access_.token_cookie(*token, request)}};
     return reply(std::move(redirect));
   }
   if (draining_ && !health_check) return reply(come_back_later("The server is shutting down."));
