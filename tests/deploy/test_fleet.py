@@ -156,14 +156,8 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
         """Wrong tokens are counted by address, so that guessing leads nowhere: neither does it with
         another address in the headers each time."""
         node = "api/v1/schema?session=guessed"
-
-        async def guess(number):
-            forged = {"X-Forwarded-For": f"198.51.100.{number}", "X-Forwarded-Proto": "https"}
-            status, _, _ = await asyncio.to_thread(self.fleet.ask, node, headers=forged,
-                                                   token=f"wrong-token-{number}")
-            return status
-
-        self.assertIn(429, [await guess(number) for number in range(100)])
+        self.assertIn(429, [await self.guess(node, f"198.51.100.{number}")
+                            for number in range(100)])
         # Nobody else is shut out, as all would be if they had the balancer's address.
         self.assertEqual("200", await asyncio.to_thread(
             self.machine.inside, "curl", "--silent", "--output", "/dev/null", "--write-out",
@@ -177,6 +171,34 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
         lines = await self.compose("logs", "--no-color", "--tail", "50", "heliograph")
         self.assertIn(f'"client":"{GATEWAY}"', lines.replace(": ", ":"))
         self.assertNotIn("198.51.100.", lines)
+
+    async def guess(self, path, address):
+        """A wrong token, with the address that it is said to come from."""
+        status, _, _ = await asyncio.to_thread(
+            self.fleet.ask, path, headers={"X-Forwarded-For": address, "X-Forwarded-Proto": "https"},
+            token=f"wrong-token-of-{address}")
+        return status
+
+    async def test_a_proxy_in_front_is_believed_where_it_is_named(self):
+        await asyncio.to_thread(self.fleet.renew_balancer, HELIOGRAPH_OUTER_PROXIES=GATEWAY)
+        self.addAsyncCleanup(asyncio.to_thread, self.fleet.renew_balancer,
+                             HELIOGRAPH_OUTER_PROXIES="")
+        node = "api/v1/schema?session=behind"
+        # What counts is what the proxy has put at the end.
+        self.assertEqual({await self.guess(node, f"203.0.113.9, 198.51.100.{number}")
+                          for number in range(100)}, {401})
+        self.assertIn(429, [await self.guess(node, "198.51.100.7") for _ in range(100)])
+        told = {"X-Forwarded-For": "198.51.100.8", "X-Forwarded-Proto": "https"}
+        _, headers, _ = await asyncio.to_thread(
+            self.fleet.ask, f"?session=behind&token={TOKEN}", headers=told)
+        self.assertRegex(headers["Set-Cookie"], "heliograph_token=.*; Secure")
+        # Others are not believed.
+        seen = await asyncio.to_thread(
+            self.machine.inside, "curl", "--silent", "--output", "/dev/null", "--dump-header", "-",
+            *(word for name, value in told.items() for word in ("--header", f"{name}: {value}")),
+            f"{self.fleet.url}?session=behind&token={TOKEN}")
+        self.assertIn("heliograph_token=", seen)
+        self.assertNotRegex(seen, "heliograph_token=.*; Secure")
 
     async def test_the_balancer_speaks_tls_and_tells_nodes(self):
         path = f"?token={TOKEN}"

@@ -11,12 +11,13 @@ import time
 import unittest
 
 from harness import images
+from harness.checkout import clone
 from harness.files import DEPLOY, documents
 from harness.pictures import (SAME_PICTURE, decode_png, largest_difference_of_means, read,
                               render)
 from harness.replaying_viewer import ReplayingViewer, Wish
 from harness.scenes import generate
-from harness.servers import TOKEN, Container, measurement
+from harness.servers import TOKEN, Container, get, make_certificate, measurement
 from harness.site import GATEWAY, Site
 
 MOST_BYTES = 280e6
@@ -68,6 +69,40 @@ class Image(unittest.IsolatedAsyncioTestCase):
         labels = config["Labels"]
         for name in ("title", "description", "licenses", "version", "revision"):
             self.assertTrue(labels[f"org.opencontainers.image.{name}"], name)
+
+    async def test_one_command_of_compose_builds_and_starts_the_same(self):
+        """From a clean checkout, as the first lines of the file tell for Compose 1.29; without
+        Grafana, whose image comes from a registry. What this machine has built is built no more."""
+        checkout = os.path.join(self.site.folder, "composed")
+        clone(checkout)
+        origin = {"revision": "abcdef", "created": "2001-02-03T04:05:06Z",
+                  "source": "https://example.org/heliograph"}
+        environment = {
+            "DOCKER_BUILDKIT": "1", "PATH": "/usr/bin:" + os.environ["PATH"],
+            "HELIOGRAPH_TOKEN": TOKEN, "HELIOGRAPH_IMAGE": "heliograph:composed",
+            "HELIOGRAPH_ADDRESS": "0.0.0.0:8080",
+            **{f"HELIOGRAPH_{name.upper()}": value for name, value in origin.items()}}
+
+        async def compose(*command):
+            await asyncio.to_thread(
+                self.machine.compose, "--file", os.path.join(checkout, "deploy/compose.yaml"),
+                "--project-name", "composed", *command, timeout=1800, environment=environment)
+
+        self.addAsyncCleanup(compose, "down", "--volumes", "--timeout", "5")
+        started = time.monotonic()
+        await compose("up", "--build", "--detach", "--scale", "heliograph=2", "heliograph",
+                      "balancer", "prometheus")
+        print(f"image: built and started by Compose in {time.monotonic() - started:.1f} s",
+              flush=True)
+        composed = self.machine.inspect("heliograph:composed")
+        self.assertEqual({name: composed["Config"]["Labels"][f"org.opencontainers.image.{name}"]
+                          for name in origin}, origin)
+        self.assertEqual(composed["RootFS"], self.machine.inspect(images.SERVER)["RootFS"])
+        url = f"http://{self.machine.address}:8080/"
+        async with ReplayingViewer(url, TOKEN, Wish("glossy_sponza_1")) as viewer:
+            await viewer.look((1.0, 2.0, 8.0))
+            await viewer.pictures(1)
+            self.assertEqual(viewer.losses, [])
 
     def test_holds_no_secret_and_no_tool_of_the_build(self):
         history = self.machine.docker("history", "--no-trunc", "--format", "{{.CreatedBy}}",
@@ -148,6 +183,18 @@ class Image(unittest.IsolatedAsyncioTestCase):
               f"{spent:.1f} s of processor time", flush=True)
         self.assertLess(spent, MOST_SECONDS_TO_START)
         print(f"container: healthy after {container.wait_healthy():.1f} s", flush=True)
+
+    def test_asks_after_its_health_by_tls(self):
+        certificate = os.path.join(self.site.folder, "server.pem")
+        make_certificate(certificate, self.machine.address)
+        container = self.container(
+            "secure", "--volume", f"{certificate}:/run/server.pem:ro",
+            "--env", "HELIOGRAPH_TLS_CERTIFICATE=/run/server.pem",
+            "--env", "HELIOGRAPH_TLS_KEY=/run/server.pem")
+        container.wait_healthy()
+        self.assertRaises(OSError, container.get, "health/ready")
+        secure = f"https://{self.machine.address}:8080/health/ready"
+        self.assertEqual(get(secure, certificate=certificate)[0], 200)
 
     def reaches_out(self, container):
         """Whether a connection from inside arrives on this side."""

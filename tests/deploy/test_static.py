@@ -4,7 +4,6 @@ import os
 import re
 import shutil
 import subprocess
-import tarfile
 import tempfile
 import unittest
 
@@ -85,8 +84,7 @@ class Dockerfile(unittest.TestCase):
         self.assertNotIn("<<", self.text)
 
     def test_leaves_out_tests_and_documents_only(self):
-        checkout = Checkout()
-        kept = set(checkout.files())
+        kept = set(Checkout().files())
         committed = set(run("git", "-C", ROOT, "ls-tree", "-r", "--name-only",
                             "HEAD").splitlines())
         self.assertEqual({path for path in committed - kept
@@ -96,11 +94,6 @@ class Dockerfile(unittest.TestCase):
                      "deploy/debian/postinst", "deploy/systemd/heliograph.service",
                      "deploy/CMakeLists.txt", "LICENSE"):
             self.assertIn(path, kept)
-        with tempfile.TemporaryFile() as archive:
-            checkout.write(archive)
-            archive.seek(0)
-            with tarfile.open(fileobj=archive) as tar:
-                self.assertEqual({member.name for member in tar if not member.isdir()}, kept)
 
 
 if __name__ == "__main__":

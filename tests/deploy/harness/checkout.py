@@ -9,9 +9,14 @@ from .commands import run
 from .files import DEPLOY, ROOT, text_of
 
 
+def clone(path):
+    """All that is committed, in a new folder."""
+    run("git", "clone", "--quiet", "--depth", "1", f"file://{ROOT}", path)
+
+
 class Checkout:
-    """A clean checkout of a folder of the repository. Of all of it the builder is told to leave some
-    out, which it does not do of an archive."""
+    """What is committed in a folder of the repository; of the whole of it, but for what the builder
+    is told to leave out."""
 
     def __init__(self, folder=""):
         self._tree = f"HEAD:{folder}"
@@ -19,11 +24,8 @@ class Checkout:
         self._left_out = [] if folder else text_of(ignored).split()
 
     def write(self, file):
-        """As a tar archive."""
-        words = [f":(exclude,glob){pattern}{end}" for pattern in self._left_out
-                 for end in ("", "/**")]
-        subprocess.run(["git", "-C", ROOT, "archive", self._tree, "--", ".", *words], stdout=file,
-                       check=True)
+        """As a tar archive, out of which the builder would leave nothing."""
+        subprocess.run(["git", "-C", ROOT, "archive", self._tree], stdout=file, check=True)
 
     def files(self):
         return list(self._objects())

@@ -6,10 +6,10 @@ import time
 import yaml
 
 from . import images
-from .commands import program, run
-from .files import DEPLOY, text_of
+from .commands import program
+from .files import DEPLOY
 from .scenes import make_scenes, service_override
-from .servers import TOKEN, get
+from .servers import TOKEN, get, make_certificate
 
 
 class Fleet:
@@ -45,6 +45,12 @@ class Fleet:
 
     def compose(self, *command, **options):
         return self.machine.compose(*self._base, *command, environment=self._environment, **options)
+
+    def renew_balancer(self, **environment):
+        """With other values of what the file takes from the environment."""
+        self._environment.update(environment)
+        self.compose("up", "--detach", "--no-build", "--no-deps", "balancer")
+        self.wait_ready(self.count)
 
     def nodes(self, *, every=False):
         """The names of the servers' containers, oldest first."""
@@ -95,23 +101,13 @@ class Fleet:
 
     def renew_certificate(self):
         """In place: a container has the file itself, not its folder."""
-        _make_certificate(self.certificate, self.machine.address)
+        make_certificate(self.certificate, self.machine.address)
 
     def ask(self, path, **options):
         return get(self.url + path, **options)
 
     def ask_securely(self, path, **options):
         return get(self.secure_url + path, certificate=self.certificate, **options)
-
-
-def _make_certificate(path, address):
-    """Signed by itself, with its key in the same file, which the balancer's user may read."""
-    run(program("openssl"), "req", "-x509", "-newkey", "ec", "-pkeyopt",
-        "ec_paramgen_curve:prime256v1", "-nodes", "-days", "2", "-subj", "/CN=heliograph", "-addext",
-        f"subjectAltName=IP:{address}", "-keyout", path, "-out", f"{path}.certificate")
-    with open(path, "a", encoding="ascii") as file:
-        file.write(text_of(f"{path}.certificate"))
-    os.chmod(path, 0o644)
 
 
 def add_images(machine, *, prometheus=False):

@@ -9,7 +9,7 @@ import subprocess
 import tempfile
 import time
 
-from .checkout import Checkout
+from .checkout import Checkout, clone
 from .commands import Skip, program, run
 from .files import ROOT
 
@@ -75,19 +75,21 @@ def debian_mirror():
 def build_server(machine):
     """Builds the server's image from a clean checkout of what is committed, and takes the package
     that it is made of along."""
-    arguments = {"JOBS": os.environ.get("HELIOGRAPH_DEPLOY_JOBS", ""),
-                 "REVISION": run("git", "-C", ROOT, "rev-parse", "HEAD")}
-    _seed_compiler_cache(machine)
-    try:
-        build(machine, "deploy/Dockerfile", "--tag", SERVER, arguments=arguments, timeout=3600)
-    finally:
-        _save_compiler_cache(machine)
-    for old in glob.glob(os.path.join(cache_folder(), "heliograph-server-*")):
-        os.remove(old)
-    machine.docker("save", "--output", _archive(), SERVER, timeout=300)
     with tempfile.TemporaryDirectory(dir=cache_folder()) as folder:
-        build(machine, "deploy/Dockerfile", "--target", "package", "--output", folder,
-              arguments=arguments, timeout=3600)
+        checkout = os.path.join(folder, "checkout")
+        clone(checkout)
+        build = ("build", "--file", os.path.join(checkout, "deploy/Dockerfile"),
+                 "--build-arg", f"JOBS={os.environ.get('HELIOGRAPH_DEPLOY_JOBS', '')}",
+                 "--build-arg", f"REVISION={run('git', '-C', ROOT, 'rev-parse', 'HEAD')}")
+        _seed_compiler_cache(machine)
+        try:
+            machine.docker(*build, "--tag", SERVER, checkout, timeout=3600)
+        finally:
+            _save_compiler_cache(machine)
+        for old in glob.glob(os.path.join(cache_folder(), "heliograph-server-*")):
+            os.remove(old)
+        machine.docker("save", "--output", _archive(), SERVER, timeout=300)
+        machine.docker(*build, "--target", "package", "--output", folder, checkout, timeout=3600)
         os.rename(os.path.join(folder, "heliograph.deb"), package_path())
 
 
@@ -113,18 +115,6 @@ def _of_these_files(form):
     return os.path.join(cache_folder(), f"heliograph-server-{Checkout().key()}.{form}")
 
 
-def build(machine, dockerfile, *options, folder="", arguments=None, timeout=900):
-    """`folder` of the checkout is all that the build sees."""
-    options = list(options)
-    for name, value in (arguments or {}).items():
-        options += ["--build-arg", f"{name}={value}"]
-    with tempfile.TemporaryFile() as context:
-        Checkout(folder).write(context)
-        context.seek(0)
-        machine.docker("build", "--file", dockerfile, *options, "-", stdin=context,
-                       timeout=timeout)
-
-
 def add_balancer(machine):
     _add(machine, BALANCER, "deploy/balancer")
 
@@ -141,7 +131,11 @@ def _add(machine, tag, folder):
         return
     for old in glob.glob(os.path.join(cache_folder(), f"{tag.split(':')[0]}-*.tar")):
         os.remove(old)
-    build(machine, "Dockerfile", "--tag", tag, folder=folder)
+    with tempfile.TemporaryFile() as context:
+        Checkout(folder).write(context)
+        context.seek(0)
+        machine.docker("build", "--file", "Dockerfile", "--tag", tag, "-", stdin=context,
+                       timeout=900)
     machine.docker("save", "--output", archive, tag, timeout=300)
 
 

@@ -8,6 +8,7 @@ import ssl
 import time
 import urllib.parse
 
+from .commands import program, run
 from .files import text_of
 from .images import SERVER
 
@@ -86,6 +87,16 @@ class Container:
 
     def get(self, path, **options):
         return get(self.url + path, **options)
+
+
+def make_certificate(path, address):
+    """Signed by itself, with its key in the same file, which every user may read."""
+    run(program("openssl"), "req", "-x509", "-newkey", "ec", "-pkeyopt",
+        "ec_paramgen_curve:prime256v1", "-nodes", "-days", "2", "-subj", "/CN=heliograph", "-addext",
+        f"subjectAltName=IP:{address}", "-keyout", path, "-out", f"{path}.certificate")
+    with open(path, "a", encoding="ascii") as file:
+        file.write(text_of(f"{path}.certificate"))
+    os.chmod(path, 0o644)
 
 
 def free_port():
