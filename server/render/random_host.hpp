@@ -7,6 +7,7 @@
 #define HELIOGRAPH_RANDOM_HOST_HPP
 #endif
 
+#include <cstdint>
 #include <glm/glm.hpp>
 
 #include "hwy/highway.h"

@@ -1,6 +1,7 @@
 // Times every pass of the frame on scenes of the caller's, beside what the machine can do at best.
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <glm/gtc/constants.hpp>

@@ -4,9 +4,12 @@
 #include <png.h>
 #include <turbojpeg.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include "encoders.hpp"
 #include "rich_document.hpp"

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "render/reproject.hpp"
 #include "tests/gpu/host_twin.hpp"
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "render/temporal.hpp"
 #include "tests/gpu/host_twin.hpp"
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+
 #include "tests/paper/report.hpp"
 
 namespace heliograph::paper {

@@ -2,6 +2,8 @@
 // people's encoders wrote, as far as their libraries are those encoders.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "encoders.hpp"

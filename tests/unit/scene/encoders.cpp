@@ -6,6 +6,7 @@
 #include <webp/encode.h>
 
 #include <array>
+#include <cmath>
 
 namespace heliograph::scene::test {
 namespace {

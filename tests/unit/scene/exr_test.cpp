@@ -9,7 +9,9 @@
 #include <ImfTiledOutputFile.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 
 #include "scene/import.hpp"

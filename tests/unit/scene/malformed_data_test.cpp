@@ -2,6 +2,7 @@
 // graphs that are no trees, and data that does not fit what is said of it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "malformed.hpp"

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
 #include <set>
+#include <stdexcept>
 #include <tuple>
 
 namespace heliograph::scenes {

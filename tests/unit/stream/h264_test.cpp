@@ -8,6 +8,8 @@
 
 extern "C" {
 #include <libavcodec/avcodec.h>
+
+#include <stdexcept>
 }
 
 #include "stream/picture_encoder.hpp"
