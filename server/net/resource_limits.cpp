@@ -1,5 +1,7 @@
 #include "net/resource_limits.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <string>
 
@@ -50,6 +52,11 @@ ResourceLimits read_resource_limits(const std::filesystem::path& folder) {
                               read_numbers(folder / "cpu/cpu.cfs_period_us").first);
   }
   return limits;
+}
+
+unsigned useful_threads(const ResourceLimits& limits, unsigned processors) {
+  const double all = std::max(processors, 1u);
+  return static_cast<unsigned>(std::clamp(std::ceil(limits.processors.value_or(all)), 1.0, all));
 }
 
 }  // namespace heliograph::net

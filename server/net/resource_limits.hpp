@@ -15,4 +15,8 @@ struct ResourceLimits {
 /// `folder` is where they are mounted, /sys/fs/cgroup.
 ResourceLimits read_resource_limits(const std::filesystem::path& folder);
 
+/// How many threads can be at work at once without waiting for the next period of the quota: at
+/// least one, at most as many as there are processors.
+unsigned useful_threads(const ResourceLimits& limits, unsigned processors);
+
 }  // namespace heliograph::net

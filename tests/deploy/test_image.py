@@ -192,7 +192,7 @@ class Image(unittest.IsolatedAsyncioTestCase):
             "--env", "HELIOGRAPH_TLS_CERTIFICATE=/run/server.pem",
             "--env", "HELIOGRAPH_TLS_KEY=/run/server.pem")
         container.wait_healthy()
-        self.assertRaises(OSError, container.get, "health/ready")
+        self.assertEqual(container.get("health/ready")[0], 308)
         secure = f"https://{self.machine.address}:8080/health/ready"
         self.assertEqual(get(secure, certificate=certificate)[0], 200)
 
@@ -209,10 +209,24 @@ class Image(unittest.IsolatedAsyncioTestCase):
             except TimeoutError:
                 return False
 
+    def test_has_threads_for_its_processors_only(self):
+        """Those of both pools, the rasterizer's and the one of what is computed beside it, of which
+        one is the thread that gives the work."""
+        if os.cpu_count() < 2:
+            self.skipTest("there is only one processor to be had")
+        wide = self.container("wide", port=8081)
+        narrow = self.container("narrow", "--cpus", "0.5")
+        for container in (wide, narrow):
+            container.wait_healthy()
+        self.assertEqual(wide.threads().count("llvmpipe"), os.cpu_count())
+        self.assertEqual(narrow.threads().count("llvmpipe"), 1)
+        self.assertLessEqual(len(narrow.threads()),
+                             len(wide.threads()) - 2 * (os.cpu_count() - 1))
+
     async def test_keeps_to_its_limits_and_tells_them(self):
         memory, cpus = 1280 * 2 ** 20, 0.5
         container = self.container("limited", "--memory", str(memory), "--memory-swap", str(memory),
-                                   "--cpus", str(cpus), "--env", "LP_NUM_THREADS=1")
+                                   "--cpus", str(cpus))
         await asyncio.to_thread(container.wait_healthy)
         wish = Wish("glossy_sponza_1", size=(320, 180))
         async with ReplayingViewer(container.url, TOKEN, wish) as viewer:

@@ -59,6 +59,11 @@ class Container:
             fields = file.read().rsplit(")", 1)[1].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
+    def threads(self):
+        """The name of each, without the number that some have."""
+        tasks = f"/proc/{self.machine.inspect(self.name, '{{.State.Pid}}')}/task"
+        return [text_of(f"{tasks}/{task}/comm").strip().split("-")[0] for task in os.listdir(tasks)]
+
     def memory_bytes(self):
         """What its control group holds: all but what the kernel can take back by reading files
         again."""

@@ -61,5 +61,15 @@ TEST_F(ResourceLimitsTest, AreAbsentWhereNobodyTells) {
   EXPECT_FALSE(limits().processors);
 }
 
+TEST(UsefulThreads, AreThoseThatTheQuotaLastsFor) {
+  EXPECT_EQ(useful_threads({}, 64), 64u);
+  EXPECT_EQ(useful_threads({.processors = 2.0}, 64), 2u);
+  EXPECT_EQ(useful_threads({.processors = 1.5}, 64), 2u);
+  EXPECT_EQ(useful_threads({.processors = 0.1}, 64), 1u);
+  EXPECT_EQ(useful_threads({.processors = 8.0}, 4), 4u);
+  EXPECT_EQ(useful_threads({.processors = 0.0}, 4), 1u);
+  EXPECT_EQ(useful_threads({}, 0), 1u);  // the system does not tell
+}
+
 }  // namespace
 }  // namespace heliograph::net
