@@ -64,7 +64,8 @@ constexpr std::string_view greeting = R"({
   "tracer": "embree", "session": "main", "viewer": "v1", "role": "control", "codecs": ["jpeg"],
   "codec_reason": null,
   "limits": {"max_width": 3840, "max_height": 2160, "max_message_bytes": 65536,
-             "ack_window": 2, "max_upload_bytes": 0},
+             "ack_window": 2, "max_batch": 32, "max_waiting": 32,
+             "max_upload_bytes": 0},
   "rev": 1, "instance": "5f0c1d7a93b2e648", "bring": null})";
 
 constexpr std::string_view scene = R"({

@@ -27,6 +27,8 @@ struct CaptureRequest {
   std::optional<std::uint32_t> samples;
   /// Who asked; empty for one without a stream. Who leaves the session wants it no more.
   std::string viewer;
+  /// In lockstep: its place among the steps, given by the session.
+  std::optional<std::uint64_t> place;
   /// Called once, on any thread.
   std::function<void(protocol::Result<Capture>)> done;
   /// Counts among those that wait for as long as it is held.

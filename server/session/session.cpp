@@ -126,6 +126,10 @@ std::uint64_t Session::version() const {
 
 RenderState Session::render_state() const {
   const std::lock_guard lock(mutex_);
+  return whole_state();
+}
+
+RenderState Session::whole_state() const {
   RenderState state = state_;
   state.scene = scene_;
   const scene::Clip* const clip =
@@ -255,6 +259,8 @@ void Session::forget(const std::string& viewer) {
     const std::lock_guard lock(mutex_);
     input_seqs_.erase(viewer);
   }
+  drop_steps(protocol::error::not_found("session", "the viewer has left the session of the steps"),
+             [&](const StepRequest& step) { return step.viewer == viewer; });
   changed_->notify();  // it may have waited for a picture
 }
 
@@ -268,6 +274,7 @@ Result<void> Session::request_capture(CaptureRequest request) {
                          std::to_string(options_.limits.max_captures));
     }
     ++*open_captures_;
+    request.place = next_place();
     request.seat = std::shared_ptr<void>(nullptr, [open = open_captures_](void*) { --*open; });
     captures_.push_back(std::move(request));
   }
@@ -288,11 +295,16 @@ void Session::renew(DeviceRenewal& renewal) {
   const std::lock_guard lock(mutex_);
   if (state_.resources == before.resources) state_.resources = resources;
   if (state_.environment == before.environment) state_.environment = environment;
+  for (DueStep& step : steps_) {
+    if (step.state.resources == before.resources) step.state.resources = resources;
+    if (step.state.environment == before.environment) step.state.environment = environment;
+  }
   changed(false);
 }
 
 void Session::changed(bool new_revision) {
   ++state_.version;
+  ++changes_;
   if (new_revision) ++state_.rev;
   state_.changed_at = Clock::now();
   changed_->notify();

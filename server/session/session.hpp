@@ -2,6 +2,8 @@
 
 #include <atomic>
 #include <cstdint>
+#include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -33,7 +35,7 @@ struct SessionLimits {
   std::uint32_t max_width = 3840;
   std::uint32_t max_height = 2160;
   std::size_t max_viewers = 32;
-  std::size_t max_captures = 16;  // asked for and not yet answered
+  std::size_t max_captures = 32;  // asked for and not yet answered; as many steps beside them
 };
 
 struct SessionOptions {
@@ -67,6 +69,13 @@ struct RenderState {
   bool keep_drawing = false;  // the path traced truth, whether anybody watches or not
 
   Clock::time_point now() const { return lockstep ? *lockstep : Clock::now(); }
+};
+
+/// One frame that is due in lockstep.
+struct StepFrame {
+  std::uint64_t place = 0;  // of its step among steps, captures and probes
+  double seconds = 0.0;     // that pass before it
+  RenderState state;        // as it was when the step was asked for
 };
 
 class DeviceRenewal;
@@ -165,12 +174,13 @@ class Session {
   /// Leaves lockstep.
   protocol::StepState run_freely();
   bool in_lockstep() const;
-  /// For the render thread: lets the time of the next frame pass and tells how much it is; nothing
-  /// where none is due. After it is drawn comes end_step.
-  std::optional<double> begin_step();
-  /// Whether begin_step would give a frame.
-  bool step_due() const;
-  void end_step(std::uint32_t samples);
+  /// For the render thread: lets the time of the next frame pass; nothing where none is due, or
+  /// where something is to be read before it: `waiting` is the first place of what is known to wait.
+  /// After it is drawn comes end_step.
+  std::optional<StepFrame> begin_step(std::optional<std::uint64_t> waiting);
+  /// Whether steps are due before this place; without one, any.
+  bool step_due(std::optional<std::uint64_t> place) const;
+  void end_step(const StepFrame& frame, std::uint32_t samples);
   void fail_steps(const protocol::Error& why);
 
   protocol::Result<protocol::ReferenceState> start_reference(
@@ -192,6 +202,7 @@ class Session {
 
  private:
   void changed(bool new_revision = true);
+  RenderState whole_state() const;
   protocol::SessionInfo info_locked() const;
   /// Of a viewer that is gone.
   void forget(const std::string& viewer);
@@ -201,7 +212,13 @@ class Session {
   protocol::Camera moved_camera(const scene::Camera& camera, std::optional<std::string> name,
                                 const std::string& by);
   void enter_lockstep();
-  protocol::StepState step_message() const;
+  /// Its turn in lockstep, where what was asked for takes place in that order.
+  std::optional<std::uint64_t> next_place();
+  bool is_read_before(std::uint64_t place) const;
+  void drop_steps(const protocol::Error& why,
+                  const std::function<bool(const StepRequest&)>& unwanted);
+  std::vector<StepRequest> take_steps(const std::function<bool(const StepRequest&)>& unwanted);
+  protocol::StepState step_message(const RenderState& shown) const;
   AnimationClock rewound_clock() const;
   protocol::AnimationState set_clock(const AnimationClock& clock);
   protocol::AnimationState animation_message() const;
@@ -224,7 +241,16 @@ class Session {
   SceneEdits edits_;
   std::optional<std::string> environment_name_;
   std::vector<Probe> probes_;
-  std::vector<StepRequest> steps_;
+  struct DueStep {
+    StepRequest request;
+    std::uint64_t place = 0;
+    std::uint64_t changes = 0;  // how many there had been
+    bool begun = false;         // a frame that has not ended
+    RenderState state;
+  };
+  std::deque<DueStep> steps_;
+  std::uint64_t changes_ = 0;  // of the state by commands
+  std::uint64_t places_ = 0;   // given to steps, captures and probes
   struct StepTotals {
     std::uint64_t frames = 0;
     std::uint32_t samples = 0;

@@ -103,6 +103,7 @@ Result<void> Session::request_probe(Probe probe) {
       return error::full("too many questions about the picture are waiting",
                          std::to_string(options_.limits.max_captures));
     }
+    probe.place = next_place();
     probes_.push_back(std::move(probe));
   }
   changed_->notify();

@@ -167,8 +167,11 @@ void SessionView::recover() {
 }
 
 void SessionView::adopt_state() {
-  if (session_->version() == state_.version) return;
-  const RenderState before = std::exchange(state_, session_->render_state());
+  if (session_->version() != state_.version) adopt(session_->render_state());
+}
+
+void SessionView::adopt(RenderState next) {
+  const RenderState before = std::exchange(state_, std::move(next));
   const auto lost = [&](const auto& object) { return object && !engine_.owns(*object); };
   if (lost(state_.resources) || lost(state_.environment)) {
     // It was loaded just before the device was lost.

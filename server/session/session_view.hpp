@@ -72,6 +72,7 @@ class SessionView {
   bool watched() const;
   protocol::Result<void> make_renderer();
   void adopt_state();
+  void adopt(RenderState next);
   void adopt_edits(const RenderState& before);
   void adopt_pose();
   void adopt_size();
@@ -87,6 +88,8 @@ class SessionView {
   bool write_capture(CaptureRequest& request);
   Work advance_step(bool may_draw);
   void settle_unstepped();
+  std::optional<std::uint64_t> first_waiting() const;
+  bool its_turn_is_later(std::optional<std::uint64_t> place) const;
   bool frame_wanted();
   bool final_due() const;
   void render_frame();

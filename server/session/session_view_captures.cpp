@@ -48,14 +48,19 @@ void SessionView::drop_unwanted_captures() {
 /// passes in it.
 bool SessionView::shows_state_since(Clock::time_point moment) const {
   if (!newest_) return false;
-  if (state_.lockstep) return true;
+  if (state_.lockstep) return stepped_;
   if (state_.animation.playing) return newest_version_ == state_.version && last_frame_ >= moment;
   return newest_version_ == state_.version || !renderer_->needs_frame();
 }
 
+/// In lockstep, where frames are still to be drawn before it.
+bool SessionView::its_turn_is_later(std::optional<std::uint64_t> place) const {
+  return state_.lockstep && session_->step_due(place);
+}
+
 void SessionView::settle_probes() {
   std::erase_if(probes_, [&](const PendingProbe& pending) {
-    if (!shows_state_since(pending.requested)) return false;
+    if (!shows_state_since(pending.requested) || its_turn_is_later(pending.probe.place)) return false;
     pending.probe.read(*renderer_, state_);
     return true;
   });
@@ -78,7 +83,7 @@ bool SessionView::settle_captures() {
 }
 
 bool SessionView::capture_ready(const PendingCapture& capture) const {
-  if (state_.lockstep) return true;
+  if (state_.lockstep) return stepped_ && !its_turn_is_later(capture.request.place);
   if (!draws_whole() || !shows_state_since(capture.requested)) return false;
   if (newest_->frame.width != state_.width || newest_->frame.height != state_.height) return false;
   if (state_.animation.playing || !renderer_->needs_frame()) return true;

@@ -122,14 +122,16 @@ class Methods(ServerTestCase):
     async def test_captures_that_wait_have_a_limit_and_end_with_who_asked(self):
         self.server.call("settings.patch", {"patch": {"accumulation": {"max_samples": 65536}}})
         endless = [{"jsonrpc": "2.0", "id": number, "method": "frame.capture",
-                    "params": {"samples": 65536}} for number in range(16)]
+                    "params": {"samples": 65536}} for number in range(32)]
         async with Viewer(self.server) as viewer:
+            self.assertEqual(len(endless), viewer.hello["limits"]["max_waiting"])
+            self.assertEqual(len(endless), viewer.hello["limits"]["max_batch"])
             await viewer.send(json.dumps(endless))
             await viewer.call("camera.get")
             self.assert_error(await viewer.ask("frame.capture", {"samples": 1}), -32029,
-                              limit="16")
+                              limit="32")
             answer = await asyncio.to_thread(self.server.ask, "frame.capture", {"samples": 1})
-            self.assert_error(answer, -32029, limit="16")
+            self.assert_error(answer, -32029, limit="32")
 
         def there_is_room():
             return "result" in self.server.ask("frame.capture", {"samples": 1})

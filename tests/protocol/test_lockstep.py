@@ -107,6 +107,46 @@ class Lockstep(ServerTestCase):
             frame = await asyncio.wait_for(viewer.frames.get(), 5)
             self.assertEqual(frame.header["full_width"], 160)
 
+    def begin(self):
+        self.server.call("frame.run")
+        self.server.call("camera.set", {"name": "main"})
+        self.server.call("frame.step", {"frames": 0, "dt": DT})
+        self.server.call("animation.play", {"clip": "hop", "rate": 1.0})
+        self.server.call("animation.seek", {"seconds": 0})
+
+    async def test_calls_take_place_in_their_order_whoever_waits(self):
+        point = {"x": 0.5, "y": 0.5, "buffers": ["gbuffer.motion"]}
+        calls = [("frame.step", {"frames": 20, "dt": DT}), ("frame.capture", {}),
+                 ("frame.inspect", point), ("camera.orbit", {"yaw": 30}),
+                 ("animation.play", {"rate": 2.0}), ("frame.step", {"frames": 20, "dt": DT}),
+                 ("frame.capture", {}), ("frame.step", {"frames": 3, "dt": 2 * DT}),
+                 ("frame.inspect", point), ("frame.capture", {})]
+        self.server.call("settings.patch", {"patch": {"accumulation": {"max_samples": 64}}})
+        async with Viewer(self.server) as viewer:
+            await asyncio.to_thread(self.begin)
+            awaited = [await viewer.call(*call) for call in calls]
+            await asyncio.to_thread(self.begin)
+            sent = [asyncio.create_task(viewer.call(*call)) for call in calls]
+            at_once = [await answer for answer in sent]
+        await asyncio.to_thread(self.begin)
+        batch = [{"jsonrpc": "2.0", "id": number, "method": method, "params": params}
+                 for number, (method, params) in enumerate(calls)]
+        _, answers = await asyncio.to_thread(self.server.post_rpc, batch)
+        for others in (at_once, [answer["result"] for answer in answers]):
+            for call, one, other in zip(calls, awaited, others):
+                one, other = ({**answer, "rev": 0} for answer in (one, other))
+                self.assertEqual(one, other, call)
+        self.assertEqual(len({awaited[i]["data"] for i in (1, 6, 9)}), 3)
+
+    async def test_who_leaves_wants_no_more_steps(self):
+        async with Viewer(self.server) as viewer:
+            await viewer.notify("frame.step", {"frames": 100000, "dt": DT})
+            await viewer.frame_where(lambda frame: frame.header["render_id"] > 3)
+        state = await asyncio.to_thread(self.step, 1)
+        self.assertLess(state["frames"], 10000)
+        # The time of frames that were not drawn has not passed.
+        self.assertAlmostEqual(state["seconds"], state["frames"] * DT)
+
     async def test_steps_that_somebody_ends_are_told_so(self):
         async with Viewer(self.server) as viewer:
             stepping = asyncio.create_task(

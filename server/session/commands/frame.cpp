@@ -18,7 +18,7 @@ void add_frame_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
         const auto session = host.sessions().session_of(context);
         if (!session) return done(session.error());
         const Result<void> accepted = (*session)->request_step(
-            {.frames = request.frames, .dt = request.dt, .done = done});
+            {.frames = request.frames, .dt = request.dt, .viewer = context.viewer, .done = done});
         if (!accepted) done(accepted.error());
       });
   add_command<Empty, StepState>(

@@ -82,6 +82,8 @@ HelloResult greeting(SessionHost& host, const Chosen& chosen,
       .max_height = limits.max_height,
       .max_message_bytes = static_cast<std::uint32_t>(host.dispatch_limits().max_message_bytes),
       .ack_window = stream::ack_window,
+      .max_batch = static_cast<std::uint32_t>(host.dispatch_limits().max_batch),
+      .max_waiting = static_cast<std::uint32_t>(limits.max_captures),
       .max_upload_bytes = call.view_only ? 0 : host.max_upload_bytes()};
   result.rev = session.rev();
   result.instance = instance();
