@@ -240,7 +240,9 @@ std::vector<MethodDescriptor> stream_methods() {
           "Asks for stats.frame notifications; gives the interval in effect.",
           {R"({"interval_ms": 250})", R"({"interval_ms": 250})"}),
       method<Empty, FrameBuffers>(
-          "frame.buffers", Call::query, "Lists what can be shown or captured.",
+          "frame.buffers", Call::query,
+          "Lists what can be shown or captured: the buffers of the newest picture, which follow from "
+          "scene and settings.",
           {no_params,
            R"({"buffers": [{"name": "output", "description": "The finished picture."}]})"}),
       method<FrameCapture, CapturedFrame>(

@@ -7,7 +7,7 @@
 
 #include "protocol/jsonrpc.hpp"
 #include "protocol/settings_json.hpp"
-#include "protocol/suggestions.hpp"
+#include "render/buffer_names.hpp"
 #include "scene/camera.hpp"
 #include "scene/pose.hpp"
 #include "session/device_renewal.hpp"
@@ -180,7 +180,7 @@ Result<protocol::SettingsApplied> Session::patch_settings(const protocol::RawJso
   protocol::Settings patched = state_.settings;
   const Result<nlohmann::json> applied = protocol::apply_patch(patched, patch.value());
   if (!applied) return applied.error();
-  if (const auto known = check_buffer(patched.view.buffer, "view.buffer"); !known) {
+  if (const auto known = render::check_buffer_name(patched.view.buffer, "view.buffer"); !known) {
     return known.error();
   }
   protocol::RawJson effective(*applied);
@@ -262,7 +262,9 @@ Result<void> Session::request_capture(CaptureRequest request) {
   {
     const std::lock_guard lock(mutex_);
     if (const Result<void> there = require_scene(); !there) return there.error();
-    if (const auto known = check_buffer(request.buffer, "buffer"); !known) return known.error();
+    if (const auto known = render::check_buffer_name(request.buffer, "buffer"); !known) {
+      return known.error();
+    }
     if (*open_captures_ >= options_.limits.max_captures) {
       return error::full("too many captures are waiting",
                          std::to_string(options_.limits.max_captures));
@@ -296,17 +298,6 @@ void Session::changed(bool new_revision) {
   if (new_revision) ++state_.rev;
   state_.changed_at = Clock::now();
   changed_->notify();
-}
-
-Result<void> Session::check_buffer(const std::string& buffer, const std::string& path) const {
-  std::vector<std::string_view> names;
-  for (const protocol::BufferInfo& info : buffers_) {
-    if (info.name == buffer) return {};
-    names.push_back(info.name);
-  }
-  return error::make(protocol::ErrorCode::invalid_params, path,
-                     "names no buffer" + protocol::suggestion(buffer, names),
-                     "a name that frame.buffers gives");
 }
 
 Result<void> Session::require_scene() const {

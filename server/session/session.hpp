@@ -109,7 +109,7 @@ class Session {
   /// How long nobody has needed it; zero while it has viewers.
   Clock::duration idle() const;
 
-  /// What `view.buffer` and captures may name; the renderer knows it.
+  /// The buffers of the newest picture; the renderer knows them.
   void set_buffers(std::vector<protocol::BufferInfo> buffers);
   std::vector<protocol::BufferInfo> buffers() const;
 
@@ -195,7 +195,6 @@ class Session {
   protocol::SessionInfo info_locked() const;
   /// Of a viewer that is gone.
   void forget(const std::string& viewer);
-  protocol::Result<void> check_buffer(const std::string& buffer, const std::string& path) const;
   protocol::Result<void> require_scene() const;
   protocol::Camera camera_message() const;
   protocol::Camera moved_camera(const scene::Camera& camera, std::optional<std::string> name,

@@ -144,7 +144,8 @@ class Environment(_Group):
 
 class Frame(_Group):
     def buffers(self) -> Dict[str, Any]:
-        """Lists what can be shown or captured.
+        """Lists what can be shown or captured: the buffers of the newest picture, which follow
+        from scene and settings.
 
         Gives: buffers.
         """

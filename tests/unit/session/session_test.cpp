@@ -32,9 +32,7 @@ class RecordingLink : public ViewerLink {
 
 class SessionTest : public testing::Test {
  protected:
-  SessionTest() : session_(options(), std::make_shared<Wakeup>()) {
-    session_.set_buffers({{"output", "picture"}, {"normal", "normals"}});
-  }
+  SessionTest() : session_(options(), std::make_shared<Wakeup>()) {}
 
   static SessionOptions options() {
     SessionOptions options;
@@ -147,12 +145,12 @@ TEST_F(SessionTest, EveryChangeHasItsRevision) {
 
 TEST_F(SessionTest, ABadPatchAppliesNothing) {
   const protocol::RawJson patch(
-      json{{"exposure", {{"compensation", 1.0}}}, {"view", {{"buffer", "norml"}}}});
+      json{{"exposure", {{"compensation", 1.0}}}, {"view", {{"buffer", "gbuffer.norml"}}}});
   const auto refused = session_.patch_settings(patch, "");
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::invalid_params);
   EXPECT_EQ(refused.error().path, "view.buffer");
-  EXPECT_NE(refused.error().message.find("normal"), std::string::npos);
+  EXPECT_NE(refused.error().message.find("gbuffer.normals"), std::string::npos);
   EXPECT_EQ(session_.render_state().settings, protocol::Settings());
 }
 
@@ -214,8 +212,8 @@ TEST_F(SessionTest, AFullSessionSaysSo) {
 TEST_F(SessionTest, CapturesAreCheckedAndLimited) {
   session_.show(a_scene(), "");
   EXPECT_EQ(session_.request_capture({.buffer = "depth"}).error().path, "buffer");
-  EXPECT_TRUE(session_.request_capture({.buffer = "normal"}));
-  EXPECT_EQ(session_.request_capture({.buffer = "normal"}).error().code, ErrorCode::full);
+  EXPECT_TRUE(session_.request_capture({.buffer = "gbuffer.normals"}));
+  EXPECT_EQ(session_.request_capture({.buffer = "gbuffer.normals"}).error().code, ErrorCode::full);
   EXPECT_EQ(session_.take_captures().size(), 1u);
   EXPECT_TRUE(session_.take_captures().empty());
 }
