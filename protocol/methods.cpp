@@ -330,7 +330,7 @@ std::vector<MethodDescriptor> frame_methods() {
                                     {no_params, reference}),
       method<Empty, ReferenceState>(
           "reference.stop", Call::command,
-          "Shows the hybrid picture again, with as many samples as before reference.start.",
+          "Shows the hybrid picture again; what reference.start had set is as it was before.",
           {no_params, R"({"shown": false, "scope": "same_paths", "samples": 0, "wanted": 64,
                           "finished": false, "rev": 18})"}),
   };

@@ -100,6 +100,7 @@ void Session::copy_from(const Session& other) {
   state_.animation.since = Clock::now();
   state_.lockstep.reset();
   state_.keep_drawing = false;
+  before_reference_ = other.before_reference_;
   edits_ = other.edits_;
   environment_name_ = other.environment_name_;
   camera_name_ = other.camera_name_;
@@ -177,6 +178,11 @@ protocol::SettingsState Session::settings() const {
 Result<protocol::SettingsApplied> Session::patch_settings(const protocol::RawJson& patch,
                                                           const std::string& by) {
   const std::lock_guard lock(mutex_);
+  return patch_locked(patch, by);
+}
+
+Result<protocol::SettingsApplied> Session::patch_locked(const protocol::RawJson& patch,
+                                                        const std::string& by) {
   protocol::Settings patched = state_.settings;
   const Result<nlohmann::json> applied = protocol::apply_patch(patched, patch.value());
   if (!applied) return applied.error();
@@ -186,6 +192,10 @@ Result<protocol::SettingsApplied> Session::patch_settings(const protocol::RawJso
   protocol::RawJson effective(*applied);
   if (patched != state_.settings) {
     state_.settings = std::move(patched);
+    if (state_.settings.reference.use != protocol::ReferenceUse::always) {
+      before_reference_.reset();
+      state_.keep_drawing = false;
+    }
     changed();
     const protocol::SettingsChanged message{.rev = state_.rev, .patch = effective, .by = by};
     audience_.send_others(by, protocol::make_notification("settings.changed", message), {});

@@ -64,7 +64,7 @@ struct RenderState {
   std::vector<stream::InputEcho> inputs;
   std::uint64_t fresh_starts = 0;  // how often everything drawn before was to be forgotten
   std::optional<Clock::time_point> lockstep;  // what the time is where it passes by steps only
-  bool keep_drawing = false;  // the path traced truth, whether anybody watches or not
+  bool keep_drawing = false;  // a reference that was started, whether anybody watches or not
 
   Clock::time_point now() const { return lockstep ? *lockstep : Clock::now(); }
 };
@@ -196,6 +196,9 @@ class Session {
   /// Of a viewer that is gone.
   void forget(const std::string& viewer);
   protocol::Result<void> require_scene() const;
+  protocol::Result<protocol::SettingsApplied> patch_locked(const protocol::RawJson& patch,
+                                                           const std::string& by);
+  protocol::ReferenceState reference_message() const;
   protocol::Camera camera_message() const;
   protocol::Camera moved_camera(const scene::Camera& camera, std::optional<std::string> name,
                                 const std::string& by);
@@ -235,7 +238,12 @@ class Session {
     bool converged = false;
   };
   PictureReport newest_picture_;
-  std::optional<int> samples_before_reference_;
+  /// What reference.start changes, as it was; nothing where no reference was started.
+  struct BeforeReference {
+    protocol::Settings::Reference reference;
+    protocol::Settings::Accumulation accumulation;
+  };
+  std::optional<BeforeReference> before_reference_;
   std::map<std::string, std::uint32_t> input_seqs_;  // by viewer
   std::vector<CaptureRequest> captures_;
   /// How many are not yet answered, wherever they are.

@@ -258,7 +258,7 @@ class Reference(_Group):
         return self._call("reference.status", {})
 
     def stop(self) -> Dict[str, Any]:
-        """Shows the hybrid picture again, with as many samples as before reference.start.
+        """Shows the hybrid picture again; what reference.start had set is as it was before.
 
         Gives: finished, rev, samples, scope, shown, wanted.
         """
