@@ -11,6 +11,7 @@
 #include "scene/camera.hpp"
 #include "scene/pose.hpp"
 #include "session/device_renewal.hpp"
+#include "session/measurements.hpp"
 #include "session/scene_description.hpp"
 
 namespace heliograph::session {
@@ -23,9 +24,11 @@ protocol::Error no_control() {
                      "another viewer has control of this session", "session.control");
 }
 
-Session::Session(SessionOptions options, std::shared_ptr<Wakeup> changed, PixelShare pixels)
+Session::Session(SessionOptions options, std::shared_ptr<Wakeup> changed, PixelShare pixels,
+                 Measurements* measurements)
     : options_(std::move(options)),
       changed_(std::move(changed)),
+      measurements_(measurements),
       audience_(options_.limits.max_viewers, *changed_),
       pixels_(std::move(pixels)) {
   state_.settings = options_.settings;
@@ -269,21 +272,28 @@ void Session::forget(const std::string& viewer) {
 }
 
 Result<void> Session::request_capture(CaptureRequest request) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (const Result<void> there = require_scene(); !there) return there.error();
-    if (const auto known = render::check_buffer_name(request.buffer, "buffer"); !known) {
-      return known.error();
-    }
-    if (*open_captures_ >= options_.limits.max_captures) {
-      return error::full("too many captures are waiting",
-                         std::to_string(options_.limits.max_captures));
-    }
-    ++*open_captures_;
-    request.seat = std::shared_ptr<void>(nullptr, [open = open_captures_](void*) { --*open; });
-    captures_.push_back(std::move(request));
+  const Result<void> accepted = accept_capture(std::move(request));
+  if (accepted) {
+    changed_->notify();
+  } else if (measurements_) {
+    measurements_->capture_failed();
   }
-  changed_->notify();
+  return accepted;
+}
+
+Result<void> Session::accept_capture(CaptureRequest request) {
+  const std::lock_guard lock(mutex_);
+  if (const Result<void> there = require_scene(); !there) return there.error();
+  if (const auto known = render::check_buffer_name(request.buffer, "buffer"); !known) {
+    return known.error();
+  }
+  if (*open_captures_ >= options_.limits.max_captures) {
+    return error::full("too many captures are waiting",
+                       std::to_string(options_.limits.max_captures));
+  }
+  ++*open_captures_;
+  request.seat = std::shared_ptr<void>(nullptr, [open = open_captures_](void*) { --*open; });
+  captures_.push_back(std::move(request));
   return {};
 }
 

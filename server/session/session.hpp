@@ -70,6 +70,7 @@ struct RenderState {
 };
 
 class DeviceRenewal;
+class Measurements;
 
 /// What a caller is told who may not change the session.
 protocol::Error no_control();
@@ -80,8 +81,9 @@ protocol::Error no_control();
 class Session {
  public:
   /// `changed` is notified when there is something to do; `pixels` is what the picture's size is
-  /// taken from.
-  Session(SessionOptions options, std::shared_ptr<Wakeup> changed, PixelShare pixels = {});
+  /// taken from; `measurements`, which outlive the session, count refused captures.
+  Session(SessionOptions options, std::shared_ptr<Wakeup> changed, PixelShare pixels = {},
+          Measurements* measurements = nullptr);
 
   const std::string& name() const { return options_.name; }
   const SessionLimits& limits() const { return options_.limits; }
@@ -156,6 +158,7 @@ class Session {
   /// Lets a viewer go over to another session; if that has no room it stays.
   protocol::Result<void> hand_over(const std::string& viewer, Session& there);
 
+  /// Refused at once where nothing would come of it.
   protocol::Result<void> request_capture(CaptureRequest request);
   /// The captures asked for since the last call.
   std::vector<CaptureRequest> take_captures();
@@ -196,6 +199,7 @@ class Session {
   /// Of a viewer that is gone.
   void forget(const std::string& viewer);
   protocol::Result<void> require_scene() const;
+  protocol::Result<void> accept_capture(CaptureRequest request);
   protocol::Result<protocol::SettingsApplied> patch_locked(const protocol::RawJson& patch,
                                                            const std::string& by);
   protocol::ReferenceState reference_message() const;
@@ -211,6 +215,7 @@ class Session {
 
   const SessionOptions options_;
   const std::shared_ptr<Wakeup> changed_;
+  Measurements* const measurements_;
   std::atomic<Clock::time_point> needed_at_ = Clock::now();
   std::atomic<bool> ended_ = false;
   std::atomic<bool> touched_ = false;
