@@ -161,7 +161,8 @@ class Frame(_Group):
 
         buffer: A name that frame.buffers gave.
         format: Format of the file: png and jpeg for people, npy and exr for values.
-        samples: Samples per pixel to wait for; absent: accumulation.max_samples.
+        samples: Samples per pixel to wait for, at most accumulation.max_samples, one without
+            accumulation; absent: all of them. The answer tells how many there are.
 
         Gives: buffer, data, format, height, samples, width.
         """
