@@ -241,7 +241,9 @@ std::vector<MethodDescriptor> stream_methods() {
           "Asks for stats.frame notifications; gives the interval in effect.",
           {R"({"interval_ms": 250})", R"({"interval_ms": 250})"}),
       method<Empty, FrameBuffers>(
-          "frame.buffers", Call::query, "Lists what can be shown or captured.",
+          "frame.buffers", Call::query,
+          "Lists what can be shown or captured: the buffers of the newest picture, which follow from "
+          "scene and settings.",
           {no_params,
            R"({"buffers": [{"name": "output", "description": "The finished picture."}]})"}),
       method<FrameCapture, CapturedFrame>(
@@ -329,7 +331,7 @@ std::vector<MethodDescriptor> frame_methods() {
                                     {no_params, reference}),
       method<Empty, ReferenceState>(
           "reference.stop", Call::command,
-          "Shows the hybrid picture again, with as many samples as before reference.start.",
+          "Shows the hybrid picture again; what reference.start had set is as it was before.",
           {no_params, R"({"shown": false, "scope": "same_paths", "samples": 0, "wanted": 64,
                           "finished": false, "rev": 18})"}),
   };

@@ -198,7 +198,8 @@ struct FrameCapture {
         field("format", &FrameCapture::format, "Format of the file: png and jpeg for people, npy and exr for values.")
             .or_default(),
         field("samples", &FrameCapture::samples,
-              "Samples per pixel to wait for; absent: accumulation.max_samples.")
+              "Samples per pixel to wait for, at most accumulation.max_samples, one without "
+              "accumulation; absent: all of them. The answer tells how many there are.")
             .range(1, 65536),
     };
   }

@@ -23,6 +23,11 @@ def connect(options):
     return heliograph.connect(options.url, session=options.session, token=options.token, ssl=trust)
 
 
+def gather(view, samples):
+    """Lets pictures at rest have so many samples per pixel, for captures to wait for."""
+    view.settings.patch(patch={"accumulation": {"enabled": True, "max_samples": samples}})
+
+
 @contextlib.contextmanager
 def open_view(options, width, height, scene=None):
     """A client in a session of this size that shows the scene, or what main shows."""

@@ -6,7 +6,7 @@
 
 import argparse
 
-from own_session import add_options, open_view
+from own_session import add_options, gather, open_view
 
 LUMINANCE = (0.2126, 0.7152, 0.0722)
 
@@ -62,6 +62,7 @@ def main():
     parser.add_argument("--plot", default="sweep.svg")
     options = parser.parse_args()
     with open_view(options, *options.size, options.scene) as view:
+        gather(view, options.samples)
         material = options.material or view.materials.list()["materials"][0]["name"]
         rows = sweep(view, material, options.steps, options.samples)
     with open(options.plot, "w", encoding="utf-8") as file:

@@ -11,7 +11,7 @@ import os
 import sys
 
 import heliograph
-from own_session import add_options, open_view
+from own_session import add_options, gather, open_view
 
 
 def thumbnail(view, name, samples):
@@ -30,6 +30,7 @@ def main():
     options = parser.parse_args()
     below = options.models.rstrip("/") + "/" if options.models else ""
     with open_view(options, options.size, options.size) as view:
+        gather(view, options.samples)
         for scene in view.scene.list()["scenes"]:
             name = scene["name"]
             if not name.startswith(below):

@@ -6,6 +6,7 @@
 
 #include "protocol/presets.hpp"
 #include "protocol/settings_json.hpp"
+#include "render/buffer_names.hpp"
 
 namespace heliograph::cli {
 namespace {
@@ -46,6 +47,8 @@ protocol::Settings parse_settings(const SettingsOptions& options) {
     const protocol::Result<void> set = protocol::set_by_path(settings, assignment);
     if (!set) throw std::invalid_argument("--set " + assignment + ": " + set.error().message);
   }
+  const auto named = render::check_buffer_name(settings.view.buffer, "view.buffer");
+  if (!named) throw std::invalid_argument("--set " + named.error().message);
   return settings;
 }
 

@@ -164,7 +164,9 @@ void add_streams(Page& page, const session::SessionHost& host) {
   page.histogram("heliograph_ack_round_trip_seconds",
                  "From sending a frame to its confirmation, less what the viewer held it.",
                  audience.sent.round_trips);
-  page.gauge("heliograph_goodput_bytes_per_second", "Confirmed bytes of all viewers.",
+  page.gauge("heliograph_goodput_bytes_per_second",
+             "What all viewers' connections together take when busy, estimated from confirmations; "
+             "not what is sent.",
              audience.goodput);
 }
 
@@ -174,7 +176,8 @@ void add_rendering(Page& page, const session::SessionHost& host) {
   page.histogram("heliograph_encode_seconds", "Encoding, each picture.", render.encodings);
   page.histogram("heliograph_capture_seconds", "From asking for a capture to its file.",
                  render.captures);
-  page.counter("heliograph_captures_failed_total", "Captures that were answered by an error.",
+  page.counter("heliograph_captures_failed_total",
+               "Captures that were answered by an error, at once or after waiting.",
                static_cast<double>(render.failed_captures));
   page.describe("heliograph_pass_seconds", "Each pass of the frames.", "histogram");
   for (const auto& [pass, seconds] : render.by_pass) {

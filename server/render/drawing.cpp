@@ -1,7 +1,5 @@
 #include "render/drawing.hpp"
 
-#include <algorithm>
-
 #include "render/frame_set.hpp"
 #include "render/moving_scene.hpp"
 #include "render/scene_set.hpp"
@@ -44,11 +42,6 @@ void Drawing::list_buffers() {
     list(view.name, view.description);
     for (const std::string& aspect : aspects_of(view.name)) list(aspect, {});
   }
-}
-
-bool Drawing::has_buffer(std::string_view name) const {
-  return std::any_of(buffers.begin(), buffers.end(),
-                     [&](const BufferInfo& buffer) { return buffer.name == name; });
 }
 
 const gpu::Image* Drawing::find(std::string_view buffer) const {

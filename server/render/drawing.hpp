@@ -19,7 +19,6 @@ struct Drawing {
   Drawing(const Engine::Parts& parts, const FrameInputs& inputs,
           const gpu::Buffer& constants_buffer, VkExtent2D extent);
 
-  bool has_buffer(std::string_view name) const;
   /// The image of that name as of the last frame, or null.
   const gpu::Image* find(std::string_view buffer) const;
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "render/accumulate.hpp"
+#include "render/buffer_names.hpp"
 #include "render/debug_view.hpp"
 #include "render/drawing.hpp"
 #include "render/moving_scene.hpp"
@@ -51,7 +52,7 @@ struct Renderer::State {
                          VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Memory::upload) {}
 
   void redraw();
-  protocol::Result<void> change_settings(const protocol::Settings& changed);
+  void change_settings(const protocol::Settings& changed);
   Frame picture();
   std::optional<FloatImage> read(std::string_view view) const;
   std::uint32_t wanted_samples() const {
@@ -63,8 +64,6 @@ struct Renderer::State {
     samples = 0;
     stale = true;
   }
-  std::unique_ptr<Drawing> make_drawing();
-  void use(std::unique_ptr<Drawing> made);
 
   Engine::Parts& parts;
   std::shared_ptr<const SceneResources> nothing;  // the empty scene
@@ -87,49 +86,26 @@ struct Renderer::State {
   std::unique_ptr<Drawing> drawing;
 };
 
-std::unique_ptr<Drawing> Renderer::State::make_drawing() {
+// The old drawing goes first: two of them may not fit into memory.
+void Renderer::State::redraw() {
+  drawing.reset();
   const FrameInputs inputs{parts.programs, *scene,    moving->tables(), *parts.tracer,
                            moving->structure(), constants, settings,    samples,
                            seconds,             *moving,   scene_motion,
                            parts.split_sum_table, parts.host_kernels};
-  return std::make_unique<Drawing>(parts, inputs, constants_buffer, extent);
-}
-
-void Renderer::State::use(std::unique_ptr<Drawing> made) {
-  drawing = std::move(made);
+  drawing = std::make_unique<Drawing>(parts, inputs, constants_buffer, extent);
   has_previous = false;
   sequence = 0;
   restart();
 }
 
-// The old drawing goes first: two of them may not fit into memory.
-void Renderer::State::redraw() {
-  drawing.reset();
-  use(make_drawing());
-}
-
-// Which buffers there are follows from the settings. One that went while it was shown leaves the
-// picture; one that is asked for and not there is refused, and then the histories stay.
-protocol::Result<void> Renderer::State::change_settings(const protocol::Settings& changed) {
+void Renderer::State::change_settings(const protocol::Settings& changed) {
   const auto scope = protocol::changed_scope(settings, changed);
-  const protocol::Settings before = std::exchange(settings, changed);
-  const bool rebuilds = includes(scope, protocol::ResetScope::structure);
-  if (changed.view.buffer != before.view.buffer) {
-    std::unique_ptr<Drawing> made = rebuilds ? make_drawing() : nullptr;
-    if (!(made ? *made : *drawing).has_buffer(changed.view.buffer)) {
-      settings = before;
-      return protocol::error::invalid("view.buffer",
-                                      "there is no buffer \"" + changed.view.buffer + "\"",
-                                      "a name from frame.buffers");
-    }
-    if (made) use(std::move(made));
-  } else if (rebuilds) {
-    redraw();
-  }
+  settings = changed;
+  if (includes(scope, protocol::ResetScope::structure)) redraw();
   stale = true;
   if (includes(scope, protocol::ResetScope::history)) has_previous = false;
   if (includes(scope, protocol::ResetScope::accumulation)) restart();
-  return {};
 }
 
 std::optional<FloatImage> Renderer::State::read(std::string_view view) const {
@@ -234,8 +210,11 @@ void Renderer::set_frame_seconds(float seconds) {
 }
 
 protocol::Result<void> Renderer::set_settings(const protocol::Settings& settings) {
-  if (settings == state_->settings) return {};
-  return state_->change_settings(settings);
+  if (const auto known = check_buffer_name(settings.view.buffer, "view.buffer"); !known) {
+    return known;
+  }
+  if (settings != state_->settings) state_->change_settings(settings);
+  return {};
 }
 
 bool Renderer::needs_frame() const {
@@ -298,8 +277,8 @@ const std::vector<BufferInfo>& Renderer::buffers() const {
 protocol::Result<FloatImage> Renderer::capture(std::string_view buffer) {
   auto values = state_->read(buffer);
   if (values) return std::move(*values);
-  return protocol::error::not_found("buffer",
-                                    "there is no buffer \"" + std::string(buffer) + "\"");
+  return protocol::error::not_found(
+      "buffer", "there is no buffer \"" + std::string(buffer) + "\" with these settings");
 }
 
 protocol::Result<Frame> Renderer::capture_view(std::string_view buffer) {

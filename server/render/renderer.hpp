@@ -190,7 +190,7 @@ class Renderer {
   void start_anew();
   /// Time from frame to frame, which histories are measured by; 1/60 s until told otherwise.
   void set_frame_seconds(float seconds);
-  /// Refused when a new `view.buffer` names no buffer; then nothing is applied.
+  /// Refused as check_buffer_name says. While they make no buffer to view, the picture is shown.
   protocol::Result<void> set_settings(const protocol::Settings& settings);
 
   /// False once a resting picture has all its samples and nothing has changed since.
@@ -201,7 +201,7 @@ class Renderer {
   /// The work behind the last frame's pass times; slow, for measurements.
   std::vector<PassWork> work() const;
 
-  /// Every buffer that `view.buffer` and `capture` accept, "output" first.
+  /// Every buffer that there is with these settings and this scene, "output" first.
   const std::vector<BufferInfo>& buffers() const;
   /// The buffer as of the last frame, raw values (linear radiance, metres, unit vectors ...).
   protocol::Result<FloatImage> capture(std::string_view buffer);

@@ -49,7 +49,7 @@ struct AudienceTotals {
   std::size_t on_the_way = 0;  // frames sent and not yet acknowledged
   stream::PacerTotals sent;    // those who left included
   std::chrono::microseconds mean_round_trip{0};
-  double goodput = 0.0;  // bytes a second, all viewers together
+  double goodput = 0.0;  // bytes a second that all viewers' connections take when busy
 };
 
 /// The viewers of one session: what each may get next, and messages to them. Thread safe.

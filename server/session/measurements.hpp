@@ -38,13 +38,13 @@ class Measurements {
     const std::lock_guard lock(mutex_);
     totals_.encodings.add(seconds);
   }
-  void captured(double seconds, bool succeeded) {
+  void captured(double seconds) {
     const std::lock_guard lock(mutex_);
-    if (succeeded) {
-      totals_.captures.add(seconds);
-    } else {
-      ++totals_.failed_captures;
-    }
+    totals_.captures.add(seconds);
+  }
+  void capture_failed() {
+    const std::lock_guard lock(mutex_);
+    ++totals_.failed_captures;
   }
   RenderTotals totals() const {
     const std::lock_guard lock(mutex_);

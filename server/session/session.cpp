@@ -7,10 +7,11 @@
 
 #include "protocol/jsonrpc.hpp"
 #include "protocol/settings_json.hpp"
-#include "protocol/suggestions.hpp"
+#include "render/buffer_names.hpp"
 #include "scene/camera.hpp"
 #include "scene/pose.hpp"
 #include "session/device_renewal.hpp"
+#include "session/measurements.hpp"
 #include "session/scene_description.hpp"
 
 namespace heliograph::session {
@@ -23,9 +24,11 @@ protocol::Error no_control() {
                      "another viewer has control of this session", "session.control");
 }
 
-Session::Session(SessionOptions options, std::shared_ptr<Wakeup> changed, PixelShare pixels)
+Session::Session(SessionOptions options, std::shared_ptr<Wakeup> changed, PixelShare pixels,
+                 Measurements* measurements)
     : options_(std::move(options)),
       changed_(std::move(changed)),
+      measurements_(measurements),
       audience_(options_.limits.max_viewers, *changed_),
       pixels_(std::move(pixels)) {
   state_.settings = options_.settings;
@@ -100,6 +103,7 @@ void Session::copy_from(const Session& other) {
   state_.animation.since = Clock::now();
   state_.lockstep.reset();
   state_.keep_drawing = false;
+  before_reference_ = other.before_reference_;
   edits_ = other.edits_;
   environment_name_ = other.environment_name_;
   camera_name_ = other.camera_name_;
@@ -181,15 +185,24 @@ protocol::SettingsState Session::settings() const {
 Result<protocol::SettingsApplied> Session::patch_settings(const protocol::RawJson& patch,
                                                           const std::string& by) {
   const std::lock_guard lock(mutex_);
+  return patch_locked(patch, by);
+}
+
+Result<protocol::SettingsApplied> Session::patch_locked(const protocol::RawJson& patch,
+                                                        const std::string& by) {
   protocol::Settings patched = state_.settings;
   const Result<nlohmann::json> applied = protocol::apply_patch(patched, patch.value());
   if (!applied) return applied.error();
-  if (const auto known = check_buffer(patched.view.buffer, "view.buffer"); !known) {
+  if (const auto known = render::check_buffer_name(patched.view.buffer, "view.buffer"); !known) {
     return known.error();
   }
   protocol::RawJson effective(*applied);
   if (patched != state_.settings) {
     state_.settings = std::move(patched);
+    if (state_.settings.reference.use != protocol::ReferenceUse::always) {
+      before_reference_.reset();
+      state_.keep_drawing = false;
+    }
     changed();
     const protocol::SettingsChanged message{.rev = state_.rev, .patch = effective, .by = by};
     audience_.send_others(by, protocol::make_notification("settings.changed", message), {});
@@ -265,20 +278,29 @@ void Session::forget(const std::string& viewer) {
 }
 
 Result<void> Session::request_capture(CaptureRequest request) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (const Result<void> there = require_scene(); !there) return there.error();
-    if (const auto known = check_buffer(request.buffer, "buffer"); !known) return known.error();
-    if (*open_captures_ >= options_.limits.max_captures) {
-      return error::full("too many captures are waiting",
-                         std::to_string(options_.limits.max_captures));
-    }
-    ++*open_captures_;
-    request.place = next_place();
-    request.seat = std::shared_ptr<void>(nullptr, [open = open_captures_](void*) { --*open; });
-    captures_.push_back(std::move(request));
+  const Result<void> accepted = accept_capture(std::move(request));
+  if (accepted) {
+    changed_->notify();
+  } else if (measurements_) {
+    measurements_->capture_failed();
   }
-  changed_->notify();
+  return accepted;
+}
+
+Result<void> Session::accept_capture(CaptureRequest request) {
+  const std::lock_guard lock(mutex_);
+  if (const Result<void> there = require_scene(); !there) return there.error();
+  if (const auto known = render::check_buffer_name(request.buffer, "buffer"); !known) {
+    return known.error();
+  }
+  if (*open_captures_ >= options_.limits.max_captures) {
+    return error::full("too many captures are waiting",
+                       std::to_string(options_.limits.max_captures));
+  }
+  ++*open_captures_;
+  request.place = next_place();
+  request.seat = std::shared_ptr<void>(nullptr, [open = open_captures_](void*) { --*open; });
+  captures_.push_back(std::move(request));
   return {};
 }
 
@@ -308,17 +330,6 @@ void Session::changed(bool new_revision) {
   if (new_revision) ++state_.rev;
   state_.changed_at = Clock::now();
   changed_->notify();
-}
-
-Result<void> Session::check_buffer(const std::string& buffer, const std::string& path) const {
-  std::vector<std::string_view> names;
-  for (const protocol::BufferInfo& info : buffers_) {
-    if (info.name == buffer) return {};
-    names.push_back(info.name);
-  }
-  return error::make(protocol::ErrorCode::invalid_params, path,
-                     "names no buffer" + protocol::suggestion(buffer, names),
-                     "a name that frame.buffers gives");
 }
 
 Result<void> Session::require_scene() const {

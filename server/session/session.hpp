@@ -66,7 +66,7 @@ struct RenderState {
   std::vector<stream::InputEcho> inputs;
   std::uint64_t fresh_starts = 0;  // how often everything drawn before was to be forgotten
   std::optional<Clock::time_point> lockstep;  // what the time is where it passes by steps only
-  bool keep_drawing = false;  // the path traced truth, whether anybody watches or not
+  bool keep_drawing = false;  // a reference that was started, whether anybody watches or not
 
   Clock::time_point now() const { return lockstep ? *lockstep : Clock::now(); }
 };
@@ -79,6 +79,7 @@ struct StepFrame {
 };
 
 class DeviceRenewal;
+class Measurements;
 
 /// What a caller is told who may not change the session.
 protocol::Error no_control();
@@ -89,8 +90,9 @@ protocol::Error no_control();
 class Session {
  public:
   /// `changed` is notified when there is something to do; `pixels` is what the picture's size is
-  /// taken from.
-  Session(SessionOptions options, std::shared_ptr<Wakeup> changed, PixelShare pixels = {});
+  /// taken from; `measurements`, which outlive the session, count refused captures.
+  Session(SessionOptions options, std::shared_ptr<Wakeup> changed, PixelShare pixels = {},
+          Measurements* measurements = nullptr);
 
   const std::string& name() const { return options_.name; }
   const SessionLimits& limits() const { return options_.limits; }
@@ -118,7 +120,7 @@ class Session {
   /// How long nobody has needed it; zero while it has viewers.
   Clock::duration idle() const;
 
-  /// What `view.buffer` and captures may name; the renderer knows it.
+  /// The buffers of the newest picture; the renderer knows them.
   void set_buffers(std::vector<protocol::BufferInfo> buffers);
   std::vector<protocol::BufferInfo> buffers() const;
 
@@ -165,6 +167,7 @@ class Session {
   /// Lets a viewer go over to another session; if that has no room it stays.
   protocol::Result<void> hand_over(const std::string& viewer, Session& there);
 
+  /// Refused at once where nothing would come of it.
   protocol::Result<void> request_capture(CaptureRequest request);
   /// The captures asked for since the last call.
   std::vector<CaptureRequest> take_captures();
@@ -206,8 +209,11 @@ class Session {
   protocol::SessionInfo info_locked() const;
   /// Of a viewer that is gone.
   void forget(const std::string& viewer);
-  protocol::Result<void> check_buffer(const std::string& buffer, const std::string& path) const;
   protocol::Result<void> require_scene() const;
+  protocol::Result<void> accept_capture(CaptureRequest request);
+  protocol::Result<protocol::SettingsApplied> patch_locked(const protocol::RawJson& patch,
+                                                           const std::string& by);
+  protocol::ReferenceState reference_message() const;
   protocol::Camera camera_message() const;
   protocol::Camera moved_camera(const scene::Camera& camera, std::optional<std::string> name,
                                 const std::string& by);
@@ -226,6 +232,7 @@ class Session {
 
   const SessionOptions options_;
   const std::shared_ptr<Wakeup> changed_;
+  Measurements* const measurements_;
   std::atomic<Clock::time_point> needed_at_ = Clock::now();
   std::atomic<bool> ended_ = false;
   std::atomic<bool> touched_ = false;
@@ -262,7 +269,12 @@ class Session {
     bool converged = false;
   };
   PictureReport newest_picture_;
-  std::optional<int> samples_before_reference_;
+  /// What reference.start changes, as it was; nothing where no reference was started.
+  struct BeforeReference {
+    protocol::Settings::Reference reference;
+    protocol::Settings::Accumulation accumulation;
+  };
+  std::optional<BeforeReference> before_reference_;
   std::map<std::string, std::uint32_t> input_seqs_;  // by viewer
   std::vector<CaptureRequest> captures_;
   /// How many are not yet answered, wherever they are.

@@ -13,45 +13,44 @@ using protocol::Result;
 
 Result<ReferenceState> Session::start_reference(const protocol::ReferenceStart& request,
                                                 const std::string& by) {
-  int samples_before = 0;
-  {
-    const std::lock_guard lock(mutex_);
-    if (const Result<void> there = require_scene(); !there) return there.error();
-    samples_before = state_.settings.accumulation.max_samples;
-  }
+  const std::lock_guard lock(mutex_);
+  if (const Result<void> there = require_scene(); !there) return there.error();
+  const BeforeReference before = before_reference_.value_or(
+      BeforeReference{state_.settings.reference, state_.settings.accumulation});
   json patch{{"reference", {{"use", "always"}, {"scope", protocol::enum_name(request.scope)}}},
              {"accumulation", {{"enabled", true}}}};
   if (request.samples) patch["accumulation"]["max_samples"] = *request.samples;
-  if (const auto applied = patch_settings(protocol::RawJson(std::move(patch)), by); !applied) {
+  if (const auto applied = patch_locked(protocol::RawJson(std::move(patch)), by); !applied) {
     return applied.error();
   }
-  {
-    const std::lock_guard lock(mutex_);
-    if (!samples_before_reference_) samples_before_reference_ = samples_before;
-    state_.keep_drawing = true;
-    changed(false);
-  }
-  return reference();
+  before_reference_ = before;
+  state_.keep_drawing = true;
+  changed(false);
+  return reference_message();
 }
 
 Result<ReferenceState> Session::stop_reference(const std::string& by) {
+  const std::lock_guard lock(mutex_);
   json patch{{"reference", {{"use", "never"}}}};
-  {
-    const std::lock_guard lock(mutex_);
-    if (samples_before_reference_) {
-      patch["accumulation"]["max_samples"] = *samples_before_reference_;
-    }
-    samples_before_reference_.reset();
-    state_.keep_drawing = false;
+  if (before_reference_) {
+    const auto& [reference, accumulation] = *before_reference_;
+    if (reference.use == protocol::ReferenceUse::resting) patch["reference"]["use"] = "resting";
+    patch["reference"]["scope"] = protocol::enum_name(reference.scope);
+    patch["accumulation"] = {{"enabled", accumulation.enabled},
+                             {"max_samples", accumulation.max_samples}};
   }
-  if (const auto applied = patch_settings(protocol::RawJson(std::move(patch)), by); !applied) {
+  if (const auto applied = patch_locked(protocol::RawJson(std::move(patch)), by); !applied) {
     return applied.error();
   }
-  return reference();
+  return reference_message();
 }
 
 ReferenceState Session::reference() const {
   const std::lock_guard lock(mutex_);
+  return reference_message();
+}
+
+ReferenceState Session::reference_message() const {
   const protocol::Settings& settings = state_.settings;
   ReferenceState state{.shown = settings.reference.use == protocol::ReferenceUse::always,
                        .scope = settings.reference.scope,

@@ -11,7 +11,6 @@
 
 namespace heliograph::session {
 
-using protocol::Result;
 using std::chrono::duration_cast;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
@@ -60,7 +59,8 @@ SessionView::SessionView(render::Engine& engine, SessionOptions options, PixelSh
     : engine_(engine),
       services_(services),
       wakeup_(std::move(wakeup)),
-      session_(std::make_shared<Session>(std::move(options), wakeup_, std::move(pixels))),
+      session_(std::make_shared<Session>(std::move(options), wakeup_, std::move(pixels),
+                                         &services.measurements)),
       broadcast_(session_, {.encoder = services.encoder,
                             .jpeg = services.jpeg,
                             .measurements = services.measurements,
@@ -71,9 +71,8 @@ SessionView::~SessionView() = default;
 
 void SessionView::prepare() {
   draws_unasked_ = true;
-  if (const auto accepted = make_renderer(); !accepted) {
-    throw std::invalid_argument(accepted.error().message);
-  }
+  make_renderer();
+  tell_buffers();
 }
 
 bool SessionView::awake() const {
@@ -91,13 +90,21 @@ bool SessionView::watched() const {
   return !captures_.empty() || !probes_.empty() || session_->audience().watching();
 }
 
-Result<void> SessionView::make_renderer() {
+void SessionView::make_renderer() {
   renderer_ = std::make_unique<render::Renderer>(engine_);
   needed_at_ = Clock::now();
   state_ = {};
-  auto accepted = renderer_->set_settings(session_->render_state().settings);
+  apply(session_->render_state().settings);
+}
+
+void SessionView::apply(const protocol::Settings& settings) {
+  const auto accepted = renderer_->set_settings(settings);
+  // A session takes in no others, so nobody would ever hear of it.
+  if (!accepted) throw std::logic_error("settings of a session: " + accepted.error().message);
+}
+
+void SessionView::tell_buffers() {
   session_->set_buffers(to_protocol(renderer_->buffers()));
-  return accepted;
 }
 
 void SessionView::release_renderer() {
@@ -118,8 +125,7 @@ SessionView::Work SessionView::advance(bool may_draw) {
   session_->audience().announce_waiting();
   if (!renderer_) {
     if (!needed()) return Work::none;
-    // What the renderer refuses is told when the state is taken over.
-    (void)make_renderer();
+    make_renderer();
   }
   if (watched()) session_->touch();
   if (needed()) {
@@ -158,6 +164,8 @@ std::optional<Clock::time_point> SessionView::next_due() const {
 }
 
 void SessionView::recover() {
+  // What of the state it had taken over nobody knows: another one takes all of it.
+  release_renderer();
   resting_until_ = Clock::now() + rest_after_failure;
   for (PendingCapture& capture : captures_) capture.request.done(protocol::error::internal());
   captures_.clear();
@@ -179,10 +187,7 @@ void SessionView::adopt(RenderState next) {
     session_->renew(renewal);
     state_ = session_->render_state();
   }
-  if (state_.resources != before.resources) {
-    renderer_->set_scene(state_.resources);
-    session_->set_buffers(to_protocol(renderer_->buffers()));
-  }
+  if (state_.resources != before.resources) renderer_->set_scene(state_.resources);
   adopt_edits(before);
   if (state_.fresh_starts != before.fresh_starts) {
     renderer_->start_anew();
@@ -196,10 +201,8 @@ void SessionView::adopt(RenderState next) {
   cut_ |= resized || !same_scene || jumped;
   if (same_scene && !scene::same_view(state_.camera, before.camera)) moved_at_ = Clock::now();
   adopt_pose();
-  if (const auto accepted = renderer_->set_settings(state_.settings); !accepted) {
-    log_error({.session = session_->name()},
-              "the renderer refused settings: " + accepted.error().message);
-  }
+  apply(state_.settings);
+  tell_buffers();
 }
 
 /// What the session changed in the scene; a scene that is new to the renderer has no changes yet.

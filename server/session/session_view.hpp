@@ -33,7 +33,7 @@ class SessionView {
   ~SessionView();
 
   /// Makes the renderer before it is drawn with; the first picture then comes unasked.
-  /// @throws std::invalid_argument when the renderer refuses the settings, render::DeviceLost
+  /// @throws render::DeviceLost
   void prepare();
 
   const std::shared_ptr<Session>& session() const { return session_; }
@@ -70,7 +70,9 @@ class SessionView {
 
   bool needed() const;
   bool watched() const;
-  protocol::Result<void> make_renderer();
+  void make_renderer();
+  void apply(const protocol::Settings& settings);
+  void tell_buffers();
   void adopt_state();
   void adopt(RenderState next);
   void adopt_edits(const RenderState& before);

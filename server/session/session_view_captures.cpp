@@ -19,8 +19,11 @@ void SessionView::collect_captures() {
   for (CaptureRequest& request : session_->take_captures()) {
     request.done = [done = std::move(request.done), since = Clock::now(),
                     &measurements = services_.measurements](const Result<Capture>& result) {
-      measurements.captured(std::chrono::duration<double>(Clock::now() - since).count(),
-                            static_cast<bool>(result));
+      if (result) {
+        measurements.captured(std::chrono::duration<double>(Clock::now() - since).count());
+      } else {
+        measurements.capture_failed();
+      }
       done(result);
     };
     captures_.push_back({.request = std::move(request),

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <set>
+#include <string>
+#include <vector>
 
+#include "render/buffer_names.hpp"
 #include "tests/image/still.hpp"
 
 namespace heliograph::test {
@@ -89,14 +93,60 @@ TEST_F(Views, ANameThatIsRefusedCostsNoHistory) {
   const render::Frame before = still_.renderer.render();
   protocol::Settings settings;
   settings.specular.enabled = false;  // other passes, other buffers
-  settings.view.buffer = "specular.radiance";
+  settings.view.buffer = "specular.nothing";
   const auto refused = still_.renderer.set_settings(settings);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().path, "view.buffer");
   EXPECT_EQ(still_.renderer.render().samples, before.samples + 1);
-  settings.view.buffer = "output";
-  ASSERT_TRUE(still_.renderer.set_settings(settings));
-  EXPECT_EQ(still_.renderer.render().samples, 1u);
+}
+
+TEST_F(Views, ThePictureStandsInForABufferThatTheSettingsDoNotMake) {
+  protocol::Settings settings;
+  settings.specular.enabled = false;
+  settings.view.buffer = "specular.radiance";
+  settings.exposure.compensation = 3.0f;
+  still_.apply(settings);
+  const render::Frame bright = still_.renderer.render();
+  EXPECT_EQ(bright.rgba, still_.renderer.capture_view("output")->rgba);
+  settings.exposure.compensation = 0.0f;
+  still_.apply(settings);
+  EXPECT_NE(still_.renderer.render().rgba, bright.rgba) << "it is not applied";
+  settings.specular.enabled = true;
+  still_.apply(settings);
+  const render::Frame back = still_.renderer.render();
+  EXPECT_EQ(back.rgba, still_.renderer.capture_view("specular.radiance")->rgba);
+}
+
+/// Settings that make every buffer between them.
+std::vector<protocol::Settings> settings_for_all_buffers() {
+  std::vector<protocol::Settings> all(3);
+  all[0].reference.use = protocol::ReferenceUse::always;
+  all[1].specular.half_resolution = true;
+  for (const char* assignment :
+       {"reference.use=resting", "reinhard.mode=exact", "shadow_temporal.rectification=percentile",
+        "specular_temporal.rectification=percentile", "shadow_blur.feedback=1",
+        "specular_blur.feedback=1"}) {
+    EXPECT_TRUE(protocol::set_by_path(all[2], assignment)) << assignment;
+  }
+  return all;
+}
+
+TEST(BufferNames, AreThoseOfAllThatSettingsMake) {
+  SceneBuilder builder;
+  shared::Material glass = surface({0.5f, 0.7f, 0.5f}, 0.1f);
+  glass.base_color.w = 0.4f;
+  glass.flags = shared::material_alpha_blend;
+  builder.place(builder.add_sphere(1.0f, surface(glm::vec3(0.5f))));
+  builder.place(builder.add_quad({{{-1, -1, 2}, {1, -1, 2}, {1, 1, 2}, {-1, 1, 2}}}, glass));
+  Still still(builder.build(), scene::constant_environment(glm::vec3(1.0f)),
+              look({0, 0, 5}, {0, 0, 0}), 32, 18);
+  std::set<std::string> made;
+  for (const protocol::Settings& settings : settings_for_all_buffers()) {
+    still.apply(settings);
+    for (const render::BufferInfo& buffer : still.renderer.buffers()) made.insert(buffer.name);
+  }
+  const std::vector<std::string>& names = render::buffer_names();
+  EXPECT_EQ(made, std::set<std::string>(names.begin(), names.end()));
 }
 
 TEST_F(Views, ShowKnownValuesInKnownColours) {

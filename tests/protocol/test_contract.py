@@ -118,6 +118,8 @@ class Methods(ServerTestCase):
         self.server.call("camera.set", {"eye": [3, 3, 4]})
         self.assertEqual(self.server.call("frame.capture")["samples"], 4)
         self.assertEqual(self.server.call("frame.capture", {"samples": 1000})["samples"], 4)
+        self.server.call("settings.patch", {"patch": {"accumulation": {"enabled": False}}})
+        self.assertEqual(self.server.call("frame.capture", {"samples": 1000})["samples"], 1)
 
     async def test_captures_that_wait_have_a_limit_and_end_with_who_asked(self):
         self.server.call("settings.patch", {"patch": {"accumulation": {"max_samples": 65536}}})

@@ -213,6 +213,31 @@ class Reference(ServerTestCase):
         self.assertEqual(after["accumulation"], before["accumulation"])
         self.assertEqual(after["reference"]["use"], "never")
 
+    def test_stopping_puts_back_what_starting_changed(self):
+        def settings(session="main"):
+            return self.server.call("settings.get", session=session)["settings"]
+        self.server.call("settings.patch", {"patch": {"accumulation": {"enabled": False}}})
+        before = settings()
+        self.server.call("reference.start", {"scope": "full", "samples": 9})
+        self.server.call("session.create", {"name": "copy", "copy_of": "main"})
+        self.server.call("reference.stop", session="copy")
+        self.assertEqual(settings("copy"), before)
+        self.server.call("session.close", {"session": "copy"})
+        self.server.call("settings.patch", {"patch": {"reference": {"use": "never"},
+                                                      "accumulation": {"max_samples": 32}}})
+        between = settings()
+        self.server.call("reference.start", {"samples": 2})
+        self.server.call("reference.stop")
+        self.assertEqual(settings()["accumulation"], between["accumulation"])
+
+    def test_one_that_settings_end_is_drawn_no_more(self):
+        with Server("--release-after", "1") as server:
+            server.call("reference.start", {"samples": 2})
+            server.wait_for(lambda: server.call("reference.status")["finished"], "the end")
+            self.assertNotIn("pictures let go", server.log_text())
+            server.call("settings.patch", {"patch": {"reference": {"use": "never"}}})
+            server.wait_for(lambda: "pictures let go" in server.log_text(), "letting go")
+
     def test_bad_ones_are_refused(self):
         self.assert_error(self.server.ask("reference.start", {"scope": "none"}), -32602,
                           path="scope")

@@ -84,8 +84,10 @@ class Metrics(ServerTestCase):
         self.server.call("frame.step", {"frames": 0, "dt": 0.1})
         self.server.ask("frame.capture")
         self.server.call("frame.run")
+        self.server.ask("frame.capture", {"buffer": "nothing"})
+        self.server.get("/api/v1/sessions/main/frame.png?buffer=nothing")
         after = figures()
-        self.assertEqual((after[0] - before[0], after[1] - before[1]), (2, 1))
+        self.assertEqual((after[0] - before[0], after[1] - before[1]), (2, 3))
 
     def test_responses_are_counted_by_status(self):
         def missing():

@@ -269,8 +269,13 @@ class Examples(ServerTestCase):
         self.assertEqual(self.picture("thumbs", "props", "mirror.png").width, 48)
 
     def test_roughness_sweep(self):
+        self.server.call("session.create", {"name": "sweep", "copy_of": "main", "width": 64,
+                                            "height": 36})
         done = self.run_aside("roughness_sweep", "--material", "metal_000", "--steps", "3",
-                              "--size", "64", "36", "--samples", "2")
+                              "--size", "64", "36", "--samples", "6", "--session", "sweep")
+        settings = self.server.call("settings.get", session="sweep")["settings"]
+        self.assertEqual(settings["accumulation"]["max_samples"], 6, "what it asks for")
+        self.server.call("session.close", {"session": "sweep"})
         self.assertEqual(done.stdout.count("roughness"), 3)
         root = xml.etree.ElementTree.parse(self.path("sweep.svg")).getroot()
         lines = root.findall("{http://www.w3.org/2000/svg}polyline")

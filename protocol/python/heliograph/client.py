@@ -26,7 +26,8 @@ class AsyncClient(Methods):
         await self._connection.pictures.pause()
 
     async def capture(self, buffer="output", *, format="png", samples=None):
-        """One buffer as a file; waits for so many samples, or for all that accumulation gives."""
+        """One buffer as a file; waits for so many samples, at most the setting
+        accumulation.max_samples, or for all that accumulation gives."""
         wanted = {"buffer": buffer, "format": format}
         if samples is not None:
             wanted["samples"] = samples

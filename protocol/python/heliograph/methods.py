@@ -144,7 +144,8 @@ class Environment(_Group):
 
 class Frame(_Group):
     def buffers(self) -> Dict[str, Any]:
-        """Lists what can be shown or captured.
+        """Lists what can be shown or captured: the buffers of the newest picture, which follow
+        from scene and settings.
 
         Gives: buffers.
         """
@@ -160,7 +161,8 @@ class Frame(_Group):
 
         buffer: A name that frame.buffers gave.
         format: Format of the file: png and jpeg for people, npy and exr for values.
-        samples: Samples per pixel to wait for; absent: accumulation.max_samples.
+        samples: Samples per pixel to wait for, at most accumulation.max_samples, one without
+            accumulation; absent: all of them. The answer tells how many there are.
 
         Gives: buffer, data, format, height, samples, width.
         """
@@ -257,7 +259,7 @@ class Reference(_Group):
         return self._call("reference.status", {})
 
     def stop(self) -> Dict[str, Any]:
-        """Shows the hybrid picture again, with as many samples as before reference.start.
+        """Shows the hybrid picture again; what reference.start had set is as it was before.
 
         Gives: finished, rev, samples, scope, shown, wanted.
         """

@@ -32,9 +32,7 @@ class RecordingLink : public ViewerLink {
 
 class SessionTest : public testing::Test {
  protected:
-  SessionTest() : session_(options(), std::make_shared<Wakeup>()) {
-    session_.set_buffers({{"output", "picture"}, {"normal", "normals"}});
-  }
+  SessionTest() : session_(options(), std::make_shared<Wakeup>()) {}
 
   static SessionOptions options() {
     SessionOptions options;
@@ -147,12 +145,12 @@ TEST_F(SessionTest, EveryChangeHasItsRevision) {
 
 TEST_F(SessionTest, ABadPatchAppliesNothing) {
   const protocol::RawJson patch(
-      json{{"exposure", {{"compensation", 1.0}}}, {"view", {{"buffer", "norml"}}}});
+      json{{"exposure", {{"compensation", 1.0}}}, {"view", {{"buffer", "gbuffer.norml"}}}});
   const auto refused = session_.patch_settings(patch, "");
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::invalid_params);
   EXPECT_EQ(refused.error().path, "view.buffer");
-  EXPECT_NE(refused.error().message.find("normal"), std::string::npos);
+  EXPECT_NE(refused.error().message.find("gbuffer.normals"), std::string::npos);
   EXPECT_EQ(session_.render_state().settings, protocol::Settings());
 }
 
@@ -211,11 +209,46 @@ TEST_F(SessionTest, AFullSessionSaysSo) {
   EXPECT_TRUE(session_.audience().join("newcomer", std::make_shared<RecordingLink>()));
 }
 
+TEST_F(SessionTest, StoppingAReferencePutsBackWhatStartingItChanged) {
+  session_.show(a_scene(), "");
+  const auto patch = [&](json members) {
+    return session_.patch_settings(protocol::RawJson(std::move(members)), "");
+  };
+  ASSERT_TRUE(patch({{"accumulation", {{"enabled", false}, {"max_samples", 5}}},
+                     {"reference", {{"use", "resting"}, {"scope", "full"}}}}));
+  const protocol::Settings before = session_.render_state().settings;
+  ASSERT_TRUE(session_.start_reference({.samples = 9}, ""));
+  ASSERT_TRUE(session_.start_reference({.samples = 7}, "")) << "goes on with other samples";
+  EXPECT_TRUE(session_.render_state().keep_drawing);
+  Session copy(options(), std::make_shared<Wakeup>());
+  copy.copy_from(session_);
+  for (Session* const session : {&session_, &copy}) {
+    EXPECT_TRUE(session->render_state().settings.accumulation.enabled);
+    ASSERT_TRUE(session->stop_reference(""));
+    EXPECT_EQ(session->render_state().settings, before);
+    EXPECT_FALSE(session->works_unwatched());
+  }
+}
+
+TEST_F(SessionTest, AReferenceThatSettingsEndIsNotStarted) {
+  session_.show(a_scene(), "");
+  ASSERT_TRUE(session_.start_reference({.samples = 9}, ""));
+  ASSERT_TRUE(session_.patch_settings(
+      protocol::RawJson(
+          json{{"reference", {{"use", "never"}}}, {"accumulation", {{"max_samples", 32}}}}),
+      ""));
+  EXPECT_FALSE(session_.works_unwatched());
+  EXPECT_EQ(session_.render_state().settings.accumulation.max_samples, 32);
+  ASSERT_TRUE(session_.start_reference({.samples = 12}, ""));
+  ASSERT_TRUE(session_.stop_reference(""));
+  EXPECT_EQ(session_.render_state().settings.accumulation.max_samples, 32);
+}
+
 TEST_F(SessionTest, CapturesAreCheckedAndLimited) {
   session_.show(a_scene(), "");
   EXPECT_EQ(session_.request_capture({.buffer = "depth"}).error().path, "buffer");
-  EXPECT_TRUE(session_.request_capture({.buffer = "normal"}));
-  EXPECT_EQ(session_.request_capture({.buffer = "normal"}).error().code, ErrorCode::full);
+  EXPECT_TRUE(session_.request_capture({.buffer = "gbuffer.normals"}));
+  EXPECT_EQ(session_.request_capture({.buffer = "gbuffer.normals"}).error().code, ErrorCode::full);
   EXPECT_EQ(session_.take_captures().size(), 1u);
   EXPECT_TRUE(session_.take_captures().empty());
 }
