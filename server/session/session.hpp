@@ -71,8 +71,8 @@ struct RenderState {
 
 class DeviceRenewal;
 
-/// What a caller is told who may not change the session.
-protocol::Error no_control();
+/// What a caller is told who may not change the session of this audience.
+protocol::Error no_control(const Audience& audience);
 
 /// The state that viewers share and steer: scene, camera, settings, picture size. Commands take
 /// effect at once, whatever the renderer is doing; it takes the newest state for its next frame, so

@@ -88,6 +88,9 @@ class Sessions(ServerTestCase):
             self.server.ask("session.create", {"settings": {"shadows": {"enabled": "no"}},
                                                "width": 16, "height": 16}),
             -32602, path="shadows.enabled")
+        self.assert_error(self.server.ask("session.create", {"settings": [], "width": 16,
+                                                             "height": 16}),
+                          -32602, path="settings")
         self.assertEqual(len(self.server.call("session.list")["sessions"]), before,
                          "a session that could not be made is there")
 
@@ -192,8 +195,12 @@ class Sessions(ServerTestCase):
             await other.call("camera.fit")
             self.assert_error(await leader.ask("camera.fit"), FORBIDDEN)
             await other.call("session.control", {"action": "release"})
-            self.assert_error(await other.ask("camera.fit"), FORBIDDEN)
+            free = await other.ask("camera.fit")
+            self.assert_error(free, FORBIDDEN, path="control", limit="take")
+            self.assertIn("nobody has control", free["error"]["message"])
             await leader.call("session.control", {"action": "take"})
+            taken = await other.ask("camera.fit")
+            self.assertIn("another viewer has control", taken["error"]["message"])
             await leader.call("camera.fit")
             await leader.call("session.control", {"mode": "everyone"})
             await other.call("camera.fit")
