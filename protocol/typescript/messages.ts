@@ -98,6 +98,9 @@ export interface AnimationState {
   playing: boolean;
   seconds: number;
   rate: number;
+  /** Whether time passes by frame.step alone, also while playing. */
+  lockstep?: boolean;
+  rev: number;
 }
 
 export interface StreamSettings {

@@ -233,7 +233,8 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
     if (pixels < pixels_before) (void)pixels_.resize(pixels);
     state_.width = width;
     state_.height = height;
-    changed(false);
+    changed();
+    audience_.announce_people(info_locked());
   }
   return protocol::StreamState{.width = width,
                                .height = height,

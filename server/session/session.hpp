@@ -139,10 +139,13 @@ class Session {
   protocol::Result<protocol::Camera> fit_camera(const std::string& by);
 
   protocol::Result<protocol::AnimationState> animation() const;
-  protocol::Result<protocol::AnimationState> play(const protocol::AnimationPlay& request);
-  protocol::Result<protocol::AnimationState> pause();
-  protocol::Result<protocol::AnimationState> seek(const protocol::AnimationSeek& request);
-  protocol::Result<protocol::AnimationState> set_rate(const protocol::AnimationRate& request);
+  protocol::Result<protocol::AnimationState> play(const protocol::AnimationPlay& request,
+                                                  const std::string& by = {});
+  protocol::Result<protocol::AnimationState> pause(const std::string& by = {});
+  protocol::Result<protocol::AnimationState> seek(const protocol::AnimationSeek& request,
+                                                  const std::string& by = {});
+  protocol::Result<protocol::AnimationState> set_rate(const protocol::AnimationRate& request,
+                                                      const std::string& by = {});
 
   protocol::SettingsState settings() const;
   protocol::Result<protocol::SettingsApplied> patch_settings(const protocol::RawJson& patch,
@@ -163,7 +166,7 @@ class Session {
   /// nothing had been drawn before, and depends on nothing but the state and the steps.
   protocol::Result<void> request_step(StepRequest request);
   /// Leaves lockstep.
-  protocol::StepState run_freely();
+  protocol::StepState run_freely(const std::string& by = {});
   bool in_lockstep() const;
   /// For the render thread: lets the time of the next frame pass and tells how much it is; nothing
   /// where none is due. After it is drawn comes end_step.
@@ -200,10 +203,12 @@ class Session {
   protocol::Camera camera_message() const;
   protocol::Camera moved_camera(const scene::Camera& camera, std::optional<std::string> name,
                                 const std::string& by);
-  void enter_lockstep();
+  void enter_lockstep(const std::string& by);
+  void tell_lockstep(const std::string& by);
   protocol::StepState step_message() const;
   AnimationClock rewound_clock() const;
-  protocol::AnimationState set_clock(const AnimationClock& clock);
+  protocol::AnimationState set_clock(const AnimationClock& clock, const std::string& by);
+  protocol::AnimationState tell_animation(const std::string& by);
   protocol::AnimationState animation_message() const;
   float aspect() const;
 

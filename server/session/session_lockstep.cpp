@@ -20,7 +20,7 @@ Result<void> Session::request_step(StepRequest request) {
       return error::full("too many steps are waiting",
                          std::to_string(options_.limits.max_captures));
     }
-    if (!state_.lockstep) enter_lockstep();
+    if (!state_.lockstep) enter_lockstep(request.by);
     if (request.frames > 0) {
       steps_.push_back(std::move(request));
     } else {
@@ -33,7 +33,7 @@ Result<void> Session::request_step(StepRequest request) {
 }
 
 /// The clip goes on from where it stands; what comes then is as if nothing had been drawn before.
-void Session::enter_lockstep() {
+void Session::enter_lockstep(const std::string& by) {
   AnimationClock clock = rewound_clock();
   state_.lockstep = Clock::time_point();
   clock.since = *state_.lockstep;
@@ -41,9 +41,10 @@ void Session::enter_lockstep() {
   ++state_.fresh_starts;
   step_totals_ = {};
   changed();
+  tell_lockstep(by);
 }
 
-StepState Session::run_freely() {
+StepState Session::run_freely(const std::string& by) {
   std::vector<StepRequest> unfinished;
   StepState state;
   {
@@ -54,6 +55,7 @@ StepState Session::run_freely() {
       state_.animation = clock;
       state_.lockstep.reset();
       changed();
+      tell_lockstep(by);
     }
     unfinished = std::exchange(steps_, {});
     state = step_message();

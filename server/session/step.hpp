@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 
 #include "protocol/frame_messages.hpp"
 #include "protocol/result.hpp"
@@ -12,6 +13,7 @@ namespace heliograph::session {
 struct StepRequest {
   std::uint32_t frames = 1;
   double dt = 0.0;  // seconds before each of them
+  std::string by;   // the viewer that asks, empty for callers without stream
   /// Called once, on any thread.
   std::function<void(protocol::Result<protocol::StepState>)> done;
 };

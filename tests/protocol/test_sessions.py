@@ -162,6 +162,22 @@ class Sessions(ServerTestCase):
             await asyncio.sleep(0.05)
         self.fail(f"{expected} was never told, but {told[-1:]}")
 
+    async def test_everybody_hears_of_another_size(self):
+        self.create("sized", copy_of="main")
+        async with Viewer(self.server, session="sized") as one, \
+                Viewer(self.server, session="sized") as other:
+            rev = (await other.call("session.info"))["rev"]
+            await other.call("camera.get")
+            other.notifications.clear()
+            await one.call("stream.configure", {"width": 128, "height": 72})
+            told = await other.notification("session.changed")
+            self.assertEqual((told["width"], told["height"]), (128, 72))
+            self.assertGreater(told["rev"], rev)
+            other.notifications.clear()
+            await one.call("stream.configure", {"width": 128, "height": 72, "quality": 50})
+            await other.call("camera.get")
+            self.assertEqual(other.notifications, [], "nothing changed for all")
+
     async def test_one_in_control(self):
         self.create("led", copy_of="main")
         async with Viewer(self.server, session="led") as leader, \

@@ -18,13 +18,13 @@ void add_frame_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
         const auto session = host.sessions().session_of(context);
         if (!session) return done(session.error());
         const Result<void> accepted = (*session)->request_step(
-            {.frames = request.frames, .dt = request.dt, .done = done});
+            {.frames = request.frames, .dt = request.dt, .by = context.viewer, .done = done});
         if (!accepted) done(accepted.error());
       });
   add_command<Empty, StepState>(
       dispatcher, host, "frame.run",
-      [](Session& session, const Empty&, const std::string&) -> Result<StepState> {
-        return session.run_freely();
+      [](Session& session, const Empty&, const std::string& viewer) -> Result<StepState> {
+        return session.run_freely(viewer);
       });
   add_command<ReferenceStart, ReferenceState>(
       dispatcher, host, "reference.start",
