@@ -229,7 +229,8 @@ class Edits(ServerTestCase):
 
     def test_an_orbit_leads_nowhere_that_a_camera_may_not_be(self):
         far = self.server.call("camera.set", {"eye": [0, 0, 9e8], "target": [0, 0, 0]})
-        for params, path in (({"dolly": 1000}, "dolly"), ({"distance": 1e9, "dolly": 2}, "distance"),
+        for params, path in (({"dolly": 1000}, "dolly"),
+                             ({"distance": 1e9, "dolly": 2}, "distance"),
                              ({"distance": 1e9, "dolly": 1000, "yaw": 1}, "distance")):
             answer = self.server.ask("camera.orbit", params)
             self.assert_error(answer, -32602, path=path, limit="-1e9 to 1e9")
