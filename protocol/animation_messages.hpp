@@ -30,6 +30,7 @@ struct AnimationState {
   bool playing = false;
   double seconds = 0.0;
   double rate = 1.0;
+  bool lockstep = false;
   std::uint32_t rev = 0;
 
   static constexpr auto fields() {
@@ -40,10 +41,25 @@ struct AnimationState {
         field("playing", &AnimationState::playing, "Whether time passes."),
         field("seconds", &AnimationState::seconds, "Where the clip stands.").unit("seconds"),
         field("rate", &AnimationState::rate, "Seconds of the clip that pass in a second."),
+        field("lockstep", &AnimationState::lockstep,
+              "Whether time passes by frame.step alone, also while playing."),
         field("rev", &AnimationState::rev, "Revision of the session's state."),
     };
   }
   bool operator==(const AnimationState&) const = default;
+};
+
+struct AnimationChanged {
+  AnimationState animation;
+  std::string by;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("animation", &AnimationChanged::animation, "Where the clip stands now, and how."),
+        field("by", &AnimationChanged::by, "The viewer that changed it; empty: the server."),
+    };
+  }
+  bool operator==(const AnimationChanged&) const = default;
 };
 
 struct AnimationPlay {

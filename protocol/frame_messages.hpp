@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "protocol/fields.hpp"
 #include "protocol/settings.hpp"
@@ -46,6 +47,20 @@ struct StepState {
     };
   }
   bool operator==(const StepState&) const = default;
+};
+
+struct LockstepChanged {
+  StepState state;
+  std::string by;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("state", &LockstepChanged::state, "What frame.step would answer now."),
+        field("by", &LockstepChanged::by,
+              "The viewer that began or ended lockstep; empty: the server."),
+    };
+  }
+  bool operator==(const LockstepChanged&) const = default;
 };
 
 struct ReferenceStart {

@@ -1,5 +1,6 @@
 #include "protocol/json_values.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -15,10 +16,11 @@ using nlohmann::json;
 // Beyond this, a double no longer tells neighbouring integers apart (2^53).
 constexpr double exact_integers = 9007199254740992.0;
 
-template <class Float>
-std::string decimal(Float value) {
+/// As short as tells the value from its neighbours.
+template <class Float, class... Format>
+std::string decimal(Float value, Format... format) {
   char digits[32];
-  const auto end = std::to_chars(digits, digits + sizeof(digits), value);
+  const auto end = std::to_chars(digits, digits + sizeof(digits), value, format...);
   return std::string(digits, end.ptr);
 }
 
@@ -81,7 +83,18 @@ double shortest(float value) {
 }
 
 std::string number_text(double value) {
-  return decimal(value);
+  const double size = std::abs(value);
+  const bool plain = size == 0.0 || (size >= 1e-4 && size < 1e7);
+  if (plain) return decimal(value, std::chars_format::fixed);
+  std::string text = decimal(value);
+  // 1e+09 and 1e-06 as people write them
+  const std::size_t exponent = text.find('e');
+  if (exponent == std::string::npos) return text;
+  std::size_t digits = exponent + 1;
+  if (text[digits] == '+') text.erase(digits, 1);
+  if (text[digits] == '-') ++digits;
+  text.erase(digits, std::min(text.find_first_not_of('0', digits), text.size()) - digits);
+  return text;
 }
 
 std::string range_text(NumberRange range) {

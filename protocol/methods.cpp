@@ -84,7 +84,7 @@ constexpr std::string_view camera = R"({
 
 constexpr std::string_view animation = R"({
   "clips": [{"name": "moving_camera", "duration": 10.0}], "clip": "moving_camera",
-  "playing": true, "seconds": 2.5, "rate": 1.0, "rev": 9})";
+  "playing": true, "seconds": 2.5, "rate": 1.0, "lockstep": false, "rev": 9})";
 
 std::vector<MethodDescriptor> animation_methods() {
   return {
@@ -373,13 +373,21 @@ std::span<const MethodDescriptor> methods() {
 std::span<const NotificationDescriptor> notifications() {
   static const std::vector<NotificationDescriptor> all{
       notification<SessionInfo>("session.changed",
-                                "Somebody came, left or was given control of this session."),
+                                "Somebody came, left or was given control of this session, or its "
+                                "pictures have another size."),
       notification<SessionClosed>(
           "session.closed", "This session has ended; the connection is closed with code 4003."),
       notification<DeviceChanged>(
           "device.changed", "The device was lost, or is back; sessions keep all but histories."),
       notification<SettingsChanged>("settings.changed", "Another viewer changed settings."),
       notification<CameraChanged>("camera.changed", "Another viewer moved the camera."),
+      notification<AnimationChanged>(
+          "animation.changed",
+          "Another viewer let a clip play, stop, jump or go at another rate, or began or ended "
+          "lockstep. Time that just passes is not told."),
+      notification<LockstepChanged>(
+          "lockstep.changed",
+          "Another viewer began or ended lockstep; single steps are not told."),
       notification<SceneProgress>("scene.progress", "A scene is being loaded."),
       notification<SceneChanged>("scene.changed", "Another scene is shown now."),
       notification<SceneUnloaded>("scene.unloaded", "No scene is shown now."),

@@ -167,6 +167,9 @@ struct Camera {
   bool operator==(const Camera&) const = default;
 };
 
+/// How far from the origin, along each axis, the camera and its target may be; metres.
+inline constexpr float camera_reach = 1e9f;
+
 struct CameraSet {
   std::optional<Vec3> eye;
   std::optional<Vec3> target;
@@ -178,10 +181,10 @@ struct CameraSet {
   static constexpr auto fields() {
     return std::tuple{
         field("eye", &CameraSet::eye, "Where the camera is, world space.")
-            .range(-1e9, 1e9)
+            .range(-camera_reach, camera_reach)
             .unit("metres"),
         field("target", &CameraSet::target, "The point in the middle of the picture.")
-            .range(-1e9, 1e9)
+            .range(-camera_reach, camera_reach)
             .unit("metres"),
         field("up", &CameraSet::up, "The direction that points up in the picture.")
             .range(-1e9, 1e9),

@@ -23,6 +23,9 @@ export interface Hello {
     max_height: number;
     max_message_bytes: number;
     ack_window: number;
+    /** How many calls a batch may have, and how many captures may wait; older servers leave them out. */
+    max_batch?: number;
+    max_waiting?: number;
     /** 0: the server takes no scenes from viewers; servers that do not tell leave it out. */
     max_upload_bytes?: number;
   };
@@ -98,6 +101,9 @@ export interface AnimationState {
   playing: boolean;
   seconds: number;
   rate: number;
+  /** Whether time passes by frame.step alone, also while playing. */
+  lockstep?: boolean;
+  rev: number;
 }
 
 export interface StreamSettings {

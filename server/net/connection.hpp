@@ -13,6 +13,8 @@
 #include "net/client_stream.hpp"
 #include "net/router.hpp"
 #include "net/tls.hpp"
+#include "protocol/messages.hpp"
+#include "protocol/result.hpp"
 #include "session/session_host.hpp"
 #include "session/upload_store.hpp"
 
@@ -104,7 +106,9 @@ void start_http_connection(ServerContext& context, ClientStream stream, Door doo
 /// Answers a request that may be answered with a session's pictures without an end, as
 /// multipart/x-mixed-replace. `headers` are those of every answer.
 void start_picture_stream(ServerContext& context, ClientStream stream, const HttpRequest& request,
-                          const std::string& session);
+                          const std::string& session, const protocol::StreamConfigure& wishes);
+/// How the query of such a request wants the pictures.
+protocol::Result<protocol::StreamConfigure> picture_stream_wishes(const HttpRequest& request);
 
 /// Carries on a connection whose client has asked for the viewers' WebSocket and may have it.
 void start_viewer_connection(ServerContext& context, ClientStream stream,

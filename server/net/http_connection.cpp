@@ -57,12 +57,6 @@ std::optional<std::string> picture_stream_address(const HttpRequest& request) {
 constexpr std::chrono::minutes longest_upload{10};
 constexpr std::size_t discarded_at_once = 16 * 1024;
 
-/// NAME of "/api/v1/scenes/NAME"; empty for other paths.
-std::string_view uploaded_name(std::string_view path) {
-  constexpr std::string_view prefix = "/api/v1/scenes/";
-  return path.starts_with(prefix) ? path.substr(prefix.size()) : std::string_view();
-}
-
 HttpResponse upload_response(const session::UploadedScene& scene) {
   HttpResponse response = json_response(nlohmann::json{{"name", scene.name},
                                                        {"bytes", scene.bytes},
@@ -293,8 +287,10 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     if (context_.draining) return send(come_back_later("The server is shutting down."));
     const auto found = context_.host.sessions().find(session);
     if (!found) return send(text_response(404, found.error().message));
+    const auto wishes = picture_stream_wishes(request);
+    if (!wishes) return send(error_response(wishes.error()));
     stream_.next_layer().expires_never();
-    start_picture_stream(context_, std::move(stream_), request, session);
+    start_picture_stream(context_, std::move(stream_), request, session, *wishes);
   }
 
   void send(HttpResponse answer) {

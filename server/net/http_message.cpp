@@ -95,6 +95,18 @@ std::optional<std::uint32_t> whole_number(std::string_view text) {
   return value;
 }
 
+protocol::Result<std::optional<std::uint32_t>> number_parameter(const HttpRequest& request,
+                                                                const std::string& name,
+                                                                std::uint32_t least,
+                                                                std::uint32_t most) {
+  const std::optional<std::string> text = request.parameter(name);
+  if (!text) return std::optional<std::uint32_t>();
+  const std::optional<std::uint32_t> number = whole_number(*text);
+  if (number && *number >= least && *number <= most) return number;
+  return protocol::error::invalid(name, "must be a whole number from " + std::to_string(least) +
+                                            " to " + std::to_string(most));
+}
+
 std::string lower(std::string_view text) {
   std::string result(text);
   for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));

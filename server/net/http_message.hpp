@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "protocol/result.hpp"
+
 namespace heliograph::net {
 
 /// A request as far as the routes need it; independent of the HTTP library.
@@ -46,6 +48,12 @@ std::string encode_query(std::string_view text);
 
 /// A number of decimal digits and nothing else.
 std::optional<std::uint32_t> whole_number(std::string_view text);
+
+/// A parameter of the query that is a whole number within limits; nothing where it is left out.
+protocol::Result<std::optional<std::uint32_t>> number_parameter(const HttpRequest& request,
+                                                                const std::string& name,
+                                                                std::uint32_t least,
+                                                                std::uint32_t most);
 
 /// Host names, header names and origins are compared so.
 std::string lower(std::string_view text);

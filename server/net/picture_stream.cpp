@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <boost/asio/post.hpp>
@@ -37,10 +36,6 @@ constexpr std::string_view first_part = "--picture\r\nContent-Type: image/jpeg\r
 constexpr std::string_view next_part = "\r\n--picture\r\nContent-Type: image/jpeg\r\n\r\n";
 constexpr std::string_view last_part = "\r\n--picture--\r\n";
 
-std::optional<std::uint32_t> number(const HttpRequest& request, const std::string& name) {
-  return whole_number(request.parameter(name).value_or(""));
-}
-
 /// A viewer that only takes pictures. What has been written counts as acknowledged: the small send
 /// buffer of its socket is all that lies between, and there is no queue.
 class PictureStream : public Connection,
@@ -56,7 +51,8 @@ class PictureStream : public Connection,
   }
   ~PictureStream() override { context_.leave(*this); }
 
-  void start(const HttpRequest& request, const std::string& session) {
+  void start(const HttpRequest& request, const std::string& session,
+             const protocol::StreamConfigure& wishes) {
     const auto joined = context_.host.sessions().enter(session, weak_from_this(), true);
     const auto sharing = context_.access.sharing_headers(request);
     if (!joined) return refuse(joined.error().message, sharing);
@@ -72,7 +68,7 @@ class PictureStream : public Connection,
     session::log_info({.session = session_, .viewer = viewer_, .client = client_},
                       "a viewer takes pictures over HTTP");
     headers_.set(http::field::content_type, "multipart/x-mixed-replace; boundary=picture");
-    configure(request);
+    configure(wishes);
     writing_ = true;
     serializer_.emplace(headers_);
     read();  // before there is a time limit: what waits for the client's end must not run into it
@@ -112,17 +108,10 @@ class PictureStream : public Connection,
     });
   }
 
-  void configure(const HttpRequest& request) {
+  void configure(const protocol::StreamConfigure& wishes) {
     const auto session = context_.host.sessions().session_watched_by(viewer_);
     if (!session) return;
-    protocol::StreamConfigure change;
-    if (const auto quality = number(request, "quality")) {
-      change.quality = std::clamp(*quality, 1u, 100u);
-    }
-    if (const auto rate = number(request, "max_fps")) {
-      change.max_fps = std::clamp(*rate, 1u, 240u);
-    }
-    if (session->audience().configure(viewer_, change)) session->audience().start(viewer_);
+    if (session->audience().configure(viewer_, wishes)) session->audience().start(viewer_);
   }
 
   /// Who vanished leaves pictures in the socket that nobody takes; they fit there, and block nothing.
@@ -239,9 +228,20 @@ class PictureStream : public Connection,
 
 }  // namespace
 
+protocol::Result<protocol::StreamConfigure> picture_stream_wishes(const HttpRequest& request) {
+  const auto quality = number_parameter(request, "quality", 1, 100);
+  if (!quality) return quality.error();
+  const auto rate = number_parameter(request, "max_fps", 1, 240);
+  if (!rate) return rate.error();
+  protocol::StreamConfigure wishes;
+  wishes.quality = *quality;
+  wishes.max_fps = *rate;
+  return wishes;
+}
+
 void start_picture_stream(ServerContext& context, ClientStream stream, const HttpRequest& request,
-                          const std::string& session) {
-  std::make_shared<PictureStream>(context, std::move(stream))->start(request, session);
+                          const std::string& session, const protocol::StreamConfigure& wishes) {
+  std::make_shared<PictureStream>(context, std::move(stream))->start(request, session, wishes);
 }
 
 }  // namespace heliograph::net

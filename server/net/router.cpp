@@ -12,6 +12,8 @@
 namespace heliograph::net {
 namespace {
 
+// As in frame.capture.
+constexpr std::uint32_t most_capture_samples = 65536;
 constexpr std::string_view sessions_prefix = "/api/v1/sessions/";
 
 HttpResponse with_header(HttpResponse response, std::string name, std::string value) {
@@ -134,6 +136,11 @@ HttpResponse error_response(const protocol::Error& error) {
   }
 }
 
+std::string_view uploaded_name(std::string_view path) {
+  constexpr std::string_view prefix = "/api/v1/scenes/";
+  return path.starts_with(prefix) ? path.substr(prefix.size()) : std::string_view();
+}
+
 HttpResponse come_back_later(std::string_view why) {
   return with_header(text_response(503, why), "Retry-After", "1");
 }
@@ -163,6 +170,9 @@ void Router::handle(const HttpRequest& request, Reply reply) const {
   if (request.path == "/rpc") {
     if (request.method != "POST") return reply(method_not_allowed("POST"));
     return call(request, admission.role, std::move(reply));
+  }
+  if (!options_.uploads.empty() && !uploaded_name(request.path).empty()) {
+    return reply(method_not_allowed("PUT"));
   }
   if (request.method != "GET" && request.method != "HEAD") {
     return reply(method_not_allowed("GET"));
@@ -238,12 +248,9 @@ void Router::picture(const HttpRequest& request, std::string_view session,
   session::CaptureRequest capture;
   capture.format = kind->format;
   capture.buffer = request.parameter("buffer").value_or("output");
-  if (const auto samples = request.parameter("samples")) {
-    capture.samples = whole_number(*samples);
-    if (capture.samples.value_or(0) == 0) {
-      return reply(text_response(400, "samples must be a whole number from 1."));
-    }
-  }
+  const auto samples = number_parameter(request, "samples", 1, most_capture_samples);
+  if (!samples) return reply(error_response(samples.error()));
+  capture.samples = *samples;
   capture.done = [reply, kind](protocol::Result<session::Capture> result) {
     if (!result) return reply(error_response(result.error()));
     reply({.content_type = std::string(kind->content_type),

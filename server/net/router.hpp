@@ -59,6 +59,8 @@ class Router {
   std::atomic<bool> draining_ = false;
 };
 
+/// NAME of "/api/v1/scenes/NAME", where uploads go; empty for other paths.
+std::string_view uploaded_name(std::string_view path);
 HttpResponse error_response(const protocol::Error& error);
 /// The response while the server shuts down: come back in a while.
 HttpResponse come_back_later(std::string_view why);

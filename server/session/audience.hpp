@@ -76,6 +76,8 @@ class Audience {
   protocol::Result<void> change_control(const protocol::SessionControl& request,
                                         const std::string& by);
   protocol::ControlMode control_mode() const;
+  /// Whether one viewer is to have control and none has.
+  bool control_is_free() const;
   /// Who is here, in order of arrival, as told to `you`.
   std::vector<protocol::ViewerInfo> people(const std::string& you) const;
   /// Tells everybody who is here, each about itself.

@@ -119,6 +119,11 @@ protocol::ControlMode Audience::control_mode() const {
   return control_.mode();
 }
 
+bool Audience::control_is_free() const {
+  const std::lock_guard lock(mutex_);
+  return control_.is_free();
+}
+
 std::vector<protocol::ViewerInfo> Audience::people(const std::string& you) const {
   const std::lock_guard lock(mutex_);
   return people_locked(you);

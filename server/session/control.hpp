@@ -17,6 +17,8 @@ class Control {
   using IsPresent = std::function<bool(const std::string& viewer)>;
 
   protocol::ControlMode mode() const { return mode_; }
+  /// Whether one viewer is to have control and none has.
+  bool is_free() const { return mode_ == protocol::ControlMode::one && holder_.empty(); }
   /// `viewer` is empty for callers without a stream.
   bool may_change(const std::string& viewer) const;
 

@@ -19,7 +19,12 @@ namespace heliograph::session {
 using protocol::Result;
 namespace error = protocol::error;
 
-protocol::Error no_control() {
+protocol::Error no_control(const Audience& audience) {
+  if (audience.control_is_free()) {
+    return error::make(protocol::ErrorCode::forbidden, "control",
+                       "nobody has control of this session; it must be taken first",
+                       "session.control with the action take");
+  }
   return error::make(protocol::ErrorCode::forbidden, "control",
                      "another viewer has control of this session", "session.control");
 }
@@ -219,10 +224,11 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
       std::min(request.height.value_or(state_.height), options_.limits.max_height);
   const bool resized = width != state_.width || height != state_.height;
   if (resized && !may_steer) {
-    return error::make(protocol::ErrorCode::forbidden, "width",
+    return error::make(protocol::ErrorCode::forbidden,
+                       width != state_.width ? "width" : "height",
                        "is everybody's, and this access may only watch");
   }
-  if (resized && !audience_.may_change(by)) return no_control();
+  if (resized && !audience_.may_change(by)) return no_control(audience_);
   // Fewer pixels are never refused: more are taken before anything is changed, fewer after it.
   const auto pixels_before = static_cast<std::uint64_t>(state_.width) * state_.height;
   const auto pixels = static_cast<std::uint64_t>(width) * height;
@@ -244,7 +250,8 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
     if (pixels < pixels_before) (void)pixels_.resize(pixels);
     state_.width = width;
     state_.height = height;
-    changed(false);
+    changed();
+    audience_.announce_people(info_locked());
   }
   return protocol::StreamState{.width = width,
                                .height = height,

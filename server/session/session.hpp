@@ -81,8 +81,8 @@ struct StepFrame {
 class DeviceRenewal;
 class Measurements;
 
-/// What a caller is told who may not change the session.
-protocol::Error no_control();
+/// What a caller is told who may not change the session of this audience.
+protocol::Error no_control(const Audience& audience);
 
 /// The state that viewers share and steer: scene, camera, settings, picture size. Commands take
 /// effect at once, whatever the renderer is doing; it takes the newest state for its next frame, so
@@ -150,10 +150,13 @@ class Session {
   protocol::Result<protocol::Camera> fit_camera(const std::string& by);
 
   protocol::Result<protocol::AnimationState> animation() const;
-  protocol::Result<protocol::AnimationState> play(const protocol::AnimationPlay& request);
-  protocol::Result<protocol::AnimationState> pause();
-  protocol::Result<protocol::AnimationState> seek(const protocol::AnimationSeek& request);
-  protocol::Result<protocol::AnimationState> set_rate(const protocol::AnimationRate& request);
+  protocol::Result<protocol::AnimationState> play(const protocol::AnimationPlay& request,
+                                                  const std::string& by = {});
+  protocol::Result<protocol::AnimationState> pause(const std::string& by = {});
+  protocol::Result<protocol::AnimationState> seek(const protocol::AnimationSeek& request,
+                                                  const std::string& by = {});
+  protocol::Result<protocol::AnimationState> set_rate(const protocol::AnimationRate& request,
+                                                      const std::string& by = {});
 
   protocol::SettingsState settings() const;
   protocol::Result<protocol::SettingsApplied> patch_settings(const protocol::RawJson& patch,
@@ -175,7 +178,7 @@ class Session {
   /// nothing had been drawn before, and depends on nothing but the state and the steps.
   protocol::Result<void> request_step(StepRequest request);
   /// Leaves lockstep.
-  protocol::StepState run_freely();
+  protocol::StepState run_freely(const std::string& by = {});
   bool in_lockstep() const;
   /// For the render thread: lets the time of the next frame pass; nothing where none is due, or
   /// where something is to be read before it: `waiting` is the first place of what is known to wait.
@@ -217,7 +220,8 @@ class Session {
   protocol::Camera camera_message() const;
   protocol::Camera moved_camera(const scene::Camera& camera, std::optional<std::string> name,
                                 const std::string& by);
-  void enter_lockstep();
+  void enter_lockstep(const std::string& by);
+  void tell_lockstep(const std::string& by);
   /// Its turn in lockstep, where what was asked for takes place in that order.
   std::optional<std::uint64_t> next_place();
   bool is_read_before(std::uint64_t place) const;
@@ -226,7 +230,8 @@ class Session {
   std::vector<StepRequest> take_steps(const std::function<bool(const StepRequest&)>& unwanted);
   protocol::StepState step_message(const RenderState& shown) const;
   AnimationClock rewound_clock() const;
-  protocol::AnimationState set_clock(const AnimationClock& clock);
+  protocol::AnimationState set_clock(const AnimationClock& clock, const std::string& by);
+  protocol::AnimationState tell_animation(const std::string& by);
   protocol::AnimationState animation_message() const;
   float aspect() const;
 

@@ -1,3 +1,4 @@
+#include "protocol/jsonrpc.hpp"
 #include "protocol/suggestions.hpp"
 #include "scene/pose.hpp"
 #include "session/session.hpp"
@@ -16,7 +17,8 @@ Result<AnimationState> Session::animation() const {
   return animation_message();
 }
 
-Result<AnimationState> Session::play(const protocol::AnimationPlay& request) {
+Result<AnimationState> Session::play(const protocol::AnimationPlay& request,
+                                     const std::string& by) {
   const std::lock_guard lock(mutex_);
   if (const Result<void> there = require_scene(); !there) return there.error();
   if (scene_->clips.empty()) return error::not_found("clip", "the scene has no clips");
@@ -35,32 +37,34 @@ Result<AnimationState> Session::play(const protocol::AnimationPlay& request) {
   }
   clock.rate = request.rate.value_or(clock.rate);
   clock.playing = true;
-  return set_clock(clock);
+  return set_clock(clock, by);
 }
 
-Result<AnimationState> Session::pause() {
+Result<AnimationState> Session::pause(const std::string& by) {
   const std::lock_guard lock(mutex_);
   if (const Result<void> there = require_scene(); !there) return there.error();
   AnimationClock clock = rewound_clock();
   clock.playing = false;
-  return set_clock(clock);
+  return set_clock(clock, by);
 }
 
-Result<AnimationState> Session::seek(const protocol::AnimationSeek& request) {
+Result<AnimationState> Session::seek(const protocol::AnimationSeek& request,
+                                     const std::string& by) {
   const std::lock_guard lock(mutex_);
   if (const Result<void> there = require_scene(); !there) return there.error();
   AnimationClock clock = rewound_clock();
   if (clock.clip.empty()) return error::not_ready("no clip was played yet");
   clock.seconds = request.seconds;
-  return set_clock(clock);
+  return set_clock(clock, by);
 }
 
-Result<AnimationState> Session::set_rate(const protocol::AnimationRate& request) {
+Result<AnimationState> Session::set_rate(const protocol::AnimationRate& request,
+                                         const std::string& by) {
   const std::lock_guard lock(mutex_);
   if (const Result<void> there = require_scene(); !there) return there.error();
   AnimationClock clock = rewound_clock();
   clock.rate = request.rate;
-  return set_clock(clock);
+  return set_clock(clock, by);
 }
 
 /// The clock as it stands, told from now on.
@@ -72,10 +76,25 @@ AnimationClock Session::rewound_clock() const {
   return clock;
 }
 
-AnimationState Session::set_clock(const AnimationClock& clock) {
+AnimationState Session::set_clock(const AnimationClock& clock, const std::string& by) {
   state_.animation = clock;
   changed();
-  return animation_message();
+  return tell_animation(by);
+}
+
+AnimationState Session::tell_animation(const std::string& by) {
+  const protocol::AnimationChanged message{.animation = animation_message(), .by = by};
+  audience_.send_others(by, protocol::make_notification("animation.changed", message),
+                        "animation.changed");
+  return message.animation;
+}
+
+/// The clip's clock is another one now, too.
+void Session::tell_lockstep(const std::string& by) {
+  const protocol::LockstepChanged message{.state = step_message(state_), .by = by};
+  audience_.send_others(by, protocol::make_notification("lockstep.changed", message),
+                        "lockstep.changed");
+  tell_animation(by);
 }
 
 AnimationState Session::animation_message() const {
@@ -85,6 +104,7 @@ AnimationState Session::animation_message() const {
                          .playing = clock.playing,
                          .seconds = clock.seconds,
                          .rate = clock.rate,
+                         .lockstep = state_.lockstep.has_value(),
                          .rev = state_.rev};
   if (!clock.clip.empty()) message.clip = clock.clip;
   return message;

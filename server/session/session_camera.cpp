@@ -3,6 +3,7 @@
 #include <glm/glm.hpp>
 #include <utility>
 
+#include "protocol/json_values.hpp"
 #include "protocol/jsonrpc.hpp"
 #include "protocol/suggestions.hpp"
 #include "scene/camera.hpp"
@@ -28,10 +29,19 @@ Result<scene::Camera> named_camera(const scene::Scene& scene, const std::string&
       "name", "no camera of the scene is called so" + protocol::suggestion(name, names));
 }
 
-/// Whether eye and target are far enough apart for floats to tell a direction.
+/// Whether eye and target are far enough apart for floats to tell a direction. In doubles, since
+/// squares of what a scene's own camera may hold are too much for floats.
 bool has_direction(const scene::Camera& camera) {
-  const float scale = glm::length(camera.eye) + glm::length(camera.target);
-  return glm::distance(camera.eye, camera.target) > 1e-6f * scale;
+  const glm::dvec3 eye(camera.eye);
+  const glm::dvec3 target(camera.target);
+  return glm::distance(eye, target) > 1e-6 * (glm::length(eye) + glm::length(target));
+}
+
+/// Whether camera.set would take these places, too.
+bool is_within_reach(const scene::Camera& camera) {
+  const glm::vec3 reach(protocol::camera_reach);
+  return glm::all(glm::lessThanEqual(glm::abs(camera.eye), reach)) &&
+         glm::all(glm::lessThanEqual(glm::abs(camera.target), reach));
 }
 
 Result<scene::Camera> requested_camera(scene::Camera camera, const protocol::CameraSet& request) {
@@ -47,6 +57,13 @@ Result<scene::Camera> requested_camera(scene::Camera camera, const protocol::Cam
   }
   if (glm::length(camera.up) == 0.0f) return error::invalid("up", "must not be zero");
   return camera;
+}
+
+/// What of an orbit leads where the camera cannot be: what changes the distance, before what turns.
+std::string misleading_member(const protocol::CameraOrbit& request) {
+  if (request.distance) return "distance";
+  if (request.dolly) return "dolly";
+  return request.pitch ? "pitch" : "yaw";
 }
 
 /// How near to straight above or below an orbit comes.
@@ -108,8 +125,13 @@ Result<protocol::Camera> Session::orbit_camera(const protocol::CameraOrbit& requ
   const std::lock_guard lock(mutex_);
   if (const Result<void> there = require_scene(); !there) return there.error();
   const scene::Camera camera = orbited(state_.camera, request);
+  if (!is_within_reach(camera)) {
+    return error::invalid(
+        misleading_member(request), "leads out of range",
+        "eye " + protocol::range_text({-protocol::camera_reach, protocol::camera_reach}));
+  }
   if (!has_direction(camera)) {
-    return error::invalid(request.distance ? "distance" : "dolly", "eye and target coincide");
+    return error::invalid(misleading_member(request), "eye and target coincide");
   }
   if (request.seq) input_seqs_[by] = *request.seq;
   return moved_camera(camera, std::nullopt, by);

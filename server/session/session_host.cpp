@@ -2,6 +2,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "session/commands/commands.hpp"
@@ -9,6 +11,16 @@
 namespace heliograph::session {
 
 using protocol::Result;
+
+namespace {
+
+/// The error of a part under the name that the part has in the whole.
+protocol::Error under(const protocol::Error& part, std::string_view path, std::string name) {
+  if (part.path != path) return part;
+  return protocol::error::make(part.code, std::move(name), part.reason, part.limit);
+}
+
+}  // namespace
 
 SessionHost::SessionHost(render::Engine& engine, HostOptions options)
     : engine_(engine),
@@ -47,7 +59,7 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
     if (!session) return session.error();
     (*session)->touch();
     if (method.needs_control && !(*session)->audience().may_change(call.viewer)) {
-      return no_control();
+      return no_control((*session)->audience());
     }
     if (method.needs_control) (*session)->note_change();
     return {};
@@ -99,17 +111,13 @@ void SessionHost::create_session(const protocol::SessionCreate& request, const s
   if (request.copy_of) session->copy_from(*model);
   if (request.settings) {
     const auto patched = session->patch_settings(*request.settings, by);
-    if (!patched) return give_up(session, patched.error(), done);
+    if (!patched) return give_up(session, under(patched.error(), "patch", "settings"), done);
   }
   if (!request.scene) return done(session);
   load_scene(session, {.name = *request.scene}, by,
              [this, session, done](const Result<protocol::SceneInfo>& loaded) {
                if (loaded) return done(session);
-               protocol::Error why = loaded.error();
-               if (why.path == "name") {
-                 why = protocol::error::make(why.code, "scene", why.reason, why.limit);
-               }
-               give_up(session, why, done);
+               give_up(session, under(loaded.error(), "name", "scene"), done);
              });
 }
 

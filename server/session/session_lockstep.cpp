@@ -33,7 +33,7 @@ Result<void> Session::request_step(StepRequest request) {
       return error::full("too many steps are waiting",
                          std::to_string(options_.limits.max_captures));
     }
-    if (!state_.lockstep) enter_lockstep();
+    if (!state_.lockstep) enter_lockstep(request.viewer);
     if (request.frames > 0) {
       DueStep step{.request = std::move(request),
                    .place = ++places_,
@@ -51,7 +51,7 @@ Result<void> Session::request_step(StepRequest request) {
 }
 
 /// The clip goes on from where it stands; what comes then is as if nothing had been drawn before.
-void Session::enter_lockstep() {
+void Session::enter_lockstep(const std::string& by) {
   AnimationClock clock = rewound_clock();
   state_.lockstep = Clock::time_point();
   clock.since = *state_.lockstep;
@@ -59,9 +59,10 @@ void Session::enter_lockstep() {
   ++state_.fresh_starts;
   step_totals_ = {};
   changed();
+  tell_lockstep(by);
 }
 
-StepState Session::run_freely() {
+StepState Session::run_freely(const std::string& by) {
   std::vector<StepRequest> unfinished;
   StepState state;
   {
@@ -73,6 +74,7 @@ StepState Session::run_freely() {
       state_.animation = clock;
       state_.lockstep.reset();
       changed();
+      tell_lockstep(by);
     }
     state = step_message(state_);
   }

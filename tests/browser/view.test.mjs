@@ -135,6 +135,42 @@ stage.test("a clip plays, pauses and is scrubbed", async () => {
   await screenshot(page, "transport");
 });
 
+stage.test("another viewer's hand on the clip shows here without asking", async () => {
+  const { page } = await stage.watch();
+  const call = (method, params) => stage.server.call(method, params);
+  const transport = page.locator("#transport");
+  await transport.locator("select[name=clip]").waitFor();
+  const asked = () => page.evaluate(() => window.seen.sent["animation.list"] ?? 0);
+  const before = await asked();
+  const { clips } = await call("animation.play", { clip: "moving_objects_light", rate: 0.5 });
+  await transport.getByRole("button", { name: "Pause" }).waitFor();
+  assert.equal(await transport.locator("select[name=rate]").inputValue(), "0.5");
+  await call("animation.pause");
+  await transport.getByRole("button", { name: "Play" }).waitFor();
+  const { duration } = clips.find(({ name }) => name === "moving_objects_light");
+  const shows = (seconds) =>
+    page.waitForFunction(
+      ([now, all]) =>
+        document.querySelector("#transport .time").textContent ===
+          `${now.toFixed(1)} / ${all.toFixed(1)} s` &&
+        Math.abs(Number(document.querySelector("#transport input").value) - (1000 * now) / all) < 2,
+      [seconds, duration],
+    );
+  await call("animation.seek", { seconds: duration / 2 });
+  await shows(duration / 2);
+  assert.equal(await asked(), before, "the page asked for what it is told");
+
+  // In lockstep a clip that plays stands still between steps.
+  await call("frame.step", { frames: 0, dt: 0 });
+  await call("animation.play", { rate: 1 });
+  await transport.getByRole("button", { name: "Pause" }).waitFor();
+  await call("frame.step", { frames: 3, dt: duration / 12 });
+  await shows((duration * 3) / 4);
+  await call("frame.run");
+  await call("animation.pause");
+  await transport.getByRole("button", { name: "Play" }).waitFor();
+});
+
 stage.test("a setting that this client has never heard of gets its control", async () => {
   const context = await stage.context();
   await context.addInitScript(() => {

@@ -227,6 +227,24 @@ class Edits(ServerTestCase):
         self.assertAlmostEqual(math.dist(far["eye"], far["target"]), 7, places=4)
         self.assert_error(self.server.ask("camera.orbit", {"dolly": 0}), -32602, path="dolly")
 
+    def test_an_orbit_leads_nowhere_that_a_camera_may_not_be(self):
+        far = self.server.call("camera.set", {"eye": [0, 0, 9e8], "target": [0, 0, 0]})
+        for params, path in (({"dolly": 1000}, "dolly"),
+                             ({"distance": 1e9, "dolly": 2}, "distance"),
+                             ({"distance": 1e9, "dolly": 1000, "yaw": 1}, "distance")):
+            answer = self.server.ask("camera.orbit", params)
+            self.assert_error(answer, -32602, path=path, limit="-1e9 to 1e9")
+            self.assertIn("out of range", answer["error"]["message"])
+            self.assertEqual(self.server.call("camera.get"), far)
+        self.server.call("camera.set", {"target": [0, 0, -9e8]})
+        self.server.call("camera.orbit", {"yaw": 30})
+        self.server.call("camera.set", {"eye": [0, 0, 0]})
+        self.assert_error(self.server.ask("camera.orbit", {"yaw": 180}), -32602, path="yaw")
+        at_most = self.server.call("camera.set", {"eye": [0, 0, 1e9], "target": [0, 0, 0]})
+        pose = {name: at_most[name] for name in ("eye", "target", "up")}
+        self.server.call("camera.set", pose)
+        self.server.call("camera.orbit", {"distance": 1e9})
+
     def test_without_a_scene_nothing_is_there_to_ask(self):
         self.server.call("scene.unload")
         for method, params in (("lights.list", {}), ("materials.list", {}), ("camera.get", {}),

@@ -66,6 +66,55 @@ class Lockstep(ServerTestCase):
         self.step(1)
         self.assertAlmostEqual(self.server.call("animation.list")["seconds"], 0.25 + 2 * DT)
 
+    def told(self, viewer, method):
+        return [message["params"] for message in viewer.notifications
+                if message["method"] == method]
+
+    async def test_others_hear_where_the_clip_stands(self):
+        async with Viewer(self.server) as causer, Viewer(self.server) as other:
+            by = causer.hello["viewer"]
+            for method, params in (("animation.play", {"clip": "hop"}), ("animation.pause", {}),
+                                   ("animation.seek", {"seconds": 0.5}),
+                                   ("animation.rate", {"rate": 2.0})):
+                other.notifications.clear()
+                answer = await causer.call(method, params)
+                changed = await other.notification("animation.changed")
+                self.assertEqual(changed, {"animation": answer, "by": by}, method)
+            other.notifications.clear()
+            over_http = await asyncio.to_thread(self.server.call, "animation.play")
+            changed = await other.notification("animation.changed")
+            self.assertEqual((changed["animation"], changed["by"]), (over_http, ""))
+            await causer.notification("animation.changed")
+            self.assertEqual([one["by"] for one in self.told(causer, "animation.changed")], [""],
+                             "an echo")
+            for _ in range(3):
+                await other.next_frame()
+            self.assertEqual(len(self.told(other, "animation.changed")), 1,
+                             "time that passes is told")
+
+    async def test_others_hear_of_lockstep_and_not_of_its_steps(self):
+        async with Viewer(self.server) as causer, Viewer(self.server) as other:
+            await causer.call("animation.play", {"clip": "hop"})
+            await other.notification("animation.changed")
+            other.notifications.clear()
+            for _ in range(3):
+                await causer.call("frame.step", {"frames": 2, "dt": DT})
+            began = await other.notification("lockstep.changed")
+            self.assertEqual(began["by"], causer.hello["viewer"])
+            self.assertEqual((began["state"]["lockstep"], began["state"]["frames"]), (True, 0))
+            clip = await other.notification("animation.changed")
+            self.assertTrue(clip["animation"]["lockstep"] and clip["animation"]["playing"])
+            async with Viewer(self.server) as newcomer:
+                self.assertTrue((await newcomer.call("animation.list"))["lockstep"])
+            answer = await causer.call("frame.run")
+            await causer.call("frame.run")
+            await other.call("camera.get")
+            began, ended = self.told(other, "lockstep.changed")
+            self.assertEqual(ended, {"state": answer, "by": causer.hello["viewer"]})
+            clips = [one["animation"]["lockstep"] for one in self.told(other, "animation.changed")]
+            self.assertEqual(clips, [True, False])
+            self.assertEqual(self.told(causer, "lockstep.changed"), [], "an echo")
+
     def test_running_again_goes_on_from_there(self):
         self.step(0)
         self.server.call("animation.play", {"clip": "hop"})

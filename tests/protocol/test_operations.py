@@ -64,6 +64,11 @@ class Watching(ServerTestCase):
                                ("main/frame.png?samples=x", 400),
                                ("main/frame.png?samples=-1", 400)):
             self.assertEqual(self.server.get("/api/v1/sessions/" + path)[0], expected, path)
+        for samples in ("0", "65537", "99999999999", "1.5"):
+            status, _, body = self.server.get(
+                "/api/v1/sessions/main/frame.png?samples=" + samples)
+            self.assertEqual((status, body),
+                             (400, b"samples: must be a whole number from 1 to 65536\n"))
 
 
 class Ending(unittest.IsolatedAsyncioTestCase):

@@ -110,7 +110,9 @@ class Roles(ServerTestCase):
         answer, = self.over_websocket(VIEW, ("stream.configure", {"width": 320, "height": 200}))
         self.assert_error(answer, -32001)
         answer = self.over_http(VIEW, "stream.configure", {"width": 320})
-        self.assert_error(answer, -32001)
+        self.assert_error(answer, -32001, path="width")
+        answer = self.over_http(VIEW, "stream.configure", {"height": 50})
+        self.assert_error(answer, -32001, path="height")
         answer, = self.over_websocket(CONTROL, ("stream.configure", {"width": 160, "height": 90}))
         self.assertIn("result", answer)
 

@@ -88,6 +88,9 @@ class Sessions(ServerTestCase):
             self.server.ask("session.create", {"settings": {"shadows": {"enabled": "no"}},
                                                "width": 16, "height": 16}),
             -32602, path="shadows.enabled")
+        self.assert_error(self.server.ask("session.create", {"settings": [], "width": 16,
+                                                             "height": 16}),
+                          -32602, path="settings")
         self.assertEqual(len(self.server.call("session.list")["sessions"]), before,
                          "a session that could not be made is there")
 
@@ -159,6 +162,22 @@ class Sessions(ServerTestCase):
             await asyncio.sleep(0.05)
         self.fail(f"{expected} was never told, but {told[-1:]}")
 
+    async def test_everybody_hears_of_another_size(self):
+        self.create("sized", copy_of="main")
+        async with Viewer(self.server, session="sized") as one, \
+                Viewer(self.server, session="sized") as other:
+            rev = (await other.call("session.info"))["rev"]
+            await other.call("camera.get")
+            other.notifications.clear()
+            await one.call("stream.configure", {"width": 128, "height": 72})
+            told = await other.notification("session.changed")
+            self.assertEqual((told["width"], told["height"]), (128, 72))
+            self.assertGreater(told["rev"], rev)
+            other.notifications.clear()
+            await one.call("stream.configure", {"width": 128, "height": 72, "quality": 50})
+            await other.call("camera.get")
+            self.assertEqual(other.notifications, [], "nothing changed for all")
+
     async def test_one_in_control(self):
         self.create("led", copy_of="main")
         async with Viewer(self.server, session="led") as leader, \
@@ -192,8 +211,12 @@ class Sessions(ServerTestCase):
             await other.call("camera.fit")
             self.assert_error(await leader.ask("camera.fit"), FORBIDDEN)
             await other.call("session.control", {"action": "release"})
-            self.assert_error(await other.ask("camera.fit"), FORBIDDEN)
+            free = await other.ask("camera.fit")
+            self.assert_error(free, FORBIDDEN, path="control", limit="take")
+            self.assertIn("nobody has control", free["error"]["message"])
             await leader.call("session.control", {"action": "take"})
+            taken = await other.ask("camera.fit")
+            self.assertIn("another viewer has control", taken["error"]["message"])
             await leader.call("camera.fit")
             await leader.call("session.control", {"mode": "everyone"})
             await other.call("camera.fit")

@@ -74,6 +74,11 @@ class Uploads(ServerTestCase):
         self.assertEqual(self.put("my-scene_2", self.mirror)[0], 201, "it may be replaced")
         self.assertEqual(self.left_over(), [])
 
+    def test_the_address_takes_nothing_else(self):
+        for method in ("GET", "HEAD", "DELETE", "POST"):
+            status, headers, _ = self.server.request(method, "/api/v1/scenes/mirror", None, BEARER)
+            self.assertEqual((status, headers["allow"]), (405, "PUT"), method)
+
     def test_names_lead_nowhere_and_take_nobody_elses_place(self):
         for name in ("..", "../x", "a/b", "%2e%2e%2fx", ".hidden", "a.glb", "x" * 65, "-rf"):
             self.assertIn(self.put(name, self.mirror)[0], (400, 404), name)

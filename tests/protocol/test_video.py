@@ -219,6 +219,8 @@ class PicturesOverHttp(ServerTestCase):
     async def test_who_may_not_watch_gets_no_pictures(self):
         for path, headers, status in (
                 ("/api/v1/sessions/nowhere/stream.mjpg", {}, 404),
+                ("/api/v1/sessions/main/stream.mjpg?quality=abc", {}, 400),
+                ("/api/v1/sessions/main/stream.mjpg?max_fps=241", {}, 400),
                 ("/api/v1/sessions/main/stream.mjpg", {"Origin": "http://evil.example"}, 403),
                 ("/api/v1/sessions/main/stream.mjpg", {"Host": "evil.example"}, 403)):
             self.assertEqual(self.server.get(path, **headers)[0], status, path)

@@ -72,6 +72,13 @@ export class StreamRequests {
     void this.configure(this.size());
   }
 
+  /** The pictures have this size now; another viewer may have chosen it. */
+  sizeTold({ width, height }: Partial<PictureSize>): void {
+    const now = this.settings.value;
+    if (!now || width === undefined || height === undefined) return;
+    if (now.width !== width || now.height !== height) this.settings.set({ ...now, width, height });
+  }
+
   /** The size that pictures will have because this page asked for it; undefined if it did not. */
   get askedSize(): PictureSize | undefined {
     const now = this.settings.value;

@@ -67,7 +67,7 @@ export function withoutPath(patch: JsonObject, path: string): JsonObject {
 /** The clip as it stands now, or null when none poses the scene. */
 export function clipState(animation: AnimationState | null, readAt: number): ClipState | null {
   if (!animation?.clip) return null;
-  const { clip, rate, playing } = animation;
-  const passed = playing ? ((Date.now() - readAt) / 1000) * rate : 0;
+  const { clip, rate, playing, lockstep } = animation;
+  const passed = playing && !lockstep ? ((Date.now() - readAt) / 1000) * rate : 0;
   return { clip, rate, playing, seconds: animation.seconds + passed };
 }

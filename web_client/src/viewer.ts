@@ -76,6 +76,7 @@ export class Viewer {
   private inputSeq = 0;
   private progressTimer = 0;
   private animationReadAt = 0;
+  private animationRev = 0;
   /** The server's hello, from its arrival until the connection is gone. */
   private greeting: Hello | null = null;
   /** What the session still has to be brought to; a wish outlives lost connections. */
@@ -170,6 +171,13 @@ export class Viewer {
     this.rpc.notify("camera.set", { eye, target, up, vertical_fov, seq: this.inputSeq });
   }
 
+  /** Takes what the server tells of the clip, unless something newer came before. */
+  clipTold(animation: AnimationState): void {
+    if (animation.rev < this.animationRev) return;
+    this.animationRev = animation.rev;
+    this.animation.set(animation);
+  }
+
   async selectCamera(name: string): Promise<void> {
     await this.attempt(async () => {
       this.inputSeq += 1;
@@ -248,6 +256,7 @@ export class Viewer {
     this.greeting = hello;
     this.latency.reset();
     this.inputSeq = 0;
+    this.animationRev = 0;
     await this.readSession();
     this.wish = this.homecoming.wishAt(hello, this.wish);
     this.dropForbiddenWish();
@@ -308,7 +317,7 @@ export class Viewer {
       this.scene.set(info);
       this.showProgress(null);
       this.camera.set(camera);
-      this.animation.set(await this.rpc.request<AnimationState>("animation.list"));
+      this.clipTold(await this.rpc.request<AnimationState>("animation.list"));
     } catch (error) {
       const waiting =
         error instanceof RpcError &&
@@ -332,6 +341,7 @@ export class Viewer {
     const viewers = session.viewers.map((one) => ({ ...one, you: one.viewer === own }));
     this.session.set({ ...session, viewers });
     this.standing.set(standingOf(this.session.value, this.greeting?.role));
+    this.stream.sizeTold(session);
     this.stream.updateSize();
   }
 
@@ -360,6 +370,10 @@ export class Viewer {
       case "camera.changed":
         if (this.wish || this.cameraBusy()) break;
         this.camera.set((params as { camera: Camera }).camera);
+        break;
+      case "animation.changed":
+        if (this.wish) break;
+        this.clipTold((params as { animation: AnimationState }).animation);
         break;
       case "scene.changed":
         void this.sceneChanged((params as { scene: SceneInfo }).scene);

@@ -73,3 +73,17 @@ test("a video that keeps breaking gives way to single pictures, one that recover
   assert.equal(told.length, 1);
   assert.ok(asked.some(({ codec }) => codec === "jpeg"));
 });
+
+test("the size that another viewer chose is in effect here, too", async () => {
+  const { asked, requests } = stream();
+  const sizeNow = () => requests.settings.value;
+  requests.sizeTold({ width: 320, height: 180 });
+  assert.equal(sizeNow(), null, "nothing is known yet");
+  await requests.begin(hello, false);
+  const before = asked.length;
+  requests.sizeTold({ width: 320, height: 180 });
+  assert.deepEqual([sizeNow()?.width, sizeNow()?.height], [320, 180]);
+  requests.sizeTold({});
+  assert.equal(sizeNow()?.width, 320);
+  assert.equal(asked.length, before, "nobody was asked");
+});

@@ -18,7 +18,7 @@ class Animation(_Group):
     def list(self) -> Dict[str, Any]:
         """Lists the scene's clips and tells where the clip stands.
 
-        Gives: clip, clips, playing, rate, rev, seconds.
+        Gives: clip, clips, lockstep, playing, rate, rev, seconds.
         """
         return self._call("animation.list", {})
 
@@ -30,14 +30,14 @@ class Animation(_Group):
             play the first.
         rate: Seconds of the clip that pass in a second.
 
-        Gives: clip, clips, playing, rate, rev, seconds.
+        Gives: clip, clips, lockstep, playing, rate, rev, seconds.
         """
         return self._call("animation.play", _given({"clip": clip, "rate": rate}))
 
     def pause(self) -> Dict[str, Any]:
         """Stops time; the pose stays.
 
-        Gives: clip, clips, playing, rate, rev, seconds.
+        Gives: clip, clips, lockstep, playing, rate, rev, seconds.
         """
         return self._call("animation.pause", {})
 
@@ -46,7 +46,7 @@ class Animation(_Group):
 
         seconds: Where the clip shall stand. [seconds]
 
-        Gives: clip, clips, playing, rate, rev, seconds.
+        Gives: clip, clips, lockstep, playing, rate, rev, seconds.
         """
         return self._call("animation.seek", _given({"seconds": seconds}))
 
@@ -55,7 +55,7 @@ class Animation(_Group):
 
         rate: Seconds of the clip that pass in a second.
 
-        Gives: clip, clips, playing, rate, rev, seconds.
+        Gives: clip, clips, lockstep, playing, rate, rev, seconds.
         """
         return self._call("animation.rate", _given({"rate": rate}))
 

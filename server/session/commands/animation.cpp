@@ -14,21 +14,23 @@ void add_animation_commands(protocol::Dispatcher& dispatcher, SessionHost& host)
       [](Session& session, const Empty&, const std::string&) { return session.animation(); });
   add_command<AnimationPlay, AnimationState>(
       dispatcher, host, "animation.play",
-      [](Session& session, const AnimationPlay& request, const std::string&) {
-        return session.play(request);
+      [](Session& session, const AnimationPlay& request, const std::string& viewer) {
+        return session.play(request, viewer);
       });
   add_command<Empty, AnimationState>(
       dispatcher, host, "animation.pause",
-      [](Session& session, const Empty&, const std::string&) { return session.pause(); });
+      [](Session& session, const Empty&, const std::string& viewer) {
+        return session.pause(viewer);
+      });
   add_command<AnimationSeek, AnimationState>(
       dispatcher, host, "animation.seek",
-      [](Session& session, const AnimationSeek& request, const std::string&) {
-        return session.seek(request);
+      [](Session& session, const AnimationSeek& request, const std::string& viewer) {
+        return session.seek(request, viewer);
       });
   add_command<AnimationRate, AnimationState>(
       dispatcher, host, "animation.rate",
-      [](Session& session, const AnimationRate& request, const std::string&) {
-        return session.set_rate(request);
+      [](Session& session, const AnimationRate& request, const std::string& viewer) {
+        return session.set_rate(request, viewer);
       });
 }
 

@@ -23,8 +23,8 @@ void add_frame_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
       });
   add_command<Empty, StepState>(
       dispatcher, host, "frame.run",
-      [](Session& session, const Empty&, const std::string&) -> Result<StepState> {
-        return session.run_freely();
+      [](Session& session, const Empty&, const std::string& viewer) -> Result<StepState> {
+        return session.run_freely(viewer);
       });
   add_command<ReferenceStart, ReferenceState>(
       dispatcher, host, "reference.start",

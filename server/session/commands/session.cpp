@@ -52,7 +52,8 @@ Result<void> may_close(SessionHost& host, const SessionChoice& request,
   if (!viewer.empty() && !empty && !inside) {
     return error::make(protocol::ErrorCode::forbidden, "session", "others are in this session");
   }
-  if (inside && !(*session)->audience().may_change(viewer)) return no_control();
+  const Audience& audience = (*session)->audience();
+  if (inside && !audience.may_change(viewer)) return no_control(audience);
   return {};
 }
 

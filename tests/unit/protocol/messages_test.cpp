@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/codec_templates.hpp"
+#include "protocol/json_values.hpp"
 
 namespace heliograph::protocol {
 namespace {
@@ -249,6 +250,15 @@ TEST(CameraSet, TakesAnyPartAndRefusesWhatNoCameraCanBe) {
   EXPECT_EQ(read(R"({"eye":[1,2]})").error().path, "eye");
   EXPECT_EQ(read(R"({"eye":[1e300,0,0]})").error().path, "eye[0]");
   EXPECT_EQ(read(R"({"seq":-1})").error().path, "seq");
+}
+
+TEST(Limits, AreWrittenAsPeopleWriteThem) {
+  EXPECT_EQ(range_text({0, 100000}), "0 to 100000");
+  EXPECT_EQ(range_text({-1e9, 1e9}), "-1e9 to 1e9");
+  EXPECT_EQ(range_text({1e-6, 0.25}), "1e-6 to 0.25");
+  EXPECT_EQ(number_text(-1.5e10), "-1.5e10");
+  EXPECT_EQ(number_text(1e100), "1e100");
+  EXPECT_EQ(number_text(1e-10), "1e-10");
 }
 
 TEST(HelloResult, WritesTheNamesOfTheContract) {

@@ -6,7 +6,7 @@ import { button, element, icon, setOptions, setText } from "../panel/element.ts"
 import type { Viewer } from "../viewer.ts";
 
 const refreshMs = 200;
-const resyncMs = 2000;
+const stepsMs = 500;
 const scrubSteps = 1000;
 const rates = [0.25, 0.5, 1, 2, 4];
 
@@ -15,7 +15,7 @@ export function mountTransport(viewer: Viewer, root: HTMLElement): void {
   let scrubbing = false;
   const ask = async (method: string, params: object = {}): Promise<void> => {
     try {
-      viewer.animation.set(await viewer.rpc.request<AnimationState>(method, params));
+      viewer.clipTold(await viewer.rpc.request<AnimationState>(method, params));
     } catch (error) {
       viewer.report(error);
     }
@@ -81,7 +81,8 @@ export function mountTransport(viewer: Viewer, root: HTMLElement): void {
     const state = viewer.animation.value;
     if (!state || root.hidden) return;
     const length = duration(state);
-    const passed = state.playing ? ((performance.now() - readAt) / 1000) * state.rate : 0;
+    const passes = state.playing && !state.lockstep;
+    const passed = passes ? ((performance.now() - readAt) / 1000) * state.rate : 0;
     const now = length > 0 ? (state.seconds + passed) % length : 0;
     setText(time, `${now.toFixed(1)} / ${length.toFixed(1)} s`);
     if (scrubbing) return;
@@ -107,9 +108,16 @@ export function mountTransport(viewer: Viewer, root: HTMLElement): void {
     refresh();
   });
   setInterval(refresh, refreshMs);
-  // Others may play and pause, too, and nobody tells.
-  setInterval(() => {
-    if (!root.hidden && !scrubbing && viewer.hello && !document.hidden) void ask("animation.list");
-  }, resyncMs);
+  let stepAsked = false;
+  // Single steps of lockstep are not told: they show in pictures.
+  viewer.frame.watch(() => {
+    const state = viewer.animation.value;
+    if (stepAsked || !state?.playing || !state.lockstep) return;
+    stepAsked = true;
+    setTimeout(() => {
+      stepAsked = false;
+      if (viewer.hello) void ask("animation.list");
+    }, stepsMs);
+  });
   viewer.togglePlay = () => play.click();
 }
