@@ -38,7 +38,8 @@ class PackageTest:
         listed = run("dpkg-deb", "--contents", self.package)
         self.assertNotRegex(listed, r"(?m)^[-d]rws|^[-d]......s|^-.......w")
         for path in ("usr/bin/heliograph", "usr/share/doc/heliograph/copyright",
-                     "usr/lib/systemd/system/heliograph.service", "etc/heliograph/heliograph.toml"):
+                     "usr/lib/systemd/system/heliograph.service", "etc/heliograph/heliograph.toml",
+                     "usr/share/heliograph/nvidia_icd.json"):
             self.assertIn(f"./{path}\n", listed + "\n")
 
     def test_installs_runs_and_goes_without_trace(self):
