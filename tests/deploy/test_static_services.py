@@ -47,6 +47,15 @@ class Containers(unittest.TestCase):
                     self.assertLessEqual({"memory", "pids"},
                                          service["deploy"]["resources"]["limits"].keys())
 
+    def test_the_balancer_has_room_for_the_threads_of_two(self):
+        """After a reload the old one stays for its viewers. One process watches over both."""
+        threads = int(re.search(r"(?m)^  nbthread (\d+)$", text_of(
+            os.path.join(DEPLOY, "balancer/haproxy.cfg"))).group(1))
+        compose, stack = (documents(os.path.join(DEPLOY, name))[0]["services"]["balancer"]
+                          for name in ("compose.yaml", "stack.yaml"))
+        for limit in (compose["pids_limit"], stack["deploy"]["resources"]["limits"]["pids"]):
+            self.assertLess(1 + 2 * threads, limit)
+
     def test_nodes_believe_nobody_but_the_balancer(self):
         """Where it has a fixed address, that one; else those of the stack's own network."""
         compose, stack = (documents(os.path.join(DEPLOY, name))[0]
