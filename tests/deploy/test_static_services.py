@@ -56,6 +56,14 @@ class Containers(unittest.TestCase):
         for limit in (compose["pids_limit"], stack["deploy"]["resources"]["limits"]["pids"]):
             self.assertLess(1 + 2 * threads, limit)
 
+    def test_the_balancer_knows_as_many_nodes_everywhere_as_is_documented(self):
+        known = re.findall(r"(?m)^  server-template node (\d+-\d+) ", text_of(
+            os.path.join(DEPLOY, "balancer/haproxy.cfg")))
+        self.assertEqual(len(known), 3)
+        self.assertEqual(len(set(known)), 1)
+        self.assertIn(f"`server-template node {known[0]}`",
+                      text_of(os.path.join(DEPLOY, "README.md")))
+
     def test_nodes_believe_nobody_but_the_balancer(self):
         """Where it has a fixed address, that one; else those of the stack's own network."""
         compose, stack = (documents(os.path.join(DEPLOY, name))[0]
