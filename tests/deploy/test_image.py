@@ -184,6 +184,12 @@ class Image(unittest.IsolatedAsyncioTestCase):
         self.assertLess(spent, MOST_SECONDS_TO_START)
         print(f"container: healthy after {container.wait_healthy():.1f} s", flush=True)
 
+    def test_has_what_the_driver_of_a_gpu_links(self):
+        """NVIDIA's, which is mounted beside, is built for C libraries before 2.34, too."""
+        names = {os.path.basename(member.name) for member, _ in self.files()}
+        self.assertLessEqual({"libc.so.6", "libdl.so.2", "libm.so.6", "libpthread.so.0",
+                              "librt.so.1"}, names)
+
     def test_told_to_use_a_gpu_it_takes_nothing_else(self):
         """The manifests' environment for a GPU, where there is none: the driver's file is there and
         names what is not, and no software device takes its place."""

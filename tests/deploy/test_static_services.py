@@ -146,6 +146,11 @@ class Graphics(unittest.TestCase):
                 "file_format_version": "1.0.1",
                 "ICD": {"library_path": "libEGL_nvidia.so.0", "api_version": "1.3"}})
 
+    def test_are_given_all_of_the_driver_that_it_needs_to_make_a_device(self):
+        given = re.search(r"NVIDIA_DRIVER_CAPABILITIES=(\S+)", text_of(
+            os.path.join(DEPLOY, "Dockerfile")))[1].split(",")
+        self.assertLessEqual({"compute", "graphics"}, set(given))
+
     def test_have_room_for_full_pictures(self):
         for label, environment in self.nodes():
             with self.subTest(label):
