@@ -18,6 +18,12 @@ done
 driver=$(find /usr/lib -name libvulkan_lvp.so)
 loader=$(ldconfig -p | awk '/libvulkan\.so\.1 / { print $NF; exit }')
 programs=(/usr/bin/heliograph "$driver" "$loader")
+# The driver of a GPU comes from its machine when a container starts, and links parts of the C
+# library that nothing here does: they are empty since 2.34.
+for name in libdl.so.2 libpthread.so.0 librt.so.1; do
+  library=$(ldconfig -p | awk -v name="$name" '$1 == name { print $NF; exit }')
+  install -D -m 755 "$(readlink -f "$library")" "$root$library"
+done
 # Every library under the name that it is asked for by, and the loader of programs itself.
 ldd "${programs[@]}" | awk '$2 == "=>" { print $3 } $1 ~ /^\/lib.*ld-/ { print $1 }' | sort -u |
   while read -r library; do

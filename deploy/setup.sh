@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what Heliograph needs, from deploy/packages. Does nothing where nothing is missing.
-#   deploy/setup.sh [build] [run] [test]      default: build run
+#   deploy/setup.sh [build] [run] [test] [deploy]      default: build run
 set -euo pipefail
 folder=$(cd "$(dirname "$0")" && pwd)
 purposes=("${@:-build}")
@@ -11,22 +11,39 @@ if ! command -v apt-get >/dev/null; then
   exit 1
 fi
 
+# Whether this release has a package, as far as apt has been told by now.
+known() { apt-cache show "$1" >/dev/null 2>&1; }
+
 missing=()
+# Those that a release need not have.
+optional=()
 while read -r purpose package command; do
   case "$purpose" in ''|'#'*) continue ;; esac
   case " ${purposes[*]} " in *" $purpose "*) ;; *) continue ;; esac
   [ -n "$command" ] && command -v "$command" >/dev/null && continue
-  dpkg-query -W -f='${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed && continue
-  missing+=("$package")
+  name=${package%\?}
+  dpkg-query -W -f='${db:Status-Status}\n' "$name" 2>/dev/null | grep -qx installed && continue
+  if [ "$name" = "$package" ]; then
+    missing+=("$name")
+  else
+    optional+=("$name")
+  fi
 done <"$folder/packages"
 
-if [ ${#missing[@]} -eq 0 ]; then
+choose() {
+  wanted=("${missing[@]}")
+  for package in "${optional[@]}"; do
+    if known "$package"; then wanted+=("$package"); fi
+  done
+}
+choose
+if [ ${#wanted[@]} -eq 0 ]; then
   echo "==> every package is installed"
   exit 0
 fi
 if [ "$(id -u)" -ne 0 ]; then
-  echo "setup: ${#missing[@]} packages are missing; as root run:" >&2
-  echo "  apt-get install --no-install-recommends ${missing[*]}" >&2
+  echo "setup: ${#wanted[@]} packages are missing; as root run:" >&2
+  echo "  apt-get install --no-install-recommends ${wanted[*]}" >&2
   exit 1
 fi
 
@@ -37,16 +54,17 @@ fail() {
   exit 1
 }
 export DEBIAN_FRONTEND=noninteractive
-echo "==> installing ${#missing[@]} packages: ${missing[*]}"
 apt-get update >"$log" 2>&1 || fail "apt-get update failed"
+choose
 unknown=()
 for package in "${missing[@]}"; do
-  apt-cache show "$package" >/dev/null 2>&1 || unknown+=("$package")
+  known "$package" || unknown+=("$package")
 done
 : >"$log"
 [ ${#unknown[@]} -eq 0 ] ||
   fail "apt does not know ${unknown[*]}; on Ubuntu, universe must be enabled"
-apt-get install -y --no-install-recommends "${missing[@]}" >"$log" 2>&1 ||
+echo "==> installing ${#wanted[@]} packages: ${wanted[*]}"
+apt-get install -y --no-install-recommends "${wanted[@]}" >"$log" 2>&1 ||
   fail "apt-get could not install the packages"
 rm -f "$log"
 echo "==> installed"

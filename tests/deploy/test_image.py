@@ -17,7 +17,7 @@ from harness.pictures import (SAME_PICTURE, decode_png, largest_difference_of_me
                               render)
 from harness.replaying_viewer import ReplayingViewer, Wish
 from harness.scenes import generate
-from harness.servers import TOKEN, Container, get, make_certificate, measurement
+from harness.servers import HARDENED, TOKEN, Container, get, make_certificate, measurement
 from harness.site import GATEWAY, Site
 
 MOST_BYTES = 280e6
@@ -183,6 +183,25 @@ class Image(unittest.IsolatedAsyncioTestCase):
               f"{spent:.1f} s of processor time", flush=True)
         self.assertLess(spent, MOST_SECONDS_TO_START)
         print(f"container: healthy after {container.wait_healthy():.1f} s", flush=True)
+
+    def test_has_what_the_driver_of_a_gpu_links(self):
+        """NVIDIA's, which is mounted beside, is built for C libraries before 2.34, too."""
+        names = {os.path.basename(member.name) for member, _ in self.files()}
+        self.assertLessEqual({"libc.so.6", "libdl.so.2", "libm.so.6", "libpthread.so.0",
+                              "librt.so.1"}, names)
+
+    def test_told_to_use_a_gpu_it_takes_nothing_else(self):
+        """The manifests' environment for a GPU, where there is none: the driver's file is there and
+        names what is not, and no software device takes its place."""
+        driver = "/usr/share/heliograph/nvidia_icd.json"
+
+        def said(*command):
+            return self.machine.docker("run", "--rm", *HARDENED, "--env", f"VK_DRIVER_FILES={driver}",
+                                       "--env", f"HELIOGRAPH_TOKEN={TOKEN}", images.SERVER, *command)
+
+        self.assertRegex(said("devices"), rf"{driver}\n\s*does not load")
+        with self.assertRaisesRegex(RuntimeError, "no compatible driver"):
+            said("serve")
 
     def test_asks_after_its_health_by_tls(self):
         certificate = os.path.join(self.site.folder, "server.pem")

@@ -1,6 +1,7 @@
 """The Debian packages: each installs into a bare system, runs there and leaves nothing behind."""
 
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -11,12 +12,27 @@ import urllib.request
 
 from harness import packages
 from harness.commands import run, succeeds
+from harness.files import text_of
 from harness.pictures import SAME_PICTURE, largest_difference_of_means, render
 from harness.servers import free_port
 from harness.system import System, check_machine, release_of_this_machine
 
 # What groupadd keeps of the files that it changes.
 COPIES_OF_GROUPS = {"etc/group-", "etc/gshadow-"}
+
+
+class Installed(unittest.TestCase):
+    def test_the_unit_names_the_settings_that_come_with_it(self):
+        """By CMake alone, without a package, too."""
+        for prefix, settings in (("/usr/local", "/usr/local/etc"), ("/usr", "/etc")):
+            with self.subTest(prefix), tempfile.TemporaryDirectory(dir="/var/tmp") as folder:
+                run("cmake", "--install", os.environ["HELIOGRAPH_BUILD"], "--prefix", prefix,
+                    env={**os.environ, "DESTDIR": folder}, timeout=300)
+                unit = text_of(f"{folder}{prefix}/lib/systemd/system/heliograph.service")
+                named = set(re.findall(r"\S*?(/[\w/]*/heliograph)/(?:heliograph.toml|environment)\b",
+                                       unit))
+                self.assertEqual(named, {f"{settings}/heliograph"})
+                self.assertTrue(os.path.exists(f"{folder}{settings}/heliograph/heliograph.toml"))
 
 
 class PackageTest:
@@ -38,7 +54,8 @@ class PackageTest:
         listed = run("dpkg-deb", "--contents", self.package)
         self.assertNotRegex(listed, r"(?m)^[-d]rws|^[-d]......s|^-.......w")
         for path in ("usr/bin/heliograph", "usr/share/doc/heliograph/copyright",
-                     "usr/lib/systemd/system/heliograph.service", "etc/heliograph/heliograph.toml"):
+                     "usr/lib/systemd/system/heliograph.service", "etc/heliograph/heliograph.toml",
+                     "usr/share/heliograph/nvidia_icd.json"):
             self.assertIn(f"./{path}\n", listed + "\n")
 
     def test_installs_runs_and_goes_without_trace(self):

@@ -42,10 +42,36 @@ class Packages(unittest.TestCase):
             if not line or line.startswith("#"):
                 continue
             purpose, package, *_ = line.split()
+            package = package.removesuffix("?")
             with self.subTest(package):
                 self.assertIn(purpose, {"build", "run", "image", "test", "deploy"})
                 self.assertNotIn(package, seen)
             seen.add(package)
+
+    def test_that_the_release_has_not_are_done_without_where_the_list_says_so(self):
+        """By the script as a user who may install nothing, who is told what to install."""
+        if not shutil.which("apt-get"):
+            self.skipTest("there is no apt-get here")
+        without_rights = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"] \
+            if os.geteuid() == 0 else []
+        with tempfile.TemporaryDirectory() as folder:
+            os.chmod(folder, 0o755)
+            shutil.copy(os.path.join(DEPLOY, "setup.sh"), folder)
+            for listed, code, told in (
+                    ("deploy no-such-1?\ndeploy no-such-2? no-such\n", 0,
+                     "every package is installed"),
+                    ("deploy no-such-1?\ndeploy no-such-2\n", 1,
+                     "apt-get install --no-install-recommends no-such-2\n"),
+                    ("deploy no-such-1 bash\nbuild no-such-2\n", 0,
+                     "every package is installed")):
+                with open(os.path.join(folder, "packages"), "w", encoding="ascii") as file:
+                    file.write(listed)
+                with self.subTest(listed):
+                    said = subprocess.run(
+                        [*without_rights, os.path.join(folder, "setup.sh"), "deploy"],
+                        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60)
+                    self.assertEqual(said.returncode, code, said.stdout)
+                    self.assertIn(told, said.stdout)
 
     def test_stand_nowhere_else(self):
         """What is compiled against is installed by the script alone."""

@@ -110,6 +110,15 @@ class Objects(unittest.TestCase):
         self.assertGreaterEqual(int(environment_of(patch)["HELIOGRAPH_MAX_PIXELS"]),
                                 8 * 1920 * 1080)
 
+    def test_what_a_component_brings_is_in_the_namespace_of_the_base(self):
+        """Which the base's own kustomization does not see to."""
+        for folder in kubernetes.COMPONENTS:
+            for name in kubernetes.kustomization(folder).get("resources", []):
+                for brought in documents(os.path.join(kubernetes.FOLDER, folder, name)):
+                    with self.subTest(name):
+                        self.assertEqual(brought["metadata"].get("namespace"),
+                                         kubernetes.kustomization()["namespace"])
+
 
 class Scaling(unittest.TestCase):
     @classmethod
@@ -159,6 +168,12 @@ class Overlay(unittest.TestCase):
         self.assertEqual(sorted((o["kind"], o["metadata"]["name"]) for o in self.objects),
                          sorted((o["kind"], o["metadata"]["name"]) for o in kubernetes.objects()))
 
+    def test_everything_is_in_the_namespace(self):
+        for found in self.objects:
+            with self.subTest(f"{found['kind']} {found['metadata']['name']}"):
+                self.assertEqual(found["metadata"].get("namespace"),
+                                 None if found["kind"] == "Namespace" else "heliograph")
+
     def test_takes_every_image_from_its_registry(self):
         spec = kubernetes.one(self.objects, "Deployment")["spec"]["template"]["spec"]
         self.assertEqual({container["image"]
@@ -181,6 +196,11 @@ class Overlay(unittest.TestCase):
         self.assertEqual(environment["HELIOGRAPH_TRUST_PROXY"], "10.244.0.0/16")
         self.assertEqual(environment["HELIOGRAPH_MAX_PIXELS"], "16600000")
         self.assertIn("HELIOGRAPH_METRICS_LISTEN", environment)
+        self.assertIn("VK_DRIVER_FILES", environment)
+        # With every GPU in use, a pod more than there are would wait for one for ever.
+        self.assertEqual(deployment["spec"]["strategy"],
+                         {"type": "RollingUpdate",
+                          "rollingUpdate": {"maxSurge": 0, "maxUnavailable": 1}})
         spec = deployment["spec"]["template"]["spec"]
         self.assertEqual(spec["runtimeClassName"], "nvidia")
         self.assertEqual(spec["containers"][0]["resources"]["limits"],

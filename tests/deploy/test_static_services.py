@@ -1,5 +1,6 @@
 """What can be told of services from their files alone."""
 
+import json
 import os
 import re
 import shutil
@@ -15,8 +16,8 @@ class Options(unittest.TestCase):
         known |= {"HELIOGRAPH_" + option.upper().replace("-", "_")
                   for option in re.findall(r'"--([a-z-]+)"', server_sources())}
         for name in ("Dockerfile", "compose.yaml", "stack.yaml", "kubernetes/deployment.yaml",
-                     "kubernetes/gpu/deployment.yaml", "kubernetes/ingress/trusted-proxy.yaml",
-                     "systemd/heliograph.service"):
+                     "compose.gpu.yaml", "stack.gpu.yaml", "kubernetes/gpu/deployment.yaml",
+                     "kubernetes/ingress/trusted-proxy.yaml", "systemd/heliograph.service"):
             text = text_of(os.path.join(DEPLOY, name))
             given = set(re.findall(r"^\s*(?:ENV |Environment=|- \{name: |- name: )?"
                                    r"(HELIOGRAPH_[A-Z_]+)[=:,\s]", text, re.M))
@@ -45,6 +46,23 @@ class Containers(unittest.TestCase):
                 else:
                     self.assertLessEqual({"memory", "pids"},
                                          service["deploy"]["resources"]["limits"].keys())
+
+    def test_the_balancer_has_room_for_the_threads_of_two(self):
+        """After a reload the old one stays for its viewers. One process watches over both."""
+        threads = int(re.search(r"(?m)^  nbthread (\d+)$", text_of(
+            os.path.join(DEPLOY, "balancer/haproxy.cfg"))).group(1))
+        compose, stack = (documents(os.path.join(DEPLOY, name))[0]["services"]["balancer"]
+                          for name in ("compose.yaml", "stack.yaml"))
+        for limit in (compose["pids_limit"], stack["deploy"]["resources"]["limits"]["pids"]):
+            self.assertLess(1 + 2 * threads, limit)
+
+    def test_the_balancer_knows_as_many_nodes_everywhere_as_is_documented(self):
+        known = re.findall(r"(?m)^  server-template node (\d+-\d+) ", text_of(
+            os.path.join(DEPLOY, "balancer/haproxy.cfg")))
+        self.assertEqual(len(known), 3)
+        self.assertEqual(len(set(known)), 1)
+        self.assertIn(f"`server-template node {known[0]}`",
+                      text_of(os.path.join(DEPLOY, "README.md")))
 
     def test_nodes_believe_nobody_but_the_balancer(self):
         """Where it has a fixed address, that one; else those of the stack's own network."""
@@ -87,12 +105,71 @@ class Containers(unittest.TestCase):
             self.skipTest("docker-compose is not installed")
         environment = {**os.environ, "HELIOGRAPH_TOKEN": "not-a-secret",
                        "HELIOGRAPH_CERTIFICATE": "/etc/ssl/heliograph.pem"}
-        for more in ((), ("--file", os.path.join(DEPLOY, "compose.tls.yaml"))):
-            run(program, "--file", os.path.join(DEPLOY, "compose.yaml"), *more, "config",
-                env=environment)
+        for more in ((), ("compose.tls.yaml",), ("compose.gpu.yaml",),
+                     ("compose.tls.yaml", "compose.gpu.yaml")):
+            names = (word for name in ("compose.yaml", *more)
+                     for word in ("--file", os.path.join(DEPLOY, name)))
+            run(program, *names, "config", env=environment)
         environment.pop("HELIOGRAPH_TOKEN")
         self.assertFalse(succeeds(program, "--file", os.path.join(DEPLOY, "compose.yaml"), "config",
                                   env=environment), "runs without a token")
+
+
+class Graphics(unittest.TestCase):
+    """What is given to nodes that have one of NVIDIA's GPUs, wherever they run."""
+
+    def nodes(self):
+        """What each file says of the servers' environment."""
+        for name in ("compose.gpu.yaml", "stack.gpu.yaml"):
+            yield name, documents(os.path.join(DEPLOY, name))[0]["services"]["heliograph"][
+                "environment"]
+        name = "kubernetes/gpu/deployment.yaml"
+        container, = documents(os.path.join(DEPLOY, name))[0]["spec"]["template"]["spec"][
+            "containers"]
+        yield name, {entry["name"]: entry["value"] for entry in container["env"]}
+        command = re.search(r"(?ms)^docker run \S+ --gpus all .*?heliograph$",
+                            text_of(os.path.join(DEPLOY, "README.md"))).group()
+        yield "README.md", dict(re.findall(r"-e (\w+)=(\S+)", command))
+
+    def test_see_that_driver_alone_by_the_file_that_is_installed(self):
+        """So that a GPU that is missing is an error, and no software device with its pixels."""
+        installed = re.search(r"install\(FILES (\S+) DESTINATION \$\{CMAKE_INSTALL_DATADIR\}"
+                              r"/(\S+)\)", text_of(os.path.join(DEPLOY, "CMakeLists.txt")))
+        path = f"/usr/share/{installed[2]}/{installed[1]}"
+        for label, environment in self.nodes():
+            with self.subTest(label):
+                self.assertEqual(environment["VK_DRIVER_FILES"], path)
+
+    def test_the_file_names_the_half_of_the_driver_that_needs_no_windows(self):
+        with open(os.path.join(DEPLOY, "nvidia_icd.json"), encoding="utf-8") as file:
+            self.assertEqual(json.load(file), {
+                "file_format_version": "1.0.1",
+                "ICD": {"library_path": "libEGL_nvidia.so.0", "api_version": "1.3"}})
+
+    def test_are_given_all_of_the_driver_that_it_needs_to_make_a_device(self):
+        given = re.search(r"NVIDIA_DRIVER_CAPABILITIES=(\S+)", text_of(
+            os.path.join(DEPLOY, "Dockerfile")))[1].split(",")
+        self.assertLessEqual({"compute", "graphics"}, set(given))
+
+    def test_have_room_for_full_pictures(self):
+        for label, environment in self.nodes():
+            with self.subTest(label):
+                pixels = re.search(r"\d+", environment["HELIOGRAPH_MAX_PIXELS"]).group()
+                self.assertGreaterEqual(int(pixels), 8 * 1920 * 1080)
+
+    def test_a_swarm_needs_no_spare_one_for_an_update(self):
+        deploy = documents(os.path.join(DEPLOY, "stack.gpu.yaml"))[0]["services"]["heliograph"][
+            "deploy"]
+        for change in ("update_config", "rollback_config"):
+            self.assertEqual(deploy[change]["order"], "stop-first")
+
+    def test_the_engine_reads_the_stack(self):
+        program = shutil.which("docker")
+        if not program or "  config " not in run(program, "stack", "--help"):
+            self.skipTest("docker with \"stack config\" (23) is not installed")
+        files_of = [word for name in ("stack.yaml", "stack.gpu.yaml")
+                    for word in ("--compose-file", os.path.join(DEPLOY, name))]
+        self.assertIn("kind: NVIDIA-GPU", run(program, "stack", "config", *files_of))
 
 
 class ByTheirOwnPrograms(unittest.TestCase):

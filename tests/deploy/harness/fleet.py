@@ -77,15 +77,18 @@ class Fleet:
         return found[0]
 
     def _rows(self):
-        page = self.machine.inside("curl", "--silent", "--fail", f"http://{self._balancer()}:8404/"
-                                   ";csv;norefresh").splitlines()
+        url = f"http://{self.address(self.balancer())}:8404/;csv;norefresh"
+        page = self.machine.inside("curl", "--silent", "--fail", url).splitlines()
         names = page[0].lstrip("# ").split(",")
         rows = [dict(zip(names, line.split(","))) for line in page[1:]]
         return [row for row in rows if row["pxname"] == "by_viewer"
                 and row["svname"].startswith("node") and row["addr"]]
 
-    def _balancer(self):
-        return self.address("fleet_balancer_1")
+    def balancer(self):
+        """The name of its container, which depends on the version of Compose."""
+        name, = self.machine.docker("ps", "--filter", "label=com.docker.compose.service=balancer",
+                                    "--format", "{{.Names}}").split()
+        return name
 
     def wait_ready(self, count, timeout=600):
         """Until as many nodes take viewers."""
