@@ -5,7 +5,7 @@ import pathlib
 import re
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from sources import ROOT, check
 
 # Folder -> what it may include besides itself.
 BELOW = {
@@ -45,19 +45,4 @@ def violations(path: pathlib.Path):
             yield f"{path.relative_to(ROOT)}:{number}: {folder} must not include {match.group(1)}"
 
 
-def main() -> int:
-    files = [
-        path
-        for top in ("protocol", "server")
-        for pattern in ("*.hpp", "*.cpp")
-        for path in (ROOT / top).rglob(pattern)
-    ]
-    if len(files) < 50:
-        print(f"only {len(files)} files found: the check looks in the wrong place")
-        return 1
-    found = [line for path in files for line in violations(path)]
-    print("\n".join(found) if found else f"{len(files)} files: every include points down")
-    return 1 if found else 0
-
-
-sys.exit(main())
+sys.exit(check(("protocol", "server"), 50, violations, "every include points down"))

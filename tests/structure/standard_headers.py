@@ -7,7 +7,7 @@ import pathlib
 import re
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from sources import ROOT, check
 
 # Header -> names of namespace std that only it is sure to declare.
 NAMES = {
@@ -87,16 +87,5 @@ def missing(path: pathlib.Path):
             yield f"{path.relative_to(ROOT)}: {match.group(0)} without <{header}>"
 
 
-def main() -> int:
-    files = [path for top in ("protocol", "server", "tests", "web_client", "shaders")
-             for pattern in ("*.hpp", "*.cpp") for path in (ROOT / top).rglob(pattern)
-             if "node_modules" not in path.parts]
-    if len(files) < 200:
-        print(f"only {len(files)} files found: the check looks in the wrong place")
-        return 1
-    found = [line for path in files for line in missing(path)]
-    print("\n".join(found) if found else f"{len(files)} files: all standard headers are included")
-    return 1 if found else 0
-
-
-sys.exit(main())
+sys.exit(check(("protocol", "server", "tests", "web_client", "shaders"), 200, missing,
+               "all standard headers are included"))
