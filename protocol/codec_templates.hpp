@@ -262,7 +262,8 @@ json message_schema() {
     if (!field.unit_name.empty()) entry["x-unit"] = field.unit_name;
     const bool optional =
         is_change<Member> || (is_optional<Member> && field.presence != Presence::or_null);
-    if (field.presence == Presence::or_null || is_change<Member>) entry["type"] = {entry["type"], "null"};
+    if (field.presence == Presence::or_null || is_change<Member>)
+      entry["type"] = {entry["type"], "null"};
     if (field.presence == Presence::defaulted) {
       entry["default"] = write(initial.*field.member);
     } else if (!optional) {

@@ -142,8 +142,8 @@ class Dispatcher::Exchange : public std::enable_shared_from_this<Exchange> {
     void finish(Result<RawJson> result) noexcept {
       if (finished_.exchange(true)) return;
       try {
-        exchange_->settle(slot_, result ? result_text(id_, *result)
-                                        : error_answer(RawJson(id_), result.error()));
+        exchange_->settle(
+            slot_, result ? result_text(id_, *result) : error_answer(RawJson(id_), result.error()));
       } catch (...) {
         // Out of memory or a transport that fails: there is nobody left to tell.
       }

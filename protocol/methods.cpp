@@ -242,7 +242,8 @@ std::vector<MethodDescriptor> stream_methods() {
           {R"({"interval_ms": 250})", R"({"interval_ms": 250})"}),
       method<Empty, FrameBuffers>(
           "frame.buffers", Call::query,
-          "Lists what can be shown or captured: the buffers of the newest picture, which follow from "
+          "Lists what can be shown or captured: the buffers of the newest picture, which follow "
+          "from "
           "scene and settings.",
           {no_params,
            R"({"buffers": [{"name": "output", "description": "The finished picture."}]})"}),
@@ -386,8 +387,7 @@ std::span<const NotificationDescriptor> notifications() {
           "Another viewer let a clip play, stop, jump or go at another rate, or began or ended "
           "lockstep. Time that just passes is not told."),
       notification<LockstepChanged>(
-          "lockstep.changed",
-          "Another viewer began or ended lockstep; single steps are not told."),
+          "lockstep.changed", "Another viewer began or ended lockstep; single steps are not told."),
       notification<SceneProgress>("scene.progress", "A scene is being loaded."),
       notification<SceneChanged>("scene.changed", "Another scene is shown now."),
       notification<SceneUnloaded>("scene.unloaded", "No scene is shown now."),

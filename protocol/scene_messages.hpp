@@ -381,7 +381,8 @@ struct BufferValue {
   static constexpr auto fields() {
     return std::tuple{
         field("name", &BufferValue::name, "The buffer."),
-        field("value", &BufferValue::value, "Its channels there, which frame.buffers explains; null is no finite number."),
+        field("value", &BufferValue::value,
+              "Its channels there, which frame.buffers explains; null is no finite number."),
         field("unit", &BufferValue::unit, "Of the values; empty: plain numbers."),
     };
   }

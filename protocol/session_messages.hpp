@@ -89,9 +89,10 @@ struct ServerLimits {
               "Frames the server sends ahead of the newest stream.ack; on a long way more, but no "
               "more than 8."),
         field("max_batch", &ServerLimits::max_batch, "Most calls of a batch."),
-        field("max_waiting", &ServerLimits::max_waiting,
-              "Most captures of a session that wait for their picture; as many steps may wait beside "
-              "them, and as many questions about the picture."),
+        field(
+            "max_waiting", &ServerLimits::max_waiting,
+            "Most captures of a session that wait for their picture; as many steps may wait beside "
+            "them, and as many questions about the picture."),
         field("max_upload_bytes", &ServerLimits::max_upload_bytes,
               "Largest scene that the client may send; 0: it may send none.")
             .unit("bytes"),

@@ -195,7 +195,8 @@ struct FrameCapture {
         field("buffer", &FrameCapture::buffer, "A name that frame.buffers gave.")
             .length(1, 64)
             .or_default(),
-        field("format", &FrameCapture::format, "Format of the file: png and jpeg for people, npy and exr for values.")
+        field("format", &FrameCapture::format,
+              "Format of the file: png and jpeg for people, npy and exr for values.")
             .or_default(),
         field("samples", &FrameCapture::samples,
               "Samples per pixel to wait for, at most accumulation.max_samples, one without "

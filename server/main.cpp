@@ -14,8 +14,8 @@
 
 namespace {
 
-/// Every arena of the allocator keeps what its threads have freed, and each new thread may get one of
-/// its own: with two the process is 40 % smaller after sessions have come and gone.
+/// Every arena of the allocator keeps what its threads have freed, and each new thread may get one
+/// of its own: with two the process is 40 % smaller after sessions have come and gone.
 void keep_few_arenas() {
 #ifdef M_ARENA_MAX
   mallopt(M_ARENA_MAX, 2);
@@ -23,8 +23,8 @@ void keep_few_arenas() {
 }
 
 /// Pools are as large as the machine, whatever a control group's quota lasts for: on 64 processors
-/// with a quota of two all threads would use it up in a moment and then rest for most of each period.
-/// Holds for as long as what it gives is kept; before any pool is made, Mesa's among them.
+/// with a quota of two all threads would use it up in a moment and then rest for most of each
+/// period. Holds for as long as what it gives is kept; before any pool is made, Mesa's among them.
 std::unique_ptr<tbb::global_control> keep_to_quota() {
   const unsigned processors = std::thread::hardware_concurrency();
   const unsigned threads = heliograph::net::useful_threads(

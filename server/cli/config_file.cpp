@@ -119,17 +119,17 @@ void OptionSources::take(const CLI::App& command, const CLI::ConfigItem& item) {
 bool OptionSources::on_command_line(const CLI::Option& option) const {
   return std::any_of(given_.begin(), given_.end(), [&](const std::string& argument) {
     const std::string name = argument.substr(0, argument.find('='));
-    return name.starts_with("--") ? option.check_lname(name.substr(2))
-                                  : name.size() > 1 && name[0] == '-' &&
-                                        option.check_sname(name.substr(1, 1));
+    return name.starts_with("--")
+               ? option.check_lname(name.substr(2))
+               : name.size() > 1 && name[0] == '-' && option.check_sname(name.substr(1, 1));
   });
 }
 
 std::string OptionSources::source(const CLI::Option& option) const {
   if (on_command_line(option)) return "on the command line";
   if (!variable(option.get_envname()).empty()) return "in " + option.get_envname();
-  const bool in_file = std::find(from_file_.begin(), from_file_.end(), option.get_name()) !=
-                       from_file_.end();
+  const bool in_file =
+      std::find(from_file_.begin(), from_file_.end(), option.get_name()) != from_file_.end();
   return in_file ? "in " + file_ : "";
 }
 

@@ -31,7 +31,8 @@ int run(const SchemaOptions& options) {
 }
 
 int run(const HealthOptions& options) {
-  const net::HealthAnswer answer = net::ask_health(options.url, options.authorities, std::chrono::seconds(5));
+  const net::HealthAnswer answer =
+      net::ask_health(options.url, options.authorities, std::chrono::seconds(5));
   std::fprintf(answer.healthy ? stdout : stderr, "%s: %s\n", options.url.c_str(),
                answer.text.c_str());
   return answer.healthy ? 0 : 1;

@@ -148,8 +148,8 @@ std::string hint(const CLI::App& app, const CLI::App* command) {
   return {};
 }
 
-/// "heliograph.toml: " before an error about an option that stands there. CLI11 names options in the
-/// text of its errors only.
+/// "heliograph.toml: " before an error about an option that stands there. CLI11 names options in
+/// the text of its errors only.
 std::string place(const CLI::App* command, const OptionSources* sources, const std::string& what) {
   if (!command || !sources) return {};
   for (const CLI::Option* option : command->get_options()) {

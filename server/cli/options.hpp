@@ -79,7 +79,7 @@ struct RenderOptions {
   std::string buffer = "output";
   std::string environment;
   bool timings = false;
-  std::string clip;  // empty: at rest
+  std::string clip;   // empty: at rest
   double time = 0.0;  // seconds into the clip
   double fps = 30.0;  // pictures of a second of the clip
   std::optional<std::uint32_t> frames;

@@ -44,8 +44,9 @@ void add_network_options(CLI::App& command, ServeOptions& options) {
       ->type_name("ADDRESS:PORT")
       ->group(group);
   command
-      .add_option("--drain-notice", options.drain_notice,
-                  "Seconds from SIGTERM, when /health/ready fails, until viewers are asked to leave")
+      .add_option(
+          "--drain-notice", options.drain_notice,
+          "Seconds from SIGTERM, when /health/ready fails, until viewers are asked to leave")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str()
       ->group(group);

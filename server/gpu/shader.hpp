@@ -85,8 +85,7 @@ class ComputeProgram : public Program {
  public:
   /// `specialization` is the value of the shader's constant 0, where it has one.
   /// @throws GpuError when a shared layout lacks or contradicts what the shader declares
-  ComputeProgram(const Device& device, const ShaderBinary& shader,
-                 const SharedLayouts& shared = {},
+  ComputeProgram(const Device& device, const ShaderBinary& shader, const SharedLayouts& shared = {},
                  std::optional<std::uint32_t> specialization = std::nullopt);
   VkExtent3D local_size() const { return local_size_; }
 

@@ -146,8 +146,8 @@ std::string AccessControl::token_cookie(const std::string& token,
 }
 
 std::optional<HttpResponse> AccessControl::preflight(const HttpRequest& request) const {
-  const bool asks = request.method == "OPTIONS" &&
-                    request.headers.contains("access-control-request-method");
+  const bool asks =
+      request.method == "OPTIONS" && request.headers.contains("access-control-request-method");
   if (!asks || !origin_listed(request.header("origin"))) return std::nullopt;
   if (auto refused = wrong_place(request)) return refused;
   HttpResponse response{.status = 204, .content_type = {}, .body = {}, .headers = {}};
@@ -196,8 +196,9 @@ bool AccessControl::is_secure(const HttpRequest& request) const {
 std::optional<HttpResponse> AccessControl::wrong_place(const HttpRequest& request) const {
   const std::string_view host = request.header("host");
   if (!host_allowed(host)) {
-    return text_response(403, "This server does not go by the name of the Host header; see "
-                              "--allow-host.");
+    return text_response(403,
+                         "This server does not go by the name of the Host header; see "
+                         "--allow-host.");
   }
   const bool from_page = request.headers.contains("origin");
   if (from_page && !origin_allowed(request.header("origin"), host, request.secure)) {

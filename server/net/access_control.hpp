@@ -34,9 +34,9 @@ struct Admission {
 /// it must be an address, this machine's name or one that is allowed.
 /// Origin: browsers send it with every WebSocket and every cross-site request. It must be the very
 /// host and port that the request went to, or on the allow-list; compared whole, never by prefix.
-/// Sec-Fetch-Site: what pages merely embed (pictures, frames) comes without Origin but with this. From
-/// other sites, and from other ports of the same host, only what leads to the viewer's page passes.
-/// Token: see TokenSet. A client that shows wrong ones is soon not listened to for a while.
+/// Sec-Fetch-Site: what pages merely embed (pictures, frames) comes without Origin but with this.
+/// From other sites, and from other ports of the same host, only what leads to the viewer's page
+/// passes. Token: see TokenSet. A client that shows wrong ones is soon not listened to for a while.
 class AccessControl {
  public:
   /// @throws std::invalid_argument for a token that does not fit into headers, an origin that is
@@ -79,9 +79,9 @@ class AccessControl {
   mutable FailureLimit failures_;
 };
 
-/// Whether a page of another origin, this host's other ports included, asks for something that is not
-/// for it by way of an element that names no origin: a picture, a frame, a link. Browsers say so to
-/// hosts that they trust: loopback and HTTPS.
+/// Whether a page of another origin, this host's other ports included, asks for something that is
+/// not for it by way of an element that names no origin: a picture, a frame, a link. Browsers say
+/// so to hosts that they trust: loopback and HTTPS.
 bool embedded_elsewhere(const HttpRequest& request);
 
 bool is_loopback(std::string_view address);

@@ -55,9 +55,7 @@ class OutgoingBytes {
   bool has_room(std::size_t more) const {
     return more <= small_answer || in_all_ + more <= most_outgoing_bytes;
   }
-  void hold(std::size_t bytes) {
-    in_all_ += bytes - std::exchange(held_, bytes);
-  }
+  void hold(std::size_t bytes) { in_all_ += bytes - std::exchange(held_, bytes); }
 
  private:
   std::size_t& in_all_;
@@ -86,8 +84,8 @@ struct ServerContext {
   std::function<void()> on_last_left;           // called while ending, when nobody is left
   std::set<Connection*> connections;
   std::size_t outgoing_bytes = 0;  // see OutgoingBytes
-  bool draining = false;  // nobody new is let in
-  bool ending = false;    // everybody is asked to leave
+  bool draining = false;           // nobody new is let in
+  bool ending = false;             // everybody is asked to leave
 
   void enter(Connection& connection) {
     connections.insert(&connection);

@@ -44,8 +44,8 @@ AddressRange::AddressRange(const std::string& text) {
     valid = valid && parsed.ec == std::errc() && parsed.ptr == end && bits_ <= longest;
   }
   if (!valid) {
-    throw std::invalid_argument("\"" + text +
-                                "\" is not an address such as 10.1.2.3 or a range such as 10.0.0.0/8");
+    throw std::invalid_argument(
+        "\"" + text + "\" is not an address such as 10.1.2.3 or a range such as 10.0.0.0/8");
   }
 }
 

@@ -30,8 +30,7 @@ std::string client_key(std::string_view address);
 class ConnectionLimits {
  public:
   /// `unlimited` clients, which are proxies, share only the total.
-  ConnectionLimits(std::size_t in_all, std::size_t per_client,
-                   std::vector<AddressRange> unlimited);
+  ConnectionLimits(std::size_t in_all, std::size_t per_client, std::vector<AddressRange> unlimited);
 
   /// The right to be connected, given back at its end.
   class Seat {

@@ -106,9 +106,8 @@ class Question {
   }
 
   void ask() {
-    http::async_write(stream_, request_, [this](error_code error, std::size_t) {
-      next(error, &Question::listen);
-    });
+    http::async_write(stream_, request_,
+                      [this](error_code error, std::size_t) { next(error, &Question::listen); });
   }
 
   void listen() {

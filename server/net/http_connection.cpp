@@ -58,10 +58,10 @@ constexpr std::chrono::minutes longest_upload{10};
 constexpr std::size_t discarded_at_once = 16 * 1024;
 
 HttpResponse upload_response(const session::UploadedScene& scene) {
-  HttpResponse response = json_response(nlohmann::json{{"name", scene.name},
-                                                       {"bytes", scene.bytes},
-                                                       {"triangles", scene.triangles}}
-                                            .dump());
+  HttpResponse response = json_response(nlohmann::json{
+      {"name", scene.name},
+      {"bytes", scene.bytes},
+      {"triangles", scene.triangles}}.dump());
   response.status = 201;
   return response;
 }
@@ -132,17 +132,16 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     }
     parser_->body_limit(largest_body());
     invite(parser_->get(), [self = shared_from_this()] {
-      http::async_read(
-          self->stream_, self->buffer_, *self->parser_,
-          [self](error_code failed, std::size_t) { self->received(failed); });
+      http::async_read(self->stream_, self->buffer_, *self->parser_,
+                       [self](error_code failed, std::size_t) { self->received(failed); });
     });
   }
 
   /// Tells a client that asks so before it sends its body that it may, RFC 9110 section 10.1.1.
   template <class Header, class Next>
   void invite(const Header& header, Next next) {
-    const bool asks = header.version() >= 11 &&
-                      beast::iequals(header[http::field::expect], "100-continue");
+    const bool asks =
+        header.version() >= 11 && beast::iequals(header[http::field::expect], "100-continue");
     if (!asks) return next();
     constexpr std::string_view invitation = "HTTP/1.1 100 Continue\r\n\r\n";
     asio::async_write(stream_, asio::buffer(invitation),
@@ -208,8 +207,8 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     context_.uploads->finish(
         std::exchange(upload_, nullptr),
         [self = shared_from_this()](const protocol::Result<session::UploadedScene>& accepted) {
-          HttpResponse response = accepted ? upload_response(*accepted)
-                                           : error_response(accepted.error());
+          HttpResponse response =
+              accepted ? upload_response(*accepted) : error_response(accepted.error());
           asio::post(self->stream_.get_executor(),
                      [self, response = std::move(response)]() mutable {
                        self->send(std::move(response));
@@ -323,9 +322,8 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
       stream_.next_layer().socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
       return discard();
     }
-    async_teardown(beast::role_type::server, stream_, [self = shared_from_this()](error_code) {
-      self->stream_.next_layer().close();
-    });
+    async_teardown(beast::role_type::server, stream_,
+                   [self = shared_from_this()](error_code) { self->stream_.next_layer().close(); });
   }
 
   /// Reads on for a while: closing on what nobody has read resets the connection, and the answer

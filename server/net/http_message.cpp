@@ -103,8 +103,8 @@ protocol::Result<std::optional<std::uint32_t>> number_parameter(const HttpReques
   if (!text) return std::optional<std::uint32_t>();
   const std::optional<std::uint32_t> number = whole_number(*text);
   if (number && *number >= least && *number <= most) return number;
-  return protocol::error::invalid(name, "must be a whole number from " + std::to_string(least) +
-                                            " to " + std::to_string(most));
+  return protocol::error::invalid(
+      name, "must be a whole number from " + std::to_string(least) + " to " + std::to_string(most));
 }
 
 std::string lower(std::string_view text) {

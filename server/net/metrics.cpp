@@ -218,8 +218,8 @@ void add_traffic(Page& page, const Traffic& traffic) {
                number(traffic.calls));
   page.counter("heliograph_viewer_messages_refused_total",
                "Messages of viewers that came too fast.", number(traffic.calls_refused));
-  page.counter("heliograph_viewers_let_go_total",
-               "Viewers that did not read what they were sent.", number(traffic.viewers_let_go));
+  page.counter("heliograph_viewers_let_go_total", "Viewers that did not read what they were sent.",
+               number(traffic.viewers_let_go));
 }
 
 }  // namespace

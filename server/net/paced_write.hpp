@@ -16,8 +16,8 @@ struct Pace {
   double bytes_per_second;             // in the long run, once `patience` has passed
 };
 
-/// When a write is given up: a large answer may take as long as it needs, as long as its reader goes
-/// on taking it, but nobody holds one for ever by taking a byte now and then.
+/// When a write is given up: a large answer may take as long as it needs, as long as its reader
+/// goes on taking it, but nobody holds one for ever by taking a byte now and then.
 class PaceKeeper {
  public:
   using Clock = std::chrono::steady_clock;

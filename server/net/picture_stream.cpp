@@ -103,9 +103,8 @@ class PictureStream : public Connection,
     ending_ = true;
     refusal_ = to_message(context_, come_back_later(why), {.sharing = sharing});
     stream_.next_layer().expires_after(longest_write);
-    http::async_write(stream_, refusal_, [self = shared_from_this()](error_code, std::size_t) {
-      self->ended();
-    });
+    http::async_write(stream_, refusal_,
+                      [self = shared_from_this()](error_code, std::size_t) { self->ended(); });
   }
 
   void configure(const protocol::StreamConfigure& wishes) {
@@ -114,7 +113,8 @@ class PictureStream : public Connection,
     if (session->audience().configure(viewer_, wishes)) session->audience().start(viewer_);
   }
 
-  /// Who vanished leaves pictures in the socket that nobody takes; they fit there, and block nothing.
+  /// Who vanished leaves pictures in the socket that nobody takes; they fit there, and block
+  /// nothing.
   void watch() {
     watch_.expires_after(longest_write);
     watch_.async_wait([self = shared_from_this()](error_code error) {
@@ -212,7 +212,7 @@ class PictureStream : public Connection,
   std::optional<http::response_serializer<http::empty_body>> serializer_;
   asio::steady_timer watch_;
   std::uint64_t taken_ = 0;  // bytes, when it was looked last
-  BeastResponse refusal_;  // instead of the pictures
+  BeastResponse refusal_;    // instead of the pictures
   std::array<char, 512> incoming_{};
   std::string session_;
   std::string viewer_;

@@ -5,8 +5,8 @@
 
 namespace heliograph::net {
 
-/// Whether the other end of a connection is still there: it is heard, be it by its answers to pings,
-/// or goes on taking a message so long that a ping has to wait behind it.
+/// Whether the other end of a connection is still there: it is heard, be it by its answers to
+/// pings, or goes on taking a message so long that a ping has to wait behind it.
 class Presence {
  public:
   using Clock = std::chrono::steady_clock;

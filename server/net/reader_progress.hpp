@@ -12,8 +12,9 @@ std::uint64_t bytes_taken(int socket);
 /// Bytes that were written and that the other end has not taken yet.
 std::size_t bytes_not_taken(int socket);
 
-/// Sees to it that who vanishes without a word while nothing is sent is noticed within half a minute:
-/// the system asks by itself. Where something was sent it only repeats that, for a quarter of an hour.
+/// Sees to it that who vanishes without a word while nothing is sent is noticed within half a
+/// minute: the system asks by itself. Where something was sent it only repeats that, for a quarter
+/// of an hour.
 void notice_absence(int socket);
 
 }  // namespace heliograph::net

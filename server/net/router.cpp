@@ -92,8 +92,8 @@ std::string frame_ancestors(const std::vector<std::string>& allowed) {
   if (allowed.empty()) return "'none'";
   std::string value;
   for (const std::string& ancestor : allowed) {
-    if (ancestor != "self" && (!is_origin(ancestor) || ancestor.find_first_of(";,'\" ") !=
-                                                           std::string::npos)) {
+    if (ancestor != "self" &&
+        (!is_origin(ancestor) || ancestor.find_first_of(";,'\" ") != std::string::npos)) {
       throw std::invalid_argument("\"" + ancestor +
                                   "\" cannot embed pages: it is neither \"self\" nor an origin "
                                   "such as https://example.org");
@@ -145,8 +145,8 @@ HttpResponse come_back_later(std::string_view why) {
   return with_header(text_response(503, why), "Retry-After", "1");
 }
 
-Router::Router(session::SessionHost& host, const AccessControl& access,
-               const Traffic& traffic, const RouterOptions& options)
+Router::Router(session::SessionHost& host, const AccessControl& access, const Traffic& traffic,
+               const RouterOptions& options)
     : host_(host),
       access_(access),
       traffic_(traffic),
@@ -221,10 +221,8 @@ std::optional<HttpResponse> Router::health(const HttpRequest& request) const {
 
 HttpResponse Router::metrics() const {
   return {.content_type = "text/plain; version=0.0.4; charset=utf-8",
-          .body = metrics_text({.host = host_,
-                                .traffic = traffic_,
-                                .started = started_,
-                                .draining = draining_})};
+          .body = metrics_text(
+              {.host = host_, .traffic = traffic_, .started = started_, .draining = draining_})};
 }
 
 void Router::call(const HttpRequest& request, Role role, Reply reply) const {
@@ -242,8 +240,7 @@ void Router::picture(const HttpRequest& request, std::string_view session,
   if (!found) return reply(error_response(found.error()));
   const PictureKind* const kind = picture_kind(extension);
   if (!kind) {
-    return reply(
-        text_response(404, "Pictures are frame.jpg, frame.png, frame.exr and frame.npy."));
+    return reply(text_response(404, "Pictures are frame.jpg, frame.png, frame.exr and frame.npy."));
   }
   session::CaptureRequest capture;
   capture.format = kind->format;

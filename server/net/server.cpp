@@ -57,9 +57,8 @@ struct Server::State {
                 .certificate = certificate(options),
                 .on_last_left = [this] { io.stop(); },
                 .connections = {}},
-        door(io, options.access.bind_address, options.port, [this](tcp::socket socket) {
-          welcome(std::move(socket), limits, Door::main);
-        }) {
+        door(io, options.access.bind_address, options.port,
+             [this](tcp::socket socket) { welcome(std::move(socket), limits, Door::main); }) {
     if (options.measuring) {
       measuring_door.emplace(io, options.measuring->address, options.measuring->port,
                              [this](tcp::socket socket) {

@@ -39,8 +39,7 @@ std::shared_ptr<ssl::context> read(const TlsFiles& files) {
 
 }  // namespace
 
-TlsCertificate::TlsCertificate(TlsFiles files)
-    : files_(std::move(files)), context_(read(files_)) {}
+TlsCertificate::TlsCertificate(TlsFiles files) : files_(std::move(files)), context_(read(files_)) {}
 
 void TlsCertificate::reload() {
   context_ = read(files_);

@@ -14,8 +14,7 @@ namespace {
 
 constexpr std::size_t shortest_token = 8;
 constexpr std::size_t longest_token = 256;
-constexpr const char* rule =
-    "a token needs at least 8 characters out of letters, digits and -._~";
+constexpr const char* rule = "a token needs at least 8 characters out of letters, digits and -._~";
 
 bool is_acceptable(std::string_view token) {
   return token.size() >= shortest_token && token.size() <= longest_token &&

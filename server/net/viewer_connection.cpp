@@ -31,8 +31,8 @@ using boost::system::error_code;
 // What may wait behind the message that is being written: more is only for who goes on taking it.
 constexpr std::size_t patient_messages = 256;
 constexpr std::size_t most_messages = 4096;
-// An answer that would not fit behind what waits is replaced by an error. Large enough for a captured
-// picture of the largest size.
+// An answer that would not fit behind what waits is replaced by an error. Large enough for a
+// captured picture of the largest size.
 constexpr std::size_t most_waiting_bytes = 256u << 20;
 constexpr std::chrono::seconds longest_stall{2};
 constexpr std::chrono::seconds watch_interval{5};
@@ -170,22 +170,22 @@ class ViewerConnection : public Connection,
 
   void call(std::string message) {
     const auto text = std::make_shared<const std::string>(std::move(message));
-    context_.host.dispatcher().handle(
-        *text, {.viewer = viewer_, .view_only = view_only_},
-        [text, weak = weak_from_this()](std::string answer) {
-          const auto self = weak.lock();
-          if (!self || answer.empty()) return;
-          if (answer.size() <= small_answer) return self->send(std::move(answer), {});
-          asio::post(self->socket_.get_executor(),
-                     [self, text, answer = std::move(answer)]() mutable {
-                       self->enqueue_large(std::move(answer), *text);
-                     });
-        });
+    context_.host.dispatcher().handle(*text, {.viewer = viewer_, .view_only = view_only_},
+                                      [text, weak = weak_from_this()](std::string answer) {
+                                        const auto self = weak.lock();
+                                        if (!self || answer.empty()) return;
+                                        if (answer.size() <= small_answer)
+                                          return self->send(std::move(answer), {});
+                                        asio::post(
+                                            self->socket_.get_executor(),
+                                            [self, text, answer = std::move(answer)]() mutable {
+                                              self->enqueue_large(std::move(answer), *text);
+                                            });
+                                      });
   }
 
   void enqueue_large(std::string answer, std::string_view message) {
-    if (waiting_bytes_ + answer.size() > most_waiting_bytes ||
-        !outgoing_.has_room(answer.size())) {
+    if (waiting_bytes_ + answer.size() > most_waiting_bytes || !outgoing_.has_room(answer.size())) {
       answer = refuse_calls(message, answer_too_large("256 MiB"));
     }
     enqueue(std::move(answer), {});

@@ -28,8 +28,7 @@ gpu::PassBuilder declare_pass(gpu::FramePlan& plan, const FrameInputs& in, gpu::
   }
   return plan.host("temporal_antialias", [=, &plan, &settings, &frame = in.constants] {
     const auto view = [&plan](gpu::ImageRef image) { return plan.get(image).host(); };
-    const auto* state =
-        reinterpret_cast<const shared::ExposureState*>(plan.get(exposure).mapped());
+    const auto* state = reinterpret_cast<const shared::ExposureState*>(plan.get(exposure).mapped());
     host::temporal_antialias({.frame = frame,
                               .blend = settings.blend,
                               .clip = settings.clip,

@@ -155,8 +155,7 @@ class Antialiasing {
     for (int j = 0; j < 4; ++j) {
       Triple<V> line{zero, zero, zero};
       for (int i = 0; i < 4; ++i) {
-        const Spot<D> spot =
-            bounds_.spot(column + hn::Set(di_, i - 1), row + hn::Set(di_, j - 1));
+        const Spot<D> spot = bounds_.spot(column + hn::Set(di_, i - 1), row + hn::Set(di_, j - 1));
         line = line + spot.first_three(job_.history) * across.w[i];
       }
       sum = sum + line * down.w[j];
@@ -188,12 +187,12 @@ class Antialiasing {
     const Quad<V> center = load4(d_, row_of<const float>(job_.radiance, y) + 4 * x);
     float* const out = row_of<float>(job_.resolved, y) + 4 * x;
     const Pair<V> moved = nearest_motion(motion, view, x, y);
-    const V u = hn::Iota(d_, static_cast<float>(x) + 0.5f) / set(static_cast<float>(job_.width)) +
-                moved.x;
+    const V u =
+        hn::Iota(d_, static_cast<float>(x) + 0.5f) / set(static_cast<float>(job_.width)) + moved.x;
     const V v = set((static_cast<float>(y) + 0.5f) / static_cast<float>(job_.height)) + moved.y;
     // Nothing is known of what was not in the picture.
-    M known = hn::And(hn::And(hn::Ge(u, zero), hn::Le(u, one)),
-                      hn::And(hn::Ge(v, zero), hn::Le(v, one)));
+    M known =
+        hn::And(hn::And(hn::Ge(u, zero), hn::Le(u, one)), hn::And(hn::Ge(v, zero), hn::Le(v, one)));
     if (job_.frame.counts.w != 0 || hn::AllFalse(d_, known)) {
       store4(d_, center, out);
       return;

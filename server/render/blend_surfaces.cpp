@@ -110,11 +110,13 @@ class BlendedSurfaces {
         .write(ambient.rays)
         .read_write(mirrors.count)
         .write(mirrors.rays)
-        .constants([&s = in_.settings.specular, traced] { return traced ? s.max_roughness : -1.0f; })
+        .constants(
+            [&s = in_.settings.specular, traced] { return traced ? s.max_roughness : -1.0f; })
         .dispatch_indirect(lit_.count, ray_groups_offset);
     add_unhidden_light(plan_, in_, "blended.shadows", shadows, radiance_);
     add_unhidden_light(plan_, in_, "blended.ambient", ambient, radiance_);
-    if (traced) trace_mirrored(plan_, in_, "blended.mirrors", mirrors, surface_, behind_, mirrored_);
+    if (traced)
+      trace_mirrored(plan_, in_, "blended.mirrors", mirrors, surface_, behind_, mirrored_);
   }
 
   void lay_over(gpu::ImageRef picture) {
@@ -131,7 +133,8 @@ class BlendedSurfaces {
     return plan_.pass(name, in_.programs.compute(shader, in_.scene.features));
   }
 
-  void lay_over(std::uint32_t round, const tracing::RayStream& met, const tracing::RayStream& next) {
+  void lay_over(std::uint32_t round, const tracing::RayStream& met,
+                const tracing::RayStream& next) {
     struct Constants {
       std::uint32_t round;
       std::uint32_t last_round;
@@ -158,7 +161,7 @@ class BlendedSurfaces {
   const GBuffer& gbuffer_;
   std::uint32_t pixels_;
   gpu::ImageRef radiance_;  // a: of all weights, the sum
-  gpu::ImageRef behind_;    // how much of what is behind shows; a: of the chosen, weight, then view Z
+  gpu::ImageRef behind_;  // how much of what is behind shows; a: of the chosen, weight, then view Z
   gpu::ImageRef motion_;
   gpu::ImageRef mirrored_;
   gpu::ImageRef surface_;

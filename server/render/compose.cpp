@@ -42,25 +42,24 @@ void run_host(const gpu::FramePlan& plan, const FrameInputs& in, const Images& i
   const auto view = [&plan](gpu::ImageRef image) { return plan.get(image).host(); };
   const auto lights = frame_lights(in.tables.lights, in.constants);
   const GBuffer& gbuffer = images.gbuffer;
-  host::ComposeJob job{
-      .frame = in.constants,
-      .lights = lights,
-      .split_sum = in.split_sum_table.host(),
-      .split_sum_size = static_cast<int>(in.split_sum_table.desc().extent.width),
-      .max_roughness = max_roughness,
-      .width = static_cast<int>(plan.extent().width),
-      .height = static_cast<int>(plan.extent().height),
-      .normals = view(gbuffer.normals),
-      .base_color = view(gbuffer.base_color),
-      .surface = view(gbuffer.surface),
-      .motion = view(gbuffer.motion),
-      .emissive = view(gbuffer.emissive),
-      .background = view(images.background),
-      .shadows = view(images.shadows),
-      .ambient = view(images.ambient),
-      .specular = view(images.specular),
-      .denoised = {},
-      .hdr = view(images.composed.hdr)};
+  host::ComposeJob job{.frame = in.constants,
+                       .lights = lights,
+                       .split_sum = in.split_sum_table.host(),
+                       .split_sum_size = static_cast<int>(in.split_sum_table.desc().extent.width),
+                       .max_roughness = max_roughness,
+                       .width = static_cast<int>(plan.extent().width),
+                       .height = static_cast<int>(plan.extent().height),
+                       .normals = view(gbuffer.normals),
+                       .base_color = view(gbuffer.base_color),
+                       .surface = view(gbuffer.surface),
+                       .motion = view(gbuffer.motion),
+                       .emissive = view(gbuffer.emissive),
+                       .background = view(images.background),
+                       .shadows = view(images.shadows),
+                       .ambient = view(images.ambient),
+                       .specular = view(images.specular),
+                       .denoised = {},
+                       .hdr = view(images.composed.hdr)};
   if (images.denoised) {
     job.denoised = {view(images.denoised->visibility),
                     view(images.denoised->specular.value_or(images.specular)),
@@ -81,12 +80,12 @@ Composed compose(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbu
   // A binding has to hold an image; one that is not traced is not read.
   const bool mirrors = raw.specular.has_value();
   const gpu::ImageRef specular = raw.specular.value_or(background);
-  const Images images{gbuffer,  background, raw.shadows, raw.ambient,
-                      specular, denoised,   composed};
+  const Images images{gbuffer, background, raw.shadows, raw.ambient, specular, denoised, composed};
   const auto roughness = [&s = in.settings.specular, mirrors] {
     return mirrors ? s.max_roughness : -1.0f;
   };
-  const bool hosted = shades_on_host(plan, in) && (in.scene.features & shared::scene_area_lights) == 0;
+  const bool hosted =
+      shades_on_host(plan, in) && (in.scene.features & shared::scene_area_lights) == 0;
   const auto by_host = [in, roughness, hosted] {
     return hosted && host::can_compose(in.constants, roughness());
   };

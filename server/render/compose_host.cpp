@@ -42,9 +42,7 @@ class Composition {
  private:
   HWY_INLINE V set(float value) const { return hn::Set(d_, value); }
   HWY_INLINE Triple<V> black() const { return {hn::Zero(d_), hn::Zero(d_), hn::Zero(d_)}; }
-  HWY_INLINE bool enabled(std::uint32_t flag) const {
-    return (job_.frame.counts.y & flag) != 0;
-  }
+  HWY_INLINE bool enabled(std::uint32_t flag) const { return (job_.frame.counts.y & flag) != 0; }
   HWY_INLINE Quad<V> load(const gpu::HostView& image, int x, int y) const {
     return load4(d_, row_of<const float>(image, y) + 4 * x);
   }
@@ -86,9 +84,9 @@ class Composition {
     const M lit = hn::AndNot(unlit, seen);
     if (!hn::AllFalse(d_, lit)) {
       const Quad<V> encoded = load(job_.normals, x, y);
-      const SurfaceMaterial<V> m = make_material(
-          d_, base_color, packed.y, packed.x, octahedral_decode(encoded.x, encoded.y),
-          octahedral_decode(encoded.z, encoded.w), view.to_eye(x), split_sum_);
+      const SurfaceMaterial<V> m =
+          make_material(d_, base_color, packed.y, packed.x, octahedral_decode(encoded.x, encoded.y),
+                        octahedral_decode(encoded.z, encoded.w), view.to_eye(x), split_sum_);
       add_lit(view, x, view_z, lit, m, root.w, shares);
     }
     shares.own = select(unlit, base_color, shares.own);
@@ -125,9 +123,8 @@ class Composition {
     const V x = hn::MulSub(c, world.x, s * world.z);
     const V y = world.y;
     const V z = hn::MulAdd(s, world.x, c * world.z);
-    const auto term = [this](int i) HWY_ATTR {
-      return splat(d_, glm::vec3(job_.frame.irradiance[i]));
-    };
+    const auto term = [this](int i)
+                          HWY_ATTR { return splat(d_, glm::vec3(job_.frame.irradiance[i])); };
     Triple<V> sum = term(0) + term(1) * y + term(2) * z + term(3) * x;
     sum = sum + term(4) * (x * y) + term(5) * (y * z);
     sum = sum + term(6) * hn::MulSub(set(3.0f) * z, z, set(1.0f)) + term(7) * (x * z);

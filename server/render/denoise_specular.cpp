@@ -49,8 +49,9 @@ Blur blur_of(const FrameInputs& in) {
     if (settings.iterations_by_roughness && quiet) made.flags |= shared::atrous_levels_by_roughness;
     return made;
   };
-  return {"specular", in.programs.compute(shaders::atrous_specular), settings.iterations,
-          settings.kernel, constants, host::Signal::specular};
+  return {"specular",          in.programs.compute(shaders::atrous_specular),
+          settings.iterations, settings.kernel,
+          constants,           host::Signal::specular};
 }
 
 }  // namespace

@@ -38,14 +38,15 @@ Blur blur_of(const FrameInputs& in) {
     made.start_threshold = twice ? -1.0f : 2.0f;
     return made;
   };
-  return {"visibility", in.programs.compute(shaders::atrous_visibility), settings.iterations,
-          settings.kernel, constants, host::Signal::visibility};
+  return {"visibility",        in.programs.compute(shaders::atrous_visibility),
+          settings.iterations, settings.kernel,
+          constants,           host::Signal::visibility};
 }
 
 }  // namespace
 
-gpu::ImageRef combine_visibility(gpu::FramePlan& plan, const FrameInputs& in,
-                                 gpu::ImageRef shadows, gpu::ImageRef ambient) {
+gpu::ImageRef combine_visibility(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef shadows,
+                                 gpu::ImageRef ambient) {
   const auto raw = plan.image("visibility.raw", VK_FORMAT_R32G32B32A32_SFLOAT);
   const auto declare = [&] {
     if (!on_host(plan, in)) {
@@ -60,11 +61,8 @@ gpu::ImageRef combine_visibility(gpu::FramePlan& plan, const FrameInputs& in,
                                 .visibility = plan.get(raw).host()});
     });
   };
-  declare()
-      .read(shadows)
-      .read(ambient)
-      .write(raw)
-      .describe("Shadow (red) and ambient (green) visibility of this frame alone.");
+  declare().read(shadows).read(ambient).write(raw).describe(
+      "Shadow (red) and ambient (green) visibility of this frame alone.");
   return raw;
 }
 
@@ -78,9 +76,9 @@ gpu::ImageRef denoise_visibility(gpu::FramePlan& plan, const FrameInputs& in,
   if (!blurring.enabled) return integrated.signal;
 
   estimate_visibility_variance(plan, in, gbuffer, guide, integrated);
-  return blur(plan, in, gbuffer, guide, blur_of(in), integrated.signal,
-              feedback ? std::optional(Feedback{blurring.feedback, integrated.remembered})
-                       : std::nullopt);
+  return blur(
+      plan, in, gbuffer, guide, blur_of(in), integrated.signal,
+      feedback ? std::optional(Feedback{blurring.feedback, integrated.remembered}) : std::nullopt);
 }
 
 }  // namespace heliograph::render

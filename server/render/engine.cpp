@@ -120,8 +120,8 @@ std::shared_ptr<const SceneResources> Engine::upload(
   const std::shared_ptr<Parts> parts = present();
   auto around = parts->environments.get(std::move(environment));
   return with_device(parts, std::make_shared<const SceneResources>(
-                                parts->device, parts->programs, std::move(scene),
-                                std::move(around), *parts->tracer, tell, image_done));
+                                parts->device, parts->programs, std::move(scene), std::move(around),
+                                *parts->tracer, tell, image_done));
 }
 
 std::shared_ptr<const LitEnvironment> Engine::renew(const LitEnvironment& lost) {
@@ -152,8 +152,8 @@ std::uint64_t memory_bytes(const SceneResources& resources) {
 std::shared_ptr<const LitEnvironment> Engine::prefilter(scene::Environment environment) {
   const std::shared_ptr<Parts> parts = present();
   return with_device(
-      parts, parts->environments.get(
-                 std::make_shared<const scene::Environment>(std::move(environment))));
+      parts,
+      parts->environments.get(std::make_shared<const scene::Environment>(std::move(environment))));
 }
 
 std::string describe_devices(const EngineOptions& options) {

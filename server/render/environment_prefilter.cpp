@@ -119,8 +119,7 @@ EnvironmentMaps prefilter_environment(const gpu::Device& device, const Programs&
     filter.pass("environment.prefilter", programs.compute(shaders::prefilter_environment))
         .read(filter_source)
         .write(target)
-        .constants(PrefilterConstants{roughness, static_cast<float>(cube_size),
-                                      samples_for(level)})
+        .constants(PrefilterConstants{roughness, static_cast<float>(cube_size), samples_for(level)})
         .dispatch({cube_size >> level, cube_size >> level}, 6);
   }
   filter.compile();

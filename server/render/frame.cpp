@@ -38,8 +38,7 @@ FrameOutputs declare_reference(gpu::FramePlan& plan, const FrameInputs& in) {
   const gpu::ImageRef sample = trace_reference(plan, in);
   const gpu::History accumulated = accumulate(plan, in, sample);
   const Exposure exposure = expose(plan, in, sample, accumulated.current);
-  return {accumulated, exposure, sample,
-          present(plan, in, exposure, sample, accumulated.current)};
+  return {accumulated, exposure, sample, present(plan, in, exposure, sample, accumulated.current)};
 }
 
 }  // namespace

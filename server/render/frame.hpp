@@ -15,20 +15,20 @@ struct SceneMotion;
 /// What a frame is made from. References outlive the plan; `constants` changes from frame to frame.
 struct FrameInputs {
   const Programs& programs;
-  const SceneResources& scene;             // at rest
-  const tracing::SceneTables& tables;      // what moves as it is now: bind these
+  const SceneResources& scene;         // at rest
+  const tracing::SceneTables& tables;  // what moves as it is now: bind these
   const tracing::RayTracer& tracer;
   const tracing::AccelerationStructure& structure;  // as it is now: trace this
   const shared::FrameConstants& constants;
   /// A setting that resets the structure may decide which passes are declared; every other one is
   /// read when a pass runs.
   const protocol::Settings& settings;
-  const std::uint32_t& samples;  // already in the accumulated picture
-  const float& seconds;          // since the frame before
-  const MovingScene& moving;     // what the rasteriser draws
-  const SceneMotion& scene_motion;  // since the frame before
+  const std::uint32_t& samples;       // already in the accumulated picture
+  const float& seconds;               // since the frame before
+  const MovingScene& moving;          // what the rasteriser draws
+  const SceneMotion& scene_motion;    // since the frame before
   const gpu::Image& split_sum_table;  // rg32f, mapped on devices that are processors
-  bool host_kernels = true;      // on devices that are processors, where a pass has one
+  bool host_kernels = true;           // on devices that are processors, where a pass has one
 };
 
 /// Whether passes that have a host kernel run it.
@@ -45,8 +45,8 @@ inline bool shades_on_host(const gpu::FramePlan& plan, const FrameInputs& in) {
 struct FrameOutputs {
   gpu::History accumulated;  // linear radiance
   Exposure exposure;
-  gpu::ImageRef radiance;    // of the frame alone, as the picture takes it in
-  gpu::ImageRef picture;     // sRGB, RGBA8
+  gpu::ImageRef radiance;  // of the frame alone, as the picture takes it in
+  gpu::ImageRef picture;   // sRGB, RGBA8
 };
 
 /// Declares all passes of a frame, in order.

@@ -63,8 +63,7 @@ class Shading {
   }
 
  private:
-  HWY_INLINE Mask goes_on(const RayLanes& ray, const HitLanes& hit,
-                          const SurfaceLanes& s) const {
+  HWY_INLINE Mask goes_on(const RayLanes& ray, const HitLanes& hit, const SurfaceLanes& s) const {
     const Mask back = hn::Gt(dot(s.front, ray.direction), zero());
     Mask passes = hn::AndNot(s.has(shared::material_double_sided), back);
     // Tracers ask the nearest texel; the picture shows the filtered one, as drawn triangles do.

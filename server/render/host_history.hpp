@@ -22,8 +22,8 @@ class Spot {
 
  public:
   HWY_INLINE Spot(VI x, VI y) : x_(x), y_(y), first_x_(hn::GetLane(x)), first_y_(hn::GetLane(y)) {
-    const auto beside = hn::And(hn::Eq(x, hn::Iota(di_, first_x_)),
-                                hn::Eq(y, hn::Set(di_, first_y_)));
+    const auto beside =
+        hn::And(hn::Eq(x, hn::Iota(di_, first_x_)), hn::Eq(y, hn::Set(di_, first_y_)));
     together_ = hn::AllTrue(di_, beside);
   }
 
@@ -94,8 +94,8 @@ class Bounds {
     return Spot<D>(inside(x, width_), inside(y, height_));
   }
   HWY_INLINE hn::Mask<D> contain(VI x, VI y) const {
-    return hn::RebindMask(
-        D(), hn::And(hn::Eq(x, inside(x, width_)), hn::Eq(y, inside(y, height_))));
+    return hn::RebindMask(D(),
+                          hn::And(hn::Eq(x, inside(x, width_)), hn::Eq(y, inside(y, height_))));
   }
 
  private:
@@ -117,7 +117,7 @@ struct HistoryTaps {
   using VI = hn::Vec<DI>;
 
   VI x, y;
-  V weights[4];  // of (x, y), right of it, below it, below and right
+  V weights[4];              // of (x, y), right of it, below it, below and right
   V fraction_x, fraction_y;  // of the way from (x, y) to the last of them
   hn::Mask<D> whole;         // no pixel that counts is missing
 

@@ -64,10 +64,8 @@ class SquareTable {
     return hn::Min(hn::Max(index, hn::Zero(di_)), hn::Set(di_, size_ - 1));
   }
   HWY_INLINE V blend(const float* channel, VI i00, VI i10, VI i01, VI i11, V fx, V fy) const {
-    const V above =
-        mix(hn::GatherIndex(d_, channel, i00), hn::GatherIndex(d_, channel, i10), fx);
-    const V below =
-        mix(hn::GatherIndex(d_, channel, i01), hn::GatherIndex(d_, channel, i11), fx);
+    const V above = mix(hn::GatherIndex(d_, channel, i00), hn::GatherIndex(d_, channel, i10), fx);
+    const V below = mix(hn::GatherIndex(d_, channel, i01), hn::GatherIndex(d_, channel, i11), fx);
     return mix(above, below, fy);
   }
 
@@ -165,9 +163,9 @@ HWY_INLINE LightSample<V> light_at(D d, const shared::Light& light, const Triple
   }
   if (light.type == shared::light_spot) {
     const V cosine = hn::Neg(dot(splat(d, light.direction), s.direction));
-    const V cone = clamped(hn::MulAdd(cosine, hn::Set(d, light.spot_scale),
-                                      hn::Set(d, light.spot_offset)),
-                           0.0f, 1.0f);
+    const V cone =
+        clamped(hn::MulAdd(cosine, hn::Set(d, light.spot_scale), hn::Set(d, light.spot_offset)),
+                0.0f, 1.0f);
     s.attenuation = s.attenuation * cone * cone;
   }
   return s;

@@ -108,8 +108,7 @@ HWY_INLINE Triple<V> octahedral_decode(V x, V y) {
   const hn::DFromV<V> d;
   const V z = hn::Set(d, 1.0f) - hn::Abs(x) - hn::Abs(y);
   const V below = hn::Max(hn::Neg(z), hn::Zero(d));
-  return normalized(
-      Triple<V>{x - hn::CopySignToAbs(below, x), y - hn::CopySignToAbs(below, y), z});
+  return normalized(Triple<V>{x - hn::CopySignToAbs(below, x), y - hn::CopySignToAbs(below, y), z});
 }
 
 /// Numbers that are none: NaN and infinities of either sign.
@@ -170,8 +169,7 @@ HWY_INLINE hn::Vec<D> unorm8(D d, VU texels) {
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Quad<V> load_unorm8(D d, const std::uint32_t* from) {
   const auto texels = hn::LoadU(hn::RebindToUnsigned<D>(), from);
-  return {unorm8<0>(d, texels), unorm8<8>(d, texels), unorm8<16>(d, texels),
-          unorm8<24>(d, texels)};
+  return {unorm8<0>(d, texels), unorm8<8>(d, texels), unorm8<16>(d, texels), unorm8<24>(d, texels)};
 }
 
 /// A half float in the lower 16 bits of each lane.

@@ -52,11 +52,9 @@ HWY_INLINE Triple<V> sample_cosine(const Triple<V>& normal, V u, V v) {
 }
 
 template <class V>
-HWY_INLINE Triple<V> offset_origin(const Triple<V>& position, const Triple<V>& normal,
-                                   V distance) {
+HWY_INLINE Triple<V> offset_origin(const Triple<V>& position, const Triple<V>& normal, V distance) {
   const hn::DFromV<V> d;
-  const V largest =
-      hn::Max(hn::Abs(position.x), hn::Max(hn::Abs(position.y), hn::Abs(position.z)));
+  const V largest = hn::Max(hn::Abs(position.x), hn::Max(hn::Abs(position.y), hn::Abs(position.z)));
   return position +
          normal * hn::Max(distance * hn::Set(d, 0x1p-15f), largest * hn::Set(d, 0x1p-20f));
 }

@@ -41,17 +41,15 @@ HWY_INLINE Triple<V> tone_map_neutral(const Triple<V>& radiance) {
   const V one = hn::Set(d, 1.0f);
   constexpr float start = 0.8f - 0.04f, rest = 1.0f - start;
   const V darkest = hn::Min(radiance.x, hn::Min(radiance.y, radiance.z));
-  const V offset =
-      hn::IfThenElse(hn::Lt(darkest, hn::Set(d, 0.08f)),
-                     hn::NegMulAdd(hn::Set(d, 6.25f) * darkest, darkest, darkest),
-                     hn::Set(d, 0.04f));
+  const V offset = hn::IfThenElse(hn::Lt(darkest, hn::Set(d, 0.08f)),
+                                  hn::NegMulAdd(hn::Set(d, 6.25f) * darkest, darkest, darkest),
+                                  hn::Set(d, 0.04f));
   const Triple<V> color = radiance - Triple<V>{offset, offset, offset};
   const V peak = hn::Max(color.x, hn::Max(color.y, color.z));
   const auto bright = hn::Ge(peak, hn::Set(d, start));
   if (hn::AllFalse(d, bright)) return color;
   const V new_peak = one - hn::Set(d, rest * rest) / (peak + hn::Set(d, rest - start));
-  const V g =
-      one - one / hn::MulAdd(hn::Set(d, 0.15f), peak - new_peak, one);
+  const V g = one - one / hn::MulAdd(hn::Set(d, 0.15f), peak - new_peak, one);
   const Triple<V> compressed =
       mix(color * (new_peak / peak), Triple<V>{new_peak, new_peak, new_peak}, g);
   return select(bright, compressed, color);
@@ -62,18 +60,16 @@ HWY_INLINE Triple<V> tone_map_aces(const Triple<V>& color) {
   const hn::DFromV<V> d;
   const glm::mat3 input(0.59719f, 0.07600f, 0.02840f, 0.35458f, 0.90834f, 0.13383f, 0.04823f,
                         0.01566f, 0.83777f);
-  const glm::mat3 output(1.60475f, -0.10208f, -0.00327f, -0.53108f, 1.10813f, -0.07276f,
-                         -0.07367f, -0.00605f, 1.07602f);
+  const glm::mat3 output(1.60475f, -0.10208f, -0.00327f, -0.53108f, 1.10813f, -0.07276f, -0.07367f,
+                         -0.00605f, 1.07602f);
   const auto fitted = [d](V v) HWY_ATTR {
     const V top = hn::MulSub(v, v + hn::Set(d, 0.0245786f), hn::Set(d, 0.000090537f));
-    const V bottom =
-        hn::MulAdd(v, hn::MulAdd(hn::Set(d, 0.983729f), v, hn::Set(d, 0.4329510f)),
-                   hn::Set(d, 0.238081f));
+    const V bottom = hn::MulAdd(v, hn::MulAdd(hn::Set(d, 0.983729f), v, hn::Set(d, 0.4329510f)),
+                                hn::Set(d, 0.238081f));
     return top / bottom;
   };
   const Triple<V> v = transformed(input, color * hn::Set(d, 1.0f / 0.6f));
-  return clamped(transformed(output, Triple<V>{fitted(v.x), fitted(v.y), fitted(v.z)}), 0.0f,
-                 1.0f);
+  return clamped(transformed(output, Triple<V>{fitted(v.x), fitted(v.y), fitted(v.z)}), 0.0f, 1.0f);
 }
 
 template <class V>

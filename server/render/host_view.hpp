@@ -20,10 +20,9 @@ template <class V>
 HWY_INLINE Triple<V> transformed(const glm::mat4& m, const Triple<V>& p) {
   const hn::DFromV<V> d;
   const auto row = [&](int i) HWY_ATTR {
-    return hn::MulAdd(
-        hn::Set(d, m[0][i]), p.x,
-        hn::MulAdd(hn::Set(d, m[1][i]), p.y, hn::MulAdd(hn::Set(d, m[2][i]), p.z,
-                                                        hn::Set(d, m[3][i]))));
+    return hn::MulAdd(hn::Set(d, m[0][i]), p.x,
+                      hn::MulAdd(hn::Set(d, m[1][i]), p.y,
+                                 hn::MulAdd(hn::Set(d, m[2][i]), p.z, hn::Set(d, m[3][i]))));
   };
   return {row(0), row(1), row(2)};
 }
@@ -37,10 +36,10 @@ class ViewedRow {
   HWY_INLINE ViewedRow(const shared::FrameConstants& frame, int y)
       : frame_(frame),
         orthographic_((frame.counts.y & shared::frame_orthographic) != 0),
-        slope_y_(((static_cast<float>(y) + 0.5f) / static_cast<float>(frame.extent.y) * 2.0f -
-                  1.0f) *
-                     frame.unproject.y +
-                 frame.unproject.w) {}
+        slope_y_(
+            ((static_cast<float>(y) + 0.5f) / static_cast<float>(frame.extent.y) * 2.0f - 1.0f) *
+                frame.unproject.y +
+            frame.unproject.w) {}
 
   /// View-space position of the samples of pixels from `x` on.
   HWY_INLINE Triple<V> view_position(int x, V view_z) const {
@@ -74,8 +73,7 @@ class ViewedRow {
 
   /// Size of a pixel at `view_z` metres along -Z, metres.
   HWY_INLINE V footprint(V view_z) const {
-    const float height =
-        2.0f * std::abs(frame_.unproject.y) / static_cast<float>(frame_.extent.y);
+    const float height = 2.0f * std::abs(frame_.unproject.y) / static_cast<float>(frame_.extent.y);
     return orthographic_ ? set(height) : set(height) * view_z;
   }
 

@@ -63,7 +63,7 @@ struct MovingScene::Moving {
   std::vector<scene::Bounds> bounds;   // by mesh
 
   gpu::Buffer instance_table;
-  gpu::Buffer vertex_table;    // empty when no mesh deforms
+  gpu::Buffer vertex_table;  // empty when no mesh deforms
   gpu::Buffer previous_table;
   std::unique_ptr<tracing::MovingStructure> structure;
 
@@ -82,8 +82,9 @@ MovingScene::Moving::Moving(const gpu::Device& device, const SceneResources& res
   }
   for (const scene::Mesh& mesh : scene.meshes) bounds.push_back(mesh.bounds);
   for (std::uint32_t i = 0; i < draws.size(); ++i) draw_of[draws[i].constants.instance] = i;
-  instance_table = writable_table(device, "instances now", std::span<const shared::Instance>(instances),
-                                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  instance_table =
+      writable_table(device, "instances now", std::span<const shared::Instance>(instances),
+                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   if (scene.deformations.empty()) return;
 
   std::vector<std::size_t> first_vertex;
@@ -95,17 +96,17 @@ MovingScene::Moving::Moving(const gpu::Device& device, const SceneResources& res
   std::vector<shared::Vertex> previous;
   for (const scene::Deformation& deformation : scene.deformations) {
     const scene::Mesh& mesh = scene.meshes[deformation.mesh];
-    deforming.push_back(
-        {mesh.vertices, mesh.bounds, deformation.mesh, first_vertex[deformation.mesh], previous.size()});
+    deforming.push_back({mesh.vertices, mesh.bounds, deformation.mesh,
+                         first_vertex[deformation.mesh], previous.size()});
     previous.insert(previous.end(), mesh.vertices.begin(), mesh.vertices.end());
   }
   const std::vector<shared::Vertex> all = all_vertices(scene);
-  vertex_table = writable_table(
-      device, "vertices now", std::span(all),
-      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
-  previous_table = writable_table(device, "vertices before", std::span<const shared::Vertex>(previous),
-                                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
-                                      VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+  vertex_table =
+      writable_table(device, "vertices now", std::span(all),
+                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+  previous_table =
+      writable_table(device, "vertices before", std::span<const shared::Vertex>(previous),
+                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
   for (const Deforming& mesh : deforming) {
     for (shared::Instance& instance : instances) {
       if (instance.mesh != mesh.mesh) continue;
@@ -151,8 +152,8 @@ bool MovingScene::Moving::deform(const scene::Scene& scene, const scene::Pose& b
     bounds[deformation.mesh] = mesh.bounds;
     std::ranges::copy(mesh.vertices, table + mesh.first_vertex);
   });
-  return std::ranges::any_of(
-      deforming, [](const Deforming& mesh) { return mesh.moved || mesh.moved_before; });
+  return std::ranges::any_of(deforming,
+                             [](const Deforming& mesh) { return mesh.moved || mesh.moved_before; });
 }
 
 void MovingScene::Moving::move_draws(const scene::Scene& scene) {
@@ -301,8 +302,8 @@ void MovingScene::move_things(const scene::Pose& before) {
   const bool shapes = moving_->deform(scene, before, pose_);
   moving_->move_draws(scene);
   moving_->update_structure();
-  moving_->settled =
-      moving_->placed.empty() && std::ranges::none_of(moving_->deforming, &Moving::Deforming::moved);
+  moving_->settled = moving_->placed.empty() &&
+                     std::ranges::none_of(moving_->deforming, &Moving::Deforming::moved);
   things_moved_ = instances || shapes;
 }
 

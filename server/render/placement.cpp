@@ -16,9 +16,8 @@ void move_instance(shared::Instance& instance, const glm::mat4& world) {
   instance.previous_world = instance.world;
   instance.world = world;
   // Squeezed flat, nothing of it is seen and its normals do not matter.
-  instance.normal_matrix = determinant != 0.0f
-                               ? glm::mat4(glm::transpose(glm::inverse(linear)))
-                               : glm::mat4(1.0f);
+  instance.normal_matrix =
+      determinant != 0.0f ? glm::mat4(glm::transpose(glm::inverse(linear))) : glm::mat4(1.0f);
   instance.flags = determinant < 0.0f ? shared::instance_flipped : 0u;
 }
 

@@ -64,9 +64,9 @@ class Presentation {
   HWY_INLINE void block(int x, int y) const {
     const V zero = hn::Zero(d_), factor = set(job_.exposure);
     const Triple<V> color = radiance(x, y);
-    const Triple<V> shown = tone_map({hn::Max(color.x, zero) * factor,
-                                      hn::Max(color.y, zero) * factor,
-                                      hn::Max(color.z, zero) * factor});
+    const Triple<V> shown =
+        tone_map({hn::Max(color.x, zero) * factor, hn::Max(color.y, zero) * factor,
+                  hn::Max(color.z, zero) * factor});
     // The same noise in every frame, so that a finished picture stands still.
     V a, b;
     const DU du;
@@ -75,8 +75,8 @@ class Presentation {
     const auto red = code_value(shown.x, noise), green = code_value(shown.y, noise);
     const auto blue = code_value(shown.z, noise);
     const auto opaque = hn::Set(du, 0xff000000u);
-    const auto packed = hn::Or(hn::Or(red, hn::ShiftLeft<8>(green)),
-                               hn::Or(hn::ShiftLeft<16>(blue), opaque));
+    const auto packed =
+        hn::Or(hn::Or(red, hn::ShiftLeft<8>(green)), hn::Or(hn::ShiftLeft<16>(blue), opaque));
     hn::StoreU(packed, du, row_of<std::uint32_t>(job_.picture, y) + x);
   }
 

@@ -89,8 +89,8 @@ protocol::Result<std::optional<SurfacePoint>> surface_at(const Drawing& drawing,
                        .distance = orthographic ? view_z : glm::length(in_view)};
   const glm::vec4 encoded = texel(*normals, pixel);
   surface.normal = octahedral_decode({encoded.z, encoded.w});
-  const glm::vec3 toward_eye = orthographic ? glm::vec3(frame.inverse_view[2])
-                                            : glm::vec3(frame.eye) - surface.position;
+  const glm::vec3 toward_eye =
+      orthographic ? glm::vec3(frame.inverse_view[2]) : glm::vec3(frame.eye) - surface.position;
   if (glm::dot(surface.normal, toward_eye) < 0.0f) surface.normal = -surface.normal;
   return std::optional(surface);
 }

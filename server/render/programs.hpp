@@ -24,8 +24,9 @@ class Programs {
   explicit Programs(const gpu::Device& device);
 
   /// The compute program of an embedded shader. Thread safe; the reference lives as long as this.
-  /// `features` are the shared::scene_* bits of what the scene has: a shader made for a scene without
-  /// area lights, say, has no code for them, which lavapipe would run, masked, for every pixel.
+  /// `features` are the shared::scene_* bits of what the scene has: a shader made for a scene
+  /// without area lights, say, has no code for them, which lavapipe would run, masked, for every
+  /// pixel.
   const gpu::ComputeProgram& compute(const gpu::ShaderBinary& shader,
                                      std::uint32_t features = ~0u) const;
 

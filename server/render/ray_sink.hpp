@@ -30,8 +30,7 @@ void for_each_batch(int count, const Work& work) {
 inline void set_groups(shared::RayCount& count) {
   const std::uint32_t groups = (count.count + shared::rays_per_group - 1) / shared::rays_per_group;
   count.groups_x = std::min(groups, shared::groups_per_row);
-  count.groups_y =
-      std::max((groups + shared::groups_per_row - 1) / shared::groups_per_row, 1u);
+  count.groups_y = std::max((groups + shared::groups_per_row - 1) / shared::groups_per_row, 1u);
 }
 
 /// A stream of rays that kernels read.

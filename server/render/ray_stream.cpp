@@ -10,8 +10,7 @@ tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
   constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   return {plan.buffer(name + ".ray_count", sizeof(shared::RayCount),
                       storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, gpu::Memory::device),
-          plan.buffer(name + ".rays", sizeof(shared::Ray) * capacity, storage,
-                      gpu::Memory::device),
+          plan.buffer(name + ".rays", sizeof(shared::Ray) * capacity, storage, gpu::Memory::device),
           capacity};
 }
 

@@ -227,8 +227,7 @@ class VisibilityRectification : public Rectification<D, VisibilityRectification<
         hn::Min(state.y, frames_under_motion(certain_change(box.low[1], box.high[1])));
     const V moved_x = changes[0] * (one / frames_x - one / state.x);
     const V moved_y = changes[1] * (one / frames_y - one / state.y);
-    new_value = {value.x + moved_x, value.y + moved_y,
-                 value.z * this->growth(state.x, frames_x),
+    new_value = {value.x + moved_x, value.y + moved_y, value.z * this->growth(state.x, frames_x),
                  value.w * this->growth(state.y, frames_y)};
     new_state = {frames_x, frames_y, hn::Abs(moved_x), hn::Abs(moved_y)};
   }
@@ -278,8 +277,7 @@ class SpecularRectification : public Rectification<D, SpecularRectification<D>, 
     const Quad<V> sampled = load4(d_, row_of<const float>(job_.fast, y) + 4 * x);
     const V moved = to_ycocg({sampled.x, sampled.y, sampled.z}).x * share;
     new_value = {hn::MulAdd(sampled.x, share, value.x), hn::MulAdd(sampled.y, share, value.y),
-                 hn::MulAdd(sampled.z, share, value.z),
-                 value.w * this->growth(state.x, frames)};
+                 hn::MulAdd(sampled.z, share, value.z), value.w * this->growth(state.x, frames)};
     new_state = {frames, hn::Abs(moved), state.z, state.w};
   }
 

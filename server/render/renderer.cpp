@@ -70,12 +70,12 @@ struct Renderer::State {
   gpu::Buffer constants_buffer;
   shared::FrameConstants constants{};
   bool has_previous = false;
-  std::uint32_t sequence = 0;  // frames since the last cut: where random sequences stand
-  std::uint32_t samples = 0;   // in the accumulated picture
+  std::uint32_t sequence = 0;    // frames since the last cut: where random sequences stand
+  std::uint32_t samples = 0;     // in the accumulated picture
   float seconds = 1.0f / 60.0f;  // since the frame before
-  float share_of_mean = 0.0f;  // in the picture as of the last frame
+  float share_of_mean = 0.0f;    // in the picture as of the last frame
   SceneMotion scene_motion;
-  bool stale = true;          // something changed since the last frame
+  bool stale = true;  // something changed since the last frame
 
   std::shared_ptr<const SceneResources> scene;
   std::optional<MovingScene> moving;  // the scene in this renderer's pose
@@ -89,10 +89,19 @@ struct Renderer::State {
 // The old drawing goes first: two of them may not fit into memory.
 void Renderer::State::redraw() {
   drawing.reset();
-  const FrameInputs inputs{parts.programs, *scene,    moving->tables(), *parts.tracer,
-                           moving->structure(), constants, settings,    samples,
-                           seconds,             *moving,   scene_motion,
-                           parts.split_sum_table, parts.host_kernels};
+  const FrameInputs inputs{parts.programs,
+                           *scene,
+                           moving->tables(),
+                           *parts.tracer,
+                           moving->structure(),
+                           constants,
+                           settings,
+                           samples,
+                           seconds,
+                           *moving,
+                           scene_motion,
+                           parts.split_sum_table,
+                           parts.host_kernels};
   drawing = std::make_unique<Drawing>(parts, inputs, constants_buffer, extent);
   has_previous = false;
   sequence = 0;

@@ -80,8 +80,8 @@ class Engine {
   /// thread, beside rendering.
   std::shared_ptr<const LitEnvironment> prefilter(scene::Environment environment);
 
-  /// Makes the device and its programs anew. There must be no renderer; what was uploaded before may
-  /// still be held but is of no use any more. @throws gpu::GpuError
+  /// Makes the device and its programs anew. There must be no renderer; what was uploaded before
+  /// may still be held but is of no use any more. @throws gpu::GpuError
   void recreate();
   /// Whether it lives on the present device.
   bool owns(const SceneResources& resources) const;
@@ -179,8 +179,8 @@ class Renderer {
   void set_environment(std::shared_ptr<const LitEnvironment> environment);
   void set_size(std::uint32_t width, std::uint32_t height);
   void set_camera(const scene::Camera& camera);
-  /// Poses the scene by a clip of it, or as at rest when `clip` is empty, where set_scene leaves it.
-  /// Takes effect with the next frame. Motion restarts the resting picture, not the histories.
+  /// Poses the scene by a clip of it, or as at rest when `clip` is empty, where set_scene leaves
+  /// it. Takes effect with the next frame. Motion restarts the resting picture, not the histories.
   protocol::Result<void> set_pose(std::string_view clip, double seconds);
   /// Forgets every history and starts the random sequences anew: what follows are the frames of a
   /// fresh renderer.

@@ -83,9 +83,8 @@ class Reprojection {
   /// How normals change toward the more similar neighbour of each axis.
   HWY_INLINE V normal_change(const BandScratch& normals, int x, int y,
                              const Triple<V>& normal) const {
-    const auto to = [&](int dx, int dy) HWY_ATTR {
-      return distance(normal, normal_at(normals, x + dx, y + dy));
-    };
+    const auto to = [&](int dx, int dy)
+                        HWY_ATTR { return distance(normal, normal_at(normals, x + dx, y + dy)); };
     return hn::Max(hn::Min(to(-1, 0), to(1, 0)), hn::Min(to(0, -1), to(0, 1)));
   }
 
@@ -133,8 +132,7 @@ class Reprojection {
       const V away_x = middle_x - x, away_y = middle_y - y;
       const V far = hn::Sqrt(hn::MulAdd(away_x, away_x, away_y * away_y));
       const M nearer = hn::And(missing, hn::Lt(far, nearest));
-      const M same =
-          is_same(hn::ConvertTo(di_, column), hn::ConvertTo(di_, row), nearer, expected);
+      const M same = is_same(hn::ConvertTo(di_, column), hn::ConvertTo(di_, row), nearer, expected);
       nearest = hn::IfThenElse(same, far, nearest);
       found.x = hn::IfThenElse(same, middle_x, found.x);
       found.y = hn::IfThenElse(same, middle_y, found.y);
@@ -177,8 +175,8 @@ class Reprojection {
                              const Quad<V>& moved, const Triple<V>& normal) const {
     Expected expected;
     expected.normal = normal;
-    expected.normal_allowance = set(job_.constants.normal_tolerance) *
-                                (normal_change(normals, x, y, normal) + set(0.01f));
+    expected.normal_allowance =
+        set(job_.constants.normal_tolerance) * (normal_change(normals, x, y, normal) + set(0.01f));
     expected.view_z = moved.w + moved.z;
     const Pair<V> slope = load2(d_, row_of<const float>(job_.depth_slope, y) + 2 * x);
     const V footprint = view.footprint(expected.view_z);

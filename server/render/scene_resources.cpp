@@ -121,9 +121,9 @@ std::array<const shared::TextureSlot*, material_textures> slots_of(const shared:
 
 std::array<const shared::TextureSlot*, shared::layer_textures> slots_of(
     const shared::MaterialLayer& l) {
-  return {&l.specular_texture,    &l.specular_color_texture,  &l.coat_texture,
-          &l.coat_roughness_texture, &l.coat_normal_texture,  &l.sheen_color_texture,
-          &l.sheen_roughness_texture, &l.transmission_texture, &l.thickness_texture};
+  return {&l.specular_texture,        &l.specular_color_texture, &l.coat_texture,
+          &l.coat_roughness_texture,  &l.coat_normal_texture,    &l.sheen_color_texture,
+          &l.sheen_roughness_texture, &l.transmission_texture,   &l.thickness_texture};
 }
 
 gpu::Image make_texture(const gpu::Device& device, const scene::Image& from,
@@ -200,8 +200,8 @@ void SceneResources::upload_tables(const gpu::Device& device) {
   std::vector<shared::Light> lights;
   for (const scene::Light& light : scene->lights) lights.push_back(light.device);
 
-  rest_tables.vertices = upload_of_meshes(device, "vertices", scene->meshes,
-                                          &scene::Mesh::vertices, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+  rest_tables.vertices = upload_of_meshes(device, "vertices", scene->meshes, &scene::Mesh::vertices,
+                                          VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
   rest_tables.indices = upload_of_meshes(device, "indices", scene->meshes, &scene::Mesh::indices,
                                          VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
   rest_tables.meshes = upload(device, "meshes", meshes_);
@@ -232,8 +232,7 @@ void SceneResources::upload_textures(const UploadProgress& progress, const Image
   const auto& images = scene->images;
   TextureHeapWriter heap(device_, *scene);
   for (std::size_t i = 0; i < images.size(); ++i) {
-    progress("textures",
-             0.15f + 0.3f * static_cast<float>(i) / static_cast<float>(images.size()));
+    progress("textures", 0.15f + 0.3f * static_cast<float>(i) / static_cast<float>(images.size()));
     const scene::ImagePixels pixels(images[i]);
     heap.add(i, pixels.get());
     if (!device_.is_cpu()) images_.push_back(make_texture(device_, images[i], pixels.get()));

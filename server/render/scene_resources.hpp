@@ -32,7 +32,7 @@ struct Draw {
 
 /// Materials as the rasteriser reads them: a uniform block and a descriptor set each.
 struct MaterialSets {
-  gpu::Buffer blocks;  // shared::Material each, `stride` bytes apart
+  gpu::Buffer blocks;        // shared::Material each, `stride` bytes apart
   gpu::Buffer layer_blocks;  // shared::MaterialLayer each likewise, in scenes with layers
   VkDeviceSize stride = 0;
   std::unique_ptr<gpu::DescriptorPool> pool;
@@ -61,10 +61,10 @@ class SceneResources {
   std::shared_ptr<const tracing::AccelerationStructure> rest_structure;
   std::shared_ptr<const LitEnvironment> environment;
   TextureHeap texture_heap;
-  gpu::Buffer layers;  // shared::MaterialLayer each
+  gpu::Buffer layers;                  // shared::MaterialLayer each
   host::MaterialTable host_materials;  // on devices that are processors
-  std::uint32_t features = 0;  // shared::scene_*
-  std::vector<Draw> draws;     // opaque first, then by material
+  std::uint32_t features = 0;          // shared::scene_*
+  std::vector<Draw> draws;             // opaque first, then by material
   std::uint32_t deforming_vertices = 0;
 
   /// What the rasteriser reads. On processors, where rays find most G-buffers, images that samplers
@@ -90,7 +90,7 @@ class SceneResources {
   const Programs& programs_;
   std::vector<shared::Mesh> meshes_;
   std::vector<shared::Instance> instances_;
-  mutable std::mutex sampled_mutex_;  // guards the two below
+  mutable std::mutex sampled_mutex_;        // guards the two below
   mutable std::vector<gpu::Image> images_;  // of the scene, as far as they are made
   mutable std::optional<MaterialSets> material_sets_;
   gpu::Image white_;

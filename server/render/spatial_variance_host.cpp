@@ -74,9 +74,8 @@ class SpatialVariance {
     const Sums sums = gathered(center(view, guide, x, y), x, y);
     wanted = hn::And(wanted, hn::Gt(sums.total, hn::Zero(d_)));
     const V one = set(1.0f);
-    const V alone = clamped((set(enough_neighbours) - sums.total) *
-                                set(1.0f / (enough_neighbours - 2.0f)),
-                            0.0f, 1.0f);
+    const V alone = clamped(
+        (set(enough_neighbours) - sums.total) * set(1.0f / (enough_neighbours - 2.0f)), 0.0f, 1.0f);
     const Quad<V> mean = mixed(sums, alone);
     float* const signal = row_of<float>(job_.signal, y) + 4 * x;
     const Quad<V> value = load4(d_, signal);
@@ -92,9 +91,7 @@ class SpatialVariance {
     store4(d_, select(wanted, changed, value), signal);
   }
 
-  HWY_INLINE V mixed(V from, V to, V share) const {
-    return hn::MulAdd(to - from, share, from);
-  }
+  HWY_INLINE V mixed(V from, V to, V share) const { return hn::MulAdd(to - from, share, from); }
   HWY_INLINE Quad<V> mixed(const Sums& sums, V alone) const {
     const V strict = set(1.0f) / sums.total;
     const V loose = set(1.0f) / hn::Max(sums.loose_total, set(1e-6f));
@@ -107,8 +104,7 @@ class SpatialVariance {
 
   HWY_INLINE V variance(V first, V second, V frames) const {
     const V one = set(1.0f), known = hn::Max(frames, one);
-    const V longer =
-        hn::Max(set(job_.constants.spatial_variance_frames) / known, one);
+    const V longer = hn::Max(set(job_.constants.spatial_variance_frames) / known, one);
     const V spread = hn::Max(hn::NegMulAdd(first, first, second), hn::Zero(d_)) * longer;
     const bool of_mean = (job_.constants.flags & shared::temporal_mean_variance) != 0;
     return of_mean ? spread / known : spread;
@@ -136,8 +132,8 @@ class SpatialVariance {
       if (y + dy < 0 || y + dy >= job_.height) continue;
       for (int dx = -radius; dx <= radius; ++dx) {
         if (inside) {
-          add_tap(c, dx, dy, load(job_.guide, x + dx, y + dy),
-                  load(job_.moments, x + dx, y + dy), from_column(d_, x, x), sums);
+          add_tap(c, dx, dy, load(job_.guide, x + dx, y + dy), load(job_.moments, x + dx, y + dy),
+                  from_column(d_, x, x), sums);
         } else {
           const auto column = hn::Iota(DI(), x + dx), row = hn::Set(DI(), y + dy);
           const Spot<D> spot = bounds_.spot(column, row);
@@ -154,8 +150,8 @@ class SpatialVariance {
                           const Quad<V>& moments, M inside, Sums& sums) const {
     const M counts = hn::And(inside, hn::Gt(guide.w, hn::Zero(d_)));
     const float away = std::sqrt(static_cast<float>(dx * dx + dy * dy));
-    const V rise = hn::MulAdd(c.slope.x, set(static_cast<float>(dx)),
-                              c.slope.y * set(static_cast<float>(dy)));
+    const V rise =
+        hn::MulAdd(c.slope.x, set(static_cast<float>(dx)), c.slope.y * set(static_cast<float>(dy)));
     const V straight = hn::NegMulAdd(rise, c.curve, set(1.0f));
     const V off_plane =
         hn::Abs(hn::NegMulAdd(rise, c.flattened, hn::MulSub(guide.w, straight, c.view_z)));

@@ -55,15 +55,15 @@ gpu::PassBuilder rectify(gpu::FramePlan& plan, const FrameInputs& in, const std:
                          gpu::ImageRef fast, gpu::ImageRef signal, gpu::ImageRef history,
                          const auto& constants) {
   return declare_pass(plan, in, name, program, protocol::Rectification::fast_history, constants,
-               [=, extent = plan.extent()](const auto& now, const auto& view) {
-                 kernel({.constants = now,
-                         .width = static_cast<int>(extent.width),
-                         .height = static_cast<int>(extent.height),
-                         .guide = view(guide.surface),
-                         .fast = view(fast),
-                         .signal = view(signal),
-                         .history = view(history)});
-               })
+                      [=, extent = plan.extent()](const auto& now, const auto& view) {
+                        kernel({.constants = now,
+                                .width = static_cast<int>(extent.width),
+                                .height = static_cast<int>(extent.height),
+                                .guide = view(guide.surface),
+                                .fast = view(fast),
+                                .signal = view(signal),
+                                .history = view(history)});
+                      })
       .read(guide.surface)
       .read(fast)
       .read_write(signal)
@@ -244,8 +244,8 @@ void estimate_visibility_variance(gpu::FramePlan& plan, const FrameInputs& in,
 void estimate_specular_variance(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                                 const Guide& guide, const Integrated& specular) {
   estimate_variance(plan, in, gbuffer, guide, specular, "specular.variance",
-                    in.programs.compute(shaders::spatial_variance_specular),
-                    host::Signal::specular, in.settings.specular_temporal);
+                    in.programs.compute(shaders::spatial_variance_specular), host::Signal::specular,
+                    in.settings.specular_temporal);
 }
 
 }  // namespace heliograph::render

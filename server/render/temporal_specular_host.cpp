@@ -89,9 +89,8 @@ class SpecularAccumulation {
   }
 
   HWY_INLINE Pair<V> projected(const glm::mat4& m, const Triple<V>& p) const {
-    const V w = hn::MulAdd(
-        set(m[0].w), p.x,
-        hn::MulAdd(set(m[1].w), p.y, hn::MulAdd(set(m[2].w), p.z, set(m[3].w))));
+    const V w = hn::MulAdd(set(m[0].w), p.x,
+                           hn::MulAdd(set(m[1].w), p.y, hn::MulAdd(set(m[2].w), p.z, set(m[3].w))));
     const V half = set(0.5f) / w;
     const Triple<V> clip = transformed(m, p);
     return {clip.x * half, clip.y * half};
@@ -154,8 +153,9 @@ class SpecularAccumulation {
     const Pair<V> across = behind(curvature * cosine);
     const glm::mat4& m = job_.frame.view;
     const auto turned = [&](int row, float way) HWY_ATTR {
-      const V along = hn::MulAdd(set(m[0][row]), s.normal.x,
-                                 hn::MulAdd(set(m[1][row]), s.normal.y, set(m[2][row]) * s.normal.z));
+      const V along =
+          hn::MulAdd(set(m[0][row]), s.normal.x,
+                     hn::MulAdd(set(m[1][row]), s.normal.y, set(m[2][row]) * s.normal.z));
       return way < 0.0f ? hn::Neg(along) : along;
     };
     const V px = turned(0, job_.frame.unproject.x), py = turned(1, job_.frame.unproject.y);
@@ -183,7 +183,7 @@ class SpecularAccumulation {
   }
 
   HWY_INLINE HistoryTaps<D> virtual_taps(V x, V y, M seen, VI instance, const Surface& s,
-                                          V turn) const {
+                                         V turn) const {
     HistoryTaps<D> taps(x, y);
     for (int i = 0; i < 4; ++i) {
       const M weighs = hn::And(seen, hn::Gt(taps.weights[i], hn::Zero(d_)));

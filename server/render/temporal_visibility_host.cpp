@@ -108,15 +108,14 @@ class VisibilityAccumulation {
     const Quad<V> now = load(job_.raw, x, y);
     const M seen = hn::Gt(load(job_.guide, x, y).w, zero);
     const Remembered old = recall(x, y);
-    const Channel shadow = accumulate(now.x, old.signal.x, old.moments.x, old.moments.z,
-                                      old.frames.x, old.fast.x,
-                                      std::min(c_.frames, c_.light_frames));
+    const Channel shadow =
+        accumulate(now.x, old.signal.x, old.moments.x, old.moments.z, old.frames.x, old.fast.x,
+                   std::min(c_.frames, c_.light_frames));
     const Channel ambient = accumulate(now.y, old.signal.y, old.moments.y, old.moments.w,
                                        old.frames.y, old.fast.y, c_.frames);
-    const Quad<V> signal{hn::IfThenElse(seen, shadow.value, now.x),
-                         hn::IfThenElse(seen, ambient.value, now.y),
-                         hn::IfThenElseZero(seen, shadow.variance),
-                         hn::IfThenElseZero(seen, ambient.variance)};
+    const Quad<V> signal{
+        hn::IfThenElse(seen, shadow.value, now.x), hn::IfThenElse(seen, ambient.value, now.y),
+        hn::IfThenElseZero(seen, shadow.variance), hn::IfThenElseZero(seen, ambient.variance)};
     store4(d_, signal, row_of<float>(job_.signal, y) + 4 * x);
     store(job_.moments, x, y, seen, {shadow.first, ambient.first, shadow.second, ambient.second});
     store(job_.history, x, y, seen, {shadow.frames, ambient.frames, zero, zero});

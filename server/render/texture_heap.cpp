@@ -96,8 +96,8 @@ PackedTextures pack_textures(const scene::Scene& scene, std::uint64_t most_texel
 TextureHeapWriter::TextureHeapWriter(const gpu::Device& device, const scene::Scene& scene)
     : device_(device), plan_(plan_heap(scene, device.limits().maxTexelBufferElements)) {
   if (device.is_cpu()) {
-    texels_ = gpu::Buffer(device, "texture heap", 4 * plan_.texels, texel_usage,
-                          gpu::Memory::device);
+    texels_ =
+        gpu::Buffer(device, "texture heap", 4 * plan_.texels, texel_usage, gpu::Memory::device);
   } else {
     gathered_.resize(plan_.texels);
   }

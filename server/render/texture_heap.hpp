@@ -20,7 +20,7 @@ struct TextureHeap {
 /// Where everything lies in a heap. Images keep their levels from the first whose larger side is at
 /// most 1024 texels; fewer where the device cannot address so many texels in one buffer.
 struct HeapPlan {
-  struct Place {  // of an image, texels
+  struct Place {            // of an image, texels
     std::uint64_t skipped;  // levels of it that are left out
     std::uint64_t kept;
     std::uint64_t first;  // in the heap
@@ -45,7 +45,7 @@ class TextureHeapWriter {
  private:
   const gpu::Device& device_;
   const HeapPlan plan_;
-  gpu::Buffer texels_;                  // where the host reaches it
+  gpu::Buffer texels_;                   // where the host reaches it
   std::vector<std::uint32_t> gathered_;  // where not
 };
 

@@ -130,10 +130,7 @@ void resolve_lamps(gpu::FramePlan& plan, const FrameInputs& in, const std::strin
                                     storage, gpu::Memory::device);
   in.tracer.trace_any(plan, name + ".shadows.trace", in.structure, shadows, occluded);
   const auto bind = [&](gpu::PassBuilder pass) {
-    return pass.read(shadows.count)
-        .read(shadows.rays)
-        .read(occluded)
-        .read_write(target.radiance);
+    return pass.read(shadows.count).read(shadows.rays).read(occluded).read_write(target.radiance);
   };
   if (by_host(plan, in)) {
     bind(plan.host(name + ".resolve", [&plan, shadows, occluded, target] {
@@ -149,8 +146,7 @@ void resolve_lamps(gpu::FramePlan& plan, const FrameInputs& in, const std::strin
 
 /// What the rays meet, lit.
 void trace_and_shade(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
-                     const tracing::RayStream& rays, const GBuffer& gbuffer,
-                     const Target& target) {
+                     const tracing::RayStream& rays, const GBuffer& gbuffer, const Target& target) {
   const auto hits = plan.buffer(name + ".hits", sizeof(shared::Hit) * rays.capacity, storage,
                                 gpu::Memory::device);
   in.tracer.trace_closest(plan, name + ".trace", in.structure, rays, hits);
@@ -162,8 +158,7 @@ void trace_and_shade(gpu::FramePlan& plan, const FrameInputs& in, const std::str
 gpu::ImageRef upsample(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                        const Target& half) {
   const auto radiance = plan.image("specular.radiance", four_floats);
-  plan.pass("specular.upsample",
-            in.programs.compute(shaders::upsample_specular, in.scene.features))
+  plan.pass("specular.upsample", in.programs.compute(shaders::upsample_specular, in.scene.features))
       .read(gbuffer.normals)
       .read(gbuffer.base_color)
       .read(gbuffer.surface)

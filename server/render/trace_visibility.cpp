@@ -26,18 +26,18 @@ gpu::PassBuilder generation_pass(gpu::FramePlan& plan, const FrameInputs& in,
   if (!on_host(plan, in) || !generation.kernel) {
     return plan.pass(name, generation.shader).dispatch(plan.extent());
   }
-  return plan.host(name, [&plan, &frame = in.constants, gbuffer, kernel = generation.kernel, rays,
-                          visibility] {
-    const auto view = [&plan](gpu::ImageRef image) { return plan.get(image).host(); };
-    kernel({.frame = frame,
-            .width = static_cast<int>(plan.extent().width),
-            .height = static_cast<int>(plan.extent().height),
-            .normals = view(gbuffer.normals),
-            .motion = view(gbuffer.motion),
-            .count = reinterpret_cast<shared::RayCount*>(plan.get(rays.count).mapped()),
-            .rays = reinterpret_cast<shared::Ray*>(plan.get(rays.rays).mapped()),
-            .visibility = view(visibility)});
-  });
+  return plan.host(
+      name, [&plan, &frame = in.constants, gbuffer, kernel = generation.kernel, rays, visibility] {
+        const auto view = [&plan](gpu::ImageRef image) { return plan.get(image).host(); };
+        kernel({.frame = frame,
+                .width = static_cast<int>(plan.extent().width),
+                .height = static_cast<int>(plan.extent().height),
+                .normals = view(gbuffer.normals),
+                .motion = view(gbuffer.motion),
+                .count = reinterpret_cast<shared::RayCount*>(plan.get(rays.count).mapped()),
+                .rays = reinterpret_cast<shared::Ray*>(plan.get(rays.rays).mapped()),
+                .visibility = view(visibility)});
+      });
 }
 
 /// Brings the answers back to their pixels.

@@ -75,9 +75,8 @@ shared::FrameConstants make_frame_constants(const scene::Camera& camera,
   constants.eye = glm::vec4(camera.eye, 1.0f);
   constants.extent = {extent.width, extent.height, sample,
                       static_cast<std::uint32_t>(settings.sampling.seed)};
-  constants.counts = {static_cast<std::uint32_t>(scene.lights().size()),
-                      flags(settings, camera), 0u,
-                      before ? 0u : 1u};
+  constants.counts = {static_cast<std::uint32_t>(scene.lights().size()), flags(settings, camera),
+                      0u, before ? 0u : 1u};
   const float rotation = glm::radians(settings.environment.rotation);
   constants.environment = {settings.environment.intensity, std::cos(rotation), std::sin(rotation),
                            settings.ambient.radius};

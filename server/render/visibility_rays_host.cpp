@@ -94,9 +94,7 @@ class ShadowRays : public VisibilityRays<D, ShadowRays<D>> {
     t_max = t_max * hn::Set(d_, 0.999f);
   }
 
-  HWY_INLINE V untraced(M, M wanted) const {
-    return hn::IfThenElseZero(wanted, hn::Set(d_, 1.0f));
-  }
+  HWY_INLINE V untraced(M, M wanted) const { return hn::IfThenElseZero(wanted, hn::Set(d_, 1.0f)); }
 
  private:
   HWY_INLINE SurfaceMaterial<V> material(const ViewedRow<D>& view, int x, int y) const {
@@ -121,8 +119,7 @@ class ShadowRays : public VisibilityRays<D, ShadowRays<D>> {
   }
 
   template <class VU>
-  HWY_INLINE Triple<V> toward_disk(const Triple<V>& direction, V spread, VU column,
-                                   VU row) const {
+  HWY_INLINE Triple<V> toward_disk(const Triple<V>& direction, V spread, VU column, VU row) const {
     V u, v;
     points_.at(column, row, u, v);
     Triple<V> tangent, bitangent;

@@ -15,7 +15,8 @@ struct Environment {
   std::vector<glm::vec3> radiance;
 };
 
-/// Reads a Radiance .hdr or an OpenEXR file of at most 8192 x 4096 pixels. Radiance is from 0 to 1e6.
+/// Reads a Radiance .hdr or an OpenEXR file of at most 8192 x 4096 pixels. Radiance is from 0 to
+/// 1e6.
 /// @throws ImportError
 Environment load_environment(const std::filesystem::path& path);
 

@@ -9,9 +9,9 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr double largest_solid_angle = 0.01;  // a disk of 6.5 degrees
-constexpr double times_mean = 24.0;           // a texel of the sun is so much brighter than the mean
-constexpr double least_peak_share = 0.02;     // and than this share of the brightest texel
-constexpr double least_flux_share = 0.01;     // of the whole environment, or it is not worth a light
+constexpr double times_mean = 24.0;        // a texel of the sun is so much brighter than the mean
+constexpr double least_peak_share = 0.02;  // and than this share of the brightest texel
+constexpr double least_flux_share = 0.01;  // of the whole environment, or it is not worth a light
 
 double luminance(const glm::vec3& color) {
   return glm::dot(glm::dvec3(color), glm::dvec3(0.2126, 0.7152, 0.0722));
@@ -123,8 +123,7 @@ SeparatedEnvironment separate_sun(Environment environment) {
       peak = i;
     }
   }
-  const double threshold =
-      std::max(times_mean * flux / (4.0 * pi), least_peak_share * brightest);
+  const double threshold = std::max(times_mean * flux / (4.0 * pi), least_peak_share * brightest);
   if (brightest <= threshold) return {std::move(environment), std::nullopt};
   const Region region = grow(environment, sphere, peak, threshold);
   if (region.solid_angle > largest_solid_angle) return {std::move(environment), std::nullopt};

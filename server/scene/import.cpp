@@ -360,8 +360,7 @@ class Importer {
 }  // namespace
 
 Scene import_gltf(const std::filesystem::path& path, const ImportLimits& limits,
-                  const ImportProgress& progress, ImportTimes* times,
-                  const SceneChoice& choice) {
+                  const ImportProgress& progress, ImportTimes* times, const SceneChoice& choice) {
   try {
     const Stopwatch watch;
     Importer importer(path, limits, progress, choice);

@@ -68,7 +68,8 @@ struct ImportTimes {
 using ImportProgress = std::function<void(std::string_view stage, float fraction)>;
 
 /// Reads a .glb or .gltf file with everything it refers to; nothing outside `path`'s folder is
-/// opened. `times`, where given, is filled in. What `progress` throws ends the import and comes out.
+/// opened. `times`, where given, is filled in. What `progress` throws ends the import and comes
+/// out.
 /// @throws ImportError
 Scene import_gltf(const std::filesystem::path& path, const ImportLimits& limits = {},
                   const ImportProgress& progress = {}, ImportTimes* times = nullptr,

@@ -25,7 +25,8 @@ float luminance(const glm::vec3& color) {
   return glm::dot(color, glm::vec3(0.2126f, 0.7152f, 0.0722f));
 }
 
-/// The mean of a slot's texels, linear: that of its smallest level. White where there is no texture.
+/// The mean of a slot's texels, linear: that of its smallest level. White where there is no
+/// texture.
 glm::vec3 mean_texel(const Scene& scene, const shared::TextureSlot& slot) {
   if (slot.texture == shared::no_texture) return glm::vec3(1.0f);
   const Image& image = scene.images[scene.textures[slot.texture].image];

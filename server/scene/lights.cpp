@@ -81,8 +81,7 @@ Light read_area_light(const JsonValue& json) {
     light.device.type = shared::light_rectangle;
     light.device.half_width = 0.5f * read_length(json, "width");
     light.device.half_height = 0.5f * read_length(json, "height");
-    light.device.radius =
-        std::sqrt(4.0f * light.device.half_width * light.device.half_height / pi);
+    light.device.radius = std::sqrt(4.0f * light.device.half_width * light.device.half_height / pi);
   } else if (shape == "disk") {
     light.device.type = shared::light_disk;
     light.device.radius = read_length(json, "radius");

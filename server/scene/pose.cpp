@@ -31,8 +31,7 @@ glm::quat to_quaternion(const float* xyzw) {
 
 void store(const glm::quat& rotation, float* xyzw) {
   const float length = glm::length(rotation);
-  const glm::quat unit =
-      length > 0.0f ? rotation / length : glm::quat(1.0f, 0.0f, 0.0f, 0.0f);
+  const glm::quat unit = length > 0.0f ? rotation / length : glm::quat(1.0f, 0.0f, 0.0f, 0.0f);
   xyzw[0] = unit.x;
   xyzw[1] = unit.y;
   xyzw[2] = unit.z;

@@ -24,8 +24,8 @@ struct Bounds {
 };
 
 /// RGBA8 pixels, row 0 on top; every mip level follows the one before, the last is 1x1.
-/// `srgb`: colour channels are sRGB encoded; mips were filtered in linear space. Who has an image on
-/// a device may let go of its pixels; ImagePixels brings them back.
+/// `srgb`: colour channels are sRGB encoded; mips were filtered in linear space. Who has an image
+/// on a device may let go of its pixels; ImagePixels brings them back.
 struct Image {
   std::string name;
   std::uint32_t width = 0;

@@ -49,15 +49,15 @@ void read_influences(const Primitive& primitive, std::span<const Accessor> acces
     }
   }
   for (std::size_t i = 0; i < sources.size(); ++i) {
-    normalize(std::span(shape.influences)
-                  .subspan(i * shape.joints_per_vertex, shape.joints_per_vertex));
+    normalize(
+        std::span(shape.influences).subspan(i * shape.joints_per_vertex, shape.joints_per_vertex));
   }
 }
 
 }  // namespace
 
-Shape build_shape(const Primitive& primitive, std::span<const Accessor> accessors,
-                  const Mesh& mesh, std::span<const std::uint32_t> sources) {
+Shape build_shape(const Primitive& primitive, std::span<const Accessor> accessors, const Mesh& mesh,
+                  std::span<const std::uint32_t> sources) {
   Shape shape;
   shape.vertices = mesh.vertices;
   shape.flat = !primitive.normal;

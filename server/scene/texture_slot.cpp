@@ -37,7 +37,7 @@ shared::TextureSlot read_texture_slot(const JsonValue& json, bool srgb, TextureT
   slot.texture = textures.use(texture, srgb);
   if (slot.texture == shared::no_texture) {
     warnings.add("textures[" + std::to_string(texture) +
-                  "] has no PNG, JPEG or WebP image and was left out");
+                 "] has no PNG, JPEG or WebP image and was left out");
   }
   return slot;
 }

@@ -111,7 +111,8 @@ struct Broadcast::Encoding {
     frame->moving = purpose == Purpose::interactive;
     frame->header = merged(picture->header, frame->header);
     const auto taken = frame->encoded_at - start;
-    frame->header.encode_us = static_cast<std::uint32_t>(duration_cast<microseconds>(taken).count());
+    frame->header.encode_us =
+        static_cast<std::uint32_t>(duration_cast<microseconds>(taken).count());
     services.measurements.encoded(std::chrono::duration<double>(taken).count());
     return frame;
   }

@@ -23,10 +23,10 @@ struct BroadcastServices {
 };
 
 /// Sends the pictures of one session to its viewers. Takes every picture that is rendered, picks
-/// those worth sending, and has them encoded beside rendering, for viewers who can take them now and
-/// only in the forms that they want. While a resting picture refines it is sent when its samples
-/// have doubled or the state is another; the final one is sent once, and after it nothing. For the
-/// render thread.
+/// those worth sending, and has them encoded beside rendering, for viewers who can take them now
+/// and only in the forms that they want. While a resting picture refines it is sent when its
+/// samples have doubled or the state is another; the final one is sent once, and after it nothing.
+/// For the render thread.
 class Broadcast {
  public:
   Broadcast(std::shared_ptr<Session> session, const BroadcastServices& services);
@@ -52,16 +52,16 @@ class Broadcast {
 
   std::shared_ptr<Session> session_;
   BroadcastServices services_;
-  std::shared_ptr<stream::PictureEncoder> encoder_;       // used by the encoding thread
-  std::shared_ptr<std::atomic<int>> encoding_;            // tasks that are not done
+  std::shared_ptr<stream::PictureEncoder> encoder_;  // used by the encoding thread
+  std::shared_ptr<std::atomic<int>> encoding_;       // tasks that are not done
   std::shared_ptr<const Picture> newest_;
   std::shared_ptr<const Picture> due_;
   Purpose due_purpose_ = Purpose::interactive;
-  bool newer_than_due_ = false;   // newest_ is not worth sending yet
-  std::uint64_t number_ = 0;      // of the due picture
-  std::uint64_t started_ = 0;     // the last that was given to the encoder
+  bool newer_than_due_ = false;  // newest_ is not worth sending yet
+  std::uint64_t number_ = 0;     // of the due picture
+  std::uint64_t started_ = 0;    // the last that was given to the encoder
   std::uint32_t due_samples_ = 0;
-  std::uint32_t due_rev_ = 0;     // the state that it shows
+  std::uint32_t due_rev_ = 0;  // the state that it shows
 };
 
 }  // namespace heliograph::session

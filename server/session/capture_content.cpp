@@ -30,7 +30,8 @@ template <class Read>
 ExrChannel channel(std::string name, const render::FloatImage& image, Read read) {
   ExrChannel made{.name = std::move(name), .values = {}, .counts = image.counts};
   made.values.reserve(image.rgba.size() / 4);
-  for (std::size_t i = 0; i < image.rgba.size(); i += 4) made.values.push_back(read(&image.rgba[i]));
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4)
+    made.values.push_back(read(&image.rgba[i]));
   return made;
 }
 
@@ -72,8 +73,7 @@ void add_motion(std::vector<ExrChannel>& channels, const render::FloatImage& ima
 void add_albedo(std::vector<ExrChannel>& channels, const render::FloatImage& image) {
   constexpr std::array names{"albedo.R", "albedo.G", "albedo.B"};
   for (std::uint32_t i = 0; i < 3; ++i) {
-    channels.push_back(
-        channel(names[i], image, [i](Texel texel) { return texel[i] * texel[i]; }));
+    channels.push_back(channel(names[i], image, [i](Texel texel) { return texel[i] * texel[i]; }));
   }
 }
 
@@ -127,8 +127,7 @@ std::vector<std::uint8_t> npy(const render::FloatImage& image) {
 }
 
 std::vector<std::uint8_t> picture_file(const render::Frame& frame, ImageFormat format) {
-  const stream::PictureView view{
-      .width = frame.width, .height = frame.height, .rgba = frame.rgba};
+  const stream::PictureView view{.width = frame.width, .height = frame.height, .rgba = frame.rgba};
   if (format == ImageFormat::npy) return npy(frame);
   if (format == ImageFormat::png) return stream::encode_png(view);
   return stream::JpegEncoder().encode(view, jpeg_quality, stream::ChromaSampling::full);

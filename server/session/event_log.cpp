@@ -11,8 +11,7 @@ namespace {
 std::string harmless(std::string_view text) {
   std::string result(text);
   std::replace_if(
-      result.begin(), result.end(),
-      [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+      result.begin(), result.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
   return result;
 }
 

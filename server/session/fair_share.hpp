@@ -19,10 +19,10 @@ using stream::Clock;
 /// up.
 ///
 /// A piece is never interrupted. Somebody with short pieces, who needs a moment between them (its
-/// picture is encoded, its viewer answers), would wait for a long piece of another after each of its
-/// own. So the device waits that moment, at the expense of who it waits for, before it begins a long
-/// piece (anticipatory scheduling: Iyer and Druschel, SOSP 2001). Who was awaited in vain is given
-/// up until it has worked again, and ever more seldom awaited. Pure logic; not thread safe.
+/// picture is encoded, its viewer answers), would wait for a long piece of another after each of
+/// its own. So the device waits that moment, at the expense of who it waits for, before it begins a
+/// long piece (anticipatory scheduling: Iyer and Druschel, SOSP 2001). Who was awaited in vain is
+/// given up until it has worked again, and ever more seldom awaited. Pure logic; not thread safe.
 class FairShare {
  public:
   using Key = const void*;
@@ -40,14 +40,14 @@ class FairShare {
  private:
   struct Account {
     Duration next_start{0};
-    std::uint64_t turn = 0;              // of its last piece
+    std::uint64_t turn = 0;  // of its last piece
     Duration last_work{0};
-    Duration pause{std::chrono::milliseconds(4)};  // between its pieces, smoothed
-    Clock::time_point ended{};           // its last piece
+    Duration pause{std::chrono::milliseconds(4)};    // between its pieces, smoothed
+    Clock::time_point ended{};                       // its last piece
     std::optional<Clock::time_point> awaited_since;  // others have been held back for it
-    int waits_in_vain = 0;               // since the last that was not
+    int waits_in_vain = 0;                           // since the last that was not
     std::uint64_t awaited_from_turn = 0;
-    bool given_up = false;               // until its next piece
+    bool given_up = false;  // until its next piece
   };
 
   Account account(Key key) const;

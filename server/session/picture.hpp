@@ -15,7 +15,7 @@ struct Picture {
   render::Frame frame;
   protocol::FrameHeader header;  // without what encoding adds
   std::vector<stream::InputEcho> inputs;
-  double fps = 0.0;  // rendered in the last second
+  double fps = 0.0;        // rendered in the last second
   std::uint64_t cuts = 0;  // how often the picture jumped up to this one
 };
 

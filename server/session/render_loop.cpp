@@ -113,8 +113,8 @@ void RenderLoop::dismiss_closed() {
   }
 }
 
-/// Does the small things of all sessions, so that none waits for another's frame with them, and then
-/// lets the first in order of turns draw that wants to.
+/// Does the small things of all sessions, so that none waits for another's frame with them, and
+/// then lets the first in order of turns draw that wants to.
 bool RenderLoop::advance_next(const Views& views) {
   std::vector<FairShare::Key> ready;
   for (const auto& view : views) {

@@ -124,13 +124,12 @@ void change(const protocol::Change<T>& wanted, Member& member, const Member& ini
 /// A member that only some kinds of lights have.
 template <class T>
 Result<void> change_own(const protocol::Change<T>& wanted, std::optional<T>& member,
-                        const std::optional<T>& initial, const LightInfo& light,
-                        const char* name) {
+                        const std::optional<T>& initial, const LightInfo& light, const char* name) {
   if (!wanted.value && !wanted.reset) return {};
   if (!initial) {
-    return error::invalid(std::string("patch.") + name,
-                          "is nothing that a " +
-                              std::string(protocol::enum_name(light.type)) + " light has");
+    return error::invalid(
+        std::string("patch.") + name,
+        "is nothing that a " + std::string(protocol::enum_name(light.type)) + " light has");
   }
   change(wanted, member, initial);
   return {};
@@ -143,8 +142,8 @@ Result<void> change_shape(const protocol::LightPatch& patch, LightInfo& light,
         change_own(patch.direction, light.direction, initial.direction, light, "direction"),
         change_own(patch.range, light.range, initial.range, light, "range"),
         change_own(patch.radius, light.radius, initial.radius, light, "radius"),
-        change_own(patch.angular_diameter, light.angular_diameter, initial.angular_diameter,
-                   light, "angular_diameter"),
+        change_own(patch.angular_diameter, light.angular_diameter, initial.angular_diameter, light,
+                   "angular_diameter"),
         change_own(patch.width, light.width, initial.width, light, "width"),
         change_own(patch.height, light.height, initial.height, light, "height")}) {
     if (!changed) return changed;
@@ -171,8 +170,7 @@ Result<LightInfo> patched(LightInfo light, const LightInfo& initial,
 
 /// The index of what is called so, or the error that says what is.
 template <class Info>
-Result<std::size_t> find(const std::vector<Info>& list, const std::string& name,
-                         const char* kind) {
+Result<std::size_t> find(const std::vector<Info>& list, const std::string& name, const char* kind) {
   std::vector<std::string_view> names;
   for (std::size_t i = 0; i < list.size(); ++i) {
     if (list[i].name == name) return i;

@@ -224,8 +224,7 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
       std::min(request.height.value_or(state_.height), options_.limits.max_height);
   const bool resized = width != state_.width || height != state_.height;
   if (resized && !may_steer) {
-    return error::make(protocol::ErrorCode::forbidden,
-                       width != state_.width ? "width" : "height",
+    return error::make(protocol::ErrorCode::forbidden, width != state_.width ? "width" : "height",
                        "is everybody's, and this access may only watch");
   }
   if (resized && !audience_.may_change(by)) return no_control(audience_);

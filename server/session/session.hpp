@@ -181,8 +181,8 @@ class Session {
   protocol::StepState run_freely(const std::string& by = {});
   bool in_lockstep() const;
   /// For the render thread: lets the time of the next frame pass; nothing where none is due, or
-  /// where something is to be read before it: `waiting` is the first place of what is known to wait.
-  /// After it is drawn comes end_step.
+  /// where something is to be read before it: `waiting` is the first place of what is known to
+  /// wait. After it is drawn comes end_step.
   std::optional<StepFrame> begin_step(std::optional<std::uint64_t> waiting);
   /// Whether steps are due before this place; without one, any.
   bool step_due(std::optional<std::uint64_t> place) const;

@@ -27,8 +27,8 @@ Result<AnimationState> Session::play(const protocol::AnimationPlay& request,
     std::vector<std::string_view> names;
     for (const scene::Clip& clip : scene_->clips) names.push_back(clip.name);
     if (!scene::find_clip(*scene_, *request.clip)) {
-      return error::not_found("clip", "no clip of the scene is called so" +
-                                          protocol::suggestion(*request.clip, names));
+      return error::not_found(
+          "clip", "no clip of the scene is called so" + protocol::suggestion(*request.clip, names));
     }
     clock.clip = *request.clip;
     clock.seconds = 0.0;

@@ -61,9 +61,9 @@ protocol::EnvironmentState Session::environment() const {
           .rev = state_.rev};
 }
 
-Result<void> Session::set_environment(
-    std::optional<std::string> name, std::shared_ptr<const render::LitEnvironment> environment,
-    const std::string& by) {
+Result<void> Session::set_environment(std::optional<std::string> name,
+                                      std::shared_ptr<const render::LitEnvironment> environment,
+                                      const std::string& by) {
   const std::lock_guard lock(mutex_);
   if (const Result<void> there = require_scene(); !there) return there;
   if (name == environment_name_ && environment == state_.environment) return {};

@@ -18,12 +18,14 @@ Clock::duration time_between(const StepRequest& step) {
   return std::chrono::round<Clock::duration>(std::chrono::duration<double>(step.dt));
 }
 
-Clock::duration time_left(const StepRequest& step) { return time_between(step) * step.frames; }
+Clock::duration time_left(const StepRequest& step) {
+  return time_between(step) * step.frames;
+}
 
 }  // namespace
 
-/// Commands that come while the step is due take effect after it: its frames show the state as it is
-/// now, and time counts as passed from now on.
+/// Commands that come while the step is due take effect after it: its frames show the state as it
+/// is now, and time counts as passed from now on.
 Result<void> Session::request_step(StepRequest request) {
   std::optional<StepState> at_once;
   {

@@ -63,7 +63,8 @@ bool SessionView::its_turn_is_later(std::optional<std::uint64_t> place) const {
 
 void SessionView::settle_probes() {
   std::erase_if(probes_, [&](const PendingProbe& pending) {
-    if (!shows_state_since(pending.requested) || its_turn_is_later(pending.probe.place)) return false;
+    if (!shows_state_since(pending.requested) || its_turn_is_later(pending.probe.place))
+      return false;
     pending.probe.read(*renderer_, state_);
     return true;
   });

@@ -31,7 +31,8 @@ std::uint32_t little_endian(const unsigned char* bytes) {
   return bytes[0] | bytes[1] << 8 | bytes[2] << 16 | static_cast<std::uint32_t>(bytes[3]) << 24;
 }
 
-/// What is wrong with the first bytes of a binary glTF file (specification section 4.4), or nothing.
+/// What is wrong with the first bytes of a binary glTF file (specification section 4.4), or
+/// nothing.
 std::string_view header_fault(const fs::path& file) {
   std::array<unsigned char, glb_header_bytes> header{};
   std::ifstream stream(file, std::ios::binary);
@@ -58,8 +59,8 @@ UploadStore::UploadStore(UploadOptions options)
   }
 }
 
-protocol::Result<std::shared_ptr<UploadStore::Incoming>> UploadStore::begin(
-    const std::string& name, std::uint64_t bytes) {
+protocol::Result<std::shared_ptr<UploadStore::Incoming>> UploadStore::begin(const std::string& name,
+                                                                            std::uint64_t bytes) {
   if (!is_acceptable(name)) {
     return protocol::error::invalid("name", "is not the name of a scene",
                                     "1 to 64 letters, digits, _ and -");
@@ -106,8 +107,8 @@ protocol::Result<UploadedScene> UploadStore::accept(Incoming& incoming) {
                                  .bytes = fs::file_size(file),
                                  .triangles = imported.triangle_count()};
     incoming.keep_in(scenes_);
-    log_info({}, "the upload " + incoming.name() + " was accepted: " +
-                     std::to_string(uploaded.bytes) + " bytes");
+    log_info({}, "the upload " + incoming.name() +
+                     " was accepted: " + std::to_string(uploaded.bytes) + " bytes");
     return uploaded;
   } catch (const scene::ImportError& failure) {
     return refused("cannot be loaded: " + std::string(failure.what()));

@@ -43,8 +43,8 @@ class UploadStore {
   class Incoming;
   /// Whether a scene of this name and size may come; its bytes go to `path()` then.
   protocol::Result<std::shared_ptr<Incoming>> begin(const std::string& name, std::uint64_t bytes);
-  /// Checks what was received, on a thread of its own, and puts it into place. When `done` is called
-  /// nothing of the upload is left but what was accepted.
+  /// Checks what was received, on a thread of its own, and puts it into place. When `done` is
+  /// called nothing of the upload is left but what was accepted.
   void finish(std::shared_ptr<Incoming> incoming,
               std::function<void(protocol::Result<UploadedScene>)> done);
   /// Ends the thread; `done` is not called any more.
@@ -65,8 +65,7 @@ class UploadStore {
 
 class UploadStore::Incoming {
  public:
-  Incoming(UploadStore& store, std::string name, std::uint64_t bytes,
-           std::filesystem::path folder);
+  Incoming(UploadStore& store, std::string name, std::uint64_t bytes, std::filesystem::path folder);
   ~Incoming();
   Incoming(const Incoming&) = delete;
   Incoming& operator=(const Incoming&) = delete;

@@ -31,7 +31,7 @@ struct EncodedFrame {
   Form form;
   std::optional<VideoPosition> video;  // of frames that need each other
   bool moving = false;                 // one of many, made to fit the way to its viewers
-  std::uint64_t cuts = 0;  // how often the picture jumped up to this one
+  std::uint64_t cuts = 0;              // how often the picture jumped up to this one
   Clock::time_point encoded_at;
 };
 

@@ -36,8 +36,8 @@ inline constexpr std::size_t max_forms = 3;
 double relative_bytes(const Form& form);
 
 /// The forms to encode for viewers who want `wanted`: theirs if they are few enough, else the
-/// cheapest, the dearest and the one in the middle of each codec, with one left for JPEG if somebody
-/// needs that. Ascending, without repetition.
+/// cheapest, the dearest and the one in the middle of each codec, with one left for JPEG if
+/// somebody needs that. Ascending, without repetition.
 std::vector<Form> reduce_forms(std::vector<Form> wanted);
 
 /// What a viewer who wants `wanted` gets of `forms`: the dearest one of its codec that is no dearer

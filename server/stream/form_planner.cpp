@@ -39,8 +39,8 @@ FormPlanner::Plan FormPlanner::plan(const std::vector<FormWish>& wishes,
       ready_lost |= !follows && wishes[i].ready;
     }
     const auto video = videos_.find(form);
-    const bool key_allowed = !any_in_step || video == videos_.end() ||
-                             now >= video->second.key_at + least_key_interval;
+    const bool key_allowed =
+        !any_in_step || video == videos_.end() || now >= video->second.key_at + least_key_interval;
     const bool key = ready_lost && key_allowed;
     if (ready_in_step || key) add(plan.requests, {.form = form, .key = key, .max_bytes = budget});
     if (ready_lost && !key) add(plan.requests, {.form = stand_in(form)});
@@ -56,14 +56,13 @@ void FormPlanner::published(const EncodedFrame& frame, Clock::time_point now) {
 }
 
 Form FormPlanner::stand_in(const Form& video) {
-  return {.codec = StreamCodec::jpeg,
-          .scale = video.scale,
-          .quality = std::min(video.quality, 75)};
+  return {.codec = StreamCodec::jpeg, .scale = video.scale, .quality = std::min(video.quality, 75)};
 }
 
 bool FormPlanner::in_step(const FormWish& wish, const Form& form) const {
   const auto video = videos_.find(form);
-  return wish.decoder && video != videos_.end() && wish.decoder->video == video->second.newest.video &&
+  return wish.decoder && video != videos_.end() &&
+         wish.decoder->video == video->second.newest.video &&
          wish.decoder->index == video->second.newest.index;
 }
 

@@ -21,7 +21,7 @@ struct FormWish {
 /// One encoding of a picture.
 struct FormRequest {
   Form form;
-  bool key = false;  // a video has to begin anew
+  bool key = false;                                            // a video has to begin anew
   double max_bytes = std::numeric_limits<double>::infinity();  // of a video's frame, on average
 };
 

@@ -18,10 +18,16 @@ H264Encoder::H264Encoder(std::uint32_t, std::uint32_t) {
 
 H264Encoder::~H264Encoder() = default;
 
-H264Encoder::Unit H264Encoder::encode(const PictureView&, const H264Rate&, bool) { return {}; }
+H264Encoder::Unit H264Encoder::encode(const PictureView&, const H264Rate&, bool) {
+  return {};
+}
 
-std::uint32_t H264Encoder::width() const { return 0; }
+std::uint32_t H264Encoder::width() const {
+  return 0;
+}
 
-std::uint32_t H264Encoder::height() const { return 0; }
+std::uint32_t H264Encoder::height() const {
+  return 0;
+}
 
 }  // namespace heliograph::stream

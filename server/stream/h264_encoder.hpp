@@ -37,7 +37,7 @@ class H264Encoder {
   /// The next frame. The picture has the encoder's size. @throws std::runtime_error
   Unit encode(const PictureView& picture, const H264Rate& rate, bool key);
 
-  std::uint32_t width() const;   // of the coded picture
+  std::uint32_t width() const;  // of the coded picture
   std::uint32_t height() const;
 
  private:

@@ -63,7 +63,7 @@ class LinkController {
   std::size_t rung_ = 0;
   bool late_ = false;  // the last arrival was
   Mean now_;           // of arrivals that were late, or in time, like the last
-  Mean before_;                   // the last decrease, while it is not judged
+  Mean before_;        // the last decrease, while it is not judged
   double budget_before_ = unlimited;
   bool judging_ = false;
   Clock::time_point settled_at_;  // what comes earlier was sent before the last change

@@ -35,9 +35,15 @@ std::uint32_t pixel(const std::uint8_t* rgba, std::size_t x) {
   return value;
 }
 
-int red_of(std::uint32_t value) { return static_cast<int>(value & 255); }
-int green_of(std::uint32_t value) { return static_cast<int>(value >> 8 & 255); }
-int blue_of(std::uint32_t value) { return static_cast<int>(value >> 16 & 255); }
+int red_of(std::uint32_t value) {
+  return static_cast<int>(value & 255);
+}
+int green_of(std::uint32_t value) {
+  return static_cast<int>(value >> 8 & 255);
+}
+int blue_of(std::uint32_t value) {
+  return static_cast<int>(value >> 16 & 255);
+}
 
 void luma_row(const std::uint8_t* rgba, std::size_t width, std::uint8_t* out) {
   for (std::size_t x = 0; x < width; ++x) {

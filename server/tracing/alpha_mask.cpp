@@ -44,8 +44,8 @@ std::uint32_t nearest_texel(float coordinate, std::uint32_t mode, std::uint32_t 
 
 Coverage coverage(const shared::Material& material) {
   if (material.flags & shared::material_alpha_blend) {
-    const bool whole = blend_factor(material) == shared::mask_factor &&
-                       material.alpha_mask == shared::no_texture;
+    const bool whole =
+        blend_factor(material) == shared::mask_factor && material.alpha_mask == shared::no_texture;
     return whole ? Coverage::whole : Coverage::masked;
   }
   if (!(material.flags & shared::material_alpha_mask)) return Coverage::whole;

@@ -22,7 +22,7 @@ std::uint32_t ray_blending(const shared::Ray& ray, std::uint32_t blending);
 /// Where rays pass through a mesh of masked coverage.
 struct AlphaMask {
   std::uint32_t texels = 0;  // offset into the scene's alpha heap
-  std::uint32_t width = 0;  // 0: no texture, alpha is 255 all over
+  std::uint32_t width = 0;   // 0: no texture, alpha is 255 all over
   std::uint32_t height = 0;
   std::uint32_t limit = 0;  // lowest alpha, of 255, that stops a ray; or see shared::mask_blended
   std::uint32_t wrap_s = shared::wrap_repeat;
@@ -31,8 +31,8 @@ struct AlphaMask {
 
   /// Whether a ray through barycentric (u, v) of `triangle` ends there. `heap`: the scene's.
   /// `blending`: ray_blending() of the ray.
-  bool stops_ray(std::span<const std::uint8_t> heap, std::uint32_t blending,
-                 std::uint32_t instance, std::uint32_t triangle, float u, float v) const;
+  bool stops_ray(std::span<const std::uint8_t> heap, std::uint32_t blending, std::uint32_t instance,
+                 std::uint32_t triangle, float u, float v) const;
 
  private:
   /// Of 255, at barycentric (u, v).

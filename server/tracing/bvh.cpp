@@ -84,7 +84,7 @@ std::size_t append_record(Bvh& bvh, const Record& record) {
 }
 
 BvhMesh append_mesh(Bvh& bvh, const MeshBvh& mesh, std::vector<glm::vec4>& uvs,
-                       std::size_t triangle_texels) {
+                    std::size_t triangle_texels) {
   BvhMesh placed;
   if (mesh.hierarchy.root == shared::bvh_no_link) return placed;
   const std::size_t first_record = placed.first_record = bvh.records.size();
@@ -183,8 +183,8 @@ BvhTopLevel build_top_level(RTCDevice device, const Bvh& bvh,
     boxes[i] = world_box(bounds[mesh_of[i]], worlds[i]);
     records[i] = static_cast<std::uint32_t>(bvh.first_placed + top.records.size());
     const glm::mat4 rows = glm::transpose(*inverse);
-    top.records.push_back(std::bit_cast<shared::BvhNode>(shared::BvhInstance{
-        rows[0], rows[1], rows[2], mesh.root, number(i), mesh.mask, 0}));
+    top.records.push_back(std::bit_cast<shared::BvhNode>(
+        shared::BvhInstance{rows[0], rows[1], rows[2], mesh.root, number(i), mesh.mask, 0}));
   }
   const Hierarchy tree = build_hierarchy(
       device, boxes, 1, [&](auto items) { return leaf_link(records[items[0]], 1); });

@@ -14,8 +14,8 @@ namespace {
 constexpr float dead_from = 1.0f;
 constexpr float dead_to = 0.0f;
 
-// Embree, when robust, counts hits at both ends in, we do not. `t_min` >= 0, `t_max` > 0. Embree takes
-// numbers too small to be normal for zero.
+// Embree, when robust, counts hits at both ends in, we do not. `t_min` >= 0, `t_max` > 0. Embree
+// takes numbers too small to be normal for zero.
 float first_after(float t_min) {
   const float next = std::bit_cast<float>(std::bit_cast<std::uint32_t>(t_min) + 1);
   return std::max(next, std::numeric_limits<float>::min());

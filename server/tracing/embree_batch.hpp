@@ -12,7 +12,8 @@ namespace heliograph::tracing {
 /// Rays that one call hands to Embree together; a multiple of its packets.
 inline constexpr std::size_t embree_batch = 256;
 
-/// Closest hits of at most `embree_batch` rays in a scene of instances. `blending`: of their stream.
+/// Closest hits of at most `embree_batch` rays in a scene of instances. `blending`: of their
+/// stream.
 void intersect_batch(RTCScene scene, std::span<const shared::Ray> rays, std::uint32_t blending,
                      shared::Hit* hits);
 

@@ -26,7 +26,8 @@ EmbreeMesh::EmbreeMesh(RTCDevice device, const scene::Mesh& mesh, const shared::
   const Coverage seen = coverage(material);
   if (seen == Coverage::none || mesh.indices.size() < 3) return;
   geometry_.reset(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-  // Embree's own buffers: they are padded as its vector loads need and live as long as the geometry.
+  // Embree's own buffers: they are padded as its vector loads need and live as long as the
+  // geometry.
   positions_ = static_cast<glm::vec3*>(
       rtcSetNewGeometryBuffer(geometry_.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                               sizeof(glm::vec3), mesh.vertices.size()));
@@ -105,9 +106,8 @@ void EmbreeScene::place(std::size_t instance, const glm::mat4& world) {
 }
 
 void EmbreeScene::refit(std::span<const Movement::Mesh> deformed) {
-  tbb::parallel_for(std::size_t(0), deformed.size(), [&](std::size_t i) {
-    meshes_[deformed[i].mesh]->refit(deformed[i].vertices);
-  });
+  tbb::parallel_for(std::size_t(0), deformed.size(),
+                    [&](std::size_t i) { meshes_[deformed[i].mesh]->refit(deformed[i].vertices); });
   std::vector<bool> changed(meshes_.size());
   for (const Movement::Mesh& mesh : deformed) changed[mesh.mesh] = true;
   for (const auto& [mesh, geometry] : placed_) {
@@ -125,11 +125,10 @@ void EmbreeMesh::let_through(const RTCFilterFunctionNArguments* arguments) {
   const unsigned lanes = arguments->N;
   for (unsigned i = 0; i < lanes; ++i) {
     if (arguments->valid[i] == 0) continue;
-    const bool stops =
-        mask.stops_ray(heap, RTCRayN_id(arguments->ray, lanes, i),
-                       RTCHitN_instID(arguments->hit, lanes, i, 0),
-                       RTCHitN_primID(arguments->hit, lanes, i),
-                       RTCHitN_u(arguments->hit, lanes, i), RTCHitN_v(arguments->hit, lanes, i));
+    const bool stops = mask.stops_ray(
+        heap, RTCRayN_id(arguments->ray, lanes, i), RTCHitN_instID(arguments->hit, lanes, i, 0),
+        RTCHitN_primID(arguments->hit, lanes, i), RTCHitN_u(arguments->hit, lanes, i),
+        RTCHitN_v(arguments->hit, lanes, i));
     if (!stops) arguments->valid[i] = 0;
   }
 }

@@ -100,9 +100,9 @@ class EmbreeTracer : public RayTracer {
     auto meshes = dynamic_cast<const EmbreeStructure&>(*rest).scene().meshes();
     for (const scene::Deformation& deformation : scene.deformations) {
       const scene::Mesh& mesh = scene.meshes[deformation.mesh];
-      meshes[deformation.mesh] = std::make_shared<EmbreeMesh>(
-          embree_.get(), mesh, scene.materials[mesh.material], mapped_bytes(tables.alpha_heap),
-          EmbreeMesh::Use::deforming);
+      meshes[deformation.mesh] =
+          std::make_shared<EmbreeMesh>(embree_.get(), mesh, scene.materials[mesh.material],
+                                       mapped_bytes(tables.alpha_heap), EmbreeMesh::Use::deforming);
     }
     return std::make_unique<MovingEmbreeStructure>(embree_.get(), scene, std::move(meshes));
   }
@@ -113,8 +113,8 @@ class EmbreeTracer : public RayTracer {
     const RTCScene scene = dynamic_cast<const EmbreeStructure&>(structure).scene().handle();
     plan.host(name,
               [&plan, scene, rays, hits] {
-                trace_batches<shared::Hit>(plan, rays, hits,
-                                           [scene](auto... batch) { intersect_batch(scene, batch...); });
+                trace_batches<shared::Hit>(
+                    plan, rays, hits, [scene](auto... batch) { intersect_batch(scene, batch...); });
               })
         .read(rays.count)
         .read(rays.rays)
@@ -127,8 +127,9 @@ class EmbreeTracer : public RayTracer {
     const RTCScene scene = dynamic_cast<const EmbreeStructure&>(structure).scene().handle();
     plan.host(name,
               [&plan, scene, rays, occluded] {
-                trace_batches<std::uint32_t>(plan, rays, occluded,
-                                             [scene](auto... batch) { occluded_batch(scene, batch...); });
+                trace_batches<std::uint32_t>(plan, rays, occluded, [scene](auto... batch) {
+                  occluded_batch(scene, batch...);
+                });
               })
         .read(rays.count)
         .read(rays.rays)

@@ -100,9 +100,9 @@ void MovingBvh::refit(const Movement::Mesh& movement, const Tables& tables) {
   }
   std::ranges::copy(nodes, tables.records.begin() + static_cast<std::ptrdiff_t>(mesh.first_record));
   const auto bytes = std::as_bytes(std::span(triangles));
-  std::ranges::copy(bytes, std::as_writable_bytes(tables.triangles).begin() +
-                               static_cast<std::ptrdiff_t>(mesh.first_triangle *
-                                                           sizeof(shared::BvhTriangle)));
+  std::ranges::copy(
+      bytes, std::as_writable_bytes(tables.triangles).begin() +
+                 static_cast<std::ptrdiff_t>(mesh.first_triangle * sizeof(shared::BvhTriangle)));
 }
 
 void MovingBvh::place(std::span<const glm::mat4> worlds, const Tables& tables) {

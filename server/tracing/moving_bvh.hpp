@@ -46,8 +46,8 @@ class MovingBvh {
 
   RTCDevice device_;
   std::shared_ptr<const Bvh> rest_;
-  std::vector<std::uint32_t> mesh_of_;   // by instance
-  std::vector<scene::Bounds> bounds_;    // by mesh
+  std::vector<std::uint32_t> mesh_of_;  // by instance
+  std::vector<scene::Bounds> bounds_;   // by mesh
   std::vector<glm::mat4> rest_worlds_;
   std::map<std::uint32_t, Deforming> deforming_;  // by mesh
   std::uint32_t root_ = shared::bvh_no_link;

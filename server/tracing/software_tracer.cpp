@@ -49,8 +49,7 @@ class SoftwareStructure : public virtual AccelerationStructure {
 
 class RestingSoftwareStructure : public SoftwareStructure {
  public:
-  RestingSoftwareStructure(const gpu::Device& device, Bvh bvh, bool moves,
-                           const gpu::Buffer& masks)
+  RestingSoftwareStructure(const gpu::Device& device, Bvh bvh, bool moves, const gpu::Buffer& masks)
       : records_(upload_texels(device, "bvh.records", bvh.records)),
         triangles_(upload_texels(device, "bvh.triangles", bvh.triangles)),
         alpha_heap_(masks),

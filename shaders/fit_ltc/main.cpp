@@ -34,8 +34,7 @@ struct Mean {
 Mean mean_of(const SpecularLobe& lobe) {
   Mean mean{};
   for (int i = 0; i < strata * strata; ++i) {
-    const glm::dvec3 light =
-        lobe.sample((i % strata + 0.5) / strata, (i / strata + 0.5) / strata);
+    const glm::dvec3 light = lobe.sample((i % strata + 0.5) / strata, (i / strata + 0.5) / strata);
     if (light.z <= 0.0) continue;
     const double weight = lobe(light) / lobe.density(light) / (strata * strata);
     mean.albedo += weight;
@@ -54,9 +53,9 @@ glm::dmat3 matrix_of(const Shape& shape, const glm::dvec3& z, bool isotropic) {
                             glm::dvec3(isotropic ? 0.0 : shape[2], 0.0, 1.0));
 }
 
-/// The cube of the difference above the horizon, integrated with samples of both: a lobe that misses
-/// the other's peak costs most. The fit is cut off at the horizon and made as bright again as it was
-/// whole, as shaders/lib/ltc.glsl does.
+/// The cube of the difference above the horizon, integrated with samples of both: a lobe that
+/// misses the other's peak costs most. The fit is cut off at the horizon and made as bright again
+/// as it was whole, as shaders/lib/ltc.glsl does.
 double difference(const SpecularLobe& lobe, double albedo, const TransformedCosine& fit) {
   double sum = 0.0;
   const double above = fit.share_above();
@@ -112,10 +111,11 @@ std::vector<glm::vec4> fit_row(int row) {
 }
 
 void print(const std::vector<std::vector<glm::vec4>>& rows) {
-  std::printf("// Printed by shaders/fit_ltc; not edited by hand.\n"
-              "#include \"render/ltc_table.hpp\"\n\n"
-              "namespace heliograph::render {\n\n"
-              "const std::array<std::uint64_t, ltc_table_size * ltc_table_size> ltc_table{\n");
+  std::printf(
+      "// Printed by shaders/fit_ltc; not edited by hand.\n"
+      "#include \"render/ltc_table.hpp\"\n\n"
+      "namespace heliograph::render {\n\n"
+      "const std::array<std::uint64_t, ltc_table_size * ltc_table_size> ltc_table{\n");
   int printed = 0;
   for (const auto& row : rows) {
     for (const glm::vec4& entry : row) {

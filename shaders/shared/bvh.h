@@ -21,15 +21,15 @@ SHARED_CONSTANT uint bvh_no_link = 0u;
 // Most links that wait at any time, both levels together.
 SHARED_CONSTANT uint bvh_stack_size = 96u;
 
-SHARED_CONSTANT uint bvh_texels_per_record = 4u;    // node, instance, mask
+SHARED_CONSTANT uint bvh_texels_per_record = 4u;  // node, instance, mask
 SHARED_CONSTANT uint bvh_texels_per_triangle = 3u;
 
 // Both children's boxes, so that one fetch decides both (Aila and Laine, HPG 2009).
 struct BvhNode {
-  vec4 left_xy;   // min x, max x, min y, max y
+  vec4 left_xy;  // min x, max x, min y, max y
   vec4 right_xy;
-  vec4 both_z;    // left min, left max, right min, right max
-  uint left;      // links
+  vec4 both_z;  // left min, left max, right min, right max
+  uint left;    // links
   uint right;
   uint padding0;
   uint padding1;
@@ -48,11 +48,11 @@ struct BvhInstance {
 
 // Where rays pass through a mesh: all numbers.
 struct BvhMask {
-  uint texels;     // offset in bytes into the alpha heap
+  uint texels;  // offset in bytes into the alpha heap
   uint width;   // 0: no texture
   uint height;
-  uint limit;  // lowest alpha, of 255, that stops a ray; or see mask_blended in ray_mask.h
-  uint wrap_s;     // values of wrap_*
+  uint limit;   // lowest alpha, of 255, that stops a ray; or see mask_blended in ray_mask.h
+  uint wrap_s;  // values of wrap_*
   uint wrap_t;
   uint first_uv;        // texel of the triangle buffer: two per triangle, uv of its corners
   uint first_triangle;  // of the mesh

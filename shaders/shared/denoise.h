@@ -29,8 +29,8 @@ struct TemporalConstants {
   float frames;          // longest memory
   float moments_frames;  // longest memory of the moments
   uint rectification;
-  int radius;   // of the rectification's window, pixels
-  float scale;  // of its box, standard deviations
+  int radius;                     // of the rectification's window, pixels
+  float scale;                    // of its box, standard deviations
   float spatial_variance_frames;  // shorter histories take their variance from neighbours
   uint flags;                     // temporal_*
   float light_frames;             // longest memory of what comes from lights that move

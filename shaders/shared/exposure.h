@@ -13,7 +13,7 @@ struct ExposureState {
 
 // The histogram of log2 luminance that automatic exposure meters.
 SHARED_CONSTANT uint exposure_bins = 256u;
-SHARED_CONSTANT float exposure_darkest = -12.0f;    // log2; darker pixels are not metered
+SHARED_CONSTANT float exposure_darkest = -12.0f;      // log2; darker pixels are not metered
 SHARED_CONSTANT float exposure_bins_per_stop = 8.0f;  // up to 2^20
 SHARED_CONSTANT uint exposure_pixel_weight = 256u;  // of one pixel, shared by its two nearest bins
 

@@ -30,15 +30,15 @@ struct Hit {
   uint padding2;
 };
 
-// In front of a ray stream: how many rays there are, the indirect dispatch that covers them, and how
-// they meet blended surfaces.
+// In front of a ray stream: how many rays there are, the indirect dispatch that covers them, and
+// how they meet blended surfaces.
 struct RayCount {
   uint count;
   uint groups_x;  // VkDispatchIndirectCommand
   uint groups_y;
   uint groups_z;
-  uint blending;  // 0: blended surfaces stop every ray; else a number of this frame, with which they
-                  // stop a random share of them, as large as what they cover
+  uint blending;  // 0: blended surfaces stop every ray; else a number of this frame, with which
+                  // they stop a random share of them, as large as what they cover
   uint padding0;
   uint padding1;
   uint padding2;

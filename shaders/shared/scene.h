@@ -6,7 +6,8 @@ SHARED_BEGIN
 
 SHARED_CONSTANT uint no_texture = 0xffffffffu;
 
-// 64 bytes. Positions and normals are in mesh space; tangent.w is the bitangent's sign (glTF 3.7.2).
+// 64 bytes. Positions and normals are in mesh space; tangent.w is the bitangent's sign
+// (glTF 3.7.2).
 struct Vertex {
   vec3 position;
   uint color_rg;  // linear vertex colour, packUnorm2x16
@@ -72,10 +73,10 @@ struct Material {
   float occlusion_strength;
   float ior;  // 1.5 unless KHR_materials_ior
   uint flags;
-  uint alpha_mask;  // offset in bytes into the alpha heap read by rays, or no_texture
+  uint alpha_mask;       // offset in bytes into the alpha heap read by rays, or no_texture
   uint alpha_mask_size;  // width | height << 16
   uint alpha_mask_wrap;  // wrap_s | wrap_t << 8, values of Wrap
-  uint layer;     // its MaterialLayer's number
+  uint layer;            // its MaterialLayer's number
   float passing;  // share of rays that go on where it covers, because light passes through it
   uint padding0;
   TextureSlot base_color_texture;
@@ -102,9 +103,9 @@ struct Instance {
   mat4 previous_world;  // the same, one rendered frame ago
   mat4 normal_matrix;   // inverse transpose of world's upper 3x3
   uint mesh;
-  uint flags;  // instance_flipped where world mirrors (negative determinant)
-  uint previous_vertex;  // its mesh's first vertex among those of the frame before, + 1; 0: the mesh
-                         // keeps its shape
+  uint flags;            // instance_flipped where world mirrors (negative determinant)
+  uint previous_vertex;  // its mesh's first vertex among those of the frame before, + 1; 0: the
+                         // mesh keeps its shape
   uint padding0;
 };
 SHARED_CONSTANT uint instance_flipped = 1u;
@@ -127,7 +128,7 @@ SHARED_CONSTANT uint texels_per_light = 5u;
 SHARED_CONSTANT uint scene_area_lights = 1u;
 SHARED_CONSTANT uint scene_many_lights = 2u;  // more than uniform_lights
 SHARED_CONSTANT uint scene_deforms = 4u;
-SHARED_CONSTANT uint scene_blends = 8u;  // has surfaces of partial coverage
+SHARED_CONSTANT uint scene_blends = 8u;   // has surfaces of partial coverage
 SHARED_CONSTANT uint scene_layers = 16u;  // has materials with layers other than the first
 
 SHARED_CONSTANT uint light_directional = 0u;
@@ -138,7 +139,7 @@ SHARED_CONSTANT uint light_disk = 4u;
 
 // KHR_lights_punctual and area lights, in world space.
 struct Light {
-  vec3 position;      // of the middle
+  vec3 position;  // of the middle
   uint type;
   vec3 direction;     // the way light travels, unit length; an area light shines on this side
   float range;        // metres; 0: unlimited

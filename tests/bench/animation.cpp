@@ -1,6 +1,7 @@
-// What it costs to move a scene on by one frame: nodes, instances, vertices, acceleration structure;
-// nothing is drawn. One line of JSON for each crowd of a hundred and for each file, milliseconds,
-// medians. "processor" is the time of all threads together, which holds on a busy machine too.
+// What it costs to move a scene on by one frame: nodes, instances, vertices, acceleration
+// structure; nothing is drawn. One line of JSON for each crowd of a hundred and for each file,
+// milliseconds, medians. "processor" is the time of all threads together, which holds on a busy
+// machine too.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -55,8 +56,8 @@ scene::Mesh column(int rings, int sides) {
   for (int ring = 0; ring < rings; ++ring) {
     for (int side = 0; side < sides; ++side) {
       for (const std::uint32_t corner :
-           {index(ring, side), index(ring + 1, side), index(ring, side + 1),
-            index(ring, side + 1), index(ring + 1, side), index(ring + 1, side + 1)}) {
+           {index(ring, side), index(ring + 1, side), index(ring, side + 1), index(ring, side + 1),
+            index(ring + 1, side), index(ring + 1, side + 1)}) {
         mesh.indices.push_back(corner);
       }
     }
@@ -146,9 +147,9 @@ scene::Scene skinned_crowd(int count) {
   for (int i = 0; i < count; ++i) {
     scene::Skin skin;
     for (std::uint32_t joint = 0; joint < joints; ++joint) {
-      const std::uint32_t node = joint == 0 ? add_node(scene, place_of(i))
-                                            : add_node(scene, {0.0f, 1.0f / joints, 0.0f},
-                                                       skin.joints.back());
+      const std::uint32_t node =
+          joint == 0 ? add_node(scene, place_of(i))
+                     : add_node(scene, {0.0f, 1.0f / joints, 0.0f}, skin.joints.back());
       glm::mat4 inverse_bind(1.0f);
       inverse_bind[3].y = -float(joint) / joints;
       skin.joints.push_back(node);
@@ -200,9 +201,8 @@ nlohmann::json measure(render::Engine& engine, const std::string& name, scene::S
       options.clip.empty() ? &scene->clips.front() : scene::find_clip(*scene, options.clip);
   if (!clip) throw std::runtime_error(name + ": there is no clip " + options.clip);
   auto& parts = engine.parts();
-  render::MovingScene moving(
-      parts.device, *parts.tracer,
-      engine.upload(scene, scene::constant_environment(glm::vec3(1.0f))));
+  render::MovingScene moving(parts.device, *parts.tracer,
+                             engine.upload(scene, scene::constant_environment(glm::vec3(1.0f))));
   scene::Pose pose = scene::rest_pose(*scene);
   std::vector<double> whole_times, evaluate_times;
   const std::clock_t spent_before = std::clock();
@@ -261,7 +261,8 @@ int main(int count, char** arguments) {
   app.add_option("--clip", options.clip, "Clip to play; the first unless said");
   app.add_option("--device", options.device, "Part of the name of the Vulkan device to use");
   app.add_option("--tracer", options.tracer, "What traces rays");
-  app.add_option("--instances", options.instances, "How many a crowd is")->check(CLI::Range(1, 10000));
+  app.add_option("--instances", options.instances, "How many a crowd is")
+      ->check(CLI::Range(1, 10000));
   app.add_option("--frames", options.frames, "Frames to move on by")->check(CLI::Range(1, 100000));
   CLI11_PARSE(app, count, arguments);
   try {

@@ -17,7 +17,9 @@ namespace {
 
 constexpr int runs = 5;
 
-bool alive(const shared::Ray& ray) { return ray.t_min < ray.t_max; }
+bool alive(const shared::Ray& ray) {
+  return ray.t_min < ray.t_max;
+}
 
 #if RTC_VERSION_MAJOR < 4
 
@@ -28,8 +30,18 @@ Prepared prepare(std::span<const shared::Ray> rays) {
   for (const shared::Ray& ray : rays) {
     if (!alive(ray)) continue;
     RTCRayHit one{};
-    one.ray = {ray.origin.x,    ray.origin.y, ray.origin.z, ray.t_min, ray.direction.x,
-               ray.direction.y, ray.direction.z, 0.0f,      ray.t_max, ~0u, 0u, 0u};
+    one.ray = {ray.origin.x,
+               ray.origin.y,
+               ray.origin.z,
+               ray.t_min,
+               ray.direction.x,
+               ray.direction.y,
+               ray.direction.z,
+               0.0f,
+               ray.t_max,
+               ~0u,
+               0u,
+               0u};
     one.hit.geomID = one.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     all.push_back(one);
   }
@@ -170,15 +182,15 @@ std::optional<double> EmbreeAlone::milliseconds(const RecordingTracer::Stream& s
   const std::byte* const rays = stream.plan->get(stream.rays.rays).mapped();
   if (!count || !rays) return std::nullopt;
   const auto counted = reinterpret_cast<const shared::RayCount*>(count)->count;
-  const Prepared ready = prepare({reinterpret_cast<const shared::Ray*>(rays),
-                                  std::min(counted, stream.rays.capacity)});
+  const Prepared ready = prepare(
+      {reinterpret_cast<const shared::Ray*>(rays), std::min(counted, stream.rays.capacity)});
   std::array<double, runs> times{};
   for (double& time : times) {
     Prepared work = ready;
     const auto start = std::chrono::steady_clock::now();
     trace(state_->scene.handle(), work, stream.any);
-    time = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-               .count();
+    time =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   }
   std::nth_element(times.begin(), times.begin() + runs / 2, times.end());
   return times[runs / 2];

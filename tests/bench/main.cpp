@@ -73,9 +73,9 @@ scene::Scene plain_scene() {
   material.roughness = 0.3f;
   material.normal_scale = 1.0f;
   material.ior = 1.5f;
-  for (auto* slot : {&material.base_color_texture, &material.metallic_roughness_texture,
-                     &material.normal_texture, &material.occlusion_texture,
-                     &material.emissive_texture}) {
+  for (auto* slot :
+       {&material.base_color_texture, &material.metallic_roughness_texture,
+        &material.normal_texture, &material.occlusion_texture, &material.emissive_texture}) {
     slot->texture = shared::no_texture;
   }
   scene.materials.push_back(material);
@@ -92,7 +92,8 @@ scene::Scene plain_scene() {
       mesh.vertices.push_back(vertex);
       mesh.bounds.include(point);
     }
-    for (const std::uint32_t index : {0u, 1u, 2u, 0u, 2u, 3u}) mesh.indices.push_back(first + index);
+    for (const std::uint32_t index : {0u, 1u, 2u, 0u, 2u, 3u})
+      mesh.indices.push_back(first + index);
   };
   quad({-4, 0, 4}, {8, 0, 0}, {0, 0, -8});
   quad({-4, 0, -4}, {8, 0, 0}, {0, 4, 0});
@@ -195,9 +196,9 @@ void run(const Options& options) {
   auto recording = std::make_unique<RecordingTracer>(std::move(engine.parts().tracer));
   const RecordingTracer& tracer = *recording;
   engine.parts().tracer = std::move(recording);
-  const scene::Environment environment =
-      options.environment.empty() ? scene::constant_environment(glm::vec3(1.0f))
-                                  : scene::load_environment(options.environment);
+  const scene::Environment environment = options.environment.empty()
+                                             ? scene::constant_environment(glm::vec3(1.0f))
+                                             : scene::load_environment(options.environment);
   nlohmann::json results = nlohmann::json::array();
   const auto measure_scene = [&](scene::Scene loaded) {
     const auto scene = std::make_shared<const scene::Scene>(std::move(loaded));
@@ -230,10 +231,11 @@ void run(const Options& options) {
 int main(int argc, char** argv) {
   using namespace heliograph::bench;
   Options options;
-  CLI::App app("Times every pass of a frame while the camera moves a little: median ms, ns per "
-               "pixel, rays per second, bytes of images, how many times longer than a copy of as "
-               "many bytes the pass takes, than Embree alone on the same rays, and how many times "
-               "longer the shader takes that a host kernel stands for.");
+  CLI::App app(
+      "Times every pass of a frame while the camera moves a little: median ms, ns per "
+      "pixel, rays per second, bytes of images, how many times longer than a copy of as "
+      "many bytes the pass takes, than Embree alone on the same rays, and how many times "
+      "longer the shader takes that a host kernel stands for.");
   app.add_option("scenes", options.scenes, "glTF files; without any, two quads");
   app.add_option("--size", options.sizes, "picture sizes, such as 640x360")->expected(1, -1);
   app.add_option("--frames", options.frames, "measured frames")->check(CLI::PositiveNumber);

@@ -51,8 +51,8 @@ PictureShow::PictureShow(session::SessionHost& host, std::vector<render::Frame> 
                                           .measurements = measurements_,
                                           .wakeup = wakeup_,
                                           .tracer = host.engine().tracer()}),
-      interval_(std::chrono::duration_cast<Clock::duration>(
-          std::chrono::duration<double>(1.0 / rate))) {
+      interval_(
+          std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / rate))) {
   for (render::Frame& frame : pictures) {
     auto picture = std::make_shared<session::Picture>();
     picture->frame = std::move(frame);

@@ -23,11 +23,11 @@ struct ClientOptions {
 
 /// What one process of viewers saw.
 struct ClientReport {
-  std::vector<std::uint64_t> frames;   // of each viewer that reads
-  std::vector<double> overhead_ms;     // of each frame: render end to first byte, less the encoding
-  std::uint64_t bytes = 0;             // everything that came, headers too
-  std::uint64_t disorder = 0;          // frame numbers or pictures that went backwards
-  std::uint64_t adapted = 0;           // frames of less than the quality or size that was asked for
+  std::vector<std::uint64_t> frames;  // of each viewer that reads
+  std::vector<double> overhead_ms;    // of each frame: render end to first byte, less the encoding
+  std::uint64_t bytes = 0;            // everything that came, headers too
+  std::uint64_t disorder = 0;         // frame numbers or pictures that went backwards
+  std::uint64_t adapted = 0;          // frames of less than the quality or size that was asked for
 };
 
 /// Watches the server on this machine and acknowledges every frame, without decoding it. `tell` is

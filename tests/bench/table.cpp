@@ -47,7 +47,8 @@ nlohmann::json Table::summary(const std::vector<render::PassWork>& work,
     for (const render::PassWork& done : work) {
       if (done.name != name || ms <= 0.0) continue;
       const double rate = kind == protocol::PassKind::host ? rates.processor : rates.shader;
-      if (done.rays > 0) pass["million_rays_per_second"] = static_cast<double>(done.rays) / ms / 1e3;
+      if (done.rays > 0)
+        pass["million_rays_per_second"] = static_cast<double>(done.rays) / ms / 1e3;
       if (done.image_bytes > 0) {
         const double bytes = static_cast<double>(done.image_bytes);
         pass["image_bytes"] = done.image_bytes;
@@ -57,14 +58,10 @@ nlohmann::json Table::summary(const std::vector<render::PassWork>& work,
     passes.push_back(std::move(pass));
   }
   const auto [least, most] = std::minmax_element(frames_.begin(), frames_.end());
-  return {{"width", width_},
-          {"height", height_},
-          {"frames", frames_.size()},
-          {"frame_ms", median(frames_)},
-          {"frame_ms_least", *least},
-          {"frame_ms_most", *most},
-          {"passes_ms", sum},
-          {"passes", passes}};
+  return {{"width", width_},          {"height", height_},
+          {"frames", frames_.size()}, {"frame_ms", median(frames_)},
+          {"frame_ms_least", *least}, {"frame_ms_most", *most},
+          {"passes_ms", sum},         {"passes", passes}};
 }
 
 void print(const nlohmann::json& summary) {

@@ -19,9 +19,9 @@ class Table {
   /// Median milliseconds of the pass `name`; nothing where it never ran.
   std::optional<double> median_of(const std::string& name) const;
 
-  /// A JSON object: frame_ms (median, least, most), and of every pass its median time, ns per pixel,
-  /// millions of rays per second, bytes of images, and how many times longer it takes than copying
-  /// as many bytes does.
+  /// A JSON object: frame_ms (median, least, most), and of every pass its median time, ns per
+  /// pixel, millions of rays per second, bytes of images, and how many times longer it takes than
+  /// copying as many bytes does.
   nlohmann::json summary(const std::vector<render::PassWork>& work, const CopyRates& rates) const;
 
  private:

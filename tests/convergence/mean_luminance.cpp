@@ -38,7 +38,8 @@ std::vector<double> mean_luminances(render::Renderer& renderer, protocol::Settin
   for (int seed = first; seed < end; ++seed) {
     settings.sampling.seed = seed;
     if (!renderer.set_settings(settings)) throw std::runtime_error("settings refused");
-    while (renderer.render().samples < samples) {}
+    while (renderer.render().samples < samples) {
+    }
     means.push_back(mean_luminance(renderer.capture("accumulated").value()));
     if (!std::isfinite(means.back())) throw std::runtime_error("a pixel is no number");
   }

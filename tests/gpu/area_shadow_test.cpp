@@ -56,7 +56,8 @@ Shadow trace(const std::shared_ptr<scene::Scene>& scene, std::uint32_t samples) 
         (glm::vec2(i % width, i / width) + 0.5f) / glm::vec2(width, height) * 2.0f - 1.0f;
     const glm::vec3 position(constants.inverse_view *
                              glm::vec4(ndc * glm::vec2(constants.unproject) * view_z, -view_z, 1));
-    if (std::abs(position.y) < 0.01f && glm::length(position) < 8.0f) shadow.positions[i] = position;
+    if (std::abs(position.y) < 0.01f && glm::length(position) < 8.0f)
+      shadow.positions[i] = position;
   }
   return shadow;
 }
@@ -76,8 +77,8 @@ double lit_share(const glm::dvec3& position, const glm::dvec3& direction,
     const glm::dvec3 to = point((i % strata + 0.5) / strata, (i / strata + 0.5) / strata);
     const glm::dvec3 offset = to - position;
     const double squared = glm::dot(offset, offset);
-    const double weight = std::max(-glm::dot(offset, direction), 0.0) * std::max(offset.y, 0.0) /
-                          (squared * squared);
+    const double weight =
+        std::max(-glm::dot(offset, direction), 0.0) * std::max(offset.y, 0.0) / (squared * squared);
     all += weight;
     if (!hidden_by_the_table(position, to)) lit += weight;
   }

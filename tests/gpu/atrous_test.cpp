@@ -212,7 +212,8 @@ TEST_P(Atrous, LeavesAConstantAloneWithEitherKernel) {
 
 TEST_P(Atrous, KeepsTheEdgeBetweenTwoSurfaces) {
   const std::array upper{glm::vec4(0, 0, 1.5f, 5), glm::vec4(0, 0, 1.5f, 5)};
-  const std::array lower{glm::vec4(0, 1.5f, 0, 5), glm::vec4(0, 0, 1.5f, 50)};  // turned, far behind
+  const std::array lower{glm::vec4(0, 1.5f, 0, 5),
+                         glm::vec4(0, 0, 1.5f, 50)};  // turned, far behind
   for (std::size_t edge = 0; edge < upper.size(); ++edge) {
     Input in(1);
     for (std::size_t i = 0; i < pixels; ++i) {
@@ -273,8 +274,8 @@ TEST_P(Atrous, NeverReadsTheBackgroundNorFiltersIt) {
   }
 }
 
-/// Where `flag` is set, surfaces of the first roughness are left alone, of the second filtered once,
-/// of the third in every iteration.
+/// Where `flag` is set, surfaces of the first roughness are left alone, of the second filtered
+/// once, of the third in every iteration.
 void expect_levels(std::uint32_t flag, const std::array<float, 3>& roughness) {
   Input in(9);
   const auto third = [](std::size_t i) { return std::min<std::size_t>(i % width / 12, 2); };

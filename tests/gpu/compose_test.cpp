@@ -44,8 +44,7 @@ Pictures compose_both(SceneBuilder& scene, const Inputs& in) {
     return rig.input(name, VK_FORMAT_R32_SFLOAT, std::vector(pixels, value));
   };
   const auto colored = [&](const char* name, const glm::vec3& value) {
-    return rig.input(name, VK_FORMAT_R32G32B32A32_SFLOAT,
-                     std::vector(pixels, glm::vec4(value, 1)));
+    return rig.input(name, VK_FORMAT_R32G32B32A32_SFLOAT, std::vector(pixels, glm::vec4(value, 1)));
   };
   const auto background = colored("background", in.background);
   render::RawSignals raw{flat("shadow", in.shadow), flat("ambient", in.ambient), {}};

@@ -244,7 +244,8 @@ TEST_P(GBuffer, BackFacesAreCulledUnlessDoubleSidedAndThenFaceTheViewer) {
 }
 
 /// The shading normal in the middle of a quad whose normal map says `tilt` everywhere.
-glm::vec3 mapped(Source source, const glm::vec3& tilt, const glm::mat4& world, const glm::vec3& eye) {
+glm::vec3 mapped(Source source, const glm::vec3& tilt, const glm::mat4& world,
+                 const glm::vec3& eye) {
   SceneBuilder builder;
   shared::Material material = surface(glm::vec3(1.0f));
   const glm::vec3 encoded = glm::normalize(tilt) * 127.5f + 127.5f;
@@ -262,21 +263,25 @@ glm::vec3 mapped(Source source, const glm::vec3& tilt, const glm::mat4& world, c
 TEST_P(GBuffer, TiltsAlongTangentAndBitangent) {
   const glm::vec3 tilt(0.5f, 0.3f, 0.8f);
   // The quad's tangent is +x; its bitangent, cross(normal, tangent), +y.
-  EXPECT_LE(glm::distance(mapped(GetParam(), tilt, glm::mat4(1.0f), {0, 0, 5}), glm::normalize(tilt)), 0.01f);
+  EXPECT_LE(
+      glm::distance(mapped(GetParam(), tilt, glm::mat4(1.0f), {0, 0, 5}), glm::normalize(tilt)),
+      0.01f);
 }
 
 TEST_P(GBuffer, OfAMirroredInstanceIsTheMirrorImage) {
   const glm::vec3 tilt(0.5f, 0.3f, 0.8f);
   const glm::mat4 mirror = glm::scale(glm::mat4(1.0f), {-1, 1, 1});
-  EXPECT_LE(
-      glm::distance(mapped(GetParam(), tilt, mirror, {0, 0, 5}), glm::normalize(tilt * glm::vec3(-1, 1, 1))),
-      0.01f);
+  EXPECT_LE(glm::distance(mapped(GetParam(), tilt, mirror, {0, 0, 5}),
+                          glm::normalize(tilt * glm::vec3(-1, 1, 1))),
+            0.01f);
 }
 
 // glTF 2.0, 3.9.6: the back face's normals are reversed, mapped ones too.
 TEST_P(GBuffer, OfABackFaceIsReversed) {
   const glm::vec3 tilt(0.5f, 0.3f, 0.8f);
-  EXPECT_LE(glm::distance(mapped(GetParam(), tilt, glm::mat4(1.0f), {0, 0, -5}), -glm::normalize(tilt)), 0.01f);
+  EXPECT_LE(
+      glm::distance(mapped(GetParam(), tilt, glm::mat4(1.0f), {0, 0, -5}), -glm::normalize(tilt)),
+      0.01f);
 }
 
 TEST_P(GBuffer, AlphaMaskLeavesHoles) {

@@ -33,14 +33,11 @@ struct BothWays {
     constexpr std::uint32_t pixels = extent.width * extent.height;
     constexpr VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     gpu::FramePlan& plan = rig.plan();
-    const tracing::RayStream rays{plan.buffer("ray_count", sizeof(shared::RayCount),
-                                              usage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
-                                              gpu::Memory::device),
-                                  plan.buffer("rays", sizeof(shared::Ray) * pixels, usage,
-                                              gpu::Memory::device),
-                                  pixels};
-    const auto hits =
-        plan.buffer("hits", sizeof(shared::Hit) * pixels, usage, gpu::Memory::device);
+    const tracing::RayStream rays{
+        plan.buffer("ray_count", sizeof(shared::RayCount),
+                    usage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, gpu::Memory::device),
+        plan.buffer("rays", sizeof(shared::Ray) * pixels, usage, gpu::Memory::device), pixels};
+    const auto hits = plan.buffer("hits", sizeof(shared::Hit) * pixels, usage, gpu::Memory::device);
     for (gpu::ImageRef* image : {&normals, &color, &surface, &emissive, &place}) {
       *image = plan.image("met", VK_FORMAT_R32G32B32A32_SFLOAT);
       plan.get(*image).clear();
@@ -75,8 +72,8 @@ struct Differences {
   int compared = 0;  // pixels that show the same instance both ways
   int covered = 0;   // by the rasteriser
   double color = 0.0, roughness = 0.0, metallic = 0.0, shading = 0.0, geometric = 0.0,
-         emissive = 0.0;                     // means
-  double depth = 0.0;                        // largest, relative
+         emissive = 0.0;  // means
+  double depth = 0.0;     // largest, relative
 };
 
 Differences compare(const BothWays& view) {
@@ -106,12 +103,12 @@ Differences compare(const BothWays& view) {
       sum.color += glm::distance(texel(color, x, y), texel(met_color, x, y));
       sum.shading += glm::distance(decode({n.x, n.y}), decode({m.x, m.y}));
       sum.geometric += glm::distance(decode({n.z, n.w}), decode({m.z, m.w}));
-      sum.emissive += glm::distance(glm::vec3(texel(emissive, x, y)),
-                                    glm::vec3(texel(met_emissive, x, y)));
+      sum.emissive +=
+          glm::distance(glm::vec3(texel(emissive, x, y)), glm::vec3(texel(met_emissive, x, y)));
     }
   }
-  for (double* mean : {&sum.color, &sum.roughness, &sum.metallic, &sum.shading, &sum.geometric,
-                       &sum.emissive}) {
+  for (double* mean :
+       {&sum.color, &sum.roughness, &sum.metallic, &sum.shading, &sum.geometric, &sum.emissive}) {
     *mean /= std::max(sum.compared, 1);
   }
   return sum;

@@ -45,14 +45,13 @@ class Stage {
         gbuffer_(render::rasterize_gbuffer(rig_.plan(), rig_.inputs())) {
     constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     constexpr std::uint32_t pixels = extent.width * extent.height;
-    stream_ = {rig_.plan().buffer("count", sizeof(shared::RayCount),
-                                  storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
-                                  gpu::Memory::upload),
-               rig_.plan().buffer("rays", pixels * sizeof(shared::Ray), storage,
-                                  gpu::Memory::upload),
-               pixels};
-    hits_ = rig_.plan().buffer("hits", pixels * sizeof(shared::Hit), storage,
-                               gpu::Memory::readback);
+    stream_ = {
+        rig_.plan().buffer("count", sizeof(shared::RayCount),
+                           storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, gpu::Memory::upload),
+        rig_.plan().buffer("rays", pixels * sizeof(shared::Ray), storage, gpu::Memory::upload),
+        pixels};
+    hits_ =
+        rig_.plan().buffer("hits", pixels * sizeof(shared::Hit), storage, gpu::Memory::readback);
     const auto& in = rig_.inputs();
     in.tracer.trace_closest(rig_.plan(), "closest", in.structure, stream_, hits_);
   }
@@ -65,9 +64,9 @@ class Stage {
     const shared::RayCount count{extent.width * extent.height,
                                  (extent.width * extent.height + 63) / 64, 1, 1};
     std::memcpy(rig_.plan().get(stream_.count).mapped(), &count, sizeof count);
-    auto* const rays =
-        reinterpret_cast<shared::Ray*>(rig_.plan().get(stream_.rays).mapped());
-    for (std::uint32_t i = 0; i < count.count; ++i) rays[i] = ray(i % extent.width, i / extent.width);
+    auto* const rays = reinterpret_cast<shared::Ray*>(rig_.plan().get(stream_.rays).mapped());
+    for (std::uint32_t i = 0; i < count.count; ++i)
+      rays[i] = ray(i % extent.width, i / extent.width);
     rig_.run();
     motion_ = rig_.read(gbuffer_.motion);
     instances_ = rig_.read(gbuffer_.instance);
@@ -78,8 +77,7 @@ class Stage {
     const auto& c = rig_.constants();
     const glm::vec2 ndc =
         (glm::vec2(x, y) + 0.5f) / glm::vec2(extent.width, extent.height) * 2.0f - 1.0f;
-    const glm::vec2 slope =
-        ndc * glm::vec2(c.unproject) + glm::vec2(c.unproject.z, c.unproject.w);
+    const glm::vec2 slope = ndc * glm::vec2(c.unproject) + glm::vec2(c.unproject.z, c.unproject.w);
     const glm::vec3 direction = glm::normalize(glm::mat3(c.inverse_view) * glm::vec3(slope, -1.0f));
     return {glm::vec3(c.eye), 0.0f, direction, 1e30f, 0, 0, 0, 0};
   }
@@ -90,8 +88,8 @@ class Stage {
   }
   shared::Hit hit(std::uint32_t x, std::uint32_t y) const {
     shared::Hit hit;
-    std::memcpy(&hit,
-                rig_.plan().get(hits_).mapped() + (y * extent.width + x) * sizeof hit, sizeof hit);
+    std::memcpy(&hit, rig_.plan().get(hits_).mapped() + (y * extent.width + x) * sizeof hit,
+                sizeof hit);
     return hit;
   }
   const shared::FrameConstants& constants() const { return rig_.constants(); }
@@ -139,8 +137,8 @@ Comparison compare(const Stage& stage, const scene::Scene& now, const scene::Sce
       const shared::Hit truth = closest_by_search(now, stage.ray(x, y));
       const glm::vec4 motion = stage.motion(x, y);
       const std::uint32_t shown = stage.instance(x, y);
-      const bool same = truth.instance == shared::hit_none ? shown == 0
-                                                           : shown == truth.instance + 1;
+      const bool same =
+          truth.instance == shared::hit_none ? shown == 0 : shown == truth.instance + 1;
       if (!same) {
         ++result.outline;
         continue;
@@ -276,8 +274,7 @@ INSTANTIATE_TEST_SUITE_P(, Motion, testing::Values("embree", "software"),
 
 TEST(MovingScene, TwoRenderersShowOneSceneAtTheirOwnTimes) {
   const auto scene = rigid_scene();
-  const auto resources =
-      engine().upload(scene, scene::constant_environment(glm::vec3(1.0f)));
+  const auto resources = engine().upload(scene, scene::constant_environment(glm::vec3(1.0f)));
   auto& parts = engine().parts();
   render::MovingScene first(parts.device, *parts.tracer, resources);
   render::MovingScene second(parts.device, *parts.tracer, resources);
@@ -304,9 +301,8 @@ TEST(MovingScene, LightsRideOnTheirNodes) {
   rise.values = {0, 0, 0, 0, 4, 0};
   scene->clips[0].channels.push_back(rise);
   auto& parts = engine().parts();
-  render::MovingScene moving(
-      parts.device, *parts.tracer,
-      engine().upload(scene, scene::constant_environment(glm::vec3(1.0f))));
+  render::MovingScene moving(parts.device, *parts.tracer,
+                             engine().upload(scene, scene::constant_environment(glm::vec3(1.0f))));
   moving.set_pose(&scene->clips[0], 0.5);
   moving.advance();
   shared::Light light;
@@ -343,8 +339,7 @@ TEST_P(MovingCost, OfAHundredRigidInstances) {
     const auto start = std::chrono::steady_clock::now();
     moving.set_pose(&scene->clips[0], frame / 60.0);
     ASSERT_EQ(moving.advance(), true);
-    const std::chrono::duration<double, std::milli> time =
-        std::chrono::steady_clock::now() - start;
+    const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
     times.push_back(time.count());
   }
   std::nth_element(times.begin(), times.begin() + 30, times.end());

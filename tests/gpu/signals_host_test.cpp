@@ -56,8 +56,8 @@ TEST_P(SignalsHost, AccumulatesLikeTheShader) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, SignalsHost,
-                         testing::Values(VkExtent2D{1, 1}, VkExtent2D{17, 31},
-                                         VkExtent2D{130, 1}, VkExtent2D{177, 95}),
+                         testing::Values(VkExtent2D{1, 1}, VkExtent2D{17, 31}, VkExtent2D{130, 1},
+                                         VkExtent2D{177, 95}),
                          [](const auto& test) {
                            return std::to_string(test.param.width) + "x" +
                                   std::to_string(test.param.height);

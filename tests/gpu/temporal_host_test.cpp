@@ -39,8 +39,7 @@ class Twins {
     for (const bool host : {false, true}) {
       const auto in = with_kernels(rig_, host);
       auto& plan = rig_.plan();
-      visibility_.push_back(
-          render::accumulate_visibility(plan, in, guide, raw_visibility_, false));
+      visibility_.push_back(render::accumulate_visibility(plan, in, guide, raw_visibility_, false));
       specular_.push_back(
           render::accumulate_specular(plan, in, gbuffer, guide, raw_specular_, false));
       render::estimate_visibility_variance(plan, in, gbuffer, guide, visibility_.back());
@@ -182,8 +181,9 @@ TEST_F(TemporalHost, IsFasterThanTheShaders) {
   Twins twins({.extent = {640, 360}});
   twins.rig().run();
   twins.next();
-  expect_faster(twins.rig(), {"visibility.temporal", "visibility.rectify", "specular.temporal",
-                              "specular.rectify", "visibility.variance", "specular.variance"},
+  expect_faster(twins.rig(),
+                {"visibility.temporal", "visibility.rectify", "specular.temporal",
+                 "specular.rectify", "visibility.variance", "specular.variance"},
                 2.0);
 }
 

@@ -16,8 +16,8 @@ namespace {
 constexpr std::uint32_t width = 48, height = 32, pixels = width * height;
 constexpr VkExtent2D extent{width, height};
 
-/// A post in front of a wall, everything `scale` times as large; `joined`: as one thing, whose parts
-/// only depth tells apart.
+/// A post in front of a wall, everything `scale` times as large; `joined`: as one thing, whose
+/// parts only depth tells apart.
 struct PostAndWall {
   explicit PostAndWall(float scale_, bool joined = false) : scale(scale_) {
     const auto corners = [&](float x0, float x1, float y, float z) {
@@ -269,9 +269,10 @@ TEST(SceneMotion, IsHowFarLightsWentAgainstTheirWidthWeighedByTheirLight) {
   scene->nodes.push_back({.name = "sun", .transform = scene::Transform{}});
   const glm::quat down = glm::angleAxis(glm::radians(-90.0f), glm::vec3(1, 0, 0));
   const glm::quat end = glm::angleAxis(glm::radians(-100.0f), glm::vec3(1, 0, 0));
-  scene::Channel turn{.node = 1, .property = scene::Property::rotation, .width = 4,
-                      .times = {0, 10}, .values = {}};
-  for (const glm::quat& q : {down, end}) turn.values.insert(turn.values.end(), {q.x, q.y, q.z, q.w});
+  scene::Channel turn{
+      .node = 1, .property = scene::Property::rotation, .width = 4, .times = {0, 10}, .values = {}};
+  for (const glm::quat& q : {down, end})
+    turn.values.insert(turn.values.end(), {q.x, q.y, q.z, q.w});
   scene->clips.push_back({"turn", 10.0f, {turn}});
   FrameRig rig(scene, look({0, 1, 3}, glm::vec3(0.0f)), {.extent = extent});
   const auto motion_at = [&](double seconds) {

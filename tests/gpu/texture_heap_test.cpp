@@ -111,7 +111,8 @@ TEST_P(TextureHeap, ReadsLikeTheSampler) {
     for (std::size_t i = 0; i < inputs.size(); ++i) {
       const float distance = glm::distance(got[i].x, expected[i]);
       sum += distance;
-      // Samplers weigh texels in steps of 1/256 and round to a texel or level with little precision.
+      // Samplers weigh texels in steps of 1/256 and round to a texel or level with little
+      // precision.
       different += distance > 0.02f;
     }
     EXPECT_LE(different, 40) << "sampler " << texture;

@@ -111,7 +111,8 @@ TEST_P(TracerTest, BlendedSurfacesStopTheirShareOfTheRaysThatAskForIt) {
     // Without the stream's number they stop every ray.
     EXPECT_EQ(hit_count(textured.trace(rays)), rays.size());
     EXPECT_EQ(hit_count(uniform.trace(rays)), rays.size());
-    // Over the image of uv -1 to 2 every texel is seen as often: 8 of 15 have alpha 220, 7 have 120.
+    // Over the image of uv -1 to 2 every texel is seen as often: 8 of 15 have alpha 220, 7 have
+    // 120.
     const double mean_alpha = (8.0 * 220.0 + 7.0 * 120.0) / 15.0 / 255.0;
     const Answers seen = textured.trace(rays, count, 12345);
     EXPECT_NEAR(stopped_share(seen), factor * mean_alpha, 0.012) << "factor " << factor;

@@ -16,9 +16,8 @@ void furnish_room(SceneBuilder& builder) {
   builder.place(builder.add_quad({{{-8, 0, -4}, {8, 0, -4}, {8, 6, -4}, {-8, 6, -4}}}, wall));
   for (int i = 0; i < 5; ++i) {
     const glm::vec3 at(1.3f * static_cast<float>(i - 2), 0.5f, 0.0f);
-    builder.place(
-        builder.add_sphere(0.5f, surface({0.95f, 0.8f, 0.5f}, roughnesses[i], 1.0f)),
-        glm::translate(glm::mat4(1.0f), at + glm::vec3(0, 0, 1.4f)));
+    builder.place(builder.add_sphere(0.5f, surface({0.95f, 0.8f, 0.5f}, roughnesses[i], 1.0f)),
+                  glm::translate(glm::mat4(1.0f), at + glm::vec3(0, 0, 1.4f)));
     builder.place(builder.add_sphere(0.5f, surface({0.2f, 0.35f, 0.6f}, roughnesses[i], 0.0f)),
                   glm::translate(glm::mat4(1.0f), at + glm::vec3(0.4f, 0, -0.4f)));
   }
@@ -75,8 +74,8 @@ double mean_light(const render::FloatImage& image) {
   return sum;
 }
 
-// The truth samples the lights' areas and the real lobes; the hybrid integrates both by its fit. One
-// sphere alone is lit by nothing else.
+// The truth samples the lights' areas and the real lobes; the hybrid integrates both by its fit.
+// One sphere alone is lit by nothing else.
 TEST(AreaLights, LightASphereLikeManySamplesOfTheirArea) {
   for (const auto& [roughness, metallic] :
        {std::pair{0.2f, 1.0f}, {0.4f, 1.0f}, {0.7f, 1.0f}, {1.0f, 1.0f}, {0.4f, 0.0f}}) {

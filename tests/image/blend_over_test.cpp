@@ -37,9 +37,10 @@ std::array<glm::vec3, 4> wall(float z, float half) {
 class BlendOver : public testing::TestWithParam<PrimaryVisibility> {
  protected:
   /// The picture of the first frame, before anything is averaged.
-  render::FloatImage first_frame(const std::shared_ptr<const scene::Scene>& scene, const char* name) {
-    Still still(scene, scene::constant_environment(glm::vec3(0.5f)), look({0, 0, 4}, {0, 0, 0}, 20.0f),
-                48, 48);
+  render::FloatImage first_frame(const std::shared_ptr<const scene::Scene>& scene,
+                                 const char* name) {
+    Still still(scene, scene::constant_environment(glm::vec3(0.5f)),
+                look({0, 0, 4}, {0, 0, 0}, 20.0f), 48, 48);
     still.apply(undenoised(GetParam()));
     save_picture(name, still.accumulate(1));
     return still.capture("hdr");
@@ -70,8 +71,8 @@ TEST_P(BlendOver, LayersLieOverEachOtherWithoutGrain) {
     for (std::uint32_t y = 0; y < 48; ++y) {
       for (std::uint32_t x = 0; x < 48; ++x) {
         const glm::vec3 seen = rgb(picture, x, y);
-        ASSERT_LE(glm::distance(seen, expected), 0.004f) << x << ", " << y << ": " << seen.x << " "
-                                                         << seen.y << " " << seen.z;
+        ASSERT_LE(glm::distance(seen, expected), 0.004f)
+            << x << ", " << y << ": " << seen.x << " " << seen.y << " " << seen.z;
       }
     }
   }
@@ -80,8 +81,8 @@ TEST_P(BlendOver, LayersLieOverEachOtherWithoutGrain) {
 TEST_P(BlendOver, TheGBufferHoldsWhatIsSolid) {
   SceneBuilder builder;
   const auto pane = builder.add_quad(wall(1, 3), veil(glm::vec3(1.0f), 0.25f));
-  const auto opaque = builder.add_quad({{{-3, -3, 0.5f}, {0, -3, 0.5f}, {0, 3, 0.5f}, {-3, 3, 0.5f}}},
-                                       veil(glm::vec3(0.5f), 1.0f));
+  const auto opaque = builder.add_quad(
+      {{{-3, -3, 0.5f}, {0, -3, 0.5f}, {0, 3, 0.5f}, {-3, 3, 0.5f}}}, veil(glm::vec3(0.5f), 1.0f));
   builder.place(pane).place(opaque);
   Still still(builder.build(), scene::constant_environment(glm::vec3(0.0f)),
               look({0, 0, 4}, {0, 0, 0}, 20.0f), 32, 32);
@@ -143,7 +144,8 @@ double error_in_motion(PrimaryVisibility source, float alpha) {
   pane.base_color_texture.texture = builder.add_texture(16, 16, true, checks);
   shared::Material board = surface(glm::vec3(0.3f));
   board.flags = shared::material_unlit;
-  builder.place(builder.add_quad(wall(0, 1.5f), pane)).place(builder.add_quad(wall(-20, 40), board));
+  builder.place(builder.add_quad(wall(0, 1.5f), pane))
+      .place(builder.add_quad(wall(-20, 40), board));
   const auto scene = builder.build();
   const auto camera = [](int frame) {
     const float x = 0.04f * static_cast<float>(frame);
@@ -185,15 +187,17 @@ std::shared_ptr<const scene::Scene> veiled_room() {
                                  surface({0.6f, 0.5f, 0.4f}, 0.5f)));
   builder.place(builder.add_sphere(0.7f, surface({0.8f, 0.2f, 0.1f}, 0.2f)),
                 glm::translate(glm::mat4(1.0f), {-0.8f, 0.7f, -1}));
-  shared::Material smooth = surface({0.3f, 0.6f, 0.9f}, 0.1f), cloth = surface({0.9f, 0.8f, 0.3f}, 0.9f);
+  shared::Material smooth = surface({0.3f, 0.6f, 0.9f}, 0.1f),
+                   cloth = surface({0.9f, 0.8f, 0.3f}, 0.9f);
   smooth.base_color.w = 0.4f;
   cloth.base_color.w = 0.7f;
   smooth.flags = cloth.flags = shared::material_alpha_blend | shared::material_double_sided;
-  builder.place(builder.add_quad({{{-2, 0, 0}, {0.6f, 0, 0.6f}, {0.6f, 1.8f, 0.6f}, {-2, 1.8f, 0}}},
-                                 smooth));
-  builder.place(builder.add_quad({{{-0.4f, 0.2f, 1}, {2, 0.2f, -0.5f}, {2, 1.6f, -0.5f}, {-0.4f, 1.6f, 1}}},
-                                 cloth));
-  builder.place(builder.add_sphere(0.5f, smooth), glm::translate(glm::mat4(1.0f), {1.6f, 0.5f, 0.8f}));
+  builder.place(
+      builder.add_quad({{{-2, 0, 0}, {0.6f, 0, 0.6f}, {0.6f, 1.8f, 0.6f}, {-2, 1.8f, 0}}}, smooth));
+  builder.place(builder.add_quad(
+      {{{-0.4f, 0.2f, 1}, {2, 0.2f, -0.5f}, {2, 1.6f, -0.5f}, {-0.4f, 1.6f, 1}}}, cloth));
+  builder.place(builder.add_sphere(0.5f, smooth),
+                glm::translate(glm::mat4(1.0f), {1.6f, 0.5f, 0.8f}));
   builder.add_sun({0.5f, -1, -0.4f}, {3.0f, 2.8f, 2.4f}).add_lamp({2, 2, 1}, {4, 3, 2});
   return builder.build();
 }
@@ -214,7 +218,8 @@ TEST_P(BlendOver, ConvergesToTheSamePaths) {
   const auto sky = [](const glm::vec3& d) {
     return glm::vec3(0.5f, 0.6f, 0.8f) + glm::vec3(0.3f, 0.2f, 0.1f) * d.y + 0.2f * d.x;
   };
-  Still still(veiled_room(), make_environment(128, sky), look({0, 1.6f, 4.5f}, {0, 0.7f, 0}), 96, 54);
+  Still still(veiled_room(), make_environment(128, sky), look({0, 1.6f, 4.5f}, {0, 0.7f, 0}), 96,
+              54);
   protocol::Settings truth = undenoised(GetParam());
   truth.reference.use = protocol::ReferenceUse::always;
   truth.reference.scope = protocol::ReferenceScope::same_paths;

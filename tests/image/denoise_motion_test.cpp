@@ -56,11 +56,14 @@ std::shared_ptr<const scene::Scene> box_under_a_sun(float sun_width) {
   const glm::quat swung = glm::angleAxis(glm::radians(45.0f), glm::vec3(0, 1, 0)) * facing;
   scene::Transform place;
   place.rotation = facing;
-  scene->nodes.push_back({.name = "sun", .parent = {}, .local = place.matrix(),
-                          .world = place.matrix(), .transform = place});
-  const auto rotation = channel(
-      *scene->lights[0].node, scene::Property::rotation,
-      {facing.x, facing.y, facing.z, facing.w, swung.x, swung.y, swung.z, swung.w});
+  scene->nodes.push_back({.name = "sun",
+                          .parent = {},
+                          .local = place.matrix(),
+                          .world = place.matrix(),
+                          .transform = place});
+  const auto rotation =
+      channel(*scene->lights[0].node, scene::Property::rotation,
+              {facing.x, facing.y, facing.z, facing.w, swung.x, swung.y, swung.z, swung.w});
   scene->clips = {slide, {"swing", clip_seconds, {rotation}}};
   return scene;
 }

@@ -10,9 +10,8 @@ namespace heliograph::test {
 namespace {
 
 scene::Environment sky() {
-  return make_environment(64, [](const glm::vec3& d) {
-    return glm::vec3(0.4f + 0.3f * d.x, 0.6f, 0.9f + 0.5f * d.y);
-  });
+  return make_environment(
+      64, [](const glm::vec3& d) { return glm::vec3(0.4f + 0.3f * d.x, 0.6f, 0.9f + 0.5f * d.y); });
 }
 
 /// A floor that mirrors a little, spheres on it, a sun and a lamp.

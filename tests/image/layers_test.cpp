@@ -1,5 +1,5 @@
-// What extensions add to glTF's own material: index of refraction, specular strength and colour, clear
-// coats, sheen, light that passes through; their factors and their textures.
+// What extensions add to glTF's own material: index of refraction, specular strength and colour,
+// clear coats, sheen, light that passes through; their factors and their textures.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -140,9 +140,9 @@ std::shared_ptr<const scene::Scene> workshop() {
   SceneBuilder builder;
   shared::Material dense = surface({0.1f, 0.1f, 0.3f}, 0.1f);
   dense.ior = 2.4f;
-  const auto floor = builder.add_quad(
-      {{{-6, 0, 4}, {6, 0, 4}, {6, 0, -6}, {-6, 0, -6}}},
-      builder.with_layers(surface({0.6f, 0.5f, 0.4f}, 0.6f), coat(1.0f, 0.1f)));
+  const auto floor =
+      builder.add_quad({{{-6, 0, 4}, {6, 0, 4}, {6, 0, -6}, {-6, 0, -6}}},
+                       builder.with_layers(surface({0.6f, 0.5f, 0.4f}, 0.6f), coat(1.0f, 0.1f)));
   builder.place(floor);
   const std::vector<shared::Material> materials{
       builder.with_layers(surface({0.7f, 0.1f, 0.1f}, 0.5f, 0.6f), coat(1.0f, 0.0f)),
@@ -223,7 +223,8 @@ std::shared_ptr<const scene::Scene> textured_wall() {
   layers.specular_color_texture = slot(true, colors);
   layers.clearcoat = 1.0f;
   layers.clearcoat_roughness = 0.6f;
-  layers.clearcoat_texture = slot(false, {255, 0, 0, 255, 128, 0, 0, 255, 0, 0, 0, 255, 255, 0, 0, 255});
+  layers.clearcoat_texture =
+      slot(false, {255, 0, 0, 255, 128, 0, 0, 255, 0, 0, 0, 255, 255, 0, 0, 255});
   layers.clearcoat_roughness_texture = slot(false, strength);
   layers.clearcoat_normal_texture = slot(false, bumps);
   layers.sheen_color = glm::vec3(0.8f);
@@ -231,7 +232,8 @@ std::shared_ptr<const scene::Scene> textured_wall() {
   layers.sheen_color_texture = slot(true, colors);
   layers.sheen_roughness_texture = slot(false, strength);
   layers.transmission = 0.8f;
-  layers.transmission_texture = slot(false, {0, 0, 0, 255, 255, 0, 0, 255, 0, 0, 0, 255, 128, 0, 0, 255});
+  layers.transmission_texture =
+      slot(false, {0, 0, 0, 255, 255, 0, 0, 255, 0, 0, 0, 255, 128, 0, 0, 255});
   layers.thickness = 1.0f;
   layers.attenuation_distance = 1.0f;
   layers.attenuation_color = {0.9f, 0.5f, 0.3f};
@@ -245,7 +247,8 @@ std::shared_ptr<const scene::Scene> textured_wall() {
 }
 
 /// Mean of a quarter of the wall, away from its rims.
-glm::dvec3 quarter_mean(const render::FloatImage& radiance, std::uint32_t column, std::uint32_t row) {
+glm::dvec3 quarter_mean(const render::FloatImage& radiance, std::uint32_t column,
+                        std::uint32_t row) {
   glm::dvec3 sum(0.0);
   const std::uint32_t width = radiance.width / 2, height = radiance.height / 2;
   int count = 0;
@@ -302,8 +305,8 @@ TEST(SpecularChart, TexturesWorkLikeFactors) {
                 layer.specular_color_texture.texture != shared::no_texture;
   }
   EXPECT_GE(textured, 2u);
-  Still still(scene, make_environment(128, sky), scene::fit_camera(scene->bounds, 40.0f, 4.0f / 3.0f),
-              160, 120);
+  Still still(scene, make_environment(128, sky),
+              scene::fit_camera(scene->bounds, 40.0f, 4.0f / 3.0f), 160, 120);
   protocol::Settings truth = undenoised();
   truth.reference.use = protocol::ReferenceUse::always;
   truth.reference.scope = protocol::ReferenceScope::same_paths;
@@ -337,8 +340,8 @@ TEST(Coat, HasItsOwnNormals) {
 TEST(Sheen, BrightensTheRim) {
   const auto rim = [](const MaterialLayers& layers) {
     SceneBuilder builder;
-    builder.place(builder.add_sphere(
-        1.0f, builder.with_layers(surface(glm::vec3(0.02f), 1.0f), layers)));
+    builder.place(
+        builder.add_sphere(1.0f, builder.with_layers(surface(glm::vec3(0.02f), 1.0f), layers)));
     builder.add_sun({0, 0.3f, -1}, glm::vec3(1.0f));
     Still still(builder.build(), scene::constant_environment(glm::vec3(0.0f)),
                 look({0, 0, 4}, {0, 0, 0}, 36.0f), 65, 65);
@@ -357,8 +360,8 @@ TEST(Sheen, BrightensTheRim) {
 TEST(Coat, MirrorsTheSunOnARoughSurface) {
   const auto highlight = [](const MaterialLayers& layers) {
     SceneBuilder builder;
-    builder.place(builder.add_sphere(
-        1.0f, builder.with_layers(surface({0.3f, 0.0f, 0.0f}, 0.9f), layers)));
+    builder.place(
+        builder.add_sphere(1.0f, builder.with_layers(surface({0.3f, 0.0f, 0.0f}, 0.9f), layers)));
     builder.add_sun({0, 0, -1}, glm::vec3(1.0f));
     Still still(builder.build(), scene::constant_environment(glm::vec3(0.0f)),
                 look({0, 0, 4}, {0, 0, 0}, 36.0f), 65, 65);

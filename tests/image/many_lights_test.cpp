@@ -16,8 +16,8 @@ std::shared_ptr<scene::Scene> courtyard() {
                                  surface({0.8f, 0.7f, 0.6f}, 0.6f)));
   const auto sphere = builder.add_sphere(0.8f, surface(glm::vec3(0.9f), 0.25f, 1.0f));
   for (int i = 0; i < 9; ++i) {
-    builder.place(sphere, glm::translate(glm::mat4(1.0f), glm::vec3(4 * (i % 3) - 4, 0.8f,
-                                                                    4 * (i / 3) - 4)));
+    builder.place(
+        sphere, glm::translate(glm::mat4(1.0f), glm::vec3(4 * (i % 3) - 4, 0.8f, 4 * (i / 3) - 4)));
   }
   return std::make_shared<scene::Scene>(*builder.build());
 }

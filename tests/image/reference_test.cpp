@@ -38,8 +38,8 @@ double mean_luminance(Still& still, const protocol::Settings& settings, std::uin
   const render::FloatImage radiance = still.capture("accumulated");
   double sum = 0.0;
   for (std::size_t i = 0; i < radiance.rgba.size(); i += 4) {
-    const double luminance = 0.2126 * radiance.rgba[i] + 0.7152 * radiance.rgba[i + 1] +
-                             0.0722 * radiance.rgba[i + 2];
+    const double luminance =
+        0.2126 * radiance.rgba[i] + 0.7152 * radiance.rgba[i + 1] + 0.0722 * radiance.rgba[i + 2];
     EXPECT_TRUE(std::isfinite(luminance));
     sum += luminance;
   }
@@ -86,8 +86,8 @@ TEST_P(SamePaths, AreWhatTheHybridConvergesTo) {
   protocol::Settings hybrid = undenoised();
   protocol::Settings truth = traced(ReferenceScope::same_paths);
   hybrid.shadows.angular_diameter_override = truth.shadows.angular_diameter_override = angle;
-  const std::string name = "same_paths_" + std::to_string(static_cast<int>(100 * roughness)) +
-                           "_" + std::to_string(static_cast<int>(angle));
+  const std::string name = "same_paths_" + std::to_string(static_cast<int>(100 * roughness)) + "_" +
+                           std::to_string(static_cast<int>(angle));
   const double got = mean_luminance(still, hybrid, 64, name + "_hybrid");
   const double expected = mean_luminance(still, truth, 64, name + "_reference");
   EXPECT_NEAR(got / expected, 1.0, 0.01) << "roughness " << roughness << ", angle " << angle;
@@ -182,8 +182,7 @@ TEST_P(BothScopes, SunOnAFloorIsAnalytic) {
   still.apply(traced(GetParam()));
   still.accumulate(4);
   const double expected =
-      3.0 * shade_light_twin(0.5, 0.0, 1.0, {0, 0, 1},
-                             {toward_sun.x, toward_sun.z, toward_sun.y});
+      3.0 * shade_light_twin(0.5, 0.0, 1.0, {0, 0, 1}, {toward_sun.x, toward_sun.z, toward_sun.y});
   EXPECT_NEAR(rgb(still.capture("accumulated"), 8, 8).x, expected, 0.005 * expected);
 }
 
@@ -209,8 +208,7 @@ TEST_P(BothScopes, BlendedSurfacesCoverTheirShare) {
   shared::Material veil = surface({0.8f, 0.4f, 0.2f});
   veil.base_color.w = 0.25f;
   veil.flags = shared::material_alpha_blend | shared::material_unlit;
-  const auto quad =
-      builder.add_quad({{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}}, veil);
+  const auto quad = builder.add_quad({{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}}, veil);
   builder.place(quad).place(quad, glm::translate(glm::mat4(1.0f), {0, 0, -1}));
   Still still(builder.build(), scene::constant_environment(glm::vec3(1.0f)),
               look({0, 0, 4}, {0, 0, 0}, 20.0f), 32, 32);
@@ -248,8 +246,7 @@ TEST(FullReference, IsTheSameWhateverTraces) {
   for (const std::string& tracer : offered_tracers()) {
     Still still(still_life(0.3f), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 48, 27,
                 tracer);
-    mean.push_back(
-        mean_luminance(still, traced(ReferenceScope::full), 8, "traced_by_" + tracer));
+    mean.push_back(mean_luminance(still, traced(ReferenceScope::full), 8, "traced_by_" + tracer));
   }
   for (const double other : mean) EXPECT_NEAR(other / mean[0], 1.0, 1e-3);
 }

@@ -38,8 +38,7 @@ TEST_F(ReleasedImages, LookAsBeforeHoweverTheyAreRead) {
   auto given_away = std::make_unique<scene::Scene>(textured());
   const std::uint64_t decoded = given_away->bytes();
   ASSERT_FALSE(given_away->images.empty());
-  const auto kept =
-      engine().upload(std::make_shared<const scene::Scene>(*given_away), white_);
+  const auto kept = engine().upload(std::make_shared<const scene::Scene>(*given_away), white_);
   const auto released = engine().upload(std::move(given_away), white_);
   EXPECT_FALSE(render::scene_of(*kept)->images[0].pixels.empty());
   for (const scene::Image& image : render::scene_of(*released)->images) {
@@ -47,8 +46,8 @@ TEST_F(ReleasedImages, LookAsBeforeHoweverTheyAreRead) {
   }
   EXPECT_LT(render::scene_of(*released)->bytes(), decoded);
   const auto renewed = engine().renew(*released);
-  for (const auto source : {protocol::PrimaryVisibility::rays,
-                            protocol::PrimaryVisibility::raster}) {
+  for (const auto source :
+       {protocol::PrimaryVisibility::rays, protocol::PrimaryVisibility::raster}) {
     const auto expected = picture(kept, source);
     EXPECT_EQ(picture(released, source), expected);
     EXPECT_EQ(picture(renewed, source), expected);

@@ -123,8 +123,8 @@ TEST(SpecularRays, MirrorShowsAGlowingWallAsItIs) {
   shared::Material wall = surface(glm::vec3(0.0f));
   wall.emissive = {3, 2, 1};
   MirrorAndWall scene(wall);
-  Still still(scene.builder.build(), scene::constant_environment(glm::vec3(0.0f)), scene.camera,
-              64, 64);
+  Still still(scene.builder.build(), scene::constant_environment(glm::vec3(0.0f)), scene.camera, 64,
+              64);
   still.apply(undenoised());
   still.accumulate(1);
   const glm::vec3 middle = rgb(still.capture("hdr"), 32, 32);
@@ -142,8 +142,8 @@ TEST(SpecularRays, ALampLightsWhatTheMirrorShowsUnlessSomethingIsInItsWay) {
     MirrorAndWall scene(surface(glm::vec3(0.5f)));
     scene.builder.add_sun({0, 0, -1}, glm::vec3(4.0f));
     if (blocked) {
-      scene.builder.place(scene.builder.add_quad(
-          {{{-9, -1, 6}, {9, -1, 6}, {9, 9, 6}, {-9, 9, 6}}}, surface(glm::vec3(0.0f))));
+      scene.builder.place(scene.builder.add_quad({{{-9, -1, 6}, {9, -1, 6}, {9, 9, 6}, {-9, 9, 6}}},
+                                                 surface(glm::vec3(0.0f))));
     }
     Still still(scene.builder.build(), scene::constant_environment(glm::vec3(0.0f)), scene.camera,
                 32, 32);
@@ -175,8 +175,8 @@ TEST(SpecularRays, RougherAndUnlitSurfacesTraceNone) {
   shared::Material wall = surface(glm::vec3(1.0f));
   wall.flags |= shared::material_unlit;
   MirrorAndWall scene(wall, 0.5f);
-  Still still(scene.builder.build(), scene::constant_environment(glm::vec3(1.0f)), scene.camera,
-              32, 32);
+  Still still(scene.builder.build(), scene::constant_environment(glm::vec3(1.0f)), scene.camera, 32,
+              32);
   protocol::Settings settings = undenoised();
   settings.specular.max_roughness = 0.5f;
   still.apply(settings);

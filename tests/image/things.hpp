@@ -52,8 +52,7 @@ inline protocol::Settings raw_alone() {
 
 class Things : public Still {
  public:
-  explicit Things(const protocol::Settings& settings)
-      : Things(things(), settings) {}
+  explicit Things(const protocol::Settings& settings) : Things(things(), settings) {}
   Things(std::shared_ptr<const scene::Scene> scene, const protocol::Settings& settings)
       : Still(std::move(scene), make_environment(64, sky), eye(), things_width, things_height) {
     apply(settings);

@@ -163,7 +163,8 @@ TEST_F(Views, ShowKnownValuesInKnownColours) {
 
 // The middle of the octahedron is +Z, and no code for nothing.
 TEST(NormalsView, ShowsSurfacesThatFaceZ) {
-  for (const auto source : {protocol::PrimaryVisibility::raster, protocol::PrimaryVisibility::rays}) {
+  for (const auto source :
+       {protocol::PrimaryVisibility::raster, protocol::PrimaryVisibility::rays}) {
     SceneBuilder builder;
     builder.place(builder.add_quad({{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}},
                                    surface(glm::vec3(0.5f))));
@@ -177,9 +178,11 @@ TEST(NormalsView, ShowsSurfacesThatFaceZ) {
       const render::Frame frame = *still.renderer.capture_view(view);
       const std::uint8_t* middle = &frame.rgba[(std::size_t{9} * 32 + 16) * 4];
       EXPECT_EQ((std::array{middle[0], middle[1], middle[2]}),
-                (std::array<std::uint8_t, 3>{128, 128, 255})) << view;
+                (std::array<std::uint8_t, 3>{128, 128, 255}))
+          << view;
       EXPECT_EQ((std::array{frame.rgba[0], frame.rgba[1], frame.rgba[2]}),
-                (std::array<std::uint8_t, 3>{0, 0, 0})) << view << " of the sky";
+                (std::array<std::uint8_t, 3>{0, 0, 0}))
+          << view << " of the sky";
     }
   }
 }

@@ -16,7 +16,9 @@ glm::vec3 sky(const glm::vec3& d) {
   return glm::vec3(0.5f, 0.6f, 0.8f) + glm::vec3(0.3f, 0.2f, 0.1f) * d.y + 0.2f * d.x;
 }
 
-float luminance(const glm::vec3& color) { return glm::dot(color, {0.2126f, 0.7152f, 0.0722f}); }
+float luminance(const glm::vec3& color) {
+  return glm::dot(color, {0.2126f, 0.7152f, 0.0722f});
+}
 
 /// Soft shadows, a rough ball and a nearly smooth metal one on a floor that mirrors, `size` metres
 /// to the unit.

@@ -36,8 +36,8 @@ Stage::Stage(render::Engine& engine, const std::string& scene, const scenes::Swe
   const scenes::ClearSky sky = recipe.make_sky(sky_width, sky_height);
   scenes::Document document = recipe.make_document(sky);
   scenes::apply(sweep, document);
-  scene_ = std::make_shared<const scene::Scene>(
-      test::import_generated(document, options.texture_size));
+  scene_ =
+      std::make_shared<const scene::Scene>(test::import_generated(document, options.texture_size));
   resources_ = engine.upload(scene_, test::import_generated(sky.environment));
 }
 

@@ -68,8 +68,8 @@ std::vector<ShaderOutput> call(Function function, const std::vector<ShaderInput>
 
 glm::vec4 eye_at(float degrees, float roughness, float azimuth = 0.0f) {
   const float angle = glm::radians(degrees);
-  return {std::sin(angle) * std::cos(azimuth), std::sin(angle) * std::sin(azimuth),
-          std::cos(angle), roughness};
+  return {std::sin(angle) * std::cos(azimuth), std::sin(angle) * std::sin(azimuth), std::cos(angle),
+          roughness};
 }
 
 TEST(AreaLights, ASkyOfLightFillsBothLobes) {
@@ -166,9 +166,8 @@ TEST(AreaLights, SamplesAverageToTheFormFactorAndLieOnTheLight) {
     std::vector<ShaderInput> inputs;
     constexpr int strata = 64;
     for (int i = 0; i < strata * strata; ++i) {
-      inputs.push_back(light.input(
-          {(i % strata + random.uniform(0, 1)) / strata, (i / strata + random.uniform(0, 1)) / strata,
-           0, 0}));
+      inputs.push_back(light.input({(i % strata + random.uniform(0, 1)) / strata,
+                                    (i / strata + random.uniform(0, 1)) / strata, 0, 0}));
     }
     const auto got = call(sampling, inputs);
     double sum = 0.0;

@@ -114,7 +114,8 @@ TEST(ShadeLight, IsReciprocalButForMultipleScattering) {
 }
 
 /// Light that a white surface sends to a viewer under a sky of radiance 1: an integral over half
-/// the hemisphere, in steps that shrink toward the plane of the mirrored view, where lobes are thin.
+/// the hemisphere, in steps that shrink toward the plane of the mirrored view, where lobes are
+/// thin.
 double albedo(float metallic, float roughness, float view_cosine) {
   constexpr int rings = 192, sectors = 192;
   const glm::vec3 view(std::sqrt(1.0f - view_cosine * view_cosine), 0.0f, view_cosine);

@@ -80,7 +80,8 @@ TEST_F(EnvironmentSampling, DirectionsFollowTheDensity) {
     const glm::vec3 d(std::cos(angle) * s.x.x - std::sin(angle) * s.x.z, s.x.y,
                       std::sin(angle) * s.x.x + std::cos(angle) * s.x.z);
     const double u = 0.5 + std::atan2(d.z, d.x) / (2.0 * pi), v = std::acos(d.y) / pi;
-    const int x = std::min(static_cast<int>(u * 64), 63), y = std::min(static_cast<int>(v * 32), 31);
+    const int x = std::min(static_cast<int>(u * 64), 63),
+              y = std::min(static_cast<int>(v * 32), 31);
     ++counts[y * 64 + x];
   }
   double statistic = 0.0, freedom = -1.0, rest = 0.0, rest_expected = 0.0;

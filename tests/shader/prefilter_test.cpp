@@ -28,7 +28,8 @@ glm::dvec3 filtered(const glm::dvec3& n, double roughness) {
   glm::dvec3 sum(0.0);
   double weights = 0.0;
   for (int i = 0; i < 2 * rows * rows; ++i) {
-    const double theta = (i / (2 * rows) + 0.5) / rows * pi, phi = (i % (2 * rows) + 0.5) / rows * pi;
+    const double theta = (i / (2 * rows) + 0.5) / rows * pi,
+                 phi = (i % (2 * rows) + 0.5) / rows * pi;
     const glm::dvec3 l(std::sin(theta) * std::cos(phi), std::cos(theta),
                        std::sin(theta) * std::sin(phi));
     const double cosine = glm::dot(n, l);

@@ -1,9 +1,10 @@
 // The random numbers of host kernels are those of the shaders, to the bit: a picture must not
 // depend on who made its rays.
 
+#include "render/random_host.hpp"
+
 #include <gtest/gtest.h>
 
-#include "render/random_host.hpp"
 #include "tests/shader/embedded.hpp"
 #include "tests/shader/random_inputs.hpp"
 #include "tests/support/compute_harness.hpp"
@@ -30,9 +31,8 @@ glm::vec3 host_numbers(const Place& place) {
   const auto x = hn::Set(du, place.x);
   auto first = hn::Zero(df), second = first;
   host::RandomPairs(du, place.sample, place.dimension, place.seed).at(x, place.y, first, second);
-  const auto single =
-      host::RandomNumbers(du, place.sample, place.dimension, place.seed)
-          .at(x, hn::Set(du, place.y));
+  const auto single = host::RandomNumbers(du, place.sample, place.dimension, place.seed)
+                          .at(x, hn::Set(du, place.y));
   return {hn::GetLane(first), hn::GetLane(second), hn::GetLane(single)};
 }
 

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "render/debug_view.hpp"
 #include "tests/shader/chi_square.hpp"
 #include "tests/shader/embedded.hpp"
 #include "tests/shader/random_inputs.hpp"
-#include "render/debug_view.hpp"
 #include "tests/support/compute_harness.hpp"
 
 namespace heliograph::test {

@@ -26,13 +26,13 @@ render::Engine& engine(const std::string& tracer) {
   if (!wanted) {
     const char* device = std::getenv("HELIOGRAPH_TEST_DEVICE");
     const char* kernels = std::getenv("HELIOGRAPH_TEST_HOST_KERNELS");
-    wanted = std::make_unique<render::Engine>(render::EngineOptions{
-        .device = device ? device : "",
-        .tracer = tracer,
-        .validation = true,
-        .cache_folder = {},
-        .host_kernels = !kernels || std::string_view(kernels) != "off",
-        .as_gpu = std::getenv("HELIOGRAPH_TEST_AS_GPU") != nullptr});
+    wanted = std::make_unique<render::Engine>(
+        render::EngineOptions{.device = device ? device : "",
+                              .tracer = tracer,
+                              .validation = true,
+                              .cache_folder = {},
+                              .host_kernels = !kernels || std::string_view(kernels) != "off",
+                              .as_gpu = std::getenv("HELIOGRAPH_TEST_AS_GPU") != nullptr});
     std::printf("device: %s, %s, tracer %s\n", wanted->device().name.c_str(),
                 wanted->device().driver.c_str(), tracer.c_str());
   }

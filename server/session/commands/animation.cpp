@@ -17,11 +17,10 @@ void add_animation_commands(protocol::Dispatcher& dispatcher, SessionHost& host)
       [](Session& session, const AnimationPlay& request, const std::string& viewer) {
         return session.play(request, viewer);
       });
-  add_command<Empty, AnimationState>(
-      dispatcher, host, "animation.pause",
-      [](Session& session, const Empty&, const std::string& viewer) {
-        return session.pause(viewer);
-      });
+  add_command<Empty, AnimationState>(dispatcher, host, "animation.pause",
+                                     [](Session& session, const Empty&, const std::string& viewer) {
+                                       return session.pause(viewer);
+                                     });
   add_command<AnimationSeek, AnimationState>(
       dispatcher, host, "animation.seek",
       [](Session& session, const AnimationSeek& request, const std::string& viewer) {

@@ -78,9 +78,9 @@ void add_edit_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
         return describe_environment(host, session);
       });
   dispatcher.add<EnvironmentSet, EnvironmentState>(
-      "environment.set", [&host](const EnvironmentSet& request,
-                                 const protocol::CallContext& context,
-                                 protocol::Completion<EnvironmentState> done) {
+      "environment.set",
+      [&host](const EnvironmentSet& request, const protocol::CallContext& context,
+              protocol::Completion<EnvironmentState> done) {
         const auto session = host.sessions().session_of(context);
         if (!session) return done(session.error());
         set_environment(host, *session, request, context.viewer, std::move(done));

@@ -31,11 +31,10 @@ void add_frame_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
       [](Session& session, const ReferenceStart& request, const std::string& viewer) {
         return session.start_reference(request, viewer);
       });
-  add_command<Empty, ReferenceState>(
-      dispatcher, host, "reference.stop",
-      [](Session& session, const Empty&, const std::string& viewer) {
-        return session.stop_reference(viewer);
-      });
+  add_command<Empty, ReferenceState>(dispatcher, host, "reference.stop",
+                                     [](Session& session, const Empty&, const std::string& viewer) {
+                                       return session.stop_reference(viewer);
+                                     });
   add_command<Empty, ReferenceState>(
       dispatcher, host, "reference.status",
       [](Session& session, const Empty&, const std::string&) -> Result<ReferenceState> {

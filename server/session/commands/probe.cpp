@@ -73,10 +73,9 @@ void add_probe(protocol::Dispatcher& dispatcher, SessionHost& host, std::string_
         if (!session) return done(session.error());
         const glm::vec2 point(request.x, request.y);
         const Result<void> accepted = (*session)->request_probe(
-            {.read = [read, point, done](render::Renderer& renderer,
-                                         const RenderState& state) {
-               done(read(renderer, state, point));
-             },
+            {.read = [read, point, done](
+                         render::Renderer& renderer,
+                         const RenderState& state) { done(read(renderer, state, point)); },
              .fail = [done](const protocol::Error& error) { done(error); }});
         if (!accepted) done(accepted.error());
       });
@@ -91,11 +90,10 @@ void add_probe_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
                           if (!state.scene) return protocol::error::not_ready("no scene is loaded");
                           return pick(renderer, *state.scene, point);
                         });
-  add_probe<Inspection>(dispatcher, host, "frame.inspect",
-                        [](const render::Renderer& renderer, const RenderState& state,
-                           glm::vec2 point) -> Result<Inspection> {
-                          return inspect(renderer, state, point);
-                        });
+  add_probe<Inspection>(
+      dispatcher, host, "frame.inspect",
+      [](const render::Renderer& renderer, const RenderState& state,
+         glm::vec2 point) -> Result<Inspection> { return inspect(renderer, state, point); });
 }
 
 }  // namespace heliograph::session

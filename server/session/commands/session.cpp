@@ -42,8 +42,7 @@ SessionList list_sessions(const SessionHost& host, const std::string& viewer) {
 }
 
 /// Viewers end what they are in control of; an empty session, anybody.
-Result<void> may_close(SessionHost& host, const SessionChoice& request,
-                       const std::string& viewer) {
+Result<void> may_close(SessionHost& host, const SessionChoice& request, const std::string& viewer) {
   const auto session = host.sessions().find(request.session);
   if (!session) return session.error();
   if (*session == host.sessions().main()) return SessionRegistry::main_stays();
@@ -104,10 +103,9 @@ void add_session_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
                                              return session.info(viewer);
                                            });
   dispatcher.add<SessionChoice, Empty>(
-      "session.close", [&](const SessionChoice& request, const protocol::CallContext& context,
-                           const Completion<Empty>& done) {
-        close(host, request, context.viewer, done);
-      });
+      "session.close",
+      [&](const SessionChoice& request, const protocol::CallContext& context,
+          const Completion<Empty>& done) { close(host, request, context.viewer, done); });
 }
 
 }  // namespace heliograph::session

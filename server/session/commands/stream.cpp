@@ -8,6 +8,7 @@
 namespace heliograph::session {
 
 using protocol::Empty;
+using protocol::enum_name;
 using protocol::Hello;
 using protocol::HelloResult;
 using protocol::Result;
@@ -15,7 +16,6 @@ using protocol::StreamAck;
 using protocol::StreamCodec;
 using protocol::StreamConfigure;
 using protocol::StreamState;
-using protocol::enum_name;
 namespace error = protocol::error;
 
 namespace {
@@ -62,8 +62,8 @@ Result<Chosen> choose_place(SessionHost& host, const Hello& request,
   return Chosen{.session = *main, .bring = {}};
 }
 
-HelloResult greeting(SessionHost& host, const Chosen& chosen,
-                     const protocol::CallContext& call, const stream::CodecChoice& choice) {
+HelloResult greeting(SessionHost& host, const Chosen& chosen, const protocol::CallContext& call,
+                     const stream::CodecChoice& choice) {
   const Session& session = *chosen.session;
   const render::DeviceInfo& device = host.engine().device();
   const SessionLimits& limits = session.limits();
@@ -117,23 +117,20 @@ void add_stream_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
       [&](const Hello& request, const protocol::CallContext& context,
           protocol::Completion<HelloResult> done) { done(greet(host, request, context)); });
   dispatcher.add<StreamConfigure, StreamState>(
-      "stream.configure",
-      [&](const StreamConfigure& request, const protocol::CallContext& context,
-          protocol::Completion<StreamState> done) {
+      "stream.configure", [&](const StreamConfigure& request, const protocol::CallContext& context,
+                              protocol::Completion<StreamState> done) {
         const auto session = host.sessions().session_of(context);
         if (!session) return done(session.error());
         done((*session)->configure_stream(request, context.viewer, !context.view_only));
       });
-  add_command<Empty, StreamState>(
-      dispatcher, host, "stream.pause",
-      [](Session& session, const Empty&, const std::string& viewer) {
-        return session.configure_stream({.paused = true}, viewer);
-      });
-  add_command<Empty, StreamState>(
-      dispatcher, host, "stream.resume",
-      [](Session& session, const Empty&, const std::string& viewer) {
-        return session.configure_stream({.paused = false}, viewer);
-      });
+  add_command<Empty, StreamState>(dispatcher, host, "stream.pause",
+                                  [](Session& session, const Empty&, const std::string& viewer) {
+                                    return session.configure_stream({.paused = true}, viewer);
+                                  });
+  add_command<Empty, StreamState>(dispatcher, host, "stream.resume",
+                                  [](Session& session, const Empty&, const std::string& viewer) {
+                                    return session.configure_stream({.paused = false}, viewer);
+                                  });
   add_command<StreamAck, Empty>(
       dispatcher, host, "stream.ack",
       [](Session& session, const StreamAck& request, const std::string& viewer) -> Result<Empty> {

@@ -66,19 +66,18 @@ TEST(AccessControl, WhatOtherOriginsEmbedIsRefused) {
     for (const char* path : {"/api/v1/sessions/main/stream.mjpg", "/metrics", "/app.js", "/"}) {
       EXPECT_EQ(get(path, {{"host", "localhost"}, {"sec-fetch-site", site}}), 403) << path;
     }
-    EXPECT_EQ(get("/", {{"host", "localhost"},
-                        {"sec-fetch-site", site},
-                        {"sec-fetch-mode", "navigate"}}),
-              200);
-    EXPECT_EQ(get("/metrics", {{"host", "localhost"},
-                               {"sec-fetch-site", site},
-                               {"sec-fetch-mode", "navigate"}}),
-              403);
+    EXPECT_EQ(
+        get("/", {{"host", "localhost"}, {"sec-fetch-site", site}, {"sec-fetch-mode", "navigate"}}),
+        200);
+    EXPECT_EQ(
+        get("/metrics",
+            {{"host", "localhost"}, {"sec-fetch-site", site}, {"sec-fetch-mode", "navigate"}}),
+        403);
     EXPECT_EQ(get("/health/live", {{"host", "localhost"}, {"sec-fetch-site", site}}), 200);
-    EXPECT_EQ(get("/metrics", {{"host", "localhost"},
-                               {"sec-fetch-site", site},
-                               {"origin", "https://good.example"}}),
-              200);
+    EXPECT_EQ(
+        get("/metrics",
+            {{"host", "localhost"}, {"sec-fetch-site", site}, {"origin", "https://good.example"}}),
+        200);
   }
   for (const char* site : {"none", "same-origin"}) {
     EXPECT_EQ(get("/metrics", {{"host", "localhost"}, {"sec-fetch-site", site}}), 200);
@@ -103,8 +102,8 @@ TEST(AccessControl, ATokenIsItsOwnersRightButACookieIsNot) {
 
 // Browsers show no token when they ask beforehand.
 TEST(AccessControl, AllowedOriginsMayAskBeforehandWithoutToken) {
-  const AccessControl access({.tokens = {{"correct-horse", Role::control}},
-                              .allowed_origins = {"https://good.example"}});
+  const AccessControl access(
+      {.tokens = {{"correct-horse", Role::control}}, .allowed_origins = {"https://good.example"}});
   HttpRequest asked = request({{"host", "localhost"},
                                {"origin", "https://good.example"},
                                {"access-control-request-method", "POST"}});
@@ -126,8 +125,7 @@ TEST(TokenSet, ComparesTokensWhole) {
     EXPECT_FALSE(tokens.role_of(wrong)) << wrong;
   }
   EXPECT_FALSE(TokenSet({}).role_of("")) << "no token is no empty token";
-  EXPECT_THROW(TokenSet({{"correct-horse"}, {"correct-horse", Role::view}}),
-               std::invalid_argument);
+  EXPECT_THROW(TokenSet({{"correct-horse"}, {"correct-horse", Role::view}}), std::invalid_argument);
 }
 
 TEST(AccessControl, GivesTheRoleOfTheToken) {

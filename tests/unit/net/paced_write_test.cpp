@@ -24,7 +24,8 @@ struct Reading {
   std::chrono::milliseconds pause;
 };
 
-/// What came of writing `size` bytes to somebody who reads so, over real sockets with small buffers.
+/// What came of writing `size` bytes to somebody who reads so, over real sockets with small
+/// buffers.
 struct Outcome {
   boost::system::error_code error;
   std::size_t received = 0;

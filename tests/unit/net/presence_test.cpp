@@ -12,7 +12,9 @@ using Verdict = Presence::Verdict;
 
 const Presence::Clock::time_point begin{};
 
-Presence watched() { return Presence(30s, 8192.0, 5s, begin); }
+Presence watched() {
+  return Presence(30s, 8192.0, 5s, begin);
+}
 
 TEST(Presence, ASilentPeerIsPingedAndThenGivenUp) {
   Presence peer = watched();
@@ -60,7 +62,8 @@ TEST(Presence, ShortMessagesTakenAreNoSignOfLife) {
   std::uint64_t write = 0;
   std::uint64_t taken = 0;
   Verdict verdict = Verdict::fine;
-  for (auto now = 5s; now <= 40s; now += 5s) verdict = peer.look(begin + now, ++write, taken += 1'000'000);
+  for (auto now = 5s; now <= 40s; now += 5s)
+    verdict = peer.look(begin + now, ++write, taken += 1'000'000);
   EXPECT_EQ(verdict, Verdict::gone);
 }
 

@@ -35,8 +35,9 @@ TEST(RefusedCalls, AreAnsweredWithTheirOwnId) {
 }
 
 TEST(RefusedCalls, HaveNoIdWhereNoneCanBeRead) {
-  for (const char* text : {"", "{", R"({"method":"stream.ack","params":{"id":1})", "7", "[]", "[1]",
-                           R"({"id":{"id":1}})", R"({"id":[3]})", R"({"id":null})", R"([["id",1]])"}) {
+  for (const char* text :
+       {"", "{", R"({"method":"stream.ack","params":{"id":1})", "7", "[]", "[1]",
+        R"({"id":{"id":1}})", R"({"id":[3]})", R"({"id":null})", R"([["id",1]])"}) {
     EXPECT_EQ(ids(text), nullptr) << text;
   }
 }

@@ -226,8 +226,8 @@ TEST(Patch, TellsAbsentFromNullFromAValue) {
 }
 
 TEST(Patch, RefusesMembersItDoesNotKnowAndNamesTheNearest) {
-  const auto refused = decode<LightsPatch>(
-      RawJson(json{{"light", "sun"}, {"patch", {{"intesity", 2}}}}));
+  const auto refused =
+      decode<LightsPatch>(RawJson(json{{"light", "sun"}, {"patch", {{"intesity", 2}}}}));
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().path, "patch.intesity");
   EXPECT_NE(refused.error().reason.find("intensity"), std::string::npos);

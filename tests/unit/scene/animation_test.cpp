@@ -15,8 +15,8 @@ using Numbers = std::vector<float>;
 /// A triangle of a skin with two joints, whose second rises; `skin` goes to the node.
 GltfBuilder skinned_triangle() {
   GltfBuilder b = triangle();
-  const auto joints = b.add_accessor(
-      std::vector<std::uint8_t>{0, 9, 9, 9, 1, 0, 0, 0, 0, 1, 0, 0}, 5121, "VEC4", 3);
+  const auto joints = b.add_accessor(std::vector<std::uint8_t>{0, 9, 9, 9, 1, 0, 0, 0, 0, 1, 0, 0},
+                                     5121, "VEC4", 3);
   const auto weights =
       b.add_accessor(Numbers{1, 0, 0, 0, 2, 0, 0, 0, 0.25f, 0.75f, 0, 0}, 5126, "VEC4", 3);
   auto& attributes = b.json["meshes"][0]["primitives"][0]["attributes"];
@@ -161,8 +161,8 @@ TEST(MorphTargets, RestWithTheWeightsOfMeshOrNode) {
 TEST(Clips, OfNormalisedWeightsAreMappedToFloats) {
   GltfBuilder b = morphing_triangle();
   const auto times = b.add_accessor(Numbers{0, 1}, 5126, "SCALAR", 2);
-  const auto values = b.add_accessor(b.add_view(std::vector<std::uint8_t>{0, 255}), 5121,
-                                     "SCALAR", 2, true);
+  const auto values =
+      b.add_accessor(b.add_view(std::vector<std::uint8_t>{0, 255}), 5121, "SCALAR", 2, true);
   b.add("animations",
         {{"samplers", {{{"input", times}, {"output", values}, {"interpolation", "STEP"}}}},
          {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}});
@@ -210,10 +210,10 @@ TEST(Clips, OfEveryInterpolationMoveEveryProperty) {
       const auto times = b.add_accessor(Numbers{0, 2}, 5126, "SCALAR", 2);
       const std::size_t keys = spline ? 6 : 2;
       const auto output = b.add_accessor(values, 5126, type, keys);
-      b.add("animations",
-            {{"samplers",
-              {{{"input", times}, {"output", output}, {"interpolation", interpolation}}}},
-             {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", path}}}}}}});
+      b.add(
+          "animations",
+          {{"samplers", {{{"input", times}, {"output", output}, {"interpolation", interpolation}}}},
+           {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", path}}}}}}});
       const Channel channel = b.import().clips.at(0).channels.at(0);
       Numbers found(first.size());
       sample(channel, 1.0f, found.data());

@@ -71,8 +71,7 @@ Mesh mesh_with(const char* name, const Component& component, std::size_t width,
                const Numbers& values) {
   GltfBuilder builder = triangle();
   if (std::string_view(name) == "TANGENT") {
-    attributes_of(builder)["NORMAL"] =
-        add_values(builder, f32, 3, {0, 0, 1, 0, 0, 1, 0, 0, 1});
+    attributes_of(builder)["NORMAL"] = add_values(builder, f32, 3, {0, 0, 1, 0, 0, 1, 0, 0, 1});
   }
   attributes_of(builder)[name] = add_values(builder, component, width, values);
   builder.json["extensionsRequired"] = {"KHR_mesh_quantization"};
@@ -148,11 +147,12 @@ TEST(Attributes, ColorsOfEveryComponentWithAndWithoutAlpha) {
   for (const Component& component : {f32, u8n, u16n}) {
     const Mesh opaque = mesh_with("COLOR_0", component, 3, {1, 0, 0, 0, 0.25, 0, 0, 0, 0.5});
     EXPECT_NEAR(glm::unpackUnorm2x16(opaque.vertices[0].color_rg).x, 1.0, 1e-6);
-    EXPECT_NEAR(glm::unpackUnorm2x16(opaque.vertices[1].color_rg).y, 0.25, step_of(component) + 1e-5);
-    EXPECT_NEAR(glm::unpackUnorm2x16(opaque.vertices[2].color_ba).x, 0.5, step_of(component) + 1e-5);
+    EXPECT_NEAR(glm::unpackUnorm2x16(opaque.vertices[1].color_rg).y, 0.25,
+                step_of(component) + 1e-5);
+    EXPECT_NEAR(glm::unpackUnorm2x16(opaque.vertices[2].color_ba).x, 0.5,
+                step_of(component) + 1e-5);
     EXPECT_NEAR(glm::unpackUnorm2x16(opaque.vertices[2].color_ba).y, 1.0, 1e-6);
-    const Mesh clear =
-        mesh_with("COLOR_0", component, 4, {1, 0, 0, 0.5, 0, 1, 0, 1, 0, 0, 1, 0});
+    const Mesh clear = mesh_with("COLOR_0", component, 4, {1, 0, 0, 0.5, 0, 1, 0, 1, 0, 0, 1, 0});
     EXPECT_NEAR(glm::unpackUnorm2x16(clear.vertices[0].color_ba).y, 0.5, step_of(component) + 1e-5);
     EXPECT_EQ(glm::unpackUnorm2x16(clear.vertices[2].color_ba).y, 0.0f);
   }

@@ -18,7 +18,8 @@ glm::dvec3 direction_of(std::uint32_t width, double x, double y) {
 }
 
 /// Each texel holds the mean of 8 x 8 directions.
-Environment paint(std::uint32_t width, const std::function<glm::dvec3(const glm::dvec3&)>& radiance) {
+Environment paint(std::uint32_t width,
+                  const std::function<glm::dvec3(const glm::dvec3&)>& radiance) {
   Environment map{width, width / 2, {}};
   for (std::uint32_t y = 0; y < map.height; ++y) {
     for (std::uint32_t x = 0; x < width; ++x) {
@@ -63,8 +64,7 @@ TEST_P(SunSeparation, FindsDirectionSizeAndStrength) {
     const SeparatedEnvironment separated = separate_sun(whole);
     ASSERT_TRUE(separated.sun) << degrees;
     const double solid_angle = 2.0 * pi * (1.0 - std::cos(0.5 * degrees * pi / 180.0));
-    EXPECT_GT(glm::dot(glm::dvec3(separated.sun->direction), towards),
-              std::cos(0.1 * pi / 180.0));
+    EXPECT_GT(glm::dot(glm::dvec3(separated.sun->direction), towards), std::cos(0.1 * pi / 180.0));
     EXPECT_NEAR(separated.sun->angular_diameter, degrees, 0.1 * degrees + 0.2);
     for (int c = 0; c < 3; ++c) {
       EXPECT_NEAR(separated.sun->irradiance[c] / (radiance[c] * solid_angle), 1.0, 0.05) << c;

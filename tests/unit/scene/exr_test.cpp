@@ -65,15 +65,14 @@ std::vector<std::uint8_t> write_rgb(const Style& style, Imf::Header header = {wi
   }
   const bool is_half = style.type == Imf::HALF;
   const std::size_t channel_size = is_half ? 2 : 4;
-  char* data = is_half ? reinterpret_cast<char*>(halves.data())
-                       : reinterpret_cast<char*>(pixels.data());
+  char* data =
+      is_half ? reinterpret_cast<char*>(halves.data()) : reinterpret_cast<char*>(pixels.data());
   Imf::FrameBuffer frame;
   const char* names[] = {"R", "G", "B"};
   for (int c = 0; c < 3; ++c) {
     header.channels().insert(style.layer + names[c], Imf::Channel(style.type));
-    frame.insert(style.layer + names[c],
-                 Imf::Slice(style.type, data + channel_size * c, 3 * channel_size,
-                            3 * channel_size * width));
+    frame.insert(style.layer + names[c], Imf::Slice(style.type, data + channel_size * c,
+                                                    3 * channel_size, 3 * channel_size * width));
   }
   MemorySink sink;
   if (style.tiled) {
@@ -101,19 +100,23 @@ void expect_colors(const Environment& environment, float peak, float tolerance) 
 }
 
 TEST(Exr, ReadsEveryCompression) {
-  for (const auto& [compression, tolerance] :
-       {std::pair{Imf::NO_COMPRESSION, 1e-6f}, {Imf::RLE_COMPRESSION, 1e-6f},
-        {Imf::ZIPS_COMPRESSION, 1e-6f}, {Imf::ZIP_COMPRESSION, 1e-6f},
-        {Imf::PIZ_COMPRESSION, 1e-6f}, {Imf::PXR24_COMPRESSION, 1e-3f},
-        {Imf::B44_COMPRESSION, 1e-6f}, {Imf::B44A_COMPRESSION, 1e-6f},
-        {Imf::DWAA_COMPRESSION, 0.03f}, {Imf::DWAB_COMPRESSION, 0.03f}}) {
+  for (const auto& [compression, tolerance] : {std::pair{Imf::NO_COMPRESSION, 1e-6f},
+                                               {Imf::RLE_COMPRESSION, 1e-6f},
+                                               {Imf::ZIPS_COMPRESSION, 1e-6f},
+                                               {Imf::ZIP_COMPRESSION, 1e-6f},
+                                               {Imf::PIZ_COMPRESSION, 1e-6f},
+                                               {Imf::PXR24_COMPRESSION, 1e-3f},
+                                               {Imf::B44_COMPRESSION, 1e-6f},
+                                               {Imf::B44A_COMPRESSION, 1e-6f},
+                                               {Imf::DWAA_COMPRESSION, 0.03f},
+                                               {Imf::DWAB_COMPRESSION, 0.03f}}) {
     SCOPED_TRACE(int(compression));
     expect_colors(decode_exr(write_rgb({.compression = compression})), 100.0f, tolerance);
     // B44 packs half floats with a loss, and only those.
-    const float of_halves = std::max(tolerance, compression == Imf::B44_COMPRESSION ||
-                                                        compression == Imf::B44A_COMPRESSION
-                                                    ? 0.05f
-                                                    : 2e-3f);
+    const float of_halves = std::max(
+        tolerance, compression == Imf::B44_COMPRESSION || compression == Imf::B44A_COMPRESSION
+                       ? 0.05f
+                       : 2e-3f);
     expect_colors(decode_exr(write_rgb({.compression = compression, .type = Imf::HALF})), 100.0f,
                   of_halves);
   }
@@ -187,7 +190,8 @@ TEST(Exr, SaysWhatItCannotRead) {
 
 // Whatever the bytes: an error or a picture, never a crash.
 TEST(Exr, SurvivesDamage) {
-  for (const auto compression : {Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION, Imf::DWAB_COMPRESSION}) {
+  for (const auto compression :
+       {Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION, Imf::DWAB_COMPRESSION}) {
     const std::vector<std::uint8_t> whole = write_rgb({.compression = compression});
     for (std::size_t i = 8; i < whole.size(); i += 1 + whole.size() / 200) {
       std::vector<std::uint8_t> damaged = whole;

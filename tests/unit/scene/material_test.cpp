@@ -117,19 +117,19 @@ TEST(Materials, ExtensionsThatAreNotSupportedAreNamed) {
 }
 
 TEST(Materials, LayersAreReadAndSaidToBeApproximated) {
-  const GltfBuilder builder = with_material(
-      {{"extensions",
-        {{"KHR_materials_specular",
-          {{"specularFactor", 0.25}, {"specularColorFactor", {1, 2, 0.5}}}},
-         {"KHR_materials_clearcoat",
-          {{"clearcoatFactor", 0.75}, {"clearcoatRoughnessFactor", 0.125}}},
-         {"KHR_materials_sheen",
-          {{"sheenColorFactor", {0.5, 0.25, 1}}, {"sheenRoughnessFactor", 0.5}}},
-         {"KHR_materials_transmission", {{"transmissionFactor", 1}}},
-         {"KHR_materials_volume",
-          {{"thicknessFactor", 0.5},
-           {"attenuationDistance", 2},
-           {"attenuationColor", {1, 0.5, 0.25}}}}}}});
+  const GltfBuilder builder =
+      with_material({{"extensions",
+                      {{"KHR_materials_specular",
+                        {{"specularFactor", 0.25}, {"specularColorFactor", {1, 2, 0.5}}}},
+                       {"KHR_materials_clearcoat",
+                        {{"clearcoatFactor", 0.75}, {"clearcoatRoughnessFactor", 0.125}}},
+                       {"KHR_materials_sheen",
+                        {{"sheenColorFactor", {0.5, 0.25, 1}}, {"sheenRoughnessFactor", 0.5}}},
+                       {"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                       {"KHR_materials_volume",
+                        {{"thicknessFactor", 0.5},
+                         {"attenuationDistance", 2},
+                         {"attenuationColor", {1, 0.5, 0.25}}}}}}});
   const Scene scene = builder.import();
   const MaterialLayers& layers = scene.material_layers.at(0);
   EXPECT_EQ(layers.specular, 0.25f);
@@ -176,17 +176,20 @@ TEST(Layers, OfPlainMaterialsAreTheModelsOwn) {
   const Scene scene = with_material({{"name", "plain"}}).import();
   EXPECT_EQ(scene.layers.size(), 1u);
   EXPECT_EQ(drawn_layer(scene).dielectric, 0.04f);
-  const Scene usual = with_material(
-      {{"extensions", {{"KHR_materials_ior", {{"ior", 1.5}}},
-                       {"KHR_materials_specular", {{"specularFactor", 1.0}}}}}}).import();
+  const Scene usual = with_material({{"extensions",
+                                      {{"KHR_materials_ior", {{"ior", 1.5}}},
+                                       {"KHR_materials_specular", {{"specularFactor", 1.0}}}}}})
+                          .import();
   EXPECT_EQ(usual.layers.size(), 1u) << "said, but nothing else";
 }
 
 TEST(Layers, TakeIndexStrengthAndColourOfTheDielectric) {
-  const Scene scene = with_material(
-      {{"extensions", {{"KHR_materials_ior", {{"ior", 2.0}}},
+  const Scene scene =
+      with_material({{"extensions",
+                      {{"KHR_materials_ior", {{"ior", 2.0}}},
                        {"KHR_materials_specular",
-                        {{"specularFactor", 0.5}, {"specularColorFactor", {0.5, 1, 30}}}}}}}).import();
+                        {{"specularFactor", 0.5}, {"specularColorFactor", {0.5, 1, 30}}}}}}})
+          .import();
   const shared::MaterialLayer layer = drawn_layer(scene);
   EXPECT_NEAR(layer.dielectric, 1.0f / 9.0f, 1e-6f);
   EXPECT_EQ(layer.specular_color, glm::vec3(0.5f, 1.0f, 30.0f));
@@ -194,12 +197,13 @@ TEST(Layers, TakeIndexStrengthAndColourOfTheDielectric) {
 }
 
 TEST(Layers, OfCoatAndSheenAreThoseOfTheFile) {
-  const Scene scene = with_material(
-      {{"extensions", {{"KHR_materials_clearcoat",
+  const Scene scene =
+      with_material({{"extensions",
+                      {{"KHR_materials_clearcoat",
                         {{"clearcoatFactor", 0.8}, {"clearcoatRoughnessFactor", 0.2}}},
                        {"KHR_materials_sheen",
-                        {{"sheenColorFactor", {1, 0.5, 0.25}},
-                         {"sheenRoughnessFactor", 0.75}}}}}}).import();
+                        {{"sheenColorFactor", {1, 0.5, 0.25}}, {"sheenRoughnessFactor", 0.75}}}}}})
+          .import();
   EXPECT_FLOAT_EQ(drawn_layer(scene).coat, 0.8f);
   EXPECT_FLOAT_EQ(drawn_layer(scene).coat_roughness, 0.2f);
   EXPECT_EQ(drawn_layer(scene).sheen, glm::vec3(1.0f, 0.5f, 0.25f));
@@ -210,21 +214,22 @@ TEST(Layers, TexturesAreColourOrDataAsTheirExtensionsSay) {
   const auto slot = [](int set) { return nlohmann::json{{"index", 0}, {"texCoord", set}}; };
   nlohmann::json normal = slot(1);
   normal["scale"] = 0.5;
-  GltfBuilder builder = with_material(
-      {{"extensions",
-        {{"KHR_materials_specular", {{"specularTexture", slot(0)}, {"specularColorTexture", slot(1)}}},
-         {"KHR_materials_clearcoat",
-          {{"clearcoatFactor", 1},
-           {"clearcoatTexture", slot(0)},
-           {"clearcoatRoughnessTexture", slot(1)},
-           {"clearcoatNormalTexture", normal}}},
-         {"KHR_materials_sheen",
-          {{"sheenColorFactor", {1, 1, 1}},
-           {"sheenColorTexture", slot(0)},
-           {"sheenRoughnessTexture", slot(1)}}},
-         {"KHR_materials_transmission",
-          {{"transmissionFactor", 1}, {"transmissionTexture", slot(1)}}},
-         {"KHR_materials_volume", {{"thicknessTexture", slot(0)}}}}}});
+  GltfBuilder builder =
+      with_material({{"extensions",
+                      {{"KHR_materials_specular",
+                        {{"specularTexture", slot(0)}, {"specularColorTexture", slot(1)}}},
+                       {"KHR_materials_clearcoat",
+                        {{"clearcoatFactor", 1},
+                         {"clearcoatTexture", slot(0)},
+                         {"clearcoatRoughnessTexture", slot(1)},
+                         {"clearcoatNormalTexture", normal}}},
+                       {"KHR_materials_sheen",
+                        {{"sheenColorFactor", {1, 1, 1}},
+                         {"sheenColorTexture", slot(0)},
+                         {"sheenRoughnessTexture", slot(1)}}},
+                       {"KHR_materials_transmission",
+                        {{"transmissionFactor", 1}, {"transmissionTexture", slot(1)}}},
+                       {"KHR_materials_volume", {{"thicknessTexture", slot(0)}}}}}});
   const Scene scene = builder.import();
   const shared::MaterialLayer layer = drawn_layer(scene);
   const auto expect = [&](const shared::TextureSlot& drawn, bool srgb, std::uint32_t set) {
@@ -245,9 +250,12 @@ TEST(Layers, TexturesAreColourOrDataAsTheirExtensionsSay) {
 }
 
 TEST(Layers, LightThatPassesMakesABlendedSurface) {
-  const Scene scene = with_material(
-      {{"pbrMetallicRoughness", {{"metallicFactor", 0.0}, {"baseColorFactor", {1, 1, 1, 0.25}}}},
-       {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 0.5}}}}}}).import();
+  const Scene scene =
+      with_material(
+          {{"pbrMetallicRoughness",
+            {{"metallicFactor", 0.0}, {"baseColorFactor", {1, 1, 1, 0.25}}}},
+           {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 0.5}}}}}})
+          .import();
   const shared::Material& material = scene.materials[0];
   EXPECT_TRUE(material.flags & shared::material_alpha_blend);
   EXPECT_TRUE(material.flags & shared::material_whole_alpha) << "opaque: alpha says nothing";
@@ -257,9 +265,10 @@ TEST(Layers, LightThatPassesMakesABlendedSurface) {
 }
 
 TEST(Layers, MasksLetNoLightThrough) {
-  const Scene scene = with_material(
-      {{"alphaMode", "MASK"},
-       {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}}).import();
+  const Scene scene =
+      with_material({{"alphaMode", "MASK"},
+                     {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}})
+          .import();
   EXPECT_FALSE(scene.materials[0].flags & shared::material_alpha_blend);
   EXPECT_EQ(scene.layers.size(), 1u);
 }
@@ -269,8 +278,9 @@ TEST(Materials, VariantsAreListedAndTheDefaultIsShown) {
   builder.add("materials", {{"name", "golden"}});
   builder.json["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "beach"}},
                                                                       {{"name", "night"}}};
-  auto& mappings = builder.json["meshes"][0]["primitives"][0]["extensions"]
-                               ["KHR_materials_variants"]["mappings"];
+  auto& mappings =
+      builder
+          .json["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"]["mappings"];
   mappings = {{{"material", 1}, {"variants", {0, 1}}}};
   const Scene scene = builder.import();
   EXPECT_EQ(scene.variants, (std::vector<std::string>{"beach", "night"}));

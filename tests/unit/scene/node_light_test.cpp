@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "scene/import.hpp"
 #include "gltf_builder.hpp"
+#include "scene/import.hpp"
 
 namespace heliograph::scene::test {
 namespace {
@@ -22,11 +22,12 @@ GltfBuilder with_extras(const nlohmann::json& extras) {
 }
 
 TEST(AreaLights, ARectangleShinesDownItsNodesAxis) {
-  const Scene scene = with_extras({{"areaLight", {{"shape", "rect"},
-                                                  {"width", 3},
-                                                  {"height", 1},
-                                                  {"color", {1, .5, .25}},
-                                                  {"radiance", 8}}}})
+  const Scene scene = with_extras({{"areaLight",
+                                    {{"shape", "rect"},
+                                     {"width", 3},
+                                     {"height", 1},
+                                     {"color", {1, .5, .25}},
+                                     {"radiance", 8}}}})
                           .import();
   ASSERT_EQ(scene.lights.size(), 1u);
   const shared::Light& light = scene.lights[0].device;
@@ -59,9 +60,8 @@ TEST(AreaLights, WhatIsWrongIsNamed) {
   refused({{"shape", "rect"}, {"width", 0}, {"height", 1}});
   refused({{"shape", "rect"}, {"width", 1}, {"height", 1e9}});
   refused({{"shape", "disk"}, {"radius", -1}});
-  for (const auto& [key, value] : {std::pair{"radiance", nlohmann::json(-1)},
-                                  {"color", {1, -1, 1}},
-                                  {"color", "red"}}) {
+  for (const auto& [key, value] :
+       {std::pair{"radiance", nlohmann::json(-1)}, {"color", {1, -1, 1}}, {"color", "red"}}) {
     nlohmann::json light = disk;
     light[key] = value;
     refused(light);

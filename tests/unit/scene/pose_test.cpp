@@ -39,8 +39,8 @@ TEST(Sample, StepHoldsUntilTheNextKey) {
 // By hand from glTF 2.0, C.5: at the middle of two seconds, with start 0, end 8, out-tangent 6 and
 // in-tangent -2 per second: 0.5*0 + 0.125*2*6 + 0.5*8 - 0.125*2*(-2) = 6.
 TEST(Sample, SplineTangentsAreScaledByTheTimeBetweenKeys) {
-  const Channel channel = curve(Property::weights, Interpolation::cubic_spline, 1, {0, 2},
-                                {99, 0, 6, -2, 8, 99});
+  const Channel channel =
+      curve(Property::weights, Interpolation::cubic_spline, 1, {0, 2}, {99, 0, 6, -2, 8, 99});
   EXPECT_FLOAT_EQ(at(channel, 1.0f)[0], 6.0f);
   EXPECT_FLOAT_EQ(at(channel, 0.0f)[0], 0.0f);
   EXPECT_FLOAT_EQ(at(channel, 2.0f)[0], 8.0f);
@@ -56,9 +56,8 @@ float angle_about_y(const std::array<float, 4>& xyzw) {
 TEST(Sample, RotationsTakeTheShortWayAtAnEvenPace) {
   const float half = std::numbers::pi_v<float> / 4.0f;  // of a quarter turn about y
   // The second key is the same rotation with all signs turned: the long way round.
-  const Channel channel =
-      curve(Property::rotation, Interpolation::linear, 4, {0, 1},
-            {0, 0, 0, 1, 0, -std::sin(half), 0, -std::cos(half)});
+  const Channel channel = curve(Property::rotation, Interpolation::linear, 4, {0, 1},
+                                {0, 0, 0, 1, 0, -std::sin(half), 0, -std::cos(half)});
   for (const float time : {0.1f, 0.25f, 0.5f, 0.9f}) {
     const auto value = at(channel, time);
     EXPECT_NEAR(angle_about_y(value), 2.0f * half * time, 1e-5f);
@@ -77,8 +76,7 @@ TEST(Sample, SplinesOfRotationsComeOutWithUnitLength) {
 }
 
 TEST(Sample, AZeroQuaternionIsNoRotation) {
-  const Channel channel =
-      curve(Property::rotation, Interpolation::linear, 4, {0}, {0, 0, 0, 0});
+  const Channel channel = curve(Property::rotation, Interpolation::linear, 4, {0}, {0, 0, 0, 0});
   EXPECT_EQ(at(channel, 0.0f), (std::array<float, 4>{0, 0, 0, 1}));
 }
 
@@ -88,7 +86,10 @@ Scene mobile() {
   Transform child;
   child.translation = {1, 0, 0};
   scene.nodes = {{.name = "parent", .transform = Transform{}},
-                 {.name = "child", .parent = 0, .local = child.matrix(), .world = child.matrix(),
+                 {.name = "child",
+                  .parent = 0,
+                  .local = child.matrix(),
+                  .world = child.matrix(),
                   .transform = child},
                  {.name = "still", .weights = {0.25f}}};
   const float half = std::numbers::pi_v<float> / 4.0f;
@@ -128,8 +129,7 @@ TEST(Evaluate, LoopsAndKeepsItsLastMoment) {
 TEST(Evaluate, AnotherClipStartsFromRest) {
   Scene scene = mobile();
   Clip other{"lift", 1.0f, {}};
-  other.channels.push_back(
-      curve(Property::translation, Interpolation::linear, 3, {0}, {0, 5, 0}));
+  other.channels.push_back(curve(Property::translation, Interpolation::linear, 3, {0}, {0, 5, 0}));
   scene.clips.push_back(other);
   Pose pose = rest_pose(scene);
   evaluate(scene, scene.clips[0], 2.0, pose);

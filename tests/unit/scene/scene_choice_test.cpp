@@ -5,8 +5,8 @@
 namespace heliograph::scene {
 namespace {
 
-using test::GltfBuilder;
 using nlohmann::json;
+using test::GltfBuilder;
 
 /// Three scenes of one node each, the second the default.
 GltfBuilder three_scenes() {

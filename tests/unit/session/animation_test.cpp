@@ -36,8 +36,8 @@ class AnimationTest : public testing::Test {
 
 TEST(AnimationClock, PassesAtItsRateWhilePlaying) {
   const auto start = AnimationClock::Clock::now();
-  AnimationClock clock{.clip = "ride", .seconds = 1.0, .rate = 2.0, .playing = true,
-                       .since = start};
+  AnimationClock clock{
+      .clip = "ride", .seconds = 1.0, .rate = 2.0, .playing = true, .since = start};
   EXPECT_DOUBLE_EQ(clock.at(start + std::chrono::milliseconds(500)), 2.0);
   clock.playing = false;
   EXPECT_DOUBLE_EQ(clock.at(start + std::chrono::hours(1)), 1.0);

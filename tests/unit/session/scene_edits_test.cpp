@@ -76,8 +76,8 @@ TEST(SceneEdits, CopiesNothingUntilSomethingDiffers) {
 TEST(SceneEdits, APatchChangesOneLightAndKeepsTheOthersBitForBit) {
   const auto scene = a_scene();
   SceneEdits edits(scene);
-  ASSERT_TRUE(edits.patch({.light = "lamp",
-                           .patch = {.intensity = {8.0f}, .angular_diameter = {10.0f}}}));
+  ASSERT_TRUE(
+      edits.patch({.light = "lamp", .patch = {.intensity = {8.0f}, .angular_diameter = {10.0f}}}));
   const auto first = edits.device_lights();
   ASSERT_TRUE(first);
   EXPECT_EQ((*first)[0].color, glm::vec3(8.0f, 4.0f, 2.0f));
@@ -102,8 +102,8 @@ TEST(SceneEdits, NullBringsBackTheFilesValue) {
 TEST(SceneEdits, TellsWhatDiffersFromTheFile) {
   SceneEdits edits(a_scene());
   EXPECT_TRUE(edits.lights()[0].changed.empty());
-  ASSERT_TRUE(edits.patch({.light = "lamp",
-                           .patch = {.enabled = {false}, .angular_diameter = {10.0f}}}));
+  ASSERT_TRUE(
+      edits.patch({.light = "lamp", .patch = {.enabled = {false}, .angular_diameter = {10.0f}}}));
   EXPECT_EQ(edits.lights()[0].changed, (std::vector<std::string>{"enabled", "angular_diameter"}));
   EXPECT_TRUE(edits.lights()[1].changed.empty());
   const auto half = edits.patch({.light = "lamp", .patch = {.enabled = {true}}});
@@ -127,13 +127,12 @@ TEST(SceneEdits, TurnedPanelsKeepTheirWidthAcross) {
 
 TEST(SceneEdits, RefusesWhatALightHasNot) {
   SceneEdits edits(a_scene());
-  const auto refused = edits.patch(
-      {.light = "lamp", .patch = {.intensity = {1.0f}, .position = {Vec3{0, 0, 0}}}});
+  const auto refused =
+      edits.patch({.light = "lamp", .patch = {.intensity = {1.0f}, .position = {Vec3{0, 0, 0}}}});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().path, "patch.position");
   EXPECT_FLOAT_EQ(edits.lights()[0].intensity, 4.0f) << "half a patch was applied";
-  EXPECT_EQ(edits.patch({.light = "lamp 2", .patch = {.direction = {Vec3{0, 0, 0}}}})
-                .error().path,
+  EXPECT_EQ(edits.patch({.light = "lamp 2", .patch = {.direction = {Vec3{0, 0, 0}}}}).error().path,
             "patch.direction");
   const auto unknown = edits.patch({.light = "lmap", .patch = {}});
   EXPECT_EQ(unknown.error().code, ErrorCode::not_found);

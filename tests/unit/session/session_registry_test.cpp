@@ -108,8 +108,7 @@ TEST_F(SessionRegistryTest, ThoseWhoWereTogetherMeetAgainAndOneBringsTheState) {
 TEST_F(SessionRegistryTest, WhoMayOnlyWatchMakesNoSession) {
   const std::string watcher = enter("main");
   const std::size_t before = registry_.count();
-  EXPECT_EQ(registry_.settle(watcher, {"before", "review"}, {}).error().code,
-            ErrorCode::not_found);
+  EXPECT_EQ(registry_.settle(watcher, {"before", "review"}, {}).error().code, ErrorCode::not_found);
   EXPECT_EQ(registry_.count(), before);
 }
 

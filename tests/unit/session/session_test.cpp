@@ -233,10 +233,10 @@ TEST_F(SessionTest, StoppingAReferencePutsBackWhatStartingItChanged) {
 TEST_F(SessionTest, AReferenceThatSettingsEndIsNotStarted) {
   session_.show(a_scene(), "");
   ASSERT_TRUE(session_.start_reference({.samples = 9}, ""));
-  ASSERT_TRUE(session_.patch_settings(
-      protocol::RawJson(
-          json{{"reference", {{"use", "never"}}}, {"accumulation", {{"max_samples", 32}}}}),
-      ""));
+  ASSERT_TRUE(
+      session_.patch_settings(protocol::RawJson(json{{"reference", {{"use", "never"}}},
+                                                     {"accumulation", {{"max_samples", 32}}}}),
+                              ""));
   EXPECT_FALSE(session_.works_unwatched());
   EXPECT_EQ(session_.render_state().settings.accumulation.max_samples, 32);
   ASSERT_TRUE(session_.start_reference({.samples = 12}, ""));
@@ -317,8 +317,7 @@ TEST_F(SessionTest, TheFinalPictureIsAPngForThoseWhoAskedForOne) {
 
 TEST_F(SessionTest, AVideoIsOnlyForThoseWhoseHelloAgreedOnOne) {
   const Joined viewer = join();
-  const auto refused =
-      session_.configure_stream({.codec = protocol::StreamCodec::h264}, viewer.id);
+  const auto refused = session_.configure_stream({.codec = protocol::StreamCodec::h264}, viewer.id);
   EXPECT_EQ(refused.error().path, "codec");
 }
 

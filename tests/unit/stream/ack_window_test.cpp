@@ -26,7 +26,8 @@ class AckWindowTest : public testing::Test {
         const Frame frame = on_the_way_.front();
         on_the_way_.pop_front();
         newest_delay_ = duration_cast<microseconds>(now_ - frame.sent);
-        window_.arrived({.delay = newest_delay_, .interval = interval_, .ahead = frame.ahead}, now_);
+        window_.arrived({.delay = newest_delay_, .interval = interval_, .ahead = frame.ahead},
+                        now_);
         ++arrived;
       }
       if (now_ < next_picture_ || on_the_way_.size() >= window_.size()) continue;

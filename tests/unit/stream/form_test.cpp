@@ -17,8 +17,7 @@ Form video(int quality, int scale = 100) {
 }
 
 TEST(Forms, AreFewAndHoldTheExtremes) {
-  EXPECT_EQ(reduce_forms({jpeg(80), jpeg(80), jpeg(60)}),
-            (std::vector<Form>{jpeg(60), jpeg(80)}));
+  EXPECT_EQ(reduce_forms({jpeg(80), jpeg(80), jpeg(60)}), (std::vector<Form>{jpeg(60), jpeg(80)}));
   EXPECT_EQ(reduce_forms({jpeg(10), jpeg(90), jpeg(50), jpeg(70), jpeg(30)}),
             (std::vector<Form>{jpeg(10), jpeg(50), jpeg(90)}));
   EXPECT_TRUE(reduce_forms({}).empty());
@@ -50,8 +49,10 @@ class FormPlannerTest : public testing::Test {
  protected:
   /// Encodes what is requested of the video, at the next position.
   VideoPosition encode(const FormRequest& request) {
-    if (request.key || !running_) newest_ = {.video = newest_.video + 1, .index = 0};
-    else ++newest_.index;
+    if (request.key || !running_)
+      newest_ = {.video = newest_.video + 1, .index = 0};
+    else
+      ++newest_.index;
     running_ = true;
     EncodedFrame frame;
     frame.form = request.form;

@@ -138,8 +138,8 @@ TEST_F(H264Test, EveryPictureComesOutAtOnceAndLooksLikeWhatWentIn) {
   Decoder decoder;
   for (int i = 0; i < 12; ++i) {
     const Pixels picture = moving_picture(320, 180, i);
-    const auto unit = encoder.encode(
-        picture.view(), {.quality = 85, .max_bytes_per_frame = unlimited}, i == 0);
+    const auto unit =
+        encoder.encode(picture.view(), {.quality = 85, .max_bytes_per_frame = unlimited}, i == 0);
     EXPECT_EQ(unit.key, i == 0);
     const AVFrame* const decoded = decoder.decode(unit.bytes);
     ASSERT_TRUE(decoded) << "frame " << i;
@@ -151,17 +151,22 @@ TEST_F(H264Test, SaysHowItsColoursAreMeant) {
   H264Encoder encoder(64, 64);
   Decoder decoder;
   Pixels picture(64, 64);
-  constexpr std::array<std::array<std::uint8_t, 3>, 8> colours{
-      {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {255, 255, 255}, {0, 0, 0}, {128, 128, 128},
-       {200, 120, 40}, {20, 90, 160}}};
+  constexpr std::array<std::array<std::uint8_t, 3>, 8> colours{{{255, 0, 0},
+                                                                {0, 255, 0},
+                                                                {0, 0, 255},
+                                                                {255, 255, 255},
+                                                                {0, 0, 0},
+                                                                {128, 128, 128},
+                                                                {200, 120, 40},
+                                                                {20, 90, 160}}};
   for (std::uint32_t y = 0; y < 64; ++y) {
     for (std::uint32_t x = 0; x < 64; ++x) {
       const auto& colour = colours[(x / 32) * 4 + y / 16];
       std::copy(colour.begin(), colour.end(), picture.at(x, y));
     }
   }
-  const auto unit = encoder.encode(
-      picture.view(), {.quality = 100, .max_bytes_per_frame = unlimited}, true);
+  const auto unit =
+      encoder.encode(picture.view(), {.quality = 100, .max_bytes_per_frame = unlimited}, true);
   const AVFrame* const decoded = decoder.decode(unit.bytes);
   ASSERT_TRUE(decoded);
   EXPECT_EQ(decoded->color_range, AVCOL_RANGE_MPEG);
@@ -182,8 +187,8 @@ TEST_F(H264Test, KeyFramesComeOnRequestWithTheirParameters) {
     // A cut in the middle: no key frame may come of itself.
     const Pixels picture = moving_picture(160, 96, i < 5 ? i : 1000 + 37 * i);
     const bool asked = i == 0 || i == 3;
-    const auto unit = encoder.encode(
-        picture.view(), {.quality = 80, .max_bytes_per_frame = unlimited}, asked);
+    const auto unit =
+        encoder.encode(picture.view(), {.quality = 80, .max_bytes_per_frame = unlimited}, asked);
     const auto types = unit_types(unit.bytes);
     EXPECT_EQ(unit.key, asked) << "frame " << i;
     EXPECT_EQ(holds(types, key_slice), asked) << "frame " << i;
@@ -198,8 +203,8 @@ TEST_F(H264Test, AViewerCanBeginAtALaterKeyFrame) {
   Decoder late;
   for (int i = 0; i < 6; ++i) {
     const Pixels picture = moving_picture(160, 96, i);
-    const auto unit = encoder.encode(
-        picture.view(), {.quality = 85, .max_bytes_per_frame = unlimited}, i % 3 == 0);
+    const auto unit = encoder.encode(picture.view(),
+                                     {.quality = 85, .max_bytes_per_frame = unlimited}, i % 3 == 0);
     if (i < 3) continue;
     const AVFrame* const decoded = late.decode(unit.bytes);
     ASSERT_TRUE(decoded);
@@ -235,8 +240,8 @@ TEST_F(H264Test, OddSizesLoseTheirLastColumnAndRow) {
   EXPECT_EQ(encoder.height(), 96u);
   Decoder decoder;
   const Pixels picture = moving_picture(161, 97, 0);
-  const auto unit = encoder.encode(
-      picture.view(), {.quality = 85, .max_bytes_per_frame = unlimited}, true);
+  const auto unit =
+      encoder.encode(picture.view(), {.quality = 85, .max_bytes_per_frame = unlimited}, true);
   const AVFrame* const decoded = decoder.decode(unit.bytes);
   ASSERT_TRUE(decoded);
   EXPECT_GT(signal_to_noise(*decoded, picture), 34.0);

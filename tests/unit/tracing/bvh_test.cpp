@@ -64,8 +64,7 @@ void check_mesh(const Bvh& bvh, std::uint32_t link, const Box& box, float slack,
   for (std::uint32_t i = first; i < first + leaf_count(link); ++i) {
     const shared::BvhTriangle triangle = triangle_at(bvh, i);
     ++seen[triangle.triangle & shared::bvh_number_mask];
-    for (const glm::vec3& corner :
-         {triangle.corner0, triangle.corner1, triangle.corner2}) {
+    for (const glm::vec3& corner : {triangle.corner0, triangle.corner1, triangle.corner2}) {
       for (int axis = 0; axis < 3; ++axis) {
         EXPECT_GE(corner[axis], box.low[axis] - slack);
         EXPECT_LE(corner[axis], box.high[axis] + slack);
