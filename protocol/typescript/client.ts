@@ -3,8 +3,14 @@
 // Node 22 and later; elsewhere the caller brings one.
 
 import { type FrameHeader, parseFrameHeader } from "./frame_header.ts";
-import { type Hello, type StreamSettings, subprotocol } from "./messages.ts";
-import { RpcPeer } from "./rpc.ts";
+import {
+  type Hello,
+  type Methods,
+  type StreamConfigureParams,
+  type StreamSettings,
+  subprotocol,
+} from "./messages.ts";
+import { type RequestArguments, RpcPeer } from "./rpc.ts";
 
 /** A little more than the longest that a capture waits in the server. */
 const longestCallMs = 310_000;
@@ -74,7 +80,7 @@ export class HeliographClient {
     };
     try {
       const greeting = { client, codecs, session };
-      const hello = await peer.request<Hello>("hello", greeting, timeoutMs);
+      const hello = await peer.request("hello", greeting, timeoutMs);
       if (!options.frame) await peer.request("stream.pause", {}, timeoutMs);
       return new HeliographClient(hello, socket, peer, timeoutMs);
     } catch (error) {
@@ -83,21 +89,21 @@ export class HeliographClient {
     }
   }
 
-  /** Asks one method. @throws RpcError (with code 0 when no answer came in time), ChannelClosed */
-  request<Result>(
-    method: string,
-    params: object = {},
-    timeoutMs = this.timeoutMs,
-  ): Promise<Result> {
-    return this.peer.request<Result>(method, params, timeoutMs);
+  /** Calls a method. @throws RpcError (with code 0 when no answer came in time), ChannelClosed */
+  request<Name extends keyof Methods>(
+    method: Name,
+    ...[params, timeoutMs = this.timeoutMs]: RequestArguments<Methods[Name]["params"]>
+  ): Promise<Methods[Name]["result"]> {
+    const args = [params, timeoutMs] as RequestArguments<Methods[Name]["params"]>;
+    return this.peer.request(method, ...args);
   }
 
-  /** Tells without waiting for an answer. */
-  notify(method: string, params: object): void {
+  /** Calls a method without waiting for an answer. */
+  notify<Name extends keyof Methods>(method: Name, params: Methods[Name]["params"]): void {
     this.peer.notify(method, params);
   }
 
-  configureStream(change: Partial<StreamSettings>): Promise<StreamSettings> {
+  configureStream(change: StreamConfigureParams): Promise<StreamSettings> {
     return this.request("stream.configure", change);
   }
 

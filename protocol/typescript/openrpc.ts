@@ -1,6 +1,6 @@
 // What rpc.discover tells of a server, as far as clients ask.
 
-import type { JsonObject } from "./messages.ts";
+import type { JsonObject } from "./json.ts";
 import { isObject } from "./settings_tree.ts";
 
 export interface OpenRpc {

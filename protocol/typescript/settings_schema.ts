@@ -1,7 +1,7 @@
 // Turns the server's JSON Schema of its settings into a description of controls. Nothing here
 // knows a setting by name, so a setting added to the server appears without a change here.
 
-import type { JsonObject, JsonValue } from "./messages.ts";
+import type { JsonObject, JsonValue } from "./json.ts";
 import { isObject } from "./settings_tree.ts";
 
 /** Wider ranges of whole numbers, like those of a random seed, are typed instead of dragged. */

@@ -1,6 +1,6 @@
 // Values and patches of the settings tree, addressed by dotted paths.
 
-import type { JsonObject, JsonValue } from "./messages.ts";
+import type { JsonObject, JsonValue } from "./json.ts";
 
 export function isObject(value: unknown): value is JsonObject {
   return typeof value === "object" && value !== null && !Array.isArray(value);

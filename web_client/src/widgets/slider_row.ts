@@ -1,4 +1,4 @@
-// A row like those of the settings, for a number that is no setting.
+// A slider like those of the settings, for a number that is not a setting.
 
 import { type NumberRange, type SliderControl } from "heliograph/settings_schema.ts";
 import { createRow } from "./setting_row.ts";
