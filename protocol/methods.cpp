@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "protocol/codec.hpp"
+#include "protocol/json/codec.hpp"
 
 namespace heliograph::protocol {
 namespace {

@@ -5,7 +5,7 @@
 #include <typeindex>
 #include <vector>
 
-#include "protocol/raw_json.hpp"
+#include "protocol/json/raw_json.hpp"
 #include "protocol/result.hpp"
 
 namespace heliograph::protocol {

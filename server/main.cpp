@@ -10,7 +10,7 @@
 #include <variant>
 
 #include "cli/commands.hpp"
-#include "net/resource_limits.hpp"
+#include "net/security/resource_limits.hpp"
 
 namespace {
 

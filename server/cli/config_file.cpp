@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "protocol/suggestions.hpp"
+#include "protocol/json/suggestions.hpp"
 
 namespace heliograph::cli {
 namespace {

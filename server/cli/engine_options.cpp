@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "protocol/presets.hpp"
-#include "protocol/settings_json.hpp"
-#include "render/buffer_names.hpp"
+#include "protocol/settings/presets.hpp"
+#include "protocol/settings/settings_json.hpp"
+#include "render/api/buffer_names.hpp"
 
 namespace heliograph::cli {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "cli/options.hpp"
-#include "protocol/settings.hpp"
-#include "render/renderer.hpp"
+#include "protocol/settings/settings.hpp"
+#include "render/api/renderer.hpp"
 
 namespace heliograph::cli {
 

@@ -5,10 +5,10 @@
 
 #include "cli/commands.hpp"
 #include "cli/engine_options.hpp"
-#include "net/health_client.hpp"
+#include "net/http/health_client.hpp"
 #include "protocol/methods.hpp"
-#include "protocol/settings_json.hpp"
-#include "render/renderer.hpp"
+#include "protocol/settings/settings_json.hpp"
+#include "render/api/renderer.hpp"
 
 // The commands that only tell something.
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "protocol/kinds.hpp"
-#include "protocol/presets.hpp"
+#include "protocol/messages/kinds.hpp"
+#include "protocol/settings/presets.hpp"
 
 namespace heliograph::cli {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "cli/config_file.hpp"
 #include "cli/option_groups.hpp"
-#include "protocol/suggestions.hpp"
+#include "protocol/json/suggestions.hpp"
 
 namespace heliograph::cli {
 namespace {

@@ -10,13 +10,13 @@
 
 #include "cli/commands.hpp"
 #include "cli/engine_options.hpp"
-#include "protocol/suggestions.hpp"
+#include "protocol/json/suggestions.hpp"
+#include "scene/animation/pose.hpp"
 #include "scene/camera.hpp"
 #include "scene/environment.hpp"
 #include "scene/import.hpp"
-#include "scene/pose.hpp"
-#include "session/capture_content.hpp"
-#include "session/environment_choice.hpp"
+#include "session/rendering/capture_content.hpp"
+#include "session/state/environment_choice.hpp"
 
 namespace heliograph::cli {
 namespace {

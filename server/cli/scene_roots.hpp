@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "session/scene_catalogue.hpp"
+#include "session/library/scene_catalogue.hpp"
 
 namespace heliograph::cli {
 

@@ -11,7 +11,7 @@
 #include <utility>
 #include <variant>
 
-#include "net/connection_limits.hpp"
+#include "net/security/connection_limits.hpp"
 
 // For the sources of this folder only: it brings Boost.
 

@@ -9,14 +9,14 @@
 #include <set>
 #include <utility>
 
-#include "net/access_control.hpp"
 #include "net/client_stream.hpp"
-#include "net/router.hpp"
-#include "net/tls.hpp"
-#include "protocol/messages.hpp"
+#include "net/http/router.hpp"
+#include "net/security/access_control.hpp"
+#include "net/security/tls.hpp"
+#include "protocol/messages/messages.hpp"
 #include "protocol/result.hpp"
+#include "session/library/upload_store.hpp"
 #include "session/session_host.hpp"
-#include "session/upload_store.hpp"
 
 // What the server and its connections share. For the sources of this folder only: it brings Boost.
 

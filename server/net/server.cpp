@@ -16,7 +16,7 @@
 
 #include "net/connection.hpp"
 #include "net/listener.hpp"
-#include "net/reader_progress.hpp"
+#include "net/websocket/reader_progress.hpp"
 #include "session/event_log.hpp"
 
 namespace heliograph::net {

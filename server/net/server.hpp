@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "net/access_control.hpp"
-#include "net/router.hpp"
+#include "net/http/router.hpp"
+#include "net/security/access_control.hpp"
+#include "session/library/upload_store.hpp"
 #include "session/session_host.hpp"
-#include "session/upload_store.hpp"
 
 namespace heliograph::net {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "scene/import.hpp"
+#include "scene/import_error.hpp"
 
 namespace heliograph::scene {
 

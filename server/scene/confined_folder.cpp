@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 
-#include "scene/import.hpp"
+#include "scene/import_error.hpp"
 #include "scene/quote.hpp"
 
 namespace heliograph::scene {

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "scene/confined_folder.hpp"
-#include "scene/exr.hpp"
-#include "scene/import.hpp"
-#include "scene/radiance.hpp"
+#include "scene/image/exr.hpp"
+#include "scene/image/radiance.hpp"
+#include "scene/import_error.hpp"
 
 namespace heliograph::scene {
 

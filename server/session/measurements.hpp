@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "protocol/messages.hpp"
-#include "stream/histogram.hpp"
+#include "protocol/messages/messages.hpp"
+#include "stream/pacing/histogram.hpp"
 
 namespace heliograph::session {
 

@@ -9,12 +9,12 @@
 #include <thread>
 #include <vector>
 
-#include "protocol/jsonrpc.hpp"
-#include "render/renderer.hpp"
-#include "session/environment_library.hpp"
-#include "session/render_loop.hpp"
-#include "session/scene_catalogue.hpp"
-#include "session/scene_loader.hpp"
+#include "protocol/json/jsonrpc.hpp"
+#include "render/api/renderer.hpp"
+#include "session/library/environment_library.hpp"
+#include "session/library/scene_catalogue.hpp"
+#include "session/library/scene_loader.hpp"
+#include "session/rendering/render_loop.hpp"
 #include "session/session_registry.hpp"
 
 namespace heliograph::session {

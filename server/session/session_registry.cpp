@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "protocol/suggestions.hpp"
+#include "protocol/json/suggestions.hpp"
 #include "session/event_log.hpp"
 
 namespace heliograph::session {

@@ -11,9 +11,9 @@
 #include <string_view>
 #include <vector>
 
-#include "protocol/jsonrpc.hpp"
-#include "session/pixel_budget.hpp"
-#include "session/session.hpp"
+#include "protocol/json/jsonrpc.hpp"
+#include "session/rendering/pixel_budget.hpp"
+#include "session/state/session.hpp"
 
 namespace heliograph::session {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "protocol/frame_header.hpp"
-#include "stream/form.hpp"
+#include "protocol/messages/frame_header.hpp"
+#include "stream/pacing/encoding_variant.hpp"
 
 namespace heliograph::stream {
 

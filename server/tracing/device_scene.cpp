@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "tracing/alpha_mask.hpp"
+#include "tracing/bvh/alpha_mask.hpp"
 
 namespace heliograph::tracing {
 namespace {

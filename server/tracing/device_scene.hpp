@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "tracing/device_structures.hpp"
-#include "tracing/mask_tables.hpp"
+#include "tracing/bvh/mask_tables.hpp"
+#include "tracing/driver/device_structures.hpp"
 #include "tracing/ray_tracer.hpp"
 
 namespace heliograph::tracing {

@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "gpu/frame_plan.hpp"
-#include "protocol/kinds.hpp"
+#include "gpu/frame_plan/frame_plan.hpp"
+#include "protocol/messages/kinds.hpp"
 #include "scene/scene.hpp"
 
 namespace heliograph::tracing {

@@ -4,7 +4,7 @@
 #include "types.h"
 SHARED_BEGIN
 
-SHARED_CONSTANT uint ray_keys = 4096u;  // values of the key (lib/ray_key.glsl)
+SHARED_CONSTANT uint ray_keys = 4096u;  // values of the key (lib/rays/ray_key.glsl)
 
 // Where origins may lie: key = (origin - corner) x scale, 0..1.
 struct RaySortConstants {

@@ -12,12 +12,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "render/engine_parts.hpp"
-#include "render/moving_scene.hpp"
-#include "scene/deform.hpp"
+#include "render/frame/engine_parts.hpp"
+#include "render/resources/moving_scene.hpp"
+#include "scene/animation/deform.hpp"
+#include "scene/animation/pose.hpp"
+#include "scene/gltf/materials/layer_table.hpp"
 #include "scene/import.hpp"
-#include "scene/layer_table.hpp"
-#include "scene/pose.hpp"
 
 namespace heliograph::bench {
 namespace {

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <cstring>
 
-#include "gpu/frame_plan.hpp"
+#include "gpu/frame_plan/frame_plan.hpp"
 #include "tests/bench/embedded.hpp"
 
 namespace heliograph::bench {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "gpu/device.hpp"
+#include "gpu/device/device.hpp"
 
 namespace heliograph::bench {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "shaders/shared/ray.h"
-#include "tracing/embree_batch.hpp"
-#include "tracing/embree_scene.hpp"
+#include "tracing/embree/embree_batch.hpp"
+#include "tracing/embree/embree_scene.hpp"
 
 namespace heliograph::bench {
 namespace {

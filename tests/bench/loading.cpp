@@ -13,10 +13,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "render/renderer.hpp"
+#include "render/api/renderer.hpp"
 #include "scene/camera.hpp"
+#include "scene/gltf/geometry/tangents.hpp"
 #include "scene/import.hpp"
-#include "scene/tangents.hpp"
 
 namespace heliograph::bench {
 namespace {

@@ -8,10 +8,10 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <nlohmann/json.hpp>
 
-#include "protocol/settings.hpp"
-#include "protocol/settings_json.hpp"
-#include "render/engine_parts.hpp"
-#include "render/renderer.hpp"
+#include "protocol/settings/settings.hpp"
+#include "protocol/settings/settings_json.hpp"
+#include "render/api/renderer.hpp"
+#include "render/frame/engine_parts.hpp"
 #include "scene/camera.hpp"
 #include "scene/import.hpp"
 #include "tests/bench/embree_rate.hpp"

@@ -7,8 +7,8 @@
 #include <thread>
 #include <vector>
 
-#include "session/broadcast.hpp"
 #include "session/session_host.hpp"
+#include "session/viewers/broadcast.hpp"
 #include "tests/bench/stream_client.hpp"
 
 namespace heliograph::bench {

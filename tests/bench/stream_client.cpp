@@ -12,7 +12,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "protocol/frame_header.hpp"
+#include "protocol/messages/frame_header.hpp"
 
 namespace heliograph::bench {
 namespace {

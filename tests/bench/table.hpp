@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "render/renderer.hpp"
+#include "render/api/renderer.hpp"
 #include "tests/bench/copy_rate.hpp"
 
 namespace heliograph::bench {

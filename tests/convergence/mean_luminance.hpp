@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "render/renderer.hpp"
+#include "render/api/renderer.hpp"
 
 namespace heliograph::test {
 

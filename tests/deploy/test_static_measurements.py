@@ -18,7 +18,7 @@ NAME = r"\b(?:heliograph|process)_[a-z_]*[a-z]\b"
 
 def taken():
     """Every series of the server's, as the one file that writes them names it."""
-    text = text_of(os.path.join(ROOT, "server/net/metrics.cpp"))
+    text = text_of(os.path.join(ROOT, "server/net/http/metrics.cpp"))
     kinds = [(name, kind) for kind, name in
              re.findall(rf'page\.(counter|gauge|histogram)\(\s*"({NAME})"', text)]
     kinds += re.findall(rf'page\.describe\(\s*"({NAME})",\s*"[^"]*",\s*"(\w+)"', text)

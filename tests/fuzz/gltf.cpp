@@ -7,8 +7,8 @@
 #include <fstream>
 
 #include "document_mutator.hpp"
+#include "scene/animation/pose.hpp"
 #include "scene/import.hpp"
-#include "scene/pose.hpp"
 
 using namespace heliograph;
 

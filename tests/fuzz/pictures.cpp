@@ -4,10 +4,10 @@
 #include <random>
 #include <vector>
 
-#include "scene/exr.hpp"
-#include "scene/image_decoder.hpp"
+#include "scene/image/exr.hpp"
+#include "scene/image/image_decoder.hpp"
+#include "scene/image/radiance.hpp"
 #include "scene/import.hpp"
-#include "scene/radiance.hpp"
 
 using namespace heliograph;
 

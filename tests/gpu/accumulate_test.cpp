@@ -1,4 +1,4 @@
-#include "render/accumulate.hpp"
+#include "render/passes/post/accumulate.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,7 @@
-#include "render/antialias_host.hpp"
-
 #include <gtest/gtest.h>
 
-#include "render/antialias.hpp"
+#include "render/kernels/temporal_antialias.hpp"
+#include "render/passes/post/temporal_antialias.hpp"
 #include "tests/gpu/host_twin.hpp"
 
 namespace heliograph::test {

@@ -1,11 +1,10 @@
-#include "render/antialias.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 
-#include "render/accumulate.hpp"
+#include "render/passes/post/accumulate.hpp"
+#include "render/passes/post/temporal_antialias.hpp"
 #include "tests/support/frame_rig.hpp"
 
 namespace heliograph::test {

@@ -4,8 +4,8 @@
 #include <functional>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "render/gbuffer.hpp"
-#include "render/trace_visibility.hpp"
+#include "render/passes/gbuffer/gbuffer.hpp"
+#include "render/passes/visibility/trace_visibility.hpp"
 #include "tests/support/frame_rig.hpp"
 
 namespace heliograph::test {

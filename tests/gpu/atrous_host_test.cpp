@@ -1,11 +1,10 @@
-#include "render/atrous_host.hpp"
-
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <cmath>
 #include <random>
 
+#include "render/kernels/atrous.hpp"
 #include "shaders/embedded.hpp"
 #include "tests/support/frame_rig.hpp"
 
@@ -61,8 +60,8 @@ class AtrousRig {
     by_host_ = rig_.plan().image("host", four);
     const auto& programs = rig_.inputs().programs;
     rig_.plan()
-        .pass("atrous", programs.compute(kind == Signal::visibility ? shaders::atrous_visibility
-                                                                    : shaders::atrous_specular))
+        .pass("atrous", programs.compute(kind == Signal::visibility ? shaders::visibility_atrous
+                                                                    : shaders::specular_atrous))
         .read(guide_)
         .read(slope_)
         .read(signal_)

@@ -1,4 +1,4 @@
-#include "render/atrous.hpp"
+#include "render/passes/denoise/atrous.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "render/denoise_constants.hpp"
+#include "render/passes/denoise/denoise_constants.hpp"
 #include "shaders/embedded.hpp"
 #include "tests/shader/random_inputs.hpp"
 #include "tests/support/frame_rig.hpp"
@@ -143,7 +143,7 @@ struct Filter {
       made.rows = shape.rows;
       return made;
     };
-    const auto& shader = specular ? shaders::atrous_specular : shaders::atrous_visibility;
+    const auto& shader = specular ? shaders::specular_atrous : shaders::visibility_atrous;
     const auto& program = rig.inputs().programs.compute(shader);
     render::FrameInputs inputs = rig.inputs();
     inputs.host_kernels = false;  // atrous_host_test.cpp holds the processor's against these

@@ -2,8 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
 // One ray per pixel, in rows.
-#include "lib/camera_ray.glsl"
-#include "lib/ray_index.glsl"
+#include "lib/rays/camera_ray.glsl"
+#include "lib/rays/ray_index.glsl"
 
 layout(set = 1, binding = 0, std430) writeonly buffer Count { RayCount ray_count; };
 layout(set = 1, binding = 1, std430) writeonly buffer Rays { Ray rays[]; };

@@ -1,8 +1,7 @@
-#include "render/compose_host.hpp"
-
 #include <gtest/gtest.h>
 
-#include "render/compose.hpp"
+#include "render/kernels/compose.hpp"
+#include "render/passes/compose/compose.hpp"
 #include "tests/gpu/host_twin.hpp"
 
 namespace heliograph::test {

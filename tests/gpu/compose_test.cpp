@@ -1,4 +1,4 @@
-#include "render/compose.hpp"
+#include "render/passes/compose/compose.hpp"
 
 #include <gtest/gtest.h>
 

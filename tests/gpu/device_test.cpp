@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "gpu/device_lost.hpp"
-#include "gpu/frame_plan.hpp"
+#include "gpu/device/device_lost.hpp"
+#include "gpu/frame_plan/frame_plan.hpp"
 #include "tests/gpu/embedded.hpp"
 #include "tests/support/engine.hpp"
 

@@ -1,4 +1,4 @@
-#include "render/exposure.hpp"
+#include "render/passes/post/exposure.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "gpu/frame_plan.hpp"
+#include "gpu/frame_plan/frame_plan.hpp"
 
 #include <gtest/gtest.h>
 

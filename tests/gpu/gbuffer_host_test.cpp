@@ -1,8 +1,7 @@
-#include "render/gbuffer_host.hpp"
-
 #include <gtest/gtest.h>
 
-#include "render/trace_gbuffer.hpp"
+#include "render/kernels/gbuffer_hits.hpp"
+#include "render/passes/gbuffer/trace_gbuffer.hpp"
 #include "scene/import.hpp"
 #include "tests/gpu/host_twin.hpp"
 #include "tests/gpu/textured_scene.hpp"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "render/gbuffer.hpp"
+#include "render/passes/gbuffer/gbuffer.hpp"
 #include "tests/support/frame_rig.hpp"
 
 namespace heliograph::test {

@@ -1,11 +1,11 @@
-#include "render/gbuffer.hpp"
+#include "render/passes/gbuffer/gbuffer.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "render/trace_gbuffer.hpp"
+#include "render/passes/gbuffer/trace_gbuffer.hpp"
 #include "tests/support/frame_rig.hpp"
 
 namespace heliograph::test {

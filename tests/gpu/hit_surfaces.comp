@@ -2,9 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
 // Every pixel's camera ray, and what it meets, in the encoding of the G-buffer.
-#include "lib/camera_ray.glsl"
-#include "lib/hit_surface.glsl"
-#include "lib/octahedral.glsl"
+#include "lib/rays/camera_ray.glsl"
+#include "lib/scene/hit_surface.glsl"
+#include "lib/math/octahedral.glsl"
 
 layout(set = 1, binding = 0, std430) readonly buffer Rays { Ray rays[]; };
 layout(set = 1, binding = 1, std430) readonly buffer Hits { Hit hits[]; };

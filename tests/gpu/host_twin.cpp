@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <glm/gtc/packing.hpp>
 
+#include "render/resources/gbuffer_formats.hpp"
 #include "tests/gpu/gbuffer_input.hpp"
 
 namespace heliograph::test {
@@ -51,14 +52,14 @@ RandomFrame::Surfaces RandomFrame::surfaces(float shift) {
 
 render::GBuffer RandomFrame::gbuffer() {
   const auto image = [&](const std::string& name, std::size_t signal, const auto& texels) {
-    return rig_.input(name, render::GBuffer::formats[signal], texels);
+    return rig_.input(name, render::gbuffer_formats[signal], texels);
   };
   const Surfaces now = surfaces(1.6f), before = surfaces(0.0f);
   render::GBuffer made;
   made.normals = image("normals", 0, now.normals);
   made.base_color = image("base_color", 1, now.base_color);
   made.surface = image("surface", 2, now.surface);
-  made.layers = rig_.plan().image("layers", render::GBuffer::layers_format, 0, VkExtent2D{1, 1});
+  made.layers = rig_.plan().image("layers", render::gbuffer_layers_format, 0, VkExtent2D{1, 1});
   made.motion = image("motion", 3, now.motion);
   made.emissive = image("emissive", 4, now.emissive);
   made.depth_slope = image("slope", 5, now.slope);

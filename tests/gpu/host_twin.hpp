@@ -3,7 +3,7 @@
 #include <random>
 #include <set>
 
-#include "render/gbuffer.hpp"
+#include "render/passes/gbuffer/gbuffer.hpp"
 #include "tests/support/frame_rig.hpp"
 
 namespace heliograph::test {

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "render/gbuffer.hpp"
-#include "scene/deform.hpp"
+#include "render/passes/gbuffer/gbuffer.hpp"
+#include "scene/animation/deform.hpp"
 #include "scene/import.hpp"
 #include "tests/support/frame_rig.hpp"
 #include "tests/support/traced_scene.hpp"

@@ -1,8 +1,7 @@
-#include "render/present_host.hpp"
-
 #include <gtest/gtest.h>
 
-#include "render/present.hpp"
+#include "render/kernels/present.hpp"
+#include "render/passes/post/present.hpp"
 #include "tests/gpu/host_twin.hpp"
 
 namespace heliograph::test {

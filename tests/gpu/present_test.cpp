@@ -1,4 +1,4 @@
-#include "render/present.hpp"
+#include "render/passes/post/present.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,9 @@
-#include "render/reproject_host.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "render/reproject.hpp"
+#include "render/kernels/reproject.hpp"
+#include "render/passes/denoise/reproject.hpp"
 #include "tests/gpu/host_twin.hpp"
 
 namespace heliograph::test {

@@ -1,11 +1,10 @@
-#include "render/signals_host.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "render/accumulate.hpp"
-#include "render/denoise_visibility.hpp"
+#include "render/kernels/signals.hpp"
+#include "render/passes/denoise/denoise_visibility.hpp"
+#include "render/passes/post/accumulate.hpp"
 #include "tests/gpu/host_twin.hpp"
 
 namespace heliograph::test {

@@ -1,9 +1,8 @@
-#include "render/specular_host.hpp"
-
 #include <gtest/gtest.h>
 
-#include "render/trace_gbuffer.hpp"
-#include "render/trace_specular.hpp"
+#include "render/kernels/specular.hpp"
+#include "render/passes/gbuffer/trace_gbuffer.hpp"
+#include "render/passes/reflections/trace_specular.hpp"
 #include "scene/import.hpp"
 #include "tests/gpu/host_twin.hpp"
 #include "tests/gpu/textured_scene.hpp"

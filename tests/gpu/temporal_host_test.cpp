@@ -1,10 +1,9 @@
-#include "render/temporal_host.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "render/temporal.hpp"
+#include "render/kernels/temporal.hpp"
+#include "render/passes/denoise/temporal.hpp"
 #include "tests/gpu/host_twin.hpp"
 
 namespace heliograph::test {

@@ -1,4 +1,4 @@
-#include "render/temporal.hpp"
+#include "render/passes/denoise/temporal.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "render/scene_motion.hpp"
+#include "render/resources/scene_motion.hpp"
 #include "tests/support/frame_rig.hpp"
 
 namespace heliograph::test {

@@ -1,11 +1,11 @@
-#include "render/texture_heap.hpp"
+#include "render/resources/texture_heap.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstring>
 
-#include "scene/mipmaps.hpp"
+#include "scene/image/mipmaps.hpp"
 #include "tests/gpu/embedded.hpp"
 #include "tests/shader/random_inputs.hpp"
 #include "tests/support/compute_harness.hpp"

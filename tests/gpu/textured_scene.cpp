@@ -3,7 +3,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "scene/mipmaps.hpp"
+#include "scene/image/mipmaps.hpp"
 #include "tests/support/scene_builder.hpp"
 
 namespace heliograph::test {

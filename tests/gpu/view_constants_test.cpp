@@ -1,9 +1,8 @@
-#include "render/view_constants.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "render/frame/frame_constants.hpp"
 #include "tests/support/frame_rig.hpp"
 
 namespace heliograph::test {

@@ -1,11 +1,10 @@
-#include "render/visibility_rays_host.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "render/trace_visibility.hpp"
+#include "render/kernels/visibility_rays.hpp"
+#include "render/passes/visibility/trace_visibility.hpp"
 #include "tests/gpu/host_twin.hpp"
 
 namespace heliograph::test {

@@ -4,7 +4,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
-#include "render/trace_visibility.hpp"
+#include "render/passes/visibility/trace_visibility.hpp"
 #include "tests/gpu/gbuffer_input.hpp"
 
 namespace heliograph::test {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "render/buffer_names.hpp"
+#include "render/api/buffer_names.hpp"
 #include "tests/image/still.hpp"
 
 namespace heliograph::test {

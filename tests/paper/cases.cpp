@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "protocol/presets.hpp"
-#include "protocol/settings_json.hpp"
+#include "protocol/settings/presets.hpp"
+#include "protocol/settings/settings_json.hpp"
 
 namespace heliograph::paper {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "protocol/settings.hpp"
+#include "protocol/settings/settings.hpp"
 #include "scenes/generator/document.hpp"
 
 // What the paper varies in its section 4: the scene, one swept value, what moves, the techniques.

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "render/renderer.hpp"
+#include "render/api/renderer.hpp"
 
 namespace heliograph::paper {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "render/renderer.hpp"
+#include "render/api/renderer.hpp"
 #include "tests/paper/cases.hpp"
 #include "tests/paper/quality.hpp"
 

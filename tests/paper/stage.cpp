@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "scene/pose.hpp"
+#include "scene/animation/pose.hpp"
 #include "scenes/generator/paper_scenes.hpp"
 #include "tests/support/generated_scene.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "render/renderer.hpp"
+#include "render/api/renderer.hpp"
 #include "scene/environment.hpp"
 #include "scene/scene.hpp"
 #include "scenes/generator/document.hpp"

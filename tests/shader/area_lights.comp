@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "tests/shader/harness.glsl"
-#include "lib/lights.glsl"
+#include "lib/lighting/lights.glsl"
 
 // a: position of the light, type; b: its direction, half its width or radius; c: its tangent, half
 // its height; d: eye and roughness, or random numbers. The surface is the origin, facing +z.

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "shaders/fit_ltc/lobe.hpp"
+#include "render/resources/tables/fit_ltc/lobe.hpp"
 #include "tests/shader/embedded.hpp"
 #include "tests/shader/random_inputs.hpp"
 #include "tests/support/compute_harness.hpp"

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "tests/shader/harness.glsl"
-#include "lib/brdf.glsl"
-#include "lib/tone_map.glsl"
+#include "lib/lighting/brdf.glsl"
+#include "lib/math/tone_map.glsl"
 
 ShaderOutput evaluate(uint which, ShaderInput given) {
   switch (which) {

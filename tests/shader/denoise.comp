@@ -1,11 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "tests/shader/harness.glsl"
-#include "lib/edge_stopping.glsl"
-#include "lib/moments.glsl"
-#include "lib/rectification.glsl"
-#include "lib/reinhard.glsl"
-#include "lib/reprojection.glsl"
+#include "lib/denoise/edge_stopping.glsl"
+#include "lib/denoise/moments.glsl"
+#include "lib/denoise/rectification.glsl"
+#include "lib/denoise/reinhard.glsl"
+#include "lib/denoise/reprojection.glsl"
 
 vec4 weight(float exponent) { return vec4(exp(exponent)); }
 

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "tests/shader/harness.glsl"
-#include "lib/equirectangular.glsl"
-#include "lib/octahedral.glsl"
+#include "lib/math/equirectangular.glsl"
+#include "lib/math/octahedral.glsl"
 
 ShaderOutput evaluate(uint which, ShaderInput given) {
   switch (which) {

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "tests/shader/harness.glsl"
-#include "lib/environment_sampling.glsl"
+#include "lib/lighting/environment_sampling.glsl"
 
 ShaderOutput evaluate(uint which, ShaderInput given) {
   if (which == 1u) {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "render/environment_table.hpp"
+#include "render/resources/environment/environment_table.hpp"
 #include "tests/shader/embedded.hpp"
 #include "tests/shader/random_inputs.hpp"
 #include "tests/support/compute_harness.hpp"

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "tests/shader/harness.glsl"
-#include "lib/environment.glsl"
-#include "lib/lights.glsl"
+#include "lib/lighting/environment.glsl"
+#include "lib/lighting/lights.glsl"
 
 ShaderOutput evaluate(uint which, ShaderInput given) {
   switch (which) {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "render/irradiance.hpp"
+#include "render/resources/environment/irradiance.hpp"
 #include "tests/shader/embedded.hpp"
 #include "tests/shader/random_inputs.hpp"
 #include "tests/support/brdf_twin.hpp"

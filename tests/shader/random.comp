@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "tests/shader/harness.glsl"
-#include "lib/random.glsl"
+#include "lib/math/random.glsl"
 
 // Whole numbers come as pairs of 16-bit halves, which floats hold exactly.
 uint whole(vec2 halves) { return uint(halves.x) << 16u | uint(halves.y); }

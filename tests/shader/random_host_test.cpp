@@ -1,10 +1,9 @@
 // The random numbers of host kernels are those of the shaders, to the bit: a picture must not
 // depend on who made its rays.
 
-#include "render/random_host.hpp"
-
 #include <gtest/gtest.h>
 
+#include "render/kernels/simd/random.hpp"
 #include "tests/shader/embedded.hpp"
 #include "tests/shader/random_inputs.hpp"
 #include "tests/support/compute_harness.hpp"

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "tests/shader/harness.glsl"
-#include "lib/sampling.glsl"
+#include "lib/math/sampling.glsl"
 
 // a: view, alpha; b: two random numbers, or the direction of light.
 ShaderOutput evaluate(uint which, ShaderInput given) {

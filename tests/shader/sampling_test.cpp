@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "render/debug_view.hpp"
+#include "render/views/debug_view.hpp"
 #include "tests/shader/chi_square.hpp"
 #include "tests/shader/embedded.hpp"
 #include "tests/shader/random_inputs.hpp"

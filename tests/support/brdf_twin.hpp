@@ -2,7 +2,7 @@
 
 #include <glm/glm.hpp>
 
-/// shaders/lib/brdf.glsl once more, in double and from the definitions.
+/// shaders/lib/lighting/brdf.glsl once more, in double and from the definitions.
 namespace heliograph::test {
 
 /// Scale and bias of F0 in the specular albedo (Karis 2013), by a midpoint rule over the

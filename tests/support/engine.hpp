@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "render/engine_parts.hpp"
+#include "render/frame/engine_parts.hpp"
 
 namespace heliograph::test {
 

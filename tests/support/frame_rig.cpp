@@ -2,9 +2,9 @@
 
 #include <cstring>
 
-#include "render/debug_view.hpp"
-#include "render/frame_set.hpp"
-#include "render/scene_set.hpp"
+#include "render/frame/frame_set.hpp"
+#include "render/resources/scene_set.hpp"
+#include "render/views/debug_view.hpp"
 
 namespace heliograph::test {
 

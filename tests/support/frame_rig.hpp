@@ -1,9 +1,9 @@
 #pragma once
 
-#include "render/frame.hpp"
-#include "render/moving_scene.hpp"
-#include "render/scene_motion.hpp"
-#include "render/view_constants.hpp"
+#include "render/frame/frame.hpp"
+#include "render/frame/frame_constants.hpp"
+#include "render/resources/moving_scene.hpp"
+#include "render/resources/scene_motion.hpp"
 #include "tests/support/engine.hpp"
 #include "tests/support/scene_builder.hpp"
 

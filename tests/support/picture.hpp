@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "render/renderer.hpp"
+#include "render/api/renderer.hpp"
 
 namespace heliograph::test {
 

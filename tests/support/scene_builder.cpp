@@ -4,7 +4,7 @@
 #include <glm/gtc/packing.hpp>
 #include <numbers>
 
-#include "scene/layer_table.hpp"
+#include "scene/gltf/materials/layer_table.hpp"
 
 namespace heliograph::test {
 namespace {

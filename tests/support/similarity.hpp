@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/renderer.hpp"
+#include "render/api/renderer.hpp"
 
 namespace heliograph::test {
 

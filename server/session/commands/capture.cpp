@@ -1,5 +1,5 @@
 #include "session/commands/commands.hpp"
-#include "stream/base64.hpp"
+#include "stream/encoders/base64.hpp"
 
 namespace heliograph::session {
 

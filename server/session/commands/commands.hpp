@@ -1,6 +1,6 @@
 #pragma once
 
-#include "protocol/jsonrpc.hpp"
+#include "protocol/json/jsonrpc.hpp"
 #include "session/session_host.hpp"
 
 // The methods of the protocol, a file per group. Each command is only what it does: shapes and

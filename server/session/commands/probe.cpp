@@ -1,8 +1,8 @@
 #include <cmath>
 
-#include "render/renderer.hpp"
+#include "render/api/renderer.hpp"
 #include "session/commands/commands.hpp"
-#include "session/scene_description.hpp"
+#include "session/library/scene_description.hpp"
 
 // What lies under a point of the picture.
 

@@ -1,4 +1,4 @@
-#include "protocol/presets.hpp"
+#include "protocol/settings/presets.hpp"
 #include "session/commands/commands.hpp"
 
 namespace heliograph::session {

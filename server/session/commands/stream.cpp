@@ -3,7 +3,7 @@
 #include <random>
 
 #include "session/commands/commands.hpp"
-#include "stream/codec_choice.hpp"
+#include "stream/encoders/codec_choice.hpp"
 
 namespace heliograph::session {
 

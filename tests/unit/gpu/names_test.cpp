@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "gpu/device_choice.hpp"
-#include "gpu/image.hpp"
-#include "gpu/shader.hpp"
+#include "gpu/device/device_choice.hpp"
+#include "gpu/memory/image.hpp"
+#include "gpu/pipelines/shader.hpp"
 
 namespace heliograph::gpu {
 namespace {

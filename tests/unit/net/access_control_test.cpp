@@ -1,10 +1,10 @@
-#include "net/access_control.hpp"
+#include "net/security/access_control.hpp"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
-#include "net/rate_limit.hpp"
+#include "net/security/rate_limit.hpp"
 
 namespace heliograph::net {
 namespace {

@@ -1,4 +1,4 @@
-#include "net/paced_write.hpp"
+#include "net/websocket/paced_write.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "net/presence.hpp"
+#include "net/websocket/presence.hpp"
 
 #include <gtest/gtest.h>
 
-#include "net/paced_write.hpp"
+#include "net/websocket/paced_write.hpp"
 
 namespace heliograph::net {
 namespace {

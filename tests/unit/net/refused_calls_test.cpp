@@ -1,4 +1,4 @@
-#include "net/refused_calls.hpp"
+#include "net/websocket/refused_calls.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "net/resource_limits.hpp"
+#include "net/security/resource_limits.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

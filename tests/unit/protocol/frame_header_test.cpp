@@ -1,4 +1,4 @@
-#include "protocol/frame_header.hpp"
+#include "protocol/messages/frame_header.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "protocol/jsonrpc.hpp"
+#include "protocol/json/jsonrpc.hpp"
 
 #include <gtest/gtest.h>
 

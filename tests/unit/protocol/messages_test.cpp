@@ -1,4 +1,4 @@
-#include "protocol/messages.hpp"
+#include "protocol/messages/messages.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "protocol/codec_templates.hpp"
-#include "protocol/json_values.hpp"
+#include "protocol/json/codec_templates.hpp"
+#include "protocol/json/json_values.hpp"
 
 namespace heliograph::protocol {
 namespace {

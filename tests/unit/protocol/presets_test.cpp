@@ -1,4 +1,4 @@
-#include "protocol/presets.hpp"
+#include "protocol/settings/presets.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "protocol/settings_json.hpp"
+#include "protocol/settings/settings_json.hpp"
 
 namespace heliograph::protocol {
 namespace {

@@ -1,4 +1,4 @@
-#include "protocol/settings_json.hpp"
+#include "protocol/settings/settings_json.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "protocol/json_values.hpp"
+#include "protocol/json/json_values.hpp"
 
 namespace heliograph::protocol {
 namespace {

@@ -1,4 +1,4 @@
-#include "protocol/settings.hpp"
+#include "protocol/settings/settings.hpp"
 
 #include <gtest/gtest.h>
 

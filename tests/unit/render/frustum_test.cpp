@@ -1,4 +1,4 @@
-#include "render/frustum.hpp"
+#include "render/passes/gbuffer/frustum.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "render/trace_gbuffer.hpp"
+#include "render/passes/gbuffer/trace_gbuffer.hpp"
 
 namespace heliograph::render {
 namespace {

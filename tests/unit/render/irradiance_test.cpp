@@ -1,4 +1,4 @@
-#include "render/irradiance.hpp"
+#include "render/resources/environment/irradiance.hpp"
 
 #include <gtest/gtest.h>
 

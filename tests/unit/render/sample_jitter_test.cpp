@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "render/view_constants.hpp"
+#include "render/frame/frame_constants.hpp"
 
 namespace heliograph::render {
 namespace {

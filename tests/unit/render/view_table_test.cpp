@@ -1,4 +1,4 @@
-#include "render/view_table.hpp"
+#include "render/views/view_table.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "render/debug_view.hpp"
+#include "render/views/debug_view.hpp"
 
 namespace heliograph::render {
 namespace {

@@ -1,11 +1,11 @@
-#include "scene/animation.hpp"
+#include "scene/gltf/nodes/animation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "gltf_builder.hpp"
-#include "scene/pose.hpp"
+#include "scene/animation/pose.hpp"
 
 namespace heliograph::scene::test {
 namespace {

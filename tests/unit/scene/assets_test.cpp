@@ -5,11 +5,11 @@
 #include <optional>
 
 #include "gltf_builder.hpp"
-#include "scene/accessors.hpp"
 #include "scene/environment.hpp"
-#include "scene/materials.hpp"
-#include "scene/meshes.hpp"
-#include "scene/tangents.hpp"
+#include "scene/gltf/document/accessors.hpp"
+#include "scene/gltf/geometry/meshes.hpp"
+#include "scene/gltf/geometry/tangents.hpp"
+#include "scene/gltf/materials/materials.hpp"
 
 namespace heliograph::scene::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "scene/deform.hpp"
+#include "scene/animation/deform.hpp"
 
 #include <gtest/gtest.h>
 

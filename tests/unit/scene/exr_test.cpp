@@ -1,4 +1,4 @@
-#include "scene/exr.hpp"
+#include "scene/image/exr.hpp"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>

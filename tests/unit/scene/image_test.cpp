@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "gltf_builder.hpp"
-#include "scene/image_decoder.hpp"
-#include "scene/mipmaps.hpp"
+#include "scene/image/image_decoder.hpp"
+#include "scene/image/mipmaps.hpp"
 
 namespace heliograph::scene::test {
 namespace {

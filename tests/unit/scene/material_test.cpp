@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "gltf_builder.hpp"
-#include "scene/materials.hpp"
+#include "scene/gltf/materials/materials.hpp"
 
 namespace heliograph::scene::test {
 namespace {

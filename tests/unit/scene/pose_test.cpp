@@ -1,4 +1,4 @@
-#include "scene/pose.hpp"
+#include "scene/animation/pose.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "scene/materials.hpp"
-#include "scene/tangents.hpp"
+#include "scene/gltf/geometry/tangents.hpp"
+#include "scene/gltf/materials/materials.hpp"
 
 namespace heliograph::scene {
 namespace {

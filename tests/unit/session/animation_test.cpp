@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "session/session.hpp"
+#include "session/state/session.hpp"
 
 namespace heliograph::session {
 namespace {

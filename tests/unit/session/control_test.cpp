@@ -1,4 +1,4 @@
-#include "session/control.hpp"
+#include "session/viewers/control.hpp"
 
 #include <gtest/gtest.h>
 

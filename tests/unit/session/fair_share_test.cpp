@@ -1,4 +1,4 @@
-#include "session/fair_share.hpp"
+#include "session/rendering/fair_share.hpp"
 
 #include <gtest/gtest.h>
 

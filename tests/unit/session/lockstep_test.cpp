@@ -4,7 +4,7 @@
 #include <thread>
 #include <vector>
 
-#include "session/session.hpp"
+#include "session/state/session.hpp"
 
 namespace heliograph::session {
 namespace {

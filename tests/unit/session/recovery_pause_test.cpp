@@ -1,6 +1,6 @@
-#include "session/recovery_pause.hpp"
-
 #include <gtest/gtest.h>
+
+#include "session/rendering/retry_backoff.hpp"
 
 namespace heliograph::session {
 namespace {

@@ -1,4 +1,4 @@
-#include "session/scene_cache.hpp"
+#include "session/library/scene_cache.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "session/scene_catalogue.hpp"
+#include "session/library/scene_catalogue.hpp"
 
 #include <gtest/gtest.h>
 
-#include "session/environment_choice.hpp"
+#include "session/state/environment_choice.hpp"
 #include "temporary_folder.hpp"
 
 namespace heliograph::session {

@@ -1,4 +1,4 @@
-#include "session/scene_edits.hpp"
+#include "session/state/scene_edits.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "session/session.hpp"
+#include "session/state/session.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stream/ack_window.hpp"
+#include "stream/pacing/ack_window.hpp"
 
 #include <gtest/gtest.h>
 

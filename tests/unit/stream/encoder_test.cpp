@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "stream/base64.hpp"
-#include "stream/jpeg_encoder.hpp"
-#include "stream/png_encoder.hpp"
+#include "stream/encoders/base64.hpp"
+#include "stream/encoders/jpeg_encoder.hpp"
+#include "stream/encoders/png_encoder.hpp"
 
 namespace heliograph::stream {
 namespace {

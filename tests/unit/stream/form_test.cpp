@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "stream/form_planner.hpp"
+#include "stream/pacing/variant_planner.hpp"
 
 namespace heliograph::stream {
 namespace {

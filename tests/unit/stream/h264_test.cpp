@@ -12,7 +12,7 @@ extern "C" {
 #include <stdexcept>
 }
 
-#include "stream/picture_encoder.hpp"
+#include "stream/encoders/frame_encoder.hpp"
 
 namespace heliograph::stream {
 namespace {

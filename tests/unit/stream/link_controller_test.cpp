@@ -1,11 +1,11 @@
-#include "stream/link_controller.hpp"
+#include "stream/pacing/link_controller.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <deque>
 
-#include "stream/viewer_pacer.hpp"
+#include "stream/pacing/viewer_pacer.hpp"
 
 namespace heliograph::stream {
 namespace {

@@ -1,4 +1,4 @@
-#include "stream/npy_encoder.hpp"
+#include "stream/encoders/npy_encoder.hpp"
 
 #include <gtest/gtest.h>
 

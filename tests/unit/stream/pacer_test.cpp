@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "stream/viewer_pacer.hpp"
+#include "stream/pacing/viewer_pacer.hpp"
 
 namespace heliograph::stream {
 namespace {

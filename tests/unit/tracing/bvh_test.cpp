@@ -1,4 +1,4 @@
-#include "tracing/bvh.hpp"
+#include "tracing/bvh/bvh.hpp"
 
 #include <gtest/gtest.h>
 

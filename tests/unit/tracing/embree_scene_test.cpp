@@ -1,4 +1,4 @@
-#include "tracing/embree_scene.hpp"
+#include "tracing/embree/embree_scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tests/support/traced_scene.hpp"
-#include "tracing/embree_batch.hpp"
+#include "tracing/embree/embree_batch.hpp"
 
 namespace heliograph::tracing {
 namespace {

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "protocol/json/enum_names.hpp"
+
+namespace heliograph::protocol {
+
+HELIOGRAPH_ENUM(DeviceType, cpu, integrated, discrete, virtual_, other)
+HELIOGRAPH_ENUM(TracerKind, embree, software, ray_query, ray_pipeline)
+HELIOGRAPH_ENUM(PassKind, device, host)
+HELIOGRAPH_ENUM(ImageFormat, png, jpeg, npy, exr)
+HELIOGRAPH_ENUM(LightType, directional, point, spot, rectangle, disk)
+HELIOGRAPH_ENUM(ControlMode, everyone, one)
+HELIOGRAPH_ENUM(ViewerRole, view, control)
+HELIOGRAPH_ENUM(ControlAction, take, give, release)
+
+}  // namespace heliograph::protocol

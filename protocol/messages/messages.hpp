@@ -1,0 +1,12 @@
+#pragma once
+
+// Parameters and results of every method, and the notifications the server sends. What is declared
+// in these files is all there is: parsing, validation, writing and the OpenRPC document come from
+// each message's `fields()`.
+
+#include "protocol/messages/frame_messages.hpp"
+#include "protocol/messages/loading_messages.hpp"
+#include "protocol/messages/membership_messages.hpp"
+#include "protocol/messages/scene_messages.hpp"
+#include "protocol/messages/session_messages.hpp"
+#include "protocol/messages/stream_messages.hpp"

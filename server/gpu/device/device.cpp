@@ -1,0 +1,238 @@
+#include "gpu/device/device.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <vector>
+
+namespace heliograph::gpu {
+namespace {
+
+std::string refusal(const std::vector<DeviceReport>& reports) {
+  if (reports.empty()) {
+    return "no Vulkan device: install a driver (mesa-vulkan-drivers has one for machines "
+           "without a GPU)";
+  }
+  std::string text = "no Vulkan device will do:";
+  for (const auto& report : reports) text += " " + report.name + " (" + report.reason + ");";
+  text.back() = '.';
+  return text;
+}
+
+std::uint32_t find_queue_family(VkPhysicalDevice device) {
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  constexpr VkQueueFlags needed = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if ((families[i].queueFlags & needed) == needed && families[i].timestampValidBits > 0) return i;
+  }
+  throw GpuError("the device has no graphics and compute queue");
+}
+
+/// Hexadecimal name of the pipeline cache this exact driver can read.
+std::string cache_name(VkPhysicalDevice device) {
+  VkPhysicalDeviceProperties properties;
+  vkGetPhysicalDeviceProperties(device, &properties);
+  std::string name = "pipelines-";
+  for (const std::uint8_t byte : properties.pipelineCacheUUID) {
+    char digits[3];
+    std::snprintf(digits, sizeof digits, "%02x", byte);
+    name += digits;
+  }
+  return name + ".bin";
+}
+
+/// Lets tests lose the device: once for each time that they make the file that this names.
+bool loss_is_wanted() {
+  const char* const file = std::getenv("HELIOGRAPH_TEST_DEVICE_LOSS");
+  return file && std::remove(file) == 0;
+}
+
+}  // namespace
+
+Device::Device(const Instance& instance, const DeviceOptions& options) {
+  const auto reports = survey_devices(instance, options.wanted);
+  for (const auto& report : reports) {
+    if (report.chosen) report_ = report;
+  }
+  if (!report_.chosen) throw GpuError(refusal(reports));
+  if (options.as_gpu) report_.type = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+  create(instance);
+  load_pipeline_cache(options.cache_folder);
+}
+
+Device::~Device() {
+  if (!handle_) return;
+  vkDeviceWaitIdle(handle_);
+  save_pipeline_cache();
+  vkDestroyPipelineCache(handle_, pipeline_cache_, nullptr);
+  vkDestroyDevice(handle_, nullptr);
+}
+
+void Device::create(const Instance& instance) {
+  VkPhysicalDeviceProperties properties;
+  vkGetPhysicalDeviceProperties(report_.handle, &properties);
+  limits_ = properties.limits;
+  vkGetPhysicalDeviceMemoryProperties(report_.handle, &memory_);
+  queue_family_ = find_queue_family(report_.handle);
+  labels_ = instance.labels();
+
+  const float priority = 1.0f;
+  VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
+  queue.queueFamilyIndex = queue_family_;
+  queue.queueCount = 1;
+  queue.pQueuePriorities = &priority;
+
+  const RayFeatures rays(report_.rays);
+  VkPhysicalDeviceVulkan13Features v13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
+                                       rays.chain()};
+  v13.dynamicRendering = VK_TRUE;
+  v13.synchronization2 = VK_TRUE;
+  v13.maintenance4 = VK_TRUE;  // the compiler writes LocalSizeId
+  VkPhysicalDeviceVulkan12Features v12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, &v13};
+  v12.bufferDeviceAddress = VK_TRUE;
+  v12.hostQueryReset = VK_TRUE;
+  VkPhysicalDeviceFeatures2 features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &v12};
+  features.features.independentBlend = VK_TRUE;
+  features.features.imageCubeArray = VK_TRUE;
+  features.features.shaderStorageImageExtendedFormats = VK_TRUE;
+  VkPhysicalDeviceFeatures supported;
+  vkGetPhysicalDeviceFeatures(report_.handle, &supported);
+  features.features.samplerAnisotropy = supported.samplerAnisotropy;
+  features.features.robustBufferAccess = instance.validation() ? supported.robustBufferAccess : 0;
+
+  VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features};
+  info.queueCreateInfoCount = 1;
+  info.pQueueCreateInfos = &queue;
+  info.enabledExtensionCount = static_cast<std::uint32_t>(rays.extensions().size());
+  info.ppEnabledExtensionNames = rays.extensions().data();
+  check(vkCreateDevice(report_.handle, &info, nullptr, &handle_), "create the Vulkan device");
+  volkLoadDevice(handle_);
+  vkGetDeviceQueue(handle_, queue_family_, 0, &queue_);
+}
+
+void Device::load_pipeline_cache(const std::filesystem::path& folder) {
+  std::vector<char> bytes;
+  if (!folder.empty()) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    cache_file_ = folder / cache_name(report_.handle);
+    std::ifstream file(cache_file_, std::ios::binary);
+    bytes.assign(std::istreambuf_iterator<char>(file), {});
+  }
+  // The driver checks the header itself and starts empty when the bytes are not its own.
+  VkPipelineCacheCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
+  info.initialDataSize = bytes.size();
+  info.pInitialData = bytes.data();
+  check(vkCreatePipelineCache(handle_, &info, nullptr, &pipeline_cache_),
+        "create the pipeline cache");
+}
+
+void Device::save_pipeline_cache() const {
+  if (cache_file_.empty()) return;
+  std::size_t size = 0;
+  if (vkGetPipelineCacheData(handle_, pipeline_cache_, &size, nullptr) != VK_SUCCESS) return;
+  std::vector<char> bytes(size);
+  if (vkGetPipelineCacheData(handle_, pipeline_cache_, &size, bytes.data()) != VK_SUCCESS) return;
+  // Written beside and moved over, so that a second process never reads half a file.
+  const auto temporary = cache_file_.string() + ".new";
+  std::ofstream(temporary, std::ios::binary).write(bytes.data(), static_cast<long>(size));
+  std::error_code error;
+  std::filesystem::rename(temporary, cache_file_, error);
+}
+
+std::uint32_t Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags needed,
+                                  VkMemoryPropertyFlags wanted) const {
+  for (const VkMemoryPropertyFlags flags : {needed | wanted, needed}) {
+    for (std::uint32_t i = 0; i < memory_.memoryTypeCount; ++i) {
+      const bool fits = (memory_.memoryTypes[i].propertyFlags & flags) == flags;
+      if ((allowed & (1u << i)) && fits) return i;
+    }
+  }
+  throw GpuError("the device has no memory of the kind needed");
+}
+
+VkDeviceMemory Device::allocate(const VkMemoryRequirements& requirements,
+                                VkMemoryPropertyFlags needed, VkMemoryPropertyFlags wanted,
+                                const std::string& name) const {
+  VkMemoryAllocateFlagsInfo flags{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO};
+  flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
+  VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, &flags};
+  info.allocationSize = requirements.size;
+  info.memoryTypeIndex = memory_type(requirements.memoryTypeBits, needed, wanted);
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  const std::string what = "allocate " + std::to_string(requirements.size) + " bytes for " + name;
+  check(vkAllocateMemory(handle_, &info, nullptr, &memory), what.c_str());
+  return memory;
+}
+
+void Device::submit(VkCommandBuffer commands) const {
+  VkCommandBufferSubmitInfo buffer{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};
+  buffer.commandBuffer = commands;
+  VkSubmitInfo2 info{VK_STRUCTURE_TYPE_SUBMIT_INFO_2};
+  info.commandBufferInfoCount = 1;
+  info.pCommandBufferInfos = &buffer;
+  VkFenceCreateInfo fence_info{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+  VkFence fence = VK_NULL_HANDLE;
+  check(vkCreateFence(handle_, &fence_info, nullptr, &fence), "create a fence");
+  VkResult result;
+  {
+    const std::lock_guard lock(queue_mutex_);
+    result = loss_is_wanted() ? VK_ERROR_DEVICE_LOST : vkQueueSubmit2(queue_, 1, &info, fence);
+  }
+  if (result == VK_SUCCESS) result = vkWaitForFences(handle_, 1, &fence, VK_TRUE, UINT64_MAX);
+  vkDestroyFence(handle_, fence, nullptr);
+  check(result, "run commands on the device");
+}
+
+void Device::submit_once(const std::function<void(VkCommandBuffer)>& record) const {
+  VkCommandPoolCreateInfo pool_info{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
+  pool_info.queueFamilyIndex = queue_family_;
+  pool_info.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
+  VkCommandPool pool = VK_NULL_HANDLE;
+  check(vkCreateCommandPool(handle_, &pool_info, nullptr, &pool), "create a command pool");
+  struct PoolGuard {
+    VkDevice device;
+    VkCommandPool pool;
+    ~PoolGuard() { vkDestroyCommandPool(device, pool, nullptr); }
+  } guard{handle_, pool};
+  VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
+  info.commandPool = pool;
+  info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+  info.commandBufferCount = 1;
+  VkCommandBuffer commands = VK_NULL_HANDLE;
+  check(vkAllocateCommandBuffers(handle_, &info, &commands), "allocate a command buffer");
+  VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  check(vkBeginCommandBuffer(commands, &begin), "begin a command buffer");
+  record(commands);
+  check(vkEndCommandBuffer(commands), "end a command buffer");
+  submit(commands);
+}
+
+void Device::name(VkObjectType type, std::uint64_t object, const std::string& text) const {
+  if (!labels_) return;
+  VkDebugUtilsObjectNameInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT};
+  info.objectType = type;
+  info.objectHandle = object;
+  info.pObjectName = text.c_str();
+  vkSetDebugUtilsObjectNameEXT(handle_, &info);
+}
+
+void full_barrier(VkCommandBuffer commands) {
+  VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
+  barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
+  barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+  VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+  dependency.memoryBarrierCount = 1;
+  dependency.pMemoryBarriers = &barrier;
+  vkCmdPipelineBarrier2(commands, &dependency);
+}
+
+}  // namespace heliograph::gpu

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <string>
+
+#include "gpu/device/device_choice.hpp"
+#include "gpu/device/instance.hpp"
+
+namespace heliograph::gpu {
+
+struct DeviceOptions {
+  std::string wanted;                  // part of the device's name, or empty
+  std::filesystem::path cache_folder;  // where the pipeline cache is kept; empty: nowhere
+  bool as_gpu = false;                 // a processor too has memory of its own: tests that path
+};
+
+/// A logical device with one queue that does everything, and its pipeline cache.
+class Device {
+ public:
+  /// @throws GpuError listing every device found and why it will not do
+  Device(const Instance& instance, const DeviceOptions& options);
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  VkDevice handle() const { return handle_; }
+  VkPhysicalDevice physical() const { return report_.handle; }
+  const DeviceReport& report() const { return report_; }
+  const VkPhysicalDeviceLimits& limits() const { return limits_; }
+  std::uint32_t queue_family() const { return queue_family_; }
+  VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
+  bool labels() const { return labels_; }
+
+  /// The device is this machine's processor: its memory is ours, mapped, and host passes pay off.
+  bool is_cpu() const { return report_.type == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+
+  /// Index of a memory type among `allowed` with `needed`, preferring one that has `wanted` too.
+  std::uint32_t memory_type(std::uint32_t allowed, VkMemoryPropertyFlags needed,
+                            VkMemoryPropertyFlags wanted) const;
+  VkDeviceMemory allocate(const VkMemoryRequirements& requirements, VkMemoryPropertyFlags needed,
+                          VkMemoryPropertyFlags wanted, const std::string& name) const;
+
+  /// Submits and waits until the device is done. Thread safe.
+  void submit(VkCommandBuffer commands) const;
+  /// Records into a fresh command buffer, submits it and waits: for set-up work. Thread safe.
+  void submit_once(const std::function<void(VkCommandBuffer)>& record) const;
+
+  void name(VkObjectType type, std::uint64_t object, const std::string& name) const;
+  template <typename Handle>
+  void name(VkObjectType type, Handle object, const std::string& text) const {
+    name(type, reinterpret_cast<std::uint64_t>(object), text);
+  }
+
+ private:
+  void create(const Instance& instance);
+  void load_pipeline_cache(const std::filesystem::path& folder);
+  void save_pipeline_cache() const;
+
+  DeviceReport report_;
+  VkPhysicalDeviceLimits limits_{};
+  VkPhysicalDeviceMemoryProperties memory_{};
+  VkDevice handle_ = VK_NULL_HANDLE;
+  VkQueue queue_ = VK_NULL_HANDLE;
+  std::uint32_t queue_family_ = 0;
+  VkPipelineCache pipeline_cache_ = VK_NULL_HANDLE;
+  std::filesystem::path cache_file_;
+  bool labels_ = false;
+  mutable std::mutex queue_mutex_;
+};
+
+/// A full memory barrier between everything before and everything after.
+void full_barrier(VkCommandBuffer commands);
+
+}  // namespace heliograph::gpu

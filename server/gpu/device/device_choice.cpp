@@ -1,0 +1,211 @@
+#include "gpu/device/device_choice.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+
+namespace heliograph::gpu {
+namespace {
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+std::string version_text(std::uint32_t version) {
+  return std::to_string(VK_API_VERSION_MAJOR(version)) + "." +
+         std::to_string(VK_API_VERSION_MINOR(version)) + "." +
+         std::to_string(VK_API_VERSION_PATCH(version));
+}
+
+bool has_render_queue(VkPhysicalDevice device) {
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  return std::any_of(families.begin(), families.end(), [](const auto& family) {
+    constexpr VkQueueFlags needed = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+    return (family.queueFlags & needed) == needed && family.timestampValidBits > 0;
+  });
+}
+
+std::vector<std::string> missing_parts(VkPhysicalDevice device, std::uint32_t version) {
+  std::vector<std::string> missing;
+  if (version < VK_API_VERSION_1_3) {
+    missing.push_back("Vulkan 1.3");
+    return missing;
+  }
+  VkPhysicalDeviceVulkan13Features v13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+  VkPhysicalDeviceVulkan12Features v12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, &v13};
+  VkPhysicalDeviceFeatures2 features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &v12};
+  vkGetPhysicalDeviceFeatures2(device, &features);
+  const auto need = [&](VkBool32 present, const char* name) {
+    if (!present) missing.push_back(name);
+  };
+  need(v13.dynamicRendering, "dynamicRendering");
+  need(v13.synchronization2, "synchronization2");
+  need(v13.maintenance4, "maintenance4");
+  need(v12.bufferDeviceAddress, "bufferDeviceAddress");
+  need(v12.hostQueryReset, "hostQueryReset");
+  need(features.features.independentBlend, "independentBlend");
+  need(features.features.imageCubeArray, "imageCubeArray");
+  need(features.features.shaderStorageImageExtendedFormats, "shaderStorageImageExtendedFormats");
+  need(has_render_queue(device), "a graphics and compute queue with timestamps");
+  return missing;
+}
+
+DeviceReport report_on(VkPhysicalDevice device) {
+  VkPhysicalDeviceDriverProperties driver{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &driver};
+  vkGetPhysicalDeviceProperties2(device, &properties);
+  DeviceReport report;
+  report.handle = device;
+  report.name = properties.properties.deviceName;
+  report.driver = std::string(driver.driverName) + " " + driver.driverInfo;
+  report.version = version_text(properties.properties.apiVersion);
+  report.type = properties.properties.deviceType;
+  report.missing = missing_parts(device, properties.properties.apiVersion);
+  if (report.missing.empty()) report.rays = find_ray_extensions(device);
+  return report;
+}
+
+int rank(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      return 4;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      return 3;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      return 2;
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+      return 1;
+    default:
+      return 0;
+  }
+}
+
+/// Every manifest the loader would read.
+std::vector<std::filesystem::path> driver_files() {
+  std::vector<std::filesystem::path> files;
+  for (const char* variable : {"VK_DRIVER_FILES", "VK_ICD_FILENAMES"}) {
+    const char* value = std::getenv(variable);
+    if (!value) continue;
+    std::istringstream list(value);
+    for (std::string file; std::getline(list, file, ':');) files.emplace_back(file);
+    return files;
+  }
+  for (const char* folder :
+       {"/etc/vulkan/icd.d", "/usr/local/share/vulkan/icd.d", "/usr/share/vulkan/icd.d"}) {
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+      if (entry.path().extension() == ".json") files.push_back(entry.path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// Sets an environment variable and puts back what was there.
+class ScopedVariable {
+ public:
+  ScopedVariable(const char* name, const std::string& value) : name_(name) {
+    if (const char* old = std::getenv(name)) before_ = old;
+    setenv(name, value.c_str(), 1);
+  }
+  ~ScopedVariable() {
+    if (before_) {
+      setenv(name_, before_->c_str(), 1);
+    } else {
+      unsetenv(name_);
+    }
+  }
+  ScopedVariable(const ScopedVariable&) = delete;
+  ScopedVariable& operator=(const ScopedVariable&) = delete;
+
+ private:
+  const char* name_;
+  std::optional<std::string> before_;
+};
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const auto& part : parts) text += (text.empty() ? "" : ", ") + part;
+  return text;
+}
+
+/// Names of the devices that Vulkan finds as the environment stands, or why there is none.
+std::string devices_of_this_driver() {
+  try {
+    const Instance instance(false);
+    std::vector<std::string> names;
+    for (const VkPhysicalDevice device : instance.devices()) {
+      names.push_back(report_on(device).name);
+    }
+    return names.empty() ? "loads, but finds no device of its kind here" : joined(names);
+  } catch (const GpuError& error) {
+    return std::string("does not load: ") + error.what();
+  }
+}
+
+}  // namespace
+
+const char* type_name(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      return "discrete GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      return "integrated GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      return "virtual GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+      return "CPU";
+    default:
+      return "other device";
+  }
+}
+
+std::vector<DeviceReport> survey_devices(const Instance& instance, const std::string& wanted) {
+  std::vector<DeviceReport> reports;
+  for (const VkPhysicalDevice device : instance.devices()) reports.push_back(report_on(device));
+  DeviceReport* best = nullptr;
+  for (auto& report : reports) {
+    if (!report.missing.empty()) {
+      report.reason = "not usable: it lacks " + joined(report.missing);
+    } else if (!wanted.empty() && lower(report.name).find(lower(wanted)) == std::string::npos) {
+      report.reason = "its name does not contain \"" + wanted + "\"";
+    } else if (!best || rank(report.type) > rank(best->type)) {
+      best = &report;
+    }
+  }
+  for (auto& report : reports) {
+    if (&report == best) {
+      report.chosen = true;
+      report.reason = wanted.empty() ? "the best kind of device here" : "asked for by name";
+    } else if (report.reason.empty()) {
+      report.reason = rank(report.type) == rank(best->type)
+                          ? "an equal one comes first"
+                          : std::string("a ") + type_name(best->type) + " comes first";
+    }
+  }
+  return reports;
+}
+
+std::vector<DriverReport> examine_driver_files() {
+  std::vector<DriverReport> reports;
+  for (const auto& file : driver_files()) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error)) {
+      reports.push_back({file.string(), "no such file"});
+      continue;
+    }
+    const ScopedVariable newer("VK_DRIVER_FILES", file.string());
+    const ScopedVariable older("VK_ICD_FILENAMES", file.string());
+    reports.push_back({file.string(), devices_of_this_driver()});
+  }
+  return reports;
+}
+
+}  // namespace heliograph::gpu

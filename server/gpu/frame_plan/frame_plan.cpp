@@ -1,0 +1,440 @@
+#include "gpu/frame_plan/frame_plan.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include "gpu/frame_plan/frame_plan_parts.hpp"
+
+namespace heliograph::gpu {
+namespace {
+
+Sampler make_default_sampler(const Device& device) {
+  VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+  info.magFilter = info.minFilter = VK_FILTER_LINEAR;
+  info.addressModeU = info.addressModeV = info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  return Sampler(device, info);
+}
+
+using Clock = std::chrono::steady_clock;
+
+float since(Clock::time_point start) {
+  return std::chrono::duration<float, std::milli>(Clock::now() - start).count();
+}
+
+std::uint32_t groups(std::uint32_t threads, std::uint32_t local_size) {
+  return (threads + local_size - 1) / local_size;
+}
+
+}  // namespace
+
+FramePlan::FramePlan(const Device& device, VkExtent2D extent)
+    : device_(device), extent_(extent), default_sampler_(make_default_sampler(device)) {
+  VkCommandPoolCreateInfo info{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
+  info.queueFamilyIndex = device.queue_family();
+  info.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
+  check(vkCreateCommandPool(device.handle(), &info, nullptr, &command_pool_),
+        "create a command pool");
+}
+
+FramePlan::~FramePlan() {
+  vkDestroyQueryPool(device_.handle(), queries_, nullptr);
+  vkDestroyCommandPool(device_.handle(), command_pool_, nullptr);
+}
+
+std::uint32_t FramePlan::add(Resource resource) {
+  if (compiled_) throw GpuError("resource \"" + resource.name + "\" comes after compile()");
+  resources_.push_back(std::move(resource));
+  return static_cast<std::uint32_t>(resources_.size() - 1);
+}
+
+ImageRef FramePlan::image(std::string name, VkFormat format, VkImageUsageFlags extra_usage,
+                          std::optional<VkExtent2D> extent) {
+  const bool depth = is_depth(format);
+  ImageDesc desc{.name = name, .extent = extent.value_or(extent_), .format = format};
+  desc.usage = extra_usage | VK_IMAGE_USAGE_SAMPLED_BIT |
+               (depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_IMAGE_USAGE_STORAGE_BIT);
+  desc.mapped = device_.is_cpu() && !depth;
+  Resource resource{.name = std::move(name)};
+  auto made = std::make_shared<const Image>(device_, std::move(desc));
+  resource.images = {made.get(), made.get()};
+  resource.owned_images = {made, made};
+  return {add(std::move(resource))};
+}
+
+History FramePlan::history(std::string name, VkFormat format, VkImageUsageFlags extra_usage,
+                           std::optional<VkExtent2D> extent) {
+  ImageDesc desc{.name = name, .extent = extent.value_or(extent_), .format = format};
+  desc.usage = extra_usage | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
+  desc.mapped = device_.is_cpu();
+  const auto even = std::make_shared<const Image>(device_, desc);
+  const auto odd = std::make_shared<const Image>(device_, desc);
+  Resource current{.name = name};
+  current.images = {even.get(), odd.get()};
+  current.owned_images = {even, odd};
+  Resource previous{.name = name + ".previous"};
+  previous.images = {odd.get(), even.get()};
+  const History made{{add(std::move(current))}, {add(std::move(previous))}};
+  reset(made);
+  return made;
+}
+
+BufferRef FramePlan::buffer(std::string name, VkDeviceSize size, VkBufferUsageFlags usage,
+                            Memory memory) {
+  Resource resource{.name = name};
+  auto made = std::make_shared<const Buffer>(device_, std::move(name), size, usage, memory);
+  resource.buffer = made.get();
+  resource.owned_buffer = std::move(made);
+  return {add(std::move(resource))};
+}
+
+BufferRef FramePlan::import(const Buffer& buffer) {
+  Resource resource{.name = buffer.name()};
+  resource.buffer = &buffer;
+  return {add(std::move(resource))};
+}
+
+ImageRef FramePlan::import(const Image& image, std::optional<std::uint32_t> level,
+                           VkSampler sampler) {
+  Resource resource{.name = image.desc().name};
+  resource.images = {&image, &image};
+  resource.level = level;
+  resource.sampler = sampler;
+  return {add(std::move(resource))};
+}
+
+void FramePlan::share_set(std::uint32_t number, VkDescriptorSet set) {
+  shared_sets_.emplace_back(number, set);
+}
+
+PassBuilder FramePlan::pass(std::string name, const ComputeProgram& program) {
+  Pass pass;
+  pass.name = std::move(name);
+  pass.program = &program;
+  pass.local_size = program.local_size();
+  passes_.push_back(std::move(pass));
+  return {*this, passes_.size() - 1};
+}
+
+PassBuilder FramePlan::pass(std::string name, const RayProgram& program) {
+  Pass pass;
+  pass.name = std::move(name);
+  pass.program = pass.rays = &program;
+  passes_.push_back(std::move(pass));
+  return {*this, passes_.size() - 1};
+}
+
+PassBuilder FramePlan::raster(std::string name, const RasterProgram& program) {
+  Pass pass;
+  pass.name = std::move(name);
+  pass.program = &program;
+  pass.is_raster = true;
+  passes_.push_back(std::move(pass));
+  return {*this, passes_.size() - 1};
+}
+
+PassBuilder FramePlan::host(std::string name, std::function<void()> run) {
+  Pass pass;
+  pass.name = std::move(name);
+  pass.host = std::move(run);
+  passes_.push_back(std::move(pass));
+  return {*this, passes_.size() - 1};
+}
+
+void FramePlan::compile() {
+  for (const Pass& pass : passes_) check_pass(pass);
+  derive_barriers();
+  list_views();
+  make_descriptor_sets();
+  std::uint32_t submits = 1;
+  for (const Pass& pass : passes_) submits += timed_by_clock() || !pass.program ? 1 : 0;
+  commands_.resize(submits);
+  VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
+  info.commandPool = command_pool_;
+  info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+  info.commandBufferCount = submits;
+  check(vkAllocateCommandBuffers(device_.handle(), &info, commands_.data()),
+        "allocate the frame's command buffers");
+  VkQueryPoolCreateInfo queries{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
+  queries.queryType = VK_QUERY_TYPE_TIMESTAMP;
+  queries.queryCount = static_cast<std::uint32_t>(passes_.size() * 2 + 1);
+  check(vkCreateQueryPool(device_.handle(), &queries, nullptr, &queries_), "create the timers");
+  for (const Pass& pass : passes_) timings_.push_back({pass.name, !pass.program, 0.0f});
+  if (read_back_.index != ImageRef().index) readback_ = Readback(device_, latest(read_back_));
+  compiled_ = true;
+}
+
+void FramePlan::make_descriptor_sets() {
+  const auto passes = static_cast<std::uint32_t>(passes_.size());
+  std::uint32_t bindings = 1;
+  for (const Pass& pass : passes_) bindings += static_cast<std::uint32_t>(pass.bound.size());
+  descriptor_pool_ = std::make_unique<DescriptorPool>(device_, 2 * passes + 1, 2 * bindings);
+  for (Pass& pass : passes_) {
+    if (!pass.program || pass.bound.empty()) continue;
+    for (std::uint32_t parity = 0; parity < 2; ++parity) {
+      pass.sets[parity] = descriptor_pool_->allocate(pass.program->pass_set_layout());
+      DescriptorWriter writer(device_, pass.sets[parity]);
+      for (std::size_t i = 0; i < pass.bound.size(); ++i) {
+        const ShaderBinding& binding = pass.program->pass_bindings()[i];
+        const std::uint32_t index = pass.bound[i].resource;
+        const Resource& resource = resources_[index];
+        if (binding.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE) {
+          writer.storage_image(binding.binding, physical_view(index, parity));
+        } else if (binding.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER) {
+          writer.sampled_image(binding.binding, physical(index, parity).view(),
+                               resource.sampler ? resource.sampler : default_sampler_.handle());
+        } else if (binding.type == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER) {
+          writer.texel_buffer(binding.binding, resource.buffer->texel_view(binding.format));
+        } else {
+          writer.buffer(binding.binding, binding.type, resource.buffer->handle());
+        }
+      }
+      writer.apply();
+    }
+  }
+}
+
+bool FramePlan::timed_by_clock() const {
+  return device_.is_cpu();
+}
+
+void FramePlan::execute() {
+  if (!compiled_) throw GpuError("a frame plan runs only after compile()");
+  vkResetQueryPool(device_.handle(), queries_, 0, static_cast<std::uint32_t>(passes_.size() * 2));
+  std::size_t part = 0;
+  bool recorded = false;
+  bool barrier = false;  // of passes left out: those behind them rely on it
+  begin(commands_[0]);
+  for (std::size_t i = 0; i < passes_.size(); ++i) {
+    const Pass& pass = passes_[i];
+    timings_[i].milliseconds = -1.0f;  // not run
+    barrier |= pass.barrier_before;
+    if (pass.condition && !pass.condition()) {
+      barrier |= !pass.program;
+      continue;
+    }
+    const auto start = Clock::now();
+    if (pass.program) {
+      const auto query = static_cast<std::uint32_t>(i * 2);
+      if (std::exchange(barrier, false)) full_barrier(commands_[part]);
+      record(pass, commands_[part], query);
+      recorded = true;
+      if (!timed_by_clock()) continue;
+    }
+    if (recorded) {
+      submit(commands_[part]);
+      begin(commands_[++part]);
+      recorded = false;
+    }
+    if (pass.program) {
+      timings_[i].milliseconds = since(start);
+      continue;
+    }
+    const auto begun = Clock::now();
+    pass.host();
+    timings_[i].milliseconds = since(begun);
+  }
+  if (readback_) readback_.record(commands_[part], get(read_back_));
+  submit(commands_[part]);
+  if (!timed_by_clock()) read_timers();
+  parity_ ^= 1;
+}
+
+void FramePlan::begin(VkCommandBuffer commands) const {
+  VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+  info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  check(vkBeginCommandBuffer(commands, &info), "begin the frame's commands");
+}
+
+void FramePlan::submit(VkCommandBuffer commands) const {
+  // Mapped memory is read after this submit, by a host pass or by whoever takes the picture.
+  VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
+  barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
+  barrier.dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT;
+  barrier.dstAccessMask = VK_ACCESS_2_HOST_READ_BIT | VK_ACCESS_2_HOST_WRITE_BIT;
+  VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+  dependency.memoryBarrierCount = 1;
+  dependency.pMemoryBarriers = &barrier;
+  vkCmdPipelineBarrier2(commands, &dependency);
+  check(vkEndCommandBuffer(commands), "end the frame's commands");
+  device_.submit(commands);
+}
+
+void FramePlan::record(const Pass& pass, VkCommandBuffer commands, std::uint32_t query) {
+  if (device_.labels()) {
+    VkDebugUtilsLabelEXT label{VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT};
+    label.pLabelName = pass.name.c_str();
+    vkCmdBeginDebugUtilsLabelEXT(commands, &label);
+  }
+  if (!timed_by_clock()) {
+    vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_, query);
+  }
+  if (pass.is_raster) {
+    record_raster(pass, commands);
+  } else {
+    bind(pass, commands);
+    if (pass.rays) {
+      pass.rays->launch(commands, pass.threads.width);
+    } else if (pass.indirect) {
+      vkCmdDispatchIndirect(commands, resources_[pass.indirect->first].buffer->handle(),
+                            pass.indirect->second);
+    } else {
+      vkCmdDispatch(commands, groups(pass.threads.width, pass.local_size.width),
+                    groups(pass.threads.height, pass.local_size.height), pass.layers);
+    }
+  }
+  if (!timed_by_clock()) {
+    vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_, query + 1);
+  }
+  if (device_.labels()) vkCmdEndDebugUtilsLabelEXT(commands);
+}
+
+void FramePlan::bind(const Pass& pass, VkCommandBuffer commands) {
+  const VkPipelineBindPoint point = pass.bind_point();
+  const VkPipelineLayout layout = pass.program->layout();
+  vkCmdBindPipeline(commands, point, pass.program->pipeline());
+  for (const auto& [number, set] : shared_sets_) {
+    if (!pass.program->uses_set(number)) continue;
+    vkCmdBindDescriptorSets(commands, point, layout, number, 1, &set, 0, nullptr);
+  }
+  if (pass.sets[parity_]) {
+    vkCmdBindDescriptorSets(commands, point, layout, pass_set, 1, &pass.sets[parity_], 0, nullptr);
+  }
+  if (pass.constants) {
+    std::array<std::byte, 128> bytes;
+    pass.constants(bytes.data());
+    vkCmdPushConstants(commands, layout, pass.program->stages(), 0,
+                       static_cast<std::uint32_t>(pass.constants_size), bytes.data());
+  }
+}
+
+void FramePlan::record_raster(const Pass& pass, VkCommandBuffer commands) {
+  const auto attachment = [&](const Pass::Attachment& from) {
+    VkRenderingAttachmentInfo info{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
+    info.imageView = physical(from.resource, parity_).view();
+    info.imageLayout = VK_IMAGE_LAYOUT_GENERAL;
+    info.loadOp = from.clear ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD;
+    info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    if (from.clear) std::memcpy(&info.clearValue, from.clear->data(), sizeof(float) * 4);
+    return info;
+  };
+  std::vector<VkRenderingAttachmentInfo> colors;
+  for (const auto& color : pass.colors) colors.push_back(attachment(color));
+  VkRenderingAttachmentInfo depth{};
+  if (pass.depth) depth = attachment(*pass.depth);
+  VkRenderingInfo info{VK_STRUCTURE_TYPE_RENDERING_INFO};
+  info.renderArea = {{0, 0}, extent_};
+  info.layerCount = 1;
+  info.colorAttachmentCount = static_cast<std::uint32_t>(colors.size());
+  info.pColorAttachments = colors.data();
+  info.pDepthAttachment = pass.depth ? &depth : nullptr;
+  vkCmdBeginRendering(commands, &info);
+  const VkViewport viewport{
+      0.0f, 0.0f, static_cast<float>(extent_.width), static_cast<float>(extent_.height),
+      0.0f, 1.0f};
+  vkCmdSetViewport(commands, 0, 1, &viewport);
+  vkCmdSetScissor(commands, 0, 1, &info.renderArea);
+  bind(pass, commands);
+  pass.draw(commands, pass.program->layout());
+  vkCmdEndRendering(commands);
+}
+
+void FramePlan::read_timers() {
+  const float period = device_.limits().timestampPeriod * 1e-6f;
+  for (std::size_t i = 0; i < passes_.size(); ++i) {
+    if (!passes_[i].program) continue;
+    std::array<std::uint64_t, 2> times{};
+    const VkResult result = vkGetQueryPoolResults(
+        device_.handle(), queries_, static_cast<std::uint32_t>(i * 2), 2, sizeof times,
+        times.data(), sizeof(std::uint64_t), VK_QUERY_RESULT_64_BIT);
+    if (result == VK_SUCCESS) {
+      timings_[i].milliseconds = static_cast<float>(times[1] - times[0]) * period;
+    }
+  }
+}
+
+const Image& FramePlan::physical(std::uint32_t index, std::uint32_t parity) const {
+  return *resources_[index].images[parity];
+}
+
+VkImageView FramePlan::physical_view(std::uint32_t index, std::uint32_t parity) const {
+  return physical(index, parity).level_view(resources_[index].level.value_or(0));
+}
+
+const Image& FramePlan::get(ImageRef image) const {
+  return physical(image.index, parity_);
+}
+const Image& FramePlan::latest(ImageRef image) const {
+  return physical(image.index, parity_ ^ 1);
+}
+const Buffer& FramePlan::get(BufferRef buffer) const {
+  return *resources_[buffer.index].buffer;
+}
+
+std::vector<std::uint8_t> FramePlan::read() const {
+  if (!readback_) return {};
+  return readback_.read<std::uint8_t>(latest(read_back_));
+}
+
+void FramePlan::reset(const History& history) {
+  for (const Image* image : resources_[history.current.index].images) image->clear();
+}
+
+PassBuilder& PassBuilder::use_image(ImageRef image, bool reads, bool writes) {
+  plan_.passes_[pass_].bound.push_back({image.index, reads, writes});
+  return *this;
+}
+
+PassBuilder& PassBuilder::use_buffer(BufferRef buffer, bool reads, bool writes) {
+  plan_.passes_[pass_].bound.push_back({buffer.index, reads, writes});
+  return *this;
+}
+
+PassBuilder& PassBuilder::set_constants(std::size_t size, std::function<void(std::byte*)> fill) {
+  plan_.passes_[pass_].constants_size = size;
+  plan_.passes_[pass_].constants = std::move(fill);
+  return *this;
+}
+
+PassBuilder& PassBuilder::color(ImageRef image, std::optional<std::array<float, 4>> clear) {
+  plan_.passes_[pass_].colors.push_back({image.index, clear});
+  return *this;
+}
+
+PassBuilder& PassBuilder::depth(ImageRef image, float clear) {
+  plan_.passes_[pass_].depth = FramePlan::Pass::Attachment{image.index, {{clear, 0, 0, 0}}};
+  return *this;
+}
+
+PassBuilder& PassBuilder::dispatch(VkExtent2D threads, std::uint32_t layers) {
+  plan_.passes_[pass_].threads = threads;
+  plan_.passes_[pass_].layers = layers;
+  return *this;
+}
+
+PassBuilder& PassBuilder::dispatch_indirect(BufferRef groups, VkDeviceSize offset) {
+  plan_.passes_[pass_].indirect.emplace(groups.index, offset);
+  return *this;
+}
+
+PassBuilder& PassBuilder::launch(std::uint32_t rays) {
+  plan_.passes_[pass_].threads = {rays, 1};
+  return *this;
+}
+
+PassBuilder& PassBuilder::draw(std::function<void(VkCommandBuffer, VkPipelineLayout)> record) {
+  plan_.passes_[pass_].draw = std::move(record);
+  return *this;
+}
+
+PassBuilder& PassBuilder::when(std::function<bool()> condition) {
+  plan_.passes_[pass_].condition = std::move(condition);
+  return *this;
+}
+
+PassBuilder& PassBuilder::describe(std::string text) {
+  plan_.passes_[pass_].description = std::move(text);
+  return *this;
+}
+
+}  // namespace heliograph::gpu

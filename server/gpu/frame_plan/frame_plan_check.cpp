@@ -1,0 +1,170 @@
+// What follows from declared reads and writes before anything runs: checks, barriers, views.
+
+#include <algorithm>
+#include <cstring>
+#include <set>
+
+#include "gpu/frame_plan/frame_plan_parts.hpp"
+
+namespace heliograph::gpu {
+namespace {
+
+const char* type_text(VkDescriptorType type) {
+  switch (type) {
+    case VK_DESCRIPTOR_TYPE_STORAGE_IMAGE:
+      return "a storage image";
+    case VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER:
+      return "a sampled image";
+    case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER:
+      return "a storage buffer";
+    case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER:
+      return "a uniform buffer";
+    case VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER:
+      return "a texel buffer";
+    default:
+      return "something else";
+  }
+}
+
+bool is_image(VkDescriptorType type) {
+  return type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE ||
+         type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+}
+
+/// What is wrong with binding an image or buffer called `given` there; empty: nothing.
+std::string mismatch(const ShaderBinding& binding, const Image* image, const std::string& given,
+                     bool reads, bool writes) {
+  if (is_image(binding.type) != (image != nullptr)) {
+    return std::string("is ") + type_text(binding.type) + ", given the " +
+           (image ? "image" : "buffer") + " \"" + given + "\"";
+  }
+  if (binding.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE && binding.format != image->desc().format) {
+    return std::string("has format ") + format_name(binding.format) + ", given \"" + given +
+           "\" of format " + format_name(image->desc().format);
+  }
+  if (binding.writes && !writes) {
+    return "may be written by the shader, but \"" + given + "\" is declared as only read";
+  }
+  if (!binding.writes && writes) {
+    return "is readonly in the shader, but \"" + given + "\" is declared as written";
+  }
+  const bool storage = binding.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE ||
+                       binding.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  if (storage && binding.reads && !reads) {
+    return "may be read by the shader, but \"" + given + "\" is declared as only written";
+  }
+  return {};
+}
+
+}  // namespace
+
+std::vector<FramePlan::Pass::Use> FramePlan::Pass::all_uses() const {
+  std::vector<Use> uses = bound;
+  for (const auto& color : colors) uses.push_back({color.resource, !color.clear, true});
+  if (depth) uses.push_back({depth->resource, false, true});
+  if (indirect) uses.push_back({indirect->first, true, false});
+  return uses;
+}
+
+void FramePlan::check_pass(const Pass& pass) const {
+  const auto fail = [&](const std::string& what) {
+    throw GpuError("pass \"" + pass.name + "\": " + what);
+  };
+  if (!pass.program) return;
+  const auto& bindings = pass.program->pass_bindings();
+  for (std::size_t i = 0; i < std::min(bindings.size(), pass.bound.size()); ++i) {
+    const auto& use = pass.bound[i];
+    const Resource& resource = resources_[use.resource];
+    const std::string wrong =
+        mismatch(bindings[i], resource.images[0], resource.name, use.reads, use.writes);
+    if (wrong.empty()) continue;
+    fail("binding " + std::to_string(bindings[i].binding) + " \"" + bindings[i].name + "\" " +
+         wrong);
+  }
+  if (pass.bound.size() < bindings.size()) {
+    fail("nothing is given for binding " + std::to_string(bindings[pass.bound.size()].binding) +
+         " \"" + bindings[pass.bound.size()].name + "\"");
+  }
+  if (pass.bound.size() > bindings.size()) {
+    fail("\"" + resources_[pass.bound[bindings.size()].resource].name +
+         "\" is given, but the shader has no binding for it");
+  }
+  if (pass.constants_size != pass.program->constants_size()) {
+    fail("the shader takes " + std::to_string(pass.program->constants_size()) +
+         " bytes of constants, given " + std::to_string(pass.constants_size));
+  }
+  const bool dispatched = pass.threads.width > 0 || pass.indirect;
+  if (!pass.is_raster && !dispatched) fail("it is never dispatched");
+  if (pass.is_raster && !pass.draw) fail("it draws nothing");
+  if (pass.is_raster && pass.colors.empty() && !pass.depth) fail("it has no attachment");
+}
+
+void FramePlan::derive_barriers() {
+  std::set<std::uint32_t> read;
+  std::set<std::uint32_t> written;
+  for (Pass& pass : passes_) {
+    const auto uses = pass.all_uses();
+    const bool hazard = std::any_of(uses.begin(), uses.end(), [&](const Pass::Use& use) {
+      return written.contains(use.resource) || (use.writes && read.contains(use.resource));
+    });
+    // A submit lies before and after a host pass, which orders everything.
+    if (hazard || !pass.program) {
+      pass.barrier_before = pass.program != nullptr;
+      read.clear();
+      written.clear();
+    }
+    if (!pass.program) continue;
+    for (const auto& use : uses) {
+      if (use.reads) read.insert(use.resource);
+      if (use.writes) written.insert(use.resource);
+    }
+  }
+}
+
+std::vector<std::string> FramePlan::barriers() const {
+  std::vector<std::string> names;
+  for (const Pass& pass : passes_) {
+    if (pass.barrier_before) names.push_back(pass.name);
+  }
+  return names;
+}
+
+void FramePlan::list_views() {
+  std::set<std::uint32_t> listed;
+  for (const Pass& pass : passes_) {
+    for (const auto& use : pass.all_uses()) {
+      const Resource& resource = resources_[use.resource];
+      const Image* image = resource.images[0];
+      if (!use.writes || !image || is_depth(image->desc().format)) continue;
+      if (image->desc().format == VK_FORMAT_R32G32B32A32_UINT) continue;  // packed: nothing to see
+      if (resource.level || !listed.insert(use.resource).second) continue;
+      const std::string text =
+          pass.description.empty() ? "Written by the pass " + pass.name + "." : pass.description;
+      views_.push_back({resource.name, text, {use.resource}});
+    }
+  }
+}
+
+std::vector<PassWork> FramePlan::work() const {
+  std::vector<PassWork> all;
+  for (const Pass& pass : passes_) {
+    PassWork work{.name = pass.name};
+    for (const auto& use : pass.all_uses()) {
+      const Resource& resource = resources_[use.resource];
+      if (const Image* image = resource.images[0]) {
+        const auto& desc = image->desc();
+        const std::uint64_t texels = std::uint64_t{desc.extent.width} * desc.extent.height;
+        work.image_bytes += texels * texel_bytes(desc.format) * (use.reads + use.writes);
+      } else if (work.entries == 0 && resource.name.ends_with(".ray_count")) {
+        const auto count = download_buffer(device_, *resource.buffer, sizeof(std::uint32_t));
+        std::uint32_t entries = 0;
+        std::memcpy(&entries, count.data(), sizeof entries);
+        work.entries = entries;
+      }
+    }
+    all.push_back(std::move(work));
+  }
+  return all;
+}
+
+}  // namespace heliograph::gpu

@@ -1,0 +1,105 @@
+#include "gpu/memory/buffer.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+namespace heliograph::gpu {
+
+Buffer::Buffer(const Device& device, std::string name, VkDeviceSize size, VkBufferUsageFlags usage,
+               Memory memory)
+    : Buffer() {  // what is made is the destructor's when a step fails
+  device_ = &device;
+  name_ = std::move(name);
+  // Whole texels of any format, so that a view covers the last bytes too.
+  size_ = std::max<VkDeviceSize>((size + 15) / 16 * 16, 16);
+  VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
+  info.size = size_;
+  info.usage = usage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  check(vkCreateBuffer(device.handle(), &info, nullptr, &handle_), "create a buffer");
+  VkMemoryRequirements requirements;
+  vkGetBufferMemoryRequirements(device.handle(), handle_, &requirements);
+  constexpr VkMemoryPropertyFlags mapped =
+      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  VkMemoryPropertyFlags needed = memory == Memory::device && !device.is_cpu() ? 0 : mapped;
+  VkMemoryPropertyFlags wanted = memory == Memory::readback ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT
+                                                            : VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+  memory_ = device.allocate(requirements, needed, wanted, name_);
+  check(vkBindBufferMemory(device.handle(), handle_, memory_, 0), "bind a buffer's memory");
+  if (needed & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) {
+    void* address = nullptr;
+    check(vkMapMemory(device.handle(), memory_, 0, VK_WHOLE_SIZE, 0, &address), "map a buffer");
+    mapped_ = static_cast<std::byte*>(address);
+  }
+  device.name(VK_OBJECT_TYPE_BUFFER, handle_, name_);
+}
+
+Buffer::~Buffer() {
+  if (!device_) return;
+  vkDestroyBufferView(device_->handle(), view_, nullptr);
+  vkDestroyBuffer(device_->handle(), handle_, nullptr);
+  vkFreeMemory(device_->handle(), memory_, nullptr);
+}
+
+void Buffer::swap(Buffer& other) noexcept {
+  std::swap(device_, other.device_);
+  std::swap(name_, other.name_);
+  std::swap(handle_, other.handle_);
+  std::swap(memory_, other.memory_);
+  std::swap(view_, other.view_);
+  std::swap(size_, other.size_);
+  std::swap(mapped_, other.mapped_);
+}
+
+VkDeviceAddress Buffer::address() const {
+  VkBufferDeviceAddressInfo info{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO};
+  info.buffer = handle_;
+  return vkGetBufferDeviceAddress(device_->handle(), &info);
+}
+
+VkBufferView Buffer::texel_view(VkFormat format) const {
+  if (view_) return view_;
+  VkBufferViewCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
+  info.buffer = handle_;
+  info.format = format;
+  info.range = VK_WHOLE_SIZE;
+  check(vkCreateBufferView(device_->handle(), &info, nullptr, &view_), "create a texel view");
+  return view_;
+}
+
+Buffer upload_buffer(const Device& device, std::string name, std::span<const std::byte> bytes,
+                     VkBufferUsageFlags usage) {
+  Buffer buffer(device, std::move(name), bytes.size(), usage, Memory::device);
+  if (bytes.empty()) return buffer;
+  if (buffer.mapped()) {
+    std::memcpy(buffer.mapped(), bytes.data(), bytes.size());
+    return buffer;
+  }
+  const Buffer staging(device, "staging", bytes.size(), 0, Memory::upload);
+  std::memcpy(staging.mapped(), bytes.data(), bytes.size());
+  device.submit_once([&](VkCommandBuffer commands) {
+    const VkBufferCopy region{0, 0, bytes.size()};
+    vkCmdCopyBuffer(commands, staging.handle(), buffer.handle(), 1, &region);
+    full_barrier(commands);
+  });
+  return buffer;
+}
+
+std::vector<std::byte> download_buffer(const Device& device, const Buffer& buffer,
+                                       std::size_t size) {
+  std::vector<std::byte> bytes(size);
+  if (buffer.mapped()) {
+    std::memcpy(bytes.data(), buffer.mapped(), size);
+    return bytes;
+  }
+  const Buffer staging(device, buffer.name() + " download", size, 0, Memory::readback);
+  device.submit_once([&](VkCommandBuffer commands) {
+    full_barrier(commands);
+    const VkBufferCopy region{0, 0, size};
+    vkCmdCopyBuffer(commands, buffer.handle(), staging.handle(), 1, &region);
+  });
+  std::memcpy(bytes.data(), staging.mapped(), size);
+  return bytes;
+}
+
+}  // namespace heliograph::gpu

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gpu/device/device.hpp"
+
+namespace heliograph::gpu {
+
+/// Where a buffer lives. On a CPU device every buffer is mapped.
+enum class Memory {
+  device,    // fastest for the device
+  upload,    // mapped, written by the host
+  readback,  // mapped and cached, read by the host
+};
+
+/// A buffer with its own memory. Every buffer may be copied from and to.
+class Buffer {
+ public:
+  Buffer() = default;
+  Buffer(const Device& device, std::string name, VkDeviceSize size, VkBufferUsageFlags usage,
+         Memory memory);
+  ~Buffer();
+  Buffer(Buffer&& other) noexcept { swap(other); }
+  Buffer& operator=(Buffer&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+
+  VkBuffer handle() const { return handle_; }
+  VkDeviceSize size() const { return size_; }
+  const std::string& name() const { return name_; }
+  explicit operator bool() const { return handle_ != VK_NULL_HANDLE; }
+
+  /// The buffer's bytes, or null when the host cannot reach them.
+  std::byte* mapped() const { return mapped_; }
+
+  /// Where shaders and builds find the bytes. The buffer's usage must allow for it.
+  VkDeviceAddress address() const;
+
+  /// A view for uniform texel buffers, made at the first call and kept. Not thread safe.
+  VkBufferView texel_view(VkFormat format) const;
+
+ private:
+  void swap(Buffer& other) noexcept;
+
+  const Device* device_ = nullptr;
+  std::string name_;
+  VkBuffer handle_ = VK_NULL_HANDLE;
+  VkDeviceMemory memory_ = VK_NULL_HANDLE;
+  mutable VkBufferView view_ = VK_NULL_HANDLE;
+  VkDeviceSize size_ = 0;
+  std::byte* mapped_ = nullptr;
+};
+
+/// A device buffer holding a copy of `bytes` (at least 16 bytes long, so that empty tables bind).
+Buffer upload_buffer(const Device& device, std::string name, std::span<const std::byte> bytes,
+                     VkBufferUsageFlags usage);
+
+/// Copies the first `size` bytes back. Waits for the device.
+std::vector<std::byte> download_buffer(const Device& device, const Buffer& buffer,
+                                       std::size_t size);
+
+}  // namespace heliograph::gpu

@@ -1,0 +1,364 @@
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core/detect_ssl.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "net/connection.hpp"
+#include "net/http/beast_messages.hpp"
+#include "net/security/rate_limit.hpp"
+#include "net/websocket/paced_write.hpp"
+#include "protocol/messages/messages.hpp"
+
+namespace heliograph::net {
+namespace {
+
+namespace http = beast::http;
+using boost::system::error_code;
+
+/// Why an upgrade that may otherwise pass cannot become a viewer.
+std::optional<HttpResponse> upgrade_refusal(const HttpRequest& request,
+                                            const session::SessionRegistry& sessions) {
+  if (request.path != "/ws") return text_response(404, "The WebSocket is at /ws.");
+  // 16 bytes in base64, RFC 6455 section 4.1. The version is the WebSocket's own matter.
+  const std::string_view key = request.header("sec-websocket-key");
+  if (key.size() != 24 || !key.ends_with("==")) {
+    return text_response(400, "Sec-WebSocket-Key must be 16 bytes in base64.");
+  }
+  const auto offered = header_elements(request.header("sec-websocket-protocol"));
+  if (std::find(offered.begin(), offered.end(), protocol::protocol_name) == offered.end()) {
+    return text_response(400,
+                         "This server speaks the subprotocol heliograph.v1; offer it in "
+                         "Sec-WebSocket-Protocol.");
+  }
+  const auto session = sessions.find(session_of(request));
+  if (!session) return text_response(404, session.error().message);
+  return std::nullopt;
+}
+
+/// "/api/v1/sessions/main/stream.mjpg" -> main
+std::optional<std::string> picture_stream_address(const HttpRequest& request) {
+  constexpr std::string_view before = "/api/v1/sessions/";
+  constexpr std::string_view after = "/stream.mjpg";
+  const std::string_view path = request.path;
+  const std::size_t around = before.size() + after.size();
+  if (path.size() <= around || !path.starts_with(before) || !path.ends_with(after)) {
+    return std::nullopt;
+  }
+  return std::string(path.substr(before.size(), path.size() - around));
+}
+
+constexpr std::chrono::minutes longest_upload{10};
+constexpr std::size_t discarded_at_once = 16 * 1024;
+
+HttpResponse upload_response(const session::UploadedScene& scene) {
+  HttpResponse response = json_response(nlohmann::json{
+      {"name", scene.name},
+      {"bytes", scene.bytes},
+      {"triangles", scene.triangles}}.dump());
+  response.status = 201;
+  return response;
+}
+
+class HttpConnection : public Connection, public std::enable_shared_from_this<HttpConnection> {
+ public:
+  HttpConnection(ServerContext& context, ClientStream stream, Door door)
+      : context_(context),
+        door_(door),
+        stream_(std::move(stream)),
+        calls_(calls_per_second, calls_at_once, RateLimit::Clock::now()) {
+    context_.enter(*this);
+  }
+  ~HttpConnection() override { context_.leave(*this); }
+
+  void start() {
+    if (!context_.certificate || door_ == Door::measuring) return read();
+    stream_.next_layer().expires_after(handshake_timeout);
+    beast::async_detect_ssl(stream_.next_layer(), buffer_,
+                            [self = shared_from_this()](error_code error, bool tls) {
+                              if (error) return;
+                              tls ? self->secure() : self->read();
+                            });
+  }
+
+  void shut_down() override {
+    leaving_ = true;
+    if (answering_) return;
+    // A read is under way, which ends by this.
+    error_code ignored;
+    stream_.next_layer().socket().shutdown(asio::ip::tcp::socket::shutdown_both, ignored);
+  }
+
+ private:
+  void secure() {
+    stream_.async_secure(context_.certificate->context(), buffer_.data(),
+                         [self = shared_from_this()](error_code error, std::size_t used) {
+                           if (error) return;
+                           self->buffer_.consume(used);
+                           self->read();
+                         });
+  }
+
+  void read() {
+    framing_ = {};
+    parser_.emplace();
+    parser_->header_limit(largest_request_head);
+    parser_->body_limit(context_.uploads ? context_.uploads->max_bytes() : largest_body());
+    // The first request must come soon; later ones may take their time.
+    stream_.next_layer().expires_after(std::exchange(first_, false) ? handshake_timeout
+                                                                    : idle_timeout);
+    http::async_read_header(stream_, buffer_, *parser_,
+                            [self = shared_from_this()](error_code error, std::size_t) {
+                              self->received_header(error);
+                            });
+  }
+
+  std::size_t largest_body() const { return context_.host.dispatch_limits().max_message_bytes; }
+
+  void received_header(error_code error) {
+    framing_.head_only = parser_->get().method() == http::verb::head;
+    if (error) return received(error);
+    if (context_.uploads && door_ == Door::main && parser_->get().method() == http::verb::put) {
+      return begin_upload();
+    }
+    if (parser_->content_length().value_or(0) > largest_body()) {
+      return received(http::error::body_limit);
+    }
+    parser_->body_limit(largest_body());
+    invite(parser_->get(), [self = shared_from_this()] {
+      http::async_read(self->stream_, self->buffer_, *self->parser_,
+                       [self](error_code failed, std::size_t) { self->received(failed); });
+    });
+  }
+
+  /// Tells a client that asks so before it sends its body that it may, RFC 9110 section 10.1.1.
+  template <class Header, class Next>
+  void invite(const Header& header, Next next) {
+    const bool asks =
+        header.version() >= 11 && beast::iequals(header[http::field::expect], "100-continue");
+    if (!asks) return next();
+    constexpr std::string_view invitation = "HTTP/1.1 100 Continue\r\n\r\n";
+    asio::async_write(stream_, asio::buffer(invitation),
+                      [next = std::move(next)](error_code error, std::size_t) {
+                        // Who cannot be told cannot be answered either.
+                        if (!error) next();
+                      });
+  }
+
+  /// Lets the body go to a file, if it may.
+  void begin_upload() {
+    framing_.keep_alive = false;
+    answering_ = true;
+    const HttpRequest request = to_request(BeastRequest(parser_->get()), stream_);
+    framing_.sharing = context_.access.sharing_headers(request);
+    const auto size = parser_->content_length();
+    if (auto refused = upload_refusal(request, size)) return send(*std::move(refused));
+    auto begun = context_.uploads->begin(std::string(uploaded_name(request.path)), *size);
+    if (!begun) return send(error_response(begun.error()));
+    upload_ = *begun;
+    upload_parser_.emplace(std::move(*parser_));
+    error_code error;
+    upload_parser_->get().body().open(upload_->path().c_str(), beast::file_mode::write, error);
+    if (error) {
+      upload_.reset();
+      return send(error_response(protocol::error::internal()));
+    }
+    upload_deadline_ = std::chrono::steady_clock::now() + longest_upload;
+    invite(upload_parser_->get(), [self = shared_from_this()] { self->receive_upload(); });
+  }
+
+  std::optional<HttpResponse> upload_refusal(const HttpRequest& request,
+                                             boost::optional<std::uint64_t> length) const {
+    if (context_.certificate && !request.secure) return text_response(400, "Use HTTPS.");
+    Admission admission = context_.access.admit(request);
+    if (admission.refusal) return *std::move(admission.refusal);
+    if (admission.role != Role::control) {
+      return text_response(403, "This token lets watch but not upload.");
+    }
+    if (context_.draining) return come_back_later("The server is shutting down.");
+    if (uploaded_name(request.path).empty()) {
+      return text_response(404, "Scenes go to /api/v1/scenes/NAME.");
+    }
+    if (!length) return text_response(411, "An upload must say its length.");
+    if (*length == 0) return text_response(400, "There is nothing in this upload.");
+    return context_.router.name_conflict(uploaded_name(request.path));
+  }
+
+  void receive_upload() {
+    stream_.next_layer().expires_after(handshake_timeout);
+    http::async_read_some(stream_, buffer_, *upload_parser_,
+                          [self = shared_from_this()](error_code error, std::size_t) {
+                            self->received_upload(error);
+                          });
+  }
+
+  void received_upload(error_code error) {
+    const bool late = std::chrono::steady_clock::now() > upload_deadline_;
+    if (error || late) return upload_.reset();
+    if (!upload_parser_->is_done()) return receive_upload();
+    upload_parser_->get().body().close();
+    stream_.next_layer().expires_never();
+    context_.uploads->finish(
+        std::exchange(upload_, nullptr),
+        [self = shared_from_this()](const protocol::Result<session::UploadedScene>& accepted) {
+          HttpResponse response =
+              accepted ? upload_response(*accepted) : error_response(accepted.error());
+          asio::post(self->stream_.get_executor(),
+                     [self, response = std::move(response)]() mutable {
+                       self->send(std::move(response));
+                     });
+        });
+  }
+
+  void received(error_code error) {
+    if (error == http::error::body_limit || error == http::error::header_limit) {
+      framing_.keep_alive = false;
+      return send(text_response(413, "The request is too large."));
+    }
+    if (!error) return answer();
+    if (error == http::error::end_of_stream) return close();
+    if (error.category() == http::make_error_code(http::error::bad_method).category()) {
+      framing_.keep_alive = false;
+      return send(text_response(400, "This is not an HTTP request."));
+    }
+    // Timed out or gone: nobody is left to answer.
+  }
+
+  void answer() {
+    const bool upgrade = beast::websocket::is_upgrade(parser_->get());
+    framing_.keep_alive = parser_->keep_alive() && !upgrade && !leaving_ && !context_.draining;
+    answering_ = true;
+    const HttpRequest request = to_request(parser_->release(), stream_);
+    if (door_ == Door::measuring) return send(context_.router.answer_measurer(request));
+    framing_.sharing = context_.access.sharing_headers(request);
+    if (context_.certificate && !request.secure) return send(to_https(request));
+    if (upgrade) return become_viewer(request);
+    if (!calls_.allow(RateLimit::Clock::now())) {
+      return send(text_response(429, "Too many requests on this connection."));
+    }
+    if (auto allowed = context_.access.preflight(request)) return send(*std::move(allowed));
+    if (const auto session = picture_stream_address(request); session && request.method == "GET") {
+      return stream_pictures(request, *session);
+    }
+    stream_.next_layer().expires_never();
+    context_.router.handle(request, [self = shared_from_this()](HttpResponse response) {
+      asio::post(self->stream_.get_executor(), [self, response = std::move(response)]() mutable {
+        self->send(std::move(response));
+      });
+    });
+  }
+
+  /// What somebody gets who speaks plain HTTP where TLS is spoken.
+  HttpResponse to_https(const HttpRequest& request) {
+    framing_.keep_alive = false;
+    if (auto refusal = context_.access.admit(request, false).refusal) return *std::move(refusal);
+    HttpResponse response = text_response(400, "This port speaks HTTPS.");
+    if (request.method != "GET" && request.method != "HEAD") return response;
+    response.status = 308;
+    // Without the query: a token in it has been read by others by now.
+    response.headers.emplace_back("Location",
+                                  "https://" + std::string(request.header("host")) + request.path);
+    return response;
+  }
+
+  void become_viewer(const HttpRequest& request) {
+    Admission admission = context_.access.admit(request);
+    if (admission.refusal) return send(*std::move(admission.refusal));
+    if (context_.draining) return send(come_back_later("The server is shutting down."));
+    if (auto refused = upgrade_refusal(request, context_.host.sessions())) {
+      return send(*std::move(refused));
+    }
+    ++context_.traffic.responses[101];
+    stream_.next_layer().expires_never();
+    start_viewer_connection(context_, std::move(stream_), request, admission.role);
+  }
+
+  void stream_pictures(const HttpRequest& request, const std::string& session) {
+    framing_.keep_alive = false;
+    Admission admission = context_.access.admit(request);
+    if (admission.refusal) return send(*std::move(admission.refusal));
+    if (context_.draining) return send(come_back_later("The server is shutting down."));
+    const auto found = context_.host.sessions().find(session);
+    if (!found) return send(text_response(404, found.error().message));
+    const auto wishes = picture_stream_wishes(request);
+    if (!wishes) return send(error_response(wishes.error()));
+    stream_.next_layer().expires_never();
+    start_picture_stream(context_, std::move(stream_), request, session, *wishes);
+  }
+
+  void send(HttpResponse answer) {
+    if (!outgoing_.has_room(answer.body.size())) {
+      answer = come_back_later("Too much waits to be read by others.");
+    }
+    response_ = to_message(context_, std::move(answer), framing_);
+    outgoing_.hold(response_.body().size());
+    serializer_.emplace(response_);
+    const PaceKeeper keeper({.patience = idle_timeout, .bytes_per_second = slowest_reader},
+                            PaceKeeper::Clock::now());
+    write_paced(stream_, *serializer_, keeper,
+                [self = shared_from_this()](error_code error) { self->sent(error); });
+  }
+
+  void sent(error_code error) {
+    answering_ = false;
+    serializer_.reset();
+    response_ = {};
+    outgoing_.hold(0);
+    if (error) return;
+    if (!framing_.keep_alive || leaving_) return close();
+    read();
+  }
+
+  void close() {
+    stream_.next_layer().expires_after(closing_timeout);
+    if (!stream_.is_secure()) {
+      error_code ignored;
+      stream_.next_layer().socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+      return discard();
+    }
+    async_teardown(beast::role_type::server, stream_,
+                   [self = shared_from_this()](error_code) { self->stream_.next_layer().close(); });
+  }
+
+  /// Reads on for a while: closing on what nobody has read resets the connection, and the answer
+  /// with it.
+  void discard() {
+    buffer_.clear();
+    stream_.async_read_some(buffer_.prepare(discarded_at_once),
+                            [self = shared_from_this()](error_code error, std::size_t) {
+                              if (!error) return self->discard();
+                              self->stream_.next_layer().close();
+                            });
+  }
+
+  ServerContext& context_;
+  const Door door_;
+  ClientStream stream_;
+  beast::flat_buffer buffer_;
+  std::optional<http::request_parser<http::string_body>> parser_;
+  std::shared_ptr<session::UploadStore::Incoming> upload_;
+  std::optional<http::request_parser<http::file_body>> upload_parser_;
+  std::chrono::steady_clock::time_point upload_deadline_;
+  Framing framing_;
+  OutgoingBytes outgoing_{context_.outgoing_bytes};
+  BeastResponse response_;
+  std::optional<http::response_serializer<http::string_body>> serializer_;
+  RateLimit calls_;
+  bool first_ = true;
+  bool answering_ = false;
+  bool leaving_ = false;
+};
+
+}  // namespace
+
+void start_http_connection(ServerContext& context, ClientStream stream, Door door) {
+  std::make_shared<HttpConnection>(context, std::move(stream), door)->start();
+}
+
+}  // namespace heliograph::net

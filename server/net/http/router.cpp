@@ -1,0 +1,262 @@
+#include "net/http/router.hpp"
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "protocol/settings/settings_json.hpp"
+#include "web_client/embedded_assets.hpp"
+
+namespace heliograph::net {
+namespace {
+
+// As in frame.capture.
+constexpr std::uint32_t most_capture_samples = 65536;
+constexpr std::string_view sessions_prefix = "/api/v1/sessions/";
+
+HttpResponse with_header(HttpResponse response, std::string name, std::string value) {
+  response.headers.emplace_back(std::move(name), std::move(value));
+  return response;
+}
+
+/// The query of a request with its '?', less one parameter; empty where nothing is left.
+std::string query_without(const HttpRequest& request, std::string_view name) {
+  std::string query;
+  for (const auto& [key, value] : request.query) {
+    if (key == name) continue;
+    query += (query.empty() ? '?' : '&') + encode_query(key) + '=' + encode_query(value);
+  }
+  return query;
+}
+
+HttpResponse method_not_allowed(std::string allowed) {
+  return with_header(text_response(405, "This address takes " + allowed + " only."), "Allow",
+                     allowed);
+}
+
+std::optional<HttpResponse> asset(const HttpRequest& request) {
+  const web::Asset* file = web::find_asset(request.path);
+  if (!file) return std::nullopt;
+  HttpResponse response;
+  for (const std::string_view tag : header_elements(request.header("if-none-match"))) {
+    if (tag == file->etag || tag == "*") response.status = 304;
+  }
+  response.content_type = file->content_type;
+  if (response.status == 200) response.body.assign(file->bytes.begin(), file->bytes.end());
+  response.headers.emplace_back("ETag", file->etag);
+  response.headers.emplace_back("Cache-Control", "no-cache");
+  return response;
+}
+
+HttpResponse schema() {
+  const nlohmann::json document{{"openrpc", protocol::openrpc_document().value()},
+                                {"settings", protocol::settings_schema()}};
+  return json_response(document.dump());
+}
+
+struct PictureKind {
+  std::string_view extension;
+  protocol::ImageFormat format;
+  std::string_view content_type;
+};
+
+constexpr std::array picture_kinds{
+    PictureKind{"png", protocol::ImageFormat::png, "image/png"},
+    PictureKind{"jpg", protocol::ImageFormat::jpeg, "image/jpeg"},
+    PictureKind{"npy", protocol::ImageFormat::npy, "application/x-npy"},
+    PictureKind{"exr", protocol::ImageFormat::exr, "image/x-exr"},
+};
+
+const PictureKind* picture_kind(std::string_view extension) {
+  for (const PictureKind& kind : picture_kinds) {
+    if (kind.extension == extension) return &kind;
+  }
+  return nullptr;
+}
+
+/// "main/frame.jpg" -> main, jpg
+std::optional<std::pair<std::string_view, std::string_view>> picture_address(
+    std::string_view path) {
+  if (!path.starts_with(sessions_prefix)) return std::nullopt;
+  path.remove_prefix(sessions_prefix.size());
+  constexpr std::string_view file = "/frame.";
+  const std::size_t split = path.find(file);
+  if (split == std::string_view::npos) return std::nullopt;
+  return std::pair{path.substr(0, split), path.substr(split + file.size())};
+}
+
+/// The value of frame-ancestors. @throws std::invalid_argument
+std::string frame_ancestors(const std::vector<std::string>& allowed) {
+  if (allowed.empty()) return "'none'";
+  std::string value;
+  for (const std::string& ancestor : allowed) {
+    if (ancestor != "self" &&
+        (!is_origin(ancestor) || ancestor.find_first_of(";,'\" ") != std::string::npos)) {
+      throw std::invalid_argument("\"" + ancestor +
+                                  "\" cannot embed pages: it is neither \"self\" nor an origin "
+                                  "such as https://example.org");
+    }
+    value += (value.empty() ? "" : " ") + (ancestor == "self" ? "'self'" : ancestor);
+  }
+  return value;
+}
+
+Headers protecting_headers(const RouterOptions& options) {
+  return {
+      {"Content-Security-Policy",
+       "default-src 'self'; img-src 'self' blob: data:; worker-src 'self' blob:; "
+       "connect-src 'self' ws: wss:; object-src 'none'; base-uri 'none'; form-action 'none'; "
+       "frame-ancestors " +
+           frame_ancestors(options.frame_ancestors)},
+      {"X-Content-Type-Options", "nosniff"},
+      {"Referrer-Policy", "no-referrer"},
+      {"Cross-Origin-Resource-Policy", "same-origin"},
+      {"Cross-Origin-Opener-Policy", "same-origin"},
+  };
+}
+
+}  // namespace
+
+HttpResponse error_response(const protocol::Error& error) {
+  using protocol::ErrorCode;
+  switch (error.code) {
+    case ErrorCode::not_found:
+      return text_response(404, error.message);
+    case ErrorCode::invalid_params:
+      return text_response(400, error.message);
+    case ErrorCode::too_large:
+      return text_response(413, error.message);
+    case ErrorCode::full:
+    case ErrorCode::not_ready:
+      return text_response(503, error.message);
+    default:
+      return text_response(500, error.message);
+  }
+}
+
+std::string_view uploaded_name(std::string_view path) {
+  constexpr std::string_view prefix = "/api/v1/scenes/";
+  return path.starts_with(prefix) ? path.substr(prefix.size()) : std::string_view();
+}
+
+HttpResponse come_back_later(std::string_view why) {
+  return with_header(text_response(503, why), "Retry-After", "1");
+}
+
+Router::Router(session::SessionHost& host, const AccessControl& access, const Traffic& traffic,
+               const RouterOptions& options)
+    : host_(host),
+      access_(access),
+      traffic_(traffic),
+      options_(options),
+      headers_(protecting_headers(options)) {}
+
+void Router::handle(const HttpRequest& request, Reply reply) const {
+  const bool health_check = request.path.starts_with("/health/");
+  const std::optional<std::string> token =
+      request.path == "/" ? request.parameter("token") : std::nullopt;
+  Admission admission =
+      token ? access_.admit_by(*token, request) : access_.admit(request, !health_check);
+  if (admission.refusal) return reply(*std::move(admission.refusal));
+  if (token) {
+    HttpResponse redirect = text_response(303, "Go on without the token.");
+    redirect.headers = {{"Location", "/" + query_without(request, "token")},
+                        {"Set-Cookie", access_.token_cookie(*token, request)}};
+    return reply(std::move(redirect));
+  }
+  if (draining_ && !health_check) return reply(come_back_later("The server is shutting down."));
+  if (request.path == "/rpc") {
+    if (request.method != "POST") return reply(method_not_allowed("POST"));
+    return call(request, admission.role, std::move(reply));
+  }
+  if (!options_.uploads.empty() && !uploaded_name(request.path).empty()) {
+    return reply(method_not_allowed("PUT"));
+  }
+  if (request.method != "GET" && request.method != "HEAD") {
+    return reply(method_not_allowed("GET"));
+  }
+  if (const auto address = picture_address(request.path)) {
+    return picture(request, address->first, address->second, std::move(reply));
+  }
+  reply(answer_get(request));
+}
+
+std::optional<HttpResponse> Router::name_conflict(std::string_view scene) const {
+  const auto found = host_.catalogue().find(std::string(scene));
+  if (!found || found->root == options_.uploads) return std::nullopt;
+  return text_response(409, "Another scene has this name.");
+}
+
+HttpResponse Router::answer_measurer(const HttpRequest& request) const {
+  if (request.method != "GET" && request.method != "HEAD") return method_not_allowed("GET");
+  if (request.headers.contains("origin") || embedded_elsewhere(request)) {
+    return text_response(403, "Pages have no business here.");
+  }
+  if (auto state = health(request)) return *std::move(state);
+  if (request.path == "/metrics") return metrics();
+  return text_response(404, "There are /metrics, /health/live and /health/ready here.");
+}
+
+HttpResponse Router::answer_get(const HttpRequest& request) const {
+  if (auto state = health(request)) return *std::move(state);
+  if (request.path == "/metrics" && options_.metrics) return metrics();
+  if (request.path == "/api/v1/schema") return schema();
+  if (request.path == "/ws") {
+    return with_header(text_response(426, "This address speaks WebSocket."), "Upgrade",
+                       "websocket");
+  }
+  if (auto file = asset(request)) return *std::move(file);
+  return text_response(404, "There is nothing at this address.");
+}
+
+std::optional<HttpResponse> Router::health(const HttpRequest& request) const {
+  if (request.path == "/health/live") return text_response(200, "live");
+  if (request.path != "/health/ready") return std::nullopt;
+  if (draining_) return come_back_later("shutting down");
+  if (!host_.ready()) return come_back_later(host_.why_not_ready());
+  return text_response(200, "ready");
+}
+
+HttpResponse Router::metrics() const {
+  return {.content_type = "text/plain; version=0.0.4; charset=utf-8",
+          .body = metrics_text(
+              {.host = host_, .traffic = traffic_, .started = started_, .draining = draining_})};
+}
+
+void Router::call(const HttpRequest& request, Role role, Reply reply) const {
+  const protocol::CallContext context{
+      .viewer = {}, .session = session_of(request), .view_only = role == Role::view};
+  host_.dispatcher().handle(request.body, context, [reply = std::move(reply)](std::string answer) {
+    if (answer.empty()) return reply({.status = 204, .content_type = {}});
+    reply(json_response(std::move(answer)));
+  });
+}
+
+void Router::picture(const HttpRequest& request, std::string_view session,
+                     std::string_view extension, Reply reply) const {
+  const auto found = host_.sessions().find(session);
+  if (!found) return reply(error_response(found.error()));
+  const PictureKind* const kind = picture_kind(extension);
+  if (!kind) {
+    return reply(text_response(404, "Pictures are frame.jpg, frame.png, frame.exr and frame.npy."));
+  }
+  session::CaptureRequest capture;
+  capture.format = kind->format;
+  capture.buffer = request.parameter("buffer").value_or("output");
+  const auto samples = number_parameter(request, "samples", 1, most_capture_samples);
+  if (!samples) return reply(error_response(samples.error()));
+  capture.samples = *samples;
+  capture.done = [reply, kind](protocol::Result<session::Capture> result) {
+    if (!result) return reply(error_response(result.error()));
+    reply({.content_type = std::string(kind->content_type),
+           .body = {result->file.begin(), result->file.end()},
+           .headers = {{"X-Heliograph-Samples", std::to_string(result->samples)}}});
+  };
+  if (const auto accepted = (*found)->request_capture(std::move(capture)); !accepted) {
+    reply(error_response(accepted.error()));
+  }
+}
+
+}  // namespace heliograph::net

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "net/http/http_message.hpp"
+#include "net/http/metrics.hpp"
+#include "net/security/access_control.hpp"
+#include "session/session_host.hpp"
+
+namespace heliograph::net {
+
+struct RouterOptions {
+  std::vector<std::string> frame_ancestors;  // origins whose pages may embed ours, or 'self'
+  bool metrics = true;                       // at /metrics
+  std::filesystem::path uploads;             // where uploaded scenes are; empty: there are none
+};
+
+/// Answers everything over HTTP but the WebSocket: the web client, JSON-RPC, single pictures, the
+/// schema, health and metrics.
+class Router {
+ public:
+  using Reply = std::function<void(HttpResponse)>;
+
+  Router(session::SessionHost& host, const AccessControl& access, const Traffic& traffic,
+         const RouterOptions& options);
+
+  /// Calls `reply` once, here or on another thread.
+  void handle(const HttpRequest& request, Reply reply) const;
+  /// Why a scene of this name cannot be uploaded: one that was not is called so.
+  std::optional<HttpResponse> name_conflict(std::string_view scene) const;
+  /// What the door for measuring tools answers: metrics and health, to everybody.
+  HttpResponse answer_measurer(const HttpRequest& request) const;
+  /// Every response's protection against misuse of the page: content security policy and the like.
+  const Headers& headers() const { return headers_; }
+  /// From now on the server is not ready for new work.
+  void drain() { draining_ = true; }
+
+ private:
+  HttpResponse answer_get(const HttpRequest& request) const;
+  std::optional<HttpResponse> health(const HttpRequest& request) const;
+  HttpResponse metrics() const;
+  void call(const HttpRequest& request, Role role, Reply reply) const;
+  void picture(const HttpRequest& request, std::string_view session, std::string_view extension,
+               Reply reply) const;
+
+  session::SessionHost& host_;
+  const AccessControl& access_;
+  const Traffic& traffic_;
+  const RouterOptions options_;
+  const Headers headers_;
+  const std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
+  std::atomic<bool> draining_ = false;
+};
+
+/// NAME of "/api/v1/scenes/NAME", where uploads go; empty for other paths.
+std::string_view uploaded_name(std::string_view path);
+HttpResponse error_response(const protocol::Error& error);
+/// The response while the server shuts down: come back in a while.
+HttpResponse come_back_later(std::string_view why);
+
+}  // namespace heliograph::net

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+#include "protocol/messages/kinds.hpp"
+#include "scene/environment.hpp"
+#include "scene/scene.hpp"
+
+namespace heliograph::render {
+
+struct EngineOptions {
+  std::string device;                  // part of a device's name, or empty: the best there is
+  std::string tracer = "auto";         // auto, or a protocol::TracerKind
+  bool validation = false;             // Vulkan validation layers on, every message an error
+  std::filesystem::path cache_folder;  // pipeline cache; empty: none
+  bool host_kernels = true;            // on devices that are processors, where a pass has one
+  bool as_gpu = false;                 // treat a processor as a GPU, for tests of that path
+};
+
+struct DeviceInfo {
+  std::string name;
+  std::string driver;
+  protocol::DeviceType type;
+};
+
+/// A scene and its environment on the device, with its acceleration structure. Shared, immutable.
+class SceneResources;
+/// An environment on the device, filtered. Shared, immutable.
+class LitEnvironment;
+
+/// The scene that was uploaded.
+const std::shared_ptr<const scene::Scene>& scene_of(const SceneResources& resources);
+/// Memory of the tables, images and the acceleration structure, not of the environment.
+std::uint64_t memory_bytes(const SceneResources& resources);
+
+/// Told as an upload proceeds: stage name and fraction of the whole, 0..1.
+using UploadProgress = std::function<void(std::string_view stage, float fraction)>;
+
+/// One device with its programs, shared by every renderer. Where gpu::DeviceLost is thrown, by
+/// whatever works on the device, `recreate` makes another one.
+class Engine {
+ public:
+  /// @throws gpu::GpuError with the reasons when no device will do
+  explicit Engine(const EngineOptions& options);
+  ~Engine();
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+
+  DeviceInfo device() const;
+  protocol::TracerKind tracer() const;
+  std::uint32_t max_image_size() const;  // pixels, either side
+  std::uint64_t validation_messages() const;
+
+  /// Uploads, prefilters the environment and builds the acceleration structure.
+  /// May run on any thread, beside rendering. What `progress` throws ends it and comes out.
+  std::shared_ptr<const SceneResources> upload(std::shared_ptr<const scene::Scene> scene,
+                                               const scene::Environment& environment,
+                                               const UploadProgress& progress = {});
+  std::shared_ptr<const SceneResources> upload(
+      std::shared_ptr<const scene::Scene> scene,
+      std::shared_ptr<const scene::Environment> environment, const UploadProgress& progress = {});
+  /// The same of a scene that is given away: its images that came from files let go of their pixels
+  /// as soon as these are on the device, so that they are never there twice.
+  std::shared_ptr<const SceneResources> upload(
+      std::unique_ptr<scene::Scene> scene, std::shared_ptr<const scene::Environment> environment,
+      const UploadProgress& progress = {});
+
+  /// Uploads and prefilters an environment, or finds it where it is in use already. May run on any
+  /// thread, beside rendering.
+  std::shared_ptr<const LitEnvironment> prefilter(scene::Environment environment);
+
+  /// Makes the device and its programs anew. There must be no renderer; what was uploaded before
+  /// may still be held but is of no use any more. @throws gpu::GpuError
+  void recreate();
+  /// Whether it lives on the present device.
+  bool owns(const SceneResources& resources) const;
+  bool owns(const LitEnvironment& environment) const;
+  /// The same on the present device.
+  std::shared_ptr<const SceneResources> renew(const SceneResources& lost);
+  std::shared_ptr<const LitEnvironment> renew(const LitEnvironment& lost);
+
+  struct Parts;
+  Parts& parts() { return *parts_; }
+
+ private:
+  std::shared_ptr<Parts> present() const;
+  std::shared_ptr<const SceneResources> upload(
+      std::shared_ptr<const scene::Scene> scene,
+      std::shared_ptr<const scene::Environment> environment, const UploadProgress& progress,
+      const std::function<void(std::size_t image)>& image_done);
+
+  const EngineOptions options_;
+  mutable std::mutex mutex_;  // guards parts_
+  std::shared_ptr<Parts> parts_;
+};
+
+/// What Vulkan offers on this machine, a line per driver file and device with the reason why each
+/// was or was not chosen. Never throws.
+std::string describe_devices(const EngineOptions& options);
+
+}  // namespace heliograph::render

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "protocol/messages/kinds.hpp"
+
+namespace heliograph::render {
+
+struct PassTime {
+  std::string name;
+  protocol::PassKind kind;  // device or host
+  float milliseconds;
+};
+
+/// What a pass of the last frame had to touch: bytes of the images that it reads and writes, and
+/// the rays of its stream (0: it works on none).
+struct PassWork {
+  std::string name;
+  std::uint64_t image_bytes;
+  std::uint64_t rays;
+};
+
+/// Four floats a pixel, row 0 on top; what the channels mean is the buffer's description.
+struct FloatImage {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::vector<float> rgba{};
+  std::uint32_t channels = 4;  // the first so many of the four are the buffer's
+  bool counts = false;         // whole numbers from 0
+};
+
+/// The value of one buffer at one pixel.
+struct BufferValue {
+  std::string name;
+  std::vector<float> channels;
+  std::string unit;  // empty: plain numbers, or channels of different kinds
+};
+
+/// What is seen at one point of the picture, in world space, metres.
+struct SurfacePoint {
+  std::uint32_t instance;  // of the scene
+  glm::vec3 position;
+  glm::vec3 normal;  // of the triangle, toward the camera
+  float distance;    // from the eye; along the view for cameras without perspective
+};
+
+struct BufferInfo {
+  std::string name;
+  std::string description;
+};
+
+/// One rendered frame, ready for an encoder.
+struct Frame {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::vector<std::uint8_t> rgba;  // sRGB, alpha 255, row 0 on top, tightly packed
+  std::uint32_t samples = 0;       // accumulated in this picture
+  bool converged = false;          // another frame would show the same
+  float milliseconds = 0.0f;       // whole frame, wall clock
+  std::vector<PassTime> passes;
+};
+
+}  // namespace heliograph::render

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cmath>
+#include <glm/glm.hpp>
+
+namespace heliograph::render {
+
+/// A unit vector from two numbers in [-1, 1]: shaders/lib/math/octahedral.glsl.
+inline glm::vec3 octahedral_decode(const glm::vec2& p) {
+  glm::vec3 d{p, 1.0f - std::abs(p.x) - std::abs(p.y)};
+  const float below = std::max(-d.z, 0.0f);
+  d.x += d.x >= 0.0f ? -below : below;
+  d.y += d.y >= 0.0f ? -below : below;
+  return glm::normalize(d);
+}
+
+}  // namespace heliograph::render

@@ -1,0 +1,187 @@
+#include "render/frame/engine_parts.hpp"
+#include "render/resources/scene_resources.hpp"
+#include "tracing/tracer_choice.hpp"
+
+namespace heliograph::render {
+namespace {
+
+protocol::DeviceType device_type(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+      return protocol::DeviceType::cpu;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      return protocol::DeviceType::integrated;
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      return protocol::DeviceType::discrete;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      return protocol::DeviceType::virtual_;
+    default:
+      return protocol::DeviceType::other;
+  }
+}
+
+/// "embree, software": the first is what the device gets unasked.
+std::string tracer_names(const gpu::DeviceReport& report) {
+  std::string names;
+  for (const protocol::TracerKind kind : tracing::offered_tracers(report)) {
+    names += (names.empty() ? "" : ", ") + std::string(protocol::enum_name(kind));
+  }
+  return names;
+}
+
+/// What lives on a device keeps it alive.
+template <class Made>
+std::shared_ptr<const Made> with_device(std::shared_ptr<Engine::Parts> parts,
+                                        std::shared_ptr<const Made> made) {
+  struct Both {
+    std::shared_ptr<Engine::Parts> parts;
+    std::shared_ptr<const Made> made;
+  };
+  const Made* const it = made.get();
+  return {std::make_shared<const Both>(Both{std::move(parts), std::move(made)}), it};
+}
+
+}  // namespace
+
+Engine::Parts::Parts(const EngineOptions& options)
+    : instance(options.validation),
+      device(instance, {options.device, options.cache_folder, options.as_gpu}),
+      programs(device),
+      environments(device, programs),
+      tracer(tracing::make_tracer(options.tracer, device)),
+      split_sum_table(make_split_sum_table(device, programs)),
+      sheen_table(make_sheen_table(device, programs)),
+      ltc_table(make_ltc_image(device)),
+      around(make_environment_sampler(device, true)),
+      clamped(make_environment_sampler(device, false)),
+      info{device.report().name, device.report().driver, device_type(device.report().type)},
+      host_kernels(options.host_kernels) {}
+
+Engine::Engine(const EngineOptions& options)
+    : options_(options), parts_(std::make_shared<Parts>(options)) {}
+Engine::~Engine() = default;
+
+std::shared_ptr<Engine::Parts> Engine::present() const {
+  const std::lock_guard lock(mutex_);
+  return parts_;
+}
+
+void Engine::recreate() {
+  auto made = std::make_shared<Parts>(options_);
+  const std::lock_guard lock(mutex_);
+  parts_.swap(made);
+}
+
+DeviceInfo Engine::device() const {
+  return present()->info;
+}
+protocol::TracerKind Engine::tracer() const {
+  return present()->tracer->kind();
+}
+
+std::uint32_t Engine::max_image_size() const {
+  return std::min(present()->device.limits().maxImageDimension2D, 8192u);
+}
+
+std::uint64_t Engine::validation_messages() const {
+  return present()->instance.validation_messages();
+}
+
+std::shared_ptr<const SceneResources> Engine::upload(std::shared_ptr<const scene::Scene> scene,
+                                                     const scene::Environment& environment,
+                                                     const UploadProgress& progress) {
+  return upload(std::move(scene), std::make_shared<const scene::Environment>(environment),
+                progress);
+}
+
+std::shared_ptr<const SceneResources> Engine::upload(
+    std::shared_ptr<const scene::Scene> scene,
+    std::shared_ptr<const scene::Environment> environment, const UploadProgress& progress) {
+  return upload(std::move(scene), std::move(environment), progress, [](std::size_t) {});
+}
+
+std::shared_ptr<const SceneResources> Engine::upload(
+    std::unique_ptr<scene::Scene> scene, std::shared_ptr<const scene::Environment> environment,
+    const UploadProgress& progress) {
+  const std::shared_ptr<scene::Scene> own = std::move(scene);
+  return upload(own, std::move(environment), progress, [&images = own->images](std::size_t i) {
+    if (images[i].file) std::vector<std::uint8_t>().swap(images[i].pixels);
+  });
+}
+
+std::shared_ptr<const SceneResources> Engine::upload(
+    std::shared_ptr<const scene::Scene> scene,
+    std::shared_ptr<const scene::Environment> environment, const UploadProgress& progress,
+    const std::function<void(std::size_t image)>& image_done) {
+  const auto tell = [&](std::string_view stage, float fraction) {
+    if (progress) progress(stage, fraction);
+  };
+  tell("environment", 0.0f);
+  const std::shared_ptr<Parts> parts = present();
+  auto around = parts->environments.get(std::move(environment));
+  return with_device(parts, std::make_shared<const SceneResources>(
+                                parts->device, parts->programs, std::move(scene), std::move(around),
+                                *parts->tracer, tell, image_done));
+}
+
+std::shared_ptr<const LitEnvironment> Engine::renew(const LitEnvironment& lost) {
+  const std::shared_ptr<Parts> parts = present();
+  return with_device(parts, parts->environments.get(lost.source()));
+}
+
+std::shared_ptr<const SceneResources> Engine::renew(const SceneResources& lost) {
+  return upload(lost.scene, lost.environment->source());
+}
+
+bool Engine::owns(const SceneResources& resources) const {
+  return owns(*resources.environment);
+}
+
+bool Engine::owns(const LitEnvironment& environment) const {
+  return &environment.device() == &present()->device;
+}
+
+const std::shared_ptr<const scene::Scene>& scene_of(const SceneResources& resources) {
+  return resources.scene;
+}
+
+std::uint64_t memory_bytes(const SceneResources& resources) {
+  return resources.bytes();
+}
+
+std::shared_ptr<const LitEnvironment> Engine::prefilter(scene::Environment environment) {
+  const std::shared_ptr<Parts> parts = present();
+  return with_device(
+      parts,
+      parts->environments.get(std::make_shared<const scene::Environment>(std::move(environment))));
+}
+
+std::string describe_devices(const EngineOptions& options) {
+  std::string text = "Driver files and what each finds alone:\n";
+  try {
+    const auto drivers = gpu::examine_driver_files();
+    for (const auto& driver : drivers)
+      text += "  " + driver.file + "\n    " + driver.verdict + "\n";
+    if (drivers.empty()) text += "  none found\n";
+    const gpu::Instance instance(false);
+    text += "Devices:\n";
+    bool chosen = false;
+    for (const auto& report : gpu::survey_devices(instance, options.device)) {
+      text += std::string(report.chosen ? "* " : "  ") + report.name + ", " +
+              gpu::type_name(report.type) + ", Vulkan " + report.version + ", " + report.driver +
+              "\n    " + (report.chosen ? "chosen: " : "not chosen: ") + report.reason + "\n";
+      if (report.missing.empty()) {
+        text += "    ray tracers, the default first: " + tracer_names(report) + "\n";
+      }
+      chosen |= report.chosen;
+    }
+    if (!chosen) {
+      text += "  none will do; mesa-vulkan-drivers has one for machines without a GPU\n";
+    }
+  } catch (const gpu::GpuError& error) {
+    text += std::string("Vulkan does not start: ") + error.what() + "\n";
+  }
+  return text;
+}
+
+}  // namespace heliograph::render

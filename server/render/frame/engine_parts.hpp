@@ -1,0 +1,30 @@
+#pragma once
+
+#include "gpu/device/device.hpp"
+#include "render/api/engine.hpp"
+#include "render/resources/environment/lit_environment.hpp"
+#include "render/resources/programs.hpp"
+#include "render/resources/tables/ltc_table.hpp"
+#include "tracing/ray_tracer.hpp"
+
+namespace heliograph::render {
+
+/// What an engine is made of, in order of construction.
+struct Engine::Parts {
+  explicit Parts(const EngineOptions& options);
+
+  gpu::Instance instance;
+  gpu::Device device;
+  Programs programs;
+  EnvironmentCache environments;
+  std::unique_ptr<tracing::RayTracer> tracer;
+  gpu::Image split_sum_table;
+  gpu::Image sheen_table;
+  gpu::Image ltc_table;
+  gpu::Sampler around;  // wraps in u: equirectangular maps
+  gpu::Sampler clamped;
+  DeviceInfo info;
+  bool host_kernels;
+};
+
+}  // namespace heliograph::render

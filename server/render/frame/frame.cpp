@@ -1,0 +1,72 @@
+#include "render/frame/frame.hpp"
+
+#include "render/passes/blend/blend_surfaces.hpp"
+#include "render/passes/compose/compose.hpp"
+#include "render/passes/compose/skybox.hpp"
+#include "render/passes/denoise/denoise_specular.hpp"
+#include "render/passes/denoise/denoise_visibility.hpp"
+#include "render/passes/gbuffer/gbuffer.hpp"
+#include "render/passes/gbuffer/trace_gbuffer.hpp"
+#include "render/passes/post/accumulate.hpp"
+#include "render/passes/post/present.hpp"
+#include "render/passes/post/temporal_antialias.hpp"
+#include "render/passes/reference/reference.hpp"
+#include "render/passes/reflections/trace_specular.hpp"
+#include "render/passes/visibility/trace_visibility.hpp"
+
+namespace heliograph::render {
+namespace {
+
+/// The signals without noise, as far as the settings denoise them.
+std::optional<DenoisedSignals> denoise(gpu::FramePlan& plan, const FrameInputs& in,
+                                       const GBuffer& gbuffer, const RawSignals& raw) {
+  const protocol::Settings& s = in.settings;
+  const bool visibility = s.shadow_temporal.enabled || s.shadow_blur.enabled;
+  const bool specular = raw.specular && (s.specular_temporal.enabled || s.specular_blur.enabled);
+  if (!visibility && !specular) return std::nullopt;
+  const Guide guide = reproject(plan, in, gbuffer);
+  DenoisedSignals denoised{combine_visibility(plan, in, raw.shadows, raw.ambient), raw.specular};
+  if (visibility) {
+    denoised.visibility = denoise_visibility(plan, in, gbuffer, guide, denoised.visibility);
+  }
+  if (specular) denoised.specular = denoise_specular(plan, in, gbuffer, guide, *raw.specular);
+  return denoised;
+}
+
+/// Nothing but the path traced truth.
+FrameOutputs declare_reference(gpu::FramePlan& plan, const FrameInputs& in) {
+  const gpu::ImageRef sample = trace_reference(plan, in);
+  const gpu::History accumulated = accumulate(plan, in, sample);
+  const Exposure exposure = expose(plan, in, sample, accumulated.current);
+  return {accumulated, exposure, sample, present(plan, in, exposure, sample, accumulated.current)};
+}
+
+}  // namespace
+
+// The stages of the paper's section 3, in its order; the prefilter ran when the environment came.
+FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
+  const protocol::ReferenceUse reference = in.settings.reference.use;
+  if (reference == protocol::ReferenceUse::always) return declare_reference(plan, in);
+  const GBuffer gbuffer =
+      traces_gbuffer(plan.device(), in) ? trace_gbuffer(plan, in) : rasterize_gbuffer(plan, in);
+
+  RawSignals raw{trace_shadows(plan, in, gbuffer), trace_ambient(plan, in, gbuffer), {}};
+  if (in.settings.specular.enabled) raw.specular = trace_specular(plan, in, gbuffer);
+  const auto denoised = denoise(plan, in, gbuffer, raw);
+
+  const gpu::ImageRef background = draw_skybox(plan, in, gbuffer);
+  const Composed composed = compose(plan, in, gbuffer, raw, denoised, background);
+  const auto& [hdr, hdr_raw] = composed;
+  GBuffer seen = gbuffer;
+  seen.motion = blend_surfaces(plan, in, gbuffer, composed);
+
+  const bool truth = reference == protocol::ReferenceUse::resting;
+  const gpu::History accumulated =
+      accumulate(plan, in, truth ? trace_reference(plan, in) : hdr_raw);
+  const Exposure exposure = expose(plan, in, hdr, accumulated.current);
+  const gpu::ImageRef resolved = temporal_antialias(plan, in, seen, exposure, hdr);
+  const gpu::ImageRef picture = present(plan, in, exposure, resolved, accumulated.current);
+  return {accumulated, exposure, resolved, picture};
+}
+
+}  // namespace heliograph::render

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "gpu/frame_plan/frame_plan.hpp"
+#include "render/passes/frame_inputs.hpp"
+#include "render/passes/post/exposure.hpp"
+
+namespace heliograph::render {
+
+/// The buffers that outlive the frame or leave it.
+struct FrameOutputs {
+  gpu::History accumulated;  // linear radiance
+  Exposure exposure;
+  gpu::ImageRef radiance;  // of the frame alone, as the picture takes it in
+  gpu::ImageRef picture;   // sRGB, RGBA8
+};
+
+/// Declares all passes of a frame, in order.
+FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in);
+
+}  // namespace heliograph::render

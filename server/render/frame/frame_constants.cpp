@@ -1,0 +1,91 @@
+#include "render/frame/frame_constants.hpp"
+
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "render/resources/moving_scene.hpp"
+
+namespace heliograph::render {
+namespace {
+
+std::uint32_t flags(const protocol::Settings& settings, const scene::Camera& camera) {
+  const auto bit = [](bool on, std::uint32_t flag) { return on ? flag : 0u; };
+  return bit(settings.shadows.enabled, shared::frame_shadows) |
+         bit(settings.ambient.occlusion, shared::frame_ambient_occlusion) |
+         bit(settings.lighting.direct, shared::frame_direct) |
+         bit(settings.lighting.environment_diffuse, shared::frame_environment_diffuse) |
+         bit(settings.lighting.environment_specular, shared::frame_environment_specular) |
+         bit(settings.lighting.emissive, shared::frame_emissive) |
+         bit(settings.environment.visible, shared::frame_environment_visible) |
+         bit(camera.orthographic_height > 0.0f, shared::frame_orthographic);
+}
+
+/// Moves the picture by `offset` (in normalised device coordinates), perspective or not.
+glm::mat4 jittered(glm::mat4 projection, const glm::vec2& offset) {
+  glm::mat4 shift(1.0f);
+  shift[3][0] = offset.x;
+  shift[3][1] = offset.y;
+  return shift * projection;
+}
+
+/// What depends on the environment; its intensity and rotation are there already.
+void add_environment(shared::FrameConstants& constants, const EnvironmentView& environment) {
+  constants.counts.z = environment.maps.prefiltered.desc().levels;
+  for (std::size_t i = 0; i < 9; ++i) constants.irradiance[i] = environment.maps.irradiance[i];
+  constants.sun = glm::vec4(0.0f, 1.0f, 0.0f, -1.0f);
+  if (!environment.sun) return;
+  const scene::Sun& sun = *environment.sun;
+  const glm::vec4& settings = constants.environment;
+  const glm::vec3& d = sun.direction;
+  const glm::vec3 world(settings.y * d.x + settings.z * d.z, d.y,
+                        settings.y * d.z - settings.z * d.x);
+  constants.sun = glm::vec4(world, std::tan(glm::radians(0.5f * sun.angular_diameter)));
+  constants.sun_irradiance = glm::vec4(sun.irradiance * settings.x, 0.0f);
+  ++constants.counts.x;
+}
+
+}  // namespace
+
+glm::vec2 sample_jitter(std::uint32_t sample) {
+  if (sample == 0) return glm::vec2(0.0f);
+  const double x = 0.5 + sample * 0.7548776662466927;
+  const double y = 0.5 + sample * 0.5698402909980532;
+  return {static_cast<float>(x - std::floor(x) - 0.5), static_cast<float>(y - std::floor(y) - 0.5)};
+}
+
+shared::FrameConstants make_frame_constants(const scene::Camera& camera,
+                                            const protocol::Settings& settings,
+                                            const MovingScene& scene, VkExtent2D extent,
+                                            std::uint32_t sample,
+                                            const shared::FrameConstants* before) {
+  const glm::vec2 size(extent.width, extent.height);
+  const glm::vec2 offset =
+      settings.antialiasing.jitter ? sample_jitter(sample) * 2.0f / size : glm::vec2(0.0f);
+  const glm::mat4 view = scene::view_matrix(camera);
+  const glm::mat4 projection = scene::projection_matrix(camera, size.x / size.y);
+  shared::FrameConstants constants{};
+  constants.view = view;
+  constants.unjittered = projection * view;
+  constants.view_projection = jittered(projection, offset) * view;
+  constants.previous_unjittered = before ? before->unjittered : constants.unjittered;
+  constants.previous_view = before ? before->view : view;
+  constants.inverse_view = glm::inverse(view);
+  const glm::vec2 scale{1.0f / projection[0][0], 1.0f / projection[1][1]};
+  constants.unproject = {scale, -offset * scale};
+  constants.eye = glm::vec4(camera.eye, 1.0f);
+  constants.extent = {extent.width, extent.height, sample,
+                      static_cast<std::uint32_t>(settings.sampling.seed)};
+  constants.counts = {static_cast<std::uint32_t>(scene.lights().size()), flags(settings, camera),
+                      0u, before ? 0u : 1u};
+  const float rotation = glm::radians(settings.environment.rotation);
+  constants.environment = {settings.environment.intensity, std::cos(rotation), std::sin(rotation),
+                           settings.ambient.radius};
+  const float diameter = settings.shadows.angular_diameter_override;
+  const float spread = diameter < 0.0f ? -1.0f : std::tan(glm::radians(0.5f * diameter));
+  constants.exposure = {std::exp2(settings.exposure.compensation),
+                        static_cast<float>(settings.tone_map.curve), spread, 0.0f};
+  add_environment(constants, scene.environment().view(settings.environment.separate_sun));
+  return constants;
+}
+
+}  // namespace heliograph::render

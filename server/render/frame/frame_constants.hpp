@@ -1,0 +1,24 @@
+#pragma once
+
+#include "gpu/memory/image.hpp"
+#include "protocol/settings/settings.hpp"
+#include "scene/camera.hpp"
+#include "shaders/shared/frame_constants.h"
+
+namespace heliograph::render {
+
+class MovingScene;
+
+/// Offset of a sample inside its pixel, in pixels from the middle: sample 0 is the middle, the
+/// rest follow the R2 sequence (Roberts 2018).
+glm::vec2 sample_jitter(std::uint32_t sample);
+
+/// The frame's uniform block for `sample` of a resting view. The previous matrices are taken from
+/// `before`, which is this view's block of the frame before (or null for the first).
+shared::FrameConstants make_frame_constants(const scene::Camera& camera,
+                                            const protocol::Settings& settings,
+                                            const MovingScene& scene, VkExtent2D extent,
+                                            std::uint32_t sample,
+                                            const shared::FrameConstants* before);
+
+}  // namespace heliograph::render

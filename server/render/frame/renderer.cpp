@@ -1,0 +1,312 @@
+#include "render/api/renderer.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <optional>
+#include <utility>
+
+#include "render/api/buffer_names.hpp"
+#include "render/frame/compiled_frame.hpp"
+#include "render/frame/frame_constants.hpp"
+#include "render/frame/probe.hpp"
+#include "render/passes/post/accumulate.hpp"
+#include "render/resources/moving_scene.hpp"
+#include "render/resources/scene_motion.hpp"
+#include "render/views/debug_view.hpp"
+#include "render/views/view_table.hpp"
+
+namespace heliograph::render {
+namespace {
+
+scene::Scene empty_scene() {
+  scene::Scene scene;
+  scene.name = "empty";
+  scene.material_names.emplace_back("none");
+  scene.materials.emplace_back();
+  for (const auto slot :
+       {&shared::Material::base_color_texture, &shared::Material::metallic_roughness_texture,
+        &shared::Material::normal_texture, &shared::Material::occlusion_texture,
+        &shared::Material::emissive_texture}) {
+    (scene.materials.back().*slot).texture = shared::no_texture;
+  }
+  return scene;
+}
+
+/// Whether lights differ in nothing but where they are and where they shine.
+bool only_move(std::span<const shared::Light> before, std::span<const shared::Light> after) {
+  return std::ranges::equal(before, after, [](const shared::Light& a, const shared::Light& b) {
+    return a.color == b.color && a.radius == b.radius && a.range == b.range &&
+           a.half_width == b.half_width && a.half_height == b.half_height &&
+           a.spot_scale == b.spot_scale && a.spot_offset == b.spot_offset;
+  });
+}
+
+}  // namespace
+
+struct Renderer::State {
+  State(Engine::Parts& engine, std::shared_ptr<const SceneResources> empty)
+      : parts(engine),
+        nothing(std::move(empty)),
+        constants_buffer(engine.device, "frame constants", sizeof(shared::FrameConstants),
+                         VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Memory::upload) {}
+
+  void redraw();
+  void change_settings(const protocol::Settings& changed);
+  Frame picture();
+  std::optional<FloatImage> read(std::string_view view) const;
+  std::uint32_t wanted_samples() const {
+    return settings.accumulation.enabled
+               ? static_cast<std::uint32_t>(settings.accumulation.max_samples)
+               : 1u;
+  }
+  void restart() {
+    samples = 0;
+    stale = true;
+  }
+
+  Engine::Parts& parts;
+  std::shared_ptr<const SceneResources> nothing;  // the empty scene
+  gpu::Buffer constants_buffer;
+  shared::FrameConstants constants{};
+  bool has_previous = false;
+  std::uint32_t sequence = 0;    // frames since the last cut: where random sequences stand
+  std::uint32_t samples = 0;     // in the accumulated picture
+  float seconds = 1.0f / 60.0f;  // since the frame before
+  float share_of_mean = 0.0f;    // in the picture as of the last frame
+  SceneMotion scene_motion;
+  bool stale = true;  // something changed since the last frame
+
+  std::shared_ptr<const SceneResources> scene;
+  std::optional<MovingScene> moving;  // the scene in this renderer's pose
+  scene::Camera camera;
+  protocol::Settings settings;
+  VkExtent2D extent{640, 360};
+
+  std::unique_ptr<Drawing> drawing;
+};
+
+// The old drawing goes first: two of them may not fit into memory.
+void Renderer::State::redraw() {
+  drawing.reset();
+  const FrameInputs inputs{parts.programs,
+                           *scene,
+                           moving->tables(),
+                           *parts.tracer,
+                           moving->structure(),
+                           constants,
+                           settings,
+                           samples,
+                           seconds,
+                           *moving,
+                           scene_motion,
+                           parts.split_sum_table,
+                           parts.host_kernels};
+  drawing = std::make_unique<Drawing>(parts, inputs, constants_buffer, extent);
+  has_previous = false;
+  sequence = 0;
+  restart();
+}
+
+void Renderer::State::change_settings(const protocol::Settings& changed) {
+  const auto scope = protocol::changed_scope(settings, changed);
+  settings = changed;
+  if (includes(scope, protocol::ResetScope::structure)) redraw();
+  stale = true;
+  if (includes(scope, protocol::ResetScope::history)) has_previous = false;
+  if (includes(scope, protocol::ResetScope::accumulation)) restart();
+}
+
+std::optional<FloatImage> Renderer::State::read(std::string_view view) const {
+  if (view == radiance_name) return shown_radiance(*drawing, share_of_mean);
+  const std::string_view source = source_of(view);
+  const gpu::Image* image = drawing->find(source.empty() ? view : source);
+  if (!image) return std::nullopt;
+  if (source.empty()) return read_image(*image);
+  return extract(view, read_image(*image),
+                 {constants, exposure_factor(drawing->plan, drawing->outputs.exposure)});
+}
+
+Frame Renderer::State::picture() {
+  const std::string& shown = settings.view.buffer;
+  if (shown != picture_name) {
+    if (const auto values = read(shown)) return visualise(shown, *values);
+  }
+  Frame frame;
+  frame.width = extent.width;
+  frame.height = extent.height;
+  frame.rgba = drawing->plan.read();
+  return frame;
+}
+
+Renderer::Renderer(Engine& engine)
+    : state_(std::make_unique<State>(
+          engine.parts(), engine.upload(std::make_shared<const scene::Scene>(empty_scene()),
+                                        scene::constant_environment(glm::vec3(0.0f))))) {
+  set_scene(nullptr);
+}
+Renderer::~Renderer() = default;
+
+void Renderer::set_scene(std::shared_ptr<const SceneResources> scene) {
+  // The drawing refers to the old scene: it goes first.
+  state_->drawing.reset();
+  state_->scene = scene ? std::move(scene) : state_->nothing;
+  state_->moving.emplace(state_->parts.device, *state_->parts.tracer, state_->scene);
+  state_->redraw();
+}
+
+void Renderer::set_lights(std::span<const shared::Light> lights) {
+  const bool moves = only_move(state_->moving->lights(), lights);
+  if (state_->moving->set_lights(lights)) {
+    state_->redraw();
+  } else {
+    if (!moves) state_->has_previous = false;
+    state_->restart();
+  }
+}
+
+void Renderer::set_materials(std::span<const shared::Material> materials) {
+  if (state_->moving->set_materials(materials)) {
+    state_->redraw();
+  } else {
+    state_->has_previous = false;
+    state_->restart();
+  }
+}
+
+void Renderer::set_environment(std::shared_ptr<const LitEnvironment> environment) {
+  state_->drawing.reset();
+  state_->moving->set_environment(environment ? std::move(environment)
+                                              : state_->scene->environment);
+  state_->redraw();
+}
+
+void Renderer::set_size(std::uint32_t width, std::uint32_t height) {
+  if (state_->extent.width == width && state_->extent.height == height) return;
+  state_->extent = {width, height};
+  state_->redraw();
+}
+
+void Renderer::set_camera(const scene::Camera& camera) {
+  if (scene::same_view(state_->camera, camera)) return;
+  state_->camera = camera;
+  state_->restart();
+}
+
+protocol::Result<void> Renderer::set_pose(std::string_view clip, double seconds) {
+  const scene::Scene& scene = *state_->scene->scene;
+  const scene::Clip* const found = scene::find_clip(scene, clip);
+  if (!clip.empty() && !found) {
+    return protocol::error::not_found("clip",
+                                      "the scene has no clip \"" + std::string(clip) + "\"");
+  }
+  if (state_->moving->set_pose(found, seconds)) state_->restart();
+  return {};
+}
+
+void Renderer::cut() {
+  state_->has_previous = false;
+  state_->sequence = 0;
+  state_->restart();
+}
+
+void Renderer::start_anew() {
+  state_->redraw();
+}
+
+void Renderer::set_frame_seconds(float seconds) {
+  state_->seconds = std::max(seconds, 0.0f);
+}
+
+protocol::Result<void> Renderer::set_settings(const protocol::Settings& settings) {
+  if (const auto known = check_buffer_name(settings.view.buffer, "view.buffer"); !known) {
+    return known;
+  }
+  if (settings != state_->settings) state_->change_settings(settings);
+  return {};
+}
+
+bool Renderer::needs_frame() const {
+  if (state_->stale || state_->samples < state_->wanted_samples()) return true;
+  if (state_->moving->needs_advance()) return true;
+  // Exposure that no time passes for stays where it is.
+  const Drawing& drawing = *state_->drawing;
+  return state_->seconds > 0.0f && !is_settled(drawing.plan, drawing.outputs.exposure);
+}
+
+Frame Renderer::render() {
+  State& state = *state_;
+  const auto start = std::chrono::steady_clock::now();
+  state.stale = false;
+  bool moves = state.moving->advance();
+  // Without a frame before there is no motion since.
+  if (!state.has_previous) moves |= state.moving->advance();
+  const auto posed = std::chrono::steady_clock::now();
+  if (!state.settings.accumulation.enabled) state.samples = 0;
+  const shared::FrameConstants before = state.constants;
+  state.constants = make_frame_constants(state.camera, state.settings, *state.moving, state.extent,
+                                         state.sequence++, state.has_previous ? &before : nullptr);
+  state.scene_motion =
+      render::scene_motion(*state.moving, state.constants, state.has_previous ? &before : nullptr);
+  state.has_previous = true;
+  std::memcpy(state.constants_buffer.mapped(), &state.constants, sizeof state.constants);
+  state.drawing->plan.execute();
+  state.share_of_mean = mean_share(state.drawing->inputs);
+  ++state.samples;
+
+  Frame frame = state.picture();
+  frame.samples = state.samples;
+  frame.converged = !needs_frame();
+  if (moves) {
+    const std::chrono::duration<float, std::milli> posing = posed - start;
+    frame.passes.push_back({"pose", protocol::PassKind::host, posing.count()});
+  }
+  for (const auto& timing : state.drawing->plan.timings()) {
+    if (timing.milliseconds < 0.0f) continue;
+    const auto kind = timing.host ? protocol::PassKind::host : protocol::PassKind::device;
+    frame.passes.push_back({timing.name, kind, timing.milliseconds});
+  }
+  const auto elapsed = std::chrono::steady_clock::now() - start;
+  frame.milliseconds = std::chrono::duration<float, std::milli>(elapsed).count();
+  return frame;
+}
+
+std::vector<PassWork> Renderer::work() const {
+  std::vector<PassWork> all;
+  for (const auto& pass : state_->drawing->plan.work()) {
+    all.push_back({pass.name, pass.image_bytes, pass.entries});
+  }
+  return all;
+}
+
+const std::vector<BufferInfo>& Renderer::buffers() const {
+  return state_->drawing->buffers;
+}
+
+protocol::Result<FloatImage> Renderer::capture(std::string_view buffer) {
+  auto values = state_->read(buffer);
+  if (values) return std::move(*values);
+  return protocol::error::not_found(
+      "buffer", "there is no buffer \"" + std::string(buffer) + "\" with these settings");
+}
+
+protocol::Result<Frame> Renderer::capture_view(std::string_view buffer) {
+  auto values = capture(buffer);
+  if (!values) return values.error();
+  Frame frame = visualise(buffer, values.value());
+  frame.samples = state_->samples;
+  return frame;
+}
+
+std::vector<BufferValue> Renderer::inspect(glm::vec2 point) const {
+  const Drawing& drawing = *state_->drawing;
+  return inspect_buffers(
+      drawing, {state_->constants, exposure_factor(drawing.plan, drawing.outputs.exposure)},
+      state_->share_of_mean, point);
+}
+
+protocol::Result<std::optional<SurfacePoint>> Renderer::pick(glm::vec2 point) const {
+  return surface_at(*state_->drawing, state_->constants, point);
+}
+
+}  // namespace heliograph::render

@@ -1,0 +1,177 @@
+#include "render/kernels/compose.hpp"
+
+#include "render/kernels/simd/rows.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/kernels/compose.cpp"
+#include "hwy/foreach_target.h"
+// After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/simd/material.hpp"
+#include "render/kernels/simd/view.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::host::HWY_NAMESPACE {
+
+template <class D>
+class Composition {
+  using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
+
+  /// What each signal of a pixel is multiplied by, and what needs none.
+  struct Shares {
+    Triple<V> own;
+    Triple<V> direct;
+    Triple<V> ambient;
+    Triple<V> mirror;
+  };
+
+ public:
+  HWY_INLINE explicit Composition(const ComposeJob& job)
+      : job_(job), split_sum_(job.split_sum, job.split_sum_size) {}
+
+  HWY_INLINE void rows(int first, int last) const {
+    const int lanes = static_cast<int>(hn::Lanes(d_));
+    for (int y = first; y < last; ++y) {
+      const ViewedRow<D> view(job_.frame, y);
+      for (int x = 0; x < job_.width; x += lanes) {
+        block(view, std::min(x, job_.width - lanes), y);
+      }
+    }
+  }
+
+ private:
+  HWY_INLINE V set(float value) const { return hn::Set(d_, value); }
+  HWY_INLINE Triple<V> black() const { return {hn::Zero(d_), hn::Zero(d_), hn::Zero(d_)}; }
+  HWY_INLINE bool enabled(std::uint32_t flag) const { return (job_.frame.counts.y & flag) != 0; }
+  HWY_INLINE Quad<V> load(const gpu::HostView& image, int x, int y) const {
+    return load4(d_, row_of<const float>(image, y) + 4 * x);
+  }
+  HWY_INLINE V load_one(const gpu::HostView& image, int x, int y) const {
+    return hn::LoadU(d_, row_of<const float>(image, y) + x);
+  }
+  HWY_INLINE Triple<V> color(const gpu::HostView& image, int x, int y) const {
+    const Quad<V> t = load(image, x, y);
+    return {t.x, t.y, t.z};
+  }
+
+  HWY_INLINE void block(const ViewedRow<D>& view, int x, int y) const {
+    const V view_z = load(job_.motion, x, y).w;
+    const M seen = hn::Gt(view_z, hn::Zero(d_));
+    Shares shares{black(), black(), black(), black()};
+    if (!hn::AllFalse(d_, seen)) add_surface(view, x, y, view_z, seen, shares);
+    if (!hn::AllTrue(d_, seen)) {
+      shares.own = select(seen, shares.own, color(job_.background, x, y));
+    }
+    const V shadow = load_one(job_.shadows, x, y), ambient = load_one(job_.ambient, x, y);
+    const bool mirrors = job_.max_roughness >= 0.0f;
+    const Triple<V> raw = mirrors ? color(job_.specular, x, y) : black();
+    if (!job_.denoised) {
+      store(shares, shadow, ambient, raw, job_.hdr, x, y);
+      return;
+    }
+    const Quad<V> visibility = load(job_.denoised->visibility, x, y);
+    const Triple<V> mirrored = mirrors ? color(job_.denoised->specular, x, y) : black();
+    store(shares, visibility.x, visibility.y, mirrored, job_.hdr, x, y);
+    store(shares, shadow, ambient, raw, job_.denoised->hdr_raw, x, y);
+  }
+
+  HWY_INLINE void add_surface(const ViewedRow<D>& view, int x, int y, V view_z, M seen,
+                              Shares& shares) const {
+    const Quad<V> root = load_unorm8(d_, row_of<const std::uint32_t>(job_.base_color, y) + x);
+    const Quad<V> packed = load_unorm8(d_, row_of<const std::uint32_t>(job_.surface, y) + x);
+    const Triple<V> base_color{root.x * root.x, root.y * root.y, root.z * root.z};
+    const M unlit = hn::And(seen, hn::Gt(packed.z, set(0.5f)));
+    const M lit = hn::AndNot(unlit, seen);
+    if (!hn::AllFalse(d_, lit)) {
+      const Quad<V> encoded = load(job_.normals, x, y);
+      const SurfaceMaterial<V> m =
+          make_material(d_, base_color, packed.y, packed.x, octahedral_decode(encoded.x, encoded.y),
+                        octahedral_decode(encoded.z, encoded.w), view.to_eye(x), split_sum_);
+      add_lit(view, x, view_z, lit, m, root.w, shares);
+    }
+    shares.own = select(unlit, base_color, shares.own);
+    if (enabled(shared::frame_emissive)) {
+      const auto* emissive = row_of<const std::uint32_t>(job_.emissive, y) + 2 * x;
+      shares.own = select(seen, shares.own + load_half3(d_, emissive), shares.own);
+    }
+  }
+
+  HWY_INLINE void add_lit(const ViewedRow<D>& view, int x, V view_z, M lit,
+                          const SurfaceMaterial<V>& m, V occlusion, Shares& shares) const {
+    if (enabled(shared::frame_direct)) {
+      const Triple<V> position = view.world_position(x, view_z);
+      for (const shared::Light& light : job_.lights) {
+        Triple<V> radiance;
+        if (light_contribution(d_, light, m, position, lit, radiance)) {
+          shares.direct = shares.direct + radiance;
+        }
+      }
+    }
+    if (enabled(shared::frame_environment_diffuse)) {
+      shares.ambient =
+          select(lit, m.diffuse_albedo * irradiance(m.normal) * occlusion, shares.ambient);
+    }
+    // Roughness is stored in steps of 1 / 255: a little more than half of one is still the same.
+    const M traced = hn::And(lit, hn::Le(m.roughness, set(job_.max_roughness + 0.6f / 255.0f)));
+    shares.mirror = select(traced, m.specular_albedo, shares.mirror);
+  }
+
+  /// environment_irradiance() of shaders/lib/lighting/environment.glsl
+  HWY_INLINE Triple<V> irradiance(const Triple<V>& world) const {
+    const glm::vec4& environment = job_.frame.environment;
+    const V c = set(environment.y), s = set(environment.z);
+    const V x = hn::MulSub(c, world.x, s * world.z);
+    const V y = world.y;
+    const V z = hn::MulAdd(s, world.x, c * world.z);
+    const auto term = [this](int i)
+                          HWY_ATTR { return splat(d_, glm::vec3(job_.frame.irradiance[i])); };
+    Triple<V> sum = term(0) + term(1) * y + term(2) * z + term(3) * x;
+    sum = sum + term(4) * (x * y) + term(5) * (y * z);
+    sum = sum + term(6) * hn::MulSub(set(3.0f) * z, z, set(1.0f)) + term(7) * (x * z);
+    sum = sum + term(8) * hn::MulSub(x, x, y * y);
+    const V zero = hn::Zero(d_);
+    return Triple<V>{hn::Max(sum.x, zero), hn::Max(sum.y, zero), hn::Max(sum.z, zero)} *
+           set(environment.x);
+  }
+
+  HWY_INLINE void store(const Shares& shares, V shadow, V ambient, const Triple<V>& mirrored,
+                        const gpu::HostView& to, int x, int y) const {
+    const V one = set(1.0f);
+    const V lit = enabled(shared::frame_shadows) ? shadow : one;
+    const V open = enabled(shared::frame_ambient_occlusion) ? ambient : one;
+    Triple<V> radiance =
+        shares.own + shares.direct * lit + shares.ambient * open + shares.mirror * mirrored;
+    // One bad pixel must not spread through the history.
+    radiance = select(is_bad(radiance), black(), radiance);
+    store4(d_, {radiance.x, radiance.y, radiance.z, one}, row_of<float>(to, y) + 4 * x);
+  }
+
+  const D d_{};
+  const ComposeJob& job_;
+  SquareTable<D> split_sum_;
+};
+
+void compose_rows(const ComposeJob& job, int first, int last) {
+  run_rows<Composition>(job, job.width, first, last);
+}
+
+}  // namespace heliograph::render::host::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace heliograph::render::host {
+
+HWY_EXPORT(compose_rows);
+
+bool can_compose(const shared::FrameConstants& frame, float max_roughness) {
+  return max_roughness >= 1.0f || (frame.counts.y & shared::frame_environment_specular) == 0;
+}
+
+void compose(const ComposeJob& job) {
+  for_each_band(job.height, [&](int first, int last) {
+    HWY_DYNAMIC_DISPATCH(compose_rows)(job, first, last);
+  });
+}
+
+}  // namespace heliograph::render::host
+#endif

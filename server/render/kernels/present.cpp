@@ -1,0 +1,108 @@
+#include "render/kernels/present.hpp"
+
+#include "render/kernels/simd/rows.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/kernels/present.cpp"
+#include "hwy/foreach_target.h"
+// After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/simd/random.hpp"
+#include "render/kernels/simd/tone_map.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::host::HWY_NAMESPACE {
+
+template <class D>
+class Presentation {
+  using V = hn::Vec<D>;
+  using DU = hn::RebindToUnsigned<D>;
+  using DI = hn::RebindToSigned<D>;
+
+ public:
+  HWY_INLINE explicit Presentation(const PresentJob& job)
+      : job_(job), curve_(static_cast<int>(job.frame.exposure.y)), dither_(DU(), 0u, 5u, 0u) {}
+
+  HWY_INLINE void rows(int first, int last) const {
+    const int lanes = static_cast<int>(hn::Lanes(d_));
+    for (int y = first; y < last; ++y) {
+      for (int x = 0; x < job_.width; x += lanes) block(std::min(x, job_.width - lanes), y);
+    }
+  }
+
+ private:
+  HWY_INLINE V set(float value) const { return hn::Set(d_, value); }
+  HWY_INLINE Triple<V> load(const gpu::HostView& image, int x, int y) const {
+    const Quad<V> t = load4(d_, row_of<const float>(image, y) + 4 * x);
+    return {t.x, t.y, t.z};
+  }
+
+  HWY_INLINE Triple<V> radiance(int x, int y) const {
+    if (job_.mean_share >= 1.0f) return load(job_.accumulated, x, y);
+    const Triple<V> frame = load(job_.radiance, x, y);
+    if (job_.mean_share <= 0.0f) return frame;
+    return mix(frame, load(job_.accumulated, x, y), set(job_.mean_share));
+  }
+
+  HWY_INLINE Triple<V> tone_map(const Triple<V>& color) const {
+    switch (curve_) {
+      case 0:
+        return tone_map_neutral(color);
+      case 1:
+        return tone_map_aces(color);
+      case 2:
+        return tone_map_agx(color);
+      default:
+        return clamped(color, 0.0f, 1.0f);
+    }
+  }
+
+  HWY_INLINE auto code_value(V linear, V noise) const {
+    const V encoded = clamped(srgb_encode(linear) + noise, 0.0f, 1.0f);
+    return hn::BitCast(DU(), hn::NearestInt(encoded * set(255.0f)));
+  }
+
+  HWY_INLINE void block(int x, int y) const {
+    const V zero = hn::Zero(d_), factor = set(job_.exposure);
+    const Triple<V> color = radiance(x, y);
+    const Triple<V> shown =
+        tone_map({hn::Max(color.x, zero) * factor, hn::Max(color.y, zero) * factor,
+                  hn::Max(color.z, zero) * factor});
+    // The same noise in every frame, so that a finished picture stands still.
+    V a, b;
+    const DU du;
+    dither_.at(hn::Iota(du, static_cast<std::uint32_t>(x)), static_cast<std::uint32_t>(y), a, b);
+    const V noise = (a - b) * set(0.5f / 255.0f);
+    const auto red = code_value(shown.x, noise), green = code_value(shown.y, noise);
+    const auto blue = code_value(shown.z, noise);
+    const auto opaque = hn::Set(du, 0xff000000u);
+    const auto packed =
+        hn::Or(hn::Or(red, hn::ShiftLeft<8>(green)), hn::Or(hn::ShiftLeft<16>(blue), opaque));
+    hn::StoreU(packed, du, row_of<std::uint32_t>(job_.picture, y) + x);
+  }
+
+  const D d_{};
+  const PresentJob& job_;
+  int curve_;
+  RandomPairs<DU> dither_;
+};
+
+void present_rows(const PresentJob& job, int first, int last) {
+  run_rows<Presentation>(job, job.width, first, last);
+}
+
+}  // namespace heliograph::render::host::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace heliograph::render::host {
+
+HWY_EXPORT(present_rows);
+
+void present(const PresentJob& job) {
+  for_each_band(job.height, [&](int first, int last) {
+    HWY_DYNAMIC_DISPATCH(present_rows)(job, first, last);
+  });
+}
+
+}  // namespace heliograph::render::host
+#endif

@@ -1,0 +1,63 @@
+#include "render/kernels/signals.hpp"
+
+#include <cmath>
+
+#include "render/kernels/simd/rows.hpp"
+
+namespace heliograph::render::host {
+namespace {
+
+/// Numbers that are none must not spread through filters and histories.
+float scrub(float value) {
+  return std::isfinite(value) ? value : 0.0f;
+}
+
+}  // namespace
+
+void combine_visibility(const CombineJob& job) {
+  for_each_band(job.height, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      const auto row = static_cast<std::uint32_t>(y);
+      const float* const shadows = job.shadows.row<const float>(row);
+      const float* const ambient = job.ambient.row<const float>(row);
+      float* to = job.visibility.row<float>(row);
+      for (int x = 0; x < job.width; ++x, to += 4) {
+        to[0] = scrub(shadows[x]);
+        to[1] = scrub(ambient[x]);
+        to[2] = to[3] = 0.0f;
+      }
+    }
+  });
+}
+
+void accumulate(const AccumulateJob& job) {
+  for_each_band(job.height, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      const auto row = static_cast<std::uint32_t>(y);
+      const float* const sample = job.sample.row<const float>(row);
+      const float* const previous = job.previous.row<const float>(row);
+      float* const mean = job.mean.row<float>(row);
+      if (job.weight >= 1.0f) {
+        std::copy_n(sample, 4 * job.width, mean);
+        continue;
+      }
+      for (int i = 0; i < 4 * job.width; ++i) {
+        mean[i] = previous[i] + (sample[i] - previous[i]) * job.weight;
+      }
+    }
+  });
+}
+
+void resolve_visibility(const ResolveJob& job) {
+  constexpr std::uint32_t grain = 4096;
+  const tbb::blocked_range<std::uint32_t> all(0, job.count.count, grain);
+  tbb::parallel_for(all, [&](const auto& some) {
+    for (std::uint32_t i = some.begin(); i < some.end(); ++i) {
+      if (job.occluded[i] == 0) continue;
+      const std::uint32_t pixel = job.rays[i].pixel;
+      job.visibility.row<float>(pixel >> 16u)[pixel & 0xffffu] = 0.0f;
+    }
+  });
+}
+
+}  // namespace heliograph::render::host

@@ -1,0 +1,218 @@
+// Reading the frame before in host kernels: shaders/lib/denoise/reprojection.glsl in vectors.
+// Included once per instruction set; the guard is Google Highway's convention.
+#if defined(HELIOGRAPH_HOST_HISTORY_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_HOST_HISTORY_HPP
+#undef HELIOGRAPH_HOST_HISTORY_HPP
+#else
+#define HELIOGRAPH_HOST_HISTORY_HPP
+#endif
+
+#include "render/kernels/simd/pixels.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::host::HWY_NAMESPACE {
+
+/// One pixel per lane, inside the picture. Neighbours mostly move together: where they lie side by
+/// side they are loaded, otherwise gathered.
+template <class D>
+class Spot {
+  using V = hn::Vec<D>;
+  using DI = hn::RebindToSigned<D>;
+  using VI = hn::Vec<DI>;
+
+ public:
+  HWY_INLINE Spot(VI x, VI y) : x_(x), y_(y), first_x_(hn::GetLane(x)), first_y_(hn::GetLane(y)) {
+    const auto beside =
+        hn::And(hn::Eq(x, hn::Iota(di_, first_x_)), hn::Eq(y, hn::Set(di_, first_y_)));
+    together_ = hn::AllTrue(di_, beside);
+  }
+
+  HWY_INLINE V one(const gpu::HostView& image) const {
+    if (together_) return hn::LoadU(d_, row_of<const float>(image, first_y_) + first_x_);
+    return hn::GatherIndex(d_, row_of<const float>(image, 0), index<1>(image));
+  }
+  HWY_INLINE VI word(const gpu::HostView& image) const {
+    if (together_) return hn::LoadU(di_, row_of<const int>(image, first_y_) + first_x_);
+    return hn::GatherIndex(di_, row_of<const int>(image, 0), index<1>(image));
+  }
+  HWY_INLINE Pair<V> two(const gpu::HostView& image) const {
+    if (together_) return load2(d_, row_of<const float>(image, first_y_) + 2 * first_x_);
+    const float* const texels = row_of<const float>(image, 0);
+    const VI at = index<2>(image);
+    return {hn::GatherIndex(d_, texels, at), hn::GatherIndex(d_, texels + 1, at)};
+  }
+  HWY_INLINE Quad<V> four(const gpu::HostView& image) const {
+    if (together_) return load4(d_, row_of<const float>(image, first_y_) + 4 * first_x_);
+    return gather4(d_, row_of<const float>(image, 0), index<4>(image));
+  }
+  HWY_INLINE Triple<V> first_three(const gpu::HostView& image) const {
+    if (!together_) return gather3(d_, row_of<const float>(image, 0), index<4>(image));
+    const Quad<V> t = load4(d_, row_of<const float>(image, first_y_) + 4 * first_x_);
+    return {t.x, t.y, t.z};
+  }
+  /// The first two channels of four.
+  HWY_INLINE Pair<V> first_two(const gpu::HostView& image) const {
+    if (together_) {
+      const Quad<V> t = load4(d_, row_of<const float>(image, first_y_) + 4 * first_x_);
+      return {t.x, t.y};
+    }
+    const float* const texels = row_of<const float>(image, 0);
+    const VI at = index<4>(image);
+    return {hn::GatherIndex(d_, texels, at), hn::GatherIndex(d_, texels + 1, at)};
+  }
+  HWY_INLINE V last_of_four(const gpu::HostView& image) const {
+    if (together_) return load4(d_, row_of<const float>(image, first_y_) + 4 * first_x_).w;
+    return hn::GatherIndex(d_, row_of<const float>(image, 0) + 3, index<4>(image));
+  }
+
+ private:
+  /// In words of 32 bits, `channels` to a texel.
+  template <int channels>
+  HWY_INLINE VI index(const gpu::HostView& image) const {
+    const auto pitch = static_cast<int>(image.row_pitch / sizeof(float));
+    return hn::Mul(y_, hn::Set(di_, pitch)) + hn::Mul(x_, hn::Set(di_, channels));
+  }
+
+  const D d_{};
+  const DI di_{};
+  VI x_, y_;
+  int first_x_, first_y_;
+  bool together_;
+};
+
+/// The size of a picture, and which pixels are in it.
+template <class D>
+class Bounds {
+  using DI = hn::RebindToSigned<D>;
+  using VI = hn::Vec<DI>;
+
+ public:
+  Bounds(int width, int height) : width_(width), height_(height) {}
+
+  /// The nearest pixel inside.
+  HWY_INLINE Spot<D> spot(VI x, VI y) const {
+    return Spot<D>(inside(x, width_), inside(y, height_));
+  }
+  HWY_INLINE hn::Mask<D> contain(VI x, VI y) const {
+    return hn::RebindMask(D(),
+                          hn::And(hn::Eq(x, inside(x, width_)), hn::Eq(y, inside(y, height_))));
+  }
+
+ private:
+  static HWY_INLINE VI inside(VI v, int size) {
+    const DI di;
+    return hn::Min(hn::Max(v, hn::Zero(di)), hn::Set(di, size - 1));
+  }
+
+  int width_;
+  int height_;
+};
+
+/// Four neighbouring pixels of the frame before: bilinear weights about a position in pixels, whose
+/// centres are at one half.
+template <class D>
+struct HistoryTaps {
+  using V = hn::Vec<D>;
+  using DI = hn::RebindToSigned<D>;
+  using VI = hn::Vec<DI>;
+
+  VI x, y;
+  V weights[4];              // of (x, y), right of it, below it, below and right
+  V fraction_x, fraction_y;  // of the way from (x, y) to the last of them
+  hn::Mask<D> whole;         // no pixel that counts is missing
+
+  HWY_INLINE HistoryTaps(V position_x, V position_y) {
+    const D d;
+    const DI di;
+    const V one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
+    // What lies far outside is nowhere, and the index stays a number.
+    const V corner_x = clamped(position_x - half, -1e6f, 1e6f);
+    const V corner_y = clamped(position_y - half, -1e6f, 1e6f);
+    const V low_x = hn::Floor(corner_x), low_y = hn::Floor(corner_y);
+    const V fx = corner_x - low_x, fy = corner_y - low_y;
+    x = hn::ConvertTo(di, low_x);
+    y = hn::ConvertTo(di, low_y);
+    weights[0] = (one - fx) * (one - fy);
+    weights[1] = fx * (one - fy);
+    weights[2] = (one - fx) * fy;
+    weights[3] = fx * fy;
+    fraction_x = fx;
+    fraction_y = fy;
+    whole = hn::Ge(fx, hn::Zero(d));
+  }
+
+  HWY_INLINE VI tap_x(int tap) const { return x + hn::Set(DI(), tap & 1); }
+  HWY_INLINE VI tap_y(int tap) const { return y + hn::Set(DI(), tap >> 1); }
+
+  /// Leaves a tap out where it is not valid.
+  HWY_INLINE void keep(int tap, hn::Mask<D> valid) {
+    const auto missing = hn::AndNot(valid, hn::Gt(weights[tap], hn::Zero(D())));
+    whole = hn::AndNot(missing, whole);
+    weights[tap] = hn::IfThenElseZero(valid, weights[tap]);
+  }
+  /// Makes the weights that are left add up to 1; all 0 where that is less than one hundredth.
+  HWY_INLINE void normalise() {
+    const D d;
+    const V sum = weights[0] + weights[1] + weights[2] + weights[3];
+    const auto enough = hn::Ge(sum, hn::Set(d, 0.01f));
+    const V scale = hn::IfThenElseZero(enough, hn::Set(d, 1.0f) / sum);
+    for (V& weight : weights) weight = weight * scale;
+  }
+  HWY_INLINE hn::Mask<D> any() const {
+    const D d;
+    return hn::Gt(weights[0] + weights[1] + weights[2] + weights[3], hn::Zero(d));
+  }
+};
+
+/// Weights of four pixels in a row for a point `f` of the way from the second to the third: the
+/// cubic of Catmull and Rom.
+template <class V>
+HWY_INLINE void cubic_weights(V f, V (&weights)[4]) {
+  const hn::DFromV<V> d;
+  const V half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f);
+  const V steep = hn::Set(d, 1.5f);
+  weights[0] = f * (f * (one - half * f) - half);
+  weights[1] = one + f * f * (steep * f - hn::Set(d, 2.5f));
+  weights[2] = f * (half + f * (two - steep * f));
+  weights[3] = f * f * (half * f - half);
+}
+
+/// recall_sharply() of the shaders: `read` gives the channels of a Spot; where `wanted`, the values
+/// become the cubic's, held to the four nearest pixels.
+template <class D, int channels, class Read, class V = hn::Vec<D>>
+HWY_INLINE void recall_sharply(const Bounds<D>& bounds, const HistoryTaps<D>& taps,
+                               hn::Mask<D> wanted, const Read& read, V (&values)[channels]) {
+  const D d;
+  const hn::RebindToSigned<D> di;
+  V across[4], down[4], sum[channels], low[channels], high[channels];
+  cubic_weights(taps.fraction_x, across);
+  cubic_weights(taps.fraction_y, down);
+  for (int c = 0; c < channels; ++c) {
+    sum[c] = hn::Zero(d);
+    low[c] = hn::Set(d, 1e30f);
+    high[c] = hn::Set(d, -1e30f);
+  }
+  for (int i = 0; i < 16; ++i) {
+    const int x = i % 4, y = i / 4;
+    const V weight = across[x] * down[y];
+    const auto counts = hn::And(wanted, hn::Ne(weight, hn::Zero(d)));
+    if (hn::AllFalse(d, counts)) continue;
+    V found[channels];
+    read(bounds.spot(taps.x + hn::Set(di, x - 1), taps.y + hn::Set(di, y - 1)), found);
+    const bool nearest = x % 3 != 0 && y % 3 != 0;
+    for (int c = 0; c < channels; ++c) {
+      sum[c] = sum[c] + hn::IfThenElseZero(counts, weight * found[c]);
+      if (!nearest) continue;
+      low[c] = hn::IfThenElse(counts, hn::Min(low[c], found[c]), low[c]);
+      high[c] = hn::IfThenElse(counts, hn::Max(high[c], found[c]), high[c]);
+    }
+  }
+  for (int c = 0; c < channels; ++c) {
+    values[c] = hn::IfThenElse(wanted, hn::Min(hn::Max(sum[c], low[c]), high[c]), values[c]);
+  }
+}
+
+}  // namespace heliograph::render::host::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

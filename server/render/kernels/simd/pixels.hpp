@@ -1,0 +1,216 @@
+// What host kernels share: pixels of mapped images in vectors, whose lanes lie side by side in a
+// row. Included once per instruction set; the guard is Google Highway's convention.
+#if defined(HELIOGRAPH_HOST_PIXELS_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_HOST_PIXELS_HPP
+#undef HELIOGRAPH_HOST_PIXELS_HPP
+#else
+#define HELIOGRAPH_HOST_PIXELS_HPP
+#endif
+
+#include <glm/glm.hpp>
+
+#include "gpu/memory/image.hpp"
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::host::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <class V>
+struct Pair {
+  V x, y;
+};
+template <class V>
+struct Triple {
+  V x, y, z;
+};
+template <class V>
+struct Quad {
+  V x, y, z, w;
+};
+
+template <class V>
+HWY_INLINE Triple<V> operator+(const Triple<V>& a, const Triple<V>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class V>
+HWY_INLINE Triple<V> operator-(const Triple<V>& a, const Triple<V>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class V>
+HWY_INLINE Triple<V> operator*(const Triple<V>& a, const Triple<V>& b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+template <class V>
+HWY_INLINE Triple<V> operator*(const Triple<V>& a, V b) {
+  return {a.x * b, a.y * b, a.z * b};
+}
+template <class V>
+HWY_INLINE V dot(const Triple<V>& a, const Triple<V>& b) {
+  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, a.z * b.z));
+}
+template <class V>
+HWY_INLINE V length(const Triple<V>& a) {
+  return hn::Sqrt(dot(a, a));
+}
+template <class V>
+HWY_INLINE Triple<V> normalized(const Triple<V>& a) {
+  return a * (hn::Set(hn::DFromV<V>(), 1.0f) / length(a));
+}
+template <class V>
+HWY_INLINE V distance(const Triple<V>& a, const Triple<V>& b) {
+  return length(a - b);
+}
+
+/// `a` where `mask`, otherwise `b`.
+template <class M, class V>
+HWY_INLINE Triple<V> select(M mask, const Triple<V>& a, const Triple<V>& b) {
+  return {hn::IfThenElse(mask, a.x, b.x), hn::IfThenElse(mask, a.y, b.y),
+          hn::IfThenElse(mask, a.z, b.z)};
+}
+template <class M, class V>
+HWY_INLINE Quad<V> select(M mask, const Quad<V>& a, const Quad<V>& b) {
+  return {hn::IfThenElse(mask, a.x, b.x), hn::IfThenElse(mask, a.y, b.y),
+          hn::IfThenElse(mask, a.z, b.z), hn::IfThenElse(mask, a.w, b.w)};
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Triple<V> splat(D d, const glm::vec3& v) {
+  return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
+}
+
+template <class V>
+HWY_INLINE V clamped(V v, float low, float high) {
+  const hn::DFromV<V> d;
+  return hn::Min(hn::Max(v, hn::Set(d, low)), hn::Set(d, high));
+}
+
+template <class V>
+HWY_INLINE V mix(V a, V b, V share) {
+  return hn::MulAdd(b - a, share, a);
+}
+template <class V>
+HWY_INLINE Triple<V> mix(const Triple<V>& a, const Triple<V>& b, V share) {
+  return {mix(a.x, b.x, share), mix(a.y, b.y, share), mix(a.z, b.z, share)};
+}
+
+template <class V>
+HWY_INLINE V luminance(const Triple<V>& c) {
+  const hn::DFromV<V> d;
+  return hn::MulAdd(c.x, hn::Set(d, 0.2126f),
+                    hn::MulAdd(c.y, hn::Set(d, 0.7152f), c.z * hn::Set(d, 0.0722f)));
+}
+
+/// shaders/lib/math/octahedral.glsl
+template <class V>
+HWY_INLINE Triple<V> octahedral_decode(V x, V y) {
+  const hn::DFromV<V> d;
+  const V z = hn::Set(d, 1.0f) - hn::Abs(x) - hn::Abs(y);
+  const V below = hn::Max(hn::Neg(z), hn::Zero(d));
+  return normalized(Triple<V>{x - hn::CopySignToAbs(below, x), y - hn::CopySignToAbs(below, y), z});
+}
+
+/// Numbers that are none: NaN and infinities of either sign.
+template <class V>
+HWY_INLINE hn::Mask<hn::DFromV<V>> is_bad(V v) {
+  const hn::DFromV<V> d;
+  // Written so that a comparison with NaN counts as bad.
+  return hn::Not(hn::Le(hn::Abs(v), hn::Set(d, 3.4028235e38f)));
+}
+template <class V>
+HWY_INLINE hn::Mask<hn::DFromV<V>> is_bad(const Triple<V>& v) {
+  return hn::Or(is_bad(v.x), hn::Or(is_bad(v.y), is_bad(v.z)));
+}
+
+/// The first texel of row `y`.
+template <class Texel>
+HWY_INLINE Texel* row_of(const gpu::HostView& image, int y) {
+  return image.row<Texel>(static_cast<std::uint32_t>(y));
+}
+
+/// Four channels of texels side by side, the first at `from`.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Quad<V> load4(D d, const float* from) {
+  Quad<V> t;
+  hn::LoadInterleaved4(d, from, t.x, t.y, t.z, t.w);
+  return t;
+}
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void store4(D d, const Quad<V>& t, float* to) {
+  hn::StoreInterleaved4(t.x, t.y, t.z, t.w, d, to);
+}
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Pair<V> load2(D d, const float* from) {
+  Pair<V> t;
+  hn::LoadInterleaved2(d, from, t.x, t.y);
+  return t;
+}
+/// Four channels of texels anywhere; `index` counts floats.
+template <class D, class V = hn::Vec<D>, class VI = hn::Vec<hn::RebindToSigned<D>>>
+HWY_INLINE Quad<V> gather4(D d, const float* image, VI index) {
+  return {hn::GatherIndex(d, image, index), hn::GatherIndex(d, image + 1, index),
+          hn::GatherIndex(d, image + 2, index), hn::GatherIndex(d, image + 3, index)};
+}
+template <class D, class V = hn::Vec<D>, class VI = hn::Vec<hn::RebindToSigned<D>>>
+HWY_INLINE Triple<V> gather3(D d, const float* image, VI index) {
+  return {hn::GatherIndex(d, image, index), hn::GatherIndex(d, image + 1, index),
+          hn::GatherIndex(d, image + 2, index)};
+}
+
+/// Channel `shift` / 8 of rgba8 texels, 0..1.
+template <int shift, class D, class VU>
+HWY_INLINE hn::Vec<D> unorm8(D d, VU texels) {
+  const hn::RebindToUnsigned<D> du;
+  const hn::RebindToSigned<D> di;
+  const auto byte = hn::And(hn::ShiftRight<shift>(texels), hn::Set(du, 0xffu));
+  return hn::ConvertTo(d, hn::BitCast(di, byte)) * hn::Set(d, 1.0f / 255.0f);
+}
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Quad<V> load_unorm8(D d, const std::uint32_t* from) {
+  const auto texels = hn::LoadU(hn::RebindToUnsigned<D>(), from);
+  return {unorm8<0>(d, texels), unorm8<8>(d, texels), unorm8<16>(d, texels), unorm8<24>(d, texels)};
+}
+
+/// A half float in the lower 16 bits of each lane.
+template <class D, class VU>
+HWY_INLINE hn::Vec<D> half_float(D d, VU bits) {
+  const hn::RebindToUnsigned<D> du;
+  const auto magnitude = hn::ShiftLeft<13>(hn::And(bits, hn::Set(du, 0x7fffu)));
+  const auto sign = hn::ShiftLeft<16>(hn::And(bits, hn::Set(du, 0x8000u)));
+  const auto finite = hn::BitCast(d, magnitude) * hn::Set(d, 0x1p112f);
+  const auto endless = hn::BitCast(d, hn::Or(magnitude, hn::Set(du, 0x7f800000u)));
+  const auto size = hn::IfThenElse(hn::Lt(finite, hn::Set(d, 65536.0f)), finite, endless);
+  return hn::Or(size, hn::BitCast(d, sign));
+}
+/// The first three channels of rgba16f texels side by side.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Triple<V> load_half3(D d, const std::uint32_t* from) {
+  const hn::RebindToUnsigned<D> du;
+  hn::Vec<decltype(du)> xy, zw;
+  hn::LoadInterleaved2(du, from, xy, zw);
+  return {half_float(d, xy), half_float(d, hn::ShiftRight<16>(xy)), half_float(d, zw)};
+}
+
+/// Lanes at or right of `start` of those that begin at `x`: the last block of a row reaches back
+/// over pixels that are done.
+template <class D>
+HWY_INLINE hn::Mask<D> from_column(D d, int x, int start) {
+  return hn::Ge(hn::Iota(d, static_cast<float>(x)), hn::Set(d, static_cast<float>(start)));
+}
+
+/// Runs `Kernel<tag>(job).rows(first, last)` in the widest vectors that fit into a row.
+template <template <class> class Kernel, class Job>
+HWY_INLINE void run_rows(const Job& job, int width, int first, int last) {
+  using Wide = hn::ScalableTag<float>;
+  if (static_cast<std::size_t>(width) >= hn::Lanes(Wide())) {
+    Kernel<Wide>(job).rows(first, last);
+  } else {
+    Kernel<hn::FixedTag<float, 1>>(job).rows(first, last);
+  }
+}
+
+}  // namespace heliograph::render::host::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

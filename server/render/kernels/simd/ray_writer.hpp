@@ -1,0 +1,145 @@
+// Streams of rays, a lane for every ray. Included once per instruction set.
+#if defined(HELIOGRAPH_HOST_STREAM_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_HOST_STREAM_HPP
+#undef HELIOGRAPH_HOST_STREAM_HPP
+#else
+#define HELIOGRAPH_HOST_STREAM_HPP
+#endif
+
+#include <array>
+#include <cstring>
+
+#include "render/kernels/ray_sink.hpp"
+#include "render/kernels/simd/lanes.hpp"
+#include "shaders/shared/frame_constants.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::host::HWY_NAMESPACE {
+
+struct PixelLanes {
+  Integer x, y;
+};
+
+struct RayLanes {
+  Float3 origin, direction;
+  Float t_min, t_max;
+  Integer pixel;  // x | y << 16
+  Float3 user;    // `user` and both paddings
+};
+
+HWY_INLINE Integer pack_pixel(const PixelLanes& p) {
+  return hn::Or(p.x, hn::ShiftLeft<16>(p.y));
+}
+HWY_INLINE PixelLanes unpack_pixel(Integer packed) {
+  const Unsigned bits = as_unsigned(packed);
+  return {hn::And(packed, integer(0xffff)), as_integer(hn::ShiftRight<16>(bits))};
+}
+
+HWY_INLINE RayLanes load_rays(const shared::Ray* rays, Integer index) {
+  const Integer word = hn::Mul(index, integer(sizeof(shared::Ray) / 4));
+  const auto at = [&](int offset) {
+    return as_float(gather(rays, hn::Add(word, integer(offset))));
+  };
+  return {{at(0), at(1), at(2)}, {at(4), at(5), at(6)},  at(3), at(7),
+          as_integer(at(8)),     {at(9), at(10), at(11)}};
+}
+
+/// Writes the rays of the lanes in `wanted`, one after the other. @return how many
+HWY_INLINE std::size_t store_rays(const RayLanes& r, Mask wanted, shared::Ray* to) {
+  constexpr std::size_t most = 4 * hn::MaxLanes(Tag());
+  HWY_ALIGN std::array<float, most> first, second, third;
+  hn::StoreInterleaved4(r.origin.x, r.origin.y, r.origin.z, r.t_min, tag, first.data());
+  hn::StoreInterleaved4(r.direction.x, r.direction.y, r.direction.z, r.t_max, tag, second.data());
+  hn::StoreInterleaved4(as_float(r.pixel), r.user.x, r.user.y, r.user.z, tag, third.data());
+  std::uint64_t lanes = mask_bits(wanted);
+  std::size_t count = 0;
+  for (; lanes; lanes &= lanes - 1) {
+    const auto lane = static_cast<std::size_t>(__builtin_ctzll(lanes));
+    auto* const out = reinterpret_cast<std::byte*>(to + count++);
+    std::memcpy(out, &first[4 * lane], 16);
+    std::memcpy(out + 16, &second[4 * lane], 16);
+    std::memcpy(out + 32, &third[4 * lane], 16);
+  }
+  return count;
+}
+
+/// Calls `work(lane)` for every lane in `wanted`.
+template <class Work>
+HWY_INLINE void for_each_lane(Mask wanted, const Work& work) {
+  for (std::uint64_t lanes = mask_bits(wanted); lanes; lanes &= lanes - 1) {
+    work(static_cast<std::size_t>(__builtin_ctzll(lanes)));
+  }
+}
+
+/// Pixels lane by lane.
+struct Places {
+  HWY_ALIGN std::array<int, hn::MaxLanes(Tag())> x, y;
+  HWY_INLINE explicit Places(const PixelLanes& p) {
+    hn::Store(p.x, integer_tag, x.data());
+    hn::Store(p.y, integer_tag, y.data());
+  }
+};
+
+/// Texels of `words` words lane by lane, on their way into an image.
+template <int words>
+struct Texels {
+  HWY_ALIGN std::array<float, words * hn::MaxLanes(Tag())> values;
+  HWY_INLINE explicit Texels(Float v) { hn::Store(v, tag, values.data()); }
+  HWY_INLINE explicit Texels(const Float2& v) {
+    hn::StoreInterleaved2(v.x, v.y, tag, values.data());
+  }
+  HWY_INLINE explicit Texels(const Float4& v) {
+    hn::StoreInterleaved4(v.x, v.y, v.z, v.w, tag, values.data());
+  }
+  HWY_INLINE void put(const gpu::HostView& image, std::size_t lane, const Places& at) const {
+    float* const row = image.row<float>(static_cast<std::uint32_t>(at.y[lane]));
+    std::memcpy(row + words * at.x[lane], values.data() + words * lane, words * sizeof(float));
+  }
+};
+
+/// The frame's camera, as shaders/lib/frame.glsl has it.
+class CameraLanes {
+ public:
+  explicit CameraLanes(const shared::FrameConstants& frame)
+      : frame_(frame),
+        orthographic_((frame.counts.y & shared::frame_orthographic) != 0),
+        scale_(2.0f / glm::vec2(frame.extent)) {}
+
+  bool orthographic() const { return orthographic_; }
+
+  /// View xy of the sample `away` pixels from those at p, at view Z 1 where the view widens.
+  HWY_INLINE Float2 slope(const PixelLanes& p, float away_x = 0.5f, float away_y = 0.5f) const {
+    const glm::vec4& u = frame_.unproject;
+    const Float x = hn::MulSub(hn::Add(to_float(p.x), number(away_x)), number(scale_.x), one());
+    const Float y = hn::MulSub(hn::Add(to_float(p.y), number(away_y)), number(scale_.y), one());
+    return {hn::MulAdd(x, number(u.x), number(u.z)), hn::MulAdd(y, number(u.y), number(u.w))};
+  }
+  HWY_INLINE Float3 view_position(const PixelLanes& p, Float view_z) const {
+    const Float2 s = slope(p);
+    if (orthographic_) return {s.x, s.y, hn::Neg(view_z)};
+    return {hn::Mul(s.x, view_z), hn::Mul(s.y, view_z), hn::Neg(view_z)};
+  }
+  HWY_INLINE Float3 world_position(const PixelLanes& p, Float view_z) const {
+    return transform_point(frame_.inverse_view, view_position(p, view_z));
+  }
+  /// Unit vector from the surface toward the eye, world space.
+  HWY_INLINE Float3 to_eye(const PixelLanes& p) const {
+    if (orthographic_) return normalized(numbers(glm::vec3(frame_.inverse_view[2])));
+    return normalized(transform_direction(frame_.inverse_view, -view_position(p, one())));
+  }
+  /// The cone of the rays through the middles of pixels: footprint at the start and per metre.
+  glm::vec2 cone() const {
+    const float pixel = 2.0f * std::abs(frame_.unproject.y) / static_cast<float>(frame_.extent.y);
+    return orthographic_ ? glm::vec2(pixel, 0.0f) : glm::vec2(0.0f, pixel);
+  }
+
+ private:
+  const shared::FrameConstants& frame_;
+  bool orthographic_;
+  glm::vec2 scale_;
+};
+
+}  // namespace heliograph::render::host::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

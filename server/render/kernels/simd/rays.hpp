@@ -1,0 +1,109 @@
+// Making rays in host kernels: shaders/lib/math/geometry.glsl and ray_stream.glsl in vectors.
+// Included once per instruction set; the guard is Google Highway's convention.
+#if defined(HELIOGRAPH_HOST_RAYS_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_HOST_RAYS_HPP
+#undef HELIOGRAPH_HOST_RAYS_HPP
+#else
+#define HELIOGRAPH_HOST_RAYS_HPP
+#endif
+
+#include <atomic>
+#include <cstring>
+#include <numbers>
+#include <vector>
+
+#include "hwy/contrib/math/math-inl.h"
+#include "render/kernels/simd/pixels.hpp"
+#include "shaders/shared/ray.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::host::HWY_NAMESPACE {
+
+/// Two unit vectors that complete `n` to a right-handed frame.
+template <class V>
+HWY_INLINE void orthonormal_basis(const Triple<V>& n, Triple<V>& tangent, Triple<V>& bitangent) {
+  const hn::DFromV<V> d;
+  const V one = hn::Set(d, 1.0f);
+  const V s = hn::IfThenElse(hn::Ge(n.z, hn::Zero(d)), one, hn::Set(d, -1.0f));
+  const V a = hn::Neg(one / (s + n.z));
+  const V b = n.x * n.y * a;
+  tangent = {hn::MulAdd(s * n.x * n.x, a, one), s * b, hn::Neg(s * n.x)};
+  bitangent = {b, hn::MulAdd(n.y * n.y, a, s), hn::Neg(n.y)};
+}
+
+/// A point of the unit disk.
+template <class V>
+HWY_INLINE Pair<V> sample_disk(V u, V v) {
+  const hn::DFromV<V> d;
+  const V radius = hn::Sqrt(u);
+  const V angle = v * hn::Set(d, 2.0f * std::numbers::pi_v<float>);
+  return {radius * hn::Cos(d, angle), radius * hn::Sin(d, angle)};
+}
+
+/// A direction about `normal` with the density cosine / pi.
+template <class V>
+HWY_INLINE Triple<V> sample_cosine(const Triple<V>& normal, V u, V v) {
+  const hn::DFromV<V> d;
+  Triple<V> tangent, bitangent;
+  orthonormal_basis(normal, tangent, bitangent);
+  const Pair<V> disk = sample_disk(u, v);
+  const V up = hn::Sqrt(hn::Max(hn::Set(d, 1.0f) - u, hn::Zero(d)));
+  return normalized(tangent * disk.x + bitangent * disk.y + normal * up);
+}
+
+template <class V>
+HWY_INLINE Triple<V> offset_origin(const Triple<V>& position, const Triple<V>& normal, V distance) {
+  const hn::DFromV<V> d;
+  const V largest = hn::Max(hn::Abs(position.x), hn::Max(hn::Abs(position.y), hn::Abs(position.z)));
+  return position +
+         normal * hn::Max(distance * hn::Set(d, 0x1p-15f), largest * hn::Set(d, 0x1p-20f));
+}
+
+/// Rays that one thread has made and not yet given to the stream that all threads fill.
+class RayBatch {
+ public:
+  RayBatch(shared::RayCount& count, shared::Ray* rays, std::size_t most)
+      : count_(count), rays_(rays), made_(most) {}
+
+  /// Those of the lanes in `wanted`, from pixels from (x, y) on; t begins at 0.
+  template <class D, class V = hn::Vec<D>>
+  HWY_INLINE void add(D d, const Triple<V>& origin, const Triple<V>& direction, V t_max, int x,
+                      int y, hn::Mask<D> wanted) {
+    constexpr std::size_t most = 4 * hn::MaxLanes(D());
+    HWY_ALIGN float from[most], toward[most];
+    hn::StoreInterleaved4(origin.x, origin.y, origin.z, hn::Zero(d), d, from);
+    hn::StoreInterleaved4(direction.x, direction.y, direction.z, t_max, d, toward);
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, wanted, bits);
+    std::uint64_t lanes = 0;
+    std::memcpy(&lanes, bits, sizeof lanes);
+    for (; lanes; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::uint32_t>(__builtin_ctzll(lanes));
+      shared::Ray& ray = made_[used_++];
+      std::memcpy(&ray.origin, from + 4 * lane, 16);
+      std::memcpy(&ray.direction, toward + 4 * lane, 16);
+      ray.pixel = (static_cast<std::uint32_t>(x) + lane) | static_cast<std::uint32_t>(y) << 16u;
+      ray.user = ray.padding0 = ray.padding1 = 0u;
+    }
+  }
+
+  /// Appends them to the stream.
+  void flush() {
+    if (used_ == 0) return;
+    const auto added = static_cast<std::uint32_t>(used_);
+    const std::uint32_t base = std::atomic_ref(count_.count).fetch_add(added);
+    std::memcpy(rays_ + base, made_.data(), used_ * sizeof(shared::Ray));
+    used_ = 0;
+  }
+
+ private:
+  shared::RayCount& count_;
+  shared::Ray* rays_;
+  std::vector<shared::Ray> made_;
+  std::size_t used_ = 0;
+};
+
+}  // namespace heliograph::render::host::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,121 @@
+// Drawing directions from the specular lobe, and which pixels do: shaders/lib/math/sampling.glsl
+// and specular_pixels.glsl in vectors. Included once per instruction set; the guard is Google
+// Highway's convention.
+#if defined(HELIOGRAPH_HOST_SPECULAR_LOBE_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_HOST_SPECULAR_LOBE_HPP
+#undef HELIOGRAPH_HOST_SPECULAR_LOBE_HPP
+#else
+#define HELIOGRAPH_HOST_SPECULAR_LOBE_HPP
+#endif
+
+#include <numbers>
+
+#include "render/kernels/simd/lanes.hpp"
+#include "render/kernels/simd/material.hpp"
+#include "render/kernels/simd/random.hpp"
+#include "render/kernels/simd/ray_writer.hpp"
+#include "render/kernels/simd/rays.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::host::HWY_NAMESPACE {
+
+using MaterialLanes = SurfaceMaterial<Float>;
+
+/// Where traced pixels stand in a sequence of random numbers.
+struct SequencePlace {
+  std::uint32_t sample;
+  std::uint32_t dimension;
+};
+inline SequencePlace sequence_place(const shared::FrameConstants& frame, std::uint32_t dimension,
+                                    int scale) {
+  if (scale == 1) return {frame.extent.z, dimension};
+  return {frame.extent.z >> 2u, 16u + 4u * dimension + (frame.extent.z & 3u)};
+}
+inline RandomPairs<UnsignedTag> specular_pairs(const shared::FrameConstants& frame,
+                                               std::uint32_t dimension, int scale) {
+  const SequencePlace place = sequence_place(frame, dimension, scale);
+  return {unsigned_tag, place.sample, place.dimension, frame.extent.w};
+}
+inline RandomNumbers<UnsignedTag> specular_numbers(const shared::FrameConstants& frame,
+                                                   std::uint32_t dimension, int scale) {
+  const SequencePlace place = sequence_place(frame, dimension, scale);
+  return {unsigned_tag, place.sample, place.dimension, frame.extent.w};
+}
+
+/// The shading normal, or as close to it as the mirror direction stays above the triangle.
+HWY_INLINE Float3 reflecting_normal(const MaterialLanes& m) {
+  const Float3 mirrored = reflect(-m.eye, m.normal);
+  const Float least = number(0.01f);
+  const Float above = dot(mirrored, m.geometric);
+  const Mask stays = hn::Or(hn::Ge(above, least), hn::Le(dot(m.eye, m.geometric), zero()));
+  if (all(stays)) return m.normal;
+  const Float3 lifted = normalized(multiply_add(m.geometric, least - above, mirrored));
+  return select(stays, m.normal, normalized(m.eye + lifted));
+}
+
+/// A microfacet normal as seen from `view`, in the frame of the shading normal.
+HWY_INLINE Float3 sample_visible_normal(const Float3& view, Float alpha, const Float2& u) {
+  const Float3 stretched = normalized(Float3{alpha * view.x, alpha * view.y, view.z});
+  const Float angle = u.x * number(2.0f * std::numbers::pi_v<float>);
+  const Float z = hn::NegMulAdd(u.y, one() + stretched.z, one());
+  const Float radius = hn::Sqrt(clamped(hn::NegMulAdd(z, z, one()), 0.0f, 1.0f));
+  const Float x = hn::MulAdd(radius, hn::Cos(tag, angle), stretched.x);
+  const Float y = hn::MulAdd(radius, hn::Sin(tag, angle), stretched.y);
+  return normalized(Float3{alpha * x, alpha * y, at_least(z + stretched.z, 1e-7f)});
+}
+
+/// G2 / G1(v); 0 below the horizon.
+HWY_INLINE Float visible_normal_weight(const Float3& view, const Float3& light, Float alpha) {
+  const Float a2 = alpha * alpha, rest = one() - a2;
+  const Float toward_view = hn::Sqrt(hn::MulAdd(view.z * view.z, rest, a2));
+  const Float toward_light = hn::Sqrt(hn::MulAdd(light.z * light.z, rest, a2));
+  const Float weight =
+      light.z * (view.z + toward_view) / hn::MulAdd(light.z, toward_view, view.z * toward_light);
+  return hn::IfThenElseZero(hn::Gt(light.z, zero()), weight);
+}
+
+/// Density per solid angle of the mirrored direction `light`.
+HWY_INLINE Float visible_normal_pdf(const Float3& view, const Float3& light, Float alpha) {
+  const Float3 half_vector = normalized(view + light);
+  const Float a2 = alpha * alpha;
+  const Float masking =
+      number(2.0f) * view.z / (view.z + hn::Sqrt(hn::MulAdd(view.z * view.z, one() - a2, a2)));
+  const Float n_dot_h = hn::Min(half_vector.z, one());
+  const Float narrow = hn::MulAdd(one() - n_dot_h, one() + n_dot_h, n_dot_h * n_dot_h * a2);
+  const Float distribution = a2 / (number(std::numbers::pi_v<float>) * narrow * narrow);
+  const Float density = masking * distribution / (number(4.0f) * view.z);
+  return hn::IfThenElseZero(hn::Gt(half_vector.z, zero()), density);
+}
+
+struct SpecularSample {
+  Float3 direction;  // world
+  Float3 weight;     // BRDF x cos / pdf; 0 ends the path
+  Float density;
+};
+
+HWY_INLINE SpecularSample sample_specular(const MaterialLanes& m, const Float2& u) {
+  const Float3 normal = reflecting_normal(m);
+  Float3 tangent, bitangent;
+  orthonormal_basis(normal, tangent, bitangent);
+  const Float alpha = m.roughness * m.roughness;
+  const Float3 view = normalized(
+      Float3{dot(m.eye, tangent), dot(m.eye, bitangent), at_least(dot(m.eye, normal), 1e-3f)});
+  const Float3 microfacet = sample_visible_normal(view, alpha, u);
+  const Float v_dot_h = dot(view, microfacet);
+  const Float3 light = microfacet * (number(2.0f) * v_dot_h) - view;
+  SpecularSample s;
+  s.direction = normalized(
+      multiply_add(tangent, light.x, multiply_add(bitangent, light.y, normal * light.z)));
+  const Mask open = hn::Gt(dot(s.direction, m.geometric), zero());
+  const Float x = clamped(one() - v_dot_h, 0.0f, 1.0f);
+  const Float x2 = x * x;
+  const Float3 reflectance = multiply_add(m.grazing, x2 * x2 * x, m.facing);
+  s.weight = keep(open, reflectance * visible_normal_weight(view, light, alpha));
+  s.density = visible_normal_pdf(view, light, at_least(alpha, 1e-4f));
+  return s;
+}
+
+}  // namespace heliograph::render::host::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,360 @@
+#include "render/kernels/simd/rows.hpp"
+#include "render/kernels/temporal.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/kernels/specular_temporal.cpp"
+#include "hwy/foreach_target.h"
+// After the line above, which compiles this file once for each instruction set.
+#include "hwy/contrib/math/math-inl.h"
+#include "render/kernels/simd/moments.hpp"
+#include "render/kernels/simd/view.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::host::HWY_NAMESPACE {
+
+template <class D>
+class SpecularAccumulation {
+  using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
+  using DI = hn::RebindToSigned<D>;
+  using VI = hn::Vec<DI>;
+
+  static constexpr float no_hit = 1e9f;
+
+  struct Remembered {
+    Triple<V> radiance;
+    V frames;  // 0: nothing
+    Pair<V> moments;
+    Triple<V> fast;
+  };
+  struct Views {
+    ViewedRow<D> above, here, below;
+  };
+  struct Surface {
+    Triple<V> normal;
+    V roughness;
+    V view_z;
+  };
+
+ public:
+  HWY_INLINE explicit SpecularAccumulation(const TemporalSpecularJob& job)
+      : job_(job), c_(job.constants), bounds_(job.width, job.height) {}
+
+  HWY_INLINE void rows(int first, int last) const {
+    const BandScratch hits(1, job_.width, first, last, 1);
+    for (int y = first - 1; y <= last; ++y) fill_hits(hits, y);
+    const int lanes = static_cast<int>(hn::Lanes(d_));
+    for (int y = first; y < last; ++y) {
+      const Views views{{job_.frame, y - 1}, {job_.frame, y}, {job_.frame, y + 1}};
+      for (int x = 0; x < job_.width; x += lanes) {
+        block(hits, views, std::min(x, job_.width - lanes), y);
+      }
+    }
+  }
+
+ private:
+  HWY_INLINE V set(float value) const { return hn::Set(d_, value); }
+  HWY_INLINE Quad<V> load(const gpu::HostView& image, int x, int y) const {
+    return load4(d_, row_of<const float>(image, y) + 4 * x);
+  }
+
+  /// Hit distances of a row, `no_hit` where there is none to be known.
+  HWY_INLINE void fill_hits(const BandScratch& hits, int y) const {
+    if (y < 0 || y >= job_.height) {
+      std::fill_n(hits.row(0, y) - 1, job_.width + 2, no_hit);
+      return;
+    }
+    const int lanes = static_cast<int>(hn::Lanes(d_));
+    for (int i = 0; i < job_.width; i += lanes) {
+      const int x = std::min(i, job_.width - lanes);
+      const V distance = load(job_.raw, x, y).w;
+      const M known = hn::AndNot(is_bad(distance), hn::Gt(distance, hn::Zero(d_)));
+      hn::StoreU(hn::IfThenElse(known, distance, set(no_hit)), d_, hits.row(0, y) + x);
+    }
+    hits.fill_beyond(0, y, no_hit);
+  }
+
+  /// The shortest of the neighbours' hit distances.
+  HWY_INLINE V hit_distance(const BandScratch& hits, int x, int y) const {
+    V nearest = set(no_hit);
+    for (int i = 0; i < 9; ++i) {
+      nearest = hn::Min(nearest, hn::LoadU(d_, hits.row(0, y + i / 3 - 1) + x + i % 3 - 1));
+    }
+    return hn::IfThenElseZero(hn::Lt(nearest, set(no_hit)), nearest);
+  }
+
+  HWY_INLINE V lobe_share(V roughness) const {
+    const V smooth_part = set(1.0f) - roughness;
+    return clamped(smooth_part * (hn::Sqrt(smooth_part) + roughness), 0.0f, 1.0f);
+  }
+
+  HWY_INLINE Pair<V> projected(const glm::mat4& m, const Triple<V>& p) const {
+    const V w = hn::MulAdd(set(m[0].w), p.x,
+                           hn::MulAdd(set(m[1].w), p.y, hn::MulAdd(set(m[2].w), p.z, set(m[3].w))));
+    const V half = set(0.5f) / w;
+    const Triple<V> clip = transformed(m, p);
+    return {clip.x * half, clip.y * half};
+  }
+
+  HWY_INLINE V mirrored_distance(V distance, V curvature) const {
+    return distance / hn::Max(hn::MulAdd(set(2.0f) * curvature, distance, set(1.0f)), set(0.25f));
+  }
+
+  /// How a mirror bends: along the surface, positive where it bulges, and from pixel to pixel.
+  struct Bend {
+    V curvature;
+    V turn;
+  };
+
+  HWY_INLINE Bend bend(const Views& views, int x, int y, VI instance, const Surface& s,
+                       const Triple<V>& position) const {
+    const V zero = hn::Zero(d_);
+    if ((c_.flags & shared::temporal_bent_mirrors) == 0) return {zero, zero};
+    V curvature = zero, turns = zero, count = zero;
+    for (int i = 0; i < 4; ++i) {
+      const int column = x + (i < 2 ? 2 * i - 1 : 0), row = y + (i < 2 ? 0 : 2 * i - 5);
+      const VI at_x = hn::Iota(di_, column), at_y = hn::Set(di_, row);
+      const Spot<D> spot = bounds_.spot(at_x, at_y);
+      const auto own = hn::Eq(spot.word(job_.instance), instance);
+      const Quad<V> found = spot.four(job_.guide);
+      const M counts = hn::And(hn::And(bounds_.contain(at_x, at_y), hn::RebindMask(d_, own)),
+                               hn::Gt(found.w, zero));
+      const auto& view = row < y ? views.above : row > y ? views.below : views.here;
+      const Triple<V> step = view.world_position(column, found.w) - position;
+      const Triple<V> turn = normalized(Triple<V>{found.x, found.y, found.z}) - s.normal;
+      const V along = dot(turn, step) / hn::Max(dot(step, step), set(1e-20f));
+      curvature = curvature + hn::IfThenElseZero(counts, along);
+      turns = turns + hn::IfThenElseZero(counts, length(turn));
+      count = count + hn::IfThenElseZero(counts, set(1.0f));
+    }
+    const V share = set(1.0f) / hn::Max(count, set(1.0f));
+    return {curvature * share, turns * share};
+  }
+
+  HWY_INLINE Pair<V> motion_of(const Triple<V>& point) const {
+    const Pair<V> before = projected(job_.frame.previous_unjittered, point);
+    const Pair<V> now = projected(job_.frame.unjittered, point);
+    return {(before.x - now.x) * set(static_cast<float>(job_.width)),
+            (before.y - now.y) * set(static_cast<float>(job_.height))};
+  }
+
+  /// From this frame's pixels to where the virtual points were in the frame before, in pixels.
+  HWY_INLINE Pair<V> virtual_motion(const Views& views, const BandScratch& hits, int x, int y,
+                                    const Surface& s, const Triple<V>& position,
+                                    V curvature) const {
+    const Triple<V> eye = views.here.to_eye(x);
+    const V far = hit_distance(hits, x, y), share = lobe_share(s.roughness);
+    const V cosine = clamped(dot(s.normal, eye), 0.2f, 1.0f);
+    const auto behind = [&](V bend) HWY_ATTR {
+      return motion_of(position - eye * (share * mirrored_distance(far, bend)));
+    };
+    const Pair<V> within = behind(curvature / cosine);
+    if (hn::AllTrue(d_, hn::Eq(curvature, hn::Zero(d_)))) return within;
+    const Pair<V> across = behind(curvature * cosine);
+    const glm::mat4& m = job_.frame.view;
+    const auto turned = [&](int row, float way) HWY_ATTR {
+      const V along =
+          hn::MulAdd(set(m[0][row]), s.normal.x,
+                     hn::MulAdd(set(m[1][row]), s.normal.y, set(m[2][row]) * s.normal.z));
+      return way < 0.0f ? hn::Neg(along) : along;
+    };
+    const V px = turned(0, job_.frame.unproject.x), py = turned(1, job_.frame.unproject.y);
+    const V square = hn::Max(hn::MulAdd(px, px, py * py), set(1e-12f));
+    const V apart = hn::MulAdd(within.x - across.x, px, (within.y - across.y) * py) / square;
+    return {hn::MulAdd(px, apart, across.x), hn::MulAdd(py, apart, across.y)};
+  }
+
+  /// Whether the frame before shows the same mirror there.
+  HWY_INLINE M same_mirror(VI x, VI y, M wanted, VI instance, const Surface& s, V turn) const {
+    const M asked = hn::And(wanted, bounds_.contain(x, y));
+    if (hn::AllFalse(d_, asked)) return asked;
+    const Spot<D> spot = bounds_.spot(x, y);
+    const auto shown = hn::Eq(spot.word(job_.previous_instance), instance);
+    M same = hn::And(asked, hn::RebindMask(d_, shown));
+    same = hn::And(same, hn::Gt(spot.last_of_four(job_.previous_motion), hn::Zero(d_)));
+    const Pair<V> encoded = spot.first_two(job_.previous_normals);
+    const V cosine = dot(octahedral_decode(encoded.x, encoded.y), s.normal);
+    const V bent = hn::NegMulAdd(set(2.0f) * turn, turn, set(1.0f));
+    const V allowed = hn::Min(mix(set(0.9995f), set(0.95f), s.roughness), bent);
+    same = hn::And(same, hn::Gt(cosine, allowed));
+    const auto texel = hn::BitCast(hn::RebindToUnsigned<D>(), spot.word(job_.previous_surface));
+    const V off = hn::Abs(unorm8<0>(d_, texel) - s.roughness);
+    return hn::And(same, hn::Lt(off, hn::MulAdd(set(0.25f), s.roughness, set(0.05f))));
+  }
+
+  HWY_INLINE HistoryTaps<D> virtual_taps(V x, V y, M seen, VI instance, const Surface& s,
+                                         V turn) const {
+    HistoryTaps<D> taps(x, y);
+    for (int i = 0; i < 4; ++i) {
+      const M weighs = hn::And(seen, hn::Gt(taps.weights[i], hn::Zero(d_)));
+      const M same = same_mirror(taps.tap_x(i), taps.tap_y(i), weighs, instance, s, turn);
+      taps.keep(i, same);
+    }
+    taps.normalise();
+    return taps;
+  }
+
+  HWY_INLINE Remembered nothing() const {
+    const V zero = hn::Zero(d_);
+    return {{zero, zero, zero}, zero, {zero, zero}, {zero, zero, zero}};
+  }
+
+  HWY_INLINE Remembered recall(const HistoryTaps<D>& taps) const {
+    Remembered r = nothing();
+    for (int i = 0; i < 4; ++i) {
+      const V weight = taps.weights[i];
+      const M counts = hn::Gt(weight, hn::Zero(d_));
+      if (hn::AllFalse(d_, counts)) continue;
+      const Spot<D> spot = bounds_.spot(taps.tap_x(i), taps.tap_y(i));
+      const Triple<V> signal = spot.first_three(job_.previous_signal);
+      const Quad<V> state = spot.four(job_.previous_history);
+      const Triple<V> fast = spot.first_three(job_.previous_fast);
+      add_share<D>(counts, weight, signal.x, r.radiance.x);
+      add_share<D>(counts, weight, signal.y, r.radiance.y);
+      add_share<D>(counts, weight, signal.z, r.radiance.z);
+      add_share<D>(counts, weight, state.x, r.frames);
+      add_share<D>(counts, weight, state.z, r.moments.x);
+      add_share<D>(counts, weight, state.w, r.moments.y);
+      add_share<D>(counts, weight, fast.x, r.fast.x);
+      add_share<D>(counts, weight, fast.y, r.fast.y);
+      add_share<D>(counts, weight, fast.z, r.fast.z);
+    }
+    if ((c_.flags & shared::temporal_bicubic) == 0) return r;
+    V values[3] = {r.radiance.x, r.radiance.y, r.radiance.z};
+    recall_sharply<D, 3>(
+        bounds_, taps, taps.whole,
+        [&](const Spot<D>& spot, V(&found)[3]) HWY_ATTR {
+          const Triple<V> signal = spot.first_three(job_.previous_signal);
+          found[0] = signal.x;
+          found[1] = signal.y;
+          found[2] = signal.z;
+        },
+        values);
+    r.radiance = {values[0], values[1], values[2]};
+    return r;
+  }
+
+  /// Both candidates as one memory.
+  HWY_INLINE Remembered remembered(const BandScratch& hits, const Views& views, int x, int y,
+                                   M seen, const Surface& s) const {
+    if ((c_.flags & shared::temporal_holds) == 0) return nothing();
+    const Quad<V> map = load(job_.reprojection, x, y);
+    const HistoryTaps<D> own = remembered_taps<D>(map);
+    if ((c_.flags & shared::temporal_virtual_point) == 0) return recall(own);
+    const VI instance = hn::LoadU(di_, row_of<const int>(job_.instance, y) + x);
+    const Triple<V> position = views.here.world_position(x, s.view_z);
+    const Bend bent = bend(views, x, y, instance, s, position);
+    const Pair<V> motion = virtual_motion(views, hits, x, y, s, position, bent.curvature);
+    const V here_x = hn::Iota(d_, static_cast<float>(x) + 0.5f);
+    const V here_y = set(static_cast<float>(y) + 0.5f);
+    const HistoryTaps<D> mirrored =
+        virtual_taps(here_x + motion.x, here_y + motion.y, seen, instance, s, bent.turn);
+    const V apart_x = map.x - here_x - motion.x, apart_y = map.y - here_y - motion.y;
+    const V apart = hn::Sqrt(hn::MulAdd(apart_x, apart_x, apart_y * apart_y));
+    const V lobe = views.here.lobe_pixels(s.roughness);
+    const V worth = hn::Min((lobe + set(1.0f)) * set(1.0f / 64.0f), set(0.5f));
+    const M elsewhere = hn::Or(hn::Gt(apart, worth), hn::Not(own.any()));
+    const M by_mirror = hn::And(mirrored.any(), elsewhere);
+    Remembered found = recall(chosen(by_mirror, mirrored, own));
+    // The surface's own history shows another part of the reflection, the sharper the mirror and
+    // the further the two places are apart.
+    const V reach = hn::MulAdd(set(64.0f) * s.roughness, s.roughness, set(0.25f));
+    const V trust = hn::Exp(d_, hn::Max(hn::Neg(apart / reach), set(-80.0f)));
+    const V beyond = hn::Max(lobe - set(0.25f), hn::Zero(d_));
+    const V kept = hn::Min(found.frames, set(8.0f) * beyond);
+    found.frames = hn::IfThenElse(by_mirror, kept, found.frames * trust);
+    return found;
+  }
+
+  HWY_INLINE HistoryTaps<D> chosen(M first, const HistoryTaps<D>& a,
+                                   const HistoryTaps<D>& b) const {
+    HistoryTaps<D> taps = b;
+    const auto whole = hn::RebindMask(di_, first);
+    taps.x = hn::IfThenElse(whole, a.x, b.x);
+    taps.y = hn::IfThenElse(whole, a.y, b.y);
+    for (int i = 0; i < 4; ++i) {
+      taps.weights[i] = hn::IfThenElse(first, a.weights[i], b.weights[i]);
+    }
+    taps.fraction_x = hn::IfThenElse(first, a.fraction_x, b.fraction_x);
+    taps.fraction_y = hn::IfThenElse(first, a.fraction_y, b.fraction_y);
+    taps.whole = hn::Or(hn::And(first, a.whole), hn::AndNot(first, b.whole));
+    return taps;
+  }
+
+  /// In frames; frames_under_motion() of shaders/lib/denoise/moments.glsl for the environment.
+  HWY_INLINE V longest_memory(V roughness) const {
+    const V longest = set(std::min(c_.frames, 4.0f * c_.light_frames));
+    if (c_.environment_turn <= 0.0f) return longest;
+    const V lobe = set(4.0f) * hn::Atan(d_, roughness * roughness);
+    const V motion = set(c_.environment_turn) / hn::Max(lobe, set(1e-4f));
+    const V logarithm = hn::Log(d_, clamped(motion, 1e-6f, 1.0f));
+    const V power = hn::Exp(d_, set(-2.0f / 3.0f) * logarithm);
+    return hn::Min(longest, hn::MulAdd(set(0.63f), power - set(1.0f), set(1.0f)));
+  }
+
+  HWY_INLINE void block(const BandScratch& hits, const Views& views, int x, int y) const {
+    const V zero = hn::Zero(d_), one = set(1.0f);
+    const Quad<V> guide = load(job_.guide, x, y);
+    const M seen = hn::Gt(guide.w, zero);
+    const Quad<V> nothing_seen{zero, zero, zero, zero};
+    float* const signal = row_of<float>(job_.signal, y) + 4 * x;
+    float* const history = row_of<float>(job_.history, y) + 4 * x;
+    float* const fast = row_of<float>(job_.fast, y) + 4 * x;
+    if (hn::AllFalse(d_, seen)) {
+      for (float* out : {signal, history, fast}) store4(d_, nothing_seen, out);
+      return;
+    }
+    const Quad<V> sample = load(job_.raw, x, y);
+    Triple<V> now{sample.x, sample.y, sample.z};
+    now = select(is_bad(now), Triple<V>{zero, zero, zero}, now);
+    const Triple<V> scaled{guide.x, guide.y, guide.z};
+    const V size = length(scaled);
+    const Surface s{scaled * (one / size), size - one, guide.w};
+    const Remembered old = remembered(hits, views, x, y, seen, s);
+
+    const V frames = hn::Min(old.frames + one, longest_memory(s.roughness));
+    const Triple<V> radiance = mix(old.radiance, now, one / frames);
+    const V known = hn::Min(frames, set(c_.moments_frames));
+    const V bright = luminance(now);
+    const V first = mix(old.moments.x, bright, one / known);
+    const V second = mix(old.moments.y, bright * bright, one / known);
+    V variance = sample_variance(first, second, known);
+    if (c_.flags & shared::temporal_mean_variance) variance = variance / frames;
+    Triple<V> recent = mix(old.fast, now, one / hn::Min(frames, set(fast_frames)));
+    if (c_.rectification == shared::rectification_gradient) {
+      recent = select(hn::Gt(old.frames, zero), now - old.radiance, Triple<V>{zero, zero, zero});
+    }
+
+    store4(d_, select(seen, Quad<V>{radiance.x, radiance.y, radiance.z, variance}, nothing_seen),
+           signal);
+    store4(d_, select(seen, Quad<V>{frames, zero, first, second}, nothing_seen), history);
+    store4(d_, select(seen, Quad<V>{recent.x, recent.y, recent.z, zero}, nothing_seen), fast);
+  }
+
+  const D d_{};
+  const DI di_{};
+  const TemporalSpecularJob& job_;
+  const shared::TemporalConstants& c_;
+  Bounds<D> bounds_;
+};
+
+void accumulate_specular_rows(const TemporalSpecularJob& job, int first, int last) {
+  run_rows<SpecularAccumulation>(job, job.width, first, last);
+}
+
+}  // namespace heliograph::render::host::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace heliograph::render::host {
+
+HWY_EXPORT(accumulate_specular_rows);
+
+void accumulate_specular(const TemporalSpecularJob& job) {
+  for_each_band(job.height, [&](int first, int last) {
+    HWY_DYNAMIC_DISPATCH(accumulate_specular_rows)(job, first, last);
+  });
+}
+
+}  // namespace heliograph::render::host
+#endif

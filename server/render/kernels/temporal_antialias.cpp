@@ -1,0 +1,243 @@
+#include "render/kernels/temporal_antialias.hpp"
+
+#include "render/kernels/simd/rows.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/kernels/temporal_antialias.cpp"
+#include "hwy/foreach_target.h"
+// After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/simd/history.hpp"
+#include "render/kernels/simd/view.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::host::HWY_NAMESPACE {
+
+template <class D>
+class Antialiasing {
+  using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
+  using DI = hn::RebindToSigned<D>;
+  using VI = hn::Vec<DI>;
+
+  static constexpr float far_away = 1e30f;  // view Z of the background among neighbours
+
+  struct Box {
+    Triple<V> low, high;
+  };
+
+ public:
+  HWY_INLINE explicit Antialiasing(const AntialiasJob& job)
+      : job_(job), bounds_(job.width, job.height) {}
+
+  HWY_INLINE void rows(int first, int last) const {
+    // Compressed colour, and motion with view Z, of the pixels and their neighbours.
+    const BandScratch colors(3, job_.width, first, last, 1);
+    const BandScratch motion(3, job_.width, first, last, 1);
+    for (int y = first - 1; y <= last; ++y) fill(colors, motion, y);
+    const int lanes = static_cast<int>(hn::Lanes(d_));
+    for (int y = first; y < last; ++y) {
+      const ViewedRow<D> view(job_.frame, y);
+      for (int x = 0; x < job_.width; x += lanes) {
+        block(colors, motion, view, std::min(x, job_.width - lanes), y);
+      }
+    }
+  }
+
+ private:
+  HWY_INLINE V set(float value) const { return hn::Set(d_, value); }
+
+  HWY_INLINE void fill(const BandScratch& colors, const BandScratch& motion, int y) const {
+    const int from = std::clamp(y, 0, job_.height - 1);
+    const int lanes = static_cast<int>(hn::Lanes(d_));
+    for (int i = 0; i < job_.width; i += lanes) {
+      const int x = std::min(i, job_.width - lanes);
+      const Quad<V> radiance = load4(d_, row_of<const float>(job_.radiance, from) + 4 * x);
+      const Triple<V> c = compressed({radiance.x, radiance.y, radiance.z});
+      hn::StoreU(c.x, d_, colors.row(0, y) + x);
+      hn::StoreU(c.y, d_, colors.row(1, y) + x);
+      hn::StoreU(c.z, d_, colors.row(2, y) + x);
+      const Quad<V> moved = load4(d_, row_of<const float>(job_.motion, from) + 4 * x);
+      const M seen = hn::Gt(moved.w, hn::Zero(d_));
+      hn::StoreU(moved.x, d_, motion.row(0, y) + x);
+      hn::StoreU(moved.y, d_, motion.row(1, y) + x);
+      hn::StoreU(hn::IfThenElse(seen, moved.w, set(far_away)), d_, motion.row(2, y) + x);
+    }
+    for (int channel = 0; channel < 3; ++channel) {
+      colors.extend(channel, y);
+      motion.extend(channel, y);
+    }
+  }
+
+  HWY_INLINE Triple<V> load(const BandScratch& scratch, int x, int y) const {
+    return {hn::LoadU(d_, scratch.row(0, y) + x), hn::LoadU(d_, scratch.row(1, y) + x),
+            hn::LoadU(d_, scratch.row(2, y) + x)};
+  }
+
+  HWY_INLINE Triple<V> compressed(const Triple<V>& radiance) const {
+    const Triple<V> c = radiance * set(job_.exposure);
+    const V quarter = set(0.25f), half = set(0.5f);
+    const V luma = hn::MulAdd(c.x, quarter, hn::MulAdd(c.y, half, c.z * quarter));
+    const V green = hn::MulSub(c.y, half, (c.x + c.z) * quarter);
+    const V orange = (c.x - c.z) * half;
+    return Triple<V>{luma, green, orange} * (set(1.0f) / (set(1.0f) + luma));
+  }
+
+  HWY_INLINE Triple<V> expanded(const Triple<V>& c) const {
+    const V zero = hn::Zero(d_);
+    const Triple<V> shown = c * (set(1.0f) / hn::Max(set(1.0f) - c.x, set(1e-6f)));
+    const V base = shown.x - shown.y;
+    const V factor = set(1.0f / job_.exposure);
+    return Triple<V>{hn::Max(base + shown.z, zero), hn::Max(shown.x + shown.y, zero),
+                     hn::Max(base - shown.z, zero)} *
+           factor;
+  }
+
+  /// Of the background, which moves as the camera turns; to the previous frame, in uv.
+  HWY_INLINE Pair<V> background_motion(const ViewedRow<D>& view, int x) const {
+    if (job_.frame.counts.y & shared::frame_orthographic) return {hn::Zero(d_), hn::Zero(d_)};
+    const Triple<V> eye = view.to_eye(x);
+    const Triple<V> before = directed(job_.frame.previous_unjittered, eye);
+    const Triple<V> now = directed(job_.frame.unjittered, eye);
+    const V half = set(0.5f);
+    // What lay behind the eye was nowhere in the picture.
+    const M ahead = hn::Gt(before.z, hn::Zero(d_));
+    return {hn::IfThenElse(ahead, (before.x / before.z - now.x / now.z) * half, set(2.0f)),
+            hn::IfThenElse(ahead, (before.y / before.z - now.y / now.z) * half, set(2.0f))};
+  }
+
+  /// x, y and w of `matrix` x (-eye, 0).
+  HWY_INLINE Triple<V> directed(const glm::mat4& matrix, const Triple<V>& eye) const {
+    const glm::mat4 m = -matrix;
+    return {dot(splat(d_, {m[0].x, m[1].x, m[2].x}), eye),
+            dot(splat(d_, {m[0].y, m[1].y, m[2].y}), eye),
+            dot(splat(d_, {m[0].w, m[1].w, m[2].w}), eye)};
+  }
+
+  /// Motion of the nearest surface of 3x3 pixels: an edge moves with what lies in front.
+  HWY_INLINE Pair<V> nearest_motion(const BandScratch& motion, const ViewedRow<D>& view, int x,
+                                    int y) const {
+    Triple<V> found{hn::Zero(d_), hn::Zero(d_), set(far_away)};
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const Triple<V> candidate = load(motion, x + dx, y + dy);
+        found = select(hn::Lt(candidate.z, found.z), candidate, found);
+      }
+    }
+    const M seen = hn::Lt(found.z, set(far_away));
+    if (hn::AllTrue(d_, seen)) return {found.x, found.y};
+    const Pair<V> behind = background_motion(view, x);
+    return {hn::IfThenElse(seen, found.x, behind.x), hn::IfThenElse(seen, found.y, behind.y)};
+  }
+
+  struct Weights {
+    V w[4];
+    HWY_INLINE explicit Weights(V f) {
+      const D d;
+      const auto number = [d](float value) HWY_ATTR { return hn::Set(d, value); };
+      const V half = number(0.5f);
+      w[0] = f * hn::MulSub(f, hn::NegMulAdd(half, f, number(1.0f)), half);
+      w[1] = hn::MulAdd(f * f, hn::MulSub(number(1.5f), f, number(2.5f)), number(1.0f));
+      w[2] = f * hn::MulAdd(f, hn::NegMulAdd(number(1.5f), f, number(2.0f)), half);
+      w[3] = f * f * hn::MulSub(half, f, half);
+    }
+  };
+
+  /// Catmull-Rom's 16 texels; may overshoot.
+  HWY_INLINE Triple<V> sample_history(V u, V v) const {
+    const V half = set(0.5f);
+    const V x = hn::MulSub(u, set(static_cast<float>(job_.width)), half);
+    const V y = hn::MulSub(v, set(static_cast<float>(job_.height)), half);
+    const V low_x = hn::Floor(x), low_y = hn::Floor(y);
+    const Weights across(x - low_x), down(y - low_y);
+    const VI column = hn::ConvertTo(di_, low_x), row = hn::ConvertTo(di_, low_y);
+    const V zero = hn::Zero(d_);
+    Triple<V> sum{zero, zero, zero};
+    for (int j = 0; j < 4; ++j) {
+      Triple<V> line{zero, zero, zero};
+      for (int i = 0; i < 4; ++i) {
+        const Spot<D> spot = bounds_.spot(column + hn::Set(di_, i - 1), row + hn::Set(di_, j - 1));
+        line = line + spot.first_three(job_.history) * across.w[i];
+      }
+      sum = sum + line * down.w[j];
+    }
+    return {hn::Max(sum.x, zero), hn::Max(sum.y, zero), hn::Max(sum.z, zero)};
+  }
+
+  /// Mean and deviation of the 3x3 neighbours.
+  HWY_INLINE Box box_about(const BandScratch& colors, int x, int y) const {
+    const V zero = hn::Zero(d_), ninth = set(1.0f / 9.0f);
+    Triple<V> mean{zero, zero, zero};
+    for (int i = 0; i < 9; ++i) mean = mean + load(colors, x + i % 3 - 1, y + i / 3 - 1);
+    mean = mean * ninth;
+    // About the mean, not as a difference of squares: compressed highlights hardly differ.
+    Triple<V> variance{zero, zero, zero};
+    for (int i = 0; i < 9; ++i) {
+      const Triple<V> off = load(colors, x + i % 3 - 1, y + i / 3 - 1) - mean;
+      variance = variance + off * off;
+    }
+    variance = variance * ninth;
+    const Triple<V> deviation{hn::Sqrt(variance.x), hn::Sqrt(variance.y), hn::Sqrt(variance.z)};
+    const Triple<V> reach = deviation * set(job_.clip);
+    return {mean - reach, mean + reach};
+  }
+
+  HWY_INLINE void block(const BandScratch& colors, const BandScratch& motion,
+                        const ViewedRow<D>& view, int x, int y) const {
+    const V zero = hn::Zero(d_), one = set(1.0f);
+    const Quad<V> center = load4(d_, row_of<const float>(job_.radiance, y) + 4 * x);
+    float* const out = row_of<float>(job_.resolved, y) + 4 * x;
+    const Pair<V> moved = nearest_motion(motion, view, x, y);
+    const V u =
+        hn::Iota(d_, static_cast<float>(x) + 0.5f) / set(static_cast<float>(job_.width)) + moved.x;
+    const V v = set((static_cast<float>(y) + 0.5f) / static_cast<float>(job_.height)) + moved.y;
+    // Nothing is known of what was not in the picture.
+    M known =
+        hn::And(hn::And(hn::Ge(u, zero), hn::Le(u, one)), hn::And(hn::Ge(v, zero), hn::Le(v, one)));
+    if (job_.frame.counts.w != 0 || hn::AllFalse(d_, known)) {
+      store4(d_, center, out);
+      return;
+    }
+    const Box box = box_about(colors, x, y);
+    const Triple<V> old =
+        compressed(sample_history(clamped(u, 0.0f, 1.0f), clamped(v, 0.0f, 1.0f)));
+    V share = set(job_.blend);
+    if (job_.anti_flicker) {
+      const V margin = hn::Min(hn::Abs(old.x - box.low.x), hn::Abs(box.high.x - old.x));
+      const V span = hn::Max(margin + box.high.x - box.low.x, set(1e-6f));
+      // Never none: a colour that was clamped to the box's face would stay there for ever.
+      share = share * hn::Max(margin / span, set(0.2f));
+    }
+    const Triple<V> held{hn::Min(hn::Max(old.x, box.low.x), box.high.x),
+                         hn::Min(hn::Max(old.y, box.low.y), box.high.y),
+                         hn::Min(hn::Max(old.z, box.low.z), box.high.z)};
+    const Triple<V> blended = mix(held, load(colors, x, y), clamped(share, 0.0f, 1.0f));
+    const Triple<V> result = expanded(blended);
+    store4(d_, select(known, Quad<V>{result.x, result.y, result.z, center.w}, center), out);
+  }
+
+  const D d_{};
+  const DI di_{};
+  const AntialiasJob& job_;
+  Bounds<D> bounds_;
+};
+
+void antialias_rows(const AntialiasJob& job, int first, int last) {
+  run_rows<Antialiasing>(job, job.width, first, last);
+}
+
+}  // namespace heliograph::render::host::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace heliograph::render::host {
+
+HWY_EXPORT(antialias_rows);
+
+void temporal_antialias(const AntialiasJob& job) {
+  for_each_band(job.height, [&](int first, int last) {
+    HWY_DYNAMIC_DISPATCH(antialias_rows)(job, first, last);
+  });
+}
+
+}  // namespace heliograph::render::host
+#endif

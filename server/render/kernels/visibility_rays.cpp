@@ -1,0 +1,207 @@
+#include "render/kernels/visibility_rays.hpp"
+
+#include "render/kernels/ray_sink.hpp"
+#include "render/kernels/simd/rows.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/kernels/visibility_rays.cpp"
+#include "hwy/foreach_target.h"
+// After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/simd/material.hpp"
+#include "render/kernels/simd/random.hpp"
+#include "render/kernels/simd/rays.hpp"
+#include "render/kernels/simd/view.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::host::HWY_NAMESPACE {
+
+/// What both kinds of rays have in common: how they walk the picture and leave rays behind.
+/// Neighbours in the stream are neighbours in the picture across and down.
+template <class D, class Maker>
+class VisibilityRays {
+  using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
+
+ public:
+  HWY_INLINE void generate(const VisibilityRaysJob& job, int first, int last) const {
+    const D d;
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    RayBatch batch(*job.count, job.rays,
+                   static_cast<std::size_t>(job.width) * static_cast<std::size_t>(last - first));
+    for (int start = 0; start < job.width; start += lanes) {
+      const int x = std::min(start, job.width - lanes);
+      for (int y = first; y < last; ++y) {
+        const V view_z = load4(d, row_of<const float>(job.motion, y) + 4 * x).w;
+        const M seen = hn::Gt(view_z, hn::Zero(d));
+        M wanted = seen;
+        if (!hn::AllFalse(d, seen)) {
+          Triple<V> origin, direction;
+          V t_max;
+          static_cast<const Maker*>(this)->make(x, y, view_z, wanted, origin, direction, t_max);
+          batch.add(d, origin, direction, t_max, x, y, hn::And(wanted, from_column(d, x, start)));
+        }
+        const V open = static_cast<const Maker*>(this)->untraced(seen, wanted);
+        hn::StoreU(open, d, row_of<float>(job.visibility, y) + x);
+      }
+    }
+    batch.flush();
+  }
+};
+
+template <class D>
+class ShadowRays : public VisibilityRays<D, ShadowRays<D>> {
+  using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
+  using DU = hn::RebindToUnsigned<D>;
+
+ public:
+  HWY_INLINE explicit ShadowRays(const ShadowRaysJob& job)
+      : job_(job),
+        split_sum_(job.split_sum, job.split_sum_size),
+        picks_(DU(), job.common.frame.extent.z, 1u, job.common.frame.extent.w),
+        points_(DU(), job.common.frame.extent.z, 2u, job.common.frame.extent.w) {}
+
+  HWY_INLINE void rows(int first, int last) const { this->generate(job_.common, first, last); }
+
+  HWY_INLINE void make(int x, int y, V view_z, M& wanted, Triple<V>& origin, Triple<V>& direction,
+                       V& t_max) const {
+    const ViewedRow<D> view(job_.common.frame, y);
+    const auto m = material(view, x, y);
+    const Triple<V> position = view.world_position(x, view_z);
+    const auto column = hn::Iota(DU(), static_cast<std::uint32_t>(x));
+    const auto row = hn::Set(DU(), static_cast<std::uint32_t>(y));
+    V pick = picks_.at(column, row);
+    V total = hn::Zero(d_), spread = total;
+    t_max = total;
+    direction = {total, total, total};
+    for (const shared::Light& light : job_.lights) {
+      Triple<V> radiance;
+      if (!light_contribution(d_, light, m, position, wanted, radiance)) continue;
+      const M taken = take(luminance(radiance), total, pick);
+      if (hn::AllFalse(d_, taken)) continue;
+      const LightSample<V> s = light_at(d_, light, position);
+      direction = select(taken, s.direction, direction);
+      t_max = hn::IfThenElse(taken, s.distance, t_max);
+      const bool endless = light.type == shared::light_directional;
+      const V radius = hn::Set(d_, light.radius);
+      spread = hn::IfThenElse(taken, endless ? radius : radius / s.distance, spread);
+    }
+    wanted = hn::And(wanted, hn::Gt(total, hn::Zero(d_)));
+    direction = toward_disk(direction, spread, column, row);
+    wanted = hn::And(wanted, hn::Gt(dot(direction, m.geometric), hn::Zero(d_)));
+    origin = offset_origin(position, m.geometric, view_z);
+    // Geometry may lie where a light does and show it: it must not be in its own way.
+    t_max = t_max * hn::Set(d_, 0.999f);
+  }
+
+  HWY_INLINE V untraced(M, M wanted) const { return hn::IfThenElseZero(wanted, hn::Set(d_, 1.0f)); }
+
+ private:
+  HWY_INLINE SurfaceMaterial<V> material(const ViewedRow<D>& view, int x, int y) const {
+    const Quad<V> encoded = load4(d_, row_of<const float>(job_.common.normals, y) + 4 * x);
+    const Quad<V> root = load_unorm8(d_, row_of<const std::uint32_t>(job_.base_color, y) + x);
+    const Quad<V> packed = load_unorm8(d_, row_of<const std::uint32_t>(job_.surface, y) + x);
+    const Triple<V> color{root.x * root.x, root.y * root.y, root.z * root.z};
+    return make_material(d_, color, packed.y, packed.x, octahedral_decode(encoded.x, encoded.y),
+                         octahedral_decode(encoded.z, encoded.w), view.to_eye(x), split_sum_);
+  }
+
+  /// takes() of shaders/lib/lighting/light_choice.glsl
+  HWY_INLINE M take(V weight, V& total, V& pick) const {
+    const V one = hn::Set(d_, 1.0f);
+    const M counts = hn::Gt(weight, hn::Zero(d_));
+    total = total + hn::IfThenElseZero(counts, weight);
+    const V share = weight / total;
+    const M taken = hn::And(counts, hn::Lt(pick, share));
+    const V left = hn::IfThenElse(counts, (pick - share) / (one - share), pick);
+    pick = hn::IfThenElse(taken, pick / share, left);
+    return taken;
+  }
+
+  template <class VU>
+  HWY_INLINE Triple<V> toward_disk(const Triple<V>& direction, V spread, VU column, VU row) const {
+    V u, v;
+    points_.at(column, row, u, v);
+    Triple<V> tangent, bitangent;
+    orthonormal_basis(direction, tangent, bitangent);
+    const Pair<V> disk = sample_disk(u, v);
+    return normalized(direction + tangent * (disk.x * spread) + bitangent * (disk.y * spread));
+  }
+
+  const D d_{};
+  const ShadowRaysJob& job_;
+  SquareTable<D> split_sum_;
+  RandomNumbers<DU> picks_;
+  RandomPairs<DU> points_;
+};
+
+template <class D>
+class AmbientRays : public VisibilityRays<D, AmbientRays<D>> {
+  using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
+  using DU = hn::RebindToUnsigned<D>;
+
+ public:
+  HWY_INLINE explicit AmbientRays(const VisibilityRaysJob& job)
+      : job_(job), directions_(DU(), job.frame.extent.z, 3u, job.frame.extent.w) {}
+
+  HWY_INLINE void rows(int first, int last) const { this->generate(job_, first, last); }
+
+  HWY_INLINE void make(int x, int y, V view_z, M& wanted, Triple<V>& origin, Triple<V>& direction,
+                       V& t_max) const {
+    const Quad<V> encoded = load4(d_, row_of<const float>(job_.normals, y) + 4 * x);
+    const Triple<V> geometric = octahedral_decode(encoded.z, encoded.w);
+    V u, v;
+    directions_.at(hn::Iota(DU(), static_cast<std::uint32_t>(x)),
+                   hn::Set(DU(), static_cast<std::uint32_t>(y)), u, v);
+    direction = sample_cosine(octahedral_decode(encoded.x, encoded.y), u, v);
+    const ViewedRow<D> view(job_.frame, y);
+    origin = offset_origin(view.world_position(x, view_z), geometric, view_z);
+    t_max = hn::Set(d_, job_.frame.environment.w);
+    wanted = hn::And(wanted, hn::Gt(dot(direction, geometric), hn::Zero(d_)));
+  }
+
+  /// Directions below the surface are hidden by it.
+  HWY_INLINE V untraced(M seen, M wanted) const {
+    return hn::IfThenElseZero(hn::Or(wanted, hn::Not(seen)), hn::Set(d_, 1.0f));
+  }
+
+ private:
+  const D d_{};
+  const VisibilityRaysJob& job_;
+  RandomPairs<DU> directions_;
+};
+
+void shadow_ray_rows(const ShadowRaysJob& job, int first, int last) {
+  run_rows<ShadowRays>(job, job.common.width, first, last);
+}
+
+void ambient_ray_rows(const VisibilityRaysJob& job, int first, int last) {
+  run_rows<AmbientRays>(job, job.width, first, last);
+}
+
+}  // namespace heliograph::render::host::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace heliograph::render::host {
+
+HWY_EXPORT(shadow_ray_rows);
+HWY_EXPORT(ambient_ray_rows);
+
+void shadow_rays(const ShadowRaysJob& job) {
+  for_each_band(job.common.height, [&](int first, int last) {
+    HWY_DYNAMIC_DISPATCH(shadow_ray_rows)(job, first, last);
+  });
+  set_groups(*job.common.count);
+}
+
+void ambient_rays(const VisibilityRaysJob& job) {
+  for_each_band(job.height, [&](int first, int last) {
+    HWY_DYNAMIC_DISPATCH(ambient_ray_rows)(job, first, last);
+  });
+  set_groups(*job.count);
+}
+
+}  // namespace heliograph::render::host
+#endif

@@ -1,0 +1,158 @@
+#include "render/kernels/simd/rows.hpp"
+#include "render/kernels/temporal.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/kernels/visibility_temporal.cpp"
+#include "hwy/foreach_target.h"
+// After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/simd/moments.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::host::HWY_NAMESPACE {
+
+template <class D>
+class VisibilityAccumulation {
+  using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
+
+  struct Remembered {
+    Pair<V> signal;
+    Quad<V> moments;
+    Pair<V> frames;  // 0: nothing
+    Pair<V> fast;
+  };
+  struct Channel {
+    V value, variance, first, second, frames, fast;
+  };
+
+ public:
+  HWY_INLINE explicit VisibilityAccumulation(const TemporalVisibilityJob& job)
+      : job_(job), c_(job.constants), bounds_(job.width, job.height) {}
+
+  HWY_INLINE void rows(int first, int last) const {
+    const int lanes = static_cast<int>(hn::Lanes(d_));
+    for (int y = first; y < last; ++y) {
+      for (int x = 0; x < job_.width; x += lanes) block(std::min(x, job_.width - lanes), y);
+    }
+  }
+
+ private:
+  HWY_INLINE V set(float value) const { return hn::Set(d_, value); }
+  HWY_INLINE Quad<V> load(const gpu::HostView& image, int x, int y) const {
+    return load4(d_, row_of<const float>(image, y) + 4 * x);
+  }
+  HWY_INLINE void store(const gpu::HostView& image, int x, int y, M seen, const Quad<V>& t) const {
+    store4(d_,
+           {hn::IfThenElseZero(seen, t.x), hn::IfThenElseZero(seen, t.y),
+            hn::IfThenElseZero(seen, t.z), hn::IfThenElseZero(seen, t.w)},
+           row_of<float>(image, y) + 4 * x);
+  }
+
+  HWY_INLINE Remembered recall(int x, int y) const {
+    const V zero = hn::Zero(d_);
+    Remembered r{{zero, zero}, {zero, zero, zero, zero}, {zero, zero}, {zero, zero}};
+    if ((c_.flags & shared::temporal_holds) == 0) return r;
+    const HistoryTaps<D> taps = remembered_taps<D>(load(job_.reprojection, x, y));
+    for (int i = 0; i < 4; ++i) {
+      const V weight = taps.weights[i];
+      const M counts = hn::Gt(weight, zero);
+      if (hn::AllFalse(d_, counts)) continue;
+      const Spot<D> spot = bounds_.spot(taps.tap_x(i), taps.tap_y(i));
+      const Pair<V> signal = spot.first_two(job_.previous_signal);
+      const Quad<V> moments = spot.four(job_.previous_moments);
+      const Pair<V> frames = spot.first_two(job_.previous_history);
+      const Pair<V> fast = spot.two(job_.previous_fast);
+      add_share<D>(counts, weight, signal.x, r.signal.x);
+      add_share<D>(counts, weight, signal.y, r.signal.y);
+      add_share<D>(counts, weight, moments.x, r.moments.x);
+      add_share<D>(counts, weight, moments.y, r.moments.y);
+      add_share<D>(counts, weight, moments.z, r.moments.z);
+      add_share<D>(counts, weight, moments.w, r.moments.w);
+      add_share<D>(counts, weight, frames.x, r.frames.x);
+      add_share<D>(counts, weight, frames.y, r.frames.y);
+      add_share<D>(counts, weight, fast.x, r.fast.x);
+      add_share<D>(counts, weight, fast.y, r.fast.y);
+    }
+    if ((c_.flags & shared::temporal_bicubic) == 0) return r;
+    V values[2] = {r.signal.x, r.signal.y};
+    recall_sharply<D, 2>(
+        bounds_, taps, taps.whole,
+        [&](const Spot<D>& spot, V(&found)[2]) HWY_ATTR {
+          const Pair<V> signal = spot.first_two(job_.previous_signal);
+          found[0] = signal.x;
+          found[1] = signal.y;
+        },
+        values);
+    r.signal = {values[0], values[1]};
+    return r;
+  }
+
+  HWY_INLINE Channel accumulate(V now, V old, V first, V second, V remembered, V fast,
+                                float longest) const {
+    Channel c;
+    c.frames = hn::Min(remembered + set(1.0f), set(longest));
+    c.value = mix(old, now, sample_share(c.frames, longest));
+    const V share = sample_share(c.frames, c_.moments_frames);
+    c.first = mix(first, now, share);
+    c.second = mix(second, now * now, share);
+    c.variance = sample_variance(c.first, c.second, hn::Min(c.frames, set(c_.moments_frames)));
+    if (c_.flags & shared::temporal_mean_variance) c.variance = c.variance / c.frames;
+    c.fast = c_.rectification == shared::rectification_gradient
+                 ? hn::IfThenElseZero(hn::Gt(remembered, hn::Zero(d_)), now - old)
+                 : mix(fast, now, sample_share(c.frames, fast_frames));
+    return c;
+  }
+
+  HWY_INLINE void block(int x, int y) const {
+    const V zero = hn::Zero(d_);
+    const Quad<V> now = load(job_.raw, x, y);
+    const M seen = hn::Gt(load(job_.guide, x, y).w, zero);
+    const Remembered old = recall(x, y);
+    const Channel shadow =
+        accumulate(now.x, old.signal.x, old.moments.x, old.moments.z, old.frames.x, old.fast.x,
+                   std::min(c_.frames, c_.light_frames));
+    const Channel ambient = accumulate(now.y, old.signal.y, old.moments.y, old.moments.w,
+                                       old.frames.y, old.fast.y, c_.frames);
+    const Quad<V> signal{
+        hn::IfThenElse(seen, shadow.value, now.x), hn::IfThenElse(seen, ambient.value, now.y),
+        hn::IfThenElseZero(seen, shadow.variance), hn::IfThenElseZero(seen, ambient.variance)};
+    store4(d_, signal, row_of<float>(job_.signal, y) + 4 * x);
+    store(job_.moments, x, y, seen, {shadow.first, ambient.first, shadow.second, ambient.second});
+    store(job_.history, x, y, seen, {shadow.frames, ambient.frames, zero, zero});
+    hn::StoreInterleaved2(hn::IfThenElseZero(seen, shadow.fast),
+                          hn::IfThenElseZero(seen, ambient.fast), d_,
+                          row_of<float>(job_.fast, y) + 2 * x);
+  }
+
+  const D d_{};
+  const TemporalVisibilityJob& job_;
+  const shared::TemporalConstants& c_;
+  Bounds<D> bounds_;
+};
+
+void accumulate_visibility_rows(const TemporalVisibilityJob& job, int first, int last) {
+  run_rows<VisibilityAccumulation>(job, job.width, first, last);
+}
+
+}  // namespace heliograph::render::host::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace heliograph::render::host {
+
+HWY_EXPORT(accumulate_visibility_rows);
+
+bool can_accumulate(std::uint32_t rectification) {
+  return rectification == shared::rectification_off ||
+         rectification == shared::rectification_fast_history ||
+         rectification == shared::rectification_gradient;
+}
+
+void accumulate_visibility(const TemporalVisibilityJob& job) {
+  for_each_band(job.height, [&](int first, int last) {
+    HWY_DYNAMIC_DISPATCH(accumulate_visibility_rows)(job, first, last);
+  });
+}
+
+}  // namespace heliograph::render::host
+#endif

@@ -1,0 +1,186 @@
+#include "render/passes/blend/blend_surfaces.hpp"
+
+#include "render/passes/rays/ray_stream.hpp"
+#include "render/passes/reflections/trace_specular.hpp"
+#include "render/resources/moving_scene.hpp"
+#include "shaders/embedded.hpp"
+
+namespace heliograph::render {
+namespace {
+
+constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+constexpr VkFormat four_floats = VK_FORMAT_R32G32B32A32_SFLOAT;
+
+/// Grows by the pixels that a box may cover.
+void include(glm::uvec4& region, const scene::Bounds& bounds, const shared::FrameConstants& frame) {
+  const glm::vec2 size(frame.extent.x, frame.extent.y);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec4 point(corner & 1 ? bounds.maximum.x : bounds.minimum.x,
+                          corner & 2 ? bounds.maximum.y : bounds.minimum.y,
+                          corner & 4 ? bounds.maximum.z : bounds.minimum.z, 1.0f);
+    const glm::vec4 clip = frame.view_projection * point;
+    if (clip.w <= 0.0f) {
+      region = {0, 0, frame.extent.x, frame.extent.y};
+      return;
+    }
+    const glm::vec2 at = (glm::vec2(clip) / clip.w * 0.5f + 0.5f) * size;
+    const glm::uvec2 first(glm::clamp(glm::floor(at), glm::vec2(0.0f), size));
+    const glm::uvec2 last(glm::clamp(glm::floor(at) + 1.0f, glm::vec2(0.0f), size));
+    region = glm::uvec4(glm::min(glm::uvec2(region), first),
+                        glm::max(glm::uvec2(region.z, region.w), last));
+  }
+}
+
+/// The pixels that blended surfaces may cover: the first, and the one behind the last.
+glm::uvec4 blended_region(const FrameInputs& in) {
+  const glm::uvec4& extent = in.constants.extent;
+  glm::uvec4 region(extent.x, extent.y, 0, 0);
+  for (const Draw& draw : in.moving.draws()) {
+    const std::uint32_t flags = in.scene.scene->materials[draw.material].flags;
+    if (flags & shared::material_alpha_blend) include(region, draw.bounds, in.constants);
+  }
+  return region;
+}
+
+class BlendedSurfaces {
+ public:
+  BlendedSurfaces(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer)
+      : plan_(plan),
+        in_(in),
+        gbuffer_(gbuffer),
+        pixels_(plan.extent().width * plan.extent().height),
+        radiance_(plan.image("blended.radiance", four_floats)),
+        behind_(plan.image("blended.behind", four_floats)),
+        motion_(plan.image("blended.motion", four_floats)),
+        mirrored_(plan.image("blended.mirrored", four_floats)),
+        surface_(plan.image("blended.surface", VK_FORMAT_R8G8B8A8_UNORM)),
+        hits_(plan.buffer("blended.hits", sizeof(shared::Hit) * pixels_, storage,
+                          gpu::Memory::device)),
+        lit_(declare_rays(plan, "blended.lit", pixels_)),
+        chosen_(plan.buffer("blended.chosen", sizeof(shared::Hit) * pixels_, storage,
+                            gpu::Memory::device)) {}
+
+  gpu::ImageRef motion() const { return motion_; }
+
+  /// From front to back, what the surfaces send out by themselves and what shows behind them.
+  void find() {
+    tracing::RayStream current = declare_rays(plan_, "blended", pixels_);
+    tracing::RayStream next = declare_rays(plan_, "blended.next", pixels_);
+    begin_rays(plan_, in_, "blended", current, Blending::stops);
+    begin_rays(plan_, in_, "blended.lit", lit_, Blending::stops);
+    plan_.pass("blended.rays", in_.programs.compute(shaders::blended_rays))
+        .read(gbuffer_.motion)
+        .read_write(current.count)
+        .write(current.rays)
+        .write(radiance_)
+        .write(behind_)
+        .write(motion_)
+        .write(surface_)
+        .write(mirrored_)
+        .constants([in = in_] { return blended_region(in); })
+        .dispatch(plan_.extent())
+        .describe("Blended surfaces alone.");
+    for (std::uint32_t round = 0; round < most_blended; ++round) {
+      in_.tracer.trace_closest(plan_, "blended.trace", in_.structure, current, hits_);
+      begin_rays(plan_, in_, "blended", next, Blending::stops);
+      lay_over(round, current, next);
+      std::swap(current, next);
+    }
+  }
+
+  /// What arrives at the one that was chosen in each pixel.
+  void light() {
+    const auto shadows = declare_rays(plan_, "blended.shadows", pixels_);
+    const auto ambient = declare_rays(plan_, "blended.ambient", pixels_);
+    const auto mirrors = declare_rays(plan_, "blended.mirrors", pixels_);
+    for (const auto* stream : {&shadows, &ambient, &mirrors}) {
+      begin_rays(plan_, in_, "blended.light", *stream);
+    }
+    const bool traced = in_.settings.specular.enabled;
+    pass("blended.light", shaders::blended_light)
+        .read(lit_.count)
+        .read(lit_.rays)
+        .read(chosen_)
+        .read(radiance_)
+        .read_write(behind_)
+        .write(surface_)
+        .read_write(shadows.count)
+        .write(shadows.rays)
+        .read_write(ambient.count)
+        .write(ambient.rays)
+        .read_write(mirrors.count)
+        .write(mirrors.rays)
+        .constants(
+            [&s = in_.settings.specular, traced] { return traced ? s.max_roughness : -1.0f; })
+        .dispatch_indirect(lit_.count, ray_groups_offset);
+    add_unhidden_light(plan_, in_, "blended.shadows", shadows, radiance_);
+    add_unhidden_light(plan_, in_, "blended.ambient", ambient, radiance_);
+    if (traced)
+      trace_mirrored(plan_, in_, "blended.mirrors", mirrors, surface_, behind_, mirrored_);
+  }
+
+  void lay_over(gpu::ImageRef picture) {
+    plan_.pass("blended.over", in_.programs.compute(shaders::blended_over))
+        .read(radiance_)
+        .read(mirrored_)
+        .read(behind_)
+        .read_write(picture)
+        .dispatch(plan_.extent());
+  }
+
+ private:
+  gpu::PassBuilder pass(const std::string& name, const gpu::ShaderBinary& shader) {
+    return plan_.pass(name, in_.programs.compute(shader, in_.scene.features));
+  }
+
+  void lay_over(std::uint32_t round, const tracing::RayStream& met,
+                const tracing::RayStream& next) {
+    struct Constants {
+      std::uint32_t round;
+      std::uint32_t last_round;
+    };
+    pass("blended.surfaces", shaders::blended_surfaces)
+        .read(met.count)
+        .read(met.rays)
+        .read(hits_)
+        .read(plan_.import(in_.moving.previous_vertices()))
+        .read_write(next.count)
+        .write(next.rays)
+        .read_write(radiance_)
+        .read_write(behind_)
+        .write(motion_)
+        .write(chosen_)
+        .read_write(lit_.count)
+        .write(lit_.rays)
+        .constants(Constants{round, round + 1 == most_blended})
+        .dispatch_indirect(met.count, ray_groups_offset);
+  }
+
+  gpu::FramePlan& plan_;
+  const FrameInputs& in_;
+  const GBuffer& gbuffer_;
+  std::uint32_t pixels_;
+  gpu::ImageRef radiance_;  // a: of all weights, the sum
+  gpu::ImageRef behind_;  // how much of what is behind shows; a: of the chosen, weight, then view Z
+  gpu::ImageRef motion_;
+  gpu::ImageRef mirrored_;
+  gpu::ImageRef surface_;
+  gpu::BufferRef hits_;
+  tracing::RayStream lit_;  // the pixels that have a surface to light, each once
+  gpu::BufferRef chosen_;
+};
+
+}  // namespace
+
+gpu::ImageRef blend_surfaces(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                             const Composed& composed) {
+  if (!(in.scene.features & shared::scene_blends)) return gbuffer.motion;
+  BlendedSurfaces blended(plan, in, gbuffer);
+  blended.find();
+  blended.light();
+  blended.lay_over(composed.hdr);
+  if (composed.hdr_raw.index != composed.hdr.index) blended.lay_over(composed.hdr_raw);
+  return blended.motion();
+}
+
+}  // namespace heliograph::render

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <algorithm>
+
+#include "render/passes/frame_inputs.hpp"
+#include "render/resources/scene_motion.hpp"
+#include "shaders/shared/denoise.h"
+
+// The same settings exist for either denoised signal, as two types with the same members.
+
+namespace heliograph::render {
+
+/// How much wider the box of rectification becomes while the picture rests: nothing changes any
+/// more, and holding a long history against noise would keep it from converging. The paper's boxes
+/// stay as they are.
+inline float rested_box(const FrameInputs& in, protocol::Rectification mode) {
+  const bool widens =
+      mode == protocol::Rectification::fast_history || mode == protocol::Rectification::percentile;
+  constexpr float settled = 8.0f;  // samples after which what moved has been forgotten
+  return widens ? std::max(1.0f, static_cast<float>(in.samples) / settled) : 1.0f;
+}
+
+/// What the passes of one signal's accumulation read, this frame. The memory is counted in
+/// seconds, so that it does not depend on the rate, and grows with the picture while that rests, so
+/// that it converges.
+template <class TemporalSettings>
+shared::TemporalConstants temporal_constants(const FrameInputs& in,
+                                             const TemporalSettings& settings) {
+  const auto rests = static_cast<float>(in.samples + 1);
+  const float by_time = in.seconds > 0.0f ? settings.seconds / in.seconds : 0.0f;
+  shared::TemporalConstants constants{};
+  constants.frames = std::max({static_cast<float>(settings.frames), by_time, rests});
+  constants.moments_frames = std::max(static_cast<float>(settings.moments_frames), rests);
+  constants.rectification = static_cast<std::uint32_t>(settings.rectification);
+  constants.radius = settings.rectification_radius;
+  constants.scale = settings.rectification_scale * rested_box(in, settings.rectification);
+  if (settings.rectification == protocol::Rectification::gradient) {
+    // Of the mean: the neighbourhood's samples are independent of each other.
+    constants.scale /= static_cast<float>(2 * settings.rectification_radius + 1);
+  }
+  if (settings.follow_lights) {
+    constants.light_frames = frames_under_motion(in.scene_motion.lights);
+    constants.environment_turn = in.scene_motion.environment;
+  } else {
+    constants.light_frames = constants.frames;
+  }
+  constants.spatial_variance_frames = static_cast<float>(settings.spatial_variance_frames);
+  const bool holds = settings.enabled && in.constants.counts.w == 0;
+  constants.flags = (holds ? shared::temporal_holds : 0u) |
+                    (settings.mean_variance ? shared::temporal_mean_variance : 0u) |
+                    (settings.bicubic ? shared::temporal_bicubic : 0u);
+  return constants;
+}
+
+/// One pass of an iteration: both halves of the kernel at once, or one of two.
+struct KernelShape {
+  int level;
+  int columns;
+  int rows;
+  bool first_half;
+};
+
+template <class BlurSettings>
+shared::AtrousConstants atrous_constants(const BlurSettings& settings, const KernelShape& shape) {
+  shared::AtrousConstants constants{};
+  constants.level = shape.level;
+  constants.columns = shape.columns;
+  constants.rows = shape.rows;
+  constants.luminance_sigma = settings.luminance_sigma;
+  constants.normal_power = settings.normal_power;
+  constants.depth_sigma = settings.depth_sigma;
+  const bool keep =
+      shape.first_half && settings.variance_update == protocol::VarianceUpdate::vertical_only;
+  constants.flags = (settings.variance_prefilter ? shared::atrous_variance_prefilter : 0u) |
+                    (keep ? shared::atrous_keep_variance : 0u) |
+                    (settings.jitter ? shared::atrous_jitter : 0u);
+  return constants;
+}
+
+}  // namespace heliograph::render

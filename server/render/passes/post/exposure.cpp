@@ -1,0 +1,75 @@
+#include "render/passes/post/exposure.hpp"
+
+#include <cmath>
+#include <cstring>
+
+#include "render/passes/frame_inputs.hpp"
+#include "render/passes/post/accumulate.hpp"
+#include "shaders/embedded.hpp"
+#include "shaders/shared/exposure.h"
+
+namespace heliograph::render {
+namespace {
+
+struct AdaptConstants {
+  float seconds;
+  float adaptation;
+  std::uint32_t automatic;
+};
+
+/// Fills the histogram.
+void meter(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef hdr, gpu::ImageRef mean,
+           gpu::BufferRef histogram) {
+  plan.pass("exposure.begin", in.programs.compute(shaders::exposure_begin))
+      .write(histogram)
+      .dispatch({shared::exposure_bins, 1});
+  plan.pass("exposure.meter", in.programs.compute(shaders::exposure_meter))
+      .read(hdr)
+      .read(mean)
+      .read_write(histogram)
+      .constants([in] { return mean_share(in); })
+      .dispatch({(plan.extent().width + 1) / 2, (plan.extent().height + 1) / 2});
+}
+
+shared::ExposureState read_state(const gpu::FramePlan& plan, const Exposure& exposure) {
+  shared::ExposureState state;
+  std::memcpy(&state, plan.get(exposure.report).mapped(), sizeof state);
+  return state;
+}
+
+}  // namespace
+
+Exposure expose(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef hdr,
+                gpu::ImageRef mean) {
+  constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  constexpr VkDeviceSize size = sizeof(shared::ExposureState);
+  const Exposure exposure{
+      plan.buffer("exposure", size, storage | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
+                  gpu::Memory::device),
+      plan.buffer("exposure.report", size, storage, gpu::Memory::readback)};
+  const auto histogram =
+      plan.buffer("exposure.histogram", shared::exposure_bins * sizeof(std::uint32_t), storage,
+                  gpu::Memory::device);
+  const bool automatic = in.settings.exposure.mode == protocol::ExposureMode::automatic;
+  if (automatic) meter(plan, in, hdr, mean, histogram);
+  plan.pass("exposure.adapt", in.programs.compute(shaders::exposure_adapt))
+      .read(histogram)
+      .read_write(exposure.state)
+      .write(exposure.report)
+      .constants([&seconds = in.seconds, &settings = in.settings.exposure, automatic] {
+        return AdaptConstants{seconds, settings.adaptation, automatic};
+      })
+      .dispatch({1, 1});
+  return exposure;
+}
+
+bool is_settled(const gpu::FramePlan& plan, const Exposure& exposure) {
+  const shared::ExposureState state = read_state(plan, exposure);
+  return std::abs(state.target - state.stops) < 0.01f;
+}
+
+float exposure_factor(const gpu::FramePlan& plan, const Exposure& exposure) {
+  return read_state(plan, exposure).factor;
+}
+
+}  // namespace heliograph::render

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "render/passes/gbuffer/gbuffer.hpp"
+#include "render/passes/post/exposure.hpp"
+
+namespace heliograph::render {
+
+/// Blends each frame with those before along the motion of surfaces and of the background: linear
+/// radiance without jitter (paper section 3, stage 8; the temporal antialiasing of Falcor).
+/// `radiance` itself where `antialiasing.temporal` is off.
+gpu::ImageRef temporal_antialias(gpu::FramePlan& plan, const FrameInputs& in,
+                                 const GBuffer& gbuffer, const Exposure& exposure,
+                                 gpu::ImageRef radiance);
+
+}  // namespace heliograph::render

@@ -1,0 +1,37 @@
+#include "render/passes/rays/ray_stream.hpp"
+
+#include "shaders/embedded.hpp"
+#include "shaders/shared/ray_mask.h"
+
+namespace heliograph::render {
+
+tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
+                                std::uint32_t capacity) {
+  constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  return {plan.buffer(name + ".ray_count", sizeof(shared::RayCount),
+                      storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, gpu::Memory::device),
+          plan.buffer(name + ".rays", sizeof(shared::Ray) * capacity, storage, gpu::Memory::device),
+          capacity};
+}
+
+std::uint32_t frame_blending(const FrameInputs& in) {
+  if ((in.scene.features & shared::scene_blends) == 0) return 0;
+  const glm::uvec4& extent = in.constants.extent;
+  return shared::mixed_bits(extent.z ^ shared::mixed_bits(extent.w)) | 1u;
+}
+
+void begin_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
+                const tracing::RayStream& rays, Blending blending) {
+  if (!on_host(plan, in)) {
+    plan.pass(name + ".begin", in.programs.compute(shaders::rays_begin, in.scene.features))
+        .write(rays.count)
+        .constants(static_cast<std::uint32_t>(blending == Blending::shares))
+        .dispatch({1, 1});
+    return;
+  }
+  plan.host(name + ".begin",
+            [&plan, in, rays, blending] { ray_sink(plan, in, rays, blending).begin(); })
+      .write(rays.count);
+}
+
+}  // namespace heliograph::render

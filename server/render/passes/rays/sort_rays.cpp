@@ -1,0 +1,47 @@
+#include "render/passes/rays/sort_rays.hpp"
+
+#include "shaders/embedded.hpp"
+#include "shaders/shared/ray.h"
+#include "shaders/shared/ray_sorting.h"
+
+namespace heliograph::render {
+
+tracing::RayStream sort_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
+                             const tracing::RayStream& rays) {
+  constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  constexpr VkDeviceSize groups = offsetof(shared::RayCount, groups_x);
+  const auto places = plan.buffer(name + ".sort.places", sizeof(std::uint32_t) * shared::ray_keys,
+                                  storage, gpu::Memory::device);
+  const tracing::RayStream sorted{
+      rays.count,
+      plan.buffer(name + ".sorted_rays", sizeof(shared::Ray) * rays.capacity, storage,
+                  gpu::Memory::device),
+      rays.capacity};
+  const scene::Bounds bounds = in.scene.scene->bounds;
+  const auto constants = [bounds] {
+    const glm::vec3 size = glm::max(bounds.maximum - bounds.minimum, glm::vec3(1e-6f));
+    return shared::RaySortConstants{glm::vec4(bounds.minimum, 0.0f), glm::vec4(1.0f / size, 0.0f)};
+  };
+  plan.pass(name + ".sort.clear", in.programs.compute(shaders::rays_sort_clear))
+      .write(places)
+      .dispatch({shared::ray_keys, 1});
+  plan.pass(name + ".sort.count", in.programs.compute(shaders::rays_sort_count))
+      .read(rays.count)
+      .read(rays.rays)
+      .read_write(places)
+      .constants(constants)
+      .dispatch_indirect(rays.count, groups);
+  plan.pass(name + ".sort.offsets", in.programs.compute(shaders::rays_sort_offsets))
+      .read_write(places)
+      .dispatch({256, 1});
+  plan.pass(name + ".sort.move", in.programs.compute(shaders::rays_sort_move))
+      .read(rays.count)
+      .read(rays.rays)
+      .read_write(places)
+      .write(sorted.rays)
+      .constants(constants)
+      .dispatch_indirect(rays.count, groups);
+  return sorted;
+}
+
+}  // namespace heliograph::render

@@ -1,0 +1,162 @@
+#include "render/passes/reference/reference.hpp"
+
+#include "render/passes/blend/blend_surfaces.hpp"
+#include "render/passes/rays/ray_stream.hpp"
+#include "shaders/embedded.hpp"
+#include "shaders/shared/ray.h"
+#include "shaders/shared/reference.h"
+
+namespace heliograph::render {
+namespace {
+
+constexpr std::uint32_t passed_layers = most_blended;  // that a path goes straight on through
+constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+
+auto constants(const FrameInputs& in, std::uint32_t round, std::uint32_t limit) {
+  return [&s = in.settings.specular, round, limit] {
+    const bool lamps = s.hit_shading == protocol::HitShading::traced;
+    return shared::ReferenceConstants{round, limit, lamps, s.enabled ? s.max_roughness : -1.0f};
+  };
+}
+
+/// Declares the passes of one sample in waves over all pixels.
+class Wavefront {
+ public:
+  Wavefront(gpu::FramePlan& plan, const FrameInputs& in)
+      : plan_(plan),
+        in_(in),
+        pixels_(plan.extent().width * plan.extent().height),
+        radiance_(plan.image("reference", VK_FORMAT_R32G32B32A32_SFLOAT)),
+        rays_(stream("reference.path")),
+        shadows_(stream("reference.shadows")),
+        paths_(buffer("reference.paths", sizeof(shared::ReferencePath))),
+        hits_(buffer("reference.hits", sizeof(shared::Hit))),
+        occluded_(buffer("reference.occluded", sizeof(std::uint32_t))) {}
+
+  gpu::ImageRef radiance() const { return radiance_; }
+
+  void begin() {
+    pass("reference.camera", shaders::reference_camera)
+        .write(rays_.count)
+        .write(rays_.rays)
+        .write(paths_)
+        .write(radiance_)
+        .dispatch(plan_.extent())
+        .describe("One path traced sample of this frame: linear radiance.");
+  }
+
+  /// The hybrid's paths: the surface in view, what it mirrors, and nothing beyond.
+  void same_paths() {
+    const tracing::RayStream ambient = stream("reference.ambient");
+    const tracing::RayStream mirrored = stream("reference.mirrored");
+    constexpr std::uint32_t rounds = 1 + passed_layers;
+    for (std::uint32_t round = 0; round < rounds; ++round) {
+      in_.tracer.trace_closest(plan_, "reference.trace", in_.structure, rays_, hits_);
+      pass("reference.primary", shaders::reference_primary)
+          .read_write(rays_.rays)
+          .read(hits_)
+          .read_write(paths_)
+          .write(shadows_.count)
+          .write(shadows_.rays)
+          .write(ambient.count)
+          .write(ambient.rays)
+          .write(mirrored.count)
+          .write(mirrored.rays)
+          .read_write(radiance_)
+          .constants(constants(in_, round, rounds))
+          .dispatch(plan_.extent());
+    }
+    add(shadows_);
+    add(ambient);
+    in_.tracer.trace_closest(plan_, "reference.trace", in_.structure, mirrored, hits_);
+    pass("reference.shade", shaders::reference_shade)
+        .read(mirrored.rays)
+        .read(hits_)
+        .read(paths_)
+        .write(shadows_.count)
+        .write(shadows_.rays)
+        .read_write(radiance_)
+        .constants(constants(in_, rounds, rounds))
+        .dispatch(plan_.extent());
+    add(shadows_);
+  }
+
+  void global_illumination(std::uint32_t bounces) {
+    const tracing::RayStream sky = stream("reference.sky");
+    const std::uint32_t rounds = 1 + bounces + passed_layers;
+    for (std::uint32_t round = 0; round < rounds; ++round) {
+      in_.tracer.trace_closest(plan_, "reference.trace", in_.structure, rays_, hits_);
+      pass("reference.bounce", shaders::reference_bounce)
+          .read_write(rays_.rays)
+          .read(hits_)
+          .read_write(paths_)
+          .write(shadows_.count)
+          .write(shadows_.rays)
+          .write(sky.count)
+          .write(sky.rays)
+          .read_write(radiance_)
+          .constants(constants(in_, round, bounces))
+          .dispatch(plan_.extent());
+      add(shadows_);
+      add(sky);
+    }
+  }
+
+ private:
+  gpu::PassBuilder pass(const std::string& name, const gpu::ShaderBinary& shader) {
+    return plan_.pass(name, in_.programs.compute(shader, in_.scene.features)).when([in = in_] {
+      return traces_reference(in);
+    });
+  }
+
+  gpu::BufferRef buffer(const std::string& name, std::size_t element) {
+    return plan_.buffer(name, element * pixels_, storage, gpu::Memory::device);
+  }
+
+  /// A ray of every pixel; without new rays the old ones are traced no more.
+  tracing::RayStream stream(const std::string& name) {
+    const tracing::RayStream made = declare_rays(plan_, name, pixels_);
+    begin_rays(plan_, in_, name, made);
+    return made;
+  }
+
+  void add(const tracing::RayStream& lights) {
+    in_.tracer.trace_any(plan_, "reference.occlusion", in_.structure, lights, occluded_);
+    pass("reference.add", shaders::reference_add)
+        .read(lights.rays)
+        .read(occluded_)
+        .read_write(radiance_)
+        .dispatch(plan_.extent());
+  }
+
+  gpu::FramePlan& plan_;
+  const FrameInputs& in_;
+  std::uint32_t pixels_;
+  gpu::ImageRef radiance_;
+  tracing::RayStream rays_;
+  tracing::RayStream shadows_;
+  gpu::BufferRef paths_;
+  gpu::BufferRef hits_;
+  gpu::BufferRef occluded_;
+};
+
+}  // namespace
+
+gpu::ImageRef trace_reference(gpu::FramePlan& plan, const FrameInputs& in) {
+  const protocol::Settings::Reference& settings = in.settings.reference;
+  Wavefront wavefront(plan, in);
+  wavefront.begin();
+  if (settings.scope == protocol::ReferenceScope::full) {
+    wavefront.global_illumination(static_cast<std::uint32_t>(settings.bounces));
+  } else {
+    wavefront.same_paths();
+  }
+  return wavefront.radiance();
+}
+
+bool traces_reference(const FrameInputs& in) {
+  return in.settings.reference.use == protocol::ReferenceUse::always || in.samples > 0 ||
+         in.settings.accumulation.handover == 0;
+}
+
+}  // namespace heliograph::render

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "gpu/frame_plan/frame_plan.hpp"
+
+namespace heliograph::render {
+
+struct FrameInputs;
+
+/// One sample per pixel of the truth, as settings.reference asks for it: the hybrid's own light
+/// paths or full global illumination, from the camera's ray on by nothing but traced rays. Its
+/// surfaces, lights, BRDF, camera and random numbers are the hybrid's; its code is not. Linear
+/// radiance; the mean over frames converges to the integral over the pixel.
+gpu::ImageRef trace_reference(gpu::FramePlan& plan, const FrameInputs& in);
+
+/// Whether this frame's sample is traced: not in the first frame after a change where the hybrid
+/// alone is shown.
+bool traces_reference(const FrameInputs& in);
+
+}  // namespace heliograph::render

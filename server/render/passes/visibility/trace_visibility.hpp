@@ -1,0 +1,14 @@
+#pragma once
+
+#include "render/passes/gbuffer/gbuffer.hpp"
+
+namespace heliograph::render {
+
+/// One shadow ray per pixel toward one light chosen by its unshadowed contribution. The result's
+/// expectation is sum(L V) / sum(L) over all lights, 0..1 (Heitz et al. 2018).
+gpu::ImageRef trace_shadows(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer);
+
+/// One cosine-distributed ray per pixel of limited length: 1 where the environment is open.
+gpu::ImageRef trace_ambient(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer);
+
+}  // namespace heliograph::render

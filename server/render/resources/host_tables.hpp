@@ -1,0 +1,111 @@
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "gpu/memory/image.hpp"
+#include "render/resources/texture_heap.hpp"
+#include "scene/environment.hpp"
+#include "shaders/shared/scene.h"
+#include "tracing/ray_tracer.hpp"
+
+namespace heliograph::render {
+class MovingScene;
+class SceneResources;
+}  // namespace heliograph::render
+
+/// Tables that shaders look up, as host kernels read them: copies where the device's own may lie
+/// anywhere, in an order that vectors of lanes gather from. 32-bit words throughout.
+namespace heliograph::render::host {
+
+/// A texture of a material, where it lies in the heap included.
+struct Slot {
+  glm::vec3 row0;  // of the transform
+  glm::vec3 row1;
+  float lod;  // that the texels of the image and the transform add
+  std::uint32_t uv_set;
+  std::uint32_t flags;  // texture_*, slot_*
+  std::uint32_t width;  // of the largest level
+  std::uint32_t height;
+  std::uint32_t levels;
+  std::uint32_t wrap_s;
+  std::uint32_t wrap_t;
+  std::uint32_t first_level;  // in LookupTables::levels
+  std::uint32_t padding;
+};
+
+inline constexpr std::uint32_t slot_used = 1u << 16;
+/// Reads the same texels as the slot in front of it.
+inline constexpr std::uint32_t slot_repeats = 1u << 17;
+
+struct Material {
+  glm::vec4 base_color;
+  glm::vec3 emissive;
+  float alpha_cutoff;
+  float metallic;
+  float roughness;
+  float normal_scale;
+  float occlusion_strength;
+  std::uint32_t flags;  // material_*
+  std::uint32_t uses;   // uses_*
+  std::array<std::uint32_t, 2> padding;
+  Slot base_color_slot;
+  Slot metallic_roughness_slot;
+  Slot occlusion_slot;  // after the one that it often shares its image with
+  Slot normal_slot;
+  Slot emissive_slot;
+};
+
+inline constexpr std::uint32_t uses_textures = 1u;
+inline constexpr std::uint32_t uses_second_uv = 2u;
+
+/// What surfaces are made of.
+struct MaterialTable {
+  std::vector<Material> materials;
+  std::vector<std::uint32_t> levels;  // first texel of every level of every texture
+};
+
+MaterialTable make_material_table(std::span<const shared::Material> materials,
+                                  std::span<const shared::HeapTexture> textures);
+
+/// The scene's tables in memory, and those made of them.
+struct SceneView {
+  const shared::Vertex* vertices;
+  const std::uint32_t* indices;
+  const shared::Mesh* meshes;
+  const shared::Instance* instances;
+  const Material* materials;
+  const std::uint32_t* levels;
+  const std::uint32_t* texels;
+  const shared::Vertex* previous_vertices;
+};
+
+/// `tables` and `moving` are the scene's in the pose of the frame.
+SceneView view_scene(const SceneResources& scene, const tracing::SceneTables& tables,
+                     const MovingScene& moving);
+
+/// A picture of `width` x `height` entries of some floats each, row by row.
+struct Table {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::vector<float> values;
+};
+
+/// What lights from afar.
+struct Environment {
+  Table map;  // equirectangular; three floats an entry
+  /// One level of the filtered cube: six faces of four floats a texel, each with a rim of its
+  /// neighbours' texels, so that filtering across edges needs no other face.
+  struct Level {
+    std::uint32_t size;   // without the rim
+    std::uint32_t first;  // float of `cube`
+  };
+  std::vector<Level> levels;
+  std::vector<float> cube;
+};
+
+Environment copy_environment(const scene::Environment& map, const gpu::Image& prefiltered);
+
+}  // namespace heliograph::render::host

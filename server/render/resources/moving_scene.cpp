@@ -1,0 +1,327 @@
+#include "render/resources/moving_scene.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "render/resources/light_table.hpp"
+#include "render/resources/placement.hpp"
+#include "scene/animation/deform.hpp"
+#include "scene/gltf/nodes/lights.hpp"
+
+namespace heliograph::render {
+namespace {
+
+template <typename Element>
+gpu::Buffer writable_table(const gpu::Device& device, const char* name,
+                           std::span<const Element> elements, VkBufferUsageFlags usage) {
+  gpu::Buffer table(device, name, elements.size_bytes(), usage, gpu::Memory::upload);
+  std::memcpy(table.mapped(), elements.data(), elements.size_bytes());
+  return table;
+}
+
+std::vector<shared::Vertex> all_vertices(const scene::Scene& scene) {
+  std::vector<shared::Vertex> vertices;
+  for (const scene::Mesh& mesh : scene.meshes) {
+    vertices.insert(vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+  }
+  return vertices;
+}
+
+}  // namespace
+
+/// What a scene with clips has for each renderer.
+struct MovingScene::Moving {
+  /// A mesh that deforms, on the processor.
+  struct Deforming {
+    std::vector<shared::Vertex> vertices;  // now
+    scene::Bounds bounds;
+    std::uint32_t mesh = 0;
+    std::size_t first_vertex = 0;     // in the table of all vertices
+    std::size_t previous_vertex = 0;  // in the table of vertices one frame ago
+    bool moved = false;               // by the last advance
+    bool moved_before = false;        // by the one before that
+  };
+
+  Moving(const gpu::Device& device, const SceneResources& rest);
+
+  /// Each brings one kind of thing to `pose`; true when anything is now, or was a frame ago,
+  /// elsewhere.
+  bool move_instances(const scene::Scene& scene, const scene::Pose& pose);
+  bool deform(const scene::Scene& scene, const scene::Pose& before, const scene::Pose& pose);
+  void move_draws(const scene::Scene& scene);
+  void update_structure();
+
+  std::vector<shared::Instance> instances;
+  std::vector<Draw> draws;
+  std::vector<std::uint32_t> draw_of;  // by instance
+  std::vector<Deforming> deforming;    // by deformation of the scene
+  std::vector<std::uint32_t> moved;    // instances that the last advance moved or brought to rest
+  std::vector<std::uint32_t> placed;   // those of them with a new matrix
+  std::vector<glm::mat4> worlds;       // by instance
+  std::vector<scene::Bounds> bounds;   // by mesh
+
+  gpu::Buffer instance_table;
+  gpu::Buffer vertex_table;  // empty when no mesh deforms
+  gpu::Buffer previous_table;
+  std::unique_ptr<tracing::MovingStructure> structure;
+
+  const scene::Clip* clip = nullptr;
+  double seconds = 0.0;
+  bool pose_is_new = false;
+  bool settled = true;  // nothing moved in the last advance
+};
+
+MovingScene::Moving::Moving(const gpu::Device& device, const SceneResources& rest)
+    : draws(rest.draws), draw_of(rest.scene->instances.size()) {
+  const scene::Scene& scene = *rest.scene;
+  for (const scene::Instance& instance : scene.instances) {
+    worlds.push_back(scene.nodes[instance.node].world);
+    instances.push_back(place_mesh(instance.mesh, worlds.back()));
+  }
+  for (const scene::Mesh& mesh : scene.meshes) bounds.push_back(mesh.bounds);
+  for (std::uint32_t i = 0; i < draws.size(); ++i) draw_of[draws[i].constants.instance] = i;
+  instance_table =
+      writable_table(device, "instances now", std::span<const shared::Instance>(instances),
+                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  if (scene.deformations.empty()) return;
+
+  std::vector<std::size_t> first_vertex;
+  std::size_t count = 0;
+  for (const scene::Mesh& mesh : scene.meshes) {
+    first_vertex.push_back(count);
+    count += mesh.vertices.size();
+  }
+  std::vector<shared::Vertex> previous;
+  for (const scene::Deformation& deformation : scene.deformations) {
+    const scene::Mesh& mesh = scene.meshes[deformation.mesh];
+    deforming.push_back({mesh.vertices, mesh.bounds, deformation.mesh,
+                         first_vertex[deformation.mesh], previous.size()});
+    previous.insert(previous.end(), mesh.vertices.begin(), mesh.vertices.end());
+  }
+  const std::vector<shared::Vertex> all = all_vertices(scene);
+  vertex_table =
+      writable_table(device, "vertices now", std::span(all),
+                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+  previous_table =
+      writable_table(device, "vertices before", std::span<const shared::Vertex>(previous),
+                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+  for (const Deforming& mesh : deforming) {
+    for (shared::Instance& instance : instances) {
+      if (instance.mesh != mesh.mesh) continue;
+      instance.previous_vertex = static_cast<std::uint32_t>(mesh.previous_vertex) + 1;
+    }
+  }
+  std::memcpy(instance_table.mapped(), instances.data(), std::span(instances).size_bytes());
+}
+
+bool MovingScene::Moving::move_instances(const scene::Scene& scene, const scene::Pose& pose) {
+  moved.clear();
+  placed.clear();
+  auto* const table = reinterpret_cast<shared::Instance*>(instance_table.mapped());
+  for (std::uint32_t i = 0; i < instances.size(); ++i) {
+    shared::Instance& instance = instances[i];
+    const glm::mat4& world = pose.worlds[scene.instances[i].node];
+    const bool moves = world != instance.world;
+    if (!moves && instance.previous_world == instance.world) continue;
+    move_instance(instance, world);
+    table[i] = instance;
+    moved.push_back(i);
+    if (!moves) continue;
+    placed.push_back(i);
+    worlds[i] = world;
+  }
+  return !moved.empty();
+}
+
+bool MovingScene::Moving::deform(const scene::Scene& scene, const scene::Pose& before,
+                                 const scene::Pose& pose) {
+  auto* const table = reinterpret_cast<shared::Vertex*>(vertex_table.mapped());
+  auto* const previous = reinterpret_cast<shared::Vertex*>(previous_table.mapped());
+  tbb::parallel_for(std::size_t(0), deforming.size(), [&](std::size_t i) {
+    const scene::Deformation& deformation = scene.deformations[i];
+    Deforming& mesh = deforming[i];
+    mesh.moved_before = mesh.moved;
+    mesh.moved = scene::shape_differs(scene, deformation, before, pose);
+    if (mesh.moved || mesh.moved_before) {
+      std::ranges::copy(mesh.vertices, previous + mesh.previous_vertex);
+    }
+    if (!mesh.moved) return;
+    mesh.bounds = scene::deform(scene, deformation, pose, mesh.vertices);
+    bounds[deformation.mesh] = mesh.bounds;
+    std::ranges::copy(mesh.vertices, table + mesh.first_vertex);
+  });
+  return std::ranges::any_of(deforming,
+                             [](const Deforming& mesh) { return mesh.moved || mesh.moved_before; });
+}
+
+void MovingScene::Moving::move_draws(const scene::Scene& scene) {
+  const auto move = [&](std::uint32_t instance) {
+    Draw& draw = draws[draw_of[instance]];
+    draw.constants = draw_constants(instances[instance], instance);
+    draw.flipped = instances[instance].flags & shared::instance_flipped;
+    draw.bounds = world_bounds(bounds[scene.instances[instance].mesh], worlds[instance]);
+  };
+  for (const std::uint32_t instance : moved) move(instance);
+  if (deforming.empty()) return;
+  for (std::uint32_t i = 0; i < instances.size(); ++i) {
+    if (draws[draw_of[i]].previous_vertex) move(i);
+  }
+}
+
+void MovingScene::Moving::update_structure() {
+  std::vector<tracing::Movement::Mesh> meshes;
+  for (const Deforming& mesh : deforming) {
+    if (mesh.moved) meshes.push_back({mesh.mesh, mesh.vertices, mesh.bounds});
+  }
+  structure->update({worlds, placed, meshes});
+}
+
+MovingScene::MovingScene(const gpu::Device& device, const tracing::RayTracer& tracer,
+                         std::shared_ptr<const SceneResources> rest)
+    : device_(device),
+      rest_(std::move(rest)),
+      environment_(rest_->environment),
+      pose_(scene::rest_pose(*rest_->scene)) {
+  for (const scene::Light& light : rest_->scene->lights) lights_at_rest_.push_back(light.device);
+  lights_ = lights_at_rest_;
+  previous_lights_ = lights_;
+  if (!rest_->scene->clips.empty()) {
+    moving_ = std::make_unique<Moving>(device, *rest_);
+    own_lights_ = make_light_table(device, lights_.size());
+    write_lights(own_lights_, lights_);
+  }
+  bind_tables();
+  if (!moving_) return;
+  moving_->structure = tracer.build_moving(rest_->rest_structure, *rest_->scene, *tables_);
+}
+
+MovingScene::~MovingScene() = default;
+
+void MovingScene::bind_tables() {
+  const tracing::SceneBuffers& shared = rest_->rest_tables;
+  tables_.emplace(tracing::SceneTables{
+      moving_ && moving_->vertex_table ? moving_->vertex_table : shared.vertices, shared.indices,
+      shared.meshes, moving_ ? moving_->instance_table : shared.instances,
+      changed_materials_ ? changed_materials_->table : shared.materials,
+      own_lights_ ? own_lights_ : shared.lights, shared.alpha_heap});
+}
+
+const host::MaterialTable& MovingScene::host_materials() const {
+  return changed_materials_ ? changed_materials_->host : rest_->host_materials;
+}
+
+const std::vector<VkDescriptorSet>& MovingScene::material_sets() const {
+  if (!changed_materials_) return rest_->material_sets().sets;
+  auto& [table, count, host, sets] = *changed_materials_;
+  if (!sets) {
+    const auto* const now = reinterpret_cast<const shared::Material*>(table.mapped());
+    sets = rest_->make_material_sets({now, count}, gpu::Memory::upload);
+  }
+  return sets->sets;
+}
+
+bool MovingScene::set_lights(std::span<const shared::Light> lights) {
+  lights_at_rest_.assign(lights.begin(), lights.end());
+  lights_are_new_ = true;
+  if (own_lights_) return false;
+  own_lights_ = make_light_table(device_, lights.size());
+  write_lights(own_lights_, lights_);
+  bind_tables();
+  return true;
+}
+
+bool MovingScene::set_materials(std::span<const shared::Material> materials) {
+  host::MaterialTable host;
+  if (device_.is_cpu()) host = rest_->make_host_materials(materials);
+  if (changed_materials_) {
+    std::memcpy(changed_materials_->table.mapped(), materials.data(), materials.size_bytes());
+    if (changed_materials_->sets) changed_materials_->sets->write(materials);
+    changed_materials_->host = std::move(host);
+    return false;
+  }
+  changed_materials_ = std::make_unique<ChangedMaterials>(ChangedMaterials{
+      writable_table(device_, "materials now", materials, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT),
+      materials.size(), std::move(host)});
+  bind_tables();
+  return true;
+}
+
+void MovingScene::set_environment(std::shared_ptr<const LitEnvironment> environment) {
+  environment_ = std::move(environment);
+}
+
+const tracing::AccelerationStructure& MovingScene::structure() const {
+  if (moving_) return *moving_->structure;
+  return *rest_->rest_structure;
+}
+
+const std::vector<Draw>& MovingScene::draws() const {
+  return moving_ ? moving_->draws : rest_->draws;
+}
+
+const gpu::Buffer& MovingScene::previous_vertices() const {
+  const bool deforms = moving_ && moving_->previous_table;
+  return deforms ? moving_->previous_table : rest_->rest_tables.vertices;
+}
+
+bool MovingScene::set_pose(const scene::Clip* clip, double seconds) {
+  if (!moving_ || (clip == moving_->clip && (!clip || seconds == moving_->seconds))) return false;
+  moving_->clip = clip;
+  moving_->seconds = seconds;
+  moving_->pose_is_new = true;
+  return true;
+}
+
+bool MovingScene::needs_advance() const {
+  return lights_are_new_ || (moving_ && (moving_->pose_is_new || !moving_->settled));
+}
+
+bool MovingScene::advance() {
+  previous_lights_ = lights_;
+  things_moved_ = false;
+  if (!needs_advance()) return false;
+  const scene::Pose before = pose_;
+  if (moving_) move_things(before);
+  const bool lights = move_lights(before);
+  return things_moved_ || lights;
+}
+
+void MovingScene::move_things(const scene::Pose& before) {
+  const scene::Scene& scene = *rest_->scene;
+  if (moving_->pose_is_new) {
+    if (moving_->clip) {
+      scene::evaluate(scene, *moving_->clip, moving_->seconds, pose_);
+    } else {
+      pose_ = scene::rest_pose(scene);
+    }
+  }
+  moving_->pose_is_new = false;
+  const bool instances = moving_->move_instances(scene, pose_);
+  const bool shapes = moving_->deform(scene, before, pose_);
+  moving_->move_draws(scene);
+  moving_->update_structure();
+  moving_->settled = moving_->placed.empty() &&
+                     std::ranges::none_of(moving_->deforming, &Moving::Deforming::moved);
+  things_moved_ = instances || shapes;
+}
+
+bool MovingScene::move_lights(const scene::Pose& before) {
+  const scene::Scene& scene = *rest_->scene;
+  bool any = lights_are_new_;
+  for (std::size_t i = 0; i < lights_.size(); ++i) {
+    const auto node = scene.lights[i].node;
+    const bool moves = node && before.worlds[*node] != pose_.worlds[*node];
+    if (!moves && !lights_are_new_) continue;
+    const bool carried = node && pose_.worlds[*node] != scene.nodes[*node].world;
+    const shared::Light& rest = lights_at_rest_[i];
+    lights_[i] = carried || moves ? scene::place_light(rest, pose_.worlds[*node]) : rest;
+    any = true;
+  }
+  lights_are_new_ = false;
+  if (any) write_lights(own_lights_, lights_);
+  return any;
+}
+
+}  // namespace heliograph::render

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "render/resources/scene_resources.hpp"
+#include "scene/animation/pose.hpp"
+#include "tracing/ray_tracer.hpp"
+
+namespace heliograph::render {
+
+/// A scene as one renderer sees it: the shared resources at rest, and over them what moves and what
+/// was changed. Several renderers may show one scene at different times and in different light.
+/// A scene without clips or changes costs nothing here.
+///
+/// What a pose changes, from one advance() to the next: matrices now and one frame ago in the table
+/// of instances, the vertices of meshes that deform (processor skinning, all cores), lights, the
+/// draw list and the acceleration structure. Buffers and structure keep their identity, so that
+/// plans stay valid.
+class MovingScene {
+ public:
+  MovingScene(const gpu::Device& device, const tracing::RayTracer& tracer,
+              std::shared_ptr<const SceneResources> rest);
+  ~MovingScene();
+
+  const SceneResources& rest() const { return *rest_; }
+  /// Every table as it is now; see tracing::SceneTables for how to read them.
+  const tracing::SceneTables& tables() const { return *tables_; }
+  const tracing::AccelerationStructure& structure() const;
+  /// Instances as the rasteriser draws them, in the order of SceneResources::draws.
+  const std::vector<Draw>& draws() const;
+  /// Vertices one frame ago of the meshes that deform; only where Draw::previous_vertex points.
+  const gpu::Buffer& previous_vertices() const;
+
+  /// As they are now, and as they were one frame ago; by light of the scene.
+  const std::vector<shared::Light>& lights() const { return lights_; }
+  const std::vector<shared::Light>& previous_lights() const { return previous_lights_; }
+
+  const LitEnvironment& environment() const { return *environment_; }
+  const host::MaterialTable& host_materials() const;
+  /// For the rasteriser; the first call may make them. Not while a frame runs.
+  const std::vector<VkDescriptorSet>& material_sets() const;
+
+  /// Other lights than the scene's, of the same number and kinds, where no clip moves them; from
+  /// the next advance() on. Never while a frame runs.
+  /// @return whether tables() changed: plans must be made anew
+  bool set_lights(std::span<const shared::Light> lights);
+  /// Other values for the scene's materials, with the same textures, alpha and flags, which rays
+  /// and draws go by. Never while a frame runs.
+  /// @return whether tables() changed: plans must be made anew
+  bool set_materials(std::span<const shared::Material> materials);
+  /// Another environment than the scene's own; plans must be made anew.
+  void set_environment(std::shared_ptr<const LitEnvironment> environment);
+
+  /// What the next advance() goes to: a clip of this scene at `seconds`, or rest when null.
+  /// @return whether that differs from where the scene is going already
+  bool set_pose(const scene::Clip* clip, double seconds);
+  /// Whether another advance() would change anything: a new pose, or motion that has ended but is
+  /// still the motion of the frame before.
+  bool needs_advance() const;
+  /// Goes on by one frame: what is current becomes previous, what was set becomes current. Never
+  /// while a frame runs.
+  /// @return whether anything differs from the frame before
+  bool advance();
+  /// Whether any shape is elsewhere than one frame ago.
+  bool things_moved() const { return things_moved_; }
+  /// Node -> world, as it is now.
+  const scene::Pose& pose() const { return pose_; }
+
+ private:
+  struct Moving;
+  struct ChangedMaterials {
+    gpu::Buffer table;  // shared::Material each, `count` of them
+    std::size_t count;
+    host::MaterialTable host;
+    std::optional<MaterialSets> sets = std::nullopt;  // once the rasteriser wanted them
+  };
+
+  void bind_tables();
+  void move_things(const scene::Pose& before);
+  bool move_lights(const scene::Pose& before);
+
+  const gpu::Device& device_;
+  std::shared_ptr<const SceneResources> rest_;
+  std::shared_ptr<const LitEnvironment> environment_;
+  std::unique_ptr<ChangedMaterials> changed_materials_;  // null: the scene's
+  std::vector<shared::Light> lights_at_rest_;
+  gpu::Buffer own_lights_;  // empty as long as they are the scene's and rest
+  bool lights_are_new_ = false;
+  scene::Pose pose_;
+  std::vector<shared::Light> lights_;
+  std::vector<shared::Light> previous_lights_;
+  bool things_moved_ = false;
+  std::unique_ptr<Moving> moving_;  // null for scenes without clips
+  std::optional<tracing::SceneTables> tables_;
+};
+
+}  // namespace heliograph::render

@@ -1,0 +1,370 @@
+#include "render/resources/scene_resources.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <future>
+#include <map>
+#include <tuple>
+
+#include "render/resources/light_table.hpp"
+#include "render/resources/placement.hpp"
+#include "scene/gltf/materials/images.hpp"
+#include "scene/gltf/materials/layer_table.hpp"
+#include "scene/image/mipmaps.hpp"
+#include "scene/import.hpp"
+
+namespace heliograph::render {
+namespace {
+
+void check_size(const gpu::Device& device, const char* name, std::uint64_t bytes) {
+  if (bytes <= device.limits().maxStorageBufferRange) return;
+  throw scene::ImportError("the scene's " + std::string(name) + " take " +
+                           std::to_string(bytes >> 20) + " MiB; this device binds at most " +
+                           std::to_string(device.limits().maxStorageBufferRange >> 20) + " MiB");
+}
+
+template <typename Element>
+gpu::Buffer upload(const gpu::Device& device, const char* name,
+                   const std::vector<Element>& elements, VkBufferUsageFlags usage = 0) {
+  const auto bytes = std::as_bytes(std::span(elements));
+  check_size(device, name, bytes.size());
+  return gpu::upload_buffer(device, name, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | usage);
+}
+
+/// One list of all meshes, one after the other, without a copy in between where the device's memory
+/// is ours.
+template <typename Element>
+gpu::Buffer upload_of_meshes(const gpu::Device& device, const char* name,
+                             const std::vector<scene::Mesh>& meshes,
+                             std::vector<Element> scene::Mesh::*list, VkBufferUsageFlags usage) {
+  std::size_t count = 0;
+  for (const scene::Mesh& mesh : meshes) count += (mesh.*list).size();
+  check_size(device, name, count * sizeof(Element));
+  const auto gather = [&](Element* to) {
+    for (const scene::Mesh& mesh : meshes) to = std::ranges::copy(mesh.*list, to).out;
+  };
+  usage |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  if (device.is_cpu()) {
+    gpu::Buffer buffer(device, name, count * sizeof(Element), usage, gpu::Memory::device);
+    gather(reinterpret_cast<Element*>(buffer.mapped()));
+    return buffer;
+  }
+  std::vector<Element> gathered(count);
+  gather(gathered.data());
+  return gpu::upload_buffer(device, name, std::as_bytes(std::span(gathered)), usage);
+}
+
+VkSamplerAddressMode address_mode(std::uint32_t wrap) {
+  switch (wrap) {
+    case shared::wrap_clamp:
+      return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    case shared::wrap_mirror:
+      return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
+    default:
+      return VK_SAMPLER_ADDRESS_MODE_REPEAT;
+  }
+}
+
+VkFilter filter(scene::Filter from) {
+  return from == scene::Filter::nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
+}
+
+VkSamplerCreateInfo sampler_info(const scene::Sampler& from) {
+  VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+  info.magFilter = filter(from.magnify);
+  info.minFilter = filter(from.minify);
+  info.mipmapMode = from.mip_filter == scene::Filter::nearest ? VK_SAMPLER_MIPMAP_MODE_NEAREST
+                                                              : VK_SAMPLER_MIPMAP_MODE_LINEAR;
+  info.addressModeU = address_mode(from.wrap_s);
+  info.addressModeV = address_mode(from.wrap_t);
+  info.addressModeW = VK_SAMPLER_ADDRESS_MODE_REPEAT;
+  info.maxLod = from.mipmapped ? VK_LOD_CLAMP_NONE : 0.25f;  // glTF without mipmaps: Vulkan's hint
+  return info;
+}
+
+gpu::Image constant_texture(const gpu::Device& device, const char* name,
+                            std::array<std::uint8_t, 4> texel) {
+  gpu::ImageDesc desc{.name = name, .extent = {1, 1}, .format = VK_FORMAT_R8G8B8A8_UNORM};
+  desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+  gpu::Image image(device, desc);
+  image.upload(std::as_bytes(std::span(texel)));
+  return image;
+}
+
+VkDeviceSize aligned(VkDeviceSize size, VkDeviceSize alignment) {
+  return (size + alignment - 1) / alignment * alignment;
+}
+
+/// Uniform blocks, `stride` bytes apart.
+template <typename Element>
+gpu::Buffer make_blocks(const gpu::Device& device, std::span<const Element> elements,
+                        VkDeviceSize stride, gpu::Memory memory) {
+  std::vector<std::byte> blocks(stride * elements.size());
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    std::memcpy(blocks.data() + i * stride, &elements[i], sizeof(Element));
+  }
+  constexpr auto usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
+  if (memory != gpu::Memory::upload) {
+    return gpu::upload_buffer(device, "material blocks", blocks, usage);
+  }
+  gpu::Buffer buffer(device, "material blocks", blocks.size(), usage, memory);
+  std::memcpy(buffer.mapped(), blocks.data(), blocks.size());
+  return buffer;
+}
+
+/// In the order of the shader's bindings.
+std::array<const shared::TextureSlot*, material_textures> slots_of(const shared::Material& m) {
+  return {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture,
+          &m.occlusion_texture, &m.emissive_texture};
+}
+
+std::array<const shared::TextureSlot*, shared::layer_textures> slots_of(
+    const shared::MaterialLayer& l) {
+  return {&l.specular_texture,        &l.specular_color_texture, &l.coat_texture,
+          &l.coat_roughness_texture,  &l.coat_normal_texture,    &l.sheen_color_texture,
+          &l.sheen_roughness_texture, &l.transmission_texture,   &l.thickness_texture};
+}
+
+gpu::Image make_texture(const gpu::Device& device, const scene::Image& from,
+                        std::span<const std::uint8_t> pixels) {
+  gpu::ImageDesc desc{.name = from.name.empty() ? "texture" : from.name};
+  desc.extent = {from.width, from.height};
+  desc.format = from.srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
+  desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+  desc.levels = from.levels;
+  gpu::Image image(device, desc);
+  image.upload(std::as_bytes(pixels));
+  return image;
+}
+
+}  // namespace
+
+SceneResources::SceneResources(const gpu::Device& device, const Programs& programs,
+                               std::shared_ptr<const scene::Scene> source,
+                               std::shared_ptr<const LitEnvironment> around,
+                               const tracing::RayTracer& tracer, const UploadProgress& progress,
+                               const ImageDone& image_done)
+    : scene(std::move(source)),
+      environment(std::move(around)),
+      device_(device),
+      programs_(programs),
+      white_(constant_texture(device, "white", {255, 255, 255, 255})),
+      flat_normal_(constant_texture(device, "flat normal", {128, 128, 255, 255})) {
+  progress("tables", 0.1f);
+  upload_tables(device);
+  make_samplers();
+  // Beside the textures, which one thread copies.
+  auto structure =
+      std::async(std::launch::async, [&] { return tracer.build(*scene, rest_tables); });
+  upload_textures(progress, image_done);
+  if (device.is_cpu()) {
+    host_materials = make_host_materials(scene->materials);
+  } else {
+    material_sets();
+  }
+  list_draws();
+  progress("acceleration structure", 0.5f);
+  rest_structure = structure.get();
+}
+
+std::uint64_t SceneResources::bytes() const {
+  std::uint64_t sum = rest_structure->bytes();
+  for (const gpu::Buffer* buffer :
+       {&rest_tables.vertices, &rest_tables.indices, &rest_tables.meshes, &rest_tables.instances,
+        &rest_tables.materials, &rest_tables.lights, &rest_tables.alpha_heap, &texture_heap.texels,
+        &texture_heap.textures, &layers}) {
+    sum += buffer->size();
+  }
+  const std::lock_guard lock(sampled_mutex_);
+  if (material_sets_) sum += material_sets_->blocks.size() + material_sets_->layer_blocks.size();
+  for (const gpu::Image& image : images_) {
+    const auto [width, height] = image.desc().extent;
+    sum += scene::mip_chain_bytes(width, height);
+  }
+  return sum;
+}
+
+void SceneResources::upload_tables(const gpu::Device& device) {
+  std::uint64_t vertices = 0, indices = 0;
+  for (const scene::Mesh& mesh : scene->meshes) {
+    meshes_.push_back({static_cast<std::uint32_t>(indices),
+                       static_cast<std::uint32_t>(mesh.indices.size()),
+                       static_cast<std::uint32_t>(vertices), mesh.material});
+    vertices += mesh.vertices.size();
+    indices += mesh.indices.size();
+  }
+  for (const scene::Instance& from : scene->instances) {
+    instances_.push_back(place_mesh(from.mesh, scene->nodes[from.node].world));
+  }
+  std::vector<shared::Light> lights;
+  for (const scene::Light& light : scene->lights) lights.push_back(light.device);
+
+  rest_tables.vertices = upload_of_meshes(device, "vertices", scene->meshes, &scene::Mesh::vertices,
+                                          VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+  rest_tables.indices = upload_of_meshes(device, "indices", scene->meshes, &scene::Mesh::indices,
+                                         VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+  rest_tables.meshes = upload(device, "meshes", meshes_);
+  rest_tables.instances = upload(device, "instances", instances_);
+  rest_tables.materials = upload(device, "materials", scene->materials);
+  const bool areas = std::any_of(lights.begin(), lights.end(), [](const shared::Light& light) {
+    return light.type >= shared::light_rectangle;
+  });
+  const auto& materials = scene->materials;
+  const bool blends =
+      std::any_of(materials.begin(), materials.end(), [](const shared::Material& material) {
+        return (material.flags & shared::material_alpha_blend) != 0;
+      });
+  features = (areas ? shared::scene_area_lights : 0u) |
+             (lights.size() > shared::uniform_lights ? shared::scene_many_lights : 0u) |
+             (scene->deformations.empty() ? 0u : shared::scene_deforms) |
+             (blends ? shared::scene_blends : 0u) |
+             (scene->layers.size() > 1 ? shared::scene_layers : 0u);
+  layers = upload(device, "material layers",
+                  scene->layers.empty() ? std::vector{scene::plain_layer()} : scene->layers);
+  rest_tables.lights = make_light_table(device, lights.size());
+  write_lights(rest_tables.lights, lights);
+  rest_tables.alpha_heap =
+      upload(device, "alpha masks", scene->alpha_heap, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+}
+
+void SceneResources::upload_textures(const UploadProgress& progress, const ImageDone& image_done) {
+  const auto& images = scene->images;
+  TextureHeapWriter heap(device_, *scene);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    progress("textures", 0.15f + 0.3f * static_cast<float>(i) / static_cast<float>(images.size()));
+    const scene::ImagePixels pixels(images[i]);
+    heap.add(i, pixels.get());
+    if (!device_.is_cpu()) images_.push_back(make_texture(device_, images[i], pixels.get()));
+    image_done(i);
+  }
+  texture_heap = heap.finish();
+}
+
+void SceneResources::make_missing_images() const {
+  while (images_.size() < scene->images.size()) {
+    const scene::Image& image = scene->images[images_.size()];
+    images_.push_back(make_texture(device_, image, scene::ImagePixels(image).get()));
+  }
+}
+
+void SceneResources::make_samplers() {
+  std::vector<scene::Sampler> known;
+  for (const scene::Texture& texture : scene->textures) {
+    const auto found = std::find(known.begin(), known.end(), texture.sampler);
+    texture_sampler_.push_back(static_cast<std::uint32_t>(found - known.begin()));
+    if (found != known.end()) continue;
+    known.push_back(texture.sampler);
+    samplers_.emplace_back(device_, sampler_info(texture.sampler));
+  }
+  samplers_.emplace_back(device_, sampler_info({}));  // for slots without a texture
+}
+
+host::MaterialTable SceneResources::make_host_materials(
+    std::span<const shared::Material> materials) const {
+  const auto* const textures =
+      reinterpret_cast<const shared::HeapTexture*>(texture_heap.textures.mapped());
+  return host::make_material_table(materials, {textures, scene->textures.size()});
+}
+
+void MaterialSets::write(std::span<const shared::Material> materials) const {
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    std::memcpy(blocks.mapped() + i * stride, &materials[i], sizeof(shared::Material));
+  }
+}
+
+const MaterialSets& SceneResources::material_sets() const {
+  {
+    const std::lock_guard lock(sampled_mutex_);
+    if (material_sets_) return *material_sets_;
+  }
+  MaterialSets made = make_material_sets(scene->materials, gpu::Memory::device);
+  const std::lock_guard lock(sampled_mutex_);
+  if (!material_sets_) material_sets_ = std::move(made);
+  return *material_sets_;
+}
+
+void SceneResources::write_slots(gpu::DescriptorWriter& writer, std::uint32_t first_binding,
+                                 std::span<const shared::TextureSlot* const> slots,
+                                 const shared::TextureSlot* normal) const {
+  for (std::uint32_t i = 0; i < slots.size(); ++i) {
+    const std::uint32_t texture = slots[i]->texture;
+    if (texture == shared::no_texture) {
+      const gpu::Image& constant = slots[i] == normal ? flat_normal_ : white_;
+      writer.sampled_image(first_binding + i, constant.view(), samplers_.back().handle());
+    } else {
+      writer.sampled_image(first_binding + i, images_[scene->textures[texture].image].view(),
+                           samplers_[texture_sampler_[texture]].handle());
+    }
+  }
+}
+
+MaterialSets SceneResources::make_material_sets(std::span<const shared::Material> materials,
+                                                gpu::Memory memory) const {
+  const std::lock_guard lock(sampled_mutex_);
+  make_missing_images();
+  const bool layered = (features & shared::scene_layers) != 0;
+  MaterialSets made;
+  const auto count = static_cast<std::uint32_t>(materials.size());
+  constexpr std::uint32_t most_textures = material_textures + shared::layer_textures;
+  made.pool = std::make_unique<gpu::DescriptorPool>(device_, count, count * most_textures);
+  const VkDeviceSize alignment = device_.limits().minUniformBufferOffsetAlignment;
+  made.stride = aligned(sizeof(shared::Material), alignment);
+  made.blocks = make_blocks(device_, materials, made.stride, memory);
+  const VkDeviceSize layer_stride = aligned(sizeof(shared::MaterialLayer), alignment);
+  if (layered) {
+    made.layer_blocks =
+        make_blocks(device_, std::span(scene->layers), layer_stride, gpu::Memory::device);
+  }
+  for (const shared::Material& material : materials) {
+    const VkDescriptorSet set = made.pool->allocate(programs_.material_layout(layered).handle());
+    gpu::DescriptorWriter writer(device_, set);
+    write_slots(writer, 0, slots_of(material), &material.normal_texture);
+    constexpr auto uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    writer.buffer(material_textures, uniform, made.blocks.handle(), made.sets.size() * made.stride,
+                  sizeof(shared::Material));
+    if (layered) {
+      const shared::MaterialLayer& layer = scene->layers[material.layer];
+      write_slots(writer, material_textures + 1, slots_of(layer), &layer.coat_normal_texture);
+      writer.buffer(most_textures + 1, uniform, made.layer_blocks.handle(),
+                    material.layer * layer_stride, sizeof(shared::MaterialLayer));
+    }
+    writer.apply();
+    made.sets.push_back(set);
+  }
+  return made;
+}
+
+void SceneResources::list_draws() {
+  std::map<std::uint32_t, std::uint32_t> previous_vertices;  // by mesh that deforms
+  for (const scene::Deformation& deformation : scene->deformations) {
+    previous_vertices[deformation.mesh] = deforming_vertices;
+    deforming_vertices +=
+        static_cast<std::uint32_t>(scene->meshes[deformation.mesh].vertices.size());
+  }
+  for (std::uint32_t i = 0; i < scene->instances.size(); ++i) {
+    const scene::Instance& instance = scene->instances[i];
+    const shared::Mesh& mesh = meshes_[instance.mesh];
+    const std::uint32_t flags = scene->materials[mesh.material].flags;
+    Draw draw{};
+    draw.constants = draw_constants(instances_[i], i);
+    draw.material = mesh.material;
+    draw.first_index = mesh.first_index;
+    draw.index_count = mesh.index_count;
+    draw.first_vertex = mesh.first_vertex;
+    const auto previous = previous_vertices.find(instance.mesh);
+    if (previous != previous_vertices.end()) draw.previous_vertex = previous->second;
+    draw.masked = flags & (shared::material_alpha_mask | shared::material_alpha_blend);
+    draw.double_sided = flags & shared::material_double_sided;
+    draw.flipped = instances_[i].flags & shared::instance_flipped;
+    draw.bounds =
+        world_bounds(scene->meshes[instance.mesh].bounds, scene->nodes[instance.node].world);
+    draws.push_back(draw);
+  }
+  std::sort(draws.begin(), draws.end(), [](const Draw& a, const Draw& b) {
+    return std::tie(a.masked, a.material, a.first_index, a.constants.instance) <
+           std::tie(b.masked, b.material, b.first_index, b.constants.instance);
+  });
+}
+
+}  // namespace heliograph::render

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "render/api/engine.hpp"
+#include "render/resources/environment/lit_environment.hpp"
+#include "render/resources/host_tables.hpp"
+#include "render/resources/texture_heap.hpp"
+#include "tracing/ray_tracer.hpp"
+
+namespace heliograph::render {
+
+/// One instance as the rasteriser draws it.
+struct Draw {
+  shared::DrawConstants constants;
+  std::uint32_t material;
+  std::uint32_t first_index;
+  std::uint32_t index_count;
+  std::uint32_t first_vertex;
+  // Where its vertices of the frame before start among those of all meshes that deform.
+  std::optional<std::uint32_t> previous_vertex;
+  bool masked;  // alpha mask or blend: the program that discards
+  bool double_sided;
+  bool flipped;
+  scene::Bounds bounds;  // world
+};
+
+/// Materials as the rasteriser reads them: a uniform block and a descriptor set each.
+struct MaterialSets {
+  gpu::Buffer blocks;        // shared::Material each, `stride` bytes apart
+  gpu::Buffer layer_blocks;  // shared::MaterialLayer each likewise, in scenes with layers
+  VkDeviceSize stride = 0;
+  std::unique_ptr<gpu::DescriptorPool> pool;
+  std::vector<VkDescriptorSet> sets;
+
+  /// Never while a frame runs; only where the blocks are memory that the host reaches.
+  void write(std::span<const shared::Material> materials) const;
+};
+
+/// Told of every image whose pixels are not needed any more.
+using ImageDone = std::function<void(std::size_t image)>;
+
+class SceneResources {
+ public:
+  SceneResources(const gpu::Device& device, const Programs& programs,
+                 std::shared_ptr<const scene::Scene> scene,
+                 std::shared_ptr<const LitEnvironment> environment,
+                 const tracing::RayTracer& tracer, const UploadProgress& progress,
+                 const ImageDone& image_done);
+
+  /// Memory of tables, images and the acceleration structure.
+  std::uint64_t bytes() const;
+
+  std::shared_ptr<const scene::Scene> scene;
+  tracing::SceneBuffers rest_tables;
+  std::shared_ptr<const tracing::AccelerationStructure> rest_structure;
+  std::shared_ptr<const LitEnvironment> environment;
+  TextureHeap texture_heap;
+  gpu::Buffer layers;                  // shared::MaterialLayer each
+  host::MaterialTable host_materials;  // on devices that are processors
+  std::uint32_t features = 0;          // shared::scene_*
+  std::vector<Draw> draws;             // opaque first, then by material
+  std::uint32_t deforming_vertices = 0;
+
+  /// What the rasteriser reads. On processors, where rays find most G-buffers, images that samplers
+  /// read are made at the first call of either: they take as much memory as the heap. Thread safe.
+  const MaterialSets& material_sets() const;
+  /// Other values for the scene's materials, with its textures. The host's only on processors.
+  MaterialSets make_material_sets(std::span<const shared::Material> materials,
+                                  gpu::Memory memory) const;
+  host::MaterialTable make_host_materials(std::span<const shared::Material> materials) const;
+
+ private:
+  void upload_tables(const gpu::Device& device);
+  void upload_textures(const UploadProgress& progress, const ImageDone& image_done);
+  void make_samplers();
+  void list_draws();
+  void make_missing_images() const;
+
+  void write_slots(gpu::DescriptorWriter& writer, std::uint32_t first_binding,
+                   std::span<const shared::TextureSlot* const> slots,
+                   const shared::TextureSlot* normal) const;
+
+  const gpu::Device& device_;
+  const Programs& programs_;
+  std::vector<shared::Mesh> meshes_;
+  std::vector<shared::Instance> instances_;
+  mutable std::mutex sampled_mutex_;        // guards the two below
+  mutable std::vector<gpu::Image> images_;  // of the scene, as far as they are made
+  mutable std::optional<MaterialSets> material_sets_;
+  gpu::Image white_;
+  gpu::Image flat_normal_;
+  std::vector<gpu::Sampler> samplers_;
+  std::vector<std::uint32_t> texture_sampler_;  // by texture, into samplers_
+};
+
+}  // namespace heliograph::render

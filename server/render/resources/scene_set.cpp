@@ -1,0 +1,28 @@
+#include "render/resources/scene_set.hpp"
+
+namespace heliograph::render {
+
+std::vector<gpu::DescriptorLayout::Binding> scene_bindings() {
+  return {{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},       {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+          {2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},       {3, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+          {4, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},       {5, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+          {6, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER}, {7, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+}
+
+void write_scene_set(const gpu::Device& device, VkDescriptorSet set,
+                     const tracing::SceneTables& tables, const TextureHeap& heap,
+                     const gpu::Buffer& layers) {
+  constexpr auto storage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  gpu::DescriptorWriter(device, set)
+      .buffer(0, storage, tables.vertices.handle())
+      .buffer(1, storage, tables.indices.handle())
+      .buffer(2, storage, tables.meshes.handle())
+      .buffer(3, storage, tables.instances.handle())
+      .buffer(4, storage, tables.materials.handle())
+      .buffer(5, storage, heap.textures.handle())
+      .texel_buffer(6, heap.texels.texel_view(VK_FORMAT_R32_UINT))
+      .buffer(7, storage, layers.handle())
+      .apply();
+}
+
+}  // namespace heliograph::render

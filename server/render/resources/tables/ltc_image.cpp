@@ -1,0 +1,19 @@
+#include <glm/gtc/packing.hpp>
+#include <vector>
+
+#include "render/resources/tables/ltc_table.hpp"
+
+namespace heliograph::render {
+
+gpu::Image make_ltc_image(const gpu::Device& device) {
+  std::vector<glm::vec4> texels;
+  for (const std::uint64_t packed : ltc_table) texels.push_back(glm::unpackHalf4x16(packed));
+  gpu::ImageDesc desc{.name = "linearly transformed cosines"};
+  desc.extent = {ltc_table_size, ltc_table_size};
+  desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+  gpu::Image image(device, desc);
+  image.upload(std::as_bytes(std::span(texels)));
+  return image;
+}
+
+}  // namespace heliograph::render

@@ -1,0 +1,121 @@
+#include "render/resources/texture_heap.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace heliograph::render {
+namespace {
+
+constexpr std::uint32_t largest_side = 1024;
+constexpr VkBufferUsageFlags texel_usage = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
+
+std::uint32_t side(std::uint32_t size, std::uint32_t level) {
+  return std::max(size >> level, 1u);
+}
+
+std::uint64_t texels(const scene::Image& image, std::uint32_t first, std::uint32_t last) {
+  std::uint64_t sum = 0;
+  for (std::uint32_t level = first; level < last; ++level) {
+    sum += std::uint64_t{side(image.width, level)} * side(image.height, level);
+  }
+  return sum;
+}
+
+/// The first level no side of which is longer than `longest`; the last where none is short enough.
+std::uint32_t first_level(const scene::Image& image, std::uint32_t longest) {
+  std::uint32_t level = 0;
+  while (level + 1 < image.levels &&
+         std::max(side(image.width, level), side(image.height, level)) > longest) {
+    ++level;
+  }
+  return level;
+}
+
+std::uint32_t longest_side_that_fits(const scene::Scene& scene, std::uint64_t most_texels) {
+  for (std::uint32_t longest = largest_side; longest > 1; longest /= 2) {
+    std::uint64_t sum = 0;
+    for (const scene::Image& image : scene.images) {
+      sum += texels(image, first_level(image, longest), image.levels);
+    }
+    if (sum <= most_texels) return longest;
+  }
+  throw gpu::GpuError("the scene's " + std::to_string(scene.images.size()) +
+                      " images do not fit into one buffer of this device, which holds " +
+                      std::to_string(most_texels) + " texels");
+}
+
+std::uint32_t flags(const scene::Image& image, const scene::Sampler& sampler) {
+  const auto bit = [](bool on, std::uint32_t flag) { return on ? flag : 0u; };
+  return bit(image.srgb, shared::texture_srgb) |
+         bit(sampler.magnify == scene::Filter::nearest, shared::texture_magnify_nearest) |
+         bit(sampler.minify == scene::Filter::nearest, shared::texture_minify_nearest) |
+         bit(sampler.mip_filter == scene::Filter::nearest, shared::texture_levels_nearest);
+}
+
+void copy_texels(const HeapPlan::Place& place, std::span<const std::uint8_t> pixels,
+                 std::uint32_t* heap) {
+  std::memcpy(heap + place.first, &pixels[place.skipped * 4], place.kept * 4);
+}
+
+}  // namespace
+
+HeapPlan plan_heap(const scene::Scene& scene, std::uint64_t most_texels) {
+  const std::uint32_t longest = longest_side_that_fits(scene, most_texels);
+  HeapPlan plan;
+  for (const scene::Image& image : scene.images) {
+    const std::uint32_t level = first_level(image, longest);
+    plan.places.push_back(
+        {texels(image, 0, level), texels(image, level, image.levels), plan.texels});
+    plan.texels += plan.places.back().kept;
+  }
+  for (const scene::Texture& texture : scene.textures) {
+    const scene::Image& image = scene.images[texture.image];
+    const std::uint32_t level = first_level(image, longest);
+    shared::HeapTexture entry{};
+    entry.first_texel = static_cast<std::uint32_t>(plan.places[texture.image].first);
+    entry.width = side(image.width, level);
+    entry.height = side(image.height, level);
+    entry.levels = texture.sampler.mipmapped ? image.levels - level : 1;
+    entry.wrap_s = texture.sampler.wrap_s;
+    entry.wrap_t = texture.sampler.wrap_t;
+    entry.flags = flags(image, texture.sampler);
+    plan.textures.push_back(entry);
+  }
+  return plan;
+}
+
+PackedTextures pack_textures(const scene::Scene& scene, std::uint64_t most_texels) {
+  HeapPlan plan = plan_heap(scene, most_texels);
+  PackedTextures packed{std::vector<std::uint32_t>(plan.texels), std::move(plan.textures)};
+  for (std::size_t i = 0; i < scene.images.size(); ++i) {
+    copy_texels(plan.places[i], scene.images[i].pixels, packed.texels.data());
+  }
+  return packed;
+}
+
+TextureHeapWriter::TextureHeapWriter(const gpu::Device& device, const scene::Scene& scene)
+    : device_(device), plan_(plan_heap(scene, device.limits().maxTexelBufferElements)) {
+  if (device.is_cpu()) {
+    texels_ =
+        gpu::Buffer(device, "texture heap", 4 * plan_.texels, texel_usage, gpu::Memory::device);
+  } else {
+    gathered_.resize(plan_.texels);
+  }
+}
+
+void TextureHeapWriter::add(std::size_t image, std::span<const std::uint8_t> pixels) {
+  copy_texels(plan_.places[image], pixels,
+              texels_ ? reinterpret_cast<std::uint32_t*>(texels_.mapped()) : gathered_.data());
+}
+
+TextureHeap TextureHeapWriter::finish() {
+  if (!texels_) {
+    texels_ = gpu::upload_buffer(device_, "texture heap", std::as_bytes(std::span(gathered_)),
+                                 texel_usage);
+  }
+  return {std::move(texels_),
+          gpu::upload_buffer(device_, "textures", std::as_bytes(std::span(plan_.textures)),
+                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT)};
+}
+
+}  // namespace heliograph::render

@@ -1,0 +1,62 @@
+#include "scene/gltf/document/scene_choice.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+#include "scene/import_error.hpp"
+#include "scene/quote.hpp"
+
+namespace heliograph::scene {
+namespace {
+
+std::optional<std::uint32_t> place_of(const std::vector<std::string>& names,
+                                      const std::string& wanted) {
+  const auto found = std::find(names.begin(), names.end(), wanted);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<std::uint32_t>(found - names.begin());
+}
+
+std::optional<std::uint32_t> number_below(std::size_t count, const std::string& text) {
+  std::uint32_t number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc() || stop != end || number >= count) return std::nullopt;
+  return number;
+}
+
+}  // namespace
+
+NoSuchChoice::NoSuchChoice(std::string member, const std::string& wanted,
+                           std::vector<std::string> names)
+    : ImportError("the file has no " + member + " " + in_quotes(wanted)),
+      member_(std::move(member)),
+      names_(std::move(names)) {}
+
+std::vector<std::string> read_scene_names(const JsonValue& root) {
+  std::vector<std::string> names;
+  for (const JsonValue& scene : root.objects("scenes")) names.push_back(scene.text("name"));
+  return names;
+}
+
+std::optional<std::uint32_t> choose_scene(const JsonValue& root, const std::string& wanted) {
+  const std::vector<std::string> names = read_scene_names(root);
+  const auto shown = root.index("scene", names.size(), "scenes");
+  if (!wanted.empty()) {
+    auto chosen = place_of(names, wanted);
+    if (!chosen) chosen = number_below(names.size(), wanted);
+    if (!chosen) throw NoSuchChoice("scene", wanted, names);
+    return chosen;
+  }
+  if (names.empty()) return std::nullopt;
+  return shown.value_or(0);
+}
+
+std::optional<std::uint32_t> choose_variant(const std::vector<std::string>& variants,
+                                            const std::string& wanted) {
+  if (wanted.empty()) return std::nullopt;
+  const auto chosen = place_of(variants, wanted);
+  if (!chosen) throw NoSuchChoice("variant", wanted, variants);
+  return chosen;
+}
+
+}  // namespace heliograph::scene

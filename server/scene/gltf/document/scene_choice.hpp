@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/gltf/document/json_value.hpp"
+
+namespace heliograph::scene {
+
+/// The names of the document's scenes, empty where one has none.
+std::vector<std::string> read_scene_names(const JsonValue& root);
+
+/// The scene called `wanted`, or of that number; the document's default when `wanted` is empty.
+/// Nothing when the document has no scenes. @throws NoSuchChoice, ImportError
+std::optional<std::uint32_t> choose_scene(const JsonValue& root, const std::string& wanted);
+
+/// The place of `wanted` among the names of variants; nothing when `wanted` is empty.
+/// @throws NoSuchChoice
+std::optional<std::uint32_t> choose_variant(const std::vector<std::string>& variants,
+                                            const std::string& wanted);
+
+}  // namespace heliograph::scene

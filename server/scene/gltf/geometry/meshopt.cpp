@@ -1,0 +1,121 @@
+#include "scene/gltf/geometry/meshopt.hpp"
+
+#include <meshoptimizer.h>
+
+#include <string>
+
+#include "scene/import_error.hpp"
+#include "scene/quote.hpp"
+
+namespace heliograph::scene {
+namespace {
+
+enum class Mode { attributes, triangles, indices };
+enum class Filter { none, octahedral, quaternion, exponential };
+
+struct Layout {
+  Mode mode = Mode::attributes;
+  Filter filter = Filter::none;
+  std::size_t count = 0;
+  std::size_t stride = 0;  // bytes
+};
+
+Mode read_mode(const JsonValue& packed) {
+  const std::string name = packed.text("mode");
+  if (name == "ATTRIBUTES") return Mode::attributes;
+  if (name == "TRIANGLES") return Mode::triangles;
+  if (name == "INDICES") return Mode::indices;
+  packed.refuse("mode", in_quotes(name) + " is not ATTRIBUTES, TRIANGLES or INDICES");
+}
+
+Filter read_filter(const JsonValue& packed) {
+  const std::string name = packed.text("filter");
+  if (name.empty() || name == "NONE") return Filter::none;
+  if (name == "OCTAHEDRAL") return Filter::octahedral;
+  if (name == "QUATERNION") return Filter::quaternion;
+  if (name == "EXPONENTIAL") return Filter::exponential;
+  packed.refuse("filter", in_quotes(name) + " is not a filter");
+}
+
+// The decoders take these for granted.
+void check_stride(const JsonValue& packed, const Layout& layout) {
+  const std::size_t stride = layout.stride;
+  if (layout.mode != Mode::attributes) {
+    if (stride != 2 && stride != 4) packed.refuse("byteStride", "must be 2 or 4 for indices");
+    if (layout.filter != Filter::none) packed.refuse("filter", "is for attributes only");
+    return;
+  }
+  if (stride < 4 || stride > 256 || stride % 4 != 0) {
+    packed.refuse("byteStride", "must be a multiple of 4 from 4 to 256");
+  }
+  if (layout.filter == Filter::octahedral && stride != 4 && stride != 8) {
+    packed.refuse("byteStride", "must be 4 or 8 for the octahedral filter");
+  }
+  if (layout.filter == Filter::quaternion && stride != 8) {
+    packed.refuse("byteStride", "must be 8 for the quaternion filter");
+  }
+}
+
+Layout read_layout(const JsonValue& packed, std::uint64_t length, std::uint64_t budget) {
+  Layout layout;
+  layout.mode = read_mode(packed);
+  layout.filter = read_filter(packed);
+  const std::uint64_t stride = packed.required_integer("byteStride");
+  const std::uint64_t count = packed.required_integer("count");
+  if (stride > 256) packed.refuse("byteStride", "must be at most 256");
+  layout.stride = stride;
+  check_stride(packed, layout);
+  if (count == 0) packed.refuse("count", "must be at least 1");
+  if (count > budget / stride) {
+    packed.refuse("count", "unpacks to more bytes than the limit for the whole file");
+  }
+  if (count * stride != length) {
+    packed.refuse("count", "times byteStride is not the byteLength of the buffer view");
+  }
+  if (layout.mode == Mode::triangles && count % 3 != 0) {
+    packed.refuse("count", "is not a whole number of triangles");
+  }
+  layout.count = count;
+  return layout;
+}
+
+bool decode(const Layout& layout, std::span<const std::uint8_t> source, std::uint8_t* target) {
+  const auto [mode, filter, count, stride] = layout;
+  switch (mode) {
+    case Mode::attributes:
+      return meshopt_decodeVertexBuffer(target, count, stride, source.data(), source.size()) == 0;
+    case Mode::triangles:
+      return meshopt_decodeIndexBuffer(target, count, stride, source.data(), source.size()) == 0;
+    case Mode::indices:
+      return meshopt_decodeIndexSequence(target, count, stride, source.data(), source.size()) == 0;
+  }
+  return false;
+}
+
+void apply_filter(const Layout& layout, std::uint8_t* bytes) {
+  switch (layout.filter) {
+    case Filter::none:
+      return;
+    case Filter::octahedral:
+      return meshopt_decodeFilterOct(bytes, layout.count, layout.stride);
+    case Filter::quaternion:
+      return meshopt_decodeFilterQuat(bytes, layout.count, layout.stride);
+    case Filter::exponential:
+      return meshopt_decodeFilterExp(bytes, layout.count, layout.stride);
+  }
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> unpack_meshopt(const JsonValue& packed,
+                                         std::span<const std::uint8_t> source, std::uint64_t length,
+                                         std::uint64_t& budget) {
+  const Layout layout = read_layout(packed, length, budget);
+  budget -= length;
+  std::vector<std::uint8_t> bytes(length);
+  if (!decode(layout, source, bytes.data())) packed.refuse("holds damaged data");
+  apply_filter(layout, bytes.data());
+  return bytes;
+}
+
+}  // namespace heliograph::scene

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/byte_budget.hpp"
+#include "scene/gltf/document/accessors.hpp"
+#include "scene/gltf/document/gltf_file.hpp"
+#include "scene/warnings.hpp"
+
+namespace heliograph::scene {
+
+/// Geometry as KHR_draco_mesh_compression holds it.
+struct DracoGeometry {
+  std::string path;  // for errors: "meshes[0].primitives[1].extensions.KHR_draco_mesh_compression"
+  std::span<const std::uint8_t> bytes;
+  std::map<std::string, std::uint32_t, std::less<>> attributes;  // name -> id in the stream
+};
+
+/// One triangle primitive of the document: which accessors it is made of, types and counts checked.
+struct Primitive {
+  enum class Mode { triangles = 4, strip = 5, fan = 6 };
+
+  /// What a morph target changes.
+  struct Target {
+    std::optional<std::uint32_t> position;
+    std::optional<std::uint32_t> normal;
+    std::optional<std::uint32_t> tangent;
+  };
+
+  std::string name;
+  Mode mode = Mode::triangles;
+  std::uint32_t position = 0;
+  std::optional<std::uint32_t> normal;
+  std::optional<std::uint32_t> tangent;
+  std::array<std::optional<std::uint32_t>, 2> uv;
+  std::optional<std::uint32_t> color;
+  std::optional<std::uint32_t> indices;
+  std::optional<std::uint32_t> material;
+  std::array<std::optional<std::uint32_t>, 2> joints;  // both or none of a set with its weights
+  std::array<std::optional<std::uint32_t>, 2> weights;
+  std::vector<Target> targets;
+  std::optional<DracoGeometry> draco;  // what takes the place of the accessors' bytes
+
+  /// Calls `visit(name, accessor)` for each attribute there is, by its name in the document.
+  template <typename Visit>
+  void for_each_attribute(const Visit& visit) {
+    visit("POSITION", position);
+    if (normal) visit("NORMAL", *normal);
+    if (tangent) visit("TANGENT", *tangent);
+    if (color) visit("COLOR_0", *color);
+    for (std::size_t set = 0; set < uv.size(); ++set) {
+      const std::string number = std::to_string(set);
+      if (uv[set]) visit("TEXCOORD_" + number, *uv[set]);
+      if (joints[set]) visit("JOINTS_" + number, *joints[set]);
+      if (weights[set]) visit("WEIGHTS_" + number, *weights[set]);
+    }
+  }
+
+  bool deforms() const { return joints[0] || !targets.empty(); }
+};
+
+/// All primitives that have triangles, and which of them make up each mesh of the document.
+struct PrimitiveTable {
+  std::vector<Primitive> primitives;
+  std::vector<std::vector<std::uint32_t>> of_mesh;
+};
+
+/// Points and lines are left out with a warning. Materials are those of `variant`, where there is
+/// one. What the others will take once read is taken from
+/// `budget`.
+/// @throws ImportError
+PrimitiveTable read_primitives(const GltfFile& file, std::span<const Accessor> accessors,
+                               std::size_t material_count, std::optional<std::uint32_t> variant,
+                               const ImportLimits& limits, ByteBudget& budget, Warnings& warnings);
+
+}  // namespace heliograph::scene

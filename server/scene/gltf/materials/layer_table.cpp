@@ -1,0 +1,132 @@
+#include "scene/gltf/materials/layer_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace heliograph::scene {
+namespace {
+
+// The least part of a see-through surface that stops rays: what it mirrors must fit in.
+constexpr float least_coverage = 0.08f;
+
+bool same(const shared::MaterialLayer& a, const shared::MaterialLayer& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+/// Reflectance of a boundary toward air, head on. An index of 0 mirrors everything (the extension's
+/// way to say specular-glossiness).
+float reflectance_of(float ior) {
+  const float ratio = (ior - 1.0f) / (ior + 1.0f);
+  return ior == 0.0f ? 1.0f : ratio * ratio;
+}
+
+float luminance(const glm::vec3& color) {
+  return glm::dot(color, glm::vec3(0.2126f, 0.7152f, 0.0722f));
+}
+
+/// The mean of a slot's texels, linear: that of its smallest level. White where there is no
+/// texture.
+glm::vec3 mean_texel(const Scene& scene, const shared::TextureSlot& slot) {
+  if (slot.texture == shared::no_texture) return glm::vec3(1.0f);
+  const Image& image = scene.images[scene.textures[slot.texture].image];
+  const std::size_t width = std::max(image.width >> (image.levels - 1), 1u);
+  const std::size_t count = width * std::max(image.height >> (image.levels - 1), 1u);
+  glm::vec3 sum(0.0f);
+  for (std::size_t i = image.pixels.size() - 4 * count; i < image.pixels.size(); i += 4) {
+    const glm::vec3 texel = glm::vec3(image.pixels[i], image.pixels[i + 1], image.pixels[i + 2]);
+    sum += image.srgb ? glm::pow(texel / 255.0f, glm::vec3(2.2f)) : texel / 255.0f;
+  }
+  return sum / static_cast<float>(count);
+}
+
+glm::vec3 absorption(const MaterialLayers& from) {
+  if (from.thickness <= 0.0f || from.attenuation_distance <= 0.0f) return glm::vec3(0.0f);
+  const glm::vec3 color = glm::max(from.attenuation_color, glm::vec3(1e-6f));
+  return -glm::log(color) * (from.thickness / from.attenuation_distance);
+}
+
+/// The share of light that comes through, by its mean over colours and texels.
+float passing(const Scene& scene, const shared::Material& material, const MaterialLayers& from) {
+  const glm::vec3 tint = glm::vec3(material.base_color) *
+                         mean_texel(scene, material.base_color_texture) *
+                         glm::exp(-absorption(from) * mean_texel(scene, from.thickness_texture).y);
+  const float metallic =
+      material.metallic * mean_texel(scene, material.metallic_roughness_texture).z;
+  return from.transmission * mean_texel(scene, from.transmission_texture).x * (1.0f - metallic) *
+         luminance(tint);
+}
+
+shared::MaterialLayer layer_of(const shared::Material& material, const MaterialLayers& from) {
+  shared::MaterialLayer layer = plain_layer();
+  // Exactly the usual 0.04 for the usual index.
+  if (material.ior != 1.5f) layer.dielectric = reflectance_of(material.ior);
+  layer.specular = from.specular;
+  layer.specular_color = from.specular_color;
+  layer.specular_texture = from.specular_texture;
+  layer.specular_color_texture = from.specular_color_texture;
+  if (from.clearcoat > 0.0f) {
+    layer.coat = from.clearcoat;
+    layer.coat_roughness = from.clearcoat_roughness;
+    layer.coat_normal_scale = from.clearcoat_normal_scale;
+    layer.coat_texture = from.clearcoat_texture;
+    layer.coat_roughness_texture = from.clearcoat_roughness_texture;
+    layer.coat_normal_texture = from.clearcoat_normal_texture;
+  }
+  if (from.sheen_color != glm::vec3(0.0f)) {
+    layer.sheen = from.sheen_color;
+    layer.sheen_roughness = from.sheen_roughness;
+    layer.sheen_color_texture = from.sheen_color_texture;
+    layer.sheen_roughness_texture = from.sheen_roughness_texture;
+  }
+  if (from.transmission > 0.0f && !(material.flags & shared::material_alpha_mask)) {
+    layer.transmission = from.transmission;
+    layer.absorption = absorption(from);
+    layer.transmission_texture = from.transmission_texture;
+    layer.thickness_texture = from.thickness_texture;
+  }
+  return layer;
+}
+
+/// Has the surface drawn like a blended one, whose rays go on by the share that passes.
+void let_light_through(const Scene& scene, shared::Material& material, const MaterialLayers& from) {
+  if (!(material.flags & shared::material_alpha_blend)) {
+    material.base_color.w = 1.0f;
+    material.flags |= shared::material_alpha_blend | shared::material_whole_alpha;
+  }
+  material.passing = std::min(passing(scene, material, from), 1.0f - least_coverage);
+}
+
+}  // namespace
+
+shared::MaterialLayer plain_layer() {
+  shared::MaterialLayer layer{};
+  layer.specular_color = glm::vec3(1.0f);
+  layer.specular = 1.0f;
+  layer.dielectric = 0.04f;
+  layer.coat_normal_scale = 1.0f;
+  for (shared::TextureSlot* slot :
+       {&layer.specular_texture, &layer.specular_color_texture, &layer.coat_texture,
+        &layer.coat_roughness_texture, &layer.coat_normal_texture, &layer.sheen_color_texture,
+        &layer.sheen_roughness_texture, &layer.transmission_texture, &layer.thickness_texture}) {
+    *slot = no_texture_slot();
+  }
+  return layer;
+}
+
+void build_layers(Scene& scene) {
+  scene.layers = {plain_layer()};
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    shared::Material& material = scene.materials[i];
+    if (material.flags & shared::material_unlit) continue;
+    const MaterialLayers& from = scene.material_layers[i];
+    const shared::MaterialLayer layer = layer_of(material, from);
+    if (layer.transmission > 0.0f) let_light_through(scene, material, from);
+    auto found = std::ranges::find_if(
+        scene.layers, [&](const shared::MaterialLayer& known) { return same(known, layer); });
+    if (found == scene.layers.end()) found = scene.layers.insert(scene.layers.end(), layer);
+    material.layer = static_cast<std::uint32_t>(found - scene.layers.begin());
+  }
+}
+
+}  // namespace heliograph::scene

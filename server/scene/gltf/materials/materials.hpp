@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/gltf/document/gltf_file.hpp"
+#include "scene/gltf/materials/textures.hpp"
+#include "scene/scene.hpp"
+#include "scene/warnings.hpp"
+
+namespace heliograph::scene {
+
+struct MaterialTable {
+  std::vector<shared::Material> materials;
+  std::vector<MaterialLayers> layers;
+  std::vector<std::string> names;
+};
+
+/// glTF's default material: white, fully metallic, fully rough, opaque.
+shared::Material default_material();
+
+/// All materials of the document; the textures they use are registered in `textures`.
+/// @throws ImportError
+MaterialTable read_materials(const JsonValue& root, TextureTable& textures, Warnings& warnings);
+
+/// Copies the level-0 alpha of masked base colours into scene.alpha_heap, where rays look it up,
+/// and points the materials at it. Images shared by materials are stored once.
+void build_alpha_heap(Scene& scene);
+
+}  // namespace heliograph::scene

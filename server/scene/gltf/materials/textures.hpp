@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "scene/gltf/document/gltf_file.hpp"
+#include "scene/gltf/materials/images.hpp"
+#include "scene/scene.hpp"
+
+namespace heliograph::scene {
+
+/// The document's textures, and those of them that materials turn out to use: each as colour
+/// (sRGB), as data, or as both, without duplicates.
+class TextureTable {
+ public:
+  /// @throws ImportError
+  explicit TextureTable(const JsonValue& root);
+
+  std::size_t size() const { return textures_.size(); }
+
+  /// The scene texture for one use of document texture `index`, or shared::no_texture when its
+  /// image is only given through an extension that is not supported.
+  std::uint32_t use(std::uint32_t index, bool srgb);
+
+  const std::vector<ImageUse>& image_uses() const { return image_uses_; }
+  const std::vector<Texture>& used_textures() const { return used_textures_; }
+
+ private:
+  struct Declared {
+    std::optional<std::uint32_t> image;
+    Sampler sampler;
+  };
+
+  std::vector<Declared> textures_;
+  std::map<std::pair<std::uint32_t, bool>, std::uint32_t> image_of_use_;
+  std::map<std::pair<std::uint32_t, bool>, std::uint32_t> texture_of_use_;
+  std::vector<ImageUse> image_uses_;
+  std::vector<Texture> used_textures_;
+};
+
+}  // namespace heliograph::scene

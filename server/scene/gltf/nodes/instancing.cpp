@@ -1,0 +1,71 @@
+#include "scene/gltf/nodes/instancing.hpp"
+
+#include <string>
+
+namespace heliograph::scene {
+namespace {
+
+/// The values of one attribute, or `fallback` for each of the `count` places.
+template <int components>
+std::vector<glm::vec<components, float>> read_places(const JsonValue& attributes,
+                                                     std::string_view name, ElementType type,
+                                                     std::span<const Accessor> accessors,
+                                                     std::uint32_t count,
+                                                     const glm::vec<components, float>& fallback) {
+  const auto index = attributes.index(name, accessors.size(), "accessors");
+  if (!index) return std::vector<glm::vec<components, float>>(count, fallback);
+  const Accessor& accessor = accessors[*index];
+  if (accessor.element != type) attributes.refuse(name, "has the wrong element type");
+  const bool whole = accessor.component != ComponentType::f32;
+  if (whole && !(type == ElementType::vec4 && accessor.normalized)) {
+    attributes.refuse(name, "has the wrong component type");
+  }
+  return read_vectors<components>(accessor);
+}
+
+std::uint32_t count_places(const JsonValue& attributes, std::span<const Accessor> accessors) {
+  std::optional<std::uint32_t> count;
+  for (const std::string& name : attributes.keys()) {
+    const std::uint32_t index = attributes.required_index(name, accessors.size(), "accessors");
+    if (count && accessors[index].count != *count) {
+      attributes.refuse(name, "differs in count from the other attributes");
+    }
+    count = accessors[index].count;
+  }
+  if (!count) attributes.refuse("must name at least one attribute");
+  return *count;
+}
+
+glm::quat to_rotation(const JsonValue& attributes, const glm::vec4& value) {
+  const float length = glm::length(value);
+  if (!(length > 1e-6f)) attributes.refuse("ROTATION", "holds a quaternion without length");
+  return {value.w / length, value.x / length, value.y / length, value.z / length};
+}
+
+}  // namespace
+
+std::optional<std::vector<Transform>> read_instancing(const JsonValue& node,
+                                                      std::span<const Accessor> accessors,
+                                                      std::uint64_t limit) {
+  const auto extension = node.object("extensions", "EXT_mesh_gpu_instancing");
+  if (!extension) return std::nullopt;
+  const auto attributes = extension->object("attributes");
+  if (!attributes) extension->refuse("attributes", "is missing");
+  const std::uint32_t count = count_places(*attributes, accessors);
+  if (count > limit) {
+    extension->refuse("exceeds the limit of " + std::to_string(limit) + " instances");
+  }
+  const auto translations = read_places<3>(*attributes, "TRANSLATION", ElementType::vec3, accessors,
+                                           count, glm::vec3(0.0f));
+  const auto rotations = read_places<4>(*attributes, "ROTATION", ElementType::vec4, accessors,
+                                        count, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
+  const auto scales =
+      read_places<3>(*attributes, "SCALE", ElementType::vec3, accessors, count, glm::vec3(1.0f));
+  std::vector<Transform> places(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    places[i] = {translations[i], to_rotation(*attributes, rotations[i]), scales[i]};
+  }
+  return places;
+}
+
+}  // namespace heliograph::scene

@@ -1,0 +1,50 @@
+#include "scene/image/image_decoder.hpp"
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+
+#include "scene/image/jpeg_decoder.hpp"
+#include "scene/image/png_decoder.hpp"
+#include "scene/image/webp_decoder.hpp"
+#include "scene/import_error.hpp"
+
+namespace heliograph::scene {
+namespace {
+
+bool is_ktx2(std::span<const std::uint8_t> file) {
+  constexpr std::string_view magic = "\xabKTX 20\xbb";
+  return file.size() >= magic.size() &&
+         std::equal(magic.begin(), magic.end(), file.begin(),
+                    [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; });
+}
+
+ImageSize probe_known_format(std::span<const std::uint8_t> file) {
+  if (is_png(file)) return probe_png(file);
+  if (is_jpeg(file)) return probe_jpeg(file);
+  if (is_webp(file)) return probe_webp(file);
+  if (is_ktx2(file)) throw ImportError("is KTX2 (KHR_texture_basisu), which is not read");
+  throw ImportError("is neither PNG, JPEG nor WebP");
+}
+
+}  // namespace
+
+ImageSize probe_image(std::span<const std::uint8_t> file) {
+  const ImageSize size = probe_known_format(file);
+  if (size.width == 0 || size.height == 0) throw ImportError("has no pixels");
+  if (size.width > largest_image_side || size.height > largest_image_side) {
+    throw ImportError("is " + std::to_string(size.width) + " x " + std::to_string(size.height) +
+                      " pixels, more than " + std::to_string(largest_image_side) + " a side");
+  }
+  return size;
+}
+
+void decode_image(std::span<const std::uint8_t> file, ImageSize size,
+                  std::span<std::uint8_t> rgba) {
+  if (rgba.size() < std::size_t(size.width) * size.height * 4) throw ImportError("has no room");
+  if (is_png(file)) return decode_png(file, size, rgba);
+  if (is_webp(file)) return decode_webp(file, size, rgba);
+  decode_jpeg(file, size, rgba);
+}
+
+}  // namespace heliograph::scene

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "scene/environment.hpp"
+#include "scene/image/image_decoder.hpp"
+
+namespace heliograph::scene {
+
+/// Decodes a Radiance picture (.hdr; G. Ward, "Real Pixels", Graphics Gems II, 1991):
+/// shared-exponent RGB, run-length encoded in either way or not at all, rows from the top.
+/// @throws ImportError, also when there are more than `most_pixels`
+Environment decode_radiance(std::span<const std::uint8_t> file,
+                            std::uint64_t most_pixels = most_environment_pixels);
+
+}  // namespace heliograph::scene

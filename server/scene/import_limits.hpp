@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace heliograph::scene {
+
+/// What of a file is wanted; empty: its defaults.
+struct SceneChoice {
+  std::string scene;    // the name of one of its scenes, or its number from 0
+  std::string variant;  // the name of one of its material variants
+  bool operator==(const SceneChoice&) const = default;
+};
+
+/// What a file may cost. Exceeding one refuses the file with an error that names the limit.
+struct ImportLimits {
+  std::uint64_t file_bytes = 512ull << 20;
+  std::uint64_t unpacked_bytes = 1ull << 30;  // that compressed buffer views grow to
+  std::uint64_t scene_bytes = 2ull << 30;     // of geometry and animations, once read
+  std::uint64_t triangles = 20'000'000;
+  std::uint64_t texels = 256ull << 20;
+  std::uint32_t texture_size = 8192;
+  std::uint32_t nodes = 200'000;
+  std::uint32_t instances = 200'000;
+  std::uint32_t node_depth = 256;
+  std::uint32_t json_depth = 64;
+  std::uint64_t json_values = 16'000'000;
+};
+
+}  // namespace heliograph::scene

@@ -1,0 +1,75 @@
+#include "session/library/environment_library.hpp"
+
+#include <fmt/format.h>
+
+#include <exception>
+#include <string_view>
+#include <utility>
+
+#include "protocol/json/suggestions.hpp"
+#include "render/api/device_lost.hpp"
+#include "render/api/renderer.hpp"
+#include "scene/environment.hpp"
+#include "scene/import.hpp"
+#include "session/event_log.hpp"
+
+namespace heliograph::session {
+
+using protocol::Result;
+
+namespace {
+
+constexpr std::size_t waiting_environments = 8;
+
+}  // namespace
+
+EnvironmentLibrary::EnvironmentLibrary(render::Engine& engine, const SceneCatalogue& catalogue)
+    : engine_(engine), catalogue_(catalogue), loader_("environment loader", waiting_environments) {}
+
+std::vector<CatalogueEntry> EnvironmentLibrary::list() const {
+  return catalogue_.list_files({".hdr", ".exr"});
+}
+
+Result<CatalogueEntry> EnvironmentLibrary::find(const std::string& name) const {
+  const std::vector<CatalogueEntry> environments = list();
+  std::vector<std::string_view> names;
+  for (const CatalogueEntry& entry : environments) {
+    if (entry.name == name || entry.name + entry.path.extension().string() == name) return entry;
+    names.push_back(entry.name);
+  }
+  return protocol::error::not_found("name",
+                                    "is not in the catalogue" + protocol::suggestion(name, names));
+}
+
+Result<void> EnvironmentLibrary::put_around(Session& session, const CatalogueEntry& entry,
+                                            const std::string& by) {
+  try {
+    return session.set_environment(entry.name,
+                                   engine_.prefilter(scene::load_environment(entry.path)), by);
+  } catch (const scene::ImportError& failure) {
+    return protocol::error::invalid("name", "cannot be loaded: " + std::string(failure.what()));
+  } catch (const render::DeviceLost& failure) {
+    log_error({.session = session.name()},
+              fmt::format("loading {}: {}", entry.name, failure.what()));
+    if (on_device_loss_) on_device_loss_();
+    return protocol::error::not_ready("the device was lost meanwhile; try again");
+  } catch (const std::exception& failure) {
+    log_error({.session = session.name()},
+              fmt::format("loading {}: {}", entry.name, failure.what()));
+    return protocol::error::internal();
+  }
+}
+
+void EnvironmentLibrary::show(std::shared_ptr<Session> session, const std::string& name,
+                              const std::string& by, std::function<void(Result<void>)> done) {
+  Result<CatalogueEntry> entry = find(name);
+  if (!entry) return done(entry.error());
+  const bool taken = loader_.post([this, session = std::move(session), entry = *std::move(entry),
+                                   by, done] { done(put_around(*session, entry, by)); });
+  if (!taken) {
+    done(protocol::error::full("too many environments are being loaded",
+                               std::to_string(waiting_environments)));
+  }
+}
+
+}  // namespace heliograph::session

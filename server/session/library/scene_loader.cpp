@@ -1,0 +1,336 @@
+#include "session/library/scene_loader.hpp"
+
+#include <fmt/format.h>
+#include <malloc.h>
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "protocol/json/jsonrpc.hpp"
+#include "protocol/json/suggestions.hpp"
+#include "render/api/device_lost.hpp"
+#include "render/api/renderer.hpp"
+#include "session/event_log.hpp"
+#include "session/library/scene_description.hpp"
+
+namespace heliograph::session {
+
+using protocol::Result;
+
+namespace {
+
+/// Reading a file is this much of the whole; the rest is upload and acceleration structure.
+constexpr float import_share = 0.7f;
+/// How much is done between two reports of one stage.
+constexpr float report_step = 0.01f;
+/// How soon a cache that holds too much looks again whether all of it is still shown, and how long
+/// after a load its first pictures are drawn and what both have left behind can go.
+constexpr std::chrono::seconds trim_interval{2};
+/// A scene may be what the device is lost to, so it is not tried for ever.
+constexpr int most_losses = 3;
+
+constexpr std::string_view progress_key = "scene.progress";
+
+std::string progress_text(const std::string& name, std::string_view stage, float fraction) {
+  return protocol::make_notification(
+      progress_key,
+      protocol::SceneProgress{.name = name, .stage = std::string(stage), .fraction = fraction});
+}
+
+/// Thrown through the importer to end it.
+struct Abandoned {};
+
+protocol::Error superseded() {
+  return protocol::error::conflict("name", "another scene was asked for meanwhile");
+}
+
+protocol::Error cancelled() {
+  return protocol::error::conflict("name", "was cancelled");
+}
+
+protocol::Error session_ended() {
+  return protocol::error::not_found("session", "the session has ended");
+}
+
+protocol::Error stopped() {
+  return protocol::error::not_ready("the server is ending");
+}
+
+protocol::Error no_such(const scene::NoSuchChoice& failure, const scene::SceneChoice& choice) {
+  const std::string& wanted = failure.member() == "scene" ? choice.scene : choice.variant;
+  const std::vector<std::string_view> names(failure.names().begin(), failure.names().end());
+  return protocol::error::not_found(failure.member(),
+                                    "is not in the file" + protocol::suggestion(wanted, names));
+}
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Pictures and meshes on their way leave holes between what stays. The C library keeps them unless
+/// told: a third of the server's memory after a large scene.
+void return_free_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
+
+}  // namespace
+
+SceneLoader::SceneLoader(render::Engine& engine, const SceneCatalogue& catalogue,
+                         LoaderOptions options)
+    : engine_(engine),
+      catalogue_(catalogue),
+      environments_(options.environment),
+      options_(std::move(options)),
+      cache_(options_.cache_bytes),
+      thread_([this] { run(); }) {}
+
+void SceneLoader::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (stopping_.exchange(true)) return;
+  }
+  condition_.notify_one();
+  thread_.join();
+  for (const auto& job : std::exchange(jobs_, {})) {
+    for (const Waiter& waiter : job->waiters) waiter.done(stopped());
+  }
+}
+
+void SceneLoader::load(std::shared_ptr<Session> session, const protocol::SceneLoad& request,
+                       const std::string& by, Completion done) {
+  Result<CatalogueEntry> entry = catalogue_.find(request.name);
+  if (!entry) return done(entry.error());
+  SceneKey key{.file = entry->path,
+               .choice = {request.scene.value_or(""), request.variant.value_or("")},
+               .environment = environments_.path_for(*entry).value_or("")};
+  std::vector<Waiter> displaced;
+  std::optional<LoadedScene> kept;
+  {
+    const std::lock_guard lock(mutex_);
+    if (stopping_) return done(stopped());
+    std::shared_ptr<Job> job = find_job(key);
+    displaced =
+        remove_waiters([&](const Session& own) { return &own == session.get(); }, job.get());
+    if (!job) kept = cache_.find(key);
+    if (job || kept) {
+      cache_.count_hit();
+    } else {
+      cache_.count_miss();
+      job = jobs_.emplace_back(std::make_shared<Job>());
+      job->key = std::move(key);
+      job->entry = *std::move(entry);
+    }
+    if (kept) {
+      session->show(*kept, by);
+      session->audience().send_all(progress_text(kept->name, "ready", 1.0f), progress_key);
+    } else {
+      job->waiters.push_back({std::move(session), by, done});
+    }
+  }
+  condition_.notify_one();
+  for (const Waiter& waiter : displaced) waiter.done(superseded());
+  if (kept) done(describe_scene(*kept));
+}
+
+protocol::SceneCancelled SceneLoader::cancel(const Session& session) {
+  std::vector<Waiter> removed;
+  {
+    const std::lock_guard lock(mutex_);
+    removed = remove_waiters([&](const Session& own) { return &own == &session; });
+  }
+  for (const Waiter& waiter : removed) waiter.done(cancelled());
+  return {.cancelled = !removed.empty()};
+}
+
+/// Takes away what waits for such sessions elsewhere than in `except`; a job that nobody waits for
+/// any more ends.
+std::vector<SceneLoader::Waiter> SceneLoader::remove_waiters(
+    const std::function<bool(const Session&)>& whose, const Job* except) {
+  std::vector<Waiter> removed;
+  for (const auto& job : jobs_) {
+    if (job.get() == except) continue;
+    const auto own =
+        std::stable_partition(job->waiters.begin(), job->waiters.end(),
+                              [&](const Waiter& waiter) { return !whose(*waiter.session); });
+    removed.insert(removed.end(), std::make_move_iterator(own),
+                   std::make_move_iterator(job->waiters.end()));
+    job->waiters.erase(own, job->waiters.end());
+    job->abandoned = job->waiters.empty();
+  }
+  std::erase_if(jobs_, [](const auto& job) { return job->abandoned.load(); });
+  return removed;
+}
+
+/// Called often, by the loading thread: sessions end without telling the loader.
+void SceneLoader::dismiss_ended() {
+  std::vector<Waiter> removed;
+  {
+    const std::lock_guard lock(mutex_);
+    removed = remove_waiters([](const Session& own) { return own.ended(); });
+  }
+  for (const Waiter& waiter : removed) waiter.done(session_ended());
+}
+
+std::shared_ptr<SceneLoader::Job> SceneLoader::find_job(const SceneKey& key) const {
+  const auto found = std::ranges::find_if(jobs_, [&](const auto& job) { return job->key == key; });
+  return found == jobs_.end() ? nullptr : *found;
+}
+
+void SceneLoader::run() {
+  while (const std::shared_ptr<Job> job = next_job()) {
+    dismiss_ended();
+    if (!job->abandoned) carry_out(*job);
+    memory_is_loose_ = true;
+  }
+}
+
+/// Waits for a job, tidying up meanwhile; null at the end.
+std::shared_ptr<SceneLoader::Job> SceneLoader::next_job() {
+  std::unique_lock lock(mutex_);
+  const auto called = [&] { return stopping_ || (device_ready_ && !jobs_.empty()); };
+  while (!called()) {
+    const bool cache_too_full = !cache_.trim();
+    if (!cache_too_full && !memory_is_loose_) {
+      condition_.wait(lock);
+    } else if (condition_.wait_for(lock, trim_interval) == std::cv_status::timeout &&
+               std::exchange(memory_is_loose_, false)) {
+      lock.unlock();
+      return_free_memory();
+      lock.lock();
+    }
+  }
+  return stopping_ ? nullptr : jobs_.front();
+}
+
+void SceneLoader::carry_out(Job& job) {
+  const Clock::time_point start = Clock::now();
+  try {
+    const LoadedScene loaded = make(job);
+    log_info({.session = sessions_of(job)},
+             fmt::format("{} loaded in {:.2f} s, {} triangles, {} MiB", job.entry.name,
+                         seconds_since(start), loaded.scene->triangle_count(),
+                         (loaded.host_bytes + loaded.device_bytes) >> 20));
+    finish(job, loaded);
+  } catch (const Abandoned&) {
+    log_info({}, fmt::format("loading {} was ended after {:.2f} s", job.entry.name,
+                             seconds_since(start)));
+  } catch (const scene::NoSuchChoice& failure) {
+    finish(job, no_such(failure, job.key.choice));
+  } catch (const scene::ImportError& failure) {
+    finish(job,
+           protocol::error::invalid("name", "cannot be loaded: " + std::string(failure.what())));
+  } catch (const render::DeviceLost& failure) {
+    log_error({.session = sessions_of(job)},
+              fmt::format("loading {}: {}", job.entry.name, failure.what()));
+    report_device_loss(job);
+  } catch (const std::exception& failure) {
+    log_error({.session = sessions_of(job)},
+              fmt::format("loading {}: {}", job.entry.name, failure.what()));
+    finish(job, protocol::error::internal());
+  }
+}
+
+/// The names of all who wait for it.
+std::string SceneLoader::sessions_of(const Job& job) {
+  const std::lock_guard lock(mutex_);
+  std::string names;
+  for (const Waiter& waiter : job.waiters) {
+    names += (names.empty() ? "" : " ") + waiter.session->name();
+  }
+  return names;
+}
+
+/// The job stays the first of all and is carried out again on the next device.
+void SceneLoader::report_device_loss(Job& job) {
+  {
+    const std::lock_guard lock(mutex_);
+    device_ready_ = false;  // before the loss is told: another device may be there at once
+  }
+  if (on_device_loss_) on_device_loss_();
+  if (++job.losses == most_losses) {
+    finish(job, protocol::error::not_ready("the device was lost to it again and again"));
+  }
+}
+
+void SceneLoader::take_new_device() {
+  cache_.clear();
+  {
+    const std::lock_guard lock(mutex_);
+    device_ready_ = true;
+  }
+  condition_.notify_one();
+}
+
+LoadedScene SceneLoader::make(Job& job) {
+  const auto checkpoint = [&](std::string_view stage, float fraction) {
+    stop_if_abandoned(job);
+    report_progress(job, stage, fraction);
+  };
+  std::vector<scene::SourceFile> sources;
+  if (!job.key.environment.empty()) sources.push_back(scene::examine_file(job.key.environment));
+  checkpoint("reading", 0.0f);
+  const auto environment = environments_.environment_at(job.key.environment);
+  auto imported = std::make_unique<scene::Scene>(scene::import_gltf(
+      job.entry.path, options_.limits,
+      [&](std::string_view stage, float fraction) { checkpoint(stage, import_share * fraction); },
+      nullptr, job.key.choice));
+  sources.insert(sources.end(), imported->sources.begin(), imported->sources.end());
+  LoadedScene loaded{.name = job.entry.name};
+  loaded.resources =
+      engine_.upload(std::move(imported), environment, [&](std::string_view stage, float fraction) {
+        checkpoint(stage, import_share + (1.0f - import_share) * fraction);
+      });
+  loaded.scene = render::scene_of(*loaded.resources);
+  stop_if_abandoned(job);
+  loaded.environment = job.key.environment.filename().string();
+  loaded.host_bytes = loaded.scene->bytes();
+  loaded.device_bytes = render::memory_bytes(*loaded.resources);
+  return cache_.add(job.key, std::move(loaded), std::move(sources));
+}
+
+/// Shows the scene in every session that waits for it, and tells those who asked.
+void SceneLoader::finish(Job& job, const Result<LoadedScene>& outcome) {
+  std::vector<Waiter> waiters;
+  {
+    const std::lock_guard lock(mutex_);
+    waiters = std::exchange(job.waiters, {});
+    std::erase_if(jobs_, [&](const auto& other) { return other.get() == &job; });
+    if (outcome) {
+      const std::string text = progress_text(job.entry.name, "ready", 1.0f);
+      for (const Waiter& waiter : waiters) {
+        waiter.session->show(*outcome, waiter.by);
+        waiter.session->audience().send_all(text, progress_key);
+      }
+    }
+  }
+  for (const Waiter& waiter : waiters) {
+    if (outcome) {
+      waiter.done(describe_scene(*outcome));
+    } else {
+      log_warning({.session = waiter.session->name()},
+                  job.entry.name + " was not loaded: " + outcome.error().message);
+      waiter.done(outcome.error());
+    }
+  }
+}
+
+void SceneLoader::report_progress(Job& job, std::string_view stage, float fraction) {
+  if (stage == job.stage && fraction < job.fraction + report_step) return;
+  job.stage = stage;
+  job.fraction = fraction;
+  const std::string text = progress_text(job.entry.name, stage, fraction);
+  const std::lock_guard lock(mutex_);
+  for (const Waiter& waiter : job.waiters) {
+    waiter.session->audience().send_all(text, progress_key);
+  }
+}
+
+void SceneLoader::stop_if_abandoned(const Job& job) {
+  dismiss_ended();
+  if (stopping_ || job.abandoned) throw Abandoned();
+}
+
+}  // namespace heliograph::session

@@ -1,0 +1,148 @@
+#include "session/library/upload_store.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "session/event_log.hpp"
+
+namespace heliograph::session {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t longest_name = 64;
+constexpr std::size_t waiting_checks = 4;
+constexpr std::size_t glb_header_bytes = 12;
+
+bool is_acceptable(const std::string& name) {
+  const bool characters = std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-';
+  });
+  return characters && !name.empty() && name.size() <= longest_name && name.front() != '-';
+}
+
+std::uint32_t little_endian(const unsigned char* bytes) {
+  return bytes[0] | bytes[1] << 8 | bytes[2] << 16 | static_cast<std::uint32_t>(bytes[3]) << 24;
+}
+
+/// What is wrong with the first bytes of a binary glTF file (specification section 4.4), or
+/// nothing.
+std::string_view header_fault(const fs::path& file) {
+  std::array<unsigned char, glb_header_bytes> header{};
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream.read(reinterpret_cast<char*>(header.data()), header.size())) return "is too short";
+  if (std::memcmp(header.data(), "glTF", 4) != 0) return "is no binary glTF (.glb)";
+  if (little_endian(&header[4]) != 2) return "is not of glTF 2";
+  if (little_endian(&header[8]) != fs::file_size(file)) return "has not the length it says";
+  return {};
+}
+
+}  // namespace
+
+UploadStore::UploadStore(UploadOptions options)
+    : options_(std::move(options)), checker_("upload checker", waiting_checks) {
+  try {
+    fs::create_directories(options_.folder / "scenes");
+    scenes_ = fs::canonical(options_.folder / "scenes");
+    incoming_ = scenes_.parent_path() / "incoming";
+    fs::remove_all(incoming_);
+    fs::create_directories(incoming_);
+  } catch (const fs::filesystem_error& failure) {
+    throw std::runtime_error("the folder for uploads, " + options_.folder.string() +
+                             ", cannot be used: " + failure.code().message());
+  }
+}
+
+protocol::Result<std::shared_ptr<UploadStore::Incoming>> UploadStore::begin(const std::string& name,
+                                                                            std::uint64_t bytes) {
+  if (!is_acceptable(name)) {
+    return protocol::error::invalid("name", "is not the name of a scene",
+                                    "1 to 64 letters, digits, _ and -");
+  }
+  if (bytes > options_.max_bytes) {
+    return protocol::error::too_large("body", "is too large",
+                                      std::to_string(options_.max_bytes) + " bytes");
+  }
+  const std::lock_guard lock(mutex_);
+  if (bytes_kept() + promised_bytes_ + bytes > options_.quota) {
+    return protocol::error::full("there is no room for more scenes",
+                                 std::to_string(options_.quota) + " bytes");
+  }
+  const fs::path folder = incoming_ / std::to_string(++uploads_so_far_);
+  std::error_code error;
+  fs::create_directory(folder, error);
+  if (error) return protocol::error::internal();
+  promised_bytes_ += bytes;
+  return std::make_shared<Incoming>(*this, name, bytes, folder);
+}
+
+void UploadStore::finish(std::shared_ptr<Incoming> incoming,
+                         std::function<void(protocol::Result<UploadedScene>)> done) {
+  // Its only owner, so that it is gone, and its room with it, before anybody hears of it.
+  const bool taken = checker_.post([this, incoming = std::move(incoming), done]() mutable {
+    protocol::Result<UploadedScene> result = accept(*incoming);
+    incoming.reset();
+    done(std::move(result));
+  });
+  if (!taken) done(protocol::error::full("too many scenes are being checked"));
+}
+
+protocol::Result<UploadedScene> UploadStore::accept(Incoming& incoming) {
+  const auto refused = [&](const std::string& why) {
+    log_warning({}, "the upload " + incoming.name() + " was refused: " + why);
+    return protocol::error::invalid("body", why);
+  };
+  try {
+    const fs::path file = incoming.path();
+    if (const auto fault = header_fault(file); !fault.empty()) return refused(std::string(fault));
+    // Alone in its folder: a file that needs others fails here and not in the catalogue.
+    const scene::Scene imported = scene::import_gltf(file, options_.import_limits);
+    const UploadedScene uploaded{.name = incoming.name(),
+                                 .bytes = fs::file_size(file),
+                                 .triangles = imported.triangle_count()};
+    incoming.keep_in(scenes_);
+    log_info({}, "the upload " + incoming.name() +
+                     " was accepted: " + std::to_string(uploaded.bytes) + " bytes");
+    return uploaded;
+  } catch (const scene::ImportError& failure) {
+    return refused("cannot be loaded: " + std::string(failure.what()));
+  } catch (const std::exception& failure) {
+    log_error({}, "the upload " + incoming.name() + " failed: " + failure.what());
+    return protocol::error::internal();
+  }
+}
+
+std::uint64_t UploadStore::bytes_kept() const {
+  std::uint64_t bytes = 0;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(scenes_, error)) {
+    const std::uintmax_t size = entry.file_size(error);
+    if (!error) bytes += size;
+  }
+  return bytes;
+}
+
+UploadStore::Incoming::Incoming(UploadStore& store, std::string name, std::uint64_t bytes,
+                                fs::path folder)
+    : store_(store), name_(std::move(name)), bytes_(bytes), folder_(std::move(folder)) {}
+
+UploadStore::Incoming::~Incoming() {
+  const std::lock_guard lock(store_.mutex_);
+  std::error_code ignored;
+  fs::remove_all(folder_, ignored);
+  store_.promised_bytes_ -= bytes_;
+}
+
+void UploadStore::Incoming::keep_in(const fs::path& folder) {
+  const std::lock_guard lock(store_.mutex_);
+  fs::rename(path(), folder / path().filename());
+  store_.promised_bytes_ -= std::exchange(bytes_, 0);
+}
+
+}  // namespace heliograph::session

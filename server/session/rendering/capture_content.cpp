@@ -1,0 +1,170 @@
+#include "session/rendering/capture_content.hpp"
+
+#include <array>
+#include <limits>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "render/api/octahedral.hpp"
+#include "stream/encoders/jpeg_encoder.hpp"
+#include "stream/encoders/npy_encoder.hpp"
+#include "stream/encoders/png_encoder.hpp"
+
+namespace heliograph::session {
+
+using protocol::ImageFormat;
+using protocol::Result;
+using stream::ExrChannel;
+
+namespace {
+
+constexpr std::string_view picture_buffer = "output";
+constexpr std::string_view radiance_buffer = "output.radiance";
+constexpr int jpeg_quality = 90;
+
+using Texel = const float*;
+
+/// One channel out of values, `read` giving it for every pixel.
+template <class Read>
+ExrChannel channel(std::string name, const render::FloatImage& image, Read read) {
+  ExrChannel made{.name = std::move(name), .values = {}, .counts = image.counts};
+  made.values.reserve(image.rgba.size() / 4);
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4)
+    made.values.push_back(read(&image.rgba[i]));
+  return made;
+}
+
+ExrChannel component(std::string name, const render::FloatImage& image, std::uint32_t index) {
+  return channel(std::move(name), image, [index](Texel texel) { return texel[index]; });
+}
+
+std::vector<ExrChannel> plain_channels(const render::FloatImage& image) {
+  if (image.channels == 1) return {component("Y", image, 0)};
+  constexpr std::array names{"R", "G", "B", "A"};
+  std::vector<ExrChannel> channels;
+  for (std::uint32_t i = 0; i < image.channels; ++i) {
+    channels.push_back(component(names[i], image, i));
+  }
+  return channels;
+}
+
+void add_normals(std::vector<ExrChannel>& channels, const render::FloatImage& image) {
+  constexpr std::array names{"normals.X", "normals.Y", "normals.Z"};
+  for (int axis = 0; axis < 3; ++axis) {
+    channels.push_back(channel(names[static_cast<std::size_t>(axis)], image, [axis](Texel texel) {
+      if (texel[0] > 1.5f) return 0.0f;  // nothing is there
+      return render::octahedral_decode({texel[0], texel[1]})[axis];
+    }));
+  }
+}
+
+void add_motion(std::vector<ExrChannel>& channels, const render::FloatImage& image) {
+  const auto scaled = [](int index, float factor) {
+    return [index, factor](Texel texel) { return texel[index] * factor; };
+  };
+  channels.push_back(channel("motion.X", image, scaled(0, static_cast<float>(image.width))));
+  channels.push_back(channel("motion.Y", image, scaled(1, static_cast<float>(image.height))));
+  channels.push_back(channel("depth.Z", image, [](Texel texel) {
+    return texel[3] > 0.0f ? texel[3] : std::numeric_limits<float>::infinity();
+  }));
+}
+
+void add_albedo(std::vector<ExrChannel>& channels, const render::FloatImage& image) {
+  constexpr std::array names{"albedo.R", "albedo.G", "albedo.B"};
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    channels.push_back(channel(names[i], image, [i](Texel texel) { return texel[i] * texel[i]; }));
+  }
+}
+
+/// The picture as radiance, with the G-buffer behind it where the frame has one.
+Result<std::vector<ExrChannel>> layers(render::Renderer& renderer) {
+  const auto radiance = renderer.capture(radiance_buffer);
+  if (!radiance) return radiance.error();
+  constexpr std::array names{"R", "G", "B"};
+  std::vector<ExrChannel> channels;
+  for (std::uint32_t i = 0; i < 3; ++i) channels.push_back(component(names[i], *radiance, i));
+  if (const auto image = renderer.capture("gbuffer.motion")) add_motion(channels, *image);
+  if (const auto image = renderer.capture("gbuffer.normals")) add_normals(channels, *image);
+  if (const auto image = renderer.capture("gbuffer.base_color")) add_albedo(channels, *image);
+  if (const auto image = renderer.capture("gbuffer.surface")) {
+    channels.push_back(component("surface.roughness", *image, 0));
+    channels.push_back(component("surface.metallic", *image, 1));
+  }
+  if (const auto image = renderer.capture("gbuffer.instance")) {
+    channels.push_back(component("instance.id", *image, 0));
+  }
+  return channels;
+}
+
+std::vector<std::uint8_t> npy(const render::Frame& frame) {
+  std::vector<std::byte> rgb;
+  rgb.reserve(frame.rgba.size() / 4 * 3);
+  for (std::size_t i = 0; i < frame.rgba.size(); ++i) {
+    if (i % 4 != 3) rgb.push_back(static_cast<std::byte>(frame.rgba[i]));
+  }
+  const std::array shape{frame.height, frame.width, 3u};
+  return stream::encode_npy(stream::NpyElement::uint8, shape, rgb);
+}
+
+std::vector<std::uint8_t> npy(const render::FloatImage& image) {
+  std::vector<std::uint32_t> shape{image.height, image.width};
+  if (image.channels > 1) shape.push_back(image.channels);
+  std::vector<float> values;
+  std::vector<std::uint32_t> counts;
+  for (std::size_t i = 0; i < image.rgba.size(); ++i) {
+    if (i % 4 >= image.channels) continue;
+    if (image.counts) {
+      counts.push_back(static_cast<std::uint32_t>(image.rgba[i]));
+    } else {
+      values.push_back(image.rgba[i]);
+    }
+  }
+  if (image.counts) {
+    return stream::encode_npy(stream::NpyElement::uint32, shape, std::as_bytes(std::span(counts)));
+  }
+  return stream::encode_npy(stream::NpyElement::float32, shape, std::as_bytes(std::span(values)));
+}
+
+std::vector<std::uint8_t> picture_file(const render::Frame& frame, ImageFormat format) {
+  const stream::PictureView view{.width = frame.width, .height = frame.height, .rgba = frame.rgba};
+  if (format == ImageFormat::npy) return npy(frame);
+  if (format == ImageFormat::png) return stream::encode_png(view);
+  return stream::JpegEncoder().encode(view, jpeg_quality, stream::ChromaSampling::full);
+}
+
+}  // namespace
+
+Result<CaptureContent> read_content(render::Renderer& renderer, std::string_view buffer,
+                                    ImageFormat format) {
+  const bool as_picture = format == ImageFormat::png || format == ImageFormat::jpeg ||
+                          (format == ImageFormat::npy && buffer == picture_buffer);
+  if (as_picture) {
+    auto frame = renderer.capture_view(buffer);
+    if (!frame) return frame.error();
+    return CaptureContent{frame->width, frame->height, *std::move(frame)};
+  }
+  auto values = renderer.capture(buffer);
+  if (!values) return values.error();
+  const std::uint32_t width = values->width, height = values->height;
+  if (format == ImageFormat::npy || buffer != picture_buffer) {
+    return CaptureContent{width, height, *std::move(values)};
+  }
+  auto channels = layers(renderer);
+  if (!channels) return channels.error();
+  return CaptureContent{width, height, *std::move(channels)};
+}
+
+std::vector<std::uint8_t> encode_content(const CaptureContent& content, ImageFormat format) {
+  if (const auto* frame = std::get_if<render::Frame>(&content.values)) {
+    return picture_file(*frame, format);
+  }
+  if (const auto* image = std::get_if<render::FloatImage>(&content.values)) {
+    if (format == ImageFormat::npy) return npy(*image);
+    return stream::encode_exr(content.width, content.height, plain_channels(*image));
+  }
+  return stream::encode_exr(content.width, content.height,
+                            std::get<std::vector<ExrChannel>>(content.values));
+}
+
+}  // namespace heliograph::session

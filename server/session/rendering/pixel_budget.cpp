@@ -1,0 +1,41 @@
+#include "session/rendering/pixel_budget.hpp"
+
+#include <string>
+#include <utility>
+
+namespace heliograph::session {
+
+protocol::Result<void> PixelBudget::exchange(std::uint64_t held, std::uint64_t wanted) {
+  const std::lock_guard lock(mutex_);
+  const std::uint64_t others = used_ - held;
+  // A picture may always become smaller, even where the rest is too much already.
+  if (wanted > held && others + wanted > limit_) {
+    return protocol::error::full(
+        "the pictures of all sessions together have too many pixels",
+        std::to_string(limit_) + " pixels, " + std::to_string(others) + " of them taken by others");
+  }
+  used_ = others + wanted;
+  return {};
+}
+
+std::uint64_t PixelBudget::used() const {
+  const std::lock_guard lock(mutex_);
+  return used_;
+}
+
+void PixelShare::give_back() {
+  // That is never refused.
+  if (budget_) (void)budget_->exchange(held_, 0);
+  budget_.reset();
+  held_ = 0;
+}
+
+protocol::Result<void> PixelShare::resize(std::uint64_t pixels) {
+  if (budget_) {
+    if (auto taken = budget_->exchange(held_, pixels); !taken) return taken;
+  }
+  held_ = pixels;
+  return {};
+}
+
+}  // namespace heliograph::session

@@ -1,0 +1,245 @@
+#include "session/rendering/render_loop.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <exception>
+#include <string>
+#include <utility>
+
+#include "protocol/json/jsonrpc.hpp"
+#include "render/api/device_lost.hpp"
+#include "session/event_log.hpp"
+#include "session/rendering/device_renewal.hpp"
+
+namespace heliograph::session {
+namespace {
+
+// One picture may wait while another is being encoded: the renderer stays at most one ahead.
+constexpr std::size_t waiting_pictures = 1;
+constexpr std::size_t waiting_captures = 4;
+
+}  // namespace
+
+RenderLoop::RenderLoop(render::Engine& engine, Clock::duration release_after)
+    : engine_(engine),
+      release_after_(release_after),
+      encoder_("encoder", waiting_pictures),
+      capture_writer_("capture writer", waiting_captures),
+      thread_([this] { run(); }) {}
+
+void RenderLoop::stop() {
+  if (stopping_.exchange(true)) return;
+  wakeup_->notify();
+  thread_.join();
+  encoder_.stop();
+  capture_writer_.stop();
+  for (const auto& view : views_) view->abandon_captures();
+}
+
+std::shared_ptr<Session> RenderLoop::open(SessionOptions options, PixelShare pixels) {
+  auto view = std::make_shared<SessionView>(engine_, std::move(options), std::move(pixels),
+                                            ViewServices{.wakeup = *wakeup_,
+                                                         .release_after = release_after_,
+                                                         .encoder = encoder_,
+                                                         .jpeg = jpeg_,
+                                                         .capture_writer = capture_writer_,
+                                                         .measurements = measurements_},
+                                            std::make_shared<Wakeup>(wakeup_));
+  std::shared_ptr<Session> session = view->session();
+  if (open_views().empty()) {
+    try {
+      view->prepare();
+    } catch (const render::DeviceLost&) {
+      view->release_renderer();  // it is made on the next device
+      report_device_loss();
+    }
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    views_.push_back(std::move(view));
+  }
+  wakeup_->notify();
+  return session;
+}
+
+void RenderLoop::close(const Session& session) {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = std::find_if(views_.begin(), views_.end(), [&](const auto& view) {
+      return view->session().get() == &session;
+    });
+    if (found == views_.end()) return;
+    closed_.push_back(std::move(*found));
+    views_.erase(found);
+  }
+  wakeup_->notify();
+}
+
+void RenderLoop::on_first_frame(std::function<void()> callback) {
+  const std::lock_guard lock(mutex_);
+  on_first_frame_ = std::move(callback);
+}
+
+void RenderLoop::run() {
+  while (!stopping_) {
+    dismiss_closed();
+    if (loss_reported_.exchange(false) && device_ready_) lose_device("beside rendering");
+    const Views views = open_views();
+    if (!device_ready_ && !mend_device(views)) continue;
+    if (advance_next(views) || !device_ready_) continue;
+    const auto due = next_due(views);
+    wakeup_->wait_until(due && held_back_until_ ? std::min(due, held_back_until_)
+                        : due                   ? due
+                                                : held_back_until_);
+  }
+}
+
+RenderLoop::Views RenderLoop::open_views() {
+  const std::lock_guard lock(mutex_);
+  return views_;
+}
+
+void RenderLoop::dismiss_closed() {
+  Views closed;
+  {
+    const std::lock_guard lock(mutex_);
+    closed.swap(closed_);
+  }
+  for (const auto& view : closed) {
+    view->refuse_captures();
+    share_.forget(view.get());
+  }
+}
+
+/// Does the small things of all sessions, so that none waits for another's frame with them, and
+/// then lets the first in order of turns draw that wants to.
+bool RenderLoop::advance_next(const Views& views) {
+  std::vector<FairShare::Key> ready;
+  for (const auto& view : views) {
+    if (view->awake()) ready.push_back(view.get());
+  }
+  share_.arrange(ready);
+  held_back_until_.reset();
+  std::vector<SessionView*> drawing;
+  for (const FairShare::Key key : ready) {
+    if (stopping_ || !device_ready_) return false;
+    SessionView& view = *std::find_if(views.begin(), views.end(), [&](const auto& candidate) {
+                           return candidate.get() == key;
+                         })->get();
+    const SessionView::Work work = advance(view, false);
+    if (work == SessionView::Work::small) return true;
+    if (work == SessionView::Work::held_back) drawing.push_back(&view);
+  }
+  return std::any_of(drawing.begin(), drawing.end(),
+                     [&](SessionView* view) { return draw_in_turn(*view); });
+}
+
+/// False if it has to wait for another, or had nothing to draw after all.
+bool RenderLoop::draw_in_turn(SessionView& view) {
+  if (stopping_ || !device_ready_) return false;
+  const Clock::time_point start = Clock::now();
+  if (const auto until = share_.hold_back(&view, start)) {
+    held_back_until_ = held_back_until_ ? std::min(*held_back_until_, *until) : *until;
+    return false;
+  }
+  const SessionView::Work work = advance(view, true);
+  if (!has_rendered_ && view.has_rendered()) report_first_frame();
+  if (work == SessionView::Work::drawing) share_.charge(&view, start, Clock::now());
+  return work != SessionView::Work::none;
+}
+
+SessionView::Work RenderLoop::advance(SessionView& view, bool may_draw) {
+  try {
+    return view.advance(may_draw);
+  } catch (const render::DeviceLost& failure) {
+    lose_device("session " + view.session()->name() + ": " + failure.what());
+    return SessionView::Work::none;
+  } catch (const std::exception& failure) {
+    log_error({.session = view.session()->name()},
+              std::string("rendering failed: ") + failure.what());
+    view.recover();
+    return SessionView::Work::none;
+  }
+}
+
+void RenderLoop::report_device_loss() {
+  loss_reported_ = true;
+  wakeup_->notify();
+}
+
+void RenderLoop::on_new_device(std::function<void()> callback) {
+  const std::lock_guard lock(mutex_);
+  on_new_device_ = std::move(callback);
+}
+
+void RenderLoop::lose_device(const std::string& why) {
+  device_ready_ = false;
+  ++device_losses_;
+  const Clock::duration pause = recovery_pause_.after_loss(Clock::now());
+  mend_at_ = Clock::now() + pause;
+  const std::string when =
+      pause == Clock::duration::zero()
+          ? "at once"
+          : fmt::format("in {} s", std::chrono::duration_cast<std::chrono::seconds>(pause).count());
+  spdlog::error("the device was lost and is made anew {} ({})", when, why);
+  tell_viewers(false, "the device was lost and is made anew " + when);
+}
+
+/// Makes the device anew once its time has come. Sessions keep everything but their histories.
+bool RenderLoop::mend_device(const Views& views) {
+  if (Clock::now() < mend_at_) {
+    wakeup_->wait_until(mend_at_);
+    return false;
+  }
+  try {
+    for (const auto& view : views) view->release_renderer();
+    engine_.recreate();
+    DeviceRenewal renewal(engine_);
+    for (const auto& view : views) view->session()->renew(renewal);
+  } catch (const std::exception& failure) {
+    lose_device(failure.what());
+    return false;
+  }
+  std::function<void()> callback;
+  {
+    const std::lock_guard lock(mutex_);
+    callback = on_new_device_;
+  }
+  if (callback) callback();
+  recovery_pause_.recovered(Clock::now());
+  device_ready_ = true;
+  spdlog::info("the device is back, {} sessions with it", views.size());
+  tell_viewers(true, "the device is back");
+  return true;
+}
+
+void RenderLoop::tell_viewers(bool ready, const std::string& message) {
+  const std::string text = protocol::make_notification(
+      "device.changed", protocol::DeviceChanged{.ready = ready, .message = message});
+  for (const auto& view : open_views()) {
+    view->session()->audience().send_all(text, "device.changed");
+  }
+}
+
+std::optional<Clock::time_point> RenderLoop::next_due(const Views& views) const {
+  std::optional<Clock::time_point> next;
+  for (const auto& view : views) {
+    const auto due = view->next_due();
+    if (due) next = next ? std::min(*next, *due) : *due;
+  }
+  return next;
+}
+
+void RenderLoop::report_first_frame() {
+  has_rendered_ = true;
+  std::function<void()> callback;
+  {
+    const std::lock_guard lock(mutex_);
+    callback.swap(on_first_frame_);
+  }
+  if (callback) callback();
+}
+
+}  // namespace heliograph::session

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "scene/scene.hpp"
+#include "shaders/shared/bvh.h"
+#include "tracing/embree/embree.hpp"
+
+namespace heliograph::tracing {
+
+/// One level of a hierarchy: a binary tree over boxes, flattened depth first. Links in `nodes`
+/// count from its own first node.
+struct Hierarchy {
+  std::vector<shared::BvhNode> nodes;
+  std::uint32_t root = shared::bvh_no_link;
+  std::uint32_t depth = 0;  // most links that wait on the stack while it is traversed
+};
+
+std::uint32_t node_link(std::uint32_t index);
+/// @throws std::length_error when there are more triangles than links can name
+std::uint32_t leaf_link(std::size_t first, std::size_t count);
+
+/// Called once per leaf, in depth-first order, with indices into `boxes`; returns the leaf's link.
+using LeafWriter = std::function<std::uint32_t(std::span<const std::uint32_t> items)>;
+
+/// Surface area heuristic, binned (Wald 2007), by Embree's builder. Boxes that are empty or not
+/// finite are left out. At most `leaf_size` (<= 8) items share a leaf. Thread safe.
+/// @throws std::runtime_error when the boxes nest too deeply for a stack of reasonable size
+Hierarchy build_hierarchy(RTCDevice device, std::span<const scene::Bounds> boxes,
+                          std::uint32_t leaf_size, const LeafWriter& write_leaf);
+
+}  // namespace heliograph::tracing

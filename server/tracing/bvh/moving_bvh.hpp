@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "tracing/bvh/bvh.hpp"
+#include "tracing/ray_tracer.hpp"
+
+namespace heliograph::tracing {
+
+/// Keeps a copy of a two-level hierarchy in step with a scene that moves: the trees of meshes that
+/// deform are refitted, the tree over the instances is built anew.
+class MovingBvh {
+ public:
+  /// Where the copy's tables lie; the device reads them, so that they are only ever written here.
+  struct Tables {
+    std::span<shared::BvhNode> records;  // record_count() long
+    std::span<glm::vec4> triangles;      // as long as the rest's; empty when no mesh deforms
+  };
+
+  /// `scene` is the one that `rest` was built for. Keeps no reference to it.
+  MovingBvh(RTCDevice device, std::shared_ptr<const Bvh> rest, const scene::Scene& scene);
+
+  /// Records that the tables must hold: room for every instance, however it is placed.
+  std::size_t record_count() const { return rest_->first_placed + 2 * mesh_of_.size(); }
+  bool deforms() const { return !deforming_.empty(); }
+  std::uint32_t root() const { return root_; }
+
+  /// Fills the tables with the hierarchy at rest.
+  void start(const Tables& tables);
+  /// @throws std::length_error when the instances nest too deeply
+  void update(const Movement& movement, const Tables& tables);
+
+ private:
+  struct Deforming {
+    std::vector<std::uint32_t> indices;
+    std::vector<shared::BvhTriangle> triangles;  // leaf order
+    std::vector<shared::BvhNode> nodes;
+  };
+
+  void refit(const Movement::Mesh& mesh, const Tables& tables);
+  void place(std::span<const glm::mat4> worlds, const Tables& tables);
+
+  RTCDevice device_;
+  std::shared_ptr<const Bvh> rest_;
+  std::vector<std::uint32_t> mesh_of_;  // by instance
+  std::vector<scene::Bounds> bounds_;   // by mesh
+  std::vector<glm::mat4> rest_worlds_;
+  std::map<std::uint32_t, Deforming> deforming_;  // by mesh
+  std::uint32_t root_ = shared::bvh_no_link;
+};
+
+}  // namespace heliograph::tracing

@@ -1,0 +1,187 @@
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "shaders/embedded.hpp"
+#include "shaders/shared/ray.h"
+#include "tracing/bvh/bvh.hpp"
+#include "tracing/bvh/moving_bvh.hpp"
+#include "tracing/embree/embree.hpp"
+#include "tracing/ray_tracer.hpp"
+
+namespace heliograph::tracing {
+namespace {
+
+void check_texels(const gpu::Device& device, const std::string& name, std::size_t texels) {
+  const std::size_t most = device.limits().maxTexelBufferElements;
+  if (texels <= most) return;
+  throw gpu::GpuError("the scene's " + name + " takes " + std::to_string(texels) +
+                      " texels, but the device reads at most " + std::to_string(most));
+}
+
+/// Uploads texels of four floats. The view is made here, where one thread builds, because plans on
+/// several threads share it later.
+template <typename Element>
+gpu::Buffer upload_texels(const gpu::Device& device, const std::string& name,
+                          const std::vector<Element>& elements) {
+  const auto bytes = std::as_bytes(std::span(elements));
+  check_texels(device, name, bytes.size() / sizeof(glm::vec4));
+  gpu::Buffer buffer =
+      gpu::upload_buffer(device, name, bytes, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+  buffer.texel_view(VK_FORMAT_R32G32B32A32_SFLOAT);
+  return buffer;
+}
+
+/// What a pass that traces binds: the tables stay where they are, the root may change.
+struct SoftwareTables {
+  const gpu::Buffer& records;
+  const gpu::Buffer& triangles;
+  const gpu::Buffer& alpha_heap;
+};
+
+class SoftwareStructure : public virtual AccelerationStructure {
+ public:
+  virtual SoftwareTables tables() const = 0;
+  virtual std::uint32_t root() const = 0;
+};
+
+class RestingSoftwareStructure : public SoftwareStructure {
+ public:
+  RestingSoftwareStructure(const gpu::Device& device, Bvh bvh, bool moves, const gpu::Buffer& masks)
+      : records_(upload_texels(device, "bvh.records", bvh.records)),
+        triangles_(upload_texels(device, "bvh.triangles", bvh.triangles)),
+        alpha_heap_(masks),
+        root_(bvh.root) {
+    check_texels(device, masks.name(), masks.size() / sizeof(std::uint32_t));
+    masks.texel_view(VK_FORMAT_R32_UINT);
+    if (moves) bvh_ = std::make_shared<const Bvh>(std::move(bvh));
+  }
+
+  SoftwareTables tables() const override { return {records_, triangles_, alpha_heap_}; }
+  std::uint32_t root() const override { return root_; }
+  std::uint64_t bytes() const override { return records_.size() + triangles_.size(); }
+  /// What moving copies start from; null for scenes without clips.
+  const std::shared_ptr<const Bvh>& bvh() const { return bvh_; }
+
+ private:
+  gpu::Buffer records_;
+  gpu::Buffer triangles_;
+  const gpu::Buffer& alpha_heap_;
+  std::uint32_t root_;
+  std::shared_ptr<const Bvh> bvh_;
+};
+
+class MovingSoftwareStructure : public SoftwareStructure, public MovingStructure {
+ public:
+  MovingSoftwareStructure(const gpu::Device& device, RTCDevice embree,
+                          std::shared_ptr<const RestingSoftwareStructure> rest,
+                          const scene::Scene& scene)
+      : rest_(std::move(rest)), bvh_(embree, rest_->bvh(), scene) {
+    records_ = writable_texels(device, "bvh.moving_records",
+                               bvh_.record_count() * sizeof(shared::BvhNode));
+    if (bvh_.deforms()) {
+      triangles_ =
+          writable_texels(device, "bvh.moving_triangles", rest_->tables().triangles.size());
+    }
+    bvh_.start(mapped());
+  }
+
+  SoftwareTables tables() const override {
+    const SoftwareTables rest = rest_->tables();
+    return {records_, triangles_ ? triangles_ : rest.triangles, rest.alpha_heap};
+  }
+  std::uint32_t root() const override { return bvh_.root(); }
+  void update(const Movement& movement) override { bvh_.update(movement, mapped()); }
+
+ private:
+  static gpu::Buffer writable_texels(const gpu::Device& device, const std::string& name,
+                                     std::size_t bytes) {
+    check_texels(device, name, bytes / sizeof(glm::vec4));
+    gpu::Buffer buffer(device, name, bytes, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT,
+                       gpu::Memory::upload);
+    buffer.texel_view(VK_FORMAT_R32G32B32A32_SFLOAT);
+    return buffer;
+  }
+
+  MovingBvh::Tables mapped() const {
+    const auto span = [](const gpu::Buffer& buffer, auto* first) {
+      return std::span(first, buffer.size() / sizeof *first);
+    };
+    return {span(records_, reinterpret_cast<shared::BvhNode*>(records_.mapped())),
+            span(triangles_, reinterpret_cast<glm::vec4*>(triangles_.mapped()))};
+  }
+
+  std::shared_ptr<const RestingSoftwareStructure> rest_;
+  MovingBvh bvh_;
+  gpu::Buffer records_;
+  gpu::Buffer triangles_;
+};
+
+class SoftwareTracer : public RayTracer {
+ public:
+  explicit SoftwareTracer(const gpu::Device& device)
+      : device_(device),
+        embree_(make_embree_device()),
+        closest_(device, shaders::trace_closest),
+        any_(device, shaders::trace_any) {}
+
+  protocol::TracerKind kind() const override { return protocol::TracerKind::software; }
+
+  std::shared_ptr<const AccelerationStructure> build(const scene::Scene& scene,
+                                                     const SceneBuffers& buffers) const override {
+    return std::make_shared<RestingSoftwareStructure>(device_, build_bvh(embree_.get(), scene),
+                                                      !scene.clips.empty(), buffers.alpha_heap);
+  }
+
+  std::unique_ptr<MovingStructure> build_moving(std::shared_ptr<const AccelerationStructure> rest,
+                                                const scene::Scene& scene,
+                                                const SceneTables&) const override {
+    return std::make_unique<MovingSoftwareStructure>(
+        device_, embree_.get(),
+        std::dynamic_pointer_cast<const RestingSoftwareStructure>(std::move(rest)), scene);
+  }
+
+  void trace_closest(gpu::FramePlan& plan, const std::string& name,
+                     const AccelerationStructure& structure, const RayStream& rays,
+                     gpu::BufferRef hits) const override {
+    add_pass(plan, name, closest_, structure, rays, hits);
+  }
+
+  void trace_any(gpu::FramePlan& plan, const std::string& name,
+                 const AccelerationStructure& structure, const RayStream& rays,
+                 gpu::BufferRef occluded) const override {
+    add_pass(plan, name, any_, structure, rays, occluded);
+  }
+
+ private:
+  static void add_pass(gpu::FramePlan& plan, const std::string& name,
+                       const gpu::ComputeProgram& program, const AccelerationStructure& structure,
+                       const RayStream& rays, gpu::BufferRef answers) {
+    const auto& bvh = dynamic_cast<const SoftwareStructure&>(structure);
+    const SoftwareTables tables = bvh.tables();
+    plan.pass(name, program)
+        .read(rays.count)
+        .read(rays.rays)
+        .read(plan.import(tables.records))
+        .read(plan.import(tables.triangles))
+        .read(plan.import(tables.alpha_heap))
+        .write(answers)
+        .constants([&bvh] { return bvh.root(); })
+        .dispatch_indirect(rays.count, offsetof(shared::RayCount, groups_x));
+  }
+
+  const gpu::Device& device_;
+  EmbreeHandle<RTCDevice> embree_;
+  gpu::ComputeProgram closest_;
+  gpu::ComputeProgram any_;
+};
+
+}  // namespace
+
+std::unique_ptr<RayTracer> make_software_tracer(const gpu::Device& device) {
+  return std::make_unique<SoftwareTracer>(device);
+}
+
+}  // namespace heliograph::tracing

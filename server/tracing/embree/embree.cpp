@@ -1,0 +1,42 @@
+#include "tracing/embree/embree.hpp"
+
+#include <stdexcept>
+#include <string>
+
+namespace heliograph::tracing {
+namespace {
+
+const char* error_name(RTCError error) {
+  switch (error) {
+    case RTC_ERROR_NONE:
+      return "no error";
+    case RTC_ERROR_INVALID_ARGUMENT:
+      return "invalid argument";
+    case RTC_ERROR_INVALID_OPERATION:
+      return "invalid operation";
+    case RTC_ERROR_OUT_OF_MEMORY:
+      return "out of memory";
+    case RTC_ERROR_UNSUPPORTED_CPU:
+      return "unsupported processor";
+    case RTC_ERROR_CANCELLED:
+      return "cancelled";
+    default:
+      return "unknown error";
+  }
+}
+
+}  // namespace
+
+EmbreeHandle<RTCDevice> make_embree_device() {
+  EmbreeHandle<RTCDevice> device(rtcNewDevice(nullptr));
+  check_embree(device.get(), "start");
+  return device;
+}
+
+void check_embree(RTCDevice device, const char* action) {
+  const RTCError error = rtcGetDeviceError(device);
+  if (error == RTC_ERROR_NONE) return;
+  throw std::runtime_error("Embree could not " + std::string(action) + ": " + error_name(error));
+}
+
+}  // namespace heliograph::tracing

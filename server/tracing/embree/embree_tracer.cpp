@@ -1,0 +1,155 @@
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "shaders/shared/ray.h"
+#include "tracing/embree/embree.hpp"
+#include "tracing/embree/embree_batch.hpp"
+#include "tracing/embree/embree_scene.hpp"
+#include "tracing/ray_tracer.hpp"
+
+namespace heliograph::tracing {
+namespace {
+
+class EmbreeStructure : public virtual AccelerationStructure {
+ public:
+  EmbreeStructure(RTCDevice device, const scene::Scene& scene,
+                  std::vector<std::shared_ptr<EmbreeMesh>> meshes)
+      : scene_(device, scene, std::move(meshes)) {}
+
+  const EmbreeScene& scene() const { return scene_; }
+  std::uint64_t bytes() const override { return bytes_; }
+  void set_bytes(std::int64_t bytes) {
+    bytes_ = static_cast<std::uint64_t>(std::max<std::int64_t>(bytes, 0));
+  }
+
+ protected:
+  EmbreeScene scene_;
+
+ private:
+  std::uint64_t bytes_ = 0;
+};
+
+class MovingEmbreeStructure : public EmbreeStructure, public MovingStructure {
+ public:
+  using EmbreeStructure::EmbreeStructure;
+
+  void update(const Movement& movement) override {
+    if (!movement.deformed.empty()) scene_.refit(movement.deformed);
+    for (const std::uint32_t i : movement.moved) scene_.place(i, movement.worlds[i]);
+    if (!movement.deformed.empty() || !movement.moved.empty()) scene_.commit();
+  }
+};
+
+std::span<const std::uint8_t> mapped_bytes(const gpu::Buffer& buffer) {
+  return {reinterpret_cast<const std::uint8_t*>(buffer.mapped()), buffer.size()};
+}
+
+template <typename Element>
+Element* mapped(const gpu::FramePlan& plan, gpu::BufferRef buffer) {
+  return reinterpret_cast<Element*>(plan.get(buffer).mapped());
+}
+
+/// Calls `trace(rays, blending, answers)` for every batch of the stream, on all processors.
+template <typename Answer, typename Trace>
+void trace_batches(const gpu::FramePlan& plan, const RayStream& stream, gpu::BufferRef answers,
+                   const Trace& trace) {
+  const auto& header = *mapped<const shared::RayCount>(plan, stream.count);
+  const std::size_t count = std::min(header.count, stream.capacity);
+  const std::span rays(mapped<const shared::Ray>(plan, stream.rays), count);
+  auto* const results = mapped<Answer>(plan, answers);
+  const std::size_t batches = (count + embree_batch - 1) / embree_batch;
+  tbb::parallel_for(std::size_t(0), batches, [&](std::size_t batch) {
+    const std::size_t first = batch * embree_batch;
+    trace(rays.subspan(first, std::min(embree_batch, count - first)), header.blending,
+          results + first);
+  });
+}
+
+class EmbreeTracer : public RayTracer {
+ public:
+  explicit EmbreeTracer(const gpu::Device& device) : embree_(make_embree_device()) {
+    rtcSetDeviceMemoryMonitorFunction(embree_.get(), count_bytes, &bytes_);
+    if (device.is_cpu()) return;
+    throw gpu::GpuError("the tracer \"embree\" works on rays in the processor's memory, but " +
+                        device.report().name + " is not a processor; use \"software\"");
+  }
+
+  protocol::TracerKind kind() const override { return protocol::TracerKind::embree; }
+
+  std::shared_ptr<const AccelerationStructure> build(const scene::Scene& scene,
+                                                     const SceneBuffers& buffers) const override {
+    const std::int64_t before = bytes_;
+    auto structure = std::make_shared<EmbreeStructure>(
+        embree_.get(), scene,
+        make_embree_meshes(embree_.get(), scene, mapped_bytes(buffers.alpha_heap)));
+    structure->set_bytes(bytes_ - before);
+    return structure;
+  }
+
+  // Shares the meshes that keep their shape; they hold on to what they need.
+  std::unique_ptr<MovingStructure> build_moving(std::shared_ptr<const AccelerationStructure> rest,
+                                                const scene::Scene& scene,
+                                                const SceneTables& tables) const override {
+    auto meshes = dynamic_cast<const EmbreeStructure&>(*rest).scene().meshes();
+    for (const scene::Deformation& deformation : scene.deformations) {
+      const scene::Mesh& mesh = scene.meshes[deformation.mesh];
+      meshes[deformation.mesh] =
+          std::make_shared<EmbreeMesh>(embree_.get(), mesh, scene.materials[mesh.material],
+                                       mapped_bytes(tables.alpha_heap), EmbreeMesh::Use::deforming);
+    }
+    return std::make_unique<MovingEmbreeStructure>(embree_.get(), scene, std::move(meshes));
+  }
+
+  void trace_closest(gpu::FramePlan& plan, const std::string& name,
+                     const AccelerationStructure& structure, const RayStream& rays,
+                     gpu::BufferRef hits) const override {
+    const RTCScene scene = dynamic_cast<const EmbreeStructure&>(structure).scene().handle();
+    plan.host(name,
+              [&plan, scene, rays, hits] {
+                trace_batches<shared::Hit>(
+                    plan, rays, hits, [scene](auto... batch) { intersect_batch(scene, batch...); });
+              })
+        .read(rays.count)
+        .read(rays.rays)
+        .write(hits);
+  }
+
+  void trace_any(gpu::FramePlan& plan, const std::string& name,
+                 const AccelerationStructure& structure, const RayStream& rays,
+                 gpu::BufferRef occluded) const override {
+    const RTCScene scene = dynamic_cast<const EmbreeStructure&>(structure).scene().handle();
+    plan.host(name,
+              [&plan, scene, rays, occluded] {
+                trace_batches<std::uint32_t>(plan, rays, occluded, [scene](auto... batch) {
+                  occluded_batch(scene, batch...);
+                });
+              })
+        .read(rays.count)
+        .read(rays.rays)
+        .write(occluded);
+  }
+
+ private:
+  static bool count_bytes(void* count, ssize_t bytes, bool) {
+    *static_cast<std::atomic<std::int64_t>*>(count) += bytes;
+    return true;
+  }
+
+  std::atomic<std::int64_t> bytes_ = 0;  // that Embree holds; outlives the device
+  EmbreeHandle<RTCDevice> embree_;
+};
+
+}  // namespace
+
+std::unique_ptr<RayTracer> make_embree_tracer(const gpu::Device& device) {
+  return std::make_unique<EmbreeTracer>(device);
+}
+
+}  // namespace heliograph::tracing

@@ -1,0 +1,50 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 8, local_size_y = 8) in;
+// Holds the long history of reflections against a short one: what the last few frames show nearby
+// bounds it, which 1-sample neighbourhoods could not without cutting rare bright paths away (the
+// "holes" of paper section 3.1). Where it bites the history becomes shorter, so that variance and
+// weights agree with the colour. Or, for gradient, shortens it by how far the neighbourhood's
+// brightness has changed in this frame.
+#include "lib/frame.glsl"
+#include "lib/denoise/moments.glsl"
+#include "lib/denoise/rectification.glsl"
+#include "lib/denoise/reprojection.glsl"
+
+layout(set = 1, binding = 0, rgba32f) readonly uniform image2D guide;
+layout(set = 1, binding = 1, rgba32f) readonly uniform image2D fast;  // or the change
+layout(set = 1, binding = 2, rgba32f) uniform image2D signal;
+layout(set = 1, binding = 3, rgba32f) uniform image2D history;
+layout(push_constant) uniform Constants { TemporalConstants constants; };
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (outside_frame(pixel) || imageLoad(guide, pixel).w <= 0.0) return;
+  Window window = empty_window();
+  for (int y = -constants.radius; y <= constants.radius; ++y) {
+    for (int x = -constants.radius; x <= constants.radius; ++x) {
+      ivec2 tap = pixel + ivec2(x, y);
+      if (!inside(tap, ivec2(frame.extent.xy)) || imageLoad(guide, tap).w <= 0.0) continue;
+      add(window, to_ycocg(imageLoad(fast, tap).rgb));
+    }
+  }
+  vec4 state = imageLoad(history, pixel);
+  vec4 value = imageLoad(signal, pixel);
+  Box box = variance_box(window, constants.scale);
+  vec3 color = to_ycocg(value.rgb);
+  vec3 held = clamp_to(box, color);
+  float moved = abs(held.x - color.x);
+  float frames = shortened_history(state.xx, vec2(moved), vec2(0.5 * (box.high.x - box.low.x))).x;
+  if (constants.rectification == rectification_gradient) {
+    float change = certain_change(box).x;
+    frames = min(state.x, frames_under_motion(change / (abs(color.x) + change + 1e-4)));
+    vec3 sampled = to_ycocg(imageLoad(fast, pixel).rgb);
+    // As if the new sample had come to so short a history.
+    held = color + sampled * (1.0 / frames - 1.0 / state.x);
+    moved = abs(held.x - color.x);
+  }
+  // The variance of the mean grows as the history shrinks.
+  if ((constants.flags & temporal_mean_variance) != 0u) value.w *= state.x / max(frames, 1.0);
+  imageStore(signal, pixel, vec4(from_ycocg(held), value.w));
+  imageStore(history, pixel, vec4(frames, moved, state.zw));
+}

@@ -1,0 +1,49 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 8, local_size_y = 8) in;
+// Holds the long history of visibility against a short one: what the last few frames show nearby
+// bounds it, which 1-sample neighbourhoods could not without cutting rare values away. Where it
+// bites the history becomes shorter, so that variance and weights agree with the value. Or, for
+// gradient, shortens it by how far the neighbourhood has changed in this frame, which moves the mean
+// to neither side.
+#include "lib/frame.glsl"
+#include "lib/denoise/moments.glsl"
+#include "lib/denoise/rectification.glsl"
+#include "lib/denoise/reprojection.glsl"
+
+layout(set = 1, binding = 0, rgba32f) readonly uniform image2D guide;
+layout(set = 1, binding = 1, rg32f) readonly uniform image2D fast;  // or the change
+layout(set = 1, binding = 2, rgba32f) uniform image2D signal;
+layout(set = 1, binding = 3, rgba32f) uniform image2D history;
+layout(push_constant) uniform Constants { TemporalConstants constants; };
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (outside_frame(pixel) || imageLoad(guide, pixel).w <= 0.0) return;
+  Window window = empty_window();
+  for (int y = -constants.radius; y <= constants.radius; ++y) {
+    for (int x = -constants.radius; x <= constants.radius; ++x) {
+      ivec2 tap = pixel + ivec2(x, y);
+      if (!inside(tap, ivec2(frame.extent.xy)) || imageLoad(guide, tap).w <= 0.0) continue;
+      add(window, vec3(imageLoad(fast, tap).xy, 0.0));
+    }
+  }
+  vec4 state = imageLoad(history, pixel);
+  Box box = variance_box(window, constants.scale);
+  vec4 value = imageLoad(signal, pixel);
+  vec2 held = clamp_to(box, vec3(value.xy, 0.0)).xy;
+  vec2 shortened = shortened_history(state.xy, abs(held - value.xy), 0.5 * (box.high - box.low).xy);
+  if (constants.rectification == rectification_gradient) {
+    vec2 change = certain_change(box).xy;
+    shortened = min(state.xy, vec2(frames_under_motion(change.x), frames_under_motion(change.y)));
+    // As if the new sample had come to so short a history.
+    held = value.xy + imageLoad(fast, pixel).xy * (1.0 / shortened - 1.0 / state.xy);
+  }
+  vec2 moved = abs(held - value.xy);
+  // The variance of the mean grows as the history shrinks.
+  if ((constants.flags & temporal_mean_variance) != 0u) {
+    value.zw *= state.xy / max(shortened, vec2(1.0));
+  }
+  imageStore(signal, pixel, vec4(held, value.zw));
+  imageStore(history, pixel, vec4(shortened, moved));
+}

@@ -1,0 +1,128 @@
+// One iteration of the edge-avoiding a-trous wavelet filter (Dammertz et al. 2010), guided by
+// variance (Schied et al. 2017, equations 1 to 5), in any shape of kernel: 5 x 5, or 5 across and 5
+// down (paper section 3.3). What a signal is comes from the shader that includes this.
+#include "lib/denoise/edge_stopping.glsl"
+#include "lib/frame.glsl"
+#include "lib/math/random.glsl"
+#include "shared/denoise.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(set = 1, binding = 0, rgba32f) readonly uniform image2D guide;  // normal (1 + roughness), Z
+layout(set = 1, binding = 1, rg32f) readonly uniform image2D depth_slope;
+layout(set = 1, binding = 2, rgba32f) readonly uniform image2D signal;
+layout(set = 1, binding = 3, rgba32f) writeonly uniform image2D filtered;
+layout(push_constant) uniform Constants { AtrousConstants constants; };
+
+/// Of the B3 spline (1, 4, 6, 4, 1) / 16, against its middle.
+const float kernel[3] = float[3](1.0, 2.0 / 3.0, 1.0 / 6.0);
+
+bool has(uint flag) { return (constants.flags & flag) != 0u; }
+
+struct Center {
+  ivec2 pixel;
+  vec3 normal;
+  float roughness;
+  float view_z;
+  vec2 slope;
+  float curve;
+  float footprint;
+  vec2 brightness;
+  vec2 noise;  // standard deviation
+};
+
+/// Variance over 3x3 pixels with weights 1 2 1: one pixel's own estimate is too noisy to guide.
+vec2 smooth_variance(ivec2 pixel) {
+  ivec2 last = ivec2(frame.extent.xy) - 1;
+  vec2 sum = vec2(0.0);
+  for (int y = -1; y <= 1; ++y) {
+    for (int x = -1; x <= 1; ++x) {
+      float weight = float((2 - abs(x)) * (2 - abs(y))) / 16.0;
+      ivec2 tap = clamp(pixel + ivec2(x, y), ivec2(0), last);
+      sum += weight * variance_of(imageLoad(signal, tap));
+    }
+  }
+  return sum;
+}
+
+/// How often a pixel is filtered: not beyond the width of the lobe, and less often where reflections
+/// bring no noise of their own (paper 3.5).
+int levels(float roughness) {
+  int most = 16;
+  if (has(atrous_lobe_limit)) {
+    float pixels = lobe_pixels(roughness);
+    most = pixels < 1.0 ? 0 : 1 + int(log2(pixels));
+  }
+  if (!has(atrous_levels_by_roughness)) return most;
+  return min(most, roughness <= 0.002 ? 0 : roughness <= 0.05 ? 1 : 16);
+}
+
+/// Pixels from tap to tap: twice as many on surfaces rougher than the threshold, with a band
+/// between, lest textured roughness shows the border.
+int step_at(float roughness) {
+  float twice = smoothstep(constants.start_threshold - 0.05, constants.start_threshold + 0.05,
+                           roughness);
+  return int(round(float(1 << constants.level) * (1.0 + twice)));
+}
+
+/// Moves the taps of large steps by up to a quarter step, another way in every pixel and frame.
+ivec2 jitter(ivec2 pixel, int step) {
+  if (!has(atrous_jitter) || step <= 4) return ivec2(0);
+  vec2 share = random_pair(uvec2(pixel), frame.extent.z, 48u + uint(constants.level),
+                           frame.extent.w);
+  return ivec2(round((share - 0.5) * 0.5 * float(step)));
+}
+
+vec2 tap_exponent(Center c, vec4 guide_q, vec4 value, vec2 offset) {
+  float size = length(guide_q.xyz);
+  float shared_exponent =
+      depth_exponent(plane_distance(c.view_z, c.slope, c.curve, guide_q.w, offset),
+                     depth_allowance(c.slope, offset, c.footprint), constants.depth_sigma) +
+      normal_exponent(dot(c.normal, guide_q.xyz / size), constants.normal_power) +
+      signal_exponent(c.roughness, size - 1.0);
+  return shared_exponent + luminance_exponent(c.brightness, brightness(value), c.noise,
+                                              constants.luminance_sigma, smallest_difference);
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (outside_frame(pixel)) return;
+  vec4 value = imageLoad(signal, pixel);
+  vec4 guide_p = imageLoad(guide, pixel);
+  float size = length(guide_p.xyz);
+  if (guide_p.w <= 0.0 || constants.level >= levels(size - 1.0)) {
+    imageStore(filtered, pixel, value);
+    return;
+  }
+  Center c;
+  c.pixel = pixel;
+  c.normal = guide_p.xyz / size;
+  c.roughness = size - 1.0;
+  c.view_z = guide_p.w;
+  c.slope = imageLoad(depth_slope, pixel).xy;
+  c.curve = enabled(frame_orthographic) ? 0.0 : 1.0 / c.view_z;
+  c.footprint = pixel_footprint(c.view_z);
+  c.brightness = brightness(value);
+  vec2 variance = has(atrous_variance_prefilter) ? smooth_variance(pixel) : variance_of(value);
+  c.noise = sqrt(max(variance, vec2(0.0)));
+
+  int step = step_at(c.roughness);
+  ivec2 shift = jitter(pixel, step);
+  vec4 sum = value;
+  vec2 total = vec2(1.0);
+  for (int y = -constants.rows; y <= constants.rows; ++y) {
+    for (int x = -constants.columns; x <= constants.columns; ++x) {
+      ivec2 tap = pixel + ivec2(x, y) * step + shift;
+      if ((x == 0 && y == 0) || any(lessThan(tap, ivec2(0))) || outside_frame(tap)) continue;
+      vec4 guide_q = imageLoad(guide, tap);
+      if (guide_q.w <= 0.0) continue;
+      vec4 value_q = imageLoad(signal, tap);
+      vec2 weight = kernel[abs(x)] * kernel[abs(y)] *
+                    exp(tap_exponent(c, guide_q, value_q, vec2(tap - pixel)));
+      sum += spread(weight) * value_q;
+      total += weight;
+    }
+  }
+  vec4 result = sum / spread(total);
+  if (has(atrous_keep_variance)) result = with_variance(result, variance_of(value));
+  imageStore(filtered, pixel, result);
+}

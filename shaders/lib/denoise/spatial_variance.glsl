@@ -1,0 +1,66 @@
+// A history too short to tell its variance takes that of its neighbours on the same surface
+// (Schied et al. 2017, section 4.2), raised while it is short. A pixel that has no such neighbours,
+// as along the rim of a column, would show its single rays as they are, for no filter reaches it: it
+// takes its mean, too, from what lies about as far away, while its history is short. What a signal
+// and its memory are comes from the shader that includes this.
+#include "lib/denoise/edge_stopping.glsl"
+#include "lib/frame.glsl"
+#include "lib/denoise/reprojection.glsl"
+#include "shared/denoise.h"
+
+const float enough_neighbours = 8.0;  // the pixel itself counts as one
+const float nearby_depth = 0.02;      // of the distance
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(set = 1, binding = 0, rgba32f) readonly uniform image2D guide;
+layout(set = 1, binding = 1, rg32f) readonly uniform image2D depth_slope;
+layout(set = 1, binding = 2, rgba32f) readonly uniform image2D moments;
+layout(set = 1, binding = 3, rgba32f) readonly uniform image2D history;
+layout(set = 1, binding = 4, rgba32f) uniform image2D signal;
+layout(push_constant) uniform Constants { TemporalConstants constants; };
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (outside_frame(pixel)) return;
+  vec4 here = imageLoad(guide, pixel);
+  vec2 frames = frames_of(imageLoad(history, pixel));
+  bool known = here.w <= 0.0 || min(frames.x, frames.y) >= constants.spatial_variance_frames;
+  // No rows to visit instead of a branch around them: that is what vector hardware can skip.
+  int radius = known ? -1 : 3;
+  vec3 normal = here.xyz / max(length(here.xyz), 1e-6);
+  vec2 slope = imageLoad(depth_slope, pixel).xy;
+  float curve = enabled(frame_orthographic) ? 0.0 : 1.0 / max(here.w, 1e-20);
+  float footprint = pixel_footprint(here.w);
+  vec4 sum = vec4(0.0), loose_sum = vec4(0.0);
+  float total = 0.0, loose_total = 0.0;
+  for (int y = -radius; y <= radius; ++y) {
+    for (int x = -radius; x <= radius; ++x) {
+      ivec2 tap = pixel + ivec2(x, y);
+      if (!inside(tap, ivec2(frame.extent.xy))) continue;
+      vec4 there = imageLoad(guide, tap);
+      if (there.w <= 0.0) continue;
+      vec2 offset = vec2(x, y);
+      vec4 moments_there = imageLoad(moments, tap);
+      float cosine = dot(normal, normalize(there.xyz));
+      float weight = exp(depth_exponent(plane_distance(here.w, slope, curve, there.w, offset),
+                                        depth_allowance(slope, offset, footprint), 1.0) +
+                         normal_exponent(cosine, 128.0));
+      sum += weight * moments_there;
+      total += weight;
+      float loose_weight = exp(depth_exponent(abs(there.w - here.w), here.w, nearby_depth)) *
+                           max(cosine, 0.0);
+      loose_sum += loose_weight * moments_there;
+      loose_total += loose_weight;
+    }
+  }
+  if (known || total <= 0.0) return;
+  float alone = clamp((enough_neighbours - total) / (enough_neighbours - 2.0), 0.0, 1.0);
+  sum = mix(sum / total, loose_sum / max(loose_total, 1e-6), alone);
+  vec2 longer = max(constants.spatial_variance_frames / max(frames, vec2(1.0)), vec2(1.0));
+  vec2 variance = max(second_moment(sum) - first_moment(sum) * first_moment(sum), vec2(0.0));
+  variance *= longer;
+  if ((constants.flags & temporal_mean_variance) != 0u) variance /= max(frames, vec2(1.0));
+  vec4 value = with_mean(imageLoad(signal, pixel), first_moment(sum),
+                         alone / max(frames, vec2(1.0)));
+  imageStore(signal, pixel, with_variance(value, max(variance, variance_of(value))));
+}

@@ -1,0 +1,24 @@
+// Radiance and the variance of its luminance in one image.
+#ifndef HELIOGRAPH_SPECULAR_SIGNAL_GLSL
+#define HELIOGRAPH_SPECULAR_SIGNAL_GLSL
+#include "lib/denoise/edge_stopping.glsl"
+
+const float smallest_difference = 1e-4;
+
+vec2 brightness(vec4 signal) { return vec2(dot(signal.rgb, vec3(0.2126, 0.7152, 0.0722))); }
+vec2 variance_of(vec4 signal) { return signal.ww; }
+vec4 with_variance(vec4 signal, vec2 variance) { return vec4(signal.rgb, variance.x); }
+/// Moments know of no colours.
+vec4 with_mean(vec4 signal, vec2 mean, vec2 share) { return signal; }
+
+/// Of its memory: frames remembered, and moments of single samples' luminance.
+vec2 frames_of(vec4 history) { return history.xx; }
+vec2 first_moment(vec4 moments) { return moments.zz; }
+vec2 second_moment(vec4 moments) { return moments.ww; }
+
+/// Values are weighed, variances by the square of the weight.
+vec4 spread(vec2 weight) { return vec4(weight.xxx, weight.x * weight.x); }
+/// What else keeps pixels of two roughnesses apart, as an exponent.
+float signal_exponent(float p, float q) { return roughness_exponent(p, q); }
+
+#endif

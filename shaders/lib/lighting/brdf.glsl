@@ -1,0 +1,239 @@
+// The metallic-roughness BRDF of glTF 2.0 (appendix B): GGX with height-correlated Smith masking and
+// Schlick's Fresnel above Lambert. Two things differ from the specification, so that a white surface
+// gives back all light, whatever its roughness and metalness: what microfacets reflect more than
+// once comes back with the specular lobe (Fdez-Aguera 2019, Turquin 2019), and the diffuse lobe gets
+// what the specular lobe as a whole leaves, not what one microfacet leaves.
+// Perceptual roughness; alpha = roughness^2.
+// A clear coat (KHR_materials_clearcoat) is one more lobe of the same kind, white and without metal;
+// sheen (KHR_materials_sheen) the lobe of Estevez and Kulla 2017 with the visibility of Neubelt and
+// Pettineo 2013. Each leaves to what lies under it what it does not give back itself.
+#ifndef HELIOGRAPH_BRDF_GLSL
+#define HELIOGRAPH_BRDF_GLSL
+#include "lib/math/geometry.glsl"
+#include "shared/scene.h"
+
+const float dielectric_f0 = 0.04;  // index of refraction 1.5
+
+/// What extensions make of a point of a surface.
+struct SurfaceLayer {
+  vec3 facing;    // reflectance of the dielectric, F0
+  float grazing;  // and its F90
+  vec3 coat_normal;
+  float coat;  // share of the surface that lies under a clear coat
+  float coat_roughness;
+  vec3 sheen;
+  float sheen_roughness;
+  float transmission;  // share of what enters the dielectric that is not scattered back
+  vec3 transmitted;    // and what comes out of it behind, where the base colour is white
+};
+
+/// A point of a surface as it looks from one direction.
+struct SurfaceMaterial {
+  vec3 normal;     // shading, unit length
+  vec3 geometric;  // of the triangle, on the eye's side
+  vec3 eye;        // toward the eye, unit length
+  float n_dot_v;   // > 0
+  float roughness;
+  // What a microfacet reflects: facing + grazing x (1 - v.h)^5, multiple scattering included.
+  vec3 facing;
+  vec3 grazing;
+  vec3 specular_albedo;  // share of white light from everywhere that the specular lobes give back
+  vec3 diffuse_albedo;   // and the diffuse lobe
+  vec3 transmitted;      // and what passes straight through
+  vec3 coat_normal;
+  float coat_n_dot_v;
+  float coat_roughness;
+  vec2 coat;          // like facing and grazing
+  float coat_albedo;  // its part of specular_albedo; 0: there is no coat
+  vec3 sheen;         // factor on the lobe; 0: there is none
+  float sheen_roughness;
+  vec3 sheen_albedo;
+};
+
+vec3 fresnel_schlick(vec3 f0, float cosine) {
+  float m = clamp(1.0 - cosine, 0.0, 1.0);
+  float m2 = m * m;
+  return f0 + (1.0 - f0) * (m2 * m2 * m);
+}
+
+float ggx_distribution(float n_dot_h, float alpha) {
+  float a2 = alpha * alpha;
+  // (n.h)^2 (a^2 - 1) + 1 without cancellation near n.h = 1.
+  float d = (1.0 - n_dot_h) * (1.0 + n_dot_h) + n_dot_h * n_dot_h * a2;
+  return a2 / (pi * d * d);
+}
+
+/// G2 / (4 n.l n.v), height-correlated (Heitz 2014).
+float smith_visibility(float n_dot_l, float n_dot_v, float alpha) {
+  float a2 = alpha * alpha;
+  float v = n_dot_l * sqrt(n_dot_v * n_dot_v * (1.0 - a2) + a2);
+  float l = n_dot_v * sqrt(n_dot_l * n_dot_l * (1.0 - a2) + a2);
+  return 0.5 / max(v + l, 1e-7);
+}
+
+/// Where to look up the split sum that make_material() needs.
+float material_n_dot_v(vec3 normal, vec3 eye) { return clamp(dot(normal, eye), 1e-3, 1.0); }
+
+/// glTF's own model.
+SurfaceLayer plain_layer() {
+  return SurfaceLayer(vec3(dielectric_f0), 1.0, vec3(0.0, 0.0, 1.0), 0.0, 0.0, vec3(0.0), 0.0, 0.0,
+                      vec3(0.0));
+}
+
+/// The material toward `eye`, without its sheen and coat. `split` holds scale and bias of F0 at
+/// material_n_dot_v() and the roughness. glTF mixes a dielectric and a metal; so does each of their
+/// lobes.
+SurfaceMaterial make_material(vec3 base_color, float metallic, float roughness, vec3 normal,
+                              vec3 geometric, vec3 eye, vec2 split, SurfaceLayer layer) {
+  SurfaceMaterial m;
+  m.normal = normal;
+  m.geometric = geometric;
+  m.eye = eye;
+  m.n_dot_v = material_n_dot_v(normal, eye);
+  m.roughness = roughness;
+  // 1 + F0 x regained: the multiple scattering of Turquin 2019, exact for F0 = 1.
+  float regained = 1.0 / max(split.x + split.y, 1e-3) - 1.0;
+  vec3 dielectric_scale = 1.0 + layer.facing * regained;
+  vec3 dielectric_share = (1.0 - metallic) * dielectric_scale;
+  vec3 metal_share = metallic * (1.0 + base_color * regained);
+  m.facing = dielectric_share * layer.facing + metal_share * base_color;
+  m.grazing = dielectric_share * (layer.grazing - layer.facing) + metal_share * (1.0 - base_color);
+  m.specular_albedo = m.facing * (split.x + split.y) + m.grazing * split.y;
+  vec3 dielectric_albedo = (layer.facing * split.x + layer.grazing * split.y) * dielectric_scale;
+  float taken = max(dielectric_albedo.r, max(dielectric_albedo.g, dielectric_albedo.b));
+  float entering = (1.0 - metallic) * (1.0 - min(taken, 1.0));
+  m.diffuse_albedo = entering * (1.0 - layer.transmission) * base_color;
+  m.transmitted = entering * layer.transmitted * base_color;
+  m.coat_normal = normal;
+  m.coat_n_dot_v = m.n_dot_v;
+  m.coat_roughness = 0.0;
+  m.coat = vec2(0.0);
+  m.coat_albedo = 0.0;
+  m.sheen = m.sheen_albedo = vec3(0.0);
+  m.sheen_roughness = 0.0;
+  return m;
+}
+
+/// Dims all that lies under another lobe.
+void cover(inout SurfaceMaterial m, float under) {
+  m.facing *= under;
+  m.grazing *= under;
+  m.specular_albedo *= under;
+  m.diffuse_albedo *= under;
+  m.transmitted *= under;
+  m.sheen *= under;
+  m.sheen_albedo *= under;
+}
+
+/// `albedo` is that of the white lobe at material_n_dot_v() and the sheen's roughness; narrow lobes
+/// would give back more than there is, and are scaled down.
+void add_sheen(inout SurfaceMaterial m, SurfaceLayer layer, float albedo) {
+  vec3 given = layer.sheen * min(albedo, 1.0);
+  cover(m, 1.0 - max(given.r, max(given.g, given.b)));
+  m.sheen = layer.sheen / max(albedo, 1.0);
+  m.sheen_roughness = layer.sheen_roughness;
+  m.sheen_albedo = given;
+}
+
+/// Lays the coat over the material. `split` is looked up at the coat's roughness and its own n.v.
+void add_coat(inout SurfaceMaterial m, SurfaceLayer layer, vec2 split) {
+  float regained = 1.0 / max(split.x + split.y, 1e-3) - 1.0;
+  float scale = layer.coat * (1.0 + dielectric_f0 * regained);
+  m.coat_normal = layer.coat_normal;
+  m.coat_n_dot_v = material_n_dot_v(layer.coat_normal, m.eye);
+  m.coat_roughness = layer.coat_roughness;
+  m.coat = scale * vec2(dielectric_f0, 1.0 - dielectric_f0);
+  m.coat_albedo = min(m.coat.x * (split.x + split.y) + m.coat.y * split.y, 1.0);
+  cover(m, 1.0 - m.coat_albedo);
+  m.specular_albedo += m.coat_albedo;
+}
+
+bool has_coat(SurfaceMaterial m) { return m.coat_albedo > 0.0; }
+bool has_sheen(SurfaceMaterial m) { return m.sheen != vec3(0.0); }
+
+/// What spreads widely of light from everywhere: the diffuse lobe and the sheen.
+vec3 wide_albedo(SurfaceMaterial m) {
+  return has_sheen(m) ? m.diffuse_albedo + m.sheen_albedo : m.diffuse_albedo;
+}
+
+/// Of the lobe that mirrors the sharper image.
+float mirror_roughness(SurfaceMaterial m) {
+  return has_coat(m) ? min(m.coat_roughness, m.roughness) : m.roughness;
+}
+
+/// Part of specular_albedo that is not the coat's.
+vec3 under_coat_albedo(SurfaceMaterial m) { return m.specular_albedo - m.coat_albedo; }
+
+/// (1 - v.h)^5
+float schlick_weight(float v_dot_h) {
+  float x = clamp(1.0 - v_dot_h, 0.0, 1.0);
+  float x2 = x * x;
+  return x2 * x2 * x;
+}
+
+/// What a microfacet under the coat reflects of light that meets it at this cosine.
+vec3 microfacet_reflectance(SurfaceMaterial m, float v_dot_h) {
+  return m.facing + m.grazing * schlick_weight(v_dot_h);
+}
+
+/// What one of the coat reflects.
+float coat_reflectance(SurfaceMaterial m, float v_dot_h) {
+  return m.coat.x + m.coat.y * schlick_weight(v_dot_h);
+}
+
+/// D V n.l of one lobe. Smooth surfaces keep a narrow lobe: a point light in a perfect mirror is a
+/// pole.
+float specular_lobe(float n_dot_h, float n_dot_l, float n_dot_v, float roughness) {
+  float alpha = max(roughness * roughness, 2e-3);
+  return ggx_distribution(n_dot_h, alpha) * smith_visibility(n_dot_l, n_dot_v, alpha) * n_dot_l;
+}
+
+/// Specular BRDF x cos for light arriving along -l, without the coat.
+vec3 specular_light(SurfaceMaterial m, vec3 l) {
+  float n_dot_l = dot(m.normal, l);
+  if (n_dot_l <= 0.0) return vec3(0.0);
+  vec3 h = normalize(l + m.eye);
+  float n_dot_h = clamp(dot(m.normal, h), 0.0, 1.0);
+  float v_dot_h = dot(m.eye, h);
+  return microfacet_reflectance(m, v_dot_h) *
+         specular_lobe(n_dot_h, n_dot_l, m.n_dot_v, m.roughness);
+}
+
+float coat_light(SurfaceMaterial m, vec3 l) {
+  float n_dot_l = dot(m.coat_normal, l);
+  if (n_dot_l <= 0.0) return 0.0;
+  vec3 h = normalize(l + m.eye);
+  float n_dot_h = clamp(dot(m.coat_normal, h), 0.0, 1.0);
+  return coat_reflectance(m, dot(m.eye, h)) *
+         specular_lobe(n_dot_h, n_dot_l, m.coat_n_dot_v, m.coat_roughness);
+}
+
+const float least_sheen_roughness = 0.07;
+
+/// D V of the white sheen.
+float sheen_lobe(float n_dot_h, float n_dot_l, float n_dot_v, float roughness) {
+  float r = max(roughness, least_sheen_roughness);
+  float sharpness = 1.0 / (r * r);
+  float sine2 = max(1.0 - n_dot_h * n_dot_h, 1e-7);
+  float distribution = (2.0 + sharpness) * pow(sine2, 0.5 * sharpness) / (2.0 * pi);
+  return distribution / (4.0 * max(n_dot_l + n_dot_v - n_dot_l * n_dot_v, 1e-4));
+}
+
+/// Sheen's BRDF x cos for light arriving along -l.
+vec3 sheen_light(SurfaceMaterial m, vec3 l) {
+  float n_dot_l = dot(m.normal, l);
+  if (n_dot_l <= 0.0) return vec3(0.0);
+  float n_dot_h = clamp(dot(m.normal, normalize(l + m.eye)), 0.0, 1.0);
+  return m.sheen * (sheen_lobe(n_dot_h, n_dot_l, m.n_dot_v, m.sheen_roughness) * n_dot_l);
+}
+
+/// BRDF x cos for light arriving along -l.
+vec3 shade_light(SurfaceMaterial m, vec3 l) {
+  float n_dot_l = max(dot(m.normal, l), 0.0);
+  vec3 light = specular_light(m, l) + m.diffuse_albedo * (n_dot_l / pi);
+  if (has_coat(m)) light += coat_light(m, l);
+  if (has_sheen(m)) light += sheen_light(m, l);
+  return light;
+}
+
+#endif

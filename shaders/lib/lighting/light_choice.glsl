@@ -1,0 +1,78 @@
+// Choosing lights, and points of lights, in proportion to what they send to the eye.
+#ifndef HELIOGRAPH_LIGHT_CHOICE_GLSL
+#define HELIOGRAPH_LIGHT_CHOICE_GLSL
+#include "lib/lighting/lights.glsl"
+#include "shared/ray.h"
+
+const uint area_candidates = 4u;
+
+/// Takes one of several: `pick` decides with the new one's share of the total and stays uniform.
+bool takes(float weight, inout float total, inout float pick) {
+  if (!(weight > 0.0)) return false;
+  total += weight;
+  float share = weight / total;
+  bool taken = pick < share;
+  pick = taken ? pick / share : (pick - share) / (1.0 - share);
+  return taken;
+}
+
+struct LightChoice {
+  uint number;
+  float weight;  // luminance of its unshadowed contribution
+  float total;   // of all lights; 0: there is none to choose
+};
+
+LightChoice choose_light(SurfaceMaterial m, vec3 position, inout float pick) {
+  LightChoice choice = LightChoice(0u, 0.0, 0.0);
+  for (uint i = 0u; i < frame.counts.x; ++i) {
+    if (!light_reaches(i, position)) continue;
+    float weight = luminance(light_contribution(light_number(i), m, position));
+    if (!takes(weight, choice.total, pick)) continue;
+    choice.number = i;
+    choice.weight = weight;
+  }
+  return choice;
+}
+
+/// A point of an area light in proportion to the light that it sends to the eye, near enough: one
+/// of a few (resampling; Talbot et al. 2005), so that visibility stays 0 or 1 and what is lit
+/// everywhere stays free of noise.
+LightSample sample_lit_point(Light light, SurfaceMaterial m, vec3 position, vec2 u, float pick,
+                             out bool found) {
+  LightSample chosen;
+  float total = 0.0;
+  for (uint i = 0u; i < area_candidates; ++i) {
+    // Steps of the R2 sequence (Roberts 2018).
+    vec2 at = fract(u + float(i) * vec2(0.7548776662, 0.5698402910));
+    LightSample s = sample_light(light, position, at);
+    float cosine = dot(m.geometric, s.ray_direction);
+    float weight = cosine > 0.0 ? luminance(s.irradiance * shade_light(m, s.direction)) : 0.0;
+    if (takes(weight, total, pick)) chosen = s;
+  }
+  found = total > 0.0;
+  return chosen;
+}
+
+/// The ray that asks whether the light is in view; `found` is false where it would start into the
+/// surface or where no point of the light is seen. `view_distance` is what offset_origin wants.
+Ray light_ray(Light light, SurfaceMaterial m, vec3 position, float view_distance, vec2 u,
+              float pick, out bool found) {
+  LightSample s;
+  if (has_area(light)) {
+    s = sample_lit_point(light, m, position, u, pick, found);
+  } else {
+    s = sample_light(light, position, u);
+    // The light's disk may reach below the horizon, where nothing of it is seen.
+    found = dot(s.ray_direction, m.geometric) > 0.0;
+  }
+  Ray ray;
+  ray.origin = offset_origin(position, m.geometric, view_distance);
+  ray.t_min = 0.0;
+  ray.direction = s.ray_direction;
+  // Geometry may lie where an area light does and show it: it must not be in its own way.
+  ray.t_max = s.distance * 0.999;
+  ray.pixel = ray.user = ray.padding0 = ray.padding1 = 0u;
+  return ray;
+}
+
+#endif

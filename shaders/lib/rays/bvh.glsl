@@ -1,0 +1,199 @@
+// Walks the two-level hierarchy of shaders/shared/bvh.h. Every lane keeps its own stack.
+// Include after defining ANY_HIT as true (whatever is hit first ends it) or false (closest).
+#ifndef HELIOGRAPH_LIB_BVH_GLSL
+#define HELIOGRAPH_LIB_BVH_GLSL
+
+#include "lib/math/nearest_texel.glsl"
+#include "lib/rays/ray_blending.glsl"
+#include "lib/rays/ray_index.glsl"
+#include "shared/bvh.h"
+#include "shared/scene.h"
+
+layout(set = 1, binding = 0, std430) readonly buffer Count { RayCount ray_count; };
+layout(set = 1, binding = 1, std430) readonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 2) uniform samplerBuffer records;
+layout(set = 1, binding = 3) uniform samplerBuffer triangles;
+layout(set = 1, binding = 4) uniform usamplerBuffer alpha_heap;
+
+layout(push_constant) uniform Constants { uint root; };
+
+// A ray in world or mesh space; t means the same in both.
+struct Line {
+  vec3 origin;
+  vec3 direction;
+  vec3 inverse;  // of the direction, finite
+};
+
+Line make_line(vec3 origin, vec3 direction) {
+  const vec3 sign_or_one = mix(vec3(-1.0), vec3(1.0), greaterThanEqual(direction, vec3(0.0)));
+  return Line(origin, direction, sign_or_one / max(abs(direction), vec3(1e-20)));
+}
+
+bool is_node(uint link) { return link != bvh_no_link && (link & bvh_leaf_bit) == 0u; }
+
+uvec4 record_bits(uint record, uint texel) {
+  return floatBitsToUint(texelFetch(records, int(record * bvh_texels_per_record + texel)));
+}
+
+// Entry and exit of a box; exits are widened so that rounding never misses it (Ize, JCGT 2013).
+vec2 box_interval(vec2 x, vec2 y, vec2 z, Line line, vec2 range) {
+  x = (x - line.origin.x) * line.inverse.x;
+  y = (y - line.origin.y) * line.inverse.y;
+  z = (z - line.origin.z) * line.inverse.z;
+  const float near = max(max(min(x.x, x.y), min(y.x, y.y)), max(min(z.x, z.y), range.x));
+  const float far = min(min(max(x.x, x.y), max(y.x, y.y)), min(max(z.x, z.y), range.y));
+  return vec2(near, far * 1.0000004);
+}
+
+uint blending = 0u;  // of the ray
+
+// The mask's alpha, of 255, at barycentric (u, v) of the triangle at `place`.
+uint mask_alpha(uvec4 texels, uvec4 lookup, uint place, float u, float v) {
+  if (texels.y == 0u) return 255u;
+  const int first_uv = int(lookup.z + 2u * (place - lookup.w));
+  const vec4 corners01 = texelFetch(triangles, first_uv);
+  const vec2 corner2 = texelFetch(triangles, first_uv + 1).xy;
+  const vec2 uv = (1.0 - u - v) * corners01.xy + u * corners01.zw + v * corner2;
+  const uint offset = texels.x + nearest_texel(uv, texels.yz, lookup.xy);
+  const uint word = texelFetch(alpha_heap, int(offset >> 2)).x;
+  return bitfieldExtract(word, int(8u * (offset & 3u)), 8);
+}
+
+// Whether the mask lets a ray through barycentric tuv.yz of the triangle at `place` end there.
+bool mask_stops(uint mask, uint place, vec3 tuv, uint instance, uint triangle) {
+  const uvec4 texels = record_bits(mask, 0u) & bvh_number_mask;
+  const uvec4 lookup = record_bits(mask, 1u) & bvh_number_mask;
+  const uint alpha = mask_alpha(texels, lookup, place, tuv.y, tuv.z);
+  return alpha_stops(alpha, texels.w, blending, instance, triangle);
+}
+
+// On which side of the edge from a to b, both seen from the line's origin, the line passes: in
+// proportion to the volume between them. The same edge the other way round gives exactly the opposite, so that no
+// line slips through between two triangles (Davidovic, Engelhardt, Georgiev and Slusallek, GI 2012).
+float side_of_edge(vec3 a, vec3 b, vec3 direction) {
+  const vec3 along = b - a, sum = a + b;
+  precise const float x = fma(along.y, sum.z, -(along.z * sum.y));
+  precise const float y = fma(along.z, sum.x, -(along.x * sum.z));
+  precise const float z = fma(along.x, sum.y, -(along.y * sum.x));
+  precise const float side = fma(x, direction.x, fma(y, direction.y, z * direction.z));
+  return side;
+}
+
+// Both faces: (t, u, v) where the plane is met, and whether inside.
+bool triangle_hit(uint place, Line line, vec2 range, out vec3 tuv, out uint triangle) {
+  const int texel = int(place * bvh_texels_per_triangle);
+  const vec4 first = texelFetch(triangles, texel);
+  triangle = floatBitsToUint(first.w) & bvh_number_mask;
+  const vec3 corner0 = first.xyz;
+  const vec3 corner1 = texelFetch(triangles, texel + 1).xyz;
+  const vec3 corner2 = texelFetch(triangles, texel + 2).xyz;
+  const vec3 a = corner0 - line.origin, b = corner1 - line.origin, c = corner2 - line.origin;
+  const vec3 sides = vec3(side_of_edge(b, c, line.direction), side_of_edge(c, a, line.direction),
+                          side_of_edge(a, b, line.direction));
+  const vec3 normal = cross(corner1 - corner0, corner2 - corner0);
+  const float slope = dot(normal, line.direction);
+  const float total = sides.x + sides.y + sides.z;
+  tuv = vec3(dot(normal, a) / slope, sides.yz / total);
+  const bool inside = all(greaterThanEqual(sides, vec3(0.0))) || all(lessThanEqual(sides, vec3(0.0)));
+  return inside && slope != 0.0 && total != 0.0 && tuv.x > range.x && tuv.x < range.y;
+}
+
+// Links still to be visited. Both levels share the stack; bvh_no_link ends each of them.
+uint stack[bvh_stack_size];
+uint waiting = 0u;
+
+void push(uint link) { stack[waiting++] = link; }
+
+uint pop() { return stack[--waiting]; }
+
+// Follows the line down to the next leaf that it may meet within the range, or to bvh_no_link.
+uint descend(uint link, Line line, vec2 range) {
+  while (is_node(link)) {
+    const int texel = int((link & bvh_number_mask) * bvh_texels_per_record);
+    const vec4 left_xy = texelFetch(records, texel);
+    const vec4 right_xy = texelFetch(records, texel + 1);
+    const vec4 both_z = texelFetch(records, texel + 2);
+    const uvec2 children = floatBitsToUint(texelFetch(records, texel + 3).xy);
+    const vec2 left = box_interval(left_xy.xy, left_xy.zw, both_z.xy, line, range);
+    const vec2 right = box_interval(right_xy.xy, right_xy.zw, both_z.zw, line, range);
+    const bool enter_left = left.x <= left.y;
+    const bool enter_right = right.x <= right.y;
+    // Sorting pays only where a near hit spares the far child.
+    const bool right_first = !ANY_HIT && right.x < left.x;
+    if (enter_left && enter_right) {
+      push(right_first ? children.x : children.y);
+      link = right_first ? children.y : children.x;
+    } else if (enter_left || enter_right) {
+      link = enter_left ? children.x : children.y;
+    } else {
+      link = pop();
+    }
+  }
+  return link;
+}
+
+// Tests a leaf's triangles up to the first that may be masked away. What remains of the leaf comes
+// back as a link: looking up masks between triangles would cost every lane, masked or not.
+uint test_leaf(uint link, Line line, float t_min, uvec4 placed, inout Hit hit) {
+  uint place = link & bvh_leaf_first_mask;
+  const uint end = place + ((link >> bvh_leaf_count_shift) & bvh_leaf_count_mask) + 1u;
+  const bool masked = placed.z != bvh_no_link;
+  bool found = false;
+  vec3 tuv = vec3(0.0);
+  uint triangle = 0u;
+  for (; place < end && !(found && (ANY_HIT || masked)); ++place) {
+    vec3 candidate;
+    uint number;
+    const vec2 range = vec2(t_min, found ? tuv.x : hit.t);
+    if (!triangle_hit(place, line, range, candidate, number)) continue;
+    found = true;
+    tuv = candidate;
+    triangle = number;
+  }
+  const uint instance = placed.y & bvh_number_mask;
+  if (found && (!masked || mask_stops(placed.z & bvh_number_mask, place - 1u, tuv, instance,
+                                      triangle))) {
+    hit.t = tuv.x;
+    hit.u = tuv.y;
+    hit.v = tuv.z;
+    hit.instance = instance;
+    hit.triangle = triangle;
+  }
+  if (place == end) return pop();
+  return bvh_leaf_bit | bvh_number_tag | (end - place - 1u) << bvh_leaf_count_shift | place;
+}
+
+Line into_mesh(uint record, Line world) {
+  const int texel = int(record * bvh_texels_per_record);
+  const mat3x4 rows = mat3x4(texelFetch(records, texel), texelFetch(records, texel + 1),
+                             texelFetch(records, texel + 2));
+  return make_line(vec4(world.origin, 1.0) * rows, vec4(world.direction, 0.0) * rows);
+}
+
+// The closest hit, or any if ANY_HIT; hit_none where there is none.
+Hit trace(Ray ray) {
+  Hit hit = Hit(ray.t_max, hit_none, 0u, 0.0, 0.0, 0u, 0u, 0u);
+  if (!(ray.t_min < ray.t_max)) return hit;
+  blending = ray_blending(ray, ray_count.blending);
+  const Line world = make_line(ray.origin, ray.direction);
+  push(bvh_no_link);
+  uint instance_link = root;
+  while (true) {
+    instance_link = descend(instance_link, world, vec2(ray.t_min, hit.t));
+    if (instance_link == bvh_no_link) return hit;
+    const uint record = instance_link & bvh_leaf_first_mask;
+    const uvec4 placed = record_bits(record, 3u);  // root, instance, mask
+    const Line line = into_mesh(record, world);
+    push(bvh_no_link);
+    uint link = placed.x;
+    while (true) {
+      link = descend(link, line, vec2(ray.t_min, hit.t));
+      if (link == bvh_no_link) break;
+      link = test_leaf(link, line, ray.t_min, placed, hit);
+      if (ANY_HIT && hit.instance != hit_none) return hit;
+    }
+    instance_link = pop();
+  }
+}
+
+#endif

@@ -1,0 +1,64 @@
+// One mirrored ray per pixel, or per 2x2, from the visible normals of the surface's roughness.
+// HALF_RESOLUTION: rays carry no weight; the direction that each cell took is kept, so that the
+// pixels of the cell can weigh what it saw by their own lobes.
+#ifndef HELIOGRAPH_SPECULAR_GENERATION_GLSL
+#define HELIOGRAPH_SPECULAR_GENERATION_GLSL
+#include "lib/frame.glsl"
+#include "lib/rays/ray_stream.glsl"
+#include "lib/math/sampling.glsl"
+#include "lib/rays/specular_pixels.glsl"
+
+layout(set = 1, binding = 0, rgba32f) readonly uniform image2D normals;
+layout(set = 1, binding = 1, rgba8) readonly uniform image2D base_color;
+layout(set = 1, binding = 2, rgba8) readonly uniform image2D surface;
+layout(set = 1, binding = 3, rgba32ui) readonly uniform uimage2D surface_layers;
+layout(set = 1, binding = 4, rgba32f) readonly uniform image2D motion;
+layout(set = 1, binding = 5, std430) buffer Count { RayCount ray_count; };
+layout(set = 1, binding = 6, std430) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 7, rgba32f) writeonly uniform image2D radiance;
+#ifdef HALF_RESOLUTION
+layout(set = 1, binding = 8, rgba32f) writeonly uniform image2D directions;
+const int scale = 2;
+#else
+const int scale = 1;
+#endif
+layout(push_constant) uniform Constants { float max_roughness; };
+
+#include "lib/scene/gbuffer_material.glsl"
+
+void main() {
+  ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
+  bool inside = all(lessThan(cell, imageSize(radiance)));
+  ivec2 pixel = inside ? traced_pixel(cell, scale) : ivec2(0);
+  float view_z = inside ? imageLoad(motion, pixel).w : 0.0;
+  bool wanted = false;
+  Ray ray;
+#ifdef HALF_RESOLUTION
+  vec4 taken = vec4(0.0);
+#endif
+  if (view_z > 0.0 && !is_unlit(pixel)) {
+    SurfaceMaterial m = material_at(pixel);
+    SpecularSample s = sample_specular(m, specular_pair(cell, 4u, scale));
+    vec3 weight = s.weight / specular_demodulator(m);
+#ifdef HALF_RESOLUTION
+    taken = vec4(s.direction, s.density);
+    if (weight != vec3(0.0)) weight = vec3(1.0);
+#endif
+    wanted = mirrors_rays(mirror_roughness(m), max_roughness) && any(greaterThan(weight, vec3(0.0)));
+    ray.origin = offset_origin(world_position(pixel, view_z), m.geometric, view_z);
+    ray.t_min = 0.0;
+    ray.direction = s.direction;
+    ray.t_max = 1e30;
+    ray.pixel = uint(pixel.x) | uint(pixel.y) << 16u;
+    ray.user = floatBitsToUint(weight.r);
+    ray.padding0 = floatBitsToUint(weight.g);
+    ray.padding1 = floatBitsToUint(weight.b);
+  }
+  if (inside) imageStore(radiance, cell, vec4(0.0));
+#ifdef HALF_RESOLUTION
+  if (inside) imageStore(directions, cell, taken);
+#endif
+  APPEND_RAY(wanted, ray)
+}
+
+#endif

@@ -1,0 +1,98 @@
+// The G-buffer from camera rays instead of triangles: the surfaces that rays have met, with the same
+// signals as lib/scene/gbuffer_surface.glsl. Rays go on through back faces that are not drawn and through
+// blended surfaces. GBUFFER_LAYERED: with what extensions add to materials.
+#include "lib/scene/coverage.glsl"
+#include "lib/math/octahedral.glsl"
+#include "lib/rays/ray_index.glsl"
+#include "lib/rays/ray_stream.glsl"
+
+layout(set = 1, binding = 0, std430) readonly buffer MetCount { RayCount met_count; };
+layout(set = 1, binding = 1, std430) readonly buffer MetRays { Ray met_rays[]; };
+layout(set = 1, binding = 2, std430) readonly buffer Hits { Hit hits[]; };
+layout(set = 1, binding = 3, std430) readonly buffer Before { Vertex previous_vertices[]; };
+layout(set = 1, binding = 4, std430) buffer Count { RayCount ray_count; };
+layout(set = 1, binding = 5, std430) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 6, rgba32f) writeonly uniform image2D normals;
+layout(set = 1, binding = 7, rgba8) writeonly uniform image2D base_color;
+layout(set = 1, binding = 8, rgba8) writeonly uniform image2D surface;
+layout(set = 1, binding = 9, rgba32f) writeonly uniform image2D motion;
+layout(set = 1, binding = 10, rgba16f) writeonly uniform image2D emissive;
+layout(set = 1, binding = 11, rg32f) writeonly uniform image2D depth_slope;
+layout(set = 1, binding = 12, r32ui) writeonly uniform uimage2D instance_id;
+#ifdef GBUFFER_LAYERED
+layout(set = 1, binding = 13, rgba32ui) writeonly uniform uimage2D surface_layers;
+#endif
+layout(push_constant) uniform Constants { uint last_round; };
+
+#include "lib/scene/hit_motion.glsl"
+
+bool passes(Ray ray, HitSurface s) {
+  return last_round == 0u && (is_open(s, ray.direction) || is_blended(s));
+}
+
+/// Change of view Z from this pixel to its neighbours on the surface's plane.
+vec2 plane_slope(ivec2 pixel, HitSurface s, float view_z) {
+  vec3 n = transpose(mat3(frame.inverse_view)) * s.geometric;
+  vec3 at = view_position(pixel, view_z);
+  vec2 slopes;
+  for (int axis = 0; axis < 2; ++axis) {
+    ivec2 beside = pixel + ivec2(axis == 0 ? 1 : 0, axis == 1 ? 1 : 0);
+    vec3 through = view_position(beside, 1.0);
+    if (enabled(frame_orthographic)) {
+      vec3 across = through - vec3(at.xy, through.z);
+      slopes[axis] = dot(n.xy, across.xy) / (abs(n.z) < 1e-4 ? 1e-4 : n.z);
+    } else {
+      float along = dot(n, through);
+      float other = dot(n, at) / (abs(along) < 1e-6 ? 1e-6 : along);
+      slopes[axis] = clamp(other - view_z, -view_z, view_z);
+    }
+  }
+  return slopes;
+}
+
+void store(ivec2 pixel, Hit hit, HitSurface s) {
+  float view_z = -(frame.view * vec4(s.position, 1.0)).z;
+  imageStore(normals, pixel, vec4(octahedral_encode(s.normal), octahedral_encode(s.geometric)));
+  imageStore(base_color, pixel, vec4(sqrt(s.base_color), s.occlusion));
+  float unlit = (s.flags & material_unlit) != 0u ? 1.0 : 0.0;
+  float roughness = s.roughness;
+#ifdef GBUFFER_LAYERED
+  imageStore(surface_layers, pixel, pack_layer(s.layer, roughness));
+  roughness = smoother_roughness(s.layer, roughness);
+#endif
+  imageStore(surface, pixel, vec4(roughness, s.metallic, unlit, 0.0));
+  imageStore(motion, pixel, motion_of(hit, s, view_z));
+  imageStore(emissive, pixel, vec4(s.emissive, 1.0));
+  imageStore(depth_slope, pixel, vec4(plane_slope(pixel, s, view_z), 0.0, 0.0));
+  imageStore(instance_id, pixel, uvec4(hit.instance + 1u));
+}
+
+void store_nothing(ivec2 pixel) {
+  imageStore(normals, pixel, vec4(2.0));  // beyond the octahedron: no normal
+  imageStore(base_color, pixel, vec4(0.0));
+  imageStore(surface, pixel, vec4(0.0));
+  imageStore(motion, pixel, vec4(0.0));
+  imageStore(emissive, pixel, vec4(0.0));
+  imageStore(depth_slope, pixel, vec4(0.0));
+  imageStore(instance_id, pixel, uvec4(0u));
+}
+
+void main() {
+  uint index = ray_index();
+  bool goes_on = false;
+  Ray ray;
+  if (index < met_count.count) {
+    ray = met_rays[index];
+    Hit hit = hits[index];
+    ivec2 pixel = ivec2(ray.pixel & 0xffffu, ray.pixel >> 16u);
+    if (hit.instance == hit_none) {
+      if (!outside_frame(pixel)) store_nothing(pixel);
+    } else {
+      HitSurface s = hit_surface(hit, ray.direction, cone_width(camera_cone(), hit.t));
+      goes_on = passes(ray, s);
+      if (!goes_on) store(pixel, hit, s);
+      ray = beyond(ray, hit);
+    }
+  }
+  APPEND_RAY(goes_on, ray)
+}

@@ -1,0 +1,22 @@
+// The material of a G-buffer's pixel, from the images `normals`, `base_color`, `surface` and
+// `surface_layers`, which the pass declares before it includes this.
+#ifndef HELIOGRAPH_GBUFFER_MATERIAL_GLSL
+#define HELIOGRAPH_GBUFFER_MATERIAL_GLSL
+#include "lib/lighting/environment.glsl"
+#include "lib/scene/layers.glsl"
+
+SurfaceMaterial material_at(ivec2 pixel) {
+  vec4 encoded = imageLoad(normals, pixel);
+  vec4 color = imageLoad(base_color, pixel);
+  vec4 packed_surface = imageLoad(surface, pixel);
+  float roughness = packed_surface.x;
+  SurfaceLayer layer = plain_layer();
+  if (scene_has(scene_layers)) layer = unpack_layer(imageLoad(surface_layers, pixel), roughness);
+  return surface_material(color.rgb * color.rgb, packed_surface.y, roughness,
+                          octahedral_decode(encoded.xy), octahedral_decode(encoded.zw),
+                          to_eye(pixel), layer);
+}
+
+bool is_unlit(ivec2 pixel) { return imageLoad(surface, pixel).z > 254.5 / 255.0; }
+
+#endif

@@ -1,0 +1,37 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 8, local_size_y = 8) in;
+// The frame and the mean of its samples in their shares; exposure, tone map and sRGB encoding with a
+// triangular dither of one code value against bands.
+#include "lib/frame.glsl"
+#include "lib/math/random.glsl"
+#include "lib/math/tone_map.glsl"
+#include "shared/exposure.h"
+
+layout(set = 1, binding = 0, rgba32f) readonly uniform image2D radiance;
+layout(set = 1, binding = 1, rgba32f) readonly uniform image2D accumulated;
+layout(set = 1, binding = 2, std140) uniform ExposureBlock { ExposureState exposure; };
+layout(set = 1, binding = 3, rgba8) writeonly uniform image2D picture;
+layout(push_constant) uniform Constants { float mean_share; };
+
+vec3 tone_map(vec3 color) {
+  switch (int(frame.exposure.y)) {
+    case 0: return tone_map_neutral(color);
+    case 1: return tone_map_aces(color);
+    case 2: return tone_map_agx(color);
+    default: return clamp(color, 0.0, 1.0);
+  }
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (outside_frame(pixel)) return;
+  vec3 color = mean_share < 1.0 ? imageLoad(radiance, pixel).rgb : vec3(0.0);
+  if (mean_share > 0.0) color = mix(color, imageLoad(accumulated, pixel).rgb, mean_share);
+  color = max(color, 0.0) * exposure.factor;
+  vec3 encoded = srgb_encode(tone_map(color));
+  // The same noise in every frame, so that a finished picture stands still.
+  vec2 noise = random_pair(uvec2(pixel), 0u, 5u, 0u);
+  encoded += (noise.x - noise.y) / 255.0 * 0.5;
+  imageStore(picture, pixel, vec4(encoded, 1.0));
+}

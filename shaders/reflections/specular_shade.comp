@@ -1,0 +1,90 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+// Light that comes back along specular rays: from what they met, or from the environment. Light of
+// lamps at the hit waits for a shadow ray of its own.
+#define TEXTURE_ONE_LEVEL
+#include "lib/scene/hit_material.glsl"
+#include "lib/lighting/light_choice.glsl"
+#include "lib/denoise/moments.glsl"
+#include "lib/rays/ray_index.glsl"
+#include "lib/rays/ray_stream.glsl"
+#include "lib/rays/specular_pixels.glsl"
+
+layout(set = 1, binding = 0, rgba8) readonly uniform image2D surface;
+layout(set = 1, binding = 1, rgba32f) readonly uniform image2D motion;
+layout(set = 1, binding = 2, std430) readonly buffer SpecularCount { RayCount specular_count; };
+layout(set = 1, binding = 3, std430) readonly buffer SpecularRays { Ray specular_rays[]; };
+layout(set = 1, binding = 4, std430) readonly buffer Hits { Hit hits[]; };
+layout(set = 1, binding = 5, std430) buffer Count { RayCount ray_count; };
+layout(set = 1, binding = 6, std430) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 7, rgba32f) writeonly uniform image2D radiance;
+layout(push_constant) uniform Constants {
+  uint lamps;  // 0: only the environment lights what is hit
+  int scale;
+};
+
+const float distance_of_misses = 1e4;  // metres
+
+/// What of a hit's light needs no ray.
+vec3 steady_light(HitSurface s, SurfaceMaterial m) {
+  vec3 light = vec3(0.0);
+  if ((s.flags & material_unlit) != 0u) {
+    light = s.base_color;
+  } else {
+    if (enabled(frame_environment_diffuse)) light += environment_diffuse(m);
+    if (enabled(frame_environment_specular)) light += environment_specular(m);
+  }
+  if (enabled(frame_emissive)) light += s.emissive;
+  return light;
+}
+
+/// One light with its shadow ray, which carries what arrives when nothing is in its way.
+Ray lamp_ray(SurfaceMaterial m, vec3 position, vec3 weight, ivec2 pixel, out bool found) {
+  ivec2 cell = pixel / scale;
+  float pick = specular_number(cell, 5u, scale);
+  LightChoice choice = choose_light(m, position, pick);
+  found = false;
+  Ray ray;
+  if (choice.total <= 0.0) return ray;
+  Light light = light_number(choice.number);
+  ray = light_ray(light, m, position, 0.0, specular_pair(cell, 6u, scale), pick, found);
+  vec3 carried = light_contribution(light, m, position) * (choice.total / choice.weight) * weight;
+  ray.pixel = uint(pixel.x) | uint(pixel.y) << 16u;
+  ray.user = floatBitsToUint(carried.r);
+  ray.padding0 = floatBitsToUint(carried.g);
+  ray.padding1 = floatBitsToUint(carried.b);
+  // Without shadows every lamp is in view: an empty interval meets nothing.
+  if (!enabled(frame_shadows)) ray.t_max = 0.0;
+  return ray;
+}
+
+void main() {
+  uint index = ray_index();
+  bool wanted = false;
+  Ray shadow;
+  if (index < specular_count.count) {
+    Ray ray = specular_rays[index];
+    Hit hit = hits[index];
+    ivec2 pixel = ivec2(ray.pixel & 0xffffu, ray.pixel >> 16u);
+    vec3 weight = uintBitsToFloat(uvec3(ray.user, ray.padding0, ray.padding1));
+    vec3 light = vec3(0.0);
+    float travelled = distance_of_misses;
+    if (hit.instance == hit_none) {
+      if (enabled(frame_environment_specular)) light = environment_radiance(ray.direction);
+    } else {
+      travelled = min(hit.t, distance_of_misses);
+      RayCone cone = mirrored_cone(camera_cone(), imageLoad(motion, pixel).w,
+                                   imageLoad(surface, pixel).x);
+      HitSurface s = hit_surface(hit, ray.direction, cone_width(cone, hit.t));
+      SurfaceMaterial m = material_of(s, ray.direction);
+      if (scene_has(scene_blends)) weight *= stopped_weight(s);
+      light = steady_light(s, m);
+      if (lamps != 0u && enabled(frame_direct) && (s.flags & material_unlit) == 0u) {
+        shadow = lamp_ray(m, s.position, weight, pixel, wanted);
+      }
+    }
+    imageStore(radiance, pixel / scale, vec4(scrub(light * weight), travelled));
+  }
+  APPEND_RAY(wanted, shadow)
+}

@@ -1,0 +1,15 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_ray_query : require
+layout(local_size_x = 64) in;
+
+#include "lib/rays/ray_query.glsl"
+
+layout(set = 1, binding = 6, std430) writeonly buffer Occluded { uint occluded[]; };
+
+void main() {
+  const uint index = ray_index();
+  if (index >= ray_count.count) return;
+  const Hit hit = trace(rays[index], gl_RayFlagsTerminateOnFirstHitEXT);
+  occluded[index] = hit.instance != hit_none ? 1u : 0u;
+}

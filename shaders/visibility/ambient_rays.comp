@@ -1,0 +1,40 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 8, local_size_y = 8) in;
+// One cosine-distributed ray per pixel that asks whether the environment is hidden nearby.
+#include "lib/frame.glsl"
+#include "lib/math/octahedral.glsl"
+#include "lib/math/random.glsl"
+#include "lib/rays/ray_stream.glsl"
+#include "lib/math/geometry.glsl"
+
+layout(set = 1, binding = 0, rgba32f) readonly uniform image2D normals;
+layout(set = 1, binding = 1, rgba32f) readonly uniform image2D motion;
+layout(set = 1, binding = 2, std430) buffer Count { RayCount ray_count; };
+layout(set = 1, binding = 3, std430) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 4, r32f) writeonly uniform image2D visibility;
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  bool wanted = false;
+  Ray ray;
+  float view_z = outside_frame(pixel) ? 0.0 : imageLoad(motion, pixel).w;
+  if (view_z > 0.0) {
+    vec4 encoded = imageLoad(normals, pixel);
+    vec3 shading = octahedral_decode(encoded.xy);
+    vec3 geometric = octahedral_decode(encoded.zw);
+    vec2 u = random_pair(uvec2(pixel), frame.extent.z, 3u, frame.extent.w);
+    ray.origin = offset_origin(world_position(pixel, view_z), geometric, view_z);
+    ray.t_min = 0.0;
+    ray.direction = sample_cosine(shading, u);
+    ray.t_max = frame.environment.w;
+    ray.pixel = uint(pixel.x) | uint(pixel.y) << 16u;
+    ray.user = 0u;
+    ray.padding0 = 0u;
+    ray.padding1 = 0u;
+    wanted = dot(ray.direction, geometric) > 0.0;
+  }
+  // Directions below the surface are hidden by it.
+  if (!outside_frame(pixel)) imageStore(visibility, pixel, vec4(wanted || view_z <= 0.0 ? 1.0 : 0.0));
+  APPEND_RAY(wanted, ray)
+}

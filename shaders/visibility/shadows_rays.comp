@@ -1,0 +1,40 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 8, local_size_y = 8) in;
+// One shadow ray per pixel toward one light, chosen in proportion to what the surface sends to the
+// eye of its unshadowed light, so that the expected visibility is the ratio sum(L V) / sum(L)
+// (Heitz et al. 2018).
+#include "lib/lighting/light_choice.glsl"
+#include "lib/math/random.glsl"
+#include "lib/rays/ray_stream.glsl"
+
+layout(set = 1, binding = 0, rgba32f) readonly uniform image2D normals;
+layout(set = 1, binding = 1, rgba32f) readonly uniform image2D motion;
+layout(set = 1, binding = 2, rgba8) readonly uniform image2D base_color;
+layout(set = 1, binding = 3, rgba8) readonly uniform image2D surface;
+layout(set = 1, binding = 4, rgba32ui) readonly uniform uimage2D surface_layers;
+layout(set = 1, binding = 5, std430) buffer Count { RayCount ray_count; };
+layout(set = 1, binding = 6, std430) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 7, r32f) writeonly uniform image2D visibility;
+
+#include "lib/scene/gbuffer_material.glsl"
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  bool wanted = false;
+  Ray ray;
+  float view_z = outside_frame(pixel) ? 0.0 : imageLoad(motion, pixel).w;
+  if (view_z > 0.0) {
+    SurfaceMaterial m = material_at(pixel);
+    vec3 position = world_position(pixel, view_z);
+    float pick = random_number(uvec2(pixel), frame.extent.z, 1u, frame.extent.w);
+    LightChoice choice = choose_light(m, position, pick);
+    if (choice.total > 0.0) {
+      vec2 u = random_pair(uvec2(pixel), frame.extent.z, 2u, frame.extent.w);
+      ray = light_ray(light_number(choice.number), m, position, view_z, u, pick, wanted);
+      ray.pixel = uint(pixel.x) | uint(pixel.y) << 16u;
+    }
+  }
+  if (!outside_frame(pixel)) imageStore(visibility, pixel, vec4(wanted ? 1.0 : 0.0));
+  APPEND_RAY(wanted, ray)
+}
