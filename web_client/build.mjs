@@ -31,10 +31,10 @@ mkdirSync(folder, { recursive: true });
 const options = {
   absWorkingDir: here,
   entryPoints: {
-    app: "src/main.ts",
+    app: "src/app/main.ts",
     worker: "src/stream/worker.ts",
-    similarity_worker: "src/similarity_worker.ts",
-    style: "src/style.css",
+    similarity_worker: "src/compare/similarity_worker.ts",
+    style: "src/style/index.css",
   },
   outdir: folder,
   bundle: true,
@@ -45,7 +45,7 @@ const options = {
   logLevel: "warning",
 };
 for (const name of ["index.html", "icon.svg"]) {
-  copyFileSync(join(here, "src", name), join(folder, name));
+  copyFileSync(join(here, "src/app", name), join(folder, name));
 }
 
 if (watching) {

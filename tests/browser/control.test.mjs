@@ -74,7 +74,7 @@ stage.test("viewers see who is here, take control, hand it over and free it", as
   assert.deepEqual(await seriousFindings(second.page), []);
   await open(second);
 
-  const note = second.page.locator(".standing-note");
+  const note = second.page.locator(".control-note");
   await note.getByText("Ada is in control").waitFor();
   await second.page.locator("#pill", { hasText: "Ada is in control" }).waitFor();
   await unfoldAll(second.page);
@@ -92,15 +92,15 @@ stage.test("viewers see who is here, take control, hand it over and free it", as
   );
 
   await second.page.close();
-  const take = first.page.locator(".standing-note").getByRole("button", { name: "Take control" });
+  const take = first.page.locator(".control-note").getByRole("button", { name: "Take control" });
   await take.click();
-  await first.page.locator(".standing-note").waitFor({ state: "hidden" });
+  await first.page.locator(".control-note").waitFor({ state: "hidden" });
   assert.notDeepEqual(await usable(first.page), []);
 });
 
 stage.test("who may only watch is told so and can change nothing", async () => {
   const { page } = await watch(watching);
-  await page.locator(".standing-note").getByText("You are here to watch").waitFor();
+  await page.locator(".control-note").getByText("You are here to watch").waitFor();
   await page.locator("#pill", { hasText: "Live, to watch" }).waitFor();
   await screenshot(page, "watching");
   await expectNothingChanges({ page });

@@ -165,7 +165,7 @@ testWithTwo("a named session that is gone is there again under its name", async 
 testWithTwo("motion JPEG that breaks is loaded again", async ({ stage, balancer }) => {
   balancer.upgrades = false;
   const { page } = await stage.open({ url: balancer.url, complaining: true });
-  await page.waitForSelector('#pill[data-state="pictures_only"]', { timeout: 60_000 });
+  await page.waitForSelector('#pill[data-state="mjpeg_fallback"]', { timeout: 60_000 });
   const image = page.locator("#plain");
   const shown = () => image.evaluate((node) => !node.hidden && node.naturalWidth > 0);
   await eventually(shown, "a picture");

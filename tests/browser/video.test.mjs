@@ -106,11 +106,11 @@ stage.test("where no WebSocket gets through, the pictures still come", async (t)
     };`,
   );
   const { page } = await stage.open({ context, complaining: true });
-  await page.waitForSelector('#pill[data-state="pictures_only"]', { timeout: 60_000 });
+  await page.waitForSelector('#pill[data-state="mjpeg_fallback"]', { timeout: 60_000 });
   await eventually(
     () => page.locator("#plain").evaluate((image) => image.naturalWidth > 0),
     "a picture without WebSocket",
     30_000,
   );
-  await screenshot(page, "pictures_only");
+  await screenshot(page, "mjpeg_fallback");
 });

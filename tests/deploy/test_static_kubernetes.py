@@ -136,7 +136,7 @@ class Scaling(unittest.TestCase):
         self.assertLess(budget["maxUnavailable"], self.scaler["minReplicas"])
 
     def test_it_acts_while_there_is_room_for_another_browser(self):
-        most = number_in("web_client/src/main.ts", r"softwarePixels = ([\d_]+)")
+        most = number_in("web_client/src/app/main.ts", r"softwarePixels = ([\d_]+)")
         limit = int(environment_of(kubernetes.one(self.objects, "Deployment"))
                     ["HELIOGRAPH_MAX_PIXELS"])
         target = self.targets["heliograph_session_pixels_share"]

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import type { Camera, Vector3 } from "heliograph/messages.ts";
 import { dolly, orbit, pan, samePose, visibleHeight } from "../src/view/camera.ts";
-import { length, subtract } from "../src/view/vector.ts";
+import { length, subtract } from "../src/common/vector.ts";
 
 const front: Camera = {
   eye: [0, 0, 5],

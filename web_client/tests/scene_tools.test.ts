@@ -1,10 +1,10 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import type { Vector3 } from "heliograph/messages.ts";
-import { LatestSender } from "../src/latest_sender.ts";
-import { displayColour, linearColour } from "../src/panel/material_section.ts";
-import { editsBetween } from "../src/scene_edits.ts";
-import { sunDirection, sunPosition } from "../src/panel/sun_dial.ts";
+import { PatchSender } from "../src/common/patch_sender.ts";
+import { displayColour, linearColour } from "../src/panel/scene/material_section.ts";
+import { editsBetween } from "../src/session/scene_edits.ts";
+import { sunDirection, sunPosition } from "../src/panel/scene/sun_dial.ts";
 
 test("a sun high in the south-east shines down to the north-west", () => {
   const direction = sunDirection({ azimuth: 135, elevation: 45 });
@@ -25,7 +25,7 @@ test("colours survive the way through a colour input", () => {
 test("patches of one thing are joined while one is under way, others go at once", async () => {
   const sent: string[] = [];
   const finish: (() => void)[] = [];
-  const sender = new LatestSender((key, patch) => {
+  const sender = new PatchSender((key, patch) => {
     sent.push(`${key} ${JSON.stringify(patch)}`);
     return new Promise((resolve) => finish.push(resolve));
   });

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import type { JsonObject } from "heliograph/messages.ts";
 import { RpcPeer } from "heliograph/rpc.ts";
-import { SettingsStore } from "../src/settings_store.ts";
+import { SettingsStore } from "../src/session/settings_store.ts";
 
 const schema: JsonObject = {
   properties: {

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { type GreyPicture, greyPicture, structuralSimilarity } from "../src/ssim.ts";
+import { type GreyPicture, greyPicture, structuralSimilarity } from "../src/compare/ssim.ts";
 
 const size = 32;
 const picture = (of: (x: number, y: number) => number): GreyPicture => ({

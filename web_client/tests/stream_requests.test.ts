@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import type { Hello, StreamSettings } from "heliograph/messages.ts";
 import { RpcPeer } from "heliograph/rpc.ts";
-import { StreamRequests } from "../src/stream_requests.ts";
+import { StreamRequests } from "../src/session/stream_requests.ts";
 
 Object.assign(globalThis, { location: new URL("http://a.example/") });
 

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { UndoHistory, inverseOf } from "../src/undo_history.ts";
+import { UndoHistory, inverseOf } from "../src/session/undo_history.ts";
 
 test("the inverse of a patch holds what was there, and only that", () => {
   const tree = { taa: { enabled: true, frames: 8 }, seed: 3 };

@@ -1,6 +1,6 @@
 // The list of what mouse, fingers and keys do.
 
-import { button, element } from "../panel/element.ts";
+import { button, element } from "../widgets/element.ts";
 
 const entries: [title: string, rows: [keys: string[], meaning: string][]][] = [
   [

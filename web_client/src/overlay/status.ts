@@ -1,11 +1,11 @@
 // Where the connection stands: a quiet pill while all is well, a card when there is no picture.
 
-import { element, setText } from "../panel/element.ts";
+import { element, setText } from "../widgets/element.ts";
 import { humanise } from "heliograph/settings_schema.ts";
-import type { Standing } from "../standing.ts";
+import type { ControlState } from "../session/control_state.ts";
 import type { ConnectionState } from "../stream/connection.ts";
-import { thumbnailOf } from "../thumbnails.ts";
-import type { Viewer } from "../viewer.ts";
+import { thumbnailOf } from "../previews/thumbnails.ts";
+import type { Viewer } from "../session/viewer.ts";
 
 interface Notice {
   title: string;
@@ -28,11 +28,11 @@ export function mountStatus(viewer: Viewer, pill: HTMLElement, card: HTMLElement
   const update = (): void => {
     const state = viewer.connection.state.value;
     pill.dataset.state = state.kind;
-    setText(pillText, pillLabel(state, viewer.standing.value));
+    setText(pillText, pillLabel(state, viewer.controlState.value));
     view.show(noticeFor(viewer, state));
   };
   viewer.connection.state.watch(update);
-  viewer.standing.watch(update);
+  viewer.controlState.watch(update);
   viewer.loading.watch(update);
   viewer.restoring.watch(update);
   viewer.scenes.watch(update);
@@ -48,15 +48,15 @@ export function mountStatus(viewer: Viewer, pill: HTMLElement, card: HTMLElement
   }, retryRefreshMs);
 }
 
-function pillLabel(state: ConnectionState, standing: Standing): string {
+function pillLabel(state: ConnectionState, controlState: ControlState): string {
   switch (state.kind) {
     case "connecting":
       return "Connecting";
     case "live":
-      return liveLabel(standing);
+      return liveLabel(controlState);
     case "lost":
       return "Reconnecting";
-    case "pictures_only":
+    case "mjpeg_fallback":
       return "Pictures only";
     case "full":
       return "Server full";
@@ -67,14 +67,14 @@ function pillLabel(state: ConnectionState, standing: Standing): string {
   }
 }
 
-function liveLabel(standing: Standing): string {
-  switch (standing.kind) {
+function liveLabel(controlState: ControlState): string {
+  switch (controlState.kind) {
     case "may_change":
       return "Live";
     case "watching":
       return "Live, to watch";
     case "other":
-      return `Live, ${standing.name} is in control`;
+      return `Live, ${controlState.name} is in control`;
     case "nobody":
       return "Live, nobody is in control";
   }
@@ -92,7 +92,7 @@ function noticeFor(viewer: Viewer, state: ConnectionState): Notice | null {
         action: retry,
         dims: true,
       };
-    case "pictures_only":
+    case "mjpeg_fallback":
       return null;
     case "full":
       return {
@@ -126,7 +126,7 @@ function liveNotice(viewer: Viewer): Notice | null {
     return {
       title: `Loading ${loading.name}`,
       poster: thumbnailOf(loading.name),
-      action: viewer.offers.has("scene.cancel")
+      action: viewer.capabilities.has("scene.cancel")
         ? { label: "Cancel", run: () => void viewer.cancelLoad() }
         : undefined,
       detail: humanise(loading.stage),

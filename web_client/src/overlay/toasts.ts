@@ -1,6 +1,6 @@
 // Short messages that come and go in a corner. The same message is not stacked twice.
 
-import { element, icon, setText } from "../panel/element.ts";
+import { element, icon, setText } from "../widgets/element.ts";
 
 const shownMs = 8000;
 const quietMs = 3500;

@@ -1,9 +1,9 @@
 // Play, pause, scrub and rate of the scene's clips; there only when the scene has any.
 
 import type { AnimationState } from "heliograph/messages.ts";
-import { changeable } from "../panel/changeable.ts";
-import { button, element, icon, setOptions, setText } from "../panel/element.ts";
-import type { Viewer } from "../viewer.ts";
+import { requiresControl } from "../widgets/requires_control.ts";
+import { button, element, icon, setOptions, setText } from "../widgets/element.ts";
+import type { Viewer } from "../session/viewer.ts";
 
 const refreshMs = 200;
 const stepsMs = 500;
@@ -15,7 +15,7 @@ export function mountTransport(viewer: Viewer, root: HTMLElement): void {
   let scrubbing = false;
   const ask = async (method: string, params: object = {}): Promise<void> => {
     try {
-      viewer.clipTold(await viewer.rpc.request<AnimationState>(method, params));
+      viewer.onAnimationState(await viewer.rpc.request<AnimationState>(method, params));
     } catch (error) {
       viewer.report(error);
     }
@@ -51,7 +51,7 @@ export function mountTransport(viewer: Viewer, root: HTMLElement): void {
     ...rates.map((value) => element("option", { value: String(value) }, `${value}×`)),
   );
   const time = element("span", { class: "time" });
-  root.append(changeable(viewer, play, clip, scrub, time, rate));
+  root.append(requiresControl(viewer, play, clip, scrub, time, rate));
 
   const duration = (state: AnimationState): number => {
     const name = state.clip ?? clip.value;

@@ -1,8 +1,8 @@
 // A scene file dropped on the page or chosen goes to the server, where that is allowed, and is shown.
 
-import { element, setText } from "../panel/element.ts";
-import { explained } from "../standing.ts";
-import type { Viewer } from "../viewer.ts";
+import { element, setText } from "../widgets/element.ts";
+import { explained } from "../session/control_state.ts";
+import type { Viewer } from "../session/viewer.ts";
 import type { Toasts } from "./toasts.ts";
 
 const off = "This server takes no files from viewers";
@@ -59,7 +59,7 @@ export async function bringScene(viewer: Viewer, file: File, toasts: Toasts): Pr
 function refusalNow(viewer: Viewer): string | null {
   const { hello } = viewer;
   if (!hello) return "There is no connection to the server";
-  if (!viewer.mayChange) return explained(viewer.standing.value);
+  if (!viewer.mayChange) return explained(viewer.controlState.value);
   return hello.limits.max_upload_bytes === 0 ? off : null;
 }
 

@@ -1,17 +1,17 @@
 // The frame of the side panel, which becomes a bottom sheet on narrow screens.
 
-import { preferences } from "../preferences.ts";
-import { type Viewer, bufferSetting } from "../viewer.ts";
-import { button, element, icon } from "./element.ts";
-import { type InspectParts, createInspectTab } from "./inspect_tab.ts";
-import { createSceneTab, lookGroups } from "./scene_tab.ts";
-import { type MenuItem, createMenu } from "./menu.ts";
-import { createSettingsTab } from "./settings_tab.ts";
-import { createStandingNote } from "./standing_note.ts";
-import { createStatsTab } from "./stats_tab.ts";
-import { type ResolutionChoice, createStreamSection } from "./stream_section.ts";
-import { createTabs } from "./tabs.ts";
-import type { Signal } from "../signal.ts";
+import { preferences } from "../common/preferences.ts";
+import { type Viewer, bufferSetting } from "../session/viewer.ts";
+import { button, element, icon } from "../widgets/element.ts";
+import { type InspectParts, createInspectTab } from "./inspect/inspect_tab.ts";
+import { createSceneTab, appearanceGroups } from "./scene/scene_tab.ts";
+import { type MenuItem, createMenu } from "../widgets/menu.ts";
+import { createSettingsTab } from "./settings/settings_tab.ts";
+import { createControlNote } from "./control_note.ts";
+import { createStatsTab } from "./timing/timing_tab.ts";
+import { type ResolutionChoice, createStreamSection } from "./timing/stream_section.ts";
+import { createTabs } from "../widgets/tabs.ts";
+import type { Signal } from "../common/signal.ts";
 
 export interface PanelActions {
   output: MenuItem[];
@@ -37,17 +37,17 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
       id: "settings",
       label: "Settings",
       icon: "sliders",
-      body: createSettingsTab(viewer, [...lookGroups, bufferSetting]),
+      body: createSettingsTab(viewer, [...appearanceGroups, bufferSetting]),
     },
     { id: "inspect", label: "Inspect", icon: "layers", body: createInspectTab(viewer, actions.inspect) },
     { id: "stats", label: "Timing", icon: "chart", body: createStatsTab(viewer, stream.node) },
   ]);
-  viewer.standing.watch(({ kind }) => {
+  viewer.controlState.watch(({ kind }) => {
     // Keys scroll it by what is in it, unless all of that is locked.
     if (kind === "may_change") tabs.pages.removeAttribute("tabindex");
     else tabs.pages.tabIndex = 0;
   });
-  const note = createStandingNote(viewer);
+  const note = createControlNote(viewer);
   const content = element("div", { class: "panel-body" }, note, tabs.list, tabs.pages);
   const fold = element(
     "button",

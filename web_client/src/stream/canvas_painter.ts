@@ -10,7 +10,7 @@ export class CanvasPainter {
       | CanvasRenderingContext2D
       | OffscreenCanvasRenderingContext2D
       | null;
-    if (!context) throw new Error("This browser offers no 2D canvas");
+    if (!context) throw new Error("This browser capabilities no 2D canvas");
     this.canvas = canvas;
     this.context = context;
   }

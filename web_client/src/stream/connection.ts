@@ -2,11 +2,11 @@
 
 import { type Hello, ErrorCode, subprotocol } from "heliograph/messages.ts";
 import { ChannelClosed, RpcError, RpcPeer } from "heliograph/rpc.ts";
-import { Signal } from "../signal.ts";
-import { ownName } from "../overlay/people.ts";
+import { Signal } from "../common/signal.ts";
+import { participantName } from "../common/preferences.ts";
 import { Backoff } from "./backoff.ts";
 import { decodableCodecs } from "./codecs.ts";
-import { type Origin, Place, mainSession, meetingRoute } from "./place.ts";
+import { type SessionOrigin, SessionAddress, mainSession, rendezvousRoute } from "./session_address.ts";
 import type { DrawnFrame, Freshness, FromWorker, ToWorker } from "./worker_messages.ts";
 
 export type ConnectionState =
@@ -14,7 +14,7 @@ export type ConnectionState =
   | { kind: "live"; hello: Hello }
   | { kind: "lost"; retryAt: number }
   /** The server answers, but nothing between us lets a WebSocket through. */
-  | { kind: "pictures_only"; retryAt: number }
+  | { kind: "mjpeg_fallback"; retryAt: number }
   | { kind: "wrong_version"; detail: string }
   | { kind: "full"; retryAt: number }
   | { kind: "forbidden"; detail: string };
@@ -41,9 +41,9 @@ const watchersComeAfterMs = 2000;
 export class Connection {
   readonly state = new Signal<ConnectionState>({ kind: "connecting" });
   readonly rpc: RpcPeer;
-  readonly place: Place;
+  readonly place: SessionAddress;
   /** The session to come back to. On another server whose place is taken, it finds a new one. */
-  origin: Origin | null = null;
+  origin: SessionOrigin | null = null;
   private readonly worker: Worker;
   private readonly events: ConnectionEvents;
   private readonly backoff = new Backoff();
@@ -62,7 +62,7 @@ export class Connection {
     base: string,
     canvas: OffscreenCanvas | null,
     events: ConnectionEvents,
-    place = Place.ofPage(base),
+    place = SessionAddress.ofPage(base),
   ) {
     this.place = place;
     this.events = events;
@@ -112,24 +112,24 @@ export class Connection {
   private async findWay(): Promise<void> {
     const { origin, place } = this;
     if (!origin) return;
-    const there = await place.whoAnswers();
+    const there = await place.fetchHello();
     if (!there || there.instance === origin.instance) return;
-    place.route = meetingRoute(origin);
+    place.route = rendezvousRoute(origin);
     if (this.watches) await new Promise((resolve) => setTimeout(resolve, watchersComeAfterMs));
   }
 
   /** Has the page's address lead to the session that was found, after a reload too. */
-  async keepPlace({ instance, session }: Origin): Promise<void> {
+  async persistRoute({ instance, session }: SessionOrigin): Promise<void> {
     const { place } = this;
     place.session = session;
-    if (session === mainSession && (await place.whoAnswers(null))?.instance === instance) {
+    if (session === mainSession && (await place.fetchHello(null))?.instance === instance) {
       place.route = null; // the page's bare address leads here
     }
-    history.replaceState(null, "", place.addressOfPage(location.href));
+    history.replaceState(null, "", place.pageUrl(location.href));
   }
 
   /** A copy of the picture that is shown; null while there is none. */
-  copyPicture(): Promise<ImageBitmap | null> {
+  copyFrame(): Promise<ImageBitmap | null> {
     const id = ++this.lastCopy;
     return new Promise((resolve) => {
       this.copies.set(id, resolve);
@@ -227,7 +227,7 @@ export class Connection {
       codecs: await decodableCodecs(),
       session: this.origin?.session ?? this.place.session,
       instance: this.origin?.instance,
-      name: ownName(),
+      name: participantName(),
     });
   }
 
@@ -263,17 +263,17 @@ export class Connection {
     } else {
       // A browser does not tell why an upgrade was refused. Plain HTTP does: a server that answers
       // there but names another protocol is alive and merely of another version.
-      const spoken = wasOpen ? null : ((await this.place.whoAnswers())?.protocol ?? null);
+      const spoken = wasOpen ? null : ((await this.place.fetchHello())?.protocol ?? null);
       if (spoken && spoken !== subprotocol) {
         this.state.set({ kind: "wrong_version", detail: spoken });
       } else {
         this.refusals = spoken ? this.refusals + 1 : 0;
-        this.retryLater(this.refusals >= refusalsBeforeFallback ? "pictures_only" : "lost");
+        this.retryLater(this.refusals >= refusalsBeforeFallback ? "mjpeg_fallback" : "lost");
       }
     }
   }
 
-  private retryLater(kind: "lost" | "full" | "pictures_only"): void {
+  private retryLater(kind: "lost" | "full" | "mjpeg_fallback"): void {
     const waitMs = this.backoff.next();
     this.state.set({ kind, retryAt: Date.now() + waitMs });
     clearTimeout(this.retryTimer);

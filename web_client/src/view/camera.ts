@@ -1,7 +1,7 @@
 // Camera movements as pure functions: a pose in, a pose out. World space, metres, +Y up.
 
 import type { Camera, Vector3 } from "heliograph/messages.ts";
-import { add, cross, dot, length, normalize, scale, subtract } from "./vector.ts";
+import { add, cross, dot, length, normalize, scale, subtract } from "../common/vector.ts";
 
 const worldUp: Vector3 = [0, 1, 0];
 

@@ -1,6 +1,6 @@
 // The line between two pictures that lie over each other: drag it, or move it by keys.
 
-import { element, icon } from "../panel/element.ts";
+import { element, icon } from "../widgets/element.ts";
 
 const keyStep = 2; // per cent
 const largeStep = 10;

@@ -1,11 +1,17 @@
 // Takes clicks on the picture that are not the start of a drag.
 
-import type { InspectorHost } from "../panel/inspector.ts";
+export interface PointPicker {
+  /** Sends every click, in fractions of width and height, to the function; null stops it. */
+  onClick(listener: ((x: number, y: number) => void) | null): void;
+  /** Marks a point of the image. */
+  mark(x: number, y: number): void;
+  unmark(): void;
+}
 
 const mostMovement = 4; // CSS pixels
 
-export function createPicker(surface: HTMLElement, mark: HTMLElement): InspectorHost {
-  let take: ((x: number, y: number) => void) | null = null;
+export function createPicker(surface: HTMLElement, mark: HTMLElement): PointPicker {
+  let listener: ((x: number, y: number) => void) | null = null;
   let pressed: { x: number; y: number } | null = null;
   surface.addEventListener("pointerdown", ({ clientX, clientY, button }) => {
     pressed = button === 0 ? { x: clientX, y: clientY } : null;
@@ -13,15 +19,15 @@ export function createPicker(surface: HTMLElement, mark: HTMLElement): Inspector
   surface.addEventListener("pointerup", ({ clientX, clientY }) => {
     const from = pressed;
     pressed = null;
-    if (!take || !from) return;
+    if (!listener || !from) return;
     if (Math.hypot(clientX - from.x, clientY - from.y) > mostMovement) return;
     const { left, top, width, height } = surface.getBoundingClientRect();
-    take((clientX - left) / width, (clientY - top) / height);
+    listener((clientX - left) / width, (clientY - top) / height);
   });
   return {
-    onPictureClick(taker) {
-      take = taker;
-      surface.classList.toggle("picking", taker !== null);
+    onClick(next) {
+      listener = next;
+      surface.classList.toggle("picking", next !== null);
     },
     mark(x, y) {
       mark.hidden = false;

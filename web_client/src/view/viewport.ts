@@ -1,9 +1,6 @@
 // The size of the picture to ask for: the canvas in device pixels, within limits and a budget.
 
-export interface PictureSize {
-  width: number;
-  height: number;
-}
+import type { FrameSize } from "../session/stream_requests.ts";
 
 export interface SizeLimits {
   maxWidth: number;
@@ -15,12 +12,12 @@ export interface SizeLimits {
 const sharpestPixelRatio = 2;
 
 /** Keeps the shape of the view, so that the picture always fills it. CSS pixels in. */
-export function pictureSize(
+export function frameSize(
   cssWidth: number,
   cssHeight: number,
   pixelRatio: number,
   limits: SizeLimits,
-): PictureSize {
+): FrameSize {
   const ratio = Math.min(sharpestPixelRatio, Math.max(0.5, pixelRatio));
   const width = Math.max(1, cssWidth * ratio);
   const height = Math.max(1, cssHeight * ratio);

@@ -1,0 +1,137 @@
+// Puts the page together.
+
+import { mountStatus } from "../overlay/status.ts";
+import { Toasts } from "../overlay/toasts.ts";
+import { Comparison } from "../compare/comparison.ts";
+import { viewIn } from "../session/view_link.ts";
+import { outputActions } from "../output/output_actions.ts";
+import { createHelp } from "../overlay/help.ts";
+import { mountMjpegFallback } from "../overlay/mjpeg_fallback.ts";
+import { mountParticipants } from "../overlay/participants.ts";
+import { mountTransport } from "../overlay/transport.ts";
+import { bringScene, mountUpload } from "../overlay/upload.ts";
+import { mountTooltips } from "../widgets/tooltip.ts";
+import { mountPanel } from "../panel/panel.ts";
+import { focusOn } from "../view/camera.ts";
+import { createDivider } from "../view/divider.ts";
+import { Navigation } from "../view/navigation.ts";
+import { mountThumbnails } from "../previews/thumbnails.ts";
+import { createPicker } from "../view/picker.ts";
+import { frameSize, watchSize } from "../view/viewport.ts";
+import { Viewer } from "../session/viewer.ts";
+
+const typedInto = "input:not([type=range], [type=checkbox])";
+const resizeQuietMs = 150;
+
+/** Focusing on a point leaves this part of the way to it. */
+const focusCloser = 0.6;
+
+/** What a processor that renders in software is asked for at most: about 1024 x 576. */
+const softwarePixels = 590_000;
+
+function find<Type extends HTMLElement>(id: string): Type {
+  const node = document.getElementById(id);
+  if (!node) throw new Error(`The page lacks #${id}`);
+  return node as Type;
+}
+
+function toggleFullscreen(): void {
+  if (document.fullscreenElement) void document.exitFullscreen();
+  else void document.documentElement.requestFullscreen();
+}
+
+function main(): void {
+  const canvas = find<HTMLCanvasElement>("view");
+  const viewer = new Viewer(document.baseURI, canvas);
+  const toasts = new Toasts(find("toasts"));
+  viewer.onError = (message) => toasts.show(message);
+  viewer.onInfo = (message) => toasts.tell(message);
+  const navigation = new Navigation(canvas, {
+    camera: () => (viewer.hello && viewer.mayChange ? viewer.camera.value : null),
+    sceneSize: () => viewer.sceneSize(),
+    moved: (camera) => viewer.moveCamera(camera),
+    fit: () => void viewer.fitCamera(),
+    focus: (x, y) => void focusAt(x, y),
+  });
+  const focusAt = async (x: number, y: number): Promise<void> => {
+    if (!viewer.mayChange) return;
+    const pick = await viewer.pick(x, y);
+    const camera = viewer.camera.value;
+    if (!camera || !pick?.position || pick.distance === null) return;
+    navigation.goTo(focusOn(camera, pick.position, pick.distance * focusCloser));
+  };
+  viewer.jumpTo = (camera) => navigation.goTo(camera);
+  viewer.cameraBusy = () => navigation.active;
+
+  const divider = createDivider(find("compare"));
+  mountMjpegFallback(viewer, find("plain"));
+  mountParticipants(viewer, find("people"), (message) => toasts.tell(message));
+  const help = createHelp(find<HTMLDialogElement>("help"));
+  const panel = mountPanel(find("panel"), viewer, {
+    output: outputActions(viewer, { tell: (message) => toasts.tell(message) }),
+    inspect: {
+      comparison: new Comparison(viewer, () => divider.newCanvas()),
+      divider,
+      picker: createPicker(canvas, find("mark")),
+    },
+    bring: (file) => void bringScene(viewer, file, toasts),
+    help: help.open,
+    fullscreen: document.fullscreenEnabled ? toggleFullscreen : null,
+  });
+  mountTransport(viewer, find("transport"));
+  mountStatus(viewer, find("pill"), find("notice"));
+  mountTooltips();
+
+  viewer.stream.chooseSize = ({ limits, device }) => {
+    const { scale, automatic } = panel.resolution.value;
+    return frameSize(canvas.clientWidth, canvas.clientHeight, devicePixelRatio * scale, {
+      maxWidth: limits.max_width,
+      maxHeight: limits.max_height,
+      maxPixels: automatic && device.type === "cpu" ? softwarePixels : Infinity,
+    });
+  };
+  let resizeTimer = 0;
+  watchSize(canvas, () => {
+    clearTimeout(resizeTimer);
+    resizeTimer = window.setTimeout(() => viewer.stream.updateSize(), resizeQuietMs);
+  });
+  panel.resolution.watch(() => viewer.stream.updateSize());
+
+  viewer.controlState.watch(({ kind }) => canvas.classList.toggle("still", kind !== "may_change"));
+  viewer.scene.watch((scene) => {
+    document.title = scene ? `${scene.name} · Heliograph` : "Heliograph";
+  });
+  const pauseUnseen = (): void => viewer.stream.request({ paused: document.hidden });
+  document.addEventListener("visibilitychange", pauseUnseen);
+  pauseUnseen();
+  addEventListener("keydown", (event) => {
+    const undoing = (event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z";
+    if (undoing && viewer.mayChange && !document.activeElement?.matches(typedInto)) {
+      if (event.shiftKey) viewer.settings.redo();
+      else viewer.settings.undo();
+      event.preventDefault();
+    }
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const focused = document.activeElement;
+    if (focused?.matches(`${typedInto}, select, dialog *`)) return;
+    if (event.key === "?") help.open();
+    else if (event.key === "h" || event.key === "H") panel.toggle();
+    else if (event.key === "b" || event.key === "B") viewer.addBookmark();
+    else if (event.key === " " && (focused === canvas || focused === document.body)) {
+      viewer.togglePlay();
+    } else if (event.key === "Enter" && focused === canvas) toggleFullscreen();
+    else return;
+    event.preventDefault();
+  });
+  const openLink = (): void => {
+    const linked = viewIn(location.href);
+    if (linked) void viewer.show(linked);
+  };
+  addEventListener("hashchange", openLink);
+  openLink();
+  mountThumbnails(viewer);
+  mountUpload(viewer, document.body, toasts);
+  viewer.connection.open();
+}
+
+main();

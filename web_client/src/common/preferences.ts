@@ -1,0 +1,40 @@
+// What this browser remembers about the page. Works without storage, only forgetful then.
+
+const prefix = "heliograph.";
+
+function read(key: string): string | null {
+  try {
+    return localStorage.getItem(prefix + key);
+  } catch {
+    return null;
+  }
+}
+
+function write(key: string, value: string): void {
+  try {
+    localStorage.setItem(prefix + key, value);
+  } catch {
+    // Storage is off or full; the choice holds until the page closes.
+  }
+}
+
+export const preferences = {
+  flag: (key: string, standard: boolean): boolean => {
+    const stored = read(key);
+    return stored === null ? standard : stored === "1";
+  },
+  setFlag: (key: string, value: boolean): void => write(key, value ? "1" : "0"),
+  text: (key: string, standard: string): string => read(key) ?? standard,
+  setText: (key: string, value: string): void => write(key, value),
+};
+
+const nameKey = "name";
+
+/** The name that this browser's user has given; undefined while there is none. */
+export function participantName(): string | undefined {
+  return preferences.text(nameKey, "") || undefined;
+}
+
+export function setParticipantName(name: string): void {
+  preferences.setText(nameKey, name.trim());
+}

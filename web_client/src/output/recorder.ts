@@ -1,0 +1,63 @@
+// Records what is drawn as WebM. The visible canvas belongs to the stream worker, so that each
+// drawn picture is copied onto another one, which the recorder listens to.
+
+import type { Viewer } from "../session/viewer.ts";
+
+const bitsPerSecond = 8_000_000;
+const types = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"];
+
+export class Recorder {
+  private readonly viewer: Viewer;
+  private recorder: MediaRecorder | null = null;
+  private readonly canvas = document.createElement("canvas");
+  private readonly parts: Blob[] = [];
+
+  static get possible(): boolean {
+    return typeof MediaRecorder === "function" && "captureStream" in HTMLCanvasElement.prototype;
+  }
+
+  constructor(viewer: Viewer) {
+    this.viewer = viewer;
+  }
+
+  get running(): boolean {
+    return this.recorder !== null;
+  }
+
+  async start(): Promise<void> {
+    const first = await this.viewer.connection.copyFrame();
+    if (!first) throw new Error("There is no picture to record yet");
+    this.parts.length = 0;
+    this.paint(first);
+    const type = types.find((candidate) => MediaRecorder.isTypeSupported(candidate));
+    const options = { mimeType: type, videoBitsPerSecond: bitsPerSecond };
+    const recorder = new MediaRecorder(this.canvas.captureStream(), options);
+    recorder.addEventListener("dataavailable", ({ data }) => this.parts.push(data));
+    recorder.start(1000);
+    this.recorder = recorder;
+    this.viewer.connection.pictureCopies = (picture) => this.paint(picture);
+  }
+
+  /** Ends the recording and gives the file. */
+  async stop(): Promise<Blob> {
+    const { recorder } = this;
+    this.viewer.connection.pictureCopies = null;
+    this.recorder = null;
+    if (!recorder) throw new Error("Nothing is being recorded");
+    const stopped = new Promise((resolve) => recorder.addEventListener("stop", resolve));
+    recorder.stop();
+    await stopped;
+    return new Blob(this.parts, { type: recorder.mimeType });
+  }
+
+  private paint(picture: ImageBitmap): void {
+    // The size stays: recorders do not take a change of it.
+    if (!this.recorder) {
+      this.canvas.width = picture.width;
+      this.canvas.height = picture.height;
+    }
+    const context = this.canvas.getContext("2d", { alpha: false });
+    context?.drawImage(picture, 0, 0, this.canvas.width, this.canvas.height);
+    picture.close();
+  }
+}

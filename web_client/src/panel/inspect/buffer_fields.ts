@@ -1,0 +1,86 @@
+// Which buffer of the frame is shown, by name or by picture.
+
+import { humanise } from "heliograph/settings_schema.ts";
+import { type Viewer, bufferSetting } from "../../session/viewer.ts";
+import { button, element, setOptions } from "../../widgets/element.ts";
+import { field } from "../../widgets/field.ts";
+
+const thumbnailWidth = 160;
+
+export const bufferLabel = (name: string): string => humanise(name.replaceAll(".", " · "));
+
+export function createBufferFields(viewer: Viewer): HTMLElement[] {
+  const gallery = element("div", { class: "gallery", id: "buffer-gallery", hidden: true });
+  const tiles = new Map<string, HTMLElement>();
+  let round = 0;
+  const fill = (): void => {
+    tiles.clear();
+    gallery.replaceChildren(
+      ...viewer.capabilities.buffers.value.map(({ name, description }) => {
+        const tile = element(
+          "button",
+          {
+            type: "button",
+            class: "tile",
+            "data-buffer": name,
+            "data-tip": description,
+            click: () => viewer.settings.change(bufferSetting, name),
+          },
+          element("span", { class: "tile-picture" }),
+          element("span", { class: "tile-name" }, bufferLabel(name)),
+        );
+        tiles.set(name, tile);
+        return tile;
+      }),
+    );
+    mark();
+  };
+  const mark = (): void => {
+    const shown = viewer.settings.value(bufferSetting);
+    for (const [name, tile] of tiles) tile.setAttribute("aria-pressed", String(name === shown));
+  };
+  /** One capture after another: the renderer has more to do than small pictures. */
+  const photograph = async (): Promise<void> => {
+    const mine = ++round;
+    for (const [name, tile] of [...tiles]) {
+      if (gallery.hidden || mine !== round || !viewer.hello) return;
+      const source = await viewer.smallPicture(name, thumbnailWidth).catch(() => null);
+      const image = element("img", { class: "tile-picture", alt: "" });
+      if (source) image.src = source;
+      tile.firstElementChild?.replaceWith(image);
+    }
+  };
+  const toggle = button("Show all buffers as pictures", "grid", () => {
+    gallery.hidden = !gallery.hidden;
+    toggle.setAttribute("aria-expanded", String(!gallery.hidden));
+    if (!gallery.hidden) void photograph();
+  });
+  toggle.setAttribute("aria-expanded", "false");
+  toggle.setAttribute("aria-controls", gallery.id);
+  viewer.capabilities.buffers.watch(() => {
+    fill();
+    if (!gallery.hidden) void photograph();
+  });
+  viewer.settings.tree.watch(mark);
+  return [field("Buffer", bufferPicker(viewer), toggle), gallery];
+}
+
+function bufferPicker(viewer: Viewer): HTMLSelectElement {
+  const select = element("select", {
+    name: "buffer",
+    change: () => viewer.settings.change(bufferSetting, select.value),
+  });
+  const update = (): void => {
+    const shown = String(viewer.settings.value(bufferSetting) ?? "output");
+    const buffers = viewer.capabilities.buffers.value;
+    const known = buffers.some(({ name }) => name === shown);
+    const names = known ? buffers.map(({ name }) => name) : [shown, ...buffers.map((b) => b.name)];
+    setOptions(select, names.map((name) => ({ value: name, label: bufferLabel(name) })));
+    select.value = shown;
+    select.dataset.tip =
+      buffers.find(({ name }) => name === shown)?.description || "Which picture to show";
+  };
+  viewer.capabilities.buffers.watch(update);
+  viewer.settings.tree.watch(update);
+  return select;
+}

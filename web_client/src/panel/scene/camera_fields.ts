@@ -1,0 +1,77 @@
+// Where one looks from: the cameras of the scene, bookmarks, fit.
+
+import { addBookmark, readBookmarks, removeBookmark } from "../../session/bookmarks.ts";
+import type { Viewer } from "../../session/viewer.ts";
+import { button, element, icon, setOptions } from "../../widgets/element.ts";
+import { field } from "../../widgets/field.ts";
+
+const freeView = "";
+
+export function createCameraFields(viewer: Viewer): HTMLElement[] {
+  const chips = element("div", { class: "chips", role: "group", "aria-label": "Bookmarks" });
+  const show = (): void => {
+    const scene = viewer.scene.value;
+    const bookmarks = scene ? readBookmarks(scene.name) : [];
+    chips.hidden = bookmarks.length === 0;
+    chips.replaceChildren(
+      ...bookmarks.map(({ name, camera }) =>
+        element(
+          "span",
+          { class: "chip removable" },
+          element(
+            "button",
+            { type: "button", click: () => viewer.jumpTo(camera), "data-bookmark": name },
+            name,
+          ),
+          element(
+            "button",
+            {
+              type: "button",
+              class: "remove",
+              "aria-label": `Forget ${name}`,
+              click: () => {
+                if (scene) removeBookmark(scene.name, name);
+                show();
+              },
+            },
+            icon("close"),
+          ),
+        ),
+      ),
+    );
+  };
+  const keep = (): void => {
+    const scene = viewer.scene.value;
+    const camera = viewer.camera.value;
+    if (!scene || !camera) return;
+    addBookmark(scene.name, camera);
+    show();
+  };
+  viewer.scene.watch(show);
+  const fit = button("Fit the scene into view (F)", "fit", () => void viewer.fitCamera());
+  const bookmark = button("Bookmark this view (B)", "bookmark", keep);
+  viewer.addBookmark = keep;
+  return [field("Camera", cameraPicker(viewer), fit, bookmark), chips];
+}
+
+function cameraPicker(viewer: Viewer): HTMLSelectElement {
+  const select = element("select", {
+    name: "camera",
+    change: () => {
+      if (select.value !== freeView) void viewer.selectCamera(select.value);
+    },
+  });
+  const update = (): void => {
+    const names = viewer.scene.value?.cameras ?? [];
+    setOptions(select, [
+      { value: freeView, label: "Free view" },
+      ...names.map((name) => ({ value: name, label: name })),
+    ]);
+    const current = viewer.camera.value?.name ?? freeView;
+    select.value = names.includes(current) ? current : freeView;
+    select.disabled = names.length === 0;
+  };
+  viewer.scene.watch(update);
+  viewer.camera.watch(update);
+  return select;
+}

@@ -1,0 +1,25 @@
+// Which environment lights the scene.
+
+import type { SceneParts } from "../../session/scene_parts.ts";
+import { element, setOptions } from "../../widgets/element.ts";
+import { field } from "../../widgets/field.ts";
+
+const withScene = "";
+
+export function createEnvironmentField(parts: SceneParts): HTMLElement {
+  const select = element("select", {
+    name: "environment",
+    change: () => void parts.chooseEnvironment(select.value || null),
+  });
+  const node = field("Sky", select);
+  parts.environment.watch((state) => {
+    node.hidden = !state || state.environments.length === 0;
+    if (!state) return;
+    setOptions(select, [
+      { value: withScene, label: "The scene's own" },
+      ...state.environments.map(({ name }) => ({ value: name, label: name })),
+    ]);
+    select.value = state.current ?? withScene;
+  });
+  return node;
+}

@@ -1,0 +1,138 @@
+// The materials of the scene, and a sweep through the roughness of one of them.
+
+import type { MaterialInfo, Vector3 } from "heliograph/messages.ts";
+import type { SceneParts } from "../../session/scene_parts.ts";
+import { button, element, setOptions } from "../../widgets/element.ts";
+import { field } from "../../widgets/field.ts";
+import { createSection } from "../../widgets/section.ts";
+import { createSliderRow } from "../../widgets/slider_row.ts";
+
+const sweepMs = 6000;
+const sweepStepMs = 100;
+
+export interface MaterialSection {
+  node: HTMLElement;
+  /** Shows the material of this name. */
+  choose(name: string): void;
+}
+
+export function createMaterialSection(parts: SceneParts): MaterialSection {
+  const select = element("select", { name: "material", change: () => show() });
+  const chosen = (): MaterialInfo | undefined =>
+    parts.materials.value.find(({ name }) => name === select.value) ?? parts.materials.value[0];
+  const patch = (change: Partial<MaterialInfo>): void => {
+    const material = chosen();
+    if (material) parts.patchMaterial(material.name, change);
+  };
+  const fraction = (label: string, description: string, report: (value: number) => void) =>
+    createSliderRow(
+      { label, description, unit: "", minimum: 0, maximum: 1, scale: "linear" },
+      report,
+    );
+  const roughness = fraction(
+    "Roughness",
+    "From a mirror (0) to a matt surface (1); a factor on the texture, if there is one.",
+    (value) => patch({ roughness: value }),
+  );
+  const metallic = fraction(
+    "Metallic",
+    "Whether it reflects like a metal; a factor on the texture, if there is one.",
+    (value) => patch({ metallic: value }),
+  );
+  const colour = element("input", {
+    type: "color",
+    name: "base_color",
+    "aria-label": "Base colour",
+    input: () => patch({ base_color: linearColour(colour.value) }),
+  });
+  const reset = button("Reset this material", "reset", () => {
+    const material = chosen();
+    if (material) void parts.resetMaterial(material.name);
+  });
+  const sweep = createSweep((value) => patch({ roughness: value }), () => chosen()?.roughness);
+  const body = element(
+    "div",
+    { class: "section-body" },
+    field("Material", select, reset),
+    field("Base colour", colour),
+    roughness.node,
+    metallic.node,
+    sweep,
+  );
+  const show = (): void => {
+    const material = chosen();
+    if (!material) return;
+    select.value = material.name;
+    roughness.show(material.roughness);
+    metallic.show(material.metallic);
+    colour.value = displayColour(material.base_color);
+  };
+  const node = createSection({ id: "materials", title: "Materials", body, openAtFirst: false });
+  parts.materials.watch((materials) => {
+    node.hidden = materials.length === 0;
+    setOptions(select, materials.map(({ name }) => ({ value: name, label: name })));
+    show();
+  });
+  const choose = (name: string): void => {
+    select.value = name;
+    show();
+  };
+  return { node, choose };
+}
+
+/** Runs the roughness from 0 to 1 and puts back what it was. */
+function createSweep(
+  set: (roughness: number) => void,
+  get: () => number | undefined,
+): HTMLButtonElement {
+  let timer = 0;
+  let before: number | undefined;
+  const stop = (): void => {
+    clearInterval(timer);
+    timer = 0;
+    sweep.textContent = "Sweep the roughness";
+    if (before !== undefined) set(before);
+  };
+  const sweep = element(
+    "button",
+    {
+      type: "button",
+      class: "button quiet",
+      click: () => {
+        if (timer) {
+          stop();
+          return;
+        }
+        before = get();
+        const startedAt = performance.now();
+        sweep.textContent = "Stop the sweep";
+        timer = window.setInterval(() => {
+          const part = (performance.now() - startedAt) / sweepMs;
+          if (part >= 1) stop();
+          else set(Math.round(part * 100) / 100);
+        }, sweepStepMs);
+      },
+    },
+    "Sweep the roughness",
+  );
+  return sweep;
+}
+
+/** The transfer function of sRGB (IEC 61966-2-1), which colour inputs speak. */
+export function displayColour(linear: Vector3): string {
+  const byte = (value: number): string => {
+    const encoded = value <= 0.0031308 ? 12.92 * value : 1.055 * value ** (1 / 2.4) - 0.055;
+    return Math.round(Math.min(1, Math.max(0, encoded)) * 255)
+      .toString(16)
+      .padStart(2, "0");
+  };
+  return `#${linear.map(byte).join("")}`;
+}
+
+export function linearColour(display: string): Vector3 {
+  const part = (start: number): number => {
+    const value = Number.parseInt(display.slice(start, start + 2), 16) / 255;
+    return value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4;
+  };
+  return [part(1), part(3), part(5)];
+}

@@ -1,0 +1,38 @@
+// Which of the scenes and of the material variants that a file holds; there only where it does.
+
+import type { Viewer } from "../../session/viewer.ts";
+import { element, setOptions } from "../../widgets/element.ts";
+import { field } from "../../widgets/field.ts";
+
+const fileDefault = "";
+
+export function createPartFields(viewer: Viewer): HTMLElement[] {
+  const load = (): void => {
+    const current = viewer.scene.value;
+    if (!current) return;
+    void viewer.loadScene(current.name, {
+      scene: parts.value || undefined,
+      variant: variants.value || undefined,
+    });
+  };
+  const parts = element("select", { name: "part", change: load });
+  const variants = element("select", { name: "variant", change: load });
+  const partField = field("Part", parts);
+  const variantField = field("Variant", variants);
+  viewer.scene.watch((scene) => {
+    const names = scene?.scenes ?? [];
+    partField.hidden = names.length < 2;
+    setOptions(
+      parts,
+      names.map((name, number) => ({ value: String(number), label: name || `Scene ${number + 1}` })),
+    );
+    parts.value = String(scene?.scene ?? 0);
+    variantField.hidden = !scene || scene.variants.length === 0;
+    setOptions(variants, [
+      { value: fileDefault, label: "As in the file" },
+      ...(scene?.variants ?? []).map((name) => ({ value: name, label: name })),
+    ]);
+    variants.value = scene?.variant ?? fileDefault;
+  });
+  return [partField, variantField];
+}

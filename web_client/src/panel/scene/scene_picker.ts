@@ -1,0 +1,103 @@
+// Which scene: a list, a gallery of pictures, or a file of one's own.
+
+import { ScenePreviews } from "../../previews/scene_previews.ts";
+import { thumbnailChanged, thumbnailOf } from "../../previews/thumbnails.ts";
+import type { Viewer } from "../../session/viewer.ts";
+import { button, element, icon, setOptions } from "../../widgets/element.ts";
+import { field } from "../../widgets/field.ts";
+
+export function createScenePicker(viewer: Viewer, bring: (file: File) => void): HTMLElement[] {
+  const previews = new ScenePreviews(viewer);
+  const gallery = createGallery(viewer);
+  const toggle = button("Show all scenes as pictures", "grid", () => {
+    gallery.hidden = !gallery.hidden;
+    toggle.setAttribute("aria-expanded", String(!gallery.hidden));
+    if (gallery.hidden) previews.stop();
+    else void viewer.refreshScenes().then(() => previews.start());
+  });
+  toggle.setAttribute("aria-expanded", "false");
+  toggle.setAttribute("aria-controls", gallery.id);
+  return [field("Scene", sceneList(viewer), toggle, fileButton(viewer, bring)), gallery];
+}
+
+function createGallery(viewer: Viewer): HTMLElement {
+  const gallery = element("div", { class: "gallery", id: "scene-gallery", hidden: true });
+  const tiles = new Map<string, HTMLElement>();
+  let shown = "";
+  const fill = (): void => {
+    const { scenes, current } = viewer.scenes.value;
+    const names = scenes.map(({ name }) => name);
+    // Made anew only when scenes come or go: who stands on a tile stays there.
+    if (shown !== names.join("\n")) {
+      shown = names.join("\n");
+      tiles.clear();
+      for (const name of names) tiles.set(name, createTile(viewer, name));
+      gallery.replaceChildren(...tiles.values());
+    }
+    for (const [name, tile] of tiles) tile.setAttribute("aria-pressed", String(name === current));
+  };
+  viewer.scenes.watch(fill);
+  thumbnailChanged.watch((name) => {
+    tiles.get(name)?.firstElementChild?.replaceWith(picture(thumbnailOf(name)));
+  });
+  return gallery;
+}
+
+function createTile(viewer: Viewer, name: string): HTMLElement {
+  return element(
+    "button",
+    { type: "button", class: "tile", click: () => void viewer.loadScene(name) },
+    picture(thumbnailOf(name)),
+    element("span", { class: "tile-name" }, name),
+  );
+}
+
+function picture(source: string | null): HTMLElement {
+  if (source) return element("img", { src: source, alt: "", class: "tile-picture" });
+  return element("span", { class: "tile-picture unseen" }, icon("scene"));
+}
+
+/** For who cannot drop a file; there only where the server takes any. */
+function fileButton(viewer: Viewer, bring: (file: File) => void): HTMLElement {
+  const input = element("input", {
+    type: "file",
+    accept: ".glb",
+    hidden: true,
+    change: () => {
+      const file = input.files?.[0];
+      if (file) bring(file);
+      input.value = "";
+    },
+  });
+  const opener = button("Bring a .glb file", "upload", () => input.click());
+  opener.hidden = true;
+  viewer.connection.state.watch((state) => {
+    if (state.kind === "live") opener.hidden = !state.hello.limits.max_upload_bytes;
+  });
+  return element("span", { class: "file-button" }, opener, input);
+}
+
+function sceneList(viewer: Viewer): HTMLSelectElement {
+  const select = element("select", {
+    name: "scene",
+    change: () => void viewer.loadScene(select.value),
+    focus: () => void viewer.refreshScenes(),
+  });
+  const update = (): void => {
+    const { scenes, current } = viewer.scenes.value;
+    const loading = viewer.loading.value;
+    const options = scenes.map(({ name }) => ({ value: name, label: name }));
+    if (scenes.length === 0) {
+      options.push({ value: "", label: viewer.hello ? "No scenes found" : "–" });
+    } else if (!current && !loading) {
+      options.unshift({ value: "", label: "Choose a scene" });
+    }
+    setOptions(select, options);
+    select.value = loading?.name ?? current ?? "";
+    select.disabled = loading !== null || scenes.length === 0;
+  };
+  viewer.scenes.watch(update);
+  viewer.loading.watch(update);
+  viewer.connection.state.watch(update);
+  return select;
+}

@@ -1,0 +1,37 @@
+// A row like those of the settings, for a number that is no setting.
+
+import { type NumberRange, type SliderControl } from "heliograph/settings_schema.ts";
+import { createRow } from "./setting_row.ts";
+
+export interface SliderRow {
+  node: HTMLElement;
+  show(value: number): void;
+}
+
+export interface SliderParts {
+  label: string;
+  description: string;
+  unit: string;
+  minimum: number;
+  maximum: number;
+  scale: SliderControl["scale"];
+}
+
+export function createSliderRow(parts: SliderParts, report: (value: number) => void): SliderRow {
+  const range: NumberRange = {
+    minimum: parts.minimum,
+    maximum: parts.maximum,
+    step: (parts.maximum - parts.minimum) / 200,
+    integer: false,
+  };
+  const control: SliderControl = {
+    kind: "slider",
+    path: "",
+    default: undefined,
+    order: 0,
+    ...range,
+    ...parts,
+  };
+  const row = createRow(control, (value) => report(Number(value)), () => {});
+  return { node: row.node, show: (value) => row.show(value, false) };
+}

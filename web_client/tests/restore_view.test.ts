@@ -1,0 +1,166 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+import type { JsonObject } from "heliograph/messages.ts";
+import { RpcPeer } from "heliograph/rpc.ts";
+import { describeControls } from "heliograph/settings_schema.ts";
+import { restore } from "../src/session/restore_view.ts";
+import { type ViewState, changesOf, patchTowards, withoutPath } from "../src/session/view_state.ts";
+
+const schema = describeControls({
+  properties: {
+    exposure: {
+      properties: { ev: { type: "number", default: 0 }, old: { type: "number", default: 1 } },
+    },
+    taa: { properties: { enabled: { type: "boolean", default: true } } },
+  },
+});
+const defaults: JsonObject = { exposure: { ev: 0, old: 1 }, taa: { enabled: true } };
+const camera = {
+  eye: [1, 2, 3],
+  target: [0, 0, 0],
+  up: [0, 1, 0],
+  vertical_fov: 40,
+  name: null,
+} as const;
+const state = {
+  scene: "b.glb",
+  settings: { exposure: { ev: 2 } },
+  clip: { clip: "walk", seconds: 1.5, rate: 2, playing: false },
+  camera,
+} as unknown as ViewState;
+
+type Answer = { result?: unknown; error?: { code: number; message: string; data?: object } };
+
+/** A server that starts with a.glb after a while and keeps account of what it is told. */
+function startingServer(refusals: (method: string, params: JsonObject) => Answer | null) {
+  const calls: string[] = [];
+  const lost: string[] = [];
+  let scene: string | null = null;
+  let looks = 0;
+  const answerTo = (method: string, params: JsonObject): Answer => {
+    const refused = refusals(method, params);
+    if (refused) return refused;
+    if (method === "scene.info") {
+      looks += 1;
+      if (looks === 3) scene = "a.glb";
+      return scene
+        ? { result: { name: scene, cameras: [] } }
+        : { error: { code: -32050, message: "no scene is loaded" } };
+    }
+    calls.push(`${method} ${JSON.stringify(params)}`);
+    if (method === "scene.load") scene = params.name as string;
+    if (method === "settings.get") return { result: { settings: defaults } };
+    if (method === "lights.list") {
+      const sun = { name: "sun", intensity: 3, enabled: false, changed: ["enabled"] };
+      return { result: { lights: [sun, { name: "lamp", intensity: 1, changed: [] }] } };
+    }
+    if (method === "environment.list") return { result: { environments: [], current: "dusk" } };
+    if (method === "animation.list") {
+      return { result: { clips: [{ name: "walk", duration: 3 }], clip: null, playing: false } };
+    }
+    return { result: {} };
+  };
+  const rpc: RpcPeer = new RpcPeer(
+    (text) => {
+      const { id, method, params } = JSON.parse(text);
+      setTimeout(() => {
+        rpc.receive(JSON.stringify({ jsonrpc: "2.0", id, ...answerTo(method, params) }));
+      }, 0);
+    },
+    () => {},
+  );
+  rpc.open();
+  const host = {
+    rpc,
+    schema: () => schema,
+    capabilities: () => true,
+    wanted: () => true,
+    isOwn: () => false,
+    lost: (sentence: string) => void lost.push(sentence),
+  };
+  return { host, calls, lost };
+}
+
+test("a new server is brought to the old state, its own first scene waited for", async () => {
+  const { host, calls, lost } = startingServer(() => null);
+  assert.equal(await restore(host, state), true);
+  assert.deepEqual(calls, [
+    'scene.load {"name":"b.glb"}',
+    "settings.get {}",
+    'settings.patch {"patch":{"exposure":{"ev":2}}}',
+    "animation.list {}",
+    'animation.play {"clip":"walk","rate":2}',
+    'animation.seek {"seconds":1.5}',
+    "animation.pause {}",
+    'camera.set {"eye":[1,2,3],"target":[0,0,0],"up":[0,1,0],"vertical_fov":40}',
+  ]);
+  assert.deepEqual(lost, []);
+});
+
+test("a session of its own is given its scene at once: nobody else loads one there", async () => {
+  const { host, calls, lost } = startingServer((method) =>
+    method === "scene.info" && calls.length === 0
+      ? { error: { code: -32050, message: "no scene is loaded" } }
+      : null,
+  );
+  assert.equal(await restore({ ...host, isOwn: () => true }, state), true);
+  assert.equal(calls[0], 'scene.load {"name":"b.glb"}');
+  assert.deepEqual(lost, []);
+});
+
+test("a camera that is refused for the moment is sent again", async () => {
+  let refused = 0;
+  const { host, calls } = startingServer((method) => {
+    if (method !== "camera.set" || refused++ >= 2) return null;
+    return { error: { code: -32050, message: "not yet" } };
+  });
+  assert.equal(await restore(host, { camera: state.camera }), true);
+  assert.equal(refused, 3);
+  assert.match(calls.at(-1) ?? "", /^camera\.set/);
+});
+
+test("what another version refuses is left out, the rest arrives", async () => {
+  const { host, calls, lost } = startingServer((method, params) => {
+    const patch = params.patch as { exposure?: { old?: number } } | undefined;
+    if (method !== "settings.patch" || patch?.exposure?.old === undefined) return null;
+    const data = { path: "exposure.old", reason: "unknown" };
+    return { error: { code: -32602, message: "exposure.old", data } };
+  });
+  await restore(host, { settings: { exposure: { ev: 2, old: 7 } } });
+  assert.ok(calls.includes('settings.patch {"patch":{"exposure":{"ev":2}}}'));
+  assert.match(lost.join(), /exposure\.old/);
+});
+
+test("lights become as they were: what differs is sent, other changes are taken back", async () => {
+  const { host, calls, lost } = startingServer((method, params) =>
+    method === "lights.patch" && params.light === "lamp"
+      ? { error: { code: -32004, message: "no such light" } }
+      : null,
+  );
+  const lights = { sun: { intensity: 3.5 }, lamp: { intensity: 2 }, gone: { intensity: 1 } };
+  assert.equal(await restore(host, { lights, environment: null }), true);
+  assert.deepEqual(calls, [
+    "environment.list {}",
+    'environment.set {"name":null}',
+    "lights.list {}",
+    'lights.patch {"light":"sun","patch":{"enabled":null,"intensity":3.5}}',
+  ]);
+  assert.deepEqual(lost, ["The server does not take lamp as it was"]);
+});
+
+test("a state that is no longer wanted stops", async () => {
+  const { host, calls } = startingServer(() => null);
+  assert.equal(await restore({ ...host, wanted: () => calls.length < 2 }, state), false);
+  assert.ok(!calls.some((call) => call.startsWith("camera.set")));
+});
+
+test("changes and patches speak of differences only", () => {
+  const tree: JsonObject = { exposure: { ev: 2, old: 1 }, taa: { enabled: true } };
+  assert.deepEqual(changesOf(schema, tree), { exposure: { ev: 2 } });
+  assert.equal(patchTowards(schema, tree, { exposure: { ev: 2 } }), null);
+  assert.deepEqual(patchTowards(schema, tree, { taa: { enabled: false } }), {
+    exposure: { ev: 0 },
+    taa: { enabled: false },
+  });
+  assert.deepEqual(withoutPath({ a: { b: 1 }, c: 2 }, "a.b"), { c: 2 });
+});
