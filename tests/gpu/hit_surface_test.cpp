@@ -28,7 +28,7 @@ struct BothWays {
   BothWays(std::shared_ptr<const scene::Scene> scene, const scene::Camera& camera)
       : rig(std::move(scene), camera, {.extent = extent}),
         gbuffer(render::rasterize_gbuffer(rig.plan(), rig.inputs())),
-        camera_rays(device(), shaders::gbuffer_rays, layouts()),
+        camera_rays(device(), shaders::camera_rays, layouts()),
         hit_surfaces(device(), shaders::hit_surfaces, layouts()) {
     constexpr std::uint32_t pixels = extent.width * extent.height;
     constexpr VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;

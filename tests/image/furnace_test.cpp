@@ -3,7 +3,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "scenes/generator/test_scenes.hpp"
+#include "scenes/generator/scenes/test_scenes.hpp"
 #include "tests/image/still.hpp"
 
 namespace heliograph::test {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "scenes/generator/sky.hpp"
-#include "scenes/generator/test_scenes.hpp"
+#include "scenes/generator/scenes/test_scenes.hpp"
+#include "scenes/generator/sky/sky.hpp"
 #include "tests/image/still.hpp"
 
 namespace heliograph::test {

@@ -2,7 +2,7 @@
 // device that comes after a loss.
 #include <gtest/gtest.h>
 
-#include "scenes/generator/paper_scenes.hpp"
+#include "scenes/generator/scenes/paper_scenes.hpp"
 #include "tests/support/engine.hpp"
 #include "tests/support/generated_scene.hpp"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "scene/import.hpp"
-#include "scenes/generator/atrium.hpp"
+#include "scenes/generator/atrium/atrium.hpp"
 #include "tests/image/still.hpp"
 
 namespace heliograph::test {
