@@ -11,7 +11,7 @@
 namespace heliograph::test {
 namespace {
 
-using render::host::Signal;
+using render::kernels::Signal;
 using Texels = std::vector<glm::vec4>;
 
 /// A guide with planes, edges, holes and roughnesses of all sorts, and a noisy signal.
@@ -124,8 +124,8 @@ class AtrousRig {
   }
   void run_host() {
     const auto view = [&](gpu::ImageRef image) { return rig_.plan().get(image).host(); };
-    render::host::atrous(kind_, constants_, rig_.constants(),
-                         {view(guide_), view(slope_), view(signal_), view(by_host_)});
+    render::kernels::atrous(kind_, constants_, rig_.constants(),
+                            {view(guide_), view(slope_), view(signal_), view(by_host_)});
   }
 
   Signal kind_;

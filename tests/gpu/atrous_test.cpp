@@ -147,7 +147,8 @@ struct Filter {
     const auto& program = rig.inputs().programs.compute(shader);
     render::FrameInputs inputs = rig.inputs();
     inputs.host_kernels = false;  // atrous_host_test.cpp holds the processor's against these
-    const auto kind = specular ? render::host::Signal::specular : render::host::Signal::visibility;
+    const auto kind =
+        specular ? render::kernels::Signal::specular : render::kernels::Signal::visibility;
     filtered = render::blur(rig.plan(), inputs, gbuffer, guide,
                             {"test", program, iterations, kernel, constants, kind}, signal, {});
   }
