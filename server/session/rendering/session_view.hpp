@@ -98,7 +98,6 @@ class SessionView {
   void render_frame(double seconds);
   std::shared_ptr<RenderedFrame> describe(render::Frame frame, Clock::time_point start,
                                           Clock::time_point end);
-  double frames_in_last_second() const;
 
   render::Engine& engine_;
   ViewServices services_;
