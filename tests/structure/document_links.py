@@ -3,14 +3,14 @@
 classes, functions and test names in backticks. A renamed file or function must be renamed in the
 documents too."""
 
+import fnmatch
 import functools
 import pathlib
 import re
 import sys
 
-from sources import ROOT
+from sources import ROOT, report, tracked
 
-SKIPPED_FOLDERS = {".git", "node_modules", "build", "dist"}
 SOURCE_FOLDERS = ("protocol", "server", "shaders", "web_client/src", "tests", "scenes/generator")
 SOURCE_SUFFIXES = {".cpp", ".hpp", ".h", ".def", ".comp", ".glsl", ".py", ".ts", ".mjs"}
 # A code span with one of these suffixes is a file even without a folder in front of it.
@@ -29,19 +29,9 @@ CALL = re.compile(r"([a-z]\w*(?:_\w+)+)\(\)")
 TEST_NAME = re.compile(r"([A-Z]\w+)\.([A-Z]\w{4,})")
 
 
-def files(top: pathlib.Path):
-    for path in sorted(top.iterdir()):
-        if path.name in SKIPPED_FOLDERS or path.name.startswith("build-"):
-            continue
-        if path.is_dir():
-            yield from files(path)
-        else:
-            yield path
-
-
 @functools.cache
 def all_files():
-    return tuple(files(ROOT))
+    return tuple(tracked("*"))
 
 
 @functools.cache
@@ -53,7 +43,7 @@ def file_names():
 def source_text():
     tops = tuple(ROOT / folder for folder in SOURCE_FOLDERS)
     return "\n".join(path.read_text(errors="replace") for path in all_files()
-                     if path.suffix in SOURCE_SUFFIXES and path.is_relative_to(ROOT)
+                     if path.suffix in SOURCE_SUFFIXES
                      and any(path.is_relative_to(top) for top in tops))
 
 
@@ -69,7 +59,7 @@ def test_names():
 
 
 def slug(heading: str) -> str:
-    """The anchor that GitHub gives a heading."""
+    """The anchor that GitHub generates for a heading."""
     text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading).replace("`", "").lower()
     return re.sub(r"[^\w\- ]", "", text).replace(" ", "-")
 
@@ -108,7 +98,7 @@ def exists(document: pathlib.Path, path: str) -> bool:
                 return True
         elif (base / path).exists():
             return not path.endswith("/") or (base / path).is_dir()
-    return "/" not in path and path in file_names()
+    return "/" not in path and any(fnmatch.fnmatchcase(name, path) for name in file_names())
 
 
 def path_fault(document: pathlib.Path, code: str):
@@ -145,15 +135,6 @@ def faults(document: pathlib.Path):
             yield f"{document.relative_to(ROOT)}:{number}: {fault}"
 
 
-def main() -> int:
-    documents = [path for path in all_files() if path.suffix == ".md"]
-    if len(documents) < 10:
-        print(f"only {len(documents)} documents found: the check looks in the wrong place")
-        return 1
-    found = [fault for document in documents for fault in faults(document)]
-    print("\n".join(found) if found else f"{len(documents)} documents: every reference exists")
-    return 1 if found else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+documents = [path for path in all_files() if path.suffix == ".md"]
+sys.exit(report(documents, 10, [fault for document in documents for fault in faults(document)],
+                "every reference exists"))
