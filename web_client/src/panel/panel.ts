@@ -40,7 +40,7 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
       body: createSettingsTab(viewer, [...appearanceGroups, bufferSetting]),
     },
     { id: "inspect", label: "Inspect", icon: "layers", body: createInspectTab(viewer, actions.inspect) },
-    { id: "stats", label: "Timing", icon: "chart", body: createTimingTab(viewer, stream.node) },
+    { id: "timing", label: "Timing", icon: "chart", body: createTimingTab(viewer, stream.node) },
   ]);
   viewer.controlState.watch(({ kind }) => {
     // While all controls are disabled, the panel itself takes the focus, so that keys scroll it.
