@@ -30,14 +30,14 @@ export class RpcError extends Error {
     this.data = data;
   }
 
-  /** One readable sentence: the server's message, with its reason where the message lacks it. */
+  /** One sentence: the server's message and its reason, unless the message contains it. */
   get sentence(): string {
     const reason = this.data.reason;
     return reason && !this.message.includes(reason) ? `${this.message}: ${reason}` : this.message;
   }
 }
 
-/** The channel went away before the answer came; the caller normally just waits for the next. */
+/** The channel was closed before the result arrived. */
 export class ChannelClosed extends Error {}
 
 interface Pending {
@@ -64,7 +64,7 @@ export class RpcPeer<Table extends { [Name in keyof Table]: MethodTable[string] 
     this.onNotification = onNotification;
   }
 
-  /** The channel is there: requests may be made until close(). */
+  /** The channel is open: requests are possible until close(). */
   open(): void {
     this.connected = true;
   }
@@ -91,7 +91,7 @@ export class RpcPeer<Table extends { [Name in keyof Table]: MethodTable[string] 
     this.send(JSON.stringify({ jsonrpc: "2.0", method, params }));
   }
 
-  /** Takes one text message from the channel. Ignores what is not JSON-RPC. */
+  /** Takes one text message of the channel. Ignores messages that are not JSON-RPC. */
   receive(text: string): void {
     let message: unknown;
     try {
@@ -104,16 +104,16 @@ export class RpcPeer<Table extends { [Name in keyof Table]: MethodTable[string] 
     }
   }
 
-  /** Fails every waiting request and all later ones: the channel is gone. */
+  /** Fails all pending and later requests: the channel is closed. */
   close(): void {
     this.connected = false;
     this.failAll(() => new ChannelClosed("The connection was lost"));
   }
 
   private failAll(error: () => Error): void {
-    const waiting = [...this.pending.values()];
+    const requests = [...this.pending.values()];
     this.pending.clear();
-    for (const { reject, timer } of waiting) {
+    for (const { reject, timer } of requests) {
       clearTimeout(timer);
       reject(error());
     }
@@ -126,17 +126,17 @@ export class RpcPeer<Table extends { [Name in keyof Table]: MethodTable[string] 
       return;
     }
     if (entry.id === null && entry.error !== undefined) {
-      // The server could not read the id: fail every pending request, so that none waits forever.
+      // The server could not read the id: fail every pending request, so that none waits without end.
       return this.failAll(() => errorOf(entry));
     }
-    const waiting = this.pending.get(entry.id as number);
-    if (!waiting) return;
+    const request = this.pending.get(entry.id as number);
+    if (!request) return;
     this.pending.delete(entry.id as number);
-    clearTimeout(waiting.timer);
+    clearTimeout(request.timer);
     if (entry.error !== undefined) {
-      waiting.reject(errorOf(entry));
+      request.reject(errorOf(entry));
     } else {
-      waiting.resolve(entry.result as never);
+      request.resolve(entry.result as never);
     }
   }
 }

@@ -85,5 +85,5 @@ test("the frame size that another viewer chose applies to this page", async () =
   assert.deepEqual([settings()?.width, settings()?.height], [320, 180]);
   requests.onFrameSize({});
   assert.equal(settings()?.width, 320);
-  assert.equal(sent.length, before, "nobody was sent");
+  assert.equal(sent.length, before, "no request was sent");
 });

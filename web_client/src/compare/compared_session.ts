@@ -13,13 +13,13 @@ import type { Viewer } from "../session/viewer.ts";
 const sharedGroups = ["exposure", "tone_map", "environment"];
 const measureMs = 1000;
 
-export interface ComparedStart {
+interface ComparedStart {
   counterpart: Counterpart;
   /** Edits in the scene that the session was copied from. */
   copied: { lights?: Edits; materials?: Edits };
 }
 
-export interface ComparedEvents {
+interface ComparedEvents {
   changed(state: ComparisonState): void;
   /** The session was closed by the server or another client. */
   closed(): void;

@@ -7,7 +7,7 @@ import { captureBlob, saveFile } from "../common/image_files.ts";
 import { Recorder } from "./recorder.ts";
 import type { Viewer } from "../session/viewer.ts";
 
-export interface OutputHost {
+interface OutputHost {
   /** Shows the result as one sentence. */
   inform(message: string): void;
 }

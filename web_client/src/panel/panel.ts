@@ -13,7 +13,7 @@ import { type ResolutionChoice, createStreamSection } from "./timing/stream_sect
 import { createTabs } from "../widgets/tabs.ts";
 import type { Signal } from "../common/signal.ts";
 
-export interface PanelActions {
+interface PanelActions {
   output: MenuItem[];
   inspect: InspectParts;
   /** Uploads a scene file and loads it. */
@@ -22,7 +22,7 @@ export interface PanelActions {
   fullscreen: (() => void) | null;
 }
 
-export interface Panel {
+interface Panel {
   resolution: Signal<ResolutionChoice>;
   toggle(): void;
 }

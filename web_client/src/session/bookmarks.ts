@@ -3,7 +3,7 @@
 import type { CameraPose } from "../common/camera_pose.ts";
 import { preferences } from "../common/preferences.ts";
 
-export interface Bookmark {
+interface Bookmark {
   name: string;
   camera: CameraPose;
 }

@@ -15,7 +15,7 @@ import { Signal } from "../common/signal.ts";
 import { type Edits, type Part, editsOf } from "./scene_edits.ts";
 import type { ServerCapabilities } from "./server_capabilities.ts";
 
-export interface ScenePartsHost {
+interface ScenePartsHost {
   rpc: RpcPeer;
   scene: Signal<SceneInfo | null>;
   capabilities: ServerCapabilities;

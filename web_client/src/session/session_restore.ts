@@ -5,7 +5,7 @@ import type { Hello } from "heliograph/messages.ts";
 import { type SessionOrigin, mainSession } from "../stream/session_address.ts";
 import type { ViewState } from "./view_state.ts";
 
-export interface SessionRestoreHost {
+interface SessionRestoreHost {
   /** The session before the reconnect; null on the first connection. */
   origin(): SessionOrigin | null;
   mayChange(): boolean;

@@ -14,7 +14,7 @@ export interface FrameSize {
 const maxVideoErrors = 3;
 const stableFrames = 60;
 
-export interface StreamHost {
+interface StreamHost {
   /** Whether this page may change the frame size, which all viewers share. */
   mayResize(): boolean;
   report(error: unknown): void;

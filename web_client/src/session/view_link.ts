@@ -12,7 +12,7 @@ const digits = 6;
 /** Mail programs and messengers truncate longer links. */
 const maxLinkLength = 8000;
 
-export interface Link {
+interface Link {
   href: string;
   /** Whether changes of lights or materials were left out. */
   shortened: boolean;

@@ -19,7 +19,7 @@ export type ConnectionState =
   | { kind: "full"; retryAt: number }
   | { kind: "forbidden"; detail: string };
 
-export interface ConnectionEvents {
+interface ConnectionEvents {
   live(hello: Hello): Promise<void>;
   notification(method: string, params: unknown): void;
   drawn(frame: DrawnFrame): void;

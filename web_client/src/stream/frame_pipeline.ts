@@ -20,7 +20,7 @@ export interface FrameSink {
   failed(message: string, video: boolean): void;
 }
 
-export type Decode = (
+type Decode = (
   bytes: Uint8Array<ArrayBuffer>,
   type: string,
 ) => Promise<ImageBitmap | VideoFrame>;

@@ -16,7 +16,7 @@ export interface ArrivedFrame {
   receivedAt: number;
 }
 
-export interface VideoSink {
+interface VideoSink {
   /** Takes ownership of the image. */
   decoded(image: VideoFrame, frame: ArrivedFrame, startedAt: number): void;
   /** This frame is not shown. */

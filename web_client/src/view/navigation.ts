@@ -3,7 +3,7 @@
 import type { CameraPose } from "../common/camera_pose.ts";
 import { dolly, dollyToPoint, fly, interpolate, look, orbit, pan } from "./camera.ts";
 
-export interface NavigationHost {
+interface NavigationHost {
   /** The pose to start from; null while there is no scene. */
   camera(): CameraPose | null;
   /** Largest extent of the scene in metres; it limits the distance to the target. */

@@ -2,7 +2,7 @@
 
 import type { FrameSize } from "../session/stream_requests.ts";
 
-export interface SizeLimits {
+interface SizeLimits {
   maxWidth: number;
   maxHeight: number;
   /** Most pixels of a frame; Infinity for no limit. */

@@ -3,7 +3,7 @@
 import { preferences } from "../common/preferences.ts";
 import { element, icon } from "./element.ts";
 
-export interface SectionParts {
+interface SectionParts {
   /** Identifies the section in the preferences. */
   id: string;
   title: string;

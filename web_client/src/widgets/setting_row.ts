@@ -53,7 +53,7 @@ const unitSymbols: Record<string, string> = {
   "1": "",
 };
 
-export function unitSymbol(unit: string): string {
+function unitSymbol(unit: string): string {
   return unitSymbols[unit] ?? unit;
 }
 

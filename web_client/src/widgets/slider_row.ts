@@ -3,12 +3,12 @@
 import { type NumberRange, type SliderControl } from "heliograph/settings_schema.ts";
 import { createRow } from "./setting_row.ts";
 
-export interface SliderRow {
+interface SliderRow {
   node: HTMLElement;
   show(value: number): void;
 }
 
-export interface SliderParts {
+interface SliderParts {
   label: string;
   description: string;
   unit: string;

@@ -3,14 +3,14 @@
 import { preferences } from "../common/preferences.ts";
 import { element, icon } from "./element.ts";
 
-export interface TabParts {
+interface TabParts {
   id: string;
   label: string;
   icon: string;
   body: HTMLElement;
 }
 
-export interface Tabs {
+interface Tabs {
   list: HTMLElement;
   pages: HTMLElement;
   select(id: string): void;

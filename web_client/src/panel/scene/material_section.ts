@@ -11,7 +11,7 @@ import { createSliderRow } from "../../widgets/slider_row.ts";
 const sweepMs = 6000;
 const sweepStepMs = 100;
 
-export interface MaterialSection {
+interface MaterialSection {
   node: HTMLElement;
   /** Shows the material of this name. */
   choose(name: string): void;

@@ -10,7 +10,7 @@ const keyStep = 2; // degrees
 const largeStep = 10;
 
 /** Azimuth clockwise from -Z seen from above, elevation over the horizon; degrees. */
-export interface SunPosition {
+interface SunPosition {
   azimuth: number;
   elevation: number;
 }
@@ -29,7 +29,7 @@ export function sunDirection({ azimuth, elevation }: SunPosition): Vector3 {
   return [-Math.sin(turn) * level, -Math.sin(rise), Math.cos(turn) * level];
 }
 
-export interface SunDial {
+interface SunDial {
   node: HTMLElement;
   show(direction: Vector3): void;
 }

@@ -12,7 +12,7 @@ interface Section {
   showChanges(count: number): void;
 }
 
-export interface SettingsParts {
+interface SettingsParts {
   /** Distinguishes these sections from those of other tabs. */
   id: string;
   /** Only these groups; all when left out. */
@@ -21,7 +21,7 @@ export interface SettingsParts {
   without?: string[];
 }
 
-export interface MountedSettings {
+interface MountedSettings {
   /** Shows only settings that contain all words; returns their number. */
   filter(words: string): number;
 }

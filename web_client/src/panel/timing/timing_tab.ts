@@ -83,15 +83,15 @@ function figure(label: string, help: string): { node: HTMLElement; value: HTMLEl
   return { node, value };
 }
 
-export function formatRate(fps: number): string {
+function formatRate(fps: number): string {
   return fps < 9.95 ? fps.toFixed(1) : fps.toFixed(0);
 }
 
-export function formatMs(ms: number): string {
+function formatMs(ms: number): string {
   return ms < 9.95 ? ms.toFixed(1) : ms.toFixed(0);
 }
 
-export function formatBandwidth(bytesPerSecond: number): string {
+function formatBandwidth(bytesPerSecond: number): string {
   return bytesPerSecond < 999_500
     ? `${(bytesPerSecond / 1e3).toFixed(0)} kB/s`
     : `${(bytesPerSecond / 1e6).toFixed(1)} MB/s`;
