@@ -112,5 +112,5 @@ stage.test("pass timings are shown", async () => {
   const rows = await page.locator(".pass .pass-ms").allInnerTexts();
   assert.ok(rows.length >= 3, `only ${rows.length} passes`);
   assert.ok(rows.some((text) => Number(text) > 0));
-  assert.match(await figure(page, "frame"), /\d ms$/);
+  assert.match(await figure(page, "frame_time"), /\d ms$/);
 });
