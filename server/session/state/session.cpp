@@ -81,7 +81,7 @@ bool Session::works_unwatched() const {
 }
 
 bool Session::untouched(const std::string& viewer) const {
-  return !touched_ && audience_.control_mode() == protocol::ControlMode::everyone &&
+  return !touched_ && audience_.control_mode() == protocol::ControlMode::shared &&
          !audience_.greeted_but(viewer);
 }
 

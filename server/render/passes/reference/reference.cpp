@@ -156,7 +156,7 @@ gpu::ImageRef trace_reference(gpu::FramePlan& plan, const FrameInputs& in) {
 
 bool traces_reference(const FrameInputs& in) {
   return in.settings.reference.use == protocol::ReferenceUse::always || in.samples > 0 ||
-         in.settings.accumulation.handover == 0;
+         in.settings.accumulation.blend_samples == 0;
 }
 
 }  // namespace heliograph::render
