@@ -11,11 +11,11 @@
 #include <system_error>
 #include <vector>
 
-#include "scenes/generator/environment.hpp"
-#include "scenes/generator/glb.hpp"
-#include "scenes/generator/paper_scenes.hpp"
-#include "scenes/generator/studio.hpp"
-#include "scenes/generator/test_scenes.hpp"
+#include "scenes/generator/gltf/glb.hpp"
+#include "scenes/generator/scenes/paper_scenes.hpp"
+#include "scenes/generator/scenes/test_scenes.hpp"
+#include "scenes/generator/sky/environment.hpp"
+#include "scenes/generator/sky/studio.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <string>
 
-#include "scenes/generator/paper_scenes.hpp"
+#include "scenes/generator/scenes/paper_scenes.hpp"
 #include "tests/convergence/mean_luminance.hpp"
 #include "tests/support/engine.hpp"
 #include "tests/support/generated_scene.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "protocol/settings/settings.hpp"
-#include "scenes/generator/document.hpp"
+#include "scenes/generator/gltf/document.hpp"
 
 // What the paper varies in its section 4: the scene, one swept value, what moves, the techniques.
 namespace heliograph::paper {

@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "scene/animation/pose.hpp"
-#include "scenes/generator/paper_scenes.hpp"
+#include "scenes/generator/scenes/paper_scenes.hpp"
 #include "tests/support/generated_scene.hpp"
 
 namespace heliograph::paper {

@@ -8,7 +8,7 @@
 #include "render/api/renderer.hpp"
 #include "scene/environment.hpp"
 #include "scene/scene.hpp"
-#include "scenes/generator/document.hpp"
+#include "scenes/generator/gltf/document.hpp"
 #include "tests/paper/cases.hpp"
 
 namespace heliograph::paper {

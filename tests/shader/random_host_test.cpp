@@ -12,7 +12,7 @@ HWY_BEFORE_NAMESPACE();
 namespace heliograph::test {
 namespace {
 
-namespace host = render::host::HWY_NAMESPACE;
+namespace kernels = render::kernels::HWY_NAMESPACE;
 namespace hn = hwy::HWY_NAMESPACE;
 
 struct Place {
@@ -29,8 +29,8 @@ glm::vec3 host_numbers(const Place& place) {
   const hn::RebindToFloat<decltype(du)> df;
   const auto x = hn::Set(du, place.x);
   auto first = hn::Zero(df), second = first;
-  host::RandomPairs(du, place.sample, place.dimension, place.seed).at(x, place.y, first, second);
-  const auto single = host::RandomNumbers(du, place.sample, place.dimension, place.seed)
+  kernels::RandomPairs(du, place.sample, place.dimension, place.seed).at(x, place.y, first, second);
+  const auto single = kernels::RandomNumbers(du, place.sample, place.dimension, place.seed)
                           .at(x, hn::Set(du, place.y));
   return {hn::GetLane(first), hn::GetLane(second), hn::GetLane(single)};
 }

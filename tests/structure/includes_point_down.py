@@ -22,6 +22,8 @@ BELOW = {
 # Headers outside the folders above, and who may include them.
 SHARED = {"shaders": {"scene", "tracing", "render"}, "web_client": {"net"}}
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
+# The part of a module that other modules may include.
+PUBLIC = {"render": "render/api/"}
 
 
 def folder_of(path: pathlib.Path) -> str:
@@ -41,6 +43,9 @@ def violations(path: pathlib.Path):
         allowed = BELOW[folder] | {folder}
         if target in BELOW and target not in allowed:
             yield f"{path.relative_to(ROOT)}:{number}: {folder} must not include {match.group(1)}"
+        if target in PUBLIC and target != folder and not match.group(1).startswith(PUBLIC[target]):
+            yield (f"{path.relative_to(ROOT)}:{number}: {folder} may include only {PUBLIC[target]} "
+                   f"of {target}, not {match.group(1)}")
         if target in SHARED and folder not in SHARED[target]:
             yield f"{path.relative_to(ROOT)}:{number}: {folder} must not include {match.group(1)}"
 

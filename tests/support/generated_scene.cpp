@@ -8,7 +8,7 @@
 #include <string>
 
 #include "scene/import.hpp"
-#include "scenes/generator/glb.hpp"
+#include "scenes/generator/gltf/glb.hpp"
 
 namespace heliograph::test {
 namespace {

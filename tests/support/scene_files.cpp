@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "scene/import.hpp"
-#include "scenes/generator/glb.hpp"
+#include "scenes/generator/gltf/glb.hpp"
 
 namespace heliograph::test {
 

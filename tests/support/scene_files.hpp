@@ -6,8 +6,8 @@
 
 #include "scene/environment.hpp"
 #include "scene/scene.hpp"
-#include "scenes/generator/document.hpp"
-#include "scenes/generator/environment.hpp"
+#include "scenes/generator/gltf/document.hpp"
+#include "scenes/generator/sky/environment.hpp"
 
 namespace heliograph::test {
 

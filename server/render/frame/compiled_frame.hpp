@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "render/api/frame_values.hpp"
 #include "render/frame/engine_parts.hpp"
 #include "render/frame/frame.hpp"
 

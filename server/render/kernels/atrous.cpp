@@ -16,7 +16,7 @@
 
 #ifndef HELIOGRAPH_ATROUS_JOB
 #define HELIOGRAPH_ATROUS_JOB
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 struct Job {
   Signal signal;
@@ -29,11 +29,11 @@ struct Job {
   bool orthographic;
 };
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -366,11 +366,11 @@ void filter_rows(const Job& job, int first, int last) {
   }
 }
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 HWY_EXPORT(filter_rows);
 
@@ -391,5 +391,5 @@ void atrous(Signal signal, const shared::AtrousConstants& constants,
   });
 }
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels
 #endif

@@ -4,7 +4,7 @@
 #include "shaders/shared/denoise.h"
 #include "shaders/shared/frame_constants.h"
 
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 /// What a signal's four floats are: shaders/lib/denoise/visibility_signal.glsl and
 /// specular_signal.glsl.
@@ -23,4 +23,4 @@ struct AtrousImages {
 void atrous(Signal signal, const shared::AtrousConstants& constants,
             const shared::FrameConstants& frame, const AtrousImages& images);
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels

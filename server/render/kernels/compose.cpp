@@ -10,7 +10,7 @@
 #include "render/kernels/simd/view.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 template <class D>
 class Composition {
@@ -155,11 +155,11 @@ void compose_rows(const ComposeJob& job, int first, int last) {
   run_rows<Composition>(job, job.width, first, last);
 }
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 HWY_EXPORT(compose_rows);
 
@@ -173,5 +173,5 @@ void compose(const ComposeJob& job) {
   });
 }
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels
 #endif

@@ -7,7 +7,7 @@
 #include "shaders/shared/frame_constants.h"
 #include "shaders/shared/scene.h"
 
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 /// What composition reads and writes, as it lies in memory.
 struct ComposeJob {
@@ -38,4 +38,4 @@ bool can_compose(const shared::FrameConstants& frame, float max_roughness);
 /// has.
 void compose(const ComposeJob& job);
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels

@@ -9,7 +9,7 @@
 #include "render/kernels/simd/surface.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 void make_camera_rays(const shared::FrameConstants& frame, int tile, int tiles_across,
                       shared::Ray* to) {
@@ -209,11 +209,11 @@ void shade_batch(const GBufferJob& job, int first, int last) {
   if (used) job.passed.append({passed.data(), used});
 }
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 HWY_EXPORT(make_camera_rays);
 HWY_EXPORT(shade_batch);
@@ -239,5 +239,5 @@ void shade_gbuffer(const GBufferJob& job) {
   job.passed.end();
 }
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels
 #endif

@@ -7,7 +7,7 @@
 
 /// The G-buffer from camera rays on all processors, in vectors: twins of
 /// shaders/gbuffer/gbuffer_rays.comp and shaders/gbuffer/gbuffer_hits.comp.
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 /// Writes every ray of the frame, tiles of 8 x 8 pixels one after the other.
 void camera_rays(const shared::FrameConstants& frame, shared::RayCount* count, shared::Ray* rays);
@@ -36,4 +36,4 @@ struct GBufferJob {
 
 void shade_gbuffer(const GBufferJob& job);
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels

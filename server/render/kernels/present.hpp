@@ -3,7 +3,7 @@
 #include "gpu/memory/image.hpp"
 #include "shaders/shared/frame_constants.h"
 
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 /// What the finished picture is made from, as it lies in memory.
 struct PresentJob {
@@ -20,4 +20,4 @@ struct PresentJob {
 /// vectors that the processor has.
 void present(const PresentJob& job);
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels

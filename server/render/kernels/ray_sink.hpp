@@ -10,7 +10,7 @@
 
 #include "shaders/shared/ray.h"
 
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 /// Rays that a thread works on at a time.
 inline constexpr int ray_batch = 256;
@@ -63,4 +63,4 @@ class RaySink {
   std::uint32_t blending_;
 };
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels

@@ -9,7 +9,7 @@
 #include "render/kernels/simd/pixels.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 /// Mean and deviation of the neighbours' short histories, with which both signals are held: sums
 /// over columns first, then over rows of those sums.
@@ -298,11 +298,11 @@ void rectify_specular_rows(const RectifyJob& job, int first, int last) {
   run_rows<SpecularRectification>(job, job.width, first, last);
 }
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 HWY_EXPORT(rectify_visibility_rows);
 HWY_EXPORT(rectify_specular_rows);
@@ -319,5 +319,5 @@ void rectify_specular(const RectifyJob& job) {
   });
 }
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels
 #endif

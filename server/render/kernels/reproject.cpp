@@ -10,7 +10,7 @@
 #include "render/kernels/simd/view.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 template <class D>
 class Reprojection {
@@ -197,11 +197,11 @@ void reproject_rows(const ReprojectJob& job, int first, int last) {
   run_rows<Reprojection>(job, job.width, first, last);
 }
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 HWY_EXPORT(reproject_rows);
 
@@ -211,5 +211,5 @@ void reproject(const ReprojectJob& job) {
   });
 }
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels
 #endif

@@ -4,7 +4,7 @@
 #include "shaders/shared/denoise.h"
 #include "shaders/shared/frame_constants.h"
 
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 /// What reprojection reads and writes, as it lies in memory.
 struct ReprojectJob {
@@ -21,4 +21,4 @@ struct ReprojectJob {
 /// widest vectors that the processor has.
 void reproject(const ReprojectJob& job);
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels

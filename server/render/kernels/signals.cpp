@@ -4,7 +4,7 @@
 
 #include "render/kernels/simd/rows.hpp"
 
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 namespace {
 
 /// Numbers that are none must not spread through filters and histories.
@@ -60,4 +60,4 @@ void resolve_visibility(const ResolveJob& job) {
   });
 }
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels

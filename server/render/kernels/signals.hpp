@@ -5,7 +5,7 @@
 
 /// What moves signals about without changing them much: bound by memory, plain loops on all
 /// processors.
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 /// Shadow and ambient visibility side by side: shaders/denoise/visibility_combine.comp.
 struct CombineJob {
@@ -36,4 +36,4 @@ struct ResolveJob {
 };
 void resolve_visibility(const ResolveJob& job);
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels

@@ -11,7 +11,7 @@
 #include "render/kernels/simd/view.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 template <class D>
 class SpatialVariance {
@@ -188,11 +188,11 @@ void spatial_variance_rows(const SpatialVarianceJob& job, int first, int last) {
   run_rows<SpatialVariance>(job, job.width, first, last);
 }
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 HWY_EXPORT(spatial_variance_rows);
 
@@ -202,5 +202,5 @@ void spatial_variance(const SpatialVarianceJob& job) {
   });
 }
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels
 #endif

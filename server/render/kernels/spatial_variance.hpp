@@ -4,7 +4,7 @@
 #include "render/kernels/atrous.hpp"
 #include "shaders/shared/denoise.h"
 
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 /// What the spatial estimate of variance reads and writes, as it lies in memory.
 struct SpatialVarianceJob {
@@ -21,4 +21,4 @@ struct SpatialVarianceJob {
 /// shaders/lib/denoise/spatial_variance.glsl in the widest vectors that the processor has.
 void spatial_variance(const SpatialVarianceJob& job);
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels

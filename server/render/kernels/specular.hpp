@@ -9,7 +9,7 @@
 #include "shaders/shared/frame_constants.h"
 
 /// Reflections on all processors, in vectors.
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 /// The table of scales and biases of F0.
 struct SplitSum {
@@ -56,4 +56,4 @@ void shade_hits(const ShadeHitsJob& job);
 void resolve_lamps(const RaySource& shadows, const std::uint32_t* occluded, int scale,
                    const gpu::HostView& radiance);
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels

@@ -8,7 +8,7 @@
 
 #ifndef HELIOGRAPH_SPECULAR_TILE
 #define HELIOGRAPH_SPECULAR_TILE
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 /// Cells whose rays lie together in the stream: neighbours see the same part of the scene.
 inline constexpr int tile_side = 16;
@@ -17,11 +17,11 @@ struct Cells {
   int width, height;
 };
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 class Generation {
  public:
@@ -136,11 +136,11 @@ void make_tile(const SpecularRaysJob& job, const Cells& cells, int tile_x, int t
   if (count) job.rays.append({made.data(), count});
 }
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 HWY_EXPORT(make_tile);
 
@@ -159,5 +159,5 @@ void make_specular_rays(const SpecularRaysJob& job) {
   job.rays.end();
 }
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels
 #endif

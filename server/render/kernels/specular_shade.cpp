@@ -12,7 +12,7 @@
 #include "render/kernels/simd/surface.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 /// The hits of one job, some at a time.
 class HitShading {
@@ -189,11 +189,11 @@ void shade_hits_batch(const ShadeHitsJob& job, int first, int last) {
   if (count) job.shadows.append({shadows.data(), count});
 }
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 HWY_EXPORT(shade_hits_batch);
 
@@ -221,5 +221,5 @@ void resolve_lamps(const RaySource& shadows, const std::uint32_t* occluded, int 
   });
 }
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels
 #endif

@@ -10,7 +10,7 @@
 #include "render/kernels/simd/view.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 template <class D>
 class SpecularAccumulation {
@@ -342,11 +342,11 @@ void accumulate_specular_rows(const TemporalSpecularJob& job, int first, int las
   run_rows<SpecularAccumulation>(job, job.width, first, last);
 }
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 HWY_EXPORT(accumulate_specular_rows);
 
@@ -356,5 +356,5 @@ void accumulate_specular(const TemporalSpecularJob& job) {
   });
 }
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels
 #endif

@@ -5,7 +5,7 @@
 #include "shaders/shared/frame_constants.h"
 
 /// Gathering signals over frames on all processors, in the widest vectors that the processor has.
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 struct TemporalVisibilityJob {
   const shared::FrameConstants& frame;
@@ -49,4 +49,4 @@ void rectify_visibility(const RectifyJob& job);
 /// shaders/denoise/specular_rectify.comp
 void rectify_specular(const RectifyJob& job);
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels

@@ -3,7 +3,7 @@
 #include "gpu/memory/image.hpp"
 #include "shaders/shared/frame_constants.h"
 
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 /// What temporal antialiasing reads and writes, as it lies in memory.
 struct AntialiasJob {
@@ -22,4 +22,4 @@ struct AntialiasJob {
 /// the widest vectors that the processor has.
 void temporal_antialias(const AntialiasJob& job);
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels

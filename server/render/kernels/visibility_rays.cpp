@@ -13,7 +13,7 @@
 #include "render/kernels/simd/view.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 /// What both kinds of rays have in common: how they walk the picture and leave rays behind.
 /// Neighbours in the stream are neighbours in the picture across and down.
@@ -180,11 +180,11 @@ void ambient_ray_rows(const VisibilityRaysJob& job, int first, int last) {
   run_rows<AmbientRays>(job, job.width, first, last);
 }
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 HWY_EXPORT(shadow_ray_rows);
 HWY_EXPORT(ambient_ray_rows);
@@ -203,5 +203,5 @@ void ambient_rays(const VisibilityRaysJob& job) {
   set_groups(*job.count);
 }
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels
 #endif

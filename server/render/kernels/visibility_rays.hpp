@@ -7,7 +7,7 @@
 #include "shaders/shared/ray.h"
 #include "shaders/shared/scene.h"
 
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 /// What the generation of visibility rays reads and writes, as it lies in memory.
 struct VisibilityRaysJob {
@@ -35,4 +35,4 @@ void shadow_rays(const ShadowRaysJob& job);
 /// One ray per pixel over the hemisphere: shaders/visibility/ambient_rays.comp.
 void ambient_rays(const VisibilityRaysJob& job);
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels

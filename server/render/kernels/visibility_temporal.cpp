@@ -8,7 +8,7 @@
 #include "render/kernels/simd/moments.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 template <class D>
 class VisibilityAccumulation {
@@ -134,11 +134,11 @@ void accumulate_visibility_rows(const TemporalVisibilityJob& job, int first, int
   run_rows<VisibilityAccumulation>(job, job.width, first, last);
 }
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 HWY_EXPORT(accumulate_visibility_rows);
 
@@ -154,5 +154,5 @@ void accumulate_visibility(const TemporalVisibilityJob& job) {
   });
 }
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels
 #endif

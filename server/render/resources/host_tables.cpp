@@ -7,7 +7,7 @@
 #include "render/resources/moving_scene.hpp"
 #include "render/resources/scene_resources.hpp"
 
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 namespace {
 
 static_assert(sizeof(Slot) == 16 * 4 && sizeof(Material) == (16 + 5 * 16) * 4);
@@ -182,4 +182,4 @@ Environment copy_environment(const scene::Environment& map, const gpu::Image& pr
   return copy;
 }
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels

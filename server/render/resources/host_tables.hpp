@@ -18,7 +18,7 @@ class SceneResources;
 
 /// Tables that shaders look up, as host kernels read them: copies where the device's own may lie
 /// anywhere, in an order that vectors of lanes gather from. 32-bit words throughout.
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 /// A texture of a material, where it lies in the heap included.
 struct Slot {
@@ -108,4 +108,4 @@ struct Environment {
 
 Environment copy_environment(const scene::Environment& map, const gpu::Image& prefiltered);
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels

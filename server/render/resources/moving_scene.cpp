@@ -208,7 +208,7 @@ void MovingScene::bind_tables() {
       own_lights_ ? own_lights_ : shared.lights, shared.alpha_heap});
 }
 
-const host::MaterialTable& MovingScene::host_materials() const {
+const kernels::MaterialTable& MovingScene::host_materials() const {
   return changed_materials_ ? changed_materials_->host : rest_->host_materials;
 }
 
@@ -233,7 +233,7 @@ bool MovingScene::set_lights(std::span<const shared::Light> lights) {
 }
 
 bool MovingScene::set_materials(std::span<const shared::Material> materials) {
-  host::MaterialTable host;
+  kernels::MaterialTable host;
   if (device_.is_cpu()) host = rest_->make_host_materials(materials);
   if (changed_materials_) {
     std::memcpy(changed_materials_->table.mapped(), materials.data(), materials.size_bytes());

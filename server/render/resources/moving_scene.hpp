@@ -39,7 +39,7 @@ class MovingScene {
   const std::vector<shared::Light>& previous_lights() const { return previous_lights_; }
 
   const LitEnvironment& environment() const { return *environment_; }
-  const host::MaterialTable& host_materials() const;
+  const kernels::MaterialTable& host_materials() const;
   /// For the rasteriser; the first call may make them. Not while a frame runs.
   const std::vector<VkDescriptorSet>& material_sets() const;
 
@@ -74,7 +74,7 @@ class MovingScene {
   struct ChangedMaterials {
     gpu::Buffer table;  // shared::Material each, `count` of them
     std::size_t count;
-    host::MaterialTable host;
+    kernels::MaterialTable host;
     std::optional<MaterialSets> sets = std::nullopt;  // once the rasteriser wanted them
   };
 

@@ -260,11 +260,11 @@ void SceneResources::make_samplers() {
   samplers_.emplace_back(device_, sampler_info({}));  // for slots without a texture
 }
 
-host::MaterialTable SceneResources::make_host_materials(
+kernels::MaterialTable SceneResources::make_host_materials(
     std::span<const shared::Material> materials) const {
   const auto* const textures =
       reinterpret_cast<const shared::HeapTexture*>(texture_heap.textures.mapped());
-  return host::make_material_table(materials, {textures, scene->textures.size()});
+  return kernels::make_material_table(materials, {textures, scene->textures.size()});
 }
 
 void MaterialSets::write(std::span<const shared::Material> materials) const {

@@ -61,10 +61,10 @@ class SceneResources {
   std::shared_ptr<const tracing::AccelerationStructure> rest_structure;
   std::shared_ptr<const LitEnvironment> environment;
   TextureHeap texture_heap;
-  gpu::Buffer layers;                  // shared::MaterialLayer each
-  host::MaterialTable host_materials;  // on devices that are processors
-  std::uint32_t features = 0;          // shared::scene_*
-  std::vector<Draw> draws;             // opaque first, then by material
+  gpu::Buffer layers;                     // shared::MaterialLayer each
+  kernels::MaterialTable host_materials;  // on devices that are processors
+  std::uint32_t features = 0;             // shared::scene_*
+  std::vector<Draw> draws;                // opaque first, then by material
   std::uint32_t deforming_vertices = 0;
 
   /// What the rasteriser reads. On processors, where rays find most G-buffers, images that samplers
@@ -73,7 +73,7 @@ class SceneResources {
   /// Other values for the scene's materials, with its textures. The host's only on processors.
   MaterialSets make_material_sets(std::span<const shared::Material> materials,
                                   gpu::Memory memory) const;
-  host::MaterialTable make_host_materials(std::span<const shared::Material> materials) const;
+  kernels::MaterialTable make_host_materials(std::span<const shared::Material> materials) const;
 
  private:
   void upload_tables(const gpu::Device& device);

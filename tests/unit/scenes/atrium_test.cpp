@@ -1,4 +1,4 @@
-#include "scenes/generator/atrium.hpp"
+#include "scenes/generator/atrium/atrium.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scenes/generator/icosphere.hpp"
+#include "scenes/generator/geometry/icosphere.hpp"
 
 #include <gtest/gtest.h>
 

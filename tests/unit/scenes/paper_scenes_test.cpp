@@ -1,4 +1,4 @@
-#include "scenes/generator/paper_scenes.hpp"
+#include "scenes/generator/scenes/paper_scenes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "scenes/generator/glb.hpp"
+#include "scenes/generator/gltf/glb.hpp"
 
 namespace heliograph::scenes {
 namespace {

@@ -1,4 +1,4 @@
-#include "scenes/generator/shapes.hpp"
+#include "scenes/generator/geometry/shapes.hpp"
 
 #include <gtest/gtest.h>
 

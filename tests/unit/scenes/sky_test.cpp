@@ -1,12 +1,12 @@
-#include "scenes/generator/sky.hpp"
+#include "scenes/generator/sky/sky.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 
-#include "scenes/generator/atrium.hpp"
-#include "scenes/generator/test_scenes.hpp"
+#include "scenes/generator/atrium/atrium.hpp"
+#include "scenes/generator/scenes/test_scenes.hpp"
 
 namespace heliograph::scenes {
 namespace {

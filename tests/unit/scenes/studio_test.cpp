@@ -1,4 +1,4 @@
-#include "scenes/generator/studio.hpp"
+#include "scenes/generator/sky/studio.hpp"
 
 #include <gtest/gtest.h>
 

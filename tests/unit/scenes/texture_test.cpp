@@ -1,12 +1,12 @@
-#include "scenes/generator/texture.hpp"
+#include "scenes/generator/textures/texture.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
 
-#include "scenes/generator/atrium_materials.hpp"
-#include "scenes/generator/noise.hpp"
+#include "scenes/generator/atrium/atrium_materials.hpp"
+#include "scenes/generator/textures/noise.hpp"
 
 namespace heliograph::scenes {
 namespace {

@@ -1,10 +1,10 @@
 // Looking up the environment as shaders/lib/lighting/environment.glsl does, a lane for every
 // direction. Included once per instruction set; the guard is Google Highway's convention.
-#if defined(HELIOGRAPH_HOST_ENVIRONMENT_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef HELIOGRAPH_HOST_ENVIRONMENT_HPP
-#undef HELIOGRAPH_HOST_ENVIRONMENT_HPP
+#if defined(HELIOGRAPH_KERNELS_ENVIRONMENT_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_KERNELS_ENVIRONMENT_HPP
+#undef HELIOGRAPH_KERNELS_ENVIRONMENT_HPP
 #else
-#define HELIOGRAPH_HOST_ENVIRONMENT_HPP
+#define HELIOGRAPH_KERNELS_ENVIRONMENT_HPP
 #endif
 
 #include <numbers>
@@ -14,7 +14,7 @@
 #include "shaders/shared/frame_constants.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 class EnvironmentLanes {
  public:
@@ -137,7 +137,7 @@ class EnvironmentLanes {
   const Environment& environment_;
 };
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -1,16 +1,16 @@
 // Reading the frame before in host kernels: shaders/lib/denoise/reprojection.glsl in vectors.
 // Included once per instruction set; the guard is Google Highway's convention.
-#if defined(HELIOGRAPH_HOST_HISTORY_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef HELIOGRAPH_HOST_HISTORY_HPP
-#undef HELIOGRAPH_HOST_HISTORY_HPP
+#if defined(HELIOGRAPH_KERNELS_HISTORY_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_KERNELS_HISTORY_HPP
+#undef HELIOGRAPH_KERNELS_HISTORY_HPP
 #else
-#define HELIOGRAPH_HOST_HISTORY_HPP
+#define HELIOGRAPH_KERNELS_HISTORY_HPP
 #endif
 
 #include "render/kernels/simd/pixels.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 /// One pixel per lane, inside the picture. Neighbours mostly move together: where they lie side by
 /// side they are loaded, otherwise gathered.
@@ -212,7 +212,7 @@ HWY_INLINE void recall_sharply(const Bounds<D>& bounds, const HistoryTaps<D>& ta
   }
 }
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

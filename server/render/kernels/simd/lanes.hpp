@@ -1,10 +1,10 @@
 // Surfaces and rays in vectors whose lanes lie anywhere: each reads its own records of the scene's
 // tables. Included once per instruction set; the guard is Google Highway's convention.
-#if defined(HELIOGRAPH_HOST_LANES_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef HELIOGRAPH_HOST_LANES_HPP
-#undef HELIOGRAPH_HOST_LANES_HPP
+#if defined(HELIOGRAPH_KERNELS_LANES_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_KERNELS_LANES_HPP
+#undef HELIOGRAPH_KERNELS_LANES_HPP
 #else
-#define HELIOGRAPH_HOST_LANES_HPP
+#define HELIOGRAPH_KERNELS_LANES_HPP
 #endif
 
 #include <array>
@@ -16,7 +16,7 @@
 #include "render/kernels/simd/pixels.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -229,7 +229,7 @@ HWY_INLINE Float angle_of(Float x, Float y) {
   return hn::CopySign(angle, y);
 }
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -1,11 +1,11 @@
 // Surfaces and punctual lights for host kernels: shaders/lib/lighting/brdf.glsl,
 // gbuffer_material.glsl and lights.glsl in vectors. Included once per instruction set; the guard is
 // Google Highway's convention.
-#if defined(HELIOGRAPH_HOST_MATERIAL_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef HELIOGRAPH_HOST_MATERIAL_HPP
-#undef HELIOGRAPH_HOST_MATERIAL_HPP
+#if defined(HELIOGRAPH_KERNELS_MATERIAL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_KERNELS_MATERIAL_HPP
+#undef HELIOGRAPH_KERNELS_MATERIAL_HPP
 #else
-#define HELIOGRAPH_HOST_MATERIAL_HPP
+#define HELIOGRAPH_KERNELS_MATERIAL_HPP
 #endif
 
 #include <numbers>
@@ -14,7 +14,7 @@
 #include "shaders/shared/scene.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 inline constexpr float dielectric_f0 = 0.04f;
 
@@ -200,7 +200,7 @@ HWY_INLINE bool light_contribution(D d, const shared::Light& light, const Surfac
   return true;
 }
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

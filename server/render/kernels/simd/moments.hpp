@@ -1,16 +1,16 @@
 // Running means in host kernels: shaders/lib/denoise/moments.glsl and the taps of the frame before
 // in vectors. Included once per instruction set; the guard is Google Highway's convention.
-#if defined(HELIOGRAPH_HOST_MOMENTS_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef HELIOGRAPH_HOST_MOMENTS_HPP
-#undef HELIOGRAPH_HOST_MOMENTS_HPP
+#if defined(HELIOGRAPH_KERNELS_MOMENTS_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_KERNELS_MOMENTS_HPP
+#undef HELIOGRAPH_KERNELS_MOMENTS_HPP
 #else
-#define HELIOGRAPH_HOST_MOMENTS_HPP
+#define HELIOGRAPH_KERNELS_MOMENTS_HPP
 #endif
 
 #include "render/kernels/simd/history.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 inline constexpr float fast_frames = 6.0f;  // of the short history
 
@@ -51,7 +51,7 @@ HWY_INLINE void add_share(hn::Mask<D> counts, V weight, V value, V& sum) {
   sum = sum + hn::IfThenElseZero(counts, weight * value);
 }
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

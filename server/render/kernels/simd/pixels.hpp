@@ -1,10 +1,10 @@
 // What host kernels share: pixels of mapped images in vectors, whose lanes lie side by side in a
 // row. Included once per instruction set; the guard is Google Highway's convention.
-#if defined(HELIOGRAPH_HOST_PIXELS_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef HELIOGRAPH_HOST_PIXELS_HPP
-#undef HELIOGRAPH_HOST_PIXELS_HPP
+#if defined(HELIOGRAPH_KERNELS_PIXELS_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_KERNELS_PIXELS_HPP
+#undef HELIOGRAPH_KERNELS_PIXELS_HPP
 #else
-#define HELIOGRAPH_HOST_PIXELS_HPP
+#define HELIOGRAPH_KERNELS_PIXELS_HPP
 #endif
 
 #include <glm/glm.hpp>
@@ -13,7 +13,7 @@
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -210,7 +210,7 @@ HWY_INLINE void run_rows(const Job& job, int width, int first, int last) {
   }
 }
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

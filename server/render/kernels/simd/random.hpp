@@ -1,10 +1,10 @@
 // The random numbers of shaders/lib/math/random.glsl in vectors; included once per instruction set.
 // Portable SIMD by Google Highway; the guard is its convention for such headers.
-#if defined(HELIOGRAPH_RANDOM_HOST_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef HELIOGRAPH_RANDOM_HOST_HPP
-#undef HELIOGRAPH_RANDOM_HOST_HPP
+#if defined(HELIOGRAPH_KERNELS_RANDOM_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_KERNELS_RANDOM_HPP
+#undef HELIOGRAPH_KERNELS_RANDOM_HPP
 #else
-#define HELIOGRAPH_RANDOM_HOST_HPP
+#define HELIOGRAPH_KERNELS_RANDOM_HPP
 #endif
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -153,7 +153,7 @@ class RandomNumbers : RandomDigits<DU> {
   V of_sample_;
 };
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

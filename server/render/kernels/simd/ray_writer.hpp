@@ -1,9 +1,9 @@
 // Streams of rays, a lane for every ray. Included once per instruction set.
-#if defined(HELIOGRAPH_HOST_STREAM_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef HELIOGRAPH_HOST_STREAM_HPP
-#undef HELIOGRAPH_HOST_STREAM_HPP
+#if defined(HELIOGRAPH_KERNELS_RAY_WRITER_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_KERNELS_RAY_WRITER_HPP
+#undef HELIOGRAPH_KERNELS_RAY_WRITER_HPP
 #else
-#define HELIOGRAPH_HOST_STREAM_HPP
+#define HELIOGRAPH_KERNELS_RAY_WRITER_HPP
 #endif
 
 #include <array>
@@ -14,7 +14,7 @@
 #include "shaders/shared/frame_constants.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 struct PixelLanes {
   Integer x, y;
@@ -139,7 +139,7 @@ class CameraLanes {
   glm::vec2 scale_;
 };
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -1,10 +1,10 @@
 // Making rays in host kernels: shaders/lib/math/geometry.glsl and ray_stream.glsl in vectors.
 // Included once per instruction set; the guard is Google Highway's convention.
-#if defined(HELIOGRAPH_HOST_RAYS_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef HELIOGRAPH_HOST_RAYS_HPP
-#undef HELIOGRAPH_HOST_RAYS_HPP
+#if defined(HELIOGRAPH_KERNELS_RAYS_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_KERNELS_RAYS_HPP
+#undef HELIOGRAPH_KERNELS_RAYS_HPP
 #else
-#define HELIOGRAPH_HOST_RAYS_HPP
+#define HELIOGRAPH_KERNELS_RAYS_HPP
 #endif
 
 #include <atomic>
@@ -17,7 +17,7 @@
 #include "shaders/shared/ray.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 /// Two unit vectors that complete `n` to a right-handed frame.
 template <class V>
@@ -103,7 +103,7 @@ class RayBatch {
   std::size_t used_ = 0;
 };
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -12,7 +12,7 @@
 // The baseline, AVX2 and AVX-512: what lies between is hardly ever met.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
 
-namespace heliograph::render::host {
+namespace heliograph::render::kernels {
 
 /// Rows that one thread works on at a time.
 inline constexpr int band_rows = 8;
@@ -65,4 +65,4 @@ class BandScratch {
   std::unique_ptr<float[]> values_;
 };
 
-}  // namespace heliograph::render::host
+}  // namespace heliograph::render::kernels

@@ -1,11 +1,11 @@
 // Drawing directions from the specular lobe, and which pixels do: shaders/lib/math/sampling.glsl
 // and specular_pixels.glsl in vectors. Included once per instruction set; the guard is Google
 // Highway's convention.
-#if defined(HELIOGRAPH_HOST_SPECULAR_LOBE_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef HELIOGRAPH_HOST_SPECULAR_LOBE_HPP
-#undef HELIOGRAPH_HOST_SPECULAR_LOBE_HPP
+#if defined(HELIOGRAPH_KERNELS_SPECULAR_LOBE_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_KERNELS_SPECULAR_LOBE_HPP
+#undef HELIOGRAPH_KERNELS_SPECULAR_LOBE_HPP
 #else
-#define HELIOGRAPH_HOST_SPECULAR_LOBE_HPP
+#define HELIOGRAPH_KERNELS_SPECULAR_LOBE_HPP
 #endif
 
 #include <numbers>
@@ -17,7 +17,7 @@
 #include "render/kernels/simd/rays.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 using MaterialLanes = SurfaceMaterial<Float>;
 
@@ -115,7 +115,7 @@ HWY_INLINE SpecularSample sample_specular(const MaterialLanes& m, const Float2& 
   return s;
 }
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -1,10 +1,10 @@
 // What rays have met, as shaders/lib/scene/hit_surface.glsl has it, a lane for every ray. Included
 // once per instruction set.
-#if defined(HELIOGRAPH_HOST_SURFACE_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef HELIOGRAPH_HOST_SURFACE_HPP
-#undef HELIOGRAPH_HOST_SURFACE_HPP
+#if defined(HELIOGRAPH_KERNELS_SURFACE_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_KERNELS_SURFACE_HPP
+#undef HELIOGRAPH_KERNELS_SURFACE_HPP
 #else
-#define HELIOGRAPH_HOST_SURFACE_HPP
+#define HELIOGRAPH_KERNELS_SURFACE_HPP
 #endif
 
 #include "render/kernels/simd/lanes.hpp"
@@ -12,7 +12,7 @@
 #include "shaders/shared/ray.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 /// shaders/lib/math/octahedral.glsl
 HWY_INLINE Float2 octahedral_encode(const Float3& v) {
@@ -322,7 +322,7 @@ HWY_INLINE SurfaceLanes hit_surface(const SceneView& scene, const HitLanes& hit,
   return s;
 }
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -1,17 +1,17 @@
 // The texture heap as shaders/lib/scene/texture_heap.glsl reads it, a lane for every surface.
 // Included once per instruction set.
-#if defined(HELIOGRAPH_HOST_TEXTURES_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef HELIOGRAPH_HOST_TEXTURES_HPP
-#undef HELIOGRAPH_HOST_TEXTURES_HPP
+#if defined(HELIOGRAPH_KERNELS_TEXTURES_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_KERNELS_TEXTURES_HPP
+#undef HELIOGRAPH_KERNELS_TEXTURES_HPP
 #else
-#define HELIOGRAPH_HOST_TEXTURES_HPP
+#define HELIOGRAPH_KERNELS_TEXTURES_HPP
 #endif
 
 #include "render/kernels/simd/lanes.hpp"
 #include "render/resources/host_tables.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 /// IEC 61966-2-1 by the polynomial of texture_heap.glsl.
 HWY_INLINE Float srgb_decode(Float e) {
@@ -120,7 +120,7 @@ HWY_INLINE Float4 sample_texture(const SceneView& scene, const TextureLanes& t, 
   return mix(near, sample_level(scene, t, coarser, uv, nearest, srgb), share);
 }
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

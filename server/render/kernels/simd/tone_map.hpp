@@ -1,17 +1,17 @@
 // Scene-linear Rec. 709 to display-linear [0, 1] in vectors: shaders/lib/math/tone_map.glsl, which
 // tells the sources. Included once per instruction set; the guard is Google Highway's convention.
-#if defined(HELIOGRAPH_HOST_TONE_MAP_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef HELIOGRAPH_HOST_TONE_MAP_HPP
-#undef HELIOGRAPH_HOST_TONE_MAP_HPP
+#if defined(HELIOGRAPH_KERNELS_TONE_MAP_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_KERNELS_TONE_MAP_HPP
+#undef HELIOGRAPH_KERNELS_TONE_MAP_HPP
 #else
-#define HELIOGRAPH_HOST_TONE_MAP_HPP
+#define HELIOGRAPH_KERNELS_TONE_MAP_HPP
 #endif
 
 #include "hwy/contrib/math/math-inl.h"
 #include "render/kernels/simd/pixels.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 /// `matrix` x c
 template <class V>
@@ -107,7 +107,7 @@ HWY_INLINE V srgb_encode(V linear) {
   return hn::IfThenElse(hn::Le(c, hn::Set(d, 0.0031308f)), hn::Set(d, 12.92f) * c, curve);
 }
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -1,10 +1,10 @@
 // Where pixels lie in the world, for host kernels: the functions of shaders/lib/frame.glsl in
 // vectors. Included once per instruction set; the guard is Google Highway's convention.
-#if defined(HELIOGRAPH_HOST_VIEW_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef HELIOGRAPH_HOST_VIEW_HPP
-#undef HELIOGRAPH_HOST_VIEW_HPP
+#if defined(HELIOGRAPH_KERNELS_VIEW_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_KERNELS_VIEW_HPP
+#undef HELIOGRAPH_KERNELS_VIEW_HPP
 #else
-#define HELIOGRAPH_HOST_VIEW_HPP
+#define HELIOGRAPH_KERNELS_VIEW_HPP
 #endif
 
 #include <cmath>
@@ -13,7 +13,7 @@
 #include "shaders/shared/frame_constants.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace heliograph::render::host::HWY_NAMESPACE {
+namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 /// `matrix` x (p, 1), its first three rows.
 template <class V>
@@ -86,7 +86,7 @@ class ViewedRow {
   float slope_y_;
 };
 
-}  // namespace heliograph::render::host::HWY_NAMESPACE
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

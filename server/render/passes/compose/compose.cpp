@@ -42,30 +42,31 @@ void run_host(const gpu::FramePlan& plan, const FrameInputs& in, const Images& i
   const auto view = [&plan](gpu::ImageRef image) { return plan.get(image).host(); };
   const auto lights = frame_lights(in.tables.lights, in.constants);
   const GBuffer& gbuffer = images.gbuffer;
-  host::ComposeJob job{.frame = in.constants,
-                       .lights = lights,
-                       .split_sum = in.split_sum_table.host(),
-                       .split_sum_size = static_cast<int>(in.split_sum_table.desc().extent.width),
-                       .max_roughness = max_roughness,
-                       .width = static_cast<int>(plan.extent().width),
-                       .height = static_cast<int>(plan.extent().height),
-                       .normals = view(gbuffer.normals),
-                       .base_color = view(gbuffer.base_color),
-                       .surface = view(gbuffer.surface),
-                       .motion = view(gbuffer.motion),
-                       .emissive = view(gbuffer.emissive),
-                       .background = view(images.background),
-                       .shadows = view(images.shadows),
-                       .ambient = view(images.ambient),
-                       .specular = view(images.specular),
-                       .denoised = {},
-                       .hdr = view(images.composed.hdr)};
+  kernels::ComposeJob job{
+      .frame = in.constants,
+      .lights = lights,
+      .split_sum = in.split_sum_table.host(),
+      .split_sum_size = static_cast<int>(in.split_sum_table.desc().extent.width),
+      .max_roughness = max_roughness,
+      .width = static_cast<int>(plan.extent().width),
+      .height = static_cast<int>(plan.extent().height),
+      .normals = view(gbuffer.normals),
+      .base_color = view(gbuffer.base_color),
+      .surface = view(gbuffer.surface),
+      .motion = view(gbuffer.motion),
+      .emissive = view(gbuffer.emissive),
+      .background = view(images.background),
+      .shadows = view(images.shadows),
+      .ambient = view(images.ambient),
+      .specular = view(images.specular),
+      .denoised = {},
+      .hdr = view(images.composed.hdr)};
   if (images.denoised) {
     job.denoised = {view(images.denoised->visibility),
                     view(images.denoised->specular.value_or(images.specular)),
                     view(images.composed.hdr_raw)};
   }
-  host::compose(job);
+  kernels::compose(job);
 }
 
 }  // namespace
@@ -87,7 +88,7 @@ Composed compose(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbu
   const bool hosted =
       shades_on_host(plan, in) && (in.scene.features & shared::scene_area_lights) == 0;
   const auto by_host = [in, roughness, hosted] {
-    return hosted && host::can_compose(in.constants, roughness());
+    return hosted && kernels::can_compose(in.constants, roughness());
   };
   if (hosted) {
     const auto run = [&plan, in, images, roughness] { run_host(plan, in, images, roughness()); };

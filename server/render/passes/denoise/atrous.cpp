@@ -23,7 +23,7 @@ gpu::PassBuilder iteration(gpu::FramePlan& plan, const FrameInputs& in, const st
   }
   return plan.host(name, [&plan, &frame = in.constants, kind = blur.kind, images, constants] {
     const auto view = [&plan](gpu::ImageRef image) { return plan.get(image).host(); };
-    host::atrous(
+    kernels::atrous(
         kind, constants(), frame,
         {view(images.guide), view(images.depth_slope), view(images.signal), view(images.filtered)});
   });

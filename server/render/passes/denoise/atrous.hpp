@@ -20,7 +20,7 @@ struct Blur {
   int iterations;
   protocol::BlurKernel kernel;
   std::function<shared::AtrousConstants(const KernelShape&)> constants;
-  host::Signal kind;
+  kernels::Signal kind;
 };
 
 /// An image that the result of iteration `level` is written to, for the next frame.

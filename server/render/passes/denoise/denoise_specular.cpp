@@ -51,7 +51,7 @@ Blur blur_of(const FrameInputs& in) {
   };
   return {"specular",          in.programs.compute(shaders::specular_atrous),
           settings.iterations, settings.kernel,
-          constants,           host::Signal::specular};
+          constants,           kernels::Signal::specular};
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ Blur blur_of(const FrameInputs& in) {
   };
   return {"visibility",        in.programs.compute(shaders::visibility_atrous),
           settings.iterations, settings.kernel,
-          constants,           host::Signal::visibility};
+          constants,           kernels::Signal::visibility};
 }
 
 }  // namespace
@@ -54,11 +54,11 @@ gpu::ImageRef combine_visibility(gpu::FramePlan& plan, const FrameInputs& in, gp
           .dispatch(plan.extent());
     }
     return plan.host("visibility.combine", [&plan, shadows, ambient, raw] {
-      host::combine_visibility({.width = static_cast<int>(plan.extent().width),
-                                .height = static_cast<int>(plan.extent().height),
-                                .shadows = plan.get(shadows).host(),
-                                .ambient = plan.get(ambient).host(),
-                                .visibility = plan.get(raw).host()});
+      kernels::combine_visibility({.width = static_cast<int>(plan.extent().width),
+                                   .height = static_cast<int>(plan.extent().height),
+                                   .shadows = plan.get(shadows).host(),
+                                   .ambient = plan.get(ambient).host(),
+                                   .visibility = plan.get(raw).host()});
     });
   };
   declare().read(shadows).read(ambient).write(raw).describe(

@@ -20,20 +20,20 @@ gpu::PassBuilder declare_pass(gpu::FramePlan& plan, const FrameInputs& in, const
   }
   return plan.host("denoise.reproject", [&plan, &frame = in.constants, gbuffer, guide, constants] {
     const auto view = [&plan](gpu::ImageRef image) { return plan.get(image).host(); };
-    host::reproject({.frame = frame,
-                     .constants = constants(),
-                     .width = static_cast<int>(plan.extent().width),
-                     .height = static_cast<int>(plan.extent().height),
-                     .normals = view(gbuffer.normals),
-                     .surface = view(gbuffer.surface),
-                     .motion = view(gbuffer.motion),
-                     .depth_slope = view(gbuffer.depth_slope),
-                     .instance = view(gbuffer.instance),
-                     .previous_normals = view(gbuffer.previous_normals),
-                     .previous_motion = view(gbuffer.previous_motion),
-                     .previous_instance = view(gbuffer.previous_instance),
-                     .guide = view(guide.surface),
-                     .reprojection = view(guide.reprojection)});
+    kernels::reproject({.frame = frame,
+                        .constants = constants(),
+                        .width = static_cast<int>(plan.extent().width),
+                        .height = static_cast<int>(plan.extent().height),
+                        .normals = view(gbuffer.normals),
+                        .surface = view(gbuffer.surface),
+                        .motion = view(gbuffer.motion),
+                        .depth_slope = view(gbuffer.depth_slope),
+                        .instance = view(gbuffer.instance),
+                        .previous_normals = view(gbuffer.previous_normals),
+                        .previous_motion = view(gbuffer.previous_motion),
+                        .previous_instance = view(gbuffer.previous_instance),
+                        .guide = view(guide.surface),
+                        .reprojection = view(guide.reprojection)});
   });
 }
 

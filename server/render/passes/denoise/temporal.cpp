@@ -34,7 +34,7 @@ gpu::PassBuilder declare_pass(gpu::FramePlan& plan, const FrameInputs& in, const
                               const gpu::ComputeProgram& program,
                               protocol::Rectification rectification, const Constants& constants,
                               const Run& run) {
-  const bool known = host::can_accumulate(static_cast<std::uint32_t>(rectification));
+  const bool known = kernels::can_accumulate(static_cast<std::uint32_t>(rectification));
   if (!on_host(plan, in) || !known) {
     return plan.pass(name, program).constants(constants).dispatch(plan.extent());
   }
@@ -51,7 +51,7 @@ bool rectifies_after(protocol::Rectification mode) {
 /// Holds the long history against the short one, or shortens it where the signal changes.
 gpu::PassBuilder rectify(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
                          const gpu::ComputeProgram& program,
-                         void (*kernel)(const host::RectifyJob&), const Guide& guide,
+                         void (*kernel)(const kernels::RectifyJob&), const Guide& guide,
                          gpu::ImageRef fast, gpu::ImageRef signal, gpu::ImageRef history,
                          const auto& constants) {
   return declare_pass(plan, in, name, program, protocol::Rectification::fast_history, constants,
@@ -88,21 +88,21 @@ Integrated accumulate_visibility(gpu::FramePlan& plan, const FrameInputs& in, co
       settings.rectification);
   const auto run = [=, extent = plan.extent(), &frame = in.constants](const auto& now,
                                                                       const auto& view) {
-    host::accumulate_visibility({.frame = frame,
-                                 .constants = now,
-                                 .width = static_cast<int>(extent.width),
-                                 .height = static_cast<int>(extent.height),
-                                 .raw = view(raw),
-                                 .guide = view(guide.surface),
-                                 .reprojection = view(guide.reprojection),
-                                 .previous_signal = view(memory.previous),
-                                 .previous_moments = view(moments.previous),
-                                 .previous_history = view(history.previous),
-                                 .previous_fast = view(fast.previous),
-                                 .signal = view(signal),
-                                 .moments = view(moments.current),
-                                 .history = view(history.current),
-                                 .fast = view(fast.current)});
+    kernels::accumulate_visibility({.frame = frame,
+                                    .constants = now,
+                                    .width = static_cast<int>(extent.width),
+                                    .height = static_cast<int>(extent.height),
+                                    .raw = view(raw),
+                                    .guide = view(guide.surface),
+                                    .reprojection = view(guide.reprojection),
+                                    .previous_signal = view(memory.previous),
+                                    .previous_moments = view(moments.previous),
+                                    .previous_history = view(history.previous),
+                                    .previous_fast = view(fast.previous),
+                                    .signal = view(signal),
+                                    .moments = view(moments.current),
+                                    .history = view(history.current),
+                                    .fast = view(fast.current)});
   };
   declare_pass(plan, in, "visibility.temporal", in.programs.compute(shaders::visibility_temporal),
                settings.rectification, constants, run)
@@ -124,7 +124,7 @@ Integrated accumulate_visibility(gpu::FramePlan& plan, const FrameInputs& in, co
           "frames alone.");
   if (rectifies_after(settings.rectification)) {
     rectify(plan, in, "visibility.rectify", in.programs.compute(shaders::visibility_rectify),
-            host::rectify_visibility, guide, fast.current, signal, history.current, constants)
+            kernels::rectify_visibility, guide, fast.current, signal, history.current, constants)
         // Visibility does not depend on the view: it changes only where something moves.
         .when([&settings, &motion = in.scene_motion] {
           return settings.rectification != protocol::Rectification::gradient || motion.things;
@@ -153,24 +153,24 @@ Integrated accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in, cons
       settings.rectification);
   const auto run = [=, extent = plan.extent(), &frame = in.constants](const auto& now,
                                                                       const auto& view) {
-    host::accumulate_specular({.frame = frame,
-                               .constants = now,
-                               .width = static_cast<int>(extent.width),
-                               .height = static_cast<int>(extent.height),
-                               .raw = view(raw),
-                               .guide = view(guide.surface),
-                               .instance = view(gbuffer.instance),
-                               .reprojection = view(guide.reprojection),
-                               .previous_normals = view(gbuffer.previous_normals),
-                               .previous_surface = view(gbuffer.previous_surface),
-                               .previous_motion = view(gbuffer.previous_motion),
-                               .previous_instance = view(gbuffer.previous_instance),
-                               .previous_signal = view(memory.previous),
-                               .previous_history = view(history.previous),
-                               .previous_fast = view(fast.previous),
-                               .signal = view(signal),
-                               .history = view(history.current),
-                               .fast = view(fast.current)});
+    kernels::accumulate_specular({.frame = frame,
+                                  .constants = now,
+                                  .width = static_cast<int>(extent.width),
+                                  .height = static_cast<int>(extent.height),
+                                  .raw = view(raw),
+                                  .guide = view(guide.surface),
+                                  .instance = view(gbuffer.instance),
+                                  .reprojection = view(guide.reprojection),
+                                  .previous_normals = view(gbuffer.previous_normals),
+                                  .previous_surface = view(gbuffer.previous_surface),
+                                  .previous_motion = view(gbuffer.previous_motion),
+                                  .previous_instance = view(gbuffer.previous_instance),
+                                  .previous_signal = view(memory.previous),
+                                  .previous_history = view(history.previous),
+                                  .previous_fast = view(fast.previous),
+                                  .signal = view(signal),
+                                  .history = view(history.current),
+                                  .fast = view(fast.current)});
   };
   declare_pass(plan, in, "specular.temporal", in.programs.compute(shaders::specular_temporal),
                settings.rectification, constants, run)
@@ -194,7 +194,7 @@ Integrated accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in, cons
           "the mean was moved, and moments; the last few frames alone.");
   if (rectifies_after(settings.rectification)) {
     rectify(plan, in, "specular.rectify", in.programs.compute(shaders::specular_rectify),
-            host::rectify_specular, guide, fast.current, signal, history.current, constants)
+            kernels::rectify_specular, guide, fast.current, signal, history.current, constants)
         .when([&settings, &samples = in.samples] {
           return settings.rectification != protocol::Rectification::gradient || samples == 0;
         });
@@ -206,21 +206,21 @@ namespace {
 
 void estimate_variance(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                        const Guide& guide, const Integrated& integrated, const char* name,
-                       const gpu::ComputeProgram& program, host::Signal kind,
+                       const gpu::ComputeProgram& program, kernels::Signal kind,
                        const auto& settings) {
   const auto constants = [in, &settings] { return temporal_constants(in, settings); };
   const auto run = [=, extent = plan.extent(), &frame = in.constants](const auto& now,
                                                                       const auto& view) {
-    host::spatial_variance({.kind = kind,
-                            .frame = frame,
-                            .constants = now,
-                            .width = static_cast<int>(extent.width),
-                            .height = static_cast<int>(extent.height),
-                            .guide = view(guide.surface),
-                            .depth_slope = view(gbuffer.depth_slope),
-                            .moments = view(integrated.moments),
-                            .history = view(integrated.history),
-                            .signal = view(integrated.signal)});
+    kernels::spatial_variance({.kind = kind,
+                               .frame = frame,
+                               .constants = now,
+                               .width = static_cast<int>(extent.width),
+                               .height = static_cast<int>(extent.height),
+                               .guide = view(guide.surface),
+                               .depth_slope = view(gbuffer.depth_slope),
+                               .moments = view(integrated.moments),
+                               .history = view(integrated.history),
+                               .signal = view(integrated.signal)});
   };
   declare_pass(plan, in, name, program, protocol::Rectification::off, constants, run)
       .read(guide.surface)
@@ -237,14 +237,14 @@ void estimate_visibility_variance(gpu::FramePlan& plan, const FrameInputs& in,
                                   const GBuffer& gbuffer, const Guide& guide,
                                   const Integrated& visibility) {
   estimate_variance(plan, in, gbuffer, guide, visibility, "visibility.variance",
-                    in.programs.compute(shaders::visibility_variance), host::Signal::visibility,
+                    in.programs.compute(shaders::visibility_variance), kernels::Signal::visibility,
                     in.settings.shadow_temporal);
 }
 
 void estimate_specular_variance(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                                 const Guide& guide, const Integrated& specular) {
   estimate_variance(plan, in, gbuffer, guide, specular, "specular.variance",
-                    in.programs.compute(shaders::specular_variance), host::Signal::specular,
+                    in.programs.compute(shaders::specular_variance), kernels::Signal::specular,
                     in.settings.specular_temporal);
 }
 

@@ -11,8 +11,8 @@ struct GBuffer {
   gpu::ImageRef normals;     // octahedral: shading xy, geometric zw; world space
   gpu::ImageRef base_color;  // square root of linear rgb; a: occlusion
   gpu::ImageRef surface;     // perceptual roughness of the smoother lobe, metallic, unlit
-  gpu::ImageRef layers;  // what extensions add (shaders/lib/scene/layers.glsl); a placeholder of
-                         // one pixel in scenes without
+  gpu::ImageRef layers;    // what extensions add (shaders/lib/scene/layers.glsl); a placeholder of
+                           // one pixel in scenes without
   gpu::ImageRef motion;    // previous uv - uv, previous view Z - view Z; w: view Z, metres, 0: none
   gpu::ImageRef emissive;  // linear radiance
   gpu::ImageRef depth_slope;  // change of view Z per pixel in x and y

@@ -15,8 +15,8 @@ constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 
 void camera_rays(gpu::FramePlan& plan, const FrameInputs& in, const tracing::RayStream& rays) {
   const auto run_host = [&plan, &frame = in.constants, rays] {
-    host::camera_rays(frame, mapped<shared::RayCount>(plan, rays.count),
-                      mapped<shared::Ray>(plan, rays.rays));
+    kernels::camera_rays(frame, mapped<shared::RayCount>(plan, rays.count),
+                         mapped<shared::Ray>(plan, rays.rays));
   };
   const auto bind = [&](gpu::PassBuilder pass) { return pass.write(rays.count).write(rays.rays); };
   if (by_host(plan, in)) {
@@ -41,16 +41,16 @@ struct Round {
 void shade_on_host(const gpu::FramePlan& plan, const FrameInputs& in, const Round& round) {
   const auto view = [&plan](gpu::ImageRef image) { return plan.get(image).host(); };
   const GBuffer& gbuffer = round.gbuffer;
-  host::shade_gbuffer({in.constants,
-                       host::view_scene(in.scene, in.tables, in.moving),
-                       (in.scene.features & shared::scene_deforms) != 0,
-                       round.last,
-                       ray_source(plan, round.rays),
-                       mapped<const shared::Hit>(plan, round.hits),
-                       ray_sink(plan, in, round.passed, Blending::stops),
-                       {view(gbuffer.normals), view(gbuffer.base_color), view(gbuffer.surface),
-                        view(gbuffer.motion), view(gbuffer.emissive), view(gbuffer.depth_slope),
-                        view(gbuffer.instance)}});
+  kernels::shade_gbuffer({in.constants,
+                          kernels::view_scene(in.scene, in.tables, in.moving),
+                          (in.scene.features & shared::scene_deforms) != 0,
+                          round.last,
+                          ray_source(plan, round.rays),
+                          mapped<const shared::Hit>(plan, round.hits),
+                          ray_sink(plan, in, round.passed, Blending::stops),
+                          {view(gbuffer.normals), view(gbuffer.base_color), view(gbuffer.surface),
+                           view(gbuffer.motion), view(gbuffer.emissive), view(gbuffer.depth_slope),
+                           view(gbuffer.instance)}});
 }
 
 void shade(gpu::FramePlan& plan, const FrameInputs& in, const Round& round) {

@@ -38,12 +38,12 @@ gpu::History accumulate(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageR
           .dispatch(plan.extent());
     }
     return plan.host("accumulate", [&plan, weight, sample, history] {
-      host::accumulate({.width = static_cast<int>(plan.extent().width),
-                        .height = static_cast<int>(plan.extent().height),
-                        .weight = weight(),
-                        .sample = plan.get(sample).host(),
-                        .previous = plan.get(history.previous).host(),
-                        .mean = plan.get(history.current).host()});
+      kernels::accumulate({.width = static_cast<int>(plan.extent().width),
+                           .height = static_cast<int>(plan.extent().height),
+                           .weight = weight(),
+                           .sample = plan.get(sample).host(),
+                           .previous = plan.get(history.previous).host(),
+                           .mean = plan.get(history.current).host()});
     });
   };
   declare()

@@ -19,14 +19,14 @@ gpu::ImageRef present(gpu::FramePlan& plan, const FrameInputs& in, const Exposur
     }
     return plan.host("present", [&plan, in, radiance, mean, picture, state = exposure.state] {
       const auto* now = reinterpret_cast<const shared::ExposureState*>(plan.get(state).mapped());
-      host::present({.frame = in.constants,
-                     .exposure = now->factor,
-                     .mean_share = mean_share(in),
-                     .width = static_cast<int>(plan.extent().width),
-                     .height = static_cast<int>(plan.extent().height),
-                     .radiance = plan.get(radiance).host(),
-                     .accumulated = plan.get(mean).host(),
-                     .picture = plan.get(picture).host()});
+      kernels::present({.frame = in.constants,
+                        .exposure = now->factor,
+                        .mean_share = mean_share(in),
+                        .width = static_cast<int>(plan.extent().width),
+                        .height = static_cast<int>(plan.extent().height),
+                        .radiance = plan.get(radiance).host(),
+                        .accumulated = plan.get(mean).host(),
+                        .picture = plan.get(picture).host()});
     });
   };
   declare()

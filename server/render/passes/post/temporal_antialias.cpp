@@ -29,17 +29,17 @@ gpu::PassBuilder declare_pass(gpu::FramePlan& plan, const FrameInputs& in, gpu::
   return plan.host("temporal_antialias", [=, &plan, &settings, &frame = in.constants] {
     const auto view = [&plan](gpu::ImageRef image) { return plan.get(image).host(); };
     const auto* state = reinterpret_cast<const shared::ExposureState*>(plan.get(exposure).mapped());
-    host::temporal_antialias({.frame = frame,
-                              .blend = settings.blend,
-                              .clip = settings.clip,
-                              .anti_flicker = settings.anti_flicker,
-                              .exposure = state->factor,
-                              .width = static_cast<int>(plan.extent().width),
-                              .height = static_cast<int>(plan.extent().height),
-                              .radiance = view(radiance),
-                              .motion = view(motion),
-                              .history = view(history.previous),
-                              .resolved = view(history.current)});
+    kernels::temporal_antialias({.frame = frame,
+                                 .blend = settings.blend,
+                                 .clip = settings.clip,
+                                 .anti_flicker = settings.anti_flicker,
+                                 .exposure = state->factor,
+                                 .width = static_cast<int>(plan.extent().width),
+                                 .height = static_cast<int>(plan.extent().height),
+                                 .radiance = view(radiance),
+                                 .motion = view(motion),
+                                 .history = view(history.previous),
+                                 .resolved = view(history.current)});
   });
 }
 

@@ -36,14 +36,14 @@ template <typename Element>
 Element* mapped(const gpu::FramePlan& plan, gpu::BufferRef buffer) {
   return reinterpret_cast<Element*>(plan.get(buffer).mapped());
 }
-inline host::RaySource ray_source(const gpu::FramePlan& plan, const tracing::RayStream& rays) {
+inline kernels::RaySource ray_source(const gpu::FramePlan& plan, const tracing::RayStream& rays) {
   return {mapped<const shared::RayCount>(plan, rays.count),
           mapped<const shared::Ray>(plan, rays.rays)};
 }
 /// For one frame.
-inline host::RaySink ray_sink(const gpu::FramePlan& plan, const FrameInputs& in,
-                              const tracing::RayStream& rays,
-                              Blending blending = Blending::shares) {
+inline kernels::RaySink ray_sink(const gpu::FramePlan& plan, const FrameInputs& in,
+                                 const tracing::RayStream& rays,
+                                 Blending blending = Blending::shares) {
   return {mapped<shared::RayCount>(plan, rays.count), mapped<shared::Ray>(plan, rays.rays),
           blending == Blending::shares ? frame_blending(in) : 0u};
 }

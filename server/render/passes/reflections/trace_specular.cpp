@@ -30,7 +30,7 @@ Target make_target(gpu::FramePlan& plan, bool half) {
           plan.image("specular.half.directions", four_floats, 0, extent), extent, 2};
 }
 
-host::SplitSum split_sum(const FrameInputs& in) {
+kernels::SplitSum split_sum(const FrameInputs& in) {
   const gpu::Image& table = in.split_sum_table;
   return {table.host(), static_cast<int>(table.desc().extent.width)};
 }
@@ -53,10 +53,10 @@ tracing::RayStream generate_rays(gpu::FramePlan& plan, const FrameInputs& in,
     const auto view = [&plan](gpu::ImageRef image) { return plan.get(image).host(); };
     std::optional<gpu::HostView> directions;
     if (target.directions) directions = view(*target.directions);
-    host::make_specular_rays({in.constants, split_sum(in), in.settings.specular.max_roughness,
-                              view(gbuffer.normals), view(gbuffer.base_color),
-                              view(gbuffer.surface), view(gbuffer.motion), ray_sink(plan, in, rays),
-                              view(target.radiance), directions});
+    kernels::make_specular_rays({in.constants, split_sum(in), in.settings.specular.max_roughness,
+                                 view(gbuffer.normals), view(gbuffer.base_color),
+                                 view(gbuffer.surface), view(gbuffer.motion),
+                                 ray_sink(plan, in, rays), view(target.radiance), directions});
   };
   if (shades_on_host(plan, in)) {
     bind(plan.host("specular.rays", run_host));
@@ -83,12 +83,12 @@ void shade_on_host(const gpu::FramePlan& plan, const FrameInputs& in, const GBuf
   const auto view = [&plan](gpu::ImageRef image) { return plan.get(image).host(); };
   const auto lights = frame_lights(in.tables.lights, in.constants);
   const bool separate_sun = in.settings.environment.separate_sun;
-  host::shade_hits({in.constants, host::view_scene(in.scene, in.tables, in.moving),
-                    *in.moving.environment().view(separate_sun).maps.host, lights, split_sum(in),
-                    in.settings.specular.hit_shading == protocol::HitShading::traced, target.scale,
-                    view(gbuffer.surface), view(gbuffer.motion), ray_source(plan, hits.rays),
-                    mapped<const shared::Hit>(plan, hits.hits), ray_sink(plan, in, hits.shadows),
-                    view(target.radiance)});
+  kernels::shade_hits({in.constants, kernels::view_scene(in.scene, in.tables, in.moving),
+                       *in.moving.environment().view(separate_sun).maps.host, lights, split_sum(in),
+                       in.settings.specular.hit_shading == protocol::HitShading::traced,
+                       target.scale, view(gbuffer.surface), view(gbuffer.motion),
+                       ray_source(plan, hits.rays), mapped<const shared::Hit>(plan, hits.hits),
+                       ray_sink(plan, in, hits.shadows), view(target.radiance)});
 }
 
 /// Shades what the rays met; makes the shadow rays of its lamps.
@@ -135,8 +135,8 @@ void resolve_lamps(gpu::FramePlan& plan, const FrameInputs& in, const std::strin
   };
   if (by_host(plan, in)) {
     bind(plan.host(name + ".resolve", [&plan, shadows, occluded, target] {
-      host::resolve_lamps(ray_source(plan, shadows), mapped<const std::uint32_t>(plan, occluded),
-                          target.scale, plan.get(target.radiance).host());
+      kernels::resolve_lamps(ray_source(plan, shadows), mapped<const std::uint32_t>(plan, occluded),
+                             target.scale, plan.get(target.radiance).host());
     }));
     return;
   }

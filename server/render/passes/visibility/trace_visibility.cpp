@@ -16,7 +16,7 @@ struct Generation {
   const gpu::ComputeProgram& shader;
   std::vector<gpu::ImageRef> images;
   std::uint32_t flag;
-  std::function<void(const host::VisibilityRaysJob&)> kernel;
+  std::function<void(const kernels::VisibilityRaysJob&)> kernel;
 };
 
 gpu::PassBuilder generation_pass(gpu::FramePlan& plan, const FrameInputs& in,
@@ -50,7 +50,7 @@ void resolve(gpu::FramePlan& plan, const FrameInputs& in, const std::string& nam
     }
     return plan.host(name, [&plan, rays, occluded, visibility] {
       const auto words = [&plan](gpu::BufferRef buffer) { return plan.get(buffer).mapped(); };
-      host::resolve_visibility(
+      kernels::resolve_visibility(
           {.count = *reinterpret_cast<const shared::RayCount*>(words(rays.count)),
            .rays = reinterpret_cast<const shared::Ray*>(words(rays.rays)),
            .occluded = reinterpret_cast<const std::uint32_t*>(words(occluded)),
@@ -95,11 +95,11 @@ gpu::ImageRef trace_shadows(gpu::FramePlan& plan, const FrameInputs& in, const G
                         .flag = shared::frame_shadows,
                         .kernel = {}};
   if ((in.scene.features & (shared::scene_area_lights | shared::scene_layers)) == 0) {
-    generation.kernel = [&plan, in, gbuffer](const host::VisibilityRaysJob& common) {
+    generation.kernel = [&plan, in, gbuffer](const kernels::VisibilityRaysJob& common) {
       const auto lights = frame_lights(in.tables.lights, in.constants);
-      host::shadow_rays({common, lights, plan.get(gbuffer.base_color).host(),
-                         plan.get(gbuffer.surface).host(), in.split_sum_table.host(),
-                         static_cast<int>(in.split_sum_table.desc().extent.width)});
+      kernels::shadow_rays({common, lights, plan.get(gbuffer.base_color).host(),
+                            plan.get(gbuffer.surface).host(), in.split_sum_table.host(),
+                            static_cast<int>(in.split_sum_table.desc().extent.width)});
     };
   }
   return trace_visibility(plan, in, gbuffer, generation);
@@ -111,7 +111,7 @@ gpu::ImageRef trace_ambient(gpu::FramePlan& plan, const FrameInputs& in, const G
                            .shader = in.programs.compute(shaders::ambient_rays),
                            .images = {gbuffer.normals, gbuffer.motion},
                            .flag = shared::frame_ambient_occlusion,
-                           .kernel = host::ambient_rays});
+                           .kernel = kernels::ambient_rays});
 }
 
 }  // namespace heliograph::render

@@ -125,8 +125,8 @@ EnvironmentMaps prefilter_environment(const gpu::Device& device, const Programs&
   filter.compile();
   filter.execute();
   if (device.is_cpu()) {
-    maps.host = std::make_shared<const host::Environment>(
-        host::copy_environment(environment, maps.prefiltered));
+    maps.host = std::make_shared<const kernels::Environment>(
+        kernels::copy_environment(environment, maps.prefiltered));
   }
   return maps;
 }

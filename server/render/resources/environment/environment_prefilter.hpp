@@ -17,7 +17,7 @@ struct EnvironmentMaps {
   gpu::Image prefiltered;  // cube, GGX lobes; roughness rises linearly with the level
   gpu::Buffer cells;       // EnvironmentCell, read as texels of four words
   std::array<glm::vec4, 9> irradiance{};
-  std::shared_ptr<const host::Environment> host = nullptr;  // on devices that are processors
+  std::shared_ptr<const kernels::Environment> host = nullptr;  // on devices that are processors
 };
 
 /// The map as it is, for sampling.

@@ -1,0 +1,215 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <random>
+
+#include "render/kernels/atrous.hpp"
+#include "shaders/embedded.hpp"
+#include "tests/support/frame_rig.hpp"
+
+namespace heliograph::test {
+namespace {
+
+using render::kernels::Signal;
+using Texels = std::vector<glm::vec4>;
+
+/// A guide with planes, edges, holes and roughnesses of all sorts, and a noisy signal.
+struct Field {
+  Texels guide;
+  std::vector<glm::vec2> slope;
+  Texels signal;
+};
+
+Field make_field(VkExtent2D extent, Signal kind) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+  Field field;
+  for (std::uint32_t y = 0; y < extent.height; ++y) {
+    for (std::uint32_t x = 0; x < extent.width; ++x) {
+      const bool left = x < extent.width / 2;
+      const glm::vec3 normal =
+          glm::normalize(glm::vec3(left ? 0.2f : -0.6f, 1.0f, 0.3f) + 0.02f * unit(random));
+      const float roughness = y < extent.height / 3 ? 0.2f + 0.04f * (unit(random) - 0.5f)
+                              : left                ? 0.03f
+                                                    : 0.6f;
+      const bool hole = x % 19 == 7 && y % 5 == 2;
+      const float view_z =
+          hole ? 0.0f : 3.0f + 0.02f * static_cast<float>(x) + (left ? 0.0f : 1.0f);
+      field.guide.emplace_back(hole ? glm::vec3(0.0f) : normal * (1.0f + roughness), view_z);
+      field.slope.emplace_back(hole ? 0.0f : 0.02f, 0.001f);
+      const float a = unit(random), b = unit(random), noise = 0.1f * unit(random);
+      field.signal.push_back(kind == Signal::visibility
+                                 ? glm::vec4(a < 0.3f, b < 0.7f, noise, 0.5f * noise)
+                                 : glm::vec4(3.0f * a, b, a * b, noise));
+    }
+  }
+  return field;
+}
+
+class AtrousRig {
+ public:
+  AtrousRig(VkExtent2D extent, Signal kind, bool orthographic = false)
+      : kind_(kind), rig_(SceneBuilder().build(), camera(orthographic), {.extent = extent}) {
+    const Field field = make_field(extent, kind);
+    constexpr VkFormat four = VK_FORMAT_R32G32B32A32_SFLOAT;
+    guide_ = rig_.input("guide", four, field.guide);
+    slope_ = rig_.input("slope", VK_FORMAT_R32G32_SFLOAT, field.slope);
+    signal_ = rig_.input("signal", four, field.signal);
+    by_shader_ = rig_.plan().image("shader", four);
+    by_host_ = rig_.plan().image("host", four);
+    const auto& programs = rig_.inputs().programs;
+    rig_.plan()
+        .pass("atrous", programs.compute(kind == Signal::visibility ? shaders::visibility_atrous
+                                                                    : shaders::specular_atrous))
+        .read(guide_)
+        .read(slope_)
+        .read(signal_)
+        .write(by_shader_)
+        .constants([this] { return constants_; })
+        .dispatch(extent);
+    rig_.plan()
+        .host("atrous.host", [this] { run_host(); })
+        .read(guide_)
+        .read(slope_)
+        .read(signal_)
+        .write(by_host_);
+    rig_.set_view(camera(orthographic), 5);
+  }
+
+  struct Compared {
+    double mean;
+    double worst;
+    double changed;  // mean difference that the filter makes
+  };
+  Compared compare(const shared::AtrousConstants& constants) {
+    constants_ = constants;
+    rig_.run();
+    const render::FloatImage shader = rig_.read(by_shader_), host = rig_.read(by_host_);
+    const render::FloatImage signal = rig_.read(signal_);
+    Compared result{};
+    for (std::size_t i = 0; i < shader.rgba.size(); ++i) {
+      const double off = std::abs(static_cast<double>(shader.rgba[i]) - host.rgba[i]);
+      result.mean += std::isfinite(off) ? off : 1e9;
+      result.worst = std::max(result.worst, off);
+      result.changed += std::abs(static_cast<double>(shader.rgba[i]) - signal.rgba[i]);
+    }
+    result.mean /= static_cast<double>(shader.rgba.size());
+    result.changed /= static_cast<double>(shader.rgba.size());
+    return result;
+  }
+
+  /// Milliseconds of the shader and of the host kernel, the best of several frames, by the clock.
+  std::pair<double, double> time(const shared::AtrousConstants& constants) {
+    using Clock = std::chrono::steady_clock;
+    constants_ = constants;
+    rig_.run();
+    std::pair best(1e9, 1e9);
+    for (int i = 0; i < 8; ++i) {
+      const auto start = Clock::now();
+      rig_.run();
+      const double both = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+      const double host = rig_.plan().timings()[1].milliseconds;
+      best.first = std::min(best.first, both - host);
+      best.second = std::min(best.second, host);
+    }
+    return best;
+  }
+
+ private:
+  static scene::Camera camera(bool orthographic) {
+    scene::Camera made = look({0, 0, 3}, {0, 0, 0});
+    if (orthographic) made.orthographic_height = 4.0f;
+    return made;
+  }
+  void run_host() {
+    const auto view = [&](gpu::ImageRef image) { return rig_.plan().get(image).host(); };
+    render::kernels::atrous(kind_, constants_, rig_.constants(),
+                            {view(guide_), view(slope_), view(signal_), view(by_host_)});
+  }
+
+  Signal kind_;
+  shared::AtrousConstants constants_{};
+  FrameRig rig_;
+  gpu::ImageRef guide_, slope_, signal_, by_shader_, by_host_;
+};
+
+shared::AtrousConstants constants(int level, int columns, int rows, std::uint32_t flags,
+                                  float start_threshold) {
+  shared::AtrousConstants made{};
+  made.level = level;
+  made.columns = columns;
+  made.rows = rows;
+  made.luminance_sigma = 4.0f;
+  made.normal_power = 128.0f;
+  made.depth_sigma = 1.0f;
+  made.start_threshold = start_threshold;
+  made.flags = flags;
+  return made;
+}
+
+class AtrousHost : public testing::TestWithParam<Signal> {
+ protected:
+  void SetUp() override {
+    if (!device().is_cpu()) GTEST_SKIP() << "host kernels are for devices that are processors";
+  }
+};
+
+TEST_P(AtrousHost, DoesWhatTheShaderDoes) {
+  for (const bool orthographic : {false, true}) {
+    AtrousRig rig({77, 45}, GetParam(), orthographic);
+    for (const auto& [columns, rows] : {std::pair(2, 2), {2, 0}, {0, 2}}) {
+      for (const int level : {0, 1, 3}) {
+        for (const float threshold : {-1.0f, 0.2f, 2.0f}) {
+          for (const std::uint32_t flags : {0u, 1u, 3u, 5u, 15u}) {
+            const auto result = rig.compare(constants(level, columns, rows, flags, threshold));
+            const std::string which = "kernel " + std::to_string(columns) + "," +
+                                      std::to_string(rows) + " level " + std::to_string(level) +
+                                      " flags " + std::to_string(flags) + " threshold " +
+                                      std::to_string(threshold);
+            EXPECT_LT(result.mean, 1e-4) << which;
+            EXPECT_LT(result.worst, 5e-3) << which;
+            EXPECT_GT(result.changed, 0.01) << "the filter does something: " << which;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_P(AtrousHost, WorksAtEverySize) {
+  for (const VkExtent2D extent : {VkExtent2D{1, 1}, {3, 5}, {16, 2}, {17, 31}, {130, 1}}) {
+    AtrousRig rig(extent, GetParam());
+    for (const int level : {0, 4}) {
+      const auto result = rig.compare(constants(level, 2, 2, 5u, 2.0f));
+      EXPECT_LT(result.mean, 1e-4) << extent.width << " x " << extent.height << " level " << level;
+    }
+  }
+}
+
+TEST_P(AtrousHost, IsFasterThanTheShader) {
+  AtrousRig rig({640, 360}, GetParam());
+  const std::string kind = GetParam() == Signal::visibility ? "visibility" : "specular";
+  double shader = 0.0, host = 0.0;
+  for (const int level : {0, 3}) {
+    for (const auto& [columns, rows] : {std::pair(2, 0), {0, 2}, {2, 2}}) {
+      const auto [a, b] = rig.time(constants(level, columns, rows, 5u, 0.2f));
+      shader += a;
+      host += b;
+      RecordProperty(
+          kind + "_" + std::to_string(level) + "_" + std::to_string(columns) + std::to_string(rows),
+          std::to_string(a) + " " + std::to_string(b) + " ms");
+    }
+  }
+  std::printf("%s: shader %.2f ms, host %.2f ms, ratio %.1f\n", kind.c_str(), shader, host,
+              shader / host);
+  EXPECT_GT(shader, 1.5 * host);
+}
+
+INSTANTIATE_TEST_SUITE_P(Signals, AtrousHost, testing::Values(Signal::visibility, Signal::specular),
+                         [](const auto& test) {
+                           return test.param == Signal::visibility ? "visibility" : "specular";
+                         });
+
+}  // namespace
+}  // namespace heliograph::test
