@@ -19,7 +19,7 @@
 #include <utility>
 
 #include "net/server.hpp"
-#include "tests/bench/picture_show.hpp"
+#include "tests/bench/frame_playback.hpp"
 #include "tests/bench/stream_client.hpp"
 
 namespace heliograph::bench {

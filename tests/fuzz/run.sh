@@ -1,5 +1,5 @@
 #!/bin/sh
-# Fuzzes what reads untrusted files: run.sh gltf|pictures SECONDS [FOLDER]
+# Fuzzes what reads untrusted files: run.sh gltf|images SECONDS [FOLDER]
 # Builds with clang in FOLDER (build-fuzz beside the project unless said), begins with seeds of the
 # project's own and keeps what it learns in FOLDER/corpus-*. A find is left in FOLDER as crash-*,
 # timeout-* or oom-*; the fuzzer run with that file as its argument shows it again.

@@ -1,4 +1,4 @@
-// Writes the files that the fuzzers begin with: heliograph-fuzz-seeds gltf|pictures FOLDER
+// Writes the files that the fuzzers begin with: heliograph-fuzz-seeds gltf|images FOLDER
 #include <ImfRgbaFile.h>
 #include <ImfTiledRgbaFile.h>
 #include <png.h>
@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "encoders.hpp"
-#include "rich_document.hpp"
+#include "tests/unit/scene/malformed/rich_document.hpp"
+#include "tests/unit/scene/support/encoders.hpp"
 
 namespace heliograph::scene::test {
 namespace {
@@ -127,7 +127,7 @@ Bytes other_jpeg(int format, int sampling, const Bytes& pixels) {
   return file;
 }
 
-void write_pictures(const std::filesystem::path& folder) {
+void write_images(const std::filesystem::path& folder) {
   Bytes rgba;
   for (int i = 0; i < 16 * 16 * 4; ++i) rgba.push_back(std::uint8_t(i * i >> 5));
   const Bytes rgb(rgba.begin(), rgba.begin() + 16 * 16 * 3);
@@ -178,10 +178,10 @@ int main(int count, char** arguments) {
   const std::string kind = count == 3 ? arguments[1] : "";
   if (kind == "gltf") {
     write_documents(arguments[2]);
-  } else if (kind == "pictures") {
-    write_pictures(arguments[2]);
+  } else if (kind == "images") {
+    write_images(arguments[2]);
   } else {
-    std::fputs("usage: heliograph-fuzz-seeds gltf|pictures FOLDER\n", stderr);
+    std::fputs("usage: heliograph-fuzz-seeds gltf|images FOLDER\n", stderr);
     return 2;
   }
   return 0;

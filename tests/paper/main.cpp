@@ -12,7 +12,7 @@
 #include "scenes/generator/scenes/paper_scenes.hpp"
 #include "tests/paper/report.hpp"
 #include "tests/paper/stage.hpp"
-#include "tests/support/picture.hpp"
+#include "tests/support/image_comparison.hpp"
 
 namespace heliograph::paper {
 namespace {

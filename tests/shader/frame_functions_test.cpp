@@ -6,7 +6,7 @@
 #include "render/resources/environment/irradiance.hpp"
 #include "tests/shader/embedded.hpp"
 #include "tests/shader/random_inputs.hpp"
-#include "tests/support/brdf_twin.hpp"
+#include "tests/support/brdf_reference.hpp"
 #include "tests/support/compute_harness.hpp"
 
 namespace heliograph::test {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "render/api/frame_values.hpp"
 #include "render/frame/frame.hpp"
 #include "render/frame/frame_constants.hpp"
 #include "render/resources/moving_scene.hpp"

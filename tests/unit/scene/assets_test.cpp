@@ -4,12 +4,12 @@
 #include <cstdlib>
 #include <optional>
 
-#include "gltf_builder.hpp"
 #include "scene/environment.hpp"
 #include "scene/gltf/document/accessors.hpp"
 #include "scene/gltf/geometry/meshes.hpp"
 #include "scene/gltf/geometry/tangents.hpp"
 #include "scene/gltf/materials/materials.hpp"
+#include "tests/unit/scene/support/gltf_builder.hpp"
 
 namespace heliograph::scene::test {
 namespace {

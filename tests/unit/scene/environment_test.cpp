@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gltf_builder.hpp"
+#include "tests/unit/scene/support/gltf_builder.hpp"
 
 namespace heliograph::scene::test {
 namespace {

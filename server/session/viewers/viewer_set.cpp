@@ -1,0 +1,351 @@
+#include "session/viewers/viewer_set.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "protocol/json/jsonrpc.hpp"
+
+namespace heliograph::session {
+
+using protocol::Result;
+using std::chrono::duration_cast;
+using std::chrono::microseconds;
+
+namespace {
+
+stream::OutgoingFrame address(const stream::ViewerPacer::Taken& taken, const std::string& viewer,
+                              bool cut) {
+  protocol::FrameHeader header = taken.frame->header;
+  header.frame_seq = taken.frame_seq;
+  if (taken.first_after_drop) header.flags |= protocol::frame_flag::first_after_drop;
+  if (cut) header.flags |= protocol::frame_flag::discontinuity;
+  for (const stream::InputEcho& input : taken.frame->inputs) {
+    if (input.viewer == viewer) header.input_seq_echo = input.seq;
+  }
+  const auto queued = duration_cast<microseconds>(Clock::now() - taken.frame->encoded_at);
+  header.queue_us = static_cast<std::uint32_t>(queued.count());
+  return {.header = protocol::encode_frame_header(header), .frame = taken.frame};
+}
+
+/// What the figures of a picture say about one viewer's stream.
+template <class Viewer>
+void complete(protocol::StatsFrame& stats, const Viewer& viewer) {
+  stats.bytes = viewer.last_bytes;
+  stats.encode_ms = viewer.last_encode_us / 1000.0;
+  stats.codec = viewer.moving.codec;
+  stats.quality = static_cast<std::uint32_t>(viewer.moving.quality);
+  stats.scale = viewer.moving.scale / 100.0;
+  stats.round_trip_ms = static_cast<double>(viewer.pacer.round_trip().count()) / 1000.0;
+  stats.goodput = viewer.pacer.goodput();
+}
+
+}  // namespace
+
+ViewerSet::ViewerSet(std::size_t max_viewers, WakeEvent& on_capacity)
+    : max_viewers_(max_viewers), on_capacity_(on_capacity) {}
+
+void ViewerSet::start(const std::string& viewer, protocol::StreamCodec codec) {
+  const std::lock_guard lock(mutex_);
+  const Result<Viewer*> found = find(viewer);
+  if (!found) return;
+  (*found)->stream.decodes_video = codec != protocol::StreamCodec::jpeg;
+  (*found)->stream.codec = codec;
+  if (std::exchange((*found)->started, true)) return;
+  offer_latest(**found);
+  on_capacity_.notify();
+}
+
+Result<ViewerStream> ViewerSet::configure(const std::string& viewer,
+                                          const protocol::StreamConfigure& change) {
+  const std::lock_guard lock(mutex_);
+  const Result<Viewer*> found = find(viewer);
+  if (!found) return found.error();
+  Viewer& it = **found;
+  if (change.codec && *change.codec != protocol::StreamCodec::jpeg && !it.stream.decodes_video) {
+    return protocol::error::invalid("codec", "was not agreed on in hello", "jpeg");
+  }
+  if (change.codec) it.stream.codec = *change.codec;
+  if (change.still && it.stream.still != *change.still) {
+    it.stream.still = *change.still;
+    it.offered = 0;
+    if (it.pacer.frame_waiting()) it.pacer.withdraw();
+  }
+  if (change.quality) it.stream.quality = static_cast<int>(*change.quality);
+  if (change.max_fps) {
+    it.stream.max_fps = *change.max_fps;
+    it.pacer.set_max_rate(it.stream.max_fps);
+  }
+  if (change.paused) {
+    const bool resumes = it.stream.paused && !*change.paused;
+    it.stream.paused = *change.paused;
+    it.pacer.set_paused(it.stream.paused, Clock::now());
+    if (resumes) it.offered = 0;
+    if (resumes && it.started) offer_latest(it);
+  }
+  on_capacity_.notify();
+  return it.stream;
+}
+
+Result<void> ViewerSet::acknowledge(const std::string& viewer, const protocol::StreamAck& ack) {
+  const std::lock_guard lock(mutex_);
+  const Result<Viewer*> found = find(viewer);
+  if (!found) return found.error();
+  Viewer& it = **found;
+  // Late and repeated acknowledgements are normal and say nothing new.
+  it.pacer.acknowledge(ack.frame_seq, microseconds(ack.present_us), Clock::now());
+  if (it.pacer.frame_waiting()) announce(it);
+  on_capacity_.notify();
+  return {};
+}
+
+Result<void> ViewerSet::subscribe(const std::string& viewer, std::chrono::milliseconds interval) {
+  const std::lock_guard lock(mutex_);
+  const Result<Viewer*> found = find(viewer);
+  if (!found) return found.error();
+  (*found)->stats_interval = interval;
+  (*found)->next_stats = {};
+  return {};
+}
+
+std::optional<Clock::time_point> ViewerSet::unacknowledged_since(const std::string& viewer) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = viewers_.find(viewer);
+  return found == viewers_.end() ? std::nullopt
+                                 : found->second.pacer.unacknowledged_since(Clock::now());
+}
+
+std::optional<stream::OutgoingFrame> ViewerSet::take(const std::string& viewer) {
+  const std::lock_guard lock(mutex_);
+  const Result<Viewer*> found = find(viewer);
+  if (!found) return std::nullopt;
+  const auto taken = (*found)->pacer.take(Clock::now());
+  if (!taken) {
+    // A frame that waits only for its turn needs the render thread's clock.
+    if ((*found)->pacer.frame_waiting()) on_capacity_.notify();
+    return std::nullopt;
+  }
+  on_capacity_.notify();
+  // Frames that it did not get may have held the jump.
+  const bool jumped = std::exchange((*found)->cuts, taken->frame->cuts) != taken->frame->cuts;
+  const bool cut = std::exchange((*found)->discontinuous, false) || jumped;
+  return address(*taken, viewer, cut);
+}
+
+bool ViewerSet::empty() const {
+  const std::lock_guard lock(mutex_);
+  return viewers_.empty();
+}
+
+bool ViewerSet::has(const std::string& viewer) const {
+  const std::lock_guard lock(mutex_);
+  return viewers_.contains(viewer);
+}
+
+bool ViewerSet::can_accept_frame() const {
+  const std::lock_guard lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  return std::any_of(viewers_.begin(), viewers_.end(), [&](const auto& entry) {
+    return entry.second.started && entry.second.pacer.has_room(now);
+  });
+}
+
+bool ViewerSet::has_active_viewer() const {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(viewers_.begin(), viewers_.end(), [](const auto& entry) {
+    return entry.second.started && !entry.second.stream.paused;
+  });
+}
+
+std::optional<Clock::time_point> ViewerSet::next_turn() const {
+  const std::lock_guard lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  std::optional<Clock::time_point> next;
+  for (const auto& [id, viewer] : viewers_) {
+    const Clock::time_point turn = viewer.pacer.next_turn();
+    if (!viewer.started || viewer.stream.paused || turn <= now) continue;
+    next = next ? std::min(*next, turn) : turn;
+  }
+  return next;
+}
+
+void ViewerSet::announce_due_frames() {
+  const std::lock_guard lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  for (const auto& [id, viewer] : viewers_) {
+    if (viewer.pacer.sendable(now)) announce(viewer);
+  }
+}
+
+void ViewerSet::discard_latest() {
+  const std::lock_guard lock(mutex_);
+  latest_.clear();
+}
+
+bool ViewerSet::needs_frame(std::uint64_t number) const {
+  const std::lock_guard lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  return std::any_of(viewers_.begin(), viewers_.end(),
+                     [&](const auto& entry) { return needs_frame(entry.second, number, now); });
+}
+
+EncodingPlan ViewerSet::plan(std::uint64_t number, Purpose purpose, std::uint64_t pixels) {
+  const std::lock_guard lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  pixels_ = pixels;
+  EncodingPlan plan;
+  std::vector<Viewer*> watching;
+  std::vector<stream::FormWish> wishes;
+  for (auto& [id, viewer] : viewers_) {
+    if (!viewer.started || viewer.stream.paused) continue;
+    const bool ready = needs_frame(viewer, number, now);
+    if (ready) viewer.planned = number;
+    if (purpose == Purpose::final) {
+      plan.still_quality = std::max(plan.still_quality, viewer.stream.quality);
+      const auto known = std::find(plan.stills.begin(), plan.stills.end(), viewer.stream.still);
+      if (ready && known == plan.stills.end()) plan.stills.push_back(viewer.stream.still);
+      continue;
+    }
+    watching.push_back(&viewer);
+    wishes.push_back({.form = wish(viewer, purpose),
+                      .ready = ready,
+                      .decoder = viewer.pacer.decoder(),
+                      .budget = viewer.pacer.link().budget()});
+  }
+  stream::FormPlanner::Plan chosen = planner_.plan(wishes, now);
+  for (std::size_t i = 0; i < watching.size(); ++i) {
+    watching[i]->form = chosen.assigned[i];
+    if (purpose == Purpose::interactive) watching[i]->moving = chosen.assigned[i];
+  }
+  plan.forms = std::move(chosen.requests);
+  return plan;
+}
+
+void ViewerSet::publish(std::uint64_t number, Purpose purpose,
+                        std::vector<stream::SharedFrame> frames) {
+  const std::lock_guard lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  for (auto& [id, viewer] : viewers_) {
+    if (!viewer.started || viewer.stream.paused || viewer.offered >= number) continue;
+    const bool planned = viewer.planned == number;
+    const stream::SharedFrame frame = suited(viewer, purpose, frames);
+    if (frame) {
+      offer(viewer, frame);
+    } else if (planned || !viewer.pacer.has_room(now)) {
+      viewer.pacer.skip();
+    }
+    if (frame || planned) viewer.offered = number;
+  }
+  for (const stream::SharedFrame& frame : frames) planner_.published(*frame, now);
+  if (number != latest_number_) latest_.clear();
+  latest_.insert(latest_.end(), frames.begin(), frames.end());
+  latest_number_ = number;
+  latest_purpose_ = purpose;
+}
+
+void ViewerSet::publish_stats(protocol::StatsFrame stats) {
+  const std::lock_guard lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  const bool finished = stats.state == protocol::StreamPhase::still;
+  for (auto& [id, viewer] : viewers_) {
+    const bool told = viewer.stats_interval.count() > 0 && viewer.last_bytes > 0;
+    if (!told || (now < viewer.next_stats && !finished)) continue;
+    viewer.next_stats = now + viewer.stats_interval;
+    complete(stats, viewer);
+    const auto link = viewer.link.lock();
+    if (link) link->send(protocol::make_notification("stats.frame", stats), "stats.frame");
+  }
+}
+
+void ViewerSet::send_all(std::string_view text, std::string_view key) {
+  send_others({}, text, key);
+}
+
+void ViewerSet::send_others(const std::string& except, std::string_view text,
+                            std::string_view key) {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [id, viewer] : viewers_) {
+    if (id == except) continue;
+    if (const auto link = viewer.link.lock()) link->send(std::string(text), key);
+  }
+}
+
+ViewerTotals ViewerSet::totals() const {
+  const std::lock_guard lock(mutex_);
+  ViewerTotals totals{.viewers = viewers_.size(), .sent = departed_};
+  std::int64_t measured = 0;
+  for (const auto& [id, viewer] : viewers_) {
+    totals.sent += viewer.pacer.totals();
+    totals.waiting += viewer.pacer.frame_waiting() ? 1 : 0;
+    totals.in_flight += viewer.pacer.on_the_way();
+    totals.goodput += viewer.pacer.goodput();
+    if (viewer.pacer.goodput() == 0.0) continue;
+    totals.mean_round_trip += viewer.pacer.round_trip();
+    ++measured;
+  }
+  if (measured > 0) totals.mean_round_trip /= measured;
+  return totals;
+}
+
+Result<ViewerSet::Viewer*> ViewerSet::find(const std::string& viewer) {
+  const auto found = viewers_.find(viewer);
+  if (found == viewers_.end()) {
+    return protocol::error::not_ready("only a viewer on a WebSocket can ask for this");
+  }
+  return &found->second;
+}
+
+void ViewerSet::offer_latest(Viewer& viewer) {
+  if (latest_.empty() || viewer.stream.paused) return;
+  viewer.form = wish(viewer, latest_purpose_);
+  const stream::SharedFrame frame = suited(viewer, latest_purpose_, latest_);
+  // Otherwise the newest picture is encoded once more, for this viewer.
+  if (!frame) return;
+  offer(viewer, frame);
+  viewer.offered = latest_number_;
+}
+
+void ViewerSet::offer(Viewer& viewer, const stream::SharedFrame& frame) {
+  viewer.last_bytes = frame->payload.size() + protocol::frame_header_bytes;
+  viewer.last_encode_us = frame->header.encode_us;
+  viewer.pacer.offer(frame);
+  announce(viewer);
+}
+
+bool ViewerSet::needs_frame(const Viewer& viewer, std::uint64_t number,
+                            Clock::time_point now) const {
+  return viewer.started && viewer.offered < number && viewer.pacer.has_room(now);
+}
+
+stream::Form ViewerSet::wish(Viewer& viewer, Purpose purpose) const {
+  const stream::Form wanted{.codec = viewer.stream.codec, .quality = viewer.stream.quality};
+  // Pictures at rest are few and each is better than the last: a video gains nothing.
+  if (purpose != Purpose::interactive) return viewer.pacer.link().resting(wanted);
+  return viewer.pacer.link().choose(wanted, pixels_);
+}
+
+stream::SharedFrame ViewerSet::suited(const Viewer& viewer, Purpose purpose,
+                                      const std::vector<stream::SharedFrame>& frames) {
+  const auto find = [&](auto fits) -> stream::SharedFrame {
+    const auto found = std::find_if(frames.begin(), frames.end(),
+                                    [&](const stream::SharedFrame& frame) { return fits(*frame); });
+    return found == frames.end() ? nullptr : *found;
+  };
+  if (purpose == Purpose::final) {
+    const bool lossless = viewer.stream.still == protocol::StillFormat::png;
+    return find([&](const stream::EncodedFrame& frame) {
+      return (frame.header.codec == protocol::FrameCodec::png) == lossless;
+    });
+  }
+  const auto own = find([&](const stream::EncodedFrame& frame) {
+    return frame.form == viewer.form && viewer.pacer.can_show(frame);
+  });
+  if (own || viewer.form.codec == protocol::StreamCodec::jpeg) return own;
+  const stream::Form stand_in = stream::FormPlanner::stand_in(viewer.form);
+  return find([&](const stream::EncodedFrame& frame) { return frame.form == stand_in; });
+}
+
+void ViewerSet::announce(const Viewer& viewer) {
+  if (const auto link = viewer.link.lock()) link->frame_ready();
+}
+
+}  // namespace heliograph::session

@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <utility>
+
+#include "protocol/json/jsonrpc.hpp"
+#include "session/viewers/viewer_set.hpp"
+
+// Who is in a session: coming, going, and who has control.
+
+namespace heliograph::session {
+
+using protocol::Result;
+
+Result<void> ViewerSet::join(const std::string& id, std::weak_ptr<ViewerLink> link,
+                             bool read_only) {
+  const std::lock_guard lock(mutex_);
+  if (const Result<void> capacity = check_capacity(); !capacity) return capacity;
+  Viewer& viewer = viewers_[id];
+  viewer.link = std::move(link);
+  viewer.read_only = read_only;
+  viewer.arrival = ++arrivals_;
+  viewer.pacer.set_max_rate(viewer.stream.max_fps);
+  return {};
+}
+
+Result<void> ViewerSet::check_capacity() const {
+  if (viewers_.size() < max_viewers_) return {};
+  return protocol::error::full("the session has no room for another viewer",
+                               std::to_string(max_viewers_) + " viewers");
+}
+
+Result<void> ViewerSet::move_to(const std::string& viewer, ViewerSet& there) {
+  Viewers::node_type leaving;
+  Control control_before;
+  {
+    const std::lock_guard lock(mutex_);
+    leaving = viewers_.extract(viewer);
+    control_before = control_;
+    control_.left(viewer);
+  }
+  const Result<void> taken = there.accept(leaving);
+  if (taken) return {};
+  const std::lock_guard lock(mutex_);
+  viewers_.insert(std::move(leaving));
+  control_ = control_before;
+  return taken;
+}
+
+/// Leaves `viewer` as it is when there is no room.
+Result<void> ViewerSet::accept(Viewers::node_type& viewer) {
+  const std::lock_guard lock(mutex_);
+  if (const Result<void> capacity = check_capacity(); !capacity) return capacity;
+  if (viewer.empty()) return {};
+  Viewer& it = viewers_.insert(std::move(viewer)).position->second;
+  it.pacer.withdraw();
+  it.discontinuous = true;
+  it.offered = 0;
+  it.planned = 0;
+  it.arrival = ++arrivals_;
+  if (it.started) offer_latest(it);
+  on_capacity_.notify();
+  return {};
+}
+
+std::vector<std::string> ViewerSet::disconnect_all(const std::string& why) {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> ids;
+  for (const auto& [id, viewer] : viewers_) {
+    ids.push_back(id);
+    departed_ += viewer.pacer.totals();
+    if (const auto link = viewer.link.lock()) link->disconnect(why);
+  }
+  viewers_.clear();
+  return ids;
+}
+
+void ViewerSet::leave(const std::string& viewer) {
+  const std::lock_guard lock(mutex_);
+  const auto found = viewers_.find(viewer);
+  if (found == viewers_.end()) return;
+  departed_ += found->second.pacer.totals();
+  viewers_.erase(found);
+  control_.left(viewer);
+}
+
+bool ViewerSet::has_other_participant(const std::string& viewer) const {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(viewers_.begin(), viewers_.end(), [&](const auto& entry) {
+    return entry.first != viewer && entry.second.started && !entry.second.read_only;
+  });
+}
+
+void ViewerSet::set_name(const std::string& viewer, std::string name) {
+  const std::lock_guard lock(mutex_);
+  if (const Result<Viewer*> found = find(viewer)) (*found)->name = std::move(name);
+}
+
+bool ViewerSet::may_change(const std::string& viewer) const {
+  const std::lock_guard lock(mutex_);
+  return may_change_locked(viewer);
+}
+
+bool ViewerSet::may_change_locked(const std::string& viewer) const {
+  const auto found = viewers_.find(viewer);
+  if (found != viewers_.end() && found->second.read_only) return false;
+  return control_.may_change(viewer);
+}
+
+Result<void> ViewerSet::change_control(const protocol::SessionControl& request,
+                                       const std::string& by) {
+  const std::lock_guard lock(mutex_);
+  return control_.apply(request, by, [&](const std::string& viewer) {
+    const auto found = viewers_.find(viewer);
+    return found != viewers_.end() && !found->second.read_only;
+  });
+}
+
+protocol::ControlMode ViewerSet::control_mode() const {
+  const std::lock_guard lock(mutex_);
+  return control_.mode();
+}
+
+bool ViewerSet::control_is_free() const {
+  const std::lock_guard lock(mutex_);
+  return control_.is_free();
+}
+
+std::vector<protocol::ViewerInfo> ViewerSet::participants(const std::string& you) const {
+  const std::lock_guard lock(mutex_);
+  return participants_locked(you);
+}
+
+std::vector<protocol::ViewerInfo> ViewerSet::participants_locked(const std::string& you) const {
+  std::map<std::uint64_t, protocol::ViewerInfo> by_arrival;
+  for (const auto& [id, viewer] : viewers_) {
+    by_arrival[viewer.arrival] = {
+        .viewer = id, .name = viewer.name, .control = may_change_locked(id), .you = id == you};
+  }
+  std::vector<protocol::ViewerInfo> people;
+  for (auto& [arrival, person] : by_arrival) people.push_back(std::move(person));
+  return people;
+}
+
+void ViewerSet::announce_participants(protocol::SessionInfo session) {
+  const std::lock_guard lock(mutex_);
+  session.control = control_.mode();
+  for (const auto& [id, viewer] : viewers_) {
+    // Who has not said hello yet may not expect messages.
+    const auto link = viewer.started ? viewer.link.lock() : nullptr;
+    if (!link) continue;
+    session.viewers = participants_locked(id);
+    link->send(protocol::make_notification("session.changed", session), "session.changed");
+  }
+}
+
+}  // namespace heliograph::session

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "session/session_host.hpp"
+#include "session/viewers/broadcast.hpp"
+#include "tests/bench/stream_client.hpp"
+
+namespace heliograph::bench {
+
+/// Pictures of a little film, each with its own grain: about as many bytes as a rendered interior.
+std::vector<render::Frame> draw_pictures(int count);
+
+/// A renderer that has drawn everything before: shows pictures at a steady rate in a session whose
+/// own renderer has nothing to draw, through the encoding and sending of every session.
+class PictureShow {
+ public:
+  /// `rate`: pictures a second.
+  PictureShow(session::SessionHost& host, std::vector<render::Frame> pictures, double rate);
+  ~PictureShow();
+  PictureShow(const PictureShow&) = delete;
+  PictureShow& operator=(const PictureShow&) = delete;
+
+  void set_running(bool running) { running_ = running; }
+  std::uint64_t encodings() const { return measurements_.totals().encodings.count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::shared_ptr<session::RenderedFrame> next_picture();
+  void run();
+
+  stream::JpegEncoder jpeg_;
+  session::Measurements measurements_;
+  session::Worker worker_;
+  const std::shared_ptr<session::WakeEvent> wakeup_ = std::make_shared<session::WakeEvent>();
+  session::Broadcast broadcast_;
+  std::vector<std::shared_ptr<session::RenderedFrame>> pictures_;
+  std::uint32_t shown_ = 0;
+  const Clock::duration interval_;
+  std::atomic<bool> running_ = false;
+  std::atomic<bool> stopping_ = false;
+  std::thread thread_;
+};
+
+}  // namespace heliograph::bench

@@ -1,0 +1,72 @@
+#include "render/frame/frame_constants.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/frame_rig.hpp"
+
+namespace heliograph::test {
+namespace {
+
+constexpr VkExtent2D extent{64, 36};
+
+class ViewConstants : public testing::Test {
+ protected:
+  shared::FrameConstants make(const scene::Camera& camera, std::uint32_t sample,
+                              const shared::FrameConstants* before = nullptr) {
+    return render::make_frame_constants(camera, settings_, rig_.moving(), extent, sample, before);
+  }
+  scene::Camera camera_ = look({1, 2, 5}, {0, 0.5f, 0}, 50.0f);
+  FrameRig rig_{SceneBuilder().build(), camera_, {.extent = extent}};
+  protocol::Settings settings_;
+};
+
+TEST_F(ViewConstants, JitterMovesThePictureByTheSamplesOffset) {
+  const auto still = make(camera_, 0), moved = make(camera_, 5);
+  const glm::vec2 offset = render::sample_jitter(5);
+  const glm::vec4 world(0.3f, 0.2f, -1.0f, 1.0f);
+  const auto pixel = [&](const glm::mat4& matrix) {
+    const glm::vec4 clip = matrix * world;
+    return (glm::vec2(clip) / clip.w * 0.5f + 0.5f) * glm::vec2(extent.width, extent.height);
+  };
+  EXPECT_LE(glm::distance(pixel(moved.view_projection) - pixel(still.view_projection), offset),
+            1e-4f);
+  EXPECT_EQ(moved.unjittered, still.unjittered);
+  settings_.antialiasing.jitter = false;
+  EXPECT_EQ(make(camera_, 5).view_projection, still.view_projection);
+}
+
+TEST_F(ViewConstants, PreviousMatricesAreTheFramesBefore) {
+  const auto first = make(camera_, 0);
+  EXPECT_EQ(first.previous_unjittered, first.unjittered);
+  EXPECT_EQ(first.previous_view, first.view);
+  const auto second = make(look({2, 2, 5}, {0, 0, 0}), 1, &first);
+  EXPECT_EQ(second.previous_unjittered, first.unjittered);
+  EXPECT_EQ(second.previous_view, first.view);
+  EXPECT_NE(second.view, first.view);
+}
+
+TEST_F(ViewConstants, CarriesTheSettings) {
+  settings_.environment.intensity = 2.5f;
+  settings_.environment.rotation = 90.0f;
+  settings_.ambient.radius = 3.0f;
+  settings_.exposure.compensation = 3.0f;
+  settings_.sampling.seed = 42;
+  settings_.shadows.enabled = false;
+  const auto constants = make(camera_, 9);
+  EXPECT_FLOAT_EQ(constants.environment.x, 2.5f);
+  EXPECT_NEAR(constants.environment.y, 0.0f, 1e-6f);
+  EXPECT_FLOAT_EQ(constants.environment.z, 1.0f);
+  EXPECT_FLOAT_EQ(constants.environment.w, 3.0f);
+  EXPECT_FLOAT_EQ(constants.exposure.x, 8.0f);
+  EXPECT_LT(constants.exposure.z, 0.0f) << "every light's own diameter";
+  EXPECT_EQ(constants.extent, glm::uvec4(64, 36, 9, 42));
+  EXPECT_EQ(constants.counts.y & shared::frame_shadows, 0u);
+  EXPECT_NE(constants.counts.y & shared::frame_direct, 0u);
+  settings_.shadows.angular_diameter_override = 10.0f;
+  EXPECT_NEAR(make(camera_, 9).exposure.z, std::tan(glm::radians(5.0f)), 1e-6f);
+}
+
+}  // namespace
+}  // namespace heliograph::test

@@ -1,0 +1,129 @@
+#include <gtest/gtest.h>
+
+#include "render/kernels/gbuffer_hits.hpp"
+#include "render/passes/gbuffer/trace_gbuffer.hpp"
+#include "scene/import.hpp"
+#include "tests/gpu/support/kernel_comparison.hpp"
+#include "tests/gpu/support/textured_scene.hpp"
+#include "tests/support/scene_files.hpp"
+
+namespace heliograph::test {
+namespace {
+
+/// Every kind of surface that rays go on through, in front of a wall.
+std::shared_ptr<const scene::Scene> veiled_scene() {
+  SceneBuilder builder;
+  const std::array<glm::vec3, 4> corners{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}};
+  shared::Material masked = surface({0.9f, 0.4f, 0.2f}), blended = masked, bright = masked;
+  std::vector<std::uint8_t> holes;
+  for (int i = 0; i < 64; ++i) {
+    const std::uint8_t alpha = i * 5 % 7 < 4 ? 230 : 40;
+    holes.insert(holes.end(), {200, 100, static_cast<std::uint8_t>(4 * i), alpha});
+  }
+  masked.base_color_texture.texture = builder.add_texture(8, 8, true, holes);
+  masked.flags = shared::material_alpha_mask | shared::material_double_sided;
+  masked.alpha_cutoff = 0.5f;
+  blended.base_color.w = 0.4f;
+  blended.flags = shared::material_alpha_blend;
+  bright.flags = shared::material_unlit;
+  const auto at = [](const glm::vec3& to) {
+    glm::mat4 world(1.0f);
+    world[3] = glm::vec4(to, 1.0f);
+    return world;
+  };
+  builder.place(builder.add_quad(corners, masked), at({-0.8f, 0, 1}));
+  const auto veil = builder.add_quad(corners, blended);
+  builder.place(veil, at({0.5f, 0.2f, 0.5f})).place(veil, at({0.8f, -0.3f, 0.7f}));
+  glm::mat4 away = at({0, 0.5f, 0.8f});
+  away[0][0] = away[2][2] = -1.0f;
+  builder.place(veil, away);  // its back
+  builder.place(builder.add_quad(corners, bright), at({0.2f, 0.1f, -0.5f}));
+  return builder.build();
+}
+
+std::shared_ptr<const scene::Scene> helmet() {
+  const auto file = asset("gltf/DamagedHelmet.glb");
+  return file ? std::make_shared<const scene::Scene>(scene::import_gltf(*file)) : nullptr;
+}
+
+scene::Camera view_of(const scene::Scene& scene, bool orthographic) {
+  scene::Camera camera = scene::fit_camera(scene.bounds, 40.0f, 1.5f);
+  if (orthographic) camera.orthographic_height = 2.2f * scene.bounds.radius();
+  return camera;
+}
+
+/// The G-buffer twice over, by the shaders and by their twins.
+class Twins {
+ public:
+  Twins(std::shared_ptr<const scene::Scene> scene, const scene::Camera& camera, VkExtent2D extent)
+      : rig_(std::move(scene), camera, {.extent = extent}),
+        shader_(render::trace_gbuffer(rig_.plan(), with_kernels(rig_, false))),
+        host_(render::trace_gbuffer(rig_.plan(), with_kernels(rig_, true))) {
+    scene::Camera moved = camera;
+    moved.eye += glm::vec3(0.05f, -0.02f, 0.03f);
+    rig_.set_view(moved, 3);
+    rig_.run();
+  }
+
+  FrameRig& rig() { return rig_; }
+
+  void expect_equal(const std::string& which) const {
+    using render::GBuffer;
+    const std::pair<const char*, gpu::ImageRef GBuffer::*> images[] = {
+        {"normals", &GBuffer::normals},   {"base color", &GBuffer::base_color},
+        {"surface", &GBuffer::surface},   {"motion", &GBuffer::motion},
+        {"emissive", &GBuffer::emissive}, {"depth slope", &GBuffer::depth_slope},
+        {"instance", &GBuffer::instance}};
+    for (const auto& [name, image] : images) {
+      const Compared found = compare(rig_.read(shader_.*image), rig_.read(host_.*image));
+      const std::string what = which + ": " + name;
+      EXPECT_LT(found.mean, 4e-4) << what;
+      // A ray that grazes an edge may meet the next triangle, a texel the next step of 1 / 255.
+      EXPECT_LT(found.apart, 2e-3) << what;
+    }
+  }
+
+ private:
+  FrameRig rig_;
+  render::GBuffer shader_, host_;
+};
+
+class GBufferHost : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!has_host_kernels()) GTEST_SKIP() << "host kernels are for devices that are processors";
+  }
+};
+
+TEST_F(GBufferHost, SeesWhatTheShadersSee) {
+  for (const bool orthographic : {false, true}) {
+    const std::string view = orthographic ? "orthographic" : "perspective";
+    for (const auto& [name, scene] :
+         {std::pair("textured", textured_scene()), std::pair("veiled", veiled_scene())}) {
+      Twins(scene, view_of(*scene, orthographic), {150, 100}).expect_equal(name + (", " + view));
+    }
+  }
+}
+
+TEST_F(GBufferHost, SeesTheHelmetAsTheShadersDo) {
+  const auto scene = helmet();
+  if (!scene) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS is not set";
+  Twins(scene, view_of(*scene, false), {150, 100}).expect_equal("helmet");
+}
+
+TEST_F(GBufferHost, WorksAtEverySize) {
+  const auto scene = textured_scene();
+  for (const VkExtent2D extent : {VkExtent2D{1, 1}, {3, 5}, {16, 2}, {17, 31}, {130, 1}}) {
+    Twins(scene, view_of(*scene, false), extent)
+        .expect_equal(std::to_string(extent.width) + " x " + std::to_string(extent.height));
+  }
+}
+
+TEST_F(GBufferHost, IsFasterThanTheShaders) {
+  const auto scene = textured_scene();
+  Twins twins(scene, view_of(*scene, false), {640, 360});
+  expect_faster(twins.rig(), {"gbuffer.rays", "gbuffer.shade", "gbuffer.2.shade"}, 2.0);
+}
+
+}  // namespace
+}  // namespace heliograph::test

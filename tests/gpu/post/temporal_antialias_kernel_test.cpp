@@ -1,0 +1,113 @@
+#include <gtest/gtest.h>
+
+#include "render/kernels/temporal_antialias.hpp"
+#include "render/passes/post/temporal_antialias.hpp"
+#include "tests/gpu/support/kernel_comparison.hpp"
+
+namespace heliograph::test {
+namespace {
+
+struct View {
+  VkExtent2D extent{77, 45};
+  bool orthographic = false;
+  bool anti_flicker = true;
+};
+
+scene::Camera camera(const View& view, float turn) {
+  scene::Camera made = look({0, 0, 3}, {turn, 0, 0});
+  if (view.orthographic) made.orthographic_height = 4.0f;
+  return made;
+}
+
+RigOptions options(const View& view) {
+  RigOptions made{.extent = view.extent};
+  made.settings.antialiasing.anti_flicker = view.anti_flicker;
+  made.settings.exposure.compensation = 0.7f;
+  return made;
+}
+
+/// Antialiasing twice over, by the shader and by its twin.
+class Twins {
+ public:
+  explicit Twins(const View& view)
+      : view_(view),
+        rig_(SceneBuilder().build(), camera(view, 0.0f), options(view)),
+        random_(rig_) {
+    const render::GBuffer gbuffer = random_.gbuffer();
+    radiance_ = random_.four("radiance", glm::vec4(0), glm::vec4(3));
+    const auto exposure = render::expose(rig_.plan(), rig_.inputs(), radiance_, radiance_);
+    const auto run = [&](bool host) {
+      return render::temporal_antialias(rig_.plan(), with_kernels(rig_, host), gbuffer, exposure,
+                                        radiance_);
+    };
+    shader_ = run(false);
+    host_ = run(true);
+  }
+
+  FrameRig& rig() { return rig_; }
+  Compared compared() { return compare(rig_.read(shader_), rig_.read(host_)); }
+
+  /// A frame of another noise, turned a little.
+  void next() {
+    std::vector<glm::vec4> texels(std::size_t{view_.extent.width} * view_.extent.height);
+    for (glm::vec4& texel : texels) {
+      const float firefly = random_.unit() < 0.02f ? 50.0f : 1.0f;
+      texel = firefly * glm::vec4(random_.unit(), 2.0f * random_.unit(), random_.unit(), 1.0f);
+    }
+    rig_.fill(radiance_, texels);
+    ++frames_;
+    rig_.set_view(camera(view_, 0.02f * static_cast<float>(frames_)), frames_);
+    rig_.run();
+  }
+
+ private:
+  View view_;
+  FrameRig rig_;
+  RandomFrame random_;
+  gpu::ImageRef radiance_, shader_, host_;
+  std::uint32_t frames_ = 0;
+};
+
+class AntialiasHost : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!has_host_kernels()) GTEST_SKIP() << "host kernels are for devices that are processors";
+  }
+};
+
+TEST_F(AntialiasHost, DoesWhatTheShaderDoes) {
+  for (const bool orthographic : {false, true}) {
+    for (const bool anti_flicker : {false, true}) {
+      Twins twins({.orthographic = orthographic, .anti_flicker = anti_flicker});
+      twins.rig().run();
+      EXPECT_EQ(twins.compared().worst, 0.0) << "without a history";
+      for (int i = 0; i < 4; ++i) {
+        twins.next();
+        const Compared result = twins.compared();
+        EXPECT_LT(result.mean, 1e-4) << i;
+        EXPECT_LT(result.apart, 1e-3) << "but for rounding at the border: " << i;
+        EXPECT_GT(result.size, 0.3);
+      }
+    }
+  }
+}
+
+TEST_F(AntialiasHost, WorksAtEverySize) {
+  for (const VkExtent2D extent : {VkExtent2D{1, 1}, {3, 5}, {16, 2}, {17, 31}, {130, 1}}) {
+    Twins twins({.extent = extent});
+    twins.rig().run();
+    twins.next();
+    twins.next();
+    EXPECT_LT(twins.compared().mean, 2e-4) << extent.width << " x " << extent.height;
+  }
+}
+
+TEST_F(AntialiasHost, IsFasterThanTheShader) {
+  Twins twins({.extent = {640, 360}});
+  twins.rig().run();
+  twins.next();
+  expect_faster(twins.rig(), {"temporal_antialias"}, 2.0);
+}
+
+}  // namespace
+}  // namespace heliograph::test

@@ -1,0 +1,143 @@
+#include <gtest/gtest.h>
+
+#include "render/kernels/specular.hpp"
+#include "render/passes/gbuffer/trace_gbuffer.hpp"
+#include "render/passes/reflections/trace_specular.hpp"
+#include "scene/import.hpp"
+#include "tests/gpu/support/kernel_comparison.hpp"
+#include "tests/gpu/support/textured_scene.hpp"
+#include "tests/support/scene_files.hpp"
+
+namespace heliograph::test {
+namespace {
+
+/// A scene on a floor of mirrors between lamps of all sorts.
+std::shared_ptr<const scene::Scene> lit(const scene::Scene& from) {
+  auto made = std::make_shared<scene::Scene>(from);
+  const float size = from.bounds.radius();
+  SceneBuilder builder;
+  builder.add_sun({0.3f, -0.5f, -1.0f}, {3, 2, 1}, 2.0f);
+  builder.add_lamp(glm::vec3(1.5f, 1, 1) * size, glm::vec3(4, 5, 6) * size * size, 0.1f * size);
+  builder.add_lamp(glm::vec3(-1.5f, 0, 1) * size, glm::vec3(1, 0, 2) * size * size);
+  const float y = from.bounds.minimum.y, wide = 3.0f * size;
+  builder.place(
+      builder.add_quad({{{-wide, y, wide}, {wide, y, wide}, {wide, y, -wide}, {-wide, y, -wide}}},
+                       surface({0.8f, 0.7f, 0.6f}, 0.25f, 0.6f)));
+  const scene::Scene added = *builder.build();
+  made->lights = added.lights;
+  made->lights.back().device.range = 3.0f * size;
+  scene::Light spot = made->lights[1];
+  spot.device.type = shared::light_spot;
+  spot.device.position = glm::vec3(0, 1, 2) * size;
+  spot.device.direction = glm::normalize(glm::vec3(0, -0.4f, -1));
+  spot.device.spot_scale = 4.0f;
+  spot.device.spot_offset = -3.0f;
+  made->lights.push_back(spot);
+  scene::Mesh floor = added.meshes[0];
+  floor.material = static_cast<std::uint32_t>(made->materials.size());
+  made->materials.push_back(added.materials[added.meshes[0].material]);
+  made->meshes.push_back(floor);
+  made->instances.push_back({static_cast<std::uint32_t>(made->meshes.size() - 1),
+                             static_cast<std::uint32_t>(made->nodes.size())});
+  made->nodes.push_back({.name = "floor", .parent = {}});
+  made->bounds.include({-wide, y, -wide});
+  made->bounds.include({wide, y, wide});
+  return made;
+}
+
+struct View {
+  VkExtent2D extent{150, 100};
+  protocol::Settings settings;
+};
+
+scene::Environment sky() {
+  return make_environment(128, [](const glm::vec3& d) {
+    return glm::vec3(1.0f + d.y, 0.5f + 0.4f * d.x * d.z, 1.0f - d.x);
+  });
+}
+
+/// Reflections twice over one G-buffer, by the shaders and by their twins.
+class Twins {
+ public:
+  Twins(std::shared_ptr<const scene::Scene> scene, const View& view)
+      : rig_(scene, camera(*scene),
+             {.extent = view.extent, .environment = sky(), .settings = view.settings}),
+        gbuffer_(render::trace_gbuffer(rig_.plan(), with_kernels(rig_, true))),
+        shader_(render::trace_specular(rig_.plan(), with_kernels(rig_, false), gbuffer_)),
+        host_(render::trace_specular(rig_.plan(), with_kernels(rig_, true), gbuffer_)) {
+    rig_.set_view(camera(*scene), 6);
+    rig_.run();
+  }
+
+  FrameRig& rig() { return rig_; }
+
+  /// `apart`: the share of values that may differ by more than a hundredth.
+  void expect_equal(const std::string& which, double apart = 6e-3) const {
+    const Compared found = compare(rig_.read(shader_), rig_.read(host_));
+    EXPECT_GT(found.size, 0.05) << which << ": something is mirrored";
+    // A ray that rounding sends past an edge meets something else, and a light whose share of the
+    // choice rounds elsewhere is not chosen.
+    EXPECT_LT(found.mean, 0.3 * apart) << which;
+    EXPECT_LT(found.apart, apart) << which;
+  }
+
+ private:
+  static scene::Camera camera(const scene::Scene& scene) {
+    scene::Camera made = scene::fit_camera(scene.bounds, 25.0f, 1.5f);
+    made.eye.y += 0.3f * scene.bounds.radius();
+    return made;
+  }
+
+  FrameRig rig_;
+  render::GBuffer gbuffer_;
+  gpu::ImageRef shader_, host_;
+};
+
+class SpecularHost : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!has_host_kernels()) GTEST_SKIP() << "host kernels are for devices that are processors";
+  }
+};
+
+TEST_F(SpecularHost, MirrorsWhatTheShadersMirror) {
+  const auto scene = lit(*textured_scene());
+  View view;
+  Twins(scene, view).expect_equal("all light");
+  view.settings.specular.half_resolution = true;
+  Twins(scene, view).expect_equal("half resolution");
+  view.settings.specular.half_resolution = false;
+  view.settings.specular.hit_shading = protocol::HitShading::environment;
+  Twins(scene, view).expect_equal("no lamps");
+  view.settings.specular.hit_shading = protocol::HitShading::traced;
+  view.settings.shadows.enabled = false;
+  view.settings.lighting.environment_specular = false;
+  view.settings.specular.max_roughness = 0.3f;
+  Twins(scene, view).expect_equal("no shadows, no sky");
+}
+
+TEST_F(SpecularHost, MirrorsTheHelmetAsTheShadersDo) {
+  const auto file = asset("gltf/DamagedHelmet.glb");
+  if (!file) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS is not set";
+  Twins(lit(scene::import_gltf(*file)), {}).expect_equal("helmet");
+}
+
+TEST_F(SpecularHost, WorksAtEverySize) {
+  const auto scene = lit(*textured_scene());
+  for (const VkExtent2D extent : {VkExtent2D{5, 3}, {17, 31}, {130, 7}}) {
+    for (const bool half : {false, true}) {
+      View view{extent, {}};
+      view.settings.specular.half_resolution = half;
+      Twins(scene, view)
+          .expect_equal(std::to_string(extent.width) + " x " + std::to_string(extent.height), 0.05);
+    }
+  }
+}
+
+TEST_F(SpecularHost, IsFasterThanTheShaders) {
+  Twins twins(lit(*textured_scene()), {.extent = {640, 360}, .settings = {}});
+  expect_faster(twins.rig(), {"specular.rays", "specular.shade", "specular.resolve"}, 2.0);
+}
+
+}  // namespace
+}  // namespace heliograph::test

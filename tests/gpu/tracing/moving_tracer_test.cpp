@@ -1,0 +1,70 @@
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "tests/gpu/tracing/tracer_rig.hpp"
+
+namespace heliograph::tracing {
+namespace {
+
+/// Gives every third instance another place, squeezes one of them flat, and deforms the meshes.
+std::vector<std::uint32_t> stir(scene::Scene& scene, Random& random, std::uint32_t step) {
+  std::vector<std::uint32_t> moved;
+  for (std::uint32_t i = step % 3; i < scene.instances.size(); i += 3) {
+    glm::mat4& world = scene.nodes[scene.instances[i].node].world;
+    world = glm::translate(glm::mat4(1.0f), uniform_vector(random, 4.0f));
+    world = glm::rotate(world, uniform(random, 0.0f, 6.0f), glm::vec3(0.6f, 0.0f, 0.8f));
+    moved.push_back(i);
+  }
+  glm::mat4& flat = scene.nodes[scene.instances[moved.front()].node].world;
+  flat = glm::scale(flat, glm::vec3(1, 1, 0));
+  for (const scene::Deformation& deformation : scene.deformations) {
+    scene::Mesh& mesh = scene.meshes[deformation.mesh];
+    mesh.bounds = {};
+    for (shared::Vertex& vertex : mesh.vertices) {
+      vertex.position += uniform_vector(random, 0.3f);
+      mesh.bounds.include(vertex.position);
+    }
+  }
+  return moved;
+}
+
+class MovingTracerTest : public TracerTest {};
+
+TEST_P(MovingTracerTest, FollowsWhatMovesAndDeforms) {
+  scene::Scene scene = two_level_scene(10);
+  scene.clips.emplace_back();
+  constexpr std::uint32_t a_sphere = 1, a_masked_quad = 4;
+  for (const std::uint32_t mesh : {a_sphere, a_masked_quad}) {
+    scene.deformations.push_back({.mesh = mesh, .shape = 0, .node = 0, .skin = {}});
+  }
+  const TracedScene at_rest = traced(scene, GetParam());
+  const auto structure = at_rest.moving(scene);
+  const std::vector<shared::Ray> rays = random_rays(scene, 3000, 10);
+  Tracing tracing(rig_->device, *rig_->tracers.at(GetParam()), *structure, rays.size());
+  const Answers resting = search(scene, rays);
+  EXPECT_LT(disagreement(tracing.run(rays), resting), 1e-3) << "before anything moves";
+  Random random(10);
+  for (std::uint32_t step = 0; step < 4; ++step) {
+    const std::vector<std::uint32_t> moved = stir(scene, random, step);
+    std::vector<glm::mat4> worlds;
+    for (const scene::Instance& instance : scene.instances) {
+      worlds.push_back(scene.nodes[instance.node].world);
+    }
+    std::vector<Movement::Mesh> deformed;
+    for (const scene::Deformation& deformation : scene.deformations) {
+      const scene::Mesh& mesh = scene.meshes[deformation.mesh];
+      deformed.push_back({deformation.mesh, mesh.vertices, mesh.bounds});
+    }
+    structure->update({worlds, moved, deformed});
+    const Answers expected = search(scene, rays);
+    EXPECT_GT(disagreement(expected, resting), 0.1) << "what hardly moves shows nothing";
+    EXPECT_LT(disagreement(tracing.run(rays), expected), 1e-3) << "step " << step;
+  }
+  EXPECT_LT(disagreement(at_rest.trace(rays), resting), 1e-3) << "the scene at rest stays";
+}
+
+INSTANTIATE_TEST_SUITE_P(, MovingTracerTest, testing::ValuesIn(all_tracers), test_name);
+
+}  // namespace
+}  // namespace heliograph::tracing

@@ -1,0 +1,326 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "scene/import.hpp"
+#include "tests/gpu/tracing/tracer_rig.hpp"
+
+namespace heliograph::tracing {
+namespace {
+
+TEST_P(TracerTest, AgreesWithAskingEveryTriangle) {
+  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+    const scene::Scene scene = two_level_scene(seed);
+    const std::vector<shared::Ray> rays = random_rays(scene, 5000, seed);
+    const Answers expected = search(scene, rays);
+    const Answers answers = traced(scene, GetParam()).trace(rays);
+    EXPECT_GT(hit_count(expected), rays.size() / 6) << "a test without hits shows nothing";
+    EXPECT_LT(hit_count(expected), rays.size() * 3 / 4);
+    EXPECT_LT(disagreement(answers, expected), 1e-3) << "seed " << seed;
+  }
+}
+
+TEST_P(TracerTest, BarycentricsAndDistanceNameTheSamePoint) {
+  const scene::Scene scene = two_level_scene(4);
+  const std::vector<shared::Ray> rays = random_rays(scene, 5000, 4);
+  const Answers answers = traced(scene, GetParam()).trace(rays);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const shared::Hit& hit = answers.hits[i];
+    if (hit.instance == shared::hit_none) {
+      EXPECT_EQ(hit.t, rays[i].t_max);
+      continue;
+    }
+    ASSERT_LT(hit.instance, scene.instances.size());
+    const auto& [mesh_index, node] = scene.instances[hit.instance];
+    const scene::Mesh& mesh = scene.meshes[mesh_index];
+    ASSERT_LT(hit.triangle, mesh.indices.size() / 3);
+    const auto corner = [&](std::size_t c) {
+      return mesh.vertices[mesh.indices[3 * std::size_t(hit.triangle) + c]].position;
+    };
+    const glm::vec3 point =
+        (1.0f - hit.u - hit.v) * corner(0) + hit.u * corner(1) + hit.v * corner(2);
+    const glm::vec3 world = glm::vec3(scene.nodes[node].world * glm::vec4(point, 1.0f));
+    EXPECT_LT(glm::distance(world, rays[i].origin + hit.t * rays[i].direction), 1e-4f);
+    EXPECT_GT(hit.t, rays[i].t_min);
+    EXPECT_LT(hit.t, rays[i].t_max);
+  }
+}
+
+/// Straight down on the quad, many to a texel.
+std::vector<shared::Ray> rays_from_above() {
+  std::vector<shared::Ray> rays;
+  for (int z = 0; z < 90; ++z) {
+    for (int x = 0; x < 150; ++x) {
+      shared::Ray ray{};
+      ray.origin = {(static_cast<float>(x) + 0.5f) / 75.0f - 1.0f, 1.0f,
+                    (static_cast<float>(z) + 0.5f) / 45.0f - 1.0f};
+      ray.direction = {0, -1, 0};
+      ray.t_max = 10.0f;
+      rays.push_back(ray);
+    }
+  }
+  return rays;
+}
+
+TEST_P(TracerTest, MasksLetRaysThroughTexelByTexel) {
+  const std::vector<shared::Ray> rays = rays_from_above();
+  for (std::uint32_t wrap_s = shared::wrap_repeat; wrap_s <= shared::wrap_mirror; ++wrap_s) {
+    for (std::uint32_t wrap_t = shared::wrap_repeat; wrap_t <= shared::wrap_mirror; ++wrap_t) {
+      scene::Scene scene;
+      const shared::Material material = masked_material(scene, wrap_s, wrap_t);
+      place(scene, add_mesh(scene, quad(), material), glm::mat4(1.0f));
+      const Answers expected = search(scene, rays);
+      EXPECT_GT(hit_count(expected), rays.size() / 4);
+      EXPECT_LT(hit_count(expected), rays.size() * 3 / 4);
+      EXPECT_EQ(disagreement(traced(scene, GetParam()).trace(rays), expected), 0.0)
+          << "wrap " << wrap_s << ", " << wrap_t;
+    }
+  }
+}
+
+double stopped_share(const Answers& answers) {
+  return static_cast<double>(hit_count(answers)) / static_cast<double>(answers.hits.size());
+}
+
+/// Its alpha is that of masked_material() times `factor`.
+shared::Material blended_material(scene::Scene& scene, float factor) {
+  shared::Material material = masked_material(scene, shared::wrap_repeat, shared::wrap_repeat);
+  material.flags = shared::material_alpha_blend;
+  material.base_color.w = factor;
+  return material;
+}
+
+TEST_P(TracerTest, BlendedSurfacesStopTheirShareOfTheRaysThatAskForIt) {
+  const std::vector<shared::Ray> rays = rays_from_above();
+  const auto count = static_cast<std::uint32_t>(rays.size());
+  for (const float factor : {0.0f, 0.3f, 1.0f}) {
+    scene::Scene scene, plain;
+    place(scene, add_mesh(scene, quad(), blended_material(scene, factor)), glm::mat4(1.0f));
+    shared::Material material = plain_material();
+    material.flags = shared::material_alpha_blend;
+    material.alpha_mask = shared::no_texture;
+    material.base_color.w = factor;
+    place(plain, add_mesh(plain, quad(), material), glm::mat4(1.0f));
+    const TracedScene textured = traced(scene, GetParam()), uniform = traced(plain, GetParam());
+    // Without the stream's number they stop every ray.
+    EXPECT_EQ(hit_count(textured.trace(rays)), rays.size());
+    EXPECT_EQ(hit_count(uniform.trace(rays)), rays.size());
+    // Over the image of uv -1 to 2 every texel is seen as often: 8 of 15 have alpha 220, 7 have
+    // 120.
+    const double mean_alpha = (8.0 * 220.0 + 7.0 * 120.0) / 15.0 / 255.0;
+    const Answers seen = textured.trace(rays, count, 12345);
+    EXPECT_NEAR(stopped_share(seen), factor * mean_alpha, 0.012) << "factor " << factor;
+    EXPECT_NEAR(stopped_share(uniform.trace(rays, count, 12345)), factor, 0.012);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      ASSERT_EQ(seen.occluded[i] != 0, seen.hits[i].instance != shared::hit_none) << i;
+    }
+  }
+}
+
+// Another frame's number takes other rays, layers decide on their own, and all tracers alike.
+TEST_P(TracerTest, BlendedSurfacesStopOtherRaysInEveryFrame) {
+  scene::Scene scene;
+  const std::uint32_t mesh = add_mesh(scene, quad(), blended_material(scene, 0.6f));
+  place(scene, mesh, glm::mat4(1.0f));
+  place(scene, mesh, glm::translate(glm::mat4(1.0f), {0.0f, -0.5f, 0.0f}));
+  const std::vector<shared::Ray> rays = rays_from_above();
+  const auto count = static_cast<std::uint32_t>(rays.size());
+  const TracedScene subject = traced(scene, GetParam());
+  const Answers first = subject.trace(rays, count, 1), second = subject.trace(rays, count, 2);
+  double alpha = 0.0, squares = 0.0, both = 0.0, below = 0.0;
+  const double share[] = {0.6 * 220.0 / 255.0, 0.6 * 120.0 / 255.0};
+  for (int i = 0; i < 15; ++i) {
+    const double a = share[0x4b2d >> i & 1 ? 0 : 1];
+    const double stopped = 1.0 - (1.0 - a) * (1.0 - a);
+    alpha += stopped / 15.0;
+    squares += stopped * stopped / 15.0;
+  }
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const bool a = first.hits[i].instance != shared::hit_none;
+    const bool b = second.hits[i].instance != shared::hit_none;
+    both += a && b;
+    below += a && first.hits[i].instance == 1;
+  }
+  EXPECT_NEAR(stopped_share(first), alpha, 0.015);
+  EXPECT_NEAR(both / count, squares, 0.015) << "frames are independent";
+  EXPECT_GT(below, 0.1 * count) << "some pass the upper layer and end on the lower";
+  if (!offered(protocol::TracerKind::software)) return;
+  const Answers reference = traced(scene, protocol::TracerKind::software).trace(rays, count, 1);
+  EXPECT_LT(disagreement(first, reference), 1e-3);
+}
+
+// The dispatch of a long stream has several rows: a 4K picture asks 8.3 million rays at once. Two
+// rows are what the 128 MiB hold that lavapipe binds.
+TEST_P(TracerTest, AnswersStreamsLongerThanARowOfGroups) {
+  constexpr std::uint32_t count = shared::rays_per_row + 1000;
+  scene::Scene scene;
+  place(scene, add_mesh(scene, quad(), plain_material()), glm::mat4(1.0f));
+  std::vector<shared::Ray> rays(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    // Every third ray passes beside the quad.
+    rays[i].origin = {i % 3 == 0 ? 5.0f : 0.3f, 1.0f + static_cast<float>(i % 1000), 0.2f};
+    rays[i].direction = {0, -1, 0};
+    rays[i].t_max = 1e30f;
+  }
+  const Answers answers = traced(scene, GetParam()).trace(rays);
+  std::size_t wrong = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const bool hits = i % 3 != 0;
+    const float t = hits ? rays[i].origin.y : 1e30f;
+    wrong += answers.occluded[i] != (hits ? 1u : 0u) || std::abs(answers.hits[i].t - t) > 1e-3f * t;
+  }
+  EXPECT_EQ(wrong, 0u);
+}
+
+TEST_P(TracerTest, AnswersOnlyTheRaysThatAreCounted) {
+  const scene::Scene scene = two_level_scene(5);
+  const std::vector<shared::Ray> rays = random_rays(scene, 1000, 5);
+  const TracedScene subject = traced(scene, GetParam());
+  for (const std::uint32_t count : {0u, 1u, 63u, 257u, 999u}) {
+    const Answers answers = subject.trace(rays, count);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      EXPECT_EQ(answers.hits[i].t == untouched, i >= count) << i << " of " << count;
+      EXPECT_EQ(answers.occluded[i] == 7, i >= count) << i << " of " << count;
+    }
+  }
+}
+
+TEST_P(TracerTest, MissesEverythingInAnEmptyScene) {
+  const std::vector<shared::Ray> rays = random_rays({}, 300, 6);
+  EXPECT_EQ(hit_count(traced({}, GetParam()).trace(rays)), 0u);
+}
+
+TEST_P(TracerTest, MissesWithRaysThatReachNowhere) {
+  const scene::Scene scene = two_level_scene(7);
+  std::vector<shared::Ray> rays = random_rays(scene, 600, 7);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    rays[i].t_max = i % 3 == 0 ? rays[i].t_min : i % 3 == 1 ? 0.0f : -1e30f;
+  }
+  const Answers answers = traced(scene, GetParam()).trace(rays);
+  EXPECT_EQ(hit_count(answers), 0u);
+  for (const std::uint32_t occluded : answers.occluded) EXPECT_EQ(occluded, 0u);
+}
+
+TEST_P(TracerTest, LeavesOutBothEndsOfTheInterval) {
+  scene::Scene scene;
+  place(scene, add_mesh(scene, quad(), plain_material()), glm::mat4(1.0f));
+  const shared::Ray down{{0.25f, 2, 0.5f}, 0.0f, {0, -1, 0}, 10.0f, 0, 0, 0, 0};
+  std::vector<shared::Ray> rays(5, down);
+  rays[0].t_max = 2.0f;
+  rays[1].t_min = 2.0f;
+  rays[2].t_min = std::nextafter(2.0f, 0.0f);
+  rays[3].t_max = std::nextafter(2.0f, 3.0f);
+  rays[4].origin.y = 0.0f;  // starts on the surface
+  const Answers answers = traced(scene, GetParam()).trace(rays);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const bool within = i == 2 || i == 3;
+    EXPECT_EQ(answers.hits[i].instance == 0, within) << "ray " << i;
+    EXPECT_EQ(answers.occluded[i], within ? 1u : 0u) << "ray " << i;
+  }
+}
+
+TEST_P(TracerTest, DoesNotMeetFlatInstancesAndCornersWithoutAPlace) {
+  scene::Scene scene;
+  const std::uint32_t mesh = add_mesh(scene, quad(), plain_material());
+  place(scene, mesh, glm::scale(glm::mat4(1.0f), glm::vec3(1, 1, 0)));
+  scene::Mesh torn = quad();
+  torn.vertices[1].position.y = std::numeric_limits<float>::infinity();
+  torn.vertices[3].position.x = std::numeric_limits<float>::quiet_NaN();
+  place(scene, add_mesh(scene, torn, plain_material()), glm::mat4(1.0f));
+  scene.bounds = {glm::vec3(-1.0f), glm::vec3(1.0f)};
+  EXPECT_EQ(hit_count(traced(scene, GetParam()).trace(random_rays(scene, 500, 9))), 0u);
+}
+
+TEST_P(TracerTest, SeesBothFacesOfMirroredInstances) {
+  scene::Scene scene;
+  const std::uint32_t mesh = add_mesh(scene, quad(), plain_material());
+  place(scene, mesh, glm::scale(glm::mat4(1.0f), glm::vec3(-1, 1, 1)));
+  std::vector<shared::Ray> rays(2);
+  rays[0] = {{0.25f, 2, 0.5f}, 0.0f, {0, -1, 0}, 10.0f, 0, 0, 0, 0};
+  rays[1] = {{0.25f, -2, 0.5f}, 0.0f, {0, 1, 0}, 10.0f, 0, 0, 0, 0};
+  const Answers answers = traced(scene, GetParam()).trace(rays);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(answers.hits[i].instance, 0u);
+    EXPECT_FLOAT_EQ(answers.hits[i].t, 2.0f);
+    EXPECT_EQ(answers.occluded[i], 1u);
+  }
+}
+
+/// From inside a closed mesh, toward its corners and toward points of its edges.
+std::vector<shared::Ray> rays_at_edges(const scene::Mesh& mesh, const glm::mat4& world,
+                                       std::uint32_t seed) {
+  Random random(seed);
+  std::vector<shared::Ray> rays;
+  for (std::size_t i = 0; i < 20'000; ++i) {
+    const std::size_t triangle = random() % (mesh.indices.size() / 3);
+    const auto corner = [&](std::size_t c) {
+      const std::uint32_t index = mesh.indices[3 * triangle + c % 3];
+      return glm::vec3(world * glm::vec4(mesh.vertices[index].position, 1.0f));
+    };
+    const float share = i % 4 == 0 ? 0.0f : uniform(random, 0.0f, 1.0f);
+    const glm::vec3 target = glm::mix(corner(i), corner(i + 1), share);
+    const glm::vec3 inside = glm::vec3(world * glm::vec4(uniform_vector(random, 0.5f), 1.0f));
+    rays.push_back({inside, 0.0f, glm::normalize(target - inside), 1e6f, 0, 0, 0, 0});
+  }
+  return rays;
+}
+
+TEST_P(TracerTest, LetsNothingThroughBetweenTriangles) {
+  scene::Scene scene;
+  glm::mat4 world = glm::translate(glm::mat4(1.0f), {13.1f, -7.7f, 31.3f});
+  world = glm::rotate(world, 0.7f, glm::normalize(glm::vec3(1, 2, 3)));
+  world = glm::scale(world, {1.3f, 0.9f, 1.1f});
+  place(scene, add_mesh(scene, sphere(24), plain_material()), world);
+  const std::vector<shared::Ray> rays = rays_at_edges(scene.meshes[0], world, 10);
+  const Answers answers = traced(scene, GetParam()).trace(rays);
+  EXPECT_EQ(hit_count(answers), rays.size());
+  EXPECT_EQ(std::ranges::count(answers.occluded, 0u), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(, TracerTest, testing::ValuesIn(all_tracers), test_name);
+
+class AssetTest : public TracersTest {
+ protected:
+  static void expect_agreement(const char* file) {
+    const char* assets = std::getenv("HELIOGRAPH_TEST_ASSETS");
+    if (!assets) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS names no folder of scenes";
+    const scene::Scene scene = scene::import_gltf(std::filesystem::path(assets) / file);
+    const bool cpu = rig_->device.is_cpu();
+    const std::vector<shared::Ray> rays = random_rays(scene, cpu ? 200'000 : 2'000'000, 8);
+    const Answers expected = traced(scene, protocol::TracerKind::software).trace(rays);
+    EXPECT_GT(hit_count(expected), rays.size() / 50);
+    for (const auto& [kind, tracer] : rig_->tracers) {
+      const std::string name(protocol::enum_name(kind));
+      const TracedScene subject = traced(scene, kind);
+      Tracing tracing = subject.tracing(rays.size());
+      const double share = disagreement(tracing.run(rays), expected);
+      std::printf("%s: disagrees with software on %.6f of %zu rays; %s\n", name.c_str(), share,
+                  rays.size(), tracing.least_times(cpu ? 1 : 20).c_str());
+      EXPECT_LT(share, 1e-3) << name;
+    }
+  }
+};
+
+TEST_F(TracersTest, WhatIsNotOfferedIsRefused) {
+  for (const protocol::TracerKind kind : all_tracers) {
+    if (offered(kind)) continue;
+    EXPECT_THROW(make_tracer(kind, rig_->device), gpu::GpuError) << protocol::enum_name(kind);
+  }
+}
+
+TEST_F(AssetTest, TracersAgreeOnAHelmet) {
+  expect_agreement("gltf/DamagedHelmet.glb");
+}
+
+TEST_F(AssetTest, TracersAgreeInAnAtrium) {
+  expect_agreement("standins/glossy_sponza_1.glb");
+}
+
+}  // namespace
+}  // namespace heliograph::tracing

@@ -1,0 +1,111 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/image/denoise/spheres.hpp"
+
+namespace heliograph::test {
+namespace {
+
+TEST(RestingView, FlickersEverLessAndNearsTheTruth) {
+  const render::Frame truth = truth_from(eye());
+  Things still(denoised_alone());
+  render::Frame before = still.renderer.render(), now;
+  double early = 0.0, late = 0.0;
+  for (int i = 2; i <= 48; ++i) {
+    now = still.renderer.render();
+    const double change = difference(before, now).mean;
+    if (i <= 5) early = std::max(early, change);
+    if (i > 44) late = std::max(late, change);
+    before = now;
+  }
+  save_picture("denoised_resting", now);
+  save_picture("denoised_resting_truth", truth);
+  EXPECT_LT(late, 0.15 * early);
+  EXPECT_LT(late, 0.22) << "code values of 255";
+  EXPECT_LT(difference(truth, now).mean, 0.75);
+  EXPECT_GT(ssim(truth, now), 0.985);
+}
+
+// With all that makes pictures differ: jitter, antialiasing, and the mean that takes over.
+TEST(RestingView, StandsStillInTheEnd) {
+  protocol::Settings settings;
+  settings.accumulation.max_samples = 4096;
+  Things still(settings);
+  render::Frame before, now;
+  const auto change_after = [&](std::uint32_t samples) {
+    before = still.accumulate(samples);
+    now = still.renderer.render();
+    return difference(before, now);
+  };
+  const double early = change_after(32).mean, middle = change_after(96).mean;
+  const Difference late = change_after(288);
+  EXPECT_LT(middle, 0.6 * early) << "as 1 / samples: a third";
+  EXPECT_LT(late.mean, 0.5 * middle);
+  EXPECT_LT(late.mean, 0.035) << "code values of 255";
+  EXPECT_LE(late.maximum, 2.0);
+}
+
+TEST(RestingView, ChangesNoBrightness) {
+  Things raw(raw_alone()), denoised(denoised_alone());
+  raw.accumulate(192);
+  denoised.accumulate(32);
+  const double expected = mean_luminance(raw.capture("accumulated"));
+  EXPECT_NEAR(mean_luminance(denoised.capture("hdr")), expected, 0.01 * expected);
+}
+
+scene::Camera yawed(int frame) {
+  scene::Camera camera = eye();
+  const float angle = glm::radians(0.7f * static_cast<float>(frame));
+  const glm::mat4 turn = glm::rotate(glm::mat4(1.0f), angle, {0, 1, 0});
+  camera.target = camera.eye + glm::vec3(turn * glm::vec4(camera.target - camera.eye, 0));
+  return camera;
+}
+
+scene::Camera pitched(int frame) {
+  scene::Camera camera = eye();
+  const float angle = glm::radians(0.5f * static_cast<float>(frame));
+  const glm::mat4 turn = glm::rotate(glm::mat4(1.0f), angle, {1, 0, 0});
+  camera.target = camera.eye + glm::vec3(turn * glm::vec4(camera.target - camera.eye, 0));
+  return camera;
+}
+
+scene::Camera dollied(int frame) {
+  scene::Camera camera = eye();
+  camera.eye += (camera.target - camera.eye) * (0.012f * static_cast<float>(frame));
+  return camera;
+}
+
+struct Movement {
+  const char* name;
+  scene::Camera (*camera)(int frame);
+};
+
+class MovingView : public testing::TestWithParam<Movement> {};
+
+INSTANTIATE_TEST_SUITE_P(Ways, MovingView,
+                         testing::Values(Movement{"yaw", yawed}, Movement{"pitch", pitched},
+                                         Movement{"dolly", dollied}),
+                         [](const auto& instance) { return std::string(instance.param.name); });
+
+// A mirrored axis anywhere in the motion is invisible at rest and shows in one of the three.
+TEST_P(MovingView, HasLittleOfTheNoiseOfOneSample) {
+  const int frames = 16;
+  Things still(denoised_alone()), raw(raw_alone());
+  render::Frame shown, noisy;
+  for (int i = 0; i < frames; ++i) {
+    still.renderer.set_camera(GetParam().camera(i));
+    shown = still.renderer.render();
+  }
+  raw.renderer.set_camera(GetParam().camera(frames - 1));
+  noisy = raw.renderer.render();
+  const render::Frame truth = truth_from(GetParam().camera(frames - 1));
+  save_picture(std::string("denoised_") + GetParam().name, shown);
+  save_picture(std::string("denoised_") + GetParam().name + "_truth", truth);
+  EXPECT_LT(difference(truth, shown).mean, 0.2 * difference(truth, noisy).mean);
+  EXPECT_GT(ssim(truth, shown), 0.955);
+  EXPECT_LT(ssim(truth, noisy), ssim(truth, shown) - 0.2);
+}
+
+}  // namespace
+}  // namespace heliograph::test

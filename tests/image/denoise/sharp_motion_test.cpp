@@ -1,0 +1,99 @@
+// Fine shadows and what bent mirrors show must stay sharp while the camera moves.
+#include <gtest/gtest.h>
+
+#include "tests/image/denoise/spheres.hpp"
+
+namespace heliograph::test {
+namespace {
+
+constexpr int frames = 20;
+
+/// Thin bars and their thin shadows around a metal ball on a bright ground.
+std::shared_ptr<const scene::Scene> bars_around_a_mirror(float roughness) {
+  SceneBuilder builder;
+  builder.place(builder.add_quad({{{-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}}},
+                                 surface({0.8f, 0.8f, 0.75f}, 0.9f)));
+  builder.place(builder.add_sphere(0.8f, surface({0.95f, 0.9f, 0.8f}, roughness, 1.0f)),
+                glm::translate(glm::mat4(1.0f), {0.9f, 0.8f, 0.3f}));
+  shared::Material red = surface({0.7f, 0.1f, 0.05f}, 0.8f);
+  red.flags |= shared::material_double_sided;
+  const auto bar =
+      builder.add_quad({{{-0.05f, 0, 0}, {0.05f, 0, 0}, {0.05f, 1.2f, 0}, {-0.05f, 1.2f, 0}}}, red);
+  for (int i = 0; i < 12; ++i) {
+    const float x = 0.3f * static_cast<float>(i) - 3.0f;
+    builder.place(bar, glm::translate(glm::mat4(1.0f), {x, 0, -0.6f}));
+  }
+  builder.add_sun({0.25f, -1, 0.6f}, glm::vec3(2.5f), 0.5f);
+  return builder.build();
+}
+
+scene::Camera orbit(int frame) {
+  const float angle = 0.02f * static_cast<float>(frame);
+  return look({5.0f * std::sin(angle), 1.8f, 5.0f * std::cos(angle)}, {0, 0.5f, 0});
+}
+
+/// Mean error of the last frame of an orbit, over the pixels whose instance `counts` lets through.
+template <class Counts>
+double error_in_motion(protocol::Settings settings, const std::string& name, Counts counts,
+                       float roughness = 0.03f) {
+  settings.antialiasing.jitter = settings.antialiasing.temporal = true;
+  const auto scene = bars_around_a_mirror(roughness);
+  Things still(scene, settings);
+  still.renderer.set_frame_seconds(1.0f / 30.0f);
+  render::Frame shown;
+  for (int i = -frames; i <= 0; ++i) {
+    still.renderer.set_camera(orbit(i));
+    shown = still.renderer.render();
+  }
+  save_picture(name, shown);
+  protocol::Settings smooth = raw_alone();
+  smooth.antialiasing.jitter = true;
+  Things resting(scene, smooth);
+  resting.renderer.set_camera(orbit(0));
+  const render::Frame truth = resting.accumulate(128);
+  save_picture(name + "_truth", truth);
+  const render::FloatImage instances = resting.capture("gbuffer.instance");
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < truth.rgba.size(); ++i) {
+    if (i % 4 == 3 || !counts(static_cast<int>(instances.rgba[i - i % 4]))) continue;
+    sum += std::abs(double(shown.rgba[i]) - double(truth.rgba[i]));
+    ++count;
+  }
+  return sum / count;
+}
+
+constexpr auto is_ball = [](int instance) { return instance == 2; };
+
+// One ray a pixel is all that a mirror needs.
+TEST(SharpMotion, AMirrorIsAsSharpAsWithoutDenoising) {
+  protocol::Settings settings = denoised_alone();
+  const double denoised = error_in_motion(settings, "orbit_mirror", is_ball);
+  settings.specular_temporal.enabled = settings.specular_blur.enabled = false;
+  const double raw = error_in_motion(settings, "orbit_mirror_raw", is_ball);
+  EXPECT_LT(denoised, 1.1 * raw);
+}
+
+TEST(SharpMotion, AGlossyBallDoesNotDragItsReflectionAlong) {
+  protocol::Settings settings = denoised_alone();
+  for (const float roughness : {0.1f, 0.2f}) {
+    const std::string name = "orbit_ball_" + std::to_string(int(100.0f * roughness));
+    settings.specular_temporal.virtual_point = true;
+    const double followed = error_in_motion(settings, name, is_ball, roughness);
+    settings.specular_temporal.virtual_point = false;
+    const double dragged = error_in_motion(settings, name + "_dragged", is_ball, roughness);
+    EXPECT_LT(followed, 0.85 * dragged) << roughness;
+  }
+}
+
+TEST(SharpMotion, ThinShadowsStayOnTheGround) {
+  const auto is_ground = [](int instance) { return instance == 1; };
+  protocol::Settings settings = denoised_alone();
+  const double sharp = error_in_motion(settings, "orbit_bars", is_ground);
+  settings.shadow_temporal.bicubic = false;
+  const double smeared = error_in_motion(settings, "orbit_bars_bilinear", is_ground);
+  EXPECT_LT(sharp, 0.97 * smeared);
+}
+
+}  // namespace
+}  // namespace heliograph::test

@@ -1,0 +1,82 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/image/support/scene_renderer.hpp"
+
+namespace heliograph::test {
+namespace {
+
+constexpr std::uint32_t width = 64, height = 48;
+
+/// A ground and some spheres under small lamps that reach 2 m each.
+std::shared_ptr<scene::Scene> courtyard() {
+  SceneBuilder builder;
+  builder.place(builder.add_quad({{{-20, 0, 20}, {20, 0, 20}, {20, 0, -20}, {-20, 0, -20}}},
+                                 surface({0.8f, 0.7f, 0.6f}, 0.6f)));
+  const auto sphere = builder.add_sphere(0.8f, surface(glm::vec3(0.9f), 0.25f, 1.0f));
+  for (int i = 0; i < 9; ++i) {
+    builder.place(
+        sphere, glm::translate(glm::mat4(1.0f), glm::vec3(4 * (i % 3) - 4, 0.8f, 4 * (i / 3) - 4)));
+  }
+  return std::make_shared<scene::Scene>(*builder.build());
+}
+
+std::vector<scene::Light> lamps(int count) {
+  std::mt19937 generator(17);
+  std::uniform_real_distribution<float> place(-16.0f, 16.0f), color(0.1f, 1.0f);
+  std::vector<scene::Light> all;
+  for (int i = 0; i < count; ++i) {
+    shared::Light light{};
+    light.type = i % 3 ? shared::light_point : shared::light_disk;
+    light.position = {place(generator), 1.0f, place(generator)};
+    light.direction = {0, -1, 0};
+    light.tangent = {1, 0, 0};
+    light.color = glm::vec3(color(generator), color(generator), color(generator));
+    light.range = 2.0f;
+    light.radius = 0.1f;
+    if (light.type == shared::light_disk) light.color *= 20.0f;
+    all.push_back({"lamp", light});
+  }
+  return all;
+}
+
+render::FloatImage picture(const std::shared_ptr<scene::Scene>& scene, const char* name) {
+  Still still(scene, scene::constant_environment(glm::vec3(0.0f)), look({0, 9, 12}, {0, 0, 0}),
+              width, height);
+  protocol::Settings settings;
+  settings.shadows.enabled = false;
+  settings.antialiasing.jitter = false;
+  settings.specular.enabled = false;
+  settings.environment.visible = false;
+  still.apply(settings);
+  const render::Frame frame = still.accumulate(1);
+  if (name) save_picture(name, frame);
+  return still.capture("hdr");
+}
+
+TEST(ManyLights, TwoThousandLightTheSceneLikeTheirSum) {
+  const std::vector<scene::Light> all = lamps(2000);
+  const auto scene = courtyard();
+  scene->lights = all;
+  const render::FloatImage together = picture(scene, "two_thousand_lights");
+  std::vector<double> sum(together.rgba.size(), 0.0);
+  constexpr std::size_t at_once = 190;  // all of these are read from the uniform block
+  static_assert(at_once < shared::uniform_lights);
+  for (std::size_t first = 0; first < all.size(); first += at_once) {
+    const std::size_t last = std::min(first + at_once, all.size());
+    scene->lights.assign(all.begin() + first, all.begin() + last);
+    const render::FloatImage part = picture(std::make_shared<scene::Scene>(*scene), nullptr);
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += part.rgba[i];
+  }
+  double brightness = 0.0;
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    if (i % 4 == 3) continue;
+    ASSERT_NEAR(together.rgba[i], sum[i], 1e-3 * sum[i] + 1e-4) << i / 4;
+    brightness += sum[i] / (3 * width * height);
+  }
+  EXPECT_GT(brightness, 0.05);
+}
+
+}  // namespace
+}  // namespace heliograph::test
