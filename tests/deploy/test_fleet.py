@@ -15,8 +15,8 @@ import websockets
 from harness import images
 from harness.files import DEPLOY
 from harness.fleet import Fleet, add_images
-from harness.pictures import decode_jpeg, difference
-from harness.replaying_viewer import ReplayingViewer, Wish
+from harness.image_comparison import decode_jpeg, difference
+from harness.replaying_viewer import ReplayingViewer, ViewState
 from harness.scenes import NAMES
 from harness.servers import TOKEN, call
 from harness.site import GATEWAY, Site
@@ -28,9 +28,9 @@ MOST_SECONDS_OF_NOTICE = 0.8
 NODES = 4  # one more than viewers, so that a viewer that loses its node finds a free one
 
 
-def wishes(count):
+def view_states(count):
     """Distinguishable views: scene, camera and a setting that is not the default."""
-    return [Wish(NAMES[i % 2], eye=(0.5 * i, 2.0, 8.0 - 0.5 * i),
+    return [ViewState(NAMES[i % 2], eye=(0.5 * i, 2.0, 8.0 - 0.5 * i),
                  settings={"exposure": {"compensation": 0.125 * (i + 1)}}) for i in range(count)]
 
 
@@ -63,8 +63,8 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
     async def viewers(self, count):
         """This many viewers, each with its view restored and a frame received."""
         found = []
-        for wish in wishes(count):
-            viewer = ReplayingViewer(self.fleet.url, TOKEN, wish)
+        for view in view_states(count):
+            viewer = ReplayingViewer(self.fleet.url, TOKEN, view)
             await viewer.__aenter__()
             self.addAsyncCleanup(viewer.__aexit__)
             found.append(viewer)
@@ -89,24 +89,24 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
         while time.monotonic() - started < seconds:
             for viewer in viewers:
                 if viewer.connected.is_set():
-                    x, y, z = viewer.wish.eye
+                    x, y, z = viewer.view.eye
                     try:
                         await viewer.look((x + 0.01, y, z))
                     except (OSError, websockets.WebSocketException, asyncio.CancelledError):
                         continue  # it is being disconnected
             await asyncio.sleep(0.1)
 
-    async def assert_as_wished(self, viewer):
+    async def assert_view_restored(self, viewer):
         """Scene, camera and settings are the viewer's own, on whichever node it is."""
-        wish = viewer.wish
-        self.assertEqual((await viewer.call("scene.list"))["current"], wish.scene)
+        view = viewer.view
+        self.assertEqual((await viewer.call("scene.list"))["current"], view.scene)
         camera = await viewer.call("camera.get")
-        for name, value in (("eye", wish.eye), ("target", wish.target)):
+        for name, value in (("eye", view.eye), ("target", view.target)):
             for a, b in zip(camera[name], value):
                 self.assertAlmostEqual(a, b, places=4)
         settings = (await viewer.call("settings.get"))["settings"]
         self.assertEqual(settings["exposure"]["compensation"],
-                         wish.settings["exposure"]["compensation"])
+                         view.settings["exposure"]["compensation"])
 
     async def test_viewers_spread_and_reconnect_to_their_node(self):
         viewers = await self.viewers(3)
@@ -224,7 +224,7 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
 
         await self.eventually(is_used, "the balancer keeps its certificate")
         await viewer.look((1.0, 2.0, 8.0))
-        await viewer.pictures(1)
+        await viewer.wait_frames(1)
         self.assertEqual(viewer.losses, [])
         await self.assert_restarted_when_it_dies(viewer)
 
@@ -258,7 +258,7 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
         loss, = victim.losses
         print(f"fleet: killed node, viewer restored after {loss.seconds:.2f} s", flush=True)
         self.assertLess(loss.seconds, MOST_SECONDS_AWAY)
-        await self.assert_as_wished(victim)
+        await self.assert_view_restored(victim)
         self.assertNotEqual((await self.nodes_of([victim]))[0], nodes[0])
         after = await self.at_rest(victim)
         self.assertLess(difference(before, after), 3.0)
@@ -284,7 +284,7 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
             print(f"fleet: hung node, disconnected after {noticed:.2f} s, "
                   f"viewer restored after {away:.2f} s", flush=True)
             self.assertLess(away, 2 * MOST_SECONDS_AWAY)
-            await self.assert_as_wished(viewers[0])
+            await self.assert_view_restored(viewers[0])
             self.assertEqual([viewer.losses for viewer in viewers[1:]], [[], []])
         finally:
             await self.docker("unpause", nodes[0])
@@ -309,7 +309,7 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
         async def change():
             """A call that must not be executed twice. It is retried only if it was not executed. A
             node that has just started can execute it too: it needs no scene."""
-            patch = {"patch": wishes(1)[0].settings}
+            patch = {"patch": view_states(1)[0].settings}
             while not stop.is_set():
                 try:
                     await asyncio.to_thread(call, self.fleet.url, "settings.patch", patch, timeout=30)
@@ -344,7 +344,7 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
             self.assertEqual({loss.code for loss in viewer.losses}, {1001})
             print("fleet: rolling update, viewer away for "
                   f"{[round(loss.seconds, 2) for loss in viewer.losses]} s", flush=True)
-            await self.assert_as_wished(viewer)
+            await self.assert_view_restored(viewer)
 
     async def query(self, expression):
         """The current result of a query: a list of series."""
@@ -424,7 +424,7 @@ def panels():
 
 async def greeting(url):
     """One viewer that connects, calls hello and disconnects. Returns None or the failure."""
-    viewer = ReplayingViewer(url, TOKEN, Wish(NAMES[0]))
+    viewer = ReplayingViewer(url, TOKEN, ViewState(NAMES[0]))
     try:
         return await viewer.greet_once()
     except Exception as failure:  # every failure is reported

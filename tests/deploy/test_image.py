@@ -13,9 +13,9 @@ import unittest
 from harness import images
 from harness.checkout import clone
 from harness.files import DEPLOY, documents
-from harness.pictures import (SAME_PICTURE, decode_png, largest_difference_of_means, read,
+from harness.image_comparison import (SAME_IMAGE, decode_png, largest_difference_of_means, read,
                               render)
-from harness.replaying_viewer import ReplayingViewer, Wish
+from harness.replaying_viewer import ReplayingViewer, ViewState
 from harness.scenes import generate
 from harness.servers import HARDENED, TOKEN, Container, get, make_certificate, measurement
 from harness.site import GATEWAY, Site
@@ -99,9 +99,9 @@ class Image(unittest.IsolatedAsyncioTestCase):
                           for name in origin}, origin)
         self.assertEqual(composed["RootFS"], self.machine.inspect(images.SERVER)["RootFS"])
         url = f"http://{self.machine.address}:8080/"
-        async with ReplayingViewer(url, TOKEN, Wish("glossy_sponza_1")) as viewer:
+        async with ReplayingViewer(url, TOKEN, ViewState("glossy_sponza_1")) as viewer:
             await viewer.look((1.0, 2.0, 8.0))
-            await viewer.pictures(1)
+            await viewer.wait_frames(1)
             self.assertEqual(viewer.losses, [])
 
     def test_contains_no_secrets_and_no_build_tools(self):
@@ -163,9 +163,9 @@ class Image(unittest.IsolatedAsyncioTestCase):
         await asyncio.to_thread(render, scene, host, samples=64)
         difference = largest_difference_of_means(decode_png(picture), read(host))
         print(f"container: at most {difference:.2f} of 255 from the host's image", flush=True)
-        self.assertLess(difference, SAME_PICTURE)
+        self.assertLess(difference, SAME_IMAGE)
 
-        async with ReplayingViewer(container.url, TOKEN, Wish("glossy_sponza_1")) as viewer:
+        async with ReplayingViewer(container.url, TOKEN, ViewState("glossy_sponza_1")) as viewer:
             self.assertIn(SOFTWARE_DEVICE, (await viewer.call("hello"))["device"]["name"])
             before = viewer.frames
             for step in range(10):
@@ -247,8 +247,8 @@ class Image(unittest.IsolatedAsyncioTestCase):
         container = self.container("limited", "--memory", str(memory), "--memory-swap", str(memory),
                                    "--cpus", str(cpus))
         await asyncio.to_thread(container.wait_healthy)
-        wish = Wish("glossy_sponza_1", size=(320, 180))
-        async with ReplayingViewer(container.url, TOKEN, wish) as viewer:
+        view = ViewState("glossy_sponza_1", size=(320, 180))
+        async with ReplayingViewer(container.url, TOKEN, view) as viewer:
             spent, started = container.processor_seconds(), time.monotonic()
             while time.monotonic() - started < 6:
                 await viewer.look((time.monotonic() - started, 2.0, 8.0))
@@ -295,11 +295,11 @@ class Image(unittest.IsolatedAsyncioTestCase):
     @contextlib.asynccontextmanager
     async def looking_around(self, container):
         """A viewer in its own session, with a moved camera."""
-        wish = Wish(LARGE[0], size=(640, 360))
-        async with ReplayingViewer(container.url, TOKEN, wish) as viewer:
+        view = ViewState(LARGE[0], size=(640, 360))
+        async with ReplayingViewer(container.url, TOKEN, view) as viewer:
             for step in range(3):
                 await viewer.look((0.1 * step, 2.0, 8.0))
-                await viewer.pictures(1)
+                await viewer.wait_frames(1)
             yield viewer
 
     async def most_memory(self, container, work):
@@ -327,7 +327,7 @@ class Image(unittest.IsolatedAsyncioTestCase):
     async def test_closes_viewers_on_shutdown(self):
         container = self.container("ending", "--env", "HELIOGRAPH_DRAIN_NOTICE=1")
         await asyncio.to_thread(container.wait_healthy)
-        async with ReplayingViewer(container.url, TOKEN, Wish("glossy_sponza_1")) as viewer:
+        async with ReplayingViewer(container.url, TOKEN, ViewState("glossy_sponza_1")) as viewer:
             started = time.monotonic()
             await asyncio.to_thread(self.machine.docker, "stop", "--time", "20", "ending")
             seconds = time.monotonic() - started

@@ -7,7 +7,7 @@ import time
 import unittest
 
 from harness import images
-from harness.replaying_viewer import ReplayingViewer, Wish
+from harness.replaying_viewer import ReplayingViewer, ViewState
 from harness.scenes import NAMES, make_scenes
 from harness.servers import TOKEN, Container
 from harness.site import Site
@@ -32,8 +32,8 @@ class BadLine(unittest.IsolatedAsyncioTestCase):
     async def watch(self, line):
         """Moves the camera continuously. Returns the seconds from each move to its frame."""
         with WideArea(self.machine, line):
-            wish = Wish(NAMES[0], size=(320, 180))
-            viewer = ReplayingViewer(f"http://{FAR}:8080/", TOKEN, wish)
+            view = ViewState(NAMES[0], size=(320, 180))
+            viewer = ReplayingViewer(f"http://{FAR}:8080/", TOKEN, view)
             async with viewer:
                 viewer.round_trips.clear()
                 before, started = viewer.frames, time.monotonic()

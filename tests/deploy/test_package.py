@@ -13,7 +13,7 @@ import urllib.request
 from harness import packages
 from harness.commands import run, succeeds
 from harness.files import text_of
-from harness.pictures import SAME_PICTURE, largest_difference_of_means, render
+from harness.image_comparison import SAME_IMAGE, largest_difference_of_means, render
 from harness.servers import free_port
 from harness.system import System, check_machine, release_of_this_machine
 
@@ -83,7 +83,7 @@ class PackageTest:
         render(self.system.path(scene), outside, samples=64)
         difference = largest_difference_of_means(self.system.path("/tmp/inside.png"), outside)
         print(f"package: at most {difference:.2f} of 255 from the host's image", flush=True)
-        self.assertLess(difference, SAME_PICTURE)
+        self.assertLess(difference, SAME_IMAGE)
 
     def serves(self):
         """Serves for a while as a user without privileges."""

@@ -11,7 +11,7 @@ import unittest
 
 from harness import packages
 from harness.booted import INSIDE, Booted
-from harness.replaying_viewer import ReplayingViewer, Wish
+from harness.replaying_viewer import ReplayingViewer, ViewState
 from harness.servers import TOKEN, get
 from harness.system import System, check_machine, release_of_this_machine
 
@@ -110,7 +110,7 @@ class ServiceTest:
         self.assertLess(exposure, MOST_EXPOSED)
 
     async def test_closes_viewers_when_it_is_stopped(self):
-        async with ReplayingViewer(URL, TOKEN, Wish("glossy_sponza_1")) as viewer:
+        async with ReplayingViewer(URL, TOKEN, ViewState("glossy_sponza_1")) as viewer:
             started = time.monotonic()
             await asyncio.to_thread(self.systemctl, "stop", UNIT)
             seconds = time.monotonic() - started
@@ -123,7 +123,7 @@ class ServiceTest:
                                 "ExecMainStatus": "0"})
 
     async def test_restarts_after_a_crash(self):
-        async with ReplayingViewer(URL, TOKEN, Wish("glossy_sponza_1")) as viewer:
+        async with ReplayingViewer(URL, TOKEN, ViewState("glossy_sponza_1")) as viewer:
             before = self.main_process()
             await asyncio.to_thread(self.systemctl, "kill", "--signal", "KILL", UNIT)
             while not viewer.losses:

@@ -10,7 +10,7 @@ import yaml
 from harness import images
 from harness.files import DEPLOY, text_of
 from harness.fleet import add_images
-from harness.replaying_viewer import ReplayingViewer, Wish
+from harness.replaying_viewer import ReplayingViewer, ViewState
 from harness.scenes import NAMES, make_scenes, service_override
 from harness.servers import TOKEN, get
 from harness.site import GATEWAY, Site
@@ -48,12 +48,12 @@ class Swarm(unittest.IsolatedAsyncioTestCase):
         return {line.split()[0]: line.split()[1] for line in lines.splitlines()}
 
     @classmethod
-    def wait_for_replicas(cls, wanted, timeout=600):
+    def wait_for_replicas(cls, expected, timeout=600):
         deadline = time.monotonic() + timeout
-        while {name: cls.replicas().get(name) for name in wanted} != wanted:
+        while {name: cls.replicas().get(name) for name in expected} != expected:
             if time.monotonic() > deadline:
                 raise AssertionError(f"{cls.replicas()}\n" + cls.manager.docker(
-                    "service", "ps", "--no-trunc", *wanted))
+                    "service", "ps", "--no-trunc", *expected))
             time.sleep(0.5)
 
     def machines_of(self, service):
@@ -127,8 +127,8 @@ class Swarm(unittest.IsolatedAsyncioTestCase):
         """Through the manager's balancer; enough that every node has one."""
         found = []
         for i in range(3):
-            wish = Wish(NAMES[i % 2], eye=(i, 2.0, 8.0))
-            viewer = ReplayingViewer(self.url(self.manager), TOKEN, wish)
+            view = ViewState(NAMES[i % 2], eye=(i, 2.0, 8.0))
+            viewer = ReplayingViewer(self.url(self.manager), TOKEN, view)
             await viewer.__aenter__()
             self.addAsyncCleanup(viewer.__aexit__)
             found.append(viewer)
@@ -153,7 +153,7 @@ class Swarm(unittest.IsolatedAsyncioTestCase):
             print(f"swarm: unplugged machine, viewer restored after {away[0]:.1f} s", flush=True)
             self.assertLess(away[0], 15)
 
-            async with ReplayingViewer(self.url(self.manager), TOKEN, Wish(NAMES[0])):
+            async with ReplayingViewer(self.url(self.manager), TOKEN, ViewState(NAMES[0])):
                 print("swarm: a new viewer is served "
                       f"{time.monotonic() - unplugged:.1f} s after the unplugging", flush=True)
             deadline = unplugged + 180

@@ -1,4 +1,4 @@
-"""Compares pictures by the decoders of the protocol's tests."""
+"""Compares images with the decoders of the protocol tests."""
 
 import importlib.util
 import os
@@ -14,14 +14,14 @@ decode_png, decode_jpeg, difference = (_pictures.decode_png, _pictures.decode_jp
                                        _pictures.difference)
 
 BLOCKS = 8
-# By `largest_difference_of_means`. Two releases of Debian have other compilers, Mesa and Embree, so
-# that single rays may hit the other side of an edge; more than half a step of 255 in a part of the
-# picture is none of them.
-SAME_PICTURE = 0.5
+# Limit of `largest_difference_of_means`. Two releases of Debian have different compilers, Mesa and
+# Embree, so that single rays may hit the other side of an edge. That does not change the mean of a
+# block by more than half a code value of 255.
+SAME_IMAGE = 0.5
 
 
 def render(scene, output, *, size=(160, 90), samples=8):
-    """By the program of this build, on this machine."""
+    """Renders with the program of this build, on this machine."""
     run(os.environ["HELIOGRAPH_BINARY"], "render", scene, "-o", output, "--width", str(size[0]),
         "--height", str(size[1]), "--samples", str(samples), timeout=600)
 
@@ -32,7 +32,7 @@ def read(path):
 
 
 def largest_difference_of_means(a, b):
-    """Of 8 x 8 parts of two pictures, 0 to 255: noise averages out, another picture does not."""
+    """The largest difference of the means of 8 x 8 blocks, 0 to 255: noise averages out."""
     a, b = (read(picture) if isinstance(picture, str) else picture for picture in (a, b))
     assert (a.width, a.height) == (b.width, b.height), (a.width, a.height, b.width, b.height)
     return max(abs(x - y) for x, y in zip(_means(a), _means(b)))
