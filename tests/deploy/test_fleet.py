@@ -80,7 +80,7 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
             seen = viewer.frames
             await asyncio.sleep(1.5)
             if viewer.frames == seen:
-                return decode_jpeg(viewer.last_picture)
+                return decode_jpeg(viewer.last_image)
             self.assertLess(time.monotonic(), deadline, "the view never converges")
 
     async def move(self, viewers, seconds):

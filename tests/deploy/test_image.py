@@ -124,7 +124,7 @@ class Image(unittest.IsolatedAsyncioTestCase):
                 sticky = member.isdir() and member.mode & 0o1000
                 writable = not member.issym() and member.mode & 0o002 and member.type in (
                     tarfile.REGTYPE, tarfile.DIRTYPE)
-                self.assertFalse(writable and not sticky, "everybody may write it")
+                self.assertFalse(writable and not sticky, "every user may write it")
                 self.assertFalse(set(member.pax_headers) & {"SCHILY.xattr.security.capability"})
 
     def test_can_write_to_declared_folders_only(self):
@@ -153,15 +153,15 @@ class Image(unittest.IsolatedAsyncioTestCase):
         self.assertFalse(self.reaches_out("alone"))
         await asyncio.to_thread(container.wait_healthy)
         path = "api/v1/sessions/main/frame.png?samples=64"
-        status, _, picture = await asyncio.to_thread(container.get, path)
-        self.assertEqual(status, 200, picture)
+        status, _, image = await asyncio.to_thread(container.get, path)
+        self.assertEqual(status, 200, image)
         scene = os.path.join(self.site.folder, "glossy_sponza_1.glb")
         for name in ("glossy_sponza_1.glb", "glossy_sponza_1.hdr"):
             self.machine.docker("cp", f"alone:/usr/share/heliograph/scenes/{name}",
                                 os.path.join(self.site.folder, name))
         host = os.path.join(self.site.folder, "host.png")
         await asyncio.to_thread(render, scene, host, samples=64)
-        difference = largest_difference_of_means(decode_png(picture), read(host))
+        difference = largest_difference_of_means(decode_png(image), read(host))
         print(f"container: at most {difference:.2f} of 255 from the host's image", flush=True)
         self.assertLess(difference, SAME_IMAGE)
 

@@ -53,7 +53,7 @@ class Schema(unittest.TestCase):
 
     def test_the_check_detects_errors(self):
         for change in (lambda spec: spec.update(replicas="three"),
-                       lambda spec: spec["template"]["spec"].update(runAsNobody=True),
+                       lambda spec: spec["template"]["spec"].update(runAsUnknown=True),
                        lambda spec: spec["template"]["spec"]["containers"][0].pop("name")):
             deployment = copy.deepcopy(one(objects(), "Deployment"))
             change(deployment["spec"])

@@ -100,8 +100,8 @@ class PackageTest:
                 self.assertIsNone(server.poll(), "the server ended")
                 self.assertLess(time.monotonic(), deadline)
                 time.sleep(0.3)
-            picture = f"{address}/api/v1/sessions/main/frame.jpg?samples=1"
-            with urllib.request.urlopen(picture) as answer:
+            image = f"{address}/api/v1/sessions/main/frame.jpg?samples=1"
+            with urllib.request.urlopen(image) as answer:
                 self.assertEqual(answer.read(3), b"\xff\xd8\xff")
         finally:
             server.send_signal(signal.SIGTERM)

@@ -89,8 +89,8 @@ class ServiceTest:
 
     def test_reports_health(self):
         self.booted.run("heliograph", "health")
-        status, _, picture = get(URL + "api/v1/sessions/main/frame.jpg?samples=1")
-        self.assertEqual((status, picture[:3]), (200, b"\xff\xd8\xff"))
+        status, _, image = get(URL + "api/v1/sessions/main/frame.jpg?samples=1")
+        self.assertEqual((status, image[:3]), (200, b"\xff\xd8\xff"))
         self.assertEqual(get(URL + "api/v1/schema", token="wrong-token-0")[0], 401)
 
     def test_writes_its_cache_and_nothing_else(self):

@@ -7,11 +7,11 @@ from .commands import run
 from .files import ROOT
 
 _path = os.path.join(ROOT, "tests/protocol/harness/pictures.py")
-_spec = importlib.util.spec_from_file_location("protocol_pictures", _path)
-_pictures = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(_pictures)
-decode_png, decode_jpeg, difference = (_pictures.decode_png, _pictures.decode_jpeg,
-                                       _pictures.difference)
+_spec = importlib.util.spec_from_file_location("protocol_decoders", _path)
+_decoders = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(_decoders)
+decode_png, decode_jpeg, difference = (_decoders.decode_png, _decoders.decode_jpeg,
+                                       _decoders.difference)
 
 BLOCKS = 8
 # Limit of `largest_difference_of_means`. Two releases of Debian have different compilers, Mesa and
@@ -33,17 +33,17 @@ def read(path):
 
 def largest_difference_of_means(a, b):
     """The largest difference of the means of 8 x 8 blocks, 0 to 255: noise averages out."""
-    a, b = (read(picture) if isinstance(picture, str) else picture for picture in (a, b))
+    a, b = (read(image) if isinstance(image, str) else image for image in (a, b))
     assert (a.width, a.height) == (b.width, b.height), (a.width, a.height, b.width, b.height)
     return max(abs(x - y) for x, y in zip(_means(a), _means(b)))
 
 
-def _means(picture):
+def _means(image):
     sums, counts = [0] * (3 * BLOCKS ** 2), [0] * (3 * BLOCKS ** 2)
-    for index, value in enumerate(picture.rgb):
+    for index, value in enumerate(image.rgb):
         pixel, channel = divmod(index, 3)
-        y, x = divmod(pixel, picture.width)
-        block = (y * BLOCKS // picture.height) * BLOCKS + x * BLOCKS // picture.width
+        y, x = divmod(pixel, image.width)
+        block = (y * BLOCKS // image.height) * BLOCKS + x * BLOCKS // image.width
         sums[3 * block + channel] += value
         counts[3 * block + channel] += 1
     return [total / count for total, count in zip(sums, counts)]

@@ -55,7 +55,7 @@ class ReplayingViewer:
         self.session = f"viewer-{uuid.uuid4().hex[:12]}"
         self.losses = []
         self.frames = 0
-        self.last_picture = None
+        self.last_image = None
         self.longest_gap = 0.0  # seconds between two frames while connected
         self.round_trips = []   # seconds from camera.set to its frame
         self.node = None        # the balancer's cookie
@@ -219,7 +219,7 @@ class ReplayingViewer:
         try:
             async for message in socket:
                 if isinstance(message, bytes):
-                    await self._take_picture(socket, message)
+                    await self._receive_frame(socket, message)
                 else:
                     answer = json.loads(message)
                     waiting = self._answers.pop(answer.get("id"), None)
@@ -240,14 +240,14 @@ class ReplayingViewer:
         if self.losses and self.losses[-1].back_at is None:
             self.losses[-1].back_at = now
 
-    async def _take_picture(self, socket, message):
+    async def _receive_frame(self, socket, message):
         header_bytes, = struct.unpack_from("<H", message, 8)
         frame, = struct.unpack_from("<I", message, 12)
         echo, = struct.unpack_from("<I", message, 20)
         rev, = struct.unpack_from("<I", message, 24)
         now = time.monotonic()
         self.frames += 1
-        self.last_picture = message[header_bytes:]
+        self.last_image = message[header_bytes:]
         if self._last_frame_at is not None:
             self.longest_gap = max(self.longest_gap, now - self._last_frame_at)
         self._last_frame_at = now
