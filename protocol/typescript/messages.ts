@@ -8,16 +8,16 @@ export const subprotocol = "heliograph.v1";
 export interface HelloParams {
   /** Name and version of the client, for the log. */
   client?: string;
-  /** Picture codecs the client can decode, best first. */
+  /** Frame codecs that the client can decode, preferred first. */
   codecs?: string[];
   /**
-   * Of who comes back: the run of the server that `session` was on. Where it is another one, a
-   * place that disturbs nobody is found; `bring` tells of it.
+   * On reconnect: the `instance` of the server process that `session` was on. If it differs, the
+   * server picks a session that other viewers do not use; see `restore_state`.
    */
   instance?: string;
-  /** What the person is called, for the others in the session. */
+  /** Display name, shown to the other viewers of the session. */
   name?: string;
-  /** The session to watch; left out: the one that /ws?session=NAME named, or main. */
+  /** The session to join; absent: the one in /ws?session=NAME, or main. */
   session?: string;
 }
 
@@ -32,61 +32,64 @@ export interface HelloDevice {
 
 export interface HelloLimits {
   /**
-   * Frames the server sends ahead of the newest stream.ack; on a long way more, but no more than 8.
+   * Frames that the server sends ahead of the newest stream.ack; up to 8 where the round trip is
+   * long.
    */
   ack_window: number;
-  /** Most calls of a batch. */
+  /** Maximum number of calls of a batch. */
   max_batch: number;
-  /** Highest picture. [pixels] */
+  /** Maximum frame height. [pixels] */
   max_height: number;
-  /** Longest message the server reads. [bytes] */
+  /** Maximum size of a message to the server. [bytes] */
   max_message_bytes: number;
-  /** Largest scene that the client may send; 0: it may send none. [bytes] */
-  max_upload_bytes: number;
   /**
-   * Most captures of a session that wait for their picture; as many steps may wait beside them, and
-   * as many questions about the picture.
+   * Maximum number of pending captures of a session; also of pending steps, and of pending picks
+   * and inspections.
    */
-  max_waiting: number;
-  /** Widest picture. [pixels] */
+  max_pending: number;
+  /** Maximum size of an uploaded scene; 0: uploads are not allowed. [bytes] */
+  max_upload_bytes: number;
+  /** Maximum frame width. [pixels] */
   max_width: number;
 }
 
 /** Result of hello. */
 export interface Hello {
-  /**
-   * To who comes back from another run: true, to bring the session's state into this one; false,
-   * that somebody who was there too does; null, that no place was found.
-   */
-  bring: boolean | null;
-  /** Why the client's best codec is not used; null if it is. */
+  /** Why the client's preferred codec is not used; null if it is. */
   codec_reason: string | null;
-  /** Codecs of the frames that will come, best first. */
+  /** Codecs of the frames that follow, preferred first. */
   codecs: string[];
-  /** Where pictures are rendered. */
+  /** The device that renders. */
   device: HelloDevice;
   /**
-   * Differs with every run of a server: where it is another, the session starts anew and a client
-   * that comes back says again what it wants.
+   * Identifies this run of the server. If it differs after a reconnect, the session state is lost
+   * and the client sends its requests again.
    */
   instance: string;
-  /** What the server refuses to exceed. */
+  /** Limits of the server. */
   limits: HelloLimits;
-  /** Protocol and its version. */
+  /** Name and version of the protocol. */
   protocol: string;
+  /**
+   * After a reconnect to another run of the server: true: the client restores the session's state;
+   * false: another viewer of that session does; null: no session was available, or this is no
+   * reconnect.
+   */
+  restore_state: boolean | null;
   /** Revision of the session's state. */
   rev: number;
   /**
-   * Whether this client's token lets it steer or only watch; session.info tells who has control.
+   * What the client's token allows: control or view only; session.info tells which viewers have
+   * control.
    */
   role: "view" | "control";
-  /** The session that is watched. */
+  /** The session that the viewer is in. */
   session: string;
-  /** What traces the rays. */
+  /** The ray tracer in use. */
   tracer: "embree" | "software" | "ray_query" | "ray_pipeline";
   /** Version of the server. */
   version: string;
-  /** This viewer's id: the `by` of notifications to the others. */
+  /** This viewer's id: `by` in notifications to other viewers. */
   viewer: string;
 }
 
@@ -99,7 +102,7 @@ export interface SceneEntry {
 
 /** Result of scene.list. */
 export interface SceneList {
-  /** Name of the loaded scene. */
+  /** Name of the loaded scene, or null. */
   current: string | null;
   /** The scenes of the server's catalogue. */
   scenes: SceneEntry[];
@@ -107,55 +110,55 @@ export interface SceneList {
 
 /** Parameters of scene.load. */
 export interface SceneLoadParams {
-  /** A name that scene.list gave. */
+  /** A name from scene.list. */
   name: string;
   /**
-   * Which scene of a file that holds several: its name, or its number from 0. Left out: the file's
+   * The scene to load from a file with several: its name, or its index from 0. Absent: the file's
    * default.
    */
   scene?: string;
-  /** Which of the file's material variants. Left out: the materials outside of them. */
+  /** Material variant of the file to apply. Absent: the default materials. */
   variant?: string;
 }
 
 export interface SceneInfoBounds {
-  /** Greatest corner, world space. [metres] */
+  /** Maximum corner, world space. [metres] */
   max: Vector3;
-  /** Least corner, world space. [metres] */
+  /** Minimum corner, world space. [metres] */
   min: Vector3;
 }
 
 export interface ClipInfo {
-  /** Length; the clip loops. [seconds] */
+  /** Duration; the clip loops. [seconds] */
   duration: number;
   /** Name for animation.play. */
   name: string;
 }
 
 export interface SceneInfoMemory {
-  /** Tables, textures and acceleration structure on the device. [bytes] */
+  /** Tables, textures and acceleration structures on the device. [bytes] */
   device: number;
-  /** The files that were read. [bytes] */
+  /** The files on disk. [bytes] */
   file: number;
-  /** Geometry, animation and tables of the server. [bytes] */
+  /** Geometry, animations and tables in the server's memory. [bytes] */
   host: number;
 }
 
 /** Result of scene.load. */
 export interface SceneInfo {
-  /** Box around everything. */
+  /** Bounding box of the scene. */
   bounds: SceneInfoBounds;
   /** Names for camera.set. */
   cameras: string[];
-  /** What animation.play can play. */
+  /** Animation clips for animation.play. */
   clips: ClipInfo[];
-  /** Meshes that joints or morph targets move. */
+  /** Meshes with skinning or morph targets. */
   deforming: number;
-  /** File of the environment that came with the scene; null: even white. */
+  /** File of the scene's own environment; null: constant white. */
   environment: string | null;
-  /** Different images that textures use. */
+  /** Unique images that textures use. */
   images: number;
-  /** Meshes as placed in the scene. */
+  /** Instances of meshes. */
   instances: number;
   /** Names of the lights. */
   light_names: string[];
@@ -165,83 +168,83 @@ export interface SceneInfo {
   material_names: string[];
   /** Materials. */
   materials: number;
-  /** What the scene takes. */
+  /** Memory use of the scene. */
   memory: SceneInfoMemory;
-  /** Different meshes. */
+  /** Unique meshes. */
   meshes: number;
   /** Name in the catalogue. */
   name: string;
   /** Nodes of the scene's hierarchy. */
   nodes: number;
-  /** Number of the one that is shown. */
+  /** Index of the loaded scene in `scenes`. */
   scene: number;
-  /** Names of the file's scenes, which may be empty. */
+  /** Names of the file's scenes; a name may be empty. */
   scenes: string[];
-  /** Texels of these, at full size. */
+  /** Texels of the images at full size. */
   texels: number;
   /** Textures. */
   textures: number;
   /** Triangles over all instances. */
   triangles: number;
-  /** The one that is shown; null: the file's default. */
+  /** The applied material variant; null: the default materials. */
   variant: string | null;
   /** Names of the file's material variants. */
   variants: string[];
-  /** Vertices of the different meshes. */
+  /** Vertices of the unique meshes. */
   vertices: number;
-  /** What the importer left out, approximated or repaired. */
+  /** What the importer skipped, approximated or repaired. */
   warnings: string[];
 }
 
 /** Result of scene.cancel. */
 export interface SceneCancelResult {
-  /** Whether a scene was being loaded; its scene.load is answered by an error. */
+  /** Whether a load was cancelled; its scene.load returns an error. */
   cancelled: boolean;
 }
 
 /** Result of camera.get. */
 export interface Camera {
-  /** Where the camera is, world space. [metres] */
+  /** Position of the camera, world space. [metres] */
   eye: Vector3;
-  /** The scene camera this is, null once it was moved. */
+  /** Name of the scene camera; null after it was moved. */
   name: string | null;
   /** Revision of the session's state. */
   rev: number;
-  /** The point in the middle of the picture. [metres] */
+  /** The point at the centre of the image. [metres] */
   target: Vector3;
-  /** The direction that points up in the picture. */
+  /** The up direction of the image. */
   up: Vector3;
-  /** Field of view, top to bottom. [degrees] */
+  /** Vertical field of view. [degrees] */
   vertical_fov: number;
 }
 
 /** Parameters of camera.set. */
 export interface CameraSetParams {
-  /** Where the camera is, world space. [metres] */
+  /** Position of the camera, world space. [metres] */
   eye?: Vector3;
-  /** A scene camera to begin from; the other members are applied on top. */
+  /** A scene camera to start from; the other members are applied on top. */
   name?: string;
-  /** The client's own count; frames that show this camera echo it as input_seq_echo. */
+  /** The client's sequence number; frames that show this camera echo it as input_seq_echo. */
   seq?: number;
-  /** The point in the middle of the picture. [metres] */
+  /** The point at the centre of the image. [metres] */
   target?: Vector3;
-  /** The direction that points up in the picture. */
+  /** The up direction of the image. */
   up?: Vector3;
-  /** Field of view, top to bottom. [degrees] */
+  /** Vertical field of view. [degrees] */
   vertical_fov?: number;
 }
 
 /** Parameters of camera.orbit. */
 export interface CameraOrbitParams {
-  /** How far from the target to be. [metres] */
+  /** New distance to the target. [metres] */
   distance?: number;
-  /** Factor on the distance: below 1 comes closer. */
+  /** Factor on the distance: below 1 moves closer. */
   dolly?: number;
-  /** Raises the camera, lowers it below 0; it stops short of straight above and below. [degrees] */
+  /** Positive raises the camera, negative lowers it; it stops short of the poles. [degrees] */
   pitch?: number;
-  /** The client's own count; frames that show this camera echo it as input_seq_echo. */
+  /** The client's sequence number; frames that show this camera echo it as input_seq_echo. */
   seq?: number;
-  /** Turns about the up axis, counter-clockwise seen from above. [degrees] */
+  /** Rotation about the up axis, counter-clockwise seen from above. [degrees] */
   yaw?: number;
 }
 
@@ -255,20 +258,20 @@ export interface SettingsState {
 
 /** Parameters of settings.patch. */
 export interface SettingsPatchParams {
-  /** Part of the settings tree (RFC 7386): null resets to the default. */
+  /** A merge patch of the settings tree (RFC 7386): null resets to the default. */
   patch: JsonObject;
 }
 
 /** Result of settings.patch. */
 export interface AppliedSettings {
-  /** The patch as applied: each null replaced by the value it led to. */
+  /** The patch as applied: each null is replaced by the default value. */
   applied: JsonObject;
   /** Revision of the session's state. */
   rev: number;
 }
 
 export interface PresetInfo {
-  /** What it chooses, in a sentence. */
+  /** Description of the preset. */
   description: string;
   /** Name for settings.preset. */
   name: string;
@@ -276,66 +279,69 @@ export interface PresetInfo {
 
 /** Result of settings.presets. */
 export interface SettingsPresetsResult {
-  /** The presets, each on top of the last, then best. */
+  /** The presets: the paper's steps in order, then best. */
   presets: PresetInfo[];
 }
 
 /** Parameters of settings.preset. */
 export interface SettingsPresetParams {
-  /** A name that settings.presets gave. */
+  /** A name from settings.presets. */
   name: string;
 }
 
 /** Parameters of session.create. */
 export interface SessionCreateParams {
-  /** A session whose scene, camera, clip, settings and size it starts with. */
+  /** A session from which scene, camera, clip, settings and size are copied. */
   copy_of?: string;
-  /** Picture height. [pixels] */
+  /** Frame height. [pixels] */
   height?: number;
-  /** Letters, digits, dots, hyphens and underscores; left out: the server chooses. */
+  /** Letters, digits, dots, hyphens and underscores; absent: the server chooses. */
   name?: string;
-  /** A name that scene.list gave; it is loaded before the answer comes. */
+  /** A name from scene.list; the call returns when the scene is loaded. */
   scene?: string;
-  /** Part of the settings tree (RFC 7386), on top of the server's own or the copied. */
+  /**
+   * A merge patch of the settings tree (RFC 7386), applied to the server's defaults or the copied
+   * settings.
+   */
   settings?: JsonObject;
-  /** Picture width. [pixels] */
+  /** Frame width. [pixels] */
   width?: number;
 }
 
 export interface ViewerInfo {
-  /** Whether it may change what all see. */
+  /** Whether it has control of the session. */
   control: boolean;
-  /** What the person is called; null: nobody said. */
+  /** Display name of the viewer; null: not given. */
   name: string | null;
   /** The viewer's id. */
   viewer: string;
-  /** Whether it is the one that is told this. */
+  /** Whether it is the receiver of this message. */
   you: boolean;
 }
 
 /** Result of session.create. */
 export interface SessionInfo {
-  /** Whether all viewers may change it or only one. */
-  control: "everyone" | "one";
-  /** Picture height. [pixels] */
+  /** Whether all viewers have control (shared) or one viewer (exclusive). */
+  control: "shared" | "exclusive";
+  /** Frame height. [pixels] */
   height: number;
-  /** Time since it last had a viewer, a call or a picture to make. [seconds] */
+  /** Time since the session last had a viewer, a call or a frame to render. [seconds] */
   idle_seconds: number;
   /** Name for session.join. */
   name: string;
   /** Revision of the session's state. */
   rev: number;
-  /** The scene that is shown, null before the first. */
+  /** The loaded scene; null: none. */
   scene: string | null;
-  /** Who is in it, in order of arrival. */
+  /** The viewers in it, in order of arrival. */
   viewers: ViewerInfo[];
-  /** Picture width. [pixels] */
+  /** Frame width. [pixels] */
   width: number;
 }
 
 /** Parameters of session.join. */
 export interface SessionJoinParams {
-  /** A name that session.list gave. */
+  /** A name from session.list. */
   session: string;
 }
 
@@ -345,30 +351,30 @@ export interface SessionJoinResult {
   info: SessionInfo;
   /** Revision of the session's state. */
   rev: number;
-  /** The session that is watched now. */
+  /** The session that the viewer is in now. */
   session: string;
-  /** This viewer's id, the same as before. */
+  /** This viewer's id; it does not change. */
   viewer: string;
 }
 
 export interface SessionListLimits {
   /** Idle time after which a session other than main is closed; 0: never. [seconds] */
   idle_timeout: number;
-  /** Most pixels of the pictures of all sessions together. */
+  /** Maximum sum of the frame sizes of all sessions. */
   pixels: number;
-  /** How many of them are taken. */
+  /** Current sum of the frame sizes. */
   pixels_used: number;
-  /** Most viewers of a session. */
+  /** Maximum number of viewers of a session. */
   session_viewers: number;
-  /** Most sessions. */
+  /** Maximum number of sessions. */
   sessions: number;
-  /** Most viewers of all sessions together. */
+  /** Maximum number of viewers over all sessions. */
   viewers: number;
 }
 
 /** Result of session.list. */
 export interface SessionList {
-  /** What the server refuses to exceed. */
+  /** Limits of the server. */
   limits: SessionListLimits;
   /** All sessions, by name. */
   sessions: SessionInfo[];
@@ -376,58 +382,60 @@ export interface SessionList {
 
 /** Parameters of session.control. */
 export interface SessionControlParams {
-  /**
-   * Where one has control: take it while nobody has it, give it to `viewer`, or release it for
-   * anybody to take.
-   */
+  /** In exclusive mode: take control while it is free, give it to `viewer`, or release it. */
   action?: "take" | "give" | "release";
-  /** Whether everyone has control or one viewer: the one that `viewer` names, else the caller. */
-  mode?: "everyone" | "one";
-  /** The id of who is to have control. */
+  /**
+   * shared: all viewers have control; exclusive: one viewer has, the one that `viewer` names or the
+   * caller.
+   */
+  mode?: "shared" | "exclusive";
+  /** Id of the viewer that gets control. */
   viewer?: string;
 }
 
 /** Parameters of stream.configure. */
 export interface StreamConfigureParams {
-  /** Codec while something moves; one that hello agreed on. */
+  /** Codec of moving frames; one of those that hello returned. */
   codec?: "jpeg" | "h264";
-  /** Picture height. [pixels] */
+  /** Frame height. [pixels] */
   height?: number;
-  /** Most pictures in a second. */
+  /** Maximum frame rate. */
   max_fps?: number;
-  /** Whether no pictures are sent. */
+  /** Whether the stream is paused. */
   paused?: boolean;
   /** Quality on the scale of JPEG, for any codec. */
   quality?: number;
-  /** Format of the final picture: JPEG with all its colour, or PNG without any loss. */
+  /**
+   * Format of the final image of a static view: JPEG without chroma subsampling, or lossless PNG.
+   */
   still?: "jpeg" | "png";
-  /** Picture width. [pixels] */
+  /** Frame width. [pixels] */
   width?: number;
 }
 
 /** Result of stream.configure. */
 export interface StreamSettings {
-  /** Codec while something moves. */
+  /** Codec of moving frames. */
   codec: "jpeg" | "h264";
-  /** Picture height in effect. [pixels] */
+  /** Frame height in effect. [pixels] */
   height: number;
-  /** Most pictures in a second. */
+  /** Maximum frame rate. */
   max_fps: number;
-  /** Whether no pictures are sent. */
+  /** Whether the stream is paused. */
   paused: boolean;
-  /** Quality asked for; a slow way gets less. */
+  /** Requested quality; it is reduced on a slow connection. */
   quality: number;
-  /** Format of the final picture. */
+  /** Format of the final image of a static view. */
   still: "jpeg" | "png";
-  /** Picture width in effect. [pixels] */
+  /** Frame width in effect. [pixels] */
   width: number;
 }
 
 /** Parameters of stream.ack. */
 export interface StreamAckParams {
-  /** The frame's number from its header. */
+  /** `frame_seq` of the frame's header. */
   frame_seq: number;
-  /** Time the client took to decode it. [microseconds] */
+  /** Time that the client took to decode it. [microseconds] */
   decode_us?: number;
   /** Time from its arrival to its display. [microseconds] */
   present_us?: number;
@@ -435,12 +443,12 @@ export interface StreamAckParams {
 
 /** Parameters of stats.subscribe. */
 export interface StatsSubscribeParams {
-  /** Least time between two stats.frame notifications; 0: none. [milliseconds] */
+  /** Minimum time between two stats.frame notifications; 0: no notifications. [milliseconds] */
   interval_ms: number;
 }
 
 export interface BufferInfo {
-  /** What it shows. */
+  /** Content, channels and unit. */
   description: string;
   /** Name for view.buffer and frame.capture. */
   name: string;
@@ -448,19 +456,19 @@ export interface BufferInfo {
 
 /** Result of frame.buffers. */
 export interface FrameBuffersResult {
-  /** What can be shown; `output` comes first. */
+  /** The available buffers; `output` is the first. */
   buffers: BufferInfo[];
 }
 
 /** Parameters of frame.capture. */
 export interface FrameCaptureParams {
-  /** A name that frame.buffers gave. */
+  /** A name from frame.buffers. */
   buffer?: string;
-  /** Format of the file: png and jpeg for people, npy and exr for values. */
+  /** Format of the file: png and jpeg for viewing, npy and exr for values. */
   format?: "png" | "jpeg" | "npy" | "exr";
   /**
-   * Samples per pixel to wait for, at most accumulation.max_samples, one without accumulation;
-   * absent: all of them. The answer tells how many there are.
+   * Samples per pixel to wait for, at most accumulation.max_samples, 1 without accumulation;
+   * absent: wait for the converged frame.
    */
   samples?: number;
 }
@@ -473,127 +481,125 @@ export interface Capture {
   data: string;
   /** Format of the file. */
   format: "png" | "jpeg" | "npy" | "exr";
-  /** Picture height. [pixels] */
+  /** Frame height. [pixels] */
   height: number;
-  /** Samples accumulated in each pixel. */
+  /** Samples accumulated per pixel. */
   samples: number;
-  /** Picture width. [pixels] */
+  /** Frame width. [pixels] */
   width: number;
 }
 
 /** Result of animation.list. */
 export interface AnimationState {
-  /** The clip that poses the scene, null at rest. */
+  /** The clip that poses the scene; null: the default pose. */
   clip: string | null;
   /** The clips of the scene. */
   clips: ClipInfo[];
-  /** Whether time passes by frame.step alone, also while playing. */
+  /** Whether time advances by frame.step only, also while playing. */
   lockstep: boolean;
-  /** Whether time passes. */
+  /** Whether the clip is playing. */
   playing: boolean;
-  /** Seconds of the clip that pass in a second. */
+  /** Playback speed: clip seconds per second. */
   rate: number;
   /** Revision of the session's state. */
   rev: number;
-  /** Where the clip stands. [seconds] */
+  /** Time in the clip. [seconds] */
   seconds: number;
 }
 
 /** Parameters of animation.play. */
 export interface AnimationPlayParams {
-  /**
-   * The clip to play from its start; left out: go on with the one that is there, or play the first.
-   */
+  /** The clip to play from its start; absent: continue the current clip, or play the first. */
   clip?: string;
-  /** Seconds of the clip that pass in a second. */
+  /** Playback speed: clip seconds per second. */
   rate?: number;
 }
 
 /** Parameters of animation.seek. */
 export interface AnimationSeekParams {
-  /** Where the clip shall stand. [seconds] */
+  /** Time in the clip to seek to. [seconds] */
   seconds: number;
 }
 
 /** Parameters of animation.rate. */
 export interface AnimationRateParams {
-  /** Seconds of the clip that pass in a second. */
+  /** Playback speed: clip seconds per second. */
   rate: number;
 }
 
 export interface LightInfo {
-  /** Apparent size of a directional light. [degrees] */
+  /** Apparent diameter of a directional light. [degrees] */
   angular_diameter?: number;
-  /** Members that differ from the scene's file. */
+  /** Members that differ from the scene file. */
   changed: string[];
   /** Linear colour. */
   color: Vector3;
-  /** The way its light travels, world space; not of point lights. */
+  /** Direction of the light rays, world space; absent for point lights. */
   direction?: Vector3;
-  /** Whether it shines. */
+  /** Whether the light is on. */
   enabled: boolean;
-  /** Of a rectangle. [metres] */
+  /** Height of a rectangle. [metres] */
   height?: number;
   /**
    * Factor on the colour: lux (directional), candela (point, spot) or radiance (rectangle, disk).
    */
   intensity: number;
-  /** Name for lights.patch, different for every light. */
+  /** Unique name for lights.patch. */
   name: string;
-  /** Its middle, world space; not of directional. [metres] */
+  /** Centre, world space; absent for directional lights. [metres] */
   position?: Vector3;
-  /** Of point, spot and disk lights. [metres] */
+  /** Radius of point, spot and disk lights. [metres] */
   radius?: number;
-  /** How far a point or spot light reaches; 0: without limit. [metres] */
+  /** Range of point and spot lights; 0: unlimited. [metres] */
   range?: number;
-  /** What kind of light it is. */
+  /** Type of the light. */
   type: "directional" | "point" | "spot" | "rectangle" | "disk";
-  /** Of a rectangle. [metres] */
+  /** Width of a rectangle. [metres] */
   width?: number;
 }
 
 /** Result of lights.list. */
 export interface LightsListResult {
-  /** The lights of the scene as they are now. */
+  /** The lights of the scene with the session's edits. */
   lights: LightInfo[];
   /** Revision of the session's state. */
   rev: number;
 }
 
 export interface LightPatch {
-  /** Larger lights cast softer shadows; the sun's is 0.53. [degrees] */
+  /** Apparent diameter: larger lights cast softer shadows; the sun's is 0.53. [degrees] */
   angular_diameter?: number | null;
   /** Linear colour. */
   color?: Vector3 | null;
-  /** The way its light travels, world space; any length but 0. */
+  /** Direction of the light rays, world space; any length except 0. */
   direction?: Vector3 | null;
-  /** Whether it shines. */
+  /** Whether the light is on. */
   enabled?: boolean | null;
-  /** Of a rectangle. [metres] */
+  /** Height of a rectangle. [metres] */
   height?: number | null;
   /** Factor on the colour. */
   intensity?: number | null;
-  /** Its middle, world space. [metres] */
+  /** Centre, world space. [metres] */
   position?: Vector3 | null;
-  /** Larger lights cast softer shadows. [metres] */
+  /** Radius: larger lights cast softer shadows. [metres] */
   radius?: number | null;
-  /** How far it reaches; 0: without limit. [metres] */
+  /** Range; 0: unlimited. [metres] */
   range?: number | null;
-  /** Of a rectangle. [metres] */
+  /** Width of a rectangle. [metres] */
   width?: number | null;
 }
 
 /** Parameters of lights.patch. */
 export interface LightsPatchParams {
-  /** A name that lights.list gave. */
+  /** A name from lights.list. */
   light: string;
-  /** What shall change (RFC 7386): null brings back what the scene's file says. */
+  /** A merge patch (RFC 7386); null restores the value of the scene file. */
   patch: LightPatch;
 }
 
 /** Result of lights.patch. */
 export interface LightsPatchResult {
-  /** The light as it is now. */
+  /** The light after the change. */
   light: LightInfo;
   /** Revision of the session's state. */
   rev: number;
@@ -602,27 +608,27 @@ export interface LightsPatchResult {
 export interface MaterialInfo {
   /** Linear factor on the texture, if any. */
   base_color: Vector3;
-  /** Members that differ from the scene's file. */
+  /** Members that differ from the scene file. */
   changed: string[];
-  /** Linear radiance given off, factor on the texture, if any. */
+  /** Linear emitted radiance, factor on the texture, if any. */
   emissive: Vector3;
   /** Metalness, factor on the texture, if any. */
   metallic: number;
-  /** Name for materials.patch, different for every one. */
+  /** Unique name for materials.patch. */
   name: string;
-  /** How deep the normal texture goes. */
+  /** Scale of the normal texture. */
   normal_scale: number;
-  /** How dark the occlusion texture gets. */
+  /** Strength of the occlusion texture. */
   occlusion_strength: number;
   /** Perceptual roughness, factor on the texture, if any. */
   roughness: number;
-  /** Which values have a texture. */
+  /** Members that have a texture. */
   textures: string[];
 }
 
 /** Result of materials.list. */
 export interface MaterialsListResult {
-  /** The materials of the scene as they are now. */
+  /** The materials of the scene with the session's edits. */
   materials: MaterialInfo[];
   /** Revision of the session's state. */
   rev: number;
@@ -631,13 +637,13 @@ export interface MaterialsListResult {
 export interface MaterialPatch {
   /** Linear factor. */
   base_color?: Vector3 | null;
-  /** Linear radiance given off. */
+  /** Linear emitted radiance. */
   emissive?: Vector3 | null;
   /** Metalness. */
   metallic?: number | null;
-  /** How deep the normal texture goes. */
+  /** Scale of the normal texture. */
   normal_scale?: number | null;
-  /** How dark the occlusion texture gets. */
+  /** Strength of the occlusion texture. */
   occlusion_strength?: number | null;
   /** Perceptual roughness. */
   roughness?: number | null;
@@ -645,15 +651,15 @@ export interface MaterialPatch {
 
 /** Parameters of materials.patch. */
 export interface MaterialsPatchParams {
-  /** A name that materials.list gave. */
+  /** A name from materials.list. */
   material: string;
-  /** What shall change (RFC 7386): null brings back what the scene's file says. */
+  /** A merge patch (RFC 7386); null restores the value of the scene file. */
   patch: MaterialPatch;
 }
 
 /** Result of materials.patch. */
 export interface MaterialsPatchResult {
-  /** The material as it is now. */
+  /** The material after the change. */
   material: MaterialInfo;
   /** Revision of the session's state. */
   rev: number;
@@ -668,7 +674,7 @@ export interface EnvironmentInfo {
 
 /** Result of environment.list. */
 export interface EnvironmentState {
-  /** The one that was chosen; null: the one that goes with the scene. */
+  /** The chosen environment; null: the scene's own. */
   current: string | null;
   /** The environments of the server's catalogue. */
   environments: EnvironmentInfo[];
@@ -682,64 +688,64 @@ export interface EnvironmentState {
 
 /** Parameters of environment.set. */
 export interface EnvironmentSetParams {
-  /** A name that environment.list gave; null: the one that goes with the scene. */
+  /** A name from environment.list; null: the scene's own. */
   name?: string | null;
-  /** Sets environment.rotation, too. [degrees] */
+  /** Also sets environment.rotation. [degrees] */
   rotation?: number;
 }
 
 /** Parameters of scene.pick. */
 export interface ScenePickParams {
-  /** Share of the picture's width, from the left. */
+  /** Fraction of the image width, from the left. */
   x: number;
-  /** Share of the picture's height, from the top. */
+  /** Fraction of the image height, from the top. */
   y: number;
 }
 
 /** Result of scene.pick. */
 export interface Pick {
-  /** From the camera. [metres] */
+  /** Distance from the camera. [metres] */
   distance: number | null;
-  /** Whether there is a surface; the rest is null if not. */
+  /** Whether there is a surface; if not, the other members are null. */
   hit: boolean;
   /** Name for materials.patch. */
   material: string | null;
-  /** Of its triangle, toward the camera, world space. */
+  /** Geometric normal, facing the camera, world space. */
   normal: Vector3 | null;
-  /** Name of its node, else of its mesh. */
+  /** Name of the node, otherwise of the mesh. */
   object: string | null;
-  /** The point on it, world space. [metres] */
+  /** Position on the surface, world space. [metres] */
   position: Vector3 | null;
 }
 
 export interface BufferValue {
-  /** The buffer. */
+  /** Name of the buffer. */
   name: string;
-  /** Of the values; empty: plain numbers. */
+  /** Unit of the values; empty: dimensionless. */
   unit: string;
-  /** Its channels there, which frame.buffers explains; null is no finite number. */
+  /** Values of its channels, which frame.buffers describes; null: not finite. */
   value: (number | null)[];
 }
 
 /** Result of frame.inspect. */
 export interface Inspection {
-  /** Every buffer's value at that pixel. */
+  /** The value of every buffer at that pixel. */
   buffers: BufferValue[];
-  /** The pixel that was read, from the left. */
+  /** Column of the pixel, from the left. */
   column: number;
-  /** Of the picture it was read from. [pixels] */
+  /** Height of the image. [pixels] */
   height: number;
-  /** And from the top. */
+  /** Row of the pixel, from the top. */
   row: number;
-  /** Of the picture it was read from. [pixels] */
+  /** Width of the image. [pixels] */
   width: number;
 }
 
 /** Parameters of frame.step. */
 export interface FrameStepParams {
-  /** How much time passes before each of them. [seconds] */
+  /** Time step before each frame. [seconds] */
   dt: number;
-  /** How many frames to render; 0 enters lockstep and renders none. */
+  /** Number of frames to render; 0 enters lockstep without rendering. */
   frames?: number;
 }
 
@@ -747,53 +753,53 @@ export interface FrameStepParams {
 export interface LockstepState {
   /** Frames rendered since lockstep was entered. */
   frames: number;
-  /** Whether time passes by frame.step alone. */
+  /** Whether time advances by frame.step only. */
   lockstep: boolean;
   /** Revision of the session's state. */
   rev: number;
-  /** Samples accumulated in the newest of them. */
+  /** Samples per pixel accumulated in the newest frame. */
   samples: number;
-  /** Time that passed since lockstep was entered. [seconds] */
+  /** Time since lockstep was entered. [seconds] */
   seconds: number;
 }
 
 /** Parameters of reference.start. */
 export interface ReferenceStartParams {
-  /** Samples per pixel to gather: the setting accumulation.max_samples. */
+  /** Samples per pixel to accumulate: sets accumulation.max_samples. */
   samples?: number;
-  /** Which light paths: the setting reference.scope. */
+  /** Light paths to trace: sets reference.scope. */
   scope?: "same_paths" | "full";
 }
 
 /** Result of reference.start. */
 export interface ReferenceState {
-  /** Whether it has them. */
+  /** Whether the target is reached. */
   finished: boolean;
   /** Revision of the session's state. */
   rev: number;
-  /** Samples gathered in each pixel so far. */
+  /** Samples per pixel accumulated so far. */
   samples: number;
-  /** Which light paths it follows. */
+  /** Light paths that are traced. */
   scope: "same_paths" | "full";
-  /** Whether the path traced truth is shown: the setting reference.use is always. */
+  /** Whether the reference image is shown: the setting reference.use is always. */
   shown: boolean;
-  /** Samples that it will have at the end. */
-  wanted: number;
+  /** Samples per pixel of the finished image. */
+  target_samples: number;
 }
 
 /** Parameters of the notification session.closed. */
 export interface SessionClosedNotification {
-  /** Why, in a sentence. */
+  /** The reason, as a sentence. */
   reason: string;
-  /** The session that has ended. */
+  /** The session that was closed. */
   session: string;
 }
 
 /** Parameters of the notification device.changed. */
 export interface DeviceChangedNotification {
-  /** What happened, in a sentence. */
+  /** What happened, as a sentence. */
   message: string;
-  /** Whether pictures are made. */
+  /** Whether frames can be rendered. */
   ready: boolean;
 }
 
@@ -811,13 +817,13 @@ export interface SettingsChangedNotification {
 export interface CameraChangedNotification {
   /** The viewer that moved it; empty: the server. */
   by: string;
-  /** The camera now. */
+  /** The camera after the change. */
   camera: Camera;
 }
 
 /** Parameters of the notification animation.changed. */
 export interface AnimationChangedNotification {
-  /** Where the clip stands now, and how. */
+  /** The new state of playback. */
   animation: AnimationState;
   /** The viewer that changed it; empty: the server. */
   by: string;
@@ -825,25 +831,25 @@ export interface AnimationChangedNotification {
 
 /** Parameters of the notification lockstep.changed. */
 export interface LockstepChangedNotification {
-  /** The viewer that began or ended lockstep; empty: the server. */
+  /** The viewer that entered or left lockstep; empty: the server. */
   by: string;
-  /** What frame.step would answer now. */
+  /** The state that frame.step would return now. */
   state: LockstepState;
 }
 
 /** Parameters of the notification scene.progress. */
 export interface SceneProgress {
-  /** How much is done. */
+  /** Fraction of the work that is done. */
   fraction: number;
   /** The scene that is being loaded. */
   name: string;
-  /** What is being done. */
+  /** Stage of loading. */
   stage: string;
 }
 
 /** Parameters of the notification scene.changed. */
 export interface SceneChangedNotification {
-  /** The scene that is shown now. */
+  /** The scene that was loaded. */
   scene: SceneInfo;
 }
 
@@ -851,7 +857,7 @@ export interface SceneChangedNotification {
 export interface SceneUnloadedNotification {
   /** The viewer that unloaded it; empty: the server. */
   by: string;
-  /** The scene that was shown. */
+  /** The scene that was unloaded. */
   name: string;
 }
 
@@ -859,7 +865,7 @@ export interface SceneUnloadedNotification {
 export interface LightsChangedNotification {
   /** The viewer that changed it; empty: the server. */
   by: string;
-  /** The light as it is now. */
+  /** The light after the change. */
   light: LightInfo;
   /** Revision of the session's state. */
   rev: number;
@@ -869,7 +875,7 @@ export interface LightsChangedNotification {
 export interface MaterialsChangedNotification {
   /** The viewer that changed it; empty: the server. */
   by: string;
-  /** The material as it is now. */
+  /** The material after the change. */
   material: MaterialInfo;
   /** Revision of the session's state. */
   rev: number;
@@ -879,16 +885,16 @@ export interface MaterialsChangedNotification {
 export interface EnvironmentChangedNotification {
   /** The viewer that chose it; empty: the server. */
   by: string;
-  /** The one that was chosen; null: the one that goes with the scene. */
+  /** The chosen environment; null: the scene's own. */
   current: string | null;
   /** Revision of the session's state. */
   rev: number;
 }
 
 export interface PassTiming {
-  /** Where it ran: a shader or the processor. */
+  /** Where it ran: device (a shader) or host (the CPU). */
   kind: "device" | "host";
-  /** How long it took. [milliseconds] */
+  /** Duration. [milliseconds] */
   ms: number;
   /** Name of the pass. */
   name: string;
@@ -896,37 +902,37 @@ export interface PassTiming {
 
 /** Parameters of the notification stats.frame. */
 export interface FrameStats {
-  /** Size of the picture this viewer was sent last. [bytes] */
+  /** Size of the last frame sent to this viewer. [bytes] */
   bytes: number;
-  /** Codec chosen for this viewer while something moves. */
+  /** Codec of moving frames chosen for this viewer. */
   codec: "jpeg" | "h264";
-  /** Time to encode it. [milliseconds] */
+  /** Time to encode the frame. [milliseconds] */
   encode_ms: number;
-  /** Pictures rendered in the last second. */
+  /** Frames rendered in the last second. */
   fps: number;
-  /** Time to render it. [milliseconds] */
+  /** Time to render the frame. [milliseconds] */
   frame_ms: number;
-  /** What reaches this viewer when it is busy. [bytes per second] */
+  /** Measured throughput to this viewer while frames are in flight. [bytes per second] */
   goodput: number;
-  /** Picture height. [pixels] */
+  /** Frame height. [pixels] */
   height: number;
-  /** The frame's passes in their order. */
+  /** The frame's passes in execution order. */
   passes: PassTiming[];
-  /** Quality chosen for this viewer while something moves. */
+  /** Quality of moving frames chosen for this viewer. */
   quality: number;
-  /** The picture these figures are of. */
+  /** The rendered frame that the other members describe. */
   render_id: number;
-  /** From sending a picture to this viewer to its acknowledgement. [milliseconds] */
+  /** Time from sending a frame to this viewer to its acknowledgement. [milliseconds] */
   round_trip_ms: number;
-  /** Samples accumulated in each pixel. */
+  /** Samples accumulated per pixel. */
   samples: number;
-  /** Size chosen for this viewer while something moves, as a part of the whole size. */
+  /** Scale of moving frames chosen for this viewer, relative to the full size. */
   scale: number;
-  /** Whether the stream follows changes, refines a resting picture, or is done. */
-  state: "interactive" | "refining" | "still";
-  /** What traced the rays. */
+  /** interactive: follows changes; refining: refines a static view; idle: finished. */
+  state: "interactive" | "refining" | "idle";
+  /** The ray tracer in use. */
   tracer: "embree" | "software" | "ray_query" | "ray_pipeline";
-  /** Picture width. [pixels] */
+  /** Frame width. [pixels] */
   width: number;
 }
 

@@ -131,7 +131,7 @@ testWithTwo("viewers of a failed server meet in a session of their own on anothe
   const after = await here.call("session.info");
   assert.deepEqual(
     [after.rev, after.scene, after.viewers.length, after.control],
-    [before.rev, before.scene, 1, "one"],
+    [before.rev, before.scene, 1, "exclusive"],
     "the bystander's session was affected",
   );
   const link = await linkToJoin(first.page);

@@ -13,7 +13,7 @@ function session(control: SessionInfo["control"], ...viewers: ViewerInfo[]): Ses
 }
 
 test("a viewer with control may change the session, also without session info", () => {
-  const alone = session("everyone", viewer("v1", null, true, true));
+  const alone = session("shared", viewer("v1", null, true, true));
   assert.equal(controlStateOf(alone, undefined).kind, "may_change");
   assert.equal(controlStateOf(null, "control").kind, "may_change");
   assert.equal(describeControl(controlStateOf(alone, undefined)), "");
@@ -21,15 +21,15 @@ test("a viewer with control may change the session, also without session info", 
 
 test("viewers without control see the name or number of the one in control", () => {
   const me = viewer("v2", null, false, true);
-  const named = controlStateOf(session("one", viewer("v1", "Ada", true), me), "control");
+  const named = controlStateOf(session("exclusive", viewer("v1", "Ada", true), me), "control");
   assert.match(describeControl(named), /^Ada is in control/);
-  const nameless = controlStateOf(session("one", viewer("v1", null, true), me), "control");
+  const nameless = controlStateOf(session("exclusive", viewer("v1", null, true), me), "control");
   assert.match(describeControl(nameless), /^Viewer 1 is in control/);
-  assert.equal(controlStateOf(session("one", me), "control").kind, "unclaimed");
+  assert.equal(controlStateOf(session("exclusive", me), "control").kind, "unclaimed");
 });
 
 test("a viewer is read-only by its role, or without control in shared mode", () => {
   const me = viewer("v1", null, false, true);
-  assert.equal(controlStateOf(session("everyone", me), undefined).kind, "read_only");
-  assert.equal(controlStateOf(session("one", me), "view").kind, "read_only");
+  assert.equal(controlStateOf(session("shared", me), undefined).kind, "read_only");
+  assert.equal(controlStateOf(session("exclusive", me), "view").kind, "read_only");
 });

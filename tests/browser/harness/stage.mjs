@@ -138,7 +138,7 @@ export class Stage {
       // Its last viewer may have closed it.
       await this.server.call("session.close", { session: name }).catch(() => {});
     }
-    await this.server.call("session.control", { mode: "everyone" });
+    await this.server.call("session.control", { mode: "shared" });
   }
 
   async describeFailure(name) {

@@ -81,8 +81,8 @@ export function mountParticipants(
   root.append(opener, card);
 
   mode.addEventListener("click", () => {
-    const exclusive = viewer.session.value?.control === "one";
-    void viewer.setControl({ mode: exclusive ? "everyone" : "one" });
+    const exclusive = viewer.session.value?.control === "exclusive";
+    void viewer.setControl({ mode: exclusive ? "shared" : "exclusive" });
   });
   // Without a connection the list is out of date.
   const updateVisibility = (): void => {
@@ -97,7 +97,7 @@ export function mountParticipants(
     setText(count, String(session.viewers.length));
     opener.setAttribute("aria-label", `Participants: ${session.viewers.length}`);
     setText(sessionName, `Session ${session.name}`);
-    const exclusive = session.control === "one";
+    const exclusive = session.control === "exclusive";
     setText(mode, exclusive ? "Share control with all viewers" : "Take exclusive control");
     mode.hidden = !me?.control;
     const claimed = session.viewers.some(({ control }) => control);
@@ -114,8 +114,8 @@ export function mountParticipants(
     const session = viewer.session.value;
     const me = session?.viewers.find(({ you }) => you);
     const name = viewerName(participant, index);
-    const inControl = session?.control === "one" && participant.control;
-    const canHandOver = session?.control === "one" && me?.control && !participant.you;
+    const inControl = session?.control === "exclusive" && participant.control;
+    const canHandOver = session?.control === "exclusive" && me?.control && !participant.you;
     return element(
       "li",
       {},

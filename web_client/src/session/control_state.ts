@@ -18,7 +18,7 @@ export function controlStateOf(
   if (role === "view") return { kind: "read_only" };
   const me = session?.viewers.find(({ you }) => you);
   if (!session || !me || me.control) return { kind: "may_change" };
-  if (session.control === "everyone") return { kind: "read_only" };
+  if (session.control === "shared") return { kind: "read_only" };
   const index = session.viewers.findIndex(({ control }) => control);
   const holder = session.viewers[index];
   return holder ? { kind: "other", name: viewerName(holder, index) } : { kind: "unclaimed" };
