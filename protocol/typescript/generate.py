@@ -82,7 +82,7 @@ def parameters_as_object(params):
 
 
 def identity(schema):
-    """Equal for two schemas of the same object, whatever the place that it is used in says of it."""
+    """Equal for two schemas of the same object, even if their own descriptions differ."""
     members = {name: json.dumps(member, sort_keys=True)
                for name, member in schema["properties"].items()}
     return json.dumps([members, sorted(schema.get("required", []))], sort_keys=True)

@@ -94,13 +94,13 @@ stage.test("on a phone the panel is a sheet and one finger orbits", async () => 
     async () => JSON.stringify((await stage.server.call("camera.get")).eye) !== eyeBefore,
     "an orbit by finger",
   );
-  const apart = await staticCamera(page, stage.server);
+  const before = await staticCamera(page, stage.server);
   await pinch(page, { x: 180, y: 300 });
   await eventually(async () => {
     const { eye, target } = await stage.server.call("camera.get");
-    const closer = distance(eye, target) < 0.9 * distance(apart.eye, apart.target);
-    return closer && distance(target, apart.target) > 0;
-  }, "a pinch to move closer and aside");
+    const closer = distance(eye, target) < 0.9 * distance(before.eye, before.target);
+    return closer && distance(target, before.target) > 0;
+  }, "a pinch to zoom and pan");
 
   await page.getByRole("button", { name: "Show panel" }).tap();
   await eventually(async () => (await panel.boundingBox()).y < 500, "an open sheet");

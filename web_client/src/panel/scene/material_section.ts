@@ -19,10 +19,10 @@ interface MaterialSection {
 
 export function createMaterialSection(parts: SceneParts): MaterialSection {
   const select = element("select", { name: "material", change: () => show() });
-  const chosen = (): MaterialInfo | undefined =>
+  const selected = (): MaterialInfo | undefined =>
     parts.materials.value.find(({ name }) => name === select.value) ?? parts.materials.value[0];
   const patch = (change: Partial<MaterialInfo>): void => {
-    const material = chosen();
+    const material = selected();
     if (material) parts.patchMaterial(material.name, change);
   };
   const fraction = (label: string, description: string, report: (value: number) => void) =>
@@ -47,10 +47,10 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
     input: () => patch({ base_color: linearColour(colour.value) }),
   });
   const reset = button("Reset this material", "reset", () => {
-    const material = chosen();
+    const material = selected();
     if (material) void parts.resetMaterial(material.name);
   });
-  const sweep = createSweep((value) => patch({ roughness: value }), () => chosen()?.roughness);
+  const sweep = createSweep((value) => patch({ roughness: value }), () => selected()?.roughness);
   const body = element(
     "div",
     { class: "section-body" },
@@ -61,7 +61,7 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
     sweep,
   );
   const show = (): void => {
-    const material = chosen();
+    const material = selected();
     if (!material) return;
     select.value = material.name;
     roughness.show(material.roughness);
