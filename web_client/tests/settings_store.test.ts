@@ -26,7 +26,10 @@ interface Request {
 async function connected() {
   const sent: Request[] = [];
   const errors: unknown[] = [];
-  const rpc: RpcPeer = new RpcPeer((text) => sent.push(JSON.parse(text) as Request), () => {});
+  const rpc: RpcPeer = new RpcPeer(
+    (text) => sent.push(JSON.parse(text) as Request),
+    () => {},
+  );
   rpc.open();
   const answer = async (body: object): Promise<Request> => {
     const request = sent.shift();

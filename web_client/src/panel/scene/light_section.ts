@@ -87,7 +87,10 @@ export function createLightSection(parts: SceneParts): HTMLElement {
   const section = createSection({ id: "lights", title: "Lights", body, openByDefault: true });
   parts.lights.watch((lights) => {
     section.hidden = lights.length === 0;
-    setOptions(select, lights.map(({ name }) => ({ value: name, label: name })));
+    setOptions(
+      select,
+      lights.map(({ name }) => ({ value: name, label: name })),
+    );
     show();
   });
   return section;

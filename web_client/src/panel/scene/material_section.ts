@@ -37,7 +37,7 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
   );
   const metallic = fraction(
     "Metallic",
-    "Whether the surface is a metal (1) or a dielectric (0). A factor on the texture, if there is one.",
+    "Metal (1) or dielectric (0). A factor on the texture, if there is one.",
     (value) => patch({ metallic: value }),
   );
   const colour = element("input", {
@@ -50,7 +50,10 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
     const material = selected();
     if (material) void parts.resetMaterial(material.name);
   });
-  const sweep = createSweep((value) => patch({ roughness: value }), () => selected()?.roughness);
+  const sweep = createSweep(
+    (value) => patch({ roughness: value }),
+    () => selected()?.roughness,
+  );
   const body = element(
     "div",
     { class: "section-body" },
@@ -71,7 +74,10 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
   const node = createSection({ id: "materials", title: "Materials", body, openByDefault: false });
   parts.materials.watch((materials) => {
     node.hidden = materials.length === 0;
-    setOptions(select, materials.map(({ name }) => ({ value: name, label: name })));
+    setOptions(
+      select,
+      materials.map(({ name }) => ({ value: name, label: name })),
+    );
     show();
   });
   const choose = (name: string): void => {
