@@ -92,7 +92,7 @@ void expect_the_same(const std::string& scene, float roughness, float angle, Sta
 
 class Grid : public testing::TestWithParam<std::tuple<std::string, float>> {};
 
-TEST_P(Grid, ConvergesToTheSamePaths) {
+TEST_P(Grid, HybridConvergesToReference) {
   const auto& [scene, roughness] = GetParam();
   Stand stand(scene, roughness);
   for (const float angle : angles) expect_the_same(scene, roughness, angle, stand);
@@ -122,7 +122,7 @@ struct Cell {
 /// Every scene, every roughness and every angle at least once, for the tests of every day.
 class Cover : public testing::TestWithParam<Cell> {};
 
-TEST_P(Cover, ConvergesToTheSamePaths) {
+TEST_P(Cover, HybridConvergesToReference) {
   const auto [scene, roughness, angle] = GetParam();
   Stand stand(scene, roughness);
   expect_the_same(scene, roughness, angle, stand);
@@ -136,7 +136,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Cell{"pillars", 0.6f, 6.0f}, Cell{"breakfast_room", 0.0f, 10.0f}),
     [](const auto& tested) { return std::string(tested.param.scene); });
 
-TEST(RelativeDifference, ComesWithItsError) {
+TEST(RelativeDifference, HasStandardError) {
   const double got[] = {1.01, 1.03, 1.02, 1.02};
   const double expected[] = {1.0, 1.0, 1.0, 1.0};
   const RelativeDifference found = relative_difference(got, expected);

@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(
                                      Movement::moving_objects_light)),
     name_of);
 
-TEST_P(Ladder, BestIsAtLeastAsGoodAsEachRungAndBeatsSvgfWhereThingsMove) {
+TEST_P(Ladder, BestMatchesEveryPresetAndBeatsSvgfInMotion) {
   const auto& [place, movement] = GetParam();
   const auto quality = climb(
       place, {.movement = movement, .frames = 24, .compared = 2, .frame_seconds = 1.0f / 30.0f});

@@ -72,7 +72,7 @@ class Twins {
   render::Composed shader_, host_;
 };
 
-class ComposeHost : public testing::Test {
+class ComposeKernel : public testing::Test {
  protected:
   void SetUp() override {
     if (!has_host_kernels()) GTEST_SKIP() << "host kernels are for devices that are processors";
@@ -89,7 +89,7 @@ void expect_same(const View& view, const std::string& which) {
   }
 }
 
-TEST_F(ComposeHost, DoesWhatTheShaderDoes) {
+TEST_F(ComposeKernel, MatchesShader) {
   for (const bool denoised : {true, false}) {
     for (const bool mirrors : {true, false}) {
       for (const bool orthographic : {true, false}) {
@@ -102,7 +102,7 @@ TEST_F(ComposeHost, DoesWhatTheShaderDoes) {
   }
 }
 
-TEST_F(ComposeHost, FollowsEverySwitch) {
+TEST_F(ComposeKernel, MatchesShaderForEverySwitch) {
   for (int which = 0; which < 6; ++which) {
     View view;
     view.settings.lighting.direct = which != 0;
@@ -118,7 +118,7 @@ TEST_F(ComposeHost, FollowsEverySwitch) {
   }
 }
 
-TEST_F(ComposeHost, LeavesThePrefilteredEnvironmentToTheShader) {
+TEST_F(ComposeKernel, PrefilteredEnvironmentRunsOnDevice) {
   View view;
   view.settings.specular.max_roughness = 0.3f;
   Twins twins(view);
@@ -129,13 +129,13 @@ TEST_F(ComposeHost, LeavesThePrefilteredEnvironmentToTheShader) {
   EXPECT_EQ(twins.hdr().worst, 0.0);
 }
 
-TEST_F(ComposeHost, WorksAtEverySize) {
+TEST_F(ComposeKernel, MatchesShaderAtAnySize) {
   for (const VkExtent2D extent : {VkExtent2D{1, 1}, {3, 5}, {16, 2}, {17, 31}, {130, 1}}) {
     expect_same({.extent = extent}, std::to_string(extent.width) + " wide");
   }
 }
 
-TEST_F(ComposeHost, IsFasterThanTheShader) {
+TEST_F(ComposeKernel, IsFasterThanShader) {
   Twins twins({.extent = {640, 360}});
   expect_faster(twins.rig(), {"compose"}, 2.0);
 }

@@ -71,7 +71,7 @@ protocol::Settings only_direct() {
   return settings;
 }
 
-TEST(Compose, SunOnADielectricPlaneIsAnalytic) {
+TEST(Compose, SunOnDielectricPlaneIsAnalytic) {
   for (const float degrees : {0.0f, 30.0f, 60.0f, 80.0f}) {
     const float angle = glm::radians(degrees);
     SceneBuilder scene;
@@ -91,7 +91,7 @@ TEST(Compose, SunOnADielectricPlaneIsAnalytic) {
   }
 }
 
-TEST(Compose, LightFromBehindTheSurfaceIsNone) {
+TEST(Compose, LightFromBehindContributesNothing) {
   SceneBuilder scene;
   scene.add_sun({0.2f, 0, 1}, glm::vec3(4.0f));
   Inputs in;
@@ -114,7 +114,7 @@ TEST(Compose, ShadowScalesDirectLightOnly) {
   EXPECT_NEAR(compose(scene, in).x, 1.0f, 0.02f) << "a white plane in a white furnace";
 }
 
-TEST(Compose, AmbientVisibilityAndOcclusionMapScaleTheEnvironment) {
+TEST(Compose, AmbientVisibilityAndOcclusionMapScaleEnvironment) {
   SceneBuilder scene;
   Inputs in;
   const float open = compose(scene, in).x;
@@ -126,7 +126,7 @@ TEST(Compose, AmbientVisibilityAndOcclusionMapScaleTheEnvironment) {
   EXPECT_NEAR(compose(scene, in).x, 0.2f * open, 1e-4f);
 }
 
-TEST(Compose, TracedReflectionsTakeThePlaceOfTheMirroredEnvironment) {
+TEST(Compose, TracedReflectionsReplacePrefilteredEnvironment) {
   SceneBuilder scene;
   Inputs in;
   in.pixel.metallic = 1.0f;
@@ -145,7 +145,7 @@ TEST(Compose, TracedReflectionsTakeThePlaceOfTheMirroredEnvironment) {
   EXPECT_NEAR(compose(scene, in).x, 0.25f, 0.01f) << "the prefiltered environment";
 }
 
-TEST(Compose, DenoisedSignalsMakeThePictureAndRawOnesTheSample) {
+TEST(Compose, DenoisedSignalsMakeHdrAndNoisyOnesMakeSample) {
   SceneBuilder scene;
   scene.add_sun({0, 0, -1}, glm::vec3(4.0f));
   Inputs in;
@@ -166,7 +166,7 @@ TEST(Compose, DenoisedSignalsMakeThePictureAndRawOnesTheSample) {
   EXPECT_NE(raw, filtered);
 }
 
-TEST(Compose, UnlitShowsItsColourAndEmissionIsAdded) {
+TEST(Compose, UnlitShowsBaseColorPlusEmission) {
   SceneBuilder scene;
   scene.add_sun({0, 0, -1}, glm::vec3(4.0f));
   Inputs in;
@@ -181,7 +181,7 @@ TEST(Compose, UnlitShowsItsColourAndEmissionIsAdded) {
   EXPECT_NEAR(compose(scene, in).z, in.pixel.color.x, 1e-5f);
 }
 
-TEST(Compose, BackgroundShowsWhereNothingIs) {
+TEST(Compose, BackgroundShowsWhereNoSurfaceIs) {
   SceneBuilder scene;
   Inputs in;
   in.pixel.view_z = 0.0f;
@@ -189,7 +189,7 @@ TEST(Compose, BackgroundShowsWhereNothingIs) {
   EXPECT_EQ(compose(scene, in), in.background);
 }
 
-TEST(Compose, ABadValueBecomesBlackInsteadOfSpreading) {
+TEST(Compose, NaNBecomesBlack) {
   SceneBuilder scene;
   scene.add_sun({0, 0, -1}, glm::vec3(4.0f));
   Inputs in;

@@ -148,14 +148,14 @@ shared::AtrousConstants constants(int level, int columns, int rows, std::uint32_
   return made;
 }
 
-class AtrousHost : public testing::TestWithParam<Signal> {
+class AtrousKernel : public testing::TestWithParam<Signal> {
  protected:
   void SetUp() override {
     if (!device().is_cpu()) GTEST_SKIP() << "host kernels are for devices that are processors";
   }
 };
 
-TEST_P(AtrousHost, DoesWhatTheShaderDoes) {
+TEST_P(AtrousKernel, MatchesShader) {
   for (const bool orthographic : {false, true}) {
     AtrousRig rig({77, 45}, GetParam(), orthographic);
     for (const auto& [columns, rows] : {std::pair(2, 2), {2, 0}, {0, 2}}) {
@@ -177,7 +177,7 @@ TEST_P(AtrousHost, DoesWhatTheShaderDoes) {
   }
 }
 
-TEST_P(AtrousHost, WorksAtEverySize) {
+TEST_P(AtrousKernel, MatchesShaderAtAnySize) {
   for (const VkExtent2D extent : {VkExtent2D{1, 1}, {3, 5}, {16, 2}, {17, 31}, {130, 1}}) {
     AtrousRig rig(extent, GetParam());
     for (const int level : {0, 4}) {
@@ -187,7 +187,7 @@ TEST_P(AtrousHost, WorksAtEverySize) {
   }
 }
 
-TEST_P(AtrousHost, IsFasterThanTheShader) {
+TEST_P(AtrousKernel, IsFasterThanShader) {
   AtrousRig rig({640, 360}, GetParam());
   const std::string kind = GetParam() == Signal::visibility ? "visibility" : "specular";
   double shader = 0.0, host = 0.0;
@@ -206,7 +206,8 @@ TEST_P(AtrousHost, IsFasterThanTheShader) {
   EXPECT_GT(shader, 1.5 * host);
 }
 
-INSTANTIATE_TEST_SUITE_P(Signals, AtrousHost, testing::Values(Signal::visibility, Signal::specular),
+INSTANTIATE_TEST_SUITE_P(Signals, AtrousKernel,
+                         testing::Values(Signal::visibility, Signal::specular),
                          [](const auto& test) {
                            return test.param == Signal::visibility ? "visibility" : "specular";
                          });

@@ -178,7 +178,7 @@ INSTANTIATE_TEST_SUITE_P(Signals, Atrous, testing::Bool(), [](const auto& instan
   return instance.param ? "specular" : "visibility";
 });
 
-TEST_P(Atrous, IsThePapersSumOnRandomInput) {
+TEST_P(Atrous, MatchesReferenceOnRandomInput) {
   for (const float start : {2.0f, -1.0f}) {
     for (const std::uint32_t flags : {0u, shared::atrous_variance_prefilter}) {
       const Input in(7);
@@ -201,7 +201,7 @@ TEST_P(Atrous, IsThePapersSumOnRandomInput) {
   }
 }
 
-TEST_P(Atrous, LeavesAConstantAloneWithEitherKernel) {
+TEST_P(Atrous, ConstantSignalIsUnchanged) {
   Input in(1);
   for (auto& value : in.signal) value = glm::vec4(0.5f, 0.5f, 0.5f, 0.5f);
   for (const auto kernel : {protocol::BlurKernel::full, protocol::BlurKernel::separable}) {
@@ -211,7 +211,7 @@ TEST_P(Atrous, LeavesAConstantAloneWithEitherKernel) {
   }
 }
 
-TEST_P(Atrous, KeepsTheEdgeBetweenTwoSurfaces) {
+TEST_P(Atrous, PreservesEdgesBetweenSurfaces) {
   const std::array upper{glm::vec4(0, 0, 1.5f, 5), glm::vec4(0, 0, 1.5f, 5)};
   const std::array lower{glm::vec4(0, 1.5f, 0, 5),
                          glm::vec4(0, 0, 1.5f, 50)};  // turned, far behind
@@ -236,7 +236,7 @@ TEST_P(Atrous, KeepsTheEdgeBetweenTwoSurfaces) {
   }
 }
 
-TEST_P(Atrous, TakesMostNoiseAwayFromAnEvenSurface) {
+TEST_P(Atrous, ReducesNoiseAndVarianceOnUniformSurface) {
   Input in(3);
   for (std::size_t i = 0; i < pixels; ++i) {
     in.guide[i] = glm::vec4(0, 0, 1.3f, 5.0f);
@@ -259,7 +259,7 @@ TEST_P(Atrous, TakesMostNoiseAwayFromAnEvenSurface) {
   }
 }
 
-TEST_P(Atrous, NeverReadsTheBackgroundNorFiltersIt) {
+TEST_P(Atrous, IgnoresBackground) {
   Input in(5);
   for (std::size_t i = 0; i < pixels; ++i) {
     if (in.guide[i].w == 0.0f) in.signal[i] = glm::vec4(1e6f);
@@ -300,16 +300,16 @@ void expect_levels(std::uint32_t flag, const std::array<float, 3>& roughness) {
   }
 }
 
-TEST(AtrousLevels, FollowTheRoughnessWhereHitsBringNoNoise) {
+TEST(AtrousLevels, FollowRoughnessForNoiseFreeHits) {
   expect_levels(shared::atrous_levels_by_roughness, {0.0f, 0.04f, 0.6f});
 }
 
 // Lobes less than a pixel wide, one to two pixels, and more than all iterations reach.
-TEST(AtrousLevels, EndWhereTheLobeOfASmoothSurfaceEnds) {
+TEST(AtrousLevels, AreLimitedBySpecularLobeWidth) {
   expect_levels(shared::atrous_lobe_limit, {0.01f, 0.17f, 0.9f});
 }
 
-TEST(AtrousHalves, OfThePaperUpdateTheVarianceInTheSecondAlone) {
+TEST(SeparableAtrous, UpdatesVarianceInSecondPassOnly) {
   protocol::Settings settings;
   settings.specular_blur.variance_update = protocol::VarianceUpdate::vertical_only;
   const auto flags = [&](bool first) {

@@ -45,7 +45,7 @@ class Twins {
   render::Guide shader_, host_;
 };
 
-class ReprojectHost : public testing::Test {
+class ReprojectKernel : public testing::Test {
  protected:
   void SetUp() override {
     if (!has_host_kernels()) GTEST_SKIP() << "host kernels are for devices that are processors";
@@ -59,7 +59,7 @@ void expect_same(Twins& twins, const std::string& which) {
   EXPECT_LT(map.apart, 1e-3) << "but for a test that rounding decides: " << which;
 }
 
-TEST_F(ReprojectHost, DoesWhatTheShaderDoes) {
+TEST_F(ReprojectKernel, MatchesShader) {
   for (const bool orthographic : {false, true}) {
     Twins twins({177, 95}, orthographic);
     twins.rig().run();
@@ -73,7 +73,7 @@ TEST_F(ReprojectHost, DoesWhatTheShaderDoes) {
   }
 }
 
-TEST_F(ReprojectHost, WorksAtEverySize) {
+TEST_F(ReprojectKernel, MatchesShaderAtAnySize) {
   for (const VkExtent2D extent : {VkExtent2D{1, 1}, {3, 5}, {16, 2}, {17, 31}, {130, 1}}) {
     Twins twins(extent);
     twins.rig().set_view(camera(false), 1);
@@ -82,7 +82,7 @@ TEST_F(ReprojectHost, WorksAtEverySize) {
   }
 }
 
-TEST_F(ReprojectHost, IsFasterThanTheShader) {
+TEST_F(ReprojectKernel, IsFasterThanShader) {
   Twins twins({640, 360});
   twins.rig().set_view(camera(false), 1);
   expect_faster(twins.rig(), {"denoise.reproject"}, 2.0);

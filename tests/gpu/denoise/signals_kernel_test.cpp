@@ -12,14 +12,14 @@ namespace {
 
 const scene::Camera camera = look({0, 0, 3}, {0, 0, 0});
 
-class SignalsHost : public testing::TestWithParam<VkExtent2D> {
+class SignalKernels : public testing::TestWithParam<VkExtent2D> {
  protected:
   void SetUp() override {
     if (!has_host_kernels()) GTEST_SKIP() << "host kernels are for devices that are processors";
   }
 };
 
-TEST_P(SignalsHost, CombinesVisibilityLikeTheShader) {
+TEST_P(SignalKernels, CombineVisibilityMatchesShader) {
   FrameRig rig(SceneBuilder().build(), camera, {.extent = GetParam()});
   RandomFrame random(rig);
   const auto shadows = random.bits("shadows"), ambient = random.bits("ambient");
@@ -35,7 +35,7 @@ TEST_P(SignalsHost, CombinesVisibilityLikeTheShader) {
   EXPECT_EQ(rig.read(shader).rgba, rig.read(host).rgba);
 }
 
-TEST_P(SignalsHost, AccumulatesLikeTheShader) {
+TEST_P(SignalKernels, AccumulateMatchesShader) {
   FrameRig rig(SceneBuilder().build(), camera, {.extent = GetParam()});
   RandomFrame random(rig);
   const auto sample = random.four("sample", glm::vec4(0), glm::vec4(5));
@@ -54,7 +54,7 @@ TEST_P(SignalsHost, AccumulatesLikeTheShader) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Sizes, SignalsHost,
+INSTANTIATE_TEST_SUITE_P(Sizes, SignalKernels,
                          testing::Values(VkExtent2D{1, 1}, VkExtent2D{17, 31}, VkExtent2D{130, 1},
                                          VkExtent2D{177, 95}),
                          [](const auto& test) {

@@ -89,7 +89,7 @@ class Twins {
   std::uint32_t frames_ = 0;
 };
 
-class TemporalHost : public testing::Test {
+class TemporalKernel : public testing::Test {
  protected:
   void SetUp() override {
     if (!has_host_kernels()) GTEST_SKIP() << "host kernels are for devices that are processors";
@@ -118,12 +118,12 @@ void expect_same_over_frames(const View& view, const std::string& which) {
   }
 }
 
-TEST_F(TemporalHost, DoesWhatTheShadersDo) {
+TEST_F(TemporalKernel, MatchesShaders) {
   expect_same_over_frames({}, "as set");
   expect_same_over_frames({.orthographic = true}, "orthographic");
 }
 
-TEST_F(TemporalHost, FollowsEverySetting) {
+TEST_F(TemporalKernel, MatchesShadersForEverySetting) {
   View view;
   view.settings.shadow_temporal.mean_variance = view.settings.specular_temporal.mean_variance =
       false;
@@ -154,7 +154,7 @@ TEST_F(TemporalHost, FollowsEverySetting) {
   expect_same_over_frames({.motion = {.lights = 0.05f, .environment = 0.2f}}, "lights on the way");
 }
 
-TEST_F(TemporalHost, LeavesOtherRectificationsToTheShaders) {
+TEST_F(TemporalKernel, UnsupportedRectificationsRunOnDevice) {
   View view;
   view.settings.shadow_temporal.rectification = protocol::Rectification::color_clamp;
   view.settings.specular_temporal.rectification = protocol::Rectification::percentile;
@@ -165,7 +165,7 @@ TEST_F(TemporalHost, LeavesOtherRectificationsToTheShaders) {
   }
 }
 
-TEST_F(TemporalHost, WorksAtEverySize) {
+TEST_F(TemporalKernel, MatchesShadersAtAnySize) {
   for (const VkExtent2D extent : {VkExtent2D{1, 1}, {3, 5}, {16, 2}, {17, 31}, {130, 1}}) {
     Twins twins({.extent = extent});
     twins.rig().run();
@@ -176,7 +176,7 @@ TEST_F(TemporalHost, WorksAtEverySize) {
   }
 }
 
-TEST_F(TemporalHost, IsFasterThanTheShaders) {
+TEST_F(TemporalKernel, IsFasterThanShaders) {
   Twins twins({.extent = {640, 360}});
   twins.rig().run();
   twins.next();

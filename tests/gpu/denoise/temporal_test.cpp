@@ -56,7 +56,7 @@ render::FloatImage reprojected(PostAndWall& scene, float before, float now,
   return rig.read(guide.reprojection);
 }
 
-TEST(Reprojection, OfARestingViewIsThePixelItself) {
+TEST(Reprojection, StaticViewMapsPixelToItself) {
   PostAndWall scene(1.0f);
   const render::FloatImage found = reprojected(scene, 0.3f, 0.3f);
   for (std::uint32_t i = 0; i < pixels; ++i) {
@@ -100,7 +100,7 @@ void expect_exact_history(bool joined) {
 }
 
 /// A public denoiser rebuilds the old position with the new matrix and gets this set wrong.
-TEST(Reprojection, FindsNoHistoryExactlyWhereThePostHidTheWallOrThePictureEnded) {
+TEST(Reprojection, DisocclusionMatchesAnalyticVisibility) {
   for (const bool joined : {false, true}) {
     SCOPED_TRACE(joined ? "one thing" : "two things");
     expect_exact_history(joined);
@@ -139,14 +139,14 @@ void expect_own_taps(bool joined) {
   EXPECT_GT(shared, 20) << "the test must see some at the edges";
 }
 
-TEST(Reprojection, TakesNoTapOfAnotherSurface) {
+TEST(Reprojection, RejectsTapsOfOtherSurfaces) {
   for (const bool joined : {false, true}) {
     SCOPED_TRACE(joined ? "one thing" : "two things");
     expect_own_taps(joined);
   }
 }
 
-TEST(Reprojection, DoesNotDependOnTheScaleOfTheScene) {
+TEST(Reprojection, IsScaleInvariant) {
   for (const bool joined : {false, true}) {
     PostAndWall one(1.0f, joined), small(0.01f, joined), large(100.0f, joined);
     const render::FloatImage expected = reprojected(one, 0.0f, 0.25f);
@@ -162,7 +162,7 @@ TEST(Reprojection, DoesNotDependOnTheScaleOfTheScene) {
 }
 
 /// A wall that fills the picture, accumulated over frames that the test makes up.
-class Gathering : public testing::Test {
+class TemporalAccumulation : public testing::Test {
  protected:
   void start(const protocol::Settings& settings, bool specular = false) {
     protocol::Settings plain = settings;
@@ -211,7 +211,7 @@ class Gathering : public testing::Test {
   bool drawn_ = false;
 };
 
-TEST_F(Gathering, IsTheMeanWhileTheHistoryGrowsAndCountsItsFrames) {
+TEST_F(TemporalAccumulation, IsMeanWhileHistoryGrows) {
   start(plain_settings());
   double sum = 0.0;
   for (int i = 1; i <= 20; ++i) {
@@ -224,7 +224,7 @@ TEST_F(Gathering, IsTheMeanWhileTheHistoryGrowsAndCountsItsFrames) {
   }
 }
 
-TEST_F(Gathering, CountsSecondsNotFrames) {
+TEST_F(TemporalAccumulation, HistoryLengthIsInSecondsNotFrames) {
   for (const float rate : {20.0f, 200.0f}) {
     drawn_ = false;
     protocol::Settings settings = plain_settings();
@@ -240,7 +240,7 @@ TEST_F(Gathering, CountsSecondsNotFrames) {
   }
 }
 
-TEST_F(Gathering, ForgetsShadowsSoonerWhileLightsMoveButNotWhatIsHiddenNearby) {
+TEST_F(TemporalAccumulation, MovingLightsShortenShadowHistoryNotAmbient) {
   start(plain_settings());
   for (int i = 0; i < 40; ++i) frame(glm::vec4(1.0f));
   rig_->set_scene_motion({.lights = 0.1f});
@@ -251,7 +251,7 @@ TEST_F(Gathering, ForgetsShadowsSoonerWhileLightsMoveButNotWhatIsHiddenNearby) {
   EXPECT_NEAR(signal().y, std::pow(31.0 / 32.0, 4), 1e-3);
 }
 
-TEST_F(Gathering, ForgetsReflectionsSoonerUnderATurningEnvironment) {
+TEST_F(TemporalAccumulation, RotatingEnvironmentShortensSpecularHistory) {
   start(plain_settings(), true);
   for (int i = 0; i < 40; ++i) frame(glm::vec4(1.0f));
   rig_->set_scene_motion({.environment = glm::radians(10.0f)});
@@ -260,7 +260,7 @@ TEST_F(Gathering, ForgetsReflectionsSoonerUnderATurningEnvironment) {
   EXPECT_NEAR(history().x, render::frames_under_motion(glm::radians(10.0f) / lobe), 1e-2);
 }
 
-TEST(SceneMotion, IsHowFarLightsWentAgainstTheirWidthWeighedByTheirLight) {
+TEST(SceneMotion, LightMotionIsRelativeToAngularSizeAndIntensity) {
   SceneBuilder builder;
   builder.add_quad({{{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}}}, surface(glm::vec3(1.0f)));
   builder.place(0).add_sun({0, -1, 0}, glm::vec3(3.0f), 4.0f).add_sun({0, -1, 0}, glm::vec3(1.0f));
@@ -287,14 +287,14 @@ TEST(SceneMotion, IsHowFarLightsWentAgainstTheirWidthWeighedByTheirLight) {
   EXPECT_EQ(render::scene_motion(rig.moving(), rig.constants(), nullptr).lights, 0.0f);
 }
 
-TEST(FramesUnderMotion, FallFromEndlessToOne) {
+TEST(FramesUnderMotion, DecreaseFromInfinityToOne) {
   EXPECT_GT(render::frames_under_motion(0.0f), 1e6f);
   EXPECT_NEAR(render::frames_under_motion(0.1f), 3.29f, 0.01f);
   EXPECT_EQ(render::frames_under_motion(1.0f), 1.0f);
   EXPECT_EQ(render::frames_under_motion(5.0f), 1.0f);
 }
 
-TEST_F(Gathering, GrowsWithoutEndWhileThePictureRests) {
+TEST_F(TemporalAccumulation, HistoryLengthIsUnlimitedForStaticView) {
   start(plain_settings());
   for (std::uint32_t i = 0; i < 60; ++i) {
     rig_->set_accumulated(i);
@@ -304,7 +304,7 @@ TEST_F(Gathering, GrowsWithoutEndWhileThePictureRests) {
   EXPECT_NEAR(signal().x, 0.5f, 1e-4f);
 }
 
-TEST_F(Gathering, OfAnHdrStepConvergesAndItsMomentsNeverStick) {
+TEST_F(TemporalAccumulation, HdrStepConvergesWithoutStuckMoments) {
   protocol::Settings settings = plain_settings();
   settings.specular_temporal.frames = 100;
   settings.specular_temporal.mean_variance = false;
@@ -317,7 +317,7 @@ TEST_F(Gathering, OfAnHdrStepConvergesAndItsMomentsNeverStick) {
   EXPECT_NEAR(history().w, 1e-4f, 1e-4f);
 }
 
-TEST_F(Gathering, SwallowsWhatIsNoNumber) {
+TEST_F(TemporalAccumulation, NaNsAndInfinitiesBecomeBlack) {
   start(plain_settings(), true);
   frame(glm::vec4(1.0f));
   std::vector<glm::vec4> bad(pixels, glm::vec4(1.0f));
@@ -330,7 +330,7 @@ TEST_F(Gathering, SwallowsWhatIsNoNumber) {
   EXPECT_NEAR(signal().x, 0.8f, 1e-5f) << "it counts as black, once";
 }
 
-TEST_F(Gathering, BeginsAnewWhereNoHistoryHolds) {
+TEST_F(TemporalAccumulation, RestartsWhereHistoryIsInvalid) {
   start(plain_settings());
   for (int i = 0; i < 5; ++i) frame(glm::vec4(1.0f));
   FrameRig fresh(scene_->builder.build(), scene_->from(5.0f), {.extent = extent});
@@ -344,16 +344,17 @@ TEST_F(Gathering, BeginsAnewWhereNoHistoryHolds) {
   EXPECT_EQ(history().x, 1.0f);
 }
 
-class Rectified : public Gathering, public testing::WithParamInterface<protocol::Rectification> {};
+class Rectification : public TemporalAccumulation,
+                      public testing::WithParamInterface<protocol::Rectification> {};
 INSTANTIATE_TEST_SUITE_P(
-    Modes, Rectified,
+    Modes, Rectification,
     testing::Values(protocol::Rectification::color_clamp, protocol::Rectification::color_clip,
                     protocol::Rectification::variance_clamp, protocol::Rectification::variance_clip,
                     protocol::Rectification::fast_history, protocol::Rectification::percentile,
                     protocol::Rectification::gradient),
     [](const auto& instance) { return std::string(protocol::enum_name(instance.param)); });
 
-TEST_P(Rectified, ForgetsALightThatWentOutSoonerThanWithout) {
+TEST_P(Rectification, SwitchedOffLightFadesFaster) {
   for (const bool specular : {false, true}) {
     drawn_ = false;
     protocol::Settings settings = plain_settings();
@@ -366,7 +367,7 @@ TEST_P(Rectified, ForgetsALightThatWentOutSoonerThanWithout) {
   }
 }
 
-TEST_P(Rectified, LeavesAnEvenPictureAlone) {
+TEST_P(Rectification, UniformSignalIsUnchanged) {
   for (const bool specular : {false, true}) {
     drawn_ = false;
     protocol::Settings settings = plain_settings();

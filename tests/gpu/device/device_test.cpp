@@ -21,7 +21,7 @@ const ShaderBinding& binding(const Reflection& reflection, const std::string& na
   throw std::out_of_range(name);
 }
 
-TEST(Reflection, ListsEveryResourceInOrder) {
+TEST(Reflection, ListsBindingsSortedBySetAndBinding) {
   const Reflection reflection = reflect(test::shaders::resources);
   ASSERT_EQ(reflection.bindings.size(), 6u);
   for (std::size_t i = 1; i < reflection.bindings.size(); ++i) {
@@ -34,7 +34,7 @@ TEST(Reflection, ListsEveryResourceInOrder) {
   EXPECT_EQ(reflection.local_size.depth, 3u);
 }
 
-TEST(Reflection, TellsTypesFormatsAndAccess) {
+TEST(Reflection, ReportsTypesFormatsAndAccess) {
   const Reflection reflection = reflect(test::shaders::resources);
   const ShaderBinding& image = binding(reflection, "half_image");
   EXPECT_EQ(image.type, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
@@ -77,7 +77,7 @@ class WantedLoss {
 };
 
 // The validation layers name what is left when a device goes.
-TEST(DeviceLoss, LeavesNothingOfWhatWasBeingMade) {
+TEST(DeviceLoss, LeaksNoVulkanObjects) {
   const char* const wanted = std::getenv("HELIOGRAPH_TEST_DEVICE");
   const Instance instance(true);
   {
@@ -89,7 +89,7 @@ TEST(DeviceLoss, LeavesNothingOfWhatWasBeingMade) {
   EXPECT_EQ(instance.validation_messages(), 0u);
 }
 
-TEST(Program, NamesASetThatNobodyProvides) {
+TEST(Program, ErrorNamesMissingDescriptorSet) {
   try {
     const ComputeProgram program(test::device(), test::shaders::resources);
     FAIL() << "set 0 is missing";
@@ -99,7 +99,7 @@ TEST(Program, NamesASetThatNobodyProvides) {
   }
 }
 
-TEST(DeviceSurvey, ChoosesExactlyOneAndSaysWhyNotTheOthers) {
+TEST(DeviceSurvey, ChoosesOneDeviceAndGivesReasonForOthers) {
   const Instance instance(false);
   const auto reports = survey_devices(instance, "");
   ASSERT_FALSE(reports.empty());
@@ -113,7 +113,7 @@ TEST(DeviceSurvey, ChoosesExactlyOneAndSaysWhyNotTheOthers) {
   }
 }
 
-TEST(DeviceSurvey, RefusesANameThatNothingHas) {
+TEST(DeviceSurvey, UnknownDeviceNameIsRejected) {
   const Instance instance(false);
   const auto reports = survey_devices(instance, "no such device");
   for (const DeviceReport& report : reports) EXPECT_FALSE(report.chosen);
@@ -126,7 +126,7 @@ TEST(DeviceSurvey, RefusesANameThatNothingHas) {
   }
 }
 
-TEST(DeviceSurvey, FindsNamesWhateverTheirCase) {
+TEST(DeviceSurvey, MatchesNamesCaseInsensitively) {
   const Instance instance(false);
   std::string name = survey_devices(instance, "")[0].name.substr(0, 4);
   for (char& c : name) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
@@ -134,7 +134,7 @@ TEST(DeviceSurvey, FindsNamesWhateverTheirCase) {
   EXPECT_TRUE(std::any_of(reports.begin(), reports.end(), [](const auto& r) { return r.chosen; }));
 }
 
-TEST(Device, KeepsItsPipelineCacheAndLeavesNothingBehind) {
+TEST(Device, WritesPipelineCacheAndLeaksNoObjects) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::path(testing::TempDir()) / "heliograph_pipeline_cache";
   fs::remove_all(folder);
@@ -155,7 +155,7 @@ TEST(Device, KeepsItsPipelineCacheAndLeavesNothingBehind) {
   fs::remove_all(folder);
 }
 
-TEST(Device, CountsWhatTheValidationLayersSay) {
+TEST(Device, CountsValidationMessages) {
   Instance instance(true);
   const Device device(instance, {});
   VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
@@ -166,7 +166,7 @@ TEST(Device, CountsWhatTheValidationLayersSay) {
   EXPECT_GE(instance.validation_messages(), 1u) << "silence would prove nothing";
 }
 
-TEST(Image, ComesBackAsItWasUploaded) {
+TEST(Image, UploadDownloadRoundTrip) {
   for (const bool mapped : {false, true}) {
     if (mapped && !test::device().is_cpu()) continue;
     ImageDesc desc{.name = "picture", .extent = {7, 5}, .format = VK_FORMAT_R32_SFLOAT};

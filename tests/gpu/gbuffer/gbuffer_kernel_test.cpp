@@ -88,14 +88,14 @@ class Twins {
   render::GBuffer shader_, host_;
 };
 
-class GBufferHost : public testing::Test {
+class GBufferKernel : public testing::Test {
  protected:
   void SetUp() override {
     if (!has_host_kernels()) GTEST_SKIP() << "host kernels are for devices that are processors";
   }
 };
 
-TEST_F(GBufferHost, SeesWhatTheShadersSee) {
+TEST_F(GBufferKernel, MatchesShaders) {
   for (const bool orthographic : {false, true}) {
     const std::string view = orthographic ? "orthographic" : "perspective";
     for (const auto& [name, scene] :
@@ -105,13 +105,13 @@ TEST_F(GBufferHost, SeesWhatTheShadersSee) {
   }
 }
 
-TEST_F(GBufferHost, SeesTheHelmetAsTheShadersDo) {
+TEST_F(GBufferKernel, MatchesShadersForDamagedHelmet) {
   const auto scene = helmet();
   if (!scene) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS is not set";
   Twins(scene, view_of(*scene, false), {150, 100}).expect_equal("helmet");
 }
 
-TEST_F(GBufferHost, WorksAtEverySize) {
+TEST_F(GBufferKernel, MatchesShadersAtAnySize) {
   const auto scene = textured_scene();
   for (const VkExtent2D extent : {VkExtent2D{1, 1}, {3, 5}, {16, 2}, {17, 31}, {130, 1}}) {
     Twins(scene, view_of(*scene, false), extent)
@@ -119,7 +119,7 @@ TEST_F(GBufferHost, WorksAtEverySize) {
   }
 }
 
-TEST_F(GBufferHost, IsFasterThanTheShaders) {
+TEST_F(GBufferKernel, IsFasterThanShaders) {
   const auto scene = textured_scene();
   Twins twins(scene, view_of(*scene, false), {640, 360});
   expect_faster(twins.rig(), {"gbuffer.rays", "gbuffer.shade", "gbuffer.2.shade"}, 2.0);

@@ -114,7 +114,7 @@ Differences compare(const BothWays& view) {
   return sum;
 }
 
-TEST(HitSurface, IsWhatTheRasteriserDraws) {
+TEST(HitSurface, MatchesRasterizer) {
   const auto scene = textured_scene();
   scene::Camera orthographic = look({0.5f, 0.3f, 6}, {0, 0, 0});
   orthographic.orthographic_height = 4.5f;
@@ -132,7 +132,7 @@ TEST(HitSurface, IsWhatTheRasteriserDraws) {
   }
 }
 
-TEST(HitSurface, HelmetIsWhatTheRasteriserDraws) {
+TEST(HitSurface, MatchesRasterizerForDamagedHelmet) {
   const auto file = asset("gltf/DamagedHelmet.glb");
   if (!file) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS is not set";
   const auto scene = std::make_shared<const scene::Scene>(scene::import_gltf(*file));

@@ -249,30 +249,30 @@ std::shared_ptr<scene::Scene> rigid_scene() {
   return scene;
 }
 
-TEST_P(Motion, OfRigidMeshes) {
+TEST_P(Motion, VectorsOfRigidMeshes) {
   expect_exact_motion(rigid_scene(), "turn", 0.2, 0.6, GetParam());
 }
 
-TEST_P(Motion, OfAnimatedNodes) {
+TEST_P(Motion, VectorsOfAnimatedNodes) {
   expect_exact_motion_in("BoxAnimated.glb", "", 0.4, 0.5);
 }
 
-TEST_P(Motion, OfASkinnedFoxWithFlatNormals) {
+TEST_P(Motion, VectorsOfSkinnedFoxWithFlatNormals) {
   expect_exact_motion_in("Fox.glb", "Run", 0.1, 0.2);
 }
 
-TEST_P(Motion, OfASkinnedMan) {
+TEST_P(Motion, VectorsOfSkinnedCesiumMan) {
   expect_exact_motion_in("CesiumMan.glb", "", 0.3, 0.4);
 }
 
-TEST_P(Motion, OfAMorphedCube) {
+TEST_P(Motion, VectorsOfMorphedCube) {
   expect_exact_motion_in("AnimatedMorphCube.glb", "", 0.6, 0.9);
 }
 
 INSTANTIATE_TEST_SUITE_P(, Motion, testing::Values("embree", "software"),
                          [](const auto& test) { return test.param; });
 
-TEST(MovingScene, TwoRenderersShowOneSceneAtTheirOwnTimes) {
+TEST(MovingScene, RenderersAnimateSharedSceneIndependently) {
   const auto scene = rigid_scene();
   const auto resources = engine().upload(scene, scene::constant_environment(glm::vec3(1.0f)));
   auto& parts = engine().parts();
@@ -290,7 +290,7 @@ TEST(MovingScene, TwoRenderersShowOneSceneAtTheirOwnTimes) {
   EXPECT_EQ(first.pose().worlds[0], scene->nodes[0].world);
 }
 
-TEST(MovingScene, LightsRideOnTheirNodes) {
+TEST(MovingScene, LightsFollowAnimatedNodes) {
   const auto scene = rigid_scene();
   scene::Light lamp;
   lamp.device.type = shared::light_point;
@@ -317,7 +317,7 @@ class MovingCost : public testing::TestWithParam<std::string> {
   }
 };
 
-TEST_P(MovingCost, OfAHundredRigidInstances) {
+TEST_P(MovingCost, HundredRigidInstancesUpdateInTime) {
   SceneBuilder builder;
   const auto sphere = builder.add_sphere(0.4f, surface(glm::vec3(1.0f)));
   for (int i = 0; i < 100; ++i) builder.place(sphere);

@@ -31,7 +31,7 @@ class AccumulateTest : public testing::Test {
   gpu::History history_;
 };
 
-TEST_F(AccumulateTest, IsTheMeanOfAllSamples) {
+TEST_F(AccumulateTest, IsMeanOfAllSamples) {
   glm::dvec3 sum(0.0);
   for (std::uint32_t i = 0; i < 40; ++i) {
     const glm::vec4 color(static_cast<float>(i * i % 17), 0.25f * static_cast<float>(i % 3), 1e4f,
@@ -45,13 +45,13 @@ TEST_F(AccumulateTest, IsTheMeanOfAllSamples) {
   }
 }
 
-TEST_F(AccumulateTest, StartsAnewWithTheFirstSample) {
+TEST_F(AccumulateTest, FirstSampleResetsHistory) {
   frame(glm::vec4(100, 50, 20, 1), 0);
   frame(glm::vec4(100, 50, 20, 1), 1);
   EXPECT_EQ(frame(glm::vec4(1, 2, 3, 1), 0), glm::vec4(1, 2, 3, 1));
 }
 
-TEST_F(AccumulateTest, ABrokenHistoryEndsWithARestart) {
+TEST_F(AccumulateTest, ResetDiscardsNaNHistory) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   frame(glm::vec4(nan), 0);
   const glm::vec4 broken = frame(glm::vec4(1.0f), 1);

@@ -54,7 +54,7 @@ class Meter {
   render::Exposure exposure_;
 };
 
-TEST(Exposure, ByHandItIsTheCompensationAlone) {
+TEST(Exposure, ManualIsCompensationOnly) {
   protocol::Settings settings;
   settings.exposure.compensation = -3.0f;
   Meter meter(settings);
@@ -62,7 +62,7 @@ TEST(Exposure, ByHandItIsTheCompensationAlone) {
   EXPECT_TRUE(meter.settled());
 }
 
-TEST(Exposure, AutomaticBringsAPlainPictureToMiddleGrey) {
+TEST(Exposure, AutomaticMapsUniformImageToMiddleGrey) {
   for (const float grey : {0.002f, 0.18f, 1.0f, 37.0f, 20000.0f}) {
     Meter meter(automatic(0.6f));
     EXPECT_NEAR(meter.frame(grey).factor * grey, 0.18f, 0.002f) << grey;
@@ -70,14 +70,14 @@ TEST(Exposure, AutomaticBringsAPlainPictureToMiddleGrey) {
   }
 }
 
-TEST(Exposure, CompensationComesOnTop) {
+TEST(Exposure, CompensationScalesAutomaticExposure) {
   protocol::Settings settings = automatic(0.6f);
   settings.exposure.compensation = 2.0f;
   Meter meter(settings);
   EXPECT_NEAR(meter.frame(5.0f).factor * 5.0f, 0.72f, 0.01f);
 }
 
-TEST(Exposure, MetersTheMeanLogarithmAndNeitherBlackNorAFewSuns) {
+TEST(Exposure, MetersLogMeanIgnoringBlackAndBrightOutliers) {
   Meter meter(automatic(0.0f));
   Texels picture(pixels);
   for (std::size_t i = 0; i < pixels; ++i) {
@@ -91,7 +91,7 @@ TEST(Exposure, MetersTheMeanLogarithmAndNeitherBlackNorAFewSuns) {
   EXPECT_NEAR(meter.frame(picture).factor, 0.18f, 0.004f);
 }
 
-TEST(Exposure, StaysWithinItsRangeAndSurvivesTheDark) {
+TEST(Exposure, IsClampedAndKeptWhereImageIsBlack) {
   Meter meter(automatic(0.0f));
   EXPECT_NEAR(std::log2(meter.frame(0.0003f).factor), shared::exposure_highest, 1e-4);
   EXPECT_NEAR(std::log2(meter.frame(1e6f).factor), shared::exposure_lowest, 1.5);
@@ -109,7 +109,7 @@ float stops_after(float time, float seconds, float adaptation) {
   return state.stops - start;
 }
 
-TEST(Exposure, FollowsAStepWithItsTimeConstantAtEveryFrameRate) {
+TEST(Exposure, StepResponseHasTimeConstantAtAnyFrameRate) {
   for (const float seconds : {1.0f / 60.0f, 1.0f / 15.0f, 0.2f}) {
     EXPECT_NEAR(stops_after(0.6f, seconds, 0.6f), -3.0f * (1.0f - std::exp(-1.0f)), 0.02f)
         << seconds;
@@ -119,7 +119,7 @@ TEST(Exposure, FollowsAStepWithItsTimeConstantAtEveryFrameRate) {
   EXPECT_NEAR(stops_after(0.2f, 0.2f, 0.0f), -3.0f, 0.01f) << "0: at once";
 }
 
-TEST(Exposure, SettlesAfterAStepAndSaysSo) {
+TEST(Exposure, ReportsSettledAfterStep) {
   Meter meter(automatic(0.1f));
   meter.frame(1.0f);
   meter.frame(8.0f);
@@ -132,7 +132,7 @@ TEST(Exposure, SettlesAfterAStepAndSaysSo) {
   EXPECT_NEAR(frames / 60.0, 0.1 * std::log(3.0 / 0.01), 0.04);
 }
 
-TEST(Exposure, IsTheSameEveryTime) {
+TEST(Exposure, IsDeterministic) {
   Texels picture(pixels);
   for (std::size_t i = 0; i < pixels; ++i) {
     picture[i] = glm::vec4(glm::vec3(std::exp2(static_cast<float>(i % 23) - 9.0f)), 1);

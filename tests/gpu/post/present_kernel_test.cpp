@@ -40,14 +40,14 @@ class Twins {
   gpu::ImageRef shader_, host_;
 };
 
-class PresentHost : public testing::Test {
+class PresentKernel : public testing::Test {
  protected:
   void SetUp() override {
     if (!has_host_kernels()) GTEST_SKIP() << "host kernels are for devices that are processors";
   }
 };
 
-TEST_F(PresentHost, DoesWhatTheShaderDoes) {
+TEST_F(PresentKernel, MatchesShader) {
   using protocol::ToneMapCurve;
   for (const auto curve :
        {ToneMapCurve::neutral, ToneMapCurve::aces, ToneMapCurve::agx, ToneMapCurve::linear}) {
@@ -63,7 +63,7 @@ TEST_F(PresentHost, DoesWhatTheShaderDoes) {
   }
 }
 
-TEST_F(PresentHost, WorksAtEverySize) {
+TEST_F(PresentKernel, MatchesShaderAtAnySize) {
   for (const VkExtent2D extent : {VkExtent2D{1, 1}, {3, 5}, {16, 2}, {17, 31}, {130, 1}}) {
     Twins twins(extent, protocol::ToneMapCurve::neutral);
     twins.rig().run();
@@ -71,7 +71,7 @@ TEST_F(PresentHost, WorksAtEverySize) {
   }
 }
 
-TEST_F(PresentHost, IsFasterThanTheShader) {
+TEST_F(PresentKernel, IsFasterThanShader) {
   Twins twins({1280, 720}, protocol::ToneMapCurve::neutral);
   expect_faster(twins.rig(), {"present"}, 1.0);
 }

@@ -49,7 +49,7 @@ class PresentTest : public testing::Test {
   }
 };
 
-TEST_F(PresentTest, DitherKeepsTheMeanAndAddsAtMostOneCodeValue) {
+TEST_F(PresentTest, DitherKeepsMeanWithinOneCodeValue) {
   const glm::vec3 radiance(0.1f, 0.4f, 0.02f);
   const render::FloatImage picture = present(radiance, linear());
   const glm::dvec3 average = mean(picture);
@@ -59,7 +59,7 @@ TEST_F(PresentTest, DitherKeepsTheMeanAndAddsAtMostOneCodeValue) {
   }
 }
 
-TEST_F(PresentTest, ExposureCountsInStops) {
+TEST_F(PresentTest, ExposureIsInStops) {
   protocol::Settings settings = linear();
   settings.exposure.compensation = 2.0f;
   EXPECT_NEAR(mean(present(glm::vec3(0.1f), settings)).x, encode(0.4), tolerance);
@@ -67,7 +67,7 @@ TEST_F(PresentTest, ExposureCountsInStops) {
   EXPECT_NEAR(mean(present(glm::vec3(0.1f), settings)).x, encode(0.05), tolerance);
 }
 
-TEST_F(PresentTest, BlendsTheFrameAndTheMeanByTheSamplesOfTheMean) {
+TEST_F(PresentTest, BlendsDenoisedAndAccumulatedBySampleCount) {
   protocol::Settings settings = linear();
   settings.accumulation.handover = 8;
   FrameRig rig(SceneBuilder().build(), look({0, 0, 3}, {0, 0, 0}),
@@ -94,13 +94,13 @@ TEST_F(PresentTest, BlendsTheFrameAndTheMeanByTheSamplesOfTheMean) {
   EXPECT_NEAR(mean(rig.read(picture)).x, encode(0.1), tolerance);
 }
 
-TEST_F(PresentTest, ClipsWhatIsTooBrightAndBlackensWhatIsNegative) {
+TEST_F(PresentTest, ClampsOverexposedAndNegativeValues) {
   const render::FloatImage picture = present({50.0f, -1.0f, 0.0f}, linear());
   EXPECT_GT(mean(picture).x, 1.0 - 0.2 / 255.0);
   EXPECT_LT(mean(picture).y, 0.2 / 255.0);
 }
 
-TEST_F(PresentTest, EveryCurveIsAnother) {
+TEST_F(PresentTest, ToneMapCurvesDiffer) {
   std::vector<double> greens;
   for (const auto curve : {protocol::ToneMapCurve::neutral, protocol::ToneMapCurve::aces,
                            protocol::ToneMapCurve::agx, protocol::ToneMapCurve::linear}) {

@@ -68,14 +68,14 @@ class Twins {
   std::uint32_t frames_ = 0;
 };
 
-class AntialiasHost : public testing::Test {
+class TemporalAntialiasKernel : public testing::Test {
  protected:
   void SetUp() override {
     if (!has_host_kernels()) GTEST_SKIP() << "host kernels are for devices that are processors";
   }
 };
 
-TEST_F(AntialiasHost, DoesWhatTheShaderDoes) {
+TEST_F(TemporalAntialiasKernel, MatchesShader) {
   for (const bool orthographic : {false, true}) {
     for (const bool anti_flicker : {false, true}) {
       Twins twins({.orthographic = orthographic, .anti_flicker = anti_flicker});
@@ -92,7 +92,7 @@ TEST_F(AntialiasHost, DoesWhatTheShaderDoes) {
   }
 }
 
-TEST_F(AntialiasHost, WorksAtEverySize) {
+TEST_F(TemporalAntialiasKernel, MatchesShaderAtAnySize) {
   for (const VkExtent2D extent : {VkExtent2D{1, 1}, {3, 5}, {16, 2}, {17, 31}, {130, 1}}) {
     Twins twins({.extent = extent});
     twins.rig().run();
@@ -102,7 +102,7 @@ TEST_F(AntialiasHost, WorksAtEverySize) {
   }
 }
 
-TEST_F(AntialiasHost, IsFasterThanTheShader) {
+TEST_F(TemporalAntialiasKernel, IsFasterThanShader) {
   Twins twins({.extent = {640, 360}});
   twins.rig().run();
   twins.next();

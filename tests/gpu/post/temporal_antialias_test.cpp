@@ -28,9 +28,9 @@ Texels paint(const Paint& color) {
 }
 
 /// The pass alone, fed with pictures and motion by hand.
-class AntialiasTest : public testing::Test {
+class TemporalAntialiasTest : public testing::Test {
  protected:
-  AntialiasTest() {
+  TemporalAntialiasTest() {
     const auto image = [&](const char* name, const glm::vec4& texel) {
       return rig_.input(name, VK_FORMAT_R32G32B32A32_SFLOAT, Texels(width * height, texel));
     };
@@ -59,7 +59,7 @@ class AntialiasTest : public testing::Test {
   gpu::ImageRef resolved_;
 };
 
-TEST_F(AntialiasTest, APictureThatStandsStillStaysWhatItIs) {
+TEST_F(TemporalAntialiasTest, StaticImageIsUnchanged) {
   const Paint waves = [](float x, float y) {
     return glm::vec3(2.0f + std::sin(0.4f * x), 300.0f + 5.0f * y, 0.1f * x + 0.05f * y);
   };
@@ -76,7 +76,7 @@ TEST_F(AntialiasTest, APictureThatStandsStillStaysWhatItIs) {
 }
 
 // A public implementation reads beyond the picture's edge there: a smear (no off-screen test).
-TEST_F(AntialiasTest, ColumnsThatComeInFromOutsideShowTheFrameAlone) {
+TEST_F(TemporalAntialiasTest, ColumnsEnteringTheFrameHaveNoHistory) {
   const auto shade = [](int frame_number) {
     return [frame_number](float x, float y) {
       const float pattern =
@@ -104,7 +104,7 @@ TEST_F(AntialiasTest, ColumnsThatComeInFromOutsideShowTheFrameAlone) {
   }
 }
 
-TEST_F(AntialiasTest, NothingIsRememberedAcrossACut) {
+TEST_F(TemporalAntialiasTest, HistoryResetDiscardsPreviousFrame) {
   frame([](float, float) { return glm::vec3(100.0f); });
   FrameRig fresh(SceneBuilder().build(), look({0, 0, 3}, {0, 0, 0}), {.extent = extent});
   const auto hdr =
@@ -122,7 +122,7 @@ TEST_F(AntialiasTest, NothingIsRememberedAcrossACut) {
   for (std::uint32_t x = 0; x < width; ++x) EXPECT_EQ(texel(fresh.read(resolved), x, 5), dim[x]);
 }
 
-TEST_F(AntialiasTest, ASquareThatMovedLeavesNoGhost) {
+TEST_F(TemporalAntialiasTest, MovedSquareLeavesNoGhost) {
   const auto square = [](float left) {
     return [left](float x, float y) {
       const bool inside = x > left && x < left + 8 && y > 10 && y < 18;
@@ -140,7 +140,7 @@ TEST_F(AntialiasTest, ASquareThatMovedLeavesNoGhost) {
 }
 
 // Without weights by brightness the mean of one bright and many dark frames is bright.
-TEST_F(AntialiasTest, AFireflyIsNearlyGoneInTheNextFrames) {
+TEST_F(TemporalAntialiasTest, FireflyFadesWithinFewFrames) {
   const auto sky = [](float spark) {
     return [spark](float x, float y) {
       const bool there = std::abs(x - 20.5f) < 0.6f && std::abs(y - 15.5f) < 0.6f;
@@ -154,7 +154,7 @@ TEST_F(AntialiasTest, AFireflyIsNearlyGoneInTheNextFrames) {
   EXPECT_LT(after, 0.5f);
 }
 
-TEST_F(AntialiasTest, TheMotionOfAnEdgeIsThatOfTheNearerSurface) {
+TEST_F(TemporalAntialiasTest, EdgeUsesMotionOfNearestSurface) {
   // Left half near and moving right by 2, right half far and still; a bright line in front of the
   // edge must be followed by the far pixels beside it too.
   Texels motion;
@@ -175,7 +175,7 @@ TEST_F(AntialiasTest, TheMotionOfAnEdgeIsThatOfTheNearerSurface) {
   EXPECT_NEAR(texel(image, 30, 10).x, picture(30.5f, 0).x, 0.02f);
 }
 
-TEST_F(AntialiasTest, StaysPositiveBesideHardEdges) {
+TEST_F(TemporalAntialiasTest, BicubicHistoryStaysPositiveAtHardEdges) {
   const auto edge = [](float offset) {
     return
         [offset](float x, float) { return x < 20 + offset ? glm::vec3(0.0f) : glm::vec3(80.0f); };

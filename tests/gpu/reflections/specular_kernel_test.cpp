@@ -93,14 +93,14 @@ class Twins {
   gpu::ImageRef shader_, host_;
 };
 
-class SpecularHost : public testing::Test {
+class SpecularKernel : public testing::Test {
  protected:
   void SetUp() override {
     if (!has_host_kernels()) GTEST_SKIP() << "host kernels are for devices that are processors";
   }
 };
 
-TEST_F(SpecularHost, MirrorsWhatTheShadersMirror) {
+TEST_F(SpecularKernel, MatchesShaders) {
   const auto scene = lit(*textured_scene());
   View view;
   Twins(scene, view).expect_equal("all light");
@@ -116,13 +116,13 @@ TEST_F(SpecularHost, MirrorsWhatTheShadersMirror) {
   Twins(scene, view).expect_equal("no shadows, no sky");
 }
 
-TEST_F(SpecularHost, MirrorsTheHelmetAsTheShadersDo) {
+TEST_F(SpecularKernel, MatchesShadersForDamagedHelmet) {
   const auto file = asset("gltf/DamagedHelmet.glb");
   if (!file) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS is not set";
   Twins(lit(scene::import_gltf(*file)), {}).expect_equal("helmet");
 }
 
-TEST_F(SpecularHost, WorksAtEverySize) {
+TEST_F(SpecularKernel, MatchesShadersAtAnySize) {
   const auto scene = lit(*textured_scene());
   for (const VkExtent2D extent : {VkExtent2D{5, 3}, {17, 31}, {130, 7}}) {
     for (const bool half : {false, true}) {
@@ -134,7 +134,7 @@ TEST_F(SpecularHost, WorksAtEverySize) {
   }
 }
 
-TEST_F(SpecularHost, IsFasterThanTheShaders) {
+TEST_F(SpecularKernel, IsFasterThanShaders) {
   Twins twins(lit(*textured_scene()), {.extent = {640, 360}, .settings = {}});
   expect_faster(twins.rig(), {"specular.rays", "specular.shade", "specular.resolve"}, 2.0);
 }

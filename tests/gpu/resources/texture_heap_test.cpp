@@ -91,7 +91,7 @@ std::vector<scene::Sampler> samplers() {
 
 class TextureHeap : public testing::TestWithParam<bool> {};
 
-TEST_P(TextureHeap, ReadsLikeTheSampler) {
+TEST_P(TextureHeap, MatchesHardwareSampler) {
   scene::Scene scene = *SceneBuilder().build();
   scene.images = {noise(7, 5, false), noise(37, 20, GetParam())};
   for (const scene::Sampler& sampler : samplers()) scene.textures.push_back({1, sampler});
@@ -122,7 +122,7 @@ TEST_P(TextureHeap, ReadsLikeTheSampler) {
 
 INSTANTIATE_TEST_SUITE_P(Encodings, TextureHeap, testing::Bool());
 
-TEST(PackTextures, KeepsWhatFitsFromTheFirstSmallLevel) {
+TEST(PackTextures, DropsTopMipLevelsToFitBudget) {
   scene::Scene scene;
   scene.images = {noise(2048, 8, false), noise(64, 64, false)};
   scene.textures = {{0, {}}, {1, {}}};

@@ -31,7 +31,7 @@ std::vector<std::uint32_t> stir(scene::Scene& scene, Random& random, std::uint32
 
 class MovingTracerTest : public TracerTest {};
 
-TEST_P(MovingTracerTest, FollowsWhatMovesAndDeforms) {
+TEST_P(MovingTracerTest, MatchesBruteForceForMovingAndDeformedMeshes) {
   scene::Scene scene = two_level_scene(10);
   scene.clips.emplace_back();
   constexpr std::uint32_t a_sphere = 1, a_masked_quad = 4;

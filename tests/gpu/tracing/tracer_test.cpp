@@ -14,7 +14,7 @@
 namespace heliograph::tracing {
 namespace {
 
-TEST_P(TracerTest, AgreesWithAskingEveryTriangle) {
+TEST_P(TracerTest, MatchesBruteForce) {
   for (std::uint32_t seed = 1; seed <= 3; ++seed) {
     const scene::Scene scene = two_level_scene(seed);
     const std::vector<shared::Ray> rays = random_rays(scene, 5000, seed);
@@ -26,7 +26,7 @@ TEST_P(TracerTest, AgreesWithAskingEveryTriangle) {
   }
 }
 
-TEST_P(TracerTest, BarycentricsAndDistanceNameTheSamePoint) {
+TEST_P(TracerTest, BarycentricsAgreeWithDistance) {
   const scene::Scene scene = two_level_scene(4);
   const std::vector<shared::Ray> rays = random_rays(scene, 5000, 4);
   const Answers answers = traced(scene, GetParam()).trace(rays);
@@ -68,7 +68,7 @@ std::vector<shared::Ray> rays_from_above() {
   return rays;
 }
 
-TEST_P(TracerTest, MasksLetRaysThroughTexelByTexel) {
+TEST_P(TracerTest, AlphaMaskIsTestedPerTexel) {
   const std::vector<shared::Ray> rays = rays_from_above();
   for (std::uint32_t wrap_s = shared::wrap_repeat; wrap_s <= shared::wrap_mirror; ++wrap_s) {
     for (std::uint32_t wrap_t = shared::wrap_repeat; wrap_t <= shared::wrap_mirror; ++wrap_t) {
@@ -96,7 +96,7 @@ shared::Material blended_material(scene::Scene& scene, float factor) {
   return material;
 }
 
-TEST_P(TracerTest, BlendedSurfacesStopTheirShareOfTheRaysThatAskForIt) {
+TEST_P(TracerTest, BlendedSurfacesStopRaysInProportionToAlpha) {
   const std::vector<shared::Ray> rays = rays_from_above();
   const auto count = static_cast<std::uint32_t>(rays.size());
   for (const float factor : {0.0f, 0.3f, 1.0f}) {
@@ -124,7 +124,7 @@ TEST_P(TracerTest, BlendedSurfacesStopTheirShareOfTheRaysThatAskForIt) {
 }
 
 // Another frame's number takes other rays, layers decide on their own, and all tracers alike.
-TEST_P(TracerTest, BlendedSurfacesStopOtherRaysInEveryFrame) {
+TEST_P(TracerTest, StochasticTransparencyDiffersPerFrame) {
   scene::Scene scene;
   const std::uint32_t mesh = add_mesh(scene, quad(), blended_material(scene, 0.6f));
   place(scene, mesh, glm::mat4(1.0f));
@@ -157,7 +157,7 @@ TEST_P(TracerTest, BlendedSurfacesStopOtherRaysInEveryFrame) {
 
 // The dispatch of a long stream has several rows: a 4K picture asks 8.3 million rays at once. Two
 // rows are what the 128 MiB hold that lavapipe binds.
-TEST_P(TracerTest, AnswersStreamsLongerThanARowOfGroups) {
+TEST_P(TracerTest, TracesStreamsLongerThanOneDispatchRow) {
   constexpr std::uint32_t count = shared::rays_per_row + 1000;
   scene::Scene scene;
   place(scene, add_mesh(scene, quad(), plain_material()), glm::mat4(1.0f));
@@ -178,7 +178,7 @@ TEST_P(TracerTest, AnswersStreamsLongerThanARowOfGroups) {
   EXPECT_EQ(wrong, 0u);
 }
 
-TEST_P(TracerTest, AnswersOnlyTheRaysThatAreCounted) {
+TEST_P(TracerTest, TracesOnlyCountedRays) {
   const scene::Scene scene = two_level_scene(5);
   const std::vector<shared::Ray> rays = random_rays(scene, 1000, 5);
   const TracedScene subject = traced(scene, GetParam());
@@ -191,12 +191,12 @@ TEST_P(TracerTest, AnswersOnlyTheRaysThatAreCounted) {
   }
 }
 
-TEST_P(TracerTest, MissesEverythingInAnEmptyScene) {
+TEST_P(TracerTest, EmptySceneHasNoHits) {
   const std::vector<shared::Ray> rays = random_rays({}, 300, 6);
   EXPECT_EQ(hit_count(traced({}, GetParam()).trace(rays)), 0u);
 }
 
-TEST_P(TracerTest, MissesWithRaysThatReachNowhere) {
+TEST_P(TracerTest, EmptyIntervalsHaveNoHits) {
   const scene::Scene scene = two_level_scene(7);
   std::vector<shared::Ray> rays = random_rays(scene, 600, 7);
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -207,7 +207,7 @@ TEST_P(TracerTest, MissesWithRaysThatReachNowhere) {
   for (const std::uint32_t occluded : answers.occluded) EXPECT_EQ(occluded, 0u);
 }
 
-TEST_P(TracerTest, LeavesOutBothEndsOfTheInterval) {
+TEST_P(TracerTest, IntervalIsOpenAtBothEnds) {
   scene::Scene scene;
   place(scene, add_mesh(scene, quad(), plain_material()), glm::mat4(1.0f));
   const shared::Ray down{{0.25f, 2, 0.5f}, 0.0f, {0, -1, 0}, 10.0f, 0, 0, 0, 0};
@@ -225,7 +225,7 @@ TEST_P(TracerTest, LeavesOutBothEndsOfTheInterval) {
   }
 }
 
-TEST_P(TracerTest, DoesNotMeetFlatInstancesAndCornersWithoutAPlace) {
+TEST_P(TracerTest, FlatInstancesAndNaNVerticesHaveNoHits) {
   scene::Scene scene;
   const std::uint32_t mesh = add_mesh(scene, quad(), plain_material());
   place(scene, mesh, glm::scale(glm::mat4(1.0f), glm::vec3(1, 1, 0)));
@@ -237,7 +237,7 @@ TEST_P(TracerTest, DoesNotMeetFlatInstancesAndCornersWithoutAPlace) {
   EXPECT_EQ(hit_count(traced(scene, GetParam()).trace(random_rays(scene, 500, 9))), 0u);
 }
 
-TEST_P(TracerTest, SeesBothFacesOfMirroredInstances) {
+TEST_P(TracerTest, HitsBothFacesOfMirroredInstances) {
   scene::Scene scene;
   const std::uint32_t mesh = add_mesh(scene, quad(), plain_material());
   place(scene, mesh, glm::scale(glm::mat4(1.0f), glm::vec3(-1, 1, 1)));
@@ -271,7 +271,7 @@ std::vector<shared::Ray> rays_at_edges(const scene::Mesh& mesh, const glm::mat4&
   return rays;
 }
 
-TEST_P(TracerTest, LetsNothingThroughBetweenTriangles) {
+TEST_P(TracerTest, ClosedMeshIsWatertight) {
   scene::Scene scene;
   glm::mat4 world = glm::translate(glm::mat4(1.0f), {13.1f, -7.7f, 31.3f});
   world = glm::rotate(world, 0.7f, glm::normalize(glm::vec3(1, 2, 3)));
@@ -307,18 +307,18 @@ class AssetTest : public TracersTest {
   }
 };
 
-TEST_F(TracersTest, WhatIsNotOfferedIsRefused) {
+TEST_F(TracersTest, UnsupportedTracerIsRejected) {
   for (const protocol::TracerKind kind : all_tracers) {
     if (offered(kind)) continue;
     EXPECT_THROW(make_tracer(kind, rig_->device), gpu::GpuError) << protocol::enum_name(kind);
   }
 }
 
-TEST_F(AssetTest, TracersAgreeOnAHelmet) {
+TEST_F(AssetTest, TracersAgreeOnDamagedHelmet) {
   expect_agreement("gltf/DamagedHelmet.glb");
 }
 
-TEST_F(AssetTest, TracersAgreeInAnAtrium) {
+TEST_F(AssetTest, TracersAgreeOnAtrium) {
   expect_agreement("standins/glossy_sponza_1.glb");
 }
 

@@ -105,7 +105,7 @@ void expect_shares(const Shadow& shadow, const glm::dvec3& direction,
   EXPECT_LT(std::abs(bias / compared), 0.005);
 }
 
-TEST(AreaShadows, ARectangleIsHiddenByItsShareOfTheLight) {
+TEST(AreaShadows, RectangleLightVisibilityMatchesIntegral) {
   const auto scene = table_scene();
   shared::Light light{};
   light.type = shared::light_rectangle;
@@ -123,7 +123,7 @@ TEST(AreaShadows, ARectangleIsHiddenByItsShareOfTheLight) {
   });
 }
 
-TEST(AreaShadows, ADiskIsHiddenByItsShareOfTheLight) {
+TEST(AreaShadows, DiskLightVisibilityMatchesIntegral) {
   const auto scene = table_scene();
   shared::Light light{};
   light.type = shared::light_disk;
@@ -141,7 +141,7 @@ TEST(AreaShadows, ADiskIsHiddenByItsShareOfTheLight) {
 }
 
 // A spot's disk faces the surface; inside the full cone its light is a point's.
-TEST(AreaShadows, ASpotWithARadiusCastsASoftShadowAndOneWithoutAHardOne) {
+TEST(AreaShadows, SpotLightShadowIsSoftOnlyWithRadius) {
   for (const float radius : {0.0f, 0.6f}) {
     const auto scene = table_scene();
     shared::Light light{};

@@ -61,14 +61,14 @@ class Twins {
   std::vector<gpu::ImageRef> signals_;
 };
 
-class VisibilityRaysHost : public testing::Test {
+class VisibilityRaysKernel : public testing::Test {
  protected:
   void SetUp() override {
     if (!has_host_kernels()) GTEST_SKIP() << "host kernels are for devices that are processors";
   }
 };
 
-TEST_F(VisibilityRaysHost, FindWhatTheShadersRaysFind) {
+TEST_F(VisibilityRaysKernel, MatchesShaders) {
   Twins twins({177, 95});
   for (const Compared& result : {twins.shadows(), twins.ambient()}) {
     EXPECT_LT(result.apart, 2e-3) << "but for rays that graze an edge";
@@ -83,7 +83,7 @@ TEST_F(VisibilityRaysHost, FindWhatTheShadersRaysFind) {
   }
 }
 
-TEST_F(VisibilityRaysHost, WorkAtEverySize) {
+TEST_F(VisibilityRaysKernel, MatchesShadersAtAnySize) {
   for (const VkExtent2D extent : {VkExtent2D{1, 1}, {3, 5}, {16, 2}, {17, 31}, {130, 1}}) {
     Twins twins(extent);
     EXPECT_LT(twins.shadows().apart, 3e-3) << extent.width << " x " << extent.height;
@@ -91,7 +91,7 @@ TEST_F(VisibilityRaysHost, WorkAtEverySize) {
   }
 }
 
-TEST_F(VisibilityRaysHost, AreMadeFasterThanByTheShaders) {
+TEST_F(VisibilityRaysKernel, IsFasterThanShaders) {
   Twins twins({640, 360});
   expect_faster(twins.rig(), {"shadows.rays", "ambient.rays"}, 2.0);
 }

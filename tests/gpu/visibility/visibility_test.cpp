@@ -84,7 +84,7 @@ class Shadows : public testing::TestWithParam<std::string> {
 };
 
 // A sun straight above seen past a straight edge: the uncovered part of its disk.
-TEST_P(Shadows, PenumbraIsAsWideAsTheSunAndAsTallAsTheDiskSays) {
+TEST_P(Shadows, PenumbraMatchesAnalyticSunDisk) {
   constexpr float height = 2.0f, diameter = 20.0f;
   SceneBuilder builder;
   builder.place(add_ground(builder, 50)).place(add_roof(builder, height));
@@ -107,7 +107,7 @@ TEST_P(Shadows, PenumbraIsAsWideAsTheSunAndAsTallAsTheDiskSays) {
   EXPECT_LT(error / compared, 0.012);
 }
 
-TEST_P(Shadows, ASunWithoutDiameterCastsASharpShadow) {
+TEST_P(Shadows, SunWithoutDiameterCastsHardShadow) {
   SceneBuilder builder;
   builder.place(add_ground(builder, 50)).place(add_roof(builder, 2.0f));
   builder.add_sun({0.5f, -1, 0}, glm::vec3(1.0f), 0.0f);
@@ -121,7 +121,7 @@ TEST_P(Shadows, ASunWithoutDiameterCastsASharpShadow) {
   }
 }
 
-TEST_P(Shadows, TheOverrideReplacesTheSunsOwnDiameter) {
+TEST_P(Shadows, AngularDiameterOverrideReplacesSunDiameter) {
   SceneBuilder builder;
   builder.place(add_ground(builder, 50)).place(add_roof(builder, 2.0f));
   builder.add_sun({0, -1, 0}, glm::vec3(1.0f), 20.0f);
@@ -136,7 +136,7 @@ TEST_P(Shadows, TheOverrideReplacesTheSunsOwnDiameter) {
 }
 
 // Heitz et al. 2018: the expectation is sum(L V) / sum(L).
-TEST_P(Shadows, SeveralLightsConvergeToTheRatioOfShadowedToUnshadowedLight) {
+TEST_P(Shadows, MultipleLightsConvergeToShadowRatio) {
   SceneBuilder builder;
   builder.place(add_ground(builder, 50)).place(add_roof(builder, 2.0f));
   builder.add_sun({0, -1, 0}, glm::vec3(1.0f));
@@ -163,7 +163,7 @@ TEST_P(Shadows, SeveralLightsConvergeToTheRatioOfShadowedToUnshadowedLight) {
   EXPECT_GT(mixed, 500);
 }
 
-TEST_P(Shadows, ASphericalLampHasAPenumbraToo) {
+TEST_P(Shadows, SphereLightCastsPenumbra) {
   constexpr double lamp_height = 3.0, roof_height = 1.0, lamp_radius = 0.5;
   SceneBuilder builder;
   builder.place(add_ground(builder, 50)).place(add_roof(builder, roof_height));
@@ -212,7 +212,7 @@ void expect_no_acne(SceneBuilder& builder, const scene::Camera& camera, const gl
   EXPECT_EQ(dark, 0) << what << ": of " << tested << " pixels";
 }
 
-TEST_P(Shadows, ConvexThingsDoNotShadowThemselvesAtAnyScale) {
+TEST_P(Shadows, ConvexMeshesHaveNoShadowAcneAtAnyScale) {
   for (const float scale : {1e-3f, 1e-2f, 1.0f, 10.0f, 100.0f, 1e3f, 1e4f}) {
     SceneBuilder builder;
     builder.place(builder.add_sphere(scale, surface(glm::vec3(1.0f))));
@@ -223,7 +223,7 @@ TEST_P(Shadows, ConvexThingsDoNotShadowThemselvesAtAnyScale) {
   }
 }
 
-TEST_P(Shadows, GroundsDoNotShadowThemselvesFromAfar) {
+TEST_P(Shadows, GroundHasNoShadowAcneFarFromCamera) {
   for (const float height : {0.0f, 1e-4f, 0.033f, 0.5f, 3.0f, -0.04f}) {
     for (const float distance : {2.0f, 20.0f, 200.0f}) {
       SceneBuilder builder;
@@ -236,7 +236,7 @@ TEST_P(Shadows, GroundsDoNotShadowThemselvesFromAfar) {
   }
 }
 
-TEST_P(Shadows, AmbientRaysSeeTheShareOfTheSkyThatCosineWeighs) {
+TEST_P(Shadows, AmbientVisibilityIsCosineWeightedSky) {
   constexpr float height = 0.5f;
   SceneBuilder builder;
   builder.place(add_ground(builder, 50)).place(add_roof(builder, height));

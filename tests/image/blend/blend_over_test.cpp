@@ -54,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(Sources, BlendOver,
                          });
 
 // In whatever order the file lists them.
-TEST_P(BlendOver, LayersLieOverEachOtherWithoutGrain) {
+TEST_P(BlendOver, LayersCompositeInDepthOrderWithoutNoise) {
   const glm::vec3 red(1.0f, 0.1f, 0.1f), green(0.1f, 1.0f, 0.1f), back(0.2f, 0.3f, 0.8f);
   shared::Material board = surface(back);
   board.flags = shared::material_unlit;
@@ -78,7 +78,7 @@ TEST_P(BlendOver, LayersLieOverEachOtherWithoutGrain) {
   }
 }
 
-TEST_P(BlendOver, TheGBufferHoldsWhatIsSolid) {
+TEST_P(BlendOver, GBufferHoldsOpaqueSurfacesOnly) {
   SceneBuilder builder;
   const auto pane = builder.add_quad(wall(1, 3), veil(glm::vec3(1.0f), 0.25f));
   const auto opaque = builder.add_quad(
@@ -96,7 +96,7 @@ TEST_P(BlendOver, TheGBufferHoldsWhatIsSolid) {
 }
 
 // What lets light through tints what is behind it, by its own colour.
-TEST_P(BlendOver, GlassTintsWhatIsBehind) {
+TEST_P(BlendOver, TransmissionTintsBackground) {
   SceneBuilder builder;
   shared::Material board = surface(glm::vec3(0.5f));
   board.flags = shared::material_unlit;
@@ -111,7 +111,7 @@ TEST_P(BlendOver, GlassTintsWhatIsBehind) {
 }
 
 // Antialiasing follows what shows most.
-TEST_P(BlendOver, MotionIsThatOfWhatHidesMost) {
+TEST_P(BlendOver, MotionVectorIsOfMostOpaqueLayer) {
   SceneBuilder builder;
   builder.place(builder.add_quad({{{-3, -3, 1}, {0, -3, 1}, {0, 3, 1}, {-3, 3, 1}}},
                                  veil(glm::vec3(0.7f), 0.8f)));
@@ -175,7 +175,7 @@ double error_in_motion(PrimaryVisibility source, float alpha) {
   return sum / static_cast<double>(truth.rgba.size());
 }
 
-TEST_P(BlendOver, DoesNotSmearInMotion) {
+TEST_P(BlendOver, DoesNotSmearUnderCameraMotion) {
   const double solid = error_in_motion(GetParam(), 1.0f);
   EXPECT_LT(error_in_motion(GetParam(), 0.9f), 1.2 * solid + 0.1);
 }
@@ -214,7 +214,7 @@ glm::dvec3 mean_color(Still& still, const protocol::Settings& settings, const st
   return sum / (static_cast<double>(radiance.rgba.size()) / 4.0);
 }
 
-TEST_P(BlendOver, ConvergesToTheSamePaths) {
+TEST_P(BlendOver, ConvergesToPathTracerAlongSamePaths) {
   const auto sky = [](const glm::vec3& d) {
     return glm::vec3(0.5f, 0.6f, 0.8f) + glm::vec3(0.3f, 0.2f, 0.1f) * d.y + 0.2f * d.x;
   };
@@ -229,7 +229,7 @@ TEST_P(BlendOver, ConvergesToTheSamePaths) {
 }
 
 // A model by others, whose goggles have glasses.
-TEST(BlendedAsset, IsSeenThroughItsGlasses) {
+TEST(BlendedAsset, TransparentGlassesMatchReference) {
   const auto file = asset("gltf/FlightHelmet/FlightHelmet.gltf");
   if (!file) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS names no folder";
   const auto scene = std::make_shared<const scene::Scene>(scene::import_gltf(*file));

@@ -1,5 +1,5 @@
-// Blended surfaces cover their share: of what the camera sees, of what mirrors show, of the light
-// of lamps and of the sky.
+// BlendedRays surfaces cover their share: of what the camera sees, of what mirrors show, of the
+// light of lamps and of the sky.
 
 #include <gtest/gtest.h>
 
@@ -52,7 +52,7 @@ shared::Material pane(bool unlit) {
   return material;
 }
 
-class Blended : public testing::TestWithParam<const char*> {
+class BlendedRays : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
     if (!is_offered(GetParam())) GTEST_SKIP() << lacking(GetParam());
@@ -72,10 +72,10 @@ class Blended : public testing::TestWithParam<const char*> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Tracers, Blended, testing::Values("embree", "software"),
+INSTANTIATE_TEST_SUITE_P(Tracers, BlendedRays, testing::Values("embree", "software"),
                          [](const auto& tested) { return std::string(tested.param); });
 
-TEST_P(Blended, MirrorsShowWhatLiesBehindByTheShareThatIsNotCovered) {
+TEST_P(BlendedRays, ReflectionsPassThroughByOneMinusAlpha) {
   SceneBuilder builder;
   shared::Material glow = surface(glm::vec3(0.0f), 1.0f, 1.0f);
   glow.emissive = glm::vec3(2.0f);
@@ -95,7 +95,7 @@ TEST_P(Blended, MirrorsShowWhatLiesBehindByTheShareThatIsNotCovered) {
   expect_all(still, 2.0f * 0.7f * 0.7f, 0.03f, "mirror");
 }
 
-TEST_P(Blended, ShadowsAreAsDarkAsWhatCastsThemCovers) {
+TEST_P(BlendedRays, ShadowsAreProportionalToAlpha) {
   SceneBuilder builder;
   builder.place(builder.add_quad({{{-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}}},
                                  surface(glm::vec3(0.5f), 1.0f)));
@@ -115,7 +115,7 @@ TEST_P(Blended, ShadowsAreAsDarkAsWhatCastsThemCovers) {
   expect_all(shaded, 0.7f * lit, 0.03f, "shadow");
 }
 
-TEST_P(Blended, TheSkyIsHiddenByTheShareThatIsCovered) {
+TEST_P(BlendedRays, AmbientOcclusionIsProportionalToAlpha) {
   SceneBuilder builder;
   builder.place(builder.add_quad({{{-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}}},
                                  surface(glm::vec3(0.5f), 1.0f)));

@@ -119,7 +119,7 @@ render::Frame played(const std::shared_ptr<const scene::Scene>& scene,
   return shown;
 }
 
-TEST(MovingObject, LeavesNoTrailWhereItWas) {
+TEST(MovingObject, LeavesNoGhost) {
   const auto scene = box_under_a_sun(4.0f);
   const int frames = 16;
   const render::Frame shown = played(scene, denoised_alone(), "slide", frames);
@@ -158,7 +158,7 @@ INSTANTIATE_TEST_SUITE_P(Widths, MovingSun, testing::Values(0.0f, 2.0f, 10.0f),
                            return "of_" + std::to_string(int(width.param)) + "_degrees";
                          });
 
-TEST_P(MovingSun, DragsNoShadowBehind) {
+TEST_P(MovingSun, ShadowLeavesNoGhost) {
   const auto scene = box_under_a_sun(GetParam());
   const int frames = 16;
   const render::Frame before = moment(scene, "swing", (frames - 8) / 30.0).picture;
@@ -199,7 +199,7 @@ Sky turned_sky(const protocol::Settings& wanted, const std::string& name) {
           difference(truth, shown).mean};
 }
 
-TEST(TurningSky, LeavesLittleOfItsOldReflections) {
+TEST(RotatingEnvironment, ReflectionsLeaveLittleGhost) {
   protocol::Settings settings = denoised_alone();
   const Sky followed = turned_sky(settings, "turning_followed");
   settings.shadow_temporal.follow_lights = settings.specular_temporal.follow_lights = false;

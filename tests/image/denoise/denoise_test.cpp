@@ -7,7 +7,7 @@
 namespace heliograph::test {
 namespace {
 
-TEST(RestingView, FlickersEverLessAndNearsTheTruth) {
+TEST(StaticView, FlickerDecreasesAndConvergesToGroundTruth) {
   const render::Frame truth = truth_from(eye());
   Things still(denoised_alone());
   render::Frame before = still.renderer.render(), now;
@@ -28,7 +28,7 @@ TEST(RestingView, FlickersEverLessAndNearsTheTruth) {
 }
 
 // With all that makes pictures differ: jitter, antialiasing, and the mean that takes over.
-TEST(RestingView, StandsStillInTheEnd) {
+TEST(StaticView, ConvergesToConstantImage) {
   protocol::Settings settings;
   settings.accumulation.max_samples = 4096;
   Things still(settings);
@@ -46,7 +46,7 @@ TEST(RestingView, StandsStillInTheEnd) {
   EXPECT_LE(late.maximum, 2.0);
 }
 
-TEST(RestingView, ChangesNoBrightness) {
+TEST(StaticView, DenoisingPreservesMeanLuminance) {
   Things raw(raw_alone()), denoised(denoised_alone());
   raw.accumulate(192);
   denoised.accumulate(32);
@@ -89,7 +89,7 @@ INSTANTIATE_TEST_SUITE_P(Ways, MovingView,
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 // A mirrored axis anywhere in the motion is invisible at rest and shows in one of the three.
-TEST_P(MovingView, HasLittleOfTheNoiseOfOneSample) {
+TEST_P(MovingView, IsFarLessNoisyThanOneSample) {
   const int frames = 16;
   Things still(denoised_alone()), raw(raw_alone());
   render::Frame shown, noisy;

@@ -55,7 +55,7 @@ float pixels_per_metre(std::uint32_t height, float fov = 45.0f) {
 }
 
 // Jittered samples differ from frame to frame; where a resting surface was must not.
-TEST(History, OfARestingViewIsThePixelItselfWithJitterToo) {
+TEST(History, StaticViewMapsPixelToItselfDespiteJitter) {
   for (const bool jitter : {false, true}) {
     Viewed still(wall(), before_wall(0.3f), jitter);
     still.renderer.render();
@@ -76,7 +76,7 @@ TEST(History, OfARestingViewIsThePixelItselfWithJitterToo) {
 
 // Normals that lost precision on their way into the history would differ from themselves, most on
 // what is curved.
-TEST(History, RemembersNormalsBitForBit) {
+TEST(History, NormalsAreBitExactInHistory) {
   Viewed still(ball(), look({0.4f, 0.3f, 3}, {0, 0, 0}), false);
   still.renderer.render();
   const render::FloatImage first = still.capture("gbuffer.normals");
@@ -87,7 +87,7 @@ TEST(History, RemembersNormalsBitForBit) {
 }
 
 // In 16 bits a motion of a hundredth of a pixel is none, and pixels creep.
-TEST(History, TellsMotionsOfAHundredthOfAPixel) {
+TEST(History, ResolvesMotionOfHundredthOfPixel) {
   const std::uint32_t width = 1919, height = 8;
   const float fov = 0.5f;
   Viewed still(wall(), before_wall(0.0f, wall_distance, fov), false, width, height);
@@ -100,7 +100,7 @@ TEST(History, TellsMotionsOfAHundredthOfAPixel) {
   }
 }
 
-TEST(History, IsNoneInTheColumnsThatComeIntoViewAndWholeInAllOthers) {
+TEST(History, DisoccludedColumnsHaveNoHistory) {
   for (const float columns : {-3.7f, 3.7f}) {
     Viewed still(wall(), before_wall(0.0f), true);
     const float step = columns / pixels_per_metre(54);
@@ -129,7 +129,7 @@ TEST(History, IsNoneInTheColumnsThatComeIntoViewAndWholeInAllOthers) {
 }
 
 // Depth without its motion would refuse every pixel of a wall that comes nearer.
-TEST(History, HoldsWhileTheCameraComesNearer) {
+TEST(History, IsValidWhileCameraApproaches) {
   Viewed still(wall(), before_wall(0.0f), true);
   for (int i = 0; i < 6; ++i) {
     still.show(before_wall(0.0f, wall_distance - 0.25f * static_cast<float>(i)));
@@ -139,7 +139,7 @@ TEST(History, HoldsWhileTheCameraComesNearer) {
 }
 
 // What a switch changes is not in the memory that it leaves.
-TEST(History, EndsWithEverySwitchOfTheLight) {
+TEST(History, LightingSwitchesResetHistory) {
   using Change = void (*)(protocol::Settings&);
   const std::vector<std::pair<const char*, Change>> switches{
       {"shadows.enabled", [](auto& s) { s.shadows.enabled = false; }},
@@ -168,7 +168,7 @@ TEST(History, EndsWithEverySwitchOfTheLight) {
 }
 
 // Nothing else answers rays or makes the G-buffer than what was asked for.
-TEST(EffectivePipeline, IsTheOneThatWasAskedFor) {
+TEST(EffectivePipeline, MatchesRequestedTracerAndPasses) {
   for (const auto& [tracer, kind, pass] :
        {std::tuple{"embree", protocol::TracerKind::embree, protocol::PassKind::host},
         {"software", protocol::TracerKind::software, protocol::PassKind::device}}) {

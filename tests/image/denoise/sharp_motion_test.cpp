@@ -66,7 +66,7 @@ double error_in_motion(protocol::Settings settings, const std::string& name, Cou
 constexpr auto is_ball = [](int instance) { return instance == 2; };
 
 // One ray a pixel is all that a mirror needs.
-TEST(SharpMotion, AMirrorIsAsSharpAsWithoutDenoising) {
+TEST(SharpMotion, MirrorIsAsSharpAsWithoutDenoising) {
   protocol::Settings settings = denoised_alone();
   const double denoised = error_in_motion(settings, "orbit_mirror", is_ball);
   settings.specular_temporal.enabled = settings.specular_blur.enabled = false;
@@ -74,7 +74,7 @@ TEST(SharpMotion, AMirrorIsAsSharpAsWithoutDenoising) {
   EXPECT_LT(denoised, 1.1 * raw);
 }
 
-TEST(SharpMotion, AGlossyBallDoesNotDragItsReflectionAlong) {
+TEST(SharpMotion, GlossySphereReflectionDoesNotLag) {
   protocol::Settings settings = denoised_alone();
   for (const float roughness : {0.1f, 0.2f}) {
     const std::string name = "orbit_ball_" + std::to_string(int(100.0f * roughness));
@@ -86,7 +86,7 @@ TEST(SharpMotion, AGlossyBallDoesNotDragItsReflectionAlong) {
   }
 }
 
-TEST(SharpMotion, ThinShadowsStayOnTheGround) {
+TEST(SharpMotion, ThinShadowsAreNotSmeared) {
   const auto is_ground = [](int instance) { return instance == 1; };
   protocol::Settings settings = denoised_alone();
   const double sharp = error_in_motion(settings, "orbit_bars", is_ground);

@@ -29,7 +29,7 @@ Still make(const std::string& tracer = "auto") {
                look({0.5f, 2, 4.5f}, {0, 0.5f, 0}), width, height, tracer);
 }
 
-TEST(Accumulation, ConvergesTowardThePictureOfManySamples) {
+TEST(Accumulation, ErrorDecreasesWithSampleCount) {
   Still truth = make();
   protocol::Settings settings;
   settings.accumulation.max_samples = 256;
@@ -50,7 +50,7 @@ TEST(Accumulation, ConvergesTowardThePictureOfManySamples) {
   EXPECT_LT(before, 0.8) << "code values";
 }
 
-TEST(Accumulation, EndsAndResumesOnlyWhenSomethingChanges) {
+TEST(Accumulation, StopsWhenConvergedAndResumesOnChange) {
   Still still = make();
   protocol::Settings settings;
   settings.accumulation.max_samples = 5;
@@ -82,7 +82,7 @@ TEST(Accumulation, EndsAndResumesOnlyWhenSomethingChanges) {
   EXPECT_EQ(still.renderer.render().samples, 1u);
 }
 
-TEST(Accumulation, LeavesNothingOfTheOldView) {
+TEST(Accumulation, CameraMoveResetsAccumulation) {
   Still moved = make(), fresh = make();
   moved.renderer.set_camera(look({-3, 1, 3}, {0, 0.5f, 0}));
   moved.accumulate(10);
@@ -95,7 +95,7 @@ TEST(Accumulation, LeavesNothingOfTheOldView) {
   EXPECT_EQ(moved.accumulate(3).rgba, fresh.accumulate(3).rgba);
 }
 
-TEST(Determinism, TheSeedDecidesEveryByte) {
+TEST(Determinism, SeedDeterminesEveryByte) {
   for (const std::string& tracer : offered_tracers()) {
     Still a = make(tracer), b = make(tracer), other = make(tracer);
     protocol::Settings settings;
@@ -110,7 +110,7 @@ TEST(Determinism, TheSeedDecidesEveryByte) {
   }
 }
 
-TEST(Tracers, GiveNearlyTheSamePicture) {
+TEST(Tracers, ProduceNearlyEqualImages) {
   const render::Frame expected = make().accumulate(16);
   for (const std::string& name : offered_tracers()) {
     Still still = make(name);
@@ -121,7 +121,7 @@ TEST(Tracers, GiveNearlyTheSamePicture) {
   }
 }
 
-TEST(Shadows, DarkenOnlyAndOnlyWhenWanted) {
+TEST(Shadows, OnlyDarkenAndOnlyIfEnabled) {
   Still still = make();
   still.accumulate(32);
   const render::FloatImage with = still.capture("accumulated");
@@ -140,7 +140,7 @@ TEST(Shadows, DarkenOnlyAndOnlyWhenWanted) {
   EXPECT_GT(darker, 300) << "pixels in shadow";
 }
 
-TEST(Settings, EachLightSwitchTakesLightAway) {
+TEST(Settings, EachLightingSwitchRemovesLight) {
   Still still = make();
   still.accumulate(4);
   const double all = mean_luminance(still.capture("accumulated"));

@@ -40,7 +40,7 @@ render::Frame moved_view(render::Engine& engine) {
   return frame;
 }
 
-TEST(HostKernels, MakeThePictureThatTheShadersMake) {
+TEST(HostKernels, ImageMatchesShaders) {
   if (!device().is_cpu()) GTEST_SKIP() << "host kernels are for devices that are processors";
   render::Engine shaders({.validation = true, .host_kernels = false});
   const render::Frame expected = moved_view(shaders), found = moved_view(engine());

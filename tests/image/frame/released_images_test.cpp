@@ -34,7 +34,7 @@ class ReleasedImages : public testing::Test {
       std::make_shared<const scene::Environment>(scene::constant_environment(glm::vec3(1.0f)));
 };
 
-TEST_F(ReleasedImages, LookAsBeforeHoweverTheyAreRead) {
+TEST_F(ReleasedImages, RenderSameImageAfterReleaseAndDeviceLoss) {
   auto given_away = std::make_unique<scene::Scene>(textured());
   const std::uint64_t decoded = given_away->bytes();
   ASSERT_FALSE(given_away->images.empty());
@@ -55,7 +55,7 @@ TEST_F(ReleasedImages, LookAsBeforeHoweverTheyAreRead) {
 }
 
 // Textures for the rasteriser are as large as the heap: who does not rasterise does not need them.
-TEST_F(ReleasedImages, ProcessorsHaveTexturesForTheRasteriserOnceItRuns) {
+TEST_F(ReleasedImages, CpuDevicesUploadRasterTexturesOnFirstUse) {
   if (!device().is_cpu()) GTEST_SKIP() << "other devices have them from the start";
   const auto scene = engine().upload(std::make_unique<scene::Scene>(textured()), white_);
   const std::uint64_t before = render::memory_bytes(*scene);

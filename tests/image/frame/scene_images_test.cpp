@@ -22,7 +22,7 @@ double covered_share(const render::FloatImage& instance) {
   return count / static_cast<double>(instance.rgba.size() / 4);
 }
 
-TEST(Atrium, IsLitBySkyAndSun) {
+TEST(Atrium, IsLitBySunAndSky) {
   const auto sky = scenes::make_clear_sky(
       scenes::direction_to_sun(scenes::sun_elevation, scenes::sun_azimuth), 512, 256);
   const auto scene = import_document(scenes::make_atrium(1, sky), 128);
@@ -62,7 +62,7 @@ struct Model {
 
 class Models : public testing::TestWithParam<Model> {};
 
-TEST_P(Models, LooksSane) {
+TEST_P(Models, RadianceAndCoverageAreInRange) {
   const auto file = asset(std::filesystem::path("gltf") / GetParam().file);
   const auto sky = asset("hdr/venice.hdr");
   if (!file) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS does not say where other people's scenes are";
@@ -99,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(
         Model{"normal_tangent_test", "NormalTangentTest.glb", {0, 0, 1}, 0.1, 0.95}),
     model_name);
 
-TEST(DamagedHelmet, GlowsWhereItIsKnownToGlow) {
+TEST(DamagedHelmet, EmissiveTextureIsVisible) {
   const auto file = asset("gltf/DamagedHelmet.glb");
   if (!file) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS does not say where other people's scenes are";
   const auto scene = std::make_shared<const scene::Scene>(scene::import_gltf(*file));

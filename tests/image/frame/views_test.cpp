@@ -50,7 +50,7 @@ class Views : public testing::Test {
                width, height};
 };
 
-TEST_F(Views, EveryOneIsListedWithItsUnitCapturedAndShownAndNoneIsBlank) {
+TEST_F(Views, EveryBufferIsListedCapturedAndNotBlank) {
   ASSERT_GE(still_.renderer.buffers().size(), 30u);
   EXPECT_EQ(still_.renderer.buffers()[0].name, "output");
   for (const render::BufferInfo& buffer : still_.renderer.buffers()) {
@@ -74,7 +74,7 @@ TEST_F(Views, EveryOneIsListedWithItsUnitCapturedAndShownAndNoneIsBlank) {
   }
 }
 
-TEST_F(Views, AnyOfThemCanBeStreamed) {
+TEST_F(Views, StreamedViewEqualsCapturedView) {
   for (const char* name : {"gbuffer.normals.geometric", "gbuffer.motion.view_z", "hdr"}) {
     protocol::Settings settings;
     settings.view.buffer = name;
@@ -88,7 +88,7 @@ TEST_F(Views, AnyOfThemCanBeStreamed) {
   EXPECT_FALSE(still_.renderer.capture("no such buffer"));
 }
 
-TEST_F(Views, ANameThatIsRefusedCostsNoHistory) {
+TEST_F(Views, RejectedBufferNameKeepsHistory) {
   still_.renderer.render();
   const render::Frame before = still_.renderer.render();
   protocol::Settings settings;
@@ -100,7 +100,7 @@ TEST_F(Views, ANameThatIsRefusedCostsNoHistory) {
   EXPECT_EQ(still_.renderer.render().samples, before.samples + 1);
 }
 
-TEST_F(Views, ThePictureStandsInForABufferThatTheSettingsDoNotMake) {
+TEST_F(Views, OutputReplacesBufferThatSettingsDisable) {
   protocol::Settings settings;
   settings.specular.enabled = false;
   settings.view.buffer = "specular.radiance";
@@ -131,7 +131,7 @@ std::vector<protocol::Settings> settings_for_all_buffers() {
   return all;
 }
 
-TEST(BufferNames, AreThoseOfAllThatSettingsMake) {
+TEST(BufferNames, MatchBuffersOfAllSettings) {
   SceneBuilder builder;
   shared::Material glass = surface({0.5f, 0.7f, 0.5f}, 0.1f);
   glass.base_color.w = 0.4f;
@@ -149,7 +149,7 @@ TEST(BufferNames, AreThoseOfAllThatSettingsMake) {
   EXPECT_EQ(made, std::set<std::string>(names.begin(), names.end()));
 }
 
-TEST_F(Views, ShowKnownValuesInKnownColours) {
+TEST_F(Views, ShowKnownValuesInKnownColors) {
   // The middle of the metal sphere, about; the lowest row is ground, the highest sky.
   const std::uint32_t x = 96, y = 56;
   EXPECT_EQ(shown("gbuffer.surface.metallic", x, y), (std::array{253, 231, 37})) << "1: yellow";
@@ -162,7 +162,7 @@ TEST_F(Views, ShowKnownValuesInKnownColours) {
 }
 
 // The middle of the octahedron is +Z, and no code for nothing.
-TEST(NormalsView, ShowsSurfacesThatFaceZ) {
+TEST(NormalsView, SurfaceFacingZIsNotBlack) {
   for (const auto source :
        {protocol::PrimaryVisibility::raster, protocol::PrimaryVisibility::rays}) {
     SceneBuilder builder;
@@ -187,7 +187,7 @@ TEST(NormalsView, ShowsSurfacesThatFaceZ) {
   }
 }
 
-TEST_F(Views, MotionOfARestingSceneIsWhatTheCameraMakesOfIt) {
+TEST_F(Views, MotionOfStaticSceneHasNoError) {
   const render::FloatImage motion = still_.capture("gbuffer.motion");
   const render::FloatImage error = still_.capture("gbuffer.motion.error");
   float fastest = 0.0f, worst = 0.0f;

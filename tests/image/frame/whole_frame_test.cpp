@@ -69,7 +69,7 @@ void expect_numbers(Still& still, const std::string& what) {
   }
 }
 
-TEST(WholeFrame, DoesNotDependOnTheSizeOfTheScene) {
+TEST(WholeFrame, IsScaleInvariant) {
   const auto play = [](float size) {
     Scaled moving(size, sized(size));
     render::Frame frame;
@@ -125,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // Rows and columns that no group of 8 x 8 fills, a picture that is all border, and one above 1080p
 // but for a pixel. The validation layers watch.
-TEST_P(WholeFrameSizes, OddOnesAreWholeAndAllNumbers) {
+TEST_P(WholeFrameSizes, OddSizesAreCompleteAndFinite) {
   protocol::Settings settings = sized(1.0f);
   settings.gbuffer.source = GetParam().source;
   GetParam().change(settings);
@@ -155,7 +155,7 @@ TEST_P(WholeFrameSizes, OddOnesAreWholeAndAllNumbers) {
 }
 
 // A surface whose light is no number, and what mirrors it: forgotten once out of view.
-TEST(WholeFrame, WhatIsNoNumberNeitherSpreadsNorStays) {
+TEST(WholeFrame, NaNsNeitherSpreadNorPersist) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   shared::Material bad = surface(glm::vec3(0.5f));
   bad.emissive = {nan, 1.0f, std::numeric_limits<float>::infinity()};
@@ -194,7 +194,7 @@ TEST(WholeFrame, WhatIsNoNumberNeitherSpreadsNorStays) {
 }
 
 // What is seen, and its light, jump up by four orders of magnitude and back.
-TEST(WholeFrame, FollowsAHugeStepOfLightUpAndDown) {
+TEST(WholeFrame, FollowsHdrStepUpAndDown) {
   protocol::Settings dark = sized(1.0f), bright = dark;
   bright.environment.intensity = 100.0f;
   const auto world = make_environment(64, [](const glm::vec3& d) { return 100.0f * sky(d); });

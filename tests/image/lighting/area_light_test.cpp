@@ -76,7 +76,7 @@ double mean_light(const render::FloatImage& image) {
 
 // The truth samples the lights' areas and the real lobes; the hybrid integrates both by its fit.
 // One sphere alone is lit by nothing else.
-TEST(AreaLights, LightASphereLikeManySamplesOfTheirArea) {
+TEST(AreaLights, SphereMatchesAreaSampledGroundTruth) {
   for (const auto& [roughness, metallic] :
        {std::pair{0.2f, 1.0f}, {0.4f, 1.0f}, {0.7f, 1.0f}, {1.0f, 1.0f}, {0.4f, 0.0f}}) {
     SceneBuilder builder;
@@ -96,7 +96,7 @@ TEST(AreaLights, LightASphereLikeManySamplesOfTheirArea) {
 }
 
 // For the eye: the truth has light between rough surfaces as well.
-TEST(AreaLights, CastSoftShadowsInARoom) {
+TEST(AreaLights, CastSoftShadowsInRoom) {
   SceneBuilder builder;
   furnish_room(builder);
   const auto scene = lit_scene(builder);

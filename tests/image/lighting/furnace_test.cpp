@@ -41,13 +41,13 @@ void expect_white(Still& still, const std::string& name) {
   EXPECT_GT(covered * 20, static_cast<int>(radiance.rgba.size() / 4)) << "spheres in the picture";
 }
 
-TEST(Furnace, WhiteSpheresOfEveryRoughnessVanish) {
+TEST(Furnace, WhiteSpheresOfAnyRoughnessVanish) {
   const auto scene = import_document(scenes::make_furnace(), 16);
   Still still(scene, convert(scenes::make_white_environment()), scene->cameras.at(0), 320, 180);
   expect_white(still, "furnace");
 }
 
-TEST(Furnace, WhiteDielectricsAndHalfMetalsVanishToo) {
+TEST(Furnace, WhiteDielectricsAndHalfMetalsVanish) {
   SceneBuilder builder;
   for (int i = 0; i < 10; ++i) {
     const float roughness = 0.25f * static_cast<float>(i % 5);
@@ -62,7 +62,7 @@ TEST(Furnace, WhiteDielectricsAndHalfMetalsVanishToo) {
 }
 
 // A half grey dielectric gives back less than arrives, and more than its diffuse part alone.
-TEST(Furnace, GreyIsGrey) {
+TEST(Furnace, GrayDielectricReflectsItsAlbedo) {
   SceneBuilder builder;
   builder.place(builder.add_sphere(1.0f, surface(glm::vec3(0.5f))));
   Still still(builder.build(), scene::constant_environment(glm::vec3(2.0f)),

@@ -55,7 +55,7 @@ render::FloatImage picture(const std::shared_ptr<scene::Scene>& scene, const cha
   return still.capture("hdr");
 }
 
-TEST(ManyLights, TwoThousandLightTheSceneLikeTheirSum) {
+TEST(ManyLights, TwoThousandLightsEqualSumOfBatches) {
   const std::vector<scene::Light> all = lamps(2000);
   const auto scene = courtyard();
   scene->lights = all;

@@ -83,7 +83,7 @@ SceneBuilder white_things() {
   return builder;
 }
 
-TEST(LayersInAFurnace, KeepTheEnergy) {
+TEST(LayerFurnace, LayersConserveEnergy) {
   Still still(white_things().build(), scene::constant_environment(glm::vec3(1.0f)),
               look({0, 0, 6}, {0, 0, 0}, 36.0f), 160, 90);
   protocol::Settings settings;
@@ -98,7 +98,7 @@ TEST(LayersInAFurnace, KeepTheEnergy) {
   }
 }
 
-TEST(LayersInAFurnace, KeepItAlongRaysToo) {
+TEST(LayerFurnace, LayersConserveEnergyAlongRays) {
   Still still(white_things().build(), scene::constant_environment(glm::vec3(1.0f)),
               look({0, 0, 6}, {0, 0, 0}, 36.0f), 96, 54);
   protocol::Settings settings = undenoised();
@@ -113,7 +113,7 @@ TEST(LayersInAFurnace, KeepItAlongRaysToo) {
 }
 
 // White glass takes nothing: what passes, what is mirrored and what is scattered back make one.
-TEST(LayersInAFurnace, WhiteGlassVanishes) {
+TEST(LayerFurnace, WhiteGlassVanishes) {
   SceneBuilder builder;
   for (int i = 0; i < 4; ++i) {
     const float share = static_cast<float>(i + 1) / 4.0f;
@@ -178,7 +178,7 @@ glm::dvec3 mean_color(Still& still, const protocol::Settings& settings, const st
 class Layers : public testing::TestWithParam<protocol::PrimaryVisibility> {};
 
 // However the first surface is found, and whatever mirrored rays cost.
-TEST_P(Layers, HybridConvergesToTheSamePaths) {
+TEST_P(Layers, HybridConvergesToPathTracerAlongSamePaths) {
   Still still(workshop(), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 96, 54);
   protocol::Settings hybrid = undenoised();
   hybrid.gbuffer.source = GetParam();
@@ -194,7 +194,7 @@ INSTANTIATE_TEST_SUITE_P(Sources, Layers,
                          testing::Values(protocol::PrimaryVisibility::rays,
                                          protocol::PrimaryVisibility::raster));
 
-TEST(LayersOfTheReference, GlobalIlluminationIsBrighterByLittle) {
+TEST(LayersInReference, GlobalIlluminationIsSlightlyBrighter) {
   Still still(workshop(), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 96, 54);
   protocol::Settings settings = undenoised();
   settings.reference.use = protocol::ReferenceUse::always;
@@ -264,7 +264,7 @@ glm::dvec3 quarter_mean(const render::FloatImage& radiance, std::uint32_t column
 class LayerTextures : public testing::TestWithParam<protocol::PrimaryVisibility> {};
 
 // The hybrid keeps what textures say of a layer in its G-buffer; the path tracer asks them itself.
-TEST_P(LayerTextures, LookTheSameInTheHybridAndInTheReference) {
+TEST_P(LayerTextures, HybridMatchesReference) {
   scene::Camera camera = look({0, 0, 3}, {0, 0, 0});
   camera.orthographic_height = 2.0f;
   Still still(textured_wall(), make_environment(128, sky), camera, 96, 48);
@@ -292,7 +292,7 @@ INSTANTIATE_TEST_SUITE_P(Sources, LayerTextures,
 
 // A chart by others: five rows of spheres whose dielectric grows weaker or takes colours, the rows
 // of textures the same as those of factors.
-TEST(SpecularChart, TexturesWorkLikeFactors) {
+TEST(SpecularChart, TexturesMatchFactors) {
   const auto file = asset("gltf/SpecularTest.glb");
   if (!file) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS names no folder";
   const auto scene = std::make_shared<const scene::Scene>(scene::import_gltf(*file));
@@ -316,7 +316,7 @@ TEST(SpecularChart, TexturesWorkLikeFactors) {
 }
 
 // Coats take no bumps from what lies under them (KHR_materials_clearcoat).
-TEST(Coat, HasItsOwnNormals) {
+TEST(Coat, IgnoresBaseNormalMap) {
   const auto tilted = [](bool coat_too) {
     SceneBuilder builder;
     const auto bump = builder.add_texture(1, 1, false, {200, 128, 220, 255});
@@ -337,7 +337,7 @@ TEST(Coat, HasItsOwnNormals) {
 }
 
 // Velvet shines toward the light from behind its rim.
-TEST(Sheen, BrightensTheRim) {
+TEST(Sheen, BrightensRim) {
   const auto rim = [](const MaterialLayers& layers) {
     SceneBuilder builder;
     builder.place(
@@ -357,7 +357,7 @@ TEST(Sheen, BrightensTheRim) {
 }
 
 // A coat's highlight is as sharp as the coat, whatever lies under it.
-TEST(Coat, MirrorsTheSunOnARoughSurface) {
+TEST(Coat, HighlightOnRoughBaseHasCoatRoughness) {
   const auto highlight = [](const MaterialLayers& layers) {
     SceneBuilder builder;
     builder.place(

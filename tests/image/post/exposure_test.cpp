@@ -46,7 +46,7 @@ class Lit : public Still {
   }
 };
 
-TEST(AutomaticExposure, BrighterLightGivesThePictureOfBefore) {
+TEST(AutomaticExposure, AdaptsToBrighterLight) {
   Lit lit;
   lit.finish();
   const double before = lit.brightness();
@@ -62,7 +62,7 @@ TEST(AutomaticExposure, BrighterLightGivesThePictureOfBefore) {
   EXPECT_TRUE(lit.last.converged);
 }
 
-TEST(AutomaticExposure, EndsWhenNoTimePasses) {
+TEST(AutomaticExposure, ConvergesWithoutElapsedTime) {
   Lit lit;
   lit.finish();
   lit.settings.environment.intensity = 30.0f;

@@ -59,7 +59,7 @@ double mean_square(const render::FloatImage& a, const render::FloatImage& b) {
 }
 
 // Motion that still held the jitter would make the picture creep or shimmer for ever.
-TEST(Antialias, AJitteredPictureThatStandsStillSettlesOnTheTruth) {
+TEST(TemporalAntialias, JitteredStaticViewConvergesToGroundTruth) {
   const scene::Camera camera = look({0, 0, 3}, {0, 0, 0});
   Edges still(camera);
   still.accumulate(200);
@@ -82,7 +82,7 @@ TEST(Antialias, AJitteredPictureThatStandsStillSettlesOnTheTruth) {
   EXPECT_LT(change, 0.02 * raw_change) << "and almost still";
 }
 
-TEST(Antialias, WithoutJitterAStillPictureStandsStill) {
+TEST(TemporalAntialias, StaticViewWithoutJitterIsConstant) {
   Edges still(look({0, 0, 3}, {0, 0, 0}));
   protocol::Settings settings = without_noise();
   settings.antialiasing.jitter = false;
@@ -94,7 +94,7 @@ TEST(Antialias, WithoutJitterAStillPictureStandsStill) {
   EXPECT_LT(change, 2e-3) << "the history is where the frame is: not a fraction of a pixel beside";
 }
 
-TEST(Antialias, EdgesAreBetterThanOneSampleWhileTheCameraMoves) {
+TEST(TemporalAntialias, MovingEdgesAreBetterThanOneSample) {
   for (const auto& [name, step] : {std::pair("yaw", glm::vec3(0.02f, 0, 0)),
                                    {"pitch", glm::vec3(0, 0.02f, 0)},
                                    {"dolly", glm::vec3(0, 0, -0.03f)}}) {
@@ -117,7 +117,7 @@ TEST(Antialias, EdgesAreBetterThanOneSampleWhileTheCameraMoves) {
 }
 
 // The whole picture, as streamed: the share of the mean grows until nothing changes any more.
-TEST(Handover, FramesOfAStillViewDifferLessAndLess) {
+TEST(AccumulationBlend, StaticViewConverges) {
   SceneBuilder builder;
   builder.place(builder.add_quad({{{-3, -0.7f, 3}, {3, -0.7f, 3}, {3, -0.7f, -3}, {-3, -0.7f, -3}}},
                                  surface({0.6f, 0.6f, 0.5f})));
@@ -148,7 +148,7 @@ TEST(Handover, FramesOfAStillViewDifferLessAndLess) {
   EXPECT_LT(late, 0.04) << "code values";
 }
 
-TEST(Handover, ZeroShowsTheMeanAloneAndAMovingPictureNoneOfIt) {
+TEST(AccumulationBlend, ZeroShowsMeanAndMotionShowsFrame) {
   Edges still(look({0, 0, 3}, {0, 0, 0}));
   protocol::Settings settings = without_noise();
   settings.tone_map.curve = protocol::ToneMapCurve::linear;

@@ -79,7 +79,7 @@ struct Case {
 
 class SamePaths : public testing::TestWithParam<Case> {};
 
-TEST_P(SamePaths, AreWhatTheHybridConvergesTo) {
+TEST_P(SamePaths, HybridConvergesToReference) {
   const auto [roughness, angle] = GetParam();
   Still still(still_life(roughness), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 96,
               54);
@@ -101,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(Angle, SamePaths,
                          testing::Values(Case{0.3f, 0.0f}, Case{0.3f, 6.0f}, Case{0.3f, 10.0f}));
 
 // Every switch takes away the same light from both.
-TEST(SamePaths, FollowTheSwitches) {
+TEST(SamePaths, LightingSwitchesMatchHybrid) {
   Still still(still_life(0.3f), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 96, 54);
   using Change = void (*)(protocol::Settings&);
   const std::vector<Change> changes{
@@ -124,9 +124,9 @@ TEST(SamePaths, FollowTheSwitches) {
   }
 }
 
-class StandIns : public testing::TestWithParam<const char*> {};
+class PaperScenes : public testing::TestWithParam<const char*> {};
 
-TEST_P(StandIns, HybridConvergesToTheSamePaths) {
+TEST_P(PaperScenes, HybridConvergesToReference) {
   const auto file = asset(std::string("standins/") + GetParam() + ".glb");
   if (!file) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS is not set";
   const auto scene = std::make_shared<const scene::Scene>(scene::import_gltf(*file));
@@ -138,7 +138,7 @@ TEST_P(StandIns, HybridConvergesToTheSamePaths) {
   EXPECT_NEAR(got / expected, 1.0, 0.01);
 }
 
-INSTANTIATE_TEST_SUITE_P(Paper, StandIns, testing::Values("cubes_distance", "pillars"));
+INSTANTIATE_TEST_SUITE_P(Paper, PaperScenes, testing::Values("cubes_distance", "pillars"));
 
 // White surfaces under white light lose nothing, however often light goes between them.
 TEST(FullReference, WhiteFurnaceStaysWhite) {
@@ -169,7 +169,7 @@ TEST(FullReference, WhiteFurnaceStaysWhite) {
 
 class BothScopes : public testing::TestWithParam<ReferenceScope> {};
 
-TEST_P(BothScopes, SunOnAFloorIsAnalytic) {
+TEST_P(BothScopes, SunOnFloorIsAnalytic) {
   SceneBuilder builder;
   builder.place(builder.add_quad({{{-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}}},
                                  surface(glm::vec3(0.5f), 1.0f)));
@@ -186,7 +186,7 @@ TEST_P(BothScopes, SunOnAFloorIsAnalytic) {
   EXPECT_NEAR(rgb(still.capture("accumulated"), 8, 8).x, expected, 0.005 * expected);
 }
 
-TEST_P(BothScopes, MirrorShowsTheEmitterAsItIs) {
+TEST_P(BothScopes, MirrorShowsEmitterUnchanged) {
   SceneBuilder builder;
   shared::Material emitter = surface(glm::vec3(0.0f), 1.0f, 1.0f);
   emitter.emissive = {2.0f, 1.0f, 0.5f};
@@ -203,7 +203,7 @@ TEST_P(BothScopes, MirrorShowsTheEmitterAsItIs) {
   EXPECT_LE(glm::distance(seen, glm::vec3(2.0f, 1.0f, 0.5f)), 0.01f);
 }
 
-TEST_P(BothScopes, BlendedSurfacesCoverTheirShare) {
+TEST_P(BothScopes, BlendedSurfacesCoverByAlpha) {
   SceneBuilder builder;
   shared::Material veil = surface({0.8f, 0.4f, 0.2f});
   veil.base_color.w = 0.25f;
@@ -220,7 +220,7 @@ TEST_P(BothScopes, BlendedSurfacesCoverTheirShare) {
 INSTANTIATE_TEST_SUITE_P(Scopes, BothScopes,
                          testing::Values(ReferenceScope::same_paths, ReferenceScope::full));
 
-TEST(FullReference, FindsTheLightBetweenWallsThatTheHybridDoesNot) {
+TEST(FullReference, IncludesInterreflections) {
   SceneBuilder builder;
   const shared::Material white = surface(glm::vec3(0.8f));
   builder.place(builder.add_quad({{{-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}}}, white));
@@ -241,7 +241,7 @@ TEST(FullReference, FindsTheLightBetweenWallsThatTheHybridDoesNot) {
   EXPECT_LT(eight, 2.0 * same);
 }
 
-TEST(FullReference, IsTheSameWhateverTraces) {
+TEST(FullReference, TracersAgree) {
   std::vector<double> mean;
   for (const std::string& tracer : offered_tracers()) {
     Still still(still_life(0.3f), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 48, 27,
@@ -251,7 +251,7 @@ TEST(FullReference, IsTheSameWhateverTraces) {
   for (const double other : mean) EXPECT_NEAR(other / mean[0], 1.0, 1e-3);
 }
 
-TEST(RestingReference, IsWhatARestingCameraConvergesTo) {
+TEST(ReferenceWhenStatic, StaticCameraConvergesToReference) {
   Still still(still_life(0.4f), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 64, 36);
   const double expected = mean_luminance(still, traced(ReferenceScope::full), 64, "rest_full");
   protocol::Settings settings = traced(ReferenceScope::full);

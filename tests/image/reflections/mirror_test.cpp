@@ -85,7 +85,7 @@ Errors reflection_errors(const scene::Environment& sky, float rotation, bool tra
 // What the environment's prefiltered cube shows, and what rays do.
 class Mirror : public testing::TestWithParam<bool> {};
 
-TEST_P(Mirror, ShowsTheGeneratedSkyWhereItReflects) {
+TEST_P(Mirror, ReflectsGeneratedSky) {
   const auto sky = scenes::make_clear_sky(scenes::direction_to_sun(50.0f, 30.0f), 512, 256);
   const Errors errors = reflection_errors(convert(sky.environment), 0.0f, GetParam(), "mirror_sky");
   EXPECT_GT(errors.pixels, GetParam() ? 1500 : 2000);
@@ -100,14 +100,14 @@ glm::vec3 coloured_sky(const glm::vec3& d) {
          glm::vec3(8, 0, 0) * std::pow(std::max(glm::dot(d, glow), 0.0f), 40.0f);
 }
 
-TEST_P(Mirror, ShowsAColouredSkyTheRightWayRound) {
+TEST_P(Mirror, ReflectsColoredSkyInCorrectOrientation) {
   const Errors errors =
       reflection_errors(make_environment(512, coloured_sky), 0.0f, GetParam(), "mirror_coloured");
   EXPECT_LT(errors.median, GetParam() ? 0.001 : 0.005);
   EXPECT_LT(errors.worst, GetParam() ? 0.02 : 0.05);
 }
 
-TEST_P(Mirror, TurnsWithTheEnvironment) {
+TEST_P(Mirror, RotatesWithEnvironment) {
   const Errors errors =
       reflection_errors(make_environment(512, coloured_sky), 70.0f, GetParam(), "mirror_turned");
   EXPECT_LT(errors.median, GetParam() ? 0.001 : 0.005);
@@ -120,7 +120,7 @@ std::string way_name(const testing::TestParamInfo<bool>& way) {
 
 INSTANTIATE_TEST_SUITE_P(Ways, Mirror, testing::Bool(), way_name);
 
-TEST(Background, IsTheEnvironmentBehindEveryPixel) {
+TEST(Background, ShowsEnvironmentBehindEveryPixel) {
   const scene::Environment sky = make_environment(512, coloured_sky);
   const scene::Camera camera = look({0, 0, 0}, {1, 0.3f, 0.8f}, 60.0f);
   Still still(SceneBuilder().build(), sky, camera, width, height);

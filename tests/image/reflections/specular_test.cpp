@@ -48,7 +48,7 @@ std::shared_ptr<const scene::Scene> row_of_spheres(float metallic) {
 }
 
 // Energy: under light that is the same from everywhere the demodulated signal is that light.
-TEST(SpecularRays, MeanIsOneInAFurnace) {
+TEST(SpecularRays, MeanIsOneInFurnace) {
   for (const float metallic : {0.0f, 1.0f}) {
     Still still(row_of_spheres(metallic), scene::constant_environment(glm::vec3(1.0f)),
                 look({0, 0, 6}, {0, 0, 0}, 24.0f), 160, 40);
@@ -70,7 +70,7 @@ TEST(SpecularRays, MeanIsOneInAFurnace) {
   }
 }
 
-TEST(SpecularRays, PictureOfAFurnaceIsWhite) {
+TEST(SpecularRays, FurnaceImageIsWhite) {
   Still still(row_of_spheres(0.5f), scene::constant_environment(glm::vec3(1.0f)),
               look({0, 0, 6}, {0, 0, 0}, 24.0f), 160, 40);
   protocol::Settings settings = undenoised();
@@ -85,7 +85,7 @@ TEST(SpecularRays, PictureOfAFurnaceIsWhite) {
 }
 
 // Where a sphere is seen straight on, the prefilter's assumption (N = V = R) holds.
-TEST(SpecularRays, ConvergeToThePrefilteredEnvironmentWhereThatIsExact) {
+TEST(SpecularRays, ConvergeToPrefilteredEnvironmentAtNormalIncidence) {
   for (const float roughness : {0.0f, 0.25f, 0.5f, 1.0f}) {
     SceneBuilder builder;
     builder.place(builder.add_sphere(1.0f, surface(glm::vec3(1.0f), roughness, 1.0f)));
@@ -119,7 +119,7 @@ struct MirrorAndWall {
   scene::Camera camera = look({0, 2, 4}, {0, 0, 0}, 30.0f);  // sees the wall's foot in the mirror
 };
 
-TEST(SpecularRays, MirrorShowsAGlowingWallAsItIs) {
+TEST(SpecularRays, MirrorShowsEmissiveWallUnchanged) {
   shared::Material wall = surface(glm::vec3(0.0f));
   wall.emissive = {3, 2, 1};
   MirrorAndWall scene(wall);
@@ -137,7 +137,7 @@ TEST(SpecularRays, MirrorShowsAGlowingWallAsItIs) {
   EXPECT_NEAR(distance, std::sqrt(4.0f * 4.0f + 2.0f * 2.0f), 0.15f);
 }
 
-TEST(SpecularRays, ALampLightsWhatTheMirrorShowsUnlessSomethingIsInItsWay) {
+TEST(SpecularRays, PointLightLightsReflectedSurfaceUnlessOccluded) {
   const auto mirrored_wall = [](bool blocked, protocol::HitShading shading, bool shadows) {
     MirrorAndWall scene(surface(glm::vec3(0.5f)));
     scene.builder.add_sun({0, 0, -1}, glm::vec3(4.0f));
@@ -171,7 +171,7 @@ int traced_pixels(Still& still) {
   return count;
 }
 
-TEST(SpecularRays, RougherAndUnlitSurfacesTraceNone) {
+TEST(SpecularRays, RoughAndUnlitSurfacesTraceNoRays) {
   shared::Material wall = surface(glm::vec3(1.0f));
   wall.flags |= shared::material_unlit;
   MirrorAndWall scene(wall, 0.5f);
@@ -227,7 +227,7 @@ double mean_of(const render::FloatImage& image) {
   return sum / static_cast<double>(image.rgba.size() / 4 * 3);
 }
 
-TEST(SpecularRays, PictureDoesNotDependOnTheSizeOfTheScene) {
+TEST(SpecularRays, ImageIsScaleInvariant) {
   Pictured usual(1.0f, undenoised());
   const render::Frame expected = usual.accumulate(16);
   for (const float size : {0.01f, 100.0f}) {
@@ -251,7 +251,7 @@ std::pair<int, double> differing(Still& one, Still& other, const char* buffer) {
 
 // Rays stand beside other neighbours, and texture filters of some drivers round by what the lanes
 // beside them read: radiance may differ in its last bit, the picture in none.
-TEST(SpecularRays, SortedRaysMakeTheSamePicture) {
+TEST(SpecularRays, SortedRaysGiveSameImage) {
   for (const std::string& tracer : offered_tracers()) {
     protocol::Settings settings = undenoised();
     Pictured plain(1.0f, settings, 96, 64, tracer);
@@ -274,7 +274,7 @@ TEST(SpecularRays, TracersAgreeOnTheMean) {
               2e-3);
 }
 
-TEST(SpecularRays, HalfResolutionComesCloseToWhole) {
+TEST(SpecularRays, HalfResolutionMatchesFullResolutionMean) {
   protocol::Settings settings = undenoised();
   Pictured whole(1.0f, settings);
   const render::Frame expected = whole.accumulate(64);
@@ -287,7 +287,7 @@ TEST(SpecularRays, HalfResolutionComesCloseToWhole) {
               0.02);
 }
 
-TEST(SpecularRays, HalfResolutionKeepsAFurnaceWhite) {
+TEST(SpecularRays, HalfResolutionFurnaceIsWhite) {
   Still still(row_of_spheres(1.0f), scene::constant_environment(glm::vec3(1.0f)),
               look({0, 0, 6}, {0, 0, 0}, 24.0f), 161, 41);
   protocol::Settings settings = undenoised();
@@ -303,7 +303,7 @@ TEST(SpecularRays, HalfResolutionKeepsAFurnaceWhite) {
 
 class OddSizes : public testing::TestWithParam<std::pair<int, int>> {};
 
-TEST_P(OddSizes, EveryPixelIsANumber) {
+TEST_P(OddSizes, AllPixelsAreFinite) {
   const auto [width, height] = GetParam();
   for (const bool half : {false, true}) {
     protocol::Settings settings = undenoised();
@@ -323,7 +323,7 @@ INSTANTIATE_TEST_SUITE_P(Targets, OddSizes,
                                          std::pair(1919, 1079)));
 
 // One sample that is no number must not reach the signal, where filters would spread it.
-TEST(SpecularRays, WhatIsNoNumberBecomesBlack) {
+TEST(SpecularRays, NaNSampleBecomesBlack) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   shared::Material wall = surface(glm::vec3(0.0f));
   wall.emissive = {nan, std::numeric_limits<float>::infinity(), 1};

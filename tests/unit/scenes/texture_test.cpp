@@ -32,7 +32,7 @@ double largest_inner_step(const Image& image, bool columns) {
   return largest;
 }
 
-TEST(Textures, TileWithoutASeam) {
+TEST(Textures, TileSeamlessly) {
   Document document;
   add_atrium_materials(document, Gloss::floor);
   int textured = 0;
@@ -54,7 +54,7 @@ TEST(Textures, TileWithoutASeam) {
   EXPECT_GE(textured, 22);
 }
 
-TEST(Textures, MaskedPicturesAreTransparentAtTheirBorder) {
+TEST(Textures, MaskedTexturesAreTransparentAtBorder) {
   Document document;
   add_atrium_materials(document, Gloss::floor);
   int masked = 0;
@@ -74,7 +74,7 @@ TEST(Textures, MaskedPicturesAreTransparentAtTheirBorder) {
   EXPECT_GE(masked, 1);
 }
 
-TEST(Textures, NormalMapLeansAwayFromARise) {
+TEST(Textures, NormalMapTiltsAwayFromSlope) {
   TextureRecipe ramp;
   ramp.name = "ramp";
   ramp.width = 1.0f;

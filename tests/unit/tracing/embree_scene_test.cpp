@@ -33,7 +33,7 @@ Answers trace(const scene::Scene& scene, std::span<const shared::Ray> rays) {
   return answers;
 }
 
-TEST(EmbreeScene, AgreesWithAskingEveryTriangle) {
+TEST(EmbreeScene, MatchesBruteForce) {
   const scene::Scene scene = two_level_scene(11);
   // Not a multiple of any packet or batch.
   const std::vector<shared::Ray> rays = random_rays(scene, 3001, 11);
@@ -50,7 +50,7 @@ TEST(EmbreeScene, AgreesWithAskingEveryTriangle) {
   EXPECT_LE(different, 3);
 }
 
-TEST(EmbreeScene, LeavesOutWhatNoRayCanMeet) {
+TEST(EmbreeScene, ExcludesDegenerateInstances) {
   scene::Scene scene;
   shared::Material invisible = plain_material();
   invisible.flags = shared::material_alpha_mask;
@@ -66,7 +66,7 @@ TEST(EmbreeScene, LeavesOutWhatNoRayCanMeet) {
   EXPECT_FLOAT_EQ(hit.t, 2.0f);
 }
 
-TEST(EmbreeScene, IgnoresRaysThatReachNowhere) {
+TEST(EmbreeScene, EmptyIntervalsHaveNoHits) {
   const scene::Scene scene = two_level_scene(12);
   std::vector<shared::Ray> rays = random_rays(scene, 300, 12);
   for (std::size_t i = 0; i < rays.size(); ++i) {

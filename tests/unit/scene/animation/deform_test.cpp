@@ -46,7 +46,7 @@ Scene puppet(std::size_t count, std::uint32_t joints_per_vertex) {
 
 class Skinning : public testing::TestWithParam<std::uint32_t> {};
 
-TEST_P(Skinning, FollowsTheDefinition) {
+TEST_P(Skinning, MatchesDefinition) {
   const Scene scene = puppet(5000, GetParam());
   const Shape& shape = scene.shapes[0];
   std::vector<shared::Vertex> moved(shape.vertices.size());
@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(FourAndEightJoints, Skinning, testing::Values(4u, 8u));
 
 // A renderer of note once multiplied normals by the transpose, not the inverse transpose: on a
 // slope squeezed in x by 4 the two differ by tens of degrees.
-TEST(Skinning, NormalsOfASqueezedSlopeStayPerpendicular) {
+TEST(Skinning, NormalsUseInverseTranspose) {
   Scene scene = puppet(1, 4);
   scene.nodes[1].world = glm::scale(glm::mat4(1.0f), {0.25f, 1, 1});
   Shape& shape = scene.shapes[0];
@@ -88,7 +88,7 @@ TEST(Skinning, NormalsOfASqueezedSlopeStayPerpendicular) {
   EXPECT_LE(glm::distance(moved[0].normal, glm::normalize(glm::vec3(4, 1, 0))), 1e-6f);
 }
 
-TEST(Skinning, MirroredJointsKeepNormalsOutside) {
+TEST(Skinning, MirroredJointsKeepNormalsOutward) {
   Scene scene = puppet(1, 4);
   scene.nodes[1].world = glm::scale(glm::mat4(1.0f), {-1, 1, 1});
   Shape& shape = scene.shapes[0];
@@ -102,7 +102,7 @@ TEST(Skinning, MirroredJointsKeepNormalsOutside) {
   EXPECT_EQ(moved[0].tangent, glm::vec4(0, 1, 0, -1));
 }
 
-TEST(Skinning, NormalsAreUnitVectorsWhateverTheScale) {
+TEST(Skinning, NormalsAreUnitLengthAtAnyScale) {
   for (const float size : {1e-12f, 1e-6f, 1e6f, 1e12f}) {  // their squares have no place in a float
     Scene scene = puppet(1, 4);
     scene.nodes[1].world = glm::scale(glm::mat4(1.0f), glm::vec3(2.0f * size, size, size));
@@ -117,7 +117,7 @@ TEST(Skinning, NormalsAreUnitVectorsWhateverTheScale) {
   }
 }
 
-TEST(Morphing, AddsWeightedDifferences) {
+TEST(Morphing, AddsWeightedDisplacements) {
   Scene scene;
   scene.nodes.resize(1);
   Shape shape;
@@ -136,7 +136,7 @@ TEST(Morphing, AddsWeightedDifferences) {
             1e-6f);
 }
 
-TEST(Morphing, FlatNormalsBelongToTheMovedTriangle) {
+TEST(Morphing, FlatNormalsAreOfDeformedTriangle) {
   Scene scene;
   scene.nodes.resize(1);
   Shape shape;

@@ -20,7 +20,7 @@ std::array<float, 4> at(const Channel& channel, float seconds) {
   return value;
 }
 
-TEST(Sample, LinearGoesStraightAndStopsAtTheEnds) {
+TEST(Sample, LinearInterpolatesAndClampsAtEnds) {
   const Channel channel =
       curve(Property::translation, Interpolation::linear, 3, {1, 3}, {0, 10, -2, 4, 20, 6});
   EXPECT_EQ(at(channel, 0.0f), (std::array<float, 4>{0, 10, -2, 0})) << "before the first key";
@@ -29,7 +29,7 @@ TEST(Sample, LinearGoesStraightAndStopsAtTheEnds) {
   EXPECT_EQ(at(channel, 9.0f), (std::array<float, 4>{4, 20, 6, 0})) << "behind the last";
 }
 
-TEST(Sample, StepHoldsUntilTheNextKey) {
+TEST(Sample, StepHoldsUntilNextKey) {
   const Channel channel =
       curve(Property::scale, Interpolation::step, 3, {0, 1}, {1, 1, 1, 2, 3, 4});
   EXPECT_EQ(at(channel, 0.999f), (std::array<float, 4>{1, 1, 1, 0}));
@@ -38,7 +38,7 @@ TEST(Sample, StepHoldsUntilTheNextKey) {
 
 // By hand from glTF 2.0, C.5: at the middle of two seconds, with start 0, end 8, out-tangent 6 and
 // in-tangent -2 per second: 0.5*0 + 0.125*2*6 + 0.5*8 - 0.125*2*(-2) = 6.
-TEST(Sample, SplineTangentsAreScaledByTheTimeBetweenKeys) {
+TEST(Sample, SplineTangentsAreScaledByKeyInterval) {
   const Channel channel =
       curve(Property::weights, Interpolation::cubic_spline, 1, {0, 2}, {99, 0, 6, -2, 8, 99});
   EXPECT_FLOAT_EQ(at(channel, 1.0f)[0], 6.0f);
@@ -53,7 +53,7 @@ float angle_about_y(const std::array<float, 4>& xyzw) {
   return 2.0f * std::atan2(xyzw[1], xyzw[3]);
 }
 
-TEST(Sample, RotationsTakeTheShortWayAtAnEvenPace) {
+TEST(Sample, RotationsTakeShortestArcAtConstantSpeed) {
   const float half = std::numbers::pi_v<float> / 4.0f;  // of a quarter turn about y
   // The second key is the same rotation with all signs turned: the long way round.
   const Channel channel = curve(Property::rotation, Interpolation::linear, 4, {0, 1},
@@ -65,7 +65,7 @@ TEST(Sample, RotationsTakeTheShortWayAtAnEvenPace) {
   }
 }
 
-TEST(Sample, SplinesOfRotationsComeOutWithUnitLength) {
+TEST(Sample, RotationSplinesAreNormalized) {
   const Channel channel =
       curve(Property::rotation, Interpolation::cubic_spline, 4, {0, 1},
             {0, 0, 0, 0, 0, 0, 0, 1, 2, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0});
@@ -75,7 +75,7 @@ TEST(Sample, SplinesOfRotationsComeOutWithUnitLength) {
   EXPECT_NEAR(length, 1.0f, 1e-6f);
 }
 
-TEST(Sample, AZeroQuaternionIsNoRotation) {
+TEST(Sample, ZeroQuaternionIsIdentity) {
   const Channel channel = curve(Property::rotation, Interpolation::linear, 4, {0}, {0, 0, 0, 0});
   EXPECT_EQ(at(channel, 0.0f), (std::array<float, 4>{0, 0, 0, 1}));
 }
@@ -104,7 +104,7 @@ glm::vec3 place_of(const Pose& pose, std::size_t node) {
   return glm::vec3(pose.worlds[node][3]);
 }
 
-TEST(Evaluate, ChildrenFollowTheirParents) {
+TEST(Evaluate, ChildrenFollowParents) {
   const Scene scene = mobile();
   Pose pose = rest_pose(scene);
   evaluate(scene, *find_clip(scene, "turn"), 2.0, pose);
@@ -113,7 +113,7 @@ TEST(Evaluate, ChildrenFollowTheirParents) {
   EXPECT_EQ(pose.weights[2], std::vector<float>{0.25f});
 }
 
-TEST(Evaluate, LoopsAndKeepsItsLastMoment) {
+TEST(Evaluate, LoopsAndIncludesEndTime) {
   const Scene scene = mobile();
   Pose once = rest_pose(scene), again = rest_pose(scene);
   evaluate(scene, scene.clips[0], 0.5, once);
@@ -126,7 +126,7 @@ TEST(Evaluate, LoopsAndKeepsItsLastMoment) {
   EXPECT_LE(glm::distance(place_of(again, 1), place_of(once, 1)), 1e-5f);
 }
 
-TEST(Evaluate, AnotherClipStartsFromRest) {
+TEST(Evaluate, OtherClipStartsFromDefaultPose) {
   Scene scene = mobile();
   Clip other{"lift", 1.0f, {}};
   other.channels.push_back(curve(Property::translation, Interpolation::linear, 3, {0}, {0, 5, 0}));

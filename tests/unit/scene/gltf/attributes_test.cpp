@@ -82,7 +82,7 @@ double step_of(const Component& component) {
   return component.normalized ? 0.51 / component.largest : 1e-6;
 }
 
-TEST(Attributes, PositionsOfEveryComponent) {
+TEST(Attributes, PositionsOfEveryComponentType) {
   for (const Component& component : {f32, i8n, u8n, i16n, u16n}) {
     const Mesh mesh = mesh_with("POSITION", component, 3, {0, 0, 0, 1, 0, 0, 0, 0.5, 0});
     EXPECT_NEAR(mesh.vertices[1].position.x, 1.0, 1e-6) << component.type;
@@ -99,7 +99,7 @@ TEST(Attributes, PositionsOfEveryComponent) {
   }
 }
 
-TEST(Attributes, NormalsAndTangentsOfEveryComponent) {
+TEST(Attributes, NormalsAndTangentsOfEveryComponentType) {
   for (const Component& component : {f32, i8n, i16n}) {
     const Mesh normals = mesh_with("NORMAL", component, 3, {0, 0, 1, 0, 0.6, 0.8, -1, 0, 0});
     EXPECT_LE(glm::distance(normals.vertices[1].normal, {0, 0.6f, 0.8f}), 0.01f) << component.type;
@@ -124,7 +124,7 @@ TEST(Attributes, TangentsWithoutNormalsAreIgnored) {
   }
 }
 
-TEST(Attributes, BothSetsOfTextureCoordinatesOfEveryComponent) {
+TEST(Attributes, BothTexCoordSetsOfEveryComponentType) {
   for (const char* const name : {"TEXCOORD_0", "TEXCOORD_1"}) {
     const auto uv = [&](const Mesh& mesh, std::size_t vertex) {
       return std::string_view(name).ends_with('0') ? mesh.vertices[vertex].uv0
@@ -143,7 +143,7 @@ TEST(Attributes, BothSetsOfTextureCoordinatesOfEveryComponent) {
   }
 }
 
-TEST(Attributes, ColorsOfEveryComponentWithAndWithoutAlpha) {
+TEST(Attributes, ColorsOfEveryComponentTypeWithAndWithoutAlpha) {
   for (const Component& component : {f32, u8n, u16n}) {
     const Mesh opaque = mesh_with("COLOR_0", component, 3, {1, 0, 0, 0, 0.25, 0, 0, 0, 0.5});
     EXPECT_NEAR(glm::unpackUnorm2x16(opaque.vertices[0].color_rg).x, 1.0, 1e-6);
@@ -158,7 +158,7 @@ TEST(Attributes, ColorsOfEveryComponentWithAndWithoutAlpha) {
   }
 }
 
-TEST(Attributes, JointsAndWeightsOfEveryComponent) {
+TEST(Attributes, JointsAndWeightsOfEveryComponentType) {
   for (const Component& joints : {u8, u16}) {
     for (const Component& weights : {f32, u8n, u16n}) {
       GltfBuilder builder = triangle();
@@ -217,7 +217,7 @@ TEST(Attributes, StripsAndFansMayHaveIndices) {
   }
 }
 
-TEST(Attributes, SparseIndicesOfEveryWidthReplaceAnyKindOfElement) {
+TEST(Attributes, SparseIndicesOfEveryTypeReplaceAnyElementType) {
   const auto with_sparse = [](int type, std::uint32_t indices_view, GltfBuilder& builder,
                               std::uint32_t accessor, std::uint32_t values) {
     builder.json["accessors"][accessor]["sparse"] = {
@@ -245,7 +245,7 @@ TEST(Attributes, SparseIndicesOfEveryWidthReplaceAnyKindOfElement) {
   }
 }
 
-TEST(Attributes, MorphTargetsMoveNormalsAndTangentsOfEveryComponent) {
+TEST(Attributes, MorphTargetsOfEveryComponentTypeMoveNormalsAndTangents) {
   for (const Component& component : {f32, i8n, i16n}) {
     GltfBuilder builder = triangle();
     attributes_of(builder)["NORMAL"] = add_values(builder, f32, 3, {0, 0, 1, 0, 0, 1, 0, 0, 1});

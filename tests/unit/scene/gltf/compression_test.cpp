@@ -73,7 +73,7 @@ float farthest_from(const std::vector<shared::Vertex>& vertices,
 
 class Draco : public testing::TestWithParam<bool> {};
 
-TEST_P(Draco, BringsBackTheSheet) {
+TEST_P(Draco, RoundTrip) {
   DracoInput input = sheet();
   input.sequential = GetParam();
   input.metadata = GetParam();
@@ -99,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, Draco, testing::Bool(), [](const auto& test) {
   return test.param ? "Sequential" : "Edgebreaker";
 });
 
-TEST(DracoGeometry, JointsAreKeptAsWholeNumbers) {
+TEST(DracoGeometry, JointsStayIntegers) {
   DracoInput input = sheet();
   for (std::size_t i = 0; i < input.positions.size(); ++i) input.joints.push_back({1, 0, 0, 0});
   GltfBuilder builder = with_draco(draco(input));
@@ -118,7 +118,7 @@ TEST(DracoGeometry, JointsAreKeptAsWholeNumbers) {
   EXPECT_EQ(scene.shapes[0].influences[1].joint, 0u);
 }
 
-TEST(DracoGeometry, DamageIsRefused) {
+TEST(DracoGeometry, DamageIsRejected) {
   const GltfBuilder good = with_draco(draco(sheet()));
   ASSERT_EQ(refusal_of(good), "");
   const auto refusal_with = [&](auto change) {
@@ -152,7 +152,7 @@ TEST(DracoGeometry, DamageIsRefused) {
          "limit of");
 }
 
-TEST(DracoGeometry, RandomDamageNeverGetsPastTheChecks) {
+TEST(DracoGeometry, RandomDamageIsSafe) {
   for (const bool sequential : {false, true}) {
     DracoInput input = sheet();
     input.sequential = sequential;
@@ -228,7 +228,7 @@ GltfBuilder with_meshopt() {
   return finish_meshopt(std::move(builder));
 }
 
-TEST(Meshopt, BringsBackTheSheet) {
+TEST(Meshopt, RoundTrip) {
   const DracoInput input = sheet();
   const Scene scene = with_meshopt().import();
   const Mesh& mesh = scene.meshes.at(0);
@@ -251,7 +251,7 @@ TEST(Meshopt, BringsBackTheSheet) {
   }
 }
 
-TEST(Meshopt, SequencesAndQuaternions) {
+TEST(Meshopt, IndexSequencesAndQuaternions) {
   GltfBuilder builder;
   const auto positions =
       builder.add_accessor(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}, 5126, "VEC3", 4);
@@ -277,7 +277,7 @@ TEST(Meshopt, SequencesAndQuaternions) {
   }
 }
 
-TEST(Meshopt, DamageIsRefused) {
+TEST(Meshopt, DamageIsRejected) {
   const GltfBuilder good = with_meshopt();
   ASSERT_EQ(refusal_of(good), "");
   const auto refusal_with = [&](std::size_t view, auto change, const ImportLimits& limits = {}) {
@@ -316,7 +316,7 @@ TEST(Meshopt, DamageIsRefused) {
          "limit");
 }
 
-TEST(Meshopt, RandomDamageNeverGetsPastTheChecks) {
+TEST(Meshopt, RandomDamageIsSafe) {
   const GltfBuilder good = with_meshopt();
   std::mt19937 random(3);
   for (int round = 0; round < 500; ++round) {
@@ -340,7 +340,7 @@ Bytes gradient(std::uint32_t width, std::uint32_t height) {
   return rgba;
 }
 
-TEST(WebP, LosslessPixelsComeBackExactly) {
+TEST(WebP, LosslessRoundTripIsExact) {
   GltfBuilder builder = everything();
   const Bytes rgba = gradient(40, 24);
   const auto image = builder.add_image(webp(40, 24, rgba));
@@ -353,7 +353,7 @@ TEST(WebP, LosslessPixelsComeBackExactly) {
   EXPECT_TRUE(std::equal(rgba.begin(), rgba.end(), decoded.pixels.begin()));
 }
 
-TEST(WebP, WithoutAFallbackAndLossy) {
+TEST(WebP, LossyWithoutFallback) {
   GltfBuilder builder = everything();
   const Bytes rgba = gradient(64, 64);
   builder.json["textures"][0].erase("source");
@@ -365,7 +365,7 @@ TEST(WebP, WithoutAFallbackAndLossy) {
   EXPECT_LT(difference / static_cast<double>(rgba.size()), 4.0);
 }
 
-TEST(WebP, DamageIsRefused) {
+TEST(WebP, DamageIsRejected) {
   const Bytes good = webp(64, 64, gradient(64, 64), false);
   const auto refusal_with = [](const Bytes& file) {
     GltfBuilder builder = everything();
@@ -380,7 +380,7 @@ TEST(WebP, DamageIsRefused) {
   }
 }
 
-TEST(Ktx2, IsNamedInTheRefusal) {
+TEST(Ktx2, ErrorNamesExtension) {
   GltfBuilder builder = everything();
   builder.json["extensionsRequired"] = {"KHR_texture_basisu"};
   EXPECT_NE(refusal_of(builder).find("KHR_texture_basisu"), std::string::npos);

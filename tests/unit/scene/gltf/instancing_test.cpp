@@ -26,7 +26,7 @@ GltfBuilder instanced() {
   return builder;
 }
 
-TEST(Instancing, PlacesTheMeshRelativeToItsNode) {
+TEST(Instancing, TransformsAreRelativeToNode) {
   const Scene scene = instanced().import();
   ASSERT_EQ(scene.instances.size(), 3u);
   EXPECT_EQ(scene.triangle_count(), 3u);
@@ -40,14 +40,14 @@ TEST(Instancing, PlacesTheMeshRelativeToItsNode) {
   EXPECT_EQ(scene.nodes[scene.instances[1].node].name, "leaf");
 }
 
-TEST(Instancing, OwnAttributesOnlyCount) {
+TEST(Instancing, CustomAttributesAreIgnored) {
   GltfBuilder builder = instanced();
   attributes_of(builder)["_ID"] =
       builder.add_accessor(std::vector<float>{1, 2, 3}, 5126, "SCALAR", 3);
   EXPECT_EQ(builder.import().instances.size(), 3u);
 }
 
-TEST(Instancing, DamageIsRefused) {
+TEST(Instancing, DamageIsRejected) {
   const auto refusal_with = [](auto change, const ImportLimits& limits = {}) {
     GltfBuilder builder = instanced();
     change(builder, attributes_of(builder));
@@ -82,7 +82,7 @@ TEST(Instancing, DamageIsRefused) {
 }
 
 // Ten nodes, each with all the places that are allowed to one: the sum counts.
-TEST(Instancing, TheLimitHoldsForTheWholeScene) {
+TEST(Instancing, LimitAppliesToWholeScene) {
   GltfBuilder builder = instanced();
   for (int i = 0; i < 9; ++i) builder.add("nodes", builder.json["nodes"][0]);
   builder.json["scenes"][0]["nodes"] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};

@@ -16,7 +16,7 @@ GltfBuilder with_material(json material) {
   return builder;
 }
 
-TEST(Materials, AnEmptyOneIsTheDefault) {
+TEST(Materials, EmptyMaterialHasDefaults) {
   const Scene scene = with_material(json::object()).import();
   ASSERT_EQ(scene.materials.size(), 1u);
   const shared::Material& material = scene.materials[0];
@@ -57,7 +57,7 @@ TEST(Materials, FactorsAndFlags) {
             shared::material_alpha_blend | shared::material_double_sided | shared::material_unlit);
 }
 
-TEST(Materials, EverySlotKeepsItsTextureSetAndStrength) {
+TEST(Materials, SlotsKeepTexCoordSetAndStrength) {
   GltfBuilder builder =
       with_material({{"pbrMetallicRoughness",
                       {{"baseColorTexture", {{"index", 0}}},
@@ -87,7 +87,7 @@ TEST(Materials, EverySlotKeepsItsTextureSetAndStrength) {
   EXPECT_EQ(scene.textures[0].sampler.wrap_t, shared::wrap_repeat);
 }
 
-TEST(Materials, TextureTransformScalesRotatesThenMoves) {
+TEST(Materials, TextureTransformScalesRotatesThenTranslates) {
   GltfBuilder builder = everything();
   builder.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"] = {
       {"KHR_texture_transform",
@@ -100,7 +100,7 @@ TEST(Materials, TextureTransformScalesRotatesThenMoves) {
   EXPECT_NEAR(glm::dot(glm::vec3(slot.transform_row1), uv), 0.25f - 2.0f, 1e-6f);
 }
 
-TEST(Materials, FactorsOutsideTheirRangeAreClampedAndSaidSo) {
+TEST(Materials, OutOfRangeFactorsAreClampedWithWarning) {
   const Scene scene = with_material({{"pbrMetallicRoughness", {{"roughnessFactor", 3}}}}).import();
   EXPECT_EQ(scene.materials[0].roughness, 1.0f);
   ASSERT_EQ(scene.warnings.size(), 1u);
@@ -108,7 +108,7 @@ TEST(Materials, FactorsOutsideTheirRangeAreClampedAndSaidSo) {
             std::string::npos);
 }
 
-TEST(Materials, ExtensionsThatAreNotSupportedAreNamed) {
+TEST(Materials, WarningNamesUnsupportedExtension) {
   GltfBuilder builder = triangle();
   builder.json["extensionsUsed"] = {"KHR_materials_iridescence"};
   const Scene scene = builder.import();
@@ -116,7 +116,7 @@ TEST(Materials, ExtensionsThatAreNotSupportedAreNamed) {
   EXPECT_NE(scene.warnings[0].find("KHR_materials_iridescence"), std::string::npos);
 }
 
-TEST(Materials, LayersAreReadAndSaidToBeApproximated) {
+TEST(Materials, LayersAreReadAndApproximationIsWarned) {
   const GltfBuilder builder =
       with_material({{"extensions",
                       {{"KHR_materials_specular",
@@ -148,7 +148,7 @@ TEST(Materials, LayersAreReadAndSaidToBeApproximated) {
   }
 }
 
-TEST(Materials, LayersOutsideTheirRangeAreRefused) {
+TEST(Materials, OutOfRangeLayersAreRejected) {
   const auto refusal_with = [](const char* extension, const nlohmann::json& value) {
     return refusal_of(with_material({{"extensions", {{extension, value}}}}));
   };
@@ -172,7 +172,7 @@ shared::MaterialLayer drawn_layer(const Scene& scene) {
   return scene.layers.at(scene.materials.at(0).layer);
 }
 
-TEST(Layers, OfPlainMaterialsAreTheModelsOwn) {
+TEST(Layers, DefaultsForPlainMaterials) {
   const Scene scene = with_material({{"name", "plain"}}).import();
   EXPECT_EQ(scene.layers.size(), 1u);
   EXPECT_EQ(drawn_layer(scene).dielectric, 0.04f);
@@ -183,7 +183,7 @@ TEST(Layers, OfPlainMaterialsAreTheModelsOwn) {
   EXPECT_EQ(usual.layers.size(), 1u) << "said, but nothing else";
 }
 
-TEST(Layers, TakeIndexStrengthAndColourOfTheDielectric) {
+TEST(Layers, IorSpecularFactorAndColor) {
   const Scene scene =
       with_material({{"extensions",
                       {{"KHR_materials_ior", {{"ior", 2.0}}},
@@ -196,7 +196,7 @@ TEST(Layers, TakeIndexStrengthAndColourOfTheDielectric) {
   EXPECT_EQ(layer.specular, 0.5f);
 }
 
-TEST(Layers, OfCoatAndSheenAreThoseOfTheFile) {
+TEST(Layers, ClearcoatAndSheenFactors) {
   const Scene scene =
       with_material({{"extensions",
                       {{"KHR_materials_clearcoat",
@@ -210,7 +210,7 @@ TEST(Layers, OfCoatAndSheenAreThoseOfTheFile) {
   EXPECT_EQ(drawn_layer(scene).sheen_roughness, 0.75f);
 }
 
-TEST(Layers, TexturesAreColourOrDataAsTheirExtensionsSay) {
+TEST(Layers, TexturesHaveColorSpaceOfTheirExtension) {
   const auto slot = [](int set) { return nlohmann::json{{"index", 0}, {"texCoord", set}}; };
   nlohmann::json normal = slot(1);
   normal["scale"] = 0.5;
@@ -249,7 +249,7 @@ TEST(Layers, TexturesAreColourOrDataAsTheirExtensionsSay) {
   EXPECT_EQ(layer.coat_normal_scale, 0.5f);
 }
 
-TEST(Layers, LightThatPassesMakesABlendedSurface) {
+TEST(Layers, TransmissionMakesSurfaceBlended) {
   const Scene scene =
       with_material(
           {{"pbrMetallicRoughness",
@@ -264,7 +264,7 @@ TEST(Layers, LightThatPassesMakesABlendedSurface) {
   EXPECT_EQ(drawn_layer(scene).transmission, 0.5f);
 }
 
-TEST(Layers, MasksLetNoLightThrough) {
+TEST(Layers, MaskedMaterialsHaveNoTransmission) {
   const Scene scene =
       with_material({{"alphaMode", "MASK"},
                      {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}})
@@ -273,7 +273,7 @@ TEST(Layers, MasksLetNoLightThrough) {
   EXPECT_EQ(scene.layers.size(), 1u);
 }
 
-TEST(Materials, VariantsAreListedAndTheDefaultIsShown) {
+TEST(Materials, VariantsAreListedAndDefaultIsUsed) {
   GltfBuilder builder = with_material({{"name", "plain"}});
   builder.add("materials", {{"name", "golden"}});
   builder.json["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "beach"}},
@@ -301,7 +301,7 @@ TEST(Materials, VariantsAreListedAndTheDefaultIsShown) {
   EXPECT_NE(refusal_of(builder).find("material: 7"), std::string::npos);
 }
 
-TEST(Materials, ATextureOnlyInAnotherFormatIsLeftOut) {
+TEST(Materials, TextureInUnsupportedFormatIsSkipped) {
   GltfBuilder builder = everything();
   builder.json["textures"][0].erase("source");
   const Scene scene = builder.import();
@@ -309,7 +309,7 @@ TEST(Materials, ATextureOnlyInAnotherFormatIsLeftOut) {
   EXPECT_FALSE(scene.warnings.empty());
 }
 
-TEST(Materials, MaskedAlphaIsLaidOutForRays) {
+TEST(Materials, MaskedAlphaIsPackedForRays) {
   GltfBuilder builder = everything();
   const Bytes pixels = {1, 2, 3, 10, 1, 2, 3, 20, 1, 2, 3, 30,
                         1, 2, 3, 40, 1, 2, 3, 50, 1, 2, 3, 60};
@@ -336,7 +336,7 @@ TEST(Materials, MaskedAlphaIsLaidOutForRays) {
   EXPECT_EQ(scene.materials[3].alpha_mask, shared::no_texture);
 }
 
-TEST(Materials, SamplersFollowTheirCodes) {
+TEST(Materials, SamplersFollowGltfCodes) {
   GltfBuilder builder = everything();
   builder.json["samplers"][0] = {
       {"magFilter", 9728}, {"minFilter", 9986}, {"wrapS", 33648}, {"wrapT", 33071}};

@@ -21,7 +21,7 @@ GltfBuilder with_extras(const nlohmann::json& extras) {
   return builder;
 }
 
-TEST(AreaLights, ARectangleShinesDownItsNodesAxis) {
+TEST(AreaLights, RectangleEmitsAlongNodeMinusZ) {
   const Scene scene = with_extras({{"areaLight",
                                     {{"shape", "rect"},
                                      {"width", 3},
@@ -42,7 +42,7 @@ TEST(AreaLights, ARectangleShinesDownItsNodesAxis) {
   EXPECT_NEAR(light.radius, std::sqrt(3.0f / 3.14159265f), 1e-5f);
 }
 
-TEST(AreaLights, ADiskHasItsRadius) {
+TEST(AreaLights, DiskHasRadius) {
   const Scene scene = with_extras({{"areaLight", {{"shape", "disk"}, {"radius", 0.3}}}}).import();
   ASSERT_EQ(scene.lights.size(), 1u);
   EXPECT_EQ(scene.lights[0].device.type, shared::light_disk);
@@ -50,7 +50,7 @@ TEST(AreaLights, ADiskHasItsRadius) {
   EXPECT_EQ(scene.lights[0].device.color, glm::vec3(1.0f));
 }
 
-TEST(AreaLights, WhatIsWrongIsNamed) {
+TEST(AreaLights, InvalidExtrasAreRejected) {
   const nlohmann::json disk = {{"shape", "disk"}, {"radius", 0.3}};
   const auto refused = [](const nlohmann::json& light) {
     EXPECT_THROW(with_extras({{"areaLight", light}}).import(), ImportError) << light;
@@ -69,7 +69,7 @@ TEST(AreaLights, WhatIsWrongIsNamed) {
   EXPECT_TRUE(with_extras({{"areaLight", "of no concern"}}).import().lights.empty());
 }
 
-TEST(Lights, PointAndSpotLightsMayHaveARadius) {
+TEST(Lights, PointAndSpotLightsHaveOptionalRadius) {
   GltfBuilder builder = with_extras({{"radius", 0.25}});
   builder.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
   builder.json["nodes"][1]["extensions"] = {{"KHR_lights_punctual", {{"light", 0}}}};

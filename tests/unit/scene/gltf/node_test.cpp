@@ -12,7 +12,7 @@ using nlohmann::json;
 
 constexpr float quarter_turn = 0.70710678f;
 
-TEST(Nodes, WorldTransformsMultiplyDownTheHierarchy) {
+TEST(Nodes, WorldTransformsMultiplyAlongHierarchy) {
   GltfBuilder builder = triangle();
   builder.json["nodes"] = {
       {{"name", "leaf"}, {"mesh", 0}, {"translation", {1, 0, 0}}},
@@ -30,13 +30,13 @@ TEST(Nodes, WorldTransformsMultiplyDownTheHierarchy) {
   EXPECT_EQ(scene.instances[0].node, 2u);
 }
 
-TEST(Nodes, AMatrixIsColumnMajor) {
+TEST(Nodes, MatrixIsColumnMajor) {
   GltfBuilder builder = triangle();
   builder.json["nodes"][0]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 3, 4, 5, 1};
   EXPECT_EQ(glm::vec3(builder.import().nodes[0].world[3]), glm::vec3(3, 4, 5));
 }
 
-TEST(Nodes, OnlyTheDefaultSceneIsShown) {
+TEST(Nodes, OnlyDefaultSceneIsShown) {
   GltfBuilder builder = triangle();
   builder.add("nodes", {{"mesh", 0}, {"name", "other"}});
   builder.json["scenes"].push_back({{"nodes", {1}}});
@@ -56,7 +56,7 @@ TEST(Nodes, WithoutScenesAllRootsAreShown) {
   EXPECT_EQ(builder.import().instances.size(), 2u);
 }
 
-TEST(Nodes, AnEmptyDocumentIsAnEmptyScene) {
+TEST(Nodes, EmptyDocumentIsEmptyScene) {
   GltfBuilder builder;
   const Scene scene = builder.import();
   EXPECT_TRUE(scene.instances.empty());
@@ -64,7 +64,7 @@ TEST(Nodes, AnEmptyDocumentIsAnEmptyScene) {
   EXPECT_EQ(scene.materials.size(), 1u);
 }
 
-TEST(Cameras, LookAlongTheirNodesMinusZ) {
+TEST(Cameras, LookAlongNodeMinusZ) {
   GltfBuilder builder = triangle();
   builder.add("cameras", {{"type", "perspective"},
                           {"perspective", {{"yfov", 1.0}, {"znear", 0.2}, {"aspectRatio", 2.0}}}});
@@ -86,7 +86,7 @@ TEST(Cameras, LookAlongTheirNodesMinusZ) {
   EXPECT_EQ(camera.orthographic_height, 0.0f);
 }
 
-TEST(Cameras, InsideTheSceneTurnAboutAPointCloseBy) {
+TEST(Cameras, TargetIsNearWhenCameraIsInsideScene) {
   GltfBuilder builder = triangle();
   builder.add("cameras",
               {{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.2}}}});
@@ -102,7 +102,7 @@ TEST(Cameras, InsideTheSceneTurnAboutAPointCloseBy) {
   EXPECT_LT(camera.target.z, camera.eye.z);
 }
 
-TEST(Cameras, OrthographicOnesKeepTheirFullHeight) {
+TEST(Cameras, OrthographicHeightIsFullHeight) {
   GltfBuilder builder = everything();
   builder.json["cameras"][0] = {
       {"type", "orthographic"},
@@ -112,14 +112,14 @@ TEST(Cameras, OrthographicOnesKeepTheirFullHeight) {
   EXPECT_FLOAT_EQ(camera.far_plane, 20.0f);
 }
 
-TEST(Cameras, TheTargetIsNeverBehindTheEye) {
+TEST(Cameras, TargetIsNeverBehindEye) {
   GltfBuilder builder = everything();
   builder.json["nodes"][1]["translation"] = {0, 0, -50};
   const Camera camera = builder.import().cameras[0];
   EXPECT_NEAR(camera.target.z, -50.1f, 1e-3f);
 }
 
-TEST(Lights, AreTakenToTheWorld) {
+TEST(Lights, AreTransformedToWorldSpace) {
   GltfBuilder builder = triangle();
   builder.json["extensions"]["KHR_lights_punctual"]["lights"] = {
       {{"type", "spot"},
@@ -146,7 +146,7 @@ TEST(Lights, AreTakenToTheWorld) {
   EXPECT_NEAR(std::cos(0.6f) * light.spot_scale + light.spot_offset, 0.0f, 1e-4f);
 }
 
-TEST(Lights, TheSunHasTheAngleItsNodeSays) {
+TEST(Lights, SunAngularDiameterComesFromNodeExtras) {
   GltfBuilder builder = everything();
   Light sun = builder.import().lights[0];
   EXPECT_FLOAT_EQ(sun.angular_diameter, 0.53f);

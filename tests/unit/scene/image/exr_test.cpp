@@ -122,13 +122,13 @@ TEST(Exr, ReadsEveryCompression) {
   }
 }
 
-TEST(Exr, ReadsTilesAndLayersAndMoreThanHalfFloatsHold) {
+TEST(Exr, ReadsTilesLayersAndFullFloats) {
   expect_colors(decode_exr(write_rgb({.tiled = true})), 100.0f, 1e-6f);
   expect_colors(decode_exr(write_rgb({.layer = "sky.top."})), 100.0f, 1e-6f);
   expect_colors(decode_exr(write_rgb({.peak = 3e5f})), 3e5f, 1e-6f);
 }
 
-TEST(Exr, AWindowMayLieAnywhere) {
+TEST(Exr, DataWindowMayHaveAnyOffset) {
   Imf::Header header(Imath::Box2i({-20, 30}, {-20 + width - 1, 30 + height - 1}),
                      Imath::Box2i({-20, 30}, {-20 + width - 1, 30 + height - 1}));
   header.compression() = Imf::NO_COMPRESSION;
@@ -175,7 +175,7 @@ std::string refusal(const std::vector<std::uint8_t>& file) {
   return "";
 }
 
-TEST(Exr, SaysWhatItCannotRead) {
+TEST(Exr, ErrorsNameUnsupportedFeatures) {
   Imf::Header cube(width, height);
   Imf::addEnvmap(cube, Imf::ENVMAP_CUBE);
   EXPECT_NE(refusal(write_rgb({}, cube)).find("cube map"), std::string::npos);
@@ -189,7 +189,7 @@ TEST(Exr, SaysWhatItCannotRead) {
 }
 
 // Whatever the bytes: an error or a picture, never a crash.
-TEST(Exr, SurvivesDamage) {
+TEST(Exr, DamageIsSafe) {
   for (const auto compression :
        {Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION, Imf::DWAB_COMPRESSION}) {
     const std::vector<std::uint8_t> whole = write_rgb({.compression = compression});
@@ -202,7 +202,7 @@ TEST(Exr, SurvivesDamage) {
 }
 
 // Found by fuzzing: room was made for what an attribute claims before its data was looked for.
-TEST(Exr, AttributesCannotClaimMoreThanTheFileHas) {
+TEST(Exr, AttributeSizesAreLimitedByFileSize) {
   const std::vector<std::uint8_t> whole = write_rgb({});
   const auto with_attribute = [&](std::uint32_t claimed, std::size_t bytes) {
     std::vector<std::uint8_t> file = whole;
@@ -224,7 +224,7 @@ TEST(Exr, AttributesCannotClaimMoreThanTheFileHas) {
   EXPECT_EQ(refusal(file), "has a damaged header");
 }
 
-TEST(Exr, FilesAreRecognisedByTheirFirstBytesAndMadePhysical) {
+TEST(Exr, DetectsFormatByMagicAndClampsNegativeRadiance) {
   const auto path = std::filesystem::temp_directory_path() / "heliograph_exr_test.picture";
   std::vector<std::uint8_t> file = write_rgb({.peak = -1.0f});
   std::ofstream(path, std::ios::binary)

@@ -32,7 +32,7 @@ Image with_mips(std::uint32_t width, std::uint32_t height, bool srgb, const Byte
   return image;
 }
 
-TEST(ImageDecoder, GreyAndRgbBecomeOpaqueRgba) {
+TEST(ImageDecoder, GrayAndRgbBecomeOpaqueRgba) {
   EXPECT_EQ(decoded(png(2, 1, 1, {7, 9})), (Bytes{7, 7, 7, 255, 9, 9, 9, 255}));
   EXPECT_EQ(decoded(png(1, 1, 3, {1, 2, 3})), (Bytes{1, 2, 3, 255}));
   EXPECT_EQ(decoded(png(1, 1, 4, {1, 2, 3, 4})), (Bytes{1, 2, 3, 4}));
@@ -55,7 +55,7 @@ TEST(ImageDecoder, ReadsJpegBaselineAndProgressive) {
   }
 }
 
-TEST(ImageDecoder, GammaInTheFileIsIgnored) {
+TEST(ImageDecoder, GammaChunkIsIgnored) {
   // A gAMA chunk that says linear: a decoder that honours it would brighten the picture.
   Bytes file = png(1, 1, 3, {100, 100, 100});
   const Bytes gamma = {0, 0, 0, 4, 'g', 'A', 'M', 'A', 0, 1, 0x86, 0xa0, 0x31, 0xe8, 0x96, 0x5f};
@@ -63,7 +63,7 @@ TEST(ImageDecoder, GammaInTheFileIsIgnored) {
   EXPECT_EQ(decoded(file), (Bytes{100, 100, 100, 255}));
 }
 
-TEST(ImageDecoder, RefusesWhatIsCutAtAnyByte) {
+TEST(ImageDecoder, RejectsTruncatedFiles) {
   Bytes noise(48 * 48 * 3);
   for (std::size_t i = 0; i < noise.size(); ++i)
     noise[i] = static_cast<std::uint8_t>(i * 2654435761u >> 13);
@@ -77,34 +77,34 @@ TEST(ImageDecoder, RefusesWhatIsCutAtAnyByte) {
   }
 }
 
-TEST(ImageDecoder, RefusesOtherFormats) {
+TEST(ImageDecoder, RejectsOtherFormats) {
   EXPECT_NE(reason_of({}).find("neither PNG, JPEG nor WebP"), std::string::npos);
   EXPECT_NE(reason_of({'G', 'I', 'F', '8', '9', 'a', 1, 0, 1, 0, 0, 0, 0}).find("neither"),
             std::string::npos);
 }
 
-TEST(ImageDecoder, RefusesPicturesWithoutPixelsOrWithTooMany) {
+TEST(ImageDecoder, RejectsEmptyAndOversizedImages) {
   EXPECT_NE(reason_of(png(0, 0, 4, {})), "");
   EXPECT_NE(reason_of(png(1, 0, 4, {})), "");
   EXPECT_NE(reason_of(png(100'000, 100'000, 4, {})), "");
   EXPECT_NE(reason_of(png(8193, 1, 4, Bytes(8193 * 4))), "");
 }
 
-TEST(ImageDecoder, RowsBeyondThePictureAreNotRead) {
+TEST(ImageDecoder, RowsBeyondImageHeightAreIgnored) {
   // 16 MiB of rows behind a header of 4 x 4: a loader that inflates first would hold them all.
   Bytes samples(16 << 20, 77);
   std::fill_n(samples.begin(), 64, std::uint8_t(5));
   EXPECT_EQ(decoded(png(4, 4, 4, samples)), Bytes(64, 5));
 }
 
-TEST(Mipmaps, ChainsEndAtOnePixel) {
+TEST(Mipmaps, ChainEndsAtOnePixel) {
   EXPECT_EQ(mip_level_count(1, 1), 1u);
   EXPECT_EQ(mip_level_count(256, 256), 9u);
   EXPECT_EQ(mip_level_count(5, 3), 3u);
   EXPECT_EQ(mip_chain_bytes(5, 3), (15u + 2u + 1u) * 4u);
 }
 
-TEST(Mipmaps, ColorsAreAveragedAsLight) {
+TEST(Mipmaps, SrgbColorsAreAveragedInLinearSpace) {
   const Bytes checker = {0, 0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255, 0, 0, 0, 0};
   const Image color = with_mips(2, 2, true, checker);
   const Image data = with_mips(2, 2, false, checker);
@@ -113,7 +113,7 @@ TEST(Mipmaps, ColorsAreAveragedAsLight) {
   EXPECT_EQ(data.pixels[16], 128);
 }
 
-TEST(Mipmaps, AFlatPictureStaysExactlyWhatItIs) {
+TEST(Mipmaps, UniformImageIsUnchanged) {
   for (int value = 0; value < 256; ++value) {
     for (const bool srgb : {false, true}) {
       for (const std::uint32_t side : {4u, 7u}) {
@@ -126,7 +126,7 @@ TEST(Mipmaps, AFlatPictureStaysExactlyWhatItIs) {
   }
 }
 
-TEST(Mipmaps, OddSizesWeighEveryPixelAlike) {
+TEST(Mipmaps, OddSizesWeightPixelsEqually) {
   // 3 -> 1: a bright pixel at either end or in the middle counts a third.
   for (int bright = 0; bright < 3; ++bright) {
     Bytes row(12, 0);
@@ -135,7 +135,7 @@ TEST(Mipmaps, OddSizesWeighEveryPixelAlike) {
   }
 }
 
-TEST(Images, ReadFromFilesBesideTheScene) {
+TEST(Images, AreReadFromFilesBesideScene) {
   GltfBuilder builder = everything();
   builder.json["images"][0] = {{"uri", "my%20picture.png"}};
   builder.json["buffers"][0]["uri"] = "data.bin";
@@ -153,7 +153,7 @@ TEST(Images, ReadFromFilesBesideTheScene) {
   EXPECT_EQ(import_gltf(folder.write("scene.gltf", builder.json.dump())).images[0].pixels[0], 60);
 }
 
-TEST(Images, ReadFromDataUris) {
+TEST(Images, AreReadFromDataUris) {
   GltfBuilder builder = everything();
   builder.json["images"][0] = {
       {"uri", "data:image/png;base64," + base64(png(2, 2, 3, Bytes(12, 77)))}};

@@ -129,7 +129,7 @@ TEST_F(MalformedData, FactorsOutOfRangeAreClamped) {
   }
 }
 
-TEST_F(MalformedData, AttributesOfOtherTypes) {
+TEST_F(MalformedData, AttributesOfWrongType) {
   const struct {
     const char* place;
     std::vector<std::string_view> wrong;
@@ -163,7 +163,7 @@ TEST_F(MalformedData, AttributesOfOtherTypes) {
   }
 }
 
-TEST_F(MalformedData, AttributesOfOtherComponents) {
+TEST_F(MalformedData, AttributesOfWrongComponentType) {
   const struct {
     const char* place;
     std::vector<int> wrong;
@@ -191,7 +191,7 @@ TEST_F(MalformedData, AttributesOfOtherComponents) {
   }
 }
 
-TEST_F(MalformedData, CountsThatDiffer) {
+TEST_F(MalformedData, MismatchedCounts) {
   for (const char* const place :
        {"/meshes/0/primitives/0/attributes/NORMAL", "/meshes/0/primitives/0/attributes/TEXCOORD_0",
         "/meshes/0/primitives/0/attributes/COLOR_0", "/meshes/1/primitives/0/attributes/JOINTS_0",
@@ -213,7 +213,7 @@ TEST_F(MalformedData, CountsThatDiffer) {
   expect_refused("too few matrices", damaged, "skins[0].inverseBindMatrices");
 }
 
-TEST_F(MalformedData, NumbersThatAreNotFinite) {
+TEST_F(MalformedData, NonFiniteNumbers) {
   for (const char* const place :
        {"/meshes/0/primitives/0/attributes/POSITION", "/meshes/0/primitives/0/attributes/NORMAL",
         "/meshes/0/primitives/0/attributes/TEXCOORD_0",
@@ -229,7 +229,7 @@ TEST_F(MalformedData, NumbersThatAreNotFinite) {
   }
 }
 
-TEST_F(MalformedData, NumbersThatMakeNoSense) {
+TEST_F(MalformedData, InconsistentValues) {
   refuse_number("/meshes/1/primitives/0/attributes/WEIGHTS_0", 2, -1.0f);
   refuse_number("/meshes/0/primitives/0/attributes/POSITION", 0, 3e38f);
   refuse_number("/animations/0/samplers/0/input", 0, -1.0f);
@@ -238,7 +238,7 @@ TEST_F(MalformedData, NumbersThatMakeNoSense) {
   refuse_number("/animations/0/samplers/0/input", 1, 0.0f);
 }
 
-TEST_F(MalformedData, IndicesOfVerticesThatAreNone) {
+TEST_F(MalformedData, InvalidVertexIndices) {
   const auto refuse_indices = [&]<typename T>(int component, T last) {
     GltfBuilder damaged = good_;
     at(damaged, "/meshes/0/primitives/0/indices") =
@@ -252,7 +252,7 @@ TEST_F(MalformedData, IndicesOfVerticesThatAreNone) {
   }
 }
 
-TEST_F(MalformedData, JointsThatAreNone) {
+TEST_F(MalformedData, InvalidJoints) {
   GltfBuilder damaged = good_;
   const auto accessor =
       at(damaged, "/meshes/1/primitives/0/attributes/JOINTS_0").get<std::size_t>();
@@ -264,7 +264,7 @@ TEST_F(MalformedData, JointsThatAreNone) {
   }
 }
 
-TEST_F(MalformedData, SparseIndicesThatAreNone) {
+TEST_F(MalformedData, InvalidSparseIndices) {
   const auto with_sparse = [&](const std::vector<std::uint32_t>& indices) {
     GltfBuilder damaged = good_;
     json& sparse = at(damaged, "/accessors/5/sparse");
@@ -284,7 +284,7 @@ TEST_F(MalformedData, SparseIndicesThatAreNone) {
   refuse("/accessors/5/sparse/indices/componentType", 5122, "accessors[5].sparse.indices");
 }
 
-TEST_F(MalformedData, GraphsThatAreNoTrees) {
+TEST_F(MalformedData, CyclicAndSharedNodes) {
   for (int length = 1; length <= 20; ++length) {
     GltfBuilder damaged = good_;
     const int first = static_cast<int>(damaged.json["nodes"].size());
@@ -314,7 +314,7 @@ TEST_F(MalformedData, GraphsThatAreNoTrees) {
   refuse("/nodes/0/children", {0}, "cycle");
 }
 
-TEST_F(MalformedData, AnimationsThatCannotBe) {
+TEST_F(MalformedData, InvalidAnimations) {
   GltfBuilder twice = good_;
   at(twice, "/animations/0/channels").push_back(at(twice, "/animations/0/channels/0"));
   expect_refused("a property twice", twice, "animations[0].channels[3].target");
@@ -327,7 +327,7 @@ TEST_F(MalformedData, AnimationsThatCannotBe) {
 }
 
 // What costs nothing in the file and much in memory.
-TEST_F(MalformedData, FilesThatClaimMuch) {
+TEST_F(MalformedData, SmallFilesWithHugeClaims) {
   GltfBuilder zeros = triangle();
   zeros.json["accessors"][0].erase("bufferView");
   zeros.json["accessors"][0]["count"] = 60'000'001;

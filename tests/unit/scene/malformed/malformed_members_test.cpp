@@ -221,7 +221,7 @@ class MalformedMembers : public Malformed {
   const GltfBuilder good_ = rich_document();
 };
 
-TEST_F(MalformedMembers, IndicesOfNothing) {
+TEST_F(MalformedMembers, InvalidIndices) {
   const json values[] = {999, -1,   4294967296u, 18446744073709551615ull, 1.5, 1e300,
                          "0", true, nullptr,     json::object(),          {0}};
   for (const char* const place : indices) {
@@ -229,14 +229,14 @@ TEST_F(MalformedMembers, IndicesOfNothing) {
   }
 }
 
-TEST_F(MalformedMembers, CountsThatAreNone) {
+TEST_F(MalformedMembers, InvalidCounts) {
   const json values[] = {-1, 1.5, 1e300, "1", true, nullptr, json::array()};
   for (const char* const place : counts) {
     for (const json& value : values) refuse(place, value);
   }
 }
 
-TEST_F(MalformedMembers, CountsBeyondWhatThereIs) {
+TEST_F(MalformedMembers, CountsBeyondData) {
   for (const char* const place : counts) {
     for (const std::uint64_t value :
          {0x7fffffffull, 0x80000000ull, 0xffffffffull, 0x100000000ull, 0x7fffffffffffffffull,
@@ -250,7 +250,7 @@ TEST_F(MalformedMembers, CountsBeyondWhatThereIs) {
   }
 }
 
-TEST_F(MalformedMembers, RequiredOnesMissing) {
+TEST_F(MalformedMembers, MissingRequiredMembers) {
   for (const char* const place : required) {
     const std::string text = place;
     const json::json_pointer pointer(text);
@@ -262,7 +262,7 @@ TEST_F(MalformedMembers, RequiredOnesMissing) {
   }
 }
 
-TEST_F(MalformedMembers, VectorsOfOtherSizesAndKinds) {
+TEST_F(MalformedMembers, VectorsOfWrongSizeAndType) {
   for (const char* const place : vectors) {
     json longer = good_.json[json::json_pointer(place)];
     longer.push_back(1);
@@ -279,7 +279,7 @@ TEST_F(MalformedMembers, VectorsOfOtherSizesAndKinds) {
   }
 }
 
-TEST_F(MalformedMembers, NumbersThatAreNone) {
+TEST_F(MalformedMembers, InvalidNumbers) {
   for (const char* const place : numbers) {
     for (const json& value : {json("1"), json(true), json(nullptr), json::array(), json(1e300)}) {
       refuse(place, value);
@@ -287,7 +287,7 @@ TEST_F(MalformedMembers, NumbersThatAreNone) {
   }
 }
 
-TEST_F(MalformedMembers, ArraysThatAreNone) {
+TEST_F(MalformedMembers, InvalidArrays) {
   for (const char* const place : arrays) {
     for (const json& value :
          {json(5), json("x"), json(nullptr), json{{"0", 1}}, json::array({7})}) {
@@ -296,7 +296,7 @@ TEST_F(MalformedMembers, ArraysThatAreNone) {
   }
 }
 
-TEST_F(MalformedMembers, TextsThatAreNone) {
+TEST_F(MalformedMembers, InvalidStrings) {
   for (const char* const place : texts) {
     for (const json& value : {json(5), json(true), json(nullptr), json::array(), json::object()}) {
       refuse(place, value);
@@ -304,7 +304,7 @@ TEST_F(MalformedMembers, TextsThatAreNone) {
   }
 }
 
-TEST_F(MalformedMembers, ChoicesThatDoNotExist) {
+TEST_F(MalformedMembers, InvalidEnumValues) {
   for (const char* const place : names_of_choices) {
     for (const char* const value : {"x", "linear ", "\n\x01", "0"}) refuse(place, value);
     refuse(place, std::string(100'000, 'a'));
@@ -312,7 +312,7 @@ TEST_F(MalformedMembers, ChoicesThatDoNotExist) {
 }
 
 // Whatever stands in for a whole object, it is no object.
-TEST_F(MalformedMembers, ObjectsThatAreNone) {
+TEST_F(MalformedMembers, InvalidObjects) {
   for (const char* const place :
        {"/asset", "/nodes/0", "/nodes/2/extensions", "/materials/0/pbrMetallicRoughness",
         "/materials/0/normalTexture", "/materials/0/extensions/KHR_materials_ior",

@@ -281,9 +281,9 @@ const Damage damages[] = {
      "neither a uri"},
 };
 
-class Malformed : public testing::TestWithParam<Damage> {};
+class MalformedDocument : public testing::TestWithParam<Damage> {};
 
-TEST_P(Malformed, IsRefusedWithAReason) {
+TEST_P(MalformedDocument, IsRejectedWithReason) {
   GltfBuilder builder = everything();
   ASSERT_EQ(refusal_of(builder), "");
   GetParam().inflict(builder);
@@ -292,7 +292,7 @@ TEST_P(Malformed, IsRefusedWithAReason) {
       << (refusal.empty() ? "it was accepted" : refusal);
 }
 
-INSTANTIATE_TEST_SUITE_P(Document, Malformed, testing::ValuesIn(damages),
+INSTANTIATE_TEST_SUITE_P(Damages, MalformedDocument, testing::ValuesIn(damages),
                          [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
