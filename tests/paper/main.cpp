@@ -76,10 +76,10 @@ void measure_quality(render::Engine& engine, const Options& options,
         const auto truth = stage.truth(source, shot, options.samples);
         const std::string taken =
             scene + "_" + std::to_string(int(100.0f * value)) + "_" + movement + "_";
-        test::save_picture(taken + "truth", truth.back());
+        test::save_image(taken + "truth", truth.back());
         for (const std::string& preset : options.presets) {
           const auto frames = stage.play(options.of(preset), shot);
-          test::save_picture(taken + preset, frames.back());
+          test::save_image(taken + preset, frames.back());
           measurements.push_back(
               {scene, swept, value, shot.movement, preset, compare(frames, truth)});
           const Quality& quality = measurements.back().quality;

@@ -31,15 +31,15 @@ struct Inputs {
   protocol::Settings settings;
 };
 
-struct Pictures {
+struct ComposedImages {
   glm::vec3 hdr, hdr_raw;
 };
 
 /// What composition makes of a pixel in the middle, seen from (0, 0, 2) along -z.
-Pictures compose_both(SceneBuilder& scene, const Inputs& in) {
+ComposedImages compose_both(SceneBuilder& scene, const Inputs& in) {
   FrameRig rig(scene.build(), look({0, 0, 2}, {0, 0, 0}),
                {.extent = extent, .settings = in.settings});
-  const auto gbuffer = make_gbuffer(rig, in.pixel);
+  const auto gbuffer = make_uniform_gbuffer(rig, in.pixel);
   const auto flat = [&](const char* name, float value) {
     return rig.input(name, VK_FORMAT_R32_SFLOAT, std::vector(pixels, value));
   };
@@ -82,7 +82,7 @@ TEST(Compose, SunOnDielectricPlaneIsAnalytic) {
     const double albedo = std::pow(128.0 / 255.0, 2.0);
     const double cosine = std::cos(angle);
     const double expected =
-        4.0 * shade_light_twin(albedo, 0.0, 1.0, {0, 0, 1}, {std::sin(angle), 0, cosine});
+        4.0 * shade_light_reference(albedo, 0.0, 1.0, {0, 0, 1}, {std::sin(angle), 0, cosine});
     const glm::vec3 got = compose(scene, in);
     // The pixel beside the middle sees the plane from almost straight ahead.
     EXPECT_NEAR(got.x, expected, 0.01 * expected) << degrees;
@@ -160,7 +160,7 @@ TEST(Compose, DenoisedSignalsMakeHdrAndNoisyOnesMakeSample) {
   smooth.specular = glm::vec3(2.0f);
   const glm::vec3 filtered = compose(scene, smooth);
   in.denoised = Denoised{{0.5f, 0.75f, 0.0f}, glm::vec3(2.0f)};
-  const Pictures both = compose_both(scene, in);
+  const ComposedImages both = compose_both(scene, in);
   EXPECT_EQ(both.hdr, filtered);
   EXPECT_EQ(both.hdr_raw, raw);
   EXPECT_NE(raw, filtered);

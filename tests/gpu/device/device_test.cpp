@@ -58,31 +58,32 @@ TEST(Reflection, ReportsTypesFormatsAndAccess) {
   EXPECT_EQ(access(7), std::pair(true, true)) << "buffer";
 }
 
-/// Has the next submission find the device lost, while it lives.
-class WantedLoss {
+/// Makes the next submission fail with a lost device during its lifetime.
+class InjectedDeviceLoss {
  public:
-  WantedLoss() : file_(std::filesystem::temp_directory_path() / "heliograph_wanted_loss") {
+  InjectedDeviceLoss()
+      : file_(std::filesystem::temp_directory_path() / "heliograph_injected_loss") {
     std::ofstream(file_).put(' ');
     setenv("HELIOGRAPH_TEST_DEVICE_LOSS", file_.c_str(), 1);
   }
-  ~WantedLoss() {
+  ~InjectedDeviceLoss() {
     unsetenv("HELIOGRAPH_TEST_DEVICE_LOSS");
     std::filesystem::remove(file_);
   }
-  WantedLoss(const WantedLoss&) = delete;
-  WantedLoss& operator=(const WantedLoss&) = delete;
+  InjectedDeviceLoss(const InjectedDeviceLoss&) = delete;
+  InjectedDeviceLoss& operator=(const InjectedDeviceLoss&) = delete;
 
  private:
   std::filesystem::path file_;
 };
 
-// The validation layers name what is left when a device goes.
+// The validation layers report objects that outlive their device.
 TEST(DeviceLoss, LeaksNoVulkanObjects) {
   const char* const wanted = std::getenv("HELIOGRAPH_TEST_DEVICE");
   const Instance instance(true);
   {
     const Device device(instance, {.wanted = wanted ? wanted : "", .cache_folder = {}});
-    const WantedLoss loss;
+    const InjectedDeviceLoss loss;
     EXPECT_THROW(Image(device, {.name = "image", .extent = {8, 8}, .format = VK_FORMAT_R8_UNORM}),
                  DeviceLost);
   }
@@ -148,7 +149,7 @@ TEST(Device, WritesPipelineCacheAndLeaksNoObjects) {
     plan.compile();
     plan.execute();
   }
-  // Undestroyed objects are reported when their device goes.
+  // The validation layers report objects that outlive their device.
   EXPECT_EQ(instance.validation_messages(), 0u);
   ASSERT_TRUE(fs::exists(folder));
   EXPECT_FALSE(fs::is_empty(folder));
@@ -163,13 +164,13 @@ TEST(Device, CountsValidationMessages) {
   VkBuffer buffer = VK_NULL_HANDLE;
   vkCreateBuffer(device.handle(), &info, nullptr, &buffer);
   vkDestroyBuffer(device.handle(), buffer, nullptr);
-  EXPECT_GE(instance.validation_messages(), 1u) << "silence would prove nothing";
+  EXPECT_GE(instance.validation_messages(), 1u) << "validation layers are not active";
 }
 
 TEST(Image, UploadDownloadRoundTrip) {
   for (const bool mapped : {false, true}) {
     if (mapped && !test::device().is_cpu()) continue;
-    ImageDesc desc{.name = "picture", .extent = {7, 5}, .format = VK_FORMAT_R32_SFLOAT};
+    ImageDesc desc{.name = "image", .extent = {7, 5}, .format = VK_FORMAT_R32_SFLOAT};
     desc.mapped = mapped;
     const Image image(test::device(), desc);
     std::vector<float> values(35);

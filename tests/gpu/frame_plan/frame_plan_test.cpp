@@ -34,7 +34,7 @@ class FramePlanTest : public testing::Test {
     for (std::size_t i = 1; i < bytes.size() / 4; ++i) EXPECT_EQ(texels[i], texels[0]) << i;
     return texels[0];
   }
-  /// What compile() says.
+  /// The error of compile().
   std::string complaint() {
     try {
       plan_.compile();

@@ -24,7 +24,7 @@ glm::vec3 decode(const glm::vec2& p) {
 
 enum class Source { triangles, rays };
 
-/// The G-buffer of a scene alone.
+/// The G-buffer pass of a scene.
 struct Raster {
   Raster(Source source, SceneBuilder& builder, const scene::Camera& camera)
       : rig(builder.build(), camera, {.extent = extent}),
@@ -44,7 +44,7 @@ struct Raster {
     const glm::vec4 encoded = texel(normals, x, y);
     return decode({encoded.z, encoded.w});
   }
-  /// Where a pixel's middle lies in the world, from its stored depth.
+  /// World position of a pixel's center, from its stored depth.
   glm::vec3 world(std::uint32_t x, std::uint32_t y) const {
     const auto& constants = rig.constants();
     const glm::vec2 ndc =
@@ -125,7 +125,7 @@ TEST_P(GBuffer, DepthAndDepthSlopeOfTiltedPlane) {
       ASSERT_NEAR(texel(raster.motion, x, y).w, view_z, 2e-5 * view_z) << x << " " << y;
       const double across = 0.5 * (expected(x + 1.0, y) - expected(x - 1.0, y));
       const double down = 0.5 * (expected(x, y + 1.0) - expected(x, y - 1.0));
-      // Derivatives of a quad of pixels are one-sided.
+      // Derivatives within a 2x2 quad are one-sided.
       EXPECT_NEAR(texel(slope, x, y).x, across, 0.1 * std::abs(across) + 1e-3) << x << " " << y;
       EXPECT_NEAR(texel(slope, x, y).y, down, 0.1 * std::abs(down) + 1e-3) << x << " " << y;
       EXPECT_LE(glm::distance(glm::dvec3(raster.geometric(x, y)), normal), 2e-3);
@@ -140,10 +140,10 @@ TEST_P(GBuffer, MotionVectorsAreZeroForStaticCamera) {
   const scene::Camera camera = look({1, 2, 4}, {0, 0, 0});
   Raster raster(GetParam(), builder, camera);
   for (std::uint32_t sample = 0; sample < 3; ++sample) {
-    raster.rig.set_view(camera, sample);  // the jitter differs, the motion must not show it
+    raster.rig.set_view(camera, sample);  // motion vectors must not contain the jitter
     raster.run();
     for (std::size_t i = 0; i < raster.motion.rgba.size(); i += 4) {
-      // Two equal sums may be contracted differently: less than 0.001 pixels of any picture.
+      // Compilers may contract equal sums differently: less than 0.001 pixels at any resolution.
       ASSERT_NEAR(raster.motion.rgba[i], 0.0f, 1e-7f);
       ASSERT_NEAR(raster.motion.rgba[i + 1], 0.0f, 1e-7f);
       ASSERT_NEAR(raster.motion.rgba[i + 2], 0.0f, 1e-7f);
@@ -243,7 +243,7 @@ TEST_P(GBuffer, BackFacesAreCulledOrFlippedIfDoubleSided) {
   EXPECT_LE(glm::distance(raster.geometric(32, 24), {0, 0, -1}), 1e-6f);
 }
 
-/// The shading normal in the middle of a quad whose normal map says `tilt` everywhere.
+/// The shading normal at the center of a quad whose normal map is `tilt` everywhere.
 glm::vec3 mapped(Source source, const glm::vec3& tilt, const glm::mat4& world,
                  const glm::vec3& eye) {
   SceneBuilder builder;

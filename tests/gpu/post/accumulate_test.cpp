@@ -17,7 +17,7 @@ class AccumulateTest : public testing::Test {
  protected:
   void SetUp() override { history_ = render::accumulate(rig_.plan(), rig_.inputs(), hdr_); }
 
-  /// One frame that shows `color` everywhere, with so many samples before it.
+  /// One frame of uniform `color` after `samples` accumulated samples.
   glm::vec4 frame(const glm::vec4& color, std::uint32_t samples) {
     rig_.fill(hdr_, std::vector(pixels, color));
     rig_.set_accumulated(samples);
@@ -55,7 +55,7 @@ TEST_F(AccumulateTest, ResetDiscardsNaNHistory) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   frame(glm::vec4(nan), 0);
   const glm::vec4 broken = frame(glm::vec4(1.0f), 1);
-  EXPECT_TRUE(std::isnan(broken.x)) << "the history is read";
+  EXPECT_TRUE(std::isnan(broken.x)) << "a NaN history must be read here";
   EXPECT_EQ(frame(glm::vec4(1, 2, 3, 1), 0), glm::vec4(1, 2, 3, 1));
   EXPECT_EQ(frame(glm::vec4(1, 2, 3, 1), 1), glm::vec4(1, 2, 3, 1));
 }

@@ -18,7 +18,7 @@ glm::vec3 decode(const glm::vec2& p) {
   return glm::normalize(d);
 }
 
-/// Rasters a scene, traces one kind of visibility and averages it over samples.
+/// Rasterizes a scene, traces shadows or ambient visibility and averages over samples.
 struct Trace {
   Trace(SceneBuilder& builder, const scene::Camera& view, const std::string& tracer,
         const protocol::Settings& settings = {}, bool ambient = false)
@@ -69,7 +69,7 @@ std::uint32_t add_ground(SceneBuilder& builder, float size, float height = 0.0f)
                           surface(glm::vec3(1.0f)));
 }
 
-/// A roof at `height` that ends at x = 0 and reaches far toward -x.
+/// A roof at `height` that covers x < 0.
 std::uint32_t add_roof(SceneBuilder& builder, float height) {
   return builder.add_quad(
       {{{-50, height, 50}, {0, height, 50}, {0, height, -50}, {-50, height, -50}}},
@@ -79,11 +79,11 @@ std::uint32_t add_roof(SceneBuilder& builder, float height) {
 class Shadows : public testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
-    if (!is_offered(GetParam())) GTEST_SKIP() << lacking(GetParam());
+    if (!is_supported(GetParam())) GTEST_SKIP() << unsupported_reason(GetParam());
   }
 };
 
-// A sun straight above seen past a straight edge: the uncovered part of its disk.
+// Overhead sun past a straight edge: the uncovered fraction of its disk.
 TEST_P(Shadows, PenumbraMatchesAnalyticSunDisk) {
   constexpr float height = 2.0f, diameter = 20.0f;
   SceneBuilder builder;
@@ -141,21 +141,21 @@ TEST_P(Shadows, MultipleLightsConvergeToShadowRatio) {
   builder.place(add_ground(builder, 50)).place(add_roof(builder, 2.0f));
   builder.add_sun({0, -1, 0}, glm::vec3(1.0f));
   builder.add_sun({-1, -1, 0}, glm::vec3(3.0f));
-  builder.add_lamp({0.5f, 1.0f, 0}, glm::vec3(0.8f));
+  builder.add_point_light({0.5f, 1.0f, 0}, glm::vec3(0.8f));
   Trace trace(builder, look({-0.5f, 1.5f, 2}, {-0.5f, 0, 0}), GetParam());
   trace.run(256);
   int compared = 0, mixed = 0;
   for (std::size_t i = 0; i < trace.mean.size(); ++i) {
     if (!trace.covered(i)) continue;
     const glm::dvec3 p = trace.world(i);
-    // From the first sun the roof hides x < 0; from the second, which comes from +x, x < -2.
+    // The roof shadows x < 0 from the first sun and x < -2 from the second, which comes from +x.
     if (std::abs(p.x) < 1e-3 || std::abs(p.x + 2.0) < 1e-3) continue;
     const glm::dvec3 to_lamp = glm::dvec3(0.5, 1.0, 0.0) - p;
     const double squared = glm::dot(to_lamp, to_lamp);
-    const double lamp = 0.8 / squared * to_lamp.y / std::sqrt(squared);
+    const double light = 0.8 / squared * to_lamp.y / std::sqrt(squared);
     const double above = 1.0, aslant = 3.0 * std::sqrt(0.5);
-    const double lit = (p.x > 0.0 ? above : 0.0) + (p.x > -2.0 ? aslant : 0.0) + lamp;
-    ASSERT_NEAR(trace.mean[i], lit / (above + aslant + lamp), 0.05) << p.x;
+    const double lit = (p.x > 0.0 ? above : 0.0) + (p.x > -2.0 ? aslant : 0.0) + light;
+    ASSERT_NEAR(trace.mean[i], lit / (above + aslant + point), 0.05) << p.x;
     ++compared;
     mixed += p.x < 0.0;
   }
@@ -167,11 +167,10 @@ TEST_P(Shadows, SphereLightCastsPenumbra) {
   constexpr double lamp_height = 3.0, roof_height = 1.0, lamp_radius = 0.5;
   SceneBuilder builder;
   builder.place(add_ground(builder, 50)).place(add_roof(builder, roof_height));
-  builder.add_lamp({0, lamp_height, 0}, glm::vec3(10.0f), lamp_radius);
+  builder.add_point_light({0, lamp_height, 0}, glm::vec3(10.0f), lamp_radius);
   Trace trace(builder, look({0, 0.9f, 1.5f}, {0, 0, 0}), GetParam());
   trace.run(64);
-  // Straight under the lamp its disk is half hidden; the half shadow is as wide as seen through
-  // the edge.
+  // Below the light half of its disk is hidden; the penumbra is the disk projected past the edge.
   const double half_width = lamp_radius * roof_height / (lamp_height - roof_height);
   int full = 0, none = 0, half = 0;
   for (std::size_t i = 0; i < trace.mean.size(); ++i) {
@@ -193,7 +192,7 @@ TEST_P(Shadows, SphereLightCastsPenumbra) {
   EXPECT_GT(half, 2);
 }
 
-/// Whether every lit-facing pixel of a convex thing is lit: rays must leave their own surface.
+/// Expects every pixel of a convex mesh that faces the light to be lit: no self-intersection.
 void expect_no_acne(SceneBuilder& builder, const scene::Camera& camera, const glm::vec3& to_sun,
                     const std::string& tracer, const std::string& what) {
   builder.add_sun(-to_sun, glm::vec3(1.0f));
@@ -249,7 +248,7 @@ TEST_P(Shadows, AmbientVisibilityIsCosineWeightedSky) {
   for (std::size_t i = 0; i < trace.mean.size(); ++i) {
     const glm::vec3 p = trace.covered(i) ? trace.world(i) : glm::vec3(99.0f);
     if (std::abs(p.x) > 4.0f || std::abs(p.z) > 4.0f) continue;
-    // Open beyond the elevation at which the edge is seen: (1 + sin of its angle) / 2.
+    // The sky is open beyond the elevation of the roof's edge: (1 + sin(elevation)) / 2.
     const double expected = 0.5 * (1.0 + p.x / std::hypot(p.x, height));
     error += std::abs(trace.mean[i] - expected);
     ++compared;

@@ -11,7 +11,7 @@ namespace {
 constexpr double c1 = 6.5025, c2 = 58.5225;
 
 template <typename Value>
-render::Frame picture(Value value) {
+render::Frame make_frame(Value value) {
   render::Frame frame;
   frame.width = 40;
   frame.height = 30;
@@ -25,26 +25,26 @@ render::Frame picture(Value value) {
 }
 
 TEST(Ssim, EqualImagesGiveOne) {
-  const auto noise = picture([](auto x, auto y) { return (x * 7919 + y * 104729) % 251; });
+  const auto noise = make_frame([](auto x, auto y) { return (x * 7919 + y * 104729) % 251; });
   EXPECT_NEAR(ssim(noise, noise), 1.0, 1e-12);
 }
 
 TEST(Ssim, UniformImagesCompareMeans) {
-  const auto a = picture([](auto, auto) { return 100; }),
-             b = picture([](auto, auto) { return 150; });
+  const auto a = make_frame([](auto, auto) { return 100; }),
+             b = make_frame([](auto, auto) { return 150; });
   EXPECT_NEAR(ssim(a, b), (2.0 * 100 * 150 + c1) / (100.0 * 100 + 150.0 * 150 + c1), 1e-9);
 }
 
-// A chequer's windowed mean is its middle but for what the Gaussian lets through (below 1e-2).
+// The Gaussian-weighted mean of a checkerboard is its mean within 1e-2.
 TEST(Ssim, InvertedCheckerboardIsNegative) {
-  const auto a = picture([](auto x, auto y) { return (x + y) % 2 ? 140 : 100; });
-  const auto b = picture([](auto x, auto y) { return (x + y) % 2 ? 100 : 140; });
+  const auto a = make_frame([](auto x, auto y) { return (x + y) % 2 ? 140 : 100; });
+  const auto b = make_frame([](auto x, auto y) { return (x + y) % 2 ? 100 : 140; });
   EXPECT_NEAR(ssim(a, b), (c2 - 2.0 * 400) / (c2 + 2.0 * 400), 1e-4);
 }
 
 TEST(Ssim, HalvedContrastIsAnalytic) {
-  const auto a = picture([](auto x, auto y) { return (x + y) % 2 ? 140 : 100; });
-  const auto b = picture([](auto x, auto y) { return (x + y) % 2 ? 130 : 110; });
+  const auto a = make_frame([](auto x, auto y) { return (x + y) % 2 ? 140 : 100; });
+  const auto b = make_frame([](auto x, auto y) { return (x + y) % 2 ? 130 : 110; });
   EXPECT_NEAR(ssim(a, b), (2.0 * 200 + c2) / (400.0 + 100.0 + c2), 1e-4);
 }
 
