@@ -150,12 +150,12 @@ TEST_P(Shadows, MultipleLightsConvergeToShadowRatio) {
     const glm::dvec3 p = trace.world(i);
     // The roof shadows x < 0 from the first sun and x < -2 from the second, which comes from +x.
     if (std::abs(p.x) < 1e-3 || std::abs(p.x + 2.0) < 1e-3) continue;
-    const glm::dvec3 to_lamp = glm::dvec3(0.5, 1.0, 0.0) - p;
-    const double squared = glm::dot(to_lamp, to_lamp);
-    const double light = 0.8 / squared * to_lamp.y / std::sqrt(squared);
+    const glm::dvec3 to_light = glm::dvec3(0.5, 1.0, 0.0) - p;
+    const double squared = glm::dot(to_light, to_light);
+    const double light = 0.8 / squared * to_light.y / std::sqrt(squared);
     const double above = 1.0, aslant = 3.0 * std::sqrt(0.5);
     const double lit = (p.x > 0.0 ? above : 0.0) + (p.x > -2.0 ? aslant : 0.0) + light;
-    ASSERT_NEAR(trace.mean[i], lit / (above + aslant + point), 0.05) << p.x;
+    ASSERT_NEAR(trace.mean[i], lit / (above + aslant + light), 0.05) << p.x;
     ++compared;
     mixed += p.x < 0.0;
   }
@@ -164,14 +164,14 @@ TEST_P(Shadows, MultipleLightsConvergeToShadowRatio) {
 }
 
 TEST_P(Shadows, SphereLightCastsPenumbra) {
-  constexpr double lamp_height = 3.0, roof_height = 1.0, lamp_radius = 0.5;
+  constexpr double light_height = 3.0, roof_height = 1.0, light_radius = 0.5;
   SceneBuilder builder;
   builder.place(add_ground(builder, 50)).place(add_roof(builder, roof_height));
-  builder.add_point_light({0, lamp_height, 0}, glm::vec3(10.0f), lamp_radius);
+  builder.add_point_light({0, light_height, 0}, glm::vec3(10.0f), light_radius);
   Trace trace(builder, look({0, 0.9f, 1.5f}, {0, 0, 0}), GetParam());
   trace.run(64);
   // Below the light half of its disk is hidden; the penumbra is the disk projected past the edge.
-  const double half_width = lamp_radius * roof_height / (lamp_height - roof_height);
+  const double half_width = light_radius * roof_height / (light_height - roof_height);
   int full = 0, none = 0, half = 0;
   for (std::size_t i = 0; i < trace.mean.size(); ++i) {
     if (!trace.covered(i) || std::abs(trace.world(i).z) > 0.3f) continue;

@@ -8,7 +8,7 @@
 namespace heliograph::render {
 namespace {
 
-/// A sky of the given radiance by direction.
+/// A sky from a function of the direction.
 template <typename Radiance>
 scene::Environment make_sky(Radiance radiance) {
   scene::Environment sky{256, 128, {}};

@@ -13,7 +13,7 @@ TEST(SampleJitter, StartsAtCenterAndStaysInsidePixel) {
   }
 }
 
-// A drift would move the picture as samples accumulate.
+// A biased mean would shift the image as samples accumulate.
 TEST(SampleJitter, AveragesToCenter) {
   for (const std::uint32_t count : {16u, 64u, 256u, 4096u}) {
     glm::dvec2 sum(0.0);
@@ -31,7 +31,7 @@ TEST(SampleJitter, CoversPixelEvenly) {
   for (const int count : counts) EXPECT_NEAR(count, 16, 5);
 }
 
-// What moves is resolved from the last dozen frames, wherever in the sequence they lie.
+// Moving surfaces use the last dozen frames, from any position in the sequence.
 TEST(SampleJitter, ConsecutiveFramesCoverAllQuarters) {
   for (std::uint32_t first = 1; first < 2000; ++first) {
     std::array<bool, 4> quarters{};
@@ -42,7 +42,7 @@ TEST(SampleJitter, ConsecutiveFramesCoverAllQuarters) {
       sum += glm::dvec2(offset);
     }
     for (const bool reached : quarters) EXPECT_TRUE(reached) << first;
-    EXPECT_LT(glm::length(sum / 16.0), 0.15) << "the picture wanders: " << first;
+    EXPECT_LT(glm::length(sum / 16.0), 0.15) << "mean offset is biased: " << first;
   }
 }
 

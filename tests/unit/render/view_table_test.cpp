@@ -51,16 +51,16 @@ TEST(Colors, DistancesAreLogarithmic) {
   const Frame frame = colorize(ViewColors::distance,
                                row({{1, 0, 0, 1}, {10, 0, 0, 1}, {100, 0, 0, 1}, {0, 0, 0, 1}}));
   EXPECT_EQ(texel(frame, 0), dark_blue);
-  EXPECT_EQ(texel(frame, 3), (Rgb{0, 0, 0})) << "nothing there";
+  EXPECT_EQ(texel(frame, 3), (Rgb{0, 0, 0})) << "background";
   const Frame scaled = colorize(ViewColors::distance,
                                 row({{7, 0, 0, 1}, {70, 0, 0, 1}, {700, 0, 0, 1}, {0, 0, 0, 1}}));
-  EXPECT_EQ(frame.rgba, scaled.rgba) << "whatever the size of the scene";
+  EXPECT_EQ(frame.rgba, scaled.rgba) << "must be scale invariant";
 }
 
 TEST(Colors, NaNIsBlack) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const ViewColors colors :
-       {ViewColors::picture, ViewColors::radiance, ViewColors::squared, ViewColors::channels,
+       {ViewColors::image, ViewColors::radiance, ViewColors::squared, ViewColors::channels,
         ViewColors::grey, ViewColors::direction, ViewColors::octahedral, ViewColors::share,
         ViewColors::heat, ViewColors::distance, ViewColors::stops, ViewColors::pixels}) {
     EXPECT_EQ(texel(colorize(colors, row({{nan, nan, nan, nan}, {1, 1, 1, 1}})), 0), (Rgb{0, 0, 0}))
@@ -121,7 +121,7 @@ TEST_F(Extract, TakesChannelsOfAspect) {
 }
 
 TEST_F(Extract, CameraMotionAloneIsNoError) {
-  constants_.previous_unjittered[3][0] = 0.5f;  // the camera stood half a metre further left
+  constants_.previous_unjittered[3][0] = 0.5f;  // the camera moved by half a metre
   const float uv = 0.5f / 2.0f * 0.5f;          // at two metres
   for (const float value : {0.0f, 1.0f}) {
     const FloatImage error = extract_from("gbuffer.motion.error", {uv + value / 4.0f, 0, 0, 2});

@@ -1,4 +1,4 @@
-// Files made by others, found through HELIOGRAPH_TEST_ASSETS.
+// Sample files in HELIOGRAPH_TEST_ASSETS.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -18,7 +18,7 @@ class Assets : public testing::Test {
  protected:
   void SetUp() override {
     const char* folder = std::getenv("HELIOGRAPH_TEST_ASSETS");
-    if (!folder) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS does not name a folder of test scenes";
+    if (!folder) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS is not set";
     folder_ = folder;
   }
 
@@ -116,8 +116,7 @@ TEST_F(Assets, MaskedHouseHasAlphaHeap) {
   EXPECT_EQ(scene.alpha_heap.size(), 1024u * 1024u);
 }
 
-// FlightHelmet brings tangents made by the reference implementation: ours, made from scratch, must
-// be the same frames.
+// FlightHelmet has tangents of the MikkTSpace reference implementation: generated ones must match.
 TEST_F(Assets, GeneratedTangentsMatchMikkTSpace) {
   const Scene scene = import_gltf(folder_ / "gltf/FlightHelmet/FlightHelmet.gltf");
   const shared::TextureSlot plain = default_material().normal_texture;

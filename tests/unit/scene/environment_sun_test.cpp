@@ -17,7 +17,7 @@ glm::dvec3 direction_of(std::uint32_t width, double x, double y) {
   return {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
 }
 
-/// Each texel holds the mean of 8 x 8 directions.
+/// Each texel is the mean of 8 x 8 directions.
 Environment paint(std::uint32_t width,
                   const std::function<glm::dvec3(const glm::dvec3&)>& radiance) {
   Environment map{width, width / 2, {}};
@@ -33,7 +33,7 @@ Environment paint(std::uint32_t width,
   return map;
 }
 
-/// A sky of radiance 1 with a disk of so many degrees around `towards`.
+/// A sky of radiance 1 with a disk of `degrees` diameter around `towards`.
 Environment sky_with_disk(const glm::dvec3& towards, double degrees, const glm::dvec3& radiance,
                           std::uint32_t width = 512) {
   const double cosine = std::cos(0.5 * degrees * pi / 180.0);
@@ -55,7 +55,7 @@ glm::dvec3 flux(const Environment& map) {
 
 class SunSeparation : public testing::TestWithParam<glm::dvec3> {};
 
-// One lies on the seam of the map, one close to a pole.
+// One sun is on the seam of the map, one close to a pole.
 TEST_P(SunSeparation, FindsDirectionDiameterAndIrradiance) {
   const glm::dvec3 towards = glm::normalize(GetParam());
   const glm::dvec3 radiance(8000.0, 6000.0, 3000.0);
@@ -76,7 +76,7 @@ TEST_P(SunSeparation, FindsDirectionDiameterAndIrradiance) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Places, SunSeparation,
+INSTANTIATE_TEST_SUITE_P(Positions, SunSeparation,
                          testing::Values(glm::dvec3(0.3, 0.5, -0.6), glm::dvec3(-1.0, 0.4, 0.0),
                                          glm::dvec3(0.05, 1.0, 0.1)));
 

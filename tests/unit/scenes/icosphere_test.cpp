@@ -23,7 +23,7 @@ TEST(Icosphere, NormalsAreRadial) {
   }
 }
 
-// A triangle that crosses the seam must not run backwards through the whole picture.
+// A triangle that crosses the uv seam must not span the whole texture.
 TEST(Icosphere, UvSeamTrianglesDoNotWrap) {
   constexpr int level = 3;
   const Mesh mesh = icosphere(level, {1.0f, 1.0f}, [](glm::vec3 direction) {
@@ -52,7 +52,7 @@ TEST(Icosphere, FacetsAreFlat) {
   }
 }
 
-// Normals of a surface carried by a formula must agree with those measured on its triangles.
+// Normals of a displaced surface must agree with those of its triangles.
 TEST(Icosphere, DisplacedNormalsMatchTriangles) {
   const glm::vec3 axes(1.0f, 2.0f, 0.5f);
   const Mesh mesh = icosphere(5, {1.0f, 1.0f}, [&](glm::vec3 direction) {

@@ -69,8 +69,8 @@ TEST_P(GeneratedScene, NormalsAndTangentsAreOrthonormal) {
   }
 }
 
-// A wrong winding shows as a face that looks away from the normals of its corners; normals taken
-// over a kink, as a face far from all of them.
+// Wrong winding gives a face normal opposite to the vertex normals; normals smoothed over a crease
+// give a large angle.
 TEST_P(GeneratedScene, FaceNormalsAgreeWithVertexNormals) {
   for (const NamedMesh& named : document().meshes) {
     const Mesh& mesh = named.mesh;
@@ -99,7 +99,7 @@ TEST_P(GeneratedScene, TangentsFollowTextureCoordinates) {
       const Vertex& a = mesh.vertices[mesh.indices[i]];
       const Vertex& b = mesh.vertices[mesh.indices[i + 1]];
       const Vertex& c = mesh.vertices[mesh.indices[i + 2]];
-      // What the tangent says of the edges must be what their uv says.
+      // Tangents must agree with the uv derivatives along the edges.
       const glm::vec3 edges[2] = {b.position - a.position, c.position - a.position};
       const glm::vec2 uvs[2] = {b.uv - a.uv, c.uv - a.uv};
       const float area = uvs[0].x * uvs[1].y - uvs[1].x * uvs[0].y;
@@ -160,7 +160,7 @@ struct Size {
   double instances;
 };
 
-// What the paper's tables give; only the room's and the objects' counts may be off a little.
+// The counts of the paper's tables; small deviations only for the room and the objects.
 TEST(PaperScenes, MatchSizesOfPaperTables) {
   for (const Size& size : {Size{"cubes_distance", 170, 15}, Size{"icosphere", 27e3, 17},
                            Size{"glossy_sponza_1", 344e3, 476}, Size{"shadow_objects", 18e3, 22},

@@ -25,7 +25,7 @@ TEST(Profile, ConcaveArcNormalsPointToCenter) {
   EXPECT_NEAR(middle.normal.x, 1.0f, 1e-5f);
 }
 
-// The defect to avoid: one normal for both sides of an edge, which shades a cylinder's rim round.
+// A shared normal on both sides of a crease would shade a cylinder's rim as round.
 TEST(Lathe, KeepsCreasesSharp) {
   Profile profile({1.0f, 0.0f});
   profile.line_to({1.0f, 1.0f}).line_to({0.5f, 1.0f});

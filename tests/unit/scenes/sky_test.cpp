@@ -21,7 +21,7 @@ float luminance(glm::vec3 c) {
   return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
 }
 
-// The simplest decoder of the format the encoder writes.
+// A minimal decoder of the format that the encoder writes.
 Environment decode_hdr(const std::vector<std::uint8_t>& file, int width, int height) {
   Environment out(width, height);
   std::size_t at = std::string(file.begin(), file.end()).find("+X ");

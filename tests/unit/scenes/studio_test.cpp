@@ -28,7 +28,7 @@ TEST(Studio, SoftboxesAreBrighterThanWalls) {
 }
 
 TEST(Studio, MeanRadianceIsIndependentOfSize) {
-  // Edges are averaged inside pixels: half the size gives half the detail, not another light.
+  // Edges are averaged inside pixels: the size changes the detail, not the mean radiance.
   const glm::vec3 small = make_studio(64, 32).horizontal_irradiance();
   const glm::vec3 large = make_studio(256, 128).horizontal_irradiance();
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(small[c], large[c], 0.05f * large[c]);

@@ -39,12 +39,12 @@ TEST(Textures, TileSeamlessly) {
   for (const Material& material : document.materials) {
     if (!material.texture) continue;
     ++textured;
-    if (material.masked) continue;  // one picture, not a tile
+    if (material.masked) continue;  // a single image, not a tile
     const TextureSet set = bake(*material.texture, 256);
     for (const Image* image : {&set.color, &set.normal, &set.surface}) {
       for (const bool columns : {true, false}) {
         const int last = (columns ? image->width : image->height) - 1;
-        // Across the border the picture may change as much as it does somewhere inside.
+        // The step across the border must not exceed the largest step inside.
         EXPECT_LE(step_between(*image, last, 0, columns),
                   1.1 * largest_inner_step(*image, columns) + 0.5)
             << material.name;

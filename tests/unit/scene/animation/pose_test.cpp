@@ -26,7 +26,7 @@ TEST(Sample, LinearInterpolatesAndClampsAtEnds) {
   EXPECT_EQ(at(channel, 0.0f), (std::array<float, 4>{0, 10, -2, 0})) << "before the first key";
   EXPECT_EQ(at(channel, 1.5f), (std::array<float, 4>{1, 12.5f, 0, 0}));
   EXPECT_EQ(at(channel, 3.0f), (std::array<float, 4>{4, 20, 6, 0}));
-  EXPECT_EQ(at(channel, 9.0f), (std::array<float, 4>{4, 20, 6, 0})) << "behind the last";
+  EXPECT_EQ(at(channel, 9.0f), (std::array<float, 4>{4, 20, 6, 0})) << "after the last key";
 }
 
 TEST(Sample, StepHoldsUntilNextKey) {
@@ -46,7 +46,7 @@ TEST(Sample, SplineTangentsAreScaledByKeyInterval) {
   EXPECT_FLOAT_EQ(at(channel, 2.0f)[0], 8.0f);
   // The slope at the start is the out-tangent itself.
   EXPECT_NEAR(at(channel, 0.001f)[0] / 0.001f, 6.0f, 0.02f);
-  EXPECT_FLOAT_EQ(at(channel, 7.0f)[0], 8.0f) << "values, not tangents, hold beyond the ends";
+  EXPECT_FLOAT_EQ(at(channel, 7.0f)[0], 8.0f) << "beyond the ends the value is constant";
 }
 
 float angle_about_y(const std::array<float, 4>& xyzw) {
@@ -55,7 +55,8 @@ float angle_about_y(const std::array<float, 4>& xyzw) {
 
 TEST(Sample, RotationsTakeShortestArcAtConstantSpeed) {
   const float half = std::numbers::pi_v<float> / 4.0f;  // of a quarter turn about y
-  // The second key is the same rotation with all signs turned: the long way round.
+  // The second key is the negated quaternion of the same rotation: naive interpolation takes the
+  // long way.
   const Channel channel = curve(Property::rotation, Interpolation::linear, 4, {0, 1},
                                 {0, 0, 0, 1, 0, -std::sin(half), 0, -std::cos(half)});
   for (const float time : {0.1f, 0.25f, 0.5f, 0.9f}) {
@@ -80,8 +81,8 @@ TEST(Sample, ZeroQuaternionIsIdentity) {
   EXPECT_EQ(at(channel, 0.0f), (std::array<float, 4>{0, 0, 0, 1}));
 }
 
-/// A turning parent with a child one metre off, beside a node that rests.
-Scene mobile() {
+/// A rotating parent with a child at one metre, and a static node.
+Scene animated_scene() {
   Scene scene;
   Transform child;
   child.translation = {1, 0, 0};
@@ -100,41 +101,41 @@ Scene mobile() {
   return scene;
 }
 
-glm::vec3 place_of(const Pose& pose, std::size_t node) {
+glm::vec3 position_of(const Pose& pose, std::size_t node) {
   return glm::vec3(pose.worlds[node][3]);
 }
 
 TEST(Evaluate, ChildrenFollowParents) {
-  const Scene scene = mobile();
+  const Scene scene = animated_scene();
   Pose pose = rest_pose(scene);
   evaluate(scene, *find_clip(scene, "turn"), 2.0, pose);
-  EXPECT_LE(glm::distance(place_of(pose, 1), {0, 0, -1}), 1e-6f) << "a quarter turn about y";
+  EXPECT_LE(glm::distance(position_of(pose, 1), {0, 0, -1}), 1e-6f) << "a quarter turn about y";
   EXPECT_EQ(pose.worlds[2], glm::mat4(1.0f));
   EXPECT_EQ(pose.weights[2], std::vector<float>{0.25f});
 }
 
 TEST(Evaluate, LoopsAndIncludesEndTime) {
-  const Scene scene = mobile();
+  const Scene scene = animated_scene();
   Pose once = rest_pose(scene), again = rest_pose(scene);
   evaluate(scene, scene.clips[0], 0.5, once);
   evaluate(scene, scene.clips[0], 4.5, again);
   EXPECT_EQ(once.worlds[1], again.worlds[1]);
   evaluate(scene, scene.clips[0], -1.0, again);
   EXPECT_EQ(again.worlds[1], scene.nodes[1].world);
-  // Hours of play lose no precision: the time is wound back in double.
+  // Long playback loses no precision: the time is wrapped in double.
   evaluate(scene, scene.clips[0], 2.0e6 + 0.5, again);
-  EXPECT_LE(glm::distance(place_of(again, 1), place_of(once, 1)), 1e-5f);
+  EXPECT_LE(glm::distance(position_of(again, 1), position_of(once, 1)), 1e-5f);
 }
 
 TEST(Evaluate, OtherClipStartsFromDefaultPose) {
-  Scene scene = mobile();
+  Scene scene = animated_scene();
   Clip other{"lift", 1.0f, {}};
   other.channels.push_back(curve(Property::translation, Interpolation::linear, 3, {0}, {0, 5, 0}));
   scene.clips.push_back(other);
   Pose pose = rest_pose(scene);
   evaluate(scene, scene.clips[0], 2.0, pose);
   evaluate(scene, scene.clips[1], 0.0, pose);
-  EXPECT_EQ(place_of(pose, 1), glm::vec3(1, 5, 0));
+  EXPECT_EQ(position_of(pose, 1), glm::vec3(1, 5, 0));
   EXPECT_EQ(find_clip(scene, "walk"), nullptr);
 }
 

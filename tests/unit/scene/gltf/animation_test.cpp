@@ -12,7 +12,7 @@ namespace {
 
 using Numbers = std::vector<float>;
 
-/// A triangle of a skin with two joints, whose second rises; `skin` goes to the node.
+/// A skinned triangle with two joints, the second of which is animated upward.
 GltfBuilder skinned_triangle() {
   GltfBuilder b = triangle();
   const auto joints = b.add_accessor(std::vector<std::uint8_t>{0, 9, 9, 9, 1, 0, 0, 0, 0, 1, 0, 0},
@@ -219,7 +219,7 @@ TEST(Clips, EveryInterpolationAnimatesEveryProperty) {
       sample(channel, 1.0f, found.data());
       const bool step = std::string_view(interpolation) == "STEP";
       for (std::size_t i = 0; i < found.size(); ++i) {
-        // Half way, with tangents of zero, a spline is where a line is; a half turn is an arc.
+        // Halfway a spline with zero tangents equals linear interpolation; rotations are on an arc.
         const float straight = 0.5f * (first[i] + second[i]);
         const bool arc = std::string_view(path) == "rotation" && straight != 0.0f;
         const float expected = step ? first[i] : arc ? std::sqrt(0.5f) : straight;

@@ -1,4 +1,4 @@
-// Every kind of component that glTF and KHR_mesh_quantization allow, of every attribute.
+// Every component type of every attribute that glTF and KHR_mesh_quantization permit.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,9 +13,9 @@ using nlohmann::json;
 using Numbers = std::vector<double>;
 
 struct Component {
-  int type;  // glTF's number
+  int type;  // glTF's enum value
   bool normalized;
-  double largest;  // of the whole numbers; 0: a float
+  double largest;  // largest integer value; 0: float
 };
 
 constexpr Component f32{5126, false, 0.0};
@@ -47,7 +47,7 @@ void append_as(Bytes& bytes, const Component& component, double value) {
   }
 }
 
-/// `values` in elements of `width`, each padded to four bytes as glTF 3.6.2.4 asks.
+/// `values` in elements of `width` components, padded to 4 bytes (glTF 3.6.2.4).
 std::uint32_t add_values(GltfBuilder& builder, const Component& component, std::size_t width,
                          const Numbers& values) {
   Bytes bytes;
@@ -66,7 +66,7 @@ json& attributes_of(GltfBuilder& builder) {
   return builder.json["meshes"][0]["primitives"][0]["attributes"];
 }
 
-/// A triangle with this attribute as well.
+/// A triangle with this additional attribute.
 Mesh mesh_with(const char* name, const Component& component, std::size_t width,
                const Numbers& values) {
   GltfBuilder builder = triangle();
@@ -112,7 +112,7 @@ TEST(Attributes, NormalsAndTangentsOfEveryComponentType) {
   }
 }
 
-// Without normals those of the file's tangents have nothing to stand on (glTF 3.7.2.1).
+// Tangents without normals are ignored (glTF 3.7.2.1).
 TEST(Attributes, TangentsWithoutNormalsAreIgnored) {
   GltfBuilder builder = triangle();
   attributes_of(builder)["TANGENT"] =
@@ -202,7 +202,7 @@ TEST(Attributes, SkinsOfSevenHundredJoints) {
   EXPECT_EQ(vertices[1].position, glm::vec3(351, 0, 0));
 }
 
-// Strips and fans count corners, not vertices.
+// Strips and fans index corners.
 TEST(Attributes, StripsAndFansMayHaveIndices) {
   for (const int mode : {5, 6}) {
     GltfBuilder builder = triangle();
@@ -227,7 +227,7 @@ TEST(Attributes, SparseIndicesOfEveryTypeReplaceAnyElementType) {
   };
   for (const int type : {5121, 5123, 5125}) {
     GltfBuilder builder = triangle();
-    // The number 1, of any width.
+    // Index 1 in every width.
     const auto index = builder.add_view(Bytes{1, 0, 0, 0});
     const auto uv = add_values(builder, u16n, 2, {0, 0, 0, 0, 0, 0});
     with_sparse(type, index, builder, uv,

@@ -1,5 +1,5 @@
-// KHR_draco_mesh_compression, EXT_meshopt_compression and EXT_texture_webp: files that other
-// people's encoders wrote, as far as their libraries are those encoders.
+// KHR_draco_mesh_compression, EXT_meshopt_compression and EXT_texture_webp, with data from the
+// reference encoders.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ using nlohmann::json;
 
 constexpr int grid_side = 12;
 
-/// A bent sheet of 12 x 12 vertices.
+/// A curved sheet of 12 x 12 vertices.
 DracoInput sheet() {
   DracoInput input;
   for (int y = 0; y < grid_side; ++y) {
@@ -38,7 +38,7 @@ DracoInput sheet() {
   return input;
 }
 
-/// A document whose only geometry is compressed: its accessors have no buffer views.
+/// A document with compressed geometry only: its accessors have no buffer views.
 GltfBuilder with_draco(const DracoOutput& compressed) {
   GltfBuilder builder;
   const auto accessor = [&](int component, std::string_view type, std::uint32_t count) {
@@ -91,7 +91,7 @@ TEST_P(Draco, RoundTrip) {
   }
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
     const auto at = [&](std::size_t k) { return mesh.vertices[mesh.indices[i + k]].position; };
-    EXPECT_GT(glm::cross(at(1) - at(0), at(2) - at(0)).z, 0.0f) << "wound as before";
+    EXPECT_GT(glm::cross(at(1) - at(0), at(2) - at(0)).z, 0.0f) << "winding must be kept";
   }
 }
 
@@ -133,7 +133,7 @@ TEST(DracoGeometry, DamageIsRejected) {
   };
   expect(refusal_with([](auto& b, auto&) { b.binary[0] = 'X'; }), "is not a Draco stream");
   expect(refusal_with([](auto& b, auto&) { b.binary[6] = 1; }), "version other than 2.2");
-  expect(refusal_with([](auto& b, auto&) { b.binary[7] = 0; }), "does not hold a mesh");
+  expect(refusal_with([](auto& b, auto&) { b.binary[7] = 0; }), "does not contain a mesh");
   expect(refusal_with([](auto& b, auto&) { b.binary[8] = 7; }), "unknown encoding");
   expect(refusal_with([](auto&, auto& d) { d["bufferView"] = 9; }), "bufferView: 9");
   expect(refusal_with([](auto&, auto& d) { d.erase("attributes"); }), "attributes: is missing");
@@ -144,7 +144,7 @@ TEST(DracoGeometry, DamageIsRejected) {
   expect(refusal_with(
              [](auto&, auto& d) { d["attributes"]["TEXCOORD_0"] = d["attributes"]["POSITION"]; }),
          "another element type");
-  // Faces beyond all bounds: three billion, in five bytes.
+  // A face count of three billion, in five bytes.
   expect(refusal_with([](auto& b, auto&) {
            for (int i = 0; i < 4; ++i) b.binary[14 + i] = 0xff;
            b.binary[18] = 0x0b;
@@ -171,8 +171,8 @@ TEST(DracoGeometry, RandomDamageIsSafe) {
   }
 }
 
-/// Replaces a buffer view by its compressed form in a second buffer, as encoders do: the first one
-/// stays as a place holder.
+/// Adds the compressed form of a buffer view in a second buffer, as encoders do; the first one
+/// stays as fallback.
 std::uint32_t add_packed_view(GltfBuilder& builder, const Bytes& packed, const json& extension,
                               std::size_t length, std::uint32_t stride = 0) {
   const std::uint32_t view = builder.add_view(packed);
@@ -239,7 +239,7 @@ TEST(Meshopt, RoundTrip) {
     EXPECT_EQ(mesh.vertices[i].uv0, input.uv[i]);
   }
   ASSERT_EQ(mesh.indices.size(), input.indices.size());
-  // The codec may turn a triangle's corners, but not over.
+  // The codec may rotate a triangle's corners, but not flip its winding.
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
     const auto smallest = std::min_element(&mesh.indices[i], &mesh.indices[i] + 3);
     std::array<std::uint32_t, 3> turned{};
@@ -273,7 +273,7 @@ TEST(Meshopt, IndexSequencesAndQuaternions) {
   for (std::size_t i = 0; i < 2; ++i) {
     const glm::quat turned = scene.nodes[scene.instances[i].node].transform->rotation;
     const glm::vec4 found(turned.x, turned.y, turned.z, turned.w);
-    EXPECT_GT(std::abs(glm::dot(found, rotations[i])), 0.9999f) << "either sign turns alike";
+    EXPECT_GT(std::abs(glm::dot(found, rotations[i])), 0.9999f) << "q and -q are the same rotation";
   }
 }
 
@@ -387,7 +387,7 @@ TEST(Ktx2, ErrorNamesExtension) {
   builder.json.erase("extensionsRequired");
   builder.json["extensionsUsed"] = {"KHR_texture_basisu"};
   builder.json["textures"][0]["extensions"]["KHR_texture_basisu"]["source"] = 0;
-  EXPECT_EQ(refusal_of(builder), "") << "its fallback is read";
+  EXPECT_EQ(refusal_of(builder), "") << "the fallback image must be used";
   Bytes ktx2 = {0xab, 'K', 'T', 'X', ' ', '2', '0', 0xbb, '\r', '\n', 0x1a, '\n'};
   ktx2.resize(100);
   builder.json["images"][0]["bufferView"] = builder.add_view(ktx2);

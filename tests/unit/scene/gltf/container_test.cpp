@@ -38,7 +38,7 @@ TEST(Container, MissingEmptyAndSpecialFilesAreRejected) {
   EXPECT_TRUE(contains(refusal_of_text(""), "empty"));
   ASSERT_EQ(mkfifo((folder.path() / "pipe.glb").c_str(), 0600), 0);
   EXPECT_TRUE(contains(refusal_of(folder.path() / "pipe.glb"), "not a regular file"))
-      << "and must not hang";
+      << "opening a pipe must not block";
 }
 
 TEST(Container, ErrorsDoNotRevealAbsolutePaths) {
@@ -96,7 +96,7 @@ TEST(Container, DeeplyNestedJsonIsRejected) {
     for (int i = 0; i < 100'000; ++i) text += bracket;
     EXPECT_TRUE(contains(refusal_of_text(text), "nests deeper than 64"));
   }
-  // Brackets in strings do not nest.
+  // Brackets inside strings are not nesting.
   EXPECT_EQ(refusal_of_text("{\"asset\": {\"version\": \"2.0\"}, \"extras\": \"\\\"" +
                             std::string(1000, '[') + "\"}"),
             "");
@@ -161,7 +161,7 @@ TEST_F(Confinement, FilesInsideFolderAreRead) {
   EXPECT_EQ(refusal_of_uri("./data.bin"), "");
   EXPECT_EQ(refusal_of_uri("d%61ta.bin"), "");
   std::filesystem::create_symlink("data.bin", folder_.path() / "inside/alias.bin");
-  EXPECT_EQ(refusal_of_uri("alias.bin"), "") << "a link that stays inside";
+  EXPECT_EQ(refusal_of_uri("alias.bin"), "") << "a symlink within the folder";
 }
 
 TEST_F(Confinement, FilesOutsideFolderAreRejected) {
@@ -204,7 +204,7 @@ TEST_F(Confinement, OtherUriSchemesAndBrokenEscapesAreRejected) {
                        "more than the 3 bytes"));
 }
 
-// Whatever the damage: a scene or an ImportError, nothing else. Sanitizers watch.
+// Damage gives a scene or an ImportError; the sanitizers find everything else.
 TEST(Container, RandomDamageIsSafe) {
   const Bytes good = everything().glb();
   const TemporaryFolder folder;
@@ -223,7 +223,7 @@ TEST(Container, RandomDamageIsSafe) {
   EXPECT_LT(refused, 3000) << "some changes are harmless";
 }
 
-// The same for values: every member of the document in turn becomes something else.
+// The same with JSON values: each member in turn gets each of several wrong values.
 TEST(Container, WrongJsonValuesAreSafe) {
   const GltfBuilder good = everything();
   const json flat = good.json.flatten();

@@ -15,7 +15,7 @@ void expect_vector(const glm::vec3& actual, const glm::vec3& expected, float tol
       << expected.y << " " << expected.z;
 }
 
-// Five points of which every mode makes a different set of triangles.
+// Five points that form different triangles in every mode.
 GltfBuilder five_points(int mode) {
   GltfBuilder builder;
   const auto position = builder.add_accessor(
@@ -41,7 +41,7 @@ TEST(Geometry, ReadsTriangleWithoutIndicesOrNormals) {
     EXPECT_NEAR(glm::length(glm::vec3(vertex.tangent)), 1.0f, 1e-6f);
   }
   expect_vector(scene.bounds.maximum, {1, 1, 0});
-  ASSERT_EQ(scene.materials.size(), 1u) << "the default material stands in";
+  ASSERT_EQ(scene.materials.size(), 1u) << "the default material is used";
   EXPECT_EQ(mesh.material, 0u);
 }
 
@@ -96,7 +96,7 @@ TEST(Geometry, InterleavedAttributesUseStride) {
   const Mesh mesh = builder.import().meshes[0];
   expect_vector(mesh.vertices[1].position, {1, 0, 0});
   expect_vector(mesh.vertices[2].position, {0, 1, 0});
-  expect_vector(mesh.vertices[2].normal, {0, 0, 1});  // made unit length
+  expect_vector(mesh.vertices[2].normal, {0, 0, 1});  // normalized
 }
 
 TEST(Geometry, NormalizedIntegersFollowSpecification) {
@@ -143,7 +143,7 @@ TEST(Geometry, VertexColorsHaveSixteenBits) {
   EXPECT_NEAR(red_green.x, 1.0f, 1e-4f);
   EXPECT_NEAR(red_green.y, 0.5f, 1e-4f);
   EXPECT_NEAR(blue_alpha.x, 1.0f, 1e-4f);
-  EXPECT_NEAR(blue_alpha.y, 1.0f, 1e-4f) << "no alpha in the file means opaque";
+  EXPECT_NEAR(blue_alpha.y, 1.0f, 1e-4f) << "without alpha the color is opaque";
 }
 
 TEST(Geometry, SparseAccessorsReplaceElements) {
@@ -155,7 +155,7 @@ TEST(Geometry, SparseAccessorsReplaceElements) {
       {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
       {"values", {{"bufferView", values}}}};
   EXPECT_EQ(builder.import().bounds.maximum, glm::vec3(7, 1, 0));
-  // Without a buffer view of its own, the rest is zero.
+  // Without a buffer view all other elements are zero.
   builder.json["accessors"][0].erase("bufferView");
   EXPECT_EQ(builder.import().bounds.maximum, glm::vec3(7, 0, 0));
 }
@@ -182,7 +182,7 @@ TEST(Geometry, EightJointWeightsAreNormalized) {
   const std::vector<std::uint8_t> second = {4, 5, 6, 7, 4, 5, 6, 7, 4, 5, 6, 7};
   attributes["JOINTS_0"] = builder.add_accessor(first, 5123, "VEC4", 3);
   attributes["JOINTS_1"] = builder.add_accessor(second, 5121, "VEC4", 3);
-  // Normalised bytes: they sum to 2, and so are halved.
+  // Normalized bytes that sum to 2 are halved.
   const std::vector<std::uint8_t> heavy = {102, 51, 51, 51, 102, 51, 51, 51, 102, 51, 51, 51};
   const auto weights = builder.add_accessor(builder.add_view(heavy), 5121, "VEC4", 3, true);
   attributes["WEIGHTS_0"] = weights;

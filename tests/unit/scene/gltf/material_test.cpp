@@ -28,7 +28,7 @@ TEST(Materials, EmptyMaterialHasDefaults) {
   EXPECT_EQ(material.flags, 0u);
   EXPECT_EQ(material.base_color_texture.texture, shared::no_texture);
   EXPECT_EQ(material.alpha_mask, shared::no_texture);
-  EXPECT_TRUE(scene.images.empty()) << "nothing uses the image";
+  EXPECT_TRUE(scene.images.empty()) << "unused images are not decoded";
 }
 
 TEST(Materials, FactorsAndFlags) {
@@ -72,7 +72,7 @@ TEST(Materials, SlotsKeepTexCoordSetAndStrength) {
   EXPECT_EQ(material.metallic_roughness_texture.uv_set, 1u);
   EXPECT_EQ(material.occlusion_texture.uv_set, 1u);
   EXPECT_EQ(material.base_color_texture.uv_set, 0u);
-  // One picture, used as colour and as data: two images, two textures, nothing more.
+  // One image used as color and as data: two images and two textures.
   ASSERT_EQ(scene.images.size(), 2u);
   ASSERT_EQ(scene.textures.size(), 2u);
   const auto srgb = [&](const shared::TextureSlot& slot) {
@@ -95,7 +95,7 @@ TEST(Materials, TextureTransformScalesRotatesThenTranslates) {
   const shared::TextureSlot slot = builder.import().materials[0].base_color_texture;
   EXPECT_EQ(slot.uv_set, 1u);
   const glm::vec3 uv(1.0f, 0.0f, 1.0f);
-  // A quarter turn counter-clockwise with v down takes +u to -v.
+  // A counter-clockwise rotation by 90 degrees with v down takes +u to -v.
   EXPECT_NEAR(glm::dot(glm::vec3(slot.transform_row0), uv), 0.5f, 1e-6f);
   EXPECT_NEAR(glm::dot(glm::vec3(slot.transform_row1), uv), 0.25f - 2.0f, 1e-6f);
 }
@@ -167,20 +167,20 @@ TEST(Materials, OutOfRangeLayersAreRejected) {
   expect(refusal_with("KHR_materials_volume", 5), "must be an object");
 }
 
-/// The one material's layer as drawn.
-shared::MaterialLayer drawn_layer(const Scene& scene) {
+/// The shading layer of the only material.
+shared::MaterialLayer shading_layer(const Scene& scene) {
   return scene.layers.at(scene.materials.at(0).layer);
 }
 
 TEST(Layers, DefaultsForPlainMaterials) {
   const Scene scene = with_material({{"name", "plain"}}).import();
   EXPECT_EQ(scene.layers.size(), 1u);
-  EXPECT_EQ(drawn_layer(scene).dielectric, 0.04f);
+  EXPECT_EQ(shading_layer(scene).dielectric, 0.04f);
   const Scene usual = with_material({{"extensions",
                                       {{"KHR_materials_ior", {{"ior", 1.5}}},
                                        {"KHR_materials_specular", {{"specularFactor", 1.0}}}}}})
                           .import();
-  EXPECT_EQ(usual.layers.size(), 1u) << "said, but nothing else";
+  EXPECT_EQ(usual.layers.size(), 1u) << "explicit defaults add no layer";
 }
 
 TEST(Layers, IorSpecularFactorAndColor) {
@@ -190,7 +190,7 @@ TEST(Layers, IorSpecularFactorAndColor) {
                        {"KHR_materials_specular",
                         {{"specularFactor", 0.5}, {"specularColorFactor", {0.5, 1, 30}}}}}}})
           .import();
-  const shared::MaterialLayer layer = drawn_layer(scene);
+  const shared::MaterialLayer layer = shading_layer(scene);
   EXPECT_NEAR(layer.dielectric, 1.0f / 9.0f, 1e-6f);
   EXPECT_EQ(layer.specular_color, glm::vec3(0.5f, 1.0f, 30.0f));
   EXPECT_EQ(layer.specular, 0.5f);
@@ -204,10 +204,10 @@ TEST(Layers, ClearcoatAndSheenFactors) {
                        {"KHR_materials_sheen",
                         {{"sheenColorFactor", {1, 0.5, 0.25}}, {"sheenRoughnessFactor", 0.75}}}}}})
           .import();
-  EXPECT_FLOAT_EQ(drawn_layer(scene).coat, 0.8f);
-  EXPECT_FLOAT_EQ(drawn_layer(scene).coat_roughness, 0.2f);
-  EXPECT_EQ(drawn_layer(scene).sheen, glm::vec3(1.0f, 0.5f, 0.25f));
-  EXPECT_EQ(drawn_layer(scene).sheen_roughness, 0.75f);
+  EXPECT_FLOAT_EQ(shading_layer(scene).coat, 0.8f);
+  EXPECT_FLOAT_EQ(shading_layer(scene).coat_roughness, 0.2f);
+  EXPECT_EQ(shading_layer(scene).sheen, glm::vec3(1.0f, 0.5f, 0.25f));
+  EXPECT_EQ(shading_layer(scene).sheen_roughness, 0.75f);
 }
 
 TEST(Layers, TexturesHaveColorSpaceOfTheirExtension) {
@@ -231,7 +231,7 @@ TEST(Layers, TexturesHaveColorSpaceOfTheirExtension) {
                         {{"transmissionFactor", 1}, {"transmissionTexture", slot(1)}}},
                        {"KHR_materials_volume", {{"thicknessTexture", slot(0)}}}}}});
   const Scene scene = builder.import();
-  const shared::MaterialLayer layer = drawn_layer(scene);
+  const shared::MaterialLayer layer = shading_layer(scene);
   const auto expect = [&](const shared::TextureSlot& drawn, bool srgb, std::uint32_t set) {
     ASSERT_NE(drawn.texture, shared::no_texture);
     EXPECT_EQ(scene.images[scene.textures[drawn.texture].image].srgb, srgb);
@@ -258,10 +258,11 @@ TEST(Layers, TransmissionMakesSurfaceBlended) {
           .import();
   const shared::Material& material = scene.materials[0];
   EXPECT_TRUE(material.flags & shared::material_alpha_blend);
-  EXPECT_TRUE(material.flags & shared::material_whole_alpha) << "opaque: alpha says nothing";
+  EXPECT_TRUE(material.flags & shared::material_whole_alpha)
+      << "alphaMode is OPAQUE: alpha is ignored";
   EXPECT_EQ(material.base_color.w, 1.0f);
   EXPECT_NEAR(material.passing, 0.5f, 1e-6f);
-  EXPECT_EQ(drawn_layer(scene).transmission, 0.5f);
+  EXPECT_EQ(shading_layer(scene).transmission, 0.5f);
 }
 
 TEST(Layers, MaskedMaterialsHaveNoTransmission) {
@@ -332,7 +333,7 @@ TEST(Materials, MaskedAlphaIsPackedForRays) {
   EXPECT_EQ(scene.materials[0].alpha_mask_wrap, shared::wrap_clamp | shared::wrap_repeat << 8);
   EXPECT_EQ(scene.alpha_heap[4], 10);
   EXPECT_EQ(scene.alpha_heap[9], 60);
-  EXPECT_EQ(scene.materials[2].alpha_mask, 4u) << "the same picture is stored once";
+  EXPECT_EQ(scene.materials[2].alpha_mask, 4u) << "the same image must be stored once";
   EXPECT_EQ(scene.materials[3].alpha_mask, shared::no_texture);
 }
 

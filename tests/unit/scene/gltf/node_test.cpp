@@ -78,7 +78,7 @@ TEST(Cameras, LookAlongNodeMinusZ) {
   const Camera& camera = scene.cameras[0];
   EXPECT_EQ(camera.name, "main");
   EXPECT_LT(glm::distance(camera.eye, glm::vec3(10, 0.5f, 0)), 1e-5f);
-  // Turned by 90 degrees about Y, -Z becomes -X; the triangle's middle lies at x = 0.5.
+  // Rotated by 90 degrees about Y, -Z becomes -X; the triangle's center is at x = 0.5.
   EXPECT_LT(glm::distance(camera.target, glm::vec3(0.5f, 0.5f, 0)), 1e-4f);
   EXPECT_LT(glm::distance(camera.up, glm::vec3(0, 1, 0)), 1e-5f);
   EXPECT_NEAR(camera.vertical_fov, 57.29578f, 1e-3f);
@@ -91,7 +91,7 @@ TEST(Cameras, TargetIsNearWhenCameraIsInsideScene) {
   builder.add("cameras",
               {{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.2}}}});
   builder.json["nodes"][0]["scale"] = {20, 20, 1};
-  // A second, turned copy gives the scene depth, so that there is an inside.
+  // A second, rotated copy gives the scene depth, so that the camera can be inside.
   builder.add("nodes", {{"mesh", 0}, {"scale", {20, 20, 1}}, {"translation", {0, 0, 8}}});
   builder.add("nodes", {{"camera", 0}, {"translation", {3, 3, 6}}});
   builder.json["scenes"][0]["nodes"] = {0, 1, 2};
@@ -123,7 +123,7 @@ TEST(Lights, AreTransformedToWorldSpace) {
   GltfBuilder builder = triangle();
   builder.json["extensions"]["KHR_lights_punctual"]["lights"] = {
       {{"type", "spot"},
-       {"name", "lamp"},
+       {"name", "light"},
        {"color", {1, .5, .25}},
        {"intensity", 40},
        {"range", 9},
@@ -135,13 +135,13 @@ TEST(Lights, AreTransformedToWorldSpace) {
   const Scene scene = builder.import();
   ASSERT_EQ(scene.lights.size(), 1u);
   const shared::Light& light = scene.lights[0].device;
-  EXPECT_EQ(scene.lights[0].name, "lamp");
+  EXPECT_EQ(scene.lights[0].name, "light");
   EXPECT_EQ(light.type, shared::light_spot);
   EXPECT_EQ(light.position, glm::vec3(1, 2, 3));
   EXPECT_LT(glm::distance(light.direction, glm::vec3(0, -1, 0)), 1e-5f);
   EXPECT_EQ(light.color, glm::vec3(40, 20, 10));
   EXPECT_EQ(light.range, 9.0f);
-  // Full inside the inner cone, nothing at the outer one.
+  // Full intensity inside the inner cone, zero at the outer one.
   EXPECT_NEAR(std::cos(0.2f) * light.spot_scale + light.spot_offset, 1.0f, 1e-4f);
   EXPECT_NEAR(std::cos(0.6f) * light.spot_scale + light.spot_offset, 0.0f, 1e-4f);
 }

@@ -40,10 +40,10 @@ TEST(SceneChoice, NameTakesPrecedenceOverIndex) {
 }
 
 TEST(SceneChoice, ErrorListsAvailableScenes) {
-  for (const char* wanted : {"dusk", "3", "-1", "1x", "99999999999999999999"}) {
+  for (const char* requested : {"dusk", "3", "-1", "1x", "99999999999999999999"}) {
     try {
-      three_scenes().import({}, {.scene = wanted, .variant = ""});
-      FAIL() << wanted;
+      three_scenes().import({}, {.scene = requested, .variant = ""});
+      FAIL() << requested;
     } catch (const NoSuchChoice& failure) {
       EXPECT_EQ(failure.member(), "scene");
       EXPECT_EQ(failure.names().size(), 3u);

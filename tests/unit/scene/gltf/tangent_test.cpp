@@ -42,7 +42,7 @@ TEST(Tangents, MirroredTextureIsLeftHanded) {
 }
 
 TEST(Tangents, VertexOnMirrorSeamIsSplit) {
-  // Two triangles left and right of the y axis that show the same half of a picture.
+  // Two triangles left and right of the y axis with the same half of an image.
   std::vector<Vertex> vertices = {corner({0, 0, 0}, {0, 1}), corner({1, 0, 0}, {1, 1}),
                                   corner({0, 1, 0}, {0, 0}), corner({-1, 0, 0}, {1, 1})};
   std::vector<std::uint32_t> indices = {0, 1, 2, 0, 2, 3};
@@ -56,8 +56,8 @@ TEST(Tangents, VertexOnMirrorSeamIsSplit) {
 }
 
 TEST(Tangents, EqualVerticesShareAngleWeightedTangent) {
-  // A ridge along y with a common normal: a triangle of 90 degrees on one side, of 45 on the other,
-  // each with vertices of its own. Welding must give both the same tangent at the shared corner.
+  // A ridge along y with a common normal: triangles of 90 and of 45 degrees with separate vertices.
+  // Welding must give both the same tangent at the shared corner.
   const glm::vec3 normal(0, 0, 1);
   std::vector<Vertex> vertices = {
       corner({0, 0, 0}, {0, 1}, normal), corner({1, 0, -1}, {1, 1}, normal),
@@ -71,7 +71,7 @@ TEST(Tangents, EqualVerticesShareAngleWeightedTangent) {
 }
 
 TEST(Tangents, WeightIsAngleNotArea) {
-  // Around one corner: tangent x from a right angle, tangent y from half of one, whatever the size.
+  // At one corner: tangent x from 90 degrees, tangent y from 45 degrees, independent of size.
   for (const float size : {1.0f, 100.0f}) {
     std::vector<Vertex> vertices = {
         corner({0, 0, 0}, {0, 0}),      corner({1, 0, 0}, {1, 0}),

@@ -56,7 +56,7 @@ TEST(ImageDecoder, ReadsJpegBaselineAndProgressive) {
 }
 
 TEST(ImageDecoder, GammaChunkIsIgnored) {
-  // A gAMA chunk that says linear: a decoder that honours it would brighten the picture.
+  // A gAMA chunk for linear data: a decoder that uses it would brighten the image.
   Bytes file = png(1, 1, 3, {100, 100, 100});
   const Bytes gamma = {0, 0, 0, 4, 'g', 'A', 'M', 'A', 0, 1, 0x86, 0xa0, 0x31, 0xe8, 0x96, 0x5f};
   file.insert(file.begin() + 33, gamma.begin(), gamma.end());
@@ -91,7 +91,7 @@ TEST(ImageDecoder, RejectsEmptyAndOversizedImages) {
 }
 
 TEST(ImageDecoder, RowsBeyondImageHeightAreIgnored) {
-  // 16 MiB of rows behind a header of 4 x 4: a loader that inflates first would hold them all.
+  // 16 MiB of rows after a header of 4 x 4: a decoder that inflates first would allocate them all.
   Bytes samples(16 << 20, 77);
   std::fill_n(samples.begin(), 64, std::uint8_t(5));
   EXPECT_EQ(decoded(png(4, 4, 4, samples)), Bytes(64, 5));
@@ -108,8 +108,8 @@ TEST(Mipmaps, SrgbColorsAreAveragedInLinearSpace) {
   const Bytes checker = {0, 0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255, 0, 0, 0, 0};
   const Image color = with_mips(2, 2, true, checker);
   const Image data = with_mips(2, 2, false, checker);
-  EXPECT_EQ(color.pixels[16], 188) << "half the light of white is 188 in sRGB";
-  EXPECT_EQ(color.pixels[19], 128) << "alpha is not a colour";
+  EXPECT_EQ(color.pixels[16], 188) << "half of white's luminance is 188 in sRGB";
+  EXPECT_EQ(color.pixels[19], 128) << "alpha is linear";
   EXPECT_EQ(data.pixels[16], 128);
 }
 
@@ -127,7 +127,7 @@ TEST(Mipmaps, UniformImageIsUnchanged) {
 }
 
 TEST(Mipmaps, OddSizesWeightPixelsEqually) {
-  // 3 -> 1: a bright pixel at either end or in the middle counts a third.
+  // 3 -> 1: each of the three pixels has weight 1/3.
   for (int bright = 0; bright < 3; ++bright) {
     Bytes row(12, 0);
     row[4 * bright] = 255;
@@ -141,7 +141,7 @@ TEST(Images, AreReadFromFilesBesideScene) {
   builder.json["buffers"][0]["uri"] = "data.bin";
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder.path() / "textures");
-  folder.write("my picture.png", png(2, 2, 3, Bytes(12, 50)));
+  folder.write("my image.png", png(2, 2, 3, Bytes(12, 50)));
   folder.write("data.bin", builder.binary);
   const Scene scene = import_gltf(folder.write("scene.gltf", builder.json.dump()));
   ASSERT_EQ(scene.images.size(), 2u);

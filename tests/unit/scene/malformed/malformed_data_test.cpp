@@ -1,5 +1,5 @@
-// Documents that are well formed and yet say what cannot be: wrong types, numbers out of range,
-// graphs that are no trees, and data that does not fit what is said of it.
+// Valid JSON with invalid content: wrong types, numbers out of range, node graphs that are no
+// trees, and data that does not match its description.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ class MalformedData : public Malformed {
     expect_refused(place + " = " + value.dump(), damaged, named);
   }
 
-  /// Overwrites a component of an accessor that member `place` names.
+  /// Overwrites a component of the accessor that member `place` refers to.
   void refuse_number(const std::string& place, std::size_t component, float value) {
     GltfBuilder damaged = good_;
     const auto accessor = at(damaged, place).get<std::size_t>();
@@ -112,7 +112,7 @@ TEST_F(MalformedData, NumbersOutOfRange) {
   for (const auto& [place, value] : cases) refuse(place, value, named_in_errors(place));
 }
 
-// Factors beyond 0..1 are common in files and harmless: clamped, and said so.
+// Factors outside 0..1 are common in files and harmless: clamped, with a warning.
 TEST_F(MalformedData, FactorsOutOfRangeAreClamped) {
   for (const char* const place : {"/materials/0/pbrMetallicRoughness/metallicFactor",
                                   "/materials/0/pbrMetallicRoughness/roughnessFactor",
@@ -152,7 +152,7 @@ TEST_F(MalformedData, AttributesOfWrongType) {
   for (const auto& [place, wrong] : cases) {
     for (const std::string_view type : wrong) {
       GltfBuilder damaged = good_;
-      // An accessor of its own, of zeros: only its type is wrong.
+      // A new accessor of zeros: only its type is wrong.
       json accessor = good_.json["accessors"][at(damaged, place).get<std::size_t>()];
       accessor.erase("bufferView");
       accessor.erase("sparse");
@@ -300,7 +300,7 @@ TEST_F(MalformedData, CyclicAndSharedNodes) {
   diamond.add("nodes", {{"children", {first + 3}}});
   diamond.add("nodes", json::object());
   expect_refused("a diamond", diamond, "has more than one parent");
-  // Each node names the next one twice: 2^30 leaves, if anybody walked down.
+  // Each node refers to the next one twice: 2^30 leaves if they were traversed.
   GltfBuilder doubling = good_;
   for (int i = 0; i < 30; ++i) {
     const int next = static_cast<int>(doubling.json["nodes"].size()) + 1;
@@ -326,7 +326,7 @@ TEST_F(MalformedData, InvalidAnimations) {
   refuse("/animations/0/channels", json::array(), "animations[0]");
 }
 
-// What costs nothing in the file and much in memory.
+// Small files that claim large amounts of memory.
 TEST_F(MalformedData, SmallFilesWithHugeClaims) {
   GltfBuilder zeros = triangle();
   zeros.json["accessors"][0].erase("bufferView");
@@ -368,7 +368,7 @@ TEST_F(MalformedData, SmallFilesWithHugeClaims) {
   for (int i = 0; i < 3000; ++i) {
     skins.add("skins", {{"joints", {1, 2}}, {"inverseBindMatrices", matrices}});
   }
-  expect_loaded("matrices that nobody asks for", skins);
+  expect_loaded("matrices that unknown asks for", skins);
 
   GltfBuilder crowd = good_;
   const auto vertices =

@@ -1,4 +1,4 @@
-// Damage to the container, the text, what the document points to outside itself, and its images.
+// Damage to the container, the JSON text, external references and images.
 #include <gtest/gtest.h>
 
 #include "tests/unit/scene/malformed/malformed.hpp"
@@ -116,9 +116,8 @@ TEST_F(MalformedFiles, UnsupportedVersions) {
 }
 
 TEST_F(MalformedFiles, UnsupportedRequiredExtensions) {
-  for (const char* const name :
-       {"KHR_texture_basisu", "KHR_materials_pbrSpecularGlossiness", "MSFT_texture_dds",
-        "EXT_nobody_knows", "khr_lights_punctual", ""}) {
+  for (const char* const name : {"KHR_texture_basisu", "KHR_materials_pbrSpecularGlossiness",
+                                 "MSFT_texture_dds", "EXT_unknown", "khr_lights_punctual", ""}) {
     GltfBuilder damaged = good_;
     damaged.json["extensionsRequired"].push_back(name);
     expect_refused(name, damaged,
@@ -183,7 +182,7 @@ TEST_F(MalformedFiles, DamagedPngImages) {
     if (size != 0)
       refuse_image("cut to " + std::to_string(size), Bytes(good.begin(), good.begin() + size));
   }
-  // Width, height, depth, colour type, compression, filter, interlace: with the old checksum.
+  // Width, height, depth, color type, compression, filter, interlace: with the old checksum.
   for (std::size_t offset = 16; offset < 29; ++offset) {
     Bytes file = good;
     file[offset] ^= 0x41;
@@ -230,7 +229,7 @@ TEST_F(MalformedFiles, UnsupportedImageFormats) {
   refuse_image("half a RIFF", to_bytes("RIFF\x10\x10\x10\x10WEBP"));
 }
 
-// Pictures of the greatest size that takes nothing in the file must cost no more than they show.
+// Images of maximum size with tiny files must not exceed the budget.
 TEST_F(MalformedFiles, ImagesBeyondBudget) {
   GltfBuilder damaged = good_;
   for (int i = 0; i < 8; ++i) {

@@ -1,5 +1,4 @@
-// Damage to single members of the document, generated: every member of a kind gets every value that
-// its kind must refuse.
+// Damage to single members: every member of a kind gets every value that is invalid for it.
 #include <gtest/gtest.h>
 
 #include "tests/unit/scene/malformed/malformed.hpp"
@@ -10,7 +9,7 @@ namespace {
 
 using nlohmann::json;
 
-// Every place that holds the number of something else.
+// All members that are indices.
 const char* const indices[] = {
     "/scene",
     "/scenes/0/nodes/0",
@@ -67,7 +66,7 @@ const char* const counts[] = {
     "/bufferViews/0/byteStride",
 };
 
-// Members without which there is nothing to read.
+// Required members.
 const char* const required[] = {
     "/asset",
     "/asset/version",
@@ -194,7 +193,7 @@ const char* const texts[] = {
     "/bufferViews/15/extensions/EXT_meshopt_compression/filter",
 };
 
-/// Text that stands for nothing, where only some texts stand for something.
+/// Members that are enumerations of strings.
 const char* const names_of_choices[] = {
     "/asset/version",
     "/accessors/0/type",
@@ -311,7 +310,7 @@ TEST_F(MalformedMembers, InvalidEnumValues) {
   }
 }
 
-// Whatever stands in for a whole object, it is no object.
+// Values other than objects in place of objects.
 TEST_F(MalformedMembers, InvalidObjects) {
   for (const char* const place :
        {"/asset", "/nodes/0", "/nodes/2/extensions", "/materials/0/pbrMetallicRoughness",
