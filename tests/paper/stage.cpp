@@ -83,7 +83,7 @@ std::vector<render::Frame> Stage::ground_truth(GroundTruth source, const Shot& s
                                                int samples) const {
   protocol::Settings settings;
   settings.accumulation.max_samples = samples;
-  settings.accumulation.handover = 0;
+  settings.accumulation.blend_samples = 0;
   settings.antialiasing.temporal = false;
   if (source == GroundTruth::reference) {
     settings.reference.use = protocol::ReferenceUse::always;

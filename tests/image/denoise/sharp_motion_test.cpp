@@ -78,9 +78,9 @@ TEST(SharpMotion, GlossySphereReflectionDoesNotLag) {
   protocol::Settings settings = denoised_only();
   for (const float roughness : {0.1f, 0.2f}) {
     const std::string name = "orbit_ball_" + std::to_string(int(100.0f * roughness));
-    settings.specular_temporal.virtual_point = true;
+    settings.specular_temporal.virtual_motion = true;
     const double compensated = error_in_motion(settings, name, is_sphere, roughness);
-    settings.specular_temporal.virtual_point = false;
+    settings.specular_temporal.virtual_motion = false;
     const double lagging = error_in_motion(settings, name + "_lagging", is_sphere, roughness);
     EXPECT_LT(compensated, 0.85 * lagging) << roughness;
   }

@@ -258,8 +258,8 @@ TEST(ReferenceWhenStatic, StaticCameraConvergesToReference) {
                   36);
   const double expected = mean_luminance(rig, traced(ReferenceScope::full), 64, "static_full");
   protocol::Settings settings = traced(ReferenceScope::full);
-  settings.reference.use = ReferenceUse::reference;
-  settings.accumulation.handover = 4;
+  settings.reference.use = ReferenceUse::when_static;
+  settings.accumulation.blend_samples = 4;
   EXPECT_NEAR(mean_luminance(rig, settings, 65, "static_hybrid"), expected, 0.01 * expected);
   // Raising max_samples continues the accumulation.
   settings.accumulation.max_samples = 70;
