@@ -98,11 +98,12 @@ Sun sun_of(const Environment& map, const Sphere& sphere, const Region& region) {
   // The mean squared distance of a disk's points from its center is half its squared radius.
   double weight = 0.0, squares = 0.0;
   for (const std::size_t texel : region.texels) {
-    const double share = std::max(
-        sphere.solid_angle(texel) * luminance_of(glm::dvec3(map.radiance[texel]) - region.rim), 0.0);
+    const double texel_weight = std::max(
+        sphere.solid_angle(texel) * luminance_of(glm::dvec3(map.radiance[texel]) - region.rim),
+        0.0);
     const glm::dvec3 aside = glm::cross(towards, sphere.direction(texel));
-    weight += share;
-    squares += share * (glm::dot(aside, aside) + sphere.spread(texel));
+    weight += texel_weight;
+    squares += texel_weight * (glm::dot(aside, aside) + sphere.spread(texel));
   }
   const double radius = std::sqrt(2.0 * squares / weight);
   return {towards, glm::max(irradiance, glm::dvec3(0.0)),

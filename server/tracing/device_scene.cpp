@@ -130,12 +130,12 @@ void MovingDeviceScene::update(const Movement& movement) {
   if (movement.deformed.empty() && movement.moved.empty()) return;
   std::vector<std::size_t> changed;
   for (const Movement::Mesh& mesh : movement.deformed) {
-    const std::size_t place = deforming_[mesh.mesh];
-    changed.push_back(place);
+    const std::size_t slot = deforming_[mesh.mesh];
+    changed.push_back(slot);
     // Meshes without triangles have no positions here.
-    if (meshes_.address(place) == 0) continue;
+    if (meshes_.address(slot) == 0) continue;
     std::transform(mesh.vertices.begin(), mesh.vertices.end(),
-                   reinterpret_cast<glm::vec3*>(positions_.mapped()) + first_position_[place],
+                   reinterpret_cast<glm::vec3*>(positions_.mapped()) + first_position_[slot],
                    position_for_build);
   }
   for (const std::uint32_t i : movement.moved) {

@@ -1,6 +1,6 @@
-"""The mistakes of other renderers (tests/README.md), each as an edit of our source, and the test that
-must fail when it is made. Of what also exists as a host kernel only the shader is edited: the tests
-run without host kernels, and tests of their own hold those to the shaders."""
+"""Known mistakes of other renderers (tests/README.md), each as an edit of this source, with the test
+that must fail. Where a host kernel exists only the shader is edited: the tests run without host
+kernels, and separate tests compare those with the shaders."""
 
 from dataclasses import dataclass
 

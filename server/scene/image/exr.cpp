@@ -60,11 +60,11 @@ ImageSize check_header(const Imf::Header& header, std::uint64_t most_pixels) {
   }
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-  constexpr std::int64_t highest = largest_image_side / 2;
+  constexpr std::int64_t max_height = largest_image_side / 2;
   if (width < 1 || height < 1) throw ImportError("has no pixels");
-  if (width > largest_image_side || height > highest) {
+  if (width > largest_image_side || height > max_height) {
     throw ImportError("is larger than " + std::to_string(largest_image_side) + " x " +
-                      std::to_string(highest) + " pixels");
+                      std::to_string(max_height) + " pixels");
   }
   if (static_cast<std::uint64_t>(width * height) > most_pixels) {
     throw ImportError("has more than " + std::to_string(most_pixels) + " pixels");

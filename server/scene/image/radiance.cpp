@@ -27,10 +27,10 @@ class ByteReader {
   Pixel next_pixel() { return {next(), next(), next(), next()}; }
 
   std::string next_line() {
-    constexpr std::size_t longest = 4096;
+    constexpr std::size_t max_line_length = 4096;
     std::string line;
     for (std::uint8_t byte = next(); byte != '\n'; byte = next()) {
-      if (line.size() == longest) throw ImportError("has a damaged header");
+      if (line.size() == max_line_length) throw ImportError("has a damaged header");
       line += static_cast<char>(byte);
     }
     return line;
@@ -57,11 +57,11 @@ ImageSize read_header(ByteReader& reader) {
   if (std::sscanf(resolution.c_str(), "-Y %9u +X %9u %c", &size.height, &size.width, &rest) != 2) {
     throw ImportError("has a damaged header or rows in an unusual order");
   }
-  constexpr std::uint32_t highest = largest_image_side / 2;
+  constexpr std::uint32_t max_height = largest_image_side / 2;
   if (size.width == 0 || size.height == 0) throw ImportError("has no pixels");
-  if (size.width > largest_image_side || size.height > highest) {
+  if (size.width > largest_image_side || size.height > max_height) {
     throw ImportError("is larger than " + std::to_string(largest_image_side) + " x " +
-                      std::to_string(highest) + " pixels");
+                      std::to_string(max_height) + " pixels");
   }
   return size;
 }

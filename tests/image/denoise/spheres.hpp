@@ -5,7 +5,7 @@
 
 #include "tests/image/support/renderer_rig.hpp"
 
-// The scene, settings and ground reference that the denoiser's tests share.
+// The scene, settings and ground truth that the denoiser's tests share.
 namespace heliograph::test {
 
 inline constexpr std::uint32_t spheres_width = 160, spheres_height = 90;

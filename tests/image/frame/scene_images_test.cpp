@@ -5,6 +5,7 @@
 #include "scene/import.hpp"
 #include "scenes/generator/atrium/atrium.hpp"
 #include "tests/image/support/renderer_rig.hpp"
+#include "tests/support/generated_scene.hpp"
 
 namespace heliograph::test {
 namespace {
@@ -25,10 +26,11 @@ double covered_share(const render::FloatImage& instance) {
 TEST(Atrium, IsLitBySunAndSky) {
   const auto sky = scenes::make_clear_sky(
       scenes::direction_to_sun(scenes::sun_elevation, scenes::sun_azimuth), 512, 256);
-  const auto scene = import_document(scenes::make_atrium(1, sky), 128);
+  const auto scene =
+      std::make_shared<const scene::Scene>(import_generated(scenes::make_atrium(1, sky), 128));
   EXPECT_GT(scene->triangle_count(), 200'000u);
   ASSERT_FALSE(scene->cameras.empty());
-  RendererRig rig(scene, convert(sky.environment), scene->cameras[0], 320, 180);
+  RendererRig rig(scene, import_generated(sky.environment), scene->cameras[0], 320, 180);
   const render::Frame frame = rig.accumulate(16);
   save_image("atrium", frame);
   const render::FloatImage radiance = rig.capture("accumulated");

@@ -5,6 +5,7 @@
 
 #include "scenes/generator/scenes/test_scenes.hpp"
 #include "tests/image/support/renderer_rig.hpp"
+#include "tests/support/generated_scene.hpp"
 
 namespace heliograph::test {
 namespace {
@@ -42,8 +43,10 @@ void expect_white(RendererRig& rig, const std::string& name) {
 }
 
 TEST(Furnace, WhiteSpheresOfAnyRoughnessVanish) {
-  const auto scene = import_document(scenes::make_furnace(), 16);
-  RendererRig rig(scene, convert(scenes::make_white_environment()), scene->cameras.at(0), 320, 180);
+  const auto scene =
+      std::make_shared<const scene::Scene>(import_generated(scenes::make_furnace(), 16));
+  RendererRig rig(scene, import_generated(scenes::make_white_environment()), scene->cameras.at(0),
+                  320, 180);
   expect_white(rig, "furnace");
 }
 

@@ -7,6 +7,7 @@
 #include "scenes/generator/scenes/test_scenes.hpp"
 #include "scenes/generator/sky/sky.hpp"
 #include "tests/image/support/renderer_rig.hpp"
+#include "tests/support/generated_scene.hpp"
 
 namespace heliograph::test {
 namespace {
@@ -47,7 +48,8 @@ struct Errors {
 /// Compares every pixel of the mirror sphere with the environment in the reflected direction.
 Errors reflection_errors(const scene::Environment& sky, float rotation, bool traced,
                          const std::string& name) {
-  const auto scene = import_document(scenes::make_mirror(), 16);
+  const auto scene =
+      std::make_shared<const scene::Scene>(import_generated(scenes::make_mirror(), 16));
   const scene::Camera camera = scene->cameras.at(0);
   RendererRig rig(scene, sky, camera, width, height);
   protocol::Settings settings;
@@ -87,7 +89,8 @@ class Mirror : public testing::TestWithParam<bool> {};
 
 TEST_P(Mirror, ReflectsGeneratedSky) {
   const auto sky = scenes::make_clear_sky(scenes::direction_to_sun(50.0f, 30.0f), 512, 256);
-  const Errors errors = reflection_errors(convert(sky.environment), 0.0f, GetParam(), "mirror_sky");
+  const Errors errors =
+      reflection_errors(import_generated(sky.environment), 0.0f, GetParam(), "mirror_sky");
   EXPECT_GT(errors.pixels, GetParam() ? 1500 : 2000);
   EXPECT_LT(errors.median, GetParam() ? 0.002 : 0.01);
   EXPECT_LT(errors.largest,

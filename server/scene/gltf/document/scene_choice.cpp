@@ -9,7 +9,7 @@
 namespace heliograph::scene {
 namespace {
 
-std::optional<std::uint32_t> place_of(const std::vector<std::string>& names,
+std::optional<std::uint32_t> index_of(const std::vector<std::string>& names,
                                       const std::string& requested) {
   const auto found = std::find(names.begin(), names.end(), requested);
   if (found == names.end()) return std::nullopt;
@@ -42,7 +42,7 @@ std::optional<std::uint32_t> choose_scene(const JsonValue& root, const std::stri
   const std::vector<std::string> names = read_scene_names(root);
   const auto shown = root.index("scene", names.size(), "scenes");
   if (!requested.empty()) {
-    auto chosen = place_of(names, requested);
+    auto chosen = index_of(names, requested);
     if (!chosen) chosen = number_below(names.size(), requested);
     if (!chosen) throw NoSuchChoice("scene", requested, names);
     return chosen;
@@ -54,7 +54,7 @@ std::optional<std::uint32_t> choose_scene(const JsonValue& root, const std::stri
 std::optional<std::uint32_t> choose_variant(const std::vector<std::string>& variants,
                                             const std::string& requested) {
   if (requested.empty()) return std::nullopt;
-  const auto chosen = place_of(variants, requested);
+  const auto chosen = index_of(variants, requested);
   if (!chosen) throw NoSuchChoice("variant", requested, variants);
   return chosen;
 }

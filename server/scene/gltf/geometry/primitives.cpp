@@ -178,11 +178,11 @@ class PrimitiveReader {
       json.refuse("exceeds the limit of " + std::to_string(limits_.triangles) +
                   " triangles for the whole scene");
     }
-    pay(json, primitive, triangles);
+    charge(json, primitive, triangles);
     return true;
   }
 
-  void pay(const JsonValue& json, const Primitive& primitive, std::uint64_t triangles) {
+  void charge(const JsonValue& json, const Primitive& primitive, std::uint64_t triangles) {
     // Flat triangles share no vertices.
     const std::uint64_t vertices =
         primitive.normal && !primitive.draco ? vertex_count_ : 3 * triangles;

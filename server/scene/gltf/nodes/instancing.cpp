@@ -61,11 +61,11 @@ std::optional<std::vector<Transform>> read_instancing(const JsonValue& node,
                                         count, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
   const auto scales =
       read_places<3>(*attributes, "SCALE", ElementType::vec3, accessors, count, glm::vec3(1.0f));
-  std::vector<Transform> places(count);
+  std::vector<Transform> instance_transforms(count);
   for (std::uint32_t i = 0; i < count; ++i) {
-    places[i] = {translations[i], to_rotation(*attributes, rotations[i]), scales[i]};
+    instance_transforms[i] = {translations[i], to_rotation(*attributes, rotations[i]), scales[i]};
   }
-  return places;
+  return instance_transforms;
 }
 
 }  // namespace heliograph::scene

@@ -63,10 +63,10 @@ Light read_light(const JsonValue& json) {
 }
 
 float read_length(const JsonValue& json, std::string_view key) {
-  constexpr float longest = 1e6f;
+  constexpr float max_length = 1e6f;
   const auto length = json.number(key);
   if (!length) json.refuse(key, "is missing");
-  if (*length <= 0.0f || *length > longest)
+  if (*length <= 0.0f || *length > max_length)
     json.refuse(key, "must be more than 0 and at most 1e6 metres");
   return *length;
 }

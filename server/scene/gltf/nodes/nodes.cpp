@@ -89,11 +89,11 @@ DocumentNode read_node(const JsonValue& json, const Context& context) {
   result.attachments.camera = json.index("camera", context.cameras, "cameras");
   result.attachments.skin = json.index("skin", context.skins, "skins");
   result.attachments.light = read_node_light(json, context.lights);
-  const auto places = read_instancing(json, context.accessors, context.instances);
-  if (places) {
+  const auto instance_transforms = read_instancing(json, context.accessors, context.instances);
+  if (instance_transforms) {
     // Skinned vertices follow joints, not the node.
     if (result.attachments.skin) json.refuse("skin", "cannot be instanced");
-    result.attachments.places = *places;
+    result.attachments.instance_transforms = *instance_transforms;
   }
   return result;
 }
@@ -178,16 +178,17 @@ std::vector<std::uint32_t> read_roots(const JsonValue& root, const std::vector<D
 void add_places(NodeTable& table) {
   const std::size_t count = table.nodes.size();
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::vector<Transform> places = std::move(table.attachments[i].places);
-    if (places.empty()) continue;
+    const std::vector<Transform> instance_transforms =
+        std::move(table.attachments[i].instance_transforms);
+    if (instance_transforms.empty()) continue;
     const auto mesh = std::exchange(table.attachments[i].mesh, std::nullopt);
-    for (const Transform& place : places) {
+    for (const Transform& instance : instance_transforms) {
       Node node;
       node.name = table.nodes[i].name;
       node.parent = i;
-      node.local = place.matrix();
+      node.local = instance.matrix();
       node.world = table.nodes[i].world * node.local;
-      node.transform = place;
+      node.transform = instance;
       node.weights = table.nodes[i].weights;
       table.nodes.push_back(std::move(node));
       table.attachments.emplace_back().mesh = mesh;
@@ -218,7 +219,7 @@ NodeTable read_nodes(const JsonValue& root, std::span<const Accessor> accessors,
   std::uint64_t weights = 0;
   for (const JsonValue& json : documents) {
     nodes.push_back(read_node(json, context));
-    context.instances -= nodes.back().attachments.places.size();
+    context.instances -= nodes.back().attachments.instance_transforms.size();
     weights += nodes.back().node.weights.size();
     if (weights > limits.json_values) json.refuse("has too many morph weights");
   }

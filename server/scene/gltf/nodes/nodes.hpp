@@ -19,7 +19,7 @@ struct NodeAttachments {
   std::optional<std::uint32_t> camera;
   NodeLight light;
   std::vector<Transform>
-      places;  // EXT_mesh_gpu_instancing: instance transforms relative to the node
+      instance_transforms;  // EXT_mesh_gpu_instancing: instance transforms relative to the node
 };
 
 /// The nodes of the selected scene, parents first, with world transforms. `attachments[i]` belongs
