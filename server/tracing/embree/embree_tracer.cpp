@@ -63,12 +63,12 @@ void trace_batches(const gpu::FramePlan& plan, const RayStream& stream, gpu::Buf
   const auto& header = *mapped<const shared::RayCount>(plan, stream.count);
   const std::size_t count = std::min(header.count, stream.capacity);
   const std::span rays(mapped<const shared::Ray>(plan, stream.rays), count);
-  auto* const results = mapped<Result>(plan, results);
+  auto* const output = mapped<Result>(plan, results);
   const std::size_t batches = (count + embree_batch - 1) / embree_batch;
   tbb::parallel_for(std::size_t(0), batches, [&](std::size_t batch) {
     const std::size_t first = batch * embree_batch;
     trace(rays.subspan(first, std::min(embree_batch, count - first)), header.blending,
-          results + first);
+          output + first);
   });
 }
 

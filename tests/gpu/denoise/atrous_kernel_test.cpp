@@ -79,7 +79,7 @@ class AtrousRig {
 
   struct ErrorStatistics {
     double mean;
-    double worst;
+    double max;
     double changed;  // mean change by the filter
   };
   ErrorStatistics compare(const shared::AtrousConstants& constants) {

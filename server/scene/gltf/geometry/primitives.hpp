@@ -66,9 +66,14 @@ struct Primitive {
   bool deforms() const { return joints[0] || !targets.empty(); }
 };
 
-/// All triangle primitives, and which of them form each mesh of the document. Points and lines are
-/// left out with a warning. Materials are those of `variant` if given. Charges `budget` with the
-/// memory of the remaining geometry.
+/// All triangle primitives, and which of them form each mesh of the document.
+struct PrimitiveTable {
+  std::vector<Primitive> primitives;
+  std::vector<std::vector<std::uint32_t>> of_mesh;
+};
+
+/// Points and lines are left out with a warning. Materials are those of `variant` if given. Charges
+/// `budget` with the memory of the geometry.
 /// @throws ImportError
 PrimitiveTable read_primitives(const GltfFile& file, std::span<const Accessor> accessors,
                                std::size_t material_count, std::optional<std::uint32_t> variant,
