@@ -11,7 +11,7 @@ namespace {
 
 constexpr VkExtent2D extent{64, 36};
 
-class ViewConstants : public testing::Test {
+class FrameConstants : public testing::Test {
  protected:
   shared::FrameConstants make(const scene::Camera& camera, std::uint32_t sample,
                               const shared::FrameConstants* before = nullptr) {
@@ -22,7 +22,7 @@ class ViewConstants : public testing::Test {
   protocol::Settings settings_;
 };
 
-TEST_F(ViewConstants, JitterMovesThePictureByTheSamplesOffset) {
+TEST_F(FrameConstants, JitterShiftsProjectionBySampleOffset) {
   const auto still = make(camera_, 0), moved = make(camera_, 5);
   const glm::vec2 offset = render::sample_jitter(5);
   const glm::vec4 world(0.3f, 0.2f, -1.0f, 1.0f);
@@ -37,7 +37,7 @@ TEST_F(ViewConstants, JitterMovesThePictureByTheSamplesOffset) {
   EXPECT_EQ(make(camera_, 5).view_projection, still.view_projection);
 }
 
-TEST_F(ViewConstants, PreviousMatricesAreTheFramesBefore) {
+TEST_F(FrameConstants, PreviousMatricesAreThoseOfPreviousFrame) {
   const auto first = make(camera_, 0);
   EXPECT_EQ(first.previous_unjittered, first.unjittered);
   EXPECT_EQ(first.previous_view, first.view);
@@ -47,7 +47,7 @@ TEST_F(ViewConstants, PreviousMatricesAreTheFramesBefore) {
   EXPECT_NE(second.view, first.view);
 }
 
-TEST_F(ViewConstants, CarriesTheSettings) {
+TEST_F(FrameConstants, ContainSettings) {
   settings_.environment.intensity = 2.5f;
   settings_.environment.rotation = 90.0f;
   settings_.ambient.radius = 3.0f;
