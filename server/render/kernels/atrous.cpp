@@ -176,7 +176,7 @@ class Row {
       sums.total_x = hn::Add(sums.total_x, wx);
       sums.total_y = hn::Add(sums.total_y, wy);
     } else {
-      const V rougher = hn::Abs(hn::Sub(hn::Sub(size, set(1.0f)), c.roughness));
+      const V rougher = hn::Abs(hn::Sub(guide_roughness(guide), c.roughness));
       exponent = hn::NegMulAdd(rougher, c.roughness_reach, exponent);
       const V w = tap_weight(exponent, c.bright_x, brightness_x(value), c.reach_x, weight, counts);
       sums.value.x = hn::MulAdd(w, value.x, sums.value.x);
