@@ -53,13 +53,13 @@ Error invalid_request(std::string path, std::string reason, std::string limit = 
 }
 
 /// The parts of one request that has the shape of JSON-RPC.
-struct Call {
+struct ParsedCall {
   std::optional<json> id;  ///< none: a notification
   std::string method;
   RawJson params;
 };
 
-Result<Call> read_call(const json& request) {
+Result<ParsedCall> read_call(const json& request) {
   const auto version = request.find("jsonrpc");
   if (version == request.end() || *version != "2.0") {
     return invalid_request("jsonrpc", "must be \"2.0\"");
@@ -68,7 +68,7 @@ Result<Call> read_call(const json& request) {
   if (method == request.end() || !method->is_string()) {
     return invalid_request("method", "must be a text");
   }
-  Call call;
+  ParsedCall call;
   call.method = method->get<std::string>();
   if (const auto id = request.find("id"); id != request.end()) call.id = *id;
 
@@ -269,7 +269,7 @@ void Dispatcher::handle_one(const RawJson& request, const CallContext& context,
   if (!valid_id(value)) {
     return exchange->expect(nullptr)(invalid_request("id", "must be a text, a number or null"));
   }
-  const Result<Call> call = read_call(value);
+  const Result<ParsedCall> call = read_call(value);
   if (!call) return exchange->expect(id_of(value))(call.error());
 
   const Result<const Entry*> entry = find(call->method);
@@ -293,7 +293,7 @@ void Dispatcher::invoke(const Entry& entry, const RawJson& params, const CallCon
   if (!params.value().is_object()) {
     return done(error::invalid("params", "must be an object", "parameters go by name"));
   }
-  if (context.view_only && !entry.method->for_watchers) {
+  if (context.view_only && !entry.method->read_only) {
     return done(error::make(ErrorCode::forbidden, "method",
                             "the token of this client lets it watch but not steer"));
   }

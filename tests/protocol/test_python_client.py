@@ -198,6 +198,18 @@ class Readme(unittest.TestCase):
             with open(os.path.join(folder, "frame.jpg"), "rb") as file:
                 self.assertEqual(decode_jpeg(file.read()).width, 640)
 
+    def test_the_program_on_the_front_page_works(self):
+        with open(os.path.join(PROTOCOL, "../README.md"), encoding="utf-8") as file:
+            code, = re.findall("```python\n(.*?)```", file.read(), re.DOTALL)
+        with Server("--scene", "mirror") as server, tempfile.TemporaryDirectory() as folder:
+            code = code.replace("127.0.0.1:8080", f"{server.host}:{server.port}")
+            path = os.path.join(PROTOCOL, "python")
+            done = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True,
+                                  text=True, timeout=120, env={**os.environ, "PYTHONPATH": path})
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("(360, 640)", done.stdout)
+            self.assertTrue(os.path.exists(os.path.join(folder, "view.png")))
+
 
 class Examples(ServerTestCase):
     @classmethod
@@ -251,7 +263,7 @@ class Examples(ServerTestCase):
             return decode_png(file.read())
 
     def test_turntable(self):
-        arguments = ("--scene", "hopping", "--size", "64", "36", "--pictures", "4",
+        arguments = ("--scene", "hopping", "--size", "64", "36", "--images", "4",
                      "--frames-each", "2", "--folder")
         for folder in ("turn", "again"):
             self.run_aside("turntable", *arguments, folder)
@@ -299,7 +311,7 @@ class Examples(ServerTestCase):
         in_the_way = self.path("dying", "001.png")
         os.makedirs(in_the_way)
         done = self.run_example(
-            "turntable", "--session", "shared", "--size", "64", "36", "--pictures", "4",
+            "turntable", "--session", "shared", "--size", "64", "36", "--images", "4",
             "--frames-each", "2", "--folder", "dying", "--token", TOKEN,
             environment={"HELIOGRAPH_TOKEN": "not-the-right-token"})
         self.assertEqual(done.returncode, 1, done.stderr)

@@ -17,7 +17,7 @@ constexpr int arrivals_to_grow = 6;
 constexpr int arrivals_to_shrink = 3;
 /// After the window was too large.
 constexpr milliseconds before_growing{3000};
-constexpr double newest_weight = 0.25;
+constexpr double newest_delay_weight = 0.25;
 
 }  // namespace
 
@@ -25,7 +25,7 @@ void AckWindow::arrived(const Arrival& arrival, Clock::time_point now) {
   const double delay = static_cast<double>(arrival.delay.count());
   // Nothing is faster than the way, and only a frame alone on it shows that it has become slower.
   if (alone_ == 0.0 || delay < alone_) alone_ = delay;
-  if (arrival.ahead == 0) alone_ += newest_weight * (delay - alone_);
+  if (arrival.ahead == 0) alone_ += newest_delay_weight * (delay - alone_);
 
   late_ = delay > late * alone_ + noise ? late_ + 1 : 0;
   if (late_ >= arrivals_to_shrink && size_ > ack_window) {

@@ -27,7 +27,7 @@ constexpr microseconds longest_interval{100'000};
 constexpr double worthwhile = 0.1;
 /// So many arrivals make a mean that can be relied on.
 constexpr int arrivals_to_judge = 5;
-constexpr double newest_weight = 0.4;
+constexpr double newest_rate_weight = 0.4;
 /// A dearer form has to fit with some room to spare.
 constexpr double room_to_rise = 0.85;
 
@@ -59,7 +59,7 @@ Form on_rung(const Form& wanted, const Rung& rung) {
 
 void LinkController::Mean::add(double more_bytes, double more_delay) {
   ++count;
-  const double weight = std::max(newest_weight, 1.0 / count);
+  const double weight = std::max(newest_rate_weight, 1.0 / count);
   bytes += weight * (more_bytes - bytes);
   delay += weight * (more_delay - delay);
 }
@@ -70,7 +70,7 @@ void LinkController::arrived(const Arrival& arrival, Clock::time_point now) {
   base_ = std::min(base_, delay);
   if (arrival.form.codec == protocol::StreamCodec::jpeg) {
     const double unit = bytes / relative_bytes(arrival.form);
-    unit_bytes_ += (unit_bytes_ == 0.0 ? 1.0 : newest_weight) * (unit - unit_bytes_);
+    unit_bytes_ += (unit_bytes_ == 0.0 ? 1.0 : newest_rate_weight) * (unit - unit_bytes_);
   }
   if (now < settled_at_) return;
   const bool is_late = late(arrival);
