@@ -37,7 +37,7 @@ MethodDescriptor method(std::string_view name, Call call, std::string_view summa
           .result = typeid(ResultType),
           .may_be_notification = call != Call::query,
           .needs_control = call == Call::command,
-          .for_watchers = call == Call::query || call == Call::personal,
+          .read_only = call == Call::query || call == Call::personal,
           .errors = std::move(errors),
           .example_params = example.params,
           .example_result = example.result,
@@ -64,9 +64,9 @@ constexpr std::string_view greeting = R"({
   "tracer": "embree", "session": "main", "viewer": "v1", "role": "control", "codecs": ["jpeg"],
   "codec_reason": null,
   "limits": {"max_width": 3840, "max_height": 2160, "max_message_bytes": 65536,
-             "ack_window": 2, "max_batch": 32, "max_waiting": 32,
+             "ack_window": 2, "max_batch": 32, "max_pending": 32,
              "max_upload_bytes": 0},
-  "rev": 1, "instance": "5f0c1d7a93b2e648", "bring": null})";
+  "rev": 1, "instance": "5f0c1d7a93b2e648", "restore_state": null})";
 
 constexpr std::string_view scene = R"({
   "name": "atrium", "triangles": 344000, "instances": 210, "meshes": 34, "materials": 18,
@@ -111,17 +111,17 @@ constexpr std::string_view session = R"({
   "name": "review", "scene": "atrium", "width": 1280, "height": 720,
   "viewers": [{"viewer": "v1", "name": "Ada", "control": true, "you": true},
               {"viewer": "v4", "name": null, "control": false, "you": false}],
-  "control": "one", "rev": 7, "idle_seconds": 0.0})";
+  "control": "exclusive", "rev": 7, "idle_seconds": 0.0})";
 
 constexpr std::string_view joined = R"({
   "session": "review", "viewer": "v1", "rev": 7, "info": {
     "name": "review", "scene": null, "width": 1280, "height": 720,
     "viewers": [{"viewer": "v1", "name": "Ada", "control": true, "you": true}],
-    "control": "everyone", "rev": 7, "idle_seconds": 0.0}})";
+    "control": "shared", "rev": 7, "idle_seconds": 0.0}})";
 
 constexpr std::string_view sessions = R"({
   "sessions": [{"name": "main", "scene": "atrium", "width": 640, "height": 360, "viewers": [],
-                "control": "everyone", "rev": 3, "idle_seconds": 12.5}],
+                "control": "shared", "rev": 3, "idle_seconds": 12.5}],
   "limits": {"sessions": 64, "viewers": 256, "session_viewers": 32, "pixels": 66355200,
              "pixels_used": 230400, "idle_timeout": 600}})";
 
@@ -145,7 +145,7 @@ std::vector<MethodDescriptor> membership_methods() {
           "session.control", Call::sessions,
           "Decides who may change the session: everyone, or one viewer who takes, gives or "
           "releases control.",
-          {R"({"mode": "one"})", session}, {ErrorCode::conflict}),
+          {R"({"mode": "exclusive"})", session}, {ErrorCode::conflict}),
       method<SessionChoice, Empty>(
           "session.close", Call::sessions,
           "Ends a session; its viewers are told and let go. main stays for ever.",
@@ -307,7 +307,7 @@ std::vector<MethodDescriptor> edit_methods() {
 }
 
 constexpr std::string_view reference = R"({
-  "shown": true, "scope": "same_paths", "samples": 12, "wanted": 256, "finished": false,
+  "shown": true, "scope": "same_paths", "samples": 12, "target_samples": 256, "finished": false,
   "rev": 15})";
 
 std::vector<MethodDescriptor> frame_methods() {
@@ -333,20 +333,20 @@ std::vector<MethodDescriptor> frame_methods() {
       method<Empty, ReferenceState>(
           "reference.stop", Call::command,
           "Shows the hybrid picture again; what reference.start had set is as it was before.",
-          {no_params, R"({"shown": false, "scope": "same_paths", "samples": 0, "wanted": 64,
+          {no_params, R"({"shown": false, "scope": "same_paths", "samples": 0, "target_samples": 64,
                           "finished": false, "rev": 18})"}),
   };
 }
 
 std::vector<MethodDescriptor> probe_methods() {
   return {
-      method<PicturePoint, PickResult>(
+      method<ImagePoint, PickResult>(
           "scene.pick", Call::query, "Tells what surface lies under a point of the picture.",
           {R"({"x": 0.5, "y": 0.5})",
            R"({"hit": true, "position": [0.0, 0.5, 1.0], "normal": [0.0, 0.0, 1.0],
                "distance": 4.2, "object": "sphere", "material": "chrome"})"},
           {ErrorCode::conflict, ErrorCode::full}),
-      method<PicturePoint, Inspection>(
+      method<ImagePoint, Inspection>(
           "frame.inspect", Call::query,
           "Gives the value of every buffer under a point of the picture.",
           {R"({"x": 0.5, "y": 0.5})",

@@ -26,7 +26,7 @@ struct MethodDescriptor {
   /// Whether it changes what all viewers of a session share.
   bool needs_control;
   /// Whether those may call it who may only watch: it changes nothing for others.
-  bool for_watchers;
+  bool read_only;
   /// What it may answer besides what every call may.
   std::vector<ErrorCode> errors;
   std::string_view example_params;  ///< JSON text

@@ -67,7 +67,7 @@ MESSAGE(MaterialsChanged)
 MESSAGE(EnvironmentState)
 MESSAGE(EnvironmentSet)
 MESSAGE(EnvironmentChanged)
-MESSAGE(PicturePoint)
+MESSAGE(ImagePoint)
 MESSAGE(PickResult)
 MESSAGE(Inspection)
 

@@ -293,7 +293,7 @@ void Dispatcher::invoke(const Entry& entry, const RawJson& params, const CallCon
   if (!params.value().is_object()) {
     return done(error::invalid("params", "must be an object", "parameters go by name"));
   }
-  if (context.view_only && !entry.method->for_watchers) {
+  if (context.view_only && !entry.method->read_only) {
     return done(error::make(ErrorCode::forbidden, "method",
                             "the token of this client lets it watch but not steer"));
   }

@@ -115,7 +115,7 @@ json method_of(const MethodDescriptor& method) {
           {"examples", json::array({example_of(method)})},
           {"x-may-be-notification", method.may_be_notification},
           {"x-needs-control", method.needs_control},
-          {"x-for-watchers", method.for_watchers}};
+          {"x-read-only", method.read_only}};
 }
 
 }  // namespace

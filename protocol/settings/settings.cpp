@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "protocol/json/suggestions.hpp"
+#include "protocol/limits.hpp"
 #include "protocol/settings/settings_json.hpp"
 
 namespace heliograph::protocol {
@@ -14,7 +15,7 @@ namespace {
 
 constexpr std::array<std::string_view, 3> reset_names{"accumulation", "history", "structure"};
 
-// The words that settings.def uses for limits.
+// The limits of settings.def.
 constexpr SettingLimits any{};
 constexpr SettingLimits range(double minimum, double maximum) {
   return {minimum, maximum};

@@ -36,7 +36,7 @@ constexpr const char* render_examples = R"text(Examples:
   heliograph render helmet.glb -o dark.png --environment studio.hdr --set exposure.compensation=-1
   heliograph render atrium.glb -o atrium.png --timings --frames 32
   heliograph render fox.glb -o run.png --clip Run --time 0.2 --frames 24
-  heliograph render pillars.glb -o svgf.png --preset svgf --set accumulation.handover=4096
+  heliograph render pillars.glb -o svgf.png --preset svgf --set accumulation.blend_samples=4096
   heliograph render pillars.glb -o truth.png --reference full --samples 1024)text";
 
 constexpr const char* devices_examples = R"text(Example:

@@ -117,7 +117,7 @@ struct Bend {
 };
 
 Bend bend(Surface s, vec3 position) {
-  if ((constants.flags & temporal_bent_mirrors) == 0u) return Bend(0.0, 0.0);
+  if ((constants.flags & temporal_curved_reflectors) == 0u) return Bend(0.0, 0.0);
   uint own = imageLoad(instance, s.pixel).r;
   vec2 sum = vec2(0.0);
   float count = 0.0;
@@ -207,7 +207,7 @@ Remembered remembered(Surface s) {
   if ((constants.flags & temporal_holds) == 0u) return nothing();
   vec4 map = imageLoad(reprojection, s.pixel);
   HistoryTaps own = valid_taps(bilinear_taps(map.xy), uint(map.z));
-  if ((constants.flags & temporal_virtual_point) == 0u) return recall(own);
+  if ((constants.flags & temporal_virtual_motion) == 0u) return recall(own);
   vec3 position = world_position(s.pixel, s.view_z);
   Bend bend = bend(s, position);
   vec2 motion = virtual_motion(s, position, bend);

@@ -131,7 +131,7 @@ testWithTwo("who loses a server meets again apart from those on the other", asyn
   const after = await here.call("session.info");
   assert.deepEqual(
     [after.rev, after.scene, after.viewers.length, after.control],
-    [before.rev, before.scene, 1, "one"],
+    [before.rev, before.scene, 1, "exclusive"],
     "the stranger's session noticed",
   );
   const link = await linkToJoin(first.page);

@@ -82,7 +82,7 @@ std::vector<render::Frame> Stage::time(const protocol::Settings& settings, const
 std::vector<render::Frame> Stage::truth(Truth source, const Shot& shot, int samples) const {
   protocol::Settings settings;
   settings.accumulation.max_samples = samples;
-  settings.accumulation.handover = 0;
+  settings.accumulation.blend_samples = 0;
   settings.antialiasing.temporal = false;
   if (source == Truth::reference) {
     settings.reference.use = protocol::ReferenceUse::always;

@@ -126,7 +126,7 @@ class Methods(ServerTestCase):
         endless = [{"jsonrpc": "2.0", "id": number, "method": "frame.capture",
                     "params": {"samples": 65536}} for number in range(32)]
         async with Viewer(self.server) as viewer:
-            self.assertEqual(len(endless), viewer.hello["limits"]["max_waiting"])
+            self.assertEqual(len(endless), viewer.hello["limits"]["max_pending"])
             self.assertEqual(len(endless), viewer.hello["limits"]["max_batch"])
             await viewer.send(json.dumps(endless))
             await viewer.call("camera.get")

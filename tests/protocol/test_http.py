@@ -94,7 +94,7 @@ class Answers(ServerTestCase):
     def test_who_reads_nothing_is_let_go(self):
         def let_go():
             page = self.server.get("/metrics")[2].decode()
-            return int(re.search(r"^heliograph_viewers_let_go_total (\d+)", page, re.MULTILINE)[1])
+            return int(re.search(r"^heliograph_slow_viewers_disconnected_total (\d+)", page, re.MULTILINE)[1])
         before = let_go()
         with RawSocket(self.server) as raw:
             raw.upgrade()

@@ -249,7 +249,7 @@ class Reference(ServerTestCase):
         before = self.server.call("settings.get")["settings"]
         self.assertFalse(self.server.call("reference.status")["shown"])
         state = self.server.call("reference.start", {"scope": "full", "samples": 12})
-        self.assertEqual((state["shown"], state["scope"], state["wanted"]), (True, "full", 12))
+        self.assertEqual((state["shown"], state["scope"], state["target_samples"]), (True, "full", 12))
         self.server.wait_for(lambda: self.server.call("reference.status")["finished"],
                              "the end of the reference")
         self.assertEqual(self.server.call("reference.status")["samples"], 12)

@@ -74,12 +74,12 @@ class Roles(ServerTestCase):
                 self.assert_error(answer, -32001)
             self.assert_error(self.over_websocket(VIEW, (method["name"], params))[0], -32001)
 
-    def test_the_contract_says_what_is_for_watchers(self):
+    def test_the_contract_marks_read_only_methods(self):
         document = self.over_http(CONTROL, "rpc.discover")["result"]
         methods = {method["name"]: method for method in document["methods"]}
         for name, method in methods.items():
             steers = method["x-needs-control"] or name in COMMANDS
-            self.assertNotEqual(method["x-for-watchers"], steers, name)
+            self.assertNotEqual(method["x-read-only"], steers, name)
         for name in PERSONAL:
             self.assertFalse(methods[name]["x-needs-control"], name)
             self.assertTrue(methods[name]["x-may-be-notification"], name)
@@ -106,7 +106,7 @@ class Roles(ServerTestCase):
         self.assertIn("result", stats)
         self.assertEqual(self.server.get("/api/v1/sessions/main/frame.jpg", **bearer(VIEW))[0], 200)
 
-    def test_the_size_is_shared_and_not_for_watchers_to_choose(self):
+    def test_a_read_only_viewer_cannot_choose_the_shared_frame_size(self):
         answer, = self.over_websocket(VIEW, ("stream.configure", {"width": 320, "height": 200}))
         self.assert_error(answer, -32001)
         answer = self.over_http(VIEW, "stream.configure", {"width": 320})

@@ -52,7 +52,7 @@ class Sessions(ServerTestCase):
     async def test_an_address_may_name_one_session_and_enter_another(self):
         async with Viewer(self.server, session="for-a-balancer&enter=main") as viewer:
             self.assertEqual(viewer.hello["session"], "main")
-            self.assertIsNone(viewer.hello["bring"])
+            self.assertIsNone(viewer.hello["restore_state"])
         self.assertEqual(self.server.call("session.info", session="elsewhere&enter=main")["name"],
                          "main")
         self.assert_error(self.server.ask("session.info", session="main&enter=elsewhere"),
@@ -64,14 +64,14 @@ class Sessions(ServerTestCase):
         async with Viewer(self.server, greet=False) as first, \
                 Viewer(self.server, greet=False) as second:
             hello = await first.call("hello", lost)
-            self.assertEqual((hello["session"], hello["bring"]), ("main-01234567", True))
+            self.assertEqual((hello["session"], hello["restore_state"]), ("main-01234567", True))
             hello = await second.call("hello", lost)
-            self.assertEqual((hello["session"], hello["bring"]), ("main-01234567", False))
+            self.assertEqual((hello["session"], hello["restore_state"]), ("main-01234567", False))
             self.assertEqual(self.server.call("session.info")["viewers"], [])
         async with Viewer(self.server) as viewer:
             same = {"instance": viewer.hello["instance"], "session": "main"}
             hello = await viewer.call("hello", same)
-            self.assertEqual((hello["session"], hello["bring"]), ("main", None))
+            self.assertEqual((hello["session"], hello["restore_state"]), ("main", None))
 
     def test_names_and_models_are_checked(self):
         self.create("taken")
@@ -183,14 +183,14 @@ class Sessions(ServerTestCase):
         async with Viewer(self.server, session="led") as leader, \
                 Viewer(self.server, session="led") as other:
             ids = leader.hello["viewer"], other.hello["viewer"]
-            info = await leader.call("session.control", {"mode": "one"})
+            info = await leader.call("session.control", {"mode": "exclusive"})
             self.assertEqual([(one["viewer"], one["control"]) for one in info["viewers"]],
                              [(ids[0], True), (ids[1], False)])
             for method, params in (("camera.set", {"eye": [4, 4, 4]}), ("camera.fit", {}),
                                    ("settings.patch", {"patch": {"shadows": {"enabled": False}}}),
                                    ("scene.load", {"name": "furnace"}),
                                    ("stream.configure", {"width": 80}),
-                                   ("session.control", {"mode": "everyone"}),
+                                   ("session.control", {"mode": "shared"}),
                                    ("session.control", {"action": "take"}),
                                    ("session.close", {"session": "led"})):
                 answer = await other.ask(method, params)
@@ -218,14 +218,14 @@ class Sessions(ServerTestCase):
             taken = await other.ask("camera.fit")
             self.assertIn("another viewer has control", taken["error"]["message"])
             await leader.call("camera.fit")
-            await leader.call("session.control", {"mode": "everyone"})
+            await leader.call("session.control", {"mode": "shared"})
             await other.call("camera.fit")
 
     async def test_control_is_free_when_who_has_it_leaves(self):
         self.create("left", copy_of="main")
         async with Viewer(self.server, session="left") as stays:
             async with Viewer(self.server, session="left") as leaves:
-                await leaves.call("session.control", {"mode": "one"})
+                await leaves.call("session.control", {"mode": "exclusive"})
                 self.assert_error(await stays.ask("session.control", {"action": "take"}), FORBIDDEN)
             await self.until_people(stays, [(None, True)])
             await stays.call("session.control", {"action": "take"})

@@ -129,11 +129,11 @@ class Frames(ServerTestCase):
             for _ in range(200):
                 told = [note["params"] for note in viewer.notifications
                         if note["method"] == "stats.frame"]
-                if told and told[-1]["state"] == "still":
+                if told and told[-1]["state"] == "idle":
                     break
                 await asyncio.sleep(0.05)
             last = told[-1]
-            self.assertEqual(last["state"], "still")
+            self.assertEqual(last["state"], "idle")
             self.assertEqual((last["codec"], last["quality"], last["scale"]), ("jpeg", 80, 1))
 
     async def test_the_final_picture_is_the_captured_one(self):

@@ -109,7 +109,7 @@ class SpecularAccumulation {
   HWY_INLINE Bend bend(const Views& views, int x, int y, VI instance, const Surface& s,
                        const Triple<V>& position) const {
     const V zero = hn::Zero(d_);
-    if ((c_.flags & shared::temporal_bent_mirrors) == 0) return {zero, zero};
+    if ((c_.flags & shared::temporal_curved_reflectors) == 0) return {zero, zero};
     V curvature = zero, turns = zero, count = zero;
     for (int i = 0; i < 4; ++i) {
       const int column = x + (i < 2 ? 2 * i - 1 : 0), row = y + (i < 2 ? 0 : 2 * i - 5);
@@ -240,7 +240,7 @@ class SpecularAccumulation {
     if ((c_.flags & shared::temporal_holds) == 0) return nothing();
     const Quad<V> map = load(job_.reprojection, x, y);
     const HistoryTaps<D> own = remembered_taps<D>(map);
-    if ((c_.flags & shared::temporal_virtual_point) == 0) return recall(own);
+    if ((c_.flags & shared::temporal_virtual_motion) == 0) return recall(own);
     const VI instance = hn::LoadU(di_, row_of<const int>(job_.instance, y) + x);
     const Triple<V> position = views.here.world_position(x, s.view_z);
     const Bend bent = bend(views, x, y, instance, s, position);

@@ -8,9 +8,9 @@
 
 namespace heliograph::session {
 
+using protocol::ImagePoint;
 using protocol::Inspection;
 using protocol::PickResult;
-using protocol::PicturePoint;
 using protocol::Result;
 
 namespace {
@@ -66,8 +66,8 @@ Inspection inspect(const render::Renderer& renderer, const RenderState& state, g
 template <class Response, class Read>
 void add_probe(protocol::Dispatcher& dispatcher, SessionHost& host, std::string_view name,
                Read read) {
-  dispatcher.add<PicturePoint, Response>(
-      name, [&host, read](const PicturePoint& request, const protocol::CallContext& context,
+  dispatcher.add<ImagePoint, Response>(
+      name, [&host, read](const ImagePoint& request, const protocol::CallContext& context,
                           protocol::Completion<Response> done) {
         const auto session = host.sessions().session_of(context);
         if (!session) return done(session.error());

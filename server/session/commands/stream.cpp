@@ -41,7 +41,7 @@ Result<std::shared_ptr<Session>> choose_session(SessionHost& host, const Hello& 
 
 struct Chosen {
   std::shared_ptr<Session> session;
-  std::optional<bool> bring;
+  std::optional<bool> restore_state;
 };
 
 /// Where who introduces itself is from now on. Who comes back from another run of the server finds
@@ -52,14 +52,14 @@ Result<Chosen> choose_place(SessionHost& host, const Hello& request,
   if (!comes_back || call.viewer.empty()) {
     const auto session = choose_session(host, request, call);
     if (!session) return session.error();
-    return Chosen{.session = *session, .bring = {}};
+    return Chosen{.session = *session, .restore_state = {}};
   }
   const Origin from{.instance = *request.instance, .session = *request.session};
   const auto resumed = host.resume(call.viewer, from, call.view_only);
-  if (resumed) return Chosen{.session = resumed->session, .bring = resumed->first};
+  if (resumed) return Chosen{.session = resumed->session, .restore_state = resumed->first};
   const auto main = host.sessions().move(call.viewer, std::string(protocol::main_session));
   if (!main) return main.error();
-  return Chosen{.session = *main, .bring = {}};
+  return Chosen{.session = *main, .restore_state = {}};
 }
 
 HelloResult greeting(SessionHost& host, const Chosen& chosen, const protocol::CallContext& call,
@@ -83,11 +83,11 @@ HelloResult greeting(SessionHost& host, const Chosen& chosen, const protocol::Ca
       .max_message_bytes = static_cast<std::uint32_t>(host.dispatch_limits().max_message_bytes),
       .ack_window = stream::ack_window,
       .max_batch = static_cast<std::uint32_t>(host.dispatch_limits().max_batch),
-      .max_waiting = static_cast<std::uint32_t>(limits.max_captures),
+      .max_pending = static_cast<std::uint32_t>(limits.max_captures),
       .max_upload_bytes = call.view_only ? 0 : host.max_upload_bytes()};
   result.rev = session.rev();
   result.instance = instance();
-  result.bring = chosen.bring;
+  result.restore_state = chosen.restore_state;
   return result;
 }
 

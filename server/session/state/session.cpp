@@ -81,7 +81,7 @@ bool Session::renders_without_viewers() const {
 }
 
 bool Session::is_pristine(const std::string& viewer) const {
-  return !touched_ && viewers_.control_mode() == protocol::ControlMode::everyone &&
+  return !touched_ && viewers_.control_mode() == protocol::ControlMode::shared &&
          !viewers_.has_other_participant(viewer);
 }
 

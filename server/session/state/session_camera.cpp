@@ -39,7 +39,7 @@ bool has_direction(const scene::Camera& camera) {
 
 /// Whether camera.set would take these places, too.
 bool is_within_reach(const scene::Camera& camera) {
-  const glm::vec3 reach(protocol::camera_reach);
+  const glm::vec3 reach(protocol::max_coordinate);
   return glm::all(glm::lessThanEqual(glm::abs(camera.eye), reach)) &&
          glm::all(glm::lessThanEqual(glm::abs(camera.target), reach));
 }
@@ -128,7 +128,7 @@ Result<protocol::Camera> Session::orbit_camera(const protocol::CameraOrbit& requ
   if (!is_within_reach(camera)) {
     return error::invalid(
         misleading_member(request), "leads out of range",
-        "eye " + protocol::range_text({-protocol::camera_reach, protocol::camera_reach}));
+        "eye " + protocol::range_text({-protocol::max_coordinate, protocol::max_coordinate}));
   }
   if (!has_direction(camera)) {
     return error::invalid(misleading_member(request), "eye and target coincide");

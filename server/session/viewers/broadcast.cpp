@@ -25,7 +25,7 @@ protocol::StreamPhase phase_of(Purpose purpose) {
     case Purpose::refining:
       return protocol::StreamPhase::refining;
     case Purpose::final:
-      return protocol::StreamPhase::still;
+      return protocol::StreamPhase::idle;
   }
   return protocol::StreamPhase::interactive;
 }

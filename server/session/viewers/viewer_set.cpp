@@ -245,7 +245,7 @@ void ViewerSet::publish(std::uint64_t number, Purpose purpose,
 void ViewerSet::publish_stats(protocol::StatsFrame stats) {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
-  const bool finished = stats.state == protocol::StreamPhase::still;
+  const bool finished = stats.state == protocol::StreamPhase::idle;
   for (auto& [id, viewer] : viewers_) {
     const bool told = viewer.stats_interval.count() > 0 && viewer.last_bytes > 0;
     if (!told || (now < viewer.next_stats && !finished)) continue;

@@ -137,7 +137,7 @@ export class Stage {
       // It may have been closed by its last viewer in this moment.
       await this.server.call("session.close", { session: name }).catch(() => {});
     }
-    await this.server.call("session.control", { mode: "everyone" });
+    await this.server.call("session.control", { mode: "shared" });
   }
 
   async describeFailure(name) {

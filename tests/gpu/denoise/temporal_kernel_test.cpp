@@ -127,12 +127,12 @@ TEST_F(TemporalHost, FollowsEverySetting) {
   View view;
   view.settings.shadow_temporal.mean_variance = view.settings.specular_temporal.mean_variance =
       false;
-  view.settings.specular_temporal.virtual_point = false;
+  view.settings.specular_temporal.virtual_motion = false;
   expect_same_over_frames(view, "own history, variance of samples");
 
   view = {};
   view.settings.shadow_temporal.bicubic = view.settings.specular_temporal.bicubic = false;
-  view.settings.specular_temporal.bent_mirrors = false;
+  view.settings.specular_temporal.curved_reflectors = false;
   expect_same_over_frames(view, "bilinear, mirrors as if they were flat");
 
   view = {};

@@ -192,8 +192,8 @@ class Gathering : public testing::Test {
   static protocol::Settings plain_settings() {
     protocol::Settings settings;
     for_both(settings, [](auto& s) {
-      s.seconds = 0.0f;
-      s.frames = 32;
+      s.history_seconds = 0.0f;
+      s.history_frames = 32;
       s.rectification = protocol::Rectification::off;
     });
     return settings;
@@ -228,8 +228,8 @@ TEST_F(Gathering, CountsSecondsNotFrames) {
   for (const float rate : {20.0f, 200.0f}) {
     drawn_ = false;
     protocol::Settings settings = plain_settings();
-    settings.shadow_temporal.seconds = 0.5f;
-    settings.shadow_temporal.frames = 1;
+    settings.shadow_temporal.history_seconds = 0.5f;
+    settings.shadow_temporal.history_frames = 1;
     start(settings);
     rig_->set_seconds(1.0f / rate);
     const int half_a_second = static_cast<int>(0.5f * rate);
@@ -306,7 +306,7 @@ TEST_F(Gathering, GrowsWithoutEndWhileThePictureRests) {
 
 TEST_F(Gathering, OfAnHdrStepConvergesAndItsMomentsNeverStick) {
   protocol::Settings settings = plain_settings();
-  settings.specular_temporal.frames = 100;
+  settings.specular_temporal.history_frames = 100;
   settings.specular_temporal.mean_variance = false;
   start(settings, true);
   for (int i = 0; i < 120; ++i) frame(glm::vec4(5000, 5000, 5000, 1));

@@ -69,7 +69,7 @@ TEST_F(PresentTest, ExposureCountsInStops) {
 
 TEST_F(PresentTest, BlendsTheFrameAndTheMeanByTheSamplesOfTheMean) {
   protocol::Settings settings = linear();
-  settings.accumulation.handover = 8;
+  settings.accumulation.blend_samples = 8;
   FrameRig rig(SceneBuilder().build(), look({0, 0, 3}, {0, 0, 0}),
                {.extent = extent, .settings = settings});
   const auto flat = [&](const char* name, float value) {

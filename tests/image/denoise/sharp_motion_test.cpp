@@ -78,9 +78,9 @@ TEST(SharpMotion, AGlossyBallDoesNotDragItsReflectionAlong) {
   protocol::Settings settings = denoised_alone();
   for (const float roughness : {0.1f, 0.2f}) {
     const std::string name = "orbit_ball_" + std::to_string(int(100.0f * roughness));
-    settings.specular_temporal.virtual_point = true;
+    settings.specular_temporal.virtual_motion = true;
     const double followed = error_in_motion(settings, name, is_ball, roughness);
-    settings.specular_temporal.virtual_point = false;
+    settings.specular_temporal.virtual_motion = false;
     const double dragged = error_in_motion(settings, name + "_dragged", is_ball, roughness);
     EXPECT_LT(followed, 0.85 * dragged) << roughness;
   }

@@ -36,7 +36,7 @@ inline scene::Camera eye() {
 inline protocol::Settings denoised_alone() {
   protocol::Settings settings;
   settings.antialiasing.jitter = settings.antialiasing.temporal = false;
-  settings.accumulation.handover = 4096;
+  settings.accumulation.blend_samples = 4096;
   settings.accumulation.max_samples = 4096;
   return settings;
 }
@@ -45,7 +45,7 @@ inline protocol::Settings raw_alone() {
   protocol::Settings settings = denoised_alone();
   settings.shadow_temporal.enabled = settings.shadow_blur.enabled = false;
   settings.specular_temporal.enabled = settings.specular_blur.enabled = false;
-  settings.accumulation.handover = 0;
+  settings.accumulation.blend_samples = 0;
   settings.sampling.seed = 5;
   return settings;
 }

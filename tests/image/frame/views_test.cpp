@@ -123,9 +123,9 @@ std::vector<protocol::Settings> settings_for_all_buffers() {
   all[0].reference.use = protocol::ReferenceUse::always;
   all[1].specular.half_resolution = true;
   for (const char* assignment :
-       {"reference.use=resting", "reinhard.mode=exact", "shadow_temporal.rectification=percentile",
-        "specular_temporal.rectification=percentile", "shadow_blur.feedback=1",
-        "specular_blur.feedback=1"}) {
+       {"reference.use=when_static", "reinhard.mode=exact",
+        "shadow_temporal.rectification=percentile", "specular_temporal.rectification=percentile",
+        "shadow_blur.feedback=1", "specular_blur.feedback=1"}) {
     EXPECT_TRUE(protocol::set_by_path(all[2], assignment)) << assignment;
   }
   return all;

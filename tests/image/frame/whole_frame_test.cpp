@@ -56,7 +56,7 @@ protocol::Settings sized(float size) {
   protocol::Settings settings;
   settings.ambient.radius *= size;
   settings.accumulation.max_samples = 4096;
-  settings.accumulation.handover = 4096;  // what is shown is the denoised frame
+  settings.accumulation.blend_samples = 4096;  // what is shown is the denoised frame
   return settings;
 }
 

@@ -52,7 +52,7 @@ protocol::Settings plain_settings() {
   settings.specular.enabled = false;
   settings.ambient.occlusion = false;
   settings.antialiasing.temporal = false;
-  settings.accumulation.handover = 0;
+  settings.accumulation.blend_samples = 0;
   settings.accumulation.max_samples = 512;
   settings.reference.scope = protocol::ReferenceScope::full;
   settings.reference.bounces = 1;

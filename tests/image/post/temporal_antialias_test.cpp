@@ -32,7 +32,7 @@ protocol::Settings without_noise() {
   settings.specular.enabled = false;
   settings.ambient.occlusion = false;
   settings.accumulation.max_samples = 4096;
-  settings.accumulation.handover = 4096;  // what is shown is the filtered frame
+  settings.accumulation.blend_samples = 4096;  // what is shown is the filtered frame
   return settings;
 }
 
@@ -127,7 +127,7 @@ TEST(Handover, FramesOfAStillViewDifferLessAndLess) {
               look({0, 0.6f, 3}, {0, 0, 0}), width, height);
   protocol::Settings settings;
   settings.accumulation.max_samples = 512;
-  settings.accumulation.handover = 16;
+  settings.accumulation.blend_samples = 16;
   still.apply(settings);
   const auto change_after = [&](std::uint32_t samples) {
     const render::Frame before = still.accumulate(samples);
@@ -164,12 +164,12 @@ TEST(Handover, ZeroShowsTheMeanAloneAndAMovingPictureNoneOfIt) {
     }
     return worst < 1.5 / 255.0;
   };
-  settings.accumulation.handover = 0;
+  settings.accumulation.blend_samples = 0;
   still.apply(settings);
   still.accumulate(7);
   EXPECT_TRUE(shown_is("accumulated"));
   EXPECT_FALSE(shown_is("antialiased"));
-  settings.accumulation.handover = 4;
+  settings.accumulation.blend_samples = 4;
   still.apply(settings);
   for (int i = 0; i < 5; ++i) {
     still.renderer.set_camera(look({0.05f * static_cast<float>(i), 0, 3}, {0, 0, 0}));

@@ -255,8 +255,8 @@ TEST(RestingReference, IsWhatARestingCameraConvergesTo) {
   Still still(still_life(0.4f), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 64, 36);
   const double expected = mean_luminance(still, traced(ReferenceScope::full), 64, "rest_full");
   protocol::Settings settings = traced(ReferenceScope::full);
-  settings.reference.use = ReferenceUse::resting;
-  settings.accumulation.handover = 4;
+  settings.reference.use = ReferenceUse::when_static;
+  settings.accumulation.blend_samples = 4;
   EXPECT_NEAR(mean_luminance(still, settings, 65, "rest_resting"), expected, 0.01 * expected);
   // More samples go on where the picture stands.
   settings.accumulation.max_samples = 70;

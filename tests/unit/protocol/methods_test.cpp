@@ -136,7 +136,7 @@ TEST(OpenRpc, EveryErrorThatIsReferredToExists) {
       return std::count(method.errors.begin(), method.errors.end(), code) == 1;
     };
     EXPECT_TRUE(!method.needs_control || also(ErrorCode::forbidden)) << method.name;
-    EXPECT_TRUE(method.for_watchers || also(ErrorCode::forbidden)) << method.name;
+    EXPECT_TRUE(method.read_only || also(ErrorCode::forbidden)) << method.name;
   }
   EXPECT_EQ(codes, (std::set<int>{-32700, -32600, -32601, -32602, -32603, -32000, -32001, -32002,
                                   -32004, -32009, -32013, -32029, -32050}));

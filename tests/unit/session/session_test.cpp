@@ -215,7 +215,7 @@ TEST_F(SessionTest, StoppingAReferencePutsBackWhatStartingItChanged) {
     return session_.patch_settings(protocol::RawJson(std::move(members)), "");
   };
   ASSERT_TRUE(patch({{"accumulation", {{"enabled", false}, {"max_samples", 5}}},
-                     {"reference", {{"use", "resting"}, {"scope", "full"}}}}));
+                     {"reference", {{"use", "when_static"}, {"scope", "full"}}}}));
   const protocol::Settings before = session_.render_state().settings;
   ASSERT_TRUE(session_.start_reference({.samples = 9}, ""));
   ASSERT_TRUE(session_.start_reference({.samples = 7}, "")) << "goes on with other samples";
@@ -412,9 +412,9 @@ TEST_F(SessionTest, StatsComeNoMoreOftenThanAskedFor) {
   for (int i = 0; i < 3; ++i) session_.viewers().publish_stats({.render_id = 5});
   ASSERT_EQ(viewer.link->messages.size(), 1u);
   EXPECT_EQ(viewer.link->messages[0]["params"]["render_id"], 5);
-  session_.viewers().publish_stats({.state = protocol::StreamPhase::still});
+  session_.viewers().publish_stats({.state = protocol::StreamPhase::idle});
   ASSERT_EQ(viewer.link->messages.size(), 2u) << "how it ends is always told";
-  EXPECT_EQ(viewer.link->messages[1]["params"]["state"], "still");
+  EXPECT_EQ(viewer.link->messages[1]["params"]["state"], "idle");
 }
 
 }  // namespace

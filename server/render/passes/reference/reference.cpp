@@ -13,7 +13,7 @@ namespace {
 /// alone is shown.
 bool traces_reference(const FrameInputs& in) {
   return in.settings.reference.use == protocol::ReferenceUse::always || in.samples > 0 ||
-         in.settings.accumulation.handover == 0;
+         in.settings.accumulation.blend_samples == 0;
 }
 
 constexpr std::uint32_t passed_layers = most_blended;  // that a path goes straight on through
