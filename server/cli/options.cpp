@@ -23,7 +23,7 @@ constexpr int wrong_usage = 2;
 constexpr const char* description =
     "Heliograph: renders glTF scenes and streams the pictures to browsers and programs.";
 
-constexpr const char* examples = R"text(Examples:
+constexpr const char* program_examples = R"text(Examples:
   heliograph serve                            the demo scene at http://127.0.0.1:8080/
   heliograph render helmet.glb -o helmet.png  one picture, no network
   heliograph devices                          which Vulkan devices there are and why one is chosen
@@ -219,7 +219,7 @@ Command with_url_of_server(HealthOptions options, const std::string& config_file
 
 Command parse(const std::vector<std::string>& given) {
   CLI::App app(description, "heliograph");
-  app.footer(examples);
+  app.footer(program_examples);
   app.require_subcommand(1);
   app.fallthrough();
   app.set_version_flag("--version", "heliograph " HELIOGRAPH_VERSION);

@@ -151,8 +151,8 @@ void make_specular_rays(const SpecularRaysJob& job) {
   const int across = (cells.width + tile_side - 1) / tile_side;
   const int tiles = across * ((cells.height + tile_side - 1) / tile_side);
   job.rays.begin();
-  tbb::parallel_for(tbb::blocked_range<int>(0, tiles), [&](const auto& some) {
-    for (int tile = some.begin(); tile < some.end(); ++tile) {
+  for_each_range(tiles, 1, [&](int first, int last) {
+    for (int tile = first; tile < last; ++tile) {
       HWY_DYNAMIC_DISPATCH(make_tile)(job, cells, tile % across, tile / across);
     }
   });

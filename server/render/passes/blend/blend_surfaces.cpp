@@ -1,5 +1,6 @@
 #include "render/passes/blend/blend_surfaces.hpp"
 
+#include "render/passes/formats.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/reflections/trace_specular.hpp"
 #include "render/resources/moving_scene.hpp"
@@ -8,8 +9,8 @@
 namespace heliograph::render {
 namespace {
 
-constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-constexpr VkFormat four_floats = VK_FORMAT_R32G32B32A32_SFLOAT;
+using formats::four_floats;
+using formats::storage;
 
 /// Grows by the pixels that a box may cover.
 void include(glm::uvec4& region, const scene::Bounds& bounds, const shared::FrameConstants& frame) {
