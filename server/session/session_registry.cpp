@@ -105,7 +105,8 @@ void SessionRegistry::end(const std::shared_ptr<Session>& session, const std::st
   sessions_.erase(name);
   origins_.erase(name);
   const protocol::SessionClosed closed{.session = name, .reason = why};
-  session->viewers().send_all(protocol::make_notification("session.closed", closed), {});
+  session->viewers().send_all(
+      protocol::make_notification<protocol::notifications::session_closed>(closed), {});
   for (const std::string& viewer : session->viewers().disconnect_all(why)) {
     session_of_viewer_.erase(viewer);
   }

@@ -30,12 +30,11 @@ constexpr std::chrono::seconds trim_interval{2};
 /// A scene may be what the device is lost to, so it is not tried for ever.
 constexpr int most_losses = 3;
 
-constexpr std::string_view progress_key = "scene.progress";
+constexpr std::string_view progress_key = protocol::notifications::scene_progress::name;
 
 std::string progress_text(const std::string& name, std::string_view stage, float fraction) {
-  return protocol::make_notification(
-      progress_key,
-      protocol::SceneProgress{.name = name, .stage = std::string(stage), .fraction = fraction});
+  return protocol::make_notification<protocol::notifications::scene_progress>(
+      {.name = name, .stage = std::string(stage), .fraction = fraction});
 }
 
 /// Thrown through the importer to end it.

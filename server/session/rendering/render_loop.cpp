@@ -216,8 +216,8 @@ bool RenderLoop::recover_device(const Views& views) {
 }
 
 void RenderLoop::tell_viewers(bool ready, const std::string& message) {
-  const std::string text = protocol::make_notification(
-      "device.changed", protocol::DeviceChanged{.ready = ready, .message = message});
+  const std::string text = protocol::make_notification<protocol::notifications::device_changed>(
+      {.ready = ready, .message = message});
   for (const auto& view : open_views()) {
     view->session()->viewers().send_all(text, "device.changed");
   }

@@ -178,7 +178,7 @@ void Session::show(LoadedScene scene, const std::string& by) {
   changed();
   viewers_.send_others(
       by,
-      protocol::make_notification("scene.changed", protocol::SceneChanged{.scene = scene_info_}),
+      protocol::make_notification<protocol::notifications::scene_changed>({.scene = scene_info_}),
       {});
 }
 
@@ -210,7 +210,8 @@ Result<protocol::SettingsApplied> Session::patch_locked(const protocol::RawJson&
     }
     changed();
     const protocol::SettingsChanged message{.rev = state_.rev, .patch = effective, .by = by};
-    viewers_.send_others(by, protocol::make_notification("settings.changed", message), {});
+    viewers_.send_others(
+        by, protocol::make_notification<protocol::notifications::settings_changed>(message), {});
   }
   return protocol::SettingsApplied{.rev = state_.rev, .applied = std::move(effective)};
 }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "protocol/json/codec_templates.hpp"
+#include "protocol/json/codec.hpp"
 #include "protocol/json/json_values.hpp"
 
 namespace heliograph::protocol {
@@ -45,8 +45,8 @@ struct Everything {
   static constexpr auto fields() {
     return std::tuple{
         field("flag", &Everything::flag, "A flag."),
-        field("small", &Everything::small, "A whole number."),
-        field("whole", &Everything::whole, "A whole number from 0."),
+        field("small", &Everything::small, "An integer."),
+        field("whole", &Everything::whole, "An integer from 0."),
         field("large", &Everything::large, "A large number.").unit("bytes"),
         field("single", &Everything::single, "A number."),
         field("number", &Everything::number, "A number.").range(0, 1),
@@ -136,8 +136,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadMember{"/flag", "0", "flag", "true or false", ""},
         BadMember{"/flag", "null", "flag", "is required", ""},
         BadMember{"/small", "2147483648", "small", "out of range", "-2147483648 to 2147483647"},
-        BadMember{"/small", "1.5", "small", "whole number", "-2147483648 to 2147483647"},
-        BadMember{"/small", "\"1\"", "small", "whole number", "-2147483648 to 2147483647"},
+        BadMember{"/small", "1.5", "small", "integer", "-2147483648 to 2147483647"},
+        BadMember{"/small", "\"1\"", "small", "integer", "-2147483648 to 2147483647"},
         BadMember{"/whole", "-1", "whole", "out of range", "0 to 4294967295"},
         BadMember{"/whole", "4294967296", "whole", "out of range", "0 to 4294967295"},
         BadMember{"/large", "-1", "large", "out of range", "0 to 9007199254740991"},
@@ -148,9 +148,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadMember{"/number", "1.01", "number", "out of range", "0 to 1"},
         BadMember{"/text", "\"a\"", "text", "number of characters", "2 to 4"},
         BadMember{"/text", "\"abcde\"", "text", "number of characters", "2 to 4"},
-        BadMember{"/text", "7", "text", "must be a text", ""},
+        BadMember{"/text", "7", "text", "must be a string", ""},
         BadMember{"/colour", "\"gren\"", "colour", "did you mean green?", "red, green or default"},
-        BadMember{"/colour", "1", "colour", "must be a text", "red, green or default"},
+        BadMember{"/colour", "1", "colour", "must be a string", "red, green or default"},
         BadMember{"/list", "{}", "list", "must be a list", ""},
         BadMember{"/list", "[]", "list", "number of elements", "1 to 3"},
         BadMember{"/list", "[1]", "list[0]", "must be an object", ""},
@@ -161,7 +161,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadMember{"/list/1/position", "[1,null,3]", "list[1].position[1]", "must be a number",
                   "-10 to 10"},
         BadMember{"/list/0/count", "6", "list[0].count", "out of range", "0 to 5"},
-        BadMember{"/names", "[\"a\", 1]", "names[1]", "must be a text", ""}));
+        BadMember{"/names", "[\"a\", 1]", "names[1]", "must be a string", ""}));
 
 TEST(MessageRefuses, AMissingMember) {
   json message = example();

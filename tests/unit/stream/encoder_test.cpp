@@ -18,7 +18,7 @@ struct Pixels {
   std::uint32_t width;
   std::uint32_t height;
   std::vector<std::uint8_t> rgba;
-  PictureView view() const { return {width, height, rgba}; }
+  ImageView view() const { return {width, height, rgba}; }
 };
 
 /// A smooth picture with one hard red and blue edge, odd in both sizes.

@@ -8,35 +8,36 @@ namespace {
 using protocol::StreamCodec;
 using std::chrono::milliseconds;
 
-Form jpeg(int quality, int scale = 100) {
+EncodingVariant jpeg(int quality, int scale = 100) {
   return {.codec = StreamCodec::jpeg, .scale = scale, .quality = quality};
 }
 
-Form video(int quality, int scale = 100) {
+EncodingVariant video(int quality, int scale = 100) {
   return {.codec = StreamCodec::h264, .scale = scale, .quality = quality};
 }
 
 TEST(Forms, AreFewAndHoldTheExtremes) {
-  EXPECT_EQ(reduce_forms({jpeg(80), jpeg(80), jpeg(60)}), (std::vector<Form>{jpeg(60), jpeg(80)}));
-  EXPECT_EQ(reduce_forms({jpeg(10), jpeg(90), jpeg(50), jpeg(70), jpeg(30)}),
-            (std::vector<Form>{jpeg(10), jpeg(50), jpeg(90)}));
-  EXPECT_TRUE(reduce_forms({}).empty());
+  EXPECT_EQ(reduce_variants({jpeg(80), jpeg(80), jpeg(60)}),
+            (std::vector<EncodingVariant>{jpeg(60), jpeg(80)}));
+  EXPECT_EQ(reduce_variants({jpeg(10), jpeg(90), jpeg(50), jpeg(70), jpeg(30)}),
+            (std::vector<EncodingVariant>{jpeg(10), jpeg(50), jpeg(90)}));
+  EXPECT_TRUE(reduce_variants({}).empty());
 }
 
 TEST(Forms, OfVideosLeaveOneForThoseWhoNeedJpeg) {
-  const auto forms = reduce_forms({video(80), video(60), video(70), jpeg(80), jpeg(50)});
-  EXPECT_EQ(forms.size(), max_forms);
-  EXPECT_EQ(assigned_form(forms, jpeg(80)), jpeg(50));
-  EXPECT_EQ(assigned_form(forms, video(70)), video(60));
-  EXPECT_EQ(assigned_form(forms, video(80)), video(80));
+  const auto forms = reduce_variants({video(80), video(60), video(70), jpeg(80), jpeg(50)});
+  EXPECT_EQ(forms.size(), max_variants);
+  EXPECT_EQ(assigned_variant(forms, jpeg(80)), jpeg(50));
+  EXPECT_EQ(assigned_variant(forms, video(70)), video(60));
+  EXPECT_EQ(assigned_variant(forms, video(80)), video(80));
 }
 
 TEST(Forms, AreNoDearerThanAskedForUnlessThereIsNone) {
-  const std::vector<Form> forms{jpeg(10), jpeg(50), jpeg(90)};
-  EXPECT_EQ(assigned_form(forms, jpeg(10)), jpeg(10));
-  EXPECT_EQ(assigned_form(forms, jpeg(89)), jpeg(50));
-  EXPECT_EQ(assigned_form(forms, jpeg(100)), jpeg(90));
-  EXPECT_EQ(assigned_form({jpeg(95)}, jpeg(1)), jpeg(95));
+  const std::vector<EncodingVariant> forms{jpeg(10), jpeg(50), jpeg(90)};
+  EXPECT_EQ(assigned_variant(forms, jpeg(10)), jpeg(10));
+  EXPECT_EQ(assigned_variant(forms, jpeg(89)), jpeg(50));
+  EXPECT_EQ(assigned_variant(forms, jpeg(100)), jpeg(90));
+  EXPECT_EQ(assigned_variant({jpeg(95)}, jpeg(1)), jpeg(95));
 }
 
 TEST(Forms, TakeFewerBytesSmallerAndAtLowerQuality) {
@@ -48,76 +49,78 @@ TEST(Forms, TakeFewerBytesSmallerAndAtLowerQuality) {
 class FormPlannerTest : public testing::Test {
  protected:
   /// Encodes what is requested of the video, at the next position.
-  VideoPosition encode(const FormRequest& request) {
+  VideoPosition encode(const VariantRequest& request) {
     if (request.key || !running_)
       newest_ = {.video = newest_.video + 1, .index = 0};
     else
       ++newest_.index;
     running_ = true;
     EncodedFrame frame;
-    frame.form = request.form;
+    frame.variant = request.variant;
     frame.video = newest_;
     if (newest_.index == 0) frame.header.flags = protocol::frame_flag::key;
     planner_.published(frame, now_);
     return newest_;
   }
-  FormPlanner::Plan plan(std::vector<FormWish> wishes) { return planner_.plan(wishes, now_); }
+  VariantPlanner::Plan plan(std::vector<RequestedVariant> wishes) {
+    return planner_.plan(wishes, now_);
+  }
 
-  FormPlanner planner_;
+  VariantPlanner planner_;
   VideoPosition newest_;
   bool running_ = false;
   Clock::time_point now_ = Clock::time_point() + std::chrono::hours(1);
 };
 
 TEST_F(FormPlannerTest, EncodesOnlyForThoseWhoAreReady) {
-  const auto some = plan({{.form = jpeg(80), .ready = true}, {.form = jpeg(40)}});
+  const auto some = plan({{.variant = jpeg(80), .ready = true}, {.variant = jpeg(40)}});
   ASSERT_EQ(some.requests.size(), 1u);
-  EXPECT_EQ(some.requests[0].form, jpeg(80));
+  EXPECT_EQ(some.requests[0].variant, jpeg(80));
   EXPECT_EQ(some.assigned[1], jpeg(40)) << "kept for when it is ready";
-  EXPECT_TRUE(plan({{.form = jpeg(80)}}).requests.empty());
+  EXPECT_TRUE(plan({{.variant = jpeg(80)}}).requests.empty());
 }
 
 TEST_F(FormPlannerTest, TheFirstViewerOfAVideoGetsAKeyFrameAtOnce) {
-  const auto first = plan({{.form = video(80), .ready = true}});
+  const auto first = plan({{.variant = video(80), .ready = true}});
   ASSERT_EQ(first.requests.size(), 1u);
   EXPECT_TRUE(first.requests[0].key);
   const VideoPosition at = encode(first.requests[0]);
-  const auto next = plan({{.form = video(80), .ready = true, .decoder = at}});
+  const auto next = plan({{.variant = video(80), .ready = true, .decoder = at}});
   ASSERT_EQ(next.requests.size(), 1u);
   EXPECT_FALSE(next.requests[0].key);
 }
 
 TEST_F(FormPlannerTest, ANewcomerIsSentJpegsUntilAKeyFrameIsDue) {
-  const VideoPosition at = encode({.form = video(80), .key = true});
+  const VideoPosition at = encode({.variant = video(80), .key = true});
   now_ += milliseconds(100);
-  const FormWish old{.form = video(80), .ready = true, .decoder = at};
-  const FormWish newcomer{.form = video(80), .ready = true};
+  const RequestedVariant old{.variant = video(80), .ready = true, .decoder = at};
+  const RequestedVariant newcomer{.variant = video(80), .ready = true};
   const auto soon = plan({old, newcomer});
   ASSERT_EQ(soon.requests.size(), 2u);
-  EXPECT_EQ(soon.requests[0].form, video(80));
+  EXPECT_EQ(soon.requests[0].variant, video(80));
   EXPECT_FALSE(soon.requests[0].key) << "the others must not pay for it";
-  EXPECT_EQ(soon.requests[1].form, FormPlanner::stand_in(video(80)));
-  now_ += FormPlanner::least_key_interval;
+  EXPECT_EQ(soon.requests[1].variant, VariantPlanner::jpeg_fallback(video(80)));
+  now_ += VariantPlanner::least_key_interval;
   const auto later = plan({old, newcomer});
   ASSERT_EQ(later.requests.size(), 1u);
   EXPECT_TRUE(later.requests[0].key);
 }
 
 TEST_F(FormPlannerTest, WhenNobodyCanGoOnTheKeyFrameComesAtOnce) {
-  const VideoPosition lost = encode({.form = video(80), .key = true});
-  encode({.form = video(80)});
-  encode({.form = video(80)});
-  const auto again = plan({{.form = video(80), .ready = true, .decoder = lost}});
+  const VideoPosition lost = encode({.variant = video(80), .key = true});
+  encode({.variant = video(80)});
+  encode({.variant = video(80)});
+  const auto again = plan({{.variant = video(80), .ready = true, .decoder = lost}});
   ASSERT_EQ(again.requests.size(), 1u);
   EXPECT_TRUE(again.requests[0].key);
 }
 
 TEST_F(FormPlannerTest, AVideoDoesNotGoOnForThoseWhoWait) {
-  const VideoPosition at = encode({.form = video(80), .key = true});
+  const VideoPosition at = encode({.variant = video(80), .key = true});
   const auto plan_for_newcomer =
-      plan({{.form = video(80), .decoder = at}, {.form = video(80), .ready = true}});
+      plan({{.variant = video(80), .decoder = at}, {.variant = video(80), .ready = true}});
   ASSERT_EQ(plan_for_newcomer.requests.size(), 1u);
-  EXPECT_EQ(plan_for_newcomer.requests[0].form.codec, StreamCodec::jpeg)
+  EXPECT_EQ(plan_for_newcomer.requests[0].variant.codec, StreamCodec::jpeg)
       << "a frame now would be lost on the viewer whose window is full";
 }
 

@@ -25,7 +25,7 @@ struct Pixels {
   std::vector<std::uint8_t> rgba;
 
   Pixels(std::uint32_t w, std::uint32_t h) : width(w), height(h), rgba(4ull * w * h, 255) {}
-  PictureView view() const { return {.width = width, .height = height, .rgba = rgba}; }
+  ImageView view() const { return {.width = width, .height = height, .rgba = rgba}; }
   std::uint8_t* at(std::uint32_t x, std::uint32_t y) { return &rgba[4ull * (y * width + x)]; }
 };
 
@@ -249,10 +249,10 @@ TEST_F(H264Test, OddSizesLoseTheirLastColumnAndRow) {
 
 TEST_F(H264Test, AVideoBeginsAnewWhenTheSizeChanges) {
   JpegEncoder jpeg;
-  PictureEncoder encoder(jpeg);
-  const Form form{.codec = protocol::StreamCodec::h264, .quality = 80};
+  FrameEncoder encoder(jpeg);
+  const EncodingVariant form{.codec = protocol::StreamCodec::h264, .quality = 80};
   const auto encode = [&](std::uint32_t side, bool key) {
-    return encoder.encode(moving_picture(side, side, 0).view(), {.form = form, .key = key});
+    return encoder.encode(moving_picture(side, side, 0).view(), {.variant = form, .key = key});
   };
   const auto first = encode(64, true);
   const auto second = encode(64, false);
@@ -264,17 +264,17 @@ TEST_F(H264Test, AVideoBeginsAnewWhenTheSizeChanges) {
   EXPECT_EQ(resized->header.width, 96);
   const auto tiny = encode(1, false);
   EXPECT_EQ(tiny->header.codec, protocol::FrameCodec::jpeg);
-  EXPECT_EQ(tiny->form, FormPlanner::stand_in(form));
+  EXPECT_EQ(tiny->variant, VariantPlanner::jpeg_fallback(form));
 }
 
-TEST(PictureScaler, KeepsTheMeanAndTheEdges) {
+TEST(ImageScaler, KeepsTheMeanAndTheEdges) {
   Pixels picture(40, 24);
   for (std::uint32_t y = 0; y < 24; ++y) {
     for (std::uint32_t x = 20; x < 40; ++x) picture.at(x, y)[0] = 0;
   }
-  PictureScaler scaler;
+  ImageScaler scaler;
   for (const int percent : {100, 75, 50, 33}) {
-    const PictureView small = scaler.scale(picture.view(), percent);
+    const ImageView small = scaler.scale(picture.view(), percent);
     EXPECT_EQ(small.width, static_cast<std::uint32_t>(std::lround(40 * percent / 100.0)));
     ASSERT_TRUE(small.complete());
     double red = 0.0;

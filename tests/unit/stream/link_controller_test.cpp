@@ -27,39 +27,39 @@ class LinkControllerTest : public testing::Test {
  protected:
   struct Sent {
     std::uint64_t bytes;
-    Form form;
+    EncodingVariant form;
     Clock::time_point at;
     Clock::time_point back;
   };
 
   /// Lets time pass; gives the last second's frames.
-  std::vector<Sent> run(const Link& link, seconds time, Form wanted = {},
+  std::vector<Sent> run(const Link& link, seconds time, EncodingVariant wanted = {},
                         microseconds interval = milliseconds(33)) {
     const Clock::time_point end = now_ + time;
     std::vector<Sent> last;
     while (now_ < end) {
-      while (!on_the_way_.empty() && on_the_way_.front().back <= now_) {
-        const Sent& sent = on_the_way_.front();
+      while (!in_flight_.empty() && in_flight_.front().back <= now_) {
+        const Sent& sent = in_flight_.front();
         controller_.arrived({.bytes = sent.bytes,
-                             .form = sent.form,
+                             .variant = sent.variant,
                              .delay = duration_cast<microseconds>(sent.back - sent.at),
                              .interval = interval},
                             now_);
         if (now_ > end - seconds(1)) last.push_back(sent);
-        on_the_way_.pop_front();
+        in_flight_.pop_front();
       }
-      if (on_the_way_.size() < ack_window && now_ >= next_picture_) {
-        const Form form = controller_.choose(wanted, pixels_);
+      if (in_flight_.size() < ack_window && now_ >= next_picture_) {
+        const EncodingVariant form = controller_.choose(wanted, pixels_);
         double bytes = whole_bytes_ * relative_bytes(form);
         if (form.codec == protocol::StreamCodec::h264) {
           bytes = std::min(0.2 * whole_bytes_, controller_.budget());
         }
         busy_until_ = std::max(busy_until_, now_) +
                       duration_cast<Clock::duration>(duration<double>(bytes / link.rate));
-        on_the_way_.push_back({.bytes = static_cast<std::uint64_t>(bytes),
-                               .form = form,
-                               .at = now_,
-                               .back = busy_until_ + link.way});
+        in_flight_.push_back({.bytes = static_cast<std::uint64_t>(bytes),
+                              .variant = form,
+                              .at = now_,
+                              .back = busy_until_ + link.way});
         next_picture_ = now_ + interval;
       }
       now_ += milliseconds(1);
@@ -76,7 +76,7 @@ class LinkControllerTest : public testing::Test {
   }
 
   LinkController controller_;
-  std::deque<Sent> on_the_way_;
+  std::deque<Sent> in_flight_;
   Clock::time_point now_ = Clock::time_point() + std::chrono::hours(1);
   Clock::time_point next_picture_;
   Clock::time_point busy_until_;
@@ -84,7 +84,7 @@ class LinkControllerTest : public testing::Test {
   std::uint64_t pixels_ = 1280 * 720;
 };
 
-const Form whole{};
+const EncodingVariant whole{};
 
 TEST_F(LinkControllerTest, AFastLinkChangesNothing) {
   const auto frames = run({.rate = 50e6, .way = milliseconds(2)}, seconds(10));
@@ -129,10 +129,10 @@ TEST_F(LinkControllerTest, ChangesAreRareOnceTheFormIsFound) {
   const Link link{.rate = 1.2e6, .way = milliseconds(15)};
   run(link, seconds(20));
   int changes = 0;
-  Form last = controller_.choose(whole, pixels_);
+  EncodingVariant last = controller_.choose(whole, pixels_);
   for (int second = 0; second < 20; ++second) {
     run(link, seconds(1));
-    const Form form = controller_.choose(whole, pixels_);
+    const EncodingVariant form = controller_.choose(whole, pixels_);
     changes += form != last ? 1 : 0;
     last = form;
   }
@@ -140,7 +140,7 @@ TEST_F(LinkControllerTest, ChangesAreRareOnceTheFormIsFound) {
 }
 
 TEST_F(LinkControllerTest, AVideoIsGivenABudgetBeforeItIsMadeSmaller) {
-  Form video = whole;
+  EncodingVariant video = whole;
   video.codec = protocol::StreamCodec::h264;
   run({.rate = 400e3, .way = milliseconds(20)}, seconds(10), video);
   EXPECT_LT(controller_.budget(), 20'000);
@@ -151,7 +151,7 @@ TEST_F(LinkControllerTest, AVideoIsGivenABudgetBeforeItIsMadeSmaller) {
 
 TEST_F(LinkControllerTest, WhoAsksForLessNeverGetsMore) {
   run({.rate = 500e3, .way = milliseconds(20)}, seconds(10));
-  const Form low{.quality = 8};
+  const EncodingVariant low{.quality = 8};
   EXPECT_LE(controller_.choose(low, pixels_).quality, 8);
 }
 

@@ -127,7 +127,7 @@ TEST_F(ViewerPacerTest, KeepsToTheMostFramesInASecond) {
     now_ += milliseconds(7);
   }
   EXPECT_NEAR(sent, 50, 2);
-  EXPECT_GT(pacer_.next_turn(), now_ - milliseconds(100));
+  EXPECT_GT(pacer_.next_send(), now_ - milliseconds(100));
 }
 
 TEST_F(ViewerPacerTest, MeasuresTheWayWithoutTheClientsOwnTime) {
@@ -152,7 +152,7 @@ TEST_F(ViewerPacerTest, LateFramesOfTheMovingPictureLowerItsBudgetButStillsDoNot
     acknowledge(taken->frame_seq);
   };
   for (int i = 0; i < 20; ++i) send(false);
-  EXPECT_EQ(pacer_.link().choose({}, 1280 * 720), Form{});
+  EXPECT_EQ(pacer_.link().choose({}, 1280 * 720), EncodingVariant{});
   for (int i = 0; i < 8; ++i) send(true);
   EXPECT_LT(pacer_.link().budget(), 50'000);
 }
@@ -167,7 +167,7 @@ TEST_F(ViewerPacerTest, AnImpossibleClientTimeDoesNotMakeTheWayNegative) {
 
 SharedFrame video_frame(std::uint64_t video, std::uint32_t index) {
   auto made = std::make_shared<EncodedFrame>();
-  made->form.codec = protocol::StreamCodec::h264;
+  made->variant.codec = protocol::StreamCodec::h264;
   made->video = VideoPosition{.video = video, .index = index};
   if (index == 0) made->header.flags = protocol::frame_flag::key;
   return made;
