@@ -53,13 +53,13 @@ Error invalid_request(std::string path, std::string reason, std::string limit = 
 }
 
 /// The members of a JSON-RPC request.
-struct Request {
+struct ParsedCall {
   std::optional<json> id;  ///< absent: a notification
   std::string method;
   RawJson params;
 };
 
-Result<Request> read_call(const json& request) {
+Result<ParsedCall> read_call(const json& request) {
   const auto version = request.find("jsonrpc");
   if (version == request.end() || *version != "2.0") {
     return invalid_request("jsonrpc", "must be \"2.0\"");
@@ -68,7 +68,7 @@ Result<Request> read_call(const json& request) {
   if (method == request.end() || !method->is_string()) {
     return invalid_request("method", "must be a string");
   }
-  Request call;
+  ParsedCall call;
   call.method = method->get<std::string>();
   if (const auto id = request.find("id"); id != request.end()) call.id = *id;
 
@@ -263,7 +263,7 @@ void Dispatcher::handle_one(const RawJson& request, const CallContext& context,
   if (!valid_id(value)) {
     return exchange->expect(nullptr)(invalid_request("id", "must be a string, a number or null"));
   }
-  const Result<Request> call = read_call(value);
+  const Result<ParsedCall> call = read_call(value);
   if (!call) return exchange->expect(id_of(value))(call.error());
 
   const Result<const Entry*> entry = find(call->method);

@@ -5,5 +5,7 @@ namespace heliograph::protocol {
 #define METHOD(tag, ...) template struct MethodCodec<methods::tag>;
 #define NOTIFICATION(tag, ...) template struct NotificationCodec<notifications::tag>;
 #include "protocol/methods/settings.def"
+#undef METHOD
+#undef NOTIFICATION
 
 }  // namespace heliograph::protocol

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes heliograph/methods.py from the protocol's description:
+"""Generates heliograph/methods.py from the server's description of the protocol:
 
     heliograph schema | protocol/python/generate.py > protocol/python/heliograph/methods.py
 """

@@ -13,7 +13,7 @@ constexpr double times_mean = 24.0;        // a texel of the sun is so much brig
 constexpr double least_peak_share = 0.02;  // and than this share of the brightest texel
 constexpr double least_flux_share = 0.01;  // of the whole environment, or it is not worth a light
 
-double luminance(const glm::vec3& color) {
+double luminance_of(const glm::vec3& color) {
   return glm::dot(glm::dvec3(color), glm::dvec3(0.2126, 0.7152, 0.0722));
 }
 
@@ -73,7 +73,7 @@ Region grow(const Environment& map, const Sphere& sphere, std::size_t from, doub
     sphere.visit_neighbours(region.texels[i], [&](std::size_t next) {
       if (seen[next]) return;
       seen[next] = true;
-      if (luminance(map.radiance[next]) > threshold) {
+      if (luminance_of(map.radiance[next]) > threshold) {
         region.texels.push_back(next);
         return;
       }
@@ -92,14 +92,15 @@ Sun sun_of(const Environment& map, const Sphere& sphere, const Region& region) {
   for (const std::size_t texel : region.texels) {
     const glm::dvec3 more = glm::dvec3(map.radiance[texel]) - region.rim;
     irradiance += sphere.solid_angle(texel) * more;
-    towards += sphere.solid_angle(texel) * luminance(more) * sphere.direction(texel);
+    towards += sphere.solid_angle(texel) * luminance_of(more) * sphere.direction(texel);
   }
   towards = glm::normalize(towards);
   // The points of a disk lie off its middle by half its radius squared, in the mean of squares.
   double weight = 0.0, squares = 0.0;
   for (const std::size_t texel : region.texels) {
     const double share = std::max(
-        sphere.solid_angle(texel) * luminance(glm::dvec3(map.radiance[texel]) - region.rim), 0.0);
+        sphere.solid_angle(texel) * luminance_of(glm::dvec3(map.radiance[texel]) - region.rim),
+        0.0);
     const glm::dvec3 aside = glm::cross(towards, sphere.direction(texel));
     weight += share;
     squares += share * (glm::dot(aside, aside) + sphere.spread(texel));
@@ -116,7 +117,7 @@ SeparatedEnvironment separate_sun(Environment environment) {
   double flux = 0.0, brightest = 0.0;
   std::size_t peak = 0;
   for (std::size_t i = 0; i < environment.radiance.size(); ++i) {
-    const double value = luminance(environment.radiance[i]);
+    const double value = luminance_of(environment.radiance[i]);
     flux += value * sphere.solid_angle(i);
     if (value > brightest) {
       brightest = value;
@@ -128,7 +129,7 @@ SeparatedEnvironment separate_sun(Environment environment) {
   const Region region = grow(environment, sphere, peak, threshold);
   if (region.solid_angle > largest_solid_angle) return {std::move(environment), std::nullopt};
   const Sun sun = sun_of(environment, sphere, region);
-  if (luminance(sun.irradiance) < least_flux_share * flux) {
+  if (luminance_of(sun.irradiance) < least_flux_share * flux) {
     return {std::move(environment), std::nullopt};
   }
   for (const std::size_t texel : region.texels) environment.radiance[texel] = region.rim;

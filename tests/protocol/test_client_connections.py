@@ -84,7 +84,7 @@ class PrivateAuthority(unittest.TestCase):
     def run_program(self, server, certificate, folder):
         done = subprocess.run(
             [sys.executable, os.path.join(PROTOCOL, "examples", "turntable.py"), "--url",
-             server.url, "--token", TOKEN, "--tls-ca", certificate, "--pictures", "1", "--size",
+             server.url, "--token", TOKEN, "--tls-ca", certificate, "--images", "1", "--size",
              "64", "36", "--folder", "turn"], cwd=folder, capture_output=True, text=True,
             env={**os.environ, "PYTHONPATH": LIBRARY}, timeout=60)
         self.assertEqual(done.returncode, 0, done.stderr)

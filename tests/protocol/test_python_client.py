@@ -251,7 +251,7 @@ class Examples(ServerTestCase):
             return decode_png(file.read())
 
     def test_turntable(self):
-        arguments = ("--scene", "hopping", "--size", "64", "36", "--pictures", "4",
+        arguments = ("--scene", "hopping", "--size", "64", "36", "--images", "4",
                      "--frames-each", "2", "--folder")
         for folder in ("turn", "again"):
             self.run_aside("turntable", *arguments, folder)
@@ -299,7 +299,7 @@ class Examples(ServerTestCase):
         in_the_way = self.path("dying", "001.png")
         os.makedirs(in_the_way)
         done = self.run_example(
-            "turntable", "--session", "shared", "--size", "64", "36", "--pictures", "4",
+            "turntable", "--session", "shared", "--size", "64", "36", "--images", "4",
             "--frames-each", "2", "--folder", "dying", "--token", TOKEN,
             environment={"HELIOGRAPH_TOKEN": "not-the-right-token"})
         self.assertEqual(done.returncode, 1, done.stderr)

@@ -32,13 +32,13 @@ std::uint32_t microseconds_of(Clock::duration duration) {
   return static_cast<std::uint32_t>(duration_cast<microseconds>(duration).count());
 }
 
-std::vector<protocol::BufferInfo> to_protocol(const std::vector<render::BufferInfo>& buffers) {
+std::vector<protocol::BufferInfo> buffer_infos(const std::vector<render::BufferInfo>& buffers) {
   std::vector<protocol::BufferInfo> result;
   for (const auto& [name, description] : buffers) result.push_back({name, description});
   return result;
 }
 
-std::vector<protocol::PassTiming> to_protocol(const std::vector<render::PassTime>& passes) {
+std::vector<protocol::PassTiming> pass_timings_of(const std::vector<render::PassTime>& passes) {
   std::vector<protocol::PassTiming> result;
   for (const render::PassTime& pass : passes) {
     result.push_back({.name = pass.name, .kind = pass.kind, .ms = pass.milliseconds});
@@ -104,7 +104,7 @@ void SessionView::apply(const protocol::Settings& settings) {
 }
 
 void SessionView::tell_buffers() {
-  session_->set_buffers(to_protocol(renderer_->buffers()));
+  session_->set_buffers(buffer_infos(renderer_->buffers()));
 }
 
 void SessionView::release_renderer() {
@@ -303,7 +303,7 @@ void SessionView::render_frame(double seconds) {
   const Clock::time_point end = Clock::now();
   if (draws_whole()) whole_frame_ = end - start;
   services_.measurements.rendered(std::chrono::duration<double>(end - start).count(),
-                                  to_protocol(frame.passes));
+                                  pass_timings_of(frame.passes));
   newest_ = describe(std::move(frame), start, end);
   draws_unasked_ = false;
   newest_version_ = state_.version;

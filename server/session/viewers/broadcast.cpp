@@ -10,7 +10,7 @@ using std::chrono::microseconds;
 
 namespace {
 
-std::vector<protocol::PassTiming> to_protocol(const std::vector<render::PassTime>& passes) {
+std::vector<protocol::PassTiming> pass_timings(const std::vector<render::PassTime>& passes) {
   std::vector<protocol::PassTiming> result;
   for (const render::PassTime& pass : passes) {
     result.push_back({.name = pass.name, .kind = pass.kind, .ms = pass.milliseconds});
@@ -40,7 +40,7 @@ protocol::StatsFrame stats_of(const RenderedFrame& picture, protocol::TracerKind
           .samples = picture.frame.samples,
           .tracer = tracer,
           .state = phase,
-          .passes = to_protocol(picture.frame.passes)};
+          .passes = pass_timings(picture.frame.passes)};
 }
 
 /// The header of the picture with what the encoder says of its form.

@@ -17,7 +17,7 @@ constexpr int arrivals_to_grow = 6;
 constexpr int arrivals_to_shrink = 3;
 /// Waiting time after the window was too large.
 constexpr milliseconds before_growing{3000};
-constexpr double newest_weight = 0.25;
+constexpr double newest_delay_weight = 0.25;
 
 }  // namespace
 
@@ -25,7 +25,7 @@ void AckWindow::arrived(const Arrival& arrival, Clock::time_point now) {
   const double delay = static_cast<double>(arrival.delay.count());
   // The link is at least this fast; only a frame alone in flight shows that it became slower.
   if (unqueued_delay_ == 0.0 || delay < unqueued_delay_) unqueued_delay_ = delay;
-  if (arrival.ahead == 0) unqueued_delay_ += newest_weight * (delay - unqueued_delay_);
+  if (arrival.ahead == 0) unqueued_delay_ += newest_delay_weight * (delay - unqueued_delay_);
 
   late_ = delay > late * unqueued_delay_ + noise ? late_ + 1 : 0;
   if (late_ >= arrivals_to_shrink && size_ > ack_window) {

@@ -27,7 +27,7 @@ constexpr microseconds max_interval{100'000};
 constexpr double significant = 0.1;
 /// Number of arrivals for a reliable mean.
 constexpr int arrivals_for_mean = 5;
-constexpr double newest_weight = 0.4;
+constexpr double newest_rate_weight = 0.4;
 /// A more expensive level has to fit into this fraction of the budget (hysteresis).
 constexpr double headroom = 0.85;
 
@@ -60,7 +60,7 @@ EncodingVariant at_level(const EncodingVariant& requested, const QualityLevel& l
 
 void LinkController::Mean::add(double more_bytes, double more_delay) {
   ++count;
-  const double weight = std::max(newest_weight, 1.0 / count);
+  const double weight = std::max(newest_rate_weight, 1.0 / count);
   bytes += weight * (more_bytes - bytes);
   delay += weight * (more_delay - delay);
 }
@@ -71,7 +71,7 @@ void LinkController::arrived(const Arrival& arrival, Clock::time_point now) {
   base_ = std::min(base_, delay);
   if (arrival.variant.codec == protocol::StreamCodec::jpeg) {
     const double unit = bytes / relative_bytes(arrival.variant);
-    unit_bytes_ += (unit_bytes_ == 0.0 ? 1.0 : newest_weight) * (unit - unit_bytes_);
+    unit_bytes_ += (unit_bytes_ == 0.0 ? 1.0 : newest_rate_weight) * (unit - unit_bytes_);
   }
   if (now < settled_at_) return;
   const bool is_late = late(arrival);

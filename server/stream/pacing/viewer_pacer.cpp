@@ -7,7 +7,7 @@ namespace heliograph::stream {
 namespace {
 
 /// Weight of a new measurement, as in TCP's smoothed round trip time (RFC 6298).
-constexpr double newest_weight = 1.0 / 8.0;
+constexpr double newest_frame_weight = 1.0 / 8.0;
 
 }  // namespace
 
@@ -90,7 +90,7 @@ void ViewerPacer::measure(const Sent& sent, std::chrono::microseconds held, Cloc
   const auto taken = std::max(duration_cast<microseconds>(alone), microseconds(1));
   const double rate = static_cast<double>(sent.bytes) * 1e6 / static_cast<double>(taken.count());
   const bool first = goodput_ == 0.0;
-  const double weight = first ? 1.0 : newest_weight;
+  const double weight = first ? 1.0 : newest_frame_weight;
   goodput_ += weight * (rate - goodput_);
   round_trip_ += microseconds(
       static_cast<std::int64_t>(weight * static_cast<double>((sample - round_trip_).count())));

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace heliograph::scene {
 namespace {
 
-constexpr float pi = 3.14159265359f;
-constexpr float half_pi = 0.5f * pi;
+constexpr float half_pi = 0.5f * std::numbers::pi_v<float>;
 
 // The cone's falloff as a scale and an offset to the cosine, from the extension's text.
 void read_cone(const JsonValue& json, shared::Light& light) {
@@ -81,7 +81,8 @@ Light read_area_light(const JsonValue& json) {
     light.device.type = shared::light_rectangle;
     light.device.half_width = 0.5f * read_length(json, "width");
     light.device.half_height = 0.5f * read_length(json, "height");
-    light.device.radius = std::sqrt(4.0f * light.device.half_width * light.device.half_height / pi);
+    light.device.radius = std::sqrt(4.0f * light.device.half_width * light.device.half_height /
+                                    std::numbers::pi_v<float>);
   } else if (shape == "disk") {
     light.device.type = shared::light_disk;
     light.device.radius = read_length(json, "radius");
