@@ -26,7 +26,7 @@ COLUMNS = ("sessions", "viewers", "cameras", "frames/s of a viewer", "processors
            "Mbit/s of a viewer", "ms input to frame p50", "p95", "MB resident")
 
 
-class Audience:
+class StepViewers:
     """Viewers in their own sessions; an asynchronous context manager."""
 
     def __init__(self, options, sessions, each):
@@ -59,7 +59,7 @@ class Audience:
                 await viewer.look((6 * math.sin(0.5 * passed), 2.0, 6 * math.cos(0.5 * passed)))
             await asyncio.sleep(1 / 30)
 
-    async def rest(self):
+    async def wait_idle(self):
         """Waits until no more frames arrive."""
         seen = None
         while (frames := sum(viewer.frames for viewer in self.viewers)) != seen:
@@ -68,19 +68,19 @@ class Audience:
 
 
 async def measure(options, sessions, each, moving):
-    async with Audience(options, sessions, each) as audience:
+    async with StepViewers(options, sessions, each) as step:
         if moving:
-            await audience.move(2)  # let the link controller of every stream converge
+            await step.move(2)  # let the link controller of every stream converge
         else:
-            await audience.rest()
-        for viewer in audience.viewers:
+            await step.wait_idle()
+        for viewer in step.viewers:
             viewer.round_trips.clear()
         before, started = await counters(options), time.monotonic()
-        await (audience.move(options.seconds) if moving else asyncio.sleep(options.seconds))
+        await (step.move(options.seconds) if moving else asyncio.sleep(options.seconds))
         seconds = time.monotonic() - started
         after = await counters(options)
         spent = {name: after[name] - before[name] for name in before}
-        trips = sorted(trip for viewer in audience.leaders for trip in viewer.round_trips)
+        trips = sorted(trip for viewer in step.leaders for trip in viewer.round_trips)
         resident = await asyncio.to_thread(measurement, options.url,
                                            "heliograph_resident_memory_bytes", token=options.token)
     return row(sessions, each, moving, spent, seconds, trips, resident)
@@ -99,7 +99,7 @@ def row(sessions, each, moving, spent, seconds, trips, resident):
     def ratio(value, count, scale=1.0):
         return f"{scale * value / count:.1f}" if count else "-"
 
-    return (sessions, viewers, "moving" if moving else "at rest",
+    return (sessions, viewers, "moving" if moving else "static",
             ratio(spent["frames"] / seconds, viewers), f"{spent['cpu'] / seconds:.2f}",
             # Unlike wall clock time it does not depend on other load of the machine.
             ratio(spent["cpu"], spent["renders"], 1e3),

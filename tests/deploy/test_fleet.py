@@ -189,14 +189,14 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
         self.assertEqual({await self.guess(node, f"203.0.113.9, 198.51.100.{number}")
                           for number in range(100)}, {401})
         self.assertIn(429, [await self.guess(node, "198.51.100.7") for _ in range(100)])
-        told = {"X-Forwarded-For": "198.51.100.8", "X-Forwarded-Proto": "https"}
+        claimed = {"X-Forwarded-For": "198.51.100.8", "X-Forwarded-Proto": "https"}
         _, headers, _ = await asyncio.to_thread(
-            self.fleet.ask, f"?session=behind&token={TOKEN}", headers=told)
+            self.fleet.ask, f"?session=behind&token={TOKEN}", headers=claimed)
         self.assertRegex(headers["Set-Cookie"], "heliograph_token=.*; Secure")
         # Other proxies are not trusted.
         seen = await asyncio.to_thread(
             self.machine.inside, "curl", "--silent", "--output", "/dev/null", "--dump-header", "-",
-            *(word for name, value in told.items() for word in ("--header", f"{name}: {value}")),
+            *(word for name, value in claimed.items() for word in ("--header", f"{name}: {value}")),
             f"{self.fleet.url}?session=behind&token={TOKEN}")
         self.assertIn("heliograph_token=", seen)
         self.assertNotRegex(seen, "heliograph_token=.*; Secure")

@@ -146,7 +146,7 @@ class Image(unittest.IsolatedAsyncioTestCase):
         ones on its port."""
         container = self.container("alone", serve=("--scene", "glossy_sponza_1", "--width", "160",
                                                    "--height", "90"))
-        self.assertTrue(self.reaches_out("alone"), "the test cannot tell")
+        self.assertTrue(self.reaches_out("alone"), "not connected before the isolation")
         self.machine.inside("iptables", "-I", "DOCKER-USER", "-i", "docker0", "-m", "conntrack",
                             "--ctstate", "NEW", "-j", "DROP")
         self.addCleanup(self.machine.inside, "iptables", "-F", "DOCKER-USER")

@@ -81,7 +81,7 @@ class ServiceTest:
         status = self.booted.status_of(self.main_process())
         users = {int(number) for number in status["Uid"].split()}
         self.assertEqual(len(users), 1)
-        self.assertIn(users.pop(), range(61184, 65520), "no user that exists only meanwhile")
+        self.assertIn(users.pop(), range(61184, 65520), "not a dynamic user")
         for name in ("CapInh", "CapPrm", "CapEff", "CapBnd", "CapAmb"):
             self.assertEqual(int(status[name], 16), 0, name)
         self.assertEqual(int(status["NoNewPrivs"]), 1)

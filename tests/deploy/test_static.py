@@ -57,7 +57,7 @@ class Packages(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             os.chmod(folder, 0o755)
             shutil.copy(os.path.join(DEPLOY, "setup.sh"), folder)
-            for listed, code, told in (
+            for listed, code, message in (
                     ("deploy no-such-1?\ndeploy no-such-2? no-such\n", 0,
                      "every package is installed"),
                     ("deploy no-such-1?\ndeploy no-such-2\n", 1,
@@ -71,7 +71,7 @@ class Packages(unittest.TestCase):
                         [*without_rights, os.path.join(folder, "setup.sh"), "deploy"],
                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60)
                     self.assertEqual(said.returncode, code, said.stdout)
-                    self.assertIn(told, said.stdout)
+                    self.assertIn(message, said.stdout)
 
     def test_are_listed_in_one_place(self):
         """Build dependencies are installed by setup.sh only."""

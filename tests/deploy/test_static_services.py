@@ -7,7 +7,7 @@ import shutil
 import unittest
 
 from harness.commands import run, succeeds
-from harness.files import DEPLOY, documents, files, server_sources, text_of
+from harness.files import DEPLOY, documents, server_sources, text_of
 
 
 class Options(unittest.TestCase):

@@ -198,6 +198,18 @@ class Readme(unittest.TestCase):
             with open(os.path.join(folder, "frame.jpg"), "rb") as file:
                 self.assertEqual(decode_jpeg(file.read()).width, 640)
 
+    def test_the_program_on_the_front_page_works(self):
+        with open(os.path.join(PROTOCOL, "../README.md"), encoding="utf-8") as file:
+            code, = re.findall("```python\n(.*?)```", file.read(), re.DOTALL)
+        with Server("--scene", "mirror") as server, tempfile.TemporaryDirectory() as folder:
+            code = code.replace("127.0.0.1:8080", f"{server.host}:{server.port}")
+            path = os.path.join(PROTOCOL, "python")
+            done = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True,
+                                  text=True, timeout=120, env={**os.environ, "PYTHONPATH": path})
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("(360, 640)", done.stdout)
+            self.assertTrue(os.path.exists(os.path.join(folder, "view.png")))
+
 
 class Examples(ServerTestCase):
     @classmethod
