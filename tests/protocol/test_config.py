@@ -94,7 +94,7 @@ class Config(unittest.TestCase):
             self.refused("--config", path, saying=(path, *parts))
         path = self.file("[serv]\nport = 1\n")
         self.refused("--config", path, saying=(path, "serv"))
-        self.refused("--config", path + "x", saying=(path + "x", "cannot be read"))
+        self.refused("--config", path + "x", saying=(path + "x", "cannot read"))
         self.refused(environment={"HELIOGRAPH_PORT": "70000"}, saying=("HELIOGRAPH_PORT", "65535"))
 
     def test_help_is_grouped_and_names_every_variable(self):

@@ -68,7 +68,7 @@ class Watching(ServerTestCase):
             status, _, body = self.server.get(
                 "/api/v1/sessions/main/frame.png?samples=" + samples)
             self.assertEqual((status, body),
-                             (400, b"samples: must be a whole number from 1 to 65536\n"))
+                             (400, b"samples: must be an integer from 1 to 65536\n"))
 
 
 class Ending(unittest.IsolatedAsyncioTestCase):

@@ -51,7 +51,8 @@ Result<void> may_close(SessionHost& host, const SessionChoice& request, const st
   const bool inside = host.sessions().session_of_viewer(viewer) == *session;
   const bool empty = (*session)->viewers().empty();
   if (!viewer.empty() && !empty && !inside) {
-    return error::make(protocol::ErrorCode::forbidden, "session", "others are in this session");
+    return error::make(protocol::ErrorCode::forbidden, "session",
+                       "other viewers are in this session");
   }
   const ViewerSet& audience = (*session)->viewers();
   if (inside && !audience.may_change(viewer)) return no_control(audience);

@@ -97,7 +97,7 @@ Result<HelloResult> greet(SessionHost& host, const Hello& request,
                           const protocol::CallContext& call) {
   const auto& codecs = request.codecs;
   if (std::find(codecs.begin(), codecs.end(), "jpeg") == codecs.end()) {
-    return error::invalid("codecs", "must hold one that the server has", "jpeg");
+    return error::invalid("codecs", "must include a codec of the server", "jpeg");
   }
   const Result<Chosen> chosen = choose_place(host, request, call);
   if (!chosen) return chosen.error();

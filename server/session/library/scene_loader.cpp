@@ -41,11 +41,11 @@ std::string progress_text(const std::string& name, std::string_view stage, float
 struct Abandoned {};
 
 protocol::Error superseded() {
-  return protocol::error::conflict("name", "another scene was asked for meanwhile");
+  return protocol::error::conflict("name", "was replaced by a later scene.load");
 }
 
 protocol::Error cancelled() {
-  return protocol::error::conflict("name", "was cancelled");
+  return protocol::error::conflict("name", "loading was cancelled");
 }
 
 protocol::Error session_ended() {
@@ -53,7 +53,7 @@ protocol::Error session_ended() {
 }
 
 protocol::Error stopped() {
-  return protocol::error::not_ready("the server is ending");
+  return protocol::error::not_ready("the server is shutting down");
 }
 
 protocol::Error no_such(const scene::NoSuchChoice& failure, const scene::SceneChoice& choice) {
@@ -250,7 +250,8 @@ void SceneLoader::report_device_loss(Job& job) {
   }
   if (on_device_loss_) on_device_loss_();
   if (++job.losses == most_losses) {
-    finish(job, protocol::error::not_ready("the device was lost to it again and again"));
+    finish(job,
+           protocol::error::not_ready("the device was lost repeatedly while loading this scene"));
   }
 }
 

@@ -22,7 +22,7 @@ namespace error = protocol::error;
 protocol::Error no_control(const ViewerSet& audience) {
   if (audience.control_is_free()) {
     return error::make(protocol::ErrorCode::forbidden, "control",
-                       "nobody has control of this session; it must be taken first",
+                       "no viewer has control of this session; take control first",
                        "session.control with the action take");
   }
   return error::make(protocol::ErrorCode::forbidden, "control",
@@ -226,7 +226,7 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
   const bool resized = width != state_.width || height != state_.height;
   if (resized && !may_steer) {
     return error::make(protocol::ErrorCode::forbidden, width != state_.width ? "width" : "height",
-                       "is everybody's, and this access may only watch");
+                       "is shared by all viewers and cannot be changed with a read-only token");
   }
   if (resized && !viewers_.may_change(by)) return no_control(viewers_);
   // Fewer pixels are never refused: more are taken before anything is changed, fewer after it.
@@ -301,7 +301,7 @@ Result<void> Session::accept_capture(CaptureRequest request) {
     return known.error();
   }
   if (*open_captures_ >= options_.limits.max_captures) {
-    return error::full("too many captures are waiting",
+    return error::full("too many captures are pending",
                        std::to_string(options_.limits.max_captures));
   }
   ++*open_captures_;

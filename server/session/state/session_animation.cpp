@@ -28,7 +28,7 @@ Result<AnimationState> Session::play(const protocol::AnimationPlay& request,
     for (const scene::Clip& clip : scene_->clips) names.push_back(clip.name);
     if (!scene::find_clip(*scene_, *request.clip)) {
       return error::not_found(
-          "clip", "no clip of the scene is called so" + protocol::suggestion(*request.clip, names));
+          "clip", "the scene has no such clip" + protocol::suggestion(*request.clip, names));
     }
     clock.clip = *request.clip;
     clock.seconds = 0.0;
@@ -53,7 +53,7 @@ Result<AnimationState> Session::seek(const protocol::AnimationSeek& request,
   const std::lock_guard lock(mutex_);
   if (const Result<void> there = require_scene(); !there) return there.error();
   AnimationClock clock = rewound_clock();
-  if (clock.clip.empty()) return error::not_ready("no clip was played yet");
+  if (clock.clip.empty()) return error::not_ready("no clip is active; play one first");
   clock.seconds = request.seconds;
   return set_clock(clock, by);
 }

@@ -104,7 +104,7 @@ Result<void> Session::request_probe(Probe probe) {
     const std::lock_guard lock(mutex_);
     if (const Result<void> there = require_scene(); !there) return there;
     if (probes_.size() >= options_.limits.max_captures) {
-      return error::full("too many questions about the picture are waiting",
+      return error::full("too many picks and inspections are pending",
                          std::to_string(options_.limits.max_captures));
     }
     probe.place = next_place();

@@ -62,7 +62,7 @@ Result<ViewerStream> ViewerSet::configure(const std::string& viewer,
   if (!found) return found.error();
   Viewer& it = **found;
   if (change.codec && *change.codec != protocol::StreamCodec::jpeg && !it.stream.decodes_video) {
-    return protocol::error::invalid("codec", "was not agreed on in hello", "jpeg");
+    return protocol::error::invalid("codec", "is not one of the codecs of hello", "jpeg");
   }
   if (change.codec) it.stream.codec = *change.codec;
   if (change.still && it.stream.still != *change.still) {
@@ -291,7 +291,7 @@ ViewerTotals ViewerSet::totals() const {
 Result<ViewerSet::Viewer*> ViewerSet::find(const std::string& viewer) {
   const auto found = viewers_.find(viewer);
   if (found == viewers_.end()) {
-    return protocol::error::not_ready("only a viewer on a WebSocket can ask for this");
+    return protocol::error::not_ready("requires a WebSocket connection");
   }
   return &found->second;
 }

@@ -24,7 +24,7 @@ Result<void> ViewerSet::join(const std::string& id, std::weak_ptr<ViewerLink> li
 
 Result<void> ViewerSet::check_capacity() const {
   if (viewers_.size() < max_viewers_) return {};
-  return protocol::error::full("the session has no room for another viewer",
+  return protocol::error::full("the session's maximum number of viewers is reached",
                                std::to_string(max_viewers_) + " viewers");
 }
 

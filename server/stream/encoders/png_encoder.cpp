@@ -30,18 +30,18 @@ std::vector<std::uint8_t> encode_png(const ImageView& image) {
   if (!image.complete()) throw std::runtime_error("PNG: the image is incomplete");
   const std::vector<std::uint8_t> rgb = without_alpha(image);
 
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  image.width = image.width;
-  image.height = image.height;
-  image.format = PNG_FORMAT_RGB;
-  image.flags = PNG_IMAGE_FLAG_FAST;
-  const std::unique_ptr<png_image, PngFree> cleanup(&image);
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  png.width = image.width;
+  png.height = image.height;
+  png.format = PNG_FORMAT_RGB;
+  png.flags = PNG_IMAGE_FLAG_FAST;
+  const std::unique_ptr<png_image, PngFree> cleanup(&png);
 
-  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
   std::vector<std::uint8_t> file(size);
-  if (!png_image_write_to_memory(&image, file.data(), &size, 0, rgb.data(), 0, nullptr)) {
-    throw std::runtime_error(std::string("PNG: ") + image.message);
+  if (!png_image_write_to_memory(&png, file.data(), &size, 0, rgb.data(), 0, nullptr)) {
+    throw std::runtime_error(std::string("PNG: ") + png.message);
   }
   file.resize(size);
   return file;
