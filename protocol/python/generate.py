@@ -6,8 +6,12 @@
 
 import json
 import keyword
+import pathlib
 import sys
 import textwrap
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "generator"))
+from description import kinds_of, read_openrpc, sentence, with_unit  # noqa: E402
 
 HEAD = '''"""Every method of heliograph.v1, made by generate.py from `heliograph schema`."""
 
@@ -26,30 +30,26 @@ class _Group:
 '''
 
 SIMPLE = {"boolean": "bool", "integer": "int", "number": "float", "string": "str",
-          "object": "Dict[str, Any]", "null": "None"}
+          "object": "Dict[str, Any]"}
 
 
 def python_type(schema):
-    kind = schema.get("type", "object")
-    if isinstance(kind, list):
-        kinds = [python_type({**schema, "type": one}) for one in kind if one != "null"]
-        return f"Optional[{kinds[0] if len(kinds) == 1 else 'Union[' + ', '.join(kinds) + ']'}]"
+    kinds, nullable = kinds_of(schema)
+    if nullable or len(kinds) > 1:
+        types = [python_type({**schema, "type": kind}) for kind in kinds]
+        joined = types[0] if len(types) == 1 else f"Union[{', '.join(types)}]"
+        return f"Optional[{joined}]" if nullable else joined
     if "enum" in schema:
         return "Literal[" + ", ".join(json.dumps(value) for value in schema["enum"]) + "]"
-    if kind == "array":
+    if kinds == ["array"]:
         return f"List[{python_type(schema.get('items', {}))}]"
-    return SIMPLE[kind]
-
-
-def sentence(text):
-    return " ".join(text.split())
+    return SIMPLE[kinds[0]]
 
 
 def docstring(method, indent):
     lines = [sentence(method["summary"]), ""]
     for param in method["params"]:
-        unit = param["schema"].get("x-unit")
-        text = f"{param['name']}: {sentence(param['description'])}" + (f" [{unit}]" if unit else "")
+        text = f"{param['name']}: {with_unit(param['description'], param['schema'])}"
         lines += textwrap.wrap(text, 96 - indent, subsequent_indent="    ")
     results = method["result"]["schema"].get("properties", {})
     if results:
@@ -118,4 +118,4 @@ def generate(document):
 
 
 if __name__ == "__main__":
-    sys.stdout.write(generate(json.load(sys.stdin)["openrpc"]))
+    sys.stdout.write(generate(read_openrpc()))

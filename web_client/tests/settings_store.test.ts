@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { JsonObject } from "heliograph/messages.ts";
+import type { JsonObject } from "heliograph/json.ts";
 import { RpcPeer } from "heliograph/rpc.ts";
 import { SettingsStore } from "../src/session/settings_store.ts";
 
@@ -52,7 +52,7 @@ test("a change shows at once and is sent as the smallest patch", async () => {
   assert.deepEqual(request.params.patch, { exposure: { ev: 2 } });
 });
 
-test("changes during a request are joined into one and do not flicker back", async () => {
+test("changes during a request are merged and do not flicker", async () => {
   const { store, sent, answer } = await connected();
   store.change("exposure.ev", 1);
   store.change("exposure.ev", 2);
@@ -66,7 +66,7 @@ test("changes during a request are joined into one and do not flicker back", asy
   assert.equal(sent.length, 0);
 });
 
-test("a refused change is reported and what the server has comes back", async () => {
+test("a rejected change is reported and the server's value returns", async () => {
   const { store, refused, answer } = await connected();
   store.change("exposure.ev", 4);
   await answer({ error: { code: -32602, message: "exposure.ev is locked" } });

@@ -9,8 +9,8 @@ export type Counterpart =
 
 export interface ComparisonState {
   counterpart: Counterpart;
-  /** Its newest picture; null before the first. */
+  /** Its newest frame; null before the first. */
   frame: DrawnFrame | null;
-  /** Structural similarity of both pictures; null before the first measurement. */
+  /** Structural similarity of both frames; null before the first measurement. */
   similarity: number | null;
 }

@@ -1,4 +1,4 @@
-// Looking into the renderer: its buffers, two ways of rendering side by side, single pixels.
+// The Inspect tab: buffers, comparison, pixel values.
 
 import type { Comparison } from "../../compare/comparison.ts";
 import type { Divider } from "../../view/divider.ts";
