@@ -60,7 +60,7 @@ enum class Call {
   query,       ///< changes nothing; allowed for all callers
   personal,    ///< changes something for its caller only; allowed for all callers
   command,     ///< changes the session for all its viewers; needs control of it
-  management,  ///< about sessions; needs a token that allows control, whoever has control
+  management,  ///< about sessions; needs a control token, but not control of the session
 };
 
 /// One method of the protocol: the dispatcher looks up calls in the table of these, and the OpenRPC

@@ -98,7 +98,7 @@ std::string number_text(double value) {
 }
 
 std::string range_text(NumberRange range) {
-  // The limits of float itself are no limits that anybody wants to read.
+  // The range of float itself is not a useful limit.
   constexpr double widest = std::numeric_limits<float>::max();
   const bool from = range.minimum > -widest;
   const bool to = range.maximum < widest;

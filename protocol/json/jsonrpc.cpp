@@ -130,7 +130,7 @@ class Dispatcher::Exchange : public std::enable_shared_from_this<Exchange> {
   void close() { settle(std::nullopt, {}); }
 
  private:
-  /// One open call. Its last owner's end answers it, so that no caller waits for ever.
+  /// One pending call. Its destructor completes it, so that every caller gets a response.
   class Pending {
    public:
     Pending(std::shared_ptr<Exchange> exchange, std::size_t slot, json id)
@@ -145,7 +145,7 @@ class Dispatcher::Exchange : public std::enable_shared_from_this<Exchange> {
         exchange_->settle(
             slot_, result ? result_text(id_, *result) : error_answer(RawJson(id_), result.error()));
       } catch (...) {
-        // Out of memory or a transport that fails: there is nobody left to tell.
+        // Out of memory or a failed transport: no receiver is left.
       }
     }
 

@@ -90,7 +90,7 @@ Error malformed(std::string path, std::string reason, std::string limit = {}) {
   return error::make(ErrorCode::parse_error, std::move(path), std::move(reason), std::move(limit));
 }
 
-Result<void> check_picture(const FrameHeader& header) {
+Result<void> check_size(const FrameHeader& header) {
   if (header.type == FrameType::timing) return {};
   if (header.width == 0 || header.height == 0)
     return malformed("width", "is 0: the image is empty");
@@ -132,8 +132,8 @@ Result<FrameHeader> decode_frame_header(std::span<const std::uint8_t> message) {
   if (header.header_bytes < frame_header_bytes || header.header_bytes > message.size()) {
     return malformed("header_bytes", "places the payload outside the message");
   }
-  const Result<void> picture = check_picture(header);
-  if (!picture) return picture.error();
+  const Result<void> size = check_size(header);
+  if (!size) return size.error();
   return header;
 }
 

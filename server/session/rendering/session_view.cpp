@@ -115,7 +115,7 @@ void SessionView::release_renderer() {
   broadcast_.forget();
   state_ = {};
   session_->viewers().discard_latest();
-  log_info({.session = session_->name()}, "pictures let go");
+  log_info({.session = session_->name()}, "images released");
 }
 
 SessionView::Work SessionView::advance(bool may_draw) {

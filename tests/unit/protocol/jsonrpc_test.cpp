@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A dispatcher with a few handlers of the real protocol that keep what they were given.
+/// A dispatcher with a few handlers of the real protocol that record their calls.
 class DispatcherTest : public testing::Test {
  protected:
   DispatcherTest() {
@@ -38,7 +38,7 @@ class DispatcherTest : public testing::Test {
     });
   }
 
-  /// The reply's text; fails unless it comes at once and only once.
+  /// The response text; fails unless it arrives synchronously and once.
   std::string text_of(std::string_view message) {
     std::vector<std::string> replies;
     dispatcher.handle(message, CallContext{"v1"},
@@ -86,7 +86,7 @@ TEST_F(DispatcherTest, RefusesOtherIds) {
   EXPECT_TRUE(viewers.empty());
 }
 
-TEST_F(DispatcherTest, CarriesOutNotificationsWithoutAnswer) {
+TEST_F(DispatcherTest, ExecutesNotificationsWithoutResponse) {
   EXPECT_EQ(text_of(R"({"jsonrpc":"2.0","method":"camera.set","params":{"eye":[1,2,3]}})"), "");
   EXPECT_EQ(viewers.size(), 1u);
   // Neither errors nor unknown methods are answered.
@@ -95,14 +95,14 @@ TEST_F(DispatcherTest, CarriesOutNotificationsWithoutAnswer) {
   EXPECT_EQ(viewers.size(), 1u);
 }
 
-TEST_F(DispatcherTest, DropsQueriesThatNobodyWouldHearTheAnswerOf) {
+TEST_F(DispatcherTest, DropsQueriesWithoutId) {
   EXPECT_EQ(text_of(R"({"jsonrpc":"2.0","method":"frame.buffers"})"), "");
   EXPECT_EQ(buffer_calls, 0);
   reply_to(R"({"jsonrpc":"2.0","id":1,"method":"frame.buffers"})");
   EXPECT_EQ(buffer_calls, 1);
 }
 
-TEST_F(DispatcherTest, RefusesWhatIsNotJson) {
+TEST_F(DispatcherTest, RefusesInvalidJson) {
   for (const char* text : {"", " ", "{", "nonsense", "{\"a\":1,}", "[1", "\"\xff\"", "1 2",
                            "{\"jsonrpc\":\"2.0\",\"id\":1e999}", "// comment\n{}"}) {
     const json answer = reply_to(text);
@@ -111,7 +111,7 @@ TEST_F(DispatcherTest, RefusesWhatIsNotJson) {
   }
 }
 
-TEST_F(DispatcherTest, RefusesWhatIsNotARequest) {
+TEST_F(DispatcherTest, RefusesInvalidRequests) {
   for (const char* text :
        {"1", "null", "\"x\"", "{}", R"({"jsonrpc":"1.0","method":"camera.set"})",
         R"({"jsonrpc":2.0,"method":"camera.set"})", R"({"jsonrpc":"2.0"})",
@@ -122,7 +122,7 @@ TEST_F(DispatcherTest, RefusesWhatIsNotARequest) {
   EXPECT_EQ(reply_to(R"({"jsonrpc":"1.0","id":3,"method":"camera.set"})").at("id"), 3);
 }
 
-TEST_F(DispatcherTest, SuggestsTheMethodThatWasMeant) {
+TEST_F(DispatcherTest, SuggestsTheNearestMethod) {
   const json answer = reply_to(R"({"jsonrpc":"2.0","id":1,"method":"camera.sett"})");
   EXPECT_EQ(code_of(answer), -32601);
   EXPECT_EQ(answer.at("error").at("data").at("path"), "method");
@@ -133,7 +133,7 @@ TEST_F(DispatcherTest, SuggestsTheMethodThatWasMeant) {
   EXPECT_EQ(far.at("error").at("data").at("reason"), "unknown method");
 }
 
-TEST_F(DispatcherTest, TellsWhichParameterIsWrongAndWhatWouldBeRight) {
+TEST_F(DispatcherTest, NamesTheInvalidParameterAndItsLimit) {
   const json answer =
       reply_to(R"({"jsonrpc":"2.0","id":1,"method":"camera.set","params":{"vertical_fov":500}})");
   EXPECT_EQ(code_of(answer), -32602);
@@ -143,7 +143,7 @@ TEST_F(DispatcherTest, TellsWhichParameterIsWrongAndWhatWouldBeRight) {
   EXPECT_TRUE(viewers.empty());
 }
 
-TEST_F(DispatcherTest, TakesParametersByNameOnly) {
+TEST_F(DispatcherTest, AcceptsParametersByNameOnly) {
   EXPECT_EQ(
       code_of(reply_to(R"({"jsonrpc":"2.0","id":1,"method":"camera.set","params":[[1,2,3]]})")),
       -32602);
@@ -151,13 +151,13 @@ TEST_F(DispatcherTest, TakesParametersByNameOnly) {
       reply_to(R"({"jsonrpc":"2.0","id":1,"method":"camera.set","params":[]})").contains("result"));
 }
 
-TEST_F(DispatcherTest, PassesOnTheErrorOfAHandler) {
+TEST_F(DispatcherTest, ReturnsTheErrorOfAHandler) {
   const json answer = reply_to(R"({"jsonrpc":"2.0","id":1,"method":"camera.fit"})");
   EXPECT_EQ(code_of(answer), -32050);
   EXPECT_EQ(answer.at("error").at("message"), "no scene is loaded");
 }
 
-TEST_F(DispatcherTest, HidesTheDetailOfAnExceptionButReportsIt) {
+TEST_F(DispatcherTest, HidesExceptionsFromClientsButReportsThem) {
   std::string reported;
   dispatcher.on_handler_failure([&](std::string_view method, std::string_view what) {
     reported = std::string(method) + ": " + std::string(what);
@@ -177,13 +177,13 @@ TEST_F(DispatcherTest, AnswersLaterAndFromAnotherThread) {
     SceneInfo info;
     info.name = "a";
     done(info);
-    done(info);  // only the first answer counts
+    done(info);  // only the first result is used
   });
   worker.join();
   EXPECT_EQ(json::parse(replied.get_future().get()).at("result").at("name"), "a");
 }
 
-TEST_F(DispatcherTest, AnswersForAHandlerThatForgot) {
+TEST_F(DispatcherTest, AnswersForAHandlerThatDropsItsCompletion) {
   std::vector<std::string> replies;
   dispatcher.handle(R"({"jsonrpc":"2.0","id":1,"method":"scene.load","params":{"name":"a"}})",
                     CallContext{}, [&](std::string text) { replies.push_back(text); });
@@ -276,7 +276,7 @@ TEST_F(DispatcherTest, RefusesDeepJson) {
   EXPECT_EQ(code_of(reply_to(std::string(60000, '{'))), -32013);
 }
 
-TEST_F(DispatcherTest, BracketsInTextsAreNotDepth) {
+TEST_F(DispatcherTest, BracketsInStringsAreNotDepth) {
   const std::string brackets(200, '[');
   EXPECT_TRUE(reply_to(R"({"jsonrpc":"2.0","id":1,"method":"camera.set","params":{"x":"\"\\)" +
                        brackets + "\"}}")
@@ -305,7 +305,7 @@ TEST_F(DispatcherTest, RefusesSecondHandlersAndMethodsItDoesNotServe) {
   EXPECT_THROW((of_no_method.add<methods::camera_set>(nothing)), std::logic_error);
 }
 
-TEST_F(DispatcherTest, KnowsWhichMethodsNobodyServes) {
+TEST_F(DispatcherTest, ListsMethodsWithoutHandler) {
   const auto missing = dispatcher.missing_handlers();
   EXPECT_NE(std::find(missing.begin(), missing.end(), "hello"), missing.end());
   EXPECT_EQ(std::find(missing.begin(), missing.end(), "camera.set"), missing.end());

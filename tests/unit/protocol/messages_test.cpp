@@ -99,7 +99,7 @@ TEST(Messages, AbsentOrNullMembersKeepTheirDefault) {
   EXPECT_EQ(decode<Everything>(RawJson(without))->names, std::vector<std::string>{"first"});
 }
 
-TEST(Messages, EmptyOptionalsAreLeftOutUnlessDeclaredNullable) {
+TEST(Messages, EmptyOptionalsAreOmittedUnlessNullable) {
   EXPECT_EQ(encode(Inner{}).value(), json::parse(R"({"position":[0.0,0.0,0.0]})"));
   EXPECT_TRUE(encode(Everything{}).value().at("maybe").is_null());
 }
@@ -172,7 +172,7 @@ TEST(MessageRefuses, AMissingMember) {
   EXPECT_EQ(read.error().reason, "is required");
 }
 
-TEST(MessageRefuses, WhatIsNoObject) {
+TEST(MessageRefuses, ValuesOtherThanObjects) {
   for (const char* text : {"[]", "1", "null", "\"x\""}) {
     const Result<Everything> read = decode<Everything>(*RawJson::parse(text));
     ASSERT_FALSE(read) << text;
@@ -188,7 +188,7 @@ TEST(MessageRefuses, NumbersThatAreNotFinite) {
   EXPECT_NE(read.error().reason.find("finite"), std::string::npos);
 }
 
-TEST(MessageSchema, SaysWhatParsingChecks) {
+TEST(MessageSchema, HasTheLimitsOfParsing) {
   const RawJson schema_holder = schema_of<Everything>();
   const json& schema = schema_holder.value();
   const json& members = schema.at("properties");
@@ -214,7 +214,7 @@ TEST(MessageSchema, SaysWhatParsingChecks) {
   EXPECT_FALSE(is_required("names"));
 }
 
-TEST(Patch, TellsAbsentFromNullFromAValue) {
+TEST(Patch, DistinguishesAbsentNullAndValue) {
   const auto patch = decode<LightsPatch>(
       RawJson(json{{"light", "sun"}, {"patch", {{"intensity", 2}, {"color", nullptr}}}}));
   ASSERT_TRUE(patch);
@@ -225,7 +225,7 @@ TEST(Patch, TellsAbsentFromNullFromAValue) {
             (json{{"light", "sun"}, {"patch", {{"intensity", 2.0}, {"color", nullptr}}}}));
 }
 
-TEST(Patch, RefusesMembersItDoesNotKnowAndNamesTheNearest) {
+TEST(Patch, RefusesUnknownMembersAndNamesTheNearest) {
   const auto refused =
       decode<LightsPatch>(RawJson(json{{"light", "sun"}, {"patch", {{"intesity", 2}}}}));
   ASSERT_FALSE(refused);
@@ -233,7 +233,7 @@ TEST(Patch, RefusesMembersItDoesNotKnowAndNamesTheNearest) {
   EXPECT_NE(refused.error().reason.find("intensity"), std::string::npos);
 }
 
-TEST(Patch, SaysSoInItsSchema) {
+TEST(Patch, SchemaForbidsUnknownMembers) {
   const RawJson holder = schema_of<LightsPatch>();
   const json& patch = holder.value().at("properties").at("patch");
   EXPECT_EQ(patch.at("additionalProperties"), false);
@@ -241,7 +241,7 @@ TEST(Patch, SaysSoInItsSchema) {
   EXPECT_FALSE(patch.contains("required"));
 }
 
-TEST(CameraSet, TakesAnyPartAndRefusesWhatNoCameraCanBe) {
+TEST(CameraSet, AcceptsPartsAndRefusesInvalidCameras) {
   const auto read = [](const char* text) { return decode<CameraSet>(*RawJson::parse(text)); };
   EXPECT_TRUE(read("{}"));
   EXPECT_EQ(read(R"({"eye":[1,2,3],"seq":9})")->eye, (Vec3{1, 2, 3}));
@@ -252,7 +252,7 @@ TEST(CameraSet, TakesAnyPartAndRefusesWhatNoCameraCanBe) {
   EXPECT_EQ(read(R"({"seq":-1})").error().path, "seq");
 }
 
-TEST(Limits, AreWrittenAsPeopleWriteThem) {
+TEST(Limits, AreWrittenInShortestForm) {
   EXPECT_EQ(range_text({0, 100000}), "0 to 100000");
   EXPECT_EQ(range_text({-1e9, 1e9}), "-1e9 to 1e9");
   EXPECT_EQ(range_text({1e-6, 0.25}), "1e-6 to 0.25");
@@ -261,7 +261,7 @@ TEST(Limits, AreWrittenAsPeopleWriteThem) {
   EXPECT_EQ(number_text(1e-10), "1e-10");
 }
 
-TEST(HelloResult, WritesTheNamesOfTheContract) {
+TEST(HelloResult, WritesTheNamesOfTheProtocol) {
   HelloResult result;
   result.device.type = DeviceType::virtual_;
   result.tracer = TracerKind::embree;

@@ -16,8 +16,8 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// A link that passes `rate` bytes a second, one frame after another, and takes `way` there and
-/// back besides; a renderer that makes a picture every `interval` while the viewer has room.
+/// A link of `rate` bytes per second, on which frames queue, with a round trip of `way`; a renderer
+/// that makes a frame every `interval` while the viewer's window is open.
 struct Link {
   double rate;
   microseconds way;
@@ -32,7 +32,7 @@ class LinkControllerTest : public testing::Test {
     Clock::time_point back;
   };
 
-  /// Lets time pass; gives the last second's frames.
+  /// Advances the time; returns the frames of the last second.
   std::vector<Sent> run(const Link& link, seconds time, EncodingVariant wanted = {},
                         microseconds interval = milliseconds(33)) {
     const Clock::time_point end = now_ + time;
@@ -48,7 +48,7 @@ class LinkControllerTest : public testing::Test {
         if (now_ > end - seconds(1)) last.push_back(sent);
         in_flight_.pop_front();
       }
-      if (in_flight_.size() < ack_window && now_ >= next_picture_) {
+      if (in_flight_.size() < ack_window && now_ >= next_frame_) {
         const EncodingVariant form = controller_.choose(wanted, pixels_);
         double bytes = whole_bytes_ * relative_bytes(form);
         if (form.codec == protocol::StreamCodec::h264) {
@@ -60,7 +60,7 @@ class LinkControllerTest : public testing::Test {
                               .variant = form,
                               .at = now_,
                               .back = busy_until_ + link.way});
-        next_picture_ = now_ + interval;
+        next_frame_ = now_ + interval;
       }
       now_ += milliseconds(1);
     }
@@ -78,7 +78,7 @@ class LinkControllerTest : public testing::Test {
   LinkController controller_;
   std::deque<Sent> in_flight_;
   Clock::time_point now_ = Clock::time_point() + std::chrono::hours(1);
-  Clock::time_point next_picture_;
+  Clock::time_point next_frame_;
   Clock::time_point busy_until_;
   double whole_bytes_ = 100'000;
   std::uint64_t pixels_ = 1280 * 720;
@@ -92,25 +92,25 @@ TEST_F(LinkControllerTest, AFastLinkChangesNothing) {
   EXPECT_GT(frames.size(), 28u);
 }
 
-TEST_F(LinkControllerTest, ALongWayIsNotTakenForANarrowOne) {
+TEST_F(LinkControllerTest, ALongRoundTripIsNotMistakenForASlowLink) {
   const auto frames = run({.rate = 50e6, .way = milliseconds(200)}, seconds(20));
   EXPECT_EQ(controller_.choose(whole, pixels_), whole);
   EXPECT_NEAR(static_cast<double>(controller_.base_delay().count()), 200e3, 15e3);
   EXPECT_GE(frames.size(), 8u) << "a window of two every 200 ms";
 }
 
-TEST_F(LinkControllerTest, ANarrowLinkGetsSmallerPicturesThatComeSoon) {
+TEST_F(LinkControllerTest, ASlowLinkGetsSmallerFramesInTime) {
   const Link link{.rate = 1e6, .way = milliseconds(20)};
   const auto before = run(link, seconds(1));
   const auto frames = run(link, seconds(15));
   EXPECT_LT(longest_delay_ms(frames), 0.5 * longest_delay_ms(before));
-  EXPECT_GT(frames.size(), 25u) << "every picture that is rendered";
+  EXPECT_GT(frames.size(), 25u) << "every rendered frame";
   double bytes = 0.0;
   for (const Sent& sent : frames) bytes += static_cast<double>(sent.bytes);
   EXPECT_GT(bytes, 0.4 * link.rate) << "most of the link is used";
 }
 
-TEST_F(LinkControllerTest, ALinkThatBecomesNarrowIsFollowedSoonAndBackAgain) {
+TEST_F(LinkControllerTest, AdaptsQuicklyToASlowerLinkAndBack) {
   run({.rate = 50e6, .way = milliseconds(10)}, seconds(5));
   run({.rate = 1e6, .way = milliseconds(10)}, seconds(4));
   EXPECT_LT(relative_bytes(controller_.choose(whole, pixels_)), 0.6);
@@ -118,14 +118,14 @@ TEST_F(LinkControllerTest, ALinkThatBecomesNarrowIsFollowedSoonAndBackAgain) {
   EXPECT_EQ(controller_.choose(whole, pixels_), whole);
 }
 
-TEST_F(LinkControllerTest, AFullQueueIsNeverTakenForTheLengthOfTheWay) {
-  // So narrow that the smallest pictures do not fit: late for ever.
+TEST_F(LinkControllerTest, AFullQueueIsNotMistakenForALongRoundTrip) {
+  // So slow that the smallest frames do not fit: always late.
   run({.rate = 60e3, .way = milliseconds(20)}, std::chrono::minutes(2));
   EXPECT_LT(controller_.base_delay(), milliseconds(120));
   EXPECT_LE(controller_.choose(whole, pixels_).scale, 50);
 }
 
-TEST_F(LinkControllerTest, ChangesAreRareOnceTheFormIsFound) {
+TEST_F(LinkControllerTest, ChangesAreRareOnceTheVariantHasSettled) {
   const Link link{.rate = 1.2e6, .way = milliseconds(15)};
   run(link, seconds(20));
   int changes = 0;
@@ -139,7 +139,7 @@ TEST_F(LinkControllerTest, ChangesAreRareOnceTheFormIsFound) {
   EXPECT_LE(changes, 8);
 }
 
-TEST_F(LinkControllerTest, AVideoIsGivenABudgetBeforeItIsMadeSmaller) {
+TEST_F(LinkControllerTest, AVideoGetsABudgetBeforeASmallerSize) {
   EncodingVariant video = whole;
   video.codec = protocol::StreamCodec::h264;
   run({.rate = 400e3, .way = milliseconds(20)}, seconds(10), video);
@@ -149,7 +149,7 @@ TEST_F(LinkControllerTest, AVideoIsGivenABudgetBeforeItIsMadeSmaller) {
   EXPECT_NE(controller_.choose(video, pixels_), video) << "those on better ways must not share it";
 }
 
-TEST_F(LinkControllerTest, WhoAsksForLessNeverGetsMore) {
+TEST_F(LinkControllerTest, NeverExceedsTheRequestedVariant) {
   run({.rate = 500e3, .way = milliseconds(20)}, seconds(10));
   const EncodingVariant low{.quality = 8};
   EXPECT_LE(controller_.choose(low, pixels_).quality, 8);
