@@ -1,4 +1,4 @@
-"""Reads the protocol's description (`heliograph schema`) for the generators of the client libraries."""
+"""Reads the output of `heliograph schema` for the generators of the client libraries."""
 
 import json
 import sys

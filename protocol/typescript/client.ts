@@ -26,8 +26,9 @@ export interface ClientOptions {
   /** Default timeout of calls. */
   timeoutMs?: number;
   /**
-   * Receives each encoded frame. The frame is acknowledged when the function has returned or failed;
-   * after 10 s without acknowledgement the server disconnects. If left out, the stream is paused.
+   * Receives each encoded frame. The frame is acknowledged when the function has returned or
+   * failed; after 10 s without acknowledgement the server disconnects. If left out, the stream is
+   * paused.
    */
   frame?: (header: FrameHeader, payload: Uint8Array<ArrayBuffer>) => void | Promise<void>;
   notification?: (method: string, params: unknown) => void | Promise<void>;
@@ -54,8 +55,8 @@ export class HeliographClient {
 
   /**
    * @param url of the WebSocket, for example ws://127.0.0.1:8080/ws
-   * @throws RpcError when the server rejects hello, Error when no server of this protocol answers or
-   * it rejects the token
+   * @throws RpcError when the server rejects hello, Error when no server of this protocol answers
+   * or it rejects the token
    */
   static async connect(url: string, options: ClientOptions = {}): Promise<HeliographClient> {
     const { client = "heliograph-typescript", codecs = ["jpeg"], session } = options;

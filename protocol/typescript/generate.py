@@ -21,8 +21,8 @@ import type { JsonObject, Vector3 } from "./json.ts";
 export const subprotocol = "heliograph.v1";
 """
 
-# Names of objects: "method" is its result or the parameters of a notification, "method(name)" one of
-# its parameters, and what follows is a member of it. The same object has the same name everywhere.
+# Names of objects: "method" is its result or a notification's parameters, "method(name)" one of its
+# parameters, and ".name" a member of either. The same object has the same name everywhere.
 # All others are named after the method and the member: SceneLoadParams, SessionListLimits.
 NAMES = {
     "hello": "Hello",
@@ -82,7 +82,7 @@ def parameters_as_object(params):
 
 
 def identity(schema):
-    """Equal for two schemas of the same object, whatever the place that it is used in says of it."""
+    """Equal for two schemas of the same object, even if their own descriptions differ."""
     members = {name: json.dumps(member, sort_keys=True)
                for name, member in schema["properties"].items()}
     return json.dumps([members, sorted(schema.get("required", []))], sort_keys=True)
@@ -177,7 +177,7 @@ def generate(document):
     messages.lines += ["", *comment("An object without members.", 0),
                        "export type Empty = Record<string, never>;"]
     messages.table("Methods", "Parameters and result of every method, by its name.", calls)
-    messages.table("Notifications", "Parameters of every notification that the server sends.", events)
+    messages.table("Notifications", "Parameters of every notification of the server.", events)
     messages.lines += ["", "export const ErrorCode = {"]
     for name, error in document["components"]["errors"].items():
         messages.lines += [*comment(sentence(error["message"]), 2),

@@ -1061,7 +1061,7 @@ export interface Methods {
   "reference.stop": { params: Empty; result: ReferenceState };
 }
 
-/** Parameters of every notification that the server sends. */
+/** Parameters of every notification of the server. */
 export interface Notifications {
   /**
    * Somebody came, left or was given control of this session, or its pictures have another size.

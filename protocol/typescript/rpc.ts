@@ -79,7 +79,9 @@ export class RpcPeer<Table extends { [Name in keyof Table]: MethodTable[string] 
     return new Promise((resolve, reject) => {
       const timer = setTimeout(() => {
         this.pending.delete(id);
-        reject(new RpcError(timedOut, `The server did not answer ${method} in ${timeoutMs / 1000} s`));
+        reject(
+          new RpcError(timedOut, `The server did not answer ${method} in ${timeoutMs / 1000} s`),
+        );
       }, timeoutMs);
       this.pending.set(id, { resolve, reject, timer });
       this.send(JSON.stringify({ jsonrpc: "2.0", id, method, params: params ?? {} }));
@@ -126,7 +128,8 @@ export class RpcPeer<Table extends { [Name in keyof Table]: MethodTable[string] 
       return;
     }
     if (entry.id === null && entry.error !== undefined) {
-      // The server could not read the id: fail every pending request, so that none waits without end.
+      // The server could not read the id: fail every pending request, so that none waits without
+      // end.
       return this.failAll(() => errorOf(entry));
     }
     const request = this.pending.get(entry.id as number);

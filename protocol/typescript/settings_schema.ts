@@ -143,12 +143,7 @@ function describeGroup(
   return group;
 }
 
-function describeControl(
-  node: JsonObject,
-  path: string,
-  label: string,
-  order: number,
-): Control {
+function describeControl(node: JsonObject, path: string, label: string, order: number): Control {
   const base: ControlBase = {
     path,
     label,
@@ -197,7 +192,8 @@ function scaleFor(
   defaultValue: JsonValue | undefined,
 ): SliderScale {
   if (minimum > 0 && maximum / minimum >= 1000) return "logarithmic";
-  const small = typeof defaultValue === "number" && defaultValue > 0 && defaultValue < 0.06 * maximum;
+  const small =
+    typeof defaultValue === "number" && defaultValue > 0 && defaultValue < 0.06 * maximum;
   return minimum === 0 && small ? "cubic" : "linear";
 }
 

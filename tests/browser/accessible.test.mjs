@@ -29,38 +29,47 @@ for (const colorScheme of ["dark", "light"]) {
   });
 }
 
-stage.test("the keyboard reaches view, tabs, menu and settings, and the focus is visible", async () => {
-  const { page } = await stage.watch();
-  const seen = new Set();
-  for (let i = 0; i < 40; i += 1) {
-    await page.keyboard.press("Tab");
-    const focus = await page.evaluate(() => {
-      const { activeElement: node } = document;
-      if (node === document.body) return null; // between the last element and the first
-      const style = getComputedStyle(node);
-      const ring = style.outlineStyle !== "none" || node.matches("input[type=range]");
-      const name = node.id || node.getAttribute("aria-label") || node.name || node.textContent;
-      return { name, ring };
-    });
-    if (!focus) continue;
-    assert.ok(focus.ring, `${focus.name} has the focus without a focus ring`);
-    seen.add(focus.name);
-  }
-  for (const name of ["view", "tab-scene", "Save and share", "Fullscreen", "Play"]) {
-    assert.ok(seen.has(name), `the keyboard does not reach ${name}, only ${[...seen].join(", ")}`);
-  }
-  await page.locator("#tab-scene").focus();
-  await page.keyboard.press("ArrowRight");
-  assert.equal(await page.evaluate(() => document.activeElement.id), "tab-settings");
-  assert.ok(await page.locator("#page-settings").isVisible());
-  await page.getByRole("button", { name: "Save and share" }).focus();
-  await page.keyboard.press("Enter");
-  await page.keyboard.press("ArrowDown");
-  assert.equal(await page.evaluate(() => document.activeElement.getAttribute("role")), "menuitem");
-  await page.keyboard.press("Escape");
-  const back = await page.evaluate(() => document.activeElement.getAttribute("aria-label"));
-  assert.equal(back, "Save and share");
-});
+stage.test(
+  "the keyboard reaches view, tabs, menu and settings, and the focus is visible",
+  async () => {
+    const { page } = await stage.watch();
+    const seen = new Set();
+    for (let i = 0; i < 40; i += 1) {
+      await page.keyboard.press("Tab");
+      const focus = await page.evaluate(() => {
+        const { activeElement: node } = document;
+        if (node === document.body) return null; // between the last element and the first
+        const style = getComputedStyle(node);
+        const ring = style.outlineStyle !== "none" || node.matches("input[type=range]");
+        const name = node.id || node.getAttribute("aria-label") || node.name || node.textContent;
+        return { name, ring };
+      });
+      if (!focus) continue;
+      assert.ok(focus.ring, `${focus.name} has the focus without a focus ring`);
+      seen.add(focus.name);
+    }
+    for (const name of ["view", "tab-scene", "Save and share", "Fullscreen", "Play"]) {
+      assert.ok(
+        seen.has(name),
+        `the keyboard does not reach ${name}, only ${[...seen].join(", ")}`,
+      );
+    }
+    await page.locator("#tab-scene").focus();
+    await page.keyboard.press("ArrowRight");
+    assert.equal(await page.evaluate(() => document.activeElement.id), "tab-settings");
+    assert.ok(await page.locator("#page-settings").isVisible());
+    await page.getByRole("button", { name: "Save and share" }).focus();
+    await page.keyboard.press("Enter");
+    await page.keyboard.press("ArrowDown");
+    assert.equal(
+      await page.evaluate(() => document.activeElement.getAttribute("role")),
+      "menuitem",
+    );
+    await page.keyboard.press("Escape");
+    const back = await page.evaluate(() => document.activeElement.getAttribute("aria-label"));
+    assert.equal(back, "Save and share");
+  },
+);
 
 stage.test("reduced motion disables inertia and progress animations", async () => {
   const { page } = await stage.watch({ reducedMotion: "reduce" });

@@ -1,13 +1,7 @@
 // Comparison of two sessions, side by side or overlaid.
 
 import assert from "node:assert/strict";
-import {
-  distance,
-  dragView,
-  eventually,
-  openTab,
-  screenshot,
-} from "./harness/browser.mjs";
+import { distance, dragView, eventually, openTab, screenshot } from "./harness/browser.mjs";
 import { Stage } from "./harness/stage.mjs";
 
 const stage = new Stage({
@@ -39,12 +33,16 @@ stage.test("comparing a preset opens a second session that follows the camera", 
     const there = await stage.server.call("camera.get", {}, name);
     return distance(here.eye, there.eye) < 1e-4 && here.name === null;
   }, "equal cameras");
-  const similarity = await eventually(async () => {
-    const text = await page.locator("[data-figure-of=similarity]").textContent();
-    const figure = Number(/SSIM ([\d.]+)/.exec(text)?.[1]);
-    // The first measurements compare frames before and after the move.
-    return figure > 0.5 && figure;
-  }, "similar frames", 60_000);
+  const similarity = await eventually(
+    async () => {
+      const text = await page.locator("[data-figure-of=similarity]").textContent();
+      const figure = Number(/SSIM ([\d.]+)/.exec(text)?.[1]);
+      // The first measurements compare frames before and after the move.
+      return figure > 0.5 && figure;
+    },
+    "similar frames",
+    60_000,
+  );
   assert.ok(similarity <= 1, String(similarity));
 
   await divider.focus();
@@ -74,7 +72,10 @@ stage.test("the second session follows light, material, environment, size and sc
   const there = (method) => server.call(method, {}, name);
   const kernelOf = async (session) =>
     (await server.call("settings.get", {}, session)).settings.shadow_blur.kernel;
-  await eventually(async () => (await kernelOf(name)) === "full", "the preset in the second session");
+  await eventually(
+    async () => (await kernelOf(name)) === "full",
+    "the preset in the second session",
+  );
 
   const [{ name: light, intensity }] = (await server.call("lights.list")).lights;
   const [{ name: material }] = (await server.call("materials.list")).materials;
@@ -90,7 +91,10 @@ stage.test("the second session follows light, material, environment, size and sc
     return sun.intensity === 1.5 && !sun.enabled;
   }, "the light in the second session");
   await eventually(async () => (await materialThere()).roughness === 0.75, "the material");
-  await eventually(async () => (await there("environment.list")).current === "white", "the environment");
+  await eventually(
+    async () => (await there("environment.list")).current === "white",
+    "the environment",
+  );
   await eventually(
     async () => (await there("settings.get")).settings.exposure.compensation === 1.25,
     "the exposure",
@@ -104,7 +108,10 @@ stage.test("the second session follows light, material, environment, size and sc
     const sun = await lightThere();
     return sun.intensity === intensity && sun.enabled;
   }, "the light of the file in the second session");
-  await eventually(async () => (await there("environment.list")).current !== "white", "the environment of the scene");
+  await eventually(
+    async () => (await there("environment.list")).current !== "white",
+    "the environment of the scene",
+  );
 
   await server.call("scene.load", { name: "furnace" });
   const next = await eventually(async () => {

@@ -104,7 +104,10 @@ stage.test("a read-only viewer is informed and cannot change anything", async ()
   await screenshot(page, "read_only");
   await expectNothingChanges({ page });
   await openTab(page, "inspect");
-  assert.ok(await page.locator("[data-section=compare]").isHidden(), "a read-only viewer cannot create sessions");
+  assert.ok(
+    await page.locator("[data-section=compare]").isHidden(),
+    "a read-only viewer cannot create sessions",
+  );
   await page.getByRole("switch", { name: "Inspect pixels" }).click();
   await page.mouse.click(200, 500);
   await page.locator(".pixel-values dd").first().waitFor({ timeout: 60_000 });
@@ -114,15 +117,18 @@ stage.test("a read-only viewer is informed and cannot change anything", async ()
   }
 });
 
-stage.test("a link does not change the session for a read-only viewer, who is informed", async () => {
-  const controller = await watch();
-  const { eye } = await staticCamera(controller.page, stage.server);
-  const view = Buffer.from(JSON.stringify({ camera: { eye: [9, 9, 9] }, settings: {} }));
-  const context = await stage.context();
-  await (await stage.open({ url: addressWith(viewToken), context })).page.close();
-  const url = `${stage.server.url}#view=${view.toString("base64url")}`;
-  const { page } = await stage.open({ url, context });
-  await firstFrame(page);
-  await page.locator(".toast", { hasText: "The view in the link was not applied" }).waitFor();
-  assert.deepEqual((await stage.server.call("camera.get")).eye, eye);
-});
+stage.test(
+  "a link does not change the session for a read-only viewer, who is informed",
+  async () => {
+    const controller = await watch();
+    const { eye } = await staticCamera(controller.page, stage.server);
+    const view = Buffer.from(JSON.stringify({ camera: { eye: [9, 9, 9] }, settings: {} }));
+    const context = await stage.context();
+    await (await stage.open({ url: addressWith(viewToken), context })).page.close();
+    const url = `${stage.server.url}#view=${view.toString("base64url")}`;
+    const { page } = await stage.open({ url, context });
+    await firstFrame(page);
+    await page.locator(".toast", { hasText: "The view in the link was not applied" }).waitFor();
+    assert.deepEqual((await stage.server.call("camera.get")).eye, eye);
+  },
+);

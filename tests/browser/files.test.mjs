@@ -82,7 +82,11 @@ open.test("an invalid file is rejected with a reason", async () => {
   assert.match(large, /large\.glb has .* kB; the server accepts up to .* kB/);
   const text = await toastAfterDrop(page, "text.glb", Buffer.from("not a scene"));
   assert.match(text, /The server cannot read this file/);
-  const truncated = await toastAfterDrop(page, "truncated.glb", mirror.subarray(0, mirror.length - 10));
+  const truncated = await toastAfterDrop(
+    page,
+    "truncated.glb",
+    mirror.subarray(0, mirror.length - 10),
+  );
   assert.match(truncated, /The server cannot read this file/);
   const nameTaken = await toastAfterDrop(page, "mirror.glb", mirror);
   assert.match(nameTaken, /has its own scene mirror/);

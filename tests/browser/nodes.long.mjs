@@ -1,5 +1,5 @@
-// Several servers behind a load balancer: sessions are found on their server, and viewers of a failed
-// server continue on another one without affecting its sessions.
+// Several servers behind a load balancer: sessions are found on their server, and viewers of a
+// failed server continue on another one without affecting its sessions.
 
 import assert from "node:assert/strict";
 import { seriousFindings } from "./harness/axe.mjs";
@@ -98,49 +98,52 @@ testWithTwo("a link to join leads to the author's own main session", async (node
   }
 });
 
-testWithTwo("viewers of a failed server meet in a session of their own on another server", async (nodes) => {
-  const { stage, here, other, balancer } = nodes;
-  const bystander = await stage.watch({ url: here.url });
-  await bystander.page.getByRole("button", { name: "Participants" }).click();
-  await bystander.page.getByRole("button", { name: "Take exclusive control" }).click();
-  await dragView(bystander.page, { x: 200, y: 200 }, { x: 260, y: 230 });
-  await staticCamera(bystander.page, here);
-  const before = await here.call("session.info");
+testWithTwo(
+  "viewers of a failed server meet in a session of their own on another server",
+  async (nodes) => {
+    const { stage, here, other, balancer } = nodes;
+    const bystander = await stage.watch({ url: here.url });
+    await bystander.page.getByRole("button", { name: "Participants" }).click();
+    await bystander.page.getByRole("button", { name: "Take exclusive control" }).click();
+    await dragView(bystander.page, { x: 200, y: 200 }, { x: 260, y: 230 });
+    await staticCamera(bystander.page, here);
+    const before = await here.call("session.info");
 
-  const options = { url: balancer.url, expectErrors: true };
-  const first = await stage.watch({ ...options, permissions });
-  const second = await stage.watch(options);
-  await other.call("settings.patch", { patch: { exposure: { compensation: 0.75 } } });
-  await dragView(first.page, { x: 100, y: 200 }, { x: 260, y: 230 });
-  const { eye } = await staticCamera(first.page, other);
-  const { instance } = await other.call("hello");
-  const name = `main-${instance.slice(0, 8)}`;
+    const options = { url: balancer.url, expectErrors: true };
+    const first = await stage.watch({ ...options, permissions });
+    const second = await stage.watch(options);
+    await other.call("settings.patch", { patch: { exposure: { compensation: 0.75 } } });
+    await dragView(first.page, { x: 100, y: 200 }, { x: 260, y: 230 });
+    const { eye } = await staticCamera(first.page, other);
+    const { instance } = await other.call("hello");
+    const name = `main-${instance.slice(0, 8)}`;
 
-  await lose(other, first.page, second.page);
-  const together = async () => (await viewersIn(here, name).catch(() => 0)) === 2;
-  await eventually(together, "both viewers in one session");
-  await eventually(async () => {
-    const camera = await here.call("camera.get", {}, name);
-    return distance(camera.eye, eye) < 1e-3;
-  }, "their camera");
-  const { settings } = await here.call("settings.get", {}, name);
-  assert.equal(settings.exposure.compensation, 0.75);
-  await screenshot(first.page, "another_node");
-  assert.deepEqual(await seriousFindings(first.page), []);
+    await lose(other, first.page, second.page);
+    const together = async () => (await viewersIn(here, name).catch(() => 0)) === 2;
+    await eventually(together, "both viewers in one session");
+    await eventually(async () => {
+      const camera = await here.call("camera.get", {}, name);
+      return distance(camera.eye, eye) < 1e-3;
+    }, "their camera");
+    const { settings } = await here.call("settings.get", {}, name);
+    assert.equal(settings.exposure.compensation, 0.75);
+    await screenshot(first.page, "another_node");
+    assert.deepEqual(await seriousFindings(first.page), []);
 
-  const after = await here.call("session.info");
-  assert.deepEqual(
-    [after.rev, after.scene, after.viewers.length, after.control],
-    [before.rev, before.scene, 1, "exclusive"],
-    "the bystander's session was affected",
-  );
-  const link = await linkToJoin(first.page);
-  assert.equal(link, `${balancer.url}?session=${name}`);
-  await eventually(() => first.page.url() === link, "the page's address");
-  await first.page.reload();
-  await firstFrame(first.page);
-  assert.equal(await viewersIn(here, name), 2);
-});
+    const after = await here.call("session.info");
+    assert.deepEqual(
+      [after.rev, after.scene, after.viewers.length, after.control],
+      [before.rev, before.scene, 1, "exclusive"],
+      "the bystander's session was affected",
+    );
+    const link = await linkToJoin(first.page);
+    assert.equal(link, `${balancer.url}?session=${name}`);
+    await eventually(() => first.page.url() === link, "the page's address");
+    await first.page.reload();
+    await firstFrame(first.page);
+    assert.equal(await viewersIn(here, name), 2);
+  },
+);
 
 testWithTwo("a named session of a failed server is restored under its name", async (nodes) => {
   const { stage, here, other, balancer } = nodes;
@@ -185,4 +188,8 @@ async function readOnlyViewersFollow({ stage, here, other, balancer }) {
   await lose(other, controller.page, readOnly.page);
   assert.equal(await viewersIn(here, `main-${instance.slice(0, 8)}`), 2);
 }
-testWithTwo("read-only viewers follow the other viewers of a failed server", readOnlyViewersFollow, guarded);
+testWithTwo(
+  "read-only viewers follow the other viewers of a failed server",
+  readOnlyViewersFollow,
+  guarded,
+);

@@ -6,12 +6,7 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { join } from "node:path";
 import { after } from "node:test";
-import {
-  chooseOutput,
-  eventually,
-  screenshot,
-  settle,
-} from "./harness/browser.mjs";
+import { chooseOutput, eventually, screenshot, settle } from "./harness/browser.mjs";
 import { outputFolder } from "./harness/environment.mjs";
 import { difference, statistics, thumbnail } from "./harness/images.mjs";
 import { Stage } from "./harness/stage.mjs";
@@ -150,7 +145,9 @@ embedded.test("the copied code embeds the viewer in allowed origins only", async
   writeFileSync(join(outputFolder, "embed.html"), code);
   allowed.html = `<!doctype html><title>Another site</title><h1>Embedded viewer</h1>${code}`;
 
-  const guest = await (await embedded.context({ viewport: { width: 1000, height: 640 } })).newPage();
+  const guest = await (
+    await embedded.context({ viewport: { width: 1000, height: 640 } })
+  ).newPage();
   await guest.goto(allowed.origin);
   const inside = guest.frameLocator("iframe");
   await inside.locator('#pill[data-state="live"]').waitFor({ timeout: 60_000 });

@@ -91,7 +91,9 @@ stage.test("every control patches its setting, is marked as changed, and resets"
     );
     if (initial !== node.default) {
       // Without convergence, rendering takes the CPU time that the page needs.
-      await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: initial } } });
+      await stage.server.call("settings.patch", {
+        patch: { accumulation: { max_samples: initial } },
+      });
     }
     operated.add(kind);
   }
@@ -108,14 +110,20 @@ stage.test("a typed exposure value brightens the frame", async () => {
   const entry = rowOf(page, "exposure.compensation").locator("input.number");
   await entry.fill("1.5");
   await entry.press("Enter");
-  await eventually(async () => (await stage.server.setting("exposure.compensation")) === 1.5, "1.5");
+  await eventually(
+    async () => (await stage.server.setting("exposure.compensation")) === 1.5,
+    "1.5",
+  );
   await eventually(
     async () => statistics(await viewImage(page, "exposure_after")).mean > before + 0.03,
     "a brighter frame",
   );
   await screenshot(page, "panel_changed");
   await rowOf(page, "exposure.compensation").locator(".reset").click();
-  await eventually(async () => (await stage.server.setting("exposure.compensation")) === 0, "a reset");
+  await eventually(
+    async () => (await stage.server.setting("exposure.compensation")) === 0,
+    "a reset",
+  );
 });
 
 stage.test("undo and redo work by button and by key", async () => {
@@ -154,7 +162,10 @@ stage.test("a preset is applied and marked until one of its settings changes", a
   await stage.server.call("settings.patch", { patch: { shadow_blur: { iterations: 2 } } });
   await eventually(async () => (await preset.getAttribute("aria-pressed")) === "false", "no mark");
   await page.keyboard.press("Control+Z");
-  await eventually(async () => (await stage.server.setting("shadow_blur.kernel")) === "separable", "undo");
+  await eventually(
+    async () => (await stage.server.setting("shadow_blur.kernel")) === "separable",
+    "undo",
+  );
 });
 
 stage.test("a change by another viewer is shown", async () => {

@@ -61,7 +61,12 @@ stage.test("the page loads, connects and shows its first frame", async () => {
     await page.close();
   }
   const of = (name) => Math.round(median(seen.map((one) => one[name])));
-  const figures = { ready: of("ready"), loaded: of("loaded"), live: of("live"), drawn: of("drawn") };
+  const figures = {
+    ready: of("ready"),
+    loaded: of("loaded"),
+    live: of("live"),
+    drawn: of("drawn"),
+  };
   report("loading_ms", figures);
   assert.ok(figures.loaded < maxLoadMs, `loaded after ${figures.loaded} ms`);
 });

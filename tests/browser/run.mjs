@@ -1,5 +1,6 @@
-// Runs every *.test.mjs, or with --long every *.long.mjs, one after another: they share the CPU with
-// a software renderer. Exits with 77, which ctest reports as "skipped", without a browser or server.
+// Runs every *.test.mjs, or with --long every *.long.mjs, one after another: they share the CPU
+// with a software renderer. Exits with 77, which ctest reports as "skipped", without a browser or
+// server.
 
 import { spawnSync } from "node:child_process";
 import { existsSync, readdirSync } from "node:fs";

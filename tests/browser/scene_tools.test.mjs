@@ -55,7 +55,8 @@ stage.test("a material is changed, and a roughness sweep restores its value", as
   const { name } = materials[1];
   await select.selectOption(name);
   const roughness = async () =>
-    (await stage.server.call("materials.list")).materials.find((one) => one.name === name).roughness;
+    (await stage.server.call("materials.list")).materials.find((one) => one.name === name)
+      .roughness;
   const section = page.locator('[data-section="materials"]');
   const entry = section.getByRole("textbox", { name: "Roughness" });
   await entry.fill("0.35");
@@ -74,7 +75,10 @@ stage.test("a material is changed, and a roughness sweep restores its value", as
     button.click();
   });
   assert.ok((await sent()) > before + 1, "no patch was sent during the sweep");
-  await eventually(async () => Math.abs((await roughness()) - 0.35) < 1e-5, "the previous roughness");
+  await eventually(
+    async () => Math.abs((await roughness()) - 0.35) < 1e-5,
+    "the previous roughness",
+  );
 });
 
 stage.test("a click lists the value of every buffer at a pixel", async (t) => {
@@ -88,7 +92,10 @@ stage.test("a click lists the value of every buffer at a pixel", async (t) => {
   const shown = await page
     .locator(".pixel-values dd")
     .evaluateAll((nodes) => nodes.map((node) => node.dataset.value));
-  assert.deepEqual(shown, buffers.map(({ name }) => name));
+  assert.deepEqual(
+    shown,
+    buffers.map(({ name }) => name),
+  );
   assert.ok(await page.locator("#mark").isVisible());
   await screenshot(page, "inspector");
   await page.getByRole("switch", { name: "Inspect pixels" }).click();
@@ -100,8 +107,12 @@ stage.test("a double click focuses on the surface", async (t) => {
   const { page } = await stage.sharedViewer();
   const { position } = await stage.server.call("scene.pick", { x: 0.3, y: 600 / 900 });
   await page.mouse.dblclick(300, 600);
-  await eventually(async () => {
-    const { target } = await stage.server.call("camera.get");
-    return Math.hypot(...target.map((value, axis) => value - position[axis])) < 0.05;
-  }, "the point as target", 40_000);
+  await eventually(
+    async () => {
+      const { target } = await stage.server.call("camera.get");
+      return Math.hypot(...target.map((value, axis) => value - position[axis])) < 0.05;
+    },
+    "the point as target",
+    40_000,
+  );
 });

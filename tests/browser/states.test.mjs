@@ -39,7 +39,7 @@ stage.test("a version mismatch is reported", async () => {
   assert.deepEqual(await seriousFindings(page), []);
 });
 
-stage.test("a rejected hello shows \"No access\"", async () => {
+stage.test('a rejected hello shows "No access"', async () => {
   const context = await stage.context();
   // The page itself needs a token; one that is revoked later makes hello fail.
   await context.addInitScript(() => {

@@ -1,12 +1,7 @@
 // H.264 streams decoded by the browser; motion JPEG where WebSockets do not get through.
 
 import assert from "node:assert/strict";
-import {
-  eventually,
-  viewScreenshot,
-  prepareWorker,
-  screenshot,
-} from "./harness/browser.mjs";
+import { eventually, viewScreenshot, prepareWorker, screenshot } from "./harness/browser.mjs";
 import { statistics, thumbnail } from "./harness/images.mjs";
 import { Stage } from "./harness/stage.mjs";
 
@@ -77,7 +72,9 @@ stage.test("repeated decoding errors switch to JPEG, with a message", async (t) 
   if (!viewer) return;
   const { page, context } = viewer;
   await stage.server.call("animation.play", { clip: "moving_objects_light" });
-  await page.locator(".toast", { hasText: "The stream uses JPEG now" }).waitFor({ timeout: 120_000 });
+  await page
+    .locator(".toast", { hasText: "The stream uses JPEG now" })
+    .waitFor({ timeout: 120_000 });
   const before = (await played(page)).drawn[jpeg] ?? 0;
   await eventually(async () => (await played(page)).drawn[jpeg] > before + 4, "JPEGs", 60_000);
   assert.equal(await page.locator("select[name=codec]").inputValue(), "jpeg");

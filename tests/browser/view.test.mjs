@@ -30,11 +30,17 @@ stage.test("a copied link restores scene, settings, light, material and camera",
   const { sun, material } = await editedParts();
   const patch = { intensity: 2.5, direction: [0.6, -0.8, 0] };
   await stage.server.call("lights.patch", { light: sun.name, patch });
-  await stage.server.call("materials.patch", { material: material.name, patch: { roughness: 0.7 } });
+  await stage.server.call("materials.patch", {
+    material: material.name,
+    patch: { roughness: 0.7 },
+  });
   // A reloaded page reads the changes from the server.
   await page.reload();
   await firstFrame(page);
-  await eventually(async () => (await figureOf(page, "Intensity")) === "2.5", "the light to be read");
+  await eventually(
+    async () => (await figureOf(page, "Intensity")) === "2.5",
+    "the light to be read",
+  );
   await chooseOutput(page, "Copy link");
   const link = await eventually(async () => {
     const text = await page.evaluate(() => navigator.clipboard.readText());
@@ -45,10 +51,14 @@ stage.test("a copied link restores scene, settings, light, material and camera",
   await stage.server.call("camera.fit");
   await stage.server.call("scene.load", { name: "mirror" });
   const other = await stage.open({ url: link });
-  await eventually(async () => {
-    const { eye } = await stage.server.call("camera.get").catch(() => ({ eye: [0, 0, 0] }));
-    return distance(eye, [1, 2, 6]) < 1e-3;
-  }, "the camera of the link", 60_000);
+  await eventually(
+    async () => {
+      const { eye } = await stage.server.call("camera.get").catch(() => ({ eye: [0, 0, 0] }));
+      return distance(eye, [1, 2, 6]) < 1e-3;
+    },
+    "the camera of the link",
+    60_000,
+  );
   assert.equal((await stage.server.call("scene.list")).current, "shadow_objects");
   assert.equal(await stage.server.setting("tone_map.curve"), "agx");
   const there = await editedParts();
@@ -115,7 +125,10 @@ stage.test("the wheel zooms towards the pointer", async () => {
 stage.test("a clip plays, pauses and seeks", async () => {
   const { page } = await stage.watch();
   await page.locator("#transport select[name=clip]").selectOption("moving_objects_light");
-  await eventually(async () => (await stage.server.call("animation.list")).playing, "the clip to play");
+  await eventually(
+    async () => (await stage.server.call("animation.list")).playing,
+    "the clip to play",
+  );
   assert.equal((await stage.server.call("animation.list")).clip, "moving_objects_light");
   await page.getByRole("button", { name: "Pause" }).click();
   await eventually(async () => !(await stage.server.call("animation.list")).playing, "a pause");
@@ -131,7 +144,10 @@ stage.test("a clip plays, pauses and seeks", async () => {
     return Math.abs(seconds - duration / 2) < 0.05;
   }, "the middle of the clip");
   await page.locator("#transport select[name=rate]").selectOption("2");
-  await eventually(async () => (await stage.server.call("animation.list")).rate === 2, "twice the speed");
+  await eventually(
+    async () => (await stage.server.call("animation.list")).rate === 2,
+    "twice the speed",
+  );
   await screenshot(page, "transport");
 });
 
@@ -204,33 +220,36 @@ stage.test("an unknown setting gets a control", async () => {
   await screenshot(page, "unknown_setting");
 });
 
-stage.test("the gallery shows thumbnails and renders missing ones while the server is idle", async () => {
-  const { page } = await stage.watch({ viewport: { width: 1280, height: 720 } });
-  await stage.server.call("animation.play", { clip: "moving_objects_light" });
-  await page.waitForFunction(() => window.seen.frame && !window.seen.frame.final);
-  await page.getByRole("button", { name: "Show thumbnails of all scenes" }).click();
-  const tile = page.locator(".tile", { hasText: "shadow_objects" });
-  await tile.waitFor();
-  assert.equal(await tile.getAttribute("aria-pressed"), "true");
-  const drawn = () =>
-    page.evaluate(() => Object.values(window.seen.drawn).reduce((sum, count) => sum + count, 0));
-  const before = await drawn();
-  await eventually(async () => (await drawn()) > before + 8, "moving frames", 60_000);
-  const requests = () => page.evaluate(() => window.seen.sent["session.create"] ?? 0);
-  assert.equal(await requests(), 0, "previews were rendered during an animation");
+stage.test(
+  "the gallery shows thumbnails and renders missing ones while the server is idle",
+  async () => {
+    const { page } = await stage.watch({ viewport: { width: 1280, height: 720 } });
+    await stage.server.call("animation.play", { clip: "moving_objects_light" });
+    await page.waitForFunction(() => window.seen.frame && !window.seen.frame.final);
+    await page.getByRole("button", { name: "Show thumbnails of all scenes" }).click();
+    const tile = page.locator(".tile", { hasText: "shadow_objects" });
+    await tile.waitFor();
+    assert.equal(await tile.getAttribute("aria-pressed"), "true");
+    const drawn = () =>
+      page.evaluate(() => Object.values(window.seen.drawn).reduce((sum, count) => sum + count, 0));
+    const before = await drawn();
+    await eventually(async () => (await drawn()) > before + 8, "moving frames", 60_000);
+    const requests = () => page.evaluate(() => window.seen.sent["session.create"] ?? 0);
+    assert.equal(await requests(), 0, "previews were rendered during an animation");
 
-  await stage.server.call("animation.pause");
-  await tile.locator("img").waitFor({ timeout: 60_000 });
-  const missing = page.locator(".tile", { hasText: "mirror" }).locator("img");
-  await missing.waitFor({ timeout: 60_000 });
-  assert.ok(await missing.evaluate((image) => image.naturalWidth >= 200));
-  await page.locator(".tile", { hasText: "furnace" }).locator("img").waitFor({ timeout: 60_000 });
-  await screenshot(page, "scene_gallery");
-  assert.equal((await stage.server.call("scene.list")).current, "shadow_objects");
-  const created = await requests();
-  await page.reload();
-  await firstFrame(page);
-  await page.getByRole("button", { name: "Show thumbnails of all scenes" }).click();
-  await missing.waitFor();
-  assert.ok(created >= 2, `${created} previews were rendered`);
-});
+    await stage.server.call("animation.pause");
+    await tile.locator("img").waitFor({ timeout: 60_000 });
+    const missing = page.locator(".tile", { hasText: "mirror" }).locator("img");
+    await missing.waitFor({ timeout: 60_000 });
+    assert.ok(await missing.evaluate((image) => image.naturalWidth >= 200));
+    await page.locator(".tile", { hasText: "furnace" }).locator("img").waitFor({ timeout: 60_000 });
+    await screenshot(page, "scene_gallery");
+    assert.equal((await stage.server.call("scene.list")).current, "shadow_objects");
+    const created = await requests();
+    await page.reload();
+    await firstFrame(page);
+    await page.getByRole("button", { name: "Show thumbnails of all scenes" }).click();
+    await missing.waitFor();
+    assert.ok(created >= 2, `${created} previews were rendered`);
+  },
+);

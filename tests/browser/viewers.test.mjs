@@ -69,7 +69,10 @@ async function pinch(page, middle) {
   ];
   await session.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: points(0) });
   for (let step = 1; step <= 8; step += 1) {
-    await session.send("Input.dispatchTouchEvent", { type: "touchMove", touchPoints: points(step) });
+    await session.send("Input.dispatchTouchEvent", {
+      type: "touchMove",
+      touchPoints: points(step),
+    });
     await page.waitForTimeout(20);
   }
   await session.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
@@ -94,13 +97,13 @@ stage.test("on a phone the panel is a sheet and one finger orbits", async () => 
     async () => JSON.stringify((await stage.server.call("camera.get")).eye) !== eyeBefore,
     "an orbit by finger",
   );
-  const apart = await staticCamera(page, stage.server);
+  const before = await staticCamera(page, stage.server);
   await pinch(page, { x: 180, y: 300 });
   await eventually(async () => {
     const { eye, target } = await stage.server.call("camera.get");
-    const closer = distance(eye, target) < 0.9 * distance(apart.eye, apart.target);
-    return closer && distance(target, apart.target) > 0;
-  }, "a pinch to move closer and aside");
+    const closer = distance(eye, target) < 0.9 * distance(before.eye, before.target);
+    return closer && distance(target, before.target) > 0;
+  }, "a pinch to zoom and pan");
 
   await page.getByRole("button", { name: "Show panel" }).tap();
   await eventually(async () => (await panel.boundingBox()).y < 500, "an open sheet");
@@ -129,31 +132,34 @@ stage.test("without OffscreenCanvas the page draws the frames", async () => {
   assert.ok(deviation > 0.03, "the frame is nearly uniform");
 });
 
-stage.test("after a restart of the server the page restores scene, settings and camera", async () => {
-  const { page, pageErrors } = await stage.watch({ expectErrors: true });
-  await stage.server.call("settings.patch", { patch: { exposure: { compensation: 0.75 } } });
-  const { name: light } = (await stage.server.call("lights.list")).lights[0];
-  await stage.server.call("lights.patch", { light, patch: { intensity: 2.25 } });
-  await page.waitForFunction(() => window.seen.received["lights.changed"] > 0);
-  await dragView(page, { x: 300, y: 300 }, { x: 520, y: 360 });
-  const { eye } = await staticCamera(page, stage.server);
+stage.test(
+  "after a restart of the server the page restores scene, settings and camera",
+  async () => {
+    const { page, pageErrors } = await stage.watch({ expectErrors: true });
+    await stage.server.call("settings.patch", { patch: { exposure: { compensation: 0.75 } } });
+    const { name: light } = (await stage.server.call("lights.list")).lights[0];
+    await stage.server.call("lights.patch", { light, patch: { intensity: 2.25 } });
+    await page.waitForFunction(() => window.seen.received["lights.changed"] > 0);
+    await dragView(page, { x: 300, y: 300 }, { x: 520, y: 360 });
+    const { eye } = await staticCamera(page, stage.server);
 
-  assert.deepEqual(pageErrors, []);
-  await stage.server.stop();
-  await page.waitForSelector('#pill[data-state="lost"]', { timeout: 20_000 });
-  await page.getByText("Connection lost").waitFor();
-  await screenshot(page, "connection_lost");
-  await stage.restartServer(["--scene", "mirror"]);
-  await page.waitForSelector('#pill[data-state="live"]', { timeout: 40_000 });
-  await eventually(async () => {
-    const camera = await stage.server.call("camera.get").catch(() => null); // no scene yet
-    return camera && distance(camera.eye, eye) < 1e-3;
-  }, "the camera to be restored");
-  assert.equal((await stage.server.call("scene.list")).current, "shadow_objects");
-  assert.equal(await stage.server.setting("exposure.compensation"), 0.75);
-  assert.equal((await stage.server.call("lights.list")).lights[0].intensity, 2.25);
-  await firstFrame(page);
-  await settle(page, stage.server);
-  await screenshot(page, "connection_back");
-  assert.ok(statistics(await viewImage(page, "after_restart")).deviation > 0.03);
-});
+    assert.deepEqual(pageErrors, []);
+    await stage.server.stop();
+    await page.waitForSelector('#pill[data-state="lost"]', { timeout: 20_000 });
+    await page.getByText("Connection lost").waitFor();
+    await screenshot(page, "connection_lost");
+    await stage.restartServer(["--scene", "mirror"]);
+    await page.waitForSelector('#pill[data-state="live"]', { timeout: 40_000 });
+    await eventually(async () => {
+      const camera = await stage.server.call("camera.get").catch(() => null); // no scene yet
+      return camera && distance(camera.eye, eye) < 1e-3;
+    }, "the camera to be restored");
+    assert.equal((await stage.server.call("scene.list")).current, "shadow_objects");
+    assert.equal(await stage.server.setting("exposure.compensation"), 0.75);
+    assert.equal((await stage.server.call("lights.list")).lights[0].intensity, 2.25);
+    await firstFrame(page);
+    await settle(page, stage.server);
+    await screenshot(page, "connection_back");
+    assert.ok(statistics(await viewImage(page, "after_restart")).deviation > 0.03);
+  },
+);

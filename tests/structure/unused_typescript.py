@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Checks that every export of the web client and of protocol/typescript is needed: another file imports
-it, or a test imports it and its own file uses it."""
+"""Checks that every export of the web client and its library is needed: another file imports it,
+or a test imports it and its own file uses it."""
 
 import pathlib
 import re

@@ -2,8 +2,8 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import type { Vector3 } from "heliograph/json.ts";
 import type { CameraPose } from "../src/common/camera_pose.ts";
-import { dolly, orbit, pan, visibleHeight } from "../src/view/camera.ts";
 import { length, subtract } from "../src/common/vector.ts";
+import { dolly, orbit, pan, visibleHeight } from "../src/view/camera.ts";
 
 const front: CameraPose = {
   eye: [0, 0, 5],

@@ -109,13 +109,13 @@ test("an own session gets its scene without waiting for an initial one", async (
 });
 
 test("a camera that fails with a transient error is sent again", async () => {
-  let refused = 0;
+  let rejected = 0;
   const { host, calls } = startingServer((method) => {
-    if (method !== "camera.set" || refused++ >= 2) return null;
+    if (method !== "camera.set" || rejected++ >= 2) return null;
     return { error: { code: -32050, message: "not yet" } };
   });
   assert.equal(await restoreView(host, { camera: state.camera }), true);
-  assert.equal(refused, 3);
+  assert.equal(rejected, 3);
   assert.match(calls.at(-1) ?? "", /^camera\.set/);
 });
 

@@ -3,8 +3,8 @@ import test from "node:test";
 import type { Vector3 } from "heliograph/json.ts";
 import { PatchSender } from "../src/common/patch_sender.ts";
 import { displayColour, linearColour } from "../src/panel/scene/material_section.ts";
-import { editsBetween } from "../src/session/scene_edits.ts";
 import { sunDirection, sunPosition } from "../src/panel/scene/sun_dial.ts";
+import { editsBetween } from "../src/session/scene_edits.ts";
 
 test("a sun high in the south-east shines down to the north-west", () => {
   const direction = sunDirection({ azimuth: 135, elevation: 45 });
@@ -22,7 +22,7 @@ test("colours are unchanged after a round trip through a colour input", () => {
   assert.equal(displayColour(grey), "#808080");
 });
 
-test("patches of one object are merged during a call, those of others are sent at once", async () => {
+test("patches of one object are merged during a call, others are sent at once", async () => {
   const sent: string[] = [];
   const finish: (() => void)[] = [];
   const sender = new PatchSender((key, patch) => {

@@ -23,7 +23,10 @@ test("the page's URL leads to its session and keeps all other parameters", () =>
     moved.pageUrl(`${page}?session=old&enter=main&theme=dark#view=x`).href,
     `${page}?theme=dark&session=main-0123#view=x`,
   );
-  assert.equal(new SessionAddress(page, null, "review").pageUrl(page).href, `${page}?session=review`);
+  assert.equal(
+    new SessionAddress(page, null, "review").pageUrl(page).href,
+    `${page}?session=review`,
+  );
 });
 
 test("all viewers of a lost session get the same route", () => {
@@ -39,7 +42,10 @@ test("a shareable address has a route that leads to the same server", async (t) 
     const instance = tried.length < 4 ? "other" : "own";
     return Response.json({ result: { instance } });
   });
-  const address = await new SessionAddress(page, null, "main").findShareable({ instance: "own", session: "main" });
+  const address = await new SessionAddress(page, null, "main").findShareable({
+    instance: "own",
+    session: "main",
+  });
   assert.equal(tried[0], "main");
   assert.equal(tried.length, 4);
   assert.equal(address.pageUrl(page).href, `${page}?session=${tried[3]}&enter=main`);

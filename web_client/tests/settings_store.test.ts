@@ -22,11 +22,14 @@ interface Request {
   params: { patch?: JsonObject };
 }
 
-/** A channel whose far end is this test: it reads what was sent and answers when it likes. */
+/** A channel to a server that the test plays: it reads requests and answers on demand. */
 async function connected() {
   const sent: Request[] = [];
-  const refused: unknown[] = [];
-  const rpc: RpcPeer = new RpcPeer((text) => sent.push(JSON.parse(text) as Request), () => {});
+  const errors: unknown[] = [];
+  const rpc: RpcPeer = new RpcPeer(
+    (text) => sent.push(JSON.parse(text) as Request),
+    () => {},
+  );
   rpc.open();
   const answer = async (body: object): Promise<Request> => {
     const request = sent.shift();
@@ -35,12 +38,12 @@ async function connected() {
     await new Promise((resolve) => setTimeout(resolve, 0));
     return request;
   };
-  const store = new SettingsStore(rpc, (error) => refused.push(error));
+  const store = new SettingsStore(rpc, (error) => errors.push(error));
   const loaded = store.load();
   await answer({ result: schema });
   await answer({ result: { rev: 1, settings: { exposure: { ev: 0, auto: false } } } });
   await loaded;
-  return { store, sent, refused, answer };
+  return { store, sent, errors, answer };
 }
 
 test("a change shows at once and is sent as the smallest patch", async () => {
@@ -67,10 +70,10 @@ test("changes during a request are merged and do not flicker", async () => {
 });
 
 test("a rejected change is reported and the server's value returns", async () => {
-  const { store, refused, answer } = await connected();
+  const { store, errors, answer } = await connected();
   store.change("exposure.ev", 4);
   await answer({ error: { code: -32602, message: "exposure.ev is locked" } });
-  assert.equal(refused.length, 1);
+  assert.equal(errors.length, 1);
   await answer({ result: { rev: 1, settings: { exposure: { ev: 0, auto: false } } } });
   assert.equal(store.value("exposure.ev"), 0);
 });

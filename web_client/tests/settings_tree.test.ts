@@ -1,12 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import {
-  joinPatches,
-  mergePatch,
-  patchOf,
-  sameValue,
-  valueAt,
-} from "heliograph/settings_tree.ts";
+import { joinPatches, mergePatch, patchOf, sameValue, valueAt } from "heliograph/settings_tree.ts";
 
 test("paths lead to values and patches", () => {
   assert.equal(valueAt({ a: { b: [1] } }, "a.c"), undefined);

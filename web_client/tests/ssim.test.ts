@@ -26,7 +26,10 @@ test("uniform images are compared by their mean alone", () => {
   const [a, b] = [100, 150];
   const c1 = (0.01 * 255) ** 2;
   const expected = (2 * a * b + c1) / (a * a + b * b + c1);
-  const found = structuralSimilarity(image(() => a), image(() => b));
+  const found = structuralSimilarity(
+    image(() => a),
+    image(() => b),
+  );
   assert.ok(Math.abs(found - expected) < 1e-6);
 });
 

@@ -96,7 +96,7 @@ function pipeline(sizeTimeoutMs?: number) {
   return { frames, log, decoded };
 }
 
-test("during decoding only the newest frame is queued, and every frame is acknowledged", async () => {
+test("during decoding only the newest frame is queued, and all are acknowledged", async () => {
   const { frames, log, decoded } = pipeline();
   for (const seq of [1, 2, 3]) frames.push(frameMessage(seq));
   await decoded();

@@ -13,13 +13,16 @@ function stream() {
   const sent: Partial<StreamSettings>[] = [];
   const informed: string[] = [];
   let settings = {};
-  const rpc: RpcPeer = new RpcPeer((text) => {
-    const { id, params } = JSON.parse(text) as { id: number; params: Partial<StreamSettings> };
-    sent.push(params);
-    settings = { ...settings, ...params };
-    const answer = JSON.stringify({ jsonrpc: "2.0", id, result: settings });
-    queueMicrotask(() => rpc.receive(answer));
-  }, () => {});
+  const rpc: RpcPeer = new RpcPeer(
+    (text) => {
+      const { id, params } = JSON.parse(text) as { id: number; params: Partial<StreamSettings> };
+      sent.push(params);
+      settings = { ...settings, ...params };
+      const answer = JSON.stringify({ jsonrpc: "2.0", id, result: settings });
+      queueMicrotask(() => rpc.receive(answer));
+    },
+    () => {},
+  );
   rpc.open();
   const requests = new StreamRequests(rpc, {
     mayResize: () => true,

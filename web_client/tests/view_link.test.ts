@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { linkTo, viewIn } from "../src/session/view_link.ts";
 import { editsOf, patchesTowards } from "../src/session/scene_edits.ts";
+import { linkTo, viewIn } from "../src/session/view_link.ts";
 import type { ViewState } from "../src/session/view_state.ts";
 
 const state: ViewState = {
@@ -45,7 +45,10 @@ test("invalid and too many edits are dropped", () => {
 
 test("a link has a limited length and reports what was left out", () => {
   const materials = Object.fromEntries(
-    Array.from({ length: 60 }, (_, index) => [`a long name ${"x".repeat(100)}${index}`, { metallic: 1 }]),
+    Array.from({ length: 60 }, (_, index) => [
+      `a long name ${"x".repeat(100)}${index}`,
+      { metallic: 1 },
+    ]),
   );
   const { href, shortened } = linkTo("http://host/", { ...state, materials });
   assert.ok(href.length <= 8000 && shortened);

@@ -11,7 +11,10 @@ export async function seriousFindings(page) {
   const { violations } = await page.evaluate(() => window.axe.run());
   return violations
     .filter(({ impact }) => impact === "serious" || impact === "critical")
-    .flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) =>
-      `${id}: ${target.join(" ")}: ${failureSummary.split("\n").at(-1).trim()}`,
-    ));
+    .flatMap(({ id, nodes }) =>
+      nodes.map(
+        ({ target, failureSummary }) =>
+          `${id}: ${target.join(" ")}: ${failureSummary.split("\n").at(-1).trim()}`,
+      ),
+    );
 }

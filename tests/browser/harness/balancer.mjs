@@ -1,5 +1,5 @@
-// A load balancer: requests with a session go to the server that its name selects, others to the one
-// that a cookie would select. Servers that have exited are skipped.
+// A load balancer: requests with a session go to the server that its name selects, others to the
+// one that a cookie would select. Servers that have exited are skipped.
 
 import http from "node:http";
 import { once } from "node:events";
@@ -97,12 +97,16 @@ export class Balancer {
     socket.on("error", () => {});
     outgoing.on("error", () => socket.destroy());
     outgoing.on("response", (answer) => {
-      socket.end(`HTTP/1.1 ${answer.statusCode} ${answer.statusMessage}\r\nconnection: close\r\n\r\n`);
+      socket.end(
+        `HTTP/1.1 ${answer.statusCode} ${answer.statusMessage}\r\nconnection: close\r\n\r\n`,
+      );
       answer.resume();
     });
     outgoing.on("upgrade", (answer, other, first) => {
       const { rawHeaders } = answer;
-      const lines = rawHeaders.flatMap((name, i) => (i % 2 ? [] : [`${name}: ${rawHeaders[i + 1]}`]));
+      const lines = rawHeaders.flatMap((name, i) =>
+        i % 2 ? [] : [`${name}: ${rawHeaders[i + 1]}`],
+      );
       socket.write(`HTTP/1.1 101 Switching Protocols\r\n${lines.join("\r\n")}\r\n\r\n`);
       socket.write(first);
       other.write(head);

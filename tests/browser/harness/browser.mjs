@@ -122,9 +122,7 @@ export async function openTab(page, name) {
 
 /** Opens the tab that contains an element of the panel. */
 export async function reveal(locator) {
-  const tab = await locator
-    .first()
-    .evaluate((node) => node.closest("[data-tab]").dataset.tab);
+  const tab = await locator.first().evaluate((node) => node.closest("[data-tab]").dataset.tab);
   await openTab(locator.page(), tab);
 }
 

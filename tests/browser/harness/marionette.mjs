@@ -1,5 +1,5 @@
-// Controls Firefox by its remote protocol, Marionette (lengths and JSON over TCP): opens a page, runs
-// scripts in it, takes screenshots, reads its errors.
+// Controls Firefox by its remote protocol, Marionette (lengths and JSON over TCP): opens a page,
+// runs scripts in it, takes screenshots, reads its errors.
 
 import { spawn } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -58,7 +58,9 @@ export class Firefox {
     return value;
   }
 
-  /** Errors, warnings, exceptions and violations of the content security policy in pages of `url`. */
+  /**
+   * Errors, warnings, exceptions and violations of the content security policy in pages of `url`.
+   */
   async pageErrors(url) {
     await this.send("Marionette:SetContext", { value: "chrome" });
     try {

@@ -1,5 +1,5 @@
-// Records the messages between the page and its stream worker, so that tests wait for states instead
-// of fixed times. Runs in the page before its own script.
+// Records the messages between the page and its stream worker, so that tests wait for states
+// instead of fixed times. Runs in the page before its own script.
 
 /** Updates `window.seen`; serialised into the page. */
 function observe() {

@@ -11,9 +11,9 @@ after(() => browser?.close());
 
 export class Stage {
   /**
-   * The server loads `scene` and has `serverArguments`; a frame is converged after `samples`, or the
-   * server's default if null. `view` has options of every page's context. `prepare` runs once with
-   * the page that tests share.
+   * The server loads `scene` and has `serverArguments`; a frame is converged after `samples`, or
+   * the server's default if null. `view` has options of every page's context. `prepare` runs once
+   * with the page that tests share.
    */
   constructor({
     scene = "shadow_objects",

@@ -1,5 +1,5 @@
-// Sends patches of one object after another. Patches that arrive during a call are merged, so that a
-// drag never builds up a queue.
+// Sends patches of one object after another. Patches that arrive during a call are merged, so that
+// a drag never builds up a queue.
 
 import type { JsonObject } from "heliograph/json.ts";
 import { joinPatches } from "heliograph/settings_tree.ts";

@@ -3,11 +3,11 @@
 
 import type { JsonObject } from "heliograph/json.ts";
 import type { Hello, Methods, StreamConfigureParams } from "heliograph/messages.ts";
-import type { ComparisonState, Counterpart } from "./comparison_state.ts";
 import { type Edits, editsBetween } from "../session/scene_edits.ts";
+import type { Viewer } from "../session/viewer.ts";
 import { Connection } from "../stream/connection.ts";
 import { SessionAddress } from "../stream/session_address.ts";
-import type { Viewer } from "../session/viewer.ts";
+import type { ComparisonState, Counterpart } from "./comparison_state.ts";
 
 /** Settings that both sessions share: how a frame is displayed, not how it is rendered. */
 const sharedGroups = ["exposure", "tone_map", "environment"];
@@ -93,7 +93,8 @@ export class ComparedSession {
   end(): void {
     clearInterval(this.timer);
     this.worker.terminate();
-    // Other viewers cannot close a session that has viewers. If this fails, it ends by its idle timeout.
+    // Other viewers cannot close a session that has viewers. If this fails, it ends by its idle
+    // timeout.
     void this.connection.rpc
       .request("session.close", { session: this.name })
       .catch(() => {})

@@ -2,10 +2,10 @@
 // traced reference, or a buffer.
 
 import type { SceneInfo } from "heliograph/messages.ts";
-import { ComparedSession } from "./compared_session.ts";
-import type { ComparisonState, Counterpart } from "./comparison_state.ts";
 import { Signal } from "../common/signal.ts";
 import type { Viewer } from "../session/viewer.ts";
+import { ComparedSession } from "./compared_session.ts";
+import type { ComparisonState, Counterpart } from "./comparison_state.ts";
 
 const createTimeoutMs = 120_000;
 
@@ -38,7 +38,8 @@ export class Comparison {
   /** Whether server and browser support comparisons. */
   get possible(): boolean {
     const { capabilities, controlState } = this.viewer;
-    const hasOffscreenCanvas = typeof HTMLCanvasElement.prototype.transferControlToOffscreen === "function";
+    const hasOffscreenCanvas =
+      typeof HTMLCanvasElement.prototype.transferControlToOffscreen === "function";
     const mayCreate = controlState.value.kind !== "read_only" && capabilities.has("session.create");
     return hasOffscreenCanvas && mayCreate && capabilities.has("session.close");
   }
@@ -52,11 +53,7 @@ export class Comparison {
       const { rpc, parts, hello } = this.viewer;
       const source = hello?.session ?? "main";
       const copied = parts.edits();
-      const { name } = await rpc.request(
-        "session.create",
-        { copy_of: source },
-        createTimeoutMs,
-      );
+      const { name } = await rpc.request("session.create", { copy_of: source }, createTimeoutMs);
       if (generation !== this.generation) {
         rpc.notify("session.close", { session: name });
         return;

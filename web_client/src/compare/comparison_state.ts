@@ -3,9 +3,7 @@
 import type { DrawnFrame } from "../stream/worker_messages.ts";
 
 export type Counterpart =
-  | { kind: "reference" }
-  | { kind: "preset"; name: string }
-  | { kind: "buffer"; name: string };
+  { kind: "reference" } | { kind: "preset"; name: string } | { kind: "buffer"; name: string };
 
 export interface ComparisonState {
   counterpart: Counterpart;

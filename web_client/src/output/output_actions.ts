@@ -1,11 +1,11 @@
 // The "Save and share" menu: images, recordings, links, code to embed.
 
 import { copyText } from "../common/clipboard.ts";
-import { linkTo } from "../session/view_link.ts";
-import type { MenuItem } from "../widgets/menu.ts";
 import { captureBlob, saveFile } from "../common/image_files.ts";
-import { Recorder } from "./recorder.ts";
+import { linkTo } from "../session/view_link.ts";
 import type { Viewer } from "../session/viewer.ts";
+import type { MenuItem } from "../widgets/menu.ts";
+import { Recorder } from "./recorder.ts";
 
 interface OutputHost {
   /** Shows the result as one sentence. */
@@ -49,7 +49,7 @@ export function outputActions(viewer: Viewer, host: OutputHost): MenuItem[] {
       run: attempt(async () => {
         if (!recorder.running) {
           await recorder.start();
-          host.inform("Recording. Choose \"Stop recording\" to save the video.");
+          host.inform('Recording. Choose "Stop recording" to save the video.');
           return;
         }
         saveFile(await recorder.stop(), `${fileStem(viewer)}.webm`);
@@ -64,7 +64,7 @@ export function outputActions(viewer: Viewer, host: OutputHost): MenuItem[] {
         await copyText(href);
         host.inform(
           shortened
-            ? "Link copied to the clipboard. It does not contain all changed materials: there are too many."
+            ? "Link copied. It does not contain all changed materials: there are too many."
             : "Link copied to the clipboard",
         );
       }),

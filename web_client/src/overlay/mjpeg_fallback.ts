@@ -1,8 +1,8 @@
 // Where WebSockets do not get through, frames come as motion JPEG, without any control.
 
+import type { Viewer } from "../session/viewer.ts";
 import { MultipartReader } from "../stream/multipart.ts";
 import { type SessionAddress, mainSession } from "../stream/session_address.ts";
-import type { Viewer } from "../session/viewer.ts";
 
 const retryMs = 2000;
 /** The server repeats a converged frame more often than this. */
@@ -48,11 +48,7 @@ function streamPath(session: string): string {
 }
 
 /** Shows frames until the stream ends; false if the session does not exist. */
-async function showStream(
-  ended: AbortSignal,
-  url: URL,
-  image: HTMLImageElement,
-): Promise<boolean> {
+async function showStream(ended: AbortSignal, url: URL, image: HTMLImageElement): Promise<boolean> {
   const silence = new AbortController();
   const abort = (): void => silence.abort();
   ended.addEventListener("abort", abort);

@@ -2,11 +2,11 @@
 
 import type { ViewerInfo } from "heliograph/messages.ts";
 import { copyText } from "../common/clipboard.ts";
-import { button, element, icon, setText } from "../widgets/element.ts";
-import { createTakeControlButton } from "../widgets/take_control_button.ts";
 import { participantName, setParticipantName } from "../common/preferences.ts";
 import { viewerName } from "../session/control_state.ts";
 import type { Viewer } from "../session/viewer.ts";
+import { button, element, icon, setText } from "../widgets/element.ts";
+import { createTakeControlButton } from "../widgets/take_control_button.ts";
 
 export function mountParticipants(
   viewer: Viewer,
@@ -103,7 +103,9 @@ export function mountParticipants(
     const claimed = session.viewers.some(({ control }) => control);
     list.replaceChildren(
       ...session.viewers.map((participant, index) => participantLine(participant, index)),
-      ...(exclusive && !claimed && viewer.controlState.value.kind !== "read_only" ? [takeLine()] : []),
+      ...(exclusive && !claimed && viewer.controlState.value.kind !== "read_only"
+        ? [takeLine()]
+        : []),
     );
   });
   viewer.controlState.watch(({ kind }) => {
@@ -122,8 +124,10 @@ export function mountParticipants(
       element("span", { class: "participant" }, participant.you ? `${name} (you)` : name),
       inControl ? element("span", { class: "in-control" }, "in control") : null,
       canHandOver
-        ? button(`Hand over to ${name}`, "target", () =>
-            void viewer.setControl({ action: "give", viewer: participant.viewer }),
+        ? button(
+            `Hand over to ${name}`,
+            "target",
+            () => void viewer.setControl({ action: "give", viewer: participant.viewer }),
           )
         : null,
     );

@@ -1,11 +1,11 @@
 // State of the connection: a pill in the corner, and a notice while there is no frame.
 
-import { element, setText } from "../widgets/element.ts";
 import { humanise } from "heliograph/settings_schema.ts";
-import type { ControlState } from "../session/control_state.ts";
-import type { ConnectionState } from "../stream/connection.ts";
 import { thumbnailOf } from "../previews/thumbnails.ts";
+import type { ControlState } from "../session/control_state.ts";
 import type { Viewer } from "../session/viewer.ts";
+import type { ConnectionState } from "../stream/connection.ts";
+import { element, setText } from "../widgets/element.ts";
 
 interface Notice {
   title: string;
@@ -104,7 +104,7 @@ function noticeFor(viewer: Viewer, state: ConnectionState): Notice | null {
     case "wrong_version":
       return {
         title: "Version mismatch",
-        detail: `The server uses ${state.detail || "another protocol"}. Reload the page to get its version.`,
+        detail: `The server uses ${state.detail || "another protocol"}. Reload the page.`,
         action: { label: "Reload", run: () => location.reload() },
         dims: true,
       };

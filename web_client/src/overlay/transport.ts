@@ -2,9 +2,9 @@
 
 import type { AnimationState, Methods } from "heliograph/messages.ts";
 import type { RequestArguments } from "heliograph/rpc.ts";
-import { requiresControl } from "../widgets/requires_control.ts";
-import { button, element, icon, setOptions, setText } from "../widgets/element.ts";
 import type { Viewer } from "../session/viewer.ts";
+import { button, element, icon, setOptions, setText } from "../widgets/element.ts";
+import { requiresControl } from "../widgets/requires_control.ts";
 
 /** The methods whose result is the state of the animation. */
 type AnimationMethod = Extract<keyof Methods, `animation.${string}`>;
@@ -103,7 +103,10 @@ export function mountTransport(viewer: Viewer, root: HTMLElement): void {
     root.hidden = clips.length === 0;
     document.body.classList.toggle("with-transport", clips.length > 0);
     if (!state || clips.length === 0) return;
-    setOptions(clip, clips.map(({ name }) => ({ value: name, label: name.replaceAll("_", " ") })));
+    setOptions(
+      clip,
+      clips.map(({ name }) => ({ value: name, label: name.replaceAll("_", " ") })),
+    );
     clip.value = state.clip ?? clips[0]?.name ?? "";
     const nearest = rates.reduce((a, b) =>
       Math.abs(b - state.rate) < Math.abs(a - state.rate) ? b : a,

@@ -1,8 +1,8 @@
 // Uploads a scene file that was dropped on the page or chosen, and loads it.
 
-import { element, setText } from "../widgets/element.ts";
 import { describeControl } from "../session/control_state.ts";
 import type { Viewer } from "../session/viewer.ts";
+import { element, setText } from "../widgets/element.ts";
 import type { Toasts } from "./toasts.ts";
 
 const uploadsDisabled = "This server does not accept uploads";
@@ -70,7 +70,8 @@ function fileError(viewer: Viewer, file: File): string | null {
   }
   const limit = viewer.hello?.limits.max_upload_bytes ?? Infinity;
   if (file.size > limit) {
-    return `${file.name} has ${formatSize(file.size)}; the server accepts up to ${formatSize(limit)}`;
+    const [size, most] = [formatSize(file.size), formatSize(limit)];
+    return `${file.name} has ${size}; the server accepts up to ${most}`;
   }
   return file.size === 0 ? `${file.name} is empty` : null;
 }

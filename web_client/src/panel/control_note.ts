@@ -9,7 +9,12 @@ export function createControlNote(viewer: Viewer): HTMLElement {
   const text = element("p");
   const take = createTakeControlButton(viewer);
   const body = element("div", {}, text, take);
-  const note = element("div", { class: "control-note", role: "status" }, icon("participants"), body);
+  const note = element(
+    "div",
+    { class: "control-note", role: "status" },
+    icon("participants"),
+    body,
+  );
   viewer.controlState.watch((controlState) => {
     note.hidden = controlState.kind === "may_change";
     take.hidden = controlState.kind !== "unclaimed";

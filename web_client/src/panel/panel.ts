@@ -1,17 +1,17 @@
 // The side panel, which becomes a bottom sheet on narrow screens.
 
 import { preferences } from "../common/preferences.ts";
+import type { Signal } from "../common/signal.ts";
 import { type Viewer, bufferSetting } from "../session/viewer.ts";
 import { button, element, icon } from "../widgets/element.ts";
+import { type MenuItem, createMenu } from "../widgets/menu.ts";
+import { createTabs } from "../widgets/tabs.ts";
+import { createControlNote } from "./control_note.ts";
 import { type InspectParts, createInspectTab } from "./inspect/inspect_tab.ts";
 import { createSceneTab, appearanceGroups } from "./scene/scene_tab.ts";
-import { type MenuItem, createMenu } from "../widgets/menu.ts";
 import { createSettingsTab } from "./settings/settings_tab.ts";
-import { createControlNote } from "./control_note.ts";
-import { createTimingTab } from "./timing/timing_tab.ts";
 import { type ResolutionChoice, createStreamSection } from "./timing/stream_section.ts";
-import { createTabs } from "../widgets/tabs.ts";
-import type { Signal } from "../common/signal.ts";
+import { createTimingTab } from "./timing/timing_tab.ts";
 
 interface PanelActions {
   output: MenuItem[];
@@ -39,7 +39,12 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
       icon: "sliders",
       body: createSettingsTab(viewer, [...appearanceGroups, bufferSetting]),
     },
-    { id: "inspect", label: "Inspect", icon: "layers", body: createInspectTab(viewer, actions.inspect) },
+    {
+      id: "inspect",
+      label: "Inspect",
+      icon: "layers",
+      body: createInspectTab(viewer, actions.inspect),
+    },
     { id: "timing", label: "Timing", icon: "chart", body: createTimingTab(viewer, stream.node) },
   ]);
   viewer.controlState.watch(({ kind }) => {

@@ -3,8 +3,8 @@
 
 import type { SceneList } from "heliograph/messages.ts";
 import { thumbnailUrl } from "../common/image_files.ts";
-import { storeThumbnail, thumbnailOf } from "./thumbnails.ts";
 import type { Viewer } from "../session/viewer.ts";
+import { storeThumbnail, thumbnailOf } from "./thumbnails.ts";
 
 const size = { width: 240, height: 135 };
 const samples = 8;
@@ -61,7 +61,10 @@ export class ScenePreviews {
     const { viewer } = this;
     const busy = viewer.loading.value || viewer.restoring.value || viewer.animation.value?.playing;
     if (document.hidden || !viewer.hello || busy || !viewer.frame.value?.final) return false;
-    if (!viewer.capabilities.has("session.create") || viewer.controlState.value.kind === "read_only") {
+    if (
+      !viewer.capabilities.has("session.create") ||
+      viewer.controlState.value.kind === "read_only"
+    ) {
       this.active = false;
       return false;
     }

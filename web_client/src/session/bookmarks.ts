@@ -33,7 +33,10 @@ export function addBookmark(scene: string, camera: CameraPose): Bookmark[] {
 }
 
 export function removeBookmark(scene: string, name: string): Bookmark[] {
-  return store(scene, readBookmarks(scene).filter((bookmark) => bookmark.name !== name));
+  return store(
+    scene,
+    readBookmarks(scene).filter((bookmark) => bookmark.name !== name),
+  );
 }
 
 function store(scene: string, bookmarks: Bookmark[]): Bookmark[] {

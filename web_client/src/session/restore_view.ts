@@ -77,10 +77,10 @@ async function restoreScene({ rpc, ownsSession }: RestoreHost, state: ViewState)
   const { scene, part, variant } = state;
   const loaded = info && matches(scene, info.name) && matches(part, info.scene);
   if (loaded && matches(variant, info.variant)) return;
-  const chosen = part === undefined ? undefined : String(part);
+  const index = part === undefined ? undefined : String(part);
   const name = scene ?? info?.name;
   if (name === undefined) return;
-  const load = { name, scene: chosen, variant };
+  const load = { name, scene: index, variant };
   await rpc.request("scene.load", load, loadTimeoutMs);
 }
 

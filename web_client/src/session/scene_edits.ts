@@ -51,7 +51,9 @@ export function editsBetween(before: Edits, after: Edits): Edits {
   for (const name of new Set([...Object.keys(before), ...Object.keys(after)])) {
     const [old, next] = [before[name] ?? {}, after[name] ?? {}];
     const removed = Object.keys(old).filter((member) => !(member in next));
-    const changed = Object.entries(next).filter(([member, value]) => !sameValue(old[member], value));
+    const changed = Object.entries(next).filter(
+      ([member, value]) => !sameValue(old[member], value),
+    );
     const patch = Object.fromEntries([...removed.map((member) => [member, null]), ...changed]);
     if (Object.keys(patch).length > 0) patches[name] = patch as JsonObject;
   }

@@ -32,7 +32,8 @@ export class SessionRestore {
     const origin = this.host.origin();
     if (!origin || origin.instance === hello.instance) return pending;
     // A server without `restore_state` has a single session.
-    const restores = hello.restore_state ?? (hello.restore_state === undefined && this.host.mayChange());
+    const restores =
+      hello.restore_state ?? (hello.restore_state === undefined && this.host.mayChange());
     if (restores) this.restoringAt = keyOf(hello);
     this.host.inform(describeReconnect(hello, origin, this.isRestoring(hello)));
     if (this.isRestoring(hello)) return pending ?? this.host.viewState();

@@ -1,8 +1,8 @@
 // A view state in the fragment of a URL, which browsers do not send to the server.
 
 import type { JsonObject, JsonValue, Vector3 } from "heliograph/json.ts";
-import type { CameraPose } from "../common/camera_pose.ts";
 import { isObject } from "heliograph/settings_tree.ts";
+import type { CameraPose } from "../common/camera_pose.ts";
 import { checkedEdits, maxEdits } from "./scene_edits.ts";
 import type { ClipState, ViewState } from "./view_state.ts";
 

@@ -1,10 +1,10 @@
 // What the page shows, in a form for links, bookmarks and the restore after a reconnect.
 
-import type { CameraPose } from "../common/camera_pose.ts";
 import type { JsonObject } from "heliograph/json.ts";
 import type { AnimationState } from "heliograph/messages.ts";
 import { type ControlGroup, allControls } from "heliograph/settings_schema.ts";
 import { joinPatches, patchOf, sameValue, valueAt } from "heliograph/settings_tree.ts";
+import type { CameraPose } from "../common/camera_pose.ts";
 import type { Edits } from "./scene_edits.ts";
 
 export interface ClipState {

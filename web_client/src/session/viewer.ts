@@ -1,5 +1,5 @@
-// The session that this page shows, and the calls that change it. No DOM here except the canvas that
-// the frames are drawn to.
+// The session that this page shows, and the calls that change it. No DOM here except the canvas
+// that the frames are drawn to.
 
 import { Codec } from "heliograph/frame_header.ts";
 import {
@@ -299,7 +299,9 @@ export class Viewer {
   private dropViewStateWithoutControl(): void {
     if (!this.pendingViewState || this.mayChange) return;
     this.pendingViewState = null;
-    this.onInfo(`The view in the link was not applied. ${describeControl(this.controlState.value)}`);
+    this.onInfo(
+      `The view in the link was not applied. ${describeControl(this.controlState.value)}`,
+    );
   }
 
   private async restorePendingViewState(): Promise<void> {

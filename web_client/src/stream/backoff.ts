@@ -1,5 +1,5 @@
-// Delays between attempts to reconnect: exponential back-off, capped, with jitter so that the viewers
-// of a restarted server do not all reconnect at the same time.
+// Delays between attempts to reconnect: exponential back-off, capped, with jitter so that the
+// viewers of a restarted server do not all reconnect at the same time.
 export class Backoff {
   private attempts = 0;
   private readonly firstDelayMs: number;

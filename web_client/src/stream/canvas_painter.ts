@@ -7,9 +7,7 @@ export class CanvasPainter {
 
   constructor(canvas: HTMLCanvasElement | OffscreenCanvas) {
     const context = canvas.getContext("2d", { alpha: false }) as
-      | CanvasRenderingContext2D
-      | OffscreenCanvasRenderingContext2D
-      | null;
+      CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D | null;
     if (!context) throw new Error("This browser has no 2D canvas");
     this.canvas = canvas;
     this.context = context;

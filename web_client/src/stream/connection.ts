@@ -6,7 +6,12 @@ import { participantName } from "../common/preferences.ts";
 import { Signal } from "../common/signal.ts";
 import { Backoff } from "./backoff.ts";
 import { decodableCodecs } from "./codecs.ts";
-import { type SessionOrigin, SessionAddress, mainSession, rendezvousRoute } from "./session_address.ts";
+import {
+  type SessionOrigin,
+  SessionAddress,
+  mainSession,
+  rendezvousRoute,
+} from "./session_address.ts";
 import type { DrawnFrame, FrameRequirement, FromWorker, ToWorker } from "./worker_messages.ts";
 
 export type ConnectionState =
@@ -268,7 +273,9 @@ export class Connection {
         this.state.set({ kind: "wrong_version", detail: protocol });
       } else {
         this.rejectedUpgrades = protocol ? this.rejectedUpgrades + 1 : 0;
-        this.retryLater(this.rejectedUpgrades >= rejectionsBeforeFallback ? "mjpeg_fallback" : "lost");
+        this.retryLater(
+          this.rejectedUpgrades >= rejectionsBeforeFallback ? "mjpeg_fallback" : "lost",
+        );
       }
     }
   }

@@ -20,10 +20,7 @@ export interface FrameSink {
   failed(message: string, video: boolean): void;
 }
 
-type Decode = (
-  bytes: Uint8Array<ArrayBuffer>,
-  type: string,
-) => Promise<ImageBitmap | VideoFrame>;
+type Decode = (bytes: Uint8Array<ArrayBuffer>, type: string) => Promise<ImageBitmap | VideoFrame>;
 
 export class FramePipeline {
   private readonly sink: FrameSink;

@@ -1,5 +1,5 @@
-// The address of a session: the route that leads to its server, also through a load balancer, and its
-// name there.
+// The address of a session: the route that leads to its server, also through a load balancer, and
+// its name there.
 
 import type { Hello } from "heliograph/messages.ts";
 
@@ -15,8 +15,9 @@ export interface SessionOrigin {
 }
 
 /**
- * The route that all viewers of a lost session choose, so that they meet on one server: the session's
- * name or, for the main session, which every server has, a name made from the lost instance.
+ * The route that all viewers of a lost session choose, so that they meet on one server: the
+ * session's name or, for the main session, which every server has, a name made from the lost
+ * instance.
  */
 export function rendezvousRoute({ instance, session }: SessionOrigin): string {
   return session === mainSession ? `${mainSession}-${instance.slice(0, 8)}` : session;
@@ -92,7 +93,8 @@ export class SessionAddress {
     for (let tried = 0; tried < maxRoutesTried; tried += 1) {
       const route = [...current, session][tried] ?? `to-${Math.random().toString(36).slice(2, 10)}`;
       const hello = await this.fetchHello(route);
-      if (!hello || hello.instance === instance) return new SessionAddress(this.base, route, session);
+      if (!hello || hello.instance === instance)
+        return new SessionAddress(this.base, route, session);
     }
     throw new Error("No link leads other viewers to this server. Try again later.");
   }

@@ -1,5 +1,5 @@
-// Decodes a video stream (H.264, Annex B). Every frame depends on the one before: all are decoded in
-// order, and after a loss the frames up to the next key frame are skipped.
+// Decodes a video stream (H.264, Annex B). Every frame depends on the one before: all are decoded
+// in order, and after a loss the frames up to the next key frame are skipped.
 
 import { type FrameHeader, FrameFlag } from "heliograph/frame_header.ts";
 import { codecString } from "./annex_b.ts";

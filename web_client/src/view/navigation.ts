@@ -133,8 +133,7 @@ export class Navigation {
     else if (this.gesture === "pan") this.change((camera) => pan(camera, right, down));
     else if (this.gesture === "look") {
       this.change((camera) => look(camera, right * lookPerHeight, down * lookPerHeight));
-    }
-    else this.dragOrbit(right * orbitPerHeight, down * orbitPerHeight, event.timeStamp);
+    } else this.dragOrbit(right * orbitPerHeight, down * orbitPerHeight, event.timeStamp);
     this.pointers.set(event.pointerId, after);
   };
 
@@ -241,7 +240,8 @@ export class Navigation {
   }
 
   private applyFlyKeys(camera: CameraPose, elapsedMs: number): CameraPose {
-    const metres = this.host.sceneSize() * flyPerMs * elapsedMs * (this.shiftHeld ? fastFlyFactor : 1);
+    const metres =
+      this.host.sceneSize() * flyPerMs * elapsedMs * (this.shiftHeld ? fastFlyFactor : 1);
     const offset = [0, 0, 0] as [number, number, number];
     for (const key of this.heldKeys) {
       flyKeys[key]?.forEach((direction, axis) => (offset[axis as 0 | 1 | 2] += direction * metres));
@@ -277,8 +277,7 @@ export class Navigation {
     const elapsed = Math.min(100, Math.max(0, now - this.lastFrameAt));
     if (this.heldKeys.size > 0) this.applyKeys(elapsed);
     const moving =
-      this.continueTransition(now) ||
-      (this.pointers.size === 0 && this.continueInertia(elapsed));
+      this.continueTransition(now) || (this.pointers.size === 0 && this.continueInertia(elapsed));
     if (this.pendingPose) {
       const camera = this.pendingPose;
       this.pendingPose = null;

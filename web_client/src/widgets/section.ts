@@ -26,10 +26,5 @@ export function createSection(parts: SectionParts): HTMLElement {
     element("summary", {}, icon("chevron"), element("h2", {}, parts.title), parts.note),
     parts.body,
   );
-  return element(
-    "section",
-    { class: "section", "data-section": parts.id },
-    fold,
-    parts.action,
-  );
+  return element("section", { class: "section", "data-section": parts.id }, fold, parts.action);
 }

@@ -32,6 +32,10 @@ export function createSliderRow(parts: SliderParts, report: (value: number) => v
     ...range,
     ...parts,
   };
-  const row = createRow(control, (value) => report(Number(value)), () => {});
+  const row = createRow(
+    control,
+    (value) => report(Number(value)),
+    () => {},
+  );
   return { node: row.node, show: (value) => row.show(value, false) };
 }

@@ -70,7 +70,12 @@ export function createTabs(label: string, parts: TabParts[]): Tabs {
     tabs[next]?.tab.focus();
   };
   const select = (id: string): void => {
-    show(Math.max(0, tabs.findIndex((tab) => tab.id === id)));
+    show(
+      Math.max(
+        0,
+        tabs.findIndex((tab) => tab.id === id),
+      ),
+    );
   };
   select(preferences.text(storageKey, parts[0]?.id ?? ""));
   return { list, pages, select };

@@ -75,7 +75,10 @@ function bufferPicker(viewer: Viewer): HTMLSelectElement {
     const buffers = viewer.capabilities.buffers.value;
     const known = buffers.some(({ name }) => name === shown);
     const names = known ? buffers.map(({ name }) => name) : [shown, ...buffers.map((b) => b.name)];
-    setOptions(select, names.map((name) => ({ value: name, label: bufferLabel(name) })));
+    setOptions(
+      select,
+      names.map((name) => ({ value: name, label: bufferLabel(name) })),
+    );
     select.value = shown;
     select.dataset.tip =
       buffers.find(({ name }) => name === shown)?.description || "The buffer to show";

@@ -2,13 +2,13 @@
 
 import type { Comparison } from "../../compare/comparison.ts";
 import type { Counterpart } from "../../compare/comparison_state.ts";
-import type { Divider } from "../../view/divider.ts";
 import type { Viewer } from "../../session/viewer.ts";
-import { bufferLabel } from "./buffer_fields.ts";
+import type { Divider } from "../../view/divider.ts";
 import { element, setOptions, setText } from "../../widgets/element.ts";
 import { field } from "../../widgets/field.ts";
-import { presetLabel } from "../settings/preset_labels.ts";
 import { createSliderRow } from "../../widgets/slider_row.ts";
+import { presetLabel } from "../settings/preset_labels.ts";
+import { bufferLabel } from "./buffer_fields.ts";
 
 const none = "";
 /** Buffers that are shown over the frame instead of beside it. */
@@ -54,7 +54,8 @@ export function createCompareFields(
       comparison.stop();
       return;
     }
-    if (counterpart.kind === "buffer" && overlaidBuffers.test(counterpart.name)) mode.value = "overlay";
+    if (counterpart.kind === "buffer" && overlaidBuffers.test(counterpart.name))
+      mode.value = "overlay";
     if (counterpart.kind !== "buffer") mode.value = "split";
     updateLayout();
     void comparison.start(counterpart);

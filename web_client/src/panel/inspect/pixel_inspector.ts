@@ -3,8 +3,8 @@
 import type { Inspection } from "heliograph/messages.ts";
 import type { Viewer } from "../../session/viewer.ts";
 import type { PointPicker } from "../../view/picker.ts";
-import { bufferLabel } from "./buffer_fields.ts";
 import { element, setText } from "../../widgets/element.ts";
+import { bufferLabel } from "./buffer_fields.ts";
 
 const shownDigits = 4;
 
@@ -38,7 +38,11 @@ export function createInspector(viewer: Viewer, picker: PointPicker): HTMLElemen
     rows.replaceChildren(
       ...inspection.buffers.flatMap(({ name, value, unit }) => [
         element("dt", { "data-tip": name }, bufferLabel(name)),
-        element("dd", { "data-value": name }, `${value.map(formatValue).join("  ")} ${unit}`.trim()),
+        element(
+          "dd",
+          { "data-value": name },
+          `${value.map(formatValue).join("  ")} ${unit}`.trim(),
+        ),
       ]),
     );
   };

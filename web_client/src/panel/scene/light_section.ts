@@ -10,10 +10,10 @@ import { createSunDial } from "./sun_dial.ts";
 
 export function createLightSection(parts: SceneParts): HTMLElement {
   const select = element("select", { name: "light", change: () => show() });
-  const chosen = (): LightInfo | undefined =>
+  const selected = (): LightInfo | undefined =>
     parts.lights.value.find(({ name }) => name === select.value) ?? parts.lights.value[0];
   const patch = (change: Partial<LightInfo>): void => {
-    const light = chosen();
+    const light = selected();
     if (light) parts.patchLight(light.name, change);
   };
   const enabled = element("input", {
@@ -25,7 +25,7 @@ export function createLightSection(parts: SceneParts): HTMLElement {
     change: () => patch({ enabled: enabled.checked }),
   });
   const reset = button("Reset this light", "reset", () => {
-    const light = chosen();
+    const light = selected();
     if (light) void parts.resetLight(light.name);
   });
   const dial = createSunDial("Direction of the sun", (direction) => patch({ direction }));
@@ -72,7 +72,7 @@ export function createLightSection(parts: SceneParts): HTMLElement {
     radius.node,
   );
   const show = (): void => {
-    const light = chosen();
+    const light = selected();
     if (!light) return;
     select.value = light.name;
     enabled.checked = light.enabled;
@@ -87,7 +87,10 @@ export function createLightSection(parts: SceneParts): HTMLElement {
   const section = createSection({ id: "lights", title: "Lights", body, openByDefault: true });
   parts.lights.watch((lights) => {
     section.hidden = lights.length === 0;
-    setOptions(select, lights.map(({ name }) => ({ value: name, label: name })));
+    setOptions(
+      select,
+      lights.map(({ name }) => ({ value: name, label: name })),
+    );
     show();
   });
   return section;

@@ -19,10 +19,10 @@ interface MaterialSection {
 
 export function createMaterialSection(parts: SceneParts): MaterialSection {
   const select = element("select", { name: "material", change: () => show() });
-  const chosen = (): MaterialInfo | undefined =>
+  const selected = (): MaterialInfo | undefined =>
     parts.materials.value.find(({ name }) => name === select.value) ?? parts.materials.value[0];
   const patch = (change: Partial<MaterialInfo>): void => {
-    const material = chosen();
+    const material = selected();
     if (material) parts.patchMaterial(material.name, change);
   };
   const fraction = (label: string, description: string, report: (value: number) => void) =>
@@ -37,7 +37,7 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
   );
   const metallic = fraction(
     "Metallic",
-    "Whether the surface is a metal (1) or a dielectric (0). A factor on the texture, if there is one.",
+    "Metal (1) or dielectric (0). A factor on the texture, if there is one.",
     (value) => patch({ metallic: value }),
   );
   const colour = element("input", {
@@ -47,10 +47,13 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
     input: () => patch({ base_color: linearColour(colour.value) }),
   });
   const reset = button("Reset this material", "reset", () => {
-    const material = chosen();
+    const material = selected();
     if (material) void parts.resetMaterial(material.name);
   });
-  const sweep = createSweep((value) => patch({ roughness: value }), () => chosen()?.roughness);
+  const sweep = createSweep(
+    (value) => patch({ roughness: value }),
+    () => selected()?.roughness,
+  );
   const body = element(
     "div",
     { class: "section-body" },
@@ -61,7 +64,7 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
     sweep,
   );
   const show = (): void => {
-    const material = chosen();
+    const material = selected();
     if (!material) return;
     select.value = material.name;
     roughness.show(material.roughness);
@@ -71,7 +74,10 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
   const node = createSection({ id: "materials", title: "Materials", body, openByDefault: false });
   parts.materials.watch((materials) => {
     node.hidden = materials.length === 0;
-    setOptions(select, materials.map(({ name }) => ({ value: name, label: name })));
+    setOptions(
+      select,
+      materials.map(({ name }) => ({ value: name, label: name })),
+    );
     show();
   });
   const choose = (name: string): void => {

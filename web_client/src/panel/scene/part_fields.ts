@@ -24,7 +24,10 @@ export function createPartFields(viewer: Viewer): HTMLElement[] {
     partField.hidden = names.length < 2;
     setOptions(
       parts,
-      names.map((name, number) => ({ value: String(number), label: name || `Scene ${number + 1}` })),
+      names.map((name, number) => ({
+        value: String(number),
+        label: name || `Scene ${number + 1}`,
+      })),
     );
     parts.value = String(scene?.scene ?? 0);
     variantField.hidden = !scene || scene.variants.length === 0;

@@ -2,15 +2,15 @@
 
 import type { SceneInfo } from "heliograph/messages.ts";
 import type { Viewer } from "../../session/viewer.ts";
-import { createCameraFields } from "./camera_fields.ts";
-import { requiresControl } from "../../widgets/requires_control.ts";
 import { element, icon, setText } from "../../widgets/element.ts";
+import { requiresControl } from "../../widgets/requires_control.ts";
+import { mountSettings } from "../settings/settings_sections.ts";
+import { createCameraFields } from "./camera_fields.ts";
 import { createEnvironmentField } from "./environment_field.ts";
 import { createLightSection } from "./light_section.ts";
 import { createMaterialSection } from "./material_section.ts";
 import { createPartFields } from "./part_fields.ts";
 import { createScenePicker } from "./scene_picker.ts";
-import { mountSettings } from "../settings/settings_sections.ts";
 
 /** Groups of settings that are shown here instead of in the Settings tab. */
 export const appearanceGroups = ["exposure", "tone_map", "environment"];

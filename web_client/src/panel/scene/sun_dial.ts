@@ -1,10 +1,10 @@
-// The direction of a directional light as a point on a disc: the edge is the horizon, the centre the
-// zenith; the disc is a map seen from above, with +Z down.
+// The direction of a directional light as a point on a disc: the edge is the horizon, the centre
+// the zenith; the disc is a map seen from above, with +Z down.
 
 import type { Vector3 } from "heliograph/json.ts";
 import { normalize, scale } from "../../common/vector.ts";
-import { isDisabled } from "../../widgets/requires_control.ts";
 import { element } from "../../widgets/element.ts";
+import { isDisabled } from "../../widgets/requires_control.ts";
 
 const keyStep = 2; // degrees
 const largeStep = 10;
@@ -46,7 +46,7 @@ export function createSunDial(label: string, changed: (direction: Vector3) => vo
       "aria-label": label,
       "aria-valuemin": "-180",
       "aria-valuemax": "180",
-      "data-tip": "Drag to set the direction. Arrow keys change azimuth and elevation, with Shift in larger steps.",
+      "data-tip": "Drag to set the direction, or use the arrow keys (with Shift: larger steps).",
       pointerdown: (event: PointerEvent) => {
         if (isDisabled(disc)) return;
         disc.setPointerCapture(event.pointerId);
@@ -90,9 +90,9 @@ export function createSunDial(label: string, changed: (direction: Vector3) => vo
     const turn = (position.azimuth * Math.PI) / 180;
     knob.style.left = `${50 + 50 * radius * Math.sin(turn)}%`;
     knob.style.top = `${50 - 50 * radius * Math.cos(turn)}%`;
-    const text = `${position.azimuth.toFixed(0)}° azimuth, ${position.elevation.toFixed(0)}° elevation`;
-    disc.setAttribute("aria-valuenow", position.azimuth.toFixed(0));
-    disc.setAttribute("aria-valuetext", text);
+    const [azimuth, elevation] = [position.azimuth.toFixed(0), position.elevation.toFixed(0)];
+    disc.setAttribute("aria-valuenow", azimuth);
+    disc.setAttribute("aria-valuetext", `${azimuth}° azimuth, ${elevation}° elevation`);
   };
   return {
     node: disc,

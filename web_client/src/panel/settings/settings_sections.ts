@@ -2,9 +2,9 @@
 
 import type { ControlGroup } from "heliograph/settings_schema.ts";
 import type { SettingsStore } from "../../session/settings_store.ts";
-import { type Row, createRow } from "../../widgets/setting_row.ts";
 import { element, icon, setText } from "../../widgets/element.ts";
 import { createSection } from "../../widgets/section.ts";
+import { type Row, createRow } from "../../widgets/setting_row.ts";
 
 interface Section {
   node: HTMLElement;

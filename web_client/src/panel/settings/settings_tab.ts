@@ -2,8 +2,8 @@
 
 import type { JsonObject } from "heliograph/json.ts";
 import type { Viewer } from "../../session/viewer.ts";
-import { requiresControl } from "../../widgets/requires_control.ts";
 import { button, element, icon, setText } from "../../widgets/element.ts";
+import { requiresControl } from "../../widgets/requires_control.ts";
 import { presetLabel } from "./preset_labels.ts";
 import { mountSettings } from "./settings_sections.ts";
 

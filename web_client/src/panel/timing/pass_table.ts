@@ -1,5 +1,5 @@
-// GPU and CPU time of a frame: one line per stage, which expands into its passes. Times are smoothed
-// and lines keep their order, so that the table is readable.
+// GPU and CPU time of a frame: one line per stage, which expands into its passes. Times are
+// smoothed and lines keep their order, so that the table is readable.
 
 import { humanise } from "heliograph/settings_schema.ts";
 import { element, icon, setText } from "../../widgets/element.ts";

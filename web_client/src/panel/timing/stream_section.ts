@@ -42,7 +42,7 @@ export function createStreamSection(viewer: Viewer): {
     "select",
     {
       name: "resolution",
-      "data-tip": "Fewer pixels render faster. Automatic requests a lower resolution of a server that renders on its CPU.",
+      "data-tip": "Fewer pixels render faster. Automatic: fewer pixels where a CPU renders.",
       change: () => {
         preferences.setText("resolution", sizes.value);
         resolution.set(resolutions[sizes.value]?.choice ?? automatic);
@@ -87,23 +87,23 @@ function qualityPicker(viewer: Viewer): HTMLSelectElement {
 
 /** Hidden where server and browser have only one codec in common. */
 function codecField(viewer: Viewer): HTMLElement {
-  const select = element(
-    "select",
-    {
-      name: "codec",
-      "data-tip": "H.264 needs a fraction of the bandwidth, JPEG is sharper during motion.",
-      change: () => {
-        preferences.setText("codec", select.value);
-        viewer.stream.request({ codec: select.value as StreamSettings["codec"] });
-      },
+  const select = element("select", {
+    name: "codec",
+    "data-tip": "H.264 needs a fraction of the bandwidth, JPEG is sharper during motion.",
+    change: () => {
+      preferences.setText("codec", select.value);
+      viewer.stream.request({ codec: select.value as StreamSettings["codec"] });
     },
-  );
+  });
   const node = field("Codec", select);
   viewer.connection.state.watch((state) => {
     if (state.kind !== "live") return;
     const { codecs } = state.hello;
     node.hidden = codecs.length < 2;
-    setOptions(select, codecs.map((name) => ({ value: name, label: codecLabels[name] ?? name })));
+    setOptions(
+      select,
+      codecs.map((name) => ({ value: name, label: codecLabels[name] ?? name })),
+    );
     select.value = viewer.stream.settings.value?.codec ?? codecs[0] ?? "jpeg";
   });
   viewer.stream.settings.watch((stream) => {

@@ -12,7 +12,10 @@ const idleAfterMs = 1200;
 
 export function createTimingTab(viewer: Viewer, streamFields: HTMLElement): HTMLElement {
   const rate = figure("Frame rate", "Frames drawn per second. A converged view sends no frames.");
-  const latency = figure("Latency", "From moving the camera to drawing the first frame that shows it.");
+  const latency = figure(
+    "Latency",
+    "From moving the camera to drawing the first frame that shows it.",
+  );
   const bandwidth = figure("Bandwidth", "Data rate of the stream.");
   const size = figure("Frame size", "Pixels that the server renders and sends.");
   const samples = figure("Samples", "Samples per pixel, accumulated while the view is static.");
