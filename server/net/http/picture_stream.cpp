@@ -229,9 +229,11 @@ class PictureStream : public Connection,
 }  // namespace
 
 protocol::Result<protocol::StreamConfigure> picture_stream_wishes(const HttpRequest& request) {
-  const auto quality = number_parameter(request, "quality", protocol::min_quality, protocol::max_quality);
+  const auto quality =
+      number_parameter(request, "quality", protocol::min_quality, protocol::max_quality);
   if (!quality) return quality.error();
-  const auto rate = number_parameter(request, "max_fps", 1, static_cast<std::uint32_t>(protocol::max_frame_rate));
+  const auto rate =
+      number_parameter(request, "max_fps", 1, static_cast<std::uint32_t>(protocol::max_frame_rate));
   if (!rate) return rate.error();
   protocol::StreamConfigure wishes;
   wishes.quality = *quality;
