@@ -70,7 +70,7 @@ protocol::Result<std::optional<SurfacePoint>> surface_at(const Drawing& drawing,
   const gpu::Image* const normals = drawing.find("gbuffer.normals");
   if (!instances || !motion || !normals) {
     return protocol::error::conflict(
-        "reference.use", "the path traced picture keeps no surfaces that could be picked");
+        "reference.use", "is on: the path traced reference image has no surfaces to pick");
   }
   const glm::uvec2 pixel = pixel_at(point, instances->desc().extent);
   const auto instance = static_cast<std::uint32_t>(texel(*instances, pixel).x);
