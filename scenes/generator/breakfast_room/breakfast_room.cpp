@@ -11,12 +11,12 @@
 namespace heliograph::scenes {
 namespace {
 
-constexpr glm::vec3 target(1.0f, 0.95f, -0.7f);
+constexpr glm::vec3 breakfast_target(1.0f, 0.95f, -0.7f);
 
-Pose camera_pose(float phase) {
+Pose breakfast_camera_pose(float phase) {
   const glm::vec3 eye(-2.7f + 0.8f * std::sin(two_pi * phase), 1.65f,
                       3.2f - 0.5f * there_and_back(phase));
-  return look(eye, target);
+  return look(eye, breakfast_target);
 }
 
 void add_fabrics(Palette& palette, BreakfastMaterials& m) {
@@ -84,11 +84,11 @@ Document make_breakfast_room(const PaperScene& scene, const ClearSky& sky) {
   document.name = scene.name;
   document.description = "A table laid for five in the morning sun behind mullioned windows";
   const BreakfastMaterials materials = add_materials(document);
-  document.add_camera("main", camera_pose(0.0f).translation, target, 56.0f);
+  document.add_camera("main", breakfast_camera_pose(0.0f).translation, breakfast_target, 56.0f);
   add_sun(document, scene.sun, sky);
   Animation camera{"moving_camera", {}};
   Animation objects{"moving_objects_light", {}};
-  animate(camera, find_node(document, "main"), camera_pose);
+  animate(camera, find_node(document, "main"), breakfast_camera_pose);
   add_shell(document, materials);
   add_windows(document, materials);
   add_table_and_chairs(document, materials);

@@ -7,10 +7,11 @@
 #include <map>
 #include <utility>
 
+#include "scenes/generator/geometry/transforms.hpp"
+
 namespace heliograph::scenes {
 namespace {
 
-constexpr float pi = glm::pi<float>();
 using Face = std::array<int, 3>;
 
 struct DirectionMesh {

@@ -334,8 +334,8 @@ TEST_F(TemporalAccumulation, RestartsWhereHistoryIsInvalid) {
   start(plain_settings());
   for (int i = 0; i < 5; ++i) frame(glm::vec4(1.0f));
   FrameRig fresh(scene_->builder.build(), scene_->from(5.0f), {.extent = extent});
-  EXPECT_EQ(fresh.constants().counts.w, 1u) << "history is invalid in the first frame";
-  EXPECT_EQ(rig_->constants().counts.w, 0u);
+  EXPECT_EQ(fresh.constants().history_invalid, 1u) << "history is invalid in the first frame";
+  EXPECT_EQ(rig_->constants().history_invalid, 0u);
   protocol::Settings off = plain_settings();
   off.shadow_temporal.enabled = false;
   rig_->set_settings(off);

@@ -55,17 +55,19 @@ TEST_F(FrameConstants, ContainSettings) {
   settings_.sampling.seed = 42;
   settings_.shadows.enabled = false;
   const auto constants = make(camera_, 9);
-  EXPECT_FLOAT_EQ(constants.environment.x, 2.5f);
-  EXPECT_NEAR(constants.environment.y, 0.0f, 1e-6f);
-  EXPECT_FLOAT_EQ(constants.environment.z, 1.0f);
-  EXPECT_FLOAT_EQ(constants.environment.w, 3.0f);
-  EXPECT_FLOAT_EQ(constants.exposure.x, 8.0f);
-  EXPECT_LT(constants.exposure.z, 0.0f) << "every light's own diameter";
-  EXPECT_EQ(constants.extent, glm::uvec4(64, 36, 9, 42));
-  EXPECT_EQ(constants.counts.y & shared::frame_shadows, 0u);
-  EXPECT_NE(constants.counts.y & shared::frame_direct, 0u);
+  EXPECT_FLOAT_EQ(constants.environment_intensity, 2.5f);
+  EXPECT_NEAR(constants.environment_cos, 0.0f, 1e-6f);
+  EXPECT_FLOAT_EQ(constants.environment_sin, 1.0f);
+  EXPECT_FLOAT_EQ(constants.ambient_radius, 3.0f);
+  EXPECT_FLOAT_EQ(constants.exposure_factor, 8.0f);
+  EXPECT_LT(constants.directional_light_radius, 0.0f) << "every light's own diameter";
+  EXPECT_EQ(constants.extent, glm::uvec2(64, 36));
+  EXPECT_EQ(constants.sample_index, 9u);
+  EXPECT_EQ(constants.seed, 42u);
+  EXPECT_EQ(constants.flags & shared::frame_shadows, 0u);
+  EXPECT_NE(constants.flags & shared::frame_direct, 0u);
   settings_.shadows.angular_diameter_override = 10.0f;
-  EXPECT_NEAR(make(camera_, 9).exposure.z, std::tan(glm::radians(5.0f)), 1e-6f);
+  EXPECT_NEAR(make(camera_, 9).directional_light_radius, std::tan(glm::radians(5.0f)), 1e-6f);
 }
 
 }  // namespace

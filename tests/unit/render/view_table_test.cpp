@@ -96,7 +96,7 @@ TEST(Views, AspectsNameTheirBuffer) {
 class Extract : public testing::Test {
  protected:
   Extract() {
-    constants_.extent = {4, 2, 0, 0};
+    constants_.extent = {4, 2};
     constants_.inverse_view = constants_.unjittered = glm::mat4(1.0f);
     constants_.previous_unjittered = glm::mat4(1.0f);
     constants_.unproject = {1, 1, 0, 0};
