@@ -3,12 +3,13 @@
 #include "render/kernels/spatial_variance.hpp"
 #include "render/kernels/temporal.hpp"
 #include "render/passes/denoise/denoise_constants.hpp"
+#include "render/passes/formats.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
 namespace {
 
-constexpr VkFormat four_floats = VK_FORMAT_R32G32B32A32_SFLOAT;
+using formats::four_floats;
 
 /// The spread of brightness in every tile of 8x8 pixels of `raw`, for the rectification that needs
 /// it; otherwise any image, which nobody reads.
