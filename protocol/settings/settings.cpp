@@ -54,8 +54,8 @@ std::vector<SettingDescriptor> make_descriptors() {
   };
 }
 
-/// The value of a command line's text; a text that fits no other type stays a text, so that the
-/// check of the setting's type refuses it with its usual words.
+/// The value of a text of the command line. A text that does not fit the type stays a string, which
+/// the check of the type refuses with its usual message.
 nlohmann::json value_of(std::string_view text, SettingType type) {
   if (type == SettingType::boolean) {
     if (text == "true" || text == "on") return true;

@@ -1,4 +1,4 @@
-"""Metrics: the format to the letter, and that the figures are right."""
+"""Metrics: the exact format, and correct values."""
 
 import http.client
 import re
@@ -99,7 +99,7 @@ class Metrics(ServerTestCase):
 
 
 class OwnPort(unittest.TestCase):
-    def test_metrics_have_a_door_of_their_own(self):
+    def test_metrics_can_have_their_own_port(self):
         with Server("--metrics-listen", "127.0.0.1:0", "--token", "a-secret-of-tests") as server:
             line = server.process.stdout.readline()
             port = int(re.match(r"metrics at http://127\.0\.0\.1:(\d+)/metrics", line)[1])

@@ -1,4 +1,4 @@
-"""The client library in TypeScript, run by Node. Skipped, saying so, where a package is missing."""
+"""The TypeScript client library, run by Node. Skipped with a message if a package is missing."""
 
 import os
 import shutil

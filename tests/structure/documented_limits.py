@@ -150,7 +150,7 @@ def option(member):
 
 def messages():
     """Rows of protocol/README.md: what, limit."""
-    window, longest = plain(STREAM, "ack_window"), plain(STREAM, "longest_ack_window")
+    window, longest = plain(STREAM, "ack_window"), plain(STREAM, "max_ack_window")
     yield "length of a message", size(PROTOCOL, "DispatchLimits::max_message_bytes")
     yield "nesting of JSON", plain(PROTOCOL, "DispatchLimits::max_depth") + " levels"
     yield "calls in a batch", plain(PROTOCOL, "DispatchLimits::max_batch")
@@ -162,7 +162,7 @@ def messages():
     yield "quality of the final JPEG", plain(STREAM, "still_quality") + " or more"
     yield "interval of repeated frames of `stream.mjpg`", duration(NET, "longest_silence")
     yield "interval between key frames for new viewers", \
-        duration(STREAM, "FormPlanner::least_key_interval")
+        duration(STREAM, "VariantPlanner::min_key_interval")
 
 
 def scene_files():

@@ -70,12 +70,12 @@ Mesh lantern_glass() {
 
 }  // namespace
 
-void add_lamps(Document& document, const AtriumMaterials& m) {
+void add_lanterns(Document& document, const AtriumMaterials& m) {
   constexpr float chain_length = 1.35f;
   const float hook = plan::lower.springing + plan::lower.arch_radius - 0.02f;
-  const int links = document.add_mesh("lamp_chain", chain(chain_length), m.iron);
-  const int frame = document.add_mesh("lamp_frame", lantern_frame(), m.bronze);
-  const int glass = document.add_mesh("lamp_glass", lantern_glass(), m.lamp_glass);
+  const int links = document.add_mesh("lantern_chain", chain(chain_length), m.iron);
+  const int frame = document.add_mesh("lantern_frame", lantern_frame(), m.bronze);
+  const int glass = document.add_mesh("lantern_glass", lantern_glass(), m.lantern_glass);
   const std::vector<plan::Spot> bays = plan::bays();
   for (const int bay : {1, 3, 4, 6, 9, 11, 12, 14, 17, 20}) {
     const plan::Spot& spot = bays[std::size_t(bay)];
@@ -86,7 +86,7 @@ void add_lamps(Document& document, const AtriumMaterials& m) {
     document.place(frame, spot.at(top - chain_length));
     document.place(glass, spot.at(top - chain_length));
     Light light;
-    light.name = "lamp_light";
+    light.name = "lantern_light";
     light.color = {1.0f, 0.62f, 0.30f};
     light.intensity = 2.2f;
     light.range = 9.0f;

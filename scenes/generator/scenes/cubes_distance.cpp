@@ -8,8 +8,8 @@
 #include "scenes/generator/textures/palette.hpp"
 #include "scenes/generator/textures/recipes.hpp"
 
-// Cubes at growing distance over a metal floor: every cube is mirrored from another height, so a
-// rough floor blurs each by another amount.
+// Cubes at increasing heights over a metal floor: a rough floor blurs each reflection by a
+// different amount.
 namespace heliograph::scenes {
 namespace {
 

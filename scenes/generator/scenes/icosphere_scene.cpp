@@ -8,7 +8,7 @@
 #include "scenes/generator/textures/palette.hpp"
 #include "scenes/generator/textures/recipes.hpp"
 
-// A smooth metal sphere amid faceted ones: mirrors of every curvature.
+// A smooth metal sphere among faceted ones: reflectors of every curvature.
 namespace heliograph::scenes {
 namespace {
 

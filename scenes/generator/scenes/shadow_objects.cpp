@@ -8,7 +8,7 @@
 #include "scenes/generator/textures/palette.hpp"
 #include "scenes/generator/textures/recipes.hpp"
 
-// Shapes thin and thick, near their shadows and far from them: every width of penumbra.
+// Thin and thick shapes at various distances from their shadows: every width of penumbra.
 namespace heliograph::scenes {
 namespace {
 

@@ -87,7 +87,7 @@ class Generation {
   /// The pixel that traces for a cell: of 2 x 2 all take turns.
   HWY_INLINE PixelLanes traced_pixel(const PixelLanes& cell) const {
     if (scale_ == 1) return cell;
-    const std::uint32_t turn = frame_.extent.z & 3u;
+    const std::uint32_t turn = frame_.sample_index & 3u;
     const auto within = [&](Integer c, std::uint32_t step, std::uint32_t size) {
       const Integer at = hn::Add(hn::Add(c, c), integer(static_cast<int>(step)));
       return hn::Min(at, integer(static_cast<int>(size) - 1));

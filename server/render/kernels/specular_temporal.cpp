@@ -6,6 +6,7 @@
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "hwy/contrib/math/math-inl.h"
+#include "render/kernels/simd/guide.hpp"
 #include "render/kernels/simd/moments.hpp"
 #include "render/kernels/simd/view.hpp"
 
@@ -30,11 +31,7 @@ class SpecularAccumulation {
   struct Views {
     ViewedRow<D> above, here, below;
   };
-  struct Surface {
-    Triple<V> normal;
-    V roughness;
-    V view_z;
-  };
+  using Surface = Guide<V>;
 
  public:
   HWY_INLINE explicit SpecularAccumulation(const TemporalSpecularJob& job)
@@ -116,12 +113,13 @@ class SpecularAccumulation {
       const VI at_x = hn::Iota(di_, column), at_y = hn::Set(di_, row);
       const Spot<D> spot = bounds_.spot(at_x, at_y);
       const auto own = hn::Eq(spot.word(job_.instance), instance);
-      const Quad<V> found = spot.four(job_.guide);
+      const Quad<V> texel = spot.four(job_.guide);
       const M counts = hn::And(hn::And(bounds_.contain(at_x, at_y), hn::RebindMask(d_, own)),
-                               hn::Gt(found.w, zero));
+                               guide_is_surface(texel));
+      const Guide<V> found = decode_guide(texel);
       const auto& view = row < y ? views.above : row > y ? views.below : views.here;
-      const Triple<V> step = view.world_position(column, found.w) - position;
-      const Triple<V> turn = normalized(Triple<V>{found.x, found.y, found.z}) - s.normal;
+      const Triple<V> step = view.world_position(column, found.view_z) - position;
+      const Triple<V> turn = found.normal - s.normal;
       const V along = dot(turn, step) / hn::Max(dot(step, step), set(1e-20f));
       curvature = curvature + hn::IfThenElseZero(counts, along);
       turns = turns + hn::IfThenElseZero(counts, length(turn));
@@ -295,7 +293,7 @@ class SpecularAccumulation {
   HWY_INLINE void block(const BandScratch& hits, const Views& views, int x, int y) const {
     const V zero = hn::Zero(d_), one = set(1.0f);
     const Quad<V> guide = load(job_.guide, x, y);
-    const M seen = hn::Gt(guide.w, zero);
+    const M seen = guide_is_surface(guide);
     const Quad<V> nothing_seen{zero, zero, zero, zero};
     float* const signal = row_of<float>(job_.signal, y) + 4 * x;
     float* const history = row_of<float>(job_.history, y) + 4 * x;
@@ -307,9 +305,7 @@ class SpecularAccumulation {
     const Quad<V> sample = load(job_.raw, x, y);
     Triple<V> now{sample.x, sample.y, sample.z};
     now = select(is_bad(now), Triple<V>{zero, zero, zero}, now);
-    const Triple<V> scaled{guide.x, guide.y, guide.z};
-    const V size = length(scaled);
-    const Surface s{scaled * (one / size), size - one, guide.w};
+    const Surface s = decode_guide(guide);
     const Remembered old = remembered(hits, views, x, y, seen, s);
 
     const V frames = hn::Min(old.frames + one, longest_memory(s.roughness));

@@ -7,6 +7,8 @@
 
 namespace heliograph::session {
 
+namespace methods = protocol::methods;
+
 using protocol::Empty;
 using protocol::enum_name;
 using protocol::Hello;
@@ -95,7 +97,7 @@ Result<HelloResult> greet(SessionHost& host, const Hello& request,
                           const protocol::CallContext& call) {
   const auto& codecs = request.codecs;
   if (std::find(codecs.begin(), codecs.end(), "jpeg") == codecs.end()) {
-    return error::invalid("codecs", "must hold one that the server has", "jpeg");
+    return error::invalid("codecs", "must include a codec of the server", "jpeg");
   }
   const Result<Chosen> chosen = choose_place(host, request, call);
   if (!chosen) return chosen.error();
@@ -112,27 +114,26 @@ Result<HelloResult> greet(SessionHost& host, const Hello& request,
 }  // namespace
 
 void add_stream_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
-  dispatcher.add<Hello, HelloResult>(
-      "hello",
+  dispatcher.add<methods::hello>(
       [&](const Hello& request, const protocol::CallContext& context,
           protocol::Completion<HelloResult> done) { done(greet(host, request, context)); });
-  dispatcher.add<StreamConfigure, StreamState>(
-      "stream.configure", [&](const StreamConfigure& request, const protocol::CallContext& context,
-                              protocol::Completion<StreamState> done) {
-        const auto session = host.sessions().session_of(context);
-        if (!session) return done(session.error());
-        done((*session)->configure_stream(request, context.viewer, !context.view_only));
+  dispatcher.add<methods::stream_configure>([&](const StreamConfigure& request,
+                                                const protocol::CallContext& context,
+                                                protocol::Completion<StreamState> done) {
+    const auto session = host.sessions().session_of(context);
+    if (!session) return done(session.error());
+    done((*session)->configure_stream(request, context.viewer, !context.view_only));
+  });
+  add_command<methods::stream_pause>(dispatcher, host,
+                                     [](Session& session, const Empty&, const std::string& viewer) {
+                                       return session.configure_stream({.paused = true}, viewer);
+                                     });
+  add_command<methods::stream_resume>(
+      dispatcher, host, [](Session& session, const Empty&, const std::string& viewer) {
+        return session.configure_stream({.paused = false}, viewer);
       });
-  add_command<Empty, StreamState>(dispatcher, host, "stream.pause",
-                                  [](Session& session, const Empty&, const std::string& viewer) {
-                                    return session.configure_stream({.paused = true}, viewer);
-                                  });
-  add_command<Empty, StreamState>(dispatcher, host, "stream.resume",
-                                  [](Session& session, const Empty&, const std::string& viewer) {
-                                    return session.configure_stream({.paused = false}, viewer);
-                                  });
-  add_command<StreamAck, Empty>(
-      dispatcher, host, "stream.ack",
+  add_command<methods::stream_ack>(
+      dispatcher, host,
       [](Session& session, const StreamAck& request, const std::string& viewer) -> Result<Empty> {
         const auto taken = session.viewers().acknowledge(viewer, request);
         if (!taken) return taken.error();

@@ -115,7 +115,7 @@ void SessionView::release_renderer() {
   broadcast_.forget();
   state_ = {};
   session_->viewers().discard_latest();
-  log_info({.session = session_->name()}, "pictures let go");
+  log_info({.session = session_->name()}, "images released");
 }
 
 SessionView::Work SessionView::advance(bool may_draw) {
@@ -149,7 +149,7 @@ SessionView::Work SessionView::advance(bool may_draw) {
 }
 
 std::optional<Clock::time_point> SessionView::next_due() const {
-  std::optional<Clock::time_point> due = session_->viewers().next_turn();
+  std::optional<Clock::time_point> due = session_->viewers().next_send();
   if (session_->in_lockstep()) return due;
   const auto also = [&](Clock::time_point time) { due = due ? std::min(*due, time) : time; };
   if (newest_ && newest_->frame.converged && !broadcast_.finished() && !state_.animation.playing) {

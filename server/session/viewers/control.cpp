@@ -23,7 +23,7 @@ bool Control::may_change(const std::string& viewer) const {
 Result<void> Control::apply(const SessionControl& request, const std::string& by,
                             const IsPresent& is_present) {
   if (!request.mode && !request.action) {
-    return error::invalid("mode", "or action must say what is to be done");
+    return error::invalid("mode", "or action is required");
   }
   Control changed = *this;
   if (request.mode) {
@@ -64,14 +64,14 @@ Result<void> Control::act(ControlAction action, const SessionControl& request,
   const bool settles = by.empty() || holder_ == by;
   switch (action) {
     case ControlAction::take:
-      if (by.empty()) return error::not_ready("only a viewer on a WebSocket can take control");
+      if (by.empty()) return error::not_ready("requires a WebSocket connection");
       if (!holder_.empty() && holder_ != by) {
         return forbidden("another viewer has control and has not released it");
       }
       return hand_to(by, is_present);
     case ControlAction::give:
       if (!request.viewer) return error::invalid("viewer", "is required to give control");
-      if (!settles) return forbidden("only who has control can give it");
+      if (!settles) return forbidden("only the viewer that has control can give it");
       return hand_to(*request.viewer, is_present);
     case ControlAction::release:
       if (!settles) return forbidden("only who has control can release it");
@@ -83,7 +83,7 @@ Result<void> Control::act(ControlAction action, const SessionControl& request,
 
 Result<void> Control::hand_to(const std::string& viewer, const IsPresent& is_present) {
   if (!is_present(viewer)) {
-    return error::not_found("viewer", "is no viewer of this session who may have control");
+    return error::not_found("viewer", "is not a viewer of this session that may have control");
   }
   holder_ = viewer;
   return {};

@@ -6,7 +6,7 @@ import os
 from .commands import run
 from .files import ROOT
 
-_path = os.path.join(ROOT, "tests/protocol/harness/pictures.py")
+_path = os.path.join(ROOT, "tests/protocol/harness/images.py")
 _spec = importlib.util.spec_from_file_location("protocol_decoders", _path)
 _decoders = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(_decoders)

@@ -44,7 +44,7 @@ inline shared::TemporalConstants temporal_constants(const FrameInputs& in,
     constants.light_frames = constants.frames;
   }
   constants.spatial_variance_frames = static_cast<float>(settings.spatial_variance_frames);
-  const bool holds = settings.enabled && in.constants.counts.w == 0;
+  const bool holds = settings.enabled && in.constants.history_invalid == 0;
   constants.flags = (holds ? shared::temporal_holds : 0u) |
                     (settings.mean_variance ? shared::temporal_mean_variance : 0u) |
                     (settings.bicubic ? shared::temporal_bicubic : 0u);

@@ -37,7 +37,7 @@ MeshoptFilter read_filter(const JsonValue& packed) {
   packed.refuse("filter", in_quotes(name) + " is not a filter");
 }
 
-// The decoders take these for granted.
+// Preconditions of the decoders.
 void check_stride(const JsonValue& packed, const Layout& layout) {
   const std::size_t stride = layout.stride;
   if (layout.mode != Mode::attributes) {
@@ -113,7 +113,7 @@ std::vector<std::uint8_t> unpack_meshopt(const JsonValue& packed,
   const Layout layout = read_layout(packed, length, budget);
   budget -= length;
   std::vector<std::uint8_t> bytes(length);
-  if (!decode(layout, source, bytes.data())) packed.refuse("holds damaged data");
+  if (!decode(layout, source, bytes.data())) packed.refuse("has damaged data");
   apply_filter(layout, bytes.data());
   return bytes;
 }

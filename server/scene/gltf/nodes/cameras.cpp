@@ -43,8 +43,8 @@ glm::vec3 normalized_or(const glm::vec3& vector, const glm::vec3& fallback) {
   return length > 0.0f && std::isfinite(length) ? vector / length : fallback;
 }
 
-/// How far ahead a view turns about, metres. From outside that is the scene's middle; from inside
-/// a point close by, so that orbiting looks around the room and does not swing through its walls.
+/// Orbit distance of a camera in metres: to the scene's center from outside; short from inside, so
+/// that orbiting stays within a room.
 float focus_distance(const Camera& camera, const glm::vec3& forward, const Bounds& bounds) {
   if (bounds.empty()) return 1.0f;
   const bool inside = glm::all(glm::greaterThan(camera.eye, bounds.minimum)) &&
