@@ -49,7 +49,7 @@ PictureShow::PictureShow(session::SessionHost& host, std::vector<render::Frame> 
       broadcast_(host.sessions().main(), {.encoder = worker_,
                                           .jpeg = jpeg_,
                                           .measurements = measurements_,
-                                          .wakeup = wakeup_,
+                                          .wake = wakeup_,
                                           .tracer = host.engine().tracer()}),
       interval_(
           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / rate))) {
@@ -58,7 +58,8 @@ PictureShow::PictureShow(session::SessionHost& host, std::vector<render::Frame> 
     picture->frame = std::move(frame);
     pictures_.push_back(std::move(picture));
   }
-  for (int i = 0; i < first_number; ++i) broadcast_.rendered(next_picture(), false);
+  for (int i = 0; i < first_number; ++i)
+    broadcast_.rendered(next_picture(), session::FramePurpose::interactive);
   thread_ = std::thread([this] { run(); });
 }
 
@@ -87,7 +88,7 @@ void PictureShow::run() {
     next = std::max(next + interval_, Clock::now() - interval_);
     std::this_thread::sleep_until(next);
     if (!running_ || broadcast_.behind()) continue;
-    broadcast_.rendered(next_picture(), false);
+    broadcast_.rendered(next_picture(), session::FramePurpose::interactive);
     broadcast_.pump();
   }
 }

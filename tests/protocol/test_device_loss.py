@@ -103,7 +103,7 @@ class DeviceLoss(ServerTestCase):
                 os.remove(self.fault)
             self.server.wait_for(self.ready, "the recovery", timeout=60)
             await viewer.rest()
-        self.assertIn("made anew in ", self.server.log_text())
+        self.assertIn("recovered in ", self.server.log_text())
 
 
 class LossBeforeTheFirstPicture(unittest.TestCase):

@@ -283,9 +283,9 @@ class Reference(ServerTestCase):
         with Server("--release-after", "1") as server:
             server.call("reference.start", {"samples": 2})
             server.wait_for(lambda: server.call("reference.status")["finished"], "the end")
-            self.assertNotIn("pictures let go", server.log_text())
+            self.assertNotIn("renderer released", server.log_text())
             server.call("settings.patch", {"patch": {"reference": {"use": "never"}}})
-            server.wait_for(lambda: "pictures let go" in server.log_text(), "letting go")
+            server.wait_for(lambda: "renderer released" in server.log_text(), "letting go")
 
     def test_bad_ones_are_refused(self):
         self.assert_error(self.server.ask("reference.start", {"scope": "none"}), -32602,

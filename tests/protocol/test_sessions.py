@@ -213,7 +213,7 @@ class Sessions(ServerTestCase):
             await other.call("session.control", {"action": "release"})
             free = await other.ask("camera.fit")
             self.assert_error(free, FORBIDDEN, path="control", limit="take")
-            self.assertIn("nobody has control", free["error"]["message"])
+            self.assertIn("no viewer has control", free["error"]["message"])
             await leader.call("session.control", {"action": "take"})
             taken = await other.ask("camera.fit")
             self.assertIn("another viewer has control", taken["error"]["message"])
@@ -340,7 +340,7 @@ class ManySessions(ServerTestCase):
                                             "height": 360})
         async with Viewer(self.server, session="seen") as viewer:
             first = await viewer.rest()
-        self.server.wait_for(lambda: "pictures let go session=seen" in self.server.log_text(),
+        self.server.wait_for(lambda: "renderer released session=seen" in self.server.log_text(),
                              "letting go", timeout=10)
         async with Viewer(self.server, session="seen") as viewer:
             again = await viewer.rest()

@@ -20,7 +20,7 @@ using protocol::Result;
 namespace {
 
 EnvironmentState describe_environment(SessionHost& host, const Session& session) {
-  EnvironmentState state = session.environment();
+  EnvironmentState state = session.scene().environment();
   for (const CatalogueEntry& entry : host.environments().list()) {
     state.environments.push_back({.name = entry.name, .bytes = entry.bytes});
   }
@@ -47,7 +47,7 @@ void set_environment(SessionHost& host, const std::shared_ptr<Session>& session,
   if (request.name.value) {
     host.environments().show(session, *request.name.value, by, finish);
   } else if (request.name.reset) {
-    finish(session->set_environment(std::nullopt, nullptr, by));
+    finish(session->scene().set_environment(std::nullopt, nullptr, by));
   } else {
     finish({});
   }
@@ -58,19 +58,20 @@ void set_environment(SessionHost& host, const std::shared_ptr<Session>& session,
 void add_edit_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
   add_command<Empty, LightList>(
       dispatcher, host, "lights.list",
-      [](Session& session, const Empty&, const std::string&) { return session.lights(); });
+      [](Session& session, const Empty&, const std::string&) { return session.scene().lights(); });
   add_command<LightsPatch, LightState>(
       dispatcher, host, "lights.patch",
       [](Session& session, const LightsPatch& request, const std::string& viewer) {
-        return session.patch_light(request, viewer);
+        return session.scene().patch_light(request, viewer);
       });
-  add_command<Empty, MaterialList>(
-      dispatcher, host, "materials.list",
-      [](Session& session, const Empty&, const std::string&) { return session.materials(); });
+  add_command<Empty, MaterialList>(dispatcher, host, "materials.list",
+                                   [](Session& session, const Empty&, const std::string&) {
+                                     return session.scene().materials();
+                                   });
   add_command<MaterialsPatch, MaterialState>(
       dispatcher, host, "materials.patch",
       [](Session& session, const MaterialsPatch& request, const std::string& viewer) {
-        return session.patch_material(request, viewer);
+        return session.scene().patch_material(request, viewer);
       });
   add_command<Empty, EnvironmentState>(
       dispatcher, host, "environment.list",
