@@ -14,18 +14,18 @@
 
 namespace {
 
-/// Each malloc arena keeps the memory that its threads have freed, and each new thread may get an
-/// arena of its own: with two the process is 40 % smaller after sessions have come and gone.
+/// Every malloc arena keeps the memory that its threads freed, and new threads get new arenas: with
+/// a limit of two the process is 40 % smaller after sessions were opened and closed.
 void limit_malloc_arenas() {
 #ifdef M_ARENA_MAX
   mallopt(M_ARENA_MAX, 2);
 #endif
 }
 
-/// Thread pools have the size of the machine, whatever the CPU quota of the control group: on 64
-/// processors with a quota of two all threads would use it up at once and then be throttled for
-/// most of each period. In effect until the result is destroyed; call it before any pool is
-/// created, Mesa's included.
+/// Limits thread pools to the CPU quota of the control group. By default they have a thread per
+/// processor: on 64 processors with a quota of two, all threads would use up the quota at once and
+/// then be throttled for most of each period. Must run before any pool is created, including
+/// Mesa's; applies while the result exists.
 std::unique_ptr<tbb::global_control> limit_threads_to_quota() {
   const unsigned processors = std::thread::hardware_concurrency();
   const unsigned threads = heliograph::net::useful_threads(

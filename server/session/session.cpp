@@ -15,7 +15,7 @@ namespace error = protocol::error;
 protocol::Error no_control(const ViewerSet& viewers) {
   if (viewers.control_is_free()) {
     return error::make(protocol::ErrorCode::forbidden, "control",
-                       "no viewer has control of this session; take it first",
+                       "no viewer has control of this session; take control first",
                        "session.control with the action take");
   }
   return error::make(protocol::ErrorCode::forbidden, "control",
@@ -72,7 +72,7 @@ bool Session::renders_without_viewers() const {
 }
 
 bool Session::is_pristine(const std::string& viewer) const {
-  return !modified_ && core_.viewers.control_mode() == protocol::ControlMode::everyone &&
+  return !modified_ && core_.viewers.control_mode() == protocol::ControlMode::shared &&
          !core_.viewers.has_other_participant(viewer);
 }
 
@@ -134,7 +134,7 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
   const bool resized = width != core_.width || height != core_.height;
   if (resized && read_only) {
     return error::make(protocol::ErrorCode::forbidden, width != core_.width ? "width" : "height",
-                       "is the same for all viewers, and this access is read-only");
+                       "is shared by all viewers and cannot be changed with a read-only token");
   }
   if (resized && !core_.viewers.may_change(by)) return no_control(core_.viewers);
   // More pixels are reserved before anything changes; fewer are released after it.

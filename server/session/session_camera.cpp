@@ -35,7 +35,7 @@ Result<Camera> SessionCamera::fit(const std::string& by) {
 Camera SessionCamera::publish(const std::string& by) {
   core_.changed();
   const protocol::CameraChanged message{.camera = core_.camera.message(core_.rev), .by = by};
-  core_.notify_others_latest(by, "camera.changed", message);
+  core_.notify_others_latest<protocol::notifications::camera_changed>(by, message);
   return message.camera;
 }
 

@@ -25,7 +25,7 @@ void SessionScene::show(LoadedScene scene, const std::string& by) {
   core_.timeline.reset_clock();
   core_.camera.reset(*core_.scene, core_.aspect());
   core_.changed();
-  core_.notify_others(by, "scene.changed", protocol::SceneChanged{.scene = core_.scene_info});
+  core_.notify_others<protocol::notifications::scene_changed>(by, {.scene = core_.scene_info});
 }
 
 void SessionScene::unload(const std::string& by) {
@@ -41,7 +41,7 @@ void SessionScene::unload(const std::string& by) {
   core_.timeline.reset_clock();
   core_.camera.clear_name();
   core_.changed();
-  core_.notify_others(by, "scene.unloaded", message);
+  core_.notify_others<protocol::notifications::scene_unloaded>(by, message);
 }
 
 Result<protocol::LightList> SessionScene::lights() const {
@@ -59,8 +59,8 @@ Result<protocol::LightState> SessionScene::patch_light(const protocol::LightsPat
   if (!light) return light.error();
   if (core_.edits.device_lights() != before) {
     core_.changed();
-    core_.notify_others(by, "lights.changed",
-                        protocol::LightsChanged{.light = *light, .rev = core_.rev, .by = by});
+    core_.notify_others<protocol::notifications::lights_changed>(
+        by, {.light = *light, .rev = core_.rev, .by = by});
   }
   return protocol::LightState{.light = *std::move(light), .rev = core_.rev};
 }
@@ -80,9 +80,8 @@ Result<protocol::MaterialState> SessionScene::patch_material(
   if (!material) return material.error();
   if (core_.edits.device_materials() != before) {
     core_.changed();
-    core_.notify_others(
-        by, "materials.changed",
-        protocol::MaterialsChanged{.material = *material, .rev = core_.rev, .by = by});
+    core_.notify_others<protocol::notifications::materials_changed>(
+        by, {.material = *material, .rev = core_.rev, .by = by});
   }
   return protocol::MaterialState{.material = *std::move(material), .rev = core_.rev};
 }
@@ -105,9 +104,8 @@ Result<void> SessionScene::set_environment(
   core_.environment = std::move(environment);
   core_.environment_name = std::move(name);
   core_.changed();
-  core_.notify_others_latest(
-      by, "environment.changed",
-      protocol::EnvironmentChanged{.current = core_.environment_name, .rev = core_.rev, .by = by});
+  core_.notify_others_latest<protocol::notifications::environment_changed>(
+      by, {.current = core_.environment_name, .rev = core_.rev, .by = by});
   return {};
 }
 

@@ -57,14 +57,14 @@ AnimationState SessionTimeline::publish_clock(const std::string& by) {
 AnimationState SessionTimeline::notify_animation(const std::string& by) {
   const protocol::AnimationChanged message{
       .animation = core_.timeline.animation_state(core_.scene_info.clips, core_.rev), .by = by};
-  core_.notify_others_latest(by, "animation.changed", message);
+  core_.notify_others_latest<protocol::notifications::animation_changed>(by, message);
   return message.animation;
 }
 
 /// The animation is notified, too, since its clock runs differently.
 void SessionTimeline::notify_lockstep(const std::string& by) {
-  core_.notify_others_latest(by, "lockstep.changed",
-                             protocol::LockstepChanged{.state = step_state(), .by = by});
+  core_.notify_others_latest<protocol::notifications::lockstep_changed>(
+      by, {.state = step_state(), .by = by});
   notify_animation(by);
 }
 
@@ -108,7 +108,7 @@ StepState SessionTimeline::leave_lockstep(const std::string& by) {
     state = step_state();
   }
   for (const StepRequest& request : unfinished) {
-    request.done(error::conflict("frames", "lockstep was left before the frames were rendered"));
+    request.done(error::conflict("frames", "lockstep was left before the steps were finished"));
   }
   return state;
 }

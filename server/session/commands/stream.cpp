@@ -7,6 +7,8 @@
 
 namespace heliograph::session {
 
+namespace methods = protocol::methods;
+
 using protocol::Empty;
 using protocol::enum_name;
 using protocol::Hello;
@@ -41,7 +43,7 @@ Result<std::shared_ptr<Session>> choose_session(SessionHost& host, const Hello& 
 
 struct ChosenSession {
   std::shared_ptr<Session> session;
-  std::optional<bool> bring;
+  std::optional<bool> restore_state;
 };
 
 /// The session of a caller from its hello on. A viewer of an earlier server run resumes in a
@@ -53,14 +55,14 @@ Result<ChosenSession> resume_session(SessionHost& host, const Hello& request,
   if (!resumes || call.viewer.empty()) {
     const auto session = choose_session(host, request, call);
     if (!session) return session.error();
-    return ChosenSession{.session = *session, .bring = {}};
+    return ChosenSession{.session = *session, .restore_state = {}};
   }
   const Origin from{.instance = *request.instance, .session = *request.session};
   const auto resumed = host.resume(call.viewer, from, call.view_only);
-  if (resumed) return ChosenSession{.session = resumed->session, .bring = resumed->first};
+  if (resumed) return ChosenSession{.session = resumed->session, .restore_state = resumed->first};
   const auto main = host.sessions().move(call.viewer, std::string(protocol::main_session));
   if (!main) return main.error();
-  return ChosenSession{.session = *main, .bring = {}};
+  return ChosenSession{.session = *main, .restore_state = {}};
 }
 
 HelloResult greeting(SessionHost& host, const ChosenSession& chosen,
@@ -84,11 +86,11 @@ HelloResult greeting(SessionHost& host, const ChosenSession& chosen,
       .max_message_bytes = static_cast<std::uint32_t>(host.dispatch_limits().max_message_bytes),
       .ack_window = stream::ack_window,
       .max_batch = static_cast<std::uint32_t>(host.dispatch_limits().max_batch),
-      .max_waiting = static_cast<std::uint32_t>(limits.max_captures),
+      .max_pending = static_cast<std::uint32_t>(limits.max_captures),
       .max_upload_bytes = call.view_only ? 0 : host.max_upload_bytes()};
   result.rev = session.rev();
   result.instance = instance();
-  result.bring = chosen.bring;
+  result.restore_state = chosen.restore_state;
   return result;
 }
 
@@ -96,7 +98,7 @@ Result<HelloResult> greet(SessionHost& host, const Hello& request,
                           const protocol::CallContext& call) {
   const auto& codecs = request.codecs;
   if (std::find(codecs.begin(), codecs.end(), "jpeg") == codecs.end()) {
-    return error::invalid("codecs", "must contain a codec of the server", "jpeg");
+    return error::invalid("codecs", "must include a codec of the server", "jpeg");
   }
   const Result<ChosenSession> chosen = resume_session(host, request, call);
   if (!chosen) return chosen.error();
@@ -113,27 +115,26 @@ Result<HelloResult> greet(SessionHost& host, const Hello& request,
 }  // namespace
 
 void add_stream_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
-  dispatcher.add<Hello, HelloResult>(
-      "hello",
+  dispatcher.add<methods::hello>(
       [&](const Hello& request, const protocol::CallContext& context,
           protocol::Completion<HelloResult> done) { done(greet(host, request, context)); });
-  dispatcher.add<StreamConfigure, StreamState>(
-      "stream.configure", [&](const StreamConfigure& request, const protocol::CallContext& context,
-                              protocol::Completion<StreamState> done) {
-        const auto session = host.sessions().session_of(context);
-        if (!session) return done(session.error());
-        done((*session)->configure_stream(request, context.viewer, context.view_only));
+  dispatcher.add<methods::stream_configure>([&](const StreamConfigure& request,
+                                                const protocol::CallContext& context,
+                                                protocol::Completion<StreamState> done) {
+    const auto session = host.sessions().session_of(context);
+    if (!session) return done(session.error());
+    done((*session)->configure_stream(request, context.viewer, context.view_only));
+  });
+  add_command<methods::stream_pause>(dispatcher, host,
+                                     [](Session& session, const Empty&, const std::string& viewer) {
+                                       return session.configure_stream({.paused = true}, viewer);
+                                     });
+  add_command<methods::stream_resume>(
+      dispatcher, host, [](Session& session, const Empty&, const std::string& viewer) {
+        return session.configure_stream({.paused = false}, viewer);
       });
-  add_command<Empty, StreamState>(dispatcher, host, "stream.pause",
-                                  [](Session& session, const Empty&, const std::string& viewer) {
-                                    return session.configure_stream({.paused = true}, viewer);
-                                  });
-  add_command<Empty, StreamState>(dispatcher, host, "stream.resume",
-                                  [](Session& session, const Empty&, const std::string& viewer) {
-                                    return session.configure_stream({.paused = false}, viewer);
-                                  });
-  add_command<StreamAck, Empty>(
-      dispatcher, host, "stream.ack",
+  add_command<methods::stream_ack>(
+      dispatcher, host,
       [](Session& session, const StreamAck& request, const std::string& viewer) -> Result<Empty> {
         const auto taken = session.viewers().acknowledge(viewer, request);
         if (!taken) return taken.error();

@@ -30,23 +30,22 @@ constexpr std::chrono::seconds trim_interval{2};
 /// The scene may cause the loss of the device, so the number of tries is limited.
 constexpr int max_device_losses = 3;
 
-constexpr std::string_view progress_key = "scene.progress";
+constexpr std::string_view progress_key = protocol::notifications::scene_progress::name;
 
 std::string progress_text(const std::string& name, std::string_view stage, float fraction) {
-  return protocol::make_notification(
-      progress_key,
-      protocol::SceneProgress{.name = name, .stage = std::string(stage), .fraction = fraction});
+  return protocol::make_notification<protocol::notifications::scene_progress>(
+      {.name = name, .stage = std::string(stage), .fraction = fraction});
 }
 
 /// Thrown through the importer to end it.
 struct LoadCancelled {};
 
 protocol::Error superseded() {
-  return protocol::error::conflict("name", "a newer request replaced this one");
+  return protocol::error::conflict("name", "was replaced by a later scene.load");
 }
 
 protocol::Error cancelled() {
-  return protocol::error::conflict("name", "was cancelled");
+  return protocol::error::conflict("name", "loading was cancelled");
 }
 
 protocol::Error session_ended() {
@@ -251,7 +250,7 @@ void SceneLoader::report_device_loss(Job& job) {
   if (on_device_loss_) on_device_loss_();
   if (++job.device_losses == max_device_losses) {
     finish(job,
-           protocol::error::not_ready("the device was lost each time that the scene was loaded"));
+           protocol::error::not_ready("the device was lost repeatedly while loading this scene"));
   }
 }
 

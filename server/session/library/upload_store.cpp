@@ -63,7 +63,7 @@ UploadStore::UploadStore(UploadOptions options)
 protocol::Result<std::shared_ptr<UploadStore::Incoming>> UploadStore::begin(const std::string& name,
                                                                             std::uint64_t bytes) {
   if (!is_valid_name(name)) {
-    return protocol::error::invalid("name", "is not a valid scene name",
+    return protocol::error::invalid("name", "is not a valid name of a scene",
                                     "1 to 64 letters, digits, _ and -");
   }
   if (bytes > options_.max_bytes) {
@@ -72,7 +72,7 @@ protocol::Result<std::shared_ptr<UploadStore::Incoming>> UploadStore::begin(cons
   }
   const std::lock_guard lock(mutex_);
   if (bytes_kept() + reserved_bytes_ + bytes > options_.quota) {
-    return protocol::error::full("the quota for uploads is exceeded",
+    return protocol::error::full("the quota of uploaded scenes is used up",
                                  std::to_string(options_.quota) + " bytes");
   }
   const fs::path folder = incoming_ / std::to_string(++upload_count_);

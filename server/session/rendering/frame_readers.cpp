@@ -94,7 +94,7 @@ bool FrameReaders::answer_captures(const ReadableFrame& frame) {
       pending.push_back(std::move(capture));
     } else {
       capture.request.done(
-          protocol::error::not_ready("timeout: the image did not converge in time"));
+          protocol::error::not_ready("the view did not stay static long enough for the capture"));
     }
   }
   captures_.swap(pending);
@@ -133,7 +133,8 @@ bool FrameReaders::write(CaptureRequest& request, const ReadableFrame& frame) {
 }
 
 void FrameReaders::fail_before_first_step() {
-  const protocol::Error why = protocol::error::not_ready("no frame was stepped yet");
+  const protocol::Error why =
+      protocol::error::not_ready("no frame was rendered since lockstep was entered");
   std::erase_if(captures_, [&](const PendingCapture& capture) {
     if (session_.timeline().step_due(capture.request.ticket)) return false;
     capture.request.done(why);

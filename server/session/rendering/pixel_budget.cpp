@@ -11,8 +11,8 @@ protocol::Result<void> PixelBudget::exchange(std::uint64_t held, std::uint64_t r
   // A session may always shrink, even where the others exceed the limit already.
   if (requested > held && others + requested > limit_) {
     return protocol::error::full(
-        "the frames of all sessions together have too many pixels",
-        std::to_string(limit_) + " pixels, " + std::to_string(others) + " of them taken by others");
+        "the frames of all sessions have too many pixels",
+        std::to_string(limit_) + " pixels, " + std::to_string(others) + " used by other sessions");
   }
   used_ = others + requested;
   return {};

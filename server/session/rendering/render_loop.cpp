@@ -182,8 +182,8 @@ void RenderLoop::on_device_lost(const std::string& why) {
       pause == Clock::duration::zero()
           ? "immediately"
           : fmt::format("in {} s", std::chrono::duration_cast<std::chrono::seconds>(pause).count());
-  spdlog::error("the device was lost; it is recovered {} ({})", when, why);
-  notify_viewers(false, "the device was lost; it is recovered " + when);
+  spdlog::error("the device was lost; recovery {} ({})", when, why);
+  notify_viewers(false, "the device was lost; recovery " + when);
 }
 
 /// Recreates the device once the retry delay is over. Sessions keep everything but their histories.
@@ -215,8 +215,8 @@ bool RenderLoop::recover_device(const Views& views) {
 }
 
 void RenderLoop::notify_viewers(bool ready, const std::string& message) {
-  const std::string text = protocol::make_notification(
-      "device.changed", protocol::DeviceChanged{.ready = ready, .message = message});
+  const std::string text = protocol::make_notification<protocol::notifications::device_changed>(
+      {.ready = ready, .message = message});
   for (const auto& view : open_views()) {
     view->session()->viewers().send_all(text, "device.changed");
   }

@@ -20,7 +20,7 @@ struct RenderedFrame {
   std::uint64_t discontinuities = 0;  // up to this frame
 };
 
-inline stream::PictureView image_view(const render::Frame& frame) {
+inline stream::ImageView image_view(const render::Frame& frame) {
   return {.width = frame.width, .height = frame.height, .rgba = frame.rgba};
 }
 

@@ -24,7 +24,7 @@ std::uint32_t microseconds_of(Clock::duration duration) {
   return static_cast<std::uint32_t>(duration_cast<microseconds>(duration).count());
 }
 
-std::vector<protocol::BufferInfo> to_protocol(const std::vector<render::BufferInfo>& buffers) {
+std::vector<protocol::BufferInfo> buffer_infos(const std::vector<render::BufferInfo>& buffers) {
   std::vector<protocol::BufferInfo> result;
   for (const auto& [name, description] : buffers) result.push_back({name, description});
   return result;
@@ -89,7 +89,7 @@ void SessionView::apply(const protocol::Settings& settings) {
 }
 
 void SessionView::publish_buffers() {
-  session_->set_buffers(to_protocol(renderer_->buffers()));
+  session_->set_buffers(buffer_infos(renderer_->buffers()));
 }
 
 void SessionView::release_renderer() {
@@ -100,7 +100,7 @@ void SessionView::release_renderer() {
   broadcast_.reset();
   state_ = {};
   session_->viewers().discard_latest();
-  log_info({.session = session_->name()}, "renderer released");
+  log_info({.session = session_->name()}, "images released");
 }
 
 SessionView::Work SessionView::advance(bool may_draw) {
@@ -156,7 +156,7 @@ SessionView::Work SessionView::advance_step(bool may_draw) {
 }
 
 std::optional<Clock::time_point> SessionView::next_due() const {
-  std::optional<Clock::time_point> due = session_->viewers().next_send_time();
+  std::optional<Clock::time_point> due = session_->viewers().next_send();
   if (session_->timeline().in_lockstep()) return due;
   const auto consider = [&](Clock::time_point time) { due = due ? std::min(*due, time) : time; };
   if (const auto transition = next_view_transition(view_inputs())) consider(*transition);

@@ -24,8 +24,8 @@ Result<scene::Camera> named_camera(const scene::Scene& scene, const std::string&
     if (camera.name == name) return camera;
     names.push_back(camera.name);
   }
-  return error::not_found(
-      "name", "the scene has no camera of this name" + protocol::suggestion(name, names));
+  return error::not_found("name",
+                          "the scene has no such camera" + protocol::suggestion(name, names));
 }
 
 /// Whether eye and target are far enough apart for floats to give a direction. In doubles, since
@@ -38,7 +38,7 @@ bool has_direction(const scene::Camera& camera) {
 
 /// Whether camera.set accepts these positions, too.
 bool is_in_range(const scene::Camera& camera) {
-  const glm::vec3 limit(protocol::camera_reach);
+  const glm::vec3 limit(protocol::max_coordinate);
   return glm::all(glm::lessThanEqual(glm::abs(camera.eye), limit)) &&
          glm::all(glm::lessThanEqual(glm::abs(camera.target), limit));
 }
@@ -132,8 +132,8 @@ Result<void> CameraState::orbit(const protocol::CameraOrbit& request, const std:
   const scene::Camera camera = orbited(camera_, request);
   if (!is_in_range(camera)) {
     return error::invalid(
-        invalid_member(request), "moves the eye out of range",
-        "eye " + protocol::range_text({-protocol::camera_reach, protocol::camera_reach}));
+        invalid_member(request), "moves the camera out of range",
+        "eye " + protocol::range_text({-protocol::max_coordinate, protocol::max_coordinate}));
   }
   if (!has_direction(camera)) {
     return error::invalid(invalid_member(request), "eye and target coincide");

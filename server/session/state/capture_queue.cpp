@@ -14,7 +14,7 @@ Result<void> CaptureQueue::check_capture_capacity() const {
 
 Result<void> CaptureQueue::check_probe_capacity() const {
   if (probes_.size() < limit_) return {};
-  return error::full("too many probes are pending", std::to_string(limit_));
+  return error::full("too many picks and inspections are pending", std::to_string(limit_));
 }
 
 void CaptureQueue::add(CaptureRequest request) {

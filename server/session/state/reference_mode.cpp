@@ -22,10 +22,10 @@ void ReferenceMode::start(const protocol::Settings& before) {
 }
 
 RawJson ReferenceMode::stop_patch() const {
-  json patch{{"reference", {{"use", "never"}}}};
+  json patch{{"reference", {{"use", "off"}}}};
   if (restored_) {
     const auto& [reference, accumulation] = *restored_;
-    if (reference.use == ReferenceUse::resting) patch["reference"]["use"] = "resting";
+    if (reference.use == ReferenceUse::when_static) patch["reference"]["use"] = "when_static";
     patch["reference"]["scope"] = protocol::enum_name(reference.scope);
     patch["accumulation"] = {{"enabled", accumulation.enabled},
                              {"max_samples", accumulation.max_samples}};
@@ -49,7 +49,7 @@ protocol::ReferenceState ReferenceMode::state(const protocol::Settings& settings
       .shown = settings.reference.use == ReferenceUse::always,
       .scope = settings.reference.scope,
       .samples = 0,
-      .wanted = static_cast<std::uint32_t>(settings.accumulation.max_samples),
+      .target_samples = static_cast<std::uint32_t>(settings.accumulation.max_samples),
       .finished = false,
       .rev = rev};
   if (state.shown && newest_frame_.version == version) {

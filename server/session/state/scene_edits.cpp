@@ -130,7 +130,7 @@ Result<void> apply_optional(const protocol::Change<T>& change, std::optional<T>&
   if (!initial) {
     return error::invalid(
         std::string("patch.") + name,
-        "does not exist for a light of type " + std::string(protocol::enum_name(light.type)));
+        "is not a member of " + std::string(protocol::enum_name(light.type)) + " lights");
   }
   apply(change, member, initial);
   return {};
@@ -164,7 +164,7 @@ Result<LightInfo> patched(LightInfo light, const LightInfo& initial,
     return error::invalid("patch.direction", "must not be zero");
   }
   if (is_area(light.type) && light.radius && *light.radius <= 0.0f) {
-    return error::invalid("patch.radius", "must be more than 0 for an area light");
+    return error::invalid("patch.radius", "must be greater than 0 for area lights");
   }
   return light;
 }
@@ -177,8 +177,8 @@ Result<std::size_t> find(const std::vector<Info>& list, const std::string& name,
     if (list[i].name == name) return i;
     names.push_back(list[i].name);
   }
-  return error::not_found(kind, std::string("the scene has no ") + kind + " of this name" +
-                                    protocol::suggestion(name, names));
+  return error::not_found(
+      kind, std::string("the scene has no such ") + kind + protocol::suggestion(name, names));
 }
 
 shared::Material device_form(const MaterialInfo& info, shared::Material material) {
@@ -211,8 +211,7 @@ MaterialInfo describe(const shared::Material& material) {
   return info;
 }
 
-}  // namespace
-
+/// The lights of the file. Names are unique: a light without one gets its number.
 std::vector<LightInfo> describe_lights(const scene::Scene& scene) {
   UniqueNames names("light");
   std::vector<LightInfo> lights;
@@ -222,6 +221,8 @@ std::vector<LightInfo> describe_lights(const scene::Scene& scene) {
   }
   return lights;
 }
+
+}  // namespace
 
 std::vector<MaterialInfo> describe_materials(const scene::Scene& scene) {
   UniqueNames names("material");

@@ -39,9 +39,7 @@ class SceneEdits {
   std::shared_ptr<const Materials> device_materials_;
 };
 
-/// The lights and materials of the file. Names are made unique; those without a name get their
-/// number.
-std::vector<protocol::LightInfo> describe_lights(const scene::Scene& scene);
+/// The materials of the file. Names are unique: a material without one gets its number.
 std::vector<protocol::MaterialInfo> describe_materials(const scene::Scene& scene);
 
 }  // namespace heliograph::session

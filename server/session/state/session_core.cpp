@@ -72,8 +72,8 @@ Result<protocol::SettingsApplied> SessionCore::patch_settings(const protocol::Ra
     settings = std::move(patched);
     reference.settings_changed(settings);
     changed();
-    notify_others(by, "settings.changed",
-                  protocol::SettingsChanged{.rev = rev, .patch = effective, .by = by});
+    notify_others<protocol::notifications::settings_changed>(
+        by, {.rev = rev, .patch = effective, .by = by});
   }
   return protocol::SettingsApplied{.rev = rev, .applied = std::move(effective)};
 }

@@ -49,15 +49,14 @@ struct SessionCore {
   float aspect() const { return static_cast<float>(width) / static_cast<float>(height); }
 
   /// Sends a notification to all viewers but `by`, who made the change.
-  template <class Message>
-  void notify_others(const std::string& by, std::string_view method, const Message& message) {
-    viewers.send_others(by, protocol::make_notification(method, message), {});
+  template <class Notification>
+  void notify_others(const std::string& by, const typename Notification::Params& params) {
+    viewers.send_others(by, protocol::make_notification<Notification>(params), {});
   }
   /// The same for a notification that holds a whole state: it replaces an older one that is queued.
-  template <class Message>
-  void notify_others_latest(const std::string& by, std::string_view method,
-                            const Message& message) {
-    viewers.send_others(by, protocol::make_notification(method, message), method);
+  template <class Notification>
+  void notify_others_latest(const std::string& by, const typename Notification::Params& params) {
+    viewers.send_others(by, protocol::make_notification<Notification>(params), Notification::name);
   }
 
   const SessionOptions options;

@@ -37,8 +37,8 @@ Result<void> Timeline::play(const protocol::AnimationPlay& request, const scene:
     std::vector<std::string_view> names;
     for (const scene::Clip& clip : scene.clips) names.push_back(clip.name);
     if (!scene::find_clip(scene, *request.clip)) {
-      return error::not_found("clip", "the scene has no clip of this name" +
-                                          protocol::suggestion(*request.clip, names));
+      return error::not_found(
+          "clip", "the scene has no such clip" + protocol::suggestion(*request.clip, names));
     }
     clock.clip = *request.clip;
     clock.seconds = 0.0;
@@ -57,7 +57,7 @@ void Timeline::pause() {
 }
 
 Result<void> Timeline::seek(double seconds) {
-  if (clock_.clip.empty()) return error::not_ready("no clip was played yet");
+  if (clock_.clip.empty()) return error::not_ready("no clip is active; play one first");
   clock_ = clock_now();
   clock_.seconds = seconds;
   return {};

@@ -17,7 +17,7 @@ protocol::StreamPhase phase_of(FramePurpose purpose) {
     case FramePurpose::refining:
       return protocol::StreamPhase::refining;
     case FramePurpose::final:
-      return protocol::StreamPhase::still;
+      return protocol::StreamPhase::idle;
   }
   return protocol::StreamPhase::interactive;
 }
@@ -53,7 +53,7 @@ protocol::FrameHeader merged(const protocol::FrameHeader& rendered,
 struct Broadcast::Encoding {
   std::shared_ptr<Session> session;
   BroadcastServices services;
-  std::shared_ptr<stream::PictureEncoder> encoder;
+  std::shared_ptr<stream::FrameEncoder> encoder;
   std::shared_ptr<std::atomic<int>> count;
   std::shared_ptr<const RenderedFrame> rendered;
   FramePurpose purpose;
@@ -80,10 +80,10 @@ struct Broadcast::Encoding {
   }
 
   std::vector<stream::SharedFrame> encode() {
-    const stream::PictureView view = image_view(rendered->frame);
+    const stream::ImageView view = image_view(rendered->frame);
     const EncodingPlan plan = session->viewers().plan(number, purpose, view.rgba.size() / 4);
     std::vector<stream::SharedFrame> frames;
-    for (const stream::FormRequest& request : plan.forms) {
+    for (const stream::VariantRequest& request : plan.requests) {
       frames.push_back(timed([&] { return encoder->encode(view, request); }));
     }
     for (const protocol::StillFormat format : plan.stills) {
@@ -113,7 +113,7 @@ struct Broadcast::Encoding {
 Broadcast::Broadcast(std::shared_ptr<Session> session, const BroadcastServices& services)
     : session_(std::move(session)),
       services_(services),
-      encoder_(std::make_shared<stream::PictureEncoder>(services.jpeg)),
+      encoder_(std::make_shared<stream::FrameEncoder>(services.jpeg)),
       encoding_(std::make_shared<std::atomic<int>>(0)) {}
 
 void Broadcast::rendered(std::shared_ptr<const RenderedFrame> frame, FramePurpose purpose) {
@@ -136,7 +136,7 @@ void Broadcast::reset() {
   due_.reset();
   due_samples_ = 0;
   newer_than_due_ = false;
-  encoder_ = std::make_shared<stream::PictureEncoder>(services_.jpeg);
+  encoder_ = std::make_shared<stream::FrameEncoder>(services_.jpeg);
 }
 
 void Broadcast::send_final() {

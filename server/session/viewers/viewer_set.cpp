@@ -63,13 +63,13 @@ Result<ViewerStream> ViewerSet::configure(const std::string& viewer,
   Viewer& target = **found;
   if (change.codec && *change.codec != protocol::StreamCodec::jpeg &&
       !target.stream.decodes_video) {
-    return protocol::error::invalid("codec", "was not agreed on in hello", "jpeg");
+    return protocol::error::invalid("codec", "is not one of the codecs of hello", "jpeg");
   }
   if (change.codec) target.stream.codec = *change.codec;
   if (change.still && target.stream.still != *change.still) {
     target.stream.still = *change.still;
     target.offered = 0;
-    if (target.pacer.frame_waiting()) target.pacer.withdraw();
+    if (target.pacer.frame_pending()) target.pacer.drop_pending();
   }
   if (change.quality) target.stream.quality = static_cast<int>(*change.quality);
   if (change.max_fps) {
@@ -94,7 +94,7 @@ Result<void> ViewerSet::acknowledge(const std::string& viewer, const protocol::S
   Viewer& target = **found;
   // Late and repeated acknowledgements are normal and say nothing new.
   target.pacer.acknowledge(ack.frame_seq, microseconds(ack.present_us), Clock::now());
-  if (target.pacer.frame_waiting()) announce(target);
+  if (target.pacer.frame_pending()) announce(target);
   on_capacity_.notify();
   return {};
 }
@@ -122,7 +122,7 @@ std::optional<stream::OutgoingFrame> ViewerSet::take(const std::string& viewer) 
   const auto taken = (*found)->pacer.take(Clock::now());
   if (!taken) {
     // A frame that only its rate limit holds back needs the render thread's timer.
-    if ((*found)->pacer.frame_waiting()) on_capacity_.notify();
+    if ((*found)->pacer.frame_pending()) on_capacity_.notify();
     return std::nullopt;
   }
   on_capacity_.notify();
@@ -158,12 +158,12 @@ bool ViewerSet::has_active_viewer() const {
   });
 }
 
-std::optional<Clock::time_point> ViewerSet::next_send_time() const {
+std::optional<Clock::time_point> ViewerSet::next_send() const {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
   std::optional<Clock::time_point> next;
   for (const auto& [id, viewer] : viewers_) {
-    const Clock::time_point turn = viewer.pacer.next_turn();
+    const Clock::time_point turn = viewer.pacer.next_send();
     if (!viewer.started || viewer.stream.paused || turn <= now) continue;
     next = next ? std::min(*next, turn) : turn;
   }
@@ -197,7 +197,7 @@ EncodingPlan ViewerSet::plan(std::uint64_t number, FramePurpose purpose, std::ui
   pixels_ = pixels;
   EncodingPlan plan;
   std::vector<Viewer*> active;
-  std::vector<stream::FormWish> wishes;
+  std::vector<stream::RequestedVariant> wishes;
   for (auto& [id, viewer] : viewers_) {
     if (!viewer.started || viewer.stream.paused) continue;
     const bool ready = viewer_needs_frame(viewer, number, now);
@@ -209,17 +209,17 @@ EncodingPlan ViewerSet::plan(std::uint64_t number, FramePurpose purpose, std::ui
       continue;
     }
     active.push_back(&viewer);
-    wishes.push_back({.form = requested_variant(viewer, purpose),
+    wishes.push_back({.variant = requested_variant(viewer, purpose),
                       .ready = ready,
                       .decoder = viewer.pacer.decoder(),
                       .budget = viewer.pacer.link().budget()});
   }
-  stream::FormPlanner::Plan chosen = planner_.plan(wishes, now);
+  stream::VariantPlanner::Plan chosen = planner_.plan(wishes, now);
   for (std::size_t i = 0; i < active.size(); ++i) {
-    active[i]->form = chosen.assigned[i];
+    active[i]->variant = chosen.assigned[i];
     if (purpose == FramePurpose::interactive) active[i]->moving = chosen.assigned[i];
   }
-  plan.forms = std::move(chosen.requests);
+  plan.requests = std::move(chosen.requests);
   return plan;
 }
 
@@ -248,14 +248,16 @@ void ViewerSet::publish(std::uint64_t number, FramePurpose purpose,
 void ViewerSet::publish_stats(protocol::StatsFrame stats) {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
-  const bool finished = stats.state == protocol::StreamPhase::still;
+  const bool finished = stats.state == protocol::StreamPhase::idle;
   for (auto& [id, viewer] : viewers_) {
     const bool subscribed = viewer.stats_interval.count() > 0 && viewer.last_bytes > 0;
     if (!subscribed || (now < viewer.next_stats && !finished)) continue;
     viewer.next_stats = now + viewer.stats_interval;
     complete(stats, viewer);
     const auto link = viewer.link.lock();
-    if (link) link->send(protocol::make_notification("stats.frame", stats), "stats.frame");
+    if (link)
+      link->send(protocol::make_notification<protocol::notifications::stats_frame>(stats),
+                 "stats.frame");
   }
 }
 
@@ -278,8 +280,8 @@ ViewerTotals ViewerSet::totals() const {
   std::int64_t measured = 0;
   for (const auto& [id, viewer] : viewers_) {
     totals.sent += viewer.pacer.totals();
-    totals.waiting += viewer.pacer.frame_waiting() ? 1 : 0;
-    totals.in_flight += viewer.pacer.on_the_way();
+    totals.waiting += viewer.pacer.frame_pending() ? 1 : 0;
+    totals.in_flight += viewer.pacer.in_flight();
     totals.goodput += viewer.pacer.goodput();
     if (viewer.pacer.goodput() == 0.0) continue;
     totals.mean_round_trip += viewer.pacer.round_trip();
@@ -292,14 +294,14 @@ ViewerTotals ViewerSet::totals() const {
 Result<ViewerSet::Viewer*> ViewerSet::find(const std::string& viewer) {
   const auto found = viewers_.find(viewer);
   if (found == viewers_.end()) {
-    return protocol::error::not_ready("only viewers on a WebSocket can request this");
+    return protocol::error::not_ready("requires a WebSocket connection");
   }
   return &found->second;
 }
 
 void ViewerSet::offer_latest(Viewer& viewer) {
   if (latest_.empty() || viewer.stream.paused) return;
-  viewer.form = requested_variant(viewer, latest_purpose_);
+  viewer.variant = requested_variant(viewer, latest_purpose_);
   const stream::SharedFrame frame = find_encoding(viewer, latest_purpose_, latest_);
   // Otherwise the newest frame is encoded once more, for this viewer.
   if (!frame) return;
@@ -319,10 +321,11 @@ bool ViewerSet::viewer_needs_frame(const Viewer& viewer, std::uint64_t number,
   return viewer.started && viewer.offered < number && viewer.pacer.has_room(now);
 }
 
-stream::Form ViewerSet::requested_variant(Viewer& viewer, FramePurpose purpose) const {
-  const stream::Form requested{.codec = viewer.stream.codec, .quality = viewer.stream.quality};
+stream::EncodingVariant ViewerSet::requested_variant(Viewer& viewer, FramePurpose purpose) const {
+  const stream::EncodingVariant requested{.codec = viewer.stream.codec,
+                                          .quality = viewer.stream.quality};
   // Frames of a static image are few and each is better than the last: a video gains nothing.
-  if (purpose != FramePurpose::interactive) return viewer.pacer.link().resting(requested);
+  if (purpose != FramePurpose::interactive) return viewer.pacer.link().choose_refining(requested);
   return viewer.pacer.link().choose(requested, pixels_);
 }
 
@@ -340,11 +343,12 @@ stream::SharedFrame ViewerSet::find_encoding(const Viewer& viewer, FramePurpose 
     });
   }
   const auto own = find([&](const stream::EncodedFrame& frame) {
-    return frame.form == viewer.form && viewer.pacer.can_show(frame);
+    return frame.variant == viewer.variant && viewer.pacer.can_show(frame);
   });
-  if (own || viewer.form.codec == protocol::StreamCodec::jpeg) return own;
-  const stream::Form stand_in = stream::FormPlanner::stand_in(viewer.form);
-  return find([&](const stream::EncodedFrame& frame) { return frame.form == stand_in; });
+  if (own || viewer.variant.codec == protocol::StreamCodec::jpeg) return own;
+  const stream::EncodingVariant jpeg_fallback =
+      stream::VariantPlanner::jpeg_fallback(viewer.variant);
+  return find([&](const stream::EncodedFrame& frame) { return frame.variant == jpeg_fallback; });
 }
 
 void ViewerSet::announce(const Viewer& viewer) {

@@ -36,7 +36,7 @@ struct ViewerStream {
 
 /// How to encode one frame.
 struct EncodingPlan {
-  std::vector<stream::FormRequest> forms;
+  std::vector<stream::VariantRequest> requests;
   std::vector<protocol::StillFormat> stills;
   int still_quality = 0;  // lower bound
 };
@@ -99,7 +99,7 @@ class ViewerSet {
   /// Whether any viewer is started and not paused.
   bool has_active_viewer() const;
   /// When the next viewer may be sent a frame again that only its rate limit holds back.
-  std::optional<Clock::time_point> next_send_time() const;
+  std::optional<Clock::time_point> next_send() const;
   /// Announces queued frames to viewers that may be sent them now.
   void announce_due_frames();
   /// New viewers get no frame until another is published.
@@ -130,11 +130,11 @@ class ViewerSet {
     bool started = false;
     bool discontinuous = false;         // its next frame does not continue the last one
     std::uint64_t discontinuities = 0;  // of the last frame that it took
-    std::uint64_t offered = 0;     // number of the newest frame that it was offered or cannot have
-    std::uint64_t planned = 0;     // number of the newest frame that was encoded for it
-    stream::Form form;             // of the frames that it gets at present
-    stream::Form moving;           // of those that it gets while the image changes
-    std::uint64_t last_bytes = 0;  // of the newest frame that it was offered
+    std::uint64_t offered = 0;  // number of the newest frame that it was offered or cannot have
+    std::uint64_t planned = 0;  // number of the newest frame that was encoded for it
+    stream::EncodingVariant variant;  // of the frames that it gets at present
+    stream::EncodingVariant moving;   // of those that it gets while the image changes
+    std::uint64_t last_bytes = 0;     // of the newest frame that it was offered
     std::uint32_t last_encode_us = 0;
     std::chrono::milliseconds stats_interval{0};
     Clock::time_point next_stats;
@@ -150,7 +150,7 @@ class ViewerSet {
   void offer_latest(Viewer& viewer);
   static void offer(Viewer& viewer, const stream::SharedFrame& frame);
   bool viewer_needs_frame(const Viewer& viewer, std::uint64_t number, Clock::time_point now) const;
-  stream::Form requested_variant(Viewer& viewer, FramePurpose purpose) const;
+  stream::EncodingVariant requested_variant(Viewer& viewer, FramePurpose purpose) const;
   static stream::SharedFrame find_encoding(const Viewer& viewer, FramePurpose purpose,
                                            const std::vector<stream::SharedFrame>& frames);
   static void announce(const Viewer& viewer);
@@ -159,7 +159,7 @@ class ViewerSet {
   WakeEvent& on_capacity_;
   mutable std::mutex mutex_;
   Viewers viewers_;
-  stream::FormPlanner planner_;
+  stream::VariantPlanner planner_;
   std::uint64_t arrivals_ = 0;
   Control control_;
   std::vector<stream::SharedFrame> latest_;

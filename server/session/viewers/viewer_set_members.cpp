@@ -24,7 +24,8 @@ Result<void> ViewerSet::join(const std::string& id, std::weak_ptr<ViewerLink> li
 
 Result<void> ViewerSet::check_capacity() const {
   if (viewers_.size() < max_viewers_) return {};
-  return protocol::error::full("the session is full", std::to_string(max_viewers_) + " viewers");
+  return protocol::error::full("the session's maximum number of viewers is reached",
+                               std::to_string(max_viewers_) + " viewers");
 }
 
 Result<void> ViewerSet::move_to(const std::string& viewer, ViewerSet& other) {
@@ -44,13 +45,13 @@ Result<void> ViewerSet::move_to(const std::string& viewer, ViewerSet& other) {
   return accepted;
 }
 
-/// Leaves `viewer` as it is when the session is full.
+/// Leaves `viewer` as it is when the session's maximum number of viewers is reached.
 Result<void> ViewerSet::accept(Viewers::node_type& viewer) {
   const std::lock_guard lock(mutex_);
   if (const Result<void> capacity = check_capacity(); !capacity) return capacity;
   if (viewer.empty()) return {};
   Viewer& accepted = viewers_.insert(std::move(viewer)).position->second;
-  accepted.pacer.withdraw();
+  accepted.pacer.drop_pending();
   accepted.discontinuous = true;
   accepted.offered = 0;
   accepted.planned = 0;
@@ -147,7 +148,8 @@ void ViewerSet::announce_participants(protocol::SessionInfo session) {
     const auto link = viewer.started ? viewer.link.lock() : nullptr;
     if (!link) continue;
     session.viewers = describe_participants(id);
-    link->send(protocol::make_notification("session.changed", session), "session.changed");
+    link->send(protocol::make_notification<protocol::notifications::session_changed>(session),
+               "session.changed");
   }
 }
 

@@ -191,7 +191,7 @@ TEST_F(SessionTest, StoppingAReferenceRestoresTheSettings) {
     return session_.patch_settings(protocol::RawJson(std::move(members)), "");
   };
   ASSERT_TRUE(patch({{"accumulation", {{"enabled", false}, {"max_samples", 5}}},
-                     {"reference", {{"use", "resting"}, {"scope", "full"}}}}));
+                     {"reference", {{"use", "when_static"}, {"scope", "full"}}}}));
   const protocol::Settings before = session_.render_state().settings;
   ASSERT_TRUE(session_.reference().start({.samples = 9}, ""));
   ASSERT_TRUE(session_.reference().start({.samples = 7}, "")) << "started again with other samples";
@@ -210,7 +210,7 @@ TEST_F(SessionTest, SettingsThatDisableAReferenceEndIt) {
   session_.scene().show(a_scene(), "");
   ASSERT_TRUE(session_.reference().start({.samples = 9}, ""));
   ASSERT_TRUE(
-      session_.patch_settings(protocol::RawJson(json{{"reference", {{"use", "never"}}},
+      session_.patch_settings(protocol::RawJson(json{{"reference", {{"use", "off"}}},
                                                      {"accumulation", {{"max_samples", 32}}}}),
                               ""));
   EXPECT_FALSE(session_.renders_without_viewers());

@@ -32,9 +32,10 @@ class ViewerSetTest : public testing::Test {
 };
 
 /// A frame as the encoder makes it, without pixels.
-std::shared_ptr<stream::EncodedFrame> encoded(std::uint32_t render_id, const stream::Form& form) {
+std::shared_ptr<stream::EncodedFrame> encoded(std::uint32_t render_id,
+                                              const stream::EncodingVariant& form) {
   auto frame = std::make_shared<stream::EncodedFrame>();
-  frame->form = form;
+  frame->variant = form;
   frame->header.render_id = render_id;
   frame->header.quality = static_cast<std::uint16_t>(form.quality);
   frame->header.width = frame->header.full_width = 16;
@@ -45,20 +46,20 @@ std::shared_ptr<stream::EncodedFrame> encoded(std::uint32_t render_id, const str
 }
 
 /// Plans, encodes and publishes frame `number`; gives the variants it was encoded in.
-std::vector<stream::Form> show(ViewerSet& viewers, std::uint32_t number,
-                               FramePurpose purpose = FramePurpose::interactive) {
+std::vector<stream::EncodingVariant> show(ViewerSet& viewers, std::uint32_t number,
+                                          FramePurpose purpose = FramePurpose::interactive) {
   const EncodingPlan plan = viewers.plan(number, purpose, 16 * 16);
-  std::vector<stream::Form> forms;
+  std::vector<stream::EncodingVariant> forms;
   std::vector<stream::SharedFrame> frames;
-  for (const stream::FormRequest& request : plan.forms) {
-    forms.push_back(request.form);
-    frames.push_back(encoded(number, request.form));
+  for (const stream::VariantRequest& request : plan.requests) {
+    forms.push_back(request.variant);
+    frames.push_back(encoded(number, request.variant));
   }
   for (const protocol::StillFormat format : plan.stills) {
     const bool lossless = format == protocol::StillFormat::png;
     auto frame = encoded(number, {.quality = lossless ? 100 : 95});
     if (lossless) frame->header.codec = protocol::FrameCodec::png;
-    forms.push_back(frame->form);
+    forms.push_back(frame->variant);
     frames.push_back(frame);
   }
   viewers.publish(number, purpose, frames);
@@ -78,7 +79,8 @@ TEST_F(ViewerSetTest, EncodesPerQualityAndSharesTheFinalFrame) {
   const Joined first = join();
   const Joined second = join();
   ASSERT_TRUE(viewers_.configure(first.id, {.quality = 40}));
-  EXPECT_EQ(show(viewers_, 7), (std::vector<stream::Form>{{.quality = 40}, {.quality = 80}}));
+  EXPECT_EQ(show(viewers_, 7),
+            (std::vector<stream::EncodingVariant>{{.quality = 40}, {.quality = 80}}));
   const auto low = viewers_.take(first.id);
   const auto high = viewers_.take(second.id);
   ASSERT_TRUE(low && high);
@@ -86,7 +88,8 @@ TEST_F(ViewerSetTest, EncodesPerQualityAndSharesTheFinalFrame) {
   EXPECT_EQ(protocol::decode_frame_header(low->header)->frame_seq, 1u);
   EXPECT_EQ(protocol::decode_frame_header(high->header)->quality, 80);
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  EXPECT_EQ(show(viewers_, 8, FramePurpose::final), (std::vector<stream::Form>{{.quality = 95}}));
+  EXPECT_EQ(show(viewers_, 8, FramePurpose::final),
+            (std::vector<stream::EncodingVariant>{{.quality = 95}}));
   EXPECT_EQ(viewers_.take(first.id)->frame, viewers_.take(second.id)->frame);
 }
 
@@ -123,7 +126,7 @@ TEST_F(ViewerSetTest, EncodesTheLatestFrameAgainForANewVariant) {
   ASSERT_TRUE(viewers_.configure(viewer.id, {.quality = 40, .paused = true}));
   ASSERT_TRUE(viewers_.configure(viewer.id, {.paused = false}));
   EXPECT_TRUE(viewers_.needs_frame(3));
-  EXPECT_EQ(show(viewers_, 3), (std::vector<stream::Form>{{.quality = 40}}));
+  EXPECT_EQ(show(viewers_, 3), (std::vector<stream::EncodingVariant>{{.quality = 40}}));
   EXPECT_EQ(viewers_.take(viewer.id)->frame->header.quality, 40);
   EXPECT_FALSE(viewers_.take(first.id)) << "it has this frame";
 }
@@ -192,9 +195,9 @@ TEST_F(ViewerSetTest, SendsStatsAtTheSubscribedInterval) {
   for (int i = 0; i < 3; ++i) viewers_.publish_stats({.render_id = 5});
   ASSERT_EQ(viewer.link->messages.size(), 1u);
   EXPECT_EQ(viewer.link->messages[0]["params"]["render_id"], 5);
-  viewers_.publish_stats({.state = protocol::StreamPhase::still});
+  viewers_.publish_stats({.state = protocol::StreamPhase::idle});
   ASSERT_EQ(viewer.link->messages.size(), 2u) << "the final state is always sent";
-  EXPECT_EQ(viewer.link->messages[1]["params"]["state"], "still");
+  EXPECT_EQ(viewer.link->messages[1]["params"]["state"], "idle");
 }
 
 }  // namespace
