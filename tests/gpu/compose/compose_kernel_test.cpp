@@ -10,7 +10,7 @@ namespace {
 struct View {
   VkExtent2D extent{77, 45};
   bool denoised = true;
-  bool mirrors = true;
+  bool reflections = true;
   bool orthographic = false;
   protocol::Settings settings;
 };
@@ -49,7 +49,7 @@ class KernelComparison {
     RandomFrame random(rig_);
     const render::GBuffer gbuffer = random.gbuffer();
     render::RawSignals raw{random.bits("shadow"), random.bits("ambient"), {}};
-    if (view.mirrors) raw.specular = random.four("specular", glm::vec4(0), glm::vec4(3));
+    if (view.reflections) raw.specular = random.four("specular", glm::vec4(0), glm::vec4(3));
     std::optional<render::DenoisedSignals> denoised;
     if (view.denoised) {
       denoised = {random.four("visibility", glm::vec4(0), glm::vec4(1)), raw.specular};
@@ -93,12 +93,13 @@ void expect_same(const View& view, const std::string& which) {
 
 TEST_F(ComposeKernel, MatchesShader) {
   for (const bool denoised : {true, false}) {
-    for (const bool mirrors : {true, false}) {
+    for (const bool reflections : {true, false}) {
       for (const bool orthographic : {true, false}) {
-        View view{.denoised = denoised, .mirrors = mirrors, .orthographic = orthographic};
-        view.settings.lighting.environment_specular = mirrors;
+        View view{.denoised = denoised, .reflections = reflections, .orthographic = orthographic};
+        view.settings.lighting.environment_specular = reflections;
         expect_same(view, std::string(denoised ? "denoised " : "raw ") +
-                              (mirrors ? "mirrors " : "") + (orthographic ? "orthographic" : ""));
+                              (reflections ? "reflections " : "") +
+                              (orthographic ? "orthographic" : ""));
       }
     }
   }

@@ -45,7 +45,7 @@ shared::BvhTriangle triangle_at(const Bvh& bvh, std::size_t index) {
   return std::bit_cast<shared::BvhTriangle>(texels);
 }
 
-/// Walks every branch under `link`, checking that boxes hold what is below, and counts triangles.
+/// Visits all nodes under `link`, checks that boxes contain their subtree, and counts triangles.
 void check_mesh(const Bvh& bvh, std::uint32_t link, const Box& box, float slack,
                 std::map<std::uint32_t, int>& seen) {
   if (!is_leaf(link)) {
