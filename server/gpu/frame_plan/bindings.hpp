@@ -38,17 +38,17 @@ struct Use {
   Access access;
 };
 
-template <Access access>
+template <Access kind>
 struct ImageUse : Use {
-  ImageUse(ImageRef image) : Use{image.index, access} {}
+  ImageUse(ImageRef image) : Use{image.index, kind} {}
 };
-template <Access access>
+template <Access kind>
 struct OptionalImageUse : Use {
-  OptionalImageUse(std::optional<ImageRef> image) : Use{image.value_or(ImageRef()).index, access} {}
+  OptionalImageUse(std::optional<ImageRef> image) : Use{image.value_or(ImageRef()).index, kind} {}
 };
-template <Access access>
+template <Access kind>
 struct BufferUse : Use {
-  BufferUse(BufferRef buffer) : Use{buffer.index, access} {}
+  BufferUse(BufferRef buffer) : Use{buffer.index, kind} {}
 };
 
 /// A buffer's contents in the host's memory.
