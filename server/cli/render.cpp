@@ -17,7 +17,7 @@
 #include "scene/environment.hpp"
 #include "scene/import.hpp"
 #include "session/rendering/capture_content.hpp"
-#include "session/state/environment_choice.hpp"
+#include "session/library/environment_source.hpp"
 
 namespace heliograph::cli {
 namespace {
