@@ -16,8 +16,8 @@
 #include "scene/camera.hpp"
 #include "scene/environment.hpp"
 #include "scene/import.hpp"
-#include "session/rendering/capture_content.hpp"
 #include "session/library/environment_source.hpp"
+#include "session/rendering/capture_content.hpp"
 
 namespace heliograph::cli {
 namespace {

@@ -149,14 +149,14 @@ class Sessions(ServerTestCase):
         self.create("room", copy_of="main")
         async with Viewer(self.server, session="room", name="Ada") as first:
             async with Viewer(self.server, session="room") as second:
-                await self.until_people(first, [("Ada", True), (None, False)])
-                await self.until_people(second, [("Ada", False), (None, True)])
-            await self.until_people(first, [("Ada", True)])
+                await self.until_viewers(first, [("Ada", True), (None, False)])
+                await self.until_viewers(second, [("Ada", False), (None, True)])
+            await self.until_viewers(first, [("Ada", True)])
 
-    async def until_people(self, viewer, expected):
+    async def until_viewers(self, viewer, expected):
         for _ in range(100):
             received = [message["params"] for message in viewer.notifications
-                    if message["method"] == "session.changed"]
+                        if message["method"] == "session.changed"]
             viewers = received[-1]["viewers"] if received else []
             if [(one["name"], one["you"]) for one in viewers] == expected:
                 return
@@ -228,7 +228,7 @@ class Sessions(ServerTestCase):
             async with Viewer(self.server, session="left") as leaves:
                 await leaves.call("session.control", {"mode": "exclusive"})
                 self.assert_error(await stays.ask("session.control", {"action": "take"}), FORBIDDEN)
-            await self.until_people(stays, [(None, True)])
+            await self.until_viewers(stays, [(None, True)])
             await stays.call("session.control", {"action": "take"})
             await stays.call("camera.fit")
 

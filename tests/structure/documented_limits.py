@@ -161,7 +161,7 @@ def messages():
         plain(SESSION, "SessionLimits::max_captures") + " each"
     yield "frames without acknowledgement", f"{window}, up to {longest} on links with high latency"
     yield "time without acknowledgement", duration(NET, "ack_timeout|longest_without_acknowledgement")
-    yield "delay of the final frame after the last change", duration(SESSION, "final_delay|rest_before_final", "ms")
+    yield "delay of the final frame after the last change", duration(SESSION, "final_delay", "ms")
     yield "quality of the final JPEG", plain(STREAM, "still_quality") + " or more"
     yield "interval of repeated frames of `stream.mjpg`", duration(NET, "repeat_interval|longest_silence")
     yield "interval between key frames for new viewers", \
