@@ -253,7 +253,7 @@ void Router::picture(const HttpRequest& request, std::string_view session,
            .body = {result->file.begin(), result->file.end()},
            .headers = {{"X-Heliograph-Samples", std::to_string(result->samples)}}});
   };
-  if (const auto accepted = (*found)->request_capture(std::move(capture)); !accepted) {
+  if (const auto accepted = (*found)->captures().request_capture(std::move(capture)); !accepted) {
     reply(error_response(accepted.error()));
   }
 }

@@ -23,7 +23,7 @@ protocol::DeviceType device_type(VkPhysicalDeviceType type) {
 /// "embree, software": the first is what the device gets unasked.
 std::string tracer_names(const gpu::DeviceReport& report) {
   std::string names;
-  for (const protocol::TracerKind kind : tracing::offered_tracers(report)) {
+  for (const protocol::TracerKind kind : tracing::supported_tracers(report)) {
     names += (names.empty() ? "" : ", ") + std::string(protocol::enum_name(kind));
   }
   return names;

@@ -2,6 +2,7 @@
 // after a device loss.
 #include <gtest/gtest.h>
 
+#include "render/api/renderer.hpp"
 #include "scenes/generator/scenes/paper_scenes.hpp"
 #include "tests/support/engine.hpp"
 #include "tests/support/generated_scene.hpp"

@@ -60,7 +60,7 @@ TEST(Colors, DistancesAreLogarithmic) {
 TEST(Colors, NaNIsBlack) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const ViewColors colors :
-       {ViewColors::image, ViewColors::radiance, ViewColors::squared, ViewColors::channels,
+       {ViewColors::picture, ViewColors::radiance, ViewColors::squared, ViewColors::channels,
         ViewColors::grey, ViewColors::direction, ViewColors::octahedral, ViewColors::share,
         ViewColors::heat, ViewColors::distance, ViewColors::stops, ViewColors::pixels}) {
     EXPECT_EQ(texel(colorize(colors, row({{nan, nan, nan, nan}, {1, 1, 1, 1}})), 0), (Rgb{0, 0, 0}))
