@@ -180,7 +180,7 @@ int run(const RenderOptions& options) {
 
   render::Engine engine(engine_options(options.device));
   render::Renderer renderer(engine);
-  const auto resources = engine.upload(std::move(imported), std::move(environment));
+  const auto resources = engine.upload_and_free_pixels(std::move(imported), std::move(environment));
   const std::shared_ptr<const scene::Scene>& scene = render::scene_of(*resources);
   renderer.set_scene(resources);
   renderer.set_size(options.width, options.height);

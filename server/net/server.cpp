@@ -74,8 +74,8 @@ struct Server::State {
     error_code gone;
     const tcp::endpoint peer = socket.remote_endpoint(gone);
     if (gone) return;
-    auto seat = room.take(peer.address().to_string());
-    if (!seat) {
+    auto slot = room.take(peer.address().to_string());
+    if (!slot) {
       ++traffic.connections_refused;
       // One line for each would let who floods fill the disk too.
       if (refusals.allow(RateLimit::Clock::now())) {
@@ -91,7 +91,7 @@ struct Server::State {
     setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &unsent_bytes,
                sizeof unsent_bytes);
     notice_absence(socket.native_handle());
-    start_http_connection(context, ClientStream(std::move(socket), *std::move(seat)), by);
+    start_http_connection(context, ClientStream(std::move(socket), *std::move(slot)), by);
   }
 
   void wait_for_signals() {

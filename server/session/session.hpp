@@ -58,7 +58,7 @@ class Session {
   protocol::Result<protocol::StreamState> configure_stream(const protocol::StreamConfigure& request,
                                                            const std::string& by,
                                                            bool read_only = false);
-  /// Tells all participants who takes part and who has control.
+  /// Notifies all viewers of the participants and of control.
   void announce();
   void leave(const std::string& viewer);
   /// Moves a viewer to another session; it stays if that one is full.

@@ -25,7 +25,7 @@ Result<void> SessionCaptures::accept(CaptureRequest request) {
   if (const auto known = render::check_buffer_name(request.buffer, "buffer"); !known) {
     return known.error();
   }
-  if (const auto room = core_.captures.check_capture_capacity(); !room) return room;
+  if (const auto capacity = core_.captures.check_capture_capacity(); !capacity) return capacity;
   request.ticket = core_.timeline.next_ticket();
   core_.captures.add(std::move(request));
   return {};
@@ -35,7 +35,7 @@ Result<void> SessionCaptures::request_probe(Probe probe) {
   {
     const std::lock_guard lock(core_.mutex);
     if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded;
-    if (const auto room = core_.captures.check_probe_capacity(); !room) return room;
+    if (const auto capacity = core_.captures.check_probe_capacity(); !capacity) return capacity;
     probe.ticket = core_.timeline.next_ticket();
     core_.captures.add(std::move(probe));
   }

@@ -77,7 +77,7 @@ Result<void> SessionTimeline::request_step(StepRequest request) {
   {
     const std::lock_guard lock(core_.mutex);
     if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded;
-    if (const auto room = core_.timeline.check_capacity(); !room) return room;
+    if (const auto capacity = core_.timeline.check_capacity(); !capacity) return capacity;
     if (!core_.timeline.in_lockstep()) {
       core_.timeline.enter_lockstep();
       core_.changed();

@@ -14,6 +14,6 @@ struct HealthAnswer {
 /// server's certificate must be signed by one in the file `authorities`, or, if it is empty, by one
 /// that the system trusts; on loopback addresses it is then not looked at.
 HealthAnswer ask_health(const std::string& url, const std::string& authorities,
-                        std::chrono::milliseconds patience);
+                        std::chrono::milliseconds timeout);
 
 }  // namespace heliograph::net

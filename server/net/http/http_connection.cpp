@@ -1,7 +1,4 @@
 #include <algorithm>
-#include <boost/asio/post.hpp>
-#include <boost/asio/write.hpp>
-#include <boost/beast/core/detect_ssl.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
@@ -80,11 +77,10 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   void start() {
     if (!context_.certificate || door_ == Door::measuring) return read();
     stream_.next_layer().expires_after(handshake_timeout);
-    beast::async_detect_ssl(stream_.next_layer(), buffer_,
-                            [self = shared_from_this()](error_code error, bool tls) {
-                              if (error) return;
-                              tls ? self->secure() : self->read();
-                            });
+    detect_tls(stream_, buffer_, [self = shared_from_this()](error_code error, bool tls) {
+      if (error) return;
+      tls ? self->secure() : self->read();
+    });
   }
 
   void shut_down() override {
@@ -97,7 +93,8 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
 
  private:
   void secure() {
-    stream_.async_secure(context_.certificate->context(), buffer_.data(),
+    stream_.async_secure(context_.certificate->context(), asio::ssl::stream_base::server,
+                         buffer_.data(),
                          [self = shared_from_this()](error_code error, std::size_t used) {
                            if (error) return;
                            self->buffer_.consume(used);
@@ -113,10 +110,9 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     // The first request must come soon; later ones may take their time.
     stream_.next_layer().expires_after(std::exchange(first_, false) ? handshake_timeout
                                                                     : idle_timeout);
-    http::async_read_header(stream_, buffer_, *parser_,
-                            [self = shared_from_this()](error_code error, std::size_t) {
-                              self->received_header(error);
-                            });
+    http::async_read_header(
+        stream_, buffer_, *parser_,
+        IoHandler([self = shared_from_this()](error_code error) { self->received_header(error); }));
   }
 
   std::size_t largest_body() const { return context_.host.dispatch_limits().max_message_bytes; }
@@ -133,22 +129,21 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     parser_->body_limit(largest_body());
     invite(parser_->get(), [self = shared_from_this()] {
       http::async_read(self->stream_, self->buffer_, *self->parser_,
-                       [self](error_code failed, std::size_t) { self->received(failed); });
+                       IoHandler([self](error_code failed) { self->received(failed); }));
     });
   }
 
   /// Tells a client that asks so before it sends its body that it may, RFC 9110 section 10.1.1.
-  template <class Header, class Next>
-  void invite(const Header& header, Next next) {
+  template <class Header>
+  void invite(const Header& header, std::function<void()> next) {
     const bool asks =
         header.version() >= 11 && beast::iequals(header[http::field::expect], "100-continue");
     if (!asks) return next();
     constexpr std::string_view invitation = "HTTP/1.1 100 Continue\r\n\r\n";
-    asio::async_write(stream_, asio::buffer(invitation),
-                      [next = std::move(next)](error_code error, std::size_t) {
-                        // Who cannot be told cannot be answered either.
-                        if (!error) next();
-                      });
+    write_all(stream_, WriteBuffers(asio::buffer(invitation)),
+              [next = std::move(next)](error_code error) {
+                if (!error) next();
+              });
   }
 
   /// Lets the body go to a file, if it may.
@@ -192,10 +187,9 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
 
   void receive_upload() {
     stream_.next_layer().expires_after(handshake_timeout);
-    http::async_read_some(stream_, buffer_, *upload_parser_,
-                          [self = shared_from_this()](error_code error, std::size_t) {
-                            self->received_upload(error);
-                          });
+    http::async_read_some(
+        stream_, buffer_, *upload_parser_,
+        IoHandler([self = shared_from_this()](error_code error) { self->received_upload(error); }));
   }
 
   void received_upload(error_code error) {
@@ -209,10 +203,9 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
         [self = shared_from_this()](const protocol::Result<session::UploadedScene>& accepted) {
           HttpResponse response =
               accepted ? upload_response(*accepted) : error_response(accepted.error());
-          asio::post(self->stream_.get_executor(),
-                     [self, response = std::move(response)]() mutable {
-                       self->send(std::move(response));
-                     });
+          run_later(self->stream_.get_executor(), [self, response = std::move(response)]() mutable {
+            self->send(std::move(response));
+          });
         });
   }
 
@@ -248,7 +241,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     }
     stream_.next_layer().expires_never();
     context_.router.handle(request, [self = shared_from_this()](HttpResponse response) {
-      asio::post(self->stream_.get_executor(), [self, response = std::move(response)]() mutable {
+      run_later(self->stream_.get_executor(), [self, response = std::move(response)]() mutable {
         self->send(std::move(response));
       });
     });

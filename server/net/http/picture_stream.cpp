@@ -1,9 +1,6 @@
 #include <array>
 #include <atomic>
-#include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/write.hpp>
-#include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/serializer.hpp>
 #include <boost/beast/http/write.hpp>
 #include <memory>
@@ -74,10 +71,10 @@ class PictureStream : public Connection,
     read();  // before there is a time limit: what waits for the client's end must not run into it
     stream_.next_layer().expires_after(longest_write);
     http::async_write_header(stream_, *serializer_,
-                             [self = shared_from_this()](error_code error, std::size_t) {
+                             IoHandler([self = shared_from_this()](error_code error) {
                                if (error || self->viewer_.empty()) return self->ended();
                                self->write(first_part);
-                             });
+                             }));
     watch();
   }
 
@@ -85,7 +82,7 @@ class PictureStream : public Connection,
 
   void frame_ready() override {
     if (announced_.exchange(true)) return;
-    asio::post(stream_.get_executor(), [self = shared_from_this()] {
+    run_later(stream_.get_executor(), [self = shared_from_this()] {
       self->announced_ = false;
       self->write_next();
     });
@@ -94,17 +91,18 @@ class PictureStream : public Connection,
   void send(std::string, std::string_view) override {}
 
   void disconnect(std::string) override {
-    asio::post(stream_.get_executor(), [self = shared_from_this()] { self->finish(); });
+    run_later(stream_.get_executor(), [self = shared_from_this()] { self->finish(); });
   }
 
  private:
   /// There is no room: the usual answer, and the end.
   void refuse(std::string_view why, const Headers& sharing) {
     ending_ = true;
-    refusal_ = to_message(context_, come_back_later(why), {.sharing = sharing});
+    headers_ = to_message(context_, come_back_later(why), {.sharing = sharing});
     stream_.next_layer().expires_after(longest_write);
-    http::async_write(stream_, refusal_,
-                      [self = shared_from_this()](error_code, std::size_t) { self->ended(); });
+    serializer_.emplace(headers_);
+    http::async_write(stream_, *serializer_,
+                      IoHandler([self = shared_from_this()](error_code) { self->ended(); }));
   }
 
   void configure(const protocol::StreamConfigure& wishes) {
@@ -117,7 +115,7 @@ class PictureStream : public Connection,
   /// nothing.
   void watch() {
     watch_.expires_after(longest_write);
-    watch_.async_wait([self = shared_from_this()](error_code error) {
+    on_expiry(watch_, [self = shared_from_this()](error_code error) {
       if (error || self->viewer_.empty()) return;
       const int socket = self->stream_.next_layer().socket().native_handle();
       const std::uint64_t before = std::exchange(self->taken_, bytes_taken(socket));
@@ -138,9 +136,8 @@ class PictureStream : public Connection,
   void write(std::string_view text) {
     writing_ = true;
     stream_.next_layer().expires_after(longest_write);
-    asio::async_write(
-        stream_, asio::buffer(text.data(), text.size()),
-        [self = shared_from_this()](error_code error, std::size_t) { self->written(error); });
+    write_all(stream_, WriteBuffers(asio::buffer(text.data(), text.size())),
+              [self = shared_from_this()](error_code error) { self->written(error); });
   }
 
   void write_next() {
@@ -160,9 +157,8 @@ class PictureStream : public Connection,
     stream_.next_layer().expires_after(longest_write);
     const std::array<asio::const_buffer, 2> parts{asio::buffer(shown_->payload),
                                                   asio::buffer(next_part)};
-    asio::async_write(stream_, parts, [self = shared_from_this()](error_code error, std::size_t) {
-      self->written(error);
-    });
+    write_all(stream_, WriteBuffers(parts),
+              [self = shared_from_this()](error_code error) { self->written(error); });
   }
 
   void written(error_code error) {
@@ -176,7 +172,7 @@ class PictureStream : public Connection,
 
   void repeat_after_silence() {
     rest_.expires_after(longest_silence);
-    rest_.async_wait([self = shared_from_this()](error_code error) {
+    on_expiry(rest_, [self = shared_from_this()](error_code error) {
       if (!error && !self->writing_ && !self->viewer_.empty()) self->write_picture();
     });
   }
@@ -208,11 +204,10 @@ class PictureStream : public Connection,
 
   ServerContext& context_;
   ClientStream stream_;
-  http::response<http::empty_body> headers_;
-  std::optional<http::response_serializer<http::empty_body>> serializer_;
+  BeastResponse headers_;  // or the whole response, if the stream is rejected
+  std::optional<http::response_serializer<http::string_body>> serializer_;
   asio::steady_timer watch_;
   std::uint64_t taken_ = 0;  // bytes, when it was looked last
-  BeastResponse refusal_;    // instead of the pictures
   std::array<char, 512> incoming_{};
   std::string session_;
   std::string viewer_;

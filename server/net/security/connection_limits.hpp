@@ -33,7 +33,7 @@ class ConnectionLimits {
   ConnectionLimits(std::size_t in_all, std::size_t per_client, std::vector<AddressRange> unlimited);
 
   /// The right to be connected, given back at its end.
-  class Seat {
+  class Slot {
    public:
     const std::string& address() const { return address_; }
 
@@ -43,7 +43,7 @@ class ConnectionLimits {
     std::shared_ptr<void> counted_;
   };
   /// Nothing where there is no room.
-  std::optional<Seat> take(const std::string& address);
+  std::optional<Slot> take(const std::string& address);
 
   std::size_t open() const { return counts_->in_all; }
 

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "net/io_handler.hpp"
+
 // For the sources of this folder only: it brings Boost.
 
 namespace heliograph::net {
@@ -40,17 +42,17 @@ class PaceKeeper {
 
 /// Writes a message piece by piece, each within the time that the pace leaves it. `stream` and
 /// `serializer` live until `done`, which gets the error code.
-template <class Stream, class Serializer, class Done>
-void write_paced(Stream& stream, Serializer& serializer, PaceKeeper keeper, Done done) {
+template <class Stream, class Serializer>
+void write_paced(Stream& stream, Serializer& serializer, PaceKeeper keeper, IoHandler done) {
   stream.next_layer().expires_at(keeper.deadline(PaceKeeper::Clock::now()));
   boost::beast::http::async_write_some(
       stream, serializer,
-      [&stream, &serializer, keeper, done = std::move(done)](boost::system::error_code error,
-                                                             std::size_t bytes) mutable {
+      IoHandler([&stream, &serializer, keeper, done = std::move(done)](
+                    boost::system::error_code error, std::size_t bytes) mutable {
         if (error || serializer.is_done()) return done(error);
         keeper.took(bytes);
         write_paced(stream, serializer, keeper, std::move(done));
-      });
+      }));
 }
 
 }  // namespace heliograph::net

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <boost/asio/post.hpp>
 #include <boost/beast/core/buffers_to_string.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
@@ -87,9 +86,9 @@ class ViewerConnection : public Connection,
     handshake_.target(request.path);
     handshake_.version(11);
     for (const auto& [name, value] : request.headers) handshake_.set(name, value);
-    socket_.async_accept(handshake_, [self = shared_from_this()](error_code error) {
-      if (!error) self->accepted();
-    });
+    socket_.async_accept(handshake_, IoHandler([self = shared_from_this()](error_code error) {
+                           if (!error) self->accepted();
+                         }));
   }
 
   void shut_down() override {
@@ -98,21 +97,21 @@ class ViewerConnection : public Connection,
 
   void frame_ready() override {
     if (announced_.exchange(true)) return;
-    asio::post(socket_.get_executor(), [self = shared_from_this()] {
+    run_later(socket_.get_executor(), [self = shared_from_this()] {
       self->announced_ = false;
       self->write_next();
     });
   }
 
   void send(std::string text, std::string_view key) override {
-    asio::post(socket_.get_executor(), [self = shared_from_this(), text = std::move(text),
-                                        key = std::string(key)]() mutable {
+    run_later(socket_.get_executor(), [self = shared_from_this(), text = std::move(text),
+                                       key = std::string(key)]() mutable {
       self->enqueue(std::move(text), std::move(key));
     });
   }
 
   void disconnect(std::string why) override {
-    asio::post(socket_.get_executor(), [self = shared_from_this(), why = std::move(why)] {
+    run_later(socket_.get_executor(), [self = shared_from_this(), why = std::move(why)] {
       self->farewell_ = why;
       self->write_next();
     });
@@ -140,9 +139,9 @@ class ViewerConnection : public Connection,
   }
 
   void read() {
-    socket_.async_read(incoming_, [self = shared_from_this()](error_code error, std::size_t) {
-      self->received(error);
-    });
+    socket_.async_read(incoming_, IoHandler([self = shared_from_this()](error_code error) {
+                         self->received(error);
+                       }));
   }
 
   void received(error_code error) {
@@ -176,7 +175,7 @@ class ViewerConnection : public Connection,
                                         if (!self || answer.empty()) return;
                                         if (answer.size() <= small_answer)
                                           return self->send(std::move(answer), {});
-                                        asio::post(
+                                        run_later(
                                             self->socket_.get_executor(),
                                             [self, text, answer = std::move(answer)]() mutable {
                                               self->enqueue_large(std::move(answer), *text);
@@ -196,7 +195,7 @@ class ViewerConnection : public Connection,
   void flooded(const char* what) {
     if (closing_ || std::exchange(flooded_, true)) return;
     session::log_warning({.viewer = viewer_, .client = client_}, what);
-    asio::post(socket_.get_executor(), [self = shared_from_this(), what] {
+    run_later(socket_.get_executor(), [self = shared_from_this(), what] {
       self->close(websocket::close_code::policy_error, what);
     });
   }
@@ -224,7 +223,7 @@ class ViewerConnection : public Connection,
   void expect_progress() {
     if (std::exchange(stall_runs_, true)) return;
     stall_.expires_after(longest_stall);
-    stall_.async_wait([self = shared_from_this(), before = taken()](error_code error) {
+    on_expiry(stall_, [self = shared_from_this(), before = taken()](error_code error) {
       self->stall_runs_ = false;
       if (error || self->closing_ || self->waiting_.size() <= patient_messages) return;
       if (self->taken() == before) return self->let_go_slow();
@@ -246,7 +245,7 @@ class ViewerConnection : public Connection,
   /// Looks now and then whether the viewer is still there.
   void watch() {
     watch_.expires_after(watch_interval);
-    watch_.async_wait([self = shared_from_this()](error_code error) {
+    on_expiry(watch_, [self = shared_from_this()](error_code error) {
       if (error || self->closing_) return;
       const std::uint64_t write = self->writing_ ? self->writes_ : 0;
       const auto verdict = self->presence_.look(Presence::Clock::now(), write, self->taken());
@@ -258,14 +257,18 @@ class ViewerConnection : public Connection,
 
   void ping() {
     pinging_ = true;
-    socket_.async_ping({}, [self = shared_from_this()](error_code) { self->pinging_ = false; });
+    socket_.async_ping(
+        {}, IoHandler([self = shared_from_this()](error_code) { self->pinging_ = false; }));
+  }
+
+  void write(asio::const_buffer first, asio::const_buffer second) {
+    socket_.async_write(
+        std::array{first, second},
+        IoHandler([self = shared_from_this()](error_code error) { self->written(error); }));
   }
 
   void write_next() {
     if (writing_ || closing_ || viewer_.empty()) return;
-    const auto done = [self = shared_from_this()](error_code error, std::size_t) {
-      self->written(error);
-    };
     if (!waiting_.empty()) {
       writing_ = true;
       ++writes_;
@@ -273,7 +276,7 @@ class ViewerConnection : public Connection,
       waiting_.pop_front();
       waiting_bytes_ -= text_in_flight_.size();
       socket_.text(true);
-      return socket_.async_write(asio::buffer(text_in_flight_), done);
+      return write(asio::buffer(text_in_flight_), {});
     }
     if (farewell_) return close(session_ended, *farewell_);
     const auto session = context_.host.sessions().session_of_viewer(viewer_);
@@ -282,10 +285,8 @@ class ViewerConnection : public Connection,
     if (!frame_in_flight_) return;
     writing_ = true;
     ++writes_;
-    const std::array<asio::const_buffer, 2> parts{asio::buffer(frame_in_flight_->header),
-                                                  asio::buffer(frame_in_flight_->frame->payload)};
     socket_.binary(true);
-    socket_.async_write(parts, done);
+    write(asio::buffer(frame_in_flight_->header), asio::buffer(frame_in_flight_->frame->payload));
     if (!std::exchange(patience_runs_, true)) {
       expect_acknowledgement(std::chrono::steady_clock::now());
     }
@@ -294,7 +295,7 @@ class ViewerConnection : public Connection,
   /// Lets a viewer go that takes frames but does not acknowledge them.
   void expect_acknowledgement(std::chrono::steady_clock::time_point since) {
     patience_.expires_at(since + longest_without_acknowledgement);
-    patience_.async_wait([self = shared_from_this()](error_code error) {
+    on_expiry(patience_, [self = shared_from_this()](error_code error) {
       if (error || self->closing_ || self->viewer_.empty()) return;
       const auto session = self->context_.host.sessions().session_of_viewer(self->viewer_);
       const auto waits =
@@ -321,11 +322,12 @@ class ViewerConnection : public Connection,
     websocket::close_reason close_reason(code);
     // What fits into a control frame, RFC 6455 section 5.5.
     close_reason.reason.assign(reason.data(), std::min<std::size_t>(reason.size(), 123));
-    socket_.async_close(close_reason,
-                        [self = shared_from_this()](error_code error) { self->ended(error); });
+    socket_.async_close(close_reason, IoHandler([self = shared_from_this()](error_code error) {
+                          self->ended(error);
+                        }));
     // A peer that does not answer, or a write that never ends, must not keep the socket open.
     close_deadline_.expires_after(closing_timeout);
-    close_deadline_.async_wait([self = shared_from_this()](error_code error) {
+    on_expiry(close_deadline_, [self = shared_from_this()](error_code error) {
       if (!error) self->ended(error);
     });
   }

@@ -54,8 +54,8 @@ Result<void> may_close(SessionHost& host, const SessionChoice& request, const st
     return error::make(protocol::ErrorCode::forbidden, "session",
                        "other viewers are in this session");
   }
-  const ViewerSet& audience = (*session)->viewers();
-  if (inside && !audience.may_change(viewer)) return no_control(audience);
+  const ViewerSet& viewers = (*session)->viewers();
+  if (inside && !viewers.may_change(viewer)) return no_control(viewers);
   return {};
 }
 

@@ -280,8 +280,8 @@ LoadedScene SceneLoader::load_scene(Job& job) {
       nullptr, job.key.choice));
   sources.insert(sources.end(), imported->sources.begin(), imported->sources.end());
   LoadedScene loaded{.name = job.entry.name};
-  loaded.resources =
-      engine_.upload(std::move(imported), environment, [&](std::string_view stage, float fraction) {
+  loaded.resources = engine_.upload_and_free_pixels(
+      std::move(imported), environment, [&](std::string_view stage, float fraction) {
         checkpoint(stage, import_fraction + (1.0f - import_fraction) * fraction);
       });
   loaded.scene = render::scene_of(*loaded.resources);

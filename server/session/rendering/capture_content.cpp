@@ -28,7 +28,7 @@ using Texel = const float*;
 /// One channel; `read` gives its value of a texel.
 template <class Read>
 ExrChannel channel(std::string name, const render::FloatImage& image, Read read) {
-  ExrChannel result{.name = std::move(name), .values = {}, .counts = image.counts};
+  ExrChannel result{.name = std::move(name), .values = {}, .counts = image.integers};
   result.values.reserve(image.rgba.size() / 4);
   for (std::size_t i = 0; i < image.rgba.size(); i += 4)
     result.values.push_back(read(&image.rgba[i]));
@@ -114,13 +114,13 @@ std::vector<std::uint8_t> npy(const render::FloatImage& image) {
   std::vector<std::uint32_t> counts;
   for (std::size_t i = 0; i < image.rgba.size(); ++i) {
     if (i % 4 >= image.channels) continue;
-    if (image.counts) {
+    if (image.integers) {
       counts.push_back(static_cast<std::uint32_t>(image.rgba[i]));
     } else {
       values.push_back(image.rgba[i]);
     }
   }
-  if (image.counts) {
+  if (image.integers) {
     return stream::encode_npy(stream::NpyElement::uint32, shape, std::as_bytes(std::span(counts)));
   }
   return stream::encode_npy(stream::NpyElement::float32, shape, std::as_bytes(std::span(values)));

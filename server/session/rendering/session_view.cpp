@@ -201,14 +201,14 @@ void SessionView::adopt(RenderState next) {
   if (state_.resources != before.resources) renderer_->set_scene(state_.resources);
   adopt_edits(before);
   if (state_.reset_count != before.reset_count) {
-    renderer_->start_anew();
+    renderer_->reset();
     discontinuous_ = true;
   }
   const bool same_scene = state_.resources == before.resources;
   const bool resized = state_.width != before.width || state_.height != before.height;
   if (resized) full_frame_time_ = {};
   const bool jumped = state_.discontinuities != before.discontinuities;
-  if (jumped) renderer_->cut();
+  if (jumped) renderer_->invalidate_history();
   discontinuous_ |= resized || !same_scene || jumped;
   if (same_scene && !scene::same_view(state_.camera, before.camera)) {
     camera_moved_at_ = Clock::now();

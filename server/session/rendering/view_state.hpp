@@ -82,7 +82,7 @@ constexpr DrawPolicy draw_policy(ViewState state) {
   return {false, Pace::none, FramePurpose::final};
 }
 
-/// Who needs a frame.
+/// Why a frame may be needed.
 struct FrameDemand {
   bool needs_frame = false;     // as in ViewInputs
   bool requested = false;       // by a capture, a probe, a reference, or as the first frame

@@ -48,7 +48,7 @@ struct SessionCore {
   /// width / height
   float aspect() const { return static_cast<float>(width) / static_cast<float>(height); }
 
-  /// Sends a notification to all viewers but `by`, who made the change.
+  /// Sends a notification to all viewers but `by`, which made the change.
   template <class Notification>
   void notify_others(const std::string& by, const typename Notification::Params& params) {
     viewers.send_others(by, protocol::make_notification<Notification>(params), {});

@@ -46,8 +46,8 @@ Result<void> Control::set_mode(const SessionControl& request, const std::string&
   if (!by.empty() && !may_change(by) && !free) {
     return forbidden("only the viewer that has control can change its mode");
   }
-  const bool stays = mode_ == ControlMode::shared || holder_ == by;
-  if (*request.mode == mode_ && !request.viewer && stays) return {};
+  const bool keeps_control = mode_ == ControlMode::shared || holder_ == by;
+  if (*request.mode == mode_ && !request.viewer && keeps_control) return {};
   mode_ = *request.mode;
   holder_.clear();
   if (mode_ == ControlMode::shared) return {};

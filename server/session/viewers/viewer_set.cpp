@@ -163,9 +163,9 @@ std::optional<Clock::time_point> ViewerSet::next_send() const {
   const Clock::time_point now = Clock::now();
   std::optional<Clock::time_point> next;
   for (const auto& [id, viewer] : viewers_) {
-    const Clock::time_point turn = viewer.pacer.next_send();
-    if (!viewer.started || viewer.stream.paused || turn <= now) continue;
-    next = next ? std::min(*next, turn) : turn;
+    const Clock::time_point next_frame = viewer.pacer.next_send();
+    if (!viewer.started || viewer.stream.paused || next_frame <= now) continue;
+    next = next ? std::min(*next, next_frame) : next_frame;
   }
   return next;
 }
@@ -197,7 +197,7 @@ EncodingPlan ViewerSet::plan(std::uint64_t number, FramePurpose purpose, std::ui
   pixels_ = pixels;
   EncodingPlan plan;
   std::vector<Viewer*> active;
-  std::vector<stream::RequestedVariant> wishes;
+  std::vector<stream::RequestedVariant> requests;
   for (auto& [id, viewer] : viewers_) {
     if (!viewer.started || viewer.stream.paused) continue;
     const bool ready = viewer_needs_frame(viewer, number, now);
@@ -209,12 +209,12 @@ EncodingPlan ViewerSet::plan(std::uint64_t number, FramePurpose purpose, std::ui
       continue;
     }
     active.push_back(&viewer);
-    wishes.push_back({.variant = requested_variant(viewer, purpose),
-                      .ready = ready,
-                      .decoder = viewer.pacer.decoder(),
-                      .budget = viewer.pacer.link().budget()});
+    requests.push_back({.variant = requested_variant(viewer, purpose),
+                        .ready = ready,
+                        .decoder = viewer.pacer.decoder(),
+                        .budget = viewer.pacer.link().budget()});
   }
-  stream::VariantPlanner::Plan chosen = planner_.plan(wishes, now);
+  stream::VariantPlanner::Plan chosen = planner_.plan(requests, now);
   for (std::size_t i = 0; i < active.size(); ++i) {
     active[i]->variant = chosen.assigned[i];
     if (purpose == FramePurpose::interactive) active[i]->moving = chosen.assigned[i];

@@ -48,7 +48,7 @@ class KernelComparison {
               .settings = view.settings}) {
     RandomFrame random(rig_);
     const render::GBuffer gbuffer = random.gbuffer();
-    render::RawSignals raw{random.bits("shadow"), random.bits("ambient"), {}};
+    render::NoisySignals raw{random.bits("shadow"), random.bits("ambient"), {}};
     if (view.reflections) raw.specular = random.four("specular", glm::vec4(0), glm::vec4(3));
     std::optional<render::DenoisedSignals> denoised;
     if (view.denoised) {
@@ -65,9 +65,7 @@ class KernelComparison {
 
   FrameRig& rig() { return rig_; }
   ErrorStatistics hdr() { return compare(rig_.read(shader_.hdr), rig_.read(host_.hdr)); }
-  ErrorStatistics hdr_raw() {
-    return compare(rig_.read(shader_.hdr_raw), rig_.read(host_.hdr_raw));
-  }
+  ErrorStatistics hdr_noisy() { return compare(rig_.read(shader_.noisy), rig_.read(host_.noisy)); }
 
  private:
   FrameRig rig_;
@@ -84,7 +82,7 @@ class ComposeKernel : public testing::Test {
 void expect_same(const View& view, const std::string& which) {
   KernelComparison comparison(view);
   comparison.rig().run();
-  for (const ErrorStatistics& result : {comparison.hdr(), comparison.hdr_raw()}) {
+  for (const ErrorStatistics& result : {comparison.hdr(), comparison.hdr_noisy()}) {
     EXPECT_LT(result.mean, 2e-5) << which;
     EXPECT_LT(result.max, 5e-3) << which;
     EXPECT_GT(result.magnitude, 0.1) << "image is nearly black: " << which;

@@ -32,7 +32,7 @@ struct Inputs {
 };
 
 struct ComposedImages {
-  glm::vec3 hdr, hdr_raw;
+  glm::vec3 hdr, hdr_noisy;
 };
 
 /// Composed radiance of the center pixel, seen from (0, 0, 2) along -z.
@@ -47,7 +47,7 @@ ComposedImages compose_both(SceneBuilder& scene, const Inputs& in) {
     return rig.input(name, VK_FORMAT_R32G32B32A32_SFLOAT, std::vector(pixels, glm::vec4(value, 1)));
   };
   const auto background = colored("background", in.background);
-  render::RawSignals raw{flat("shadow", in.shadow), flat("ambient", in.ambient), {}};
+  render::NoisySignals raw{flat("shadow", in.shadow), flat("ambient", in.ambient), {}};
   if (in.specular) raw.specular = colored("specular", *in.specular);
   std::optional<render::DenoisedSignals> denoised;
   if (in.denoised) {
@@ -58,7 +58,7 @@ ComposedImages compose_both(SceneBuilder& scene, const Inputs& in) {
       render::compose(rig.plan(), rig.inputs(), gbuffer, raw, denoised, background);
   rig.run();
   return {glm::vec3(texel(rig.read(composed.hdr), 8, 8)),
-          glm::vec3(texel(rig.read(composed.hdr_raw), 8, 8))};
+          glm::vec3(texel(rig.read(composed.noisy), 8, 8))};
 }
 
 glm::vec3 compose(SceneBuilder& scene, const Inputs& in) {
@@ -162,7 +162,7 @@ TEST(Compose, DenoisedSignalsMakeHdrAndNoisyOnesMakeSample) {
   in.denoised = Denoised{{0.5f, 0.75f, 0.0f}, glm::vec3(2.0f)};
   const ComposedImages both = compose_both(scene, in);
   EXPECT_EQ(both.hdr, filtered);
-  EXPECT_EQ(both.hdr_raw, raw);
+  EXPECT_EQ(both.hdr_noisy, raw);
   EXPECT_NE(raw, filtered);
 }
 

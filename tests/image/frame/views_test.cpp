@@ -68,8 +68,8 @@ TEST_F(Views, EveryBufferIsListedCapturedAndNotBlank) {
       differs |= view->rgba[i] != view->rgba[i % 4];
     }
     // A static scene has neither motion errors nor rectified shadows: these views are black.
-    const bool is_black =
-        buffer.name == "gbuffer.motion.error" || buffer.name == "visibility.history.moved";
+    const bool is_black = buffer.name == "gbuffer.motion.error" ||
+                          buffer.name == "visibility.history_length.rectified";
     EXPECT_EQ(differs, !is_black) << buffer.name;
   }
 }

@@ -145,7 +145,7 @@ TEST_F(FairShareTest, IdleTimeGivesNoCredit) {
   EXPECT_NEAR(static_cast<double>(gained.count()), 500.0, 20.0) << "starved by a backlog";
 }
 
-TEST_F(FairShareTest, ANewViewStartsWithTheOthers) {
+TEST_F(FairShareTest, NewViewsStartWithTheOthers) {
   workers_["first"] = {.cost = 10ms};
   run_for(10s);
   workers_["second"] = {.cost = 10ms};

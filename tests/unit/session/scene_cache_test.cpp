@@ -12,7 +12,7 @@ SceneKey key(const char* file) {
 }
 
 LoadedScene scene_of(std::uint64_t bytes) {
-  return {.name = "thing",
+  return {.name = "box",
           .scene = std::make_shared<const scene::Scene>(),
           .resources = nullptr,
           .environment = {},
@@ -66,11 +66,11 @@ TEST(SceneCache, APointerToAnyPartKeepsAScene) {
 
 TEST(SceneCache, DropsASceneWhoseFileChanged) {
   const test::TemporaryFolder folder;
-  const auto file = folder.write("thing.glb", "first");
+  const auto file = folder.write("box.glb", "first");
   SceneCache cache(1000);
   cache.add(key("a"), scene_of(100), {scene::examine_file(file)});
   EXPECT_TRUE(cache.find(key("a")));
-  folder.write("thing.glb", "second");
+  folder.write("box.glb", "second");
   EXPECT_FALSE(cache.find(key("a")));
   EXPECT_EQ(cache.totals().bytes, 0u);
 }

@@ -69,7 +69,7 @@ TEST_F(SessionRegistryTest, FindsSessionsByName) {
   }
 }
 
-TEST_F(SessionRegistryTest, AViewerResumesInAPristineSessionOfTheSameNameOrANewOne) {
+TEST_F(SessionRegistryTest, AViewerResumesInAPristineSessionOfTheSameNameOrCreatesOne) {
   const std::string viewer = enter("main");
   const auto resumed = registry_.resume(viewer, {"before", "main"}, named({}));
   ASSERT_TRUE(resumed);

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "session/state/camera_state.hpp"
@@ -40,7 +41,7 @@ TEST_F(CameraStateTest, OrbitKeepsTheDistanceAndClampsTheElevation) {
 
 TEST_F(CameraStateTest, ARefusedOrbitNamesTheMemberAndChangesNothing) {
   const glm::vec3 before = camera_.camera().eye;
-  const auto refused = camera_.orbit({.yaw = 10.0f, .distance = 1e9f, .seq = 4}, "v1");
+  const auto refused = camera_.orbit({.yaw = 10.0f, .distance = 1e30f, .seq = 4}, "v1");
   EXPECT_EQ(refused.error().path, "distance");
   EXPECT_EQ(camera_.camera().eye, before);
   EXPECT_TRUE(camera_.inputs().empty());

@@ -109,7 +109,7 @@ TEST_F(ViewerSetTest, RefusesAVideoCodecThatHelloDidNotAgreeOn) {
   EXPECT_EQ(refused.error().path, "codec");
 }
 
-TEST_F(ViewerSetTest, OffersTheLatestFrameToANewViewer) {
+TEST_F(ViewerSetTest, OffersTheLatestFrameToNewViewers) {
   const Joined first = join();
   show(viewers_, 3, FramePurpose::final);
   const Joined viewer = join();
@@ -118,7 +118,7 @@ TEST_F(ViewerSetTest, OffersTheLatestFrameToANewViewer) {
   EXPECT_FALSE(viewers_.needs_frame(3));
 }
 
-TEST_F(ViewerSetTest, EncodesTheLatestFrameAgainForANewVariant) {
+TEST_F(ViewerSetTest, EncodesTheLatestFrameAgainForAnotherVariant) {
   const Joined first = join();
   show(viewers_, 3);
   ASSERT_TRUE(viewers_.take(first.id));
