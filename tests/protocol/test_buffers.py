@@ -132,13 +132,13 @@ class TheListFollows(Sessions, ServerTestCase):
             self.assert_error(self.ask_for(session, name), -32004, path="buffer")
 
     def test_the_reference(self):
-        self.own("truth")
+        self.own("reference")
         hybrid = ("gbuffer.normals", "specular.denoised")
-        self.server.call("reference.start", {"samples": 2}, session="truth")
-        self.assert_complete("truth", ["reference"], hybrid)
-        self.server.call("reference.stop", session="truth")
-        self.assert_complete("truth", hybrid, ["reference"])
-        self.patch("truth", {"view": {"buffer": "gbuffer.normals"}})
+        self.server.call("reference.start", {"samples": 2}, session="reference")
+        self.assert_complete("reference", ["reference"], hybrid)
+        self.server.call("reference.stop", session="reference")
+        self.assert_complete("reference", hybrid, ["reference"])
+        self.patch("reference", {"view": {"buffer": "gbuffer.normals"}})
 
     def test_passes_that_are_disabled_and_enabled(self):
         self.own("passes", settings=WITHOUT_REFLECTIONS)

@@ -40,7 +40,7 @@ class DeviceLoss(ServerTestCase):
                  if line.startswith("heliograph_device_losses_total")]
         return float(lines[0].split()[1])
 
-    async def told(self, viewer, ready):
+    async def received(self, viewer, ready):
         for _ in range(600):
             if any(message["method"] == "device.changed" and message["params"]["ready"] == ready
                    for message in viewer.notifications):
@@ -61,8 +61,8 @@ class DeviceLoss(ServerTestCase):
             count = self.losses()
             self.lose()
             await here.call("camera.set", {"eye": [4, 4, 4]})
-            await self.told(here, False)
-            await self.told(there, True)
+            await self.received(here, False)
+            await self.received(there, True)
             await here.call("camera.set", {"eye": [3, 2, 3]})
             await there.call("camera.set", {"eye": [2, 2, 4]})
             after = [decode_jpeg((await viewer.rest()).payload) for viewer in (here, there)]

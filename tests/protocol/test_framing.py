@@ -19,7 +19,7 @@ class Framing(ServerTestCase):
         pass
 
     def exchange(self, *data):
-        """Sends bytes after the upgrade; gives the close code."""
+        """Sends bytes after the upgrade; returns the close code."""
         with RawSocket(self.server) as raw:
             self.assertEqual(raw.upgrade()[0], 101)
             for piece in data:
@@ -27,7 +27,7 @@ class Framing(ServerTestCase):
             return raw.close_code()
 
     def answer(self, *data):
-        """Sends bytes after the upgrade; gives the first text that comes back."""
+        """Sends bytes after the upgrade; returns the first text that comes back."""
         with RawSocket(self.server) as raw:
             self.assertEqual(raw.upgrade()[0], 101)
             for piece in data:

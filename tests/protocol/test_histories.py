@@ -17,7 +17,7 @@ class Histories(ServerTestCase):
         """How many lengths of history there are in the image: surfaces that have just been
         seen for the first time, all of them, have one; so has the background."""
         capture = self.server.call("frame.capture",
-                                   {"buffer": "visibility.history", "samples": 1})
+                                   {"buffer": "visibility.history_length", "samples": 1})
         image = decode_png(base64.b64decode(capture["data"], validate=True))
         pixels = zip(image.rgb[0::3], image.rgb[1::3], image.rgb[2::3])
         return len(set(pixels))

@@ -1,5 +1,5 @@
-"""HTTP: responses without body, persistent connections, streams beyond the limit of viewers, pages of
-other origins, responses too large for a WebSocket."""
+"""HTTP: responses without body, persistent connections, streams beyond the limit of viewers, pages
+of other origins, responses too large for a WebSocket."""
 
 import json
 import re
@@ -94,7 +94,8 @@ class Answers(ServerTestCase):
     def test_clients_that_do_not_read_responses_are_disconnected(self):
         def disconnected():
             page = self.server.get("/metrics")[2].decode()
-            return int(re.search(r"^heliograph_slow_viewers_disconnected_total (\d+)", page, re.MULTILINE)[1])
+            name = "heliograph_slow_viewers_disconnected_total"
+            return int(re.search(rf"^{name} (\d+)", page, re.MULTILINE)[1])
         before = disconnected()
         with RawSocket(self.server) as raw:
             raw.upgrade()

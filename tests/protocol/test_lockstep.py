@@ -66,7 +66,7 @@ class Lockstep(ServerTestCase):
         self.step(1)
         self.assertAlmostEqual(self.server.call("animation.list")["seconds"], 0.25 + 2 * DT)
 
-    def told(self, viewer, method):
+    def received(self, viewer, method):
         return [message["params"] for message in viewer.notifications
                 if message["method"] == method]
 
@@ -85,12 +85,13 @@ class Lockstep(ServerTestCase):
             changed = await other.notification("animation.changed")
             self.assertEqual((changed["animation"], changed["by"]), (over_http, ""))
             await causer.notification("animation.changed")
-            self.assertEqual([one["by"] for one in self.told(causer, "animation.changed")], [""],
+            self.assertEqual([one["by"] for one in self.received(causer, "animation.changed")],
+                             [""],
                              "an echo")
             for _ in range(3):
                 await other.next_frame()
-            self.assertEqual(len(self.told(other, "animation.changed")), 1,
-                             "time that passes is told")
+            self.assertEqual(len(self.received(other, "animation.changed")), 1,
+                             "the passing of time is not notified")
 
     async def test_lockstep_changes_are_notified_but_not_steps(self):
         async with Viewer(self.server) as causer, Viewer(self.server) as other:
@@ -109,11 +110,12 @@ class Lockstep(ServerTestCase):
             answer = await causer.call("frame.run")
             await causer.call("frame.run")
             await other.call("camera.get")
-            began, ended = self.told(other, "lockstep.changed")
+            began, ended = self.received(other, "lockstep.changed")
             self.assertEqual(ended, {"state": answer, "by": causer.hello["viewer"]})
-            clips = [one["animation"]["lockstep"] for one in self.told(other, "animation.changed")]
+            clips = [one["animation"]["lockstep"]
+                     for one in self.received(other, "animation.changed")]
             self.assertEqual(clips, [True, False])
-            self.assertEqual(self.told(causer, "lockstep.changed"), [], "an echo")
+            self.assertEqual(self.received(causer, "lockstep.changed"), [], "an echo")
 
     def test_run_continues_from_the_current_time(self):
         self.step(0)
@@ -249,7 +251,8 @@ class Reference(ServerTestCase):
         before = self.server.call("settings.get")["settings"]
         self.assertFalse(self.server.call("reference.status")["shown"])
         state = self.server.call("reference.start", {"scope": "full", "samples": 12})
-        self.assertEqual((state["shown"], state["scope"], state["target_samples"]), (True, "full", 12))
+        self.assertEqual((state["shown"], state["scope"], state["target_samples"]),
+                         (True, "full", 12))
         self.server.wait_for(lambda: self.server.call("reference.status")["finished"],
                              "the end of the reference")
         self.assertEqual(self.server.call("reference.status")["samples"], 12)

@@ -114,7 +114,7 @@ class Shutdown(unittest.IsolatedAsyncioTestCase):
         try:
             server.ask("frame.capture")
         except OSError:
-            pass  # the server has gone meanwhile
+            pass  # the server has already exited
 
 
 class CommandLine(unittest.TestCase):

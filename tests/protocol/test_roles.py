@@ -27,7 +27,7 @@ class Roles(ServerTestCase):
     @classmethod
     def setUpClass(cls):
         cls.file = tempfile.NamedTemporaryFile("w", suffix=".tokens")
-        cls.file.write(f"# who may do what\n\nview {EXTRA}\n")
+        cls.file.write(f"# roles\n\nview {EXTRA}\n")
         cls.file.flush()
         cls.arguments = ("--token", CONTROL, "--view-token", VIEW, "--token-file", cls.file.name,
                          "--log-level", "debug", "--log-format", "json")
@@ -78,8 +78,8 @@ class Roles(ServerTestCase):
         document = self.over_http(CONTROL, "rpc.discover")["result"]
         methods = {method["name"]: method for method in document["methods"]}
         for name, method in methods.items():
-            steers = method["x-needs-control"] or name in COMMANDS
-            self.assertNotEqual(method["x-read-only"], steers, name)
+            controls = method["x-needs-control"] or name in COMMANDS
+            self.assertNotEqual(method["x-read-only"], controls, name)
         for name in PERSONAL:
             self.assertFalse(methods[name]["x-needs-control"], name)
             self.assertTrue(methods[name]["x-may-be-notification"], name)
@@ -145,11 +145,11 @@ class Roles(ServerTestCase):
                     for line in found]
 
         for part in ("the session was opened", "the session ended", " loaded in "):
-            for told in members(part):
-                self.assertIn("session", told, part)
+            for received in members(part):
+                self.assertIn("session", received, part)
         for part in ("a viewer connected", "a viewer left", "a viewer streams images over HTTP"):
-            for told in members(part):
-                self.assertEqual(told, {"session", "viewer", "client"}, part)
+            for received in members(part):
+                self.assertEqual(received, {"session", "viewer", "client"}, part)
         self.assertIn("logged", {line.get("session") for line in lines})
 
     def test_the_log_contains_no_token(self):

@@ -211,7 +211,7 @@ class Scenes(ServerTestCase):
 
 
 class FirstScene(unittest.TestCase):
-    """Clients who are there before the first scene is."""
+    """Clients that connect before the first scene is loaded."""
 
     def test_an_invalid_load_does_not_stop_the_server(self):
         with tempfile.TemporaryDirectory() as root:

@@ -149,18 +149,19 @@ class Sessions(ServerTestCase):
         self.create("room", copy_of="main")
         async with Viewer(self.server, session="room", name="Ada") as first:
             async with Viewer(self.server, session="room") as second:
-                await self.until_people(first, [("Ada", True), (None, False)])
-                await self.until_people(second, [("Ada", False), (None, True)])
-            await self.until_people(first, [("Ada", True)])
+                await self.until_viewers(first, [("Ada", True), (None, False)])
+                await self.until_viewers(second, [("Ada", False), (None, True)])
+            await self.until_viewers(first, [("Ada", True)])
 
-    async def until_people(self, viewer, expected):
+    async def until_viewers(self, viewer, expected):
         for _ in range(100):
-            told = [message["params"] for message in viewer.notifications
-                    if message["method"] == "session.changed"]
-            if told and [(one["name"], one["you"]) for one in told[-1]["viewers"]] == expected:
+            received = [message["params"] for message in viewer.notifications
+                        if message["method"] == "session.changed"]
+            viewers = received[-1]["viewers"] if received else []
+            if [(one["name"], one["you"]) for one in viewers] == expected:
                 return
             await asyncio.sleep(0.05)
-        self.fail(f"{expected} was never told, but {told[-1:]}")
+        self.fail(f"{expected} was never received, but {received[-1:]}")
 
     async def test_a_changed_frame_size_is_notified(self):
         self.create("sized", copy_of="main")
@@ -170,9 +171,9 @@ class Sessions(ServerTestCase):
             await other.call("camera.get")
             other.notifications.clear()
             await one.call("stream.configure", {"width": 128, "height": 72})
-            told = await other.notification("session.changed")
-            self.assertEqual((told["width"], told["height"]), (128, 72))
-            self.assertGreater(told["rev"], rev)
+            received = await other.notification("session.changed")
+            self.assertEqual((received["width"], received["height"]), (128, 72))
+            self.assertGreater(received["rev"], rev)
             other.notifications.clear()
             await one.call("stream.configure", {"width": 128, "height": 72, "quality": 50})
             await other.call("camera.get")
@@ -227,7 +228,7 @@ class Sessions(ServerTestCase):
             async with Viewer(self.server, session="left") as leaves:
                 await leaves.call("session.control", {"mode": "exclusive"})
                 self.assert_error(await stays.ask("session.control", {"action": "take"}), FORBIDDEN)
-            await self.until_people(stays, [(None, True)])
+            await self.until_viewers(stays, [(None, True)])
             await stays.call("session.control", {"action": "take"})
             await stays.call("camera.fit")
 
@@ -238,8 +239,8 @@ class Sessions(ServerTestCase):
             self.server.call("session.close", {"session": "ends"})
             code, reason = await viewer.closed()
             self.assertEqual((code, reason), (4003, "the session was closed"))
-            told = await viewer.notification("session.closed")
-            self.assertEqual(told, {"session": "ends", "reason": "the session was closed"})
+            received = await viewer.notification("session.closed")
+            self.assertEqual(received, {"session": "ends", "reason": "the session was closed"})
             await outsider.call("camera.get")
         self.assert_error(self.server.ask("camera.get", session="ends"), NOT_FOUND)
         self.assert_error(self.server.ask("session.close", {"session": "main"}), CONFLICT)

@@ -92,7 +92,7 @@ class Frames(ServerTestCase):
             await viewer.call("stream.configure", {"width": 1600, "height": 900})
             async with viewer.moving(rate=20):
                 shown = set()
-                while len(shown) < 4:  # of a camera that never comes to rest
+                while len(shown) < 4:  # of a camera that never becomes static
                     shown.add((await viewer.next_frame(timeout=60)).header["state_rev"])
 
     async def test_a_change_and_its_reversal_produce_a_frame(self):
@@ -127,12 +127,12 @@ class Frames(ServerTestCase):
             await viewer.call("camera.set", {"eye": [2, 3, 3]})
             await viewer.rest()
             for _ in range(200):
-                told = [note["params"] for note in viewer.notifications
+                received = [note["params"] for note in viewer.notifications
                         if note["method"] == "stats.frame"]
-                if told and told[-1]["state"] == "idle":
+                if received and received[-1]["state"] == "idle":
                     break
                 await asyncio.sleep(0.05)
-            last = told[-1]
+            last = received[-1]
             self.assertEqual(last["state"], "idle")
             self.assertEqual((last["codec"], last["quality"], last["scale"]), ("jpeg", 80, 1))
 
@@ -351,7 +351,7 @@ class SlowViewers(ServerTestCase):
         async with Viewer(self.server) as brisk, brisk.moving():
             await brisk.call("stream.configure", {"width": 320, "height": 180, "quality": 100})
             await self.rate(brisk, 1)
-            # Again where something else on the machine took the processors meanwhile.
+            # Again where something else on the machine used the CPU in between.
             for _ in range(3):
                 alone = await self.rate(brisk, 3)
                 async with Viewer(self.server) as stalled:

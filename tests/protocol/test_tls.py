@@ -19,7 +19,7 @@ TOKEN = "a-token_of.the~tests"
 
 
 def make_certificate(folder, name="server", common_name="localhost"):
-    """A key and a certificate signed by itself; gives the paths of certificate and key."""
+    """A key and a certificate signed by itself; returns the paths of certificate and key."""
     if not shutil.which("openssl"):
         raise unittest.SkipTest("openssl is not installed")
     certificate, key = (os.path.join(folder, name + end) for end in (".crt", ".key"))
@@ -132,7 +132,7 @@ class Tls(ServerTestCase):
 
     def test_health(self):
         url = self.server.url + "health/ready"
-        self.assertEqual(run("health", "--url", url)[0], 0, "certificates are not verified on loopback")
+        self.assertEqual(run("health", "--url", url)[0], 0, "no verification on loopback")
         self.assertEqual(run("health", "--url", url, "--tls-ca", self.certificate)[0], 0)
         other, _ = make_certificate(self.folder.name, "other")
         code, _, err = run("health", "--url", url, "--tls-ca", other)

@@ -95,7 +95,7 @@ class Uploads(ServerTestCase):
                      self.mirror[:2000] + b"\xff" * 500 + self.mirror[2500:2600]):
             status, answer = self.put("broken", body)
             self.assertEqual(status, 400, (body[:40], answer))
-            self.assertNotIn(self.folder.name, answer, "no path of the server's is told")
+            self.assertNotIn(self.folder.name, answer, "paths of the server are not revealed")
         self.assertNotIn("broken", self.catalogue())
         self.assertEqual(self.left_over(), [])
 

@@ -94,7 +94,7 @@ class Video(ServerTestCase):
     @unittest.skipUnless(FFMPEG, "ffmpeg is not installed")
     @needs_video
     async def test_decoded_video_matches_the_capture(self, viewer):
-        # A buffer without noise, so that one sample is the whole truth.
+        # A buffer without noise, so that one sample is exact.
         await viewer.call("settings.patch", {"patch": {"view": {"buffer": "gbuffer.base_color"},
                                                        "antialiasing": {"temporal": False, "jitter": False}}})
         await viewer.call("stream.configure", {"quality": 95})
@@ -114,8 +114,8 @@ class Video(ServerTestCase):
         self.assertEqual(len(images), len(frames))
         self.assertGreater(len({image.rgb for image in images}), 4, "it does not move")
         capture = await viewer.call("frame.capture", {"buffer": "gbuffer.base_color"})
-        truth = decode_png(base64.b64decode(capture["data"]))
-        ratio = signal_to_noise(images[-1], truth)
+        reference = decode_png(base64.b64decode(capture["data"]))
+        ratio = signal_to_noise(images[-1], reference)
         print(f"{ratio:.1f} dB ", end="")
         self.assertGreater(ratio, 28)
 

@@ -252,7 +252,7 @@ void Router::image(const HttpRequest& request, std::string_view session, std::st
            .body = {result->file.begin(), result->file.end()},
            .headers = {{"X-Heliograph-Samples", std::to_string(result->samples)}}});
   };
-  if (const auto accepted = (*found)->request_capture(std::move(capture)); !accepted) {
+  if (const auto accepted = (*found)->captures().request_capture(std::move(capture)); !accepted) {
     reply(error_response(accepted.error()));
   }
 }

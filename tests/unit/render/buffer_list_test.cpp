@@ -1,9 +1,13 @@
-#include "render/views/view_table.hpp"
+#include "render/frame/buffer_list.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <set>
+
+#include "render/api/buffer_names.hpp"
+#include "render/views/view_colors.hpp"
 
 namespace heliograph::render {
 namespace {
@@ -32,7 +36,7 @@ TEST(Heat, RunsFromDarkBlueToYellowMonotonically) {
   for (int i = 0; i <= 100; ++i) {
     ramp.rgba.insert(ramp.rgba.end(), {static_cast<float>(i) / 100.0f, 0, 0, 1});
   }
-  const Frame frame = colorize(ViewColors::share, ramp);
+  const Frame frame = colorize(ViewColors::fraction, ramp);
   EXPECT_EQ(texel(frame, 0), dark_blue);
   EXPECT_EQ(texel(frame, 100), yellow);
   for (std::size_t i = 1; i <= 100; ++i) {
@@ -60,37 +64,50 @@ TEST(Colors, DistancesAreLogarithmic) {
 TEST(Colors, NaNIsBlack) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const ViewColors colors :
-       {ViewColors::image, ViewColors::radiance, ViewColors::squared, ViewColors::channels,
-        ViewColors::grey, ViewColors::direction, ViewColors::octahedral, ViewColors::share,
+       {ViewColors::output, ViewColors::radiance, ViewColors::squared, ViewColors::channels,
+        ViewColors::grey, ViewColors::direction, ViewColors::octahedral, ViewColors::fraction,
         ViewColors::heat, ViewColors::distance, ViewColors::stops, ViewColors::pixels}) {
     EXPECT_EQ(texel(colorize(colors, row({{nan, nan, nan, nan}, {1, 1, 1, 1}})), 0), (Rgb{0, 0, 0}))
         << static_cast<int>(colors);
   }
 }
 
-TEST(Views, EveryBufferHasColorsOfItsKind) {
-  EXPECT_EQ(colors_of("shadows.visibility"), ViewColors::grey);
-  EXPECT_EQ(colors_of("ambient.denoised.visibility"), ViewColors::grey);
-  EXPECT_EQ(colors_of("gbuffer.normals"), ViewColors::octahedral);
-  EXPECT_EQ(colors_of("gbuffer.normals.geometric"), ViewColors::octahedral);
-  EXPECT_EQ(colors_of("gbuffer.motion.view_z"), ViewColors::distance);
-  EXPECT_EQ(colors_of("specular.history"), ViewColors::heat);
-  EXPECT_EQ(colors_of("visibility.blur.even"), ViewColors::channels);
-  EXPECT_EQ(colors_of("hdr"), ViewColors::radiance);
-  EXPECT_EQ(colors_of("something.new"), ViewColors::radiance);
+TEST(Views, ColorsFollowTheKindOfBuffer) {
+  const auto colors = [](std::string_view name) { return find_view(name).colors(); };
+  EXPECT_EQ(colors("shadows.visibility"), ViewColors::grey);
+  EXPECT_EQ(colors("gbuffer.normals"), ViewColors::octahedral);
+  EXPECT_EQ(colors("gbuffer.normals.geometric"), ViewColors::octahedral);
+  EXPECT_EQ(colors("gbuffer.motion.view_z"), ViewColors::distance);
+  EXPECT_EQ(colors("specular.history_length"), ViewColors::heat);
+  EXPECT_EQ(colors("visibility.blur.even"), ViewColors::channels);
+  EXPECT_EQ(colors("hdr"), ViewColors::radiance);
 }
 
-TEST(Views, AspectsNameTheirBuffer) {
-  for (const char* buffer : {"gbuffer.normals", "gbuffer.motion", "visibility.history"}) {
-    ASSERT_FALSE(aspects_of(buffer).empty()) << buffer;
-    for (const std::string& aspect : aspects_of(buffer)) {
-      EXPECT_EQ(source_of(aspect), buffer);
-      EXPECT_FALSE(description_of(aspect).empty());
-      EXPECT_TRUE(aspects_of(aspect).empty());
+TEST(Views, AspectNamesFindTheirBuffer) {
+  for (const char* name : {"gbuffer.normals", "gbuffer.motion", "visibility.history_length"}) {
+    const View buffer = find_view(name);
+    ASSERT_TRUE(buffer) << name;
+    EXPECT_EQ(buffer.aspect, nullptr);
+    ASSERT_FALSE(aspect_names(*buffer.buffer).empty()) << name;
+    for (const std::string& aspect : aspect_names(*buffer.buffer)) {
+      const View view = find_view(aspect);
+      ASSERT_TRUE(view.aspect) << aspect;
+      EXPECT_EQ(view.buffer, buffer.buffer);
+      EXPECT_FALSE(view.description().empty());
     }
   }
-  EXPECT_TRUE(source_of("gbuffer.motion").empty());
-  EXPECT_TRUE(source_of("hdr.view_z").empty());
+  EXPECT_FALSE(find_view("hdr.view_z"));
+  EXPECT_FALSE(find_view("gbuffer.motion."));
+  EXPECT_FALSE(find_view("gbuffer"));
+}
+
+TEST(Views, NamesAreUniqueAndDescribed) {
+  std::set<std::string> names;
+  for (const std::string& name : buffer_names()) {
+    EXPECT_TRUE(names.insert(name).second) << name << " is there twice";
+    EXPECT_GT(find_view(name).description().size(), 10u) << name;
+  }
+  EXPECT_GE(names.size(), 60u);
 }
 
 class Extract : public testing::Test {
@@ -109,7 +126,7 @@ class Extract : public testing::Test {
   FloatImage extract_from(std::string_view view, const std::array<float, 4>& value) {
     FloatImage source{4, 2, {}};
     for (int i = 0; i < 8; ++i) source.rgba.insert(source.rgba.end(), value.begin(), value.end());
-    return extract(view, source, {constants_, 2.0f});
+    return extract(find_view(view), source, {constants_, 2.0f});
   }
   shared::FrameConstants constants_{};
 };

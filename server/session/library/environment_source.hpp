@@ -11,20 +11,19 @@
 
 namespace heliograph::session {
 
-/// The .hdr or .exr file that goes with a scene: of its own name, else called sky in its folder or
-/// in `root`; nothing when there is none.
+/// The .hdr or .exr file of a scene: of its own name, else called sky in its folder or in `root`.
 std::optional<std::filesystem::path> environment_beside(const std::filesystem::path& scene,
                                                         const std::filesystem::path& root);
 
-/// Finds and reads environments, keeping the last one. Thread safe.
+/// Finds and loads environments, and caches the last one. Thread safe.
 class EnvironmentSource {
  public:
   /// `forced`: the environment of every scene.
   explicit EnvironmentSource(std::optional<std::filesystem::path> forced);
 
-  /// The forced environment, else the one beside the scene, else nothing.
+  /// The forced environment, else the one beside the scene.
   std::optional<std::filesystem::path> path_for(const CatalogueEntry& entry) const;
-  /// The environment in that file; radiance 1 from everywhere where `path` is empty.
+  /// The environment in that file; for an empty path a constant radiance of 1.
   /// @throws scene::ImportError
   std::shared_ptr<const scene::Environment> environment_at(const std::filesystem::path& path);
 

@@ -1,4 +1,4 @@
-#include "session/state/environment_choice.hpp"
+#include "session/library/environment_source.hpp"
 
 #include <utility>
 
@@ -7,10 +7,10 @@ namespace heliograph::session {
 namespace fs = std::filesystem;
 
 std::optional<fs::path> environment_beside(const fs::path& scene, const fs::path& root) {
-  for (const fs::path& place :
+  for (const fs::path& stem :
        {fs::path(scene).replace_extension(), scene.parent_path() / "sky", root / "sky"}) {
     for (const char* extension : {".hdr", ".exr"}) {
-      const fs::path candidate = fs::path(place).concat(extension);
+      const fs::path candidate = fs::path(stem).concat(extension);
       std::error_code error;
       if (fs::is_regular_file(candidate, error)) return candidate;
     }
