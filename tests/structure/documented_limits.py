@@ -49,9 +49,6 @@ def evaluate(expression: str):
 def constant(folder: str, name: str):
     """Value and unit of a constant or a member's default below `folder`: "a_constant" or
     "Struct::member". The unit is that of a std::chrono type, or None."""
-    if "|" in name:
-        present = [one for one in name.split("|") if any(one in text for text in sources(folder))]
-        name = present[0] if present else name
     *owner, member = name.split("::")
     declared = re.compile(rf"\b(?:std::chrono::)?(\w+)\s+{member}\s*(?:=\s*|\{{)([^;{{}}]+?)\}}?;")
     found = set()
@@ -117,7 +114,7 @@ def operation():
     yield "nesting of JSON", plain(PROTOCOL, "DispatchLimits::max_depth") + " levels"
     yield "calls in a batch", plain(PROTOCOL, "DispatchLimits::max_batch")
     yield "messages per connection", rate("calls_per_second", "calls_at_once")
-    yield "messages over that limit", rate("rejections_per_second|refusals_per_second", "rejections_at_once|refusals_at_once")
+    yield "messages over that limit", rate("refusals_per_second", "refusals_at_once")
     yield "pings per connection", rate("pings_per_second", "pings_at_once")
     yield "unanswered captures per session", captures
     yield "unanswered probes (`scene.pick`, `frame.inspect`) per session", captures
