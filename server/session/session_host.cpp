@@ -58,10 +58,10 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
     const auto session = sessions_.session_of(call);
     if (!session) return session.error();
     (*session)->touch();
-    if (method.needs_control && !(*session)->audience().may_change(call.viewer)) {
-      return no_control((*session)->audience());
+    if (method.needs_control && !(*session)->viewers().may_change(call.viewer)) {
+      return no_control((*session)->viewers());
     }
-    if (method.needs_control) (*session)->note_change();
+    if (method.needs_control) (*session)->mark_modified();
     return {};
   });
   dispatcher_.on_handler_failure([](std::string_view method, std::string_view reason) {
@@ -121,12 +121,11 @@ void SessionHost::create_session(const protocol::SessionCreate& request, const s
              });
 }
 
-Result<Settled> SessionHost::settle(const std::string& viewer, const Origin& from,
-                                    bool only_watches) {
-  if (only_watches) return sessions_.settle(viewer, from, std::nullopt);
-  const auto settled = sessions_.settle(viewer, from, options_.session);
-  if (settled) settled->session->set_buffers(sessions_.main()->buffers());
-  return settled;
+Result<Resumed> SessionHost::resume(const std::string& viewer, const Origin& from, bool read_only) {
+  if (read_only) return sessions_.resume(viewer, from, std::nullopt);
+  const auto resumed = sessions_.resume(viewer, from, options_.session);
+  if (resumed) resumed->session->set_buffers(sessions_.main()->buffers());
+  return resumed;
 }
 
 /// A session that cannot be as it was wanted ends before anybody has seen it.

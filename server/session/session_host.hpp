@@ -55,9 +55,8 @@ class SessionHost {
   /// loaded; if that fails there is no such session.
   using Created = std::function<void(protocol::Result<std::shared_ptr<Session>>)>;
   void create_session(const protocol::SessionCreate& request, const std::string& by, Created done);
-  /// Finds a place for a viewer that was in a session of another run; see SessionRegistry::settle.
-  protocol::Result<Settled> settle(const std::string& viewer, const Origin& from,
-                                   bool only_watches);
+  /// Finds a place for a viewer that was in a session of another run; see SessionRegistry::resume.
+  protocol::Result<Resumed> resume(const std::string& viewer, const Origin& from, bool read_only);
   void load_scene(std::shared_ptr<Session> session, const protocol::SceneLoad& request,
                   const std::string& by, SceneLoader::Completion done);
   protocol::SceneCancelled cancel_load(const Session& session) { return loader_.cancel(session); }
@@ -66,7 +65,7 @@ class SessionHost {
   /// Whether a picture has been rendered: everything works.
   bool ready() const { return render_loop_.has_rendered() && render_loop_.device_ready(); }
   /// A sentence for people, while it is not.
-  std::string why_not_ready() const {
+  std::string not_ready_reason() const {
     return render_loop_.device_ready() ? "no picture has been rendered yet"
                                        : "the device was lost and is being made anew";
   }
@@ -89,7 +88,7 @@ class SessionHost {
   protocol::Dispatcher dispatcher_;
   SceneLoader loader_;
   EnvironmentLibrary environments_;
-  Wakeup stop_watching_;
+  WakeEvent stop_watching_;
   std::atomic<bool> stopping_ = false;
   std::thread idle_watch_;
 };

@@ -105,11 +105,11 @@ void SessionRegistry::end(const std::shared_ptr<Session>& session, const std::st
   sessions_.erase(name);
   origins_.erase(name);
   const protocol::SessionClosed closed{.session = name, .reason = why};
-  session->audience().send_all(protocol::make_notification("session.closed", closed), {});
-  for (const std::string& viewer : session->audience().dismiss_all(why)) {
+  session->viewers().send_all(protocol::make_notification("session.closed", closed), {});
+  for (const std::string& viewer : session->viewers().disconnect_all(why)) {
     session_of_viewer_.erase(viewer);
   }
-  ended_.sent += session->audience().totals().sent;
+  ended_.sent += session->viewers().totals().sent;
   session->end();
   close_(*session);
   log_info({.session = name}, "the session ended: " + why);
@@ -131,11 +131,11 @@ Result<std::shared_ptr<Session>> SessionRegistry::find_locked(std::string_view n
 Result<std::shared_ptr<Session>> SessionRegistry::session_of(
     const protocol::CallContext& call) const {
   if (call.viewer.empty()) return find(call.session);
-  if (std::shared_ptr<Session> session = session_watched_by(call.viewer)) return session;
+  if (std::shared_ptr<Session> session = session_of_viewer(call.viewer)) return session;
   return error::not_found("session", "the session has ended");
 }
 
-std::shared_ptr<Session> SessionRegistry::session_watched_by(const std::string& viewer) const {
+std::shared_ptr<Session> SessionRegistry::session_of_viewer(const std::string& viewer) const {
   const std::lock_guard lock(mutex_);
   const auto found = session_of_viewer_.find(viewer);
   return found == session_of_viewer_.end() ? nullptr : found->second;
@@ -149,7 +149,7 @@ std::vector<std::shared_ptr<Session>> SessionRegistry::all() const {
 }
 
 Result<std::string> SessionRegistry::enter(const std::string& session,
-                                           std::weak_ptr<ViewerLink> link, bool only_watches) {
+                                           std::weak_ptr<ViewerLink> link, bool read_only) {
   const std::lock_guard lock(mutex_);
   const Result<std::shared_ptr<Session>> found = find_locked(session);
   if (!found) return found.error();
@@ -158,7 +158,7 @@ Result<std::string> SessionRegistry::enter(const std::string& session,
                        std::to_string(limits_.viewers) + " viewers");
   }
   const std::string id = "v" + std::to_string(++viewers_so_far_);
-  if (const auto joined = (*found)->audience().join(id, std::move(link), only_watches); !joined) {
+  if (const auto joined = (*found)->viewers().join(id, std::move(link), read_only); !joined) {
     return joined.error();
   }
   session_of_viewer_[id] = *found;
@@ -179,14 +179,14 @@ Result<std::shared_ptr<Session>> SessionRegistry::move_locked(const std::string&
   }
   const Result<std::shared_ptr<Session>> there = find_locked(session);
   if (!there || *there == here->second) return there;
-  if (const auto moved = here->second->hand_over(viewer, **there); !moved) return moved.error();
+  if (const auto moved = here->second->move_to(viewer, **there); !moved) return moved.error();
   const std::shared_ptr<Session> before = std::exchange(here->second, *there);
   before->announce();
   (*there)->announce();
   return there;
 }
 
-Result<Settled> SessionRegistry::settle(const std::string& viewer, const Origin& from,
+Result<Resumed> SessionRegistry::resume(const std::string& viewer, const Origin& from,
                                         std::optional<SessionOptions> options) {
   const std::lock_guard lock(mutex_);
   const auto known = std::find_if(origins_.begin(), origins_.end(),
@@ -195,7 +195,7 @@ Result<Settled> SessionRegistry::settle(const std::string& viewer, const Origin&
   if (!options) {
     const auto watched = move_locked(viewer, name);
     if (!watched) return watched.error();
-    return Settled{.session = *watched};
+    return Resumed{.session = *watched};
   }
   if (known == origins_.end() && !is_free_for(viewer, name)) {
     options->name = name_for(from);
@@ -203,17 +203,17 @@ Result<Settled> SessionRegistry::settle(const std::string& viewer, const Origin&
     if (!made) return made.error();
     name = (*made)->name();
   }
-  const bool first = sessions_.at(name)->untouched(viewer);
+  const bool first = sessions_.at(name)->is_pristine(viewer);
   const auto moved = move_locked(viewer, name);
   if (!moved) return moved.error();
   origins_[name] = from;
-  return Settled{.session = *moved, .first = first};
+  return Resumed{.session = *moved, .first = first};
 }
 
 /// Whether there is a session of this name whose state is nobody's yet.
 bool SessionRegistry::is_free_for(const std::string& viewer, const std::string& name) const {
   const auto found = sessions_.find(name);
-  return found != sessions_.end() && !origins_.contains(name) && found->second->untouched(viewer);
+  return found != sessions_.end() && !origins_.contains(name) && found->second->is_pristine(viewer);
 }
 
 /// The name that the session had, or one that tells of it.
@@ -242,15 +242,15 @@ std::uint64_t SessionRegistry::opened() const {
   return opened_;
 }
 
-AudienceTotals SessionRegistry::totals() const {
+ViewerTotals SessionRegistry::totals() const {
   const std::lock_guard lock(mutex_);
-  AudienceTotals totals = ended_;
+  ViewerTotals totals = ended_;
   std::size_t measured = 0;
   for (const auto& [name, session] : sessions_) {
-    const AudienceTotals more = session->audience().totals();
+    const ViewerTotals more = session->viewers().totals();
     totals.viewers += more.viewers;
     totals.waiting += more.waiting;
-    totals.on_the_way += more.on_the_way;
+    totals.in_flight += more.in_flight;
     totals.sent += more.sent;
     totals.goodput += more.goodput;
     if (more.mean_round_trip.count() == 0) continue;

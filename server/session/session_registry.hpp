@@ -35,7 +35,7 @@ struct Origin {
 };
 
 /// Where somebody who came from another run is now.
-struct Settled {
+struct Resumed {
   std::shared_ptr<Session> session;
   bool first = false;  // nobody has brought its state yet
 };
@@ -64,27 +64,27 @@ class SessionRegistry {
   /// The session that a call belongs to.
   protocol::Result<std::shared_ptr<Session>> session_of(const protocol::CallContext& call) const;
   /// The session that a viewer is in, or null.
-  std::shared_ptr<Session> session_watched_by(const std::string& viewer) const;
+  std::shared_ptr<Session> session_of_viewer(const std::string& viewer) const;
   const std::shared_ptr<Session>& main() const { return main_; }
   /// All sessions, by name.
   std::vector<std::shared_ptr<Session>> all() const;
 
   /// Takes in a new viewer; gives its id.
   protocol::Result<std::string> enter(const std::string& session, std::weak_ptr<ViewerLink> link,
-                                      bool only_watches = false);
+                                      bool read_only = false);
   /// Brings a viewer into another session, with its stream as it is.
   protocol::Result<std::shared_ptr<Session>> move(const std::string& viewer,
                                                   const std::string& session);
   /// Brings a viewer that was in a session of another run of the server, perhaps elsewhere, to
   /// where it disturbs nobody: to those who were there with it; else into the session of that name,
-  /// while it is untouched; else into a new one, of that name if it is free, made with `options`.
+  /// while it is is_pristine; else into a new one, of that name if it is free, made with `options`.
   /// Without them, for who may only watch, into the one of that name as it is.
-  protocol::Result<Settled> settle(const std::string& viewer, const Origin& from,
+  protocol::Result<Resumed> resume(const std::string& viewer, const Origin& from,
                                    std::optional<SessionOptions> options);
   void leave(const std::string& viewer);
 
   /// Of all sessions, those that have ended included.
-  AudienceTotals totals() const;
+  ViewerTotals totals() const;
   std::size_t count() const;
   std::uint64_t opened() const;
   const RegistryLimits& limits() const { return limits_; }
@@ -114,7 +114,7 @@ class SessionRegistry {
   std::uint64_t viewers_so_far_ = 0;
   std::uint64_t names_so_far_ = 0;
   std::uint64_t opened_ = 0;
-  AudienceTotals ended_;
+  ViewerTotals ended_;
   std::shared_ptr<Session> main_;
 };
 

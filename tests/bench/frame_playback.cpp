@@ -54,7 +54,7 @@ PictureShow::PictureShow(session::SessionHost& host, std::vector<render::Frame> 
       interval_(
           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / rate))) {
   for (render::Frame& frame : pictures) {
-    auto picture = std::make_shared<session::Picture>();
+    auto picture = std::make_shared<session::RenderedFrame>();
     picture->frame = std::move(frame);
     pictures_.push_back(std::move(picture));
   }
@@ -69,8 +69,8 @@ PictureShow::~PictureShow() {
 }
 
 /// Pictures come round again long after they were encoded.
-std::shared_ptr<session::Picture> PictureShow::next_picture() {
-  const std::shared_ptr<session::Picture>& picture = pictures_[shown_ % pictures_.size()];
+std::shared_ptr<session::RenderedFrame> PictureShow::next_picture() {
+  const std::shared_ptr<session::RenderedFrame>& picture = pictures_[shown_ % pictures_.size()];
   protocol::FrameHeader& header = picture->header;
   header.render_id = ++shown_;
   header.full_width = shown_width;

@@ -32,15 +32,15 @@ class PictureShow {
  private:
   using Clock = std::chrono::steady_clock;
 
-  std::shared_ptr<session::Picture> next_picture();
+  std::shared_ptr<session::RenderedFrame> next_picture();
   void run();
 
   stream::JpegEncoder jpeg_;
   session::Measurements measurements_;
   session::Worker worker_;
-  const std::shared_ptr<session::Wakeup> wakeup_ = std::make_shared<session::Wakeup>();
+  const std::shared_ptr<session::WakeEvent> wakeup_ = std::make_shared<session::WakeEvent>();
   session::Broadcast broadcast_;
-  std::vector<std::shared_ptr<session::Picture>> pictures_;
+  std::vector<std::shared_ptr<session::RenderedFrame>> pictures_;
   std::uint32_t shown_ = 0;
   const Clock::duration interval_;
   std::atomic<bool> running_ = false;

@@ -28,20 +28,7 @@ float fade(float t) {
   return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f);
 }
 
-}  // namespace
-
-std::uint32_t hash(int x, int y, std::uint32_t seed) {
-  std::uint32_t h = seed * 0x9E3779B9u ^ std::uint32_t(x) * 0x85EBCA6Bu;
-  h = (h ^ (h >> 15)) * 0x2C1B3C6Du + std::uint32_t(y) * 0xC2B2AE35u;
-  h = (h ^ (h >> 13)) * 0x297A2D39u;
-  h = (h ^ (h >> 16)) * 0x7FEB352Du;
-  return h ^ (h >> 15);
-}
-
-float hash_unit(int x, int y, std::uint32_t seed) {
-  return float(hash(x, y, seed) >> 8) * (1.0f / 16777216.0f);
-}
-
+/// Gradient noise (Perlin 2002) with `cells` lattice cells per period, about [-1, 1].
 float gradient_noise(glm::vec2 p, glm::ivec2 cells, std::uint32_t seed) {
   const glm::vec2 scaled = p * glm::vec2(cells);
   const glm::vec2 corner = glm::floor(scaled);
@@ -55,6 +42,20 @@ float gradient_noise(glm::vec2 p, glm::ivec2 cells, std::uint32_t seed) {
   const float bottom = glm::mix(contribution(0, 0), contribution(1, 0), fade(f.x));
   const float top = glm::mix(contribution(0, 1), contribution(1, 1), fade(f.x));
   return 1.4f * glm::mix(bottom, top, fade(f.y));
+}
+
+}  // namespace
+
+std::uint32_t hash(int x, int y, std::uint32_t seed) {
+  std::uint32_t h = seed * 0x9E3779B9u ^ std::uint32_t(x) * 0x85EBCA6Bu;
+  h = (h ^ (h >> 15)) * 0x2C1B3C6Du + std::uint32_t(y) * 0xC2B2AE35u;
+  h = (h ^ (h >> 13)) * 0x297A2D39u;
+  h = (h ^ (h >> 16)) * 0x7FEB352Du;
+  return h ^ (h >> 15);
+}
+
+float hash_unit(int x, int y, std::uint32_t seed) {
+  return float(hash(x, y, seed) >> 8) * (1.0f / 16777216.0f);
 }
 
 float fractal_noise(glm::vec2 p, glm::ivec2 cells, int octaves, std::uint32_t seed, float gain) {

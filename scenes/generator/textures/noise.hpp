@@ -13,9 +13,6 @@ std::uint32_t hash(int x, int y, std::uint32_t seed);
 /// The same as a number in [0, 1).
 float hash_unit(int x, int y, std::uint32_t seed);
 
-/// Gradient noise (Perlin 2002) with `cells` lattice cells per period, about [-1, 1].
-float gradient_noise(glm::vec2 p, glm::ivec2 cells, std::uint32_t seed);
-
 /// Sum of octaves of gradient noise, each of twice the frequency and `gain` times the height.
 float fractal_noise(glm::vec2 p, glm::ivec2 cells, int octaves, std::uint32_t seed,
                     float gain = 0.5f);

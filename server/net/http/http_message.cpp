@@ -32,6 +32,15 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
+/// A number of decimal digits and nothing else.
+std::optional<std::uint32_t> whole_number(std::string_view text) {
+  std::uint32_t value = 0;
+  const char* const end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, value);
+  if (parsed.ec != std::errc() || parsed.ptr != end) return std::nullopt;
+  return value;
+}
+
 }  // namespace
 
 std::string_view HttpRequest::header(const std::string& name) const {
@@ -85,14 +94,6 @@ std::string encode_query(std::string_view text) {
     }
   }
   return encoded;
-}
-
-std::optional<std::uint32_t> whole_number(std::string_view text) {
-  std::uint32_t value = 0;
-  const char* const end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data(), end, value);
-  if (parsed.ec != std::errc() || parsed.ptr != end) return std::nullopt;
-  return value;
 }
 
 protocol::Result<std::optional<std::uint32_t>> number_parameter(const HttpRequest& request,

@@ -46,9 +46,6 @@ std::map<std::string, std::string> parse_query(std::string_view query);
 /// A name or value as it stands in a query string: all but unreserved characters percent encoded.
 std::string encode_query(std::string_view text);
 
-/// A number of decimal digits and nothing else.
-std::optional<std::uint32_t> whole_number(std::string_view text);
-
 /// A parameter of the query that is a whole number within limits; nothing where it is left out.
 protocol::Result<std::optional<std::uint32_t>> number_parameter(const HttpRequest& request,
                                                                 const std::string& name,

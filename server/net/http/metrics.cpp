@@ -129,10 +129,10 @@ void add_process(Page& page, const MetricsInput& input) {
 }
 
 void add_streams(Page& page, const session::SessionHost& host) {
-  const session::AudienceTotals audience = host.sessions().totals();
-  const std::chrono::duration<double> round_trip = audience.mean_round_trip;
+  const session::ViewerTotals totals = host.sessions().totals();
+  const std::chrono::duration<double> round_trip = totals.mean_round_trip;
   const auto number = [](auto value) { return static_cast<double>(value); };
-  page.gauge("heliograph_viewers", "Connected viewers.", number(audience.viewers));
+  page.gauge("heliograph_viewers", "Connected viewers.", number(totals.viewers));
   page.gauge("heliograph_viewers_limit", "Most viewers of all sessions.",
              number(host.sessions().limits().viewers));
   const session::SessionRegistry& sessions = host.sessions();
@@ -146,28 +146,28 @@ void add_streams(Page& page, const session::SessionHost& host) {
   page.counter("heliograph_device_losses_total", "How often the graphics device was lost.",
                number(host.device_losses()));
   page.counter("heliograph_frames_sent_total", "Frames sent to viewers.",
-               number(audience.sent.frames));
+               number(totals.sent.frames));
   page.counter("heliograph_sent_bytes_total", "Bytes of the frames sent to viewers.",
-               number(audience.sent.bytes));
+               number(totals.sent.bytes));
   page.counter("heliograph_frames_dropped_total",
                "Frames that a newer one replaced before they were sent.",
-               number(audience.sent.dropped));
+               number(totals.sent.dropped));
   page.counter("heliograph_frames_acknowledged_total", "Frames that viewers have confirmed.",
-               number(audience.sent.acknowledged));
+               number(totals.sent.acknowledged));
   page.gauge("heliograph_frames_waiting", "Frames that cannot be sent yet.",
-             number(audience.waiting));
+             number(totals.waiting));
   page.gauge("heliograph_frames_on_the_way", "Frames sent and not yet confirmed.",
-             number(audience.on_the_way));
+             number(totals.in_flight));
   page.gauge("heliograph_round_trip_seconds",
              "Mean of the viewers' smoothed times from sending a frame to its confirmation.",
              round_trip.count());
   page.histogram("heliograph_ack_round_trip_seconds",
                  "From sending a frame to its confirmation, less what the viewer held it.",
-                 audience.sent.round_trips);
+                 totals.sent.round_trips);
   page.gauge("heliograph_goodput_bytes_per_second",
              "What all viewers' connections together take when busy, estimated from confirmations; "
              "not what is sent.",
-             audience.goodput);
+             totals.goodput);
 }
 
 void add_rendering(Page& page, const session::SessionHost& host) {

@@ -93,7 +93,7 @@ class PictureStream : public Connection,
 
   void send(std::string, std::string_view) override {}
 
-  void dismiss(std::string) override {
+  void disconnect(std::string) override {
     asio::post(stream_.get_executor(), [self = shared_from_this()] { self->finish(); });
   }
 
@@ -108,9 +108,9 @@ class PictureStream : public Connection,
   }
 
   void configure(const protocol::StreamConfigure& wishes) {
-    const auto session = context_.host.sessions().session_watched_by(viewer_);
+    const auto session = context_.host.sessions().session_of_viewer(viewer_);
     if (!session) return;
-    if (session->audience().configure(viewer_, wishes)) session->audience().start(viewer_);
+    if (session->viewers().configure(viewer_, wishes)) session->viewers().start(viewer_);
   }
 
   /// Who vanished leaves pictures in the socket that nobody takes; they fit there, and block
@@ -146,9 +146,9 @@ class PictureStream : public Connection,
   void write_next() {
     if (writing_ || viewer_.empty()) return;
     if (ending_) return write(std::exchange(farewell_, {}));
-    const auto session = context_.host.sessions().session_watched_by(viewer_);
+    const auto session = context_.host.sessions().session_of_viewer(viewer_);
     if (!session) return;
-    frame_ = session->audience().take(viewer_);
+    frame_ = session->viewers().take(viewer_);
     if (!frame_) return;
     shown_ = frame_->frame;
     write_picture();
@@ -183,9 +183,9 @@ class PictureStream : public Connection,
 
   void acknowledge(const stream::OutgoingFrame& sent) {
     const auto header = protocol::decode_frame_header(sent.header);
-    const auto session = context_.host.sessions().session_watched_by(viewer_);
+    const auto session = context_.host.sessions().session_of_viewer(viewer_);
     if (!header || !session) return;
-    const auto known = session->audience().acknowledge(viewer_, {.frame_seq = header->frame_seq});
+    const auto known = session->viewers().acknowledge(viewer_, {.frame_seq = header->frame_seq});
     if (!known) finish();
   }
 

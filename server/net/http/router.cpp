@@ -215,7 +215,7 @@ std::optional<HttpResponse> Router::health(const HttpRequest& request) const {
   if (request.path == "/health/live") return text_response(200, "live");
   if (request.path != "/health/ready") return std::nullopt;
   if (draining_) return come_back_later("shutting down");
-  if (!host_.ready()) return come_back_later(host_.why_not_ready());
+  if (!host_.ready()) return come_back_later(host_.not_ready_reason());
   return text_response(200, "ready");
 }
 

@@ -111,7 +111,7 @@ class ViewerConnection : public Connection,
     });
   }
 
-  void dismiss(std::string why) override {
+  void disconnect(std::string why) override {
     asio::post(socket_.get_executor(), [self = shared_from_this(), why = std::move(why)] {
       self->farewell_ = why;
       self->write_next();
@@ -276,9 +276,9 @@ class ViewerConnection : public Connection,
       return socket_.async_write(asio::buffer(text_in_flight_), done);
     }
     if (farewell_) return close(session_ended, *farewell_);
-    const auto session = context_.host.sessions().session_watched_by(viewer_);
+    const auto session = context_.host.sessions().session_of_viewer(viewer_);
     if (!session) return;
-    frame_in_flight_ = session->audience().take(viewer_);
+    frame_in_flight_ = session->viewers().take(viewer_);
     if (!frame_in_flight_) return;
     writing_ = true;
     ++writes_;
@@ -296,9 +296,9 @@ class ViewerConnection : public Connection,
     patience_.expires_at(since + longest_without_acknowledgement);
     patience_.async_wait([self = shared_from_this()](error_code error) {
       if (error || self->closing_ || self->viewer_.empty()) return;
-      const auto session = self->context_.host.sessions().session_watched_by(self->viewer_);
+      const auto session = self->context_.host.sessions().session_of_viewer(self->viewer_);
       const auto waits =
-          session ? session->audience().unacknowledged_since(self->viewer_) : std::nullopt;
+          session ? session->viewers().unacknowledged_since(self->viewer_) : std::nullopt;
       self->patience_runs_ = waits.has_value();
       if (!waits) return;
       if (std::chrono::steady_clock::now() < *waits + longest_without_acknowledgement) {
@@ -341,7 +341,7 @@ class ViewerConnection : public Connection,
     beast::get_lowest_layer(socket_).socket().close(ignored);
     if (viewer_.empty()) return;
     // It may have joined another since it came.
-    const auto session = context_.host.sessions().session_watched_by(viewer_);
+    const auto session = context_.host.sessions().session_of_viewer(viewer_);
     context_.host.sessions().leave(viewer_);
     session::log_info(
         {.session = session ? session->name() : session_, .viewer = viewer_, .client = client_},

@@ -57,8 +57,7 @@ void copy_texels(const HeapPlan::Place& place, std::span<const std::uint8_t> pix
   std::memcpy(heap + place.first, &pixels[place.skipped * 4], place.kept * 4);
 }
 
-}  // namespace
-
+/// @throws gpu::GpuError when the images do not fit into `most_texels`
 HeapPlan plan_heap(const scene::Scene& scene, std::uint64_t most_texels) {
   const std::uint32_t longest = longest_side_that_fits(scene, most_texels);
   HeapPlan plan;
@@ -83,6 +82,8 @@ HeapPlan plan_heap(const scene::Scene& scene, std::uint64_t most_texels) {
   }
   return plan;
 }
+
+}  // namespace
 
 PackedTextures pack_textures(const scene::Scene& scene, std::uint64_t most_texels) {
   HeapPlan plan = plan_heap(scene, most_texels);

@@ -29,8 +29,6 @@ struct HeapPlan {
   std::vector<shared::HeapTexture> textures;
   std::uint64_t texels = 0;
 };
-/// @throws gpu::GpuError when the images do not fit into `most_texels`
-HeapPlan plan_heap(const scene::Scene& scene, std::uint64_t most_texels);
 
 /// Fills a heap image by image, so that no more than one of them need be decoded at a time.
 class TextureHeapWriter {
@@ -49,11 +47,11 @@ class TextureHeapWriter {
   std::vector<std::uint32_t> gathered_;  // where not
 };
 
-/// The same without a device.
 struct PackedTextures {
   std::vector<std::uint32_t> texels;
   std::vector<shared::HeapTexture> textures;
 };
+/// The heap without a device, for tests. @throws gpu::GpuError when the images do not fit
 PackedTextures pack_textures(const scene::Scene& scene, std::uint64_t most_texels);
 
 }  // namespace heliograph::render

@@ -46,12 +46,12 @@ Result<void> may_close(SessionHost& host, const SessionChoice& request, const st
   const auto session = host.sessions().find(request.session);
   if (!session) return session.error();
   if (*session == host.sessions().main()) return SessionRegistry::main_stays();
-  const bool inside = host.sessions().session_watched_by(viewer) == *session;
-  const bool empty = (*session)->audience().empty();
+  const bool inside = host.sessions().session_of_viewer(viewer) == *session;
+  const bool empty = (*session)->viewers().empty();
   if (!viewer.empty() && !empty && !inside) {
     return error::make(protocol::ErrorCode::forbidden, "session", "others are in this session");
   }
-  const Audience& audience = (*session)->audience();
+  const ViewerSet& audience = (*session)->viewers();
   if (inside && !audience.may_change(viewer)) return no_control(audience);
   return {};
 }
@@ -97,7 +97,7 @@ void add_session_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
                                            [](Session& session, const SessionControl& request,
                                               const std::string& viewer) -> Result<SessionInfo> {
                                              const auto changed =
-                                                 session.audience().change_control(request, viewer);
+                                                 session.viewers().change_control(request, viewer);
                                              if (!changed) return changed.error();
                                              session.announce();
                                              return session.info(viewer);

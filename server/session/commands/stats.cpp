@@ -11,7 +11,7 @@ void add_stats_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
       [](Session& session, const StatsSubscription& request,
          const std::string& viewer) -> Result<StatsSubscription> {
         const auto subscribed =
-            session.audience().subscribe(viewer, std::chrono::milliseconds(request.interval_ms));
+            session.viewers().subscribe(viewer, std::chrono::milliseconds(request.interval_ms));
         if (!subscribed) return subscribed.error();
         return request;
       });

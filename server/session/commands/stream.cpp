@@ -55,8 +55,8 @@ Result<Chosen> choose_place(SessionHost& host, const Hello& request,
     return Chosen{.session = *session, .bring = {}};
   }
   const Origin from{.instance = *request.instance, .session = *request.session};
-  const auto settled = host.settle(call.viewer, from, call.view_only);
-  if (settled) return Chosen{.session = settled->session, .bring = settled->first};
+  const auto resumed = host.resume(call.viewer, from, call.view_only);
+  if (resumed) return Chosen{.session = resumed->session, .bring = resumed->first};
   const auto main = host.sessions().move(call.viewer, std::string(protocol::main_session));
   if (!main) return main.error();
   return Chosen{.session = *main, .bring = {}};
@@ -102,8 +102,8 @@ Result<HelloResult> greet(SessionHost& host, const Hello& request,
   const std::shared_ptr<Session>& session = chosen->session;
   const stream::CodecChoice choice = stream::choose_codec(codecs);
   if (!call.viewer.empty()) {
-    if (request.name) session->audience().set_name(call.viewer, *request.name);
-    session->audience().start(call.viewer, choice.codec);
+    if (request.name) session->viewers().set_name(call.viewer, *request.name);
+    session->viewers().start(call.viewer, choice.codec);
     session->announce();
   }
   return greeting(host, *chosen, call, choice);
@@ -134,7 +134,7 @@ void add_stream_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
   add_command<StreamAck, Empty>(
       dispatcher, host, "stream.ack",
       [](Session& session, const StreamAck& request, const std::string& viewer) -> Result<Empty> {
-        const auto taken = session.audience().acknowledge(viewer, request);
+        const auto taken = session.viewers().acknowledge(viewer, request);
         if (!taken) return taken.error();
         return Empty();
       });

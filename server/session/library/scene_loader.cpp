@@ -125,7 +125,7 @@ void SceneLoader::load(std::shared_ptr<Session> session, const protocol::SceneLo
     }
     if (kept) {
       session->show(*kept, by);
-      session->audience().send_all(progress_text(kept->name, "ready", 1.0f), progress_key);
+      session->viewers().send_all(progress_text(kept->name, "ready", 1.0f), progress_key);
     } else {
       job->waiters.push_back({std::move(session), by, done});
     }
@@ -302,7 +302,7 @@ void SceneLoader::finish(Job& job, const Result<LoadedScene>& outcome) {
       const std::string text = progress_text(job.entry.name, "ready", 1.0f);
       for (const Waiter& waiter : waiters) {
         waiter.session->show(*outcome, waiter.by);
-        waiter.session->audience().send_all(text, progress_key);
+        waiter.session->viewers().send_all(text, progress_key);
       }
     }
   }
@@ -324,7 +324,7 @@ void SceneLoader::report_progress(Job& job, std::string_view stage, float fracti
   const std::string text = progress_text(job.entry.name, stage, fraction);
   const std::lock_guard lock(mutex_);
   for (const Waiter& waiter : job.waiters) {
-    waiter.session->audience().send_all(text, progress_key);
+    waiter.session->viewers().send_all(text, progress_key);
   }
 }
 

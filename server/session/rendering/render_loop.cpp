@@ -11,7 +11,7 @@
 #include "protocol/json/jsonrpc.hpp"
 #include "render/api/device_lost.hpp"
 #include "session/event_log.hpp"
-#include "session/rendering/device_renewal.hpp"
+#include "session/rendering/device_migration.hpp"
 
 namespace heliograph::session {
 namespace {
@@ -46,7 +46,7 @@ std::shared_ptr<Session> RenderLoop::open(SessionOptions options, PixelShare pix
                                                          .jpeg = jpeg_,
                                                          .capture_writer = capture_writer_,
                                                          .measurements = measurements_},
-                                            std::make_shared<Wakeup>(wakeup_));
+                                            std::make_shared<WakeEvent>(wakeup_));
   std::shared_ptr<Session> session = view->session();
   if (open_views().empty()) {
     try {
@@ -85,9 +85,9 @@ void RenderLoop::on_first_frame(std::function<void()> callback) {
 void RenderLoop::run() {
   while (!stopping_) {
     dismiss_closed();
-    if (loss_reported_.exchange(false) && device_ready_) lose_device("beside rendering");
+    if (loss_reported_.exchange(false) && device_ready_) on_device_lost("beside rendering");
     const Views views = open_views();
-    if (!device_ready_ && !mend_device(views)) continue;
+    if (!device_ready_ && !recover_device(views)) continue;
     if (advance_next(views) || !device_ready_) continue;
     const auto due = next_due(views);
     wakeup_->wait_until(due && held_back_until_ ? std::min(due, held_back_until_)
@@ -154,7 +154,7 @@ SessionView::Work RenderLoop::advance(SessionView& view, bool may_draw) {
   try {
     return view.advance(may_draw);
   } catch (const render::DeviceLost& failure) {
-    lose_device("session " + view.session()->name() + ": " + failure.what());
+    on_device_lost("session " + view.session()->name() + ": " + failure.what());
     return SessionView::Work::none;
   } catch (const std::exception& failure) {
     log_error({.session = view.session()->name()},
@@ -174,11 +174,11 @@ void RenderLoop::on_new_device(std::function<void()> callback) {
   on_new_device_ = std::move(callback);
 }
 
-void RenderLoop::lose_device(const std::string& why) {
+void RenderLoop::on_device_lost(const std::string& why) {
   device_ready_ = false;
   ++device_losses_;
-  const Clock::duration pause = recovery_pause_.after_loss(Clock::now());
-  mend_at_ = Clock::now() + pause;
+  const Clock::duration pause = retry_backoff_.after_loss(Clock::now());
+  retry_at_ = Clock::now() + pause;
   const std::string when =
       pause == Clock::duration::zero()
           ? "at once"
@@ -188,18 +188,18 @@ void RenderLoop::lose_device(const std::string& why) {
 }
 
 /// Makes the device anew once its time has come. Sessions keep everything but their histories.
-bool RenderLoop::mend_device(const Views& views) {
-  if (Clock::now() < mend_at_) {
-    wakeup_->wait_until(mend_at_);
+bool RenderLoop::recover_device(const Views& views) {
+  if (Clock::now() < retry_at_) {
+    wakeup_->wait_until(retry_at_);
     return false;
   }
   try {
     for (const auto& view : views) view->release_renderer();
     engine_.recreate();
-    DeviceRenewal renewal(engine_);
+    DeviceMigration renewal(engine_);
     for (const auto& view : views) view->session()->renew(renewal);
   } catch (const std::exception& failure) {
-    lose_device(failure.what());
+    on_device_lost(failure.what());
     return false;
   }
   std::function<void()> callback;
@@ -208,7 +208,7 @@ bool RenderLoop::mend_device(const Views& views) {
     callback = on_new_device_;
   }
   if (callback) callback();
-  recovery_pause_.recovered(Clock::now());
+  retry_backoff_.recovered(Clock::now());
   device_ready_ = true;
   spdlog::info("the device is back, {} sessions with it", views.size());
   tell_viewers(true, "the device is back");
@@ -219,7 +219,7 @@ void RenderLoop::tell_viewers(bool ready, const std::string& message) {
   const std::string text = protocol::make_notification(
       "device.changed", protocol::DeviceChanged{.ready = ready, .message = message});
   for (const auto& view : open_views()) {
-    view->session()->audience().send_all(text, "device.changed");
+    view->session()->viewers().send_all(text, "device.changed");
   }
 }
 

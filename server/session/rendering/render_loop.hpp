@@ -57,14 +57,14 @@ class RenderLoop {
   SessionView::Work advance(SessionView& view, bool may_draw);
   std::optional<Clock::time_point> next_due(const Views& views) const;
   void report_first_frame();
-  void lose_device(const std::string& why);
-  bool mend_device(const Views& views);
+  void on_device_lost(const std::string& why);
+  bool recover_device(const Views& views);
   void tell_viewers(bool ready, const std::string& message);
 
   render::Engine& engine_;
   const Clock::duration release_after_;
   FairShare share_;  // of the render thread
-  const std::shared_ptr<Wakeup> wakeup_ = std::make_shared<Wakeup>();
+  const std::shared_ptr<WakeEvent> wakeup_ = std::make_shared<WakeEvent>();
   Measurements measurements_;
   std::mutex mutex_;  // guards views_, closed_ and the callbacks; never held while drawing
   Views views_;
@@ -75,8 +75,8 @@ class RenderLoop {
   std::atomic<bool> device_ready_ = true;
   std::atomic<bool> loss_reported_ = false;
   std::atomic<std::uint64_t> device_losses_ = 0;
-  RecoveryPause recovery_pause_;  // of the render thread, like the next two
-  Clock::time_point mend_at_;
+  RetryBackoff retry_backoff_;  // of the render thread, like the next two
+  Clock::time_point retry_at_;
   std::optional<Clock::time_point> held_back_until_;
   std::atomic<bool> stopping_ = false;
   stream::JpegEncoder jpeg_;

@@ -4,7 +4,7 @@
 
 namespace heliograph::session {
 
-Clock::duration RecoveryPause::after_loss(Clock::time_point now) {
+Clock::duration RetryBackoff::after_loss(Clock::time_point now) {
   if (now >= recovered_at_ + healthy_after && recovered_at_ != Clock::time_point{}) failures_ = 0;
   recovered_at_ = {};
   const int failures = failures_++;

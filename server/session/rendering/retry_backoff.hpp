@@ -8,7 +8,7 @@ using stream::Clock;
 
 /// How long to wait before a lost device is made anew: not at all at first, then longer each time
 /// as long as it does not last. Pure logic.
-class RecoveryPause {
+class RetryBackoff {
  public:
   /// The device was lost, or could not be made: the time to wait now.
   Clock::duration after_loss(Clock::time_point now);

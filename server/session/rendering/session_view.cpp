@@ -7,7 +7,7 @@
 #include "scene/animation/pose.hpp"
 #include "scene/camera.hpp"
 #include "session/event_log.hpp"
-#include "session/rendering/device_renewal.hpp"
+#include "session/rendering/device_migration.hpp"
 
 namespace heliograph::session {
 
@@ -55,7 +55,7 @@ SceneEdits::Lights file_lights(const scene::Scene& scene) {
 }  // namespace
 
 SessionView::SessionView(render::Engine& engine, SessionOptions options, PixelShare pixels,
-                         ViewServices services, std::shared_ptr<Wakeup> wakeup)
+                         ViewServices services, std::shared_ptr<WakeEvent> wakeup)
     : engine_(engine),
       services_(services),
       wakeup_(std::move(wakeup)),
@@ -82,12 +82,12 @@ bool SessionView::awake() const {
 /// Whether the renderer must stay: for somebody, for what is to be drawn unwatched, or for the
 /// histories that the next step builds on.
 bool SessionView::needed() const {
-  return draws_unasked_ || watched() || session_->works_unwatched();
+  return draws_unasked_ || watched() || session_->renders_without_viewers();
 }
 
 /// Whether somebody is there for pictures, or waits for one.
 bool SessionView::watched() const {
-  return !captures_.empty() || !probes_.empty() || session_->audience().watching();
+  return !captures_.empty() || !probes_.empty() || session_->viewers().has_active_viewer();
 }
 
 void SessionView::make_renderer() {
@@ -114,7 +114,7 @@ void SessionView::release_renderer() {
   stepped_ = false;
   broadcast_.forget();
   state_ = {};
-  session_->audience().forget_latest();
+  session_->viewers().discard_latest();
   log_info({.session = session_->name()}, "pictures let go");
 }
 
@@ -122,7 +122,7 @@ SessionView::Work SessionView::advance(bool may_draw) {
   if (Clock::now() < resting_until_) return Work::none;
   wakeup_->take();
   collect_captures();
-  session_->audience().announce_waiting();
+  session_->viewers().announce_due_frames();
   if (!renderer_) {
     if (!needed()) return Work::none;
     make_renderer();
@@ -149,7 +149,7 @@ SessionView::Work SessionView::advance(bool may_draw) {
 }
 
 std::optional<Clock::time_point> SessionView::next_due() const {
-  std::optional<Clock::time_point> due = session_->audience().next_turn();
+  std::optional<Clock::time_point> due = session_->viewers().next_turn();
   if (session_->in_lockstep()) return due;
   const auto also = [&](Clock::time_point time) { due = due ? std::min(*due, time) : time; };
   if (newest_ && newest_->frame.converged && !broadcast_.finished() && !state_.animation.playing) {
@@ -183,13 +183,13 @@ void SessionView::adopt(RenderState next) {
   const auto lost = [&](const auto& object) { return object && !engine_.owns(*object); };
   if (lost(state_.resources) || lost(state_.environment)) {
     // It was loaded just before the device was lost.
-    DeviceRenewal renewal(engine_);
+    DeviceMigration renewal(engine_);
     session_->renew(renewal);
     state_ = session_->render_state();
   }
   if (state_.resources != before.resources) renderer_->set_scene(state_.resources);
   adopt_edits(before);
-  if (state_.fresh_starts != before.fresh_starts) {
+  if (state_.reset_count != before.reset_count) {
     renderer_->start_anew();
     cut_ = true;
   }
@@ -276,8 +276,8 @@ bool SessionView::frame_wanted() {
       state_.keep_drawing && state_.settings.reference.use == protocol::ReferenceUse::always;
   if (first || reference || !captures_.empty() || !probes_.empty()) return true;
   // A resting picture gets better at full speed, since few of its samples are sent.
-  if (resting()) return session_->audience().watching();
-  return !broadcast_.behind() && session_->audience().wants_frame();
+  if (resting()) return session_->viewers().has_active_viewer();
+  return !broadcast_.behind() && session_->viewers().can_accept_frame();
 }
 
 bool SessionView::final_due() const {
@@ -307,16 +307,16 @@ void SessionView::render_frame(double seconds) {
   newest_ = describe(std::move(frame), start, end);
   draws_unasked_ = false;
   newest_version_ = state_.version;
-  session_->report_picture(newest_version_, newest_->frame.samples, newest_->frame.converged);
+  session_->report_frame(newest_version_, newest_->frame.samples, newest_->frame.converged);
   broadcast_.rendered(newest_, !state_.lockstep && resting());
 }
 
-std::shared_ptr<Picture> SessionView::describe(render::Frame frame, Clock::time_point start,
-                                               Clock::time_point end) {
+std::shared_ptr<RenderedFrame> SessionView::describe(render::Frame frame, Clock::time_point start,
+                                                     Clock::time_point end) {
   recent_frames_.push_back(end);
   while (recent_frames_.front() < end - std::chrono::seconds(1)) recent_frames_.pop_front();
 
-  auto picture = std::make_shared<Picture>();
+  auto picture = std::make_shared<RenderedFrame>();
   protocol::FrameHeader& header = picture->header;
   if (std::exchange(cut_, false)) ++cuts_;
   header.render_id = ++render_count_;

@@ -14,7 +14,7 @@ namespace heliograph::session {
 
 /// What all views of one device share.
 struct ViewServices {
-  Wakeup& wakeup;                 // of the render thread
+  WakeEvent& wakeup;              // of the render thread
   Clock::duration release_after;  // nobody has watched for so long: histories are let go
   Worker& encoder;                // pictures for the stream
   stream::JpegEncoder& jpeg;      // used by `encoder` only
@@ -29,7 +29,7 @@ struct ViewServices {
 class SessionView {
  public:
   SessionView(render::Engine& engine, SessionOptions options, PixelShare pixels,
-              ViewServices services, std::shared_ptr<Wakeup> wakeup);
+              ViewServices services, std::shared_ptr<WakeEvent> wakeup);
   ~SessionView();
 
   /// Makes the renderer before it is drawn with; the first picture then comes unasked.
@@ -96,13 +96,12 @@ class SessionView {
   bool final_due() const;
   void render_frame();
   void render_frame(double seconds);
-  std::shared_ptr<Picture> describe(render::Frame frame, Clock::time_point start,
-                                    Clock::time_point end);
-  double frames_in_last_second() const;
+  std::shared_ptr<RenderedFrame> describe(render::Frame frame, Clock::time_point start,
+                                          Clock::time_point end);
 
   render::Engine& engine_;
   ViewServices services_;
-  const std::shared_ptr<Wakeup> wakeup_;  // of this session
+  const std::shared_ptr<WakeEvent> wakeup_;  // of this session
   std::shared_ptr<Session> session_;
   Broadcast broadcast_;
   std::unique_ptr<render::Renderer> renderer_;  // null while nobody needs pictures
@@ -114,7 +113,7 @@ class SessionView {
   std::uint32_t drawn_width_ = 0;  // what the renderer draws now: smaller while moving
   std::uint32_t drawn_height_ = 0;
   Clock::duration whole_frame_{};  // time of the newest frame of full size
-  std::shared_ptr<const Picture> newest_;
+  std::shared_ptr<const RenderedFrame> newest_;
   std::uint64_t newest_version_ = 0;
   bool cut_ = true;  // the next picture has nothing in common with the last
   std::uint64_t cuts_ = 0;

@@ -40,7 +40,7 @@ void SessionView::collect_captures() {
 void SessionView::drop_unwanted_captures() {
   std::erase_if(captures_, [&](const PendingCapture& capture) {
     const std::string& viewer = capture.request.viewer;
-    if (viewer.empty() || session_->audience().has(viewer)) return false;
+    if (viewer.empty() || session_->viewers().has(viewer)) return false;
     capture.request.done(
         protocol::error::not_found("session", "the viewer has left the session of the capture"));
     return true;

@@ -210,8 +210,7 @@ MaterialInfo describe(const shared::Material& material) {
   return info;
 }
 
-}  // namespace
-
+/// What the file says of its lights. Names are unique: a light without one gets its index.
 std::vector<LightInfo> describe_lights(const scene::Scene& scene) {
   UniqueNames names("light");
   std::vector<LightInfo> lights;
@@ -221,6 +220,8 @@ std::vector<LightInfo> describe_lights(const scene::Scene& scene) {
   }
   return lights;
 }
+
+}  // namespace
 
 std::vector<MaterialInfo> describe_materials(const scene::Scene& scene) {
   UniqueNames names("material");

@@ -39,9 +39,7 @@ class SceneEdits {
   std::shared_ptr<const Materials> device_materials_;
 };
 
-/// What the file says of its lights and materials. Names are made different from each other: what
-/// has none is called by its number.
-std::vector<protocol::LightInfo> describe_lights(const scene::Scene& scene);
+/// What the file says of its materials. Names are unique: a material without one gets its index.
 std::vector<protocol::MaterialInfo> describe_materials(const scene::Scene& scene);
 
 }  // namespace heliograph::session

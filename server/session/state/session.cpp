@@ -12,14 +12,14 @@
 #include "scene/camera.hpp"
 #include "session/library/scene_description.hpp"
 #include "session/measurements.hpp"
-#include "session/rendering/device_renewal.hpp"
+#include "session/rendering/device_migration.hpp"
 
 namespace heliograph::session {
 
 using protocol::Result;
 namespace error = protocol::error;
 
-protocol::Error no_control(const Audience& audience) {
+protocol::Error no_control(const ViewerSet& audience) {
   if (audience.control_is_free()) {
     return error::make(protocol::ErrorCode::forbidden, "control",
                        "nobody has control of this session; it must be taken first",
@@ -29,12 +29,12 @@ protocol::Error no_control(const Audience& audience) {
                      "another viewer has control of this session", "session.control");
 }
 
-Session::Session(SessionOptions options, std::shared_ptr<Wakeup> changed, PixelShare pixels,
+Session::Session(SessionOptions options, std::shared_ptr<WakeEvent> changed, PixelShare pixels,
                  Measurements* measurements)
     : options_(std::move(options)),
       changed_(std::move(changed)),
       measurements_(measurements),
-      audience_(options_.limits.max_viewers, *changed_),
+      viewers_(options_.limits.max_viewers, *changed_),
       pixels_(std::move(pixels)) {
   state_.settings = options_.settings;
   state_.width = std::min(options_.width, options_.limits.max_width);
@@ -52,14 +52,14 @@ std::uint32_t Session::rev() const {
 protocol::SessionInfo Session::info(const std::string& you) const {
   const std::lock_guard lock(mutex_);
   protocol::SessionInfo info = info_locked();
-  info.viewers = audience_.people(you);
+  info.viewers = viewers_.participants(you);
   return info;
 }
 
 void Session::announce() {
   // Under the lock, so that nobody hears the older of two states last.
   const std::lock_guard lock(mutex_);
-  audience_.announce_people(info_locked());
+  viewers_.announce_participants(info_locked());
 }
 
 protocol::SessionInfo Session::info_locked() const {
@@ -68,25 +68,25 @@ protocol::SessionInfo Session::info_locked() const {
                              .width = state_.width,
                              .height = state_.height,
                              .viewers = {},
-                             .control = audience_.control_mode(),
+                             .control = viewers_.control_mode(),
                              .rev = state_.rev,
                              .idle_seconds = std::chrono::duration<double>(idle()).count()};
   if (scene_) info.scene = scene_info_.name;
   return info;
 }
 
-bool Session::works_unwatched() const {
+bool Session::renders_without_viewers() const {
   const std::lock_guard lock(mutex_);
   return state_.lockstep || state_.keep_drawing;
 }
 
-bool Session::untouched(const std::string& viewer) const {
-  return !touched_ && audience_.control_mode() == protocol::ControlMode::everyone &&
-         !audience_.greeted_but(viewer);
+bool Session::is_pristine(const std::string& viewer) const {
+  return !touched_ && viewers_.control_mode() == protocol::ControlMode::everyone &&
+         !viewers_.has_other_participant(viewer);
 }
 
 Clock::duration Session::idle() const {
-  if (!audience_.empty()) return {};
+  if (!viewers_.empty()) return {};
   return Clock::now() - needed_at_.load();
 }
 
@@ -176,7 +176,7 @@ void Session::show(LoadedScene scene, const std::string& by) {
     camera_name_ = state_.camera.name;
   }
   changed();
-  audience_.send_others(
+  viewers_.send_others(
       by,
       protocol::make_notification("scene.changed", protocol::SceneChanged{.scene = scene_info_}),
       {});
@@ -210,7 +210,7 @@ Result<protocol::SettingsApplied> Session::patch_locked(const protocol::RawJson&
     }
     changed();
     const protocol::SettingsChanged message{.rev = state_.rev, .patch = effective, .by = by};
-    audience_.send_others(by, protocol::make_notification("settings.changed", message), {});
+    viewers_.send_others(by, protocol::make_notification("settings.changed", message), {});
   }
   return protocol::SettingsApplied{.rev = state_.rev, .applied = std::move(effective)};
 }
@@ -227,7 +227,7 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
     return error::make(protocol::ErrorCode::forbidden, width != state_.width ? "width" : "height",
                        "is everybody's, and this access may only watch");
   }
-  if (resized && !audience_.may_change(by)) return no_control(audience_);
+  if (resized && !viewers_.may_change(by)) return no_control(viewers_);
   // Fewer pixels are never refused: more are taken before anything is changed, fewer after it.
   const auto pixels_before = static_cast<std::uint64_t>(state_.width) * state_.height;
   const auto pixels = static_cast<std::uint64_t>(width) * height;
@@ -238,7 +238,7 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
   const bool only_size =
       !request.quality && !request.max_fps && !request.paused && !request.codec && !request.still;
   if (!by.empty() || !only_size) {
-    const Result<ViewerStream> configured = audience_.configure(by, request);
+    const Result<ViewerStream> configured = viewers_.configure(by, request);
     if (!configured) {
       if (pixels > pixels_before) (void)pixels_.resize(pixels_before);
       return configured.error();
@@ -250,7 +250,7 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
     state_.width = width;
     state_.height = height;
     changed();
-    audience_.announce_people(info_locked());
+    viewers_.announce_participants(info_locked());
   }
   return protocol::StreamState{.width = width,
                                .height = height,
@@ -262,12 +262,12 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
 }
 
 void Session::leave(const std::string& viewer) {
-  audience_.leave(viewer);
+  viewers_.leave(viewer);
   forget(viewer);
 }
 
-Result<void> Session::hand_over(const std::string& viewer, Session& there) {
-  if (const auto moved = audience_.hand_over(viewer, there.audience_); !moved) return moved;
+Result<void> Session::move_to(const std::string& viewer, Session& there) {
+  if (const auto moved = viewers_.move_to(viewer, there.viewers_); !moved) return moved;
   forget(viewer);
   return {};
 }
@@ -315,7 +315,7 @@ std::vector<CaptureRequest> Session::take_captures() {
   return std::exchange(captures_, {});
 }
 
-void Session::renew(DeviceRenewal& renewal) {
+void Session::renew(DeviceMigration& renewal) {
   const RenderState before = render_state();
   const auto resources = renewal(before.resources);
   const auto environment = renewal(before.environment);

@@ -22,8 +22,8 @@
 #include "session/state/probe.hpp"
 #include "session/state/scene_edits.hpp"
 #include "session/state/step.hpp"
-#include "session/viewers/audience.hpp"
-#include "session/wakeup.hpp"
+#include "session/viewers/viewer_set.hpp"
+#include "session/wake_event.hpp"
 
 namespace heliograph::render {
 class LitEnvironment;
@@ -64,7 +64,7 @@ struct RenderState {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::vector<stream::InputEcho> inputs;
-  std::uint64_t fresh_starts = 0;  // how often everything drawn before was to be forgotten
+  std::uint64_t reset_count = 0;  // how often everything drawn before was to be forgotten
   std::optional<Clock::time_point> lockstep;  // what the time is where it passes by steps only
   bool keep_drawing = false;  // a reference that was started, whether anybody watches or not
 
@@ -78,11 +78,11 @@ struct StepFrame {
   RenderState state;        // as it was when the step was asked for
 };
 
-class DeviceRenewal;
+class DeviceMigration;
 class Measurements;
 
 /// What a caller is told who may not change the session of this audience.
-protocol::Error no_control(const Audience& audience);
+protocol::Error no_control(const ViewerSet& audience);
 
 /// The state that viewers share and steer: scene, camera, settings, picture size. Commands take
 /// effect at once, whatever the renderer is doing; it takes the newest state for its next frame, so
@@ -91,12 +91,12 @@ class Session {
  public:
   /// `changed` is notified when there is something to do; `pixels` is what the picture's size is
   /// taken from; `measurements`, which outlive the session, count refused captures.
-  Session(SessionOptions options, std::shared_ptr<Wakeup> changed, PixelShare pixels = {},
+  Session(SessionOptions options, std::shared_ptr<WakeEvent> changed, PixelShare pixels = {},
           Measurements* measurements = nullptr);
 
   const std::string& name() const { return options_.name; }
   const SessionLimits& limits() const { return options_.limits; }
-  Audience& audience() { return audience_; }
+  ViewerSet& viewers() { return viewers_; }
   std::uint32_t rev() const;
 
   /// The session as told to a viewer.
@@ -109,12 +109,12 @@ class Session {
   void end();
   bool ended() const { return ended_; }
   /// Whether pictures are due though nobody watches: lockstep, or a reference.
-  bool works_unwatched() const;
+  bool renders_without_viewers() const;
   /// Somebody is about to change what all see.
-  void note_change() { touched_ = true; }
+  void mark_modified() { touched_ = true; }
   /// Whether the session is as it began, belongs to nobody, and has nobody in it but `viewer`,
   /// those who only watch and those who have not said hello yet.
-  bool untouched(const std::string& viewer) const;
+  bool is_pristine(const std::string& viewer) const;
   /// Somebody needs the session, or it draws: its idle time begins anew.
   void touch() { needed_at_ = Clock::now(); }
   /// How long nobody has needed it; zero while it has viewers.
@@ -168,7 +168,7 @@ class Session {
                                                            bool may_steer = true);
   void leave(const std::string& viewer);
   /// Lets a viewer go over to another session; if that has no room it stays.
-  protocol::Result<void> hand_over(const std::string& viewer, Session& there);
+  protocol::Result<void> move_to(const std::string& viewer, Session& there);
 
   /// Refused at once where nothing would come of it.
   protocol::Result<void> request_capture(CaptureRequest request);
@@ -194,14 +194,14 @@ class Session {
   protocol::Result<protocol::ReferenceState> stop_reference(const std::string& by);
   protocol::ReferenceState reference() const;
   /// What the newest picture is: of which version of the state, with how many samples.
-  void report_picture(std::uint64_t version, std::uint32_t samples, bool converged);
+  void report_frame(std::uint64_t version, std::uint32_t samples, bool converged);
 
   protocol::Result<void> request_probe(Probe probe);
   /// The probes asked for since the last call.
   std::vector<Probe> take_probes();
 
   /// Brings everything that is on a lost device onto the present one.
-  void renew(DeviceRenewal& renewal);
+  void renew(DeviceMigration& renewal);
 
   std::uint64_t version() const;
   RenderState render_state() const;
@@ -236,12 +236,12 @@ class Session {
   float aspect() const;
 
   const SessionOptions options_;
-  const std::shared_ptr<Wakeup> changed_;
+  const std::shared_ptr<WakeEvent> changed_;
   Measurements* const measurements_;
   std::atomic<Clock::time_point> needed_at_ = Clock::now();
   std::atomic<bool> ended_ = false;
   std::atomic<bool> touched_ = false;
-  Audience audience_;
+  ViewerSet viewers_;
 
   mutable std::mutex mutex_;
   PixelShare pixels_;
@@ -268,12 +268,12 @@ class Session {
     std::uint32_t samples = 0;
   };
   StepTotals step_totals_;  // since lockstep was entered
-  struct PictureReport {
+  struct FrameReport {
     std::uint64_t version = 0;
     std::uint32_t samples = 0;
     bool converged = false;
   };
-  PictureReport newest_picture_;
+  FrameReport newest_frame_;
   /// What reference.start changes, as it was; nothing where no reference was started.
   struct BeforeReference {
     protocol::Settings::Reference reference;

@@ -84,16 +84,16 @@ AnimationState Session::set_clock(const AnimationClock& clock, const std::string
 
 AnimationState Session::tell_animation(const std::string& by) {
   const protocol::AnimationChanged message{.animation = animation_message(), .by = by};
-  audience_.send_others(by, protocol::make_notification("animation.changed", message),
-                        "animation.changed");
+  viewers_.send_others(by, protocol::make_notification("animation.changed", message),
+                       "animation.changed");
   return message.animation;
 }
 
 /// The clip's clock is another one now, too.
 void Session::tell_lockstep(const std::string& by) {
   const protocol::LockstepChanged message{.state = step_message(state_), .by = by};
-  audience_.send_others(by, protocol::make_notification("lockstep.changed", message),
-                        "lockstep.changed");
+  viewers_.send_others(by, protocol::make_notification("lockstep.changed", message),
+                       "lockstep.changed");
   tell_animation(by);
 }
 

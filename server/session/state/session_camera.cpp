@@ -152,8 +152,8 @@ protocol::Camera Session::moved_camera(const scene::Camera& camera, std::optiona
   camera_name_ = std::move(name);
   changed();
   const protocol::CameraChanged message{.camera = camera_message(), .by = by};
-  audience_.send_others(by, protocol::make_notification("camera.changed", message),
-                        "camera.changed");
+  viewers_.send_others(by, protocol::make_notification("camera.changed", message),
+                       "camera.changed");
   return message.camera;
 }
 

@@ -26,7 +26,7 @@ Result<protocol::LightState> Session::patch_light(const protocol::LightsPatch& r
     state_.lights = edits_.device_lights();
     changed();
     const protocol::LightsChanged message{.light = *light, .rev = state_.rev, .by = by};
-    audience_.send_others(by, protocol::make_notification("lights.changed", message), {});
+    viewers_.send_others(by, protocol::make_notification("lights.changed", message), {});
   }
   return protocol::LightState{.light = *std::move(light), .rev = state_.rev};
 }
@@ -47,7 +47,7 @@ Result<protocol::MaterialState> Session::patch_material(const protocol::Material
     state_.materials = edits_.device_materials();
     changed();
     const protocol::MaterialsChanged message{.material = *material, .rev = state_.rev, .by = by};
-    audience_.send_others(by, protocol::make_notification("materials.changed", message), {});
+    viewers_.send_others(by, protocol::make_notification("materials.changed", message), {});
   }
   return protocol::MaterialState{.material = *std::move(material), .rev = state_.rev};
 }
@@ -72,8 +72,8 @@ Result<void> Session::set_environment(std::optional<std::string> name,
   changed();
   const protocol::EnvironmentChanged message{
       .current = environment_name_, .rev = state_.rev, .by = by};
-  audience_.send_others(by, protocol::make_notification("environment.changed", message),
-                        "environment.changed");
+  viewers_.send_others(by, protocol::make_notification("environment.changed", message),
+                       "environment.changed");
   return {};
 }
 
@@ -92,7 +92,7 @@ void Session::unload(const std::string& by) {
   state_.environment = nullptr;
   state_.animation = {};
   changed();
-  audience_.send_others(by, protocol::make_notification("scene.unloaded", message), {});
+  viewers_.send_others(by, protocol::make_notification("scene.unloaded", message), {});
 }
 
 Result<void> Session::request_probe(Probe probe) {

@@ -58,7 +58,7 @@ void Session::enter_lockstep(const std::string& by) {
   state_.lockstep = Clock::time_point();
   clock.since = *state_.lockstep;
   state_.animation = clock;
-  ++state_.fresh_starts;
+  ++state_.reset_count;
   step_totals_ = {};
   changed();
   tell_lockstep(by);

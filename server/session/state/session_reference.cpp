@@ -58,16 +58,16 @@ ReferenceState Session::reference_message() const {
                        .wanted = static_cast<std::uint32_t>(settings.accumulation.max_samples),
                        .finished = false,
                        .rev = state_.rev};
-  if (state.shown && newest_picture_.version == state_.version) {
-    state.samples = newest_picture_.samples;
-    state.finished = newest_picture_.converged;
+  if (state.shown && newest_frame_.version == state_.version) {
+    state.samples = newest_frame_.samples;
+    state.finished = newest_frame_.converged;
   }
   return state;
 }
 
-void Session::report_picture(std::uint64_t version, std::uint32_t samples, bool converged) {
+void Session::report_frame(std::uint64_t version, std::uint32_t samples, bool converged) {
   const std::lock_guard lock(mutex_);
-  newest_picture_ = {.version = version, .samples = samples, .converged = converged};
+  newest_frame_ = {.version = version, .samples = samples, .converged = converged};
 }
 
 }  // namespace heliograph::session

@@ -30,7 +30,7 @@ protocol::StreamPhase phase_of(Purpose purpose) {
   return protocol::StreamPhase::interactive;
 }
 
-protocol::StatsFrame stats_of(const Picture& picture, protocol::TracerKind tracer,
+protocol::StatsFrame stats_of(const RenderedFrame& picture, protocol::TracerKind tracer,
                               protocol::StreamPhase phase) {
   return {.render_id = picture.header.render_id,
           .fps = picture.fps,
@@ -63,7 +63,7 @@ struct Broadcast::Encoding {
   BroadcastServices services;
   std::shared_ptr<stream::PictureEncoder> encoder;
   std::shared_ptr<std::atomic<int>> count;
-  std::shared_ptr<const Picture> picture;
+  std::shared_ptr<const RenderedFrame> picture;
   Purpose purpose;
   std::uint64_t number;
 
@@ -80,7 +80,7 @@ struct Broadcast::Encoding {
   }
 
   void finish(std::vector<stream::SharedFrame> frames) {
-    Audience& audience = session->audience();
+    ViewerSet& audience = session->viewers();
     audience.publish(number, purpose, std::move(frames));
     audience.publish_stats(stats_of(*picture, services.tracer, phase_of(purpose)));
     --*count;
@@ -88,8 +88,8 @@ struct Broadcast::Encoding {
   }
 
   std::vector<stream::SharedFrame> encode() {
-    const stream::PictureView view = view_of(picture->frame);
-    const EncodingPlan plan = session->audience().plan(number, purpose, view.rgba.size() / 4);
+    const stream::PictureView view = image_view(picture->frame);
+    const EncodingPlan plan = session->viewers().plan(number, purpose, view.rgba.size() / 4);
     std::vector<stream::SharedFrame> frames;
     for (const stream::FormRequest& request : plan.forms) {
       frames.push_back(timed([&] { return encoder->encode(view, request); }));
@@ -124,7 +124,7 @@ Broadcast::Broadcast(std::shared_ptr<Session> session, const BroadcastServices& 
       encoder_(std::make_shared<stream::PictureEncoder>(services.jpeg)),
       encoding_(std::make_shared<std::atomic<int>>(0)) {}
 
-void Broadcast::rendered(std::shared_ptr<const Picture> picture, bool resting) {
+void Broadcast::rendered(std::shared_ptr<const RenderedFrame> picture, bool resting) {
   newest_ = std::move(picture);
   newer_than_due_ = true;
   const std::uint32_t samples = newest_->header.sample_count;
@@ -134,7 +134,7 @@ void Broadcast::rendered(std::shared_ptr<const Picture> picture, bool resting) {
   } else if (anew || samples >= 2 * due_samples_) {
     due(Purpose::refining);
   } else {
-    session_->audience().publish_stats(
+    session_->viewers().publish_stats(
         stats_of(*newest_, services_.tracer, protocol::StreamPhase::refining));
   }
 }
@@ -162,7 +162,7 @@ void Broadcast::due(Purpose purpose) {
 
 bool Broadcast::pump() {
   if (!due_ || encoding() || !services_.encoder.has_room()) return false;
-  if (!session_->audience().awaits(number_)) return false;
+  if (!session_->viewers().needs_frame(number_)) return false;
   started_ = number_;
   ++*encoding_;
   const bool posted = services_.encoder.post(

@@ -6,7 +6,7 @@
 
 #include "protocol/messages/messages.hpp"
 #include "session/measurements.hpp"
-#include "session/rendering/picture.hpp"
+#include "session/rendering/rendered_frame.hpp"
 #include "session/state/session.hpp"
 #include "session/worker.hpp"
 #include "stream/encoders/frame_encoder.hpp"
@@ -18,7 +18,7 @@ struct BroadcastServices {
   Worker& encoder;
   stream::JpegEncoder& jpeg;  // used by `encoder` only
   Measurements& measurements;
-  std::shared_ptr<Wakeup> wakeup;  // notified when a picture has been encoded
+  std::shared_ptr<WakeEvent> wakeup;  // notified when a picture has been encoded
   protocol::TracerKind tracer;
 };
 
@@ -32,7 +32,7 @@ class Broadcast {
   Broadcast(std::shared_ptr<Session> session, const BroadcastServices& services);
 
   /// A new picture. `resting`: nothing moves and it is drawn whole.
-  void rendered(std::shared_ptr<const Picture> picture, bool resting);
+  void rendered(std::shared_ptr<const RenderedFrame> picture, bool resting);
   /// Keeps no picture and nothing else of size until there is another.
   void forget();
   /// The newest picture is final.
@@ -54,8 +54,8 @@ class Broadcast {
   BroadcastServices services_;
   std::shared_ptr<stream::PictureEncoder> encoder_;  // used by the encoding thread
   std::shared_ptr<std::atomic<int>> encoding_;       // tasks that are not done
-  std::shared_ptr<const Picture> newest_;
-  std::shared_ptr<const Picture> due_;
+  std::shared_ptr<const RenderedFrame> newest_;
+  std::shared_ptr<const RenderedFrame> due_;
   Purpose due_purpose_ = Purpose::interactive;
   bool newer_than_due_ = false;  // newest_ is not worth sending yet
   std::uint64_t number_ = 0;     // of the due picture

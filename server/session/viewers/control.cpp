@@ -20,8 +20,8 @@ bool Control::may_change(const std::string& viewer) const {
   return mode_ == ControlMode::everyone || holder_ == viewer;
 }
 
-Result<void> Control::carry_out(const SessionControl& request, const std::string& by,
-                                const IsPresent& is_present) {
+Result<void> Control::apply(const SessionControl& request, const std::string& by,
+                            const IsPresent& is_present) {
   if (!request.mode && !request.action) {
     return error::invalid("mode", "or action must say what is to be done");
   }

@@ -23,8 +23,8 @@ class Control {
   bool may_change(const std::string& viewer) const;
 
   /// What `by` asks for; on an error nothing has changed.
-  protocol::Result<void> carry_out(const protocol::SessionControl& request, const std::string& by,
-                                   const IsPresent& is_present);
+  protocol::Result<void> apply(const protocol::SessionControl& request, const std::string& by,
+                               const IsPresent& is_present);
   /// A viewer who leaves takes nothing along: control is free for anybody to take.
   void left(const std::string& viewer);
 

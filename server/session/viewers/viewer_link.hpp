@@ -10,14 +10,14 @@ namespace heliograph::session {
 class ViewerLink {
  public:
   virtual ~ViewerLink() = default;
-  /// Audience::take has a frame for this viewer.
+  /// ViewerSet::take has a frame for this viewer.
   virtual void frame_ready() = 0;
   /// Sends a text message. Waiting messages with the same `key` are replaced by this one, unless
   /// the key is empty: only the newest position of a camera matters.
   virtual void send(std::string text, std::string_view key) = 0;
   /// Ends the connection once everything is sent: the viewer's session is no more. `why` is a
   /// sentence for a person.
-  virtual void dismiss(std::string why) = 0;
+  virtual void disconnect(std::string why) = 0;
 };
 
 }  // namespace heliograph::session

@@ -9,6 +9,11 @@
 namespace heliograph::tracing {
 namespace {
 
+std::uint32_t node_link(std::uint32_t index) {
+  if (index > shared::bvh_number_mask) throw std::length_error("too many nodes in a hierarchy");
+  return shared::bvh_number_tag | index;
+}
+
 constexpr std::uint32_t largest_leaf = shared::bvh_leaf_count_mask + 1;
 
 /// What Embree builds: an inner node, or a leaf when `count` is not zero. The memory is Embree's.
@@ -115,11 +120,6 @@ RTCBuildArguments build_arguments(RTCBVH bvh, std::vector<RTCBuildPrimitive>& pr
 }
 
 }  // namespace
-
-std::uint32_t node_link(std::uint32_t index) {
-  if (index > shared::bvh_number_mask) throw std::length_error("too many nodes in a hierarchy");
-  return shared::bvh_number_tag | index;
-}
 
 std::uint32_t leaf_link(std::size_t first, std::size_t count) {
   if (first > shared::bvh_leaf_first_mask || count == 0 || count > largest_leaf) {

@@ -19,7 +19,6 @@ struct Hierarchy {
   std::uint32_t depth = 0;  // most links that wait on the stack while it is traversed
 };
 
-std::uint32_t node_link(std::uint32_t index);
 /// @throws std::length_error when there are more triangles than links can name
 std::uint32_t leaf_link(std::size_t first, std::size_t count);
 

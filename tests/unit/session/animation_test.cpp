@@ -31,7 +31,7 @@ LoadedScene carousel() {
 
 class AnimationTest : public testing::Test {
  protected:
-  Session session_{{}, std::make_shared<Wakeup>()};
+  Session session_{{}, std::make_shared<WakeEvent>()};
 };
 
 TEST(AnimationClock, PassesAtItsRateWhilePlaying) {

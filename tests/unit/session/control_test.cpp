@@ -15,8 +15,8 @@ using protocol::SessionControl;
 class ControlTest : public testing::Test {
  protected:
   protocol::Result<void> ask(const std::string& by, const SessionControl& request) {
-    return control_.carry_out(request, by,
-                              [&](const std::string& id) { return present_.contains(id); });
+    return control_.apply(request, by,
+                          [&](const std::string& id) { return present_.contains(id); });
   }
   std::string holders() const {
     std::string all;

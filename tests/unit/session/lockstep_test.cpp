@@ -44,7 +44,7 @@ class LockstepTest : public testing::Test {
     return drawn;
   }
 
-  Session session_{{}, std::make_shared<Wakeup>()};
+  Session session_{{}, std::make_shared<WakeEvent>()};
   std::optional<Result<StepState>> answer_;
 };
 
@@ -83,7 +83,7 @@ TEST_F(LockstepTest, TimePassesByStepsAlone) {
 }
 
 TEST_F(LockstepTest, BeginsAnewOnceAndOnEveryReturn) {
-  const auto starts = [&] { return session_.render_state().fresh_starts; };
+  const auto starts = [&] { return session_.render_state().reset_count; };
   const auto before = starts();
   ASSERT_TRUE(ask(1, 0.1));
   ASSERT_TRUE(ask(1, 0.1));

@@ -11,9 +11,9 @@ class SilentLink : public ViewerLink {
  public:
   void frame_ready() override {}
   void send(std::string, std::string_view) override {}
-  void dismiss(std::string why) override { dismissed = std::move(why); }
+  void disconnect(std::string why) override { disconnected = std::move(why); }
 
-  std::string dismissed;
+  std::string disconnected;
 };
 
 class SessionRegistryTest : public testing::Test {
@@ -31,7 +31,7 @@ class SessionRegistryTest : public testing::Test {
   }
   SessionRegistry::Open open() {
     return [](SessionOptions options, PixelShare pixels) {
-      return std::make_shared<Session>(std::move(options), std::make_shared<Wakeup>(),
+      return std::make_shared<Session>(std::move(options), std::make_shared<WakeEvent>(),
                                        std::move(pixels));
     };
   }
@@ -71,44 +71,44 @@ TEST_F(SessionRegistryTest, SessionsAreFoundByTheirNames) {
 
 TEST_F(SessionRegistryTest, WhoLostASessionTakesTheOneOfItsNameOnlyWhileItIsUntouched) {
   const std::string viewer = enter("main");
-  const auto settled = registry_.settle(viewer, {"before", "main"}, named({}));
-  ASSERT_TRUE(settled);
-  EXPECT_EQ(settled->session->name(), "main");
-  EXPECT_TRUE(settled->first);
+  const auto resumed = registry_.resume(viewer, {"before", "main"}, named({}));
+  ASSERT_TRUE(resumed);
+  EXPECT_EQ(resumed->session->name(), "main");
+  EXPECT_TRUE(resumed->first);
 
   const std::string stranger = enter("main");
-  const auto apart = registry_.settle(stranger, {"elsewhere", "main"}, named({}));
+  const auto apart = registry_.resume(stranger, {"elsewhere", "main"}, named({}));
   ASSERT_TRUE(apart) << apart.error().message;
   EXPECT_EQ(apart->session->name(), "main-elsewher");
   EXPECT_TRUE(apart->first);
 }
 
 TEST_F(SessionRegistryTest, WhatSomebodyChangedIsNotTakenByWhoLostASession) {
-  registry_.main()->note_change();
-  const auto settled = registry_.settle(enter("main"), {"before", "main"}, named({}));
-  ASSERT_TRUE(settled) << settled.error().message;
-  EXPECT_EQ(settled->session->name(), "main-before");
+  registry_.main()->mark_modified();
+  const auto resumed = registry_.resume(enter("main"), {"before", "main"}, named({}));
+  ASSERT_TRUE(resumed) << resumed.error().message;
+  EXPECT_EQ(resumed->session->name(), "main-before");
 }
 
 TEST_F(SessionRegistryTest, ThoseWhoWereTogetherMeetAgainAndOneBringsTheState) {
   const std::string first = enter("main");
   const std::string second = enter("main");
   const Origin from{"before", "review"};
-  const auto made = registry_.settle(first, from, named({}));
+  const auto made = registry_.resume(first, from, named({}));
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_EQ(made->session->name(), "review");
-  made->session->audience().start(first);
-  const auto followed = registry_.settle(second, from, named({}));
+  made->session->viewers().start(first);
+  const auto followed = registry_.resume(second, from, named({}));
   ASSERT_TRUE(followed) << followed.error().message;
   EXPECT_EQ(followed->session, made->session);
   EXPECT_FALSE(followed->first);
-  EXPECT_EQ(registry_.session_watched_by(second), made->session);
+  EXPECT_EQ(registry_.session_of_viewer(second), made->session);
 }
 
 TEST_F(SessionRegistryTest, WhoMayOnlyWatchMakesNoSession) {
   const std::string watcher = enter("main");
   const std::size_t before = registry_.count();
-  EXPECT_EQ(registry_.settle(watcher, {"before", "review"}, {}).error().code, ErrorCode::not_found);
+  EXPECT_EQ(registry_.resume(watcher, {"before", "review"}, {}).error().code, ErrorCode::not_found);
   EXPECT_EQ(registry_.count(), before);
 }
 
@@ -165,8 +165,8 @@ TEST_F(SessionRegistryTest, ViewersMoveAndKeepTheirStream) {
   const std::string viewer = enter("main");
   ASSERT_TRUE(registry_.main()->configure_stream({.quality = 33}, viewer));
   ASSERT_TRUE(registry_.move(viewer, "a"));
-  EXPECT_EQ(registry_.session_watched_by(viewer), there);
-  EXPECT_EQ(registry_.main()->audience().totals().viewers, 0u);
+  EXPECT_EQ(registry_.session_of_viewer(viewer), there);
+  EXPECT_EQ(registry_.main()->viewers().totals().viewers, 0u);
   EXPECT_EQ(there->configure_stream({.max_fps = 10.0}, viewer)->quality, 33u);
   EXPECT_EQ(registry_.move(viewer, "nowhere").error().code, ErrorCode::not_found);
   EXPECT_EQ(registry_.move("v99", "a").error().code, ErrorCode::not_ready);
@@ -178,8 +178,8 @@ TEST_F(SessionRegistryTest, WhoFindsNoRoomStaysWhereHeIs) {
   enter("a");
   const std::string viewer = enter("main");
   EXPECT_EQ(registry_.move(viewer, "a").error().code, ErrorCode::full);
-  EXPECT_EQ(registry_.session_watched_by(viewer), registry_.main());
-  EXPECT_EQ(registry_.main()->audience().totals().viewers, 1u);
+  EXPECT_EQ(registry_.session_of_viewer(viewer), registry_.main());
+  EXPECT_EQ(registry_.main()->viewers().totals().viewers, 1u);
   EXPECT_EQ(registry_.enter("main", std::make_shared<SilentLink>()).error().limit, "3 viewers");
 }
 
@@ -187,8 +187,8 @@ TEST_F(SessionRegistryTest, ViewersOfAnEndedSessionAreToldWhy) {
   ASSERT_TRUE(registry_.create(named("a")));
   const std::string viewer = enter("a");
   ASSERT_TRUE(registry_.close("a", "it was closed"));
-  EXPECT_EQ(links_.back()->dismissed, "it was closed");
-  EXPECT_EQ(registry_.session_watched_by(viewer), nullptr);
+  EXPECT_EQ(links_.back()->disconnected, "it was closed");
+  EXPECT_EQ(registry_.session_of_viewer(viewer), nullptr);
   EXPECT_EQ(registry_.session_of({.viewer = viewer}).error().code, ErrorCode::not_found);
   EXPECT_EQ(registry_.totals().viewers, 0u);
   registry_.leave(viewer);

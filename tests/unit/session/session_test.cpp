@@ -22,17 +22,17 @@ class RecordingLink : public ViewerLink {
     keys.emplace_back(key);
   }
 
-  void dismiss(std::string why) override { dismissed = std::move(why); }
+  void disconnect(std::string why) override { disconnected = std::move(why); }
 
   int announced = 0;
-  std::string dismissed;
+  std::string disconnected;
   std::vector<json> messages;
   std::vector<std::string> keys;
 };
 
 class SessionTest : public testing::Test {
  protected:
-  SessionTest() : session_(options(), std::make_shared<Wakeup>()) {}
+  SessionTest() : session_(options(), std::make_shared<WakeEvent>()) {}
 
   static SessionOptions options() {
     SessionOptions options;
@@ -64,8 +64,8 @@ class SessionTest : public testing::Test {
   Joined join() {
     Joined joined;
     joined.id = "v" + std::to_string(++joined_so_far_);
-    EXPECT_TRUE(session_.audience().join(joined.id, joined.link));
-    session_.audience().start(joined.id);
+    EXPECT_TRUE(session_.viewers().join(joined.id, joined.link));
+    session_.viewers().start(joined.id);
     return joined;
   }
 
@@ -203,10 +203,10 @@ TEST_F(SessionTest, WithoutAStreamOnlyTheSizeCanBeSet) {
 TEST_F(SessionTest, AFullSessionSaysSo) {
   const Joined first = join();
   const Joined second = join();
-  const auto third = session_.audience().join("newcomer", std::make_shared<RecordingLink>());
+  const auto third = session_.viewers().join("newcomer", std::make_shared<RecordingLink>());
   EXPECT_EQ(third.error().code, ErrorCode::full);
   session_.leave(first.id);
-  EXPECT_TRUE(session_.audience().join("newcomer", std::make_shared<RecordingLink>()));
+  EXPECT_TRUE(session_.viewers().join("newcomer", std::make_shared<RecordingLink>()));
 }
 
 TEST_F(SessionTest, StoppingAReferencePutsBackWhatStartingItChanged) {
@@ -220,13 +220,13 @@ TEST_F(SessionTest, StoppingAReferencePutsBackWhatStartingItChanged) {
   ASSERT_TRUE(session_.start_reference({.samples = 9}, ""));
   ASSERT_TRUE(session_.start_reference({.samples = 7}, "")) << "goes on with other samples";
   EXPECT_TRUE(session_.render_state().keep_drawing);
-  Session copy(options(), std::make_shared<Wakeup>());
+  Session copy(options(), std::make_shared<WakeEvent>());
   copy.copy_from(session_);
   for (Session* const session : {&session_, &copy}) {
     EXPECT_TRUE(session->render_state().settings.accumulation.enabled);
     ASSERT_TRUE(session->stop_reference(""));
     EXPECT_EQ(session->render_state().settings, before);
-    EXPECT_FALSE(session->works_unwatched());
+    EXPECT_FALSE(session->renders_without_viewers());
   }
 }
 
@@ -237,7 +237,7 @@ TEST_F(SessionTest, AReferenceThatSettingsEndIsNotStarted) {
       session_.patch_settings(protocol::RawJson(json{{"reference", {{"use", "never"}}},
                                                      {"accumulation", {{"max_samples", 32}}}}),
                               ""));
-  EXPECT_FALSE(session_.works_unwatched());
+  EXPECT_FALSE(session_.renders_without_viewers());
   EXPECT_EQ(session_.render_state().settings.accumulation.max_samples, 32);
   ASSERT_TRUE(session_.start_reference({.samples = 12}, ""));
   ASSERT_TRUE(session_.stop_reference(""));
@@ -267,7 +267,7 @@ std::shared_ptr<stream::EncodedFrame> encoded(std::uint32_t render_id, const str
 }
 
 /// Plans, encodes and hands out picture `number`; gives the forms it was encoded in.
-std::vector<stream::Form> show(Audience& audience, std::uint32_t number,
+std::vector<stream::Form> show(ViewerSet& audience, std::uint32_t number,
                                Purpose purpose = Purpose::interactive) {
   const EncodingPlan plan = audience.plan(number, purpose, 16 * 16);
   std::vector<stream::Form> forms;
@@ -288,7 +288,7 @@ std::vector<stream::Form> show(Audience& audience, std::uint32_t number,
 }
 
 TEST_F(SessionTest, ViewersGetTheirQualityAndShareTheBytes) {
-  Audience& audience = session_.audience();
+  ViewerSet& audience = session_.viewers();
   const Joined first = join();
   const Joined second = join();
   ASSERT_TRUE(session_.configure_stream({.quality = 40}, first.id));
@@ -305,7 +305,7 @@ TEST_F(SessionTest, ViewersGetTheirQualityAndShareTheBytes) {
 }
 
 TEST_F(SessionTest, TheFinalPictureIsAPngForThoseWhoAskedForOne) {
-  Audience& audience = session_.audience();
+  ViewerSet& audience = session_.viewers();
   const Joined first = join();
   const Joined second = join();
   const auto state = session_.configure_stream({.still = protocol::StillFormat::png}, second.id);
@@ -323,42 +323,42 @@ TEST_F(SessionTest, AVideoIsOnlyForThoseWhoseHelloAgreedOnOne) {
 
 TEST_F(SessionTest, ANewcomerGetsTheLatestPicture) {
   const Joined first = join();
-  show(session_.audience(), 3, Purpose::final);
+  show(session_.viewers(), 3, Purpose::final);
   const Joined viewer = join();
   EXPECT_GT(viewer.link->announced, 0);
-  EXPECT_EQ(session_.audience().take(viewer.id)->frame->header.render_id, 3u);
-  EXPECT_FALSE(session_.audience().awaits(3));
+  EXPECT_EQ(session_.viewers().take(viewer.id)->frame->header.render_id, 3u);
+  EXPECT_FALSE(session_.viewers().needs_frame(3));
 }
 
 TEST_F(SessionTest, ANewcomerWhoWantsAnotherFormAwaitsThePicture) {
-  Audience& audience = session_.audience();
+  ViewerSet& audience = session_.viewers();
   const Joined first = join();
   show(audience, 3);
   ASSERT_TRUE(audience.take(first.id));
   const Joined viewer = join();
   ASSERT_TRUE(session_.configure_stream({.quality = 40, .paused = true}, viewer.id));
   ASSERT_TRUE(session_.configure_stream({.paused = false}, viewer.id));
-  EXPECT_TRUE(audience.awaits(3));
+  EXPECT_TRUE(audience.needs_frame(3));
   EXPECT_EQ(show(audience, 3), (std::vector<stream::Form>{{.quality = 40}}));
   EXPECT_EQ(audience.take(viewer.id)->frame->header.quality, 40);
   EXPECT_FALSE(audience.take(first.id)) << "it has this picture";
 }
 
 TEST_F(SessionTest, WhoHasAPictureIsNotSentItAgainWithANewcomer) {
-  Audience& audience = session_.audience();
+  ViewerSet& audience = session_.viewers();
   const Joined first = join();
   show(audience, 1, Purpose::final);
   ASSERT_TRUE(audience.take(first.id));
   const Joined second = join();
   ASSERT_TRUE(session_.configure_stream({.still = protocol::StillFormat::png}, second.id));
-  EXPECT_TRUE(audience.awaits(1));
+  EXPECT_TRUE(audience.needs_frame(1));
   show(audience, 1, Purpose::final);
   EXPECT_FALSE(audience.take(first.id));
   EXPECT_EQ(audience.take(second.id)->frame->header.codec, protocol::FrameCodec::png);
 }
 
 TEST_F(SessionTest, WhoPausesIsSentNothingAndResumesWithTheLatest) {
-  Audience& audience = session_.audience();
+  ViewerSet& audience = session_.viewers();
   const Joined other = join();
   const Joined viewer = join();
   ASSERT_TRUE(session_.configure_stream({.paused = true}, viewer.id));
@@ -368,12 +368,12 @@ TEST_F(SessionTest, WhoPausesIsSentNothingAndResumesWithTheLatest) {
   EXPECT_EQ(audience.take(viewer.id)->frame->header.render_id, 4u);
   session_.leave(other.id);
   ASSERT_TRUE(session_.configure_stream({.paused = true}, viewer.id));
-  EXPECT_FALSE(audience.watching());
+  EXPECT_FALSE(audience.has_active_viewer());
 }
 
 TEST_F(SessionTest, FramesAreWantedWhileTheWindowIsOpen) {
-  Audience& audience = session_.audience();
-  EXPECT_FALSE(audience.wants_frame()) << "nobody is there";
+  ViewerSet& audience = session_.viewers();
+  EXPECT_FALSE(audience.can_accept_frame()) << "nobody is there";
   const Joined viewer = join();
   ASSERT_TRUE(session_.configure_stream({.max_fps = 240.0}, viewer.id));
   for (std::uint32_t id = 1; id <= stream::ack_window; ++id) {
@@ -381,16 +381,16 @@ TEST_F(SessionTest, FramesAreWantedWhileTheWindowIsOpen) {
     ASSERT_TRUE(audience.take(viewer.id));
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  EXPECT_FALSE(audience.wants_frame());
+  EXPECT_FALSE(audience.can_accept_frame());
   EXPECT_TRUE(show(audience, 3).empty()) << "encoded for nobody";
   ASSERT_TRUE(audience.acknowledge(viewer.id, {.frame_seq = 1}));
-  EXPECT_TRUE(audience.wants_frame());
-  EXPECT_TRUE(audience.awaits(3));
+  EXPECT_TRUE(audience.can_accept_frame());
+  EXPECT_TRUE(audience.needs_frame(3));
   EXPECT_EQ(show(audience, 3).size(), 1u);
 }
 
 TEST_F(SessionTest, ADepartedViewerIsForgottenButCounted) {
-  Audience& audience = session_.audience();
+  ViewerSet& audience = session_.viewers();
   Joined viewer = join();
   show(audience, 1);
   ASSERT_TRUE(audience.take(viewer.id));
@@ -405,14 +405,14 @@ TEST_F(SessionTest, ADepartedViewerIsForgottenButCounted) {
 
 TEST_F(SessionTest, StatsComeNoMoreOftenThanAskedFor) {
   const Joined viewer = join();
-  ASSERT_TRUE(session_.audience().subscribe(viewer.id, std::chrono::hours(1)));
-  session_.audience().publish_stats({.render_id = 4});
+  ASSERT_TRUE(session_.viewers().subscribe(viewer.id, std::chrono::hours(1)));
+  session_.viewers().publish_stats({.render_id = 4});
   EXPECT_TRUE(viewer.link->messages.empty()) << "it has not been sent a picture";
-  show(session_.audience(), 5);
-  for (int i = 0; i < 3; ++i) session_.audience().publish_stats({.render_id = 5});
+  show(session_.viewers(), 5);
+  for (int i = 0; i < 3; ++i) session_.viewers().publish_stats({.render_id = 5});
   ASSERT_EQ(viewer.link->messages.size(), 1u);
   EXPECT_EQ(viewer.link->messages[0]["params"]["render_id"], 5);
-  session_.audience().publish_stats({.state = protocol::StreamPhase::still});
+  session_.viewers().publish_stats({.state = protocol::StreamPhase::still});
   ASSERT_EQ(viewer.link->messages.size(), 2u) << "how it ends is always told";
   EXPECT_EQ(viewer.link->messages[1]["params"]["state"], "still");
 }

@@ -9,6 +9,13 @@
 namespace heliograph::render {
 namespace {
 
+/// Whether this frame's sample is traced: not in the first frame after a change where the hybrid
+/// alone is shown.
+bool traces_reference(const FrameInputs& in) {
+  return in.settings.reference.use == protocol::ReferenceUse::always || in.samples > 0 ||
+         in.settings.accumulation.handover == 0;
+}
+
 constexpr std::uint32_t passed_layers = most_blended;  // that a path goes straight on through
 constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 
@@ -152,11 +159,6 @@ gpu::ImageRef trace_reference(gpu::FramePlan& plan, const FrameInputs& in) {
     wavefront.same_paths();
   }
   return wavefront.radiance();
-}
-
-bool traces_reference(const FrameInputs& in) {
-  return in.settings.reference.use == protocol::ReferenceUse::always || in.samples > 0 ||
-         in.settings.accumulation.handover == 0;
 }
 
 }  // namespace heliograph::render

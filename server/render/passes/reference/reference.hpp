@@ -12,8 +12,4 @@ struct FrameInputs;
 /// radiance; the mean over frames converges to the integral over the pixel.
 gpu::ImageRef trace_reference(gpu::FramePlan& plan, const FrameInputs& in);
 
-/// Whether this frame's sample is traced: not in the first frame after a change where the hybrid
-/// alone is shown.
-bool traces_reference(const FrameInputs& in);
-
 }  // namespace heliograph::render

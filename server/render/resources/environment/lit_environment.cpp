@@ -4,26 +4,9 @@
 #include <utility>
 
 namespace heliograph::render {
+namespace {
 
-LitEnvironment::LitEnvironment(const gpu::Device& device, const Programs& programs,
-                               std::shared_ptr<const scene::Environment> source)
-    : device_(device), programs_(programs), source_(std::move(source)) {
-  scene::SeparatedEnvironment separated = scene::separate_sun(*source_);
-  sun_ = separated.sun;
-  sky_ = prefilter_environment(device, programs, separated.sky);
-  if (!sun_) return;
-  background_ = upload_environment(device, *source_);
-}
-
-EnvironmentView LitEnvironment::view(bool separate_sun) const {
-  static const std::optional<scene::Sun> none;
-  if (!sun_) return {sky_.map, sky_, none};
-  if (separate_sun) return {*background_, sky_, sun_};
-  const std::lock_guard lock(mutex_);
-  if (!maps_of_whole_) maps_of_whole_ = prefilter_environment(device_, programs_, *source_);
-  return {*background_, *maps_of_whole_, none};
-}
-
+/// A number for the size and every bit of an environment.
 std::uint64_t content_hash(const scene::Environment& environment) {
   // Multiply and rotate, eight bytes at a time (after MurmurHash64A by Appleby).
   constexpr std::uint64_t factor = 0xc6a4a7935bd1e995ull;
@@ -44,6 +27,27 @@ std::uint64_t content_hash(const scene::Environment& environment) {
   std::memcpy(&rest, bytes.data() + at, bytes.size() - at);
   mix(rest);
   return hash ^ hash >> 47;
+}
+
+}  // namespace
+
+LitEnvironment::LitEnvironment(const gpu::Device& device, const Programs& programs,
+                               std::shared_ptr<const scene::Environment> source)
+    : device_(device), programs_(programs), source_(std::move(source)) {
+  scene::SeparatedEnvironment separated = scene::separate_sun(*source_);
+  sun_ = separated.sun;
+  sky_ = prefilter_environment(device, programs, separated.sky);
+  if (!sun_) return;
+  background_ = upload_environment(device, *source_);
+}
+
+EnvironmentView LitEnvironment::view(bool separate_sun) const {
+  static const std::optional<scene::Sun> none;
+  if (!sun_) return {sky_.map, sky_, none};
+  if (separate_sun) return {*background_, sky_, sun_};
+  const std::lock_guard lock(mutex_);
+  if (!maps_of_whole_) maps_of_whole_ = prefilter_environment(device_, programs_, *source_);
+  return {*background_, *maps_of_whole_, none};
 }
 
 std::shared_ptr<const LitEnvironment> EnvironmentCache::get(

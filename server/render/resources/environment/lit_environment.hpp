@@ -61,7 +61,4 @@ class EnvironmentCache {
   std::shared_ptr<const LitEnvironment> last_;
 };
 
-/// A number for the size and every bit of an environment.
-std::uint64_t content_hash(const scene::Environment& environment);
-
 }  // namespace heliograph::render

@@ -2,7 +2,7 @@
 #include <utility>
 
 #include "protocol/json/jsonrpc.hpp"
-#include "session/viewers/audience.hpp"
+#include "session/viewers/viewer_set.hpp"
 
 // Who is in a session: coming, going, and who has control.
 
@@ -10,25 +10,25 @@ namespace heliograph::session {
 
 using protocol::Result;
 
-Result<void> Audience::join(const std::string& id, std::weak_ptr<ViewerLink> link,
-                            bool only_watches) {
+Result<void> ViewerSet::join(const std::string& id, std::weak_ptr<ViewerLink> link,
+                             bool read_only) {
   const std::lock_guard lock(mutex_);
-  if (const Result<void> room = check_room(); !room) return room;
+  if (const Result<void> capacity = check_capacity(); !capacity) return capacity;
   Viewer& viewer = viewers_[id];
   viewer.link = std::move(link);
-  viewer.only_watches = only_watches;
+  viewer.read_only = read_only;
   viewer.arrival = ++arrivals_;
   viewer.pacer.set_max_rate(viewer.stream.max_fps);
   return {};
 }
 
-Result<void> Audience::check_room() const {
+Result<void> ViewerSet::check_capacity() const {
   if (viewers_.size() < max_viewers_) return {};
   return protocol::error::full("the session has no room for another viewer",
                                std::to_string(max_viewers_) + " viewers");
 }
 
-Result<void> Audience::hand_over(const std::string& viewer, Audience& there) {
+Result<void> ViewerSet::move_to(const std::string& viewer, ViewerSet& there) {
   Viewers::node_type leaving;
   Control control_before;
   {
@@ -37,7 +37,7 @@ Result<void> Audience::hand_over(const std::string& viewer, Audience& there) {
     control_before = control_;
     control_.left(viewer);
   }
-  const Result<void> taken = there.take_in(leaving);
+  const Result<void> taken = there.accept(leaving);
   if (taken) return {};
   const std::lock_guard lock(mutex_);
   viewers_.insert(std::move(leaving));
@@ -46,34 +46,34 @@ Result<void> Audience::hand_over(const std::string& viewer, Audience& there) {
 }
 
 /// Leaves `viewer` as it is when there is no room.
-Result<void> Audience::take_in(Viewers::node_type& viewer) {
+Result<void> ViewerSet::accept(Viewers::node_type& viewer) {
   const std::lock_guard lock(mutex_);
-  if (const Result<void> room = check_room(); !room) return room;
+  if (const Result<void> capacity = check_capacity(); !capacity) return capacity;
   if (viewer.empty()) return {};
   Viewer& it = viewers_.insert(std::move(viewer)).position->second;
   it.pacer.withdraw();
-  it.came_over = true;
+  it.discontinuous = true;
   it.offered = 0;
   it.planned = 0;
   it.arrival = ++arrivals_;
   if (it.started) offer_latest(it);
-  room_.notify();
+  on_capacity_.notify();
   return {};
 }
 
-std::vector<std::string> Audience::dismiss_all(const std::string& why) {
+std::vector<std::string> ViewerSet::disconnect_all(const std::string& why) {
   const std::lock_guard lock(mutex_);
   std::vector<std::string> ids;
   for (const auto& [id, viewer] : viewers_) {
     ids.push_back(id);
     departed_ += viewer.pacer.totals();
-    if (const auto link = viewer.link.lock()) link->dismiss(why);
+    if (const auto link = viewer.link.lock()) link->disconnect(why);
   }
   viewers_.clear();
   return ids;
 }
 
-void Audience::leave(const std::string& viewer) {
+void ViewerSet::leave(const std::string& viewer) {
   const std::lock_guard lock(mutex_);
   const auto found = viewers_.find(viewer);
   if (found == viewers_.end()) return;
@@ -82,54 +82,54 @@ void Audience::leave(const std::string& viewer) {
   control_.left(viewer);
 }
 
-bool Audience::greeted_but(const std::string& viewer) const {
+bool ViewerSet::has_other_participant(const std::string& viewer) const {
   const std::lock_guard lock(mutex_);
   return std::any_of(viewers_.begin(), viewers_.end(), [&](const auto& entry) {
-    return entry.first != viewer && entry.second.started && !entry.second.only_watches;
+    return entry.first != viewer && entry.second.started && !entry.second.read_only;
   });
 }
 
-void Audience::set_name(const std::string& viewer, std::string name) {
+void ViewerSet::set_name(const std::string& viewer, std::string name) {
   const std::lock_guard lock(mutex_);
   if (const Result<Viewer*> found = find(viewer)) (*found)->name = std::move(name);
 }
 
-bool Audience::may_change(const std::string& viewer) const {
+bool ViewerSet::may_change(const std::string& viewer) const {
   const std::lock_guard lock(mutex_);
   return may_change_locked(viewer);
 }
 
-bool Audience::may_change_locked(const std::string& viewer) const {
+bool ViewerSet::may_change_locked(const std::string& viewer) const {
   const auto found = viewers_.find(viewer);
-  if (found != viewers_.end() && found->second.only_watches) return false;
+  if (found != viewers_.end() && found->second.read_only) return false;
   return control_.may_change(viewer);
 }
 
-Result<void> Audience::change_control(const protocol::SessionControl& request,
-                                      const std::string& by) {
+Result<void> ViewerSet::change_control(const protocol::SessionControl& request,
+                                       const std::string& by) {
   const std::lock_guard lock(mutex_);
-  return control_.carry_out(request, by, [&](const std::string& viewer) {
+  return control_.apply(request, by, [&](const std::string& viewer) {
     const auto found = viewers_.find(viewer);
-    return found != viewers_.end() && !found->second.only_watches;
+    return found != viewers_.end() && !found->second.read_only;
   });
 }
 
-protocol::ControlMode Audience::control_mode() const {
+protocol::ControlMode ViewerSet::control_mode() const {
   const std::lock_guard lock(mutex_);
   return control_.mode();
 }
 
-bool Audience::control_is_free() const {
+bool ViewerSet::control_is_free() const {
   const std::lock_guard lock(mutex_);
   return control_.is_free();
 }
 
-std::vector<protocol::ViewerInfo> Audience::people(const std::string& you) const {
+std::vector<protocol::ViewerInfo> ViewerSet::participants(const std::string& you) const {
   const std::lock_guard lock(mutex_);
-  return people_locked(you);
+  return participants_locked(you);
 }
 
-std::vector<protocol::ViewerInfo> Audience::people_locked(const std::string& you) const {
+std::vector<protocol::ViewerInfo> ViewerSet::participants_locked(const std::string& you) const {
   std::map<std::uint64_t, protocol::ViewerInfo> by_arrival;
   for (const auto& [id, viewer] : viewers_) {
     by_arrival[viewer.arrival] = {
@@ -140,14 +140,14 @@ std::vector<protocol::ViewerInfo> Audience::people_locked(const std::string& you
   return people;
 }
 
-void Audience::announce_people(protocol::SessionInfo session) {
+void ViewerSet::announce_participants(protocol::SessionInfo session) {
   const std::lock_guard lock(mutex_);
   session.control = control_.mode();
   for (const auto& [id, viewer] : viewers_) {
     // Who has not said hello yet may not expect messages.
     const auto link = viewer.started ? viewer.link.lock() : nullptr;
     if (!link) continue;
-    session.viewers = people_locked(id);
+    session.viewers = participants_locked(id);
     link->send(protocol::make_notification("session.changed", session), "session.changed");
   }
 }

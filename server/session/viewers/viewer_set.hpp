@@ -14,7 +14,7 @@
 #include "protocol/result.hpp"
 #include "session/viewers/control.hpp"
 #include "session/viewers/viewer_link.hpp"
-#include "session/wakeup.hpp"
+#include "session/wake_event.hpp"
 #include "stream/pacing/variant_planner.hpp"
 #include "stream/pacing/viewer_pacer.hpp"
 
@@ -43,29 +43,29 @@ struct EncodingPlan {
   int still_quality = 0;  // at least
 };
 
-struct AudienceTotals {
+struct ViewerTotals {
   std::size_t viewers = 0;
-  std::size_t waiting = 0;     // frames that could not be sent yet
-  std::size_t on_the_way = 0;  // frames sent and not yet acknowledged
-  stream::PacerTotals sent;    // those who left included
+  std::size_t waiting = 0;    // frames that could not be sent yet
+  std::size_t in_flight = 0;  // frames sent and not yet acknowledged
+  stream::PacerTotals sent;   // those who left included
   std::chrono::microseconds mean_round_trip{0};
   double goodput = 0.0;  // bytes a second that all viewers' connections take when busy
 };
 
 /// The viewers of one session: what each may get next, and messages to them. Thread safe.
-class Audience {
+class ViewerSet {
  public:
-  /// `room` is notified when a frame can be sent again.
-  Audience(std::size_t max_viewers, Wakeup& room);
+  /// `on_capacity` is notified when a frame can be sent again.
+  ViewerSet(std::size_t max_viewers, WakeEvent& on_capacity);
 
   /// Adds a viewer. It is sent nothing before `start`. Who only watches never has control.
   protocol::Result<void> join(const std::string& viewer, std::weak_ptr<ViewerLink> link,
-                              bool only_watches = false);
+                              bool read_only = false);
   void leave(const std::string& viewer);
   /// Lets a viewer go over to `there` with its stream as it is; if there is no room it stays.
-  protocol::Result<void> hand_over(const std::string& viewer, Audience& there);
+  protocol::Result<void> move_to(const std::string& viewer, ViewerSet& there);
   /// Lets all viewers go, telling them why; gives their ids.
-  std::vector<std::string> dismiss_all(const std::string& why);
+  std::vector<std::string> disconnect_all(const std::string& why);
   /// The viewer is ready for pictures; it gets the latest one there is. `codec` is the one it likes
   /// best, and it decodes JPEG.
   void start(const std::string& viewer, protocol::StreamCodec codec = protocol::StreamCodec::jpeg);
@@ -79,9 +79,9 @@ class Audience {
   /// Whether one viewer is to have control and none has.
   bool control_is_free() const;
   /// Who is here, in order of arrival, as told to `you`.
-  std::vector<protocol::ViewerInfo> people(const std::string& you) const;
+  std::vector<protocol::ViewerInfo> participants(const std::string& you) const;
   /// Tells everybody who is here, each about itself.
-  void announce_people(protocol::SessionInfo session);
+  void announce_participants(protocol::SessionInfo session);
 
   protocol::Result<ViewerStream> configure(const std::string& viewer,
                                            const protocol::StreamConfigure& change);
@@ -95,19 +95,19 @@ class Audience {
   bool empty() const;
   bool has(const std::string& viewer) const;
   /// Whether anybody but `viewer` is here who does not only watch and has said hello.
-  bool greeted_but(const std::string& viewer) const;
+  bool has_other_participant(const std::string& viewer) const;
   /// Whether somebody could be sent a frame that is rendered now.
-  bool wants_frame() const;
+  bool can_accept_frame() const;
   /// Whether somebody receives pictures at all.
-  bool watching() const;
+  bool has_active_viewer() const;
   /// Until when nobody may have another frame only because of its rate limit.
   std::optional<Clock::time_point> next_turn() const;
   /// Tells those whose turn has come about waiting frames.
-  void announce_waiting();
+  void announce_due_frames();
   /// Newcomers get no picture until another is published.
-  void forget_latest();
+  void discard_latest();
   /// Whether somebody could be sent the picture of this number, and was not yet. Numbers grow.
-  bool awaits(std::uint64_t number) const;
+  bool needs_frame(std::uint64_t number) const;
   /// How to encode the picture of this number, which has so many pixels, for those who await it.
   EncodingPlan plan(std::uint64_t number, Purpose purpose, std::uint64_t pixels);
   /// Hands out the encodings of the picture that the last plan was for.
@@ -119,23 +119,23 @@ class Audience {
   void send_all(std::string_view text, std::string_view key);
   void send_others(const std::string& except, std::string_view text, std::string_view key);
 
-  AudienceTotals totals() const;
+  ViewerTotals totals() const;
 
  private:
   struct Viewer {
     std::weak_ptr<ViewerLink> link;
-    bool only_watches = false;
+    bool read_only = false;
     std::uint64_t arrival = 0;
     std::optional<std::string> name;
     stream::ViewerPacer pacer;
     ViewerStream stream;
     bool started = false;
-    bool came_over = false;     // its next frame has nothing in common with the last
-    std::uint64_t cuts = 0;     // of the last frame that it took
-    std::uint64_t offered = 0;  // number of the newest picture that it was offered or cannot have
-    std::uint64_t planned = 0;  // number of the newest picture that was encoded for it
-    stream::Form form;          // of the pictures that it gets at present
-    stream::Form moving;        // of those that it gets while something moves
+    bool discontinuous = false;  // its next frame has nothing in common with the last
+    std::uint64_t cuts = 0;      // of the last frame that it took
+    std::uint64_t offered = 0;   // number of the newest picture that it was offered or cannot have
+    std::uint64_t planned = 0;   // number of the newest picture that was encoded for it
+    stream::Form form;           // of the pictures that it gets at present
+    stream::Form moving;         // of those that it gets while something moves
     std::uint64_t last_bytes = 0;  // of the newest frame that it was offered
     std::uint32_t last_encode_us = 0;
     std::chrono::milliseconds stats_interval{0};
@@ -144,21 +144,21 @@ class Audience {
 
   using Viewers = std::map<std::string, Viewer>;
 
-  protocol::Result<void> check_room() const;
-  protocol::Result<void> take_in(Viewers::node_type& viewer);
+  protocol::Result<void> check_capacity() const;
+  protocol::Result<void> accept(Viewers::node_type& viewer);
   bool may_change_locked(const std::string& viewer) const;
-  std::vector<protocol::ViewerInfo> people_locked(const std::string& you) const;
+  std::vector<protocol::ViewerInfo> participants_locked(const std::string& you) const;
   protocol::Result<Viewer*> find(const std::string& viewer);
   void offer_latest(Viewer& viewer);
   static void offer(Viewer& viewer, const stream::SharedFrame& frame);
-  bool awaits(const Viewer& viewer, std::uint64_t number, Clock::time_point now) const;
+  bool needs_frame(const Viewer& viewer, std::uint64_t number, Clock::time_point now) const;
   stream::Form wish(Viewer& viewer, Purpose purpose) const;
   static stream::SharedFrame suited(const Viewer& viewer, Purpose purpose,
                                     const std::vector<stream::SharedFrame>& frames);
   static void announce(const Viewer& viewer);
 
   const std::size_t max_viewers_;
-  Wakeup& room_;
+  WakeEvent& on_capacity_;
   mutable std::mutex mutex_;
   Viewers viewers_;
   stream::FormPlanner planner_;

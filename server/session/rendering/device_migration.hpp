@@ -9,9 +9,9 @@ namespace heliograph::session {
 
 /// Brings what was on a lost device onto the present one. What several sessions share stays shared
 /// as long as they use the same renewal.
-class DeviceRenewal {
+class DeviceMigration {
  public:
-  explicit DeviceRenewal(render::Engine& engine) : engine_(engine) {}
+  explicit DeviceMigration(render::Engine& engine) : engine_(engine) {}
 
   /// `object` itself where nothing needs to be done.
   template <class Object>

@@ -1,4 +1,4 @@
-#include "session/viewers/audience.hpp"
+#include "session/viewers/viewer_set.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -41,10 +41,10 @@ void complete(protocol::StatsFrame& stats, const Viewer& viewer) {
 
 }  // namespace
 
-Audience::Audience(std::size_t max_viewers, Wakeup& room)
-    : max_viewers_(max_viewers), room_(room) {}
+ViewerSet::ViewerSet(std::size_t max_viewers, WakeEvent& on_capacity)
+    : max_viewers_(max_viewers), on_capacity_(on_capacity) {}
 
-void Audience::start(const std::string& viewer, protocol::StreamCodec codec) {
+void ViewerSet::start(const std::string& viewer, protocol::StreamCodec codec) {
   const std::lock_guard lock(mutex_);
   const Result<Viewer*> found = find(viewer);
   if (!found) return;
@@ -52,11 +52,11 @@ void Audience::start(const std::string& viewer, protocol::StreamCodec codec) {
   (*found)->stream.codec = codec;
   if (std::exchange((*found)->started, true)) return;
   offer_latest(**found);
-  room_.notify();
+  on_capacity_.notify();
 }
 
-Result<ViewerStream> Audience::configure(const std::string& viewer,
-                                         const protocol::StreamConfigure& change) {
+Result<ViewerStream> ViewerSet::configure(const std::string& viewer,
+                                          const protocol::StreamConfigure& change) {
   const std::lock_guard lock(mutex_);
   const Result<Viewer*> found = find(viewer);
   if (!found) return found.error();
@@ -82,11 +82,11 @@ Result<ViewerStream> Audience::configure(const std::string& viewer,
     if (resumes) it.offered = 0;
     if (resumes && it.started) offer_latest(it);
   }
-  room_.notify();
+  on_capacity_.notify();
   return it.stream;
 }
 
-Result<void> Audience::acknowledge(const std::string& viewer, const protocol::StreamAck& ack) {
+Result<void> ViewerSet::acknowledge(const std::string& viewer, const protocol::StreamAck& ack) {
   const std::lock_guard lock(mutex_);
   const Result<Viewer*> found = find(viewer);
   if (!found) return found.error();
@@ -94,11 +94,11 @@ Result<void> Audience::acknowledge(const std::string& viewer, const protocol::St
   // Late and repeated acknowledgements are normal and say nothing new.
   it.pacer.acknowledge(ack.frame_seq, microseconds(ack.present_us), Clock::now());
   if (it.pacer.frame_waiting()) announce(it);
-  room_.notify();
+  on_capacity_.notify();
   return {};
 }
 
-Result<void> Audience::subscribe(const std::string& viewer, std::chrono::milliseconds interval) {
+Result<void> ViewerSet::subscribe(const std::string& viewer, std::chrono::milliseconds interval) {
   const std::lock_guard lock(mutex_);
   const Result<Viewer*> found = find(viewer);
   if (!found) return found.error();
@@ -107,41 +107,41 @@ Result<void> Audience::subscribe(const std::string& viewer, std::chrono::millise
   return {};
 }
 
-std::optional<Clock::time_point> Audience::unacknowledged_since(const std::string& viewer) const {
+std::optional<Clock::time_point> ViewerSet::unacknowledged_since(const std::string& viewer) const {
   const std::lock_guard lock(mutex_);
   const auto found = viewers_.find(viewer);
   return found == viewers_.end() ? std::nullopt
                                  : found->second.pacer.unacknowledged_since(Clock::now());
 }
 
-std::optional<stream::OutgoingFrame> Audience::take(const std::string& viewer) {
+std::optional<stream::OutgoingFrame> ViewerSet::take(const std::string& viewer) {
   const std::lock_guard lock(mutex_);
   const Result<Viewer*> found = find(viewer);
   if (!found) return std::nullopt;
   const auto taken = (*found)->pacer.take(Clock::now());
   if (!taken) {
     // A frame that waits only for its turn needs the render thread's clock.
-    if ((*found)->pacer.frame_waiting()) room_.notify();
+    if ((*found)->pacer.frame_waiting()) on_capacity_.notify();
     return std::nullopt;
   }
-  room_.notify();
+  on_capacity_.notify();
   // Frames that it did not get may have held the jump.
   const bool jumped = std::exchange((*found)->cuts, taken->frame->cuts) != taken->frame->cuts;
-  const bool cut = std::exchange((*found)->came_over, false) || jumped;
+  const bool cut = std::exchange((*found)->discontinuous, false) || jumped;
   return address(*taken, viewer, cut);
 }
 
-bool Audience::empty() const {
+bool ViewerSet::empty() const {
   const std::lock_guard lock(mutex_);
   return viewers_.empty();
 }
 
-bool Audience::has(const std::string& viewer) const {
+bool ViewerSet::has(const std::string& viewer) const {
   const std::lock_guard lock(mutex_);
   return viewers_.contains(viewer);
 }
 
-bool Audience::wants_frame() const {
+bool ViewerSet::can_accept_frame() const {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
   return std::any_of(viewers_.begin(), viewers_.end(), [&](const auto& entry) {
@@ -149,14 +149,14 @@ bool Audience::wants_frame() const {
   });
 }
 
-bool Audience::watching() const {
+bool ViewerSet::has_active_viewer() const {
   const std::lock_guard lock(mutex_);
   return std::any_of(viewers_.begin(), viewers_.end(), [](const auto& entry) {
     return entry.second.started && !entry.second.stream.paused;
   });
 }
 
-std::optional<Clock::time_point> Audience::next_turn() const {
+std::optional<Clock::time_point> ViewerSet::next_turn() const {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
   std::optional<Clock::time_point> next;
@@ -168,7 +168,7 @@ std::optional<Clock::time_point> Audience::next_turn() const {
   return next;
 }
 
-void Audience::announce_waiting() {
+void ViewerSet::announce_due_frames() {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
   for (const auto& [id, viewer] : viewers_) {
@@ -176,19 +176,19 @@ void Audience::announce_waiting() {
   }
 }
 
-void Audience::forget_latest() {
+void ViewerSet::discard_latest() {
   const std::lock_guard lock(mutex_);
   latest_.clear();
 }
 
-bool Audience::awaits(std::uint64_t number) const {
+bool ViewerSet::needs_frame(std::uint64_t number) const {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
   return std::any_of(viewers_.begin(), viewers_.end(),
-                     [&](const auto& entry) { return awaits(entry.second, number, now); });
+                     [&](const auto& entry) { return needs_frame(entry.second, number, now); });
 }
 
-EncodingPlan Audience::plan(std::uint64_t number, Purpose purpose, std::uint64_t pixels) {
+EncodingPlan ViewerSet::plan(std::uint64_t number, Purpose purpose, std::uint64_t pixels) {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
   pixels_ = pixels;
@@ -197,7 +197,7 @@ EncodingPlan Audience::plan(std::uint64_t number, Purpose purpose, std::uint64_t
   std::vector<stream::FormWish> wishes;
   for (auto& [id, viewer] : viewers_) {
     if (!viewer.started || viewer.stream.paused) continue;
-    const bool ready = awaits(viewer, number, now);
+    const bool ready = needs_frame(viewer, number, now);
     if (ready) viewer.planned = number;
     if (purpose == Purpose::final) {
       plan.still_quality = std::max(plan.still_quality, viewer.stream.quality);
@@ -220,8 +220,8 @@ EncodingPlan Audience::plan(std::uint64_t number, Purpose purpose, std::uint64_t
   return plan;
 }
 
-void Audience::publish(std::uint64_t number, Purpose purpose,
-                       std::vector<stream::SharedFrame> frames) {
+void ViewerSet::publish(std::uint64_t number, Purpose purpose,
+                        std::vector<stream::SharedFrame> frames) {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
   for (auto& [id, viewer] : viewers_) {
@@ -242,7 +242,7 @@ void Audience::publish(std::uint64_t number, Purpose purpose,
   latest_purpose_ = purpose;
 }
 
-void Audience::publish_stats(protocol::StatsFrame stats) {
+void ViewerSet::publish_stats(protocol::StatsFrame stats) {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
   const bool finished = stats.state == protocol::StreamPhase::still;
@@ -256,11 +256,12 @@ void Audience::publish_stats(protocol::StatsFrame stats) {
   }
 }
 
-void Audience::send_all(std::string_view text, std::string_view key) {
+void ViewerSet::send_all(std::string_view text, std::string_view key) {
   send_others({}, text, key);
 }
 
-void Audience::send_others(const std::string& except, std::string_view text, std::string_view key) {
+void ViewerSet::send_others(const std::string& except, std::string_view text,
+                            std::string_view key) {
   const std::lock_guard lock(mutex_);
   for (const auto& [id, viewer] : viewers_) {
     if (id == except) continue;
@@ -268,14 +269,14 @@ void Audience::send_others(const std::string& except, std::string_view text, std
   }
 }
 
-AudienceTotals Audience::totals() const {
+ViewerTotals ViewerSet::totals() const {
   const std::lock_guard lock(mutex_);
-  AudienceTotals totals{.viewers = viewers_.size(), .sent = departed_};
+  ViewerTotals totals{.viewers = viewers_.size(), .sent = departed_};
   std::int64_t measured = 0;
   for (const auto& [id, viewer] : viewers_) {
     totals.sent += viewer.pacer.totals();
     totals.waiting += viewer.pacer.frame_waiting() ? 1 : 0;
-    totals.on_the_way += viewer.pacer.on_the_way();
+    totals.in_flight += viewer.pacer.on_the_way();
     totals.goodput += viewer.pacer.goodput();
     if (viewer.pacer.goodput() == 0.0) continue;
     totals.mean_round_trip += viewer.pacer.round_trip();
@@ -285,7 +286,7 @@ AudienceTotals Audience::totals() const {
   return totals;
 }
 
-Result<Audience::Viewer*> Audience::find(const std::string& viewer) {
+Result<ViewerSet::Viewer*> ViewerSet::find(const std::string& viewer) {
   const auto found = viewers_.find(viewer);
   if (found == viewers_.end()) {
     return protocol::error::not_ready("only a viewer on a WebSocket can ask for this");
@@ -293,7 +294,7 @@ Result<Audience::Viewer*> Audience::find(const std::string& viewer) {
   return &found->second;
 }
 
-void Audience::offer_latest(Viewer& viewer) {
+void ViewerSet::offer_latest(Viewer& viewer) {
   if (latest_.empty() || viewer.stream.paused) return;
   viewer.form = wish(viewer, latest_purpose_);
   const stream::SharedFrame frame = suited(viewer, latest_purpose_, latest_);
@@ -303,26 +304,27 @@ void Audience::offer_latest(Viewer& viewer) {
   viewer.offered = latest_number_;
 }
 
-void Audience::offer(Viewer& viewer, const stream::SharedFrame& frame) {
+void ViewerSet::offer(Viewer& viewer, const stream::SharedFrame& frame) {
   viewer.last_bytes = frame->payload.size() + protocol::frame_header_bytes;
   viewer.last_encode_us = frame->header.encode_us;
   viewer.pacer.offer(frame);
   announce(viewer);
 }
 
-bool Audience::awaits(const Viewer& viewer, std::uint64_t number, Clock::time_point now) const {
+bool ViewerSet::needs_frame(const Viewer& viewer, std::uint64_t number,
+                            Clock::time_point now) const {
   return viewer.started && viewer.offered < number && viewer.pacer.has_room(now);
 }
 
-stream::Form Audience::wish(Viewer& viewer, Purpose purpose) const {
+stream::Form ViewerSet::wish(Viewer& viewer, Purpose purpose) const {
   const stream::Form wanted{.codec = viewer.stream.codec, .quality = viewer.stream.quality};
   // Pictures at rest are few and each is better than the last: a video gains nothing.
   if (purpose != Purpose::interactive) return viewer.pacer.link().resting(wanted);
   return viewer.pacer.link().choose(wanted, pixels_);
 }
 
-stream::SharedFrame Audience::suited(const Viewer& viewer, Purpose purpose,
-                                     const std::vector<stream::SharedFrame>& frames) {
+stream::SharedFrame ViewerSet::suited(const Viewer& viewer, Purpose purpose,
+                                      const std::vector<stream::SharedFrame>& frames) {
   const auto find = [&](auto fits) -> stream::SharedFrame {
     const auto found = std::find_if(frames.begin(), frames.end(),
                                     [&](const stream::SharedFrame& frame) { return fits(*frame); });
@@ -342,7 +344,7 @@ stream::SharedFrame Audience::suited(const Viewer& viewer, Purpose purpose,
   return find([&](const stream::EncodedFrame& frame) { return frame.form == stand_in; });
 }
 
-void Audience::announce(const Viewer& viewer) {
+void ViewerSet::announce(const Viewer& viewer) {
   if (const auto link = viewer.link.lock()) link->frame_ready();
 }
 

@@ -1,10 +1,10 @@
-#include "session/wakeup.hpp"
+#include "session/wake_event.hpp"
 
 #include <utility>
 
 namespace heliograph::session {
 
-void Wakeup::notify() {
+void WakeEvent::notify() {
   {
     const std::lock_guard lock(mutex_);
     notified_ = true;
@@ -13,17 +13,17 @@ void Wakeup::notify() {
   if (all_) all_->notify();
 }
 
-bool Wakeup::is_notified() const {
+bool WakeEvent::is_notified() const {
   const std::lock_guard lock(mutex_);
   return notified_;
 }
 
-bool Wakeup::take() {
+bool WakeEvent::take() {
   const std::lock_guard lock(mutex_);
   return std::exchange(notified_, false);
 }
 
-void Wakeup::wait_until(std::optional<Clock::time_point> deadline) {
+void WakeEvent::wait_until(std::optional<Clock::time_point> deadline) {
   std::unique_lock lock(mutex_);
   const auto notified = [&] { return notified_; };
   if (deadline) {

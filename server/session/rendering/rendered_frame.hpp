@@ -11,7 +11,7 @@
 namespace heliograph::session {
 
 /// One rendered picture of a session and what it shows.
-struct Picture {
+struct RenderedFrame {
   render::Frame frame;
   protocol::FrameHeader header;  // without what encoding adds
   std::vector<stream::InputEcho> inputs;
@@ -19,7 +19,7 @@ struct Picture {
   std::uint64_t cuts = 0;  // how often the picture jumped up to this one
 };
 
-inline stream::PictureView view_of(const render::Frame& frame) {
+inline stream::PictureView image_view(const render::Frame& frame) {
   return {.width = frame.width, .height = frame.height, .rgba = frame.rgba};
 }
 

@@ -14,10 +14,10 @@ using stream::Clock;
 
 /// Lets one thread sleep until another has something for it. A notification that comes before the
 /// wait ends the wait at once.
-class Wakeup {
+class WakeEvent {
  public:
   /// `all`, if any, is notified with this one: it stands for many such sources.
-  explicit Wakeup(std::shared_ptr<Wakeup> all = nullptr) : all_(std::move(all)) {}
+  explicit WakeEvent(std::shared_ptr<WakeEvent> all = nullptr) : all_(std::move(all)) {}
 
   void notify();
   /// Whether there was a notification since the last `take` or wait.
@@ -27,7 +27,7 @@ class Wakeup {
   void wait_until(std::optional<Clock::time_point> deadline);
 
  private:
-  const std::shared_ptr<Wakeup> all_;
+  const std::shared_ptr<WakeEvent> all_;
   mutable std::mutex mutex_;
   std::condition_variable condition_;
   bool notified_ = false;
