@@ -26,6 +26,20 @@ void add_device_options(CLI::App& command, DeviceOptions& options) {
       ->group("Device");
 }
 
+void add_shader_option(CLI::App& command, DeviceOptions& options) {
+  command
+      .add_option("--shader-dir", options.shader_dir,
+                  "Folder of GLSL sources (a checkout's shaders/) to compile in place of the "
+                  "built-in shaders: compute, raster and ray tracing stages. \"serve\" compiles "
+                  "again when a file is saved and shows errors over the frame. Processors run "
+                  "shaders in place of host kernels then. Environments and lookup tables keep the "
+                  "shaders that they were made with; bindings, push constants and workgroup sizes "
+                  "cannot change; Embree runs no shaders")
+      ->type_name("FOLDER")
+      ->check(CLI::ExistingDirectory)
+      ->group("Device");
+}
+
 void add_settings_options(CLI::App& command, SettingsOptions& options) {
   std::vector<std::string> presets;
   for (const protocol::Preset& preset : protocol::presets()) presets.emplace_back(preset.name);

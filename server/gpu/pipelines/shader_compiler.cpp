@@ -48,8 +48,8 @@ class Includer : public glslang::TShader::Includer {
 
   IncludeResult* includeLocal(const char* name, const char* including, std::size_t) override {
     // Files are known to the compiler by their path from the folder's parent.
-    return find(name, {(folder_.parent_path() / including).parent_path(), folder_.parent_path(),
-                       folder_});
+    return find(
+        name, {(folder_.parent_path() / including).parent_path(), folder_.parent_path(), folder_});
   }
   IncludeResult* includeSystem(const char* name, const char*, std::size_t) override {
     return find(name, {folder_.parent_path(), folder_});
@@ -69,8 +69,7 @@ class Includer : public glslang::TShader::Includer {
       files.insert(file);
       auto kept = std::make_unique<std::string>(std::move(*text));
       const fs::path shown = file.lexically_relative(folder_.parent_path());
-      auto* result =
-          new IncludeResult(shown.string(), kept->data(), kept->size(), kept.get());
+      auto* result = new IncludeResult(shown.string(), kept->data(), kept->size(), kept.get());
       kept.release();
       return result;
     }

@@ -18,7 +18,7 @@ class ShaderError : public std::runtime_error {
 };
 
 struct CompiledShader {
-  std::vector<std::uint32_t> words;  // SPIR-V 1.6
+  std::vector<std::uint32_t> words;       // SPIR-V 1.6
   std::set<std::filesystem::path> files;  // the stage's own and all that it includes
 };
 

@@ -24,8 +24,7 @@ std::string interface_difference(const Reflection& built, const Reflection& now)
   for (std::size_t i = 0; i < std::max(built.bindings.size(), now.bindings.size()); ++i) {
     const bool both = i < built.bindings.size() && i < now.bindings.size();
     if (both && same_interface(built.bindings[i], now.bindings[i])) continue;
-    const ShaderBinding& which =
-        i < now.bindings.size() ? now.bindings[i] : built.bindings[i];
+    const ShaderBinding& which = i < now.bindings.size() ? now.bindings[i] : built.bindings[i];
     return "set " + std::to_string(which.set) + " binding " + std::to_string(which.binding) +
            " \"" + which.name + "\"";
   }
@@ -36,7 +35,8 @@ std::string interface_difference(const Reflection& built, const Reflection& now)
   return {};
 }
 
-/// Adds the lines of `text` that are not there yet: many stages meet the error of one included file.
+/// Adds the lines of `text` that are not there yet: many stages meet the error of one included
+/// file.
 void add_lines(std::string& all, std::set<std::string>& lines, const std::string& text) {
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());

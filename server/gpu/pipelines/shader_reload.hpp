@@ -13,14 +13,9 @@
 #include "gpu/device/device.hpp"
 #include "gpu/pipelines/shader_binary.hpp"
 #include "gpu/pipelines/shader_compiler.hpp"
+#include "gpu/pipelines/shader_report.hpp"
 
 namespace heliograph::gpu {
-
-/// The outcome of one look at files that had changed.
-struct ShaderReport {
-  std::string error;                  // a line per error; empty: everything compiled
-  std::vector<std::string> reloaded;  // stages whose code differs from before, by file name
-};
 
 /// Shaders from source files in place of the embedded ones of the same name. A thread compiles them
 /// whenever they or files that they include are saved; programs take them over when `apply` is

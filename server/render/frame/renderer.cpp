@@ -14,6 +14,7 @@
 #include "render/resources/moving_scene.hpp"
 #include "render/resources/scene_motion.hpp"
 #include "render/views/debug_view.hpp"
+#include "render/views/text_overlay.hpp"
 #include "render/views/view_table.hpp"
 
 namespace heliograph::render {
@@ -53,6 +54,7 @@ struct Renderer::State {
 
   void redraw();
   void change_settings(const protocol::Settings& changed);
+  void use_newest_shaders();
   Frame picture();
   std::optional<FloatImage> read(std::string_view view) const;
   std::uint32_t wanted_samples() const {
@@ -75,7 +77,9 @@ struct Renderer::State {
   float seconds = 1.0f / 60.0f;  // since the frame before
   float share_of_mean = 0.0f;    // in the picture as of the last frame
   SceneMotion scene_motion;
-  bool stale = true;  // something changed since the last frame
+  bool stale = true;                  // something changed since the last frame
+  std::uint64_t shader_version = 0;   // of ShaderReload::version, as of the last frame
+  std::uint64_t program_version = 0;  // of ShaderReload::program_version, likewise
 
   std::shared_ptr<const SceneResources> scene;
   std::optional<MovingScene> moving;  // the scene in this renderer's pose
@@ -115,6 +119,17 @@ void Renderer::State::change_settings(const protocol::Settings& changed) {
   stale = true;
   if (includes(scope, protocol::ResetScope::history)) has_previous = false;
   if (includes(scope, protocol::ResetScope::accumulation)) restart();
+}
+
+/// Other programs make other frames: histories of the old ones are invalid.
+void Renderer::State::use_newest_shaders() {
+  if (!parts.shader_reload) return;
+  shader_version = parts.shader_reload->version();
+  parts.shader_reload->apply();
+  const std::uint64_t programs = parts.shader_reload->program_version();
+  if (std::exchange(program_version, programs) == programs) return;
+  has_previous = false;
+  restart();
 }
 
 std::optional<FloatImage> Renderer::State::read(std::string_view view) const {
@@ -227,6 +242,8 @@ protocol::Result<void> Renderer::set_settings(const protocol::Settings& settings
 }
 
 bool Renderer::needs_frame() const {
+  const auto& reload = state_->parts.shader_reload;
+  if (reload && reload->version() != state_->shader_version) return true;
   if (state_->stale || state_->samples < state_->wanted_samples()) return true;
   if (state_->moving->needs_advance()) return true;
   // Exposure that no time passes for stays where it is.
@@ -237,6 +254,7 @@ bool Renderer::needs_frame() const {
 Frame Renderer::render() {
   State& state = *state_;
   const auto start = std::chrono::steady_clock::now();
+  state.use_newest_shaders();
   state.stale = false;
   bool moves = state.moving->advance();
   // Without a frame before there is no motion since.
@@ -255,6 +273,9 @@ Frame Renderer::render() {
   ++state.samples;
 
   Frame frame = state.picture();
+  if (state.parts.shader_reload) {
+    draw_text(state.parts.shader_reload->error(), frame.rgba, frame.width, frame.height);
+  }
   frame.samples = state.samples;
   frame.converged = !needs_frame();
   if (moves) {
