@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Configures and builds into build/ and generates the demo scene. Extra arguments go to cmake.
+# Configures and builds in build/ (or $HELIOGRAPH_BUILD) and generates the demo scene. Arguments are
+# passed to cmake.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=${HELIOGRAPH_BUILD:-build}
@@ -7,16 +8,17 @@ build=${HELIOGRAPH_BUILD:-build}
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 echo "==> configuring $build"
-if ! cmake -S . -B "$build" -G Ninja "$@" >"$log" 2>&1; then
+# A folder that is configured already stays as it is.
+first=()
+if [ ! -f "$build/CMakeCache.txt" ]; then
+  first=(-DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON)
+fi
+if ! cmake -S . -B "$build" -G Ninja "${first[@]}" "$@" >"$log" 2>&1; then
   tail -n 25 "$log" >&2
-  echo "build: cmake could not configure" >&2
+  echo "build: cmake failed to configure; the end of its output is above" >&2
   exit 1
 fi
-echo "==> building (a few minutes the first time)"
-ninja -C "$build" || { echo "build: compilation failed" >&2; exit 1; }
-if [ ! -f "$build/scenes/.complete" ] || [ "$build/bin/heliograph-scenes" -nt "$build/scenes/.complete" ]; then
-  echo "==> generating the demo scene"
-  "$build/bin/heliograph-scenes" "$build/scenes" ||
-    { echo "build: the demo scene could not be generated" >&2; exit 1; }
-  touch "$build/scenes/.complete"
-fi
+echo "==> building, and generating the demo scene (a few minutes the first time)"
+# Clones in different folders share what the compiler cache holds.
+export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$PWD} CCACHE_NOHASHDIR=${CCACHE_NOHASHDIR:-1}
+ninja -C "$build" all demo_scene || { echo "build: compilation failed" >&2; exit 1; }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Copies the server, the software Vulkan device and what these two link, and nothing else of the
-# system but a shell of one file, into a folder that becomes the root of an image:
+# Creates the root folder of the image: the server, the software Vulkan device, the libraries that
+# these two link, and busybox as a shell. Nothing else of the system is copied.
 #   closure.sh FOLDER
 set -euo pipefail
 if [ $# -ne 1 ]; then
@@ -18,13 +18,13 @@ done
 driver=$(find /usr/lib -name libvulkan_lvp.so)
 loader=$(ldconfig -p | awk '/libvulkan\.so\.1 / { print $NF; exit }')
 programs=(/usr/bin/heliograph "$driver" "$loader")
-# The driver of a GPU comes from its machine when a container starts, and links parts of the C
-# library that nothing here does: they are empty since 2.34.
+# A GPU's driver is mounted from the host when a container starts. It links parts of the C library
+# that no file here links; they have been empty since glibc 2.34.
 for name in libdl.so.2 libpthread.so.0 librt.so.1; do
   library=$(ldconfig -p | awk -v name="$name" '$1 == name { print $NF; exit }')
   install -D -m 755 "$(readlink -f "$library")" "$root$library"
 done
-# Every library under the name that it is asked for by, and the loader of programs itself.
+# Every library under the name that the programs link it by, and the dynamic loader itself.
 ldd "${programs[@]}" | awk '$2 == "=>" { print $3 } $1 ~ /^\/lib.*ld-/ { print $1 }' | sort -u |
   while read -r library; do
     install -D -m 755 "$(readlink -f "$library")" "$root$library"
@@ -38,8 +38,8 @@ cp /usr/share/vulkan/icd.d/lvp_icd*.json "$root/usr/share/vulkan/icd.d/"
 cp -r --parents /usr/share/heliograph /usr/share/doc/heliograph "$root"
 grep -E '^(root|nobody|heliograph):' /etc/passwd >"$root/etc/passwd"
 grep -E '^(root|nogroup|heliograph):' /etc/group >"$root/etc/group"
-# The licences of what was copied; dpkg-query fails where it knows one file of several by another
-# name, and still tells the rest.
+# The licences of the copied files. dpkg-query fails if it knows one of the files by another name,
+# but still prints the others.
 { ldd "${programs[@]}" | awk '$2 == "=>" { print $3 }' | xargs readlink -f | sort -u |
   xargs dpkg-query --search "$driver" 2>/dev/null || true; } | cut -d: -f1 | sort -u |
   while read -r package; do
@@ -48,7 +48,7 @@ grep -E '^(root|nogroup|heliograph):' /etc/group >"$root/etc/group"
   done
 
 install -m 755 "$(command -v busybox)" "$root/usr/bin/busybox"
-# What probes, hooks and people in a hurry call; the rest is there as "busybox NAME".
+# The commands that probes, hooks and operators call. Others are available as "busybox NAME".
 for name in cat cp find grep id ls nc rm sh sleep timeout; do
   ln -s busybox "$root/usr/bin/$name"
 done

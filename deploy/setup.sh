@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what Heliograph needs, from deploy/packages. Does nothing where nothing is missing.
+# Installs the packages listed in deploy/packages. Does nothing if none is missing.
 #   deploy/setup.sh [build] [run] [test] [deploy]      default: build run
 set -euo pipefail
 folder=$(cd "$(dirname "$0")" && pwd)
@@ -7,15 +7,15 @@ purposes=("${@:-build}")
 [ $# -gt 0 ] || purposes=(build run)
 
 if ! command -v apt-get >/dev/null; then
-  echo "setup: this script knows Debian and Ubuntu only (no apt-get here); deploy/packages lists what is needed" >&2
+  echo "setup: apt-get not found: only Debian and Ubuntu are supported; deploy/packages lists what to install" >&2
   exit 1
 fi
 
-# Whether this release has a package, as far as apt has been told by now.
+# Whether this release has a package, according to apt's current package indexes.
 known() { apt-cache show "$1" >/dev/null 2>&1; }
 
 missing=()
-# Those that a release need not have.
+# Packages that not every release has (marked with "?" in the list).
 optional=()
 while read -r purpose package command; do
   case "$purpose" in ''|'#'*) continue ;; esac
@@ -42,7 +42,7 @@ if [ ${#wanted[@]} -eq 0 ]; then
   exit 0
 fi
 if [ "$(id -u)" -ne 0 ]; then
-  echo "setup: ${#wanted[@]} packages are missing; as root run:" >&2
+  echo "setup: ${#wanted[@]} packages are missing; run as root:" >&2
   echo "  apt-get install --no-install-recommends ${wanted[*]}" >&2
   exit 1
 fi
@@ -62,9 +62,9 @@ for package in "${missing[@]}"; do
 done
 : >"$log"
 [ ${#unknown[@]} -eq 0 ] ||
-  fail "apt does not know ${unknown[*]}; on Ubuntu, universe must be enabled"
+  fail "apt does not know ${unknown[*]}; on Ubuntu enable the component universe"
 echo "==> installing ${#wanted[@]} packages: ${wanted[*]}"
 apt-get install -y --no-install-recommends "${wanted[@]}" >"$log" 2>&1 ||
-  fail "apt-get could not install the packages"
+  fail "apt-get failed to install the packages"
 rm -f "$log"
 echo "==> installed"

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# From a fresh clone to passed tests: installs, builds and runs every test. Arguments go to ctest.
+# From a fresh clone to tested code: installs missing packages, builds and runs every test. Arguments
+# are passed to ctest.
 set -euo pipefail
 folder=$(cd "$(dirname "$0")" && pwd)
 "$folder/setup.sh" build run test
@@ -11,5 +12,5 @@ if [ -z "${HELIOGRAPH_NEWER_MESA:-}" ] && deploy/newer_mesa.sh "$build/newer_mes
   export HELIOGRAPH_NEWER_MESA
 fi
 echo "==> running the tests"
-# What measures time or fills the machine by itself runs alone; the rest in pairs.
+# Tests that measure time or use the whole machine run alone (RUN_SERIAL), the others in pairs.
 exec ctest --test-dir "$build" --output-on-failure --parallel 2 "$@"

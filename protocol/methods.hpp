@@ -2,54 +2,101 @@
 
 #include <span>
 #include <string_view>
-#include <typeindex>
 #include <vector>
 
 #include "protocol/json/raw_json.hpp"
+#include "protocol/messages/messages.hpp"
 #include "protocol/result.hpp"
 
 namespace heliograph::protocol {
 
-/// The session that always exists and that is meant where none is named.
+/// The session that always exists, and the default where no session is named.
 inline constexpr std::string_view main_session = "main";
 
-/// One method of the protocol: the dispatcher takes calls by it, the OpenRPC document is made
-/// from it.
+/// A type per method, from methods/*.def: its parameters, its result, its name.
+namespace methods {
+#define METHOD(tag, method_name, ParamsType, ResultType, ...) \
+  struct tag {                                                \
+    using Params = ParamsType;                                \
+    using Result = ResultType;                                \
+    static constexpr std::string_view name = method_name;     \
+  };
+#include "protocol/methods/methods.def"
+}  // namespace methods
+
+/// A type per notification, a message that the server sends without a request.
+namespace notifications {
+#define NOTIFICATION(tag, notification_name, ParamsType, ...)   \
+  struct tag {                                                  \
+    using Params = ParamsType;                                  \
+    static constexpr std::string_view name = notification_name; \
+  };
+#include "protocol/methods/methods.def"
+}  // namespace notifications
+
+/// JSON of a method's messages. Defined in json/codec.hpp and instantiated in methods/*_codec.cpp,
+/// so that only those files compile the JSON library's templates.
+template <class Method>
+struct MethodCodec {
+  /// Ignores unknown members. A missing, ill-typed or out-of-range member gives
+  /// ErrorCode::invalid_params with its path ("cameras[2].eye"), the reason and the limit.
+  static Result<typename Method::Params> read_params(const RawJson& json);
+  static RawJson write_result(const typename Method::Result& result);
+  static Result<void> check_params(const RawJson& json);
+  static Result<void> check_result(const RawJson& json);
+  /// JSON Schema 2020-12.
+  static RawJson params_schema();
+  static RawJson result_schema();
+};
+
+template <class Notification>
+struct NotificationCodec {
+  static RawJson write_params(const typename Notification::Params& params);
+  static RawJson params_schema();
+};
+
+/// Which callers may call a method.
+enum class Call {
+  query,       ///< changes nothing; allowed for all callers
+  personal,    ///< changes something for its caller only; allowed for all callers
+  command,     ///< changes the session for all its viewers; needs control of it
+  management,  ///< about sessions; needs a control token, but not control of the session
+};
+
+/// One method of the protocol: the dispatcher looks up calls in the table of these, and the OpenRPC
+/// document is generated from it.
 struct MethodDescriptor {
   std::string_view name;
   std::string_view summary;
-  std::type_index params;
-  std::type_index result;
-  /// Whether a call without id has an effect. Other calls without id ask for an answer that
-  /// nobody would get and are dropped.
-  bool may_be_notification;
-  /// Whether it changes what all viewers of a session share.
-  bool needs_control;
-  /// Whether those may call it who may only watch: it changes nothing for others.
-  bool for_watchers;
-  /// What it may answer besides what every call may.
-  std::vector<ErrorCode> errors;
+  Call call;
+  std::vector<ErrorCode> errors;    ///< beside those that every method may return
   std::string_view example_params;  ///< JSON text
   std::string_view example_result;  ///< JSON text
   RawJson (*params_schema)();
   RawJson (*result_schema)();
   Result<void> (*check_params)(const RawJson&);
   Result<void> (*check_result)(const RawJson&);
+
+  /// Whether a call without id has an effect. Queries without id are dropped: there is no answer to
+  /// send.
+  bool may_be_notification() const { return call != Call::query; }
+  /// Whether it changes what the viewers of a session share.
+  bool needs_control() const { return call == Call::command; }
+  /// Whether read-only viewers may call it.
+  bool read_only() const { return call == Call::query || call == Call::personal; }
 };
 
-/// A message the server sends unasked.
 struct NotificationDescriptor {
   std::string_view name;
   std::string_view summary;
-  std::type_index params;
   RawJson (*params_schema)();
 };
 
-std::span<const MethodDescriptor> methods();
-std::span<const NotificationDescriptor> notifications();
+std::span<const MethodDescriptor> method_table();
+std::span<const NotificationDescriptor> notification_table();
 
-/// The whole contract as an OpenRPC 1.3 document: methods with parameters, results, errors and
-/// examples; the server's notifications stand under "x-notifications".
+/// The protocol as an OpenRPC 1.3 document: methods with parameters, results, errors and examples;
+/// notifications under "x-notifications".
 RawJson openrpc_document();
 
 }  // namespace heliograph::protocol

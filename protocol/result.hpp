@@ -7,7 +7,7 @@
 
 namespace heliograph::protocol {
 
-/// The numbers that reach a client as `error.code`: JSON-RPC 2.0's own and this protocol's.
+/// Values of `error.code`: those of JSON-RPC 2.0 and those of this protocol.
 enum class ErrorCode : int {
   parse_error = -32700,
   invalid_request = -32600,
@@ -24,8 +24,8 @@ enum class ErrorCode : int {
   not_ready = -32050,
 };
 
-/// Why a call was refused. `message` is one sentence for a person; `path`, `reason` and `limit`
-/// are the parts a program (or a form) needs: which field, what is wrong, what would be right.
+/// Why a call failed. `message` is one sentence for the user; `path`, `reason` and `limit` are its
+/// parts for programs: the field, what is wrong, and which values are valid.
 struct Error {
   ErrorCode code = ErrorCode::internal;
   std::string message;
@@ -38,28 +38,28 @@ struct Error {
 
 namespace error {
 
-/// An error of any code; the message is put together as "path reason (limit)".
+/// An error of any code; its message is "path: reason (limit)".
 Error make(ErrorCode code, std::string path, std::string reason, std::string limit = {});
 
 /// A parameter that has the wrong type, is missing or lies outside its limits.
 Error invalid(std::string path, std::string reason, std::string limit = {});
-/// A well-named thing (scene, camera, buffer, session) that does not exist.
+/// A name (of a scene, camera, buffer, session) that does not exist.
 Error not_found(std::string path, std::string reason);
-/// The request contradicts what happened meanwhile.
+/// The request conflicts with another change.
 Error conflict(std::string path, std::string reason);
-/// The message or what it asks for exceeds a fixed limit.
+/// The message or the requested work exceeds a fixed limit.
 Error too_large(std::string path, std::string reason, std::string limit);
-/// A limit on sessions, viewers or work is reached; trying later may succeed.
+/// A limit on sessions, viewers or work is reached; a retry may succeed.
 Error full(std::string reason, std::string limit = {});
-/// What the call needs is not there yet (no scene loaded, first frame not rendered).
+/// A prerequisite is missing (no scene loaded, first frame not rendered).
 Error not_ready(std::string reason);
-/// A fault of the server. Deliberately carries no detail: details belong in the log.
+/// A fault of the server. Carries no detail on purpose: details are in the log.
 Error internal();
 
 }  // namespace error
 
-/// Either a value or the Error that says why there is none.
-/// `value()`, `*` and `->` throw std::bad_variant_access when there is an error.
+/// Either a value or an Error. `value()`, `*` and `->` throw std::bad_variant_access if there is an
+/// error.
 template <class T>
 class [[nodiscard]] Result {
  public:
@@ -86,7 +86,7 @@ class [[nodiscard]] Result {
   std::variant<T, Error> content_;
 };
 
-/// Success, or the Error that says why not.
+/// Success or an Error.
 template <>
 class [[nodiscard]] Result<void> {
  public:

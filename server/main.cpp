@@ -14,18 +14,19 @@
 
 namespace {
 
-/// Every arena of the allocator keeps what its threads have freed, and each new thread may get one
-/// of its own: with two the process is 40 % smaller after sessions have come and gone.
-void keep_few_arenas() {
+/// Every malloc arena keeps the memory that its threads freed, and new threads get new arenas: with
+/// a limit of two the process is 40 % smaller after sessions were opened and closed.
+void limit_malloc_arenas() {
 #ifdef M_ARENA_MAX
   mallopt(M_ARENA_MAX, 2);
 #endif
 }
 
-/// Pools are as large as the machine, whatever a control group's quota lasts for: on 64 processors
-/// with a quota of two all threads would use it up in a moment and then rest for most of each
-/// period. Holds for as long as what it gives is kept; before any pool is made, Mesa's among them.
-std::unique_ptr<tbb::global_control> keep_to_quota() {
+/// Limits thread pools to the CPU quota of the control group. By default they have a thread per
+/// processor: on 64 processors with a quota of two, all threads would use up the quota at once and
+/// then be throttled for most of each period. Must run before any pool is created, including
+/// Mesa's; applies while the result exists.
+std::unique_ptr<tbb::global_control> limit_threads_to_quota() {
   const unsigned processors = std::thread::hardware_concurrency();
   const unsigned threads = heliograph::net::useful_threads(
       heliograph::net::read_resource_limits("/sys/fs/cgroup"), processors);
@@ -38,8 +39,8 @@ std::unique_ptr<tbb::global_control> keep_to_quota() {
 }  // namespace
 
 int main(int count, char** arguments) {
-  keep_few_arenas();
-  const auto thread_limit = keep_to_quota();
+  limit_malloc_arenas();
+  const auto thread_limit = limit_threads_to_quota();
   try {
     const heliograph::cli::Command command = heliograph::cli::parse_command_line(count, arguments);
     return std::visit([](const auto& options) { return heliograph::cli::run(options); }, command);

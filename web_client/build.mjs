@@ -1,10 +1,10 @@
 // Bundles the client into dist/ (or --out DIR) and refuses to let it grow beyond its budget.
 
+import { spawnSync } from "node:child_process";
 import { copyFileSync, mkdirSync, readFileSync, readdirSync, rmSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
-import * as esbuild from "esbuild";
 
 const gzippedBudget = 150_000;
 const here = dirname(fileURLToPath(import.meta.url));
@@ -28,30 +28,21 @@ const watching = process.argv.includes("--watch");
 rmSync(folder, { recursive: true, force: true });
 mkdirSync(folder, { recursive: true });
 
-const options = {
-  absWorkingDir: here,
-  entryPoints: {
-    app: "src/app/main.ts",
-    worker: "src/stream/worker.ts",
-    similarity_worker: "src/compare/similarity_worker.ts",
-    style: "src/style/index.css",
-  },
-  outdir: folder,
-  bundle: true,
-  format: "iife",
-  target: ["es2021", "chrome100", "firefox102", "safari15"],
-  minify: !watching,
-  sourcemap: watching ? "linked" : false,
-  logLevel: "warning",
-};
+// CMakeLists.txt reads them too, for builds without npm.
+const options = readFileSync(join(here, "esbuild.options"), "utf8").split("\n").filter(Boolean);
 for (const name of ["index.html", "icon.svg"]) {
   copyFileSync(join(here, "src/app", name), join(folder, name));
 }
 
-if (watching) {
-  await (await esbuild.context(options)).watch();
-} else {
-  await esbuild.build(options);
+const mode = watching ? ["--sourcemap=linked", "--watch"] : ["--minify"];
+const esbuild = join(here, "node_modules/.bin/esbuild");
+const { status } = spawnSync(esbuild, [...options, ...mode, `--outdir=${folder}`], {
+  cwd: here,
+  stdio: "inherit",
+});
+if (status !== 0) {
+  process.exitCode = 1;
+} else if (!watching) {
   const sizes = gzippedSizes(folder);
   const total = sizes.reduce((sum, { bytes }) => sum + bytes, 0);
   for (const { name, bytes } of sizes) console.log(`${name}: ${bytes} bytes gzipped`);

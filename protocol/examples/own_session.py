@@ -1,4 +1,4 @@
-"""What the other programs here share: how to reach a server, and a session to work in."""
+"""Shared by the example programs: options of the connection, and a session of their own."""
 
 import contextlib
 import os
@@ -10,10 +10,11 @@ import heliograph
 def add_options(parser):
     parser.add_argument("--url", default="http://127.0.0.1:8080")
     parser.add_argument("--token", default=os.environ.get("HELIOGRAPH_TOKEN"),
-                        help="where the server asks for one; HELIOGRAPH_TOKEN if left out")
-    parser.add_argument("--tls-ca", metavar="FILE", help="whom to trust besides the system's own")
-    parser.add_argument("--session", help="where to work, and to leave what was changed; if left "
-                                          "out, one of its own that ends with the program")
+                        help="the server's token; default: the variable HELIOGRAPH_TOKEN")
+    parser.add_argument("--tls-ca", metavar="FILE", 
+                        help="certificates to trust in addition to the system's")
+    parser.add_argument("--session", help="an existing session, whose changes remain; default: "
+                                          "a session of its own, closed at the end")
 
 
 def connect(options):
@@ -23,14 +24,14 @@ def connect(options):
     return heliograph.connect(options.url, session=options.session, token=options.token, ssl=trust)
 
 
-def gather(view, samples):
-    """Lets pictures at rest have so many samples per pixel, for captures to wait for."""
+def set_samples(view, samples):
+    """Lets a static view accumulate this many samples per pixel, for captures to wait for."""
     view.settings.patch(patch={"accumulation": {"enabled": True, "max_samples": samples}})
 
 
 @contextlib.contextmanager
 def open_view(options, width, height, scene=None):
-    """A client in a session of this size that shows the scene, or what main shows."""
+    """A client in a session of this size that shows the scene, or the scene of main."""
     with connect(options) as view:
         if options.session:
             if scene:
@@ -44,6 +45,6 @@ def open_view(options, width, height, scene=None):
             view.session.join(session=own)
             yield view
         finally:
-            # Without a connection it ends by itself, when nobody has been there for a while.
+            # If the connection was lost, the session ends after its idle timeout.
             with contextlib.suppress(ConnectionError):
                 view.session.close(session=own)

@@ -6,13 +6,13 @@
 
 import argparse
 
-from own_session import add_options, gather, open_view
+from own_session import add_options, set_samples, open_view
 
 LUMINANCE = (0.2126, 0.7152, 0.0722)
 
 
 def measure(view, material, roughness, samples):
-    """Mean and deviation of the radiance of all pixels that show something."""
+    """Mean and standard deviation of the luminance of all pixels except the background."""
     view.materials.patch(material=material, patch={"roughness": roughness})
     light = view.array("output.radiance", samples=samples)[..., :3] @ LUMINANCE
     shown = light[view.array("gbuffer.instance", samples=1) > 0]
@@ -38,7 +38,7 @@ def curve(values, most, color):
 
 
 def plot(rows, title):
-    """The sweep as a picture in SVG."""
+    """The sweep as an SVG plot."""
     most = max(max(mean, deviation) for _, mean, deviation in rows) or 1.0
     texts = [(40, 20, title), (40, 290, f"roughness {rows[0][0]:g}"),
              (500, 290, f"{rows[-1][0]:g}"), (0, 45, f"{most:.2f}"), (300, 20, "blue: mean"),
@@ -55,14 +55,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     add_options(parser)
     parser.add_argument("--scene")
-    parser.add_argument("--material", help="by name; the first one if left out")
+    parser.add_argument("--material", help="name; default: the first one")
     parser.add_argument("--steps", type=int, default=11)
     parser.add_argument("--size", type=int, nargs=2, default=(640, 360))
     parser.add_argument("--samples", type=int, default=64)
     parser.add_argument("--plot", default="sweep.svg")
     options = parser.parse_args()
     with open_view(options, *options.size, options.scene) as view:
-        gather(view, options.samples)
+        set_samples(view, options.samples)
         material = options.material or view.materials.list()["materials"][0]["name"]
         rows = sweep(view, material, options.steps, options.samples)
     with open(options.plot, "w", encoding="utf-8") as file:

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Makes a small picture of every scene in a folder of the server's catalogue.
+"""Renders a small image of every scene in a folder of the server's catalogue.
 
     thumbnails.py --models props --folder thumbnails
 
-Scenes that cannot be loaded are told of and left out.
+Scenes that cannot be loaded are reported and skipped.
 """
 
 import argparse
@@ -11,7 +11,7 @@ import os
 import sys
 
 import heliograph
-from own_session import add_options, gather, open_view
+from own_session import add_options, set_samples, open_view
 
 
 def thumbnail(view, name, samples):
@@ -30,19 +30,19 @@ def main():
     options = parser.parse_args()
     below = options.models.rstrip("/") + "/" if options.models else ""
     with open_view(options, options.size, options.size) as view:
-        gather(view, options.samples)
+        set_samples(view, options.samples)
         for scene in view.scene.list()["scenes"]:
             name = scene["name"]
             if not name.startswith(below):
                 continue
             try:
-                picture = thumbnail(view, name, options.samples)
+                image = thumbnail(view, name, options.samples)
             except heliograph.HeliographError as error:
                 print(f"{name}: {error}", file=sys.stderr)
                 continue
             path = os.path.join(options.folder, name + ".png")
             os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
-            picture.save(path)
+            image.save(path)
             print(path)
 
 

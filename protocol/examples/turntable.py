@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Turns the camera once about the scene and writes a picture at every stop.
+"""Moves the camera once around the scene and writes an image at every stop.
 
-    turntable.py --scene atrium --pictures 36 --folder turntable
+    turntable.py --scene atrium --images 36 --folder turntable
 
-The same command gives the same files, byte for byte: time passes only where it is told to.
+The same command writes the same files, byte for byte: it runs in lockstep.
 """
 
 import argparse
@@ -12,17 +12,17 @@ import os
 from own_session import add_options, open_view
 
 
-def turntable(view, pictures, folder, frames_each):
+def turntable(view, images, folder, frames_each):
     os.makedirs(folder, exist_ok=True)
-    view.frame.step(frames=0, dt=1 / 30)              # from here on, time is ours
+    view.frame.step(frames=0, dt=1 / 30)              # enter lockstep
     try:
-        for number in range(pictures):
+        for number in range(images):
             if number:
-                view.camera.orbit(yaw=360 / pictures)
-            view.step(frames_each)                    # the denoiser gathers over these
+                view.camera.orbit(yaw=360 / images)
+            view.step(frames_each)                    # the denoiser accumulates these
             view.capture().save(os.path.join(folder, f"{number:03d}.png"))
     finally:
-        view.frame.run()                              # and the world's again
+        view.frame.run()                              # leave lockstep
 
 
 def main():
@@ -30,13 +30,13 @@ def main():
     add_options(parser)
     parser.add_argument("--scene")
     parser.add_argument("--size", type=int, nargs=2, default=(1280, 720))
-    parser.add_argument("--pictures", type=int, default=36)
+    parser.add_argument("--images", type=int, default=36)
     parser.add_argument("--frames-each", type=int, default=16)
     parser.add_argument("--folder", default="turntable")
     options = parser.parse_args()
     with open_view(options, *options.size, options.scene) as view:
-        turntable(view, options.pictures, options.folder, options.frames_each)
-    print(f"{options.pictures} pictures in {options.folder}")
+        turntable(view, options.images, options.folder, options.frames_each)
+    print(f"{options.images} images in {options.folder}")
 
 
 if __name__ == "__main__":

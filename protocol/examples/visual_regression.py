@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Compares the cameras of a scene with pictures kept from before; fails when one looks different.
+"""Compares the cameras of a scene with stored images; fails if one looks different.
 
-    visual_regression.py --scene atrium --folder expected --update     keeps the pictures
+    visual_regression.py --scene atrium --folder expected --update     stores the images
     visual_regression.py --scene atrium --folder expected              compares with them
 
-Where pictures differ, NAME.actual.npy and NAME.actual.png are left beside NAME.npy.
+If an image differs, NAME.actual.npy and NAME.actual.png are written beside NAME.npy.
 """
 
 import argparse
@@ -21,8 +21,8 @@ def file_name(camera):
     return re.sub(r"[^A-Za-z0-9_-]+", "_", camera) or "camera"
 
 
-def pictures(view, frames):
-    """Every camera of the scene, each drawn from a fresh start in lockstep: always the same."""
+def render_cameras(view, frames):
+    """Renders every camera of the scene in lockstep, from a reset: repeatable results."""
     view.frame.run()
     for camera in view.scene.info()["cameras"] or ["fit"]:
         if camera == "fit":
@@ -31,16 +31,16 @@ def pictures(view, frames):
             view.camera.set(name=camera)
         try:
             view.step(frames)
-            drawn = view.array(), view.capture()
+            rendered = view.array(), view.capture()
         finally:
             view.frame.run()
-        yield file_name(camera), *drawn
+        yield file_name(camera), *rendered
 
 
-def check(folder, name, actual, picture, tolerance):
-    """Whether the mean difference to what was kept is small enough; 255 is white against black."""
-    kept = os.path.join(folder, name + ".npy")
-    expected = numpy.load(kept) if os.path.exists(kept) else None
+def check(folder, name, actual, image, tolerance):
+    """Whether the mean difference to the stored image, 0 to 255, is at most `tolerance`."""
+    stored = os.path.join(folder, name + ".npy")
+    expected = numpy.load(stored) if os.path.exists(stored) else None
     if expected is None or expected.shape != actual.shape:
         difference = 255.0
     else:
@@ -49,7 +49,7 @@ def check(folder, name, actual, picture, tolerance):
     print(f"{name}: {'same' if good else 'DIFFERENT'}, {difference:.4f}")
     if not good:
         numpy.save(os.path.join(folder, name + ".actual.npy"), actual)
-        picture.save(os.path.join(folder, name + ".actual.png"))
+        image.save(os.path.join(folder, name + ".actual.png"))
     return good
 
 
@@ -61,17 +61,17 @@ def main():
     parser.add_argument("--frames", type=int, default=32)
     parser.add_argument("--tolerance", type=float, default=0.5)
     parser.add_argument("--folder", default="expected")
-    parser.add_argument("--update", action="store_true", help="keep what is drawn now")
+    parser.add_argument("--update", action="store_true", help="store the current images")
     options = parser.parse_args()
     os.makedirs(options.folder, exist_ok=True)
     good = True
     with open_view(options, *options.size, options.scene) as view:
-        for name, actual, picture in pictures(view, options.frames):
+        for name, actual, image in render_cameras(view, options.frames):
             if options.update:
                 numpy.save(os.path.join(options.folder, name + ".npy"), actual)
-                print(f"{name}: kept")
+                print(f"{name}: stored")
             else:
-                good &= check(options.folder, name, actual, picture, options.tolerance)
+                good &= check(options.folder, name, actual, image, options.tolerance)
     sys.exit(0 if good else 1)
 
 

@@ -77,7 +77,7 @@ struct Change {
 };
 
 /// Declares a member of a message, in its `static constexpr auto fields()`:
-///   return std::tuple{field("width", &Size::width, "Picture width.").range(16, 8192)};
+///   return std::tuple{field("width", &Size::width, "Frame width.").range(16, 8192)};
 /// Members may be bool, 32 or 64 bit integers, float, double, std::string, a HELIOGRAPH_ENUM,
 /// std::array and std::vector of those, std::optional, Change, another message, or RawJson.
 template <class Struct, class Member>

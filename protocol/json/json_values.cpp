@@ -35,10 +35,10 @@ Result<std::int64_t> read_integer(const json& value, const std::string& path, Nu
   const Result<double> number = read_number(value, path, range);
   if (!number) {
     if (value.is_number()) return number.error();
-    return error::invalid(path, "must be a whole number", range_text(range));
+    return error::invalid(path, "must be an integer", range_text(range));
   }
   if (*number != std::trunc(*number)) {
-    return error::invalid(path, "must be a whole number", range_text(range));
+    return error::invalid(path, "must be an integer", range_text(range));
   }
   if (std::abs(*number) > exact_integers) {
     return error::invalid(path, "is out of range", range_text({-exact_integers, exact_integers}));
@@ -59,13 +59,13 @@ Result<double> read_number(const json& value, const std::string& path, NumberRan
 }
 
 Result<std::string> read_text(const json& value, const std::string& path) {
-  if (!value.is_string()) return error::invalid(path, "must be a text");
+  if (!value.is_string()) return error::invalid(path, "must be a string");
   return value.get<std::string>();
 }
 
 Result<std::size_t> read_choice(const json& value, const std::string& path,
                                 std::span<const std::string_view> choices) {
-  if (!value.is_string()) return error::invalid(path, "must be a text", choices_text(choices));
+  if (!value.is_string()) return error::invalid(path, "must be a string", choices_text(choices));
   const std::string& name = value.get_ref<const std::string&>();
   for (std::size_t i = 0; i < choices.size(); ++i) {
     if (choices[i] == name) return i;
@@ -98,7 +98,7 @@ std::string number_text(double value) {
 }
 
 std::string range_text(NumberRange range) {
-  // The limits of float itself are no limits that anybody wants to read.
+  // The range of float itself is not a useful limit.
   constexpr double widest = std::numeric_limits<float>::max();
   const bool from = range.minimum > -widest;
   const bool to = range.maximum < widest;

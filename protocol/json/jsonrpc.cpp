@@ -17,8 +17,8 @@ namespace {
 
 using nlohmann::json;
 
-/// Depth of nested arrays and objects, counted without building them; brackets in strings do not
-/// count. Text that is not JSON gets some number: the parser refuses it afterwards.
+/// Depth of nested arrays and objects, found without parsing; brackets in strings are skipped. The
+/// result for invalid JSON is arbitrary: the parser refuses it afterwards.
 std::size_t nesting_depth(std::string_view text) {
   std::size_t depth = 0;
   std::size_t deepest = 0;
@@ -52,23 +52,23 @@ Error invalid_request(std::string path, std::string reason, std::string limit = 
                      std::move(limit));
 }
 
-/// The parts of one request that has the shape of JSON-RPC.
-struct Call {
-  std::optional<json> id;  ///< none: a notification
+/// The members of a JSON-RPC request.
+struct ParsedCall {
+  std::optional<json> id;  ///< absent: a notification
   std::string method;
   RawJson params;
 };
 
-Result<Call> read_call(const json& request) {
+Result<ParsedCall> read_call(const json& request) {
   const auto version = request.find("jsonrpc");
   if (version == request.end() || *version != "2.0") {
     return invalid_request("jsonrpc", "must be \"2.0\"");
   }
   const auto method = request.find("method");
   if (method == request.end() || !method->is_string()) {
-    return invalid_request("method", "must be a text");
+    return invalid_request("method", "must be a string");
   }
-  Call call;
+  ParsedCall call;
   call.method = method->get<std::string>();
   if (const auto id = request.find("id"); id != request.end()) call.id = *id;
 
@@ -130,7 +130,7 @@ class Dispatcher::Exchange : public std::enable_shared_from_this<Exchange> {
   void close() { settle(std::nullopt, {}); }
 
  private:
-  /// One open call. Its last owner's end answers it, so that no caller waits for ever.
+  /// One pending call. Its destructor completes it, so that every caller gets a response.
   class Pending {
    public:
     Pending(std::shared_ptr<Exchange> exchange, std::size_t slot, json id)
@@ -145,7 +145,7 @@ class Dispatcher::Exchange : public std::enable_shared_from_this<Exchange> {
         exchange_->settle(
             slot_, result ? result_text(id_, *result) : error_answer(RawJson(id_), result.error()));
       } catch (...) {
-        // Out of memory or a transport that fails: there is nobody left to tell.
+        // Out of memory or a failed transport: no receiver is left.
       }
     }
 
@@ -181,31 +181,25 @@ class Dispatcher::Exchange : public std::enable_shared_from_this<Exchange> {
   std::size_t open_ = 1;  // for close()
 };
 
-Dispatcher::Dispatcher(DispatchLimits limits, std::span<const MethodDescriptor> methods)
+Dispatcher::Dispatcher(DispatchLimits limits, std::span<const MethodDescriptor> served)
     : limits_(limits) {
-  for (const MethodDescriptor& method : methods) entries_[method.name] = {&method, {}};
-  if (entries_.contains("rpc.discover")) {
-    add<Empty, RawJson>("rpc.discover",
-                        [](Empty, const CallContext&, auto done) { done(openrpc_document()); });
+  for (const MethodDescriptor& method : served) entries_[method.name] = {&method, {}};
+  if (entries_.contains(methods::rpc_discover::name)) {
+    add<methods::rpc_discover>(
+        [](Empty, const CallContext&, auto done) { done(openrpc_document()); });
   }
-  if (entries_.contains("settings.schema")) {
-    add<Empty, RawJson>("settings.schema", [](Empty, const CallContext&, auto done) {
-      done(RawJson(settings_schema()));
-    });
+  if (entries_.contains(methods::settings_schema::name)) {
+    add<methods::settings_schema>(
+        [](Empty, const CallContext&, auto done) { done(RawJson(settings_schema())); });
   }
 }
 
-void Dispatcher::add_raw(std::string_view name, std::type_index request, std::type_index response,
-                         RawHandler handler) {
+void Dispatcher::add_raw(std::string_view name, RawHandler handler) {
   const auto found = entries_.find(name);
   if (found == entries_.end()) {
-    throw std::logic_error("no method is called " + std::string(name));
+    throw std::logic_error("there is no method " + std::string(name));
   }
   Entry& entry = found->second;
-  if (entry.method->params != request || entry.method->result != response) {
-    throw std::logic_error("the handler of " + std::string(name) +
-                           " has other types than the method");
-  }
   if (entry.handler) throw std::logic_error(std::string(name) + " has two handlers");
   entry.handler = std::move(handler);
 }
@@ -267,14 +261,14 @@ void Dispatcher::handle_one(const RawJson& request, const CallContext& context,
     return exchange->expect(nullptr)(invalid_request({}, "a call must be an object"));
   }
   if (!valid_id(value)) {
-    return exchange->expect(nullptr)(invalid_request("id", "must be a text, a number or null"));
+    return exchange->expect(nullptr)(invalid_request("id", "must be a string, a number or null"));
   }
-  const Result<Call> call = read_call(value);
+  const Result<ParsedCall> call = read_call(value);
   if (!call) return exchange->expect(id_of(value))(call.error());
 
   const Result<const Entry*> entry = find(call->method);
   if (!call->id) {
-    if (entry && (*entry)->method->may_be_notification) {
+    if (entry && (*entry)->method->may_be_notification()) {
       invoke(**entry, call->params, context, [](const Result<RawJson>&) {});
     }
     return;
@@ -291,11 +285,10 @@ void Dispatcher::invoke(const Entry& entry, const RawJson& params, const CallCon
     done(error::internal());
   };
   if (!params.value().is_object()) {
-    return done(error::invalid("params", "must be an object", "parameters go by name"));
+    return done(error::invalid("params", "must be an object", "parameters are passed by name"));
   }
-  if (context.view_only && !entry.method->for_watchers) {
-    return done(error::make(ErrorCode::forbidden, "method",
-                            "the token of this client lets it watch but not steer"));
+  if (context.view_only && !entry.method->read_only()) {
+    return done(error::make(ErrorCode::forbidden, "method", "the client's token is read-only"));
   }
   try {
     if (gate_) {

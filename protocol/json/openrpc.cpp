@@ -21,20 +21,20 @@ struct ErrorDescription {
 constexpr auto error_descriptions = std::to_array<ErrorDescription>({
     {"ParseError", ErrorCode::parse_error, "The text is not JSON."},
     {"InvalidRequest", ErrorCode::invalid_request, "The JSON is not a request."},
-    {"UnknownMethod", ErrorCode::unknown_method, "No method has this name."},
-    {"InvalidParams", ErrorCode::invalid_params, "A parameter is missing or not acceptable."},
+    {"UnknownMethod", ErrorCode::unknown_method, "Unknown method."},
+    {"InvalidParams", ErrorCode::invalid_params, "A parameter is missing or invalid."},
     {"Internal", ErrorCode::internal, "The server failed."},
-    {"Unauthenticated", ErrorCode::unauthenticated, "The caller has not shown who it is."},
-    {"Forbidden", ErrorCode::forbidden, "The caller may not do this."},
-    {"RateLimited", ErrorCode::rate_limited, "Too many calls in too little time."},
-    {"NotFound", ErrorCode::not_found, "What was named does not exist."},
-    {"Conflict", ErrorCode::conflict, "The request contradicts what happened meanwhile."},
+    {"Unauthenticated", ErrorCode::unauthenticated, "The caller is not authenticated."},
+    {"Forbidden", ErrorCode::forbidden, "The caller is not allowed to do this."},
+    {"RateLimited", ErrorCode::rate_limited, "Too many calls in a short time."},
+    {"NotFound", ErrorCode::not_found, "The named object does not exist."},
+    {"Conflict", ErrorCode::conflict, "The request conflicts with another change."},
     {"TooLarge", ErrorCode::too_large, "The message exceeds a limit."},
-    {"Full", ErrorCode::full, "The server has no room for more."},
-    {"NotReady", ErrorCode::not_ready, "What the call needs is not there yet."},
+    {"Full", ErrorCode::full, "A limit of the server is reached."},
+    {"NotReady", ErrorCode::not_ready, "A prerequisite of the call is missing."},
 });
 
-/// Errors that any call may get.
+/// Errors that every method may return.
 constexpr std::array usual_errors{ErrorCode::invalid_params, ErrorCode::not_found,
                                   ErrorCode::too_large,      ErrorCode::not_ready,
                                   ErrorCode::rate_limited,   ErrorCode::internal};
@@ -57,15 +57,15 @@ json error_data_schema() {
     return json{{"type", "string"}, {"description", description}};
   };
   return {{"type", "object"},
-          {"description", "What error.data holds."},
+          {"description", "The content of error.data."},
           {"properties",
-           {{"path", text("The parameter or setting at fault.")},
+           {{"path", text("The parameter or setting that is wrong.")},
             {"reason", text("What is wrong with it.")},
-            {"limit", text("What would be right.")}}},
+            {"limit", text("The valid values.")}}},
           {"required", {"path", "reason"}}};
 }
 
-/// OpenRPC lists parameters one by one; ours are the members of the params object.
+/// OpenRPC lists parameters individually; here they are the members of the params object.
 json params_of(const json& schema) {
   json params = json::array();
   const json required = schema.value("required", json::array());
@@ -113,9 +113,9 @@ json method_of(const MethodDescriptor& method) {
           {"result", {{"name", "result"}, {"schema", method.result_schema().value()}}},
           {"errors", errors_of(method)},
           {"examples", json::array({example_of(method)})},
-          {"x-may-be-notification", method.may_be_notification},
-          {"x-needs-control", method.needs_control},
-          {"x-for-watchers", method.for_watchers}};
+          {"x-may-be-notification", method.may_be_notification()},
+          {"x-needs-control", method.needs_control()},
+          {"x-read-only", method.read_only()}};
 }
 
 }  // namespace
@@ -127,19 +127,19 @@ RawJson openrpc_document() {
        {{"title", "Heliograph"},
         {"version", HELIOGRAPH_VERSION},
         {"description",
-         "Steers a render server. JSON-RPC 2.0 as text messages of a WebSocket at /ws "
+         "Controls a render server. JSON-RPC 2.0 as text messages of a WebSocket at /ws "
          "(subprotocol heliograph.v1) or as POST /rpc."},
         {"license", {{"name", "MIT"}}}}},
-      // Relative to where this document was fetched: the server need not know its own address.
+      // Relative to the address of this document: the server need not know its own.
       {"servers", json::array({{{"name", "this server"}, {"url", "/rpc"}}})},
       {"methods", json::array()},
       {"x-notifications", json::array()},
       {"components",
        {{"errors", errors_component()}, {"schemas", {{"ErrorData", error_data_schema()}}}}}};
-  for (const MethodDescriptor& method : methods()) {
+  for (const MethodDescriptor& method : method_table()) {
     document["methods"].push_back(method_of(method));
   }
-  for (const NotificationDescriptor& notification : notifications()) {
+  for (const NotificationDescriptor& notification : notification_table()) {
     document["x-notifications"].push_back(
         {{"name", notification.name},
          {"summary", notification.summary},

@@ -9,7 +9,7 @@
 
 namespace heliograph::protocol {
 
-/// An immutable JSON value that can be a member of a message without pulling in the JSON library:
+/// An immutable JSON value that can be a member of a message without including the JSON library:
 /// settings trees, schemas, documents. Cheap to copy (shared). Default: null.
 class RawJson {
  public:

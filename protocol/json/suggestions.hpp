@@ -6,8 +6,8 @@
 
 namespace heliograph::protocol {
 
-/// "; did you mean camera.set?" with the candidate nearest to a mistyped name, or nothing if none
-/// is near enough to be meant.
+/// "; did you mean camera.set?" with the candidate nearest to a mistyped name; empty if none is
+/// near enough.
 std::string suggestion(std::string_view name, const std::vector<std::string_view>& candidates);
 
 }  // namespace heliograph::protocol

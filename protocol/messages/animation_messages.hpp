@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "protocol/json/fields.hpp"
+#include "protocol/limits.hpp"
 
-// Messages about clips: what moves in a scene, and when.
+// Messages about animation clips and their playback.
 
 namespace heliograph::protocol {
 
@@ -18,7 +19,7 @@ struct ClipInfo {
   static constexpr auto fields() {
     return std::tuple{
         field("name", &ClipInfo::name, "Name for animation.play."),
-        field("duration", &ClipInfo::duration, "Length; the clip loops.").unit("seconds"),
+        field("duration", &ClipInfo::duration, "Duration; the clip loops.").unit("seconds"),
     };
   }
   bool operator==(const ClipInfo&) const = default;
@@ -36,13 +37,14 @@ struct AnimationState {
   static constexpr auto fields() {
     return std::tuple{
         field("clips", &AnimationState::clips, "The clips of the scene."),
-        field("clip", &AnimationState::clip, "The clip that poses the scene, null at rest.")
+        field("clip", &AnimationState::clip,
+              "The clip that poses the scene; null: the default pose.")
             .or_null(),
-        field("playing", &AnimationState::playing, "Whether time passes."),
-        field("seconds", &AnimationState::seconds, "Where the clip stands.").unit("seconds"),
-        field("rate", &AnimationState::rate, "Seconds of the clip that pass in a second."),
+        field("playing", &AnimationState::playing, "Whether the clip is playing."),
+        field("seconds", &AnimationState::seconds, "Time in the clip.").unit("seconds"),
+        field("rate", &AnimationState::rate, "Playback speed: clip seconds per second."),
         field("lockstep", &AnimationState::lockstep,
-              "Whether time passes by frame.step alone, also while playing."),
+              "Whether time advances by frame.step only, also while playing."),
         field("rev", &AnimationState::rev, "Revision of the session's state."),
     };
   }
@@ -55,7 +57,7 @@ struct AnimationChanged {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("animation", &AnimationChanged::animation, "Where the clip stands now, and how."),
+        field("animation", &AnimationChanged::animation, "The new state of playback."),
         field("by", &AnimationChanged::by, "The viewer that changed it; empty: the server."),
     };
   }
@@ -69,10 +71,10 @@ struct AnimationPlay {
   static constexpr auto fields() {
     return std::tuple{
         field("clip", &AnimationPlay::clip,
-              "The clip to play from its start; left out: go on with the one that is there, or "
-              "play the first.")
-            .length(1, 256),
-        field("rate", &AnimationPlay::rate, "Seconds of the clip that pass in a second.")
+              "The clip to play from its start; absent: continue the current clip, or play the "
+              "first.")
+            .length(1, max_node_name),
+        field("rate", &AnimationPlay::rate, "Playback speed: clip seconds per second.")
             .range(0.01, 100),
     };
   }
@@ -84,7 +86,7 @@ struct AnimationSeek {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("seconds", &AnimationSeek::seconds, "Where the clip shall stand.")
+        field("seconds", &AnimationSeek::seconds, "Time in the clip to seek to.")
             .range(0, 1e6)
             .unit("seconds"),
     };
@@ -97,7 +99,7 @@ struct AnimationRate {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("rate", &AnimationRate::rate, "Seconds of the clip that pass in a second.")
+        field("rate", &AnimationRate::rate, "Playback speed: clip seconds per second.")
             .range(0.01, 100),
     };
   }

@@ -90,14 +90,15 @@ Error malformed(std::string path, std::string reason, std::string limit = {}) {
   return error::make(ErrorCode::parse_error, std::move(path), std::move(reason), std::move(limit));
 }
 
-Result<void> check_picture(const FrameHeader& header) {
+Result<void> check_size(const FrameHeader& header) {
   if (header.type == FrameType::timing) return {};
-  if (header.width == 0 || header.height == 0) return malformed("width", "empty picture");
+  if (header.width == 0 || header.height == 0)
+    return malformed("width", "is 0: the image is empty");
   if (header.x + header.width > header.full_width) {
-    return malformed("full_width", "the picture exceeds it");
+    return malformed("full_width", "is smaller than x + width");
   }
   if (header.y + header.height > header.full_height) {
-    return malformed("full_height", "the picture exceeds it");
+    return malformed("full_height", "is smaller than y + height");
   }
   return {};
 }
@@ -114,10 +115,10 @@ std::array<std::uint8_t, frame_header_bytes> encode_frame_header(const FrameHead
 
 Result<FrameHeader> decode_frame_header(std::span<const std::uint8_t> message) {
   if (message.size() < frame_header_bytes) {
-    return malformed({}, "shorter than a frame header", "64 bytes");
+    return malformed({}, "the message is shorter than a frame header", "64 bytes");
   }
   if (!std::equal(magic.begin(), magic.end(), message.begin())) {
-    return malformed("magic", "not a frame", "HVRF");
+    return malformed("magic", "is wrong: the message is not a frame", "HVRF");
   }
   FrameHeader header;
   Reader reader{message.subspan(magic.size(), frame_header_bytes - magic.size())};
@@ -129,10 +130,10 @@ Result<FrameHeader> decode_frame_header(std::span<const std::uint8_t> message) {
   if (!known(header.type)) return malformed("type", "unknown frame type");
   if (!known(header.codec)) return malformed("codec", "unknown codec");
   if (header.header_bytes < frame_header_bytes || header.header_bytes > message.size()) {
-    return malformed("header_bytes", "the payload begins outside the message");
+    return malformed("header_bytes", "places the payload outside the message");
   }
-  const Result<void> picture = check_picture(header);
-  if (!picture) return picture.error();
+  const Result<void> size = check_size(header);
+  if (!size) return size.error();
   return header;
 }
 

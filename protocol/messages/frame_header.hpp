@@ -24,16 +24,15 @@ enum class FrameCodec : std::uint8_t {
 /// Bits of FrameHeader::flags. Readers ignore bits they do not know.
 namespace frame_flag {
 inline constexpr std::uint8_t key = 1;               ///< decodable without earlier frames
-inline constexpr std::uint8_t final = 2;             ///< no better picture of this state follows
-inline constexpr std::uint8_t first_after_drop = 4;  ///< frames before this one were left out
-inline constexpr std::uint8_t discontinuity = 8;     ///< cut, resize or new scene
-inline constexpr std::uint8_t has_trailer = 16;      ///< JSON with its length follows the payload
+inline constexpr std::uint8_t final = 2;             ///< no better frame of this state follows
+inline constexpr std::uint8_t first_after_drop = 4;  ///< earlier frames were dropped
+inline constexpr std::uint8_t discontinuity = 8;     ///< camera jump, resize or new scene
 }  // namespace frame_flag
 
 inline constexpr std::size_t frame_header_bytes = 64;
 inline constexpr std::uint8_t frame_header_version = 1;
 
-/// The head of every binary message to a viewer; the encoded picture follows. On the wire: 64
+/// The header of every binary message to a viewer; the encoded image follows. On the wire: 64
 /// bytes, little-endian, in the order of these members after the magic bytes "HVRF".
 struct FrameHeader {
   std::uint8_t version = frame_header_version;
@@ -42,13 +41,13 @@ struct FrameHeader {
   std::uint8_t flags = 0;
   std::uint16_t header_bytes = frame_header_bytes;  ///< where the payload begins
   std::uint16_t quality = 0;                        ///< in the codec's units
-  std::uint32_t frame_seq = 0;       ///< counts per viewer: gaps are frames that were dropped
-  std::uint32_t render_id = 0;       ///< counts per session: equal means the same picture
-  std::uint32_t input_seq_echo = 0;  ///< newest camera.set `seq` that this picture shows
-  std::uint32_t state_rev = 0;       ///< settings revision that was rendered
+  std::uint32_t frame_seq = 0;  ///< per viewer, increasing: gaps are dropped frames
+  std::uint32_t render_id = 0;  ///< per session, increasing: equal means the same rendered frame
+  std::uint32_t input_seq_echo = 0;  ///< newest camera.set `seq` that this frame shows
+  std::uint32_t state_rev = 0;       ///< revision of the session that was rendered
   std::uint16_t width = 0;           ///< of the payload, pixels
   std::uint16_t height = 0;
-  std::uint16_t x = 0;  ///< where a tile lies in the full picture, pixels from the top left
+  std::uint16_t x = 0;  ///< of a tile in the full image, pixels from the top left
   std::uint16_t y = 0;
   std::uint16_t full_width = 0;
   std::uint16_t full_height = 0;
@@ -63,9 +62,10 @@ struct FrameHeader {
 
 std::array<std::uint8_t, frame_header_bytes> encode_frame_header(const FrameHeader& header);
 
-/// Reads the header at the start of `message`. Refuses (ErrorCode::parse_error, path = the field)
-/// what is too short, lacks the magic bytes, has another version, an unknown type or codec, a
-/// payload offset outside the message, or a picture that is empty or exceeds its full size.
+/// Reads the header at the start of `message`. Returns ErrorCode::parse_error, with the field as
+/// path, if the message is too short, lacks the magic bytes, has another version, an unknown type
+/// or codec, a payload offset outside the message, or an image that is empty or exceeds its full
+/// size.
 Result<FrameHeader> decode_frame_header(std::span<const std::uint8_t> message);
 
 }  // namespace heliograph::protocol

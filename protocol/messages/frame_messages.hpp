@@ -5,9 +5,10 @@
 #include <string>
 
 #include "protocol/json/fields.hpp"
+#include "protocol/limits.hpp"
 #include "protocol/settings/settings.hpp"
 
-// Messages about frames that are rendered on request: in lockstep, and the path traced reference.
+// Messages about frames rendered on request: lockstep stepping and the path traced reference.
 
 namespace heliograph::protocol {
 
@@ -18,12 +19,10 @@ struct FrameStep {
   static constexpr auto fields() {
     return std::tuple{
         field("frames", &FrameStep::frames,
-              "How many frames to render; 0 enters lockstep and renders none.")
+              "Number of frames to render; 0 enters lockstep without rendering.")
             .range(0, 100000)
             .or_default(),
-        field("dt", &FrameStep::dt, "How much time passes before each of them.")
-            .range(0, 10)
-            .unit("seconds"),
+        field("dt", &FrameStep::dt, "Time step before each frame.").range(0, 10).unit("seconds"),
     };
   }
   bool operator==(const FrameStep&) const = default;
@@ -38,11 +37,10 @@ struct StepState {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("lockstep", &StepState::lockstep, "Whether time passes by frame.step alone."),
-        field("seconds", &StepState::seconds, "Time that passed since lockstep was entered.")
-            .unit("seconds"),
+        field("lockstep", &StepState::lockstep, "Whether time advances by frame.step only."),
+        field("seconds", &StepState::seconds, "Time since lockstep was entered.").unit("seconds"),
         field("frames", &StepState::frames, "Frames rendered since lockstep was entered."),
-        field("samples", &StepState::samples, "Samples accumulated in the newest of them."),
+        field("samples", &StepState::samples, "Samples per pixel accumulated in the newest frame."),
         field("rev", &StepState::rev, "Revision of the session's state."),
     };
   }
@@ -55,9 +53,9 @@ struct LockstepChanged {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("state", &LockstepChanged::state, "What frame.step would answer now."),
+        field("state", &LockstepChanged::state, "The state that frame.step would return now."),
         field("by", &LockstepChanged::by,
-              "The viewer that began or ended lockstep; empty: the server."),
+              "The viewer that entered or left lockstep; empty: the server."),
     };
   }
   bool operator==(const LockstepChanged&) const = default;
@@ -69,11 +67,11 @@ struct ReferenceStart {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("scope", &ReferenceStart::scope, "Which light paths: the setting reference.scope.")
+        field("scope", &ReferenceStart::scope, "Light paths to trace: sets reference.scope.")
             .or_default(),
         field("samples", &ReferenceStart::samples,
-              "Samples per pixel to gather: the setting accumulation.max_samples.")
-            .range(1, 65536),
+              "Samples per pixel to accumulate: sets accumulation.max_samples.")
+            .range(1, max_samples_per_pixel),
     };
   }
   bool operator==(const ReferenceStart&) const = default;
@@ -83,18 +81,19 @@ struct ReferenceState {
   bool shown = false;
   ReferenceScope scope = ReferenceScope::same_paths;
   std::uint32_t samples = 0;
-  std::uint32_t wanted = 0;
+  std::uint32_t target_samples = 0;
   bool finished = false;
   std::uint32_t rev = 0;
 
   static constexpr auto fields() {
     return std::tuple{
         field("shown", &ReferenceState::shown,
-              "Whether the path traced truth is shown: the setting reference.use is always."),
-        field("scope", &ReferenceState::scope, "Which light paths it follows."),
-        field("samples", &ReferenceState::samples, "Samples gathered in each pixel so far."),
-        field("wanted", &ReferenceState::wanted, "Samples that it will have at the end."),
-        field("finished", &ReferenceState::finished, "Whether it has them."),
+              "Whether the reference image is shown: the setting reference.use is always."),
+        field("scope", &ReferenceState::scope, "Light paths that are traced."),
+        field("samples", &ReferenceState::samples, "Samples per pixel accumulated so far."),
+        field("target_samples", &ReferenceState::target_samples,
+              "Samples per pixel of the finished image."),
+        field("finished", &ReferenceState::finished, "Whether the target is reached."),
         field("rev", &ReferenceState::rev, "Revision of the session's state."),
     };
   }

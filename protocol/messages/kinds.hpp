@@ -9,7 +9,7 @@ HELIOGRAPH_ENUM(TracerKind, embree, software, ray_query, ray_pipeline)
 HELIOGRAPH_ENUM(PassKind, device, host)
 HELIOGRAPH_ENUM(ImageFormat, png, jpeg, npy, exr)
 HELIOGRAPH_ENUM(LightType, directional, point, spot, rectangle, disk)
-HELIOGRAPH_ENUM(ControlMode, everyone, one)
+HELIOGRAPH_ENUM(ControlMode, shared, exclusive)
 HELIOGRAPH_ENUM(ViewerRole, view, control)
 HELIOGRAPH_ENUM(ControlAction, take, give, release)
 

@@ -9,7 +9,7 @@
 #include "protocol/messages/animation_messages.hpp"
 #include "protocol/messages/session_messages.hpp"
 
-// Messages about which scene is shown: what there is, what it takes to load one, what it is.
+// Messages about scenes: the catalogue, loading, the loaded scene.
 
 namespace heliograph::protocol {
 
@@ -33,7 +33,7 @@ struct SceneListResult {
   static constexpr auto fields() {
     return std::tuple{
         field("scenes", &SceneListResult::scenes, "The scenes of the server's catalogue."),
-        field("current", &SceneListResult::current, "Name of the loaded scene.").or_null(),
+        field("current", &SceneListResult::current, "Name of the loaded scene, or null.").or_null(),
     };
   }
   bool operator==(const SceneListResult&) const = default;
@@ -46,14 +46,14 @@ struct SceneLoad {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("name", &SceneLoad::name, "A name that scene.list gave.").length(1, 512),
+        field("name", &SceneLoad::name, "A name from scene.list.").length(1, max_scene_name),
         field("scene", &SceneLoad::scene,
-              "Which scene of a file that holds several: its name, or its number from 0. Left out: "
+              "The scene to load from a file with several: its name, or its index from 0. Absent: "
               "the file's default.")
-            .length(1, 256),
+            .length(1, max_node_name),
         field("variant", &SceneLoad::variant,
-              "Which of the file's material variants. Left out: the materials outside of them.")
-            .length(1, 256),
+              "Material variant of the file to apply. Absent: the default materials.")
+            .length(1, max_node_name),
     };
   }
   bool operator==(const SceneLoad&) const = default;
@@ -65,7 +65,7 @@ struct SceneCancelled {
   static constexpr auto fields() {
     return std::tuple{
         field("cancelled", &SceneCancelled::cancelled,
-              "Whether a scene was being loaded; its scene.load is answered by an error."),
+              "Whether a load was cancelled; its scene.load returns an error."),
     };
   }
   bool operator==(const SceneCancelled&) const = default;
@@ -77,14 +77,14 @@ struct Bounds {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("min", &Bounds::min, "Least corner, world space.").unit("metres"),
-        field("max", &Bounds::max, "Greatest corner, world space.").unit("metres"),
+        field("min", &Bounds::min, "Minimum corner, world space.").unit("metres"),
+        field("max", &Bounds::max, "Maximum corner, world space.").unit("metres"),
     };
   }
   bool operator==(const Bounds&) const = default;
 };
 
-/// Memory of a scene while it is loaded.
+/// Memory use of a loaded scene.
 struct SceneMemory {
   std::uint64_t file = 0;
   std::uint64_t host = 0;
@@ -92,11 +92,11 @@ struct SceneMemory {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("file", &SceneMemory::file, "The files that were read.").unit("bytes"),
-        field("host", &SceneMemory::host, "Geometry, animation and tables of the server.")
+        field("file", &SceneMemory::file, "The files on disk.").unit("bytes"),
+        field("host", &SceneMemory::host, "Geometry, animations and tables in the server's memory.")
             .unit("bytes"),
         field("device", &SceneMemory::device,
-              "Tables, textures and acceleration structure on the device.")
+              "Tables, textures and acceleration structures on the device.")
             .unit("bytes"),
     };
   }
@@ -133,32 +133,33 @@ struct SceneInfo {
     return std::tuple{
         field("name", &SceneInfo::name, "Name in the catalogue."),
         field("triangles", &SceneInfo::triangles, "Triangles over all instances."),
-        field("instances", &SceneInfo::instances, "Meshes as placed in the scene."),
-        field("meshes", &SceneInfo::meshes, "Different meshes."),
+        field("instances", &SceneInfo::instances, "Instances of meshes."),
+        field("meshes", &SceneInfo::meshes, "Unique meshes."),
         field("materials", &SceneInfo::materials, "Materials."),
         field("textures", &SceneInfo::textures, "Textures."),
         field("lights", &SceneInfo::lights, "Punctual and directional lights."),
-        field("vertices", &SceneInfo::vertices, "Vertices of the different meshes."),
+        field("vertices", &SceneInfo::vertices, "Vertices of the unique meshes."),
         field("nodes", &SceneInfo::nodes, "Nodes of the scene's hierarchy."),
-        field("images", &SceneInfo::images, "Different images that textures use."),
-        field("texels", &SceneInfo::texels, "Texels of these, at full size."),
-        field("deforming", &SceneInfo::deforming, "Meshes that joints or morph targets move."),
+        field("images", &SceneInfo::images, "Unique images that textures use."),
+        field("texels", &SceneInfo::texels, "Texels of the images at full size."),
+        field("deforming", &SceneInfo::deforming, "Meshes with skinning or morph targets."),
         field("material_names", &SceneInfo::material_names, "Names of the materials."),
         field("light_names", &SceneInfo::light_names, "Names of the lights."),
         field("environment", &SceneInfo::environment,
-              "File of the environment that came with the scene; null: even white.")
+              "File of the scene's own environment; null: constant white.")
             .or_null(),
         field("cameras", &SceneInfo::cameras, "Names for camera.set."),
-        field("clips", &SceneInfo::clips, "What animation.play can play."),
-        field("scenes", &SceneInfo::scenes, "Names of the file's scenes, which may be empty."),
-        field("scene", &SceneInfo::scene, "Number of the one that is shown."),
+        field("clips", &SceneInfo::clips, "Animation clips for animation.play."),
+        field("scenes", &SceneInfo::scenes, "Names of the file's scenes; a name may be empty."),
+        field("scene", &SceneInfo::scene, "Index of the loaded scene in `scenes`."),
         field("variants", &SceneInfo::variants, "Names of the file's material variants."),
-        field("variant", &SceneInfo::variant, "The one that is shown; null: the file's default.")
+        field("variant", &SceneInfo::variant,
+              "The applied material variant; null: the default materials.")
             .or_null(),
-        field("bounds", &SceneInfo::bounds, "Box around everything."),
-        field("memory", &SceneInfo::memory, "What the scene takes."),
+        field("bounds", &SceneInfo::bounds, "Bounding box of the scene."),
+        field("memory", &SceneInfo::memory, "Memory use of the scene."),
         field("warnings", &SceneInfo::warnings,
-              "What the importer left out, approximated or repaired."),
+              "What the importer skipped, approximated or repaired."),
     };
   }
   bool operator==(const SceneInfo&) const = default;
@@ -172,8 +173,9 @@ struct SceneProgress {
   static constexpr auto fields() {
     return std::tuple{
         field("name", &SceneProgress::name, "The scene that is being loaded."),
-        field("stage", &SceneProgress::stage, "What is being done."),
-        field("fraction", &SceneProgress::fraction, "How much is done.").range(0, 1),
+        field("stage", &SceneProgress::stage, "Stage of loading."),
+        field("fraction", &SceneProgress::fraction, "Fraction of the work that is done.")
+            .range(0, 1),
     };
   }
   bool operator==(const SceneProgress&) const = default;
@@ -183,7 +185,7 @@ struct SceneChanged {
   SceneInfo scene;
 
   static constexpr auto fields() {
-    return std::tuple{field("scene", &SceneChanged::scene, "The scene that is shown now.")};
+    return std::tuple{field("scene", &SceneChanged::scene, "The scene that was loaded.")};
   }
   bool operator==(const SceneChanged&) const = default;
 };
@@ -194,7 +196,7 @@ struct SceneUnloaded {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("name", &SceneUnloaded::name, "The scene that was shown."),
+        field("name", &SceneUnloaded::name, "The scene that was unloaded."),
         field("by", &SceneUnloaded::by, "The viewer that unloaded it; empty: the server."),
     };
   }

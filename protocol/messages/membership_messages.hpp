@@ -7,9 +7,10 @@
 
 #include "protocol/json/fields.hpp"
 #include "protocol/json/raw_json.hpp"
+#include "protocol/limits.hpp"
 #include "protocol/messages/kinds.hpp"
 
-// Messages about sessions as rooms: which there are, who is in them, who may change them.
+// Messages about sessions: their list, their viewers, control of them.
 
 namespace heliograph::protocol {
 
@@ -22,9 +23,9 @@ struct ViewerInfo {
   static constexpr auto fields() {
     return std::tuple{
         field("viewer", &ViewerInfo::viewer, "The viewer's id."),
-        field("name", &ViewerInfo::name, "What the person is called; null: nobody said.").or_null(),
-        field("control", &ViewerInfo::control, "Whether it may change what all see."),
-        field("you", &ViewerInfo::you, "Whether it is the one that is told this."),
+        field("name", &ViewerInfo::name, "Display name of the viewer; null: not given.").or_null(),
+        field("control", &ViewerInfo::control, "Whether it has control of the session."),
+        field("you", &ViewerInfo::you, "Whether it is the receiver of this message."),
     };
   }
   bool operator==(const ViewerInfo&) const = default;
@@ -36,22 +37,22 @@ struct SessionInfo {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::vector<ViewerInfo> viewers;
-  ControlMode control = ControlMode::everyone;
+  ControlMode control = ControlMode::shared;
   std::uint32_t rev = 0;
   double idle_seconds = 0.0;
 
   static constexpr auto fields() {
     return std::tuple{
         field("name", &SessionInfo::name, "Name for session.join."),
-        field("scene", &SessionInfo::scene, "The scene that is shown, null before the first.")
-            .or_null(),
-        field("width", &SessionInfo::width, "Picture width.").unit("pixels"),
-        field("height", &SessionInfo::height, "Picture height.").unit("pixels"),
-        field("viewers", &SessionInfo::viewers, "Who is in it, in order of arrival."),
-        field("control", &SessionInfo::control, "Whether all viewers may change it or only one."),
+        field("scene", &SessionInfo::scene, "The loaded scene; null: none.").or_null(),
+        field("width", &SessionInfo::width, "Frame width.").unit("pixels"),
+        field("height", &SessionInfo::height, "Frame height.").unit("pixels"),
+        field("viewers", &SessionInfo::viewers, "The viewers in it, in order of arrival."),
+        field("control", &SessionInfo::control,
+              "Whether all viewers have control (shared) or one viewer (exclusive)."),
         field("rev", &SessionInfo::rev, "Revision of the session's state."),
         field("idle_seconds", &SessionInfo::idle_seconds,
-              "Time since it last had a viewer, a call or a picture to make.")
+              "Time since the session last had a viewer, a call or a frame to render.")
             .unit("seconds"),
     };
   }
@@ -69,18 +70,23 @@ struct SessionCreate {
   static constexpr auto fields() {
     return std::tuple{
         field("name", &SessionCreate::name,
-              "Letters, digits, dots, hyphens and underscores; left out: the server chooses.")
-            .length(1, 64),
+              "Letters, digits, dots, hyphens and underscores; absent: the server chooses.")
+            .length(1, max_session_name),
         field("scene", &SessionCreate::scene,
-              "A name that scene.list gave; it is loaded before the answer comes.")
-            .length(1, 512),
-        field("width", &SessionCreate::width, "Picture width.").range(16, 16384).unit("pixels"),
-        field("height", &SessionCreate::height, "Picture height.").range(16, 16384).unit("pixels"),
+              "A name from scene.list; the call returns when the scene is loaded.")
+            .length(1, max_scene_name),
+        field("width", &SessionCreate::width, "Frame width.")
+            .range(min_frame_size, max_frame_size)
+            .unit("pixels"),
+        field("height", &SessionCreate::height, "Frame height.")
+            .range(min_frame_size, max_frame_size)
+            .unit("pixels"),
         field("settings", &SessionCreate::settings,
-              "Part of the settings tree (RFC 7386), on top of the server's own or the copied."),
+              "A merge patch of the settings tree (RFC 7386), applied to the server's defaults or "
+              "the copied settings."),
         field("copy_of", &SessionCreate::copy_of,
-              "A session whose scene, camera, clip, settings and size it starts with.")
-            .length(1, 64),
+              "A session from which scene, camera, clip, settings and size are copied.")
+            .length(1, max_session_name),
     };
   }
   bool operator==(const SessionCreate&) const = default;
@@ -91,7 +97,8 @@ struct SessionChoice {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("session", &SessionChoice::session, "A name that session.list gave.").length(1, 64),
+        field("session", &SessionChoice::session, "A name from session.list.")
+            .length(1, max_session_name),
     };
   }
   bool operator==(const SessionChoice&) const = default;
@@ -105,8 +112,8 @@ struct SessionJoined {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("session", &SessionJoined::session, "The session that is watched now."),
-        field("viewer", &SessionJoined::viewer, "This viewer's id, the same as before."),
+        field("session", &SessionJoined::session, "The session that the viewer is in now."),
+        field("viewer", &SessionJoined::viewer, "This viewer's id; it does not change."),
         field("rev", &SessionJoined::rev, "Revision of the session's state."),
         field("info", &SessionJoined::info, "The session."),
     };
@@ -124,12 +131,14 @@ struct SessionLimitsInfo {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("sessions", &SessionLimitsInfo::sessions, "Most sessions."),
-        field("viewers", &SessionLimitsInfo::viewers, "Most viewers of all sessions together."),
-        field("session_viewers", &SessionLimitsInfo::session_viewers, "Most viewers of a session."),
+        field("sessions", &SessionLimitsInfo::sessions, "Maximum number of sessions."),
+        field("viewers", &SessionLimitsInfo::viewers,
+              "Maximum number of viewers over all sessions."),
+        field("session_viewers", &SessionLimitsInfo::session_viewers,
+              "Maximum number of viewers of a session."),
         field("pixels", &SessionLimitsInfo::pixels,
-              "Most pixels of the pictures of all sessions together."),
-        field("pixels_used", &SessionLimitsInfo::pixels_used, "How many of them are taken."),
+              "Maximum sum of the frame sizes of all sessions."),
+        field("pixels_used", &SessionLimitsInfo::pixels_used, "Current sum of the frame sizes."),
         field("idle_timeout", &SessionLimitsInfo::idle_timeout,
               "Idle time after which a session other than main is closed; 0: never.")
             .unit("seconds"),
@@ -145,7 +154,7 @@ struct SessionList {
   static constexpr auto fields() {
     return std::tuple{
         field("sessions", &SessionList::sessions, "All sessions, by name."),
-        field("limits", &SessionList::limits, "What the server refuses to exceed."),
+        field("limits", &SessionList::limits, "Limits of the server."),
     };
   }
   bool operator==(const SessionList&) const = default;
@@ -159,12 +168,13 @@ struct SessionControl {
   static constexpr auto fields() {
     return std::tuple{
         field("mode", &SessionControl::mode,
-              "Whether everyone has control or one viewer: the one that `viewer` names, else the "
-              "caller."),
+              "shared: all viewers have control; exclusive: one viewer has, the one that `viewer` "
+              "names or the caller."),
         field("action", &SessionControl::action,
-              "Where one has control: take it while nobody has it, give it to `viewer`, or release "
-              "it for anybody to take."),
-        field("viewer", &SessionControl::viewer, "The id of who is to have control.").length(1, 64),
+              "In exclusive mode: take control while it is free, give it to `viewer`, or release "
+              "it."),
+        field("viewer", &SessionControl::viewer, "Id of the viewer that gets control.")
+            .length(1, max_session_name),
     };
   }
   bool operator==(const SessionControl&) const = default;
@@ -176,8 +186,8 @@ struct SessionClosed {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("session", &SessionClosed::session, "The session that has ended."),
-        field("reason", &SessionClosed::reason, "Why, in a sentence."),
+        field("session", &SessionClosed::session, "The session that was closed."),
+        field("reason", &SessionClosed::reason, "The reason, as a sentence."),
     };
   }
   bool operator==(const SessionClosed&) const = default;
@@ -189,8 +199,8 @@ struct DeviceChanged {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("ready", &DeviceChanged::ready, "Whether pictures are made."),
-        field("message", &DeviceChanged::message, "What happened, in a sentence."),
+        field("ready", &DeviceChanged::ready, "Whether frames can be rendered."),
+        field("message", &DeviceChanged::message, "What happened, as a sentence."),
     };
   }
   bool operator==(const DeviceChanged&) const = default;

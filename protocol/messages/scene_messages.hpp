@@ -10,8 +10,8 @@
 #include "protocol/messages/kinds.hpp"
 #include "protocol/messages/session_messages.hpp"
 
-// Messages about what is in a scene: its lights, materials and environment, and what of it lies
-// under a point of the picture. Changes are a session's own.
+// Messages about the content of a scene: lights, materials, environment, and the surface or buffer
+// values at a point of the image. Edits belong to one session.
 
 namespace heliograph::protocol {
 
@@ -32,27 +32,28 @@ struct LightInfo {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("name", &LightInfo::name, "Name for lights.patch, different for every light."),
-        field("type", &LightInfo::type, "What kind of light it is."),
-        field("enabled", &LightInfo::enabled, "Whether it shines."),
+        field("name", &LightInfo::name, "Unique name for lights.patch."),
+        field("type", &LightInfo::type, "Type of the light."),
+        field("enabled", &LightInfo::enabled, "Whether the light is on."),
         field("color", &LightInfo::color, "Linear colour."),
         field("intensity", &LightInfo::intensity,
               "Factor on the colour: lux (directional), candela (point, spot) or radiance "
               "(rectangle, disk)."),
-        field("position", &LightInfo::position, "Its middle, world space; not of directional.")
+        field("position", &LightInfo::position,
+              "Centre, world space; absent for directional lights.")
             .unit("metres"),
         field("direction", &LightInfo::direction,
-              "The way its light travels, world space; not of point lights."),
-        field("range", &LightInfo::range,
-              "How far a point or spot light reaches; 0: without limit.")
+              "Direction of the light rays, world space; absent for point lights."),
+        field("range", &LightInfo::range, "Range of point and spot lights; 0: unlimited.")
             .unit("metres"),
-        field("radius", &LightInfo::radius, "Of point, spot and disk lights.").unit("metres"),
+        field("radius", &LightInfo::radius, "Radius of point, spot and disk lights.")
+            .unit("metres"),
         field("angular_diameter", &LightInfo::angular_diameter,
-              "Apparent size of a directional light.")
+              "Apparent diameter of a directional light.")
             .unit("degrees"),
-        field("width", &LightInfo::width, "Of a rectangle.").unit("metres"),
-        field("height", &LightInfo::height, "Of a rectangle.").unit("metres"),
-        field("changed", &LightInfo::changed, "Members that differ from the scene's file."),
+        field("width", &LightInfo::width, "Width of a rectangle.").unit("metres"),
+        field("height", &LightInfo::height, "Height of a rectangle.").unit("metres"),
+        field("changed", &LightInfo::changed, "Members that differ from the scene file."),
     };
   }
   bool operator==(const LightInfo&) const = default;
@@ -64,7 +65,7 @@ struct LightList {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("lights", &LightList::lights, "The lights of the scene as they are now."),
+        field("lights", &LightList::lights, "The lights of the scene with the session's edits."),
         field("rev", &LightList::rev, "Revision of the session's state."),
     };
   }
@@ -86,27 +87,27 @@ struct LightPatch {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("enabled", &LightPatch::enabled, "Whether it shines."),
+        field("enabled", &LightPatch::enabled, "Whether the light is on."),
         field("color", &LightPatch::color, "Linear colour.").range(0, 1e6),
         field("intensity", &LightPatch::intensity, "Factor on the colour.").range(0, 1e9),
-        field("position", &LightPatch::position, "Its middle, world space.")
-            .range(-1e9, 1e9)
+        field("position", &LightPatch::position, "Centre, world space.")
+            .range(-max_coordinate, max_coordinate)
             .unit("metres"),
         field("direction", &LightPatch::direction,
-              "The way its light travels, world space; any length but 0.")
-            .range(-1e9, 1e9),
-        field("range", &LightPatch::range, "How far it reaches; 0: without limit.")
-            .range(0, 1e9)
-            .unit("metres"),
-        field("radius", &LightPatch::radius, "Larger lights cast softer shadows.")
+              "Direction of the light rays, world space; any length except 0.")
+            .range(-max_coordinate, max_coordinate),
+        field("range", &LightPatch::range, "Range; 0: unlimited.").range(0, 1e9).unit("metres"),
+        field("radius", &LightPatch::radius, "Radius: larger lights cast softer shadows.")
             .range(0, 1e6)
             .unit("metres"),
         field("angular_diameter", &LightPatch::angular_diameter,
-              "Larger lights cast softer shadows; the sun's is 0.53.")
+              "Apparent diameter: larger lights cast softer shadows; the sun's is 0.53.")
             .range(0, 90)
             .unit("degrees"),
-        field("width", &LightPatch::width, "Of a rectangle.").range(1e-6, 1e6).unit("metres"),
-        field("height", &LightPatch::height, "Of a rectangle.").range(1e-6, 1e6).unit("metres"),
+        field("width", &LightPatch::width, "Width of a rectangle.").range(1e-6, 1e6).unit("metres"),
+        field("height", &LightPatch::height, "Height of a rectangle.")
+            .range(1e-6, 1e6)
+            .unit("metres"),
     };
   }
   bool operator==(const LightPatch&) const = default;
@@ -118,9 +119,9 @@ struct LightsPatch {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("light", &LightsPatch::light, "A name that lights.list gave.").length(1, 256),
+        field("light", &LightsPatch::light, "A name from lights.list.").length(1, max_node_name),
         field("patch", &LightsPatch::patch,
-              "What shall change (RFC 7386): null brings back what the scene's file says."),
+              "A merge patch (RFC 7386); null restores the value of the scene file."),
     };
   }
   bool operator==(const LightsPatch&) const = default;
@@ -132,7 +133,7 @@ struct LightState {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("light", &LightState::light, "The light as it is now."),
+        field("light", &LightState::light, "The light after the change."),
         field("rev", &LightState::rev, "Revision of the session's state."),
     };
   }
@@ -146,7 +147,7 @@ struct LightsChanged {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("light", &LightsChanged::light, "The light as it is now."),
+        field("light", &LightsChanged::light, "The light after the change."),
         field("rev", &LightsChanged::rev, "Revision of the session's state."),
         field("by", &LightsChanged::by, "The viewer that changed it; empty: the server."),
     };
@@ -167,18 +168,18 @@ struct MaterialInfo {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("name", &MaterialInfo::name, "Name for materials.patch, different for every one."),
+        field("name", &MaterialInfo::name, "Unique name for materials.patch."),
         field("base_color", &MaterialInfo::base_color, "Linear factor on the texture, if any."),
         field("roughness", &MaterialInfo::roughness,
               "Perceptual roughness, factor on the texture, if any."),
         field("metallic", &MaterialInfo::metallic, "Metalness, factor on the texture, if any."),
         field("emissive", &MaterialInfo::emissive,
-              "Linear radiance given off, factor on the texture, if any."),
-        field("normal_scale", &MaterialInfo::normal_scale, "How deep the normal texture goes."),
+              "Linear emitted radiance, factor on the texture, if any."),
+        field("normal_scale", &MaterialInfo::normal_scale, "Scale of the normal texture."),
         field("occlusion_strength", &MaterialInfo::occlusion_strength,
-              "How dark the occlusion texture gets."),
-        field("textures", &MaterialInfo::textures, "Which values have a texture."),
-        field("changed", &MaterialInfo::changed, "Members that differ from the scene's file."),
+              "Strength of the occlusion texture."),
+        field("textures", &MaterialInfo::textures, "Members that have a texture."),
+        field("changed", &MaterialInfo::changed, "Members that differ from the scene file."),
     };
   }
   bool operator==(const MaterialInfo&) const = default;
@@ -190,7 +191,8 @@ struct MaterialList {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("materials", &MaterialList::materials, "The materials of the scene as they are now."),
+        field("materials", &MaterialList::materials,
+              "The materials of the scene with the session's edits."),
         field("rev", &MaterialList::rev, "Revision of the session's state."),
     };
   }
@@ -211,11 +213,11 @@ struct MaterialPatch {
         field("base_color", &MaterialPatch::base_color, "Linear factor.").range(0, 1),
         field("roughness", &MaterialPatch::roughness, "Perceptual roughness.").range(0, 1),
         field("metallic", &MaterialPatch::metallic, "Metalness.").range(0, 1),
-        field("emissive", &MaterialPatch::emissive, "Linear radiance given off.").range(0, 1e6),
-        field("normal_scale", &MaterialPatch::normal_scale, "How deep the normal texture goes.")
+        field("emissive", &MaterialPatch::emissive, "Linear emitted radiance.").range(0, 1e6),
+        field("normal_scale", &MaterialPatch::normal_scale, "Scale of the normal texture.")
             .range(0, 16),
         field("occlusion_strength", &MaterialPatch::occlusion_strength,
-              "How dark the occlusion texture gets.")
+              "Strength of the occlusion texture.")
             .range(0, 1),
     };
   }
@@ -228,10 +230,10 @@ struct MaterialsPatch {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("material", &MaterialsPatch::material, "A name that materials.list gave.")
-            .length(1, 256),
+        field("material", &MaterialsPatch::material, "A name from materials.list.")
+            .length(1, max_node_name),
         field("patch", &MaterialsPatch::patch,
-              "What shall change (RFC 7386): null brings back what the scene's file says."),
+              "A merge patch (RFC 7386); null restores the value of the scene file."),
     };
   }
   bool operator==(const MaterialsPatch&) const = default;
@@ -243,7 +245,7 @@ struct MaterialState {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("material", &MaterialState::material, "The material as it is now."),
+        field("material", &MaterialState::material, "The material after the change."),
         field("rev", &MaterialState::rev, "Revision of the session's state."),
     };
   }
@@ -257,7 +259,7 @@ struct MaterialsChanged {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("material", &MaterialsChanged::material, "The material as it is now."),
+        field("material", &MaterialsChanged::material, "The material after the change."),
         field("rev", &MaterialsChanged::rev, "Revision of the session's state."),
         field("by", &MaterialsChanged::by, "The viewer that changed it; empty: the server."),
     };
@@ -290,7 +292,7 @@ struct EnvironmentState {
         field("environments", &EnvironmentState::environments,
               "The environments of the server's catalogue."),
         field("current", &EnvironmentState::current,
-              "The one that was chosen; null: the one that goes with the scene.")
+              "The chosen environment; null: the scene's own.")
             .or_null(),
         field("rotation", &EnvironmentState::rotation, "The setting environment.rotation.")
             .unit("degrees"),
@@ -307,10 +309,9 @@ struct EnvironmentSet {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("name", &EnvironmentSet::name,
-              "A name that environment.list gave; null: the one that goes with the scene.")
-            .length(1, 512),
-        field("rotation", &EnvironmentSet::rotation, "Sets environment.rotation, too.")
+        field("name", &EnvironmentSet::name, "A name from environment.list; null: the scene's own.")
+            .length(1, max_scene_name),
+        field("rotation", &EnvironmentSet::rotation, "Also sets environment.rotation.")
             .range(-180, 180)
             .unit("degrees"),
     };
@@ -326,7 +327,7 @@ struct EnvironmentChanged {
   static constexpr auto fields() {
     return std::tuple{
         field("current", &EnvironmentChanged::current,
-              "The one that was chosen; null: the one that goes with the scene.")
+              "The chosen environment; null: the scene's own.")
             .or_null(),
         field("rev", &EnvironmentChanged::rev, "Revision of the session's state."),
         field("by", &EnvironmentChanged::by, "The viewer that chose it; empty: the server."),
@@ -335,18 +336,18 @@ struct EnvironmentChanged {
   bool operator==(const EnvironmentChanged&) const = default;
 };
 
-/// Where in the picture.
-struct PicturePoint {
+/// A point of the image.
+struct ImagePoint {
   float x = 0.0f;
   float y = 0.0f;
 
   static constexpr auto fields() {
     return std::tuple{
-        field("x", &PicturePoint::x, "Share of the picture's width, from the left.").range(0, 1),
-        field("y", &PicturePoint::y, "Share of the picture's height, from the top.").range(0, 1),
+        field("x", &ImagePoint::x, "Fraction of the image width, from the left.").range(0, 1),
+        field("y", &ImagePoint::y, "Fraction of the image height, from the top.").range(0, 1),
     };
   }
-  bool operator==(const PicturePoint&) const = default;
+  bool operator==(const ImagePoint&) const = default;
 };
 
 struct PickResult {
@@ -359,14 +360,17 @@ struct PickResult {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("hit", &PickResult::hit, "Whether there is a surface; the rest is null if not."),
-        field("position", &PickResult::position, "The point on it, world space.")
+        field("hit", &PickResult::hit,
+              "Whether there is a surface; if not, the other members are null."),
+        field("position", &PickResult::position, "Position on the surface, world space.")
             .unit("metres")
             .or_null(),
-        field("normal", &PickResult::normal, "Of its triangle, toward the camera, world space.")
+        field("normal", &PickResult::normal, "Geometric normal, facing the camera, world space.")
             .or_null(),
-        field("distance", &PickResult::distance, "From the camera.").unit("metres").or_null(),
-        field("object", &PickResult::object, "Name of its node, else of its mesh.").or_null(),
+        field("distance", &PickResult::distance, "Distance from the camera.")
+            .unit("metres")
+            .or_null(),
+        field("object", &PickResult::object, "Name of the node, otherwise of the mesh.").or_null(),
         field("material", &PickResult::material, "Name for materials.patch.").or_null(),
     };
   }
@@ -380,10 +384,10 @@ struct BufferValue {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("name", &BufferValue::name, "The buffer."),
+        field("name", &BufferValue::name, "Name of the buffer."),
         field("value", &BufferValue::value,
-              "Its channels there, which frame.buffers explains; null is no finite number."),
-        field("unit", &BufferValue::unit, "Of the values; empty: plain numbers."),
+              "Values of its channels, which frame.buffers describes; null: not finite."),
+        field("unit", &BufferValue::unit, "Unit of the values; empty: dimensionless."),
     };
   }
   bool operator==(const BufferValue&) const = default;
@@ -398,17 +402,17 @@ struct Inspection {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("column", &Inspection::column, "The pixel that was read, from the left."),
-        field("row", &Inspection::row, "And from the top."),
-        field("width", &Inspection::width, "Of the picture it was read from.").unit("pixels"),
-        field("height", &Inspection::height, "Of the picture it was read from.").unit("pixels"),
-        field("buffers", &Inspection::buffers, "Every buffer's value at that pixel."),
+        field("column", &Inspection::column, "Column of the pixel, from the left."),
+        field("row", &Inspection::row, "Row of the pixel, from the top."),
+        field("width", &Inspection::width, "Width of the image.").unit("pixels"),
+        field("height", &Inspection::height, "Height of the image.").unit("pixels"),
+        field("buffers", &Inspection::buffers, "The value of every buffer at that pixel."),
     };
   }
   bool operator==(const Inspection&) const = default;
 };
 
-/// The camera about its target.
+/// An orbit of the camera around its target.
 struct CameraOrbit {
   std::optional<float> yaw;
   std::optional<float> pitch;
@@ -419,20 +423,21 @@ struct CameraOrbit {
   static constexpr auto fields() {
     return std::tuple{
         field("yaw", &CameraOrbit::yaw,
-              "Turns about the up axis, counter-clockwise seen from above.")
+              "Rotation about the up axis, counter-clockwise seen from above.")
             .range(-360, 360)
             .unit("degrees"),
         field("pitch", &CameraOrbit::pitch,
-              "Raises the camera, lowers it below 0; it stops short of straight above and below.")
+              "Positive raises the camera, negative lowers it; it stops short of the poles.")
             .range(-180, 180)
             .unit("degrees"),
-        field("distance", &CameraOrbit::distance, "How far from the target to be.")
+        field("distance", &CameraOrbit::distance, "New distance to the target.")
             .range(1e-6, 1e9)
             .unit("metres"),
-        field("dolly", &CameraOrbit::dolly, "Factor on the distance: below 1 comes closer.")
+        field("dolly", &CameraOrbit::dolly, "Factor on the distance: below 1 moves closer.")
             .range(0.001, 1000),
         field("seq", &CameraOrbit::seq,
-              "The client's own count; frames that show this camera echo it as input_seq_echo."),
+              "The client's sequence number; frames that show this camera echo it as "
+              "input_seq_echo."),
     };
   }
   bool operator==(const CameraOrbit&) const = default;

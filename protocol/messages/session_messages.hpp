@@ -8,10 +8,11 @@
 
 #include "protocol/json/fields.hpp"
 #include "protocol/json/raw_json.hpp"
+#include "protocol/limits.hpp"
 #include "protocol/messages/animation_messages.hpp"
 #include "protocol/messages/kinds.hpp"
 
-// Messages about the session: greeting, camera, settings.
+// Messages about the session: hello, camera, settings, presets.
 
 namespace heliograph::protocol {
 
@@ -20,7 +21,7 @@ using Vec3 = std::array<float, 3>;
 
 inline constexpr std::string_view protocol_name = "heliograph.v1";
 
-/// Parameters of methods that take none.
+/// Parameters of methods without parameters.
 struct Empty {
   static constexpr auto fields() { return std::tuple{}; }
   bool operator==(const Empty&) const = default;
@@ -37,18 +38,19 @@ struct Hello {
     return std::tuple{
         field("client", &Hello::client, "Name and version of the client, for the log.")
             .length(0, 200),
-        field("codecs", &Hello::codecs, "Picture codecs the client can decode, best first.")
+        field("codecs", &Hello::codecs, "Frame codecs that the client can decode, preferred first.")
             .length(1, 16)
             .or_default(),
         field("session", &Hello::session,
-              "The session to watch; left out: the one that /ws?session=NAME named, or main.")
-            .length(1, 64),
+              "The session to join; absent: the one in /ws?session=NAME, or main.")
+            .length(1, max_session_name),
         field("instance", &Hello::instance,
-              "Of who comes back: the run of the server that `session` was on. Where it is another "
-              "one, a place that disturbs nobody is found; `bring` tells of it.")
-            .length(1, 64),
-        field("name", &Hello::name, "What the person is called, for the others in the session.")
-            .length(1, 64),
+              "On reconnect: the `instance` of the server process that `session` was on. If it "
+              "differs, the server picks a session that other viewers do not use; see "
+              "`restore_state`.")
+            .length(1, max_session_name),
+        field("name", &Hello::name, "Display name, shown to the other viewers of the session.")
+            .length(1, max_session_name),
     };
   }
   bool operator==(const Hello&) const = default;
@@ -75,26 +77,25 @@ struct ServerLimits {
   std::uint32_t max_message_bytes = 0;
   std::uint32_t ack_window = 0;
   std::uint32_t max_batch = 0;
-  std::uint32_t max_waiting = 0;
+  std::uint32_t max_pending = 0;
   std::uint64_t max_upload_bytes = 0;
 
   static constexpr auto fields() {
     return std::tuple{
-        field("max_width", &ServerLimits::max_width, "Widest picture.").unit("pixels"),
-        field("max_height", &ServerLimits::max_height, "Highest picture.").unit("pixels"),
+        field("max_width", &ServerLimits::max_width, "Maximum frame width.").unit("pixels"),
+        field("max_height", &ServerLimits::max_height, "Maximum frame height.").unit("pixels"),
         field("max_message_bytes", &ServerLimits::max_message_bytes,
-              "Longest message the server reads.")
+              "Maximum size of a message to the server.")
             .unit("bytes"),
         field("ack_window", &ServerLimits::ack_window,
-              "Frames the server sends ahead of the newest stream.ack; on a long way more, but no "
-              "more than 8."),
-        field("max_batch", &ServerLimits::max_batch, "Most calls of a batch."),
-        field(
-            "max_waiting", &ServerLimits::max_waiting,
-            "Most captures of a session that wait for their picture; as many steps may wait beside "
-            "them, and as many questions about the picture."),
+              "Frames that the server sends ahead of the newest stream.ack; up to 8 where the "
+              "round trip is long."),
+        field("max_batch", &ServerLimits::max_batch, "Maximum number of calls of a batch."),
+        field("max_pending", &ServerLimits::max_pending,
+              "Maximum number of pending captures of a session; also of pending steps, and of "
+              "pending picks and inspections."),
         field("max_upload_bytes", &ServerLimits::max_upload_bytes,
-              "Largest scene that the client may send; 0: it may send none.")
+              "Maximum size of an uploaded scene; 0: uploads are not allowed.")
             .unit("bytes"),
     };
   }
@@ -114,32 +115,33 @@ struct HelloResult {
   ServerLimits limits;
   std::uint32_t rev = 0;
   std::string instance;
-  std::optional<bool> bring;
+  std::optional<bool> restore_state;
 
   static constexpr auto fields() {
     return std::tuple{
-        field("protocol", &HelloResult::protocol, "Protocol and its version."),
+        field("protocol", &HelloResult::protocol, "Name and version of the protocol."),
         field("version", &HelloResult::version, "Version of the server."),
-        field("device", &HelloResult::device, "Where pictures are rendered."),
-        field("tracer", &HelloResult::tracer, "What traces the rays."),
-        field("session", &HelloResult::session, "The session that is watched."),
+        field("device", &HelloResult::device, "The device that renders."),
+        field("tracer", &HelloResult::tracer, "The ray tracer in use."),
+        field("session", &HelloResult::session, "The session that the viewer is in."),
         field("viewer", &HelloResult::viewer,
-              "This viewer's id: the `by` of notifications to the others."),
+              "This viewer's id: `by` in notifications to other viewers."),
         field("role", &HelloResult::role,
-              "Whether this client's token lets it steer or only watch; session.info tells who "
-              "has control."),
-        field("codecs", &HelloResult::codecs, "Codecs of the frames that will come, best first."),
+              "What the client's token allows: control or view only; session.info tells which "
+              "viewers have control."),
+        field("codecs", &HelloResult::codecs, "Codecs of the frames that follow, preferred first."),
         field("codec_reason", &HelloResult::codec_reason,
-              "Why the client's best codec is not used; null if it is.")
+              "Why the client's preferred codec is not used; null if it is.")
             .or_null(),
-        field("limits", &HelloResult::limits, "What the server refuses to exceed."),
+        field("limits", &HelloResult::limits, "Limits of the server."),
         field("rev", &HelloResult::rev, "Revision of the session's state."),
         field("instance", &HelloResult::instance,
-              "Differs with every run of a server: where it is another, the session starts anew "
-              "and a client that comes back says again what it wants."),
-        field("bring", &HelloResult::bring,
-              "To who comes back from another run: true, to bring the session's state into this "
-              "one; false, that somebody who was there too does; null, that no place was found.")
+              "Identifies this run of the server. If it differs after a reconnect, the session "
+              "state is lost and the client sends its requests again."),
+        field("restore_state", &HelloResult::restore_state,
+              "After a reconnect to another run of the server: true: the client restores the "
+              "session's state; false: another viewer of that session does; null: no session was "
+              "available, or this is no reconnect.")
             .or_null(),
     };
   }
@@ -156,20 +158,17 @@ struct Camera {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("eye", &Camera::eye, "Where the camera is, world space.").unit("metres"),
-        field("target", &Camera::target, "The point in the middle of the picture.").unit("metres"),
-        field("up", &Camera::up, "The direction that points up in the picture."),
-        field("vertical_fov", &Camera::vertical_fov, "Field of view, top to bottom.")
-            .unit("degrees"),
-        field("name", &Camera::name, "The scene camera this is, null once it was moved.").or_null(),
+        field("eye", &Camera::eye, "Position of the camera, world space.").unit("metres"),
+        field("target", &Camera::target, "The point at the centre of the image.").unit("metres"),
+        field("up", &Camera::up, "The up direction of the image."),
+        field("vertical_fov", &Camera::vertical_fov, "Vertical field of view.").unit("degrees"),
+        field("name", &Camera::name, "Name of the scene camera; null after it was moved.")
+            .or_null(),
         field("rev", &Camera::rev, "Revision of the session's state."),
     };
   }
   bool operator==(const Camera&) const = default;
 };
-
-/// How far from the origin, along each axis, the camera and its target may be; metres.
-inline constexpr float camera_reach = 1e9f;
 
 struct CameraSet {
   std::optional<Vec3> eye;
@@ -181,22 +180,23 @@ struct CameraSet {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("eye", &CameraSet::eye, "Where the camera is, world space.")
-            .range(-camera_reach, camera_reach)
+        field("eye", &CameraSet::eye, "Position of the camera, world space.")
+            .range(-max_coordinate, max_coordinate)
             .unit("metres"),
-        field("target", &CameraSet::target, "The point in the middle of the picture.")
-            .range(-camera_reach, camera_reach)
+        field("target", &CameraSet::target, "The point at the centre of the image.")
+            .range(-max_coordinate, max_coordinate)
             .unit("metres"),
-        field("up", &CameraSet::up, "The direction that points up in the picture.")
-            .range(-1e9, 1e9),
-        field("vertical_fov", &CameraSet::vertical_fov, "Field of view, top to bottom.")
+        field("up", &CameraSet::up, "The up direction of the image.")
+            .range(-max_coordinate, max_coordinate),
+        field("vertical_fov", &CameraSet::vertical_fov, "Vertical field of view.")
             .range(1, 170)
             .unit("degrees"),
         field("name", &CameraSet::name,
-              "A scene camera to begin from; the other members are applied on top.")
-            .length(1, 256),
+              "A scene camera to start from; the other members are applied on top.")
+            .length(1, max_node_name),
         field("seq", &CameraSet::seq,
-              "The client's own count; frames that show this camera echo it as input_seq_echo."),
+              "The client's sequence number; frames that show this camera echo it as "
+              "input_seq_echo."),
     };
   }
   bool operator==(const CameraSet&) const = default;
@@ -208,7 +208,7 @@ struct CameraChanged {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("camera", &CameraChanged::camera, "The camera now."),
+        field("camera", &CameraChanged::camera, "The camera after the change."),
         field("by", &CameraChanged::by, "The viewer that moved it; empty: the server."),
     };
   }
@@ -234,7 +234,7 @@ struct SettingsPatch {
   static constexpr auto fields() {
     return std::tuple{
         field("patch", &SettingsPatch::patch,
-              "Part of the settings tree (RFC 7386): null resets to the default."),
+              "A merge patch of the settings tree (RFC 7386): null resets to the default."),
     };
   }
   bool operator==(const SettingsPatch&) const = default;
@@ -248,7 +248,7 @@ struct SettingsApplied {
     return std::tuple{
         field("rev", &SettingsApplied::rev, "Revision of the session's state."),
         field("applied", &SettingsApplied::applied,
-              "The patch as applied: each null replaced by the value it led to."),
+              "The patch as applied: each null is replaced by the default value."),
     };
   }
   bool operator==(const SettingsApplied&) const = default;
@@ -261,7 +261,7 @@ struct PresetInfo {
   static constexpr auto fields() {
     return std::tuple{
         field("name", &PresetInfo::name, "Name for settings.preset."),
-        field("description", &PresetInfo::description, "What it chooses, in a sentence."),
+        field("description", &PresetInfo::description, "Description of the preset."),
     };
   }
   bool operator==(const PresetInfo&) const = default;
@@ -272,7 +272,8 @@ struct PresetList {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("presets", &PresetList::presets, "The presets, each on top of the last, then best."),
+        field("presets", &PresetList::presets,
+              "The presets: the paper's steps in order, then best."),
     };
   }
   bool operator==(const PresetList&) const = default;
@@ -283,7 +284,8 @@ struct PresetChoice {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("name", &PresetChoice::name, "A name that settings.presets gave.").length(1, 64),
+        field("name", &PresetChoice::name, "A name from settings.presets.")
+            .length(1, max_session_name),
     };
   }
   bool operator==(const PresetChoice&) const = default;

@@ -4,11 +4,11 @@
 
 namespace heliograph::protocol {
 
-/// How pictures are encoded while something moves.
+/// Codec of the frames of a changing view.
 HELIOGRAPH_ENUM(StreamCodec, jpeg, h264)
-/// How the final picture of a resting view is encoded.
+/// Format of the final image of a static view.
 HELIOGRAPH_ENUM(StillFormat, jpeg, png)
-/// What a stream does: it follows changes, shows how a resting picture gets better, or is silent.
-HELIOGRAPH_ENUM(StreamPhase, interactive, refining, still)
+/// State of a stream: it follows changes, refines a static view, or sends nothing.
+HELIOGRAPH_ENUM(StreamPhase, interactive, refining, idle)
 
 }  // namespace heliograph::protocol

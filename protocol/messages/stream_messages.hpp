@@ -6,10 +6,11 @@
 #include <vector>
 
 #include "protocol/json/fields.hpp"
+#include "protocol/limits.hpp"
 #include "protocol/messages/kinds.hpp"
 #include "protocol/messages/stream_kinds.hpp"
 
-// Messages about the stream of pictures: its form, acknowledgements, timings, single captures.
+// Messages about the frame stream: configuration, acknowledgements, statistics, captures.
 
 namespace heliograph::protocol {
 
@@ -24,18 +25,22 @@ struct StreamConfigure {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("width", &StreamConfigure::width, "Picture width.").range(16, 16384).unit("pixels"),
-        field("height", &StreamConfigure::height, "Picture height.")
-            .range(16, 16384)
+        field("width", &StreamConfigure::width, "Frame width.")
+            .range(min_frame_size, max_frame_size)
+            .unit("pixels"),
+        field("height", &StreamConfigure::height, "Frame height.")
+            .range(min_frame_size, max_frame_size)
             .unit("pixels"),
         field("quality", &StreamConfigure::quality, "Quality on the scale of JPEG, for any codec.")
-            .range(1, 100),
-        field("max_fps", &StreamConfigure::max_fps, "Most pictures in a second.").range(0.1, 240),
-        field("paused", &StreamConfigure::paused, "Whether no pictures are sent."),
+            .range(min_quality, max_quality),
+        field("max_fps", &StreamConfigure::max_fps, "Maximum frame rate.")
+            .range(min_frame_rate, max_frame_rate),
+        field("paused", &StreamConfigure::paused, "Whether the stream is paused."),
         field("codec", &StreamConfigure::codec,
-              "Codec while something moves; one that hello agreed on."),
+              "Codec of moving frames; one of those that hello returned."),
         field("still", &StreamConfigure::still,
-              "Format of the final picture: JPEG with all its colour, or PNG without any loss."),
+              "Format of the final image of a static view: JPEG without chroma subsampling, or "
+              "lossless PNG."),
     };
   }
   bool operator==(const StreamConfigure&) const = default;
@@ -52,13 +57,14 @@ struct StreamState {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("width", &StreamState::width, "Picture width in effect.").unit("pixels"),
-        field("height", &StreamState::height, "Picture height in effect.").unit("pixels"),
-        field("quality", &StreamState::quality, "Quality asked for; a slow way gets less."),
-        field("max_fps", &StreamState::max_fps, "Most pictures in a second."),
-        field("paused", &StreamState::paused, "Whether no pictures are sent."),
-        field("codec", &StreamState::codec, "Codec while something moves."),
-        field("still", &StreamState::still, "Format of the final picture."),
+        field("width", &StreamState::width, "Frame width in effect.").unit("pixels"),
+        field("height", &StreamState::height, "Frame height in effect.").unit("pixels"),
+        field("quality", &StreamState::quality,
+              "Requested quality; it is reduced on a slow connection."),
+        field("max_fps", &StreamState::max_fps, "Maximum frame rate."),
+        field("paused", &StreamState::paused, "Whether the stream is paused."),
+        field("codec", &StreamState::codec, "Codec of moving frames."),
+        field("still", &StreamState::still, "Format of the final image of a static view."),
     };
   }
   bool operator==(const StreamState&) const = default;
@@ -71,8 +77,8 @@ struct StreamAck {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("frame_seq", &StreamAck::frame_seq, "The frame's number from its header."),
-        field("decode_us", &StreamAck::decode_us, "Time the client took to decode it.")
+        field("frame_seq", &StreamAck::frame_seq, "`frame_seq` of the frame's header."),
+        field("decode_us", &StreamAck::decode_us, "Time that the client took to decode it.")
             .unit("microseconds")
             .or_default(),
         field("present_us", &StreamAck::present_us, "Time from its arrival to its display.")
@@ -89,7 +95,7 @@ struct StatsSubscription {
   static constexpr auto fields() {
     return std::tuple{
         field("interval_ms", &StatsSubscription::interval_ms,
-              "Least time between two stats.frame notifications; 0: none.")
+              "Minimum time between two stats.frame notifications; 0: no notifications.")
             .range(0, 60000)
             .unit("milliseconds"),
     };
@@ -105,8 +111,8 @@ struct PassTiming {
   static constexpr auto fields() {
     return std::tuple{
         field("name", &PassTiming::name, "Name of the pass."),
-        field("kind", &PassTiming::kind, "Where it ran: a shader or the processor."),
-        field("ms", &PassTiming::ms, "How long it took.").unit("milliseconds"),
+        field("kind", &PassTiming::kind, "Where it ran: device (a shader) or host (the CPU)."),
+        field("ms", &PassTiming::ms, "Duration.").unit("milliseconds"),
     };
   }
   bool operator==(const PassTiming&) const = default;
@@ -132,30 +138,32 @@ struct StatsFrame {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("render_id", &StatsFrame::render_id, "The picture these figures are of."),
-        field("fps", &StatsFrame::fps, "Pictures rendered in the last second."),
-        field("frame_ms", &StatsFrame::frame_ms, "Time to render it.").unit("milliseconds"),
-        field("encode_ms", &StatsFrame::encode_ms, "Time to encode it.").unit("milliseconds"),
-        field("bytes", &StatsFrame::bytes, "Size of the picture this viewer was sent last.")
+        field("render_id", &StatsFrame::render_id,
+              "The rendered frame that the other members describe."),
+        field("fps", &StatsFrame::fps, "Frames rendered in the last second."),
+        field("frame_ms", &StatsFrame::frame_ms, "Time to render the frame.").unit("milliseconds"),
+        field("encode_ms", &StatsFrame::encode_ms, "Time to encode the frame.")
+            .unit("milliseconds"),
+        field("bytes", &StatsFrame::bytes, "Size of the last frame sent to this viewer.")
             .unit("bytes"),
-        field("width", &StatsFrame::width, "Picture width.").unit("pixels"),
-        field("height", &StatsFrame::height, "Picture height.").unit("pixels"),
-        field("samples", &StatsFrame::samples, "Samples accumulated in each pixel."),
-        field("tracer", &StatsFrame::tracer, "What traced the rays."),
+        field("width", &StatsFrame::width, "Frame width.").unit("pixels"),
+        field("height", &StatsFrame::height, "Frame height.").unit("pixels"),
+        field("samples", &StatsFrame::samples, "Samples accumulated per pixel."),
+        field("tracer", &StatsFrame::tracer, "The ray tracer in use."),
         field("state", &StatsFrame::state,
-              "Whether the stream follows changes, refines a resting picture, or is done."),
-        field("codec", &StatsFrame::codec, "Codec chosen for this viewer while something moves."),
-        field("quality", &StatsFrame::quality,
-              "Quality chosen for this viewer while something moves."),
+              "interactive: follows changes; refining: refines a static view; idle: finished."),
+        field("codec", &StatsFrame::codec, "Codec of moving frames chosen for this viewer."),
+        field("quality", &StatsFrame::quality, "Quality of moving frames chosen for this viewer."),
         field("scale", &StatsFrame::scale,
-              "Size chosen for this viewer while something moves, as a part of the whole size.")
+              "Scale of moving frames chosen for this viewer, relative to the full size.")
             .range(0, 1),
         field("round_trip_ms", &StatsFrame::round_trip_ms,
-              "From sending a picture to this viewer to its acknowledgement.")
+              "Time from sending a frame to this viewer to its acknowledgement.")
             .unit("milliseconds"),
-        field("goodput", &StatsFrame::goodput, "What reaches this viewer when it is busy.")
+        field("goodput", &StatsFrame::goodput,
+              "Measured throughput to this viewer while frames are in flight.")
             .unit("bytes per second"),
-        field("passes", &StatsFrame::passes, "The frame's passes in their order."),
+        field("passes", &StatsFrame::passes, "The frame's passes in execution order."),
     };
   }
   bool operator==(const StatsFrame&) const = default;
@@ -168,7 +176,7 @@ struct BufferInfo {
   static constexpr auto fields() {
     return std::tuple{
         field("name", &BufferInfo::name, "Name for view.buffer and frame.capture."),
-        field("description", &BufferInfo::description, "What it shows."),
+        field("description", &BufferInfo::description, "Content, channels and unit."),
     };
   }
   bool operator==(const BufferInfo&) const = default;
@@ -179,7 +187,7 @@ struct FrameBuffers {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("buffers", &FrameBuffers::buffers, "What can be shown; `output` comes first."),
+        field("buffers", &FrameBuffers::buffers, "The available buffers; `output` is the first."),
     };
   }
   bool operator==(const FrameBuffers&) const = default;
@@ -192,16 +200,16 @@ struct FrameCapture {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("buffer", &FrameCapture::buffer, "A name that frame.buffers gave.")
-            .length(1, 64)
+        field("buffer", &FrameCapture::buffer, "A name from frame.buffers.")
+            .length(1, max_session_name)
             .or_default(),
         field("format", &FrameCapture::format,
-              "Format of the file: png and jpeg for people, npy and exr for values.")
+              "Format of the file: png and jpeg for viewing, npy and exr for values.")
             .or_default(),
         field("samples", &FrameCapture::samples,
-              "Samples per pixel to wait for, at most accumulation.max_samples, one without "
-              "accumulation; absent: all of them. The answer tells how many there are.")
-            .range(1, 65536),
+              "Samples per pixel to wait for, at most accumulation.max_samples, 1 without "
+              "accumulation; absent: wait for the converged frame.")
+            .range(1, max_samples_per_pixel),
     };
   }
   bool operator==(const FrameCapture&) const = default;
@@ -219,9 +227,9 @@ struct CapturedFrame {
     return std::tuple{
         field("buffer", &CapturedFrame::buffer, "The buffer that was captured."),
         field("format", &CapturedFrame::format, "Format of the file."),
-        field("width", &CapturedFrame::width, "Picture width.").unit("pixels"),
-        field("height", &CapturedFrame::height, "Picture height.").unit("pixels"),
-        field("samples", &CapturedFrame::samples, "Samples accumulated in each pixel."),
+        field("width", &CapturedFrame::width, "Frame width.").unit("pixels"),
+        field("height", &CapturedFrame::height, "Frame height.").unit("pixels"),
+        field("samples", &CapturedFrame::samples, "Samples accumulated per pixel."),
         field("data", &CapturedFrame::data, "The file as base64 (RFC 4648)."),
     };
   }

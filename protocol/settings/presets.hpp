@@ -8,16 +8,19 @@
 
 namespace heliograph::protocol {
 
-/// A named choice of settings for the whole denoiser: scenes/presets/*.json, embedded in the
-/// program.
+/// A named configuration of the denoiser: scenes/presets/*.json, embedded in the program. A file
+/// holds only what it changes: settings that differ from the defaults or, with "extends", from
+/// those of another preset.
 struct Preset {
   std::string_view name;
   std::string_view description;
-  RawJson settings;  // a patch as settings.patch takes it
+  /// A patch for apply_patch: first resets all settings of the denoiser (null), whatever a user or
+  /// another preset had changed, and then sets those of the preset.
+  RawJson settings;
 };
 
-/// The paper's ladder from `svgf` to `reinhard`, each on top of the last, then `best`. Every preset
-/// names the same settings, so that whatever another one chose is undone.
+/// The steps of the paper, `svgf` to `reinhard`, each of which extends the one before, then `best`,
+/// the defaults.
 std::span<const Preset> presets();
 
 /// ErrorCode::not_found with the nearest name.

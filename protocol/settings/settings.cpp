@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "protocol/json/suggestions.hpp"
+#include "protocol/limits.hpp"
 #include "protocol/settings/settings_json.hpp"
 
 namespace heliograph::protocol {
@@ -14,7 +15,7 @@ namespace {
 
 constexpr std::array<std::string_view, 3> reset_names{"accumulation", "history", "structure"};
 
-// The words that settings.def uses for limits.
+// The limits of settings.def.
 constexpr SettingLimits any{};
 constexpr SettingLimits range(double minimum, double maximum) {
   return {minimum, maximum};
@@ -53,8 +54,8 @@ std::vector<SettingDescriptor> make_descriptors() {
   };
 }
 
-/// The value of a command line's text; a text that fits no other type stays a text, so that the
-/// check of the setting's type refuses it with its usual words.
+/// The value of a text of the command line. A text that does not fit the type stays a string, which
+/// the check of the type refuses with its usual message.
 nlohmann::json value_of(std::string_view text, SettingType type) {
   if (type == SettingType::boolean) {
     if (text == "true" || text == "on") return true;

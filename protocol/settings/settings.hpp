@@ -16,13 +16,28 @@ namespace heliograph::protocol {
 #define CHOICE(Type, ...) HELIOGRAPH_ENUM(Type, __VA_ARGS__)
 #include "protocol/settings/settings.def"
 
-/// What the renderer is asked to do. Groups and members are the lines of settings.def:
+// The structs whose members several groups have.
+#define SHARED_TYPE(Type) \
+  struct Type {           \
+    bool operator==(const Type&) const = default;
+#define SHARED_MEMBER(group, name, type, initial, limits, unit, resets, help) type name = initial;
+#define END_SHARED_TYPE \
+  }                     \
+  ;
+#include "protocol/settings/settings.def"
+
+/// All settings of the renderer. Groups and members are the lines of settings.def:
 /// `settings.tone_map.curve`. Values set through this library are always within their limits.
 struct Settings {
 #define GROUP(path, Type, title) \
   struct Type {                  \
     bool operator==(const Type&) const = default;
+#define GROUP_OF(path, Type, Base, title, ...) \
+  struct Type : Base {                         \
+    Type() { __VA_ARGS__; }                    \
+    bool operator==(const Type&) const = default;
 #define SETTING(group, name, type, initial, limits, unit, resets, help) type name = initial;
+#define INHERITED(...)
 #define END_GROUP(name) \
   }                     \
   name;
@@ -31,12 +46,12 @@ struct Settings {
   bool operator==(const Settings&) const = default;
 };
 
-/// Histories that a changed setting makes worthless, as a bit mask.
+/// Histories that a changed setting invalidates, as a bit mask.
 enum class ResetScope : std::uint32_t {
   none = 0,
-  accumulation = 1u << 0,  ///< the mean over a resting picture
-  history = 1u << 1,       ///< what denoisers and antialiasing carry from frame to frame
-  structure = 1u << 2,     ///< the frame's list of passes, and with it every history
+  accumulation = 1u << 0,  ///< the mean of a static view's samples
+  history = 1u << 1,       ///< histories of denoisers and antialiasing
+  structure = 1u << 2,     ///< the list of passes, and with it every history
 };
 
 constexpr ResetScope operator|(ResetScope a, ResetScope b) {
@@ -45,7 +60,7 @@ constexpr ResetScope operator|(ResetScope a, ResetScope b) {
 constexpr ResetScope& operator|=(ResetScope& a, ResetScope b) {
   return a = a | b;
 }
-/// Whether `scope` holds every history of `part`.
+/// Whether `scope` contains every history of `part`.
 constexpr bool includes(ResetScope scope, ResetScope part) {
   const auto bits = static_cast<std::uint32_t>(part);
   return (static_cast<std::uint32_t>(scope) & bits) == bits;
@@ -53,7 +68,7 @@ constexpr bool includes(ResetScope scope, ResetScope part) {
 
 enum class SettingType { boolean, integer, number, choice, text };
 
-/// Numbers lie within [minimum, maximum]; texts have so many characters. Both ends count.
+/// Range of a number, or of the number of characters of a text. Both ends are allowed.
 struct SettingLimits {
   double minimum = 0.0;
   double maximum = 0.0;
@@ -65,10 +80,10 @@ struct SettingDescriptor {
   std::string_view group;  ///< "tone_map"
   std::string_view name;   ///< "curve"
   SettingType type;
-  std::variant<bool, int, float, std::string> initial;  ///< a choice's is its name
+  std::variant<bool, int, float, std::string> initial;  ///< of a choice: its name
   SettingLimits limits;                                 ///< of integers, numbers and texts
-  std::span<const std::string_view> choices;            ///< of choices, else empty
-  std::string_view unit;                                ///< empty: a plain number
+  std::span<const std::string_view> choices;            ///< of choices; otherwise empty
+  std::string_view unit;                                ///< empty: dimensionless
   ResetScope resets;
   std::string_view help;
 };
@@ -82,7 +97,7 @@ struct SettingGroup {
 std::span<const SettingDescriptor> setting_descriptors();
 /// All groups in the order of settings.def.
 std::span<const SettingGroup> setting_groups();
-/// The setting called `path`, or null.
+/// The setting at `path`, or null.
 const SettingDescriptor* find_setting(std::string_view path);
 /// The names of the histories in `scope`.
 std::vector<std::string_view> scope_names(ResetScope scope);
@@ -97,14 +112,14 @@ void visit_settings(SettingsType& settings, Visitor&& visitor) {
 #include "protocol/settings/settings.def"
 }
 
-/// The histories that must be dropped when settings change from `before` to `after`.
+/// The histories that a change of settings from `before` to `after` invalidates.
 ResetScope changed_scope(const Settings& before, const Settings& after);
 
 /// Applies one "path=value" of the command line. On error (unknown path, wrong type, out of range)
-/// nothing changes and the message names the path, the limit and, for unknown paths, the nearest.
+/// nothing changes; the message names the path and the limit, or the nearest path that exists.
 Result<void> set_by_path(Settings& settings, std::string_view assignment);
 
-/// The reference page of all settings as Markdown, made from settings.def.
+/// The reference page of all settings as Markdown.
 std::string settings_markdown();
 
 }  // namespace heliograph::protocol

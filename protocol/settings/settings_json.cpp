@@ -35,7 +35,7 @@ json initial_of(const SettingDescriptor& setting) {
   return std::visit([](const auto& value) { return json_of(value); }, setting.initial);
 }
 
-/// Where "a.b.c" stands in a tree; objects on the way are made as needed.
+/// The node "a.b.c" of a tree; creates missing objects.
 json& at_path(json& tree, std::string_view path) {
   json* node = &tree;
   while (true) {
@@ -50,7 +50,7 @@ NumberRange range_of(const SettingDescriptor& setting) {
   return {setting.limits.minimum, setting.limits.maximum};
 }
 
-/// Buffers are named like identifiers, which also keeps texts that are not UTF-8 out of the tree.
+/// Buffer names are identifiers, which also keeps strings that are not UTF-8 out of the tree.
 constexpr std::string_view name_characters =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.-";
 
@@ -81,7 +81,7 @@ Result<void> read(const json& value, const SettingDescriptor& setting, std::stri
   const auto length = static_cast<double>(text->size());
   if (length < setting.limits.minimum || length > setting.limits.maximum ||
       text->find_first_not_of(name_characters) != std::string::npos) {
-    return error::invalid(std::string(setting.path), "is not a name",
+    return error::invalid(std::string(setting.path), "is not a valid name",
                           range_text(range_of(setting)) + " characters of A-Z a-z 0-9 _ . -");
   }
   out = *text;
@@ -119,8 +119,8 @@ Error unknown_member(const std::string& path, std::string_view key) {
   return error::invalid(path, "unknown setting" + suggestion(path, known));
 }
 
-/// Turns the patch, an object at the group `prefix`, into a list of edits. Recursion ends with the
-/// groups of settings.def, however deep the patch is.
+/// Turns the patch, an object at the group `prefix`, into a list of edits. The depth of recursion
+/// is limited by the groups of settings.def, whatever the depth of the patch.
 Result<void> collect(const json& patch, const std::string& prefix, std::vector<Edit>& edits) {
   static const json null;
   for (const auto& [key, value] : patch.items()) {
@@ -183,7 +183,7 @@ json schema_of_leaf(const SettingDescriptor& setting, std::size_t order) {
   return leaf;
 }
 
-/// The place of a setting's or group's schema: every step goes through "properties".
+/// The schema of a setting or group: every step of its path goes through "properties".
 json& schema_at(json& schema, std::string_view path) {
   json* node = &schema;
   while (!path.empty()) {
@@ -249,7 +249,7 @@ Result<json> apply_patch(Settings& settings, const json& patch) {
 json settings_schema() {
   json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
               {"title", "Settings"},
-              {"description", "What the renderer is asked to do."}};
+              {"description", "The settings of the renderer."}};
   const auto describe_object = [](json& object) {
     object["type"] = "object";
     object["additionalProperties"] = false;

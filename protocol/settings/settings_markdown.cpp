@@ -24,7 +24,7 @@ std::string values_text(const SettingDescriptor& setting) {
     case SettingType::boolean:
       return "true, false";
     case SettingType::integer:
-      return "whole, " + range + unit;
+      return "integer, " + range + unit;
     case SettingType::number:
       return range + unit;
     case SettingType::choice:
@@ -51,7 +51,7 @@ std::string settings_markdown() {
           "`--set path=value` or the method `settings.patch`; null resets it.\n";
   for (const SettingGroup& group : setting_groups()) {
     page << "\n## " << group.title << "\n\n"
-         << "| setting | default | values | resets | what it does |\n|---|---|---|---|---|\n";
+         << "| setting | default | values | resets | description |\n|---|---|---|---|---|\n";
     for (const SettingDescriptor& setting : setting_descriptors()) {
       if (setting.group != group.path) continue;
       page << "| `" << setting.path << "` | " << initial_text(setting) << " | "

@@ -1,36 +1,42 @@
-// A client in a few lines, for programs and pages that need no worker: connects, greets, hands on
-// pictures and acknowledges them. Works wherever there is a WebSocket of the Web's kind: browsers,
-// Node 22 and later; elsewhere the caller brings one.
+// A client for programs and pages that need no worker: connects, sends hello, delivers frames and
+// acknowledges them. Needs a WebSocket class: browsers and Node 22 or later have one.
 
 import { type FrameHeader, parseFrameHeader } from "./frame_header.ts";
-import { type Hello, type StreamSettings, subprotocol } from "./messages.ts";
-import { RpcPeer } from "./rpc.ts";
+import {
+  type Hello,
+  type Methods,
+  type StreamConfigureParams,
+  type StreamSettings,
+  subprotocol,
+} from "./messages.ts";
+import { type RequestArguments, RpcPeer } from "./rpc.ts";
 
-/** A little more than the longest that a capture waits in the server. */
-const longestCallMs = 310_000;
-const connectMs = 30_000;
+/** A little more than the server's timeout of a capture. */
+const callTimeoutMs = 310_000;
+const connectTimeoutMs = 30_000;
 
 export interface ClientOptions {
-  /** What the server's log calls this client. */
+  /** Name of this client in the server's log. */
   client?: string;
   codecs?: string[];
-  /** Where to be; left out, what the address says, or main. */
+  /** The session to join; by default the one in the URL, or main. */
   session?: string;
-  /** What a server with tokens asks for. It is in no address and in no log. */
+  /** The access token, if the server needs one. It is in no URL and in no log. */
   token?: string;
-  /** How long calls wait for their answers, unless they say otherwise. */
+  /** Default timeout of calls. */
   timeoutMs?: number;
   /**
-   * Each picture as it comes, still encoded. It is acknowledged when the function has returned or
-   * failed; one that takes 10 s ends the connection. Left out, the stream is paused.
+   * Receives each encoded frame. The frame is acknowledged when the function has returned or
+   * failed; after 10 s without acknowledgement the server disconnects. If left out, the stream is
+   * paused.
    */
   frame?: (header: FrameHeader, payload: Uint8Array<ArrayBuffer>) => void | Promise<void>;
   notification?: (method: string, params: unknown) => void | Promise<void>;
-  /** The connection ended, by whomever. */
+  /** The connection was closed, by the server or the client. */
   closed?: (code: number, reason: string) => void;
-  /** What the functions above raised; written to the console if left out. It ends nothing. */
+  /** Receives errors of the functions above; by default they go to the console. */
   error?: (error: unknown) => void;
-  /** In place of the global one, for instance the class of the package ws. */
+  /** Replaces the global class, for example by that of the package ws. */
   webSocket?: typeof WebSocket;
 }
 
@@ -49,14 +55,14 @@ export class HeliographClient {
 
   /**
    * @param url of the WebSocket, for example ws://127.0.0.1:8080/ws
-   * @throws RpcError when the server refuses the greeting, Error when there is no server of this
-   * protocol or it does not know the token
+   * @throws RpcError when the server rejects hello, Error when no server of this protocol answers
+   * or it rejects the token
    */
   static async connect(url: string, options: ClientOptions = {}): Promise<HeliographClient> {
     const { client = "heliograph-typescript", codecs = ["jpeg"], session } = options;
-    const timeoutMs = options.timeoutMs ?? longestCallMs;
-    const make = options.webSocket ?? WebSocket;
-    const socket = new make(url, subprotocols(options.token));
+    const timeoutMs = options.timeoutMs ?? callTimeoutMs;
+    const WebSocketClass = options.webSocket ?? WebSocket;
+    const socket = new WebSocketClass(url, subprotocols(options.token));
     socket.binaryType = "arraybuffer";
     const peer = new RpcPeer(
       (text) => socket.send(text),
@@ -64,7 +70,7 @@ export class HeliographClient {
     );
     socket.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) => {
       if (typeof data === "string") peer.receive(data);
-      else void guarded(options, () => take(data, peer, options));
+      else void guarded(options, () => receiveFrame(data, peer, options));
     };
     await opened(socket, url);
     peer.open();
@@ -73,8 +79,8 @@ export class HeliographClient {
       void guarded(options, () => options.closed?.(code, reason));
     };
     try {
-      const greeting = { client, codecs, session };
-      const hello = await peer.request<Hello>("hello", greeting, timeoutMs);
+      const params = { client, codecs, session };
+      const hello = await peer.request("hello", params, timeoutMs);
       if (!options.frame) await peer.request("stream.pause", {}, timeoutMs);
       return new HeliographClient(hello, socket, peer, timeoutMs);
     } catch (error) {
@@ -83,21 +89,21 @@ export class HeliographClient {
     }
   }
 
-  /** Asks one method. @throws RpcError (with code 0 when no answer came in time), ChannelClosed */
-  request<Result>(
-    method: string,
-    params: object = {},
-    timeoutMs = this.timeoutMs,
-  ): Promise<Result> {
-    return this.peer.request<Result>(method, params, timeoutMs);
+  /** Calls a method. @throws RpcError (with code 0 when no answer came in time), ChannelClosed */
+  request<Name extends keyof Methods>(
+    method: Name,
+    ...[params, timeoutMs = this.timeoutMs]: RequestArguments<Methods[Name]["params"]>
+  ): Promise<Methods[Name]["result"]> {
+    const args = [params, timeoutMs] as RequestArguments<Methods[Name]["params"]>;
+    return this.peer.request(method, ...args);
   }
 
-  /** Tells without waiting for an answer. */
-  notify(method: string, params: object): void {
+  /** Calls a method without waiting for an answer. */
+  notify<Name extends keyof Methods>(method: Name, params: Methods[Name]["params"]): void {
     this.peer.notify(method, params);
   }
 
-  configureStream(change: Partial<StreamSettings>): Promise<StreamSettings> {
+  configureStream(change: StreamConfigureParams): Promise<StreamSettings> {
     return this.request("stream.configure", change);
   }
 
@@ -106,7 +112,7 @@ export class HeliographClient {
   }
 }
 
-/** The token goes as a second subprotocol: browsers let pages set no header. */
+/** The token is sent as a second subprotocol, since browsers do not let pages set headers. */
 function subprotocols(token: string | undefined): string[] {
   if (!token) return [subprotocol];
   const bytes = new TextEncoder().encode(token);
@@ -119,22 +125,26 @@ function opened(socket: WebSocket, url: string): Promise<void> {
   return new Promise((resolve, reject) => {
     const fail = (): void => {
       clearTimeout(timer);
-      reject(new Error(`No server lets this client in and speaks ${subprotocol} at ${url}`));
+      reject(new Error(`No server of ${subprotocol} accepts this client at ${url}`));
     };
     const timer = setTimeout(() => {
       socket.close();
       fail();
-    }, connectMs);
+    }, connectTimeoutMs);
     socket.onopen = () => {
       clearTimeout(timer);
       resolve();
     };
-    socket.onerror = fail; // not every Node tells of a refusal by onclose
+    socket.onerror = fail; // some versions of Node do not call onclose for a rejected upgrade
     socket.onclose = fail;
   });
 }
 
-async function take(message: ArrayBuffer, peer: RpcPeer, options: ClientOptions): Promise<void> {
+async function receiveFrame(
+  message: ArrayBuffer,
+  peer: RpcPeer,
+  options: ClientOptions,
+): Promise<void> {
   const header = parseFrameHeader(message);
   try {
     await options.frame?.(header, new Uint8Array(message, header.headerBytes));
@@ -143,7 +153,7 @@ async function take(message: ArrayBuffer, peer: RpcPeer, options: ClientOptions)
   }
 }
 
-/** Runs what the caller brought; an error there is told and ends nothing. */
+/** Runs a function of the caller and reports its errors. */
 async function guarded(options: ClientOptions, work: () => void | Promise<void>): Promise<void> {
   try {
     await work();

@@ -1,12 +1,11 @@
-// The binary frame message: a fixed little-endian header followed by the encoded picture.
+// The binary frame message: a fixed little-endian header, followed by the encoded frame.
 
 const magic = 0x46525648; // 'H' 'V' 'R' 'F' read as a little-endian word
 const minimumHeaderBytes = 64;
 const supportedVersion = 1;
 
-export const MessageType = { frame: 1 } as const;
 export const Codec = { jpeg: 1, png: 2, webp: 3, h264: 16 } as const;
-export const FrameFlag = { key: 1, final: 2, afterDrop: 4, discontinuity: 8, trailer: 16 } as const;
+export const FrameFlag = { key: 1, final: 2, afterDrop: 4, discontinuity: 8 } as const;
 
 export interface FrameHeader {
   type: number;
@@ -14,10 +13,10 @@ export interface FrameHeader {
   flags: number;
   headerBytes: number;
   quality: number;
-  /** Counts the frames sent to this viewer; gaps are frames the server skipped. */
+  /** Number of the frame for this viewer; the server has skipped frames that are missing. */
   frameSeq: number;
   renderId: number;
-  /** The newest camera sequence number that this picture already shows. */
+  /** Sequence number of the newest camera in this frame. */
   inputSeqEcho: number;
   stateRev: number;
   width: number;
@@ -31,13 +30,13 @@ export interface FrameHeader {
   renderUs: number;
   encodeUs: number;
   queueUs: number;
-  /** Accumulated samples per pixel; 0 for a purely rasterised picture. */
+  /** Accumulated samples per pixel; 0 for a purely rasterised frame. */
   sampleCount: number;
 }
 
 export class FrameFormatError extends Error {}
 
-/** Reads the header of one binary message. Throws FrameFormatError when it is not one. */
+/** Reads the header of one binary message. @throws FrameFormatError */
 export function parseFrameHeader(message: ArrayBuffer): FrameHeader {
   if (message.byteLength < minimumHeaderBytes) {
     throw new FrameFormatError(`frame message of ${message.byteLength} bytes has no full header`);
@@ -78,7 +77,7 @@ export function parseFrameHeader(message: ArrayBuffer): FrameHeader {
   };
 }
 
-/** The MIME type of a still-picture codec, or null for one this client cannot show. */
+/** The MIME type of an image codec; null for all others. */
 export function mimeType(codec: number): string | null {
   switch (codec) {
     case Codec.jpeg:

@@ -1,6 +1,6 @@
-// What rpc.discover tells of a server, as far as clients ask.
+// Reads the document of rpc.discover.
 
-import type { JsonObject } from "./messages.ts";
+import type { JsonObject } from "./json.ts";
 import { isObject } from "./settings_tree.ts";
 
 export interface OpenRpc {
@@ -8,7 +8,7 @@ export interface OpenRpc {
   components?: JsonObject;
 }
 
-/** The values that a parameter may take; none where it is not a choice. */
+/** The values of an enumerated parameter; empty for all others. */
 export function choicesOf(document: OpenRpc, method: string, parameter: string): string[] {
   const params = document.methods.find(({ name }) => name === method)?.params ?? [];
   const schema = params.find(({ name }) => name === parameter)?.schema;

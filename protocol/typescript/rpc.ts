@@ -1,37 +1,43 @@
 // JSON-RPC 2.0 over any text channel: numbered requests, notifications both ways, batches.
 
-import type { JsonObject } from "./messages.ts";
+import type { JsonObject } from "./json.ts";
+import type { ErrorData, Methods } from "./messages.ts";
 
-export interface RpcErrorData {
-  path?: string;
-  reason?: string;
-  limit?: unknown;
-}
+/** Parameters and result of each method, by its name. */
+export type MethodTable = Record<string, { params: object; result: unknown }>;
+
+/** The parameters may be left out where none is required. */
+export type RequestArguments<Params> = {} extends Params
+  ? [params?: Params, timeoutMs?: number]
+  : [params: Params, timeoutMs?: number];
+
+/** The code of an error that no server sends: no answer came in time. */
+export const timedOut = 0;
 
 interface RpcErrorObject {
   code: number;
   message: string;
-  data?: RpcErrorData;
+  data?: Partial<ErrorData>;
 }
 
 export class RpcError extends Error {
   readonly code: number;
-  readonly data: RpcErrorData;
+  readonly data: Partial<ErrorData>;
 
-  constructor(code: number, message: string, data: RpcErrorData = {}) {
+  constructor(code: number, message: string, data: Partial<ErrorData> = {}) {
     super(message);
     this.code = code;
     this.data = data;
   }
 
-  /** One readable sentence: the server's message, with its reason where the message lacks it. */
+  /** One sentence: the server's message and its reason, unless the message contains it. */
   get sentence(): string {
     const reason = this.data.reason;
     return reason && !this.message.includes(reason) ? `${this.message}: ${reason}` : this.message;
   }
 }
 
-/** The channel went away before the answer came; the caller normally just waits for the next. */
+/** The channel was closed before the result arrived. */
 export class ChannelClosed extends Error {}
 
 interface Pending {
@@ -42,7 +48,8 @@ interface Pending {
 
 const defaultTimeoutMs = 30_000;
 
-export class RpcPeer {
+/** One end of a channel. `Table` lists the methods of the other end. */
+export class RpcPeer<Table extends { [Name in keyof Table]: MethodTable[string] } = Methods> {
   private readonly send: (text: string) => void;
   private readonly onNotification: (method: string, params: unknown) => void;
   private readonly pending = new Map<number, Pending>();
@@ -57,33 +64,36 @@ export class RpcPeer {
     this.onNotification = onNotification;
   }
 
-  /** The channel is there: requests may be made until close(). */
+  /** The channel is open: requests are possible until close(). */
   open(): void {
     this.connected = true;
   }
 
-  request<Result>(
-    method: string,
-    params: object = {},
-    timeoutMs = defaultTimeoutMs,
-  ): Promise<Result> {
+  /** @throws RpcError (with code `timedOut` when no answer came in time), ChannelClosed */
+  request<Name extends keyof Table & string>(
+    method: Name,
+    ...[params, timeoutMs = defaultTimeoutMs]: RequestArguments<Table[Name]["params"]>
+  ): Promise<Table[Name]["result"]> {
     if (!this.connected) return Promise.reject(new ChannelClosed("There is no connection"));
     const id = this.nextId++;
-    return new Promise<Result>((resolve, reject) => {
+    return new Promise((resolve, reject) => {
       const timer = setTimeout(() => {
         this.pending.delete(id);
-        reject(new RpcError(0, `The server did not answer ${method} in ${timeoutMs / 1000} s`));
+        reject(
+          new RpcError(timedOut, `The server did not answer ${method} in ${timeoutMs / 1000} s`),
+        );
       }, timeoutMs);
       this.pending.set(id, { resolve, reject, timer });
-      this.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
+      this.send(JSON.stringify({ jsonrpc: "2.0", id, method, params: params ?? {} }));
     });
   }
 
-  notify(method: string, params: object): void {
+  /** Calls a method without waiting for an answer. */
+  notify<Name extends keyof Table & string>(method: Name, params: Table[Name]["params"]): void {
     this.send(JSON.stringify({ jsonrpc: "2.0", method, params }));
   }
 
-  /** Takes one text message from the channel. Ignores what is not JSON-RPC. */
+  /** Takes one text message of the channel. Ignores messages that are not JSON-RPC. */
   receive(text: string): void {
     let message: unknown;
     try {
@@ -96,16 +106,16 @@ export class RpcPeer {
     }
   }
 
-  /** Fails every waiting request and all later ones: the channel is gone. */
+  /** Fails all pending and later requests: the channel is closed. */
   close(): void {
     this.connected = false;
     this.failAll(() => new ChannelClosed("The connection was lost"));
   }
 
   private failAll(error: () => Error): void {
-    const waiting = [...this.pending.values()];
+    const requests = [...this.pending.values()];
     this.pending.clear();
-    for (const { reject, timer } of waiting) {
+    for (const { reject, timer } of requests) {
       clearTimeout(timer);
       reject(error());
     }
@@ -118,17 +128,18 @@ export class RpcPeer {
       return;
     }
     if (entry.id === null && entry.error !== undefined) {
-      // Whose it is was not to be read: better all are told than one waits in vain.
+      // The server could not read the id: fail every pending request, so that none waits without
+      // end.
       return this.failAll(() => errorOf(entry));
     }
-    const waiting = this.pending.get(entry.id as number);
-    if (!waiting) return;
+    const request = this.pending.get(entry.id as number);
+    if (!request) return;
     this.pending.delete(entry.id as number);
-    clearTimeout(waiting.timer);
+    clearTimeout(request.timer);
     if (entry.error !== undefined) {
-      waiting.reject(errorOf(entry));
+      request.reject(errorOf(entry));
     } else {
-      waiting.resolve(entry.result as never);
+      request.resolve(entry.result as never);
     }
   }
 }

@@ -1,13 +1,13 @@
-// Turns the server's JSON Schema of its settings into a description of controls. Nothing here
-// knows a setting by name, so a setting added to the server appears without a change here.
+// Turns the JSON Schema of the settings into a description of controls. It contains no names of
+// settings, so a setting that is added to the server needs no change here.
 
-import type { JsonObject, JsonValue } from "./messages.ts";
+import type { JsonObject, JsonValue } from "./json.ts";
 import { isObject } from "./settings_tree.ts";
 
-/** Wider ranges of whole numbers, like those of a random seed, are typed instead of dragged. */
-const widestIntegerSlider = 1_000_000;
+/** Integers with a wider range, such as a random seed, get a number field instead of a slider. */
+const maxIntegerSliderRange = 1_000_000;
 
-/** How names are written that are not plain words. */
+/** Labels of names that are not plain words. */
 const properNames: Record<string, string> = {
   aces: "ACES",
   agx: "AgX",
@@ -21,7 +21,7 @@ interface ControlBase {
   path: string;
   label: string;
   description: string;
-  /** As the schema names it, for example "seconds"; empty when the value has none. */
+  /** As in the schema, for example "seconds"; empty without a unit. */
   unit: string;
   default: JsonValue | undefined;
   order: number;
@@ -34,8 +34,8 @@ export interface NumberRange {
   integer: boolean;
 }
 
-/** How a slider's way is divided among its values. */
-export type SliderScale = "linear" | "logarithmic" | "cubic";
+/** The mapping from a slider's position to its value. */
+type SliderScale = "linear" | "logarithmic" | "cubic";
 
 export interface ToggleControl extends ControlBase {
   kind: "toggle";
@@ -60,7 +60,7 @@ export interface ChoiceControl extends ControlBase {
 export interface TextControl extends ControlBase {
   kind: "text";
 }
-/** A shape this client has no widget for: edited as JSON text. */
+/** A type without a widget: edited as JSON text. */
 export interface JsonControl extends ControlBase {
   kind: "json";
 }
@@ -143,12 +143,7 @@ function describeGroup(
   return group;
 }
 
-function describeControl(
-  node: JsonObject,
-  path: string,
-  label: string,
-  order: number,
-): Control {
+function describeControl(node: JsonObject, path: string, label: string, order: number): Control {
   const base: ControlBase = {
     path,
     label,
@@ -183,21 +178,22 @@ function describeNumber(base: ControlBase, node: JsonObject, type: string): Cont
   const range = numberRange(node, type);
   const { minimum, maximum } = range;
   const bounded = minimum !== undefined && maximum !== undefined && maximum > minimum;
-  if (!bounded || (range.integer && maximum - minimum > widestIntegerSlider)) {
+  if (!bounded || (range.integer && maximum - minimum > maxIntegerSliderRange)) {
     return { ...base, kind: "number", ...range };
   }
   const scale = scaleFor(minimum, maximum, base.default);
   return { ...base, kind: "slider", ...range, minimum, maximum, scale };
 }
 
-/** Room for the small values where the interesting ones are small compared with the largest. */
+/** Non-linear where typical values are small compared with the maximum. */
 function scaleFor(
   minimum: number,
   maximum: number,
-  standard: JsonValue | undefined,
+  defaultValue: JsonValue | undefined,
 ): SliderScale {
   if (minimum > 0 && maximum / minimum >= 1000) return "logarithmic";
-  const small = typeof standard === "number" && standard > 0 && standard < 0.06 * maximum;
+  const small =
+    typeof defaultValue === "number" && defaultValue > 0 && defaultValue < 0.06 * maximum;
   return minimum === 0 && small ? "cubic" : "linear";
 }
 
@@ -205,9 +201,9 @@ function numberRange(node: JsonObject, type: string): NumberRange {
   const integer = type === "integer";
   const minimum = numeric(node.minimum) ?? numeric(node.exclusiveMinimum);
   const maximum = numeric(node.maximum) ?? numeric(node.exclusiveMaximum);
-  const stated = numeric(node.multipleOf);
+  const explicit = numeric(node.multipleOf);
   const span = minimum !== undefined && maximum !== undefined ? maximum - minimum : undefined;
-  const step = stated ?? (integer ? 1 : span ? niceStep(span / 200) : 0.1);
+  const step = explicit ?? (integer ? 1 : span ? niceStep(span / 200) : 0.1);
   return { minimum, maximum, step, integer };
 }
 
@@ -219,12 +215,12 @@ export function niceStep(width: number): number {
   return Number((factor * power).toPrecision(6));
 }
 
-/** Decimals that tell neighbouring values of this step apart. */
-export function decimalsOf(step: number): number {
+/** Decimals that distinguish neighbouring values of this step. */
+function decimalsOf(step: number): number {
   return Math.min(6, Math.max(0, Math.ceil(-Math.log10(step) - 1e-9)));
 }
 
-/** Writes a number with the digits its control distinguishes, without trailing zeros. */
+/** Formats a number with the digits that its control distinguishes, without trailing zeros. */
 export function formatNumber(value: number, range: NumberRange): string {
   if (range.integer) return String(Math.round(value));
   const threeDigits = value === 0 ? 0 : 2 - Math.floor(Math.log10(Math.abs(value)));
@@ -232,7 +228,7 @@ export function formatNumber(value: number, range: NumberRange): string {
   return String(Number(value.toFixed(decimals)));
 }
 
-/** Reads typed text; null when it is not a number. The result is kept inside the range. */
+/** Parses typed text and clamps it to the range; null if it is not a number. */
 export function parseNumber(typed: string, range: NumberRange): number | null {
   const value = Number(typed.trim().replace(",", "."));
   if (typed.trim() === "" || !Number.isFinite(value)) return null;
@@ -281,8 +277,8 @@ function typeOf(node: JsonObject): string {
 }
 
 function vectorLength(node: JsonObject): number {
-  const stated = numeric(node.maxItems) ?? numeric(node.minItems);
-  return stated ?? (Array.isArray(node.default) ? node.default.length : 0);
+  const explicit = numeric(node.maxItems) ?? numeric(node.minItems);
+  return explicit ?? (Array.isArray(node.default) ? node.default.length : 0);
 }
 
 function numeric(value: JsonValue | undefined): number | undefined {

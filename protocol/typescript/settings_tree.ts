@@ -1,6 +1,6 @@
 // Values and patches of the settings tree, addressed by dotted paths.
 
-import type { JsonObject, JsonValue } from "./messages.ts";
+import type { JsonObject, JsonValue } from "./json.ts";
 
 export function isObject(value: unknown): value is JsonObject {
   return typeof value === "object" && value !== null && !Array.isArray(value);
@@ -21,7 +21,7 @@ export function patchOf(path: string, value: JsonValue): JsonObject {
   return names.reduceRight<JsonValue>((inner, name) => ({ [name]: inner }), value) as JsonObject;
 }
 
-/** Joins two patches that were not sent yet; the later one wins. Nulls stay: they mean "reset". */
+/** Merges two patches; the later one wins. Nulls are kept: they mean "reset". */
 export function joinPatches(earlier: JsonObject, later: JsonObject): JsonObject {
   const joined: JsonObject = { ...earlier };
   for (const [name, value] of Object.entries(later)) {
@@ -39,16 +39,16 @@ export function mergePatch(
 ): JsonObject {
   const merged: JsonObject = { ...tree };
   for (const [name, value] of Object.entries(patch)) {
-    const standard = defaults?.[name];
+    const defaultValue = defaults?.[name];
     if (value === null) {
-      if (standard === undefined) delete merged[name];
-      else merged[name] = standard;
+      if (defaultValue === undefined) delete merged[name];
+      else merged[name] = defaultValue;
     } else if (isObject(value)) {
       const before = merged[name];
       merged[name] = mergePatch(
         isObject(before) ? before : {},
         value,
-        isObject(standard) ? standard : undefined,
+        isObject(defaultValue) ? defaultValue : undefined,
       );
     } else {
       merged[name] = value;
@@ -59,7 +59,7 @@ export function mergePatch(
 
 export function sameValue(a: JsonValue | undefined, b: JsonValue | undefined): boolean {
   if (typeof a === "number" && typeof b === "number") {
-    // The server keeps single precision: 0.1 comes back as 0.10000000149.
+    // The server stores single precision: 0.1 becomes 0.10000000149.
     return a === b || Math.abs(a - b) <= 1e-6 * Math.max(Math.abs(a), Math.abs(b));
   }
   if (Array.isArray(a) && Array.isArray(b)) {

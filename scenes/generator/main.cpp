@@ -102,7 +102,7 @@ Options parse(const std::vector<std::string_view>& arguments) {
 
 void write_file(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes,
                 const std::string& what) {
-  // Under another name first: who reads the old file meanwhile never sees half of the new one.
+  // Written under another name first, so that readers never see a partial file.
   std::filesystem::path partial = path;
   partial += ".partial";
   std::ofstream file(partial, std::ios::binary);
@@ -121,7 +121,7 @@ void write_document(const Options& options, const Document& document) {
                  std::to_string(document.materials.size()) + " materials");
 }
 
-// With its sky beside it, under its own name: that is where the server looks for it.
+// With a sky file of the same name beside it, which the server loads by default.
 void write_scene(const Options& options, const PaperScene& scene) {
   const ClearSky sky = scene.make_sky(sky_width, sky_height);
   write_file(options.output / (std::string(scene.name) + ".hdr"), encode_hdr(sky.environment),
@@ -149,7 +149,7 @@ void generate(const Options& options) {
   }
   if (options.wants("studio")) {
     write_file(options.output / "studio.hdr", encode_hdr(make_studio(sky_width, sky_height)),
-               "soft boxes");
+               "softboxes");
   }
   for (const PaperScene& scene : paper_scenes()) {
     if (options.wants(scene.name)) write_scene(options, scene);

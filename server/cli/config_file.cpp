@@ -32,7 +32,7 @@ std::string config_path(const std::vector<std::string>& arguments) {
   return variable(config_variable);
 }
 
-/// The option that stands in files under `name`.
+/// The option with the key `name` in files.
 const CLI::Option* find_option(const CLI::App& command, const std::string& name) {
   for (const CLI::Option* option : command.get_options()) {
     if (option->get_configurable() && option->check_lname(name)) return option;
@@ -51,7 +51,7 @@ std::string unknown_key(const std::vector<const CLI::App*>& commands, const std:
     }
   }
   names.assign(kept.begin(), kept.end());
-  return "\"" + key + "\" is no option" + protocol::suggestion(key, names);
+  return "\"" + key + "\" is not an option" + protocol::suggestion(key, names);
 }
 
 bool is_plain(const std::string& value) {
@@ -86,7 +86,7 @@ OptionSources::OptionSources(const CLI::App& app, const CLI::App& command,
 
 void OptionSources::read_file(const CLI::App& app, const CLI::App& command) {
   std::ifstream stream(file_);
-  if (!stream) throw std::invalid_argument("the file of --config, " + file_ + ", cannot be read");
+  if (!stream) throw std::invalid_argument("--config: cannot read " + file_);
   const std::vector<const CLI::App*> commands = app.get_subcommands(nullptr);
   for (const CLI::ConfigItem& item : CLI::ConfigTOML().from_config(stream)) {
     if (item.name == "++" || item.name == "--") continue;
@@ -96,7 +96,7 @@ void OptionSources::read_file(const CLI::App& app, const CLI::App& command) {
         return item.parents.size() > 1 || one->get_name() != item.parents.front();
       });
       if (meant.empty()) {
-        throw std::invalid_argument(file_ + ": [" + item.parents.front() + "] is no command");
+        throw std::invalid_argument(file_ + ": [" + item.parents.front() + "] is not a command");
       }
     }
     const bool known = std::any_of(meant.begin(), meant.end(), [&](const CLI::App* one) {

@@ -4,21 +4,21 @@
 #include <string>
 #include <vector>
 
-// The file of --config, the environment and where each option's value comes from. For the sources
-// of this folder only: it brings CLI11.
+// The file of --config, the environment, and the source of each option's value. Includes CLI11:
+// only for the sources of this folder.
 
 namespace heliograph::cli {
 
-/// Where the values of one command's options come from. The command line goes before the
-/// environment, the environment before the file.
+/// The sources of the values of one command's options. The command line takes precedence over the
+/// environment, the environment over the file.
 class OptionSources {
  public:
   /// `arguments` are those of the process, without its name.
-  /// @throws std::invalid_argument naming file and key, for a file that cannot be read or that has
-  /// keys that are no options
+  /// @throws std::invalid_argument naming file and key, if the file cannot be read or has unknown
+  /// keys
   OptionSources(const CLI::App& app, const CLI::App& command, std::vector<std::string> arguments);
 
-  /// The command line as if the file's options stood on it, where nothing goes before them.
+  /// The command line, with the file's options appended where nothing takes precedence.
   const std::vector<std::string>& arguments() const { return arguments_; }
   /// "on the command line", "in HELIOGRAPH_PORT", "in heliograph.toml" or empty for the default.
   std::string source(const CLI::Option& option) const;
@@ -34,11 +34,11 @@ class OptionSources {
   std::vector<std::string> from_file_;
 };
 
-/// What the command's options are, as a file for --config with the source of each in a comment.
-/// Secrets are left out.
+/// The values of the command's options as a file for --config, with the source of each as a
+/// comment. Secrets are omitted.
 std::string effective_config(const CLI::App& command, const OptionSources& sources);
 
-/// HELIOGRAPH_MAX_VIEWERS for --max-viewers, for every option that has no variable yet.
+/// HELIOGRAPH_MAX_VIEWERS for --max-viewers, for every option without a variable.
 void name_variables(CLI::App& command);
 
 }  // namespace heliograph::cli

@@ -11,7 +11,7 @@
 namespace heliograph::cli {
 namespace {
 
-/// $XDG_CACHE_HOME/heliograph or ~/.cache/heliograph; empty where neither is known.
+/// $XDG_CACHE_HOME/heliograph or ~/.cache/heliograph; empty if neither variable is set.
 std::filesystem::path cache_folder() {
   const auto variable = [](const char* name) {
     const char* value = std::getenv(name);

@@ -8,7 +8,7 @@ namespace heliograph::cli {
 
 render::EngineOptions engine_options(const DeviceOptions& options);
 
-/// The defaults, changed by "path=value" of the command line.
+/// The defaults with the preset and the "path=value" assignments of the command line.
 /// @throws std::invalid_argument
 protocol::Settings parse_settings(const SettingsOptions& options);
 

@@ -10,7 +10,7 @@
 #include "protocol/settings/settings_json.hpp"
 #include "render/api/renderer.hpp"
 
-// The commands that only tell something.
+// The commands that print information.
 
 namespace heliograph::cli {
 

@@ -17,7 +17,7 @@
 namespace heliograph::cli {
 namespace {
 
-/// What is said, and after it "name=value" for whom it is about.
+/// The message, followed by the fields "name=value".
 std::vector<std::string_view> parts_of(const spdlog::details::log_msg& message) {
   std::string_view rest(message.payload.data(), message.payload.size());
   std::vector<std::string_view> parts;
@@ -33,7 +33,7 @@ std::string json_text(std::string_view text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// The message as a member of a JSON object, and a member each for whom it is about.
+/// The message and its fields as members of a JSON object.
 class JsonMessage : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg& message, const std::tm&,
@@ -51,7 +51,7 @@ class JsonMessage : public spdlog::custom_flag_formatter {
   }
 };
 
-/// The message for people: one line, whatever it holds.
+/// The message as one line of text, whatever it contains.
 class TextMessage : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg& message, const std::tm&,

@@ -4,7 +4,7 @@
 
 namespace heliograph::cli {
 
-/// Sends the log to stderr, as lines for people or as JSON objects.
+/// Writes the log to stderr, as lines of text or as JSON objects.
 void set_up_log(const LogOptions& options);
 
 }  // namespace heliograph::cli

@@ -20,7 +20,7 @@ std::vector<std::string> tracer_names() {
 void add_device_options(CLI::App& command, DeviceOptions& options) {
   command.add_option("--device", options.device, "Part of the name of the Vulkan device to use")
       ->group("Device");
-  command.add_option("--tracer", options.tracer, "What traces rays; see \"heliograph devices\"")
+  command.add_option("--tracer", options.tracer, "Ray tracer; see \"heliograph devices\"")
       ->check(CLI::IsMember(tracer_names()))
       ->capture_default_str()
       ->group("Device");
@@ -43,21 +43,21 @@ void add_shader_option(CLI::App& command, DeviceOptions& options) {
 void add_settings_options(CLI::App& command, SettingsOptions& options) {
   std::vector<std::string> presets;
   for (const protocol::Preset& preset : protocol::presets()) presets.emplace_back(preset.name);
-  command.add_option("--preset", options.preset, "A named choice of settings; --set comes on top")
+  command.add_option("--preset", options.preset, "Preset of the denoiser; --set is applied on top")
       ->check(CLI::IsMember(presets))
-      ->group("Pictures");
+      ->group("Frames");
   command
       .add_option("--set", options.assignments,
                   "A setting as PATH=VALUE; see \"heliograph schema\"")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false)
-      ->group("Pictures");
+      ->group("Frames");
 }
 
 void add_environment_option(CLI::App& command, std::string& environment) {
   command
       .add_option("--environment", environment,
-                  ".hdr or .exr file that lights the scenes [the one beside the scene]")
+                  ".hdr or .exr file that lights the scenes [the one next to the scene]")
       ->type_name("FILE")
       ->check(CLI::ExistingFile)
       ->group("Scenes");
@@ -70,16 +70,17 @@ void add_limit_options(CLI::App& command, scene::ImportLimits& limits) {
         ->capture_default_str()
         ->group("Limits of scenes");
   };
-  add("--max-scene-bytes", limits.file_bytes, "Most bytes of a scene's files together");
-  add("--max-unpacked-bytes", limits.unpacked_bytes, "Most bytes its compressed buffers grow to");
+  add("--max-scene-bytes", limits.file_bytes, "Maximum bytes of a scene's files");
+  add("--max-unpacked-bytes", limits.unpacked_bytes, "Maximum bytes of its decompressed buffers");
   add("--max-geometry-bytes", limits.scene_bytes,
-      "Most bytes that its geometry and animations take once read");
-  add("--max-triangles", limits.triangles, "Most triangles of a scene");
-  add("--max-texels", limits.texels, "Most texels of a scene's images together");
-  add("--max-texture-size", limits.texture_size, "Greatest width and height of an image, pixels");
-  add("--max-nodes", limits.nodes, "Most nodes of a scene");
-  add("--max-instances", limits.instances, "Most meshes placed in a scene");
-  add("--max-node-depth", limits.node_depth, "Most levels of nodes below nodes");
+      "Maximum bytes of its geometry and animations in memory");
+  add("--max-triangles", limits.triangles, "Maximum number of triangles of a scene");
+  add("--max-texels", limits.texels, "Maximum number of texels of a scene's images");
+  add("--max-texture-size", limits.texture_size,
+      "Maximum width and height of a texture image, pixels");
+  add("--max-nodes", limits.nodes, "Maximum number of nodes of a scene");
+  add("--max-instances", limits.instances, "Maximum number of mesh instances of a scene");
+  add("--max-node-depth", limits.node_depth, "Maximum depth of the node hierarchy");
 }
 
 }  // namespace heliograph::cli

@@ -4,8 +4,9 @@
 #include <string>
 
 #include "cli/options.hpp"
+#include "protocol/limits.hpp"
 
-// Options that several commands have. For the sources of this folder only: it brings CLI11.
+// Options that several commands share. Includes CLI11: only for the sources of this folder.
 
 namespace heliograph::cli {
 
@@ -13,19 +14,19 @@ void add_device_options(CLI::App& command, DeviceOptions& options);
 void add_shader_option(CLI::App& command, DeviceOptions& options);
 void add_settings_options(CLI::App& command, SettingsOptions& options);
 void add_environment_option(CLI::App& command, std::string& environment);
-/// What a scene's file may cost before it is refused.
+/// Limits beyond which a scene file is refused.
 void add_limit_options(CLI::App& command, scene::ImportLimits& limits);
 
-/// `Number` is an integer or an optional one; `otherwise` tells what holds without the option.
+/// `Number` is an integer or an optional one; `otherwise` describes the default.
 template <class Number>
 void add_size_options(CLI::App& command, Number& width, Number& height,
                       const std::string& otherwise) {
-  command.add_option("--width", width, "Picture width, pixels [" + otherwise + "]")
-      ->check(CLI::Range(16, 16384))
-      ->group("Pictures");
-  command.add_option("--height", height, "Picture height, pixels")
-      ->check(CLI::Range(16, 16384))
-      ->group("Pictures");
+  command.add_option("--width", width, "Frame width, pixels [" + otherwise + "]")
+      ->check(CLI::Range(protocol::min_frame_size, protocol::max_frame_size))
+      ->group("Frames");
+  command.add_option("--height", height, "Frame height, pixels")
+      ->check(CLI::Range(protocol::min_frame_size, protocol::max_frame_size))
+      ->group("Frames");
 }
 
 /// Adds the command "serve".

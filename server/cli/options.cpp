@@ -14,6 +14,7 @@
 #include "cli/config_file.hpp"
 #include "cli/option_groups.hpp"
 #include "protocol/json/suggestions.hpp"
+#include "protocol/limits.hpp"
 
 namespace heliograph::cli {
 namespace {
@@ -21,12 +22,12 @@ namespace {
 constexpr int wrong_usage = 2;
 
 constexpr const char* description =
-    "Heliograph: renders glTF scenes and streams the pictures to browsers and programs.";
+    "Heliograph: renders glTF scenes and streams the frames to browsers and programs.";
 
-constexpr const char* examples = R"text(Examples:
+constexpr const char* program_examples = R"text(Examples:
   heliograph serve                            the demo scene at http://127.0.0.1:8080/
-  heliograph render helmet.glb -o helmet.png  one picture, no network
-  heliograph devices                          which Vulkan devices there are and why one is chosen
+  heliograph render helmet.glb -o helmet.png  one image, no network
+  heliograph devices                          the Vulkan devices, and why one is chosen
 
 "heliograph COMMAND --help" explains each command.)text";
 
@@ -36,22 +37,23 @@ constexpr const char* render_examples = R"text(Examples:
   heliograph render helmet.glb -o dark.png --environment studio.hdr --set exposure.compensation=-1
   heliograph render atrium.glb -o atrium.png --timings --frames 32
   heliograph render fox.glb -o run.png --clip Run --time 0.2 --frames 24
-  heliograph render pillars.glb -o svgf.png --preset svgf --set accumulation.handover=4096
-  heliograph render pillars.glb -o truth.png --reference full --samples 1024)text";
+  heliograph render pillars.glb -o svgf.png --preset svgf --set accumulation.blend_samples=4096
+  heliograph render pillars.glb -o reference.png --reference full --samples 1024)text";
 
 constexpr const char* devices_examples = R"text(Example:
   heliograph devices --device llvmpipe)text";
 
 constexpr const char* schema_examples = R"text(Examples:
   heliograph schema > heliograph.json    the methods (OpenRPC) and the settings (JSON Schema)
-  heliograph schema --markdown           the settings as a page to read)text";
+  heliograph schema --markdown           the settings as a Markdown page)text";
 
 constexpr const char* health_examples = R"text(Examples:
-  heliograph health                             the server that the same environment and file make
+  heliograph health                    the server of the same environment and --config
   heliograph health --url http://127.0.0.1:9000/health/ready)text";
 
 CLI::App* add_render(CLI::App& app, RenderOptions& options) {
-  CLI::App* command = app.add_subcommand("render", "Render one picture into a file");
+  CLI::App* command =
+      app.add_subcommand("render", "Render an image, or the frames of a clip, into files");
   command->add_option("scene", options.scene, "A .glb or .gltf file")
       ->type_name("FILE")
       ->required();
@@ -61,36 +63,37 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options) {
       ->type_name("FILE")
       ->required();
   add_size_options(*command, options.width, options.height, "1280x720");
-  command->add_option("--camera", options.camera, "Camera of the scene [its first, or all in view]")
+  command
+      ->add_option("--camera", options.camera,
+                   "Camera of the scene [the first; without cameras the whole scene is in view]")
       ->type_name("NAME");
   command->add_option("--samples", options.samples, "Samples per pixel [accumulation.max_samples]")
-      ->check(CLI::Range(1, 65536));
+      ->check(CLI::Range(1u, protocol::max_samples_per_pixel));
   command
       ->add_option("--reference", options.reference,
-                   "Path trace instead: the hybrid's own light paths, or all (full)")
+                   "Path trace instead: the hybrid's own light paths (same_paths) or all (full)")
       ->check(CLI::IsMember({"same_paths", "full"}));
   add_settings_options(*command, options.settings);
-  command->add_option("--buffer", options.buffer, "Picture to write: any buffer of the renderer")
-      ->capture_default_str();
+  command->add_option("--buffer", options.buffer, "Buffer to write")->capture_default_str();
   add_environment_option(*command, options.environment);
   add_limit_options(*command, options.limits);
   command->add_flag("--timings", options.timings,
-                    "Print one line of JSON: median time of each pass");
-  auto* const clip =
-      command->add_option("--clip", options.clip, "Clip of the scene that poses it [at rest]");
+                    "Print one line of JSON: the median time of each pass");
+  auto* const clip = command->add_option("--clip", options.clip,
+                                         "Animation clip that poses the scene [default pose]");
   clip->type_name("NAME");
-  command->add_option("--time", options.time, "Where the clip stands, seconds")
+  command->add_option("--time", options.time, "Time in the clip, seconds")
       ->check(CLI::Range(0.0, 1e6))
       ->needs(clip)
       ->capture_default_str();
-  command->add_option("--fps", options.fps, "Pictures for each second of the clip")
+  command->add_option("--fps", options.fps, "Frames per second of the clip")
       ->check(CLI::Range(0.1, 1000.0))
       ->needs(clip)
       ->capture_default_str();
   command
       ->add_option("--frames", options.frames,
-                   "Pictures of the clip, in numbered files [1]; or frames to measure for "
-                   "--timings [16]")
+                   "Number of frames of the clip, in numbered files [1], or of frames to "
+                   "measure for --timings [16]")
       ->check(CLI::Range(1, 100000));
   add_device_options(*command, options.device);
   add_shader_option(*command, options.device);
@@ -100,37 +103,38 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options) {
 
 CLI::App* add_devices(CLI::App& app, DevicesOptions& options) {
   CLI::App* command =
-      app.add_subcommand("devices", "Tell which Vulkan devices there are and which is chosen");
+      app.add_subcommand("devices", "List the Vulkan devices and tell which one is chosen");
   add_device_options(*command, options.device);
   command->footer(devices_examples);
   return command;
 }
 
 CLI::App* add_schema(CLI::App& app, SchemaOptions& options) {
-  CLI::App* command = app.add_subcommand("schema", "Print the protocol and the settings");
-  command->add_flag("--markdown", options.markdown, "The settings as a page to read");
+  CLI::App* command =
+      app.add_subcommand("schema", "Print the description of the protocol and of the settings");
+  command->add_flag("--markdown", options.markdown, "Print the settings as a Markdown page");
   command->footer(schema_examples);
   return command;
 }
 
 CLI::App* add_health(CLI::App& app, HealthOptions& options) {
   CLI::App* command =
-      app.add_subcommand("health", "Ask a running server whether it is ready; exits 0 or 1");
+      app.add_subcommand("health", "Query whether a running server is ready; exits with 0 or 1");
   command
       ->add_option("--url", options.url,
-                   "Address to ask [that of \"heliograph serve\" with the same environment and "
-                   "--config]")
+                   "Address to query [that of \"heliograph serve\" with the same environment "
+                   "and --config]")
       ->envname("HELIOGRAPH_HEALTH_URL");
   command
       ->add_option("--tls-ca", options.authorities,
-                   "Certificates (PEM) to trust with https:// [the system's; on loopback any]")
+                   "Certificates (PEM) to trust with https:// [the system's; any on loopback]")
       ->type_name("FILE")
       ->check(CLI::ExistingFile);
   command->footer(health_examples);
   return command;
 }
 
-/// "; did you mean --port?" for an argument that nobody expected.
+/// "; did you mean --port?" for an unknown argument.
 std::string hint(const CLI::App& app, const CLI::App* command) {
   std::vector<std::string> names;
   for (const CLI::App* level : {&app, command}) {
@@ -149,9 +153,10 @@ std::string hint(const CLI::App& app, const CLI::App* command) {
   return {};
 }
 
-/// "heliograph.toml: " before an error about an option that stands there. CLI11 names options in
-/// the text of its errors only.
-std::string place(const CLI::App* command, const OptionSources* sources, const std::string& what) {
+/// "heliograph.toml: " for an error about an option from that file. CLI11 names options only in the
+/// text of its errors.
+std::string location_of(const CLI::App* command, const OptionSources* sources,
+                        const std::string& what) {
   if (!command || !sources) return {};
   for (const CLI::Option* option : command->get_options()) {
     const std::size_t begin = what.find(option->get_name());
@@ -170,8 +175,8 @@ int report(const CLI::App& app, const CLI::App* command, const OptionSources* so
     return app.exit(error, std::cout, std::cerr);
   }
   const std::string help = command ? "heliograph " + command->get_name() : "heliograph";
-  std::cerr << "heliograph: " << place(command, sources, error.what()) << error.what()
-            << hint(app, command) << " (" << help << " --help explains)\n";
+  std::cerr << "heliograph: " << location_of(command, sources, error.what()) << error.what()
+            << hint(app, command) << " (" << help << " --help lists the options)\n";
   return wrong_usage;
 }
 
@@ -181,13 +186,14 @@ bool asks_for_help(const std::vector<std::string>& arguments) {
   });
 }
 
-/// Where a server of these options answers on this machine. @throws std::invalid_argument
+/// The health address of a server with these options on this machine.
+/// @throws std::invalid_argument
 std::string health_url(const ServeOptions& serve) {
   if (serve.port == 0) {
-    throw std::invalid_argument("port 0 is another one at each start: give --url");
+    throw std::invalid_argument("--port 0 chooses another port at each start: specify --url");
   }
   std::string host = serve.host;
-  // Who listens on every address is asked on the one that only this machine can reach.
+  // A server that listens on all addresses is queried on loopback.
   if (host == "0.0.0.0") host = "127.0.0.1";
   if (host == "::") host = "::1";
   if (host.find(':') != std::string::npos) host = "[" + host + "]";
@@ -195,7 +201,7 @@ std::string health_url(const ServeOptions& serve) {
   return scheme + "://" + host + ":" + std::to_string(serve.port) + "/health/ready";
 }
 
-/// The command that the arguments name, or null.
+/// The command in the arguments, or null.
 CLI::App* named_command(CLI::App& app, const std::vector<std::string>& arguments) {
   for (const std::string& argument : arguments) {
     for (CLI::App* command : app.get_subcommands({})) {
@@ -220,12 +226,13 @@ Command with_url_of_server(HealthOptions options, const std::string& config_file
 
 Command parse(const std::vector<std::string>& given) {
   CLI::App app(description, "heliograph");
-  app.footer(examples);
+  app.footer(program_examples);
   app.require_subcommand(1);
   app.fallthrough();
   app.set_version_flag("--version", "heliograph " HELIOGRAPH_VERSION);
   std::string config_file;
-  app.add_option("--config", config_file, "File with options (TOML): \"[serve]\", \"port=9000\"")
+  app.add_option("--config", config_file,
+                 "File with options (TOML), such as \"[serve]\" and \"port=9000\"")
       ->type_name("FILE")
       ->envname("HELIOGRAPH_CONFIG");
 

@@ -32,11 +32,11 @@ struct ServeOptions {
   std::uint16_t port = 8080;
   std::string scene;
   std::vector<std::filesystem::path> scene_roots;
-  std::string uploads;  // folder; empty: nothing can be uploaded
+  std::string uploads;  // folder; empty: uploads are not allowed
   std::uint64_t max_upload_bytes = 256ull << 20;
   std::uint64_t upload_quota = 4ull << 30;
   std::string environment;
-  std::optional<std::uint32_t> width;  // absent: as the device can bear
+  std::optional<std::uint32_t> width;  // absent: depends on the device
   std::optional<std::uint32_t> height;
   std::string tls_certificate;
   std::string tls_key;
@@ -75,14 +75,14 @@ struct RenderOptions {
   std::string camera;
   std::optional<std::uint32_t> samples;
   scene::ImportLimits limits;
-  std::string reference;  // the scope of the path traced truth, or none
+  std::string reference;  // reference.scope; empty: no path tracing
   SettingsOptions settings;
   std::string buffer = "output";
   std::string environment;
   bool timings = false;
-  std::string clip;   // empty: at rest
+  std::string clip;   // empty: default pose
   double time = 0.0;  // seconds into the clip
-  double fps = 30.0;  // pictures of a second of the clip
+  double fps = 30.0;  // frames per second of the clip
   std::optional<std::uint32_t> frames;
   DeviceOptions device;
 };
@@ -96,12 +96,12 @@ struct SchemaOptions {
 };
 
 struct HealthOptions {
-  std::string url;          // without --url, that of the server by the same configuration
-  std::string authorities;  // file; empty: those of the system
+  std::string url;          // without --url: that of a server with the same configuration
+  std::string authorities;  // file; empty: the system's
 };
 
-/// What remains to be done when parsing was all there is to it: text was asked for, or the command
-/// line is wrong.
+/// The result of a command line that needs no command: help was printed, or the arguments are
+/// wrong.
 struct Finished {
   int exit_code = 0;
 };
@@ -109,8 +109,8 @@ struct Finished {
 using Command = std::variant<Finished, ServeOptions, RenderOptions, DevicesOptions, SchemaOptions,
                              HealthOptions>;
 
-/// Reads the command line, HELIOGRAPH_* variables and the file of --config, in this precedence.
-/// Help goes to stdout, errors to stderr with the nearest name that exists.
+/// Reads the command line, HELIOGRAPH_* variables and the file of --config, in this order of
+/// precedence. Help is printed to stdout, errors to stderr with the nearest known name.
 Command parse_command_line(int count, char** arguments);
 
 }  // namespace heliograph::cli

@@ -11,6 +11,7 @@
 #include "cli/commands.hpp"
 #include "cli/engine_options.hpp"
 #include "protocol/json/suggestions.hpp"
+#include "protocol/limits.hpp"
 #include "scene/animation/pose.hpp"
 #include "scene/camera.hpp"
 #include "scene/environment.hpp"
@@ -37,7 +38,7 @@ scene::Camera choose_camera(const scene::Scene& scene, const RenderOptions& opti
     names.push_back(camera.name);
   }
   if (!options.camera.empty()) {
-    throw std::runtime_error("the scene has no camera " + options.camera +
+    throw std::runtime_error("--camera: the scene has no camera " + options.camera +
                              protocol::suggestion(options.camera, names));
   }
   const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
@@ -97,11 +98,11 @@ void choose_reference(protocol::Settings& settings, const std::string& scope) {
       scope == "full" ? protocol::ReferenceScope::full : protocol::ReferenceScope::same_paths;
 }
 
-/// The median frame while the picture keeps changing, as one line of JSON.
+/// The median times of frames that never converge, as one line of JSON.
 void print_timings(render::Engine& engine, render::Renderer& renderer,
                    const protocol::Settings& settings, const RenderOptions& options) {
   protocol::Settings endless = settings;
-  endless.accumulation.max_samples = 65536;
+  endless.accumulation.max_samples = protocol::max_samples_per_pixel;
   accept(renderer.set_settings(endless));
   for (int i = 0; i < warm_up_frames; ++i) renderer.render();
   Timings timings;
@@ -116,7 +117,7 @@ void print_timings(render::Engine& engine, render::Renderer& renderer,
   std::printf("%s\n", line.dump().c_str());
 }
 
-/// What the file is by its name.
+/// The format by the extension of the file.
 protocol::ImageFormat format_of(const std::filesystem::path& file) {
   const std::string extension = file.extension().string();
   if (extension == ".jpg") return protocol::ImageFormat::jpeg;
@@ -124,14 +125,15 @@ protocol::ImageFormat format_of(const std::filesystem::path& file) {
           extension.substr(std::min<std::size_t>(extension.size(), 1)))) {
     return *format;
   }
-  throw std::runtime_error("pictures are .png, .jpg, .exr or .npy files, not " + file.string());
+  throw std::runtime_error("--output: must be a .png, .jpg, .exr or .npy file, not " +
+                           file.string());
 }
 
-session::CaptureContent render_picture(render::Renderer& renderer, const RenderOptions& options,
-                                       protocol::ImageFormat format) {
+session::CaptureContent render_image(render::Renderer& renderer, const RenderOptions& options,
+                                     protocol::ImageFormat format) {
   std::uint32_t samples = 0;
   bool converged = false;
-  while (!converged && samples < options.samples.value_or(65536)) {
+  while (!converged && samples < options.samples.value_or(protocol::max_samples_per_pixel)) {
     const render::Frame frame = renderer.render();
     samples = frame.samples;
     converged = frame.converged;
@@ -147,7 +149,7 @@ void write_file(const std::filesystem::path& path, const std::vector<std::uint8_
   if (!file) throw std::runtime_error("cannot write " + path.string());
 }
 
-/// The camera where a clip has carried it.
+/// The camera at a time of the clip, if the clip animates it.
 scene::Camera camera_in_clip(const scene::Scene& scene, const scene::Camera& camera,
                              const std::string& clip_name, double seconds) {
   const scene::Clip* const clip = scene::find_clip(scene, clip_name);
@@ -189,19 +191,19 @@ int run(const RenderOptions& options) {
   accept(renderer.set_settings(settings));
   if (options.timings) {
     print_timings(engine, renderer, settings, options);
-    // Measured frames have no part in the picture: the same command gives the same file.
+    // Start again without history, so that the file does not depend on --timings.
     renderer.set_scene(resources);
     accept(renderer.set_settings(settings));
   }
   renderer.set_frame_seconds(static_cast<float>(1.0 / options.fps));
-  const std::uint32_t pictures = options.timings ? 1 : options.frames.value_or(1);
-  for (std::uint32_t i = 0; i < pictures; ++i) {
+  const std::uint32_t frames = options.timings ? 1 : options.frames.value_or(1);
+  for (std::uint32_t i = 0; i < frames; ++i) {
     const double seconds = options.time + i / options.fps;
     accept(renderer.set_pose(options.clip, seconds));
     renderer.set_camera(camera_in_clip(*scene, camera, options.clip, seconds));
-    const session::CaptureContent picture = render_picture(renderer, options, format);
-    write_file(pictures == 1 ? options.output : numbered(options.output, i),
-               session::encode_content(picture, format));
+    const session::CaptureContent image = render_image(renderer, options, format);
+    write_file(frames == 1 ? options.output : numbered(options.output, i),
+               session::encode_content(image, format));
   }
   return 0;
 }

@@ -15,7 +15,7 @@ std::vector<fs::path> choose_scene_roots(const std::vector<fs::path>& given) {
   if (!given.empty()) return given;
   std::error_code error;
   const fs::path executable = fs::read_symlink("/proc/self/exe", error).parent_path();
-  // Beside the program in a build folder, then where it is installed.
+  // Next to the program in a build folder, then where it is installed.
   for (const fs::path& folder :
        {executable / "../scenes", executable / "../share/heliograph/scenes"}) {
     if (!fs::is_directory(folder, error)) continue;
@@ -24,21 +24,21 @@ std::vector<fs::path> choose_scene_roots(const std::vector<fs::path>& given) {
   return {};
 }
 
-std::string choose_scene(const session::SceneCatalogue& catalogue, const std::string& wanted) {
-  if (!wanted.empty()) {
-    const auto found = catalogue.find(wanted);
+std::string choose_scene(const session::SceneCatalogue& catalogue, const std::string& requested) {
+  if (!requested.empty()) {
+    const auto found = catalogue.find(requested);
     if (!found) {
-      const bool file = fs::is_regular_file(wanted);
-      throw std::runtime_error("--scene " + wanted + ": " + found.error().message +
-                               (file ? "; give its folder with --scene-root" : ""));
+      const bool file = fs::is_regular_file(requested);
+      throw std::runtime_error("--scene " + requested + ": " + found.error().message +
+                               (file ? "; specify its folder with --scene-root" : ""));
     }
     return found->name;
   }
   const std::vector<session::CatalogueEntry> scenes = catalogue.list();
   if (scenes.empty()) {
     throw std::runtime_error(
-        "there is no scene to show: make the demo scene with \"heliograph-scenes FOLDER\" and "
-        "start with --scene-root FOLDER");
+        "no scene found: generate the demo scene with \"heliograph-scenes FOLDER\" and start "
+        "with --scene-root FOLDER");
   }
   for (const session::CatalogueEntry& scene : scenes) {
     if (scene.name == demo_scene) return scene.name;

@@ -8,13 +8,13 @@
 
 namespace heliograph::cli {
 
-/// The folders given, else the first with a scene in it of those where scenes are kept: that of the
-/// build, or beside the executable. Empty if there is none.
+/// The given folders; otherwise the first default folder with a scene in it, of the build or of the
+/// installation. Empty if there is none.
 std::vector<std::filesystem::path> choose_scene_roots(
     const std::vector<std::filesystem::path>& given);
 
-/// `wanted`, else the demo scene, else the first there is.
-/// @throws std::runtime_error telling how to make one when there is none
-std::string choose_scene(const session::SceneCatalogue& catalogue, const std::string& wanted);
+/// `requested`; otherwise the demo scene, otherwise the first scene.
+/// @throws std::runtime_error if there is no such scene, or no scene at all
+std::string choose_scene(const session::SceneCatalogue& catalogue, const std::string& requested);
 
 }  // namespace heliograph::cli

@@ -38,26 +38,26 @@ session::HostOptions host_options(const ServeOptions& options) {
   return result;
 }
 
-/// Where nobody says how large pictures are to be, a processor is not given the work of a GPU.
-void fit_size(session::SessionOptions& session, const render::DeviceInfo& device) {
+/// The default frame size is smaller on a CPU than on a GPU.
+void set_default_size(session::SessionOptions& session, const render::DeviceInfo& device) {
   if (device.type != protocol::DeviceType::cpu) return;
   session.width = 640;
   session.height = 360;
 }
 
-/// A processor's images are pieces of this process's memory. Left alone, the C library takes ever
-/// larger ones from the arenas that small pieces come from, up to 32 MB, and keeps what is freed
-/// among them. Mapped for themselves they go back to the system at once: after a dozen sessions
-/// have come and gone the process takes 240 MB that way and 460 without. What is free at an arena's
-/// end is kept up to a size, or every frame would pay for its working memory anew. With a GPU only
-/// pictures on their way would be mapped, 2 to 3 ms for each of 1920x1080.
-void map_images_for_themselves(const render::DeviceInfo& device) {
+/// On a CPU device, images are heap blocks of this process. By default glibc raises its mmap
+/// threshold up to 32 MB, so that images come from the arenas, where freed memory stays. With a
+/// fixed threshold they are mapped, and returned to the system when freed: after a dozen sessions
+/// the process takes 240 MB instead of 460. Free memory at an arena's end is kept up to a size, or
+/// every frame would allocate its working memory again. With a GPU only encoded frames would be
+/// mapped, at a cost of 2 to 3 ms for each of 1920x1080.
+void set_mmap_threshold(const render::DeviceInfo& device) {
   if (device.type != protocol::DeviceType::cpu) return;
 #ifdef __GLIBC__
-  constexpr int own_mapping_bytes = 1 << 20;
-  constexpr int kept_free_bytes = 16 << 20;
-  mallopt(M_MMAP_THRESHOLD, own_mapping_bytes);
-  mallopt(M_TRIM_THRESHOLD, kept_free_bytes);
+  constexpr int mmap_threshold_bytes = 1 << 20;
+  constexpr int trim_threshold_bytes = 16 << 20;
+  mallopt(M_MMAP_THRESHOLD, mmap_threshold_bytes);
+  mallopt(M_TRIM_THRESHOLD, trim_threshold_bytes);
 #endif
 }
 
@@ -83,7 +83,7 @@ std::optional<net::Endpoint> endpoint(const std::string& text) {
   const auto parsed = std::from_chars(begin, end, port);
   if (address.empty() || parsed.ec != std::errc() || parsed.ptr != end) {
     throw std::invalid_argument("--metrics-listen " + text +
-                                ": must be an address and a port such as 127.0.0.1:9464");
+                                ": must be an address and a port, such as 127.0.0.1:9464");
   }
   return net::Endpoint{.address = address, .port = port};
 }
@@ -94,7 +94,7 @@ std::chrono::milliseconds milliseconds(double seconds) {
 
 net::ServerOptions server_options(const ServeOptions& options) {
   if (options.tls_certificate.empty() != options.tls_key.empty()) {
-    throw std::invalid_argument("--tls-certificate and --tls-key go together");
+    throw std::invalid_argument("--tls-certificate and --tls-key must be specified together");
   }
   return {.port = options.port,
           .access = {.bind_address = options.host,
@@ -124,7 +124,7 @@ std::unique_ptr<session::UploadStore> upload_store(const ServeOptions& options) 
                              .import_limits = options.limits});
 }
 
-/// Why the first scene could not be shown. Written by the loading thread, read after it.
+/// Why the first scene could not be loaded. Written by the loading thread, read after it.
 class StartFailure {
  public:
   void set(std::string reason) {
@@ -141,7 +141,7 @@ class StartFailure {
   std::optional<std::string> reason_;
 };
 
-/// Ends the threads of the host while those who get its answers still exist.
+/// Stops the threads of the host while the receivers of its results still exist.
 class HostStop {
  public:
   HostStop(session::SessionHost& host, session::UploadStore* uploads)
@@ -172,10 +172,10 @@ int run(const ServeOptions& options) {
       choose_scene(session::SceneCatalogue(hosting.scene_roots), options.scene);
 
   render::Engine engine(engine_options(options.device));
-  spdlog::info("rendering on {} ({}), rays by {}", engine.device().name, engine.device().driver,
+  spdlog::info("rendering on {} ({}), ray tracer {}", engine.device().name, engine.device().driver,
                protocol::enum_name(engine.tracer()));
-  map_images_for_themselves(engine.device());
-  if (!options.width && !options.height) fit_size(hosting.session, engine.device());
+  set_mmap_threshold(engine.device());
+  if (!options.width && !options.height) set_default_size(hosting.session, engine.device());
   session::SessionHost host(engine, hosting);
   net::ServerOptions serving = server_options(options);
   if (uploads) serving.router.uploads = uploads->scenes();
@@ -190,7 +190,7 @@ int run(const ServeOptions& options) {
   const HostStop stop_first(host, uploads.get());
   host.load_scene(host.sessions().main(), {.name = scene}, {},
                   [&](const protocol::Result<protocol::SceneInfo>& loaded) {
-                    // Clients may ask for another scene before the first is there, or cancel it.
+                    // Clients may load another scene before the first is loaded, or cancel it.
                     const auto conflict = protocol::ErrorCode::conflict;
                     if (loaded || loaded.error().code == conflict) return;
                     failure.set(scene + ": " + loaded.error().message);

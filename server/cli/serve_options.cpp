@@ -12,23 +12,23 @@ constexpr const char* examples = R"text(Examples:
   heliograph serve --host 0.0.0.0 --token "$(openssl rand -hex 16)"
   heliograph serve --host 0.0.0.0 --token-file tokens --tls-certificate cert.pem --tls-key key.pem
 
-Each option can also stand in the environment (HELIOGRAPH_PORT=9000) or in the file that --config
-names ("[serve]" and "port=9000" on two lines). The command line comes first, then the environment,
-then the file; --print-config shows what comes of them. server/README.md explains operation.)text";
+Each option can also be set in the environment (HELIOGRAPH_PORT=9000) or in the file of --config
+("[serve]" and "port=9000" on two lines). The command line takes precedence over the environment, the
+environment over the file; --print-config shows the result. server/README.md describes operation.)text";
 
 void add_network_options(CLI::App& command, ServeOptions& options) {
   constexpr const char* group = "Network";
   command.add_option("--host", options.host, "Address to listen on")
       ->capture_default_str()
       ->group(group);
-  command.add_option("--port", options.port, "Port to listen on; 0 takes a free one")
+  command.add_option("--port", options.port, "Port to listen on; 0 chooses a free one")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str()
       ->group(group);
   auto* const certificate =
       command
           .add_option("--tls-certificate", options.tls_certificate,
-                      "Certificate chain (PEM): the port speaks HTTPS; read anew on SIGHUP")
+                      "Certificate chain (PEM); enables HTTPS; reloaded on SIGHUP")
           ->type_name("FILE")
           ->check(CLI::ExistingFile)
           ->group(group);
@@ -39,20 +39,19 @@ void add_network_options(CLI::App& command, ServeOptions& options) {
       ->group(group);
   command
       .add_option("--metrics-listen", options.metrics_listen,
-                  "Another address and port for metrics and health alone, without token, such as "
-                  "127.0.0.1:9464; /metrics is then there and not on --port")
+                  "Separate address and port for metrics and health, without token, such as "
+                  "127.0.0.1:9464; moves /metrics there from --port")
       ->type_name("ADDRESS:PORT")
       ->group(group);
   command
-      .add_option(
-          "--drain-notice", options.drain_notice,
-          "Seconds from SIGTERM, when /health/ready fails, until viewers are asked to leave")
+      .add_option("--drain-notice", options.drain_notice,
+                  "Seconds between SIGTERM, when /health/ready fails, and closing connections")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str()
       ->group(group);
   command
       .add_option("--drain-deadline", options.drain_deadline,
-                  "Seconds that answers under way and leaving viewers have after that")
+                  "Seconds after that for pending responses and closing connections")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str()
       ->group(group);
@@ -62,21 +61,19 @@ void add_access_options(CLI::App& command, ServeOptions& options) {
   constexpr const char* group = "Access";
   command
       .add_option("--token", options.token,
-                  "Secret that clients must show; needed for other addresses than loopback")
+                  "Secret that clients must present; required for addresses other than loopback")
       ->group(group);
-  command
-      .add_option("--view-token", options.view_token,
-                  "Another secret, for clients that may watch but not steer")
+  command.add_option("--view-token", options.view_token, "Secret for read-only clients")
       ->group(group);
   command
       .add_option("--token-file", options.token_file,
-                  "File with more of them: lines of \"control SECRET\" and \"view SECRET\"")
+                  "File with further tokens: lines of \"control SECRET\" and \"view SECRET\"")
       ->type_name("FILE")
       ->check(CLI::ExistingFile)
       ->group(group);
   command
       .add_flag("--insecure", options.insecure,
-                "Lets everybody who reaches the address watch and steer")
+                "Allow clients without a token, on any address, to view and control")
       ->group(group);
   const auto list = [&](const char* name, auto& values, const char* type, const char* help) {
     command.add_option(name, values, help)
@@ -86,58 +83,61 @@ void add_access_options(CLI::App& command, ServeOptions& options) {
         ->group(group);
   };
   list("--allow-origin", options.allowed_origins, "ORIGIN",
-       "Another site whose pages may use the server, such as https://example.org");
+       "Further site whose pages may use the server, such as https://example.org");
   list("--allow-host", options.allowed_hosts, "NAME",
-       "Another name that the server goes by, such as that of a proxy");
+       "Further host name of the server, such as that of a proxy");
   list("--trust-proxy", options.trusted_proxies, "ADDRESS",
-       "Proxy, or range of them (10.0.0.0/8), whose X-Forwarded-For and -Proto are believed");
+       "Proxy or address range (10.0.0.0/8) whose X-Forwarded-For and -Proto are trusted");
   list("--frame-ancestors", options.frame_ancestors, "ORIGIN",
-       "Site whose pages may embed the viewer's; \"self\" is this one [none]");
+       "Site whose pages may embed the web client; \"self\" is the server's own [none]");
 }
 
 void add_capacity_options(CLI::App& command, ServeOptions& options) {
   constexpr const char* group = "Capacity";
-  command.add_option("--max-viewers", options.max_viewers, "Most viewers of a session")
+  command
+      .add_option("--max-viewers", options.max_viewers, "Maximum number of viewers of a session")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str()
       ->group(group);
   command
       .add_option("--max-all-viewers", options.max_all_viewers,
-                  "Most viewers of all sessions together")
+                  "Maximum number of viewers over all sessions")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str()
       ->group(group);
-  command.add_option("--max-sessions", options.max_sessions, "Most sessions, main included")
+  command
+      .add_option("--max-sessions", options.max_sessions,
+                  "Maximum number of sessions, including main")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str()
       ->group(group);
   command
       .add_option("--max-pixels", options.max_pixels,
-                  "Most pixels of the pictures of all sessions together")
+                  "Maximum sum of the frame sizes of all sessions, pixels")
       ->check(CLI::PositiveNumber)
       ->capture_default_str()
       ->group(group);
   command
       .add_option("--release-after", options.release_after,
-                  "Seconds after which a session that nobody watches gives back the memory of its "
-                  "pictures; it starts anew with its next viewer")
+                  "Seconds after which a session without viewers releases its images; they are "
+                  "created again for the next viewer")
       ->check(CLI::Range(1, 31'536'000))
       ->capture_default_str()
       ->group(group);
   command
       .add_option("--session-idle-timeout", options.session_idle_timeout,
-                  "Seconds after which a session other than main ends that has no viewers and no "
-                  "calls; 0: never")
+                  "Seconds without viewers and calls after which a session other than main is "
+                  "closed; 0: never")
       ->check(CLI::Range(0, 31'536'000))
       ->capture_default_str()
       ->group(group);
-  command.add_option("--max-connections", options.max_connections, "Most connections in all")
+  command.add_option("--max-connections", options.max_connections, "Maximum number of connections")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str()
       ->group(group);
   command
       .add_option("--max-connections-per-client", options.max_connections_per_client,
-                  "Most connections from one address, trusted proxies excepted")
+                  "Maximum number of connections per address, except trusted proxies")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str()
       ->group(group);
@@ -145,32 +145,35 @@ void add_capacity_options(CLI::App& command, ServeOptions& options) {
 
 void add_scene_options(CLI::App& command, ServeOptions& options) {
   constexpr const char* group = "Scenes";
-  command.add_option("--scene", options.scene, "Scene to begin with [the demo scene]")
+  command.add_option("--scene", options.scene, "Scene to load at the start [the demo scene]")
       ->type_name("NAME")
       ->group(group);
   command
       .add_option("--scene-root", options.scene_roots,
-                  "Folder with .glb and .gltf files that may be loaded; can be repeated")
+                  "Folder with .glb and .gltf files that can be loaded; can be repeated")
       ->type_name("FOLDER")
       ->allow_extra_args(false)
       ->group(group);
   command
       .add_option("--scene-cache-bytes", options.scene_cache_bytes,
-                  "Memory of loaded scenes beyond which those that nobody watches are dropped")
+                  "Memory of loaded scenes above which unused scenes are released, bytes")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
       ->group(group);
   add_environment_option(command, options.environment);
   command
       .add_option("--uploads", options.uploads,
-                  "Folder for scenes that clients may send with PUT /api/v1/scenes/NAME [none may]")
+                  "Folder for scenes that clients upload with PUT /api/v1/scenes/NAME [no uploads]")
       ->type_name("FOLDER")
       ->group(group);
-  command.add_option("--max-upload-bytes", options.max_upload_bytes, "Most bytes of one of them")
+  command
+      .add_option("--max-upload-bytes", options.max_upload_bytes,
+                  "Maximum bytes of an uploaded scene")
       ->check(CLI::PositiveNumber)
       ->capture_default_str()
       ->group(group);
-  command.add_option("--upload-quota", options.upload_quota, "Most bytes of them together")
+  command
+      .add_option("--upload-quota", options.upload_quota, "Maximum bytes of all uploaded scenes")
       ->check(CLI::PositiveNumber)
       ->capture_default_str()
       ->group(group);
@@ -178,11 +181,11 @@ void add_scene_options(CLI::App& command, ServeOptions& options) {
 
 void add_log_options(CLI::App& command, LogOptions& options) {
   constexpr const char* group = "Log";
-  command.add_option("--log-format", options.format, "How the log is written to stderr")
+  command.add_option("--log-format", options.format, "Format of the log on stderr")
       ->check(CLI::IsMember({"text", "json"}))
       ->capture_default_str()
       ->group(group);
-  command.add_option("--log-level", options.level, "The least important messages to log")
+  command.add_option("--log-level", options.level, "Minimum level of logged messages")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
       ->capture_default_str()
       ->group(group);
@@ -191,7 +194,7 @@ void add_log_options(CLI::App& command, LogOptions& options) {
 }  // namespace
 
 CLI::App* add_serve(CLI::App& app, ServeOptions& options) {
-  CLI::App* command = app.add_subcommand("serve", "Serve the web client and stream pictures");
+  CLI::App* command = app.add_subcommand("serve", "Serve the web client and stream frames");
   add_network_options(*command, options);
   add_access_options(*command, options);
   add_capacity_options(*command, options);
@@ -204,7 +207,7 @@ CLI::App* add_serve(CLI::App& app, ServeOptions& options) {
   add_log_options(*command, options.log);
   command
       ->add_flag("--print-config", options.print_config,
-                 "Print what is in effect and where it comes from, as a file for --config, and end")
+                 "Print the effective options and their sources as a file for --config, and exit")
       ->configurable(false);
   command->footer(examples);
   return command;

@@ -7,14 +7,14 @@
 
 namespace heliograph::scene {
 
-/// What may still be made of a file. A few bytes of it can ask for any number of vertices, keys or
-/// matrices, so that everything is paid for here before it is made.
+/// Memory that a file may still allocate. A few bytes can request any number of vertices, keys or
+/// matrices, so that every allocation is charged here first.
 class ByteBudget {
  public:
   explicit ByteBudget(std::uint64_t bytes) : all_(bytes), left_(bytes) {}
 
-  /// `count` things of `size` bytes each, wanted by the object at `path`.
-  /// @throws ImportError when there is not so much left
+  /// Charges `count` elements of `size` bytes for the object at `path`.
+  /// @throws ImportError when the budget is exceeded
   void take(std::uint64_t count, std::uint64_t size, const std::string& path) {
     if (size != 0 && count > left_ / size) {
       throw ImportError(path + ": the scene's geometry and animations exceed the limit of " +

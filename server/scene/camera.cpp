@@ -54,7 +54,7 @@ Camera fit_camera(const Bounds& bounds, float vertical_fov, float aspect) {
   const float slope_y = std::tan(glm::radians(vertical_fov) / 2.0f);
   const float slope_x = slope_y * aspect;
 
-  // Each corner of the box asks for a distance at which it enters the picture.
+  // The camera distance at which each corner of the box enters the frustum.
   float distance = 0.0f;
   for (int corner = 0; corner < 8; ++corner) {
     const glm::vec3 offset =

@@ -42,8 +42,9 @@ ConfinedFolder::ConfinedFolder(const std::filesystem::path& folder, std::uint64_
 
 std::vector<std::uint8_t> ConfinedFolder::read(const std::string& relative) {
   const std::string label = in_quotes(relative);
-  const auto outside = [&] { throw ImportError(label + " lies outside the scene's folder"); };
-  if (relative.find('\0') != std::string::npos) throw ImportError("a file name holds a zero byte");
+  const auto outside = [&] { throw ImportError(label + " is outside the scene's folder"); };
+  if (relative.find('\0') != std::string::npos)
+    throw ImportError("a file name contains a zero byte");
   const std::filesystem::path requested(relative);
   if (requested.is_absolute() || !is_inside((root_ / requested).lexically_normal(), root_))
     outside();
@@ -59,7 +60,7 @@ std::vector<std::uint8_t> ConfinedFolder::read(const std::string& relative) {
 
 std::vector<std::uint8_t> read_regular_file(const std::filesystem::path& path,
                                             std::uint64_t max_bytes, const std::string& label) {
-  // Not blocking: opening a pipe must not wait for its writer before we see that it is one.
+  // Non-blocking: opening a pipe must not wait for its writer before its type is checked.
   const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.get() < 0) {
     throw ImportError(label + (errno == ENOENT ? " does not exist" : " cannot be opened"));
@@ -76,7 +77,7 @@ std::vector<std::uint8_t> read_regular_file(const std::filesystem::path& path,
   while (done < bytes.size()) {
     const ssize_t count = ::read(file.get(), bytes.data() + done, bytes.size() - done);
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) throw ImportError(label + " cannot be read to its end");
+    if (count <= 0) throw ImportError(label + " cannot be read completely");
     done += static_cast<std::size_t>(count);
   }
   return bytes;

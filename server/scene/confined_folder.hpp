@@ -20,7 +20,7 @@ class ConfinedFolder {
   /// budget
   std::vector<std::uint8_t> read(const std::string& relative);
 
-  /// What was read, as it was before.
+  /// The files read, as they were before reading.
   const std::vector<SourceFile>& files() const { return files_; }
 
  private:

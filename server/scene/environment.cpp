@@ -11,7 +11,7 @@ namespace heliograph::scene {
 
 namespace {
 
-/// What light can be: neither negative nor endless, and what is no number is black.
+/// Valid radiance: clamped to 0..1e6, NaN becomes 0.
 glm::vec3 physical(const glm::vec3& radiance) {
   constexpr float brightest = 1e6f;
   glm::vec3 result;
@@ -36,7 +36,7 @@ Environment load_environment(const std::filesystem::path& path) {
 }
 
 Environment constant_environment(const glm::vec3& radiance) {
-  // Wide enough that filters which look at neighbours have some.
+  // Large enough for filters that read neighbors.
   Environment environment{8, 4, {}};
   environment.radiance.assign(std::size_t(environment.width) * environment.height, radiance);
   return environment;

@@ -20,7 +20,7 @@ struct Environment {
 /// @throws ImportError
 Environment load_environment(const std::filesystem::path& path);
 
-/// The same radiance from everywhere: the furnace.
+/// Constant radiance from every direction (a furnace).
 Environment constant_environment(const glm::vec3& radiance);
 
 }  // namespace heliograph::scene

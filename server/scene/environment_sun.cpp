@@ -8,16 +8,16 @@ namespace heliograph::scene {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double largest_solid_angle = 0.01;  // a disk of 6.5 degrees
-constexpr double times_mean = 24.0;        // a texel of the sun is so much brighter than the mean
-constexpr double least_peak_share = 0.02;  // and than this share of the brightest texel
-constexpr double least_flux_share = 0.01;  // of the whole environment, or it is not worth a light
+constexpr double max_solid_angle = 0.01;    // a disk of 6.5 degrees
+constexpr double min_mean_ratio = 24.0;     // minimum radiance of a sun texel relative to the mean
+constexpr double min_peak_fraction = 0.02;  // and relative to the brightest texel
+constexpr double min_flux_fraction = 0.01;  // minimum flux of the sun relative to the environment
 
-double luminance(const glm::vec3& color) {
+double luminance_of(const glm::vec3& color) {
   return glm::dot(glm::dvec3(color), glm::dvec3(0.2126, 0.7152, 0.0722));
 }
 
-/// The texels of an equirectangular map as pieces of the sphere.
+/// Directions and solid angles of the texels of an equirectangular map.
 class Sphere {
  public:
   explicit Sphere(const Environment& map)
@@ -32,13 +32,13 @@ class Sphere {
     const double phi = ((static_cast<double>(texel % width_) + 0.5) / width_ - 0.5) * 2.0 * pi;
     return {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
   }
-  /// Mean squared distance of a texel's points from its middle, radians.
+  /// Mean squared angular distance of a texel's points from its center, in radians squared.
   double spread(std::size_t texel) const {
     const double theta = step_ * (static_cast<double>(texel / width_) + 0.5);
     const double across = 2.0 * pi / width_ * std::sin(theta);
     return (step_ * step_ + across * across) / 12.0;
   }
-  /// Calls `visit` with the texels beside, around the seam and not across the poles.
+  /// Calls `visit` with the adjacent texels, across the seam but not across the poles.
   template <typename Visit>
   void visit_neighbours(std::size_t texel, Visit visit) const {
     const std::size_t x = texel % width_, row = texel - x;
@@ -54,7 +54,7 @@ class Sphere {
   double step_;
 };
 
-/// A bright texel, all bright ones that hang together with it, and the mean radiance around them.
+/// A connected region of bright texels and the mean radiance around it.
 struct Region {
   std::vector<std::size_t> texels;
   glm::dvec3 rim{0.0};
@@ -69,11 +69,11 @@ Region grow(const Environment& map, const Sphere& sphere, std::size_t from, doub
   double rim_weight = 0.0;
   for (std::size_t i = 0; i < region.texels.size(); ++i) {
     region.solid_angle += sphere.solid_angle(region.texels[i]);
-    if (region.solid_angle > largest_solid_angle) break;
+    if (region.solid_angle > max_solid_angle) break;
     sphere.visit_neighbours(region.texels[i], [&](std::size_t next) {
       if (seen[next]) return;
       seen[next] = true;
-      if (luminance(map.radiance[next]) > threshold) {
+      if (luminance_of(map.radiance[next]) > threshold) {
         region.texels.push_back(next);
         return;
       }
@@ -86,23 +86,24 @@ Region grow(const Environment& map, const Sphere& sphere, std::size_t from, doub
   return region;
 }
 
-/// What a region shines more than its rim.
+/// Flux of a region above the radiance of its border.
 Sun sun_of(const Environment& map, const Sphere& sphere, const Region& region) {
   glm::dvec3 irradiance(0.0), towards(0.0);
   for (const std::size_t texel : region.texels) {
     const glm::dvec3 more = glm::dvec3(map.radiance[texel]) - region.rim;
     irradiance += sphere.solid_angle(texel) * more;
-    towards += sphere.solid_angle(texel) * luminance(more) * sphere.direction(texel);
+    towards += sphere.solid_angle(texel) * luminance_of(more) * sphere.direction(texel);
   }
   towards = glm::normalize(towards);
-  // The points of a disk lie off its middle by half its radius squared, in the mean of squares.
+  // The mean squared distance of a disk's points from its center is half its squared radius.
   double weight = 0.0, squares = 0.0;
   for (const std::size_t texel : region.texels) {
-    const double share = std::max(
-        sphere.solid_angle(texel) * luminance(glm::dvec3(map.radiance[texel]) - region.rim), 0.0);
+    const double texel_weight = std::max(
+        sphere.solid_angle(texel) * luminance_of(glm::dvec3(map.radiance[texel]) - region.rim),
+        0.0);
     const glm::dvec3 aside = glm::cross(towards, sphere.direction(texel));
-    weight += share;
-    squares += share * (glm::dot(aside, aside) + sphere.spread(texel));
+    weight += texel_weight;
+    squares += texel_weight * (glm::dot(aside, aside) + sphere.spread(texel));
   }
   const double radius = std::sqrt(2.0 * squares / weight);
   return {towards, glm::max(irradiance, glm::dvec3(0.0)),
@@ -116,19 +117,20 @@ SeparatedEnvironment separate_sun(Environment environment) {
   double flux = 0.0, brightest = 0.0;
   std::size_t peak = 0;
   for (std::size_t i = 0; i < environment.radiance.size(); ++i) {
-    const double value = luminance(environment.radiance[i]);
+    const double value = luminance_of(environment.radiance[i]);
     flux += value * sphere.solid_angle(i);
     if (value > brightest) {
       brightest = value;
       peak = i;
     }
   }
-  const double threshold = std::max(times_mean * flux / (4.0 * pi), least_peak_share * brightest);
+  const double threshold =
+      std::max(min_mean_ratio * flux / (4.0 * pi), min_peak_fraction * brightest);
   if (brightest <= threshold) return {std::move(environment), std::nullopt};
   const Region region = grow(environment, sphere, peak, threshold);
-  if (region.solid_angle > largest_solid_angle) return {std::move(environment), std::nullopt};
+  if (region.solid_angle > max_solid_angle) return {std::move(environment), std::nullopt};
   const Sun sun = sun_of(environment, sphere, region);
-  if (luminance(sun.irradiance) < least_flux_share * flux) {
+  if (luminance_of(sun.irradiance) < min_flux_fraction * flux) {
     return {std::move(environment), std::nullopt};
   }
   for (const std::size_t texel : region.texels) environment.radiance[texel] = region.rim;

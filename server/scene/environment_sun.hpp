@@ -6,7 +6,7 @@
 
 namespace heliograph::scene {
 
-/// A sun as a directional light has it, in the environment's own frame.
+/// A sun as a directional light, in the environment's frame.
 struct Sun {
   glm::vec3 direction;     // toward it, unit length
   glm::vec3 irradiance;    // of a surface that faces it
@@ -14,13 +14,13 @@ struct Sun {
 };
 
 struct SeparatedEnvironment {
-  Environment sky;  // where the sun was, as bright as around it
+  Environment sky;  // the sun replaced by the radiance around it
   std::optional<Sun> sun;
 };
 
-/// Takes a small, very bright region (below 0.01 sr, some dozen times the mean radiance) out of an
-/// environment: as texels it makes fireflies in every filter and one noisy sample in thousands, as
-/// a light its shadows are traced. Sky and sun together shine like the whole.
+/// Separates a small, very bright region (below 0.01 sr, at least 24 times the mean radiance) from
+/// an environment: as texels it causes fireflies, as a directional light it gets traced shadows.
+/// Sky and sun together have the flux of the input.
 SeparatedEnvironment separate_sun(Environment environment);
 
 }  // namespace heliograph::scene

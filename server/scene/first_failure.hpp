@@ -5,11 +5,11 @@
 
 namespace heliograph::scene {
 
-/// Carries the first exception of tasks that run side by side past the library that runs them: when
-/// one leaves a nested task, oneTBB 2021.8 walks through lists of task groups that may be gone.
+/// Passes the first exception of parallel tasks around oneTBB: in version 2021.8 an exception that
+/// leaves a nested task makes it access task groups that may be destroyed.
 class FirstFailure {
  public:
-  /// Runs `task` unless something has failed before.
+  /// Runs `task` unless another task has failed.
   template <typename Task>
   void guard(const Task& task) noexcept {
     if (failed_) return;
@@ -20,7 +20,7 @@ class FirstFailure {
     }
   }
 
-  /// Throws what was caught, once all tasks are done.
+  /// Rethrows the first exception after all tasks are done.
   void rethrow() const {
     if (failure_) std::rethrow_exception(failure_);
   }

@@ -37,7 +37,7 @@
 namespace heliograph::scene {
 namespace {
 
-// Farther out than this, single precision has nothing left to say.
+// Coordinate limit: float32 has no useful precision beyond it.
 constexpr float farthest = 1e12f;
 
 bool is_finite(const glm::mat4& matrix) {
@@ -52,7 +52,7 @@ bool is_finite(const glm::mat4& matrix) {
 class Stopwatch {
  public:
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-  /// Seconds until now, from where the next lap begins.
+  /// Seconds since the last call; starts the next lap.
   double lap() {
     const double result = seconds();
     start_ = Clock::now();
@@ -64,8 +64,8 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
-/// Counts what several threads have done, and tells of it on the one that made it. What that throws
-/// is thrown on all.
+/// Counts finished parts of several threads and reports progress on the thread that created it. An
+/// exception of the callback is rethrown on all threads.
 class PartsDone {
  public:
   PartsDone(std::function<void(float fraction)> tell, std::size_t parts)
@@ -90,7 +90,7 @@ class PartsDone {
   const std::thread::id home_ = std::this_thread::get_id();
   std::atomic<std::size_t> done_ = 0;
   std::atomic<bool> stopped_ = false;
-  std::exception_ptr reason_;  // once stopped
+  std::exception_ptr reason_;  // set by the first exception
 };
 
 class Importer {
@@ -178,7 +178,7 @@ class Importer {
     if (progress_) progress_(stage, fraction);
   }
 
-  // The one default material is added only when something lacks its own.
+  // The default material is added only if a primitive has no material.
   std::uint32_t default_material_index() {
     if (!default_material_) {
       default_material_ = static_cast<std::uint32_t>(scene_.materials.size());
@@ -240,7 +240,7 @@ class Importer {
         const bool skinned = attached.skin && shape.joints_per_vertex > 0 &&
                              !scene_.skins[*attached.skin].joints.empty();
         if (!skinned && !std::isnormal(determinant) && !moves[i]) {
-          warnings_.add(nodes.paths[i] + " is scaled to nothing and was left out");
+          warnings_.add(nodes.paths[i] + " has zero scale and was left out");
           continue;
         }
         if (skinned || !shape.targets.empty()) {
@@ -252,7 +252,7 @@ class Importer {
     }
   }
 
-  /// Nodes that some clip moves, themselves or through what they hang on.
+  /// Nodes that a clip moves, directly or through an ancestor.
   std::vector<bool> moved_by_clips() const {
     std::vector<bool> moves(scene_.nodes.size());
     for (const Clip& clip : scene_.clips) {
@@ -274,7 +274,7 @@ class Importer {
     include_in_bounds(scene_.meshes[mesh].bounds, scene_.nodes[node].world, path);
   }
 
-  // Every place gets a mesh of its own, since each may take another shape.
+  // Every instance gets its own mesh, because each may deform differently.
   void place_deforming(std::uint32_t mesh, std::uint32_t node, std::optional<std::uint32_t> skin,
                        const Pose& pose, const std::string& path) {
     const std::uint32_t shape = mesh;
@@ -287,8 +287,8 @@ class Importer {
     place_instance(mesh, skin ? origin_node() : node, path);
   }
 
-  /// For each place the vertices, the matrices of its joints, and the time that its targets take:
-  /// nodes that share a mesh cost nothing in the file.
+  /// Charges vertices, joint matrices and morph target work of every instance: nodes that share a
+  /// mesh cost nothing in the file.
   void pay_for_deforming(const Shape& shape, std::optional<std::uint32_t> skin,
                          const std::string& path) {
     budget_.take(shape.vertices.size(),
@@ -317,7 +317,7 @@ class Importer {
       const glm::vec3 placed(world * glm::vec4(point, 1.0f));
       for (int axis = 0; axis < 3; ++axis) {
         if (!(std::abs(placed[axis]) <= farthest))
-          throw ImportError(path + ": places its mesh too far out");
+          throw ImportError(path + ": places its mesh beyond the coordinate limit");
       }
       scene_.bounds.include(placed);
     }
@@ -330,7 +330,8 @@ class Importer {
       const auto index = static_cast<std::uint32_t>(i);
       const NodeAttachments& attached = nodes.attachments[i];
       if ((attached.light || attached.camera) && !is_finite(node.world)) {
-        throw ImportError(nodes.paths[i] + ": places its light or camera too far out");
+        throw ImportError(nodes.paths[i] +
+                          ": places its light or camera beyond the coordinate limit");
       }
       if (attached.light) {
         scene_.lights.push_back(place_light(lights, attached.light, node.name, node.world));
@@ -353,7 +354,7 @@ class Importer {
   Warnings warnings_;
   Scene scene_;
   std::optional<std::uint32_t> default_material_;
-  std::optional<std::uint32_t> origin_;  // node that skinned meshes hang on
+  std::optional<std::uint32_t> origin_;  // parent node of skinned meshes
   std::set<std::uint32_t> placed_shapes_;
 };
 
@@ -371,7 +372,7 @@ Scene import_gltf(const std::filesystem::path& path, const ImportLimits& limits,
     }
     return scene;
   } catch (const std::bad_alloc&) {
-    throw ImportError("the scene needs more memory than there is");
+    throw ImportError("not enough memory for the scene");
   }
 }
 

@@ -10,7 +10,7 @@
 
 namespace heliograph::scene {
 
-/// Seconds that the stages of an import took. Geometry and images are read side by side.
+/// Seconds per stage of an import. Geometry and images are read in parallel.
 struct ImportTimes {
   double parse = 0.0;  // the file read, its document parsed, buffers and views checked and unpacked
   double check = 0.0;  // every other table of the document
@@ -20,13 +20,11 @@ struct ImportTimes {
   double total = 0.0;
 };
 
-/// Told as loading proceeds: stage name and fraction of the whole, 0..1. Called on the loading
-/// thread.
+/// Progress callback: stage name and fraction of the whole, 0..1. Called on the loading thread.
 using ImportProgress = std::function<void(std::string_view stage, float fraction)>;
 
-/// Reads a .glb or .gltf file with everything it refers to; nothing outside `path`'s folder is
-/// opened. `times`, where given, is filled in. What `progress` throws ends the import and comes
-/// out.
+/// Reads a .glb or .gltf file with everything it refers to; opens nothing outside `path`'s folder.
+/// Fills `times` if given. An exception of `progress` cancels the import and is rethrown.
 /// @throws ImportError
 Scene import_gltf(const std::filesystem::path& path, const ImportLimits& limits = {},
                   const ImportProgress& progress = {}, ImportTimes* times = nullptr,

@@ -7,8 +7,8 @@
 
 namespace heliograph::scene {
 
-/// Why a file was refused: one line that names the object and the reason, never a path or a size
-/// of anything outside the scene.
+/// Why a file was rejected: one line that names the glTF object and the reason, and reveals nothing
+/// about files outside the scene's folder.
 class ImportError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -17,8 +17,8 @@ class ImportError : public std::runtime_error {
 /// The file has no such scene or variant.
 class NoSuchChoice : public ImportError {
  public:
-  /// `member` of SceneChoice; `names` are those there are.
-  NoSuchChoice(std::string member, const std::string& wanted, std::vector<std::string> names);
+  /// `member` of SceneChoice; `names`: the available ones.
+  NoSuchChoice(std::string member, const std::string& requested, std::vector<std::string> names);
 
   const std::string& member() const { return member_; }
   const std::vector<std::string>& names() const { return names_; }

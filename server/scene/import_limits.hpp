@@ -5,18 +5,18 @@
 
 namespace heliograph::scene {
 
-/// What of a file is wanted; empty: its defaults.
+/// Selects a scene and variant of a file; empty: the file's defaults.
 struct SceneChoice {
   std::string scene;    // the name of one of its scenes, or its number from 0
   std::string variant;  // the name of one of its material variants
   bool operator==(const SceneChoice&) const = default;
 };
 
-/// What a file may cost. Exceeding one refuses the file with an error that names the limit.
+/// Limits on the cost of a file. Exceeding one rejects the file with an error that names the limit.
 struct ImportLimits {
   std::uint64_t file_bytes = 512ull << 20;
-  std::uint64_t unpacked_bytes = 1ull << 30;  // that compressed buffer views grow to
-  std::uint64_t scene_bytes = 2ull << 30;     // of geometry and animations, once read
+  std::uint64_t unpacked_bytes = 1ull << 30;  // of all decompressed buffer views
+  std::uint64_t scene_bytes = 2ull << 30;     // of geometry and animations in memory
   std::uint64_t triangles = 20'000'000;
   std::uint64_t texels = 256ull << 20;
   std::uint32_t texture_size = 8192;

@@ -6,7 +6,7 @@
 namespace heliograph::scene {
 namespace {
 
-// The layouts that std430 gives these structs: the device reads these very bytes.
+// std430 layouts: the device reads these structs as they are.
 static_assert(sizeof(shared::Vertex) == 64);
 static_assert(offsetof(shared::Vertex, color_rg) == 12 && offsetof(shared::Vertex, normal) == 16);
 static_assert(offsetof(shared::Vertex, tangent) == 32 && offsetof(shared::Vertex, uv1) == 56);
@@ -42,7 +42,7 @@ std::uint64_t Scene::bytes() const {
   const auto size = [](const auto& list) { return std::uint64_t{list.size() * sizeof(list[0])}; };
   std::uint64_t sum = size(nodes) + size(materials) + size(instances) + size(alpha_heap);
   for (const Mesh& mesh : meshes) sum += size(mesh.vertices) + size(mesh.indices);
-  std::set<const void*> files;  // one may serve as colour and as data
+  std::set<const void*> files;  // one file may be used as color and as data
   for (const Image& image : images) {
     sum += size(image.pixels);
     if (image.file && files.insert(image.file.get()).second) sum += size(*image.file);

@@ -23,9 +23,9 @@ struct Bounds {
   void include(const Bounds& other);
 };
 
-/// RGBA8 pixels, row 0 on top; every mip level follows the one before, the last is 1x1.
-/// `srgb`: colour channels are sRGB encoded; mips were filtered in linear space. Who has an image
-/// on a device may let go of its pixels; ImagePixels brings them back.
+/// RGBA8 pixels, top row first; mip levels in order, the last is 1x1. `srgb`: color channels are
+/// sRGB encoded; mips were filtered in linear space. `pixels` may be released after upload;
+/// ImagePixels decodes them again.
 struct Image {
   std::string name;
   std::uint32_t width = 0;
@@ -33,7 +33,8 @@ struct Image {
   std::uint32_t levels = 1;
   bool srgb = false;
   std::vector<std::uint8_t> pixels;
-  std::shared_ptr<const std::vector<std::uint8_t>> file = nullptr;  // that they were decoded from
+  std::shared_ptr<const std::vector<std::uint8_t>> file =
+      nullptr;  // encoded file, for decoding again
 };
 
 enum class Filter { nearest, linear };
@@ -55,7 +56,7 @@ struct Texture {
 
 struct Mesh {
   std::string name;
-  std::vector<shared::Vertex> vertices;  // at rest
+  std::vector<shared::Vertex> vertices;  // in the default pose
   std::vector<std::uint32_t> indices;    // triangles, counter-clockwise from outside
   std::uint32_t material = 0;
   Bounds bounds;  // mesh space
@@ -74,12 +75,12 @@ struct Node {
   std::optional<std::uint32_t> parent;  // always a smaller index: parents come first
   glm::mat4 local{1.0f};
   glm::mat4 world{1.0f};
-  std::optional<Transform> transform = std::nullopt;  // what `local` is made of, unless a matrix
-  std::vector<float> weights = {};                    // at rest, of its mesh's morph targets
+  std::optional<Transform> transform = std::nullopt;  // of `local`, unless the file has a matrix
+  std::vector<float> weights = {};                    // default weights of its mesh's morph targets
 };
 
-/// One mesh placed in the world by a node. Meshes that deform are placed once each, skinned ones by
-/// a node of their own at the origin: their vertices follow joints alone (glTF 3.7.3.3).
+/// One mesh placed in the world by a node. Deforming meshes have one instance each, skinned ones a
+/// node of their own at the origin: their vertices follow joints only (glTF 3.7.3.3).
 struct Instance {
   std::uint32_t mesh = 0;
   std::uint32_t node = 0;
@@ -94,7 +95,7 @@ struct Camera {
   float orthographic_height = 0.0f;  // metres, full height; 0: perspective
   float near_plane = 0.05f;          // metres
   float far_plane = 1000.0f;         // metres; orthographic only, perspective has none
-  std::optional<std::uint32_t> node = std::nullopt;  // that carries it
+  std::optional<std::uint32_t> node = std::nullopt;  // parent node
 };
 
 /// A light with its world-space device form and the name of its node.
@@ -102,29 +103,29 @@ struct Light {
   std::string name;
   shared::Light device;
   float angular_diameter = 0.0f;                     // degrees, directional only
-  std::optional<std::uint32_t> node = std::nullopt;  // that carries it
+  std::optional<std::uint32_t> node = std::nullopt;  // parent node
 };
 
-/// Differences to the vertices of a shape; none where a list is empty.
+/// Displacements of the vertices of a shape; an empty list displaces nothing.
 struct MorphTarget {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;
   std::vector<glm::vec3> tangents;
 };
 
-/// A joint of a skin and its share in a vertex.
+/// A joint of a skin and its weight for a vertex.
 struct JointWeight {
-  std::uint32_t joint = 0;  // among the skin's
+  std::uint32_t joint = 0;  // index within the skin
   float weight = 0.0f;
 };
 
-/// What a mesh that deforms is made from: its vertices before any morph target or joint moves them.
+/// Source of a deforming mesh: its vertices before morph targets and joints.
 struct Shape {
   std::vector<shared::Vertex> vertices;
   std::vector<MorphTarget> targets;
-  std::uint32_t joints_per_vertex = 0;  // 0: no joint moves it
+  std::uint32_t joints_per_vertex = 0;  // 0: not skinned
   std::vector<JointWeight> influences;  // joints_per_vertex for every vertex; weights sum to 1
-  bool flat = false;  // no normals in the file: each triangle's own, three vertices to a triangle
+  bool flat = false;  // no normals in the file: face normals, three vertices per triangle
 };
 
 struct Skin {
@@ -132,15 +133,15 @@ struct Skin {
   std::vector<glm::mat4> inverse_bind;  // scene -> joint, of every joint
 };
 
-/// A mesh that changes its shape: first morph targets, then joints.
+/// A mesh that deforms: first morph targets, then joints.
 struct Deformation {
   std::uint32_t mesh = 0;
   std::uint32_t shape = 0;
-  std::uint32_t node = 0;  // whose morph weights count
+  std::uint32_t node = 0;  // node with the morph weights
   std::optional<std::uint32_t> skin;
 };
 
-/// A slot that holds no texture.
+/// An empty texture slot.
 inline shared::TextureSlot no_texture_slot() {
   return {.transform_row0 = {1.0f, 0.0f, 0.0f, 0.0f},
           .transform_row1 = {0.0f, 1.0f, 0.0f, 0.0f},
@@ -150,8 +151,7 @@ inline shared::TextureSlot no_texture_slot() {
           .padding1 = 0};
 }
 
-/// What a material's extensions say beyond metallic and roughness. Values that are absent are those
-/// that change nothing.
+/// Values of material extensions beyond metallic-roughness; defaults are neutral.
 struct MaterialLayers {
   float specular = 1.0f;  // KHR_materials_specular
   glm::vec3 specular_color{1.0f};
@@ -162,7 +162,7 @@ struct MaterialLayers {
   float sheen_roughness = 0.0f;
   float transmission = 0.0f;
   float thickness = 0.0f;             // metres in the mesh's space; 0: thin walled
-  float attenuation_distance = 0.0f;  // metres; 0: endless
+  float attenuation_distance = 0.0f;  // metres; 0: infinite
   glm::vec3 attenuation_color{1.0f};
 
   shared::TextureSlot specular_texture = no_texture_slot();
@@ -202,15 +202,15 @@ struct Scene {
   std::vector<Mesh> meshes;
   std::vector<std::string> material_names;
   std::vector<shared::Material> materials;      // at least one
-  std::vector<MaterialLayers> material_layers;  // of each material, as the file has them
-  std::vector<shared::MaterialLayer> layers;    // as drawn; at least one, glTF's own model
+  std::vector<MaterialLayers> material_layers;  // per material, as in the file
+  std::vector<shared::MaterialLayer> layers;    // for shading; the first is glTF's base model
   std::vector<std::string> variants;            // KHR_materials_variants
-  std::optional<std::uint32_t> variant;         // the one that is shown; none: the file's default
-  std::vector<std::string> scenes;              // names of the file's scenes, which may be empty
-  std::uint32_t shown_scene = 0;                // the one that this is
+  std::optional<std::uint32_t> variant;         // selected variant; nullopt: the file's default
+  std::vector<std::string> scenes;              // names of the file's scenes; a name may be empty
+  std::uint32_t shown_scene = 0;                // index of this scene
   std::vector<Image> images;
   std::vector<Texture> textures;
-  std::vector<std::uint8_t> alpha_heap;  // alpha of masked base colours, one byte a texel
+  std::vector<std::uint8_t> alpha_heap;  // alpha of masked base colors, one byte per texel
   std::vector<Instance> instances;
   std::vector<Camera> cameras;
   std::vector<Light> lights;
@@ -220,10 +220,10 @@ struct Scene {
   std::vector<Clip> clips;
   Bounds bounds;  // world space
   std::vector<std::string> warnings;
-  std::vector<SourceFile> sources;  // all that was read, the scene's own file first
+  std::vector<SourceFile> sources;  // all files read, the scene's own first
 
-  std::uint64_t triangle_count() const;  // as drawn: instances counted
-  std::uint64_t bytes() const;           // that its vertices, images and curves take now
+  std::uint64_t triangle_count() const;  // of all instances
+  std::uint64_t bytes() const;           // memory of vertices, images and curves
 };
 
 }  // namespace heliograph::scene

@@ -5,7 +5,7 @@
 
 namespace heliograph::scene {
 
-/// A file as it was when it was read.
+/// Identity of a file at the time of reading.
 struct SourceFile {
   std::filesystem::path path;
   std::uint64_t bytes = 0;
@@ -15,7 +15,7 @@ struct SourceFile {
   bool operator==(const SourceFile&) const = default;
 };
 
-/// The file as it is now; no bytes, no time and no inode where there is none.
+/// Current identity of a file; all members are 0 where it does not exist.
 SourceFile examine_file(const std::filesystem::path& path);
 
 }  // namespace heliograph::scene

@@ -6,7 +6,7 @@
 
 namespace heliograph::scene {
 
-/// What was left out or repaired while loading: each thing said once, and not endlessly.
+/// Warnings about skipped or repaired objects: unique, and limited in number.
 class Warnings {
  public:
   void add(std::string text) {

@@ -58,10 +58,10 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
     const auto session = sessions_.session_of(call);
     if (!session) return session.error();
     (*session)->touch();
-    if (method.needs_control && !(*session)->viewers().may_change(call.viewer)) {
+    if (method.needs_control() && !(*session)->viewers().may_change(call.viewer)) {
       return no_control((*session)->viewers());
     }
-    if (method.needs_control) (*session)->mark_modified();
+    if (method.needs_control()) (*session)->mark_modified();
     return {};
   });
   dispatcher_.on_handler_failure([](std::string_view method, std::string_view reason) {

@@ -67,7 +67,7 @@ class SessionHost {
   /// A sentence for people, while it is not.
   std::string not_ready_reason() const {
     return render_loop_.device_ready() ? "no picture has been rendered yet"
-                                       : "the device was lost and is being made anew";
+                                       : "the device was lost and is being recovered";
   }
   std::uint64_t device_losses() const { return render_loop_.device_losses(); }
   /// Ends all threads. Answers that are still due come as errors before this returns, so that it

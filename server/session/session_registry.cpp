@@ -45,14 +45,14 @@ Result<std::shared_ptr<Session>> SessionRegistry::create(SessionOptions options)
 Result<std::shared_ptr<Session>> SessionRegistry::create_locked(SessionOptions options) {
   if (options.name.empty()) options.name = free_name();
   if (!is_name(options.name)) {
-    return error::invalid("name", "is no name for a session",
+    return error::invalid("name", "is not a valid name of a session",
                           "1 to 64 letters, digits, dots, hyphens and underscores");
   }
   if (sessions_.contains(options.name)) {
-    return error::conflict("name", "there is a session of this name already");
+    return error::conflict("name", "a session of this name already exists");
   }
   if (sessions_.size() >= limits_.sessions) {
-    return error::full("there is no room for another session",
+    return error::full("the maximum number of sessions is reached",
                        std::to_string(limits_.sessions) + " sessions");
   }
   options.width = std::min(options.width, options.limits.max_width);
@@ -79,7 +79,7 @@ Result<void> SessionRegistry::close(const std::string& name, const std::string& 
 }
 
 protocol::Error SessionRegistry::main_stays() {
-  return error::conflict("session", "the main session always exists");
+  return error::conflict("session", "the session main cannot be closed");
 }
 
 Clock::duration SessionRegistry::close_idle() {
@@ -105,7 +105,8 @@ void SessionRegistry::end(const std::shared_ptr<Session>& session, const std::st
   sessions_.erase(name);
   origins_.erase(name);
   const protocol::SessionClosed closed{.session = name, .reason = why};
-  session->viewers().send_all(protocol::make_notification("session.closed", closed), {});
+  session->viewers().send_all(
+      protocol::make_notification<protocol::notifications::session_closed>(closed), {});
   for (const std::string& viewer : session->viewers().disconnect_all(why)) {
     session_of_viewer_.erase(viewer);
   }
@@ -125,7 +126,8 @@ Result<std::shared_ptr<Session>> SessionRegistry::find_locked(std::string_view n
   if (found != sessions_.end()) return found->second;
   std::vector<std::string_view> names;
   for (const auto& [known, session] : sessions_) names.push_back(known);
-  return error::not_found("session", "no session is called so" + protocol::suggestion(name, names));
+  return error::not_found("session",
+                          "there is no such session" + protocol::suggestion(name, names));
 }
 
 Result<std::shared_ptr<Session>> SessionRegistry::session_of(
@@ -154,7 +156,7 @@ Result<std::string> SessionRegistry::enter(const std::string& session,
   const Result<std::shared_ptr<Session>> found = find_locked(session);
   if (!found) return found.error();
   if (session_of_viewer_.size() >= limits_.viewers) {
-    return error::full("the server has no room for another viewer",
+    return error::full("the server's maximum number of viewers is reached",
                        std::to_string(limits_.viewers) + " viewers");
   }
   const std::string id = "v" + std::to_string(++viewers_so_far_);
@@ -175,7 +177,7 @@ Result<std::shared_ptr<Session>> SessionRegistry::move_locked(const std::string&
                                                               const std::string& session) {
   const auto here = session_of_viewer_.find(viewer);
   if (here == session_of_viewer_.end()) {
-    return error::not_ready("only a viewer on a WebSocket can join a session");
+    return error::not_ready("requires a WebSocket connection");
   }
   const Result<std::shared_ptr<Session>> there = find_locked(session);
   if (!there || *there == here->second) return there;

@@ -15,15 +15,15 @@ constexpr VkBufferUsageFlags build_input =
     VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
     VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
 
-// The extension calls a triangle inactive when x of a corner is not a number, and leaves open what
-// becomes of infinities.
+// VK_KHR_acceleration_structure: a triangle is inactive when x of a vertex is NaN; infinities are
+// undefined.
 glm::vec3 position_for_build(const shared::Vertex& vertex) {
   const glm::vec3& position = vertex.position;
   if (std::isfinite(glm::dot(position, position))) return position;
   return glm::vec3(std::numeric_limits<float>::quiet_NaN(), 0.0f, 0.0f);
 }
 
-/// The triangles of some meshes one after another.
+/// Concatenated triangles of several meshes.
 struct Triangles {
   std::vector<glm::vec3> positions;
   std::vector<std::uint32_t> indices;
@@ -58,11 +58,10 @@ Coverage coverage_of(const scene::Scene& scene, const scene::Mesh& mesh) {
 MeshHierarchies build_meshes(const gpu::Device& device, const scene::Scene& scene) {
   Triangles triangles;
   for (const scene::Mesh& mesh : scene.meshes) triangles.add(mesh, coverage_of(scene, mesh));
-  const gpu::Buffer positions =
-      gpu::upload_buffer(device, "positions to build from",
-                         std::as_bytes(std::span(triangles.positions)), build_input);
+  const gpu::Buffer positions = gpu::upload_buffer(
+      device, "build input positions", std::as_bytes(std::span(triangles.positions)), build_input);
   const gpu::Buffer indices = gpu::upload_buffer(
-      device, "indices to build from", std::as_bytes(std::span(triangles.indices)), build_input);
+      device, "build input indices", std::as_bytes(std::span(triangles.indices)), build_input);
   triangles.move_to(positions.address(), indices.address());
   return MeshHierarchies(device, triangles.meshes, Rebuilds::never);
 }
@@ -74,7 +73,7 @@ DeviceScene::DeviceScene(const gpu::Device& device, const scene::Scene& scene,
     : masks_(std::move(masks)),
       alpha_heap_(alpha_heap),
       instances_(device, static_cast<std::uint32_t>(scene.instances.size())) {
-  // The view is made here, where one thread builds, because plans on several threads share it.
+  // Created here on the building thread, because plans of several threads share the view.
   alpha_heap.texel_view(VK_FORMAT_R32_UINT);
 }
 
@@ -85,8 +84,8 @@ void DeviceScene::bind(gpu::FramePlan& plan, gpu::PassBuilder& pass) const {
       .read(plan.import(alpha_heap_));
 }
 
-RestingDeviceScene::RestingDeviceScene(const gpu::Device& device, const scene::Scene& scene,
-                                       const gpu::Buffer& alpha_heap)
+StaticDeviceScene::StaticDeviceScene(const gpu::Device& device, const scene::Scene& scene,
+                                     const gpu::Buffer& alpha_heap)
     : DeviceScene(device, scene, std::make_shared<const MaskTables>(device, scene), alpha_heap),
       meshes_(build_meshes(device, scene)) {
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
@@ -97,7 +96,7 @@ RestingDeviceScene::RestingDeviceScene(const gpu::Device& device, const scene::S
 }
 
 MovingDeviceScene::MovingDeviceScene(const gpu::Device& device,
-                                     std::shared_ptr<const RestingDeviceScene> rest,
+                                     std::shared_ptr<const StaticDeviceScene> rest,
                                      const scene::Scene& scene, const gpu::Buffer& alpha_heap)
     : DeviceScene(device, scene, rest->masks(), alpha_heap),
       device_(device),
@@ -111,10 +110,10 @@ MovingDeviceScene::MovingDeviceScene(const gpu::Device& device,
     triangles.add(mesh, coverage_of(scene, mesh));
   }
   const auto positions = std::as_bytes(std::span(triangles.positions));
-  positions_ = gpu::Buffer(device, "positions that move", positions.size(), build_input,
+  positions_ = gpu::Buffer(device, "deforming positions", positions.size(), build_input,
                            gpu::Memory::upload);
   std::copy(positions.begin(), positions.end(), positions_.mapped());
-  indices_ = gpu::upload_buffer(device, "indices of what moves",
+  indices_ = gpu::upload_buffer(device, "deforming indices",
                                 std::as_bytes(std::span(triangles.indices)), build_input);
   triangles.move_to(positions_.address(), indices_.address());
   meshes_ = MeshHierarchies(device, triangles.meshes, Rebuilds::often);
@@ -131,12 +130,12 @@ void MovingDeviceScene::update(const Movement& movement) {
   if (movement.deformed.empty() && movement.moved.empty()) return;
   std::vector<std::size_t> changed;
   for (const Movement::Mesh& mesh : movement.deformed) {
-    const std::size_t place = deforming_[mesh.mesh];
-    changed.push_back(place);
-    // Meshes that rays never meet have no positions here.
-    if (meshes_.address(place) == 0) continue;
+    const std::size_t slot = deforming_[mesh.mesh];
+    changed.push_back(slot);
+    // Meshes without triangles have no positions here.
+    if (meshes_.address(slot) == 0) continue;
     std::transform(mesh.vertices.begin(), mesh.vertices.end(),
-                   reinterpret_cast<glm::vec3*>(positions_.mapped()) + first_position_[place],
+                   reinterpret_cast<glm::vec3*>(positions_.mapped()) + first_position_[slot],
                    position_for_build);
   }
   for (const std::uint32_t i : movement.moved) {

@@ -9,12 +9,12 @@
 
 namespace heliograph::tracing {
 
-/// A scene in the driver's own hierarchies: what "ray_query" and "ray_pipeline" trace.
+/// A scene in the driver's acceleration structures, for "ray_query" and "ray_pipeline".
 class DeviceScene : public virtual AccelerationStructure {
  public:
-  /// What the shaders take as constants; stays when the scene moves.
+  /// Push constants of the shaders; constant while the scene moves.
   glm::uvec2 address() const { return instances_.address(); }
-  /// Gives `pass` what lies between its rays and its answers.
+  /// Binds the structure and alpha test tables to `pass`.
   void bind(gpu::FramePlan& plan, gpu::PassBuilder& pass) const;
 
  protected:
@@ -26,11 +26,11 @@ class DeviceScene : public virtual AccelerationStructure {
   InstanceHierarchy instances_;
 };
 
-class RestingDeviceScene : public DeviceScene {
+class StaticDeviceScene : public DeviceScene {
  public:
   /// @throws gpu::GpuError when the scene is too large for the device
-  RestingDeviceScene(const gpu::Device& device, const scene::Scene& scene,
-                     const gpu::Buffer& alpha_heap);
+  StaticDeviceScene(const gpu::Device& device, const scene::Scene& scene,
+                    const gpu::Buffer& alpha_heap);
 
   const std::shared_ptr<const MaskTables>& masks() const { return masks_; }
   const MeshHierarchies& meshes() const { return meshes_; }
@@ -40,10 +40,10 @@ class RestingDeviceScene : public DeviceScene {
   MeshHierarchies meshes_;
 };
 
-/// Shares the meshes that keep their shape with the scene at rest.
+/// An animated copy, which shares the rigid meshes with the static scene.
 class MovingDeviceScene : public DeviceScene, public MovingStructure {
  public:
-  MovingDeviceScene(const gpu::Device& device, std::shared_ptr<const RestingDeviceScene> rest,
+  MovingDeviceScene(const gpu::Device& device, std::shared_ptr<const StaticDeviceScene> rest,
                     const scene::Scene& scene, const gpu::Buffer& alpha_heap);
 
   void update(const Movement& movement) override;
@@ -52,9 +52,9 @@ class MovingDeviceScene : public DeviceScene, public MovingStructure {
   static constexpr std::size_t rigid = ~std::size_t(0);
 
   const gpu::Device& device_;
-  std::shared_ptr<const RestingDeviceScene> rest_;
-  std::vector<std::size_t> deforming_;           // by mesh: its place among those, or `rigid`
-  std::vector<std::size_t> first_position_;      // of each that deforms
+  std::shared_ptr<const StaticDeviceScene> rest_;
+  std::vector<std::size_t> deforming_;       // per mesh: index among the deforming ones, or `rigid`
+  std::vector<std::size_t> first_position_;  // per deforming mesh
   std::vector<VkDeviceAddress> mesh_addresses_;  // by instance
   gpu::Buffer positions_;
   gpu::Buffer indices_;

@@ -30,14 +30,15 @@ std::unique_ptr<RayTracer> make_tracer(TracerKind kind, const gpu::Device& devic
   }
 }
 
-std::unique_ptr<RayTracer> make_tracer(const std::string& wanted, const gpu::Device& device) {
-  if (wanted == "auto") return make_tracer(offered_tracers(device.report()).front(), device);
-  if (const auto kind = protocol::enum_value<TracerKind>(wanted)) return make_tracer(*kind, device);
+std::unique_ptr<RayTracer> make_tracer(const std::string& requested, const gpu::Device& device) {
+  if (requested == "auto") return make_tracer(offered_tracers(device.report()).front(), device);
+  if (const auto kind = protocol::enum_value<TracerKind>(requested))
+    return make_tracer(*kind, device);
   std::string names = "auto";
   for (const TracerKind kind : all_tracers) {
     names += ", " + std::string(protocol::enum_name(kind));
   }
-  throw gpu::GpuError("there is no tracer \"" + wanted + "\": choose one of " + names);
+  throw gpu::GpuError("there is no tracer \"" + requested + "\": choose one of " + names);
 }
 
 }  // namespace heliograph::tracing

@@ -25,7 +25,7 @@ layout(set = 1, binding = 11, std430) writeonly buffer MirrorRays { Ray mirror_r
 layout(push_constant) uniform Constants { float max_roughness; };  // below 0: nothing is traced
 
 vec2 pair(ivec2 pixel, uint dimension) {
-  return random_pair(uvec2(pixel), frame.extent.z, dimension, frame.extent.w);
+  return random_pair(uvec2(pixel), frame.sample_index, dimension, frame.seed);
 }
 
 Ray carrying(Ray ray, ivec2 pixel, vec3 light) {
@@ -48,10 +48,10 @@ Ray shadow_ray(HitSurface s, SurfaceMaterial m, float view_z, vec3 share, ivec2 
   found = false;
   if (!enabled(frame_direct)) return ray;
   vec3 sum = vec3(0.0);
-  for (uint i = 0u; i < frame.counts.x; ++i) {
+  for (uint i = 0u; i < frame.light_count; ++i) {
     if (light_reaches(i, s.position)) sum += light_contribution(light_number(i), m, s.position);
   }
-  float pick = random_number(uvec2(pixel), frame.extent.z, 40u, frame.extent.w);
+  float pick = random_number(uvec2(pixel), frame.sample_index, 40u, frame.seed);
   LightChoice choice = choose_light(m, s.position, pick);
   if (choice.total <= 0.0) return ray;
   ray = light_ray(light_number(choice.number), m, s.position, view_z, pair(pixel, 41u), pick, found);
@@ -66,7 +66,7 @@ Ray shadow_ray(HitSurface s, SurfaceMaterial m, float view_z, vec3 share, ivec2 
 Ray ambient_ray(HitSurface s, SurfaceMaterial m, float view_z, vec3 light, ivec2 pixel,
                 out bool found) {
   vec3 direction = sample_cosine(m.normal, pair(pixel, 42u));
-  Ray ray = ray_along(s, view_z, direction, frame.environment.w);
+  Ray ray = ray_along(s, view_z, direction, frame.ambient_radius);
   bool open = !enabled(frame_ambient_occlusion);
   if (open) ray.t_max = 0.0;
   found = (open || dot(direction, m.geometric) > 0.0) && light != vec3(0.0);

@@ -34,7 +34,7 @@ const float least_seen = 1.0 / 512.0;  // of what is behind: less changes nothin
 /// As if nothing were in the way.
 vec3 open_light(HitSurface s, SurfaceMaterial m) {
   vec3 sum = vec3(0.0);
-  for (uint i = 0u; enabled(frame_direct) && i < frame.counts.x; ++i) {
+  for (uint i = 0u; enabled(frame_direct) && i < frame.light_count; ++i) {
     if (light_reaches(i, s.position)) sum += light_contribution(light_number(i), m, s.position);
   }
   if (enabled(frame_environment_diffuse)) sum += environment_diffuse(m);
@@ -49,7 +49,7 @@ void choose(ivec2 pixel, Hit hit, HitSurface s, SurfaceMaterial m, vec3 share, i
   float own = luminance(share * open_light(s, m)) + 1e-3 * luminance(share);
   if (!(own > 0.0)) return;
   total += own;
-  if (random_number(uvec2(pixel), frame.extent.z, 44u + round, frame.extent.w) * total >= own) return;
+  if (random_number(uvec2(pixel), frame.sample_index, 44u + round, frame.seed) * total >= own) return;
   weight = own;
   hit.padding0 = floatBitsToUint(share.r);
   hit.padding1 = floatBitsToUint(share.g);

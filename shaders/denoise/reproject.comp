@@ -5,6 +5,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 // guided by.
 #include "lib/frame.glsl"
 #include "lib/math/octahedral.glsl"
+#include "lib/denoise/guide.glsl"
 #include "lib/denoise/reprojection.glsl"
 #include "shared/denoise.h"
 
@@ -34,7 +35,7 @@ vec3 shading_normal(ivec2 pixel) { return octahedral_decode(imageLoad(normals, p
 /// How the normal changes toward the more similar neighbour of each axis: an edge on one side does
 /// not loosen the test. Beyond the border the other neighbour stands in.
 float normal_change(ivec2 pixel, vec3 normal) {
-  ivec2 size = ivec2(frame.extent.xy);
+  ivec2 size = ivec2(frame.extent);
   float change = 0.0;
   for (int axis = 0; axis < 2; ++axis) {
     ivec2 step = axis == 0 ? ivec2(1, 0) : ivec2(0, 1);
@@ -49,7 +50,7 @@ float normal_change(ivec2 pixel, vec3 normal) {
 }
 
 bool is_same(ivec2 pixel, Expected expected) {
-  if (!inside(pixel, ivec2(frame.extent.xy))) return false;
+  if (!inside(pixel, ivec2(frame.extent))) return false;
   if (imageLoad(previous_instance, pixel).r != expected.instance) return false;
   float found = imageLoad(previous_motion, pixel).w;
   if (!same_depth(expected.view_z, found, expected.slope, expected.footprint,
@@ -96,10 +97,10 @@ void main() {
   }
   vec3 normal = shading_normal(pixel);
   float roughness = imageLoad(surface, pixel).r;
-  imageStore(guide, pixel, vec4(normal * (1.0 + roughness), moved.w));
+  imageStore(guide, pixel, encode_guide(Guide(normal, roughness, moved.w)));
 
   vec4 found = vec4(vec2(pixel) + 0.5, 0.0, 1.0);
-  if (frame.counts.w == 0u) {
+  if (frame.history_invalid == 0u) {
     Expected expected;
     expected.normal = normal;
     expected.normal_change = normal_change(pixel, normal);
@@ -107,7 +108,7 @@ void main() {
     expected.slope = imageLoad(depth_slope, pixel).xy;
     expected.footprint = pixel_footprint(expected.view_z);
     expected.instance = imageLoad(instance, pixel).r;
-    found = find(vec2(pixel) + 0.5 + moved.xy * vec2(frame.extent.xy), expected);
+    found = find(vec2(pixel) + 0.5 + moved.xy * vec2(frame.extent), expected);
   }
   imageStore(reprojection, pixel, found);
 }

@@ -4,6 +4,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 // Gathers reflections over frames. What a mirror shows moves like the point behind it, what a rough
 // surface shows like the surface: both places in the frame before are candidates.
 #include "lib/frame.glsl"
+#include "lib/denoise/guide.glsl"
 #include "lib/denoise/moments.glsl"
 #include "lib/math/octahedral.glsl"
 #include "lib/denoise/rectification.glsl"
@@ -64,7 +65,7 @@ vec3 recall_sharply(HistoryTaps taps) {
     for (int x = 0; x < 4; ++x) {
       float weight = across[x] * down[y];
       if (weight == 0.0) continue;
-      ivec2 tap = clamp(taps.base + ivec2(x, y) - 1, ivec2(0), ivec2(frame.extent.xy) - 1);
+      ivec2 tap = clamp(taps.base + ivec2(x, y) - 1, ivec2(0), ivec2(frame.extent) - 1);
       vec3 value = imageLoad(previous_signal, tap).rgb;
       sum += weight * value;
       if (x % 3 == 0 || y % 3 == 0) continue;
@@ -100,7 +101,7 @@ float hit_distance(ivec2 pixel) {
   for (int y = -1; y <= 1; ++y) {
     for (int x = -1; x <= 1; ++x) {
       ivec2 tap = pixel + ivec2(x, y);
-      if (!inside(tap, ivec2(frame.extent.xy))) continue;
+      if (!inside(tap, ivec2(frame.extent))) continue;
       float found = sample_at(tap).w;
       if (found > 0.0) nearest = min(nearest, found);
     }
@@ -117,16 +118,16 @@ struct Bend {
 };
 
 Bend bend(Surface s, vec3 position) {
-  if ((constants.flags & temporal_bent_mirrors) == 0u) return Bend(0.0, 0.0);
+  if ((constants.flags & temporal_curved_reflectors) == 0u) return Bend(0.0, 0.0);
   uint own = imageLoad(instance, s.pixel).r;
   vec2 sum = vec2(0.0);
   float count = 0.0;
   for (int i = 0; i < 4; ++i) {
     ivec2 beside = s.pixel + (i < 2 ? ivec2(2 * i - 1, 0) : ivec2(0, 2 * i - 5));
-    if (!inside(beside, ivec2(frame.extent.xy)) || imageLoad(instance, beside).r != own) continue;
-    vec4 found = imageLoad(guide, beside);
-    vec3 step = world_position(beside, found.w) - position;
-    vec3 turn = normalize(found.xyz) - s.normal;
+    if (!inside(beside, ivec2(frame.extent)) || imageLoad(instance, beside).r != own) continue;
+    Guide found = decode_guide(imageLoad(guide, beside));
+    vec3 step = world_position(beside, found.view_z) - position;
+    vec3 turn = found.normal - s.normal;
     sum += vec2(dot(turn, step) / max(dot(step, step), 1e-20), length(turn));
     count += 1.0;
   }
@@ -137,7 +138,7 @@ Bend bend(Surface s, vec3 position) {
 vec2 motion_of(vec3 point) {
   // Both without jitter, and through the same arithmetic: a resting view gives exactly zero.
   return (projected(frame.previous_unjittered, point) - projected(frame.unjittered, point)) *
-         vec2(frame.extent.xy);
+         vec2(frame.extent);
 }
 
 /// From this frame's pixel to where the virtual point was in the frame before, in pixels. A bent
@@ -160,7 +161,7 @@ vec2 virtual_motion(Surface s, vec3 position, Bend bend) {
 /// Whether the frame before shows the same mirror there: the surface is compared, not the depth of
 /// what is behind it. Where the normal turns from pixel to pixel, so may that of a neighbour.
 bool same_mirror(ivec2 pixel, Surface s, float turn) {
-  if (!inside(pixel, ivec2(frame.extent.xy))) return false;
+  if (!inside(pixel, ivec2(frame.extent))) return false;
   if (imageLoad(previous_instance, pixel).r != imageLoad(instance, s.pixel).r) return false;
   float found_z = imageLoad(previous_motion, pixel).w;
   if (found_z <= 0.0) return false;
@@ -186,7 +187,7 @@ Window window_about(ivec2 pixel) {
   for (int y = -constants.radius; y <= constants.radius; ++y) {
     for (int x = -constants.radius; x <= constants.radius; ++x) {
       ivec2 tap = pixel + ivec2(x, y);
-      if (!inside(tap, ivec2(frame.extent.xy)) || imageLoad(guide, tap).w <= 0.0) continue;
+      if (!inside(tap, ivec2(frame.extent)) || guide_is_background(imageLoad(guide, tap))) continue;
       add(window, to_ycocg(sample_at(tap).rgb));
     }
   }
@@ -207,7 +208,7 @@ Remembered remembered(Surface s) {
   if ((constants.flags & temporal_holds) == 0u) return nothing();
   vec4 map = imageLoad(reprojection, s.pixel);
   HistoryTaps own = valid_taps(bilinear_taps(map.xy), uint(map.z));
-  if ((constants.flags & temporal_virtual_point) == 0u) return recall(own);
+  if ((constants.flags & temporal_virtual_motion) == 0u) return recall(own);
   vec3 position = world_position(s.pixel, s.view_z);
   Bend bend = bend(s, position);
   vec2 motion = virtual_motion(s, position, bend);
@@ -243,14 +244,14 @@ void main() {
   if (outside_frame(pixel)) return;
   vec4 guided = imageLoad(guide, pixel);
   vec3 now = sample_at(pixel).rgb;
-  if (guided.w <= 0.0) {
+  if (guide_is_background(guided)) {
     imageStore(signal, pixel, vec4(0.0));
     imageStore(history, pixel, vec4(0.0));
     imageStore(fast, pixel, vec4(0.0));
     return;
   }
-  float size = length(guided.xyz);
-  Surface s = Surface(pixel, guided.xyz / size, size - 1.0, guided.w);
+  Guide g = decode_guide(guided);
+  Surface s = Surface(pixel, g.normal, g.roughness, g.view_z);
   Remembered old = remembered(s);
   vec3 rectified = rectify(pixel, old.radiance);
   float moved = old.frames > 0.0 ? abs(luminance(rectified) - luminance(old.radiance)) : 0.0;

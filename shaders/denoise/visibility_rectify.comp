@@ -7,6 +7,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 // gradient, shortens it by how far the neighbourhood has changed in this frame, which moves the mean
 // to neither side.
 #include "lib/frame.glsl"
+#include "lib/denoise/guide.glsl"
 #include "lib/denoise/moments.glsl"
 #include "lib/denoise/rectification.glsl"
 #include "lib/denoise/reprojection.glsl"
@@ -19,12 +20,12 @@ layout(push_constant) uniform Constants { TemporalConstants constants; };
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (outside_frame(pixel) || imageLoad(guide, pixel).w <= 0.0) return;
+  if (outside_frame(pixel) || guide_is_background(imageLoad(guide, pixel))) return;
   Window window = empty_window();
   for (int y = -constants.radius; y <= constants.radius; ++y) {
     for (int x = -constants.radius; x <= constants.radius; ++x) {
       ivec2 tap = pixel + ivec2(x, y);
-      if (!inside(tap, ivec2(frame.extent.xy)) || imageLoad(guide, tap).w <= 0.0) continue;
+      if (!inside(tap, ivec2(frame.extent)) || guide_is_background(imageLoad(guide, tap))) continue;
       add(window, vec3(imageLoad(fast, tap).xy, 0.0));
     }
   }

@@ -3,6 +3,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 // Gathers visibility over frames (Schied et al. 2017, section 4.2), shadow and ambient together.
 #include "lib/frame.glsl"
+#include "lib/denoise/guide.glsl"
 #include "lib/denoise/moments.glsl"
 #include "lib/denoise/rectification.glsl"
 #include "lib/denoise/reprojection.glsl"
@@ -42,7 +43,7 @@ vec2 recall_sharply(HistoryTaps taps) {
     for (int x = 0; x < 4; ++x) {
       float weight = across[x] * down[y];
       if (weight == 0.0) continue;
-      ivec2 tap = clamp(taps.base + ivec2(x, y) - 1, ivec2(0), ivec2(frame.extent.xy) - 1);
+      ivec2 tap = clamp(taps.base + ivec2(x, y) - 1, ivec2(0), ivec2(frame.extent) - 1);
       vec2 value = imageLoad(previous_signal, tap).xy;
       sum += weight * value;
       if (x % 3 == 0 || y % 3 == 0) continue;
@@ -81,7 +82,7 @@ vec2 rectify(ivec2 pixel, vec2 old) {
   for (int y = -constants.radius; y <= constants.radius; ++y) {
     for (int x = -constants.radius; x <= constants.radius; ++x) {
       ivec2 tap = pixel + ivec2(x, y);
-      if (!inside(tap, ivec2(frame.extent.xy)) || imageLoad(guide, tap).w <= 0.0) continue;
+      if (!inside(tap, ivec2(frame.extent)) || guide_is_background(imageLoad(guide, tap))) continue;
       add(window, vec3(imageLoad(raw, tap).xy, 0.0));
     }
   }
@@ -93,7 +94,7 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (outside_frame(pixel)) return;
   vec2 now = imageLoad(raw, pixel).xy;
-  if (imageLoad(guide, pixel).w <= 0.0) {
+  if (guide_is_background(imageLoad(guide, pixel))) {
     imageStore(signal, pixel, vec4(now, vec2(0.0)));
     imageStore(moments, pixel, vec4(0.0));
     imageStore(history, pixel, vec4(0.0));

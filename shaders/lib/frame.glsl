@@ -19,7 +19,7 @@ layout(constant_id = 0) const uint scene_features = 0xffffffffu;
 /// Whether the scene may have something; known when the shader is made.
 bool scene_has(uint feature) { return (scene_features & feature) != 0u; }
 
-bool enabled(uint flag) { return (frame.counts.y & flag) != 0u; }
+bool enabled(uint flag) { return (frame.flags & flag) != 0u; }
 
 bool outside_frame(ivec2 pixel) {
   return pixel.x >= int(frame.extent.x) || pixel.y >= int(frame.extent.y);
@@ -27,7 +27,7 @@ bool outside_frame(ivec2 pixel) {
 
 /// View-space position of a pixel's sample at `view_z` metres along -Z.
 vec3 view_position(ivec2 pixel, float view_z) {
-  vec2 ndc = (vec2(pixel) + 0.5) / vec2(frame.extent.xy) * 2.0 - 1.0;
+  vec2 ndc = (vec2(pixel) + 0.5) / vec2(frame.extent) * 2.0 - 1.0;
   vec2 slope = ndc * frame.unproject.xy + frame.unproject.zw;
   return vec3(enabled(frame_orthographic) ? slope : slope * view_z, -view_z);
 }

@@ -37,9 +37,9 @@ bool metered(out float mean) {
 
 void main() {
   if (gl_GlobalInvocationID.x > 0u) return;
-  ExposureState now = ExposureState(frame.exposure.x, 0.0, 0.0, 0.0);
+  ExposureState now = ExposureState(frame.exposure_factor, 0.0, 0.0, 0.0);
   if (automatic != 0u) {
-    bool first = frame.counts.w != 0u;
+    bool first = frame.history_invalid != 0u;
     float mean;
     now.target = first ? 0.0 : state.target;
     if (metered(mean)) now.target = log2(exposure_middle_grey) - mean;
@@ -48,7 +48,7 @@ void main() {
     if (!first && adaptation > 0.0) {
       now.stops = mix(now.target, state.stops, exp(-seconds / adaptation));
     }
-    now.factor = frame.exposure.x * exp2(now.stops);
+    now.factor = frame.exposure_factor * exp2(now.stops);
   }
   state = now;
   report = now;

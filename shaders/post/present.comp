@@ -15,7 +15,7 @@ layout(set = 1, binding = 3, rgba8) writeonly uniform image2D picture;
 layout(push_constant) uniform Constants { float mean_share; };
 
 vec3 tone_map(vec3 color) {
-  switch (int(frame.exposure.y)) {
+  switch (int(frame.tone_map_curve)) {
     case 0: return tone_map_neutral(color);
     case 1: return tone_map_aces(color);
     case 2: return tone_map_agx(color);

@@ -53,7 +53,7 @@ vec2 background_motion(ivec2 pixel) {
 
 /// Motion of the nearest surface of 3x3 pixels: an edge moves with what lies in front.
 vec2 nearest_motion(ivec2 pixel) {
-  ivec2 last = ivec2(frame.extent.xy) - 1;
+  ivec2 last = ivec2(frame.extent) - 1;
   ivec2 nearest = pixel;
   vec4 found = vec4(0.0);
   for (int y = -1; y <= 1; ++y) {
@@ -69,7 +69,7 @@ vec2 nearest_motion(ivec2 pixel) {
 
 /// Catmull-Rom's 16 texels as 9 bilinear fetches; may overshoot.
 vec3 sample_history(vec2 uv) {
-  vec2 size = vec2(frame.extent.xy);
+  vec2 size = vec2(frame.extent);
   vec2 position = uv * size;
   vec2 center = floor(position - 0.5) + 0.5;
   vec2 f = position - center;
@@ -97,17 +97,17 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (outside_frame(pixel)) return;
   vec4 center = imageLoad(hdr, pixel);
-  vec2 uv = (vec2(pixel) + 0.5) / vec2(frame.extent.xy);
+  vec2 uv = (vec2(pixel) + 0.5) / vec2(frame.extent);
   vec2 before = uv + nearest_motion(pixel);
   // Nothing is known of what was not in the picture.
-  bool known = frame.counts.w == 0u && all(greaterThanEqual(before, vec2(0.0))) &&
+  bool known = frame.history_invalid == 0u && all(greaterThanEqual(before, vec2(0.0))) &&
                all(lessThanEqual(before, vec2(1.0)));
   if (!known) {
     imageStore(resolved, pixel, center);
     return;
   }
 
-  ivec2 last = ivec2(frame.extent.xy) - 1;
+  ivec2 last = ivec2(frame.extent) - 1;
   vec3 nearby[9];
   vec3 mean = vec3(0.0);
   for (int i = 0; i < 9; ++i) {

@@ -21,7 +21,7 @@ layout(push_constant) uniform Constants { ReferenceConstants constants; };
 Ray shadow_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pixel) {
   if (!enabled(frame_direct)) return no_ray();
   vec3 sum = vec3(0.0);
-  for (uint i = 0u; i < frame.counts.x; ++i) {
+  for (uint i = 0u; i < frame.light_count; ++i) {
     if (light_reaches(i, position)) sum += light_contribution(light_number(i), m, position);
   }
   float pick = path_number(pixel, constants.round, 1u);
@@ -40,7 +40,7 @@ Ray shadow_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pixel) {
 /// `ambient` is the light that comes along it.
 Ray ambient_ray(SurfaceMaterial m, vec3 position, vec3 ambient, ivec2 pixel) {
   vec3 direction = sample_cosine(m.normal, path_pair(pixel, constants.round, 3u));
-  Ray ray = ray_from(position, m.geometric, direction, frame.environment.w);
+  Ray ray = ray_from(position, m.geometric, direction, frame.ambient_radius);
   bool open = !enabled(frame_ambient_occlusion);
   if (open) ray.t_max = 0.0;
   if (open || dot(direction, m.geometric) > 0.0) carry(ray, ambient);

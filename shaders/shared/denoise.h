@@ -21,9 +21,9 @@ SHARED_CONSTANT uint rectification_gradient = 7u;
 
 SHARED_CONSTANT uint temporal_holds = 1u;          // there is a history
 SHARED_CONSTANT uint temporal_mean_variance = 2u;  // variance of the mean, not of one sample
-SHARED_CONSTANT uint temporal_virtual_point = 4u;
-SHARED_CONSTANT uint temporal_bent_mirrors = 8u;  // their virtual points, too
-SHARED_CONSTANT uint temporal_bicubic = 16u;      // reads the remembered signal sharply
+SHARED_CONSTANT uint temporal_virtual_motion = 4u;
+SHARED_CONSTANT uint temporal_curved_reflectors = 8u;  // their virtual points, too
+SHARED_CONSTANT uint temporal_bicubic = 16u;           // reads the remembered signal sharply
 
 struct TemporalConstants {
   float frames;          // longest memory

@@ -1,4 +1,5 @@
-// What every pass of a frame may need: one uniform block, std140 (vec4 aligned throughout).
+// What every pass of a frame may need: one uniform block, std140. Members stand in groups of 16
+// bytes, so that C++ and GLSL lay them out alike.
 #ifndef HELIOGRAPH_SHARED_FRAME_CONSTANTS_H
 #define HELIOGRAPH_SHARED_FRAME_CONSTANTS_H
 #include "types.h"
@@ -22,15 +23,30 @@ struct FrameConstants {
   mat4 inverse_view;    // view -> world
   vec4 unproject;       // view xy = (ndc * xy + zw) x view Z (perspective)
   vec4 eye;             // world, metres
-  uvec4 extent;         // width, height, frames since the last cut, random seed
-  uvec4 counts;         // lights with the environment's sun, frame_* flags, levels of the
-                        // prefiltered cube, 1 where no history holds
-  vec4 environment;     // intensity, cos and sin of the rotation, ambient radius (metres)
-  vec4 exposure;        // factor, tone map curve, tangent of the sun radius or -1, unused
-  vec4 irradiance[9];   // spherical harmonics of the irradiance / pi, rgb
-  vec4 sun;             // toward the environment's sun, world; w: tangent of its angular
-                        // radius, -1: there is none
-  vec4 sun_irradiance;  // rgb, on a surface facing it
+
+  uvec2 extent;        // width and height, pixels
+  uint sample_index;   // frames since the history was reset: index into all random sequences
+  uint seed;           // of the random sequences
+
+  uint light_count;        // with the environment's sun, which is the last
+  uint flags;              // frame_*
+  uint prefiltered_levels; // mip levels of the prefiltered environment cube
+  uint history_invalid;    // 1: no history image may be read
+
+  float environment_intensity;
+  float environment_cos;  // of the environment's rotation about Y
+  float environment_sin;
+  float ambient_radius;   // how far occluders count, metres
+
+  float exposure_factor;
+  uint tone_map_curve;             // protocol::ToneMapCurve
+  float directional_light_radius;  // tangent of the angular radius of all, -1: each has its own
+  float padding;
+
+  vec4 irradiance[9];    // spherical harmonics of the irradiance / pi, rgb
+  vec3 sun_direction;    // toward the environment's sun, world
+  float sun_radius;      // tangent of its angular radius, -1: there is none
+  vec4 sun_irradiance;   // rgb, on a surface facing it
 };
 
 SHARED_END

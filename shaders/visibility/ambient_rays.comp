@@ -23,11 +23,11 @@ void main() {
     vec4 encoded = imageLoad(normals, pixel);
     vec3 shading = octahedral_decode(encoded.xy);
     vec3 geometric = octahedral_decode(encoded.zw);
-    vec2 u = random_pair(uvec2(pixel), frame.extent.z, 3u, frame.extent.w);
+    vec2 u = random_pair(uvec2(pixel), frame.sample_index, 3u, frame.seed);
     ray.origin = offset_origin(world_position(pixel, view_z), geometric, view_z);
     ray.t_min = 0.0;
     ray.direction = sample_cosine(shading, u);
-    ray.t_max = frame.environment.w;
+    ray.t_max = frame.ambient_radius;
     ray.pixel = uint(pixel.x) | uint(pixel.y) << 16u;
     ray.user = 0u;
     ray.padding0 = 0u;

@@ -27,10 +27,10 @@ void main() {
   if (view_z > 0.0) {
     SurfaceMaterial m = material_at(pixel);
     vec3 position = world_position(pixel, view_z);
-    float pick = random_number(uvec2(pixel), frame.extent.z, 1u, frame.extent.w);
+    float pick = random_number(uvec2(pixel), frame.sample_index, 1u, frame.seed);
     LightChoice choice = choose_light(m, position, pick);
     if (choice.total > 0.0) {
-      vec2 u = random_pair(uvec2(pixel), frame.extent.z, 2u, frame.extent.w);
+      vec2 u = random_pair(uvec2(pixel), frame.sample_index, 2u, frame.seed);
       ray = light_ray(light_number(choice.number), m, position, view_z, u, pick, wanted);
       ray.pixel = uint(pixel.x) | uint(pixel.y) << 16u;
     }

@@ -1,7 +1,6 @@
-// What it costs to move a scene on by one frame: nodes, instances, vertices, acceleration
-// structure; nothing is drawn. One line of JSON for each crowd of a hundred and for each file,
-// milliseconds, medians. "processor" is the time of all threads together, which holds on a busy
-// machine too.
+// Cost of animating a scene by one frame without rendering: nodes, instances, vertices,
+// acceleration structure. One line of JSON per synthetic scene of 100 instances and per file:
+// median milliseconds. "processor" is CPU time of all threads, which is robust on a busy machine.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -65,7 +64,7 @@ scene::Mesh column(int rings, int sides) {
   return mesh;
 }
 
-/// A scene of nothing but its one material.
+/// A scene with one material and nothing else.
 scene::Scene bare_scene() {
   scene::Scene scene;
   shared::Material material{};
@@ -100,7 +99,7 @@ glm::vec3 place_of(int i) {
   return {float(i % 10), 0.0f, float(i / 10)};
 }
 
-/// Sixty keys of a swing about the x axis.
+/// A swing about the x axis with 60 keys.
 scene::Channel swing(std::uint32_t node, float degrees) {
   scene::Channel channel{.node = node, .property = scene::Property::rotation, .width = 4};
   for (int key = 0; key <= 60; ++key) {
@@ -125,7 +124,7 @@ scene::Scene rigid_crowd(int count) {
   return scene;
 }
 
-/// Each with vertices of its own.
+/// Instances with separate vertices.
 void add_deforming(scene::Scene& scene, std::uint32_t node, std::optional<std::uint32_t> skin) {
   const auto mesh = static_cast<std::uint32_t>(scene.meshes.size());
   scene.meshes.push_back(column(20, 20));
@@ -256,14 +255,14 @@ void run(const Options& options) {
 
 int main(int count, char** arguments) {
   heliograph::bench::Options options;
-  CLI::App app("Times of moving a scene on by one frame, milliseconds.");
-  app.add_option("scenes", options.scenes, "glTF files with clips; none: crowds of its own");
-  app.add_option("--clip", options.clip, "Clip to play; the first unless said");
+  CLI::App app("Times of animating a scene by one frame, milliseconds.");
+  app.add_option("scenes", options.scenes, "glTF files with clips; default: synthetic scenes");
+  app.add_option("--clip", options.clip, "Clip to play; default: the first");
   app.add_option("--device", options.device, "Part of the name of the Vulkan device to use");
-  app.add_option("--tracer", options.tracer, "What traces rays");
-  app.add_option("--instances", options.instances, "How many a crowd is")
+  app.add_option("--tracer", options.tracer, "Ray tracer");
+  app.add_option("--instances", options.instances, "Instances of each synthetic scene")
       ->check(CLI::Range(1, 10000));
-  app.add_option("--frames", options.frames, "Frames to move on by")->check(CLI::Range(1, 100000));
+  app.add_option("--frames", options.frames, "Number of frames")->check(CLI::Range(1, 100000));
   CLI11_PARSE(app, count, arguments);
   try {
     heliograph::bench::run(options);

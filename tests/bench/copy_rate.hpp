@@ -4,7 +4,7 @@
 
 namespace heliograph::bench {
 
-/// Bytes read and written in a second, the best of several runs.
+/// Bytes read and written per second, best of several runs.
 struct CopyRates {
   double shader;     // a compute shader that copies an rgba32f image of this size
   double processor;  // memcpy on every core, of as many bytes

@@ -9,7 +9,7 @@
 
 namespace heliograph::bench {
 
-/// A tracer that remembers which streams it was asked to trace, so that others may trace them too.
+/// A tracer that records the ray streams it traces, so that other tracers can be timed on them.
 class RecordingTracer : public tracing::RayTracer {
  public:
   struct Stream {
@@ -21,8 +21,8 @@ class RecordingTracer : public tracing::RayTracer {
   explicit RecordingTracer(std::unique_ptr<tracing::RayTracer> tracer)
       : tracer_(std::move(tracer)) {}
 
-  /// The stream of the pass `name` in the plan declared last, unless other passes trace the same
-  /// memory: it no longer holds the rays then.
+  /// The stream of the pass `name` in the last declared plan, unless later passes overwrite its
+  /// memory.
   const Stream* find(const std::string& name) const;
 
   protocol::TracerKind kind() const override { return tracer_->kind(); }
@@ -43,18 +43,18 @@ class RecordingTracer : public tracing::RayTracer {
   mutable std::map<std::string, Stream> streams_;
 };
 
-/// Embree alone, on rays that lie ready in its own layout, with nothing done about what it finds:
-/// what a tracer can at best come up to.
+/// Embree alone on rays in its own layout, without use of the results: the upper bound for a
+/// tracer.
 class EmbreeAlone {
  public:
-  /// `scene` at rest, and outliving this.
+  /// `scene` in its default pose; outlives this object.
   explicit EmbreeAlone(const scene::Scene& scene);
   ~EmbreeAlone();
   EmbreeAlone(const EmbreeAlone&) = delete;
   EmbreeAlone& operator=(const EmbreeAlone&) = delete;
 
-  /// Milliseconds for the rays that the stream holds now, the median of several runs on all
-  /// processors; nothing where its memory is not mapped.
+  /// Milliseconds for the stream's current rays, median of several runs on all cores; nullopt where
+  /// its memory is not mapped.
   std::optional<double> milliseconds(const RecordingTracer::Stream& stream) const;
 
  private:

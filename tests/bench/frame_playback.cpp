@@ -9,10 +9,10 @@ namespace {
 
 static_assert(shown_quality == session::default_quality);
 
-/// More than the session's own renderer ever numbers, which draws a few pictures of nothing.
+/// Above all render ids of the session's own renderer, which draws a few empty frames.
 constexpr int first_number = 1000;
 
-/// Tiles under soft light, moved a little from picture to picture.
+/// Tiles under soft light that move slightly from frame to frame.
 render::Frame draw(int number) {
   render::Frame frame{.width = shown_width, .height = shown_height};
   frame.rgba.resize(std::size_t{4} * shown_width * shown_height);
@@ -37,14 +37,14 @@ render::Frame draw(int number) {
 
 }  // namespace
 
-std::vector<render::Frame> draw_pictures(int count) {
-  std::vector<render::Frame> pictures;
-  for (int i = 0; i < count; ++i) pictures.push_back(draw(i));
-  return pictures;
+std::vector<render::Frame> draw_frames(int count) {
+  std::vector<render::Frame> frames;
+  for (int i = 0; i < count; ++i) frames.push_back(draw(i));
+  return frames;
 }
 
-PictureShow::PictureShow(session::SessionHost& host, std::vector<render::Frame> pictures,
-                         double rate)
+FramePlayback::FramePlayback(session::SessionHost& host, std::vector<render::Frame> frames,
+                             double rate)
     : worker_("encoder", 1),
       broadcast_(host.sessions().main(), {.encoder = worker_,
                                           .jpeg = jpeg_,
@@ -53,41 +53,41 @@ PictureShow::PictureShow(session::SessionHost& host, std::vector<render::Frame> 
                                           .tracer = host.engine().tracer()}),
       interval_(
           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / rate))) {
-  for (render::Frame& frame : pictures) {
-    auto picture = std::make_shared<session::RenderedFrame>();
-    picture->frame = std::move(frame);
-    pictures_.push_back(std::move(picture));
+  for (render::Frame& frame : frames) {
+    auto rendered = std::make_shared<session::RenderedFrame>();
+    rendered->frame = std::move(frame);
+    frames_.push_back(std::move(rendered));
   }
-  for (int i = 0; i < first_number; ++i) broadcast_.rendered(next_picture(), false);
+  for (int i = 0; i < first_number; ++i) broadcast_.rendered(next_frame(), false);
   thread_ = std::thread([this] { run(); });
 }
 
-PictureShow::~PictureShow() {
+FramePlayback::~FramePlayback() {
   stopping_ = true;
   thread_.join();
   worker_.stop();
 }
 
-/// Pictures come round again long after they were encoded.
-std::shared_ptr<session::RenderedFrame> PictureShow::next_picture() {
-  const std::shared_ptr<session::RenderedFrame>& picture = pictures_[shown_ % pictures_.size()];
-  protocol::FrameHeader& header = picture->header;
+/// Frames repeat long after their encoding.
+std::shared_ptr<session::RenderedFrame> FramePlayback::next_frame() {
+  const std::shared_ptr<session::RenderedFrame>& frame = frames_[shown_ % frames_.size()];
+  protocol::FrameHeader& header = frame->header;
   header.render_id = ++shown_;
   header.full_width = shown_width;
   header.full_height = shown_height;
   header.render_start_us = static_cast<std::uint64_t>(
       std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch())
           .count());
-  return picture;
+  return frame;
 }
 
-void PictureShow::run() {
+void FramePlayback::run() {
   Clock::time_point next = Clock::now();
   while (!stopping_) {
     next = std::max(next + interval_, Clock::now() - interval_);
     std::this_thread::sleep_until(next);
     if (!running_ || broadcast_.behind()) continue;
-    broadcast_.rendered(next_picture(), false);
+    broadcast_.rendered(next_frame(), false);
     broadcast_.pump();
   }
 }

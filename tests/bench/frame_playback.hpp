@@ -13,18 +13,18 @@
 
 namespace heliograph::bench {
 
-/// Pictures of a little film, each with its own grain: about as many bytes as a rendered interior.
-std::vector<render::Frame> draw_pictures(int count);
+/// Frames of a short animation with different grain: encoded about as large as a rendered interior.
+std::vector<render::Frame> draw_frames(int count);
 
-/// A renderer that has drawn everything before: shows pictures at a steady rate in a session whose
-/// own renderer has nothing to draw, through the encoding and sending of every session.
-class PictureShow {
+/// Publishes prerendered frames at a steady rate in a session whose own renderer is idle, through
+/// the encoding and sending of every session.
+class FramePlayback {
  public:
-  /// `rate`: pictures a second.
-  PictureShow(session::SessionHost& host, std::vector<render::Frame> pictures, double rate);
-  ~PictureShow();
-  PictureShow(const PictureShow&) = delete;
-  PictureShow& operator=(const PictureShow&) = delete;
+  /// `rate`: frames per second.
+  FramePlayback(session::SessionHost& host, std::vector<render::Frame> frames, double rate);
+  ~FramePlayback();
+  FramePlayback(const FramePlayback&) = delete;
+  FramePlayback& operator=(const FramePlayback&) = delete;
 
   void set_running(bool running) { running_ = running; }
   std::uint64_t encodings() const { return measurements_.totals().encodings.count(); }
@@ -32,7 +32,7 @@ class PictureShow {
  private:
   using Clock = std::chrono::steady_clock;
 
-  std::shared_ptr<session::RenderedFrame> next_picture();
+  std::shared_ptr<session::RenderedFrame> next_frame();
   void run();
 
   stream::JpegEncoder jpeg_;
@@ -40,7 +40,7 @@ class PictureShow {
   session::Worker worker_;
   const std::shared_ptr<session::WakeEvent> wakeup_ = std::make_shared<session::WakeEvent>();
   session::Broadcast broadcast_;
-  std::vector<std::shared_ptr<session::RenderedFrame>> pictures_;
+  std::vector<std::shared_ptr<session::RenderedFrame>> frames_;
   std::uint32_t shown_ = 0;
   const Clock::duration interval_;
   std::atomic<bool> running_ = false;

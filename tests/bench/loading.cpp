@@ -1,7 +1,7 @@
-// From a scene's file to its first picture, stage by stage: one line of JSON for each time it is
-// loaded. The first time pays for pipelines that later scenes find made. "processor_seconds" is the
-// time of all threads together, which holds on a busy machine too. Peaks of memory count from what
-// was resident before; "decoded_bytes" are geometry, pictures and their levels, once each.
+// From a scene file to its first frame, stage by stage: one line of JSON per load. The first load
+// includes the creation of pipelines. "processor_seconds" is CPU time of all threads, which is
+// robust on a busy machine. Memory peaks are relative to the start; "decoded_bytes" are geometry,
+// images and mip levels, once each.
 #include <malloc.h>
 
 #include <CLI/CLI.hpp>
@@ -46,20 +46,19 @@ std::uint64_t status_bytes(const std::string& key) {
   return 0;
 }
 
-/// Most memory that was resident since restart_peak().
+/// Peak resident memory since restart_peak().
 std::uint64_t peak_bytes() {
   return status_bytes("VmHWM:");
 }
 
-/// Forgets the peak so far; gives what is resident now.
+/// Resets the peak and returns the current resident memory.
 std::uint64_t restart_peak() {
   malloc_trim(0);
   std::ofstream("/proc/self/clear_refs") << 5;
   return status_bytes("VmRSS:");
 }
 
-/// Time of one thread, for meshes that are given a normal map and no tangents of their own: part of
-/// "geometry", where all threads share it.
+/// Time of one thread to generate tangents of all meshes; part of "geometry", where it is parallel.
 double time_tangents(const scene::Scene& scene) {
   const Clock::time_point start = Clock::now();
   for (const scene::Mesh& mesh : scene.meshes) {
@@ -165,13 +164,13 @@ void run(const Options& options) {
 
 int main(int count, char** arguments) {
   heliograph::bench::Options options;
-  CLI::App app("Times from a scene's file to its first picture, seconds.");
+  CLI::App app("Times from a scene file to its first frame, seconds.");
   app.add_option("scenes", options.scenes, "glTF files")->required();
   app.add_option("--environment", options.environment, ".hdr or .exr file");
   app.add_option("--device", options.device, "Part of the name of the Vulkan device to use");
-  app.add_option("--repeats", options.repeats, "Times that each scene is loaded");
-  app.add_option("--width", options.width, "Picture width, pixels");
-  app.add_option("--height", options.height, "Picture height, pixels");
+  app.add_option("--repeats", options.repeats, "Number of loads of each scene");
+  app.add_option("--width", options.width, "Frame width, pixels");
+  app.add_option("--height", options.height, "Frame height, pixels");
   CLI11_PARSE(app, count, arguments);
   try {
     heliograph::bench::run(options);

@@ -1,4 +1,4 @@
-// Times every pass of the frame on scenes of the caller's, beside what the machine can do at best.
+// Times every pass of a frame, relative to the limits of the machine.
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -47,7 +47,7 @@ VkExtent2D parse_size(const std::string& text) {
 
 protocol::Settings parse_settings(const Options& options) {
   protocol::Settings settings;
-  // Measured frames never come to rest.
+  // Measured frames never converge.
   settings.accumulation.max_samples = 65536;
   for (const auto& path : options.presets) {
     std::ifstream file(path);
@@ -63,7 +63,7 @@ protocol::Settings parse_settings(const Options& options) {
   return settings;
 }
 
-/// A floor and a wall of one mesh, for a first look without any file.
+/// A floor and a wall in one mesh: the default scene.
 scene::Scene plain_scene() {
   scene::Scene scene;
   scene.name = "two quads";
@@ -110,7 +110,7 @@ scene::Camera first_camera(const scene::Scene& scene, VkExtent2D extent) {
   return scene::fit_camera(scene.bounds, scene::Camera().vertical_fov, aspect);
 }
 
-/// A small swing about the target, so that no two frames show the same view.
+/// A small orbit around the target, so that consecutive frames differ.
 scene::Camera swung(const scene::Camera& camera, int frame) {
   const float angle = glm::radians(0.25f) * std::sin(0.3f * static_cast<float>(frame));
   const glm::mat4 turn = glm::rotate(glm::mat4(1.0f), angle, camera.up);
@@ -119,7 +119,7 @@ scene::Camera swung(const scene::Camera& camera, int frame) {
   return moved;
 }
 
-/// One renderer with its times.
+/// A renderer with its timings.
 struct Run {
   Run(render::Engine& engine, const std::shared_ptr<const render::SceneResources>& resources,
       VkExtent2D extent, const protocol::Settings& settings)
@@ -134,8 +134,8 @@ struct Run {
   Table table;
 };
 
-/// Beside every pass what bounds it: Embree alone on the rays that the last frame traced, and for
-/// host kernels, which are vectorised by hand, how many times longer the shader takes.
+/// Adds reference times per pass: Embree alone on the rays of the last frame, and for host kernels
+/// the factor by which the shader is slower.
 void add_bounds(nlohmann::json& summary, const RecordingTracer& tracer, const scene::Scene& scene,
                 const std::optional<Run>& shaders) {
   const EmbreeAlone embree(scene);
@@ -233,11 +233,11 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app(
       "Times every pass of a frame while the camera moves a little: median ms, ns per "
-      "pixel, rays per second, bytes of images, how many times longer than a copy of as "
-      "many bytes the pass takes, than Embree alone on the same rays, and how many times "
-      "longer the shader takes that a host kernel stands for.");
+      "pixel, rays per second, bytes of images, time relative to a copy of as "
+      "many bytes and to Embree alone on the same rays, and for host kernels the factor by "
+      "which the shader is slower.");
   app.add_option("scenes", options.scenes, "glTF files; without any, two quads");
-  app.add_option("--size", options.sizes, "picture sizes, such as 640x360")->expected(1, -1);
+  app.add_option("--size", options.sizes, "frame sizes, such as 640x360")->expected(1, -1);
   app.add_option("--frames", options.frames, "measured frames")->check(CLI::PositiveNumber);
   app.add_option("--warm-up", options.warm_up, "frames before them")->check(CLI::NonNegativeNumber);
   app.add_option("--set", options.settings, "path=value, as `heliograph render` takes it");
@@ -246,9 +246,8 @@ int main(int argc, char** argv) {
   app.add_option("--device", options.device, "part of the device's name");
   app.add_option("--tracer", options.tracer, "as `heliograph serve` takes it");
   app.add_option("--output", options.output, "also write the results to this file, as JSON");
-  app.add_flag("--shaders", options.shaders,
-               "also draw every frame with shaders alone, beside the host kernels");
-  app.add_flag("--still", options.still, "let the camera rest");
+  app.add_flag("--shaders", options.shaders, "also render every frame without host kernels");
+  app.add_flag("--still", options.still, "static camera");
   CLI11_PARSE(app, argc, argv);
   try {
     run(options);

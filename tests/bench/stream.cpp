@@ -1,5 +1,5 @@
-// What it costs to get pictures that are there already to viewers: encoding, pacing, sockets.
-// Viewers run in a process of their own and do not decode. Ratios are of one run.
+// Cost of streaming prerendered frames to viewers: encoding, pacing, sockets. Viewers run in a
+// separate process and do not decode. Ratios are of one run.
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
 #include <turbojpeg.h>
@@ -28,7 +28,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using nlohmann::json;
 
-constexpr int pictures_in_a_circle = 12;
+constexpr int animation_frames = 12;
 constexpr std::size_t crowd = 16;
 constexpr std::size_t viewers_beside_a_stalled_one = 4;
 constexpr std::size_t idle_sessions = 200;
@@ -66,16 +66,16 @@ double median(const std::vector<double>& values) {
   return percentile(values, 0.5);
 }
 
-/// Of two measurements that follow each other: what slows the machine down slows both.
+/// Ratio of two consecutive measurements, so that other load affects both.
 double median_ratio(const std::vector<double>& values, const std::vector<double>& others) {
   std::vector<double> ratios(values.size());
   std::transform(values.begin(), values.end(), others.begin(), ratios.begin(), std::divides<>());
   return median(ratios);
 }
 
-/// CPU milliseconds of the bare library call for one picture, `rate` of them a second; 0: one after
-/// the other. A core that rests between pictures is slower at each, whoever calls.
-double bare_encoding(const std::vector<render::Frame>& pictures, double seconds, double rate) {
+/// CPU milliseconds of the plain library call per frame at `rate` frames per second; 0: back to
+/// back. A core that idles between frames is slower.
+double bare_encoding(const std::vector<render::Frame>& frames, double seconds, double rate) {
   const tjhandle handle = tjInitCompress();
   std::vector<unsigned char> buffer(tjBufSize(shown_width, shown_height, TJSAMP_420));
   const Clock::time_point begin = Clock::now();
@@ -86,10 +86,10 @@ double bare_encoding(const std::vector<render::Frame>& pictures, double seconds,
     if (rate > 0) {
       std::this_thread::sleep_until(begin + std::chrono::duration<double>(count / rate));
     }
-    const render::Frame& picture = pictures[static_cast<std::size_t>(count++) % pictures.size()];
+    const render::Frame& frame = frames[static_cast<std::size_t>(count++) % frames.size()];
     unsigned char* out = buffer.data();
     unsigned long size = buffer.size();
-    tjCompress2(handle, picture.rgba.data(), shown_width, 0, shown_height, TJPF_RGBX, &out, &size,
+    tjCompress2(handle, frame.rgba.data(), shown_width, 0, shown_height, TJPF_RGBX, &out, &size,
                 TJSAMP_420, shown_quality, TJFLAG_NOREALLOC);
   }
   const double spent = cpu_seconds() - before;
@@ -98,14 +98,14 @@ double bare_encoding(const std::vector<render::Frame>& pictures, double seconds,
 }
 
 struct Measured {
-  double cpu_ms = 0.0;  // for each picture that was encoded
+  double cpu_ms = 0.0;  // per encoded frame
   double cpu_share = 0.0;
   double memory_grown = 0.0;
   double rate = 0.0;  // frames a second, mean of the viewers
   json report;
 };
 
-/// The server with everything but a renderer that has something to draw.
+/// The server with an idle renderer.
 class Stage {
  public:
   explicit Stage(const Options& options)
@@ -113,13 +113,13 @@ class Stage {
         host_(engine_, hosting()),
         server_(host_, {.port = 0, .access = {}, .router = {}}),
         network_([this] { server_.run(); }),
-        pictures_(draw_pictures(pictures_in_a_circle)),
-        show_(std::make_unique<PictureShow>(host_, pictures_, options.rate)) {
+        frames_(draw_frames(animation_frames)),
+        playback_(std::make_unique<FramePlayback>(host_, frames_, options.rate)) {
     const std::string url = server_.url();
     port_ = static_cast<std::uint16_t>(std::stoi(url.substr(url.rfind(':') + 1)));
   }
   ~Stage() {
-    show_.reset();
+    playback_.reset();
     server_.stop();
     network_.join();
     host_.stop();
@@ -127,29 +127,30 @@ class Stage {
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
 
-  PictureShow& show() { return *show_; }
+  FramePlayback& playback() { return *playback_; }
   session::SessionHost& host() { return host_; }
-  const std::vector<render::Frame>& pictures() const { return pictures_; }
+  const std::vector<render::Frame>& frames() const { return frames_; }
 
-  /// Runs a process of viewers against this one. `idle`: nothing more is shown once all are there.
+  /// Runs a process of viewers against this server. `idle`: no frames after all viewers are
+  /// connected.
   Measured measure(ClientOptions viewers, bool idle = false) {
     viewers.port = port_;
-    show_->set_running(true);
+    playback_->set_running(true);
     const std::unique_ptr<FILE, int (*)(FILE*)> process(popen(command(viewers).c_str(), "r"),
                                                         pclose);
-    if (!process) throw std::runtime_error("the viewers cannot be started");
+    if (!process) throw std::runtime_error("cannot start the viewer process");
     line(*process);
-    if (idle) show_->set_running(false);
+    if (idle) playback_->set_running(false);
     line(*process);
     const Clock::time_point begin = Clock::now();
     const double cpu = cpu_seconds();
     const double memory = resident_megabytes();
-    const std::uint64_t encodings = show_->encodings();
+    const std::uint64_t encodings = playback_->encodings();
     Measured measured{.report = json::parse(line(*process))};
-    show_->set_running(false);
+    playback_->set_running(false);
     const double spent = cpu_seconds() - cpu;
     const std::chrono::duration<double> passed = Clock::now() - begin;
-    const auto encoded = static_cast<double>(show_->encodings() - encodings);
+    const auto encoded = static_cast<double>(playback_->encodings() - encodings);
     measured.cpu_ms = 1e3 * spent / std::max(encoded, 1.0);
     measured.cpu_share = spent / passed.count();
     measured.memory_grown = resident_megabytes() - memory;
@@ -172,7 +173,7 @@ class Stage {
   }
 
   static std::string command(const ClientOptions& viewers) {
-    // The shell's own link would name the shell.
+    // /proc/self of the shell would be the shell.
     const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
     return "exec '" + program + "' --port " + std::to_string(viewers.port) + " --viewers " +
            std::to_string(viewers.viewers) + " --stalled " + std::to_string(viewers.stalled) +
@@ -182,7 +183,8 @@ class Stage {
 
   static std::string line(FILE& process) {
     char text[4096];
-    if (!std::fgets(text, sizeof text, &process)) throw std::runtime_error("the viewers failed");
+    if (!std::fgets(text, sizeof text, &process))
+      throw std::runtime_error("the viewer process failed");
     return text;
   }
 
@@ -191,11 +193,11 @@ class Stage {
   net::Server server_;
   std::thread network_;
   std::uint16_t port_ = 0;
-  std::vector<render::Frame> pictures_;
-  std::unique_ptr<PictureShow> show_;
+  std::vector<render::Frame> frames_;
+  std::unique_ptr<FramePlayback> playback_;
 };
 
-/// Memory of sessions that nobody watches, in megabytes.
+/// Memory of sessions without viewers, in megabytes.
 double sessions_memory(session::SessionHost& host) {
   const double before = resident_megabytes();
   for (std::size_t i = 0; i < idle_sessions; ++i) {
@@ -232,8 +234,8 @@ json run(const Options& options) {
     return measured;
   };
   for (int round = 0; round < options.rounds; ++round) {
-    looped.push_back(bare_encoding(stage.pictures(), one.seconds / 2, 0));
-    bare.push_back(bare_encoding(stage.pictures(), one.seconds, options.rate));
+    looped.push_back(bare_encoding(stage.frames(), one.seconds / 2, 0));
+    bare.push_back(bare_encoding(stage.frames(), one.seconds, options.rate));
     const Measured with_one = measure(one);
     single.push_back(with_one.cpu_ms);
     overhead.push_back(with_one.report.at("overhead_ms_p95"));
@@ -246,9 +248,9 @@ json run(const Options& options) {
     stalled.push_back(with_lazy.rate);
     grown.push_back(with_lazy.memory_grown);
   }
-  ClientOptions resting = one;
-  resting.settle = 1.0;
-  const Measured idle = stage.measure(resting, true);
+  ClientOptions idle_options = one;
+  idle_options.settle = 1.0;
+  const Measured idle = stage.measure(idle_options, true);
   return {{"looped_cpu_ms", median(looped)},
           {"bare_cpu_ms", median(bare)},
           {"one_viewer_cpu_ms", median(single)},
@@ -272,26 +274,26 @@ struct Row {
   const char* what;
   const char* key;
   const char* unit;
-  double bar;  // must be below; 0: only told
+  double bar;  // upper limit; 0: informative
 };
 constexpr double none = 1e-9;
 constexpr Row rows[] = {
-    {"libjpeg-turbo alone, without rest", "looped_cpu_ms", "CPU-ms", 0},
-    {"  at the pace of the pictures", "bare_cpu_ms", "CPU-ms", 0},
+    {"libjpeg-turbo alone, back to back", "looped_cpu_ms", "CPU-ms", 0},
+    {"  at the frame rate", "bare_cpu_ms", "CPU-ms", 0},
     {"encoded, paced, sent to one viewer", "one_viewer_cpu_ms", "CPU-ms", 3.3},
-    {"  times the bare call at this pace", "times_bare", "", 1.15},
+    {"  relative to the call alone", "times_bare", "", 1.15},
     {"to 16 viewers", "sixteen_viewers_cpu_ms", "CPU-ms", 0},
-    {"  times one viewer", "times_one_viewer", "", 1.3},
+    {"  relative to one viewer", "times_one_viewer", "", 1.3},
     {"render end to first byte, less encoding, p95", "overhead_ms_p95", "ms", 2},
     {"  with 16 viewers", "overhead_of_sixteen_ms_p95", "ms", 0},
-    {"pictures a second", "rate", "1/s", 0},
+    {"frames per second", "rate", "1/s", 0},
     {"lost beside a stalled viewer", "lost_percent", "%", 5},
     {"memory grown beside a stalled viewer", "memory_grown_mb", "MB", 5},
     {"idle, with a viewer", "idle_cpu_percent", "% CPU", 1},
     {"  bytes sent", "idle_bytes", "", none},
     {"200 idle sessions", "idle_sessions_mb", "MB", 100},
     {"frames out of order", "disorder", "", none},
-    {"frames of less quality than wanted", "adapted", "", 0},
+    {"frames below the requested quality", "adapted", "", 0},
 };
 
 bool holds(const Row& row, const json& result) {
@@ -299,8 +301,7 @@ bool holds(const Row& row, const json& result) {
 }
 
 void print(const json& result) {
-  std::printf("%ux%u, quality %d, pictures drawn before\n", shown_width, shown_height,
-              shown_quality);
+  std::printf("%ux%u, quality %d, prerendered frames\n", shown_width, shown_height, shown_quality);
   for (const Row& row : rows) {
     std::printf("%-46s %9.2f %-8s", row.what, result.at(row.key).get<double>(), row.unit);
     if (row.bar == none) std::printf(" none");
@@ -330,18 +331,20 @@ void watch_and_tell(const ClientOptions& options) {
 int main(int argc, char** argv) {
   using namespace heliograph::bench;
   Options options;
-  CLI::App app{"Measures what it costs to get pictures to viewers."};
+  CLI::App app{"Measures the cost of streaming frames to viewers."};
   bool as_json = false;
   bool check = false;
   app.add_option("--seconds", options.viewers.seconds, "Length of each measurement.");
   app.add_option("--settle", options.viewers.settle, "Time before it.");
-  app.add_option("--rate", options.rate, "Pictures a second.");
-  app.add_option("--rounds", options.rounds, "Measurements, of which the median counts.");
+  app.add_option("--rate", options.rate, "Frames per second.");
+  app.add_option("--rounds", options.rounds, "Number of measurements; the median is reported.");
   app.add_flag("--json", as_json, "Print one line of JSON instead of a table.");
-  app.add_flag("--check", check, "Fail where a limit is exceeded.");
-  app.add_option("--port", options.viewers.port, "Be the viewers of the server at this port.");
-  app.add_option("--viewers", options.viewers.viewers, "How many of them.");
-  app.add_option("--stalled", options.viewers.stalled, "How many more that read nothing.");
+  app.add_flag("--check", check, "Fail if a limit is exceeded.");
+  app.add_option("--port", options.viewers.port,
+                 "Run as the viewer process of the server at this port.");
+  app.add_option("--viewers", options.viewers.viewers, "Number of viewers.");
+  app.add_option("--stalled", options.viewers.stalled,
+                 "Number of additional viewers that read nothing.");
   CLI11_PARSE(app, argc, argv);
   spdlog::set_level(spdlog::level::warn);
   try {

@@ -49,7 +49,7 @@ class Viewer {
 
   int descriptor() const { return socket_; }
 
-  /// Takes what has arrived.
+  /// Reads the bytes that have arrived.
   void read(ClientReport& report) {
     const std::size_t before = received_.size();
     received_.resize(before + most_at_once);
@@ -65,7 +65,7 @@ class Viewer {
   std::uint64_t frames = 0;
 
  private:
-  /// Nothing may be sent before the answer is there.
+  /// Nothing may be sent before the response.
   void upgrade(std::uint16_t port) {
     write("GET /ws HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(port) +
           "\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
@@ -74,15 +74,15 @@ class Viewer {
     std::string answer;
     while (!answer.ends_with("\r\n\r\n")) {
       char next = 0;
-      if (recv(socket_, &next, 1, 0) != 1) throw std::runtime_error("the server gives no answer");
+      if (recv(socket_, &next, 1, 0) != 1) throw std::runtime_error("the server does not answer");
       answer += next;
     }
     if (!answer.starts_with("HTTP/1.1 101")) {
-      throw std::runtime_error("the server refuses the WebSocket: " + answer);
+      throw std::runtime_error("the server rejects the WebSocket: " + answer);
     }
   }
 
-  /// Takes the first message out of what was received, once it is whole.
+  /// Removes the first complete message from the received bytes.
   bool take_message(ClientReport& report) {
     const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(received_[i]); };
     if (received_.size() < 2) return false;
@@ -105,7 +105,7 @@ class Viewer {
     if (!header) throw std::runtime_error("a frame without header");
     send_text(R"({"jsonrpc":"2.0","method":"stream.ack","params":{"frame_seq":)" +
               std::to_string(header->frame_seq) + "}}");
-    if (header->full_width != shown_width) return;  // drawn by the session's own renderer
+    if (header->full_width != shown_width) return;  // rendered by the session itself
     const double overhead = first_byte_us_ - static_cast<double>(header->render_start_us) -
                             header->render_us - header->encode_us;
     report.overhead_ms.push_back(overhead / 1000.0);
@@ -133,7 +133,7 @@ class Viewer {
   void write(const std::string& bytes) {
     if (send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL) !=
         static_cast<ssize_t>(bytes.size())) {
-      throw std::runtime_error("the server takes nothing");
+      throw std::runtime_error("cannot write to the server");
     }
   }
 
@@ -175,7 +175,7 @@ class Crowd {
     run_until(report, [&] { return Clock::now() >= end; });
   }
 
-  bool everybody_saw_something() const {
+  bool all_have_frames() const {
     return std::all_of(reading_.begin(), reading_.end(),
                        [](const auto& viewer) { return viewer->frames > 0; });
   }
@@ -200,10 +200,10 @@ class Crowd {
 ClientReport watch(const ClientOptions& options, const std::function<void(bool)>& tell) {
   Crowd crowd(options);
   ClientReport before;
-  const auto patience = Clock::now() + std::chrono::seconds(20);
+  const auto deadline = Clock::now() + std::chrono::seconds(20);
   crowd.run_until(before, [&] {
-    if (Clock::now() > patience) throw std::runtime_error("a viewer got no picture");
-    return crowd.everybody_saw_something();
+    if (Clock::now() > deadline) throw std::runtime_error("a viewer received no frame");
+    return crowd.all_have_frames();
   });
   tell(false);
   crowd.run_for(before, options.settle);

@@ -11,17 +11,16 @@
 
 namespace heliograph::bench {
 
-/// Times of many frames, pass by pass in the order of the frame.
+/// Times of many frames per pass, in the order of execution.
 class Table {
  public:
   void add(const render::Frame& frame);
 
-  /// Median milliseconds of the pass `name`; nothing where it never ran.
+  /// Median milliseconds of the pass `name`; nullopt where it never ran.
   std::optional<double> median_of(const std::string& name) const;
 
-  /// A JSON object: frame_ms (median, least, most), and of every pass its median time, ns per
-  /// pixel, millions of rays per second, bytes of images, and how many times longer it takes than
-  /// copying as many bytes does.
+  /// A JSON object: frame_ms (median, minimum, maximum), and per pass median time, ns per pixel,
+  /// millions of rays per second, bytes of images, and time relative to copying as many bytes.
   nlohmann::json summary(const std::vector<render::PassWork>& work, const CopyRates& rates) const;
 
  private:
@@ -36,7 +35,7 @@ class Table {
   std::map<std::string, std::vector<double>> times_;
 };
 
-/// The summary for people.
+/// Prints the summary as a table.
 void print(const nlohmann::json& summary);
 
 }  // namespace heliograph::bench

@@ -1,13 +1,7 @@
-// Two pictures of one scene beside each other, or one over the other.
+// Comparison of two sessions, side by side or overlaid.
 
 import assert from "node:assert/strict";
-import {
-  distance,
-  dragPicture,
-  eventually,
-  openTab,
-  screenshot,
-} from "./harness/browser.mjs";
+import { distance, dragView, eventually, openTab, screenshot } from "./harness/browser.mjs";
 import { Stage } from "./harness/stage.mjs";
 
 const stage = new Stage({
@@ -19,33 +13,37 @@ async function otherSession() {
   return sessions.find(({ name }) => name !== "main");
 }
 
-stage.test("a preset is compared in a session of its own that follows the camera", async (t) => {
+stage.test("comparing a preset opens a second session that follows the camera", async (t) => {
   if (await stage.lacks(t, "session.create")) return;
   const { page } = await stage.watch();
   await openTab(page, "inspect");
   await page.locator("select[name=compare]").selectOption("preset:svgf");
-  const divider = page.getByRole("slider", { name: "Line between the two pictures" });
+  const divider = page.getByRole("slider", { name: "Divider between the two frames" });
   await divider.waitFor({ timeout: 60_000 });
   const { name } = await eventually(otherSession, "a second session");
   await eventually(async () => {
     const { settings } = await stage.server.call("settings.get", {}, name);
     return settings.shadow_blur.kernel === "full";
-  }, "the preset over there");
+  }, "the preset in the second session");
   assert.equal(await stage.server.setting("shadow_blur.kernel"), "separable");
 
-  await dragPicture(page, { x: 150, y: 250 }, { x: 260, y: 270 });
+  await dragView(page, { x: 150, y: 250 }, { x: 260, y: 270 });
   await eventually(async () => {
     const here = await stage.server.call("camera.get");
     const there = await stage.server.call("camera.get", {}, name);
     return distance(here.eye, there.eye) < 1e-4 && here.name === null;
-  }, "both cameras in the same place");
-  const alike = await eventually(async () => {
-    const text = await page.locator("[data-figure-of=similarity]").textContent();
-    const figure = Number(/SSIM ([\d.]+)/.exec(text)?.[1]);
-    // The first figures are of pictures on either side of the move.
-    return figure > 0.5 && figure;
-  }, "both pictures to be alike", 60_000);
-  assert.ok(alike <= 1, String(alike));
+  }, "equal cameras");
+  const similarity = await eventually(
+    async () => {
+      const text = await page.locator("[data-figure-of=similarity]").textContent();
+      const figure = Number(/SSIM ([\d.]+)/.exec(text)?.[1]);
+      // The first measurements compare frames before and after the move.
+      return figure > 0.5 && figure;
+    },
+    "similar frames",
+    60_000,
+  );
+  assert.ok(similarity <= 1, String(similarity));
 
   await divider.focus();
   await page.keyboard.press("Shift+ArrowLeft");
@@ -63,7 +61,7 @@ stage.test("a preset is compared in a session of its own that follows the camera
   assert.equal(await divider.isVisible(), false);
 });
 
-stage.test("the other side follows light, material, sky, size and scene", async (t) => {
+stage.test("the second session follows light, material, environment, size and scene", async (t) => {
   if (await stage.lacks(t, "session.create")) return;
   const { server } = stage;
   const { page } = await stage.watch();
@@ -74,7 +72,10 @@ stage.test("the other side follows light, material, sky, size and scene", async 
   const there = (method) => server.call(method, {}, name);
   const kernelOf = async (session) =>
     (await server.call("settings.get", {}, session)).settings.shadow_blur.kernel;
-  await eventually(async () => (await kernelOf(name)) === "full", "the preset over there");
+  await eventually(
+    async () => (await kernelOf(name)) === "full",
+    "the preset in the second session",
+  );
 
   const [{ name: light, intensity }] = (await server.call("lights.list")).lights;
   const [{ name: material }] = (await server.call("materials.list")).materials;
@@ -88,23 +89,29 @@ stage.test("the other side follows light, material, sky, size and scene", async 
   await eventually(async () => {
     const sun = await lightThere();
     return sun.intensity === 1.5 && !sun.enabled;
-  }, "the light over there");
+  }, "the light in the second session");
   await eventually(async () => (await materialThere()).roughness === 0.75, "the material");
-  await eventually(async () => (await there("environment.list")).current === "white", "the sky");
+  await eventually(
+    async () => (await there("environment.list")).current === "white",
+    "the environment",
+  );
   await eventually(
     async () => (await there("settings.get")).settings.exposure.compensation === 1.25,
     "the exposure",
   );
   await eventually(async () => (await there("session.info")).width === 640, "the size");
 
-  // What goes back to the file's here goes back there.
+  // Resets are followed, too.
   await server.call("lights.patch", { light, patch: { intensity: null, enabled: null } });
   await server.call("environment.set", { name: null });
   await eventually(async () => {
     const sun = await lightThere();
     return sun.intensity === intensity && sun.enabled;
-  }, "the file's light over there");
-  await eventually(async () => (await there("environment.list")).current !== "white", "its sky");
+  }, "the light of the file in the second session");
+  await eventually(
+    async () => (await there("environment.list")).current !== "white",
+    "the environment of the scene",
+  );
 
   await server.call("scene.load", { name: "furnace" });
   const next = await eventually(async () => {
@@ -112,12 +119,12 @@ stage.test("the other side follows light, material, sky, size and scene", async 
     return other?.name !== name && other;
   }, "another session for another scene");
   assert.equal(next.scene, "furnace");
-  await eventually(async () => (await kernelOf(next.name)) === "full", "the preset once more");
+  await eventually(async () => (await kernelOf(next.name)) === "full", "the preset again");
   assert.equal(await select.inputValue(), "preset:svgf");
   await server.call("scene.load", { name: "shadow_objects" });
 });
 
-stage.test("a buffer of history lies over the picture", async (t) => {
+stage.test("a history buffer is overlaid", async (t) => {
   if (await stage.lacks(t, "session.create")) return;
   const { page } = await stage.watch();
   await openTab(page, "inspect");
@@ -135,9 +142,9 @@ stage.test("a buffer of history lies over the picture", async (t) => {
   await eventually(async () => {
     const { settings } = await stage.server.call("settings.get", {}, name);
     return settings.view.buffer === history.slice("buffer:".length);
-  }, "the buffer over there");
-  // A canvas that nothing was drawn on yet has the size of the standard.
+  }, "the buffer in the second session");
+  // A new canvas has the default size.
   const widthOf = () => page.locator(".second").evaluate(({ width }) => width);
-  await eventually(async () => (await widthOf()) !== 300, "its picture");
+  await eventually(async () => (await widthOf()) !== 300, "its first frame");
   await screenshot(page, "overlay");
 });

@@ -1,11 +1,11 @@
-// Scenes that a person brings along, with the real upload address: taken, refused, not offered.
+// Uploads of scene files: accepted, rejected, disabled.
 
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after } from "node:test";
-import { eventually, firstPicture, screenshot } from "./harness/browser.mjs";
+import { eventually, firstFrame, screenshot } from "./harness/browser.mjs";
 import { sceneRoot } from "./harness/environment.mjs";
 import { Stage } from "./harness/stage.mjs";
 
@@ -25,9 +25,9 @@ async function drop(page, name, bytes) {
   const transfer = await page.evaluateHandle(
     ({ name: fileName, base64 }) => {
       const content = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-      const carried = new DataTransfer();
-      carried.items.add(new File([content], fileName));
-      return carried;
+      const transferred = new DataTransfer();
+      transferred.items.add(new File([content], fileName));
+      return transferred;
     },
     { name, base64: Buffer.from(bytes).toString("base64") },
   );
@@ -43,13 +43,13 @@ async function toastAfterDrop(page, name, bytes) {
   await drop(page, name, bytes);
   const toast = page.locator(".toast");
   const text = await toast.locator(".toast-text").innerText();
-  await screenshot(page, `refused_${name.replace(/\W/g, "_")}`);
+  await screenshot(page, `rejected_${name.replace(/\W/g, "_")}`);
   await toast.getByRole("button", { name: "Dismiss" }).click();
   assert.equal((await open.server.call("scene.list")).current, "shadow_objects");
   return text;
 }
 
-open.test("a dropped file is sent, listed and shown", async () => {
+open.test("a dropped file is uploaded, listed and loaded", async () => {
   const { page } = await open.watch();
   await drop(page, "My mirror (1).glb", mirror);
   await eventually(
@@ -57,15 +57,15 @@ open.test("a dropped file is sent, listed and shown", async () => {
     "the dropped scene",
     60_000,
   );
-  await firstPicture(page);
+  await firstFrame(page);
   assert.equal(await page.locator("select[name=scene]").inputValue(), "My_mirror_1");
   await open.server.call("scene.load", { name: "shadow_objects" });
 });
 
-open.test("a file is brought without dragging, too", async () => {
+open.test("a file can be uploaded by the file chooser", async () => {
   const { page } = await open.watch();
   const chooser = page.waitForEvent("filechooser");
-  await page.getByRole("button", { name: "Bring a .glb file" }).press("Enter");
+  await page.getByRole("button", { name: "Upload a .glb file" }).press("Enter");
   await (await chooser).setFiles({ name: "chosen.glb", mimeType: "", buffer: mirror });
   await eventually(
     async () => (await open.server.call("scene.list")).current === "chosen",
@@ -75,23 +75,27 @@ open.test("a file is brought without dragging, too", async () => {
   await open.server.call("scene.load", { name: "shadow_objects" });
 });
 
-open.test("what cannot be taken is refused in words", async () => {
-  const { page } = await open.watch({ complaining: true }); // the browser reports refused requests
+open.test("an invalid file is rejected with a reason", async () => {
+  const { page } = await open.watch({ expectErrors: true }); // the browser reports failed requests
   await page.waitForFunction(() => document.title.startsWith("shadow_objects"));
   const large = await toastAfterDrop(page, "large.glb", Buffer.alloc(mirror.length + 1001, 7));
-  assert.match(large, /large\.glb has .* kB; the server takes up to .* kB/);
-  const text = await toastAfterDrop(page, "text.glb", Buffer.from("this is no scene"));
+  assert.match(large, /large\.glb has .* kB; the server accepts up to .* kB/);
+  const text = await toastAfterDrop(page, "text.glb", Buffer.from("not a scene"));
   assert.match(text, /The server cannot read this file/);
-  const cut = await toastAfterDrop(page, "cut.glb", mirror.subarray(0, mirror.length - 10));
-  assert.match(cut, /The server cannot read this file/);
-  const taken = await toastAfterDrop(page, "mirror.glb", mirror);
-  assert.match(taken, /has a scene called mirror/);
+  const truncated = await toastAfterDrop(
+    page,
+    "truncated.glb",
+    mirror.subarray(0, mirror.length - 10),
+  );
+  assert.match(truncated, /The server cannot read this file/);
+  const nameTaken = await toastAfterDrop(page, "mirror.glb", mirror);
+  assert.match(nameTaken, /has its own scene mirror/);
   assert.match(await toastAfterDrop(page, "scene.gltf", mirror), /Only \.glb files/);
 });
 
-closed.test("where the server takes none, that is said before anything is sent", async () => {
+closed.test("disabled uploads are reported before sending the file", async () => {
   const { page } = await closed.watch();
-  assert.equal(await page.getByRole("button", { name: "Bring a .glb file" }).isVisible(), false);
+  assert.equal(await page.getByRole("button", { name: "Upload a .glb file" }).isVisible(), false);
   await drop(page, "mirror.glb", mirror);
-  await page.locator(".toast", { hasText: "This server takes no files from viewers" }).waitFor();
+  await page.locator(".toast", { hasText: "This server does not accept uploads" }).waitFor();
 });

@@ -1,6 +1,6 @@
-// The client in Firefox: it connects, draws the scene, follows the keyboard and shows every tab, and
-// the browser has nothing against it. Skipped, saying so, where there is no Firefox
-// (HELIOGRAPH_FIREFOX names one).
+// The client in Firefox: it connects, draws the scene, follows the keyboard and shows every tab
+// without browser errors. Skipped with a message where Firefox is not installed (HELIOGRAPH_FIREFOX
+// sets its path).
 
 import assert from "node:assert/strict";
 import { existsSync } from "node:fs";
@@ -15,8 +15,8 @@ const path =
   ["/usr/bin/firefox-esr", "/usr/bin/firefox"].find((one) => existsSync(one));
 const stage = new Stage();
 
-/** Mean and deviation of the picture, read from the page's own canvas on a coarse grid. */
-const pictureStatistics = `
+/** Mean and deviation of the canvas, sampled on a coarse grid. */
+const frameStatistics = `
   const canvas = document.createElement("canvas");
   [canvas.width, canvas.height] = [48, 27];
   const context = canvas.getContext("2d");
@@ -27,9 +27,9 @@ const pictureStatistics = `
   return { mean: mean / 255, deviation: Math.sqrt(variance) / 255 };
 `;
 
-stage.test("Firefox connects, draws the scene and steers", async (t) => {
+stage.test("Firefox connects, draws the scene and moves the camera", async (t) => {
   if (!path) {
-    t.skip("there is no Firefox");
+    t.skip("Firefox is not installed");
     return;
   }
   const firefox = await Firefox.launch(path);
@@ -42,11 +42,11 @@ stage.test("Firefox connects, draws the scene and steers", async (t) => {
     );
     await eventually(
       () => firefox.evaluate(`return document.querySelector("#notice").hidden`),
-      "a picture",
+      "a frame",
       60_000,
     );
-    const { deviation } = await firefox.evaluate(pictureStatistics);
-    assert.ok(deviation > 0.03, `the picture is nearly blank: ${deviation}`);
+    const { deviation } = await firefox.evaluate(frameStatistics);
+    assert.ok(deviation > 0.03, `the frame is nearly uniform: ${deviation}`);
     const rows = await firefox.evaluate(`return document.querySelectorAll("[data-path]").length`);
     assert.ok(rows > 50, `only ${rows} settings`);
     const { eye } = await stage.server.call("camera.get");
@@ -61,7 +61,7 @@ stage.test("Firefox connects, draws the scene and steers", async (t) => {
       async () => String((await stage.server.call("camera.get")).eye) !== String(eye),
       "an orbit",
     );
-    for (const tab of ["settings", "inspect", "stats", "scene"]) {
+    for (const tab of ["settings", "inspect", "timing", "scene"]) {
       await firefox.evaluate(`document.querySelector("#tab-" + arguments[0]).click()`, tab);
       await firefox.screenshot(join(outputFolder, `firefox_${tab}.png`));
     }
@@ -69,7 +69,7 @@ stage.test("Firefox connects, draws the scene and steers", async (t) => {
       return [...document.querySelectorAll("select[name=codec] option")].map(({ value }) => value);
     `);
     console.log(await firefox.evaluate("return navigator.userAgent"), codecs.join());
-    assert.deepEqual(await firefox.complaints(stage.server.url), []);
+    assert.deepEqual(await firefox.pageErrors(stage.server.url), []);
   } finally {
     await firefox.close();
   }

@@ -1,5 +1,5 @@
-// The TypeScript library by itself, without the web client: bundled, and run in a page of the
-// server, whose WebSocket it uses.
+// The TypeScript library without the web client: bundled, and run in a page of the server, whose
+// WebSocket it uses.
 
 import assert from "node:assert/strict";
 import { createRequire } from "node:module";
@@ -11,7 +11,7 @@ const esbuild = createRequire(new URL("web_client/package.json", repository))("e
 
 const stage = new Stage({ scene: "mirror" });
 
-stage.test("a program connects, gets pictures of the size it asks for and hears refusals", async () => {
+stage.test("a program connects, gets frames of the requested size, and errors", async () => {
   const { outputFiles } = await esbuild.build({
     entryPoints: [fileURLToPath(new URL("protocol/typescript/client.ts", repository))],
     bundle: true,
@@ -35,16 +35,16 @@ stage.test("a program connects, gets pictures of the size it asks for and hears 
         },
       });
       await client.configureStream({ width: 320, height: 180, quality: 70 });
-      const refusal = await client
+      const rejection = await client
         .request("settings.patch", { patch: { exposure: { compensation: 99 } } })
         .catch(({ code, data }) => ({ code, path: data.path }));
       await done;
       client.close();
-      return { protocol: client.hello.protocol, last: sizes.at(-1), refusal };
+      return { protocol: client.hello.protocol, last: sizes.at(-1), rejection };
     },
     stage.server.url.replace("http", "ws") + "ws",
   );
   assert.equal(seen.protocol, "heliograph.v1");
   assert.deepEqual(seen.last, { width: 320, height: 180, start: [0xff, 0xd8] });
-  assert.deepEqual(seen.refusal, { code: -32602, path: "exposure.compensation" });
+  assert.deepEqual(seen.rejection, { code: -32602, path: "exposure.compensation" });
 });

@@ -1,4 +1,4 @@
-// What one takes away: pictures, recordings, links, and the viewer inside another page.
+// The "Save and share" menu: images, recordings, links, embedding in another page.
 
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
@@ -6,21 +6,16 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { join } from "node:path";
 import { after } from "node:test";
-import {
-  chooseOutput,
-  eventually,
-  screenshot,
-  settle,
-} from "./harness/browser.mjs";
+import { chooseOutput, eventually, screenshot, settle } from "./harness/browser.mjs";
 import { outputFolder } from "./harness/environment.mjs";
-import { difference, statistics, thumbnail } from "./harness/pictures.mjs";
+import { difference, statistics, thumbnail } from "./harness/images.mjs";
 import { Stage } from "./harness/stage.mjs";
 
 const permissions = ["clipboard-read", "clipboard-write"];
 const view = { viewport: { width: 720, height: 405 } };
 const stage = new Stage({ view });
 
-/** A server of pages of another site: every path gives the same page. */
+/** A web server of another origin with one page. */
 async function otherSite(html) {
   const server = createServer((_, response) => {
     response.setHeader("content-type", "text/html");
@@ -41,32 +36,32 @@ async function saved(page, entry) {
 
 /** The data window of an OpenEXR file: attributes follow the magic number and the version. */
 function exrWindow(bytes) {
-  assert.equal(bytes.readUInt32LE(0), 20000630, "no OpenEXR file");
+  assert.equal(bytes.readUInt32LE(0), 20000630, "not an OpenEXR file");
   const at = bytes.indexOf("dataWindow\0box2i\0") + "dataWindow\0box2i\0".length + 4;
   const [left, top, right, bottom] = [0, 4, 8, 12].map((offset) => bytes.readInt32LE(at + offset));
   return { width: right - left + 1, height: bottom - top + 1 };
 }
 
-stage.test("saved pictures are those that the server captures, as PNG and as EXR", async () => {
+stage.test("saved PNG and EXR images equal captures of the server", async () => {
   const { page } = await stage.watch();
   await settle(page, stage.server);
-  const png = await saved(page, "Save picture as PNG");
+  const png = await saved(page, "Save image as PNG");
   assert.match(png.name, /^shadow_objects\.png$/);
   const capture = await stage.server.call("frame.capture", { buffer: "output", format: "png" });
   const [mine, theirs] = [png.bytes, Buffer.from(capture.data, "base64")];
   const [a, b] = [await thumbnail(page, mine), await thumbnail(page, theirs)];
-  assert.ok(difference(a, b) < 0.01, "another picture was saved");
-  assert.ok(statistics(a).deviation > 0.03, "the saved picture is nearly blank");
-  const exr = await saved(page, "Save picture as EXR");
+  assert.ok(difference(a, b) < 0.01, "the saved image differs");
+  assert.ok(statistics(a).deviation > 0.03, "the saved image is nearly uniform");
+  const exr = await saved(page, "Save image as EXR");
   assert.match(exr.name, /\.exr$/);
   assert.deepEqual(exrWindow(exr.bytes), { width: capture.width, height: capture.height });
 });
 
-stage.test("the copied picture is in the clipboard", async () => {
+stage.test("the copied image is in the clipboard", async () => {
   const { page } = await stage.watch({ permissions });
   await settle(page, stage.server);
-  await chooseOutput(page, "Copy picture");
-  await page.locator(".toast", { hasText: "The picture is in the clipboard" }).waitFor();
+  await chooseOutput(page, "Copy image");
+  await page.locator(".toast", { hasText: "Image copied to the clipboard" }).waitFor();
   const base64 = await page.evaluate(async () => {
     const [item] = await navigator.clipboard.read();
     const bytes = new Uint8Array(await (await item.getType("image/png")).arrayBuffer());
@@ -75,72 +70,72 @@ stage.test("the copied picture is in the clipboard", async () => {
   const png = Buffer.from(base64, "base64");
   const capture = await stage.server.call("frame.capture", { buffer: "output", format: "png" });
   assert.deepEqual([png.readUInt32BE(16), png.readUInt32BE(20)], [capture.width, capture.height]);
-  const wanted = await thumbnail(page, Buffer.from(capture.data, "base64"));
-  assert.ok(difference(await thumbnail(page, png), wanted) < 0.01, "another picture was copied");
+  const expected = await thumbnail(page, Buffer.from(capture.data, "base64"));
+  assert.ok(difference(await thumbnail(page, png), expected) < 0.01, "the copied image differs");
 });
 
-/** Plays a film in a page of its own; size, frames shown and what the last of them looks like. */
-async function playFilm(bytes) {
+/** Plays a video in a new page; gives its size and the number of different frames. */
+async function playVideo(bytes) {
   const page = await (await stage.context()).newPage();
   await page.goto("about:blank");
   return page.evaluate(async (base64) => {
-    const film = document.createElement("video");
+    const video = document.createElement("video");
     const content = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-    film.src = URL.createObjectURL(new Blob([content], { type: "video/webm" }));
-    film.muted = true;
+    video.src = URL.createObjectURL(new Blob([content], { type: "video/webm" }));
+    video.muted = true;
     const ended = new Promise((resolve, reject) => {
-      film.onended = resolve;
-      film.onerror = () => reject(new Error(film.error.message));
+      video.onended = resolve;
+      video.onerror = () => reject(new Error(video.error.message));
     });
     const colours = new Set();
     const canvas = new OffscreenCanvas(16, 9);
     const context = canvas.getContext("2d", { willReadFrequently: true });
-    const look = () => {
-      context.drawImage(film, 0, 0, 16, 9);
+    const readFrame = () => {
+      context.drawImage(video, 0, 0, 16, 9);
       colours.add(context.getImageData(0, 0, 16, 9).data.join());
-      film.requestVideoFrameCallback(look);
+      video.requestVideoFrameCallback(readFrame);
     };
-    film.requestVideoFrameCallback(look);
-    await film.play();
+    video.requestVideoFrameCallback(readFrame);
+    await video.play();
     await ended;
-    return { width: film.videoWidth, height: film.videoHeight, different: colours.size };
+    return { width: video.videoWidth, height: video.videoHeight, different: colours.size };
   }, bytes.toString("base64"));
 }
 
-stage.test("a recording is a film that plays and moves", async () => {
+stage.test("a recording is a playable video with different frames", async () => {
   const { page } = await stage.watch();
   await stage.server.call("animation.play", { clip: "moving_objects_light" });
   const drawn = () =>
     page.evaluate(() => Object.values(window.seen.drawn).reduce((sum, count) => sum + count, 0));
-  await chooseOutput(page, "Record a clip");
+  await chooseOutput(page, "Record a video");
   await page.locator(".toast", { hasText: "Recording" }).waitFor();
   const before = await drawn();
-  await eventually(async () => (await drawn()) >= before + 12, "twelve pictures", 60_000);
+  await eventually(async () => (await drawn()) >= before + 12, "twelve frames", 60_000);
   const { width, height } = await page.evaluate(() => window.seen.frame);
   const { name, path, bytes } = await saved(page, "Stop recording");
   await stage.server.call("animation.pause");
   assert.match(name, /\.webm$/);
-  const film = await playFilm(bytes);
-  assert.ok(Math.abs(film.width / film.height - width / height) < 0.05, JSON.stringify(film));
-  assert.ok(film.different >= 4, `only ${film.different} different pictures`);
+  const video = await playVideo(bytes);
+  assert.ok(Math.abs(video.width / video.height - width / height) < 0.05, JSON.stringify(video));
+  assert.ok(video.different >= 4, `only ${video.different} different frames`);
   const probe = spawnSync("ffprobe", ["-v", "error", "-count_frames", "-show_streams", path]);
-  if (probe.status === null) return; // no ffprobe here
+  if (probe.status === null) return; // ffprobe is not installed
   assert.match(String(probe.stdout), /codec_type=video/, String(probe.stderr));
   const frames = Number(/nb_read_frames=(\d+)/.exec(String(probe.stdout))?.[1]);
   assert.ok(frames >= 6, `${frames} frames`);
 });
 
-const [friend, stranger] = await Promise.all([
-  otherSite(() => friend.html),
-  otherSite(() => friend.html),
+const [allowed, other] = await Promise.all([
+  otherSite(() => allowed.html),
+  otherSite(() => allowed.html),
 ]);
-after(() => [friend, stranger].forEach((site) => site.close()));
+after(() => [allowed, other].forEach((site) => site.close()));
 const embedded = new Stage({
   view,
-  serverArguments: ["--frame-ancestors", friend.origin],
+  serverArguments: ["--frame-ancestors", allowed.origin],
 });
 
-embedded.test("the copied code shows the viewer in a page of a site that may, in no other", async () => {
+embedded.test("the copied code embeds the viewer in allowed origins only", async () => {
   const { page } = await embedded.watch({ permissions });
   await chooseOutput(page, "Copy code to embed");
   const code = await eventually(async () => {
@@ -148,10 +143,12 @@ embedded.test("the copied code shows the viewer in a page of a site that may, in
     return text.startsWith("<iframe") && text;
   }, "the code in the clipboard");
   writeFileSync(join(outputFolder, "embed.html"), code);
-  friend.html = `<!doctype html><title>Another site</title><h1>Ours, in between</h1>${code}`;
+  allowed.html = `<!doctype html><title>Another site</title><h1>Embedded viewer</h1>${code}`;
 
-  const guest = await (await embedded.context({ viewport: { width: 1000, height: 640 } })).newPage();
-  await guest.goto(friend.origin);
+  const guest = await (
+    await embedded.context({ viewport: { width: 1000, height: 640 } })
+  ).newPage();
+  await guest.goto(allowed.origin);
   const inside = guest.frameLocator("iframe");
   await inside.locator('#pill[data-state="live"]').waitFor({ timeout: 60_000 });
   await inside.locator("#notice").waitFor({ state: "hidden", timeout: 60_000 });
@@ -162,16 +159,16 @@ embedded.test("the copied code shows the viewer in a page of a site that may, in
   await guest.keyboard.press("ArrowLeft", { delay: 100 });
   await eventually(
     async () => String((await embedded.server.call("camera.get")).eye) !== String(eye),
-    "an orbit from inside the other page",
+    "an orbit in the embedded page",
   );
 
-  const refused = await (await embedded.context()).newPage();
+  const rejected = await (await embedded.context()).newPage();
   const violations = [];
-  refused.on("console", (message) => violations.push(message.text()));
-  await refused.goto(stranger.origin);
+  rejected.on("console", (message) => violations.push(message.text()));
+  await rejected.goto(other.origin);
   await eventually(
     () => violations.some((text) => text.includes("frame-ancestors")),
-    "a refusal by the content security policy",
+    "a rejection by the content security policy",
   );
-  assert.equal(await refused.frameLocator("iframe").locator("#view").count(), 0);
+  assert.equal(await rejected.frameLocator("iframe").locator("#view").count(), 0);
 });

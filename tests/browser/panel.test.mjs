@@ -1,28 +1,28 @@
-// The panel: every generated control changes its own setting, and shows what others change.
+// The panel: every generated control changes its setting and follows changes by other viewers.
 
 import assert from "node:assert/strict";
 import {
   eventually,
   openTab,
-  pictureScreenshot,
+  viewScreenshot,
   reveal,
   screenshot,
   settle,
   unfoldAll,
 } from "./harness/browser.mjs";
-import { difference, statistics, thumbnail } from "./harness/pictures.mjs";
+import { difference, statistics, thumbnail } from "./harness/images.mjs";
 import { Stage } from "./harness/stage.mjs";
 
 const stage = new Stage({
-  // Cheap to draw and soon at rest: this file works through every setting.
+  // Renders fast and converges soon: this file changes every setting.
   scene: "furnace",
   samples: 4,
   view: { viewport: { width: 800, height: 640 } },
   prepare: unfoldAll,
 });
 
-async function lookAt(page, name) {
-  return thumbnail(page, await pictureScreenshot(page, name));
+async function viewImage(page, name) {
+  return thumbnail(page, await viewScreenshot(page, name));
 }
 
 /** Every leaf of the schema with its dotted path. */
@@ -34,8 +34,8 @@ function leaves(schema, prefix = "") {
 
 const rowOf = (page, path) => page.locator(`[data-path="${path}"]`);
 
-/** Works the control of one row like a person; each kind in its own way. */
-const workers = {
+/** Operates the control of one row, by its kind. */
+const operate = {
   toggle: (row) => row.locator("input").click(),
   choice: async (row) => {
     const select = row.locator("select");
@@ -56,7 +56,7 @@ const workers = {
   },
 };
 
-stage.test("there is a control for every setting of the schema", async () => {
+stage.test("every setting of the schema has a control", async () => {
   const { page } = await stage.sharedViewer();
   const shown = await page
     .locator("[data-path]")
@@ -67,20 +67,20 @@ stage.test("there is a control for every setting of the schema", async () => {
   assert.deepEqual([...shown].sort(), expected.sort());
 });
 
-stage.test("each control patches its setting, is marked, and resets", async () => {
+stage.test("every control patches its setting, is marked as changed, and resets", async () => {
   const { page } = await stage.sharedViewer();
-  const worked = new Set();
+  const operated = new Set();
   for (const { path, node } of leaves(await stage.server.call("settings.schema"))) {
     const row = rowOf(page, path);
     if ((await row.count()) === 0) continue;
     const kind = (await row.getAttribute("class")).match(/row-(\w+)/)[1];
-    if (!workers[kind]) continue;
+    if (!operate[kind]) continue;
     await reveal(row);
-    const given = path === "accumulation.max_samples" ? stage.samples : node.default;
-    assert.deepEqual(await stage.server.setting(path), given, `${path} before`);
-    await workers[kind](row);
+    const initial = path === "accumulation.max_samples" ? stage.samples : node.default;
+    assert.deepEqual(await stage.server.setting(path), initial, `${path} before`);
+    await operate[kind](row);
     await eventually(
-      async () => (await stage.server.setting(path)) !== given,
+      async () => (await stage.server.setting(path)) !== initial,
       `a change of ${path} on the server`,
     );
     await eventually(async () => (await row.getAttribute("class")).includes("changed"), "a mark");
@@ -89,36 +89,44 @@ stage.test("each control patches its setting, is marked, and resets", async () =
       async () => (await stage.server.setting(path)) === node.default,
       `a reset of ${path} on the server`,
     );
-    if (given !== node.default) {
-      // Pictures must come to rest, or the page has no machine left to work with.
-      await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: given } } });
+    if (initial !== node.default) {
+      // Without convergence, rendering takes the CPU time that the page needs.
+      await stage.server.call("settings.patch", {
+        patch: { accumulation: { max_samples: initial } },
+      });
     }
-    worked.add(kind);
+    operated.add(kind);
   }
   for (const kind of ["toggle", "slider", "choice"]) {
-    assert.ok(worked.has(kind), `no ${kind} was tried`);
+    assert.ok(operated.has(kind), `no ${kind} was tested`);
   }
 });
 
-stage.test("a typed value arrives and brightens the picture", async () => {
+stage.test("a typed exposure value brightens the frame", async () => {
   const { page } = await stage.sharedViewer();
   await settle(page, stage.server);
-  const before = statistics(await lookAt(page, "exposure_before")).mean;
+  const before = statistics(await viewImage(page, "exposure_before")).mean;
   await reveal(rowOf(page, "exposure.compensation"));
   const entry = rowOf(page, "exposure.compensation").locator("input.number");
   await entry.fill("1.5");
   await entry.press("Enter");
-  await eventually(async () => (await stage.server.setting("exposure.compensation")) === 1.5, "1.5");
   await eventually(
-    async () => statistics(await lookAt(page, "exposure_after")).mean > before + 0.03,
-    "a brighter picture",
+    async () => (await stage.server.setting("exposure.compensation")) === 1.5,
+    "1.5",
+  );
+  await eventually(
+    async () => statistics(await viewImage(page, "exposure_after")).mean > before + 0.03,
+    "a brighter frame",
   );
   await screenshot(page, "panel_changed");
   await rowOf(page, "exposure.compensation").locator(".reset").click();
-  await eventually(async () => (await stage.server.setting("exposure.compensation")) === 0, "a reset");
+  await eventually(
+    async () => (await stage.server.setting("exposure.compensation")) === 0,
+    "a reset",
+  );
 });
 
-stage.test("undo and redo go back and forth, by button and by key", async () => {
+stage.test("undo and redo work by button and by key", async () => {
   const { page } = await stage.sharedViewer();
   const value = () => stage.server.setting("tone_map.curve");
   await reveal(rowOf(page, "tone_map.curve"));
@@ -126,18 +134,18 @@ stage.test("undo and redo go back and forth, by button and by key", async () => 
   await eventually(async () => (await value()) === "agx", "the change");
   await openTab(page, "settings");
   await page.getByRole("button", { name: "Undo" }).click();
-  await eventually(async () => (await value()) === "neutral", "the step back");
+  await eventually(async () => (await value()) === "neutral", "undo");
   await page.keyboard.press("Control+Shift+Z");
-  await eventually(async () => (await value()) === "agx", "the step forth");
+  await eventually(async () => (await value()) === "agx", "redo");
   await page.keyboard.press("Control+Z");
-  await eventually(async () => (await value()) === "neutral", "the step back by key");
+  await eventually(async () => (await value()) === "neutral", "undo by key");
 });
 
-stage.test("the search finds settings by what they do and folds back afterwards", async () => {
+stage.test("the search finds settings by description and restores the sections", async () => {
   const { page } = await stage.sharedViewer();
   const rows = () => page.locator('[data-tab="settings"] .row:visible').count();
   const all = await rows();
-  await page.getByRole("searchbox", { name: "Search settings" }).fill("ghosts");
+  await page.getByRole("searchbox", { name: "Search settings" }).fill("ghosting");
   const found = await rows();
   assert.ok(found > 0 && found < all / 2, `${found} of ${all}`);
   await screenshot(page, "search");
@@ -145,19 +153,22 @@ stage.test("the search finds settings by what they do and folds back afterwards"
   assert.equal(await rows(), all);
 });
 
-stage.test("a preset of the ladder is chosen and marked until something of it changes", async () => {
+stage.test("a preset is applied and marked until one of its settings changes", async () => {
   const { page } = await stage.sharedViewer();
-  const rung = page.getByRole("button", { name: "SVGF" });
-  await rung.click();
-  await eventually(async () => (await rung.getAttribute("aria-pressed")) === "true", "the mark");
+  const preset = page.getByRole("button", { name: "SVGF" });
+  await preset.click();
+  await eventually(async () => (await preset.getAttribute("aria-pressed")) === "true", "the mark");
   assert.equal(await stage.server.setting("shadow_blur.kernel"), "full");
   await stage.server.call("settings.patch", { patch: { shadow_blur: { iterations: 2 } } });
-  await eventually(async () => (await rung.getAttribute("aria-pressed")) === "false", "no mark");
+  await eventually(async () => (await preset.getAttribute("aria-pressed")) === "false", "no mark");
   await page.keyboard.press("Control+Z");
-  await eventually(async () => (await stage.server.setting("shadow_blur.kernel")) === "separable", "undo");
+  await eventually(
+    async () => (await stage.server.setting("shadow_blur.kernel")) === "separable",
+    "undo",
+  );
 });
 
-stage.test("a change made elsewhere is shown", async () => {
+stage.test("a change by another viewer is shown", async () => {
   const { page } = await stage.sharedViewer();
   await stage.server.call("settings.patch", { patch: { exposure: { compensation: -2 } } });
   const entry = rowOf(page, "exposure.compensation").locator("input.number");
@@ -166,14 +177,14 @@ stage.test("a change made elsewhere is shown", async () => {
   await eventually(async () => (await entry.inputValue()) === "0", "the control to follow");
 });
 
-stage.test("the buffer picker changes the picture", async () => {
+stage.test("the buffer picker changes the frame", async () => {
   const { page } = await stage.sharedViewer();
-  // The server's own capture waits for the newest state; the page may still show an older one.
+  // A capture waits for the newest state; the page may still show an older frame.
   const capture = await stage.server.call("frame.capture", { buffer: "output", format: "png" });
   const before = await thumbnail(page, Buffer.from(capture.data, "base64"));
   await eventually(
-    async () => difference(before, await lookAt(page, "buffer_output")) < 0.05,
-    "the newest picture",
+    async () => difference(before, await viewImage(page, "buffer_output")) < 0.05,
+    "the newest frame",
     60_000,
   );
   await openTab(page, "inspect");
@@ -186,22 +197,22 @@ stage.test("the buffer picker changes the picture", async () => {
   await picker.selectOption(other);
   await eventually(async () => (await stage.server.setting("view.buffer")) === other, other);
   await eventually(
-    async () => difference(before, await lookAt(page, "buffer_other")) > 0.03,
-    `a picture of ${other}`,
+    async () => difference(before, await viewImage(page, "buffer_other")) > 0.03,
+    `the buffer ${other}`,
   );
   await picker.selectOption("output");
   await eventually(
-    async () => difference(before, await lookAt(page, "buffer_back")) < 0.05,
-    "the finished picture again",
+    async () => difference(before, await viewImage(page, "buffer_back")) < 0.05,
+    "the output again",
     60_000,
   );
 });
 
-stage.test("the scene picker loads another scene and shows a refusal in words", async () => {
+stage.test("the scene picker loads another scene and shows errors", async () => {
   const { page } = await stage.sharedViewer();
   const { scenes, current } = await stage.server.call("scene.list");
   const other = scenes.find(({ name }) => name !== current);
-  assert.ok(other, "the scene folder holds only one scene");
+  assert.ok(other, "the scene folder has only one scene");
   await openTab(page, "scene");
   const picker = page.locator("select[name=scene]");
   await picker.selectOption(other.name);
@@ -211,7 +222,7 @@ stage.test("the scene picker loads another scene and shows a refusal in words", 
     120_000,
   );
   await page.waitForFunction(() => document.querySelector("#notice").hidden);
-  await eventually(async () => !(await picker.isDisabled()), "the picker to be free again");
+  await eventually(async () => !(await picker.isDisabled()), "the picker to be enabled");
   assert.equal(await picker.inputValue(), other.name);
   await settle(page, stage.server);
   await screenshot(page, "other_scene");
@@ -225,5 +236,5 @@ stage.test("the scene picker loads another scene and shows a refusal in words", 
   await toast.waitFor({ timeout: 30_000 });
   assert.ok((await toast.innerText()).length > 8);
   assert.equal((await stage.server.call("scene.list")).current, other.name);
-  await screenshot(page, "refused_scene");
+  await screenshot(page, "scene_error");
 });

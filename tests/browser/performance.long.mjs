@@ -1,5 +1,5 @@
-// How fast the client is: from the address to the first picture, from a picture's bytes to the
-// screen, and how much of the main thread thirty pictures a second take.
+// Speed of the client: time to the first frame, time from a frame's arrival to the screen, and main
+// thread load at 30 frames per second.
 
 import assert from "node:assert/strict";
 import { appendFileSync } from "node:fs";
@@ -8,15 +8,15 @@ import { eventually } from "./harness/browser.mjs";
 import { outputFolder } from "./harness/environment.mjs";
 import { Stage } from "./harness/stage.mjs";
 
-const longestLoad = 500; // ms
+const maxLoadMs = 500; // ms
 const oneFrame = 1000 / 30; // ms
-const busiest = 0.2; // of the main thread's time
-const watchedPictures = 100;
-const longestWatchMs = 60_000;
-/** Where fewer pictures come in a second, what goes on without any outweighs them. */
-const telling = 5;
+const maxBusy = 0.2; // of the main thread's time
+const measuredFrames = 100;
+const maxMeasureMs = 60_000;
+/** Below this frame rate, work that is independent of frames dominates. */
+const minFps = 5;
 
-/** The cheapest picture there is: what is measured here is the client, not the renderer. */
+/** Cheap frames: this measures the client, not the renderer. */
 const everythingOff = {
   shadows: { enabled: false },
   specular: { enabled: false },
@@ -37,13 +37,13 @@ function report(name, figures) {
 
 const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 
-stage.test("the page is there, live and shows its first picture", async () => {
+stage.test("the page loads, connects and shows its first frame", async () => {
   const context = await stage.context();
   await context.addInitScript(() => {
-    window.moments = {};
+    window.times = {};
     new MutationObserver(() => {
       const live = document.querySelector('#pill[data-state="live"]');
-      if (live) window.moments.live ??= performance.now();
+      if (live) window.times.live ??= performance.now();
     }).observe(document, { subtree: true, childList: true, attributes: true });
   });
   const seen = [];
@@ -53,20 +53,25 @@ stage.test("the page is there, live and shows its first picture", async () => {
       await page.evaluate(() => {
         const [{ loadEventEnd, domContentLoadedEventEnd }] =
           performance.getEntriesByType("navigation");
-        const { live } = window.moments;
+        const { live } = window.times;
         const drawn = window.seen.firstDrawnAt - performance.timeOrigin;
         return { ready: domContentLoadedEventEnd, loaded: loadEventEnd, live, drawn };
       }),
     );
     await page.close();
   }
-  const of = (moment) => Math.round(median(seen.map((one) => one[moment])));
-  const figures = { ready: of("ready"), loaded: of("loaded"), live: of("live"), drawn: of("drawn") };
+  const of = (name) => Math.round(median(seen.map((one) => one[name])));
+  const figures = {
+    ready: of("ready"),
+    loaded: of("loaded"),
+    live: of("live"),
+    drawn: of("drawn"),
+  };
   report("loading_ms", figures);
-  assert.ok(figures.loaded < longestLoad, `loaded after ${figures.loaded} ms`);
+  assert.ok(figures.loaded < maxLoadMs, `loaded after ${figures.loaded} ms`);
 });
 
-/** Streams a clip to a page of 1280 x 720 and tells what that took. */
+/** Streams a clip to a page of 1280 x 720 and measures it. */
 async function stream(resolution) {
   const context = await stage.context();
   await context.addInitScript(
@@ -75,7 +80,7 @@ async function stream(resolution) {
   );
   const { page } = await stage.watch({ context });
   const session = await context.newCDPSession(page);
-  // The thread's own clock: what other processes take of the machine does not count.
+  // The thread's own clock, which is independent of other processes.
   await session.send("Performance.enable", { timeDomain: "threadTicks" });
   const busySeconds = async () => {
     const { metrics } = await session.send("Performance.getMetrics");
@@ -84,44 +89,44 @@ async function stream(resolution) {
   await stage.server.call("animation.play", { clip: "moving_objects_light" });
   const drawn = () => page.evaluate(() => window.seen.drawn[1] ?? 0);
   const first = await drawn();
-  await eventually(async () => (await drawn()) > first + 5, "moving pictures", 180_000);
+  await eventually(async () => (await drawn()) > first + 5, "moving frames", 180_000);
   const [busyBefore, drawnBefore, startedAt] = [await busySeconds(), await drawn(), Date.now()];
   const soFar = async () => (await drawn()) - drawnBefore;
-  while ((await soFar()) < watchedPictures && Date.now() - startedAt < longestWatchMs) {
+  while ((await soFar()) < measuredFrames && Date.now() - startedAt < maxMeasureMs) {
     await page.waitForTimeout(1000);
   }
-  const [pictures, busy] = [await soFar(), (await busySeconds()) - busyBefore];
+  const [frames, busy] = [await soFar(), (await busySeconds()) - busyBefore];
   const seconds = (Date.now() - startedAt) / 1000;
   const { delays, frame } = await page.evaluate(() => window.seen);
   await stage.server.call("animation.pause");
   await context.close();
   const figures = {
     size: `${frame.width}x${frame.height}`,
-    fps: Number((pictures / seconds).toFixed(1)),
+    fps: Number((frames / seconds).toFixed(1)),
     busy: Number((busy / seconds).toFixed(4)),
-    // An upper bound: what goes on without any picture is counted with each of them.
-    busyAtThirty: Number(((busy / pictures) * 30).toFixed(4)),
+    // An upper bound: it includes work that is independent of frames.
+    busyAtThirty: Number(((busy / frames) * 30).toFixed(4)),
     toScreenMs: Number(median(delays).toFixed(2)),
   };
   report("streaming", figures);
   return figures;
 }
 
-stage.test("each picture of 1280 x 720 is on the screen soon", async () => {
+stage.test("a frame of 1280 x 720 is drawn within one frame interval", async () => {
   await stage.server.call("settings.patch", { patch: everythingOff });
   const figures = await stream("full");
   assert.equal(figures.size, "1280x720");
   assert.ok(figures.toScreenMs < oneFrame, JSON.stringify(figures));
 });
 
-// The main thread never touches a pixel: pictures of a third the size show what it does for each,
-// and come as fast as they should on a machine that renders in software.
-stage.test("thirty pictures a second leave the main thread free", async (t) => {
+// The main thread does not process pixels: smaller frames have the same cost for it, and a software
+// renderer reaches 30 frames per second with them.
+stage.test("the main thread is mostly idle at 30 frames per second", async (t) => {
   await stage.server.call("settings.patch", { patch: everythingOff });
   const figures = await stream("third");
-  if (figures.fps < telling) {
-    t.skip(`only ${figures.fps} pictures a second: something else keeps this machine busy`);
+  if (figures.fps < minFps) {
+    t.skip(`only ${figures.fps} frames per second: the machine is too slow or busy`);
     return;
   }
-  assert.ok(figures.busyAtThirty < busiest, JSON.stringify(figures));
+  assert.ok(figures.busyAtThirty < maxBusy, JSON.stringify(figures));
 });

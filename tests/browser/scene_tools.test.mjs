@@ -1,4 +1,4 @@
-// What changes the scene itself: lights, materials, points of the picture.
+// Scene tools: lights, materials, picking, pixel values.
 
 import assert from "node:assert/strict";
 import { eventually, openTab, screenshot } from "./harness/browser.mjs";
@@ -11,7 +11,7 @@ const stage = new Stage({
 const sun = async () =>
   (await stage.server.call("lights.list")).lights.find(({ type }) => type === "directional");
 
-stage.test("the sun is dragged over its dial, resized, and put back", async (t) => {
+stage.test("the sun is moved by its dial, resized and reset", async (t) => {
   if (await stage.lacks(t, "lights.patch")) return;
   const { page } = await stage.sharedViewer();
   await openTab(page, "scene");
@@ -28,11 +28,11 @@ stage.test("the sun is dragged over its dial, resized, and put back", async (t) 
   }, "a sun in the east");
   await dial.focus();
   await page.keyboard.press("Shift+ArrowUp");
-  const lifted = await eventually(async () => {
+  const raised = await eventually(async () => {
     const { direction } = await sun();
     return direction[1] < -0.3 && direction;
   }, "a higher sun");
-  assert.ok(Math.abs(Math.hypot(...lifted) - 1) < 1e-3);
+  assert.ok(Math.abs(Math.hypot(...raised) - 1) < 1e-3);
   const diameter = page.getByRole("textbox", { name: "Angular diameter" }).first();
   await diameter.fill("4");
   await diameter.press("Enter");
@@ -45,7 +45,7 @@ stage.test("the sun is dragged over its dial, resized, and put back", async (t) 
   );
 });
 
-stage.test("a material is changed and its roughness swept and put back", async (t) => {
+stage.test("a material is changed, and a roughness sweep restores its value", async (t) => {
   if (await stage.lacks(t, "materials.patch")) return;
   const { page } = await stage.sharedViewer();
   await openTab(page, "scene");
@@ -55,7 +55,8 @@ stage.test("a material is changed and its roughness swept and put back", async (
   const { name } = materials[1];
   await select.selectOption(name);
   const roughness = async () =>
-    (await stage.server.call("materials.list")).materials.find((one) => one.name === name).roughness;
+    (await stage.server.call("materials.list")).materials.find((one) => one.name === name)
+      .roughness;
   const section = page.locator('[data-section="materials"]');
   const entry = section.getByRole("textbox", { name: "Roughness" });
   await entry.fill("0.35");
@@ -63,7 +64,7 @@ stage.test("a material is changed and its roughness swept and put back", async (
   await eventually(async () => Math.abs((await roughness()) - 0.35) < 1e-5, "the roughness");
   const sent = () => page.evaluate(() => window.seen.sent["materials.patch"]);
   const before = await sent();
-  // From inside the page: the sweep does not wait for a test that is slow to click.
+  // Runs in the page: the sweep does not wait for the test.
   await page.getByRole("button", { name: "Sweep the roughness" }).evaluate(async (button) => {
     const shown = button.parentElement.querySelector('[aria-label="Roughness"].number');
     for (;;) {
@@ -73,11 +74,14 @@ stage.test("a material is changed and its roughness swept and put back", async (
     }
     button.click();
   });
-  assert.ok((await sent()) > before + 1, "nothing was sent on the way");
-  await eventually(async () => Math.abs((await roughness()) - 0.35) < 1e-5, "the one of before");
+  assert.ok((await sent()) > before + 1, "no patch was sent during the sweep");
+  await eventually(
+    async () => Math.abs((await roughness()) - 0.35) < 1e-5,
+    "the previous roughness",
+  );
 });
 
-stage.test("a click lists every buffer at that pixel", async (t) => {
+stage.test("a click lists the value of every buffer at a pixel", async (t) => {
   if (await stage.lacks(t, "frame.inspect")) return;
   const { page } = await stage.sharedViewer();
   await openTab(page, "inspect");
@@ -88,20 +92,27 @@ stage.test("a click lists every buffer at that pixel", async (t) => {
   const shown = await page
     .locator(".pixel-values dd")
     .evaluateAll((nodes) => nodes.map((node) => node.dataset.value));
-  assert.deepEqual(shown, buffers.map(({ name }) => name));
+  assert.deepEqual(
+    shown,
+    buffers.map(({ name }) => name),
+  );
   assert.ok(await page.locator("#mark").isVisible());
   await screenshot(page, "inspector");
   await page.getByRole("switch", { name: "Inspect pixels" }).click();
   assert.equal(await page.locator("#mark").isVisible(), false);
 });
 
-stage.test("a double click turns to what is there", async (t) => {
+stage.test("a double click focuses on the surface", async (t) => {
   if (await stage.lacks(t, "scene.pick")) return;
   const { page } = await stage.sharedViewer();
   const { position } = await stage.server.call("scene.pick", { x: 0.3, y: 600 / 900 });
   await page.mouse.dblclick(300, 600);
-  await eventually(async () => {
-    const { target } = await stage.server.call("camera.get");
-    return Math.hypot(...target.map((value, axis) => value - position[axis])) < 0.05;
-  }, "a view of that point", 40_000);
+  await eventually(
+    async () => {
+      const { target } = await stage.server.call("camera.get");
+      return Math.hypot(...target.map((value, axis) => value - position[axis])) < 0.05;
+    },
+    "the point as target",
+    40_000,
+  );
 });

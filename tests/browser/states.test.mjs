@@ -1,8 +1,8 @@
-// What a person is told when there is nothing to see, or not yet: each state by its words.
+// Notices while no frame is shown: one test for each state.
 
 import assert from "node:assert/strict";
 import { seriousFindings } from "./harness/axe.mjs";
-import { firstPicture, screenshot, settle } from "./harness/browser.mjs";
+import { firstFrame, screenshot, settle } from "./harness/browser.mjs";
 import { Stage } from "./harness/stage.mjs";
 
 const view = { viewport: { width: 720, height: 450 } };
@@ -12,36 +12,36 @@ const stage = new Stage({ view });
 
 const stateOf = (page) => page.locator("#pill").getAttribute("data-state");
 
-limited.test("a full server is named, and joined when somebody leaves", async () => {
+limited.test("a full server is reported, and joined when a viewer leaves", async () => {
   const first = await limited.watch();
-  const { page } = await limited.open({ complaining: true });
+  const { page } = await limited.open({ expectErrors: true });
   await page.locator('#pill[data-state="full"]').waitFor();
   await page.getByText("The server is full").waitFor();
   await screenshot(page, "full");
   assert.deepEqual(await seriousFindings(page), []);
   await first.page.close();
-  await page.getByRole("button", { name: "Try now" }).click();
-  await firstPicture(page);
+  await page.getByRole("button", { name: "Retry now" }).click();
+  await firstFrame(page);
   assert.equal(await stateOf(page), "live");
 });
 
-stage.test("a page of another version says so", async () => {
+stage.test("a version mismatch is reported", async () => {
   const context = await stage.context(bright);
   await context.route("**/app.js", async (route) => {
     const response = await route.fetch();
     const body = (await response.text()).replaceAll("heliograph.v1", "heliograph.v0");
     await route.fulfill({ response, body });
   });
-  const { page } = await stage.open({ context, complaining: true });
+  const { page } = await stage.open({ context, expectErrors: true });
   await page.locator('#pill[data-state="wrong_version"]').waitFor();
-  await page.getByText("This page is of another version").waitFor();
+  await page.getByText("Version mismatch").waitFor();
   await screenshot(page, "wrong_version");
   assert.deepEqual(await seriousFindings(page), []);
 });
 
-stage.test("a refused greeting is no access", async () => {
+stage.test('a rejected hello shows "No access"', async () => {
   const context = await stage.context();
-  // The page never gets here without a token; one that is withdrawn later is found out by hello.
+  // The page itself needs a token; one that is revoked later makes hello fail.
   await context.addInitScript(() => {
     const parse = JSON.parse;
     JSON.parse = (text, ...rest) => {
@@ -56,17 +56,17 @@ stage.test("a refused greeting is no access", async () => {
   const { page } = await stage.open({ context });
   await page.locator('#pill[data-state="forbidden"]').waitFor();
   await page.getByText("The token is not valid any more.").waitFor();
-  assert.equal(await page.locator("#people").isVisible(), false);
+  assert.equal(await page.locator("#participants").isVisible(), false);
   await screenshot(page, "no_access");
   assert.deepEqual(await seriousFindings(page), []);
 });
 
-stage.test("a scene that loads shows its name, how far it is and its picture", async () => {
+stage.test("a loading scene shows its name, progress and thumbnail", async () => {
   const { page } = await stage.watch();
   await settle(page, stage.server);
   const { scenes, current } = await stage.server.call("scene.list");
   const other = scenes.find(({ name }) => name !== current).name;
-  // Loading is over in a moment here: what was shown meanwhile is written down.
+  // Loading is fast here, so the notices are recorded.
   await page.evaluate(() => {
     window.notices = [];
     const card = document.querySelector("#notice");
@@ -79,7 +79,7 @@ stage.test("a scene that loads shows its name, how far it is and its picture", a
   assert.ok((await page.evaluate(() => window.notices)).includes(`Loading ${other}`));
 });
 
-stage.test("the first picture of a new page has the size that the page asked for", async () => {
+stage.test("the first frame of a new page has the requested size", async () => {
   await stage.watch({ viewport: { width: 900, height: 300 } });
   const context = await stage.context({ viewport: { width: 400, height: 400 } });
   await context.addInitScript(() => {

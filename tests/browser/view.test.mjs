@@ -1,13 +1,13 @@
-// What one sees and how one gets there: links, bookmarks, flying, clips, what a newer server offers.
+// Links, bookmarks, navigation, animation clips, unknown settings, scene thumbnails.
 
 import assert from "node:assert/strict";
 import {
   chooseOutput,
   distance,
   eventually,
-  firstPicture,
+  firstFrame,
   openTab,
-  restingCamera,
+  staticCamera,
   screenshot,
   setCamera,
 } from "./harness/browser.mjs";
@@ -22,7 +22,7 @@ async function editedParts() {
   return { sun: lights.find(({ type }) => type === "directional"), material: materials[1] };
 }
 
-stage.test("a copied link brings back scene, settings, light, material and camera", async () => {
+stage.test("a copied link restores scene, settings, light, material and camera", async () => {
   const permissions = ["clipboard-read", "clipboard-write"];
   const { page } = await stage.watch({ permissions });
   await stage.server.call("settings.patch", { patch: { tone_map: { curve: "agx" } } });
@@ -30,11 +30,17 @@ stage.test("a copied link brings back scene, settings, light, material and camer
   const { sun, material } = await editedParts();
   const patch = { intensity: 2.5, direction: [0.6, -0.8, 0] };
   await stage.server.call("lights.patch", { light: sun.name, patch });
-  await stage.server.call("materials.patch", { material: material.name, patch: { roughness: 0.7 } });
-  // A page that comes later knows of the changes, too: the server tells what differs.
+  await stage.server.call("materials.patch", {
+    material: material.name,
+    patch: { roughness: 0.7 },
+  });
+  // A reloaded page reads the changes from the server.
   await page.reload();
-  await firstPicture(page);
-  await eventually(async () => (await figureOf(page, "Intensity")) === "2.5", "the light to be read");
+  await firstFrame(page);
+  await eventually(
+    async () => (await figureOf(page, "Intensity")) === "2.5",
+    "the light to be read",
+  );
   await chooseOutput(page, "Copy link");
   const link = await eventually(async () => {
     const text = await page.evaluate(() => navigator.clipboard.readText());
@@ -45,16 +51,20 @@ stage.test("a copied link brings back scene, settings, light, material and camer
   await stage.server.call("camera.fit");
   await stage.server.call("scene.load", { name: "mirror" });
   const other = await stage.open({ url: link });
-  await eventually(async () => {
-    const { eye } = await stage.server.call("camera.get").catch(() => ({ eye: [0, 0, 0] }));
-    return distance(eye, [1, 2, 6]) < 1e-3;
-  }, "the camera of the link", 60_000);
+  await eventually(
+    async () => {
+      const { eye } = await stage.server.call("camera.get").catch(() => ({ eye: [0, 0, 0] }));
+      return distance(eye, [1, 2, 6]) < 1e-3;
+    },
+    "the camera of the link",
+    60_000,
+  );
   assert.equal((await stage.server.call("scene.list")).current, "shadow_objects");
   assert.equal(await stage.server.setting("tone_map.curve"), "agx");
   const there = await editedParts();
   assert.ok(Math.abs(there.sun.intensity - 2.5) < 1e-4 && there.sun.direction[0] > 0.59);
   assert.ok(Math.abs(there.material.roughness - 0.7) < 1e-4);
-  await firstPicture(other.page);
+  await firstFrame(other.page);
   await screenshot(other.page, "from_link");
   await stage.server.call("settings.patch", { patch: { tone_map: null } });
 });
@@ -63,31 +73,31 @@ stage.test("a copied link brings back scene, settings, light, material and camer
 const figureOf = (page, name) =>
   page.locator("[data-section=lights]").getByRole("textbox", { name }).inputValue();
 
-stage.test("a bookmark is kept between visits and leads back on a visible way", async () => {
+stage.test("a bookmark persists over a reload and moves the camera in a transition", async () => {
   const { page } = await stage.watch();
-  const kept = await restingCamera(page, stage.server);
+  const saved = await staticCamera(page, stage.server);
   await page.locator("#view").focus();
   await page.keyboard.press("b");
   await page.getByRole("button", { name: "View 1", exact: true }).waitFor();
   await page.reload();
-  await firstPicture(page);
+  await firstFrame(page);
   await setCamera(page, stage.server, { eye: [4, 3, 4] });
   await page.getByRole("button", { name: "View 1", exact: true }).click();
-  const back = await restingCamera(page, stage.server);
-  assert.ok(distance(back.eye, kept.eye) < 1e-3, `${back.eye} instead of ${kept.eye}`);
-  await page.getByRole("button", { name: "Forget View 1" }).click();
+  const back = await staticCamera(page, stage.server);
+  assert.ok(distance(back.eye, saved.eye) < 1e-3, `${back.eye} instead of ${saved.eye}`);
+  await page.getByRole("button", { name: "Remove View 1" }).click();
   assert.equal(await page.getByRole("button", { name: "View 1", exact: true }).count(), 0);
 });
 
-stage.test("W flies ahead, D to the right, and dragging meanwhile looks around", async () => {
+stage.test("W flies forward, D to the right, and dragging during flight looks around", async () => {
   const { page } = await stage.watch();
   await setCamera(page, stage.server, { eye: [0, 1, 6], target: [0, 1, 0] });
   await page.locator("#view").focus();
   await page.keyboard.press("w", { delay: 200 });
-  const ahead = await restingCamera(page, stage.server);
-  assert.ok(ahead.eye[2] < 5.99 && Math.abs(ahead.eye[0]) < 1e-3, `${ahead.eye}`);
+  const forward = await staticCamera(page, stage.server);
+  assert.ok(forward.eye[2] < 5.99 && Math.abs(forward.eye[0]) < 1e-3, `${forward.eye}`);
   await page.keyboard.press("d", { delay: 200 });
-  const right = await restingCamera(page, stage.server);
+  const right = await staticCamera(page, stage.server);
   assert.ok(right.eye[0] > 0.01, `${right.eye}`);
   assert.ok(Math.abs(right.target[0] - right.eye[0]) < 1e-3, "the view turned");
   await page.keyboard.down("e");
@@ -96,30 +106,33 @@ stage.test("W flies ahead, D to the right, and dragging meanwhile looks around",
   await page.mouse.move(420, 300, { steps: 4 });
   await page.mouse.up();
   await page.keyboard.up("e");
-  const looked = await restingCamera(page, stage.server);
-  assert.ok(looked.eye[1] > right.eye[1], "E did not lift the eye");
-  const [aside, , along] = looked.eye.map((value, axis) => value - right.eye[axis]);
-  assert.ok(Math.hypot(aside, along) < 0.1, "looking around moved the eye");
+  const looked = await staticCamera(page, stage.server);
+  assert.ok(looked.eye[1] > right.eye[1], "E did not raise the eye");
+  const [deltaX, , deltaZ] = looked.eye.map((value, axis) => value - right.eye[axis]);
+  assert.ok(Math.hypot(deltaX, deltaZ) < 0.1, "looking around moved the eye");
   assert.ok(Math.abs(looked.target[0] - looked.eye[0]) > 0.05, "the view did not turn");
 });
 
-stage.test("the wheel goes towards what is under the pointer", async () => {
+stage.test("the wheel zooms towards the pointer", async () => {
   const { page } = await stage.watch();
   await setCamera(page, stage.server, { eye: [0, 1, 6], target: [0, 1, 0] });
   await page.mouse.move(120, 270);
   await page.mouse.wheel(0, -240);
-  const camera = await restingCamera(page, stage.server);
+  const camera = await staticCamera(page, stage.server);
   assert.ok(camera.eye[2] < 5.9 && camera.eye[0] < -0.05, `${camera.eye}`);
 });
 
-stage.test("a clip plays, pauses and is scrubbed", async () => {
+stage.test("a clip plays, pauses and seeks", async () => {
   const { page } = await stage.watch();
   await page.locator("#transport select[name=clip]").selectOption("moving_objects_light");
-  await eventually(async () => (await stage.server.call("animation.list")).playing, "the clip to play");
+  await eventually(
+    async () => (await stage.server.call("animation.list")).playing,
+    "the clip to play",
+  );
   assert.equal((await stage.server.call("animation.list")).clip, "moving_objects_light");
   await page.getByRole("button", { name: "Pause" }).click();
   await eventually(async () => !(await stage.server.call("animation.list")).playing, "a pause");
-  const scrub = page.getByRole("slider", { name: "Moment of the clip" });
+  const scrub = page.getByRole("slider", { name: "Time in the clip" });
   await scrub.evaluate((node) => {
     node.value = "500";
     node.dispatchEvent(new Event("input", { bubbles: true }));
@@ -131,17 +144,20 @@ stage.test("a clip plays, pauses and is scrubbed", async () => {
     return Math.abs(seconds - duration / 2) < 0.05;
   }, "the middle of the clip");
   await page.locator("#transport select[name=rate]").selectOption("2");
-  await eventually(async () => (await stage.server.call("animation.list")).rate === 2, "twice the speed");
+  await eventually(
+    async () => (await stage.server.call("animation.list")).rate === 2,
+    "twice the speed",
+  );
   await screenshot(page, "transport");
 });
 
-stage.test("another viewer's hand on the clip shows here without asking", async () => {
+stage.test("playback changes of another viewer are shown without polling", async () => {
   const { page } = await stage.watch();
   const call = (method, params) => stage.server.call(method, params);
   const transport = page.locator("#transport");
   await transport.locator("select[name=clip]").waitFor();
-  const asked = () => page.evaluate(() => window.seen.sent["animation.list"] ?? 0);
-  const before = await asked();
+  const requests = () => page.evaluate(() => window.seen.sent["animation.list"] ?? 0);
+  const before = await requests();
   const { clips } = await call("animation.play", { clip: "moving_objects_light", rate: 0.5 });
   await transport.getByRole("button", { name: "Pause" }).waitFor();
   assert.equal(await transport.locator("select[name=rate]").inputValue(), "0.5");
@@ -158,9 +174,9 @@ stage.test("another viewer's hand on the clip shows here without asking", async 
     );
   await call("animation.seek", { seconds: duration / 2 });
   await shows(duration / 2);
-  assert.equal(await asked(), before, "the page asked for what it is told");
+  assert.equal(await requests(), before, "the page polled the animation");
 
-  // In lockstep a clip that plays stands still between steps.
+  // In lockstep a playing clip does not advance between steps.
   await call("frame.step", { frames: 0, dt: 0 });
   await call("animation.play", { rate: 1 });
   await transport.getByRole("button", { name: "Pause" }).waitFor();
@@ -171,7 +187,7 @@ stage.test("another viewer's hand on the clip shows here without asking", async 
   await transport.getByRole("button", { name: "Play" }).waitFor();
 });
 
-stage.test("a setting that this client has never heard of gets its control", async () => {
+stage.test("an unknown setting gets a control", async () => {
   const context = await stage.context();
   await context.addInitScript(() => {
     const parse = JSON.parse;
@@ -199,38 +215,41 @@ stage.test("a setting that this client has never heard of gets its control", asy
   assert.equal(await page.locator('[data-path="aurora.colours"] input').count(), 1);
   await strength.locator("input.number").fill("1.5");
   await strength.locator("input.number").press("Enter");
-  // The server knows no such setting: it refuses in words, and the page takes it back.
+  // The server has no such setting: it returns an error, and the page resets the control.
   await page.locator(".toast-text").waitFor({ timeout: 20_000 });
   await screenshot(page, "unknown_setting");
 });
 
-stage.test("all scenes are shown as pictures, those never seen once nothing moves", async () => {
-  const { page } = await stage.watch({ viewport: { width: 1280, height: 720 } });
-  await stage.server.call("animation.play", { clip: "moving_objects_light" });
-  await page.waitForFunction(() => window.seen.frame && !window.seen.frame.final);
-  await page.getByRole("button", { name: "Show all scenes as pictures" }).click();
-  const tile = page.locator(".tile", { hasText: "shadow_objects" });
-  await tile.waitFor();
-  assert.equal(await tile.getAttribute("aria-pressed"), "true");
-  const drawn = () =>
-    page.evaluate(() => Object.values(window.seen.drawn).reduce((sum, count) => sum + count, 0));
-  const before = await drawn();
-  await eventually(async () => (await drawn()) > before + 8, "moving pictures", 60_000);
-  const asked = () => page.evaluate(() => window.seen.sent["session.create"] ?? 0);
-  assert.equal(await asked(), 0, "the server is loaded while somebody watches moving pictures");
+stage.test(
+  "the gallery shows thumbnails and renders missing ones while the server is idle",
+  async () => {
+    const { page } = await stage.watch({ viewport: { width: 1280, height: 720 } });
+    await stage.server.call("animation.play", { clip: "moving_objects_light" });
+    await page.waitForFunction(() => window.seen.frame && !window.seen.frame.final);
+    await page.getByRole("button", { name: "Show thumbnails of all scenes" }).click();
+    const tile = page.locator(".tile", { hasText: "shadow_objects" });
+    await tile.waitFor();
+    assert.equal(await tile.getAttribute("aria-pressed"), "true");
+    const drawn = () =>
+      page.evaluate(() => Object.values(window.seen.drawn).reduce((sum, count) => sum + count, 0));
+    const before = await drawn();
+    await eventually(async () => (await drawn()) > before + 8, "moving frames", 60_000);
+    const requests = () => page.evaluate(() => window.seen.sent["session.create"] ?? 0);
+    assert.equal(await requests(), 0, "previews were rendered during an animation");
 
-  await stage.server.call("animation.pause");
-  await tile.locator("img").waitFor({ timeout: 60_000 });
-  const unseen = page.locator(".tile", { hasText: "mirror" }).locator("img");
-  await unseen.waitFor({ timeout: 60_000 });
-  assert.ok(await unseen.evaluate((image) => image.naturalWidth >= 200));
-  await page.locator(".tile", { hasText: "furnace" }).locator("img").waitFor({ timeout: 60_000 });
-  await screenshot(page, "scene_gallery");
-  assert.equal((await stage.server.call("scene.list")).current, "shadow_objects");
-  const made = await asked();
-  await page.reload();
-  await firstPicture(page);
-  await page.getByRole("button", { name: "Show all scenes as pictures" }).click();
-  await unseen.waitFor();
-  assert.ok(made >= 2, `${made} pictures were made`);
-});
+    await stage.server.call("animation.pause");
+    await tile.locator("img").waitFor({ timeout: 60_000 });
+    const missing = page.locator(".tile", { hasText: "mirror" }).locator("img");
+    await missing.waitFor({ timeout: 60_000 });
+    assert.ok(await missing.evaluate((image) => image.naturalWidth >= 200));
+    await page.locator(".tile", { hasText: "furnace" }).locator("img").waitFor({ timeout: 60_000 });
+    await screenshot(page, "scene_gallery");
+    assert.equal((await stage.server.call("scene.list")).current, "shadow_objects");
+    const created = await requests();
+    await page.reload();
+    await firstFrame(page);
+    await page.getByRole("button", { name: "Show thumbnails of all scenes" }).click();
+    await missing.waitFor();
+    assert.ok(created >= 2, `${created} previews were rendered`);
+  },
+);

@@ -1,49 +1,49 @@
-// Several viewers, small screens, and a server that goes away and comes back.
+// Several viewers, small screens, and a restart of the server.
 
 import assert from "node:assert/strict";
 import {
   distance,
-  dragPicture,
+  dragView,
   eventually,
-  firstPicture,
-  pictureScreenshot,
-  restingCamera,
+  firstFrame,
+  viewScreenshot,
+  staticCamera,
   screenshot,
   settle,
   unfoldAll,
 } from "./harness/browser.mjs";
-import { difference, statistics, thumbnail } from "./harness/pictures.mjs";
+import { difference, statistics, thumbnail } from "./harness/images.mjs";
 import { Stage } from "./harness/stage.mjs";
 
 const stage = new Stage();
 
-async function lookAt(page, name) {
-  return thumbnail(page, await pictureScreenshot(page, name));
+async function viewImage(page, name) {
+  return thumbnail(page, await viewScreenshot(page, name));
 }
 
-stage.test("a second viewer joins and sees what the first one does", async () => {
+stage.test("a second viewer follows the camera of the first", async () => {
   const first = await stage.watch();
   const second = await stage.watch();
   await settle(second.page, stage.server);
-  const before = await lookAt(second.page, "second_viewer_before");
-  assert.ok(statistics(before).deviation > 0.03, "the second viewer's picture is nearly blank");
-  await dragPicture(first.page, { x: 300, y: 300 }, { x: 560, y: 330 });
+  const before = await viewImage(second.page, "second_viewer_before");
+  assert.ok(statistics(before).deviation > 0.03, "the second viewer's frame is nearly uniform");
+  await dragView(first.page, { x: 300, y: 300 }, { x: 560, y: 330 });
   await eventually(
-    async () => difference(before, await lookAt(second.page, "second_viewer_after")) > 0.01,
-    "a changed picture at the second viewer",
+    async () => difference(before, await viewImage(second.page, "second_viewer_after")) > 0.01,
+    "a changed frame at the second viewer",
   );
-  await restingCamera(first.page, stage.server);
+  await staticCamera(first.page, stage.server);
   await first.page.close();
   await settle(second.page, stage.server);
-  const alone = await lookAt(second.page, "second_viewer_alone");
-  await dragPicture(second.page, { x: 560, y: 330 }, { x: 300, y: 300 });
+  const alone = await viewImage(second.page, "second_viewer_alone");
+  await dragView(second.page, { x: 560, y: 330 }, { x: 300, y: 300 });
   await eventually(
-    async () => difference(alone, await lookAt(second.page, "second_viewer_moved")) > 0.01,
-    "the second viewer to go on alone",
+    async () => difference(alone, await viewImage(second.page, "second_viewer_moved")) > 0.01,
+    "the second viewer to continue alone",
   );
 });
 
-/** One finger from one point to another, as the browser hears it from a touch screen. */
+/** A swipe with one finger, as touch events. */
 async function swipe(page, from, to) {
   const session = await page.context().newCDPSession(page);
   const touch = (type, point) =>
@@ -60,7 +60,7 @@ async function swipe(page, from, to) {
   await touch("touchEnd");
 }
 
-/** Two fingers that part while both move to the right. */
+/** Two fingers that move apart while both move to the right. */
 async function pinch(page, middle) {
   const session = await page.context().newCDPSession(page);
   const points = (step) => [
@@ -69,13 +69,16 @@ async function pinch(page, middle) {
   ];
   await session.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: points(0) });
   for (let step = 1; step <= 8; step += 1) {
-    await session.send("Input.dispatchTouchEvent", { type: "touchMove", touchPoints: points(step) });
+    await session.send("Input.dispatchTouchEvent", {
+      type: "touchMove",
+      touchPoints: points(step),
+    });
     await page.waitForTimeout(20);
   }
   await session.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
 }
 
-stage.test("on a phone the panel is a sheet and a finger orbits", async () => {
+stage.test("on a phone the panel is a sheet and one finger orbits", async () => {
   const { page } = await stage.watch({
     viewport: { width: 360, height: 740 },
     deviceScaleFactor: 2,
@@ -86,7 +89,7 @@ stage.test("on a phone the panel is a sheet and a finger orbits", async () => {
   await screenshot(page, "phone");
   const panel = page.locator("#panel");
   const folded = await panel.boundingBox();
-  assert.ok(folded.y > 600, "the sheet covers the picture at first");
+  assert.ok(folded.y > 600, "the sheet covers the view initially");
 
   const eyeBefore = JSON.stringify((await stage.server.call("camera.get")).eye);
   await swipe(page, { x: 120, y: 300 }, { x: 260, y: 320 });
@@ -94,13 +97,13 @@ stage.test("on a phone the panel is a sheet and a finger orbits", async () => {
     async () => JSON.stringify((await stage.server.call("camera.get")).eye) !== eyeBefore,
     "an orbit by finger",
   );
-  const apart = await restingCamera(page, stage.server);
+  const before = await staticCamera(page, stage.server);
   await pinch(page, { x: 180, y: 300 });
   await eventually(async () => {
     const { eye, target } = await stage.server.call("camera.get");
-    const closer = distance(eye, target) < 0.9 * distance(apart.eye, apart.target);
-    return closer && distance(target, apart.target) > 0;
-  }, "a pinch to move closer and aside");
+    const closer = distance(eye, target) < 0.9 * distance(before.eye, before.target);
+    return closer && distance(target, before.target) > 0;
+  }, "a pinch to zoom and pan");
 
   await page.getByRole("button", { name: "Show panel" }).tap();
   await eventually(async () => (await panel.boundingBox()).y < 500, "an open sheet");
@@ -115,45 +118,48 @@ stage.test("on a phone the panel is a sheet and a finger orbits", async () => {
       }),
     ),
   );
-  assert.ok(widest <= 360, `something reaches to ${widest} px`);
+  assert.ok(widest <= 360, `the page is ${widest} px wide`);
 });
 
-stage.test("where a canvas cannot be handed to the worker the page draws itself", async () => {
+stage.test("without OffscreenCanvas the page draws the frames", async () => {
   const context = await stage.context();
   await context.addInitScript(() => {
     delete HTMLCanvasElement.prototype.transferControlToOffscreen;
   });
   const { page } = await stage.watch({ context });
   await settle(page, stage.server);
-  const { deviation } = statistics(await lookAt(page, "drawn_by_page"));
-  assert.ok(deviation > 0.03, "the picture is nearly blank");
+  const { deviation } = statistics(await viewImage(page, "drawn_by_page"));
+  assert.ok(deviation > 0.03, "the frame is nearly uniform");
 });
 
-stage.test("after a restart of the server the page brings scene, settings and camera back", async () => {
-  const { page, complaints } = await stage.watch({ complaining: true });
-  await stage.server.call("settings.patch", { patch: { exposure: { compensation: 0.75 } } });
-  const { name: light } = (await stage.server.call("lights.list")).lights[0];
-  await stage.server.call("lights.patch", { light, patch: { intensity: 2.25 } });
-  await page.waitForFunction(() => window.seen.heard["lights.changed"] > 0);
-  await dragPicture(page, { x: 300, y: 300 }, { x: 520, y: 360 });
-  const { eye } = await restingCamera(page, stage.server);
+stage.test(
+  "after a restart of the server the page restores scene, settings and camera",
+  async () => {
+    const { page, pageErrors } = await stage.watch({ expectErrors: true });
+    await stage.server.call("settings.patch", { patch: { exposure: { compensation: 0.75 } } });
+    const { name: light } = (await stage.server.call("lights.list")).lights[0];
+    await stage.server.call("lights.patch", { light, patch: { intensity: 2.25 } });
+    await page.waitForFunction(() => window.seen.received["lights.changed"] > 0);
+    await dragView(page, { x: 300, y: 300 }, { x: 520, y: 360 });
+    const { eye } = await staticCamera(page, stage.server);
 
-  assert.deepEqual(complaints, []);
-  await stage.server.stop();
-  await page.waitForSelector('#pill[data-state="lost"]', { timeout: 20_000 });
-  await page.getByText("Connection lost").waitFor();
-  await screenshot(page, "connection_lost");
-  await stage.restartServer(["--scene", "mirror"]);
-  await page.waitForSelector('#pill[data-state="live"]', { timeout: 40_000 });
-  await eventually(async () => {
-    const camera = await stage.server.call("camera.get").catch(() => null); // no scene at first
-    return camera && distance(camera.eye, eye) < 1e-3;
-  }, "the camera to be restored");
-  assert.equal((await stage.server.call("scene.list")).current, "shadow_objects");
-  assert.equal(await stage.server.setting("exposure.compensation"), 0.75);
-  assert.equal((await stage.server.call("lights.list")).lights[0].intensity, 2.25);
-  await firstPicture(page);
-  await settle(page, stage.server);
-  await screenshot(page, "connection_back");
-  assert.ok(statistics(await lookAt(page, "after_restart")).deviation > 0.03);
-});
+    assert.deepEqual(pageErrors, []);
+    await stage.server.stop();
+    await page.waitForSelector('#pill[data-state="lost"]', { timeout: 20_000 });
+    await page.getByText("Connection lost").waitFor();
+    await screenshot(page, "connection_lost");
+    await stage.restartServer(["--scene", "mirror"]);
+    await page.waitForSelector('#pill[data-state="live"]', { timeout: 40_000 });
+    await eventually(async () => {
+      const camera = await stage.server.call("camera.get").catch(() => null); // no scene yet
+      return camera && distance(camera.eye, eye) < 1e-3;
+    }, "the camera to be restored");
+    assert.equal((await stage.server.call("scene.list")).current, "shadow_objects");
+    assert.equal(await stage.server.setting("exposure.compensation"), 0.75);
+    assert.equal((await stage.server.call("lights.list")).lights[0].intensity, 2.25);
+    await firstFrame(page);
+    await settle(page, stage.server);
+    await screenshot(page, "connection_back");
+    assert.ok(statistics(await viewImage(page, "after_restart")).deviation > 0.03);
+  },
+);

@@ -1,5 +1,5 @@
-// What the hybrid converges to, denoisers off, against the path tracer along the same light paths:
-// the eight scenes of the paper, every surface of one roughness, the sun of one apparent diameter.
+// The converged hybrid without denoisers against the path tracer along the same light paths: the
+// eight scenes of the paper, with uniform roughness and one angular diameter of the sun.
 
 #include <gtest/gtest.h>
 
@@ -16,15 +16,16 @@ namespace heliograph::test {
 namespace {
 
 constexpr double tolerance = 0.01;
-constexpr double certain = 0.003;  // the largest standard error of a difference
+constexpr double max_standard_error = 0.003;  // of a relative difference
 constexpr int least_blocks = 4;
 constexpr int most_blocks = 256;
-constexpr std::uint32_t samples = 16;  // a pixel in each block
+constexpr std::uint32_t samples = 16;  // per pixel and block
 
 constexpr float roughnesses[] = {0.0f, 0.1f, 0.2f, 0.3f, 0.4f, 0.6f, 1.0f};
 constexpr float angles[] = {0.0f, 2.0f, 6.0f, 10.0f};  // degrees
 
-/// The rays alone, averaged. The sky behind the scene is the same in both and would only dilute.
+/// The hybrid without denoising. The background is equal in both images and is hidden, because it
+/// would dilute differences.
 protocol::Settings undenoised(float angle) {
   protocol::Settings settings;
   settings.shadow_temporal.enabled = settings.shadow_blur.enabled = false;
@@ -42,10 +43,10 @@ protocol::Settings path_traced(float angle) {
   return settings;
 }
 
-/// A scene of the paper whose surfaces all have this roughness, on stage.
-class Stand {
+/// A scene of the paper with uniform roughness.
+class ConvergenceRig {
  public:
-  Stand(const std::string& name, float roughness) : renderer_(engine()) {
+  ConvergenceRig(const std::string& name, float roughness) : renderer_(engine()) {
     const scenes::PaperScene& recipe = scenes::find_paper_scene(name);
     const scenes::ClearSky sky = recipe.make_sky(256, 128);
     scenes::Document document = recipe.make_document(sky);
@@ -57,7 +58,7 @@ class Stand {
     renderer_.set_camera(scene->cameras.at(0));
   }
 
-  /// Takes as many blocks as the error asks for: sharp highlights are rare and bright.
+  /// Renders blocks until the standard error is small enough: sharp highlights are rare and bright.
   RelativeDifference difference(float angle) {
     std::vector<double> got, expected;
     RelativeDifference found;
@@ -66,7 +67,7 @@ class Stand {
       append(got, mean_luminances(renderer_, undenoised(angle), first, blocks, samples));
       append(expected, mean_luminances(renderer_, path_traced(angle), first, blocks, samples));
       found = relative_difference(got, expected);
-      if (found.standard_error < certain) break;
+      if (found.standard_error < max_standard_error) break;
     }
     return found;
   }
@@ -81,21 +82,22 @@ class Stand {
   render::Renderer renderer_;
 };
 
-void expect_the_same(const std::string& scene, float roughness, float angle, Stand& stand) {
-  const RelativeDifference found = stand.difference(angle);
+void expect_converged(const std::string& scene, float roughness, float angle, ConvergenceRig& rig) {
+  const RelativeDifference found = rig.difference(angle);
   std::printf("%-16s roughness %.1f, angle %4.1f: %+.2f %% (+- %.2f)\n", scene.c_str(),
               static_cast<double>(roughness), static_cast<double>(angle), 100.0 * found.value,
               100.0 * found.standard_error);
   EXPECT_LT(std::abs(found.value), tolerance) << "roughness " << roughness << ", angle " << angle;
-  EXPECT_LT(found.standard_error, certain) << "roughness " << roughness << ", angle " << angle;
+  EXPECT_LT(found.standard_error, max_standard_error)
+      << "roughness " << roughness << ", angle " << angle;
 }
 
 class Grid : public testing::TestWithParam<std::tuple<std::string, float>> {};
 
-TEST_P(Grid, ConvergesToTheSamePaths) {
+TEST_P(Grid, HybridConvergesToReference) {
   const auto& [scene, roughness] = GetParam();
-  Stand stand(scene, roughness);
-  for (const float angle : angles) expect_the_same(scene, roughness, angle, stand);
+  ConvergenceRig rig(scene, roughness);
+  for (const float angle : angles) expect_converged(scene, roughness, angle, rig);
 }
 
 std::vector<std::string> scene_names() {
@@ -119,13 +121,13 @@ struct Cell {
   float angle;
 };
 
-/// Every scene, every roughness and every angle at least once, for the tests of every day.
+/// A subset with every scene, roughness and angle at least once, for the default test run.
 class Cover : public testing::TestWithParam<Cell> {};
 
-TEST_P(Cover, ConvergesToTheSamePaths) {
+TEST_P(Cover, HybridConvergesToReference) {
   const auto [scene, roughness, angle] = GetParam();
-  Stand stand(scene, roughness);
-  expect_the_same(scene, roughness, angle, stand);
+  ConvergenceRig rig(scene, roughness);
+  expect_converged(scene, roughness, angle, rig);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -136,7 +138,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Cell{"pillars", 0.6f, 6.0f}, Cell{"breakfast_room", 0.0f, 10.0f}),
     [](const auto& tested) { return std::string(tested.param.scene); });
 
-TEST(RelativeDifference, ComesWithItsError) {
+TEST(RelativeDifference, HasStandardError) {
   const double got[] = {1.01, 1.03, 1.02, 1.02};
   const double expected[] = {1.0, 1.0, 1.0, 1.0};
   const RelativeDifference found = relative_difference(got, expected);

@@ -1,5 +1,5 @@
-"""What a running server bears: sessions and viewers come in steps, cameras move, and a table tells
-what each step costs. Use it on the machine and with the scene in question:
+"""Measures the capacity of a running server: adds sessions and viewers in steps, with moving cameras,
+and prints the cost of each step. Use it on the machine and with the scene in question:
   capacity.py http://127.0.0.1:8080/ --token TOKEN --scene glossy_sponza_1 --size 640x360"""
 
 import argparse
@@ -13,7 +13,7 @@ import uuid
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
-from harness.replaying_viewer import ReplayingViewer, Wish  # noqa: E402
+from harness.replaying_viewer import ReplayingViewer, ViewState  # noqa: E402
 from harness.servers import measurement  # noqa: E402
 
 STEPS = ((1, 1), (1, 4), (2, 1), (4, 1))  # sessions and viewers of each
@@ -21,13 +21,13 @@ COUNTERS = {"cpu": "process_cpu_seconds_total", "frames": "heliograph_frames_sen
             "bytes": "heliograph_sent_bytes_total", "render": "heliograph_render_seconds_sum",
             "renders": "heliograph_render_seconds_count",
             "encode": "heliograph_encode_seconds_sum", "encodes": "heliograph_encode_seconds_count"}
-COLUMNS = ("sessions", "viewers", "cameras", "pictures/s of a viewer", "processors",
-           "ms of processors a picture", "ms to render", "ms to encode", "kB a picture",
-           "Mbit/s of a viewer", "ms input to picture p50", "p95", "MB resident")
+COLUMNS = ("sessions", "viewers", "cameras", "frames/s of a viewer", "processors",
+           "CPU ms per frame", "ms to render", "ms to encode", "kB per frame",
+           "Mbit/s of a viewer", "ms input to frame p50", "p95", "MB resident")
 
 
-class Audience:
-    """Viewers in sessions of their own. Use as an asynchronous context."""
+class StepViewers:
+    """Viewers in their own sessions; an asynchronous context manager."""
 
     def __init__(self, options, sessions, each):
         self.leaders, self.viewers = [], []
@@ -36,7 +36,7 @@ class Audience:
             name = f"capacity-{uuid.uuid4().hex[:8]}"
             for place in range(each):
                 viewer = ReplayingViewer(options.url, options.token,
-                                         Wish(options.scene, size=(width, height)))
+                                         ViewState(options.scene, size=(width, height)))
                 viewer.session = name
                 self.viewers.append(viewer)
                 if place == 0:
@@ -52,15 +52,15 @@ class Audience:
             await viewer.__aexit__()
 
     async def move(self, seconds):
-        """Every session's camera goes around, thirty times a second."""
+        """Orbits the camera of every session, thirty times per second."""
         started = time.monotonic()
         while (passed := time.monotonic() - started) < seconds:
             for viewer in self.leaders:
                 await viewer.look((6 * math.sin(0.5 * passed), 2.0, 6 * math.cos(0.5 * passed)))
             await asyncio.sleep(1 / 30)
 
-    async def rest(self):
-        """Until no more pictures come."""
+    async def wait_idle(self):
+        """Waits until no more frames arrive."""
         seen = None
         while (frames := sum(viewer.frames for viewer in self.viewers)) != seen:
             seen = frames
@@ -68,19 +68,19 @@ class Audience:
 
 
 async def measure(options, sessions, each, moving):
-    async with Audience(options, sessions, each) as audience:
+    async with StepViewers(options, sessions, each) as step:
         if moving:
-            await audience.move(2)  # the controller of every stream finds its pace
+            await step.move(2)  # let the link controller of every stream converge
         else:
-            await audience.rest()
-        for viewer in audience.viewers:
+            await step.wait_idle()
+        for viewer in step.viewers:
             viewer.round_trips.clear()
         before, started = await counters(options), time.monotonic()
-        await (audience.move(options.seconds) if moving else asyncio.sleep(options.seconds))
+        await (step.move(options.seconds) if moving else asyncio.sleep(options.seconds))
         seconds = time.monotonic() - started
         after = await counters(options)
         spent = {name: after[name] - before[name] for name in before}
-        trips = sorted(trip for viewer in audience.leaders for trip in viewer.round_trips)
+        trips = sorted(trip for viewer in step.leaders for trip in viewer.round_trips)
         resident = await asyncio.to_thread(measurement, options.url,
                                            "heliograph_resident_memory_bytes", token=options.token)
     return row(sessions, each, moving, spent, seconds, trips, resident)
@@ -99,9 +99,9 @@ def row(sessions, each, moving, spent, seconds, trips, resident):
     def ratio(value, count, scale=1.0):
         return f"{scale * value / count:.1f}" if count else "-"
 
-    return (sessions, viewers, "moving" if moving else "at rest",
+    return (sessions, viewers, "moving" if moving else "static",
             ratio(spent["frames"] / seconds, viewers), f"{spent['cpu'] / seconds:.2f}",
-            # Unlike the milliseconds of the clock, not a matter of what else the machine does.
+            # Unlike wall clock time it does not depend on other load of the machine.
             ratio(spent["cpu"], spent["renders"], 1e3),
             ratio(spent["render"], spent["renders"], 1e3),
             ratio(spent["encode"], spent["encodes"], 1e3),

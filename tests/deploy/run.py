@@ -1,6 +1,6 @@
-"""Runs the tests of deployment. Ends with 77, which test drivers read as "skipped", where this
-machine cannot run any. REQUIRE_CONTAINERS=1 makes every skipped test a failure, but those that name
-something out of reach. Names on the command line choose: run.py test_static, or
+"""Runs the deployment tests. Exits with 77, which test drivers treat as "skipped", if this machine
+can run none of them. REQUIRE_CONTAINERS=1 makes every skipped test a failure, except those marked
+"out of reach". Names on the command line select tests: run.py test_static, or
 run.py test_fleet.Killed"""
 
 import os
@@ -41,7 +41,7 @@ def judge(result):
     if required() and missing:
         print(f"FAIL: REQUIRE_CONTAINERS=1, and {len(missing)} of these could not run")
         return FAILED
-    # A class that is skipped as a whole has not begun any of its tests.
+    # A class that is skipped as a whole has started none of its tests.
     begun = [test for test, _ in result.skipped if isinstance(test, unittest.TestCase)]
     ran = result.testsRun - len(begun)
     return SKIPPED if result.skipped and ran == 0 else PASSED

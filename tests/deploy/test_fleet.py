@@ -1,4 +1,4 @@
-"""Servers behind the balancer: who comes back where, and what one of them may do to the others."""
+"""Servers behind the balancer: affinity, failover, updates, and isolation between nodes."""
 
 import asyncio
 import json
@@ -15,22 +15,22 @@ import websockets
 from harness import images
 from harness.files import DEPLOY
 from harness.fleet import Fleet, add_images
-from harness.pictures import decode_jpeg, difference
-from harness.replaying_viewer import ReplayingViewer, Wish
+from harness.image_comparison import decode_jpeg, difference
+from harness.replaying_viewer import ReplayingViewer, ViewState
 from harness.scenes import NAMES
 from harness.servers import TOKEN, call
 from harness.site import GATEWAY, Site
 
 MOST_SECONDS_AWAY = 5.0
-# More than the longest gap between two pictures of a viewer whose own node lives, before and after
-# another's is killed: the machine has a scene to load for the one that comes back.
+# Upper bound of the gap between two frames of a viewer whose node stays up while another is killed:
+# the machine also loads a scene for the viewer that reconnects.
 MOST_SECONDS_OF_NOTICE = 0.8
-NODES = 4  # one more than viewers: who loses a node finds a free one
+NODES = 4  # one more than viewers, so that a viewer that loses its node finds a free one
 
 
-def wishes(count):
-    """Different pictures: scene, camera and a setting that is not the default."""
-    return [Wish(NAMES[i % 2], eye=(0.5 * i, 2.0, 8.0 - 0.5 * i),
+def view_states(count):
+    """Distinguishable views: scene, camera and a setting that is not the default."""
+    return [ViewState(NAMES[i % 2], eye=(0.5 * i, 2.0, 8.0 - 0.5 * i),
                  settings={"exposure": {"compensation": 0.125 * (i + 1)}}) for i in range(count)]
 
 
@@ -46,7 +46,7 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
               flush=True)
 
     async def asyncTearDown(self):
-        """Every test begins with all nodes taking viewers."""
+        """Every test begins with all nodes ready for viewers."""
         await self.scale(NODES)
 
     async def scale(self, count):
@@ -61,10 +61,10 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
         return await asyncio.to_thread(self.machine.docker, *command)
 
     async def viewers(self, count):
-        """As many viewers, all with their pictures."""
+        """This many viewers, each with its view restored and a frame received."""
         found = []
-        for wish in wishes(count):
-            viewer = ReplayingViewer(self.fleet.url, TOKEN, wish)
+        for view in view_states(count):
+            viewer = ReplayingViewer(self.fleet.url, TOKEN, view)
             await viewer.__aenter__()
             self.addAsyncCleanup(viewer.__aexit__)
             found.append(viewer)
@@ -74,41 +74,41 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
         return [await asyncio.to_thread(self.fleet.node_of, viewer) for viewer in viewers]
 
     async def at_rest(self, viewer):
-        """The finished picture."""
+        """The final frame."""
         deadline = time.monotonic() + 60
         while True:
             seen = viewer.frames
             await asyncio.sleep(1.5)
             if viewer.frames == seen:
-                return decode_jpeg(viewer.last_picture)
-            self.assertLess(time.monotonic(), deadline, "the picture never rests")
+                return decode_jpeg(viewer.last_image)
+            self.assertLess(time.monotonic(), deadline, "the view never converges")
 
     async def move(self, viewers, seconds):
-        """Everybody looks around."""
+        """Moves the cameras of all viewers."""
         started = time.monotonic()
         while time.monotonic() - started < seconds:
             for viewer in viewers:
                 if viewer.connected.is_set():
-                    x, y, z = viewer.wish.eye
+                    x, y, z = viewer.view.eye
                     try:
                         await viewer.look((x + 0.01, y, z))
                     except (OSError, websockets.WebSocketException, asyncio.CancelledError):
-                        continue  # it is being cut off
+                        continue  # it is being disconnected
             await asyncio.sleep(0.1)
 
-    async def assert_as_wished(self, viewer):
-        """Scene, camera and settings are the viewer's own again, on whatever node it is."""
-        wish = viewer.wish
-        self.assertEqual((await viewer.call("scene.list"))["current"], wish.scene)
+    async def assert_view_restored(self, viewer):
+        """Scene, camera and settings are the viewer's own, on whichever node it is."""
+        view = viewer.view
+        self.assertEqual((await viewer.call("scene.list"))["current"], view.scene)
         camera = await viewer.call("camera.get")
-        for name, value in (("eye", wish.eye), ("target", wish.target)):
+        for name, value in (("eye", view.eye), ("target", view.target)):
             for a, b in zip(camera[name], value):
                 self.assertAlmostEqual(a, b, places=4)
         settings = (await viewer.call("settings.get"))["settings"]
         self.assertEqual(settings["exposure"]["compensation"],
-                         wish.settings["exposure"]["compensation"])
+                         view.settings["exposure"]["compensation"])
 
-    async def test_viewers_spread_and_come_back_to_their_node(self):
+    async def test_viewers_spread_and_reconnect_to_their_node(self):
         viewers = await self.viewers(3)
         nodes = await self.nodes_of(viewers)
         self.assertEqual(len(set(nodes)), 3, nodes)
@@ -123,17 +123,17 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
             self.assertEqual(status, 200)
             self.assertNotIn("Set-Cookie", headers)
 
-    async def test_who_names_a_session_meets_the_others_of_it(self):
-        """Without a cookie: the name alone decides."""
+    async def test_viewers_of_a_named_session_share_a_node(self):
+        """Without a cookie only the name decides."""
         for name in ("one", "two", "three", "four"):
             served = {await self.served_by(f"?session={name}") for _ in range(4)}
             self.assertEqual(len(served), 1, name)
 
-    async def test_a_path_with_a_session_leads_to_the_node_of_the_session(self):
+    async def test_a_path_with_a_session_is_routed_to_its_node(self):
         for name in ("one", "two", "three", "four"):
             node = await self.served_by(f"?session={name}")
             self.assertEqual(await self.served_by(f"api/v1/sessions/{name}/frame.jpg"), node, name)
-        # A viewer's own session is where the viewer is, whatever its name says.
+        # A viewer's own session is on the viewer's node, whatever its name hashes to.
         for viewer in await self.viewers(3):
             status, headers, _ = await asyncio.to_thread(
                 self.fleet.ask, f"api/v1/sessions/{viewer.session}/frame.jpg",
@@ -141,7 +141,7 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
             self.assertEqual(status, 200)
             node = await asyncio.to_thread(self.fleet.node_of, viewer)
             self.assertEqual(headers["X-Heliograph-Node"], self.fleet.address(node))
-            # Who opens a named one goes to its node, and stays there.
+            # A viewer that opens a named session goes to its node, and stays there.
             _, headers, _ = await asyncio.to_thread(self.fleet.ask, "?session=one",
                                                     headers={"Cookie": viewer.node})
             self.assertEqual(headers["X-Heliograph-Node"], await self.served_by("?session=one"))
@@ -153,13 +153,13 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
         return (await asyncio.to_thread(self.fleet.ask, path, headers=headers))[1][
             "X-Heliograph-Node"]
 
-    async def test_nobody_chooses_the_address_that_nodes_see(self):
-        """Wrong tokens are counted by address, so that guessing leads nowhere: neither does it with
-        another address in the headers each time."""
+    async def test_clients_cannot_forge_their_address(self):
+        """Wrong tokens are limited by address. A forged address in the headers of each request
+        does not circumvent that."""
         node = "api/v1/schema?session=guessed"
         self.assertIn(429, [await self.guess(node, f"198.51.100.{number}")
                             for number in range(100)])
-        # Nobody else is shut out, as all would be if they had the balancer's address.
+        # Other clients are not locked out, as they would be if all had the balancer's address.
         self.assertEqual("200", await asyncio.to_thread(
             self.machine.inside, "curl", "--silent", "--output", "/dev/null", "--write-out",
             "%{http_code}", "--header", f"Authorization: Bearer {TOKEN}", self.fleet.url + node))
@@ -174,34 +174,34 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
         self.assertNotIn("198.51.100.", lines)
 
     async def guess(self, path, address):
-        """A wrong token, with the address that it is said to come from."""
+        """A request with a wrong token and a claimed address."""
         status, _, _ = await asyncio.to_thread(
             self.fleet.ask, path, headers={"X-Forwarded-For": address, "X-Forwarded-Proto": "https"},
             token=f"wrong-token-of-{address}")
         return status
 
-    async def test_a_proxy_in_front_is_believed_where_it_is_named(self):
+    async def test_an_outer_proxy_is_trusted_if_it_is_configured(self):
         await asyncio.to_thread(self.fleet.renew_balancer, HELIOGRAPH_OUTER_PROXIES=GATEWAY)
         self.addAsyncCleanup(asyncio.to_thread, self.fleet.renew_balancer,
                              HELIOGRAPH_OUTER_PROXIES="")
         node = "api/v1/schema?session=behind"
-        # What counts is what the proxy has put at the end.
+        # The last element, which the proxy appended, is the address.
         self.assertEqual({await self.guess(node, f"203.0.113.9, 198.51.100.{number}")
                           for number in range(100)}, {401})
         self.assertIn(429, [await self.guess(node, "198.51.100.7") for _ in range(100)])
-        told = {"X-Forwarded-For": "198.51.100.8", "X-Forwarded-Proto": "https"}
+        claimed = {"X-Forwarded-For": "198.51.100.8", "X-Forwarded-Proto": "https"}
         _, headers, _ = await asyncio.to_thread(
-            self.fleet.ask, f"?session=behind&token={TOKEN}", headers=told)
+            self.fleet.ask, f"?session=behind&token={TOKEN}", headers=claimed)
         self.assertRegex(headers["Set-Cookie"], "heliograph_token=.*; Secure")
-        # Others are not believed.
+        # Other proxies are not trusted.
         seen = await asyncio.to_thread(
             self.machine.inside, "curl", "--silent", "--output", "/dev/null", "--dump-header", "-",
-            *(word for name, value in told.items() for word in ("--header", f"{name}: {value}")),
+            *(word for name, value in claimed.items() for word in ("--header", f"{name}: {value}")),
             f"{self.fleet.url}?session=behind&token={TOKEN}")
         self.assertIn("heliograph_token=", seen)
         self.assertNotRegex(seen, "heliograph_token=.*; Secure")
 
-    async def test_the_balancer_speaks_tls_and_tells_nodes(self):
+    async def test_the_balancer_terminates_tls_and_informs_nodes(self):
         path = f"?token={TOKEN}"
         for ask, secure in ((self.fleet.ask_securely, True), (self.fleet.ask, False)):
             _, headers, _ = await asyncio.to_thread(
@@ -211,7 +211,7 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
             self.assertEqual(len(cookies), 1, headers)
             self.assertEqual("; Secure" in cookies[0], secure, cookies)
 
-    async def test_a_new_certificate_cuts_nobody_off(self):
+    async def test_a_new_certificate_disconnects_no_viewer(self):
         viewer, = await self.viewers(1)
         await asyncio.to_thread(self.fleet.renew_certificate)
         await self.compose("exec", "-T", "balancer", "sh", "-c", "kill -HUP 1")
@@ -220,16 +220,16 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
             try:
                 return (await asyncio.to_thread(self.fleet.ask_securely, "health/live"))[0] == 200
             except OSError:
-                return False  # the old one, which the new one has not signed
+                return False  # the old certificate, which the new authority has not signed
 
         await self.eventually(is_used, "the balancer keeps its certificate")
         await viewer.look((1.0, 2.0, 8.0))
-        await viewer.pictures(1)
+        await viewer.wait_frames(1)
         self.assertEqual(viewer.losses, [])
         await self.assert_restarted_when_it_dies(viewer)
 
     async def assert_restarted_when_it_dies(self, viewer):
-        """Which the engine does not do for what it was told to stop."""
+        """Engines do not restart a container that was stopped by a command."""
         name = await asyncio.to_thread(self.fleet.balancer)
         first = await asyncio.to_thread(self.machine.inspect, name, "{{.State.Pid}}")
         os.kill(first, signal.SIGKILL)
@@ -241,7 +241,7 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
         await self.eventually(is_back, "the balancer that died is not restarted")
         await viewer.whole()
 
-    async def test_viewers_of_a_killed_node_are_soon_back_and_others_notice_nothing(self):
+    async def test_viewers_of_a_killed_node_reconnect_and_others_are_not_affected(self):
         viewers = await self.viewers(3)
         nodes = await self.nodes_of(viewers)
         victim, others = viewers[0], viewers[1:]
@@ -256,9 +256,9 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
         await self.docker("kill", nodes[0])
         await asyncio.gather(self.move(others, 6), victim.whole())
         loss, = victim.losses
-        print(f"fleet: killed node, viewer whole again after {loss.seconds:.2f} s", flush=True)
+        print(f"fleet: killed node, viewer restored after {loss.seconds:.2f} s", flush=True)
         self.assertLess(loss.seconds, MOST_SECONDS_AWAY)
-        await self.assert_as_wished(victim)
+        await self.assert_view_restored(victim)
         self.assertNotEqual((await self.nodes_of([victim]))[0], nodes[0])
         after = await self.at_rest(victim)
         self.assertLess(difference(before, after), 3.0)
@@ -268,8 +268,8 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
                   "before", flush=True)
             self.assertLess(viewer.longest_gap, before + MOST_SECONDS_OF_NOTICE)
 
-    async def test_a_node_that_hangs_is_cut_off(self):
-        """Its connections stay open and say nothing: only the balancer can tell."""
+    async def test_a_hanging_node_is_disconnected(self):
+        """Its connections stay open without data: only the balancer can detect it."""
         viewers = await self.viewers(3)
         nodes = await self.nodes_of(viewers)
         started = time.monotonic()
@@ -281,16 +281,16 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
             noticed = viewers[0].losses[0].at - started
             await viewers[0].whole()
             away = viewers[0].losses[0].back_at - started
-            print(f"fleet: hung node, cut off after {noticed:.2f} s, "
-                  f"viewer whole after {away:.2f} s", flush=True)
+            print(f"fleet: hung node, disconnected after {noticed:.2f} s, "
+                  f"viewer restored after {away:.2f} s", flush=True)
             self.assertLess(away, 2 * MOST_SECONDS_AWAY)
-            await self.assert_as_wished(viewers[0])
+            await self.assert_view_restored(viewers[0])
             self.assertEqual([viewer.losses for viewer in viewers[1:]], [[], []])
         finally:
             await self.docker("unpause", nodes[0])
 
     async def test_a_rolling_update_fails_no_request(self):
-        """A new node comes first, then an old one goes, while requests and viewers keep coming."""
+        """New nodes start before old ones stop, under continuous requests and new viewers."""
         viewers = await self.viewers(2)
         old = await self.nodes_of(viewers)
         answers, calls, greetings = [], [], []
@@ -307,9 +307,9 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
                 await asyncio.sleep(0.1)
 
         async def change():
-            """What may be done once only, and is not sent again unless it was not done. A node that
-            has just begun can do it, too: it needs no scene."""
-            patch = {"patch": wishes(1)[0].settings}
+            """A call that must not be executed twice. It is retried only if it was not executed. A
+            node that has just started can execute it too: it needs no scene."""
+            patch = {"patch": view_states(1)[0].settings}
             while not stop.is_set():
                 try:
                     await asyncio.to_thread(call, self.fleet.url, "settings.patch", patch, timeout=30)
@@ -331,7 +331,7 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
             await asyncio.sleep(1)
         stop.set()
         await asyncio.gather(*load)
-        # The balancer writes down what it could not serve.
+        # The balancer logs the requests that it could not serve.
         lines = (await self.compose("logs", "--no-color", "balancer")).splitlines()
         refused = "\n".join(line for line in lines if "HTTP/1" in line)
         print(f"fleet: rolling update, {len(answers)} requests, {len(calls)} calls and "
@@ -344,10 +344,10 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
             self.assertEqual({loss.code for loss in viewer.losses}, {1001})
             print("fleet: rolling update, viewer away for "
                   f"{[round(loss.seconds, 2) for loss in viewer.losses]} s", flush=True)
-            await self.assert_as_wished(viewer)
+            await self.assert_view_restored(viewer)
 
     async def query(self, expression):
-        """What Prometheus answers at this moment: a list of series."""
+        """The current result of a query: a list of series."""
         words = urllib.parse.urlencode({"query": expression})
         body = await asyncio.to_thread(self.machine.inside, "curl", "--silent", "--fail",
                                        f"http://127.0.0.1:9090/api/v1/query?{words}")
@@ -364,9 +364,9 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
             self.assertLess(time.monotonic(), deadline, what)
             await asyncio.sleep(1)
 
-    async def test_prometheus_measures_what_the_dashboard_shows(self):
-        """The provisioned configuration in Debian's Prometheus, while viewers look around: it finds
-        every node, every panel has numbers and every alert can be judged."""
+    async def test_prometheus_has_data_for_every_panel(self):
+        """The provisioned configuration in Debian's Prometheus, while cameras move: it scrapes
+        every node, every panel has data and every alert can be evaluated."""
         await self.compose("up", "--detach", "--no-build", "prometheus")
 
         async def every_node():
@@ -402,8 +402,8 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
             self.machine.inside, "curl", "--silent", "http://127.0.0.1:9090/api/v1/rules"))
         return [rule for group in answer["data"]["groups"] for rule in group["rules"]]
 
-    async def test_alerts_come_when_they_should(self):
-        """By the tool of Debian's Prometheus."""
+    async def test_alerts_fire_when_they_should(self):
+        """With promtool of Debian's Prometheus."""
         folder = os.path.join(self.site.folder, "alerts")
         shutil.copytree(os.path.join(DEPLOY, "prometheus"), folder)
         shutil.copy(os.path.join(os.path.dirname(__file__), "prometheus/alerts_test.yml"), folder)
@@ -415,7 +415,7 @@ class FleetTest(unittest.IsolatedAsyncioTestCase):
 
 
 def panels():
-    """Title and expression of everything that the dashboard shows."""
+    """Title and expression of every panel of the dashboard."""
     with open(os.path.join(DEPLOY, "grafana/dashboards/heliograph.json"), encoding="utf-8") as file:
         for panel in json.load(file)["panels"]:
             for target in panel["targets"]:
@@ -423,11 +423,11 @@ def panels():
 
 
 async def greeting(url):
-    """One viewer that comes, greets and goes; None or what went wrong."""
-    viewer = ReplayingViewer(url, TOKEN, Wish(NAMES[0]))
+    """One viewer that connects, calls hello and disconnects. Returns None or the failure."""
+    viewer = ReplayingViewer(url, TOKEN, ViewState(NAMES[0]))
     try:
         return await viewer.greet_once()
-    except Exception as failure:  # whatever it is, it is reported
+    except Exception as failure:  # every failure is reported
         return repr(failure)
 
 

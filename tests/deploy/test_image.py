@@ -1,4 +1,4 @@
-"""The server's image: built from a clean checkout, hardened, limited, and what is in it."""
+"""The server's image, built from a clean checkout: contents, hardening, limits."""
 
 import asyncio
 import contextlib
@@ -13,9 +13,9 @@ import unittest
 from harness import images
 from harness.checkout import clone
 from harness.files import DEPLOY, documents
-from harness.pictures import (SAME_PICTURE, decode_png, largest_difference_of_means, read,
+from harness.image_comparison import (SAME_IMAGE, decode_png, largest_difference_of_means, read,
                               render)
-from harness.replaying_viewer import ReplayingViewer, Wish
+from harness.replaying_viewer import ReplayingViewer, ViewState
 from harness.scenes import generate
 from harness.servers import HARDENED, TOKEN, Container, get, make_certificate, measurement
 from harness.site import GATEWAY, Site
@@ -23,7 +23,7 @@ from harness.site import GATEWAY, Site
 MOST_BYTES = 280e6
 SOFTWARE_DEVICE = "llvmpipe"
 LARGE = ("glossy_sponza_1", "glossy_sponza_2")
-# Three seconds of two processors.
+# Three seconds on two processors.
 MOST_SECONDS_TO_START = 6.0
 
 
@@ -46,7 +46,7 @@ class Image(unittest.IsolatedAsyncioTestCase):
         return container
 
     def files(self):
-        """Every file of the image, with the bytes of small ones."""
+        """Every file of the image, with the content of small ones."""
         archive = os.path.join(self.site.folder, "files.tar")
         self.machine.docker("create", "--name", "files", images.SERVER)
         try:
@@ -59,7 +59,7 @@ class Image(unittest.IsolatedAsyncioTestCase):
                 small = member.isfile() and member.size < 2 ** 20
                 yield member, tar.extractfile(member).read() if small else b""
 
-    def test_is_small_and_says_what_it_is(self):
+    def test_is_small_and_labelled(self):
         image = self.machine.inspect(images.SERVER)
         print(f"image: {image['Size'] / 1e6:.0f} MB unpacked", flush=True)
         self.assertLess(image["Size"], MOST_BYTES)
@@ -70,9 +70,9 @@ class Image(unittest.IsolatedAsyncioTestCase):
         for name in ("title", "description", "licenses", "version", "revision"):
             self.assertTrue(labels[f"org.opencontainers.image.{name}"], name)
 
-    async def test_one_command_of_compose_builds_and_starts_the_same(self):
-        """From a clean checkout, as the first lines of the file tell for Compose 1.29; without
-        Grafana, whose image comes from a registry. What this machine has built is built no more."""
+    async def test_one_compose_command_builds_and_starts_it(self):
+        """From a clean checkout, as the first lines of the file describe for Compose 1.29; without
+        Grafana, whose image comes from a registry. Images built before are reused."""
         checkout = os.path.join(self.site.folder, "composed")
         clone(checkout)
         origin = {"revision": "abcdef", "created": "2001-02-03T04:05:06Z",
@@ -99,12 +99,12 @@ class Image(unittest.IsolatedAsyncioTestCase):
                           for name in origin}, origin)
         self.assertEqual(composed["RootFS"], self.machine.inspect(images.SERVER)["RootFS"])
         url = f"http://{self.machine.address}:8080/"
-        async with ReplayingViewer(url, TOKEN, Wish("glossy_sponza_1")) as viewer:
+        async with ReplayingViewer(url, TOKEN, ViewState("glossy_sponza_1")) as viewer:
             await viewer.look((1.0, 2.0, 8.0))
-            await viewer.pictures(1)
+            await viewer.wait_frames(1)
             self.assertEqual(viewer.losses, [])
 
-    def test_holds_no_secret_and_no_tool_of_the_build(self):
+    def test_contains_no_secrets_and_no_build_tools(self):
         history = self.machine.docker("history", "--no-trunc", "--format", "{{.CreatedBy}}",
                                       images.SERVER)
         self.assertNotRegex(history, r"(?i)(token|password|secret)=[^ .]")
@@ -117,18 +117,18 @@ class Image(unittest.IsolatedAsyncioTestCase):
                                     r"\.(key|o|hpp|cpp)$|/bin/.*(gcc|apt|dpkg|perl)")
                 self.assertNotRegex(content, rb"BEGIN [A-Z ]*PRIVATE KEY")
 
-    def test_lets_nobody_become_another_user(self):
+    def test_has_no_set_user_programs(self):
         for member, _ in self.files():
             with self.subTest(member.name):
                 self.assertFalse(member.isfile() and member.mode & 0o6000, "set-user or set-group")
                 sticky = member.isdir() and member.mode & 0o1000
                 writable = not member.issym() and member.mode & 0o002 and member.type in (
                     tarfile.REGTYPE, tarfile.DIRTYPE)
-                self.assertFalse(writable and not sticky, "everybody may write it")
+                self.assertFalse(writable and not sticky, "every user may write it")
                 self.assertFalse(set(member.pax_headers) & {"SCHILY.xattr.security.capability"})
 
-    def test_can_write_only_where_it_is_declared(self):
-        """Under the options that the documentation tells to run it with."""
+    def test_can_write_to_declared_folders_only(self):
+        """With the options of the documented command."""
         container = self.container("writer")
         container.wait_healthy()
         probe = ("find / -type d \\( -path /proc -o -path /sys \\) -prune -o -type d -print | "
@@ -141,31 +141,31 @@ class Image(unittest.IsolatedAsyncioTestCase):
         self.assertEqual(outside, [])
         self.assertIn("/var/cache/heliograph", writable)
 
-    async def test_hardened_and_without_a_way_out_it_streams_what_the_host_renders(self):
-        """No capability, no new privileges, a root that cannot be written, and no connection but
-        those that come to its port."""
+    async def test_hardened_and_isolated_it_renders_what_the_host_renders(self):
+        """No capabilities, no new privileges, a read-only root, and no connections except incoming
+        ones on its port."""
         container = self.container("alone", serve=("--scene", "glossy_sponza_1", "--width", "160",
                                                    "--height", "90"))
-        self.assertTrue(self.reaches_out("alone"), "the test cannot tell")
+        self.assertTrue(self.reaches_out("alone"), "not connected before the isolation")
         self.machine.inside("iptables", "-I", "DOCKER-USER", "-i", "docker0", "-m", "conntrack",
                             "--ctstate", "NEW", "-j", "DROP")
         self.addCleanup(self.machine.inside, "iptables", "-F", "DOCKER-USER")
         self.assertFalse(self.reaches_out("alone"))
         await asyncio.to_thread(container.wait_healthy)
         path = "api/v1/sessions/main/frame.png?samples=64"
-        status, _, picture = await asyncio.to_thread(container.get, path)
-        self.assertEqual(status, 200, picture)
+        status, _, image = await asyncio.to_thread(container.get, path)
+        self.assertEqual(status, 200, image)
         scene = os.path.join(self.site.folder, "glossy_sponza_1.glb")
         for name in ("glossy_sponza_1.glb", "glossy_sponza_1.hdr"):
             self.machine.docker("cp", f"alone:/usr/share/heliograph/scenes/{name}",
                                 os.path.join(self.site.folder, name))
         host = os.path.join(self.site.folder, "host.png")
         await asyncio.to_thread(render, scene, host, samples=64)
-        difference = largest_difference_of_means(decode_png(picture), read(host))
-        print(f"container: at most {difference:.2f} of 255 from the host's picture", flush=True)
-        self.assertLess(difference, SAME_PICTURE)
+        difference = largest_difference_of_means(decode_png(image), read(host))
+        print(f"container: at most {difference:.2f} of 255 from the host's image", flush=True)
+        self.assertLess(difference, SAME_IMAGE)
 
-        async with ReplayingViewer(container.url, TOKEN, Wish("glossy_sponza_1")) as viewer:
+        async with ReplayingViewer(container.url, TOKEN, ViewState("glossy_sponza_1")) as viewer:
             self.assertIn(SOFTWARE_DEVICE, (await viewer.call("hello"))["device"]["name"])
             before = viewer.frames
             for step in range(10):
@@ -175,24 +175,24 @@ class Image(unittest.IsolatedAsyncioTestCase):
             self.assertGreater(viewer.frames, before + 5)
             self.assertEqual(viewer.losses, [])
 
-    def test_its_first_picture_is_soon_there(self):
-        """Of the demo scene, with the shaders that the image has compiled."""
+    def test_its_first_frame_is_fast(self):
+        """Of the demo scene, with the shaders compiled in the image."""
         container = self.container("starting", serve=("--width", "640", "--height", "360"))
         spent = container.wait_ready()
-        print(f"container: first picture after {time.monotonic() - container.started_at:.1f} s, "
+        print(f"container: first frame after {time.monotonic() - container.started_at:.1f} s, "
               f"{spent:.1f} s of processor time", flush=True)
         self.assertLess(spent, MOST_SECONDS_TO_START)
         print(f"container: healthy after {container.wait_healthy():.1f} s", flush=True)
 
-    def test_has_what_the_driver_of_a_gpu_links(self):
-        """NVIDIA's, which is mounted beside, is built for C libraries before 2.34, too."""
+    def test_contains_the_libraries_that_a_gpu_driver_links(self):
+        """NVIDIA's driver, which is mounted at run time, also supports glibc before 2.34."""
         names = {os.path.basename(member.name) for member, _ in self.files()}
         self.assertLessEqual({"libc.so.6", "libdl.so.2", "libm.so.6", "libpthread.so.0",
                               "librt.so.1"}, names)
 
-    def test_told_to_use_a_gpu_it_takes_nothing_else(self):
-        """The manifests' environment for a GPU, where there is none: the driver's file is there and
-        names what is not, and no software device takes its place."""
+    def test_a_missing_gpu_is_an_error(self):
+        """The manifests' environment for a GPU on a machine without one: the driver file exists,
+        library does not, and the software device must not be used instead."""
         driver = "/usr/share/heliograph/nvidia_icd.json"
 
         def said(*command):
@@ -203,7 +203,7 @@ class Image(unittest.IsolatedAsyncioTestCase):
         with self.assertRaisesRegex(RuntimeError, "no compatible driver"):
             said("serve")
 
-    def test_asks_after_its_health_by_tls(self):
+    def test_health_check_uses_tls(self):
         certificate = os.path.join(self.site.folder, "server.pem")
         make_certificate(certificate, self.machine.address)
         container = self.container(
@@ -216,7 +216,7 @@ class Image(unittest.IsolatedAsyncioTestCase):
         self.assertEqual(get(secure, certificate=certificate)[0], 200)
 
     def reaches_out(self, container):
-        """Whether a connection from inside arrives on this side."""
+        """Whether a connection from inside the container arrives on the host."""
         with socket.create_server((GATEWAY, 0)) as server:
             port = server.getsockname()[1]
             self.machine.docker("exec", container, "timeout", "3", "nc", "-w", "2", GATEWAY,
@@ -228,9 +228,9 @@ class Image(unittest.IsolatedAsyncioTestCase):
             except TimeoutError:
                 return False
 
-    def test_has_threads_for_its_processors_only(self):
-        """Those of both pools, the rasterizer's and the one of what is computed beside it, of which
-        one is the thread that gives the work."""
+    def test_thread_pools_match_the_cpu_quota(self):
+        """Threads of both pools: the software device's, and TBB's, of which one is the calling
+        thread."""
         if os.cpu_count() < 2:
             self.skipTest("there is only one processor to be had")
         wide = self.container("wide", port=8081)
@@ -242,13 +242,13 @@ class Image(unittest.IsolatedAsyncioTestCase):
         self.assertLessEqual(len(narrow.threads()),
                              len(wide.threads()) - 2 * (os.cpu_count() - 1))
 
-    async def test_keeps_to_its_limits_and_tells_them(self):
+    async def test_enforces_and_reports_its_limits(self):
         memory, cpus = 1280 * 2 ** 20, 0.5
         container = self.container("limited", "--memory", str(memory), "--memory-swap", str(memory),
                                    "--cpus", str(cpus))
         await asyncio.to_thread(container.wait_healthy)
-        wish = Wish("glossy_sponza_1", size=(320, 180))
-        async with ReplayingViewer(container.url, TOKEN, wish) as viewer:
+        view = ViewState("glossy_sponza_1", size=(320, 180))
+        async with ReplayingViewer(container.url, TOKEN, view) as viewer:
             spent, started = container.processor_seconds(), time.monotonic()
             while time.monotonic() - started < 6:
                 await viewer.look((time.monotonic() - started, 2.0, 8.0))
@@ -263,10 +263,10 @@ class Image(unittest.IsolatedAsyncioTestCase):
         self.assertEqual(measurement(container.url, "heliograph_memory_limit_bytes"), memory)
         self.assertEqual(measurement(container.url, "heliograph_cpu_limit_cores"), cpus)
 
-    async def test_the_manifests_give_it_the_memory_that_it_needs(self):
-        """Asked for is what it holds while the cameras of two sessions move in the demo scene beside
-        its own; the limit leaves room for as many pixels as are allowed, and for another scene of
-        this size to come while they are shown."""
+    async def test_the_manifests_request_enough_memory(self):
+        """The request covers two sessions with moving cameras in the demo scene, beside main. The
+        limit covers the allowed number of pixels, and loading another scene of this size while
+        they are shown."""
         folder = os.path.join(self.site.folder, "large")
         await asyncio.to_thread(generate, folder, "--only", LARGE[1])
         beside = [word for name in os.listdir(folder) for word in (
@@ -282,7 +282,7 @@ class Image(unittest.IsolatedAsyncioTestCase):
                     "scene.load", {"name": LARGE[1]}, timeout=300))
         pixel = (two - one) / (640 * 360)
         print(f"container: {two / 2 ** 20:.0f} MiB with three sessions in the demo scene, at most "
-              f"{most / 2 ** 20:.0f} while another comes, {pixel:.0f} bytes a pixel", flush=True)
+              f"{most / 2 ** 20:.0f} while another loads, {pixel:.0f} bytes per pixel", flush=True)
         pod = documents(os.path.join(DEPLOY, "kubernetes/deployment.yaml"))[0]["spec"]["template"]
         server = pod["spec"]["containers"][0]
         asked, limit = (mebibytes(server["resources"][kind]["memory"]) * 2 ** 20
@@ -294,12 +294,12 @@ class Image(unittest.IsolatedAsyncioTestCase):
 
     @contextlib.asynccontextmanager
     async def looking_around(self, container):
-        """A viewer in a session of its own whose camera has moved."""
-        wish = Wish(LARGE[0], size=(640, 360))
-        async with ReplayingViewer(container.url, TOKEN, wish) as viewer:
+        """A viewer in its own session, with a moved camera."""
+        view = ViewState(LARGE[0], size=(640, 360))
+        async with ReplayingViewer(container.url, TOKEN, view) as viewer:
             for step in range(3):
                 await viewer.look((0.1 * step, 2.0, 8.0))
-                await viewer.pictures(1)
+                await viewer.wait_frames(1)
             yield viewer
 
     async def most_memory(self, container, work):
@@ -311,23 +311,23 @@ class Image(unittest.IsolatedAsyncioTestCase):
         task.result()
         return max(most, container.memory_bytes())
 
-    def test_too_little_memory_ends_the_container_not_the_machine(self):
+    def test_exceeding_memory_kills_the_container_only(self):
         memory = 48 * 2 ** 20
         container = self.container("starved", "--memory", str(memory), "--memory-swap", str(memory))
         deadline = time.monotonic() + 90
         while container.running():
             self.assertLess(time.monotonic(), deadline, "it lives in 48 MiB")
             time.sleep(0.2)
-        # By the kernel, for this reason: a server that falls over for another one ends, too. The
-        # engine may hear of the end before it hears of the reason.
+        # Killed by the kernel for this reason; a crash would end the container too. The engine may
+        # learn of the exit before it learns of the reason.
         while not container.state()["OOMKilled"]:
             self.assertLess(time.monotonic(), deadline, f"{container.state()}\n{container.log()}")
             time.sleep(0.2)
 
-    async def test_sends_its_viewers_away_when_it_ends(self):
+    async def test_closes_viewers_on_shutdown(self):
         container = self.container("ending", "--env", "HELIOGRAPH_DRAIN_NOTICE=1")
         await asyncio.to_thread(container.wait_healthy)
-        async with ReplayingViewer(container.url, TOKEN, Wish("glossy_sponza_1")) as viewer:
+        async with ReplayingViewer(container.url, TOKEN, ViewState("glossy_sponza_1")) as viewer:
             started = time.monotonic()
             await asyncio.to_thread(self.machine.docker, "stop", "--time", "20", "ending")
             seconds = time.monotonic() - started
@@ -337,13 +337,13 @@ class Image(unittest.IsolatedAsyncioTestCase):
         self.assertLess(seconds, 10)
         self.assertEqual(container.state()["ExitCode"], 0)
 
-    def test_names_its_devices(self):
+    def test_lists_its_devices(self):
         listed = self.machine.docker("run", "--rm", "--read-only", images.SERVER, "devices")
         self.assertIn(SOFTWARE_DEVICE, listed)
 
 
 def mebibytes(quantity):
-    """As Kubernetes writes it: 512Mi, 2Gi."""
+    """In the notation of Kubernetes: 512Mi, 2Gi."""
     return int(quantity[:-2]) * {"Mi": 1, "Gi": 1024}[quantity[-2:]]
 
 

@@ -42,18 +42,18 @@ class Schema(unittest.TestCase):
         return subprocess.run([program("node"), os.path.join(self.folder, "check.mjs")],
                               input=json.dumps(checked), text=True, capture_output=True, timeout=300)
 
-    def test_objects_are_right(self):
+    def test_objects_are_valid(self):
         done = self.check(objects())
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
-    def test_the_documented_overlay_is_right(self):
+    def test_the_documented_overlay_is_valid(self):
         with tempfile.TemporaryDirectory() as folder:
             done = self.check(rendered_overlay(folder))
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
-    def test_the_check_finds_what_is_wrong(self):
+    def test_the_check_detects_errors(self):
         for change in (lambda spec: spec.update(replicas="three"),
-                       lambda spec: spec["template"]["spec"].update(runAsNobody=True),
+                       lambda spec: spec["template"]["spec"].update(runAsUnknown=True),
                        lambda spec: spec["template"]["spec"]["containers"][0].pop("name")):
             deployment = copy.deepcopy(one(objects(), "Deployment"))
             change(deployment["spec"])
@@ -62,8 +62,8 @@ class Schema(unittest.TestCase):
 
 
 class Pod(unittest.TestCase):
-    """Podman runs what one node would: init container, volumes, limits and security context. It is
-    not Kubernetes: nobody probes, and no service leads to the pod."""
+    """Podman runs what a node would: init container, volumes, limits and security context. Unlike in
+    Kubernetes there are no probes and no service."""
 
     @classmethod
     def setUpClass(cls):
@@ -96,12 +96,12 @@ class Pod(unittest.TestCase):
         pod = pod_of(one(objects(), "Deployment"))
         for container in pod["spec"]["containers"] + pod["spec"]["initContainers"]:
             container["image"] = "localhost/heliograph:latest"
-            # In the machine's own network there are no ports to map, and nobody probes.
+            # In the host's network there are no ports to map, and there are no probes.
             for member in ("ports", "startupProbe", "readinessProbe", "livenessProbe"):
                 container.pop(member, None)
-        # Podman 4.3 removes an init container that runs once before it has noticed its end.
+        # Podman 4.3 may remove a one-shot init container before it has registered its exit.
         pod["metadata"]["annotations"] = {"io.podman.annotations.init.container.type": "always"}
-        # How podman wants secrets written depends on its version.
+        # The syntax of secrets depends on podman's version.
         token, = [entry for entry in pod["spec"]["containers"][0]["env"]
                   if entry["name"] == "HELIOGRAPH_TOKEN"]
         token.pop("valueFrom")

@@ -1,4 +1,4 @@
-"""A viewer far away: slow, late and lossy."""
+"""A viewer on a slow link with latency and packet loss."""
 
 import asyncio
 import math
@@ -7,7 +7,7 @@ import time
 import unittest
 
 from harness import images
-from harness.replaying_viewer import ReplayingViewer, Wish
+from harness.replaying_viewer import ReplayingViewer, ViewState
 from harness.scenes import NAMES, make_scenes
 from harness.servers import TOKEN, Container
 from harness.site import Site
@@ -30,10 +30,10 @@ class BadLine(unittest.IsolatedAsyncioTestCase):
         cls.container.wait_healthy()
 
     async def watch(self, line):
-        """Moves the camera all the time; gives the seconds from each move to its picture."""
+        """Moves the camera continuously. Returns the seconds from each move to its frame."""
         with WideArea(self.machine, line):
-            wish = Wish(NAMES[0], size=(320, 180))
-            viewer = ReplayingViewer(f"http://{FAR}:8080/", TOKEN, wish)
+            view = ViewState(NAMES[0], size=(320, 180))
+            viewer = ReplayingViewer(f"http://{FAR}:8080/", TOKEN, view)
             async with viewer:
                 viewer.round_trips.clear()
                 before, started = viewer.frames, time.monotonic()
@@ -48,18 +48,18 @@ class BadLine(unittest.IsolatedAsyncioTestCase):
                 self.assertFalse(viewer.awaited(), "the last move was never shown")
         return frames, trips
 
-    async def test_latency_stays_bounded_and_the_picture_alive(self):
+    async def test_latency_stays_bounded_and_frames_keep_coming(self):
         line = Line()
         frames, trips = await self.watch(line)
         half = len(trips) // 2
         early, late = statistics.median(trips[:half]), statistics.median(trips[half:])
         worst = sorted(trips)[int(0.95 * len(trips))]
         print(f"network: 1 Mbit/s, 40 ms each way, 1 % loss: {frames / SECONDS:.1f} frames/s, "
-              f"input to picture {early:.2f} s early, {late:.2f} s late, p95 {worst:.2f} s",
+              f"input to frame {early:.2f} s early, {late:.2f} s late, p95 {worst:.2f} s",
               flush=True)
         self.assertGreater(frames, SECONDS)
         self.assertLess(worst, 2.0)
-        self.assertLess(late, 1.5 * early + 0.2, "old pictures pile up")
+        self.assertLess(late, 1.5 * early + 0.2, "frames are queued")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The Debian packages: each installs into a bare system, runs there and leaves nothing behind."""
+"""The Debian packages: installation on a bare system, operation, complete removal."""
 
 import os
 import re
@@ -13,17 +13,17 @@ import urllib.request
 from harness import packages
 from harness.commands import run, succeeds
 from harness.files import text_of
-from harness.pictures import SAME_PICTURE, largest_difference_of_means, render
+from harness.image_comparison import SAME_IMAGE, largest_difference_of_means, render
 from harness.servers import free_port
 from harness.system import System, check_machine, release_of_this_machine
 
-# What groupadd keeps of the files that it changes.
+# Backups that groupadd makes of the files that it changes.
 COPIES_OF_GROUPS = {"etc/group-", "etc/gshadow-"}
 
 
 class Installed(unittest.TestCase):
-    def test_the_unit_names_the_settings_that_come_with_it(self):
-        """By CMake alone, without a package, too."""
+    def test_the_unit_names_the_installed_configuration(self):
+        """Also without a package, with `cmake --install`."""
         for prefix, settings in (("/usr/local", "/usr/local/etc"), ("/usr", "/etc")):
             with self.subTest(prefix), tempfile.TemporaryDirectory(dir="/var/tmp") as folder:
                 run("cmake", "--install", os.environ["HELIOGRAPH_BUILD"], "--prefix", prefix,
@@ -36,7 +36,7 @@ class Installed(unittest.TestCase):
 
 
 class PackageTest:
-    """What holds for every package; `suite` and `package` tell which."""
+    """Tests of every package; `suite` and `package` select it."""
 
     @classmethod
     def setUpClass(cls):
@@ -48,7 +48,7 @@ class PackageTest:
         cls.system.run("apt-get", "update")
         print(f"package: {os.path.getsize(cls.package) / 1e6:.1f} MB for {cls.suite}", flush=True)
 
-    def test_has_what_a_package_needs(self):
+    def test_has_complete_metadata(self):
         fields = run("dpkg-deb", "--field", self.package)
         self.assertRegex(fields, r"Depends: .*libvulkan1.*libc6.*libembree")
         listed = run("dpkg-deb", "--contents", self.package)
@@ -58,9 +58,9 @@ class PackageTest:
                      "usr/share/heliograph/nvidia_icd.json"):
             self.assertIn(f"./{path}\n", listed + "\n")
 
-    def test_installs_runs_and_goes_without_trace(self):
+    def test_installs_runs_and_is_removed_completely(self):
         system = self.system
-        # Its drivers and libraries stay when it goes: they came first.
+        # Drivers and libraries were installed before it and remain.
         system.install("mesa-vulkan-drivers", *packages.dependencies(self.package))
         before, groups = system.files(), self.groups()
         system.install(self.package)
@@ -69,7 +69,7 @@ class PackageTest:
         self.serves()
         system.run("apt-get", "purge", "--yes", "heliograph")
         self.assertEqual((system.files() ^ before) - COPIES_OF_GROUPS, set())
-        # Where udev has not brought it, the unit's group stays as groups do: files may be its own.
+        # The unit's group remains if udev had not created it, as groups do: it may own files.
         self.assertEqual(self.groups() - groups, {"render"})
 
     def groups(self):
@@ -82,11 +82,11 @@ class PackageTest:
         outside = os.path.join(self.work, "outside.png")
         render(self.system.path(scene), outside, samples=64)
         difference = largest_difference_of_means(self.system.path("/tmp/inside.png"), outside)
-        print(f"package: at most {difference:.2f} of 255 from the host's picture", flush=True)
-        self.assertLess(difference, SAME_PICTURE)
+        print(f"package: at most {difference:.2f} of 255 from the host's image", flush=True)
+        self.assertLess(difference, SAME_IMAGE)
 
     def serves(self):
-        """As a user without rights, for a while."""
+        """Serves for a while as a user without privileges."""
         port = free_port()
         server = subprocess.Popen(self.system.command(
             "setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", "--no-new-privs", "env",
@@ -100,8 +100,8 @@ class PackageTest:
                 self.assertIsNone(server.poll(), "the server ended")
                 self.assertLess(time.monotonic(), deadline)
                 time.sleep(0.3)
-            picture = f"{address}/api/v1/sessions/main/frame.jpg?samples=1"
-            with urllib.request.urlopen(picture) as answer:
+            image = f"{address}/api/v1/sessions/main/frame.jpg?samples=1"
+            with urllib.request.urlopen(image) as answer:
                 self.assertEqual(answer.read(3), b"\xff\xd8\xff")
         finally:
             server.send_signal(signal.SIGTERM)

@@ -1,5 +1,5 @@
-"""The unit on a system that systemd has really booted: it starts, serves, ends and comes back, and
-may do little. Once for the package of this build, once for the image's."""
+"""The unit on a booted systemd: start, service, stop, restart, privileges. Once with the package of
+this build, once with the image's."""
 
 import asyncio
 import os
@@ -11,13 +11,13 @@ import unittest
 
 from harness import packages
 from harness.booted import INSIDE, Booted
-from harness.replaying_viewer import ReplayingViewer, Wish
+from harness.replaying_viewer import ReplayingViewer, ViewState
 from harness.servers import TOKEN, get
 from harness.system import System, check_machine, release_of_this_machine
 
 UNIT = "heliograph.service"
 URL = f"http://{INSIDE}:8080/"
-MOST_EXPOSED = 2.0  # systemd's own judgement, from 0 (nothing) to 10
+MOST_EXPOSED = 2.0  # systemd's exposure score, from 0 (none) to 10
 
 
 class ServiceTest:
@@ -41,7 +41,7 @@ class ServiceTest:
 
     @staticmethod
     def configure(system):
-        """As the documentation says: secrets where only root reads."""
+        """As documented: secrets in a file that only root can read."""
         path = system.path("/etc/heliograph/environment")
         with open(path, "w", encoding="utf-8") as file:
             file.write(f"HELIOGRAPH_TOKEN={TOKEN}\nHELIOGRAPH_HOST=0.0.0.0\n"
@@ -49,8 +49,8 @@ class ServiceTest:
         os.chmod(path, 0o600)
 
     def setUp(self):
-        """Every test begins with a service that takes viewers."""
-        # Starts that other tests made do not count against the limit of this one's.
+        """Every test begins with a service that is ready for viewers."""
+        # Reset the start limit: starts of other tests must not count.
         self.booted.run("systemctl", "reset-failed", UNIT, check=False)
         self.systemctl("start", UNIT)
         self.wait_ready()
@@ -68,7 +68,7 @@ class ServiceTest:
                 if get(URL + "health/ready", timeout=5)[0] == 200:
                     return
             except OSError:
-                pass  # nobody listens yet
+                pass  # not listening yet
             if time.monotonic() > deadline:
                 raise AssertionError(self.booted.run("journalctl", "--no-pager", "--lines", "20",
                                                      "--unit", UNIT, check=False))
@@ -81,16 +81,16 @@ class ServiceTest:
         status = self.booted.status_of(self.main_process())
         users = {int(number) for number in status["Uid"].split()}
         self.assertEqual(len(users), 1)
-        self.assertIn(users.pop(), range(61184, 65520), "no user that exists only meanwhile")
+        self.assertIn(users.pop(), range(61184, 65520), "not a dynamic user")
         for name in ("CapInh", "CapPrm", "CapEff", "CapBnd", "CapAmb"):
             self.assertEqual(int(status[name], 16), 0, name)
         self.assertEqual(int(status["NoNewPrivs"]), 1)
         self.assertEqual(int(status["Seccomp"]), 2)
 
-    def test_says_that_it_is_well(self):
+    def test_reports_health(self):
         self.booted.run("heliograph", "health")
-        status, _, picture = get(URL + "api/v1/sessions/main/frame.jpg?samples=1")
-        self.assertEqual((status, picture[:3]), (200, b"\xff\xd8\xff"))
+        status, _, image = get(URL + "api/v1/sessions/main/frame.jpg?samples=1")
+        self.assertEqual((status, image[:3]), (200, b"\xff\xd8\xff"))
         self.assertEqual(get(URL + "api/v1/schema", token="wrong-token-0")[0], 401)
 
     def test_writes_its_cache_and_nothing_else(self):
@@ -109,8 +109,8 @@ class ServiceTest:
         print(f"service: exposure {exposure} of 10", flush=True)
         self.assertLess(exposure, MOST_EXPOSED)
 
-    async def test_sends_its_viewers_away_when_it_is_stopped(self):
-        async with ReplayingViewer(URL, TOKEN, Wish("glossy_sponza_1")) as viewer:
+    async def test_closes_viewers_when_it_is_stopped(self):
+        async with ReplayingViewer(URL, TOKEN, ViewState("glossy_sponza_1")) as viewer:
             started = time.monotonic()
             await asyncio.to_thread(self.systemctl, "stop", UNIT)
             seconds = time.monotonic() - started
@@ -122,14 +122,14 @@ class ServiceTest:
         self.assertEqual(said, {"ActiveState": "inactive", "Result": "success",
                                 "ExecMainStatus": "0"})
 
-    async def test_comes_back_when_it_dies(self):
-        async with ReplayingViewer(URL, TOKEN, Wish("glossy_sponza_1")) as viewer:
+    async def test_restarts_after_a_crash(self):
+        async with ReplayingViewer(URL, TOKEN, ViewState("glossy_sponza_1")) as viewer:
             before = self.main_process()
             await asyncio.to_thread(self.systemctl, "kill", "--signal", "KILL", UNIT)
             while not viewer.losses:
                 await asyncio.sleep(0.01)
             await viewer.whole(timeout=90)
-            print(f"service: killed, viewer whole again after {viewer.losses[0].seconds:.1f} s",
+            print(f"service: killed, viewer restored after {viewer.losses[0].seconds:.1f} s",
                   flush=True)
         said = self.properties("NRestarts", "ActiveState")
         self.assertEqual(said, {"NRestarts": "1", "ActiveState": "active"})
@@ -146,7 +146,7 @@ class ServiceTest:
                                          "*heliograph*"), "")
         self.assertEqual(self.properties("ActiveState", "LoadState"),
                          {"ActiveState": "inactive", "LoadState": "not-found"})
-        # For the tests that come after this one.
+        # Restore the service for the following tests.
         self.booted.run("dpkg", "--install", "/root/heliograph.deb", timeout=300)
         self.configure(self.booted.system)
 

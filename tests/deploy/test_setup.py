@@ -1,5 +1,5 @@
-"""The README's command on systems that have nothing but themselves: a fresh checkout becomes a
-server with pictures. Everything is fetched and built anew, but for what compilers remember."""
+"""The README's command on bare systems: a fresh checkout becomes a running server. Everything is
+downloaded and built from scratch, except for ccache."""
 
 import os
 import re
@@ -17,7 +17,7 @@ from harness.servers import free_port, get
 from harness.system import System, check_machine
 
 MOST_SECONDS = 3000
-# That of the image's build: what compilers remember depends on the language, too.
+# As in the image's build: ccache entries depend on the language too.
 ENVIRONMENT = ("PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin", "HOME=/root",
                "HELIOGRAPH_BUILD=/build")
 # Of Ubuntu 24.04, for example http://archive.ubuntu.com/ubuntu; Debian's is known to apt.
@@ -25,7 +25,7 @@ UBUNTU = "HELIOGRAPH_UBUNTU_MIRROR"
 
 
 def listed():
-    """Every package, whatever it is for, and whether every release has it."""
+    """Every package of any purpose, and whether every release has it."""
     lines = [line.split() for line in text_of(os.path.join(DEPLOY, "packages")).splitlines()
              if line and not line.startswith("#")]
     return {words[1].removesuffix("?"): not words[1].endswith("?") for words in lines}
@@ -50,7 +50,7 @@ class SetupTest:
     def has(self, package):
         return succeeds(*self.system.command("apt-cache", "show", package))
 
-    def test_what_the_tests_of_deployment_call_is_there(self):
+    def test_programs_of_the_deployment_tests_are_installed(self):
         folder = self.system.path("/listed")
         os.mkdir(folder)
         for name in ("packages", "setup.sh"):
@@ -74,7 +74,7 @@ class SetupTest:
             run("tar", "--extract", "--directory", source, stdin=archive.stdout)
         started, port = time.monotonic(), free_port()
         address = f"http://127.0.0.1:{port}/"
-        # Where the image is built, so that compilers remember the same names.
+        # The same folder as in the image's build, so that ccache entries match.
         binds = [(images.compiler_cache(), "/root/.cache/ccache")]
         with open(os.path.join(self.work, "log"), "w+", encoding="utf-8") as log:
             server = subprocess.Popen(
@@ -84,15 +84,15 @@ class SetupTest:
                 stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True)
             try:
                 self.wait_ready(server, log, address)
-                print(f"setup: from nothing to a picture on {self.suite} in "
+                print(f"setup: from a bare system to the first frame on {self.suite} in "
                       f"{time.monotonic() - started:.0f} s", flush=True)
-                status, _, picture = get(address + "api/v1/sessions/main/frame.jpg?samples=1")
-                self.assertEqual((status, picture[:3]), (200, b"\xff\xd8\xff"))
+                status, _, image = get(address + "api/v1/sessions/main/frame.jpg?samples=1")
+                self.assertEqual((status, image[:3]), (200, b"\xff\xd8\xff"))
             finally:
                 if server.poll() is None:
                     os.killpg(server.pid, signal.SIGTERM)
                 server.wait(timeout=30)
-        self.does_nothing_twice()
+        self.check_repeated_setup()
 
     def wait_ready(self, server, log, address):
         deadline = time.monotonic() + MOST_SECONDS
@@ -106,9 +106,9 @@ class SetupTest:
                 log.seek(0)
                 raise AssertionError(f"run.sh ended with {server.returncode}: {log.read()[-4000:]}")
             time.sleep(0.5)
-        raise AssertionError(f"no picture after {MOST_SECONDS} s")
+        raise AssertionError(f"no frame after {MOST_SECONDS} s")
 
-    def does_nothing_twice(self):
+    def check_repeated_setup(self):
         self.assertIn("every package is installed",
                       self.system.run("/src/deploy/setup.sh", "build", "run"))
 

@@ -1,4 +1,4 @@
-"""What can be told from the files alone: seconds, no engine, no root."""
+"""Static checks of scripts, packages, unit and Dockerfile: seconds, no engine, no root."""
 
 import os
 import re
@@ -17,14 +17,14 @@ class Scripts(unittest.TestCase):
     paths = files("*.sh") + files("*.sh", os.path.join(ROOT, "tests")) + [
         os.path.join(ROOT, ".ci/run")] + files("p*", os.path.join(DEPLOY, "debian"))
 
-    def test_are_right_in_syntax(self):
+    def test_parse(self):
         self.assertGreater(len(self.paths), 6)
         for path in self.paths:
             shell = "bash" if "bash" in text_of(path).split("\n", 1)[0] else "sh"
             with self.subTest(path):
                 run(shell, "-n", path)
 
-    def test_are_to_the_liking_of_shellcheck(self):
+    def test_pass_shellcheck(self):
         if not shutil.which("shellcheck"):
             self.skipTest("shellcheck is not installed")
         run("shellcheck", "--severity=warning", *self.paths)
@@ -48,8 +48,8 @@ class Packages(unittest.TestCase):
                 self.assertNotIn(package, seen)
             seen.add(package)
 
-    def test_that_the_release_has_not_are_done_without_where_the_list_says_so(self):
-        """By the script as a user who may install nothing, who is told what to install."""
+    def test_optional_packages_may_be_missing(self):
+        """Runs setup.sh as an unprivileged user, which prints the packages to install."""
         if not shutil.which("apt-get"):
             self.skipTest("there is no apt-get here")
         without_rights = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"] \
@@ -57,7 +57,7 @@ class Packages(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             os.chmod(folder, 0o755)
             shutil.copy(os.path.join(DEPLOY, "setup.sh"), folder)
-            for listed, code, told in (
+            for listed, code, message in (
                     ("deploy no-such-1?\ndeploy no-such-2? no-such\n", 0,
                      "every package is installed"),
                     ("deploy no-such-1?\ndeploy no-such-2\n", 1,
@@ -71,10 +71,10 @@ class Packages(unittest.TestCase):
                         [*without_rights, os.path.join(folder, "setup.sh"), "deploy"],
                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60)
                     self.assertEqual(said.returncode, code, said.stdout)
-                    self.assertIn(told, said.stdout)
+                    self.assertIn(message, said.stdout)
 
-    def test_stand_nowhere_else(self):
-        """What is compiled against is installed by the script alone."""
+    def test_are_listed_in_one_place(self):
+        """Build dependencies are installed by setup.sh only."""
         listed = {line.split()[1] for line in text_of(os.path.join(DEPLOY, "packages")).splitlines()
                   if line.startswith("build ")}
         dockerfile = text_of(os.path.join(DEPLOY, "Dockerfile"))
@@ -88,7 +88,7 @@ class Unit(unittest.TestCase):
         if not shutil.which("systemd-analyze"):
             self.skipTest("systemd-analyze is not installed")
 
-    def test_is_right(self):
+    def test_is_valid(self):
         with tempfile.TemporaryDirectory() as folder:
             unit = os.path.join(folder, "heliograph.service")
             with open(unit, "w", encoding="utf-8") as file:
@@ -98,18 +98,18 @@ class Unit(unittest.TestCase):
         self.assertEqual((said.returncode, said.stdout), (0, ""))
 
     def test_exposes_little(self):
-        """systemd's own judgement, from 0 (nothing exposed) to 10."""
+        """systemd's exposure score, from 0 (none) to 10."""
         run("systemd-analyze", "security", "--offline=true", "--threshold=20", UNIT)
 
 
 class Dockerfile(unittest.TestCase):
     text = text_of(os.path.join(DEPLOY, "Dockerfile"))
 
-    def test_builds_where_no_frontend_can_be_fetched(self):
+    def test_needs_no_downloaded_frontend(self):
         self.assertNotRegex(self.text, r"(?i)#\s*syntax\s*=")
         self.assertNotIn("<<", self.text)
 
-    def test_leaves_out_tests_and_documents_only(self):
+    def test_context_excludes_tests_and_documents_only(self):
         kept = set(Checkout().files())
         committed = set(run("git", "-C", ROOT, "ls-tree", "-r", "--name-only",
                             "HEAD").splitlines())

@@ -1,4 +1,4 @@
-"""What can be told of the Kubernetes objects from their files alone."""
+"""Static checks of the Kubernetes objects."""
 
 import os
 import re
@@ -8,10 +8,10 @@ import unittest
 from harness import kubernetes
 from harness.files import DEPLOY, ROOT, documents, files, text_of
 
-# An autoscaler does nothing while what it measures is within a tenth of its target.
+# An autoscaler does not act while a metric is within a tenth of its target.
 TOLERANCE = 1.1
-# For documents (RFC 5737): nobody has one of these addresses.
-NOBODY = "192.0.2.0/24"
+# Reserved for documentation (RFC 5737).
+UNUSED_RANGE = "192.0.2.0/24"
 
 
 def number_in(path, pattern):
@@ -70,7 +70,7 @@ class Objects(unittest.TestCase):
 
     def test_pods_are_restricted(self):
         """The profile "restricted" of the pod security standards, which their namespace enforces,
-        and a root that never changes."""
+        and a read-only root."""
         namespace = self.one("Namespace", kubernetes.kustomization()["namespace"])
         labels = namespace["metadata"]["labels"]
         self.assertEqual(labels["pod-security.kubernetes.io/enforce"], "restricted")
@@ -91,17 +91,17 @@ class Objects(unittest.TestCase):
         user = re.search(r"(?m)^USER (\d+):", text_of(os.path.join(DEPLOY, "Dockerfile"))).group(1)
         self.assertEqual(self.pod()["spec"]["securityContext"]["runAsUser"], int(user))
 
-    def test_there_is_time_to_end(self):
+    def test_grace_period_covers_the_shutdown(self):
         pod = self.pod()["spec"]
         pause = int(pod["containers"][0]["lifecycle"]["preStop"]["exec"]["command"][1])
         self.assertGreaterEqual(pod["terminationGracePeriodSeconds"], pause + 20)
 
-    def test_nobody_is_believed_until_an_ingress_is_named(self):
+    def test_no_proxy_is_trusted_without_an_ingress(self):
         self.assertNotIn("HELIOGRAPH_TRUST_PROXY", environment_of(self.one("Deployment")))
         patch, = documents(os.path.join(kubernetes.FOLDER, "ingress/trusted-proxy.yaml"))
-        self.assertEqual(environment_of(patch), {"HELIOGRAPH_TRUST_PROXY": NOBODY})
+        self.assertEqual(environment_of(patch), {"HELIOGRAPH_TRUST_PROXY": UNUSED_RANGE})
 
-    def test_the_plugin_says_which_gpu_it_is(self):
+    def test_the_device_plugin_assigns_the_gpu(self):
         patch, = documents(os.path.join(kubernetes.FOLDER, "gpu/deployment.yaml"))
         for deployment in (self.one("Deployment"), patch):
             self.assertNotIn("NVIDIA_VISIBLE_DEVICES", environment_of(deployment))
@@ -110,8 +110,8 @@ class Objects(unittest.TestCase):
         self.assertGreaterEqual(int(environment_of(patch)["HELIOGRAPH_MAX_PIXELS"]),
                                 8 * 1920 * 1080)
 
-    def test_what_a_component_brings_is_in_the_namespace_of_the_base(self):
-        """Which the base's own kustomization does not see to."""
+    def test_resources_of_components_are_in_the_namespace(self):
+        """The base's kustomization does not set it for components."""
         for folder in kubernetes.COMPONENTS:
             for name in kubernetes.kustomization(folder).get("resources", []):
                 for brought in documents(os.path.join(kubernetes.FOLDER, folder, name)):
@@ -128,14 +128,14 @@ class Scaling(unittest.TestCase):
         cls.targets = {m["pods"]["metric"]["name"]: m["pods"]["target"]["averageValue"]
                        for m in cls.scaler["metrics"]}
 
-    def test_the_autoscaler_alone_says_how_many_pods_there_are(self):
+    def test_only_the_autoscaler_sets_the_number_of_pods(self):
         deployment = kubernetes.one(self.objects, "Deployment")
         self.assertEqual(self.scaler["scaleTargetRef"]["name"], deployment["metadata"]["name"])
         self.assertNotIn("replicas", deployment["spec"])
         budget = kubernetes.one(self.objects, "PodDisruptionBudget")["spec"]
         self.assertLess(budget["maxUnavailable"], self.scaler["minReplicas"])
 
-    def test_it_acts_while_there_is_room_for_another_browser(self):
+    def test_it_acts_while_another_browser_fits(self):
         most = number_in("web_client/src/app/main.ts", r"softwarePixels = ([\d_]+)")
         limit = int(environment_of(kubernetes.one(self.objects, "Deployment"))
                     ["HELIOGRAPH_MAX_PIXELS"])
@@ -150,14 +150,14 @@ class Scaling(unittest.TestCase):
         most = number_in("server/cli/options.hpp", r"max_viewers = (\d+);")
         self.assertLess(TOLERANCE * int(self.targets["heliograph_viewers"]), most)
 
-    def test_the_documented_adapter_gives_what_it_asks_for(self):
+    def test_the_documented_adapter_provides_its_metrics(self):
         given = {rule.get("name", {}).get("as") or rule["seriesQuery"].split("{")[0]
                  for rule in kubernetes.adapter_rules()}
         self.assertEqual(set(self.targets), given)
 
 
 class Overlay(unittest.TestCase):
-    """The documentation's, by kubectl."""
+    """The documented overlay, rendered by kubectl."""
 
     @classmethod
     def setUpClass(cls):
@@ -174,13 +174,13 @@ class Overlay(unittest.TestCase):
                 self.assertEqual(found["metadata"].get("namespace"),
                                  None if found["kind"] == "Namespace" else "heliograph")
 
-    def test_takes_every_image_from_its_registry(self):
+    def test_uses_the_registry_for_every_image(self):
         spec = kubernetes.one(self.objects, "Deployment")["spec"]["template"]["spec"]
         self.assertEqual({container["image"]
                           for container in spec["containers"] + spec["initContainers"]},
                          {"registry.example.org/heliograph:0.1.0"})
 
-    def test_only_the_ingress_reaches_the_server_that_believes_it(self):
+    def test_only_the_ingress_reaches_the_server_that_trusts_it(self):
         policy = kubernetes.one(self.objects, "NetworkPolicy")["spec"]
         comes_from = {port["port"]: [peer["namespaceSelector"]["matchLabels"]
                                      for peer in rule["from"]]
@@ -190,14 +190,14 @@ class Overlay(unittest.TestCase):
                                       "metrics": [{label: "monitoring"}]})
         self.assertEqual(policy["policyTypes"], ["Ingress", "Egress"])
 
-    def test_has_what_the_components_bring_and_the_overlay_sets(self):
+    def test_contains_components_and_overlay(self):
         deployment = kubernetes.one(self.objects, "Deployment")
         environment = environment_of(deployment)
         self.assertEqual(environment["HELIOGRAPH_TRUST_PROXY"], "10.244.0.0/16")
         self.assertEqual(environment["HELIOGRAPH_MAX_PIXELS"], "16600000")
         self.assertIn("HELIOGRAPH_METRICS_LISTEN", environment)
         self.assertIn("VK_DRIVER_FILES", environment)
-        # With every GPU in use, a pod more than there are would wait for one for ever.
+        # If every GPU is in use, an additional pod would never start.
         self.assertEqual(deployment["spec"]["strategy"],
                          {"type": "RollingUpdate",
                           "rollingUpdate": {"maxSurge": 0, "maxUnavailable": 1}})

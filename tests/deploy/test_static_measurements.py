@@ -1,4 +1,4 @@
-"""What can be told of scrapes, alerts and dashboards from their files alone."""
+"""Static checks of scrape configuration, alerts and dashboards."""
 
 import json
 import os
@@ -17,7 +17,7 @@ NAME = r"\b(?:heliograph|process)_[a-z_]*[a-z]\b"
 
 
 def taken():
-    """Every series of the server's, as the one file that writes them names it."""
+    """Every series of the server, from the one file that writes them."""
     text = text_of(os.path.join(ROOT, "server/net/http/metrics.cpp"))
     kinds = [(name, kind) for kind, name in
              re.findall(rf'page\.(counter|gauge|histogram)\(\s*"({NAME})"', text)]
@@ -45,40 +45,40 @@ class Names(unittest.TestCase):
             with self.subTest(f"{os.path.basename(path)}: {name}"):
                 self.assertIn(name, self.known)
 
-    def test_are_found(self):
+    def test_are_parsed(self):
         self.assertGreater(len(self.known), 40)
         self.assertLessEqual({"heliograph_ready", "heliograph_render_seconds_sum",
                               "heliograph_pass_seconds_bucket", "heliograph_memory_limit_bytes",
                               "process_cpu_seconds_total"}, self.known)
         self.assertNotIn("heliograph_render_seconds", self.known)
 
-    def test_of_dashboards_are_those_of_the_program(self):
+    def test_of_dashboards_exist(self):
         for path in boards():
             self.check(path, "\n".join(expressions(path)), least=10)
 
-    def test_of_alerts_are_those_of_the_program(self):
+    def test_of_alerts_exist(self):
         path = os.path.join(DEPLOY, "prometheus/alerts.yml")
         rules = [rule["expr"] for group in documents(path)[0]["groups"] for rule in group["rules"]]
         self.check(path, "\n".join(rules), least=8)
         self.check(RULES, "\n".join(re.findall(r"series: '(.*?)'", text_of(RULES))), least=8)
 
-    def test_of_the_autoscaler_are_those_of_the_program(self):
-        """By the adapter's rules, since it may give them another name."""
+    def test_of_the_autoscaler_exist(self):
+        """Through the adapter's rules, which may rename them."""
         for rule in kubernetes.adapter_rules():
             self.check("the adapter", rule["seriesQuery"])
             self.check("the adapter", rule["metricsQuery"])
 
-    def test_of_the_documentation_are_those_of_the_program(self):
+    def test_of_the_documentation_exist(self):
         path = os.path.join(DEPLOY, "README.md")
         text = text_of(path)
         derived = {rule["name"]["as"] for rule in kubernetes.adapter_rules() if "name" in rule}
-        # Of a histogram the name stands for all its series.
+        # The name of a histogram stands for all its series.
         known = self.known | derived | {re.sub("_bucket$", "", name) for name in self.known}
         self.assertEqual(sorted(set(re.findall(NAME, text)) - known), [])
 
 
 class Alerts(unittest.TestCase):
-    def test_each_is_seen_to_come_and_to_stay_away(self):
+    def test_each_is_tested_firing_and_silent(self):
         groups = documents(os.path.join(DEPLOY, "prometheus/alerts.yml"))[0]["groups"]
         named = {rule["alert"] for group in groups for rule in group["rules"]}
         seen = {True: set(), False: set()}
@@ -87,7 +87,7 @@ class Alerts(unittest.TestCase):
                 seen[bool(check["exp_alerts"])].add(check["alertname"])
         self.assertEqual((named - seen[True], named - seen[False]), (set(), set()))
 
-    def test_are_tried_with_what_the_manifests_allow(self):
+    def test_are_tested_with_the_limits_of_the_manifests(self):
         container, = kubernetes.one(kubernetes.objects(), "Deployment")["spec"]["template"][
             "spec"]["containers"]
         pixels, = [entry["value"] for entry in container["env"]
@@ -96,8 +96,8 @@ class Alerts(unittest.TestCase):
         self.assertEqual(set(limits), {pixels})
 
 
-class ByTheirOwnProgram(unittest.TestCase):
-    """Where it is installed; the image is checked by its own while it is built."""
+class Promtool(unittest.TestCase):
+    """If promtool is installed; the image checks its configuration while it is built."""
 
     def promtool(self, *words):
         found = shutil.which("promtool", path="/usr/bin:/usr/sbin")
@@ -105,10 +105,10 @@ class ByTheirOwnProgram(unittest.TestCase):
             self.skipTest("promtool is not installed")
         return run(found, *words)
 
-    def test_measuring_is_right(self):
+    def test_the_configuration_is_valid(self):
         self.promtool("check", "config", os.path.join(DEPLOY, "prometheus/prometheus.yml"))
 
-    def test_alerts_come_when_they_should(self):
+    def test_alerts_fire_when_they_should(self):
         with tempfile.TemporaryDirectory() as folder:
             for path in (os.path.join(DEPLOY, "prometheus/alerts.yml"), RULES):
                 shutil.copy(path, folder)
@@ -116,7 +116,7 @@ class ByTheirOwnProgram(unittest.TestCase):
 
 
 class Dashboards(unittest.TestCase):
-    def test_use_the_source_that_is_provisioned(self):
+    def test_use_the_provisioned_data_source(self):
         source, = documents(os.path.join(DEPLOY, "grafana/provisioning/datasources/"
                                                  "prometheus.yaml"))[0]["datasources"]
         for path in boards():

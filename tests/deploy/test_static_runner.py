@@ -1,4 +1,4 @@
-"""The tests' own driver: what cannot run is told, and counts as a failure where it is required."""
+"""The test driver: skipped tests are reported, and fail if they are required."""
 
 import os
 import subprocess
@@ -66,8 +66,8 @@ class Driver(unittest.TestCase):
                               text=True, timeout=60)
         return done.returncode, done.stdout
 
-    def test_skips_where_no_engine_can_run(self):
-        """For who is not root, or root without its rights: no engine, no namespaces."""
+    def test_skips_without_an_engine(self):
+        """For an unprivileged user, or root without capabilities: no engine, no namespaces."""
         without = ["setpriv", "--bounding-set=-all"] if os.geteuid() == 0 else []
         code, said = self.drive("test_image", required=False, without=without)
         self.assertEqual(code, 77, said)
@@ -76,7 +76,7 @@ class Driver(unittest.TestCase):
         self.assertEqual(code, 1, said)
         self.assertRegex(said, r"SKIP: \S.*(need root|namespaces)")
 
-    def test_requires_everything_but_what_is_out_of_reach(self):
+    def test_requires_everything_except_what_is_out_of_reach(self):
         for names, required, expected in (
                 (["Passes"], True, 0),
                 (["Fails", "LacksSomething"], False, 1),

@@ -1,4 +1,4 @@
-"""What can be told of services from their files alone."""
+"""Static checks of Compose, Swarm, the balancer and Grafana."""
 
 import json
 import os
@@ -7,11 +7,11 @@ import shutil
 import unittest
 
 from harness.commands import run, succeeds
-from harness.files import DEPLOY, documents, files, server_sources, text_of
+from harness.files import DEPLOY, documents, server_sources, text_of
 
 
 class Options(unittest.TestCase):
-    def test_every_variable_is_one_that_the_program_reads(self):
+    def test_every_variable_is_read_by_the_program(self):
         known = set(re.findall(r'"(HELIOGRAPH_[A-Z_]+)"', server_sources()))
         known |= {"HELIOGRAPH_" + option.upper().replace("-", "_")
                   for option in re.findall(r'"--([a-z-]+)"', server_sources())}
@@ -47,8 +47,8 @@ class Containers(unittest.TestCase):
                     self.assertLessEqual({"memory", "pids"},
                                          service["deploy"]["resources"]["limits"].keys())
 
-    def test_the_balancer_has_room_for_the_threads_of_two(self):
-        """After a reload the old one stays for its viewers. One process watches over both."""
+    def test_the_balancer_may_run_the_threads_of_two_processes(self):
+        """After a reload the old process stays for its viewers. A third one supervises both."""
         threads = int(re.search(r"(?m)^  nbthread (\d+)$", text_of(
             os.path.join(DEPLOY, "balancer/haproxy.cfg"))).group(1))
         compose, stack = (documents(os.path.join(DEPLOY, name))[0]["services"]["balancer"]
@@ -56,7 +56,7 @@ class Containers(unittest.TestCase):
         for limit in (compose["pids_limit"], stack["deploy"]["resources"]["limits"]["pids"]):
             self.assertLess(1 + 2 * threads, limit)
 
-    def test_the_balancer_knows_as_many_nodes_everywhere_as_is_documented(self):
+    def test_the_number_of_nodes_is_consistent_and_documented(self):
         known = re.findall(r"(?m)^  server-template node (\d+-\d+) ", text_of(
             os.path.join(DEPLOY, "balancer/haproxy.cfg")))
         self.assertEqual(len(known), 3)
@@ -64,17 +64,17 @@ class Containers(unittest.TestCase):
         self.assertIn(f"`server-template node {known[0]}`",
                       text_of(os.path.join(DEPLOY, "README.md")))
 
-    def test_nodes_believe_nobody_but_the_balancer(self):
-        """Where it has a fixed address, that one; else those of the stack's own network."""
+    def test_nodes_trust_the_balancer_only(self):
+        """Its fixed address in Compose, the stack's own network in a swarm."""
         compose, stack = (documents(os.path.join(DEPLOY, name))[0]
                           for name in ("compose.yaml", "stack.yaml"))
         balancer = compose["services"]["balancer"]["networks"]["service"]["ipv4_address"]
         network, = stack["networks"]["service"]["ipam"]["config"]
-        for file, believed in ((compose, balancer), (stack, network["subnet"])):
+        for file, trusted in ((compose, balancer), (stack, network["subnet"])):
             environment = file["services"]["heliograph"]["environment"]
-            self.assertEqual(environment["HELIOGRAPH_TRUST_PROXY"], believed)
+            self.assertEqual(environment["HELIOGRAPH_TRUST_PROXY"], trusted)
 
-    def test_nobody_can_log_in_to_grafana(self):
+    def test_grafana_login_is_disabled(self):
         grafana = documents(os.path.join(DEPLOY, "compose.yaml"))[0]["services"]["grafana"]
         for name, value in (("AUTH_BASIC_ENABLED", "false"), ("AUTH_DISABLE_LOGIN_FORM", "true"),
                             ("SECURITY_DISABLE_INITIAL_ADMIN_CREATION", "true"),
@@ -82,8 +82,8 @@ class Containers(unittest.TestCase):
             self.assertEqual(grafana["environment"][f"GF_{name}"], value)
         self.assertRegex(grafana["image"], r":\d+\.\d+\.\d+\}?$")
 
-    def test_allow_the_pixels_that_the_pod_allows(self):
-        """Those that the image's tests find room for."""
+    def test_allow_as_many_pixels_as_the_pod(self):
+        """The image's tests check that this number fits."""
         deployment = documents(os.path.join(DEPLOY, "kubernetes/deployment.yaml"))[0]
         environment = deployment["spec"]["template"]["spec"]["containers"][0]["env"]
         pixels, = [entry["value"] for entry in environment
@@ -94,12 +94,12 @@ class Containers(unittest.TestCase):
                     self.assertEqual(service["environment"]["HELIOGRAPH_MAX_PIXELS"],
                                      f"${{HELIOGRAPH_MAX_PIXELS:-{pixels}}}")
 
-    def test_open_only_the_balancer_to_others(self):
+    def test_publish_only_the_balancer_beyond_loopback(self):
         published = [port for _, name, service in self.services() if name == "compose.yaml"
                      for port in service.get("ports", [])]
         self.assertEqual([port for port in published if "127.0.0.1" not in port], [])
 
-    def test_compose_reads_its_file(self):
+    def test_compose_accepts_its_file(self):
         program = shutil.which("docker-compose")
         if not program:
             self.skipTest("docker-compose is not installed")
@@ -116,10 +116,10 @@ class Containers(unittest.TestCase):
 
 
 class Graphics(unittest.TestCase):
-    """What is given to nodes that have one of NVIDIA's GPUs, wherever they run."""
+    """Environment of nodes with an NVIDIA GPU, for every orchestrator."""
 
     def nodes(self):
-        """What each file says of the servers' environment."""
+        """The environment of the servers in each file."""
         for name in ("compose.gpu.yaml", "stack.gpu.yaml"):
             yield name, documents(os.path.join(DEPLOY, name))[0]["services"]["heliograph"][
                 "environment"]
@@ -131,8 +131,8 @@ class Graphics(unittest.TestCase):
                             text_of(os.path.join(DEPLOY, "README.md"))).group()
         yield "README.md", dict(re.findall(r"-e (\w+)=(\S+)", command))
 
-    def test_see_that_driver_alone_by_the_file_that_is_installed(self):
-        """So that a GPU that is missing is an error, and no software device with its pixels."""
+    def test_see_only_the_installed_driver_file(self):
+        """A missing GPU is then an error; the software device is not used instead."""
         installed = re.search(r"install\(FILES (\S+) DESTINATION \$\{CMAKE_INSTALL_DATADIR\}"
                               r"/(\S+)\)", text_of(os.path.join(DEPLOY, "CMakeLists.txt")))
         path = f"/usr/share/{installed[2]}/{installed[1]}"
@@ -140,30 +140,30 @@ class Graphics(unittest.TestCase):
             with self.subTest(label):
                 self.assertEqual(environment["VK_DRIVER_FILES"], path)
 
-    def test_the_file_names_the_half_of_the_driver_that_needs_no_windows(self):
+    def test_the_driver_file_names_the_library_without_x11(self):
         with open(os.path.join(DEPLOY, "nvidia_icd.json"), encoding="utf-8") as file:
             self.assertEqual(json.load(file), {
                 "file_format_version": "1.0.1",
                 "ICD": {"library_path": "libEGL_nvidia.so.0", "api_version": "1.3"}})
 
-    def test_are_given_all_of_the_driver_that_it_needs_to_make_a_device(self):
+    def test_have_the_driver_capabilities_to_create_a_device(self):
         given = re.search(r"NVIDIA_DRIVER_CAPABILITIES=(\S+)", text_of(
             os.path.join(DEPLOY, "Dockerfile")))[1].split(",")
         self.assertLessEqual({"compute", "graphics"}, set(given))
 
-    def test_have_room_for_full_pictures(self):
+    def test_allow_full_resolution(self):
         for label, environment in self.nodes():
             with self.subTest(label):
                 pixels = re.search(r"\d+", environment["HELIOGRAPH_MAX_PIXELS"]).group()
                 self.assertGreaterEqual(int(pixels), 8 * 1920 * 1080)
 
-    def test_a_swarm_needs_no_spare_one_for_an_update(self):
+    def test_a_swarm_update_needs_no_spare_gpu(self):
         deploy = documents(os.path.join(DEPLOY, "stack.gpu.yaml"))[0]["services"]["heliograph"][
             "deploy"]
         for change in ("update_config", "rollback_config"):
             self.assertEqual(deploy[change]["order"], "stop-first")
 
-    def test_the_engine_reads_the_stack(self):
+    def test_the_engine_accepts_the_stack(self):
         program = shutil.which("docker")
         if not program or "  config " not in run(program, "stack", "--help"):
             self.skipTest("docker with \"stack config\" (23) is not installed")
@@ -172,8 +172,8 @@ class Graphics(unittest.TestCase):
         self.assertIn("kind: NVIDIA-GPU", run(program, "stack", "config", *files_of))
 
 
-class ByTheirOwnPrograms(unittest.TestCase):
-    """Where these are installed; the images are checked by theirs while they are built."""
+class Haproxy(unittest.TestCase):
+    """If HAProxy is installed; the image checks its configuration while it is built."""
 
     def check(self, name, *words, **environment):
         found = shutil.which(name, path="/usr/bin:/usr/sbin")
@@ -181,10 +181,10 @@ class ByTheirOwnPrograms(unittest.TestCase):
             self.skipTest(f"{name} is not installed")
         return run(found, *words, env={**os.environ, **environment})
 
-    def test_the_balancer_is_right(self):
+    def test_the_configuration_is_valid(self):
         release = self.check("haproxy", "-v")
         if int(re.search(r"version (\d+)", release).group(1)) < 3:
-            self.skipTest(f"nodes are hashed by their addresses from 3.0 on, not in {release[:20]}")
+            self.skipTest(f"hashing by address needs HAProxy 3.0; this is {release[:20]}")
         self.check("haproxy", "-c", "-f", os.path.join(DEPLOY, "balancer/haproxy.cfg"),
                    HELIOGRAPH_NODES="localhost", HELIOGRAPH_COOKIE_KEY="check")
 

@@ -10,7 +10,7 @@ import yaml
 from harness import images
 from harness.files import DEPLOY, text_of
 from harness.fleet import add_images
-from harness.replaying_viewer import ReplayingViewer, Wish
+from harness.replaying_viewer import ReplayingViewer, ViewState
 from harness.scenes import NAMES, make_scenes, service_override
 from harness.servers import TOKEN, get
 from harness.site import GATEWAY, Site
@@ -48,16 +48,16 @@ class Swarm(unittest.IsolatedAsyncioTestCase):
         return {line.split()[0]: line.split()[1] for line in lines.splitlines()}
 
     @classmethod
-    def wait_for_replicas(cls, wanted, timeout=600):
+    def wait_for_replicas(cls, expected, timeout=600):
         deadline = time.monotonic() + timeout
-        while {name: cls.replicas().get(name) for name in wanted} != wanted:
+        while {name: cls.replicas().get(name) for name in expected} != expected:
             if time.monotonic() > deadline:
                 raise AssertionError(f"{cls.replicas()}\n" + cls.manager.docker(
-                    "service", "ps", "--no-trunc", *wanted))
+                    "service", "ps", "--no-trunc", *expected))
             time.sleep(0.5)
 
     def machines_of(self, service):
-        """Where its tasks run, told by the manager."""
+        """The machines of its tasks, according to the manager."""
         lines = self.manager.docker("service", "ps", "--filter", "desired-state=running",
                                     "--format", "{{.Node}} {{.CurrentState}}", service)
         return sorted(line.split()[0] for line in lines.splitlines() if "Running" in line)
@@ -65,9 +65,8 @@ class Swarm(unittest.IsolatedAsyncioTestCase):
     def url(self, machine):
         return f"http://{machine.address}:8080/"
 
-    def test_a_session_is_on_one_node_whichever_balancer_is_asked(self):
-        """Also of a balancer that began when others had seen nodes come and go, and so counts them
-        in another order."""
+    def test_every_balancer_routes_a_session_to_the_same_node(self):
+        """Including a balancer that started later and therefore lists the nodes in another order."""
         lost = self.workers[0]
         for service in ("heliograph", "balancer"):
             name, = lost.docker("ps", "--filter", f"name=heliograph_{service}.", "--format",
@@ -84,7 +83,7 @@ class Swarm(unittest.IsolatedAsyncioTestCase):
         self.assertGreater(len(nodes), 1, "nothing is balanced")
 
     def wait_for_the_same_nodes(self, machines):
-        """Until the balancer of each leads viewers to all three, and to no other."""
+        """Waits until every balancer routes to all three nodes and to no other."""
         known, deadline = {}, time.monotonic() + 120
         while len(known) != len(machines) or len(set(known.values())) != 1 or any(
                 None in nodes or len(nodes) != 3 for nodes in known.values()):
@@ -95,20 +94,20 @@ class Swarm(unittest.IsolatedAsyncioTestCase):
             time.sleep(0.2)
 
     def served_by(self, machine, path):
-        """The node's address, or None where none can be reached."""
+        """The node's address, or None if none can be reached."""
         try:
             return get(self.url(machine) + path)[1].get("X-Heliograph-Node")
         except OSError:
             return None
 
-    async def test_nodes_are_told_where_viewers_come_from(self):
+    async def test_nodes_see_the_addresses_of_viewers(self):
         await self.viewers()
         name, = self.manager.docker("ps", "--filter", "name=heliograph_heliograph.", "--format",
                                     "{{.Names}}").split()
         log = text_of(self.manager.inspect(name, "{{json .LogPath}}"))
         self.assertIn(f'"client":"{GATEWAY}"', log.replace("\\", "").replace(": ", ":"))
 
-    def test_what_compose_limits_is_limited_here(self):
+    def test_limits_are_those_of_compose(self):
         for service, pids in (("heliograph", 256), ("balancer", 64)):
             name, = self.manager.docker("ps", "--filter", f"name=heliograph_{service}.", "--format",
                                         "{{.Names}}").split()
@@ -125,17 +124,17 @@ class Swarm(unittest.IsolatedAsyncioTestCase):
                 self.assertFalse([entry for entry in environment if TOKEN in entry])
 
     async def viewers(self):
-        """Through the manager's balancer; enough of them that one is on every node."""
+        """Through the manager's balancer; enough that every node has one."""
         found = []
         for i in range(3):
-            wish = Wish(NAMES[i % 2], eye=(i, 2.0, 8.0))
-            viewer = ReplayingViewer(self.url(self.manager), TOKEN, wish)
+            view = ViewState(NAMES[i % 2], eye=(i, 2.0, 8.0))
+            viewer = ReplayingViewer(self.url(self.manager), TOKEN, view)
             await viewer.__aenter__()
             self.addAsyncCleanup(viewer.__aexit__)
             found.append(viewer)
         return found
 
-    async def test_when_a_machine_is_unplugged_the_service_goes_on(self):
+    async def test_the_service_survives_an_unplugged_machine(self):
         self.assertEqual(self.machines_of("heliograph_heliograph"), ["hg1", "hg2", "hg3"])
         viewers = await self.viewers()
         self.assertEqual(len({viewer.node for viewer in viewers}), 3)
@@ -145,22 +144,22 @@ class Swarm(unittest.IsolatedAsyncioTestCase):
         try:
             deadline = unplugged + 30
             while not any(viewer.losses for viewer in viewers):
-                self.assertLess(time.monotonic(), deadline, "nobody was cut off")
+                self.assertLess(time.monotonic(), deadline, "no viewer was disconnected")
                 await asyncio.sleep(0.05)
             for viewer in viewers:
                 await viewer.whole(timeout=30)
             away = [viewer.losses[0].back_at - unplugged for viewer in viewers if viewer.losses]
             self.assertEqual(len(away), 1)
-            print(f"swarm: unplugged machine, viewer whole again after {away[0]:.1f} s", flush=True)
+            print(f"swarm: unplugged machine, viewer restored after {away[0]:.1f} s", flush=True)
             self.assertLess(away[0], 15)
 
-            async with ReplayingViewer(self.url(self.manager), TOKEN, Wish(NAMES[0])):
+            async with ReplayingViewer(self.url(self.manager), TOKEN, ViewState(NAMES[0])):
                 print("swarm: a new viewer is served "
                       f"{time.monotonic() - unplugged:.1f} s after the unplugging", flush=True)
             deadline = unplugged + 180
             while self.machines_of("heliograph_heliograph").count("hg3") or \
                     len(self.machines_of("heliograph_heliograph")) != 3:
-                self.assertLess(time.monotonic(), deadline, "no replacement came")
+                self.assertLess(time.monotonic(), deadline, "no replacement started")
                 await asyncio.sleep(0.5)
             print(f"swarm: replaced after {time.monotonic() - unplugged:.1f} s", flush=True)
         finally:

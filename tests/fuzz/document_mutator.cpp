@@ -96,7 +96,8 @@ void mutate_member(json& root, std::mt19937& random) {
       target = odd_value(random);
       return;
     case 2:
-      // What stands elsewhere in the document: right in kind now and then, wrong in place.
+      // A value from elsewhere in the document: sometimes of the right type, but for another
+      // member.
       target = json(*all[random() % all.size()]);
       return;
     case 3:

@@ -1,4 +1,4 @@
-// Whatever bytes come: a scene or an ImportError of one line.
+// Arbitrary bytes must give a scene or an ImportError of one line.
 #include <tbb/global_control.h>
 #include <unistd.h>
 
@@ -16,7 +16,7 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 
 namespace {
 
-/// A folder in memory, where the system has such: for one file, written again for each input.
+/// A folder in shared memory where available, for one file that is rewritten for each input.
 class Folder {
  public:
   Folder() {
@@ -35,7 +35,7 @@ class Folder {
   std::filesystem::path path_;
 };
 
-/// What loads must also move.
+/// A scene that loads must also animate.
 void play(const scene::Scene& scene) {
   scene::Pose pose = scene::rest_pose(scene);
   for (const scene::Clip& clip : scene.clips) {
@@ -46,7 +46,7 @@ void play(const scene::Scene& scene) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  // Coverage must not depend on which thread came first.
+  // Coverage must not depend on the order of threads.
   static const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   static const Folder folder;
   static const std::filesystem::path path = folder.file();

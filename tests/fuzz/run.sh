@@ -1,8 +1,8 @@
 #!/bin/sh
-# Fuzzes what reads untrusted files: run.sh gltf|images SECONDS [FOLDER]
-# Builds with clang in FOLDER (build-fuzz beside the project unless said), begins with seeds of the
-# project's own and keeps what it learns in FOLDER/corpus-*. A find is left in FOLDER as crash-*,
-# timeout-* or oom-*; the fuzzer run with that file as its argument shows it again.
+# Fuzzes the readers of untrusted files: run.sh gltf|images SECONDS [FOLDER]
+# Builds with clang in FOLDER (default: build-fuzz in the project), starts with seeds of the
+# project and keeps the corpus in FOLDER/corpus-*. Failures are kept in FOLDER as crash-*,
+# timeout-* or oom-*; run the fuzzer with that file as argument to reproduce one.
 set -eu
 target=$1
 seconds=$2

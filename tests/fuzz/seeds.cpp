@@ -1,4 +1,4 @@
-// Writes the files that the fuzzers begin with: heliograph-fuzz-seeds gltf|images FOLDER
+// Writes the seed files of the fuzzers: heliograph-fuzz-seeds gltf|images FOLDER
 #include <ImfRgbaFile.h>
 #include <ImfTiledRgbaFile.h>
 #include <png.h>
@@ -28,7 +28,7 @@ void write_documents(const std::filesystem::path& folder) {
   write(folder / "everything.glb", everything().glb());
   const GltfBuilder rich = rich_document();
   write(folder / "rich.glb", rich.glb());
-  // One mesh each, so that a change to one does not hide the others.
+  // One mesh each, so that damage to one mesh does not prevent the import of the others.
   for (int mesh = 0; mesh < 4; ++mesh) {
     GltfBuilder single = rich;
     single.json["nodes"] = {{{"mesh", mesh}}};
@@ -79,7 +79,7 @@ Bytes radiance(bool encoded) {
   return file;
 }
 
-/// Runs as Radiance wrote them at first: a pixel of ones repeats the one before.
+/// The old run-length encoding of Radiance: a pixel of ones repeats the previous one.
 Bytes old_radiance() {
   Bytes file;
   const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 16\n";
@@ -90,7 +90,7 @@ Bytes old_radiance() {
   return file;
 }
 
-/// A palette with transparency, interlaced, with what else a PNG file may hold.
+/// An interlaced palette image with transparency and a gAMA chunk.
 Bytes palette_png() {
   Bytes file;
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs a command on the software device of the Mesa that HELIOGRAPH_NEWER_MESA names, a folder made
-# by deploy/newer_mesa.sh: it offers every tracer, so none of their tests may be skipped.
+# by deploy/newer_mesa.sh: it supports every tracer, so none of their tests may be skipped.
 set -euo pipefail
 if [ -z "${HELIOGRAPH_NEWER_MESA:-}" ]; then
   echo "HELIOGRAPH_NEWER_MESA names no folder made by deploy/newer_mesa.sh: not run"

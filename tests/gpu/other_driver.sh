@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs a command on Chromium's software device as if that were a GPU: another driver than Mesa's, with
-# a coarser rasteriser, and the ways that only devices with memory of their own take.
+# Runs a command on Chromium's software device, treated as a GPU: another driver than Mesa's, with
+# a less precise rasterizer, and the code paths of devices with their own memory.
 set -euo pipefail
 driver=/usr/lib/chromium/vk_swiftshader_icd.json
 if [ ! -f "$driver" ]; then

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Makes the mistakes of other renderers, one after the other, in a copy of this source, and checks
-that the test which is there for each of them fails.
+"""Applies each mutant (a known mistake of other renderers) to a copy of this source, and checks
+that its tests fail.
 
     python3 tests/mutants/run.py --work /var/tmp/mutants [--only 3 4a ...]
 
 The copy is of what is committed. It is built whole once and then little by little; what was built
-stays in the folder for the next time. Ends with 1 if a test lets a mistake pass."""
+stays in the folder for the next time. Exits with 1 if a mutant is not caught."""
 
 import argparse
 import os
@@ -50,7 +50,7 @@ def prepare(work):
 
 
 def test(build, mistake):
-    """What GoogleTest says of the mistake's tests: those that ran and those that failed."""
+    """Names of the mutant's tests that ran, and of those that failed."""
     binary = next(build.rglob(mistake.program))
     kernels = "on" if mistake.host_kernels else "off"
     environment = {**os.environ, "HELIOGRAPH_TEST_HOST_KERNELS": kernels}
@@ -62,17 +62,17 @@ def test(build, mistake):
 
 
 def mistaken(source, mistake):
-    """The file's text with the mistake."""
+    """The file's text with the mutation."""
     text = (source / mistake.file).read_text()
     for old, new in ((mistake.old, mistake.new), *mistake.more):
         if text.count(old) != 1:
-            sys.exit(f"{mistake.number}: {mistake.file} has not once: {old}")
+            sys.exit(f"{mistake.number}: {mistake.file} does not contain exactly once: {old}")
         text = text.replace(old, new)
     return text
 
 
 def judge(source, build, mistake):
-    """Whether the tests pass without the mistake and fail with it, and which do."""
+    """Whether the tests pass without the mutation and fail with it, and a message."""
     must("ninja", "-C", build, mistake.program)
     ran, failed = test(build, mistake)
     if not ran or failed:
@@ -85,30 +85,30 @@ def judge(source, build, mistake):
         _, failed = test(build, mistake)
     finally:
         file.write_text(before)
-    return bool(failed), " ".join(failed) or "every test passes"
+    return bool(failed), " ".join(failed) or "all tests pass"
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder of the copy")
-    parser.add_argument("--only", nargs="*", help="numbers of mistakes")
+    parser.add_argument("--only", nargs="*", help="numbers of mutants")
     arguments = parser.parse_args()
     arguments.work.mkdir(parents=True, exist_ok=True)
     source, build = prepare(arguments.work.resolve())
-    wanted = [mistake for mistake in MISTAKES
+    selected = [mistake for mistake in MISTAKES
               if not arguments.only or mistake.number in arguments.only]
-    for mistake in wanted:
-        mistaken(source, mistake)  # a list that has gone stale ends this at once
+    for mistake in selected:
+        mistaken(source, mistake)  # fail early if the list is stale
     passed = []
-    for mistake in wanted:
+    for mistake in selected:
         start = time.monotonic()
-        found, says = judge(source, build, mistake)
-        print(f"{mistake.number:4} {'found ' if found else 'PASSED'} {mistake.what}: {says} "
+        found, message = judge(source, build, mistake)
+        print(f"{mistake.number:4} {'caught' if found else 'MISSED'} {mistake.what}: {message} "
               f"({time.monotonic() - start:.0f} s)", flush=True)
         if not found:
             passed.append(mistake.number)
     if passed:
-        sys.exit("mistakes that no test noticed: " + ", ".join(passed))
+        sys.exit("mutants that no test caught: " + ", ".join(passed))
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@
 #include "protocol/settings/settings.hpp"
 #include "scenes/generator/gltf/document.hpp"
 
-// What the paper varies in its section 4: the scene, one swept value, what moves, the techniques.
+// The parameters of the paper's section 4: scene, one swept value, movement and technique.
 namespace heliograph::paper {
 
 enum class Movement { still, moving_camera, moving_objects_light };
@@ -17,20 +17,20 @@ std::string_view name(Movement movement);
 /// @throws std::invalid_argument
 Movement parse_movement(std::string_view name);
 
-/// The surfaces' roughness where reflections are looked at, the sun's angular diameter in degrees
-/// where shadows are.
+/// The swept value: roughness in scenes of reflections, angular diameter of the sun (degrees) in
+/// scenes of shadows.
 enum class Swept { roughness, angle };
 std::string_view name(Swept swept);
-/// Of a scene of the paper. @throws std::invalid_argument
+/// The swept value of a scene of the paper. @throws std::invalid_argument
 Swept swept_in(std::string_view scene);
 /// The values of the paper's figures.
 std::span<const float> paper_values(Swept swept);
 scenes::Sweep sweep_to(Swept swept, float value);
 
-/// A row of the ladder: a preset, or the preset `separable` with another rectification.
+/// A row of the tables: a preset, or the preset `separable` with another rectification.
 struct Technique {
   std::string name;
-  /// For a renderer that never rests: no mean over samples takes the place of the denoiser.
+  /// Without accumulation, so that the denoised frame is measured even in a static view.
   protocol::Settings settings() const;
 };
 /// The six presets, then `fast_history`, `percentile` and `gradient`.

@@ -28,7 +28,7 @@ struct Options {
   int samples = 512;
   int texture_size = 256;
   float frame_rate = 60.0f;
-  std::string truth = "reference";
+  std::string ground_truth = "reference";
   std::string output;
   std::string device;
   std::string tracer = "auto";
@@ -65,7 +65,8 @@ std::vector<float> values_for(const Options& options, Swept swept) {
 
 void measure_quality(render::Engine& engine, const Options& options,
                      std::vector<Measurement>& measurements) {
-  const Truth source = options.truth == "reference" ? Truth::reference : Truth::accumulated;
+  const GroundTruth source =
+      options.ground_truth == "reference" ? GroundTruth::reference : GroundTruth::accumulated;
   for (const std::string& scene : options.scenes) {
     const Swept swept = swept_in(scene);
     const std::size_t first = measurements.size();
@@ -73,15 +74,15 @@ void measure_quality(render::Engine& engine, const Options& options,
       const Stage stage(engine, scene, sweep_to(swept, value), options.stage());
       for (const std::string& movement : options.movements) {
         const Shot shot = options.shot(movement);
-        const auto truth = stage.truth(source, shot, options.samples);
+        const auto ground_truth = stage.ground_truth(source, shot, options.samples);
         const std::string taken =
             scene + "_" + std::to_string(int(100.0f * value)) + "_" + movement + "_";
-        test::save_picture(taken + "truth", truth.back());
+        test::save_image(taken + "ground_truth", ground_truth.back());
         for (const std::string& preset : options.presets) {
           const auto frames = stage.play(options.of(preset), shot);
-          test::save_picture(taken + preset, frames.back());
+          test::save_image(taken + preset, frames.back());
           measurements.push_back(
-              {scene, swept, value, shot.movement, preset, compare(frames, truth)});
+              {scene, swept, value, shot.movement, preset, compare(frames, ground_truth)});
           const Quality& quality = measurements.back().quality;
           std::fprintf(stderr, "%s %g %s %s: ssim %.4f flicker %.2f luminance %.3f\n",
                        scene.c_str(), double(value), movement.c_str(), preset.c_str(), quality.ssim,
@@ -120,11 +121,11 @@ std::vector<Timing> measure_times(render::Engine& engine, const Options& options
 void run(const Options& options) {
   if (!options.output.empty()) {
     std::filesystem::create_directories(options.output);
-    // Where pictures of tests go.
+    // save_image() writes to this folder.
     setenv("HELIOGRAPH_TEST_OUTPUT", options.output.c_str(), 1);
   }
   render::Engine engine({.device = options.device, .tracer = options.tracer});
-  std::printf("%s, %s, %s pixels, %d frames at %g per second, truth of %d samples\n",
+  std::printf("%s, %s, %s pixels, %d frames at %g per second, ground truth of %d samples\n",
               engine.device().name.c_str(),
               std::string(protocol::enum_name(engine.tracer())).c_str(), options.size.c_str(),
               options.frames, double(options.frame_rate), options.samples);
@@ -150,26 +151,27 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--set", options.settings, "A setting on top of every preset")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
-  app.add_option("--size", options.size, "Picture size")->capture_default_str();
+  app.add_option("--size", options.size, "Frame size")->capture_default_str();
   app.add_option("--frames", options.frames, "Frames of each run")
       ->check(CLI::Range(3, 100000))
       ->capture_default_str();
   app.add_option("--frame-rate", options.frame_rate, "Frames per second of clip time")
       ->check(CLI::Range(1.0f, 1000.0f))
       ->capture_default_str();
-  app.add_option("--samples", options.samples, "Samples per pixel of the truth")
+  app.add_option("--samples", options.samples, "Samples per pixel of ground truth")
       ->check(CLI::Range(1, 65536))
       ->capture_default_str();
   app.add_option("--texture-size", options.texture_size, "Width of the scenes' textures")
       ->check(CLI::Range(16, 4096))
       ->capture_default_str();
-  app.add_option("--truth", options.truth, "The path tracer, or the hybrid's own samples averaged")
+  app.add_option("--truth", options.ground_truth,
+                 "The path tracer, or the hybrid's own samples averaged")
       ->check(CLI::IsMember({"reference", "accumulated"}))
       ->capture_default_str();
   app.add_option("--output", options.output,
-                 "Folder for CSV, JSON and the last picture of every run");
+                 "Folder for CSV, JSON and the last frame of every run");
   app.add_option("--device", options.device, "Part of the Vulkan device's name");
-  app.add_option("--tracer", options.tracer, "What traces rays")->capture_default_str();
+  app.add_option("--tracer", options.tracer, "Ray tracer")->capture_default_str();
   app.add_flag("--without-quality", options.without_quality, "Only frame rates");
   app.add_flag("--without-timings", options.without_timings, "Only quality");
 }

@@ -18,13 +18,13 @@ std::array<double, 256> make_srgb_table() {
   return table;
 }
 
-/// Mean over all values of how much (picture - truth) changed from one frame to the next.
-double change_of_error(const render::Frame& before, const render::Frame& truth_before,
+/// Mean absolute change of (frame - ground truth) between consecutive frames.
+double change_of_error(const render::Frame& before, const render::Frame& ground_truth_before,
                        const render::Frame& now, const render::Frame& truth_now) {
   double sum = 0.0;
   for (std::size_t i = 0; i < now.rgba.size(); ++i) {
     if (i % 4 == 3) continue;
-    const int error_before = int(before.rgba[i]) - int(truth_before.rgba[i]);
+    const int error_before = int(before.rgba[i]) - int(ground_truth_before.rgba[i]);
     const int error_now = int(now.rgba[i]) - int(truth_now.rgba[i]);
     sum += std::abs(error_now - error_before);
   }
@@ -43,19 +43,21 @@ double displayed_luminance(const render::Frame& frame) {
   return sum / static_cast<double>(frame.rgba.size() / 4);
 }
 
-Quality compare(const std::vector<render::Frame>& frames, const std::vector<render::Frame>& truth) {
-  if (frames.size() != truth.size() || frames.size() < 2) {
-    throw std::invalid_argument("at least two frames and as many of the truth are compared");
+Quality compare(const std::vector<render::Frame>& frames,
+                const std::vector<render::Frame>& ground_truth) {
+  if (frames.size() != ground_truth.size() || frames.size() < 2) {
+    throw std::invalid_argument("at least two frames and as many ground truth frames are required");
   }
   Quality quality;
   double light = 0.0;
   double true_light = 0.0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    quality.ssim += test::ssim(frames[i], truth[i]);
+    quality.ssim += test::ssim(frames[i], ground_truth[i]);
     light += displayed_luminance(frames[i]);
-    true_light += displayed_luminance(truth[i]);
+    true_light += displayed_luminance(ground_truth[i]);
     if (i == 0) continue;
-    quality.flicker += change_of_error(frames[i - 1], truth[i - 1], frames[i], truth[i]);
+    quality.flicker +=
+        change_of_error(frames[i - 1], ground_truth[i - 1], frames[i], ground_truth[i]);
   }
   quality.ssim /= static_cast<double>(frames.size());
   quality.flicker /= static_cast<double>(frames.size() - 1);

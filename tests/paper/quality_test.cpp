@@ -9,7 +9,7 @@
 namespace heliograph::paper {
 namespace {
 
-render::Frame picture(std::uint8_t level, std::uint8_t step) {
+render::Frame make_frame(std::uint8_t level, std::uint8_t step) {
   render::Frame frame;
   frame.width = frame.height = 16;
   for (std::uint32_t i = 0; i < frame.width * frame.height; ++i) {
@@ -19,41 +19,42 @@ render::Frame picture(std::uint8_t level, std::uint8_t step) {
   return frame;
 }
 
-TEST(Quality, TheTruthItselfIsPerfect) {
-  const std::vector<render::Frame> truth(3, picture(90, 20));
-  const Quality quality = compare(truth, truth);
+TEST(Quality, GroundTruthIsPerfect) {
+  const std::vector<render::Frame> ground_truth(3, make_frame(90, 20));
+  const Quality quality = compare(ground_truth, ground_truth);
   EXPECT_NEAR(quality.ssim, 1.0, 1e-12);
   EXPECT_EQ(quality.luminance_ratio, 1.0);
   EXPECT_EQ(quality.flicker, 0.0);
 }
 
-TEST(Quality, MovementOfTheTruthIsNoFlicker) {
-  const std::vector<render::Frame> truth = {picture(40, 10), picture(80, 10), picture(120, 10)};
-  EXPECT_EQ(compare(truth, truth).flicker, 0.0);
-  const std::vector<render::Frame> frozen(3, picture(40, 10));
-  EXPECT_EQ(compare(frozen, truth).flicker, 40.0);
+TEST(Quality, GroundTruthMotionIsNoFlicker) {
+  const std::vector<render::Frame> ground_truth = {make_frame(40, 10), make_frame(80, 10),
+                                                   make_frame(120, 10)};
+  EXPECT_EQ(compare(ground_truth, ground_truth).flicker, 0.0);
+  const std::vector<render::Frame> frozen(3, make_frame(40, 10));
+  EXPECT_EQ(compare(frozen, ground_truth).flicker, 40.0);
 }
 
-TEST(Quality, AConstantErrorCostsSimilarityButDoesNotFlicker) {
-  const std::vector<render::Frame> truth(2, picture(90, 20));
-  const std::vector<render::Frame> darker(2, picture(60, 20));
-  const Quality quality = compare(darker, truth);
+TEST(Quality, ConstantErrorLowersSsimWithoutFlicker) {
+  const std::vector<render::Frame> ground_truth(2, make_frame(90, 20));
+  const std::vector<render::Frame> darker(2, make_frame(60, 20));
+  const Quality quality = compare(darker, ground_truth);
   EXPECT_LT(quality.ssim, 0.99);
   EXPECT_EQ(quality.flicker, 0.0);
   EXPECT_LT(quality.luminance_ratio, 0.8);
 }
 
-TEST(Quality, LuminanceIsOfTheLightAndNotOfItsCode) {
-  render::Frame grey = picture(188, 0);  // sRGB 188 is half of the light of white
+TEST(Quality, LuminanceIsLinear) {
+  render::Frame grey = make_frame(188, 0);  // sRGB 188 is half of the light of white
   EXPECT_NEAR(displayed_luminance(grey), 0.5, 0.01);
 }
 
-TEST(Quality, OneFrameIsTooFew) {
-  const std::vector<render::Frame> one(1, picture(90, 20));
+TEST(Quality, SingleFrameIsRejected) {
+  const std::vector<render::Frame> one(1, make_frame(90, 20));
   EXPECT_THROW(compare(one, one), std::invalid_argument);
 }
 
-TEST(Report, HasARowPerTechniqueAndAColumnPerValue) {
+TEST(Report, HasRowPerTechniqueAndColumnPerValue) {
   const std::vector<Measurement> measurements = {
       {"pillars", Swept::angle, 2.0f, Movement::still, "svgf", {0.91, 1.0, 0.5}},
       {"pillars", Swept::angle, 10.0f, Movement::still, "svgf", {0.82, 1.0, 0.5}},
@@ -64,7 +65,7 @@ TEST(Report, HasARowPerTechniqueAndAColumnPerValue) {
   EXPECT_NE(text.find("  best              0.9500   -"), std::string::npos) << text;
 }
 
-TEST(Report, FrameRatesLeaveOutTheWarmUp) {
+TEST(Report, FrameRatesExcludeWarmUp) {
   std::vector<render::Frame> frames(4);
   const float milliseconds[] = {500.0f, 10.0f, 20.0f, 30.0f};
   for (std::size_t i = 0; i < frames.size(); ++i) {

@@ -21,7 +21,7 @@ std::string number(double value, int decimals) {
   return text;
 }
 
-/// `keys` in the order of their first appearance.
+/// Distinct keys in order of first appearance.
 template <class Item, class Key>
 std::vector<Key> distinct(const std::vector<Item>& items,
                           const std::function<Key(const Item&)>& of) {
@@ -40,7 +40,7 @@ struct Column {
 };
 constexpr Column columns[] = {{"SSIM", &Quality::ssim, 4},
                               {"flicker", &Quality::flicker, 2},
-                              {"luminance / truth", &Quality::luminance_ratio, 3}};
+                              {"luminance / ground truth", &Quality::luminance_ratio, 3}};
 
 std::string table(const std::vector<Measurement>& rows, const Column& column) {
   const auto values = distinct<Measurement, float>(rows, [](const auto& m) { return m.value; });

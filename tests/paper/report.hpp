@@ -31,11 +31,11 @@ struct Timing {
   std::vector<render::PassTime> passes;
 };
 
-/// Of the frames after the first `warm_up`. @throws std::invalid_argument where none are left
+/// Summary of the frames after the first `warm_up`. @throws std::invalid_argument where none remain
 Timing summarise(const std::vector<render::Frame>& frames, int warm_up);
 
-/// For every scene and movement a table of SSIM, flicker and luminance: a row for each technique,
-/// a column for each swept value.
+/// Tables of SSIM, flicker and luminance per scene and movement: a row per technique, a column per
+/// swept value.
 std::string quality_tables(const std::vector<Measurement>& measurements);
 /// The paper's tables 1 and 2, then milliseconds of each pass.
 std::string timing_tables(const std::vector<Timing>& timings);

@@ -16,7 +16,7 @@ constexpr int sky_height = 256;
 scene::Camera camera_at(const scene::Scene& scene, double seconds) {
   scene::Camera camera = scene.cameras.at(0);
   const scene::Clip* clip = scene::find_clip(scene, name(Movement::moving_camera));
-  if (!clip || !camera.node) throw std::runtime_error("the scene's camera cannot move");
+  if (!clip || !camera.node) throw std::runtime_error("the scene has no camera animation");
   scene::Pose pose = scene::rest_pose(scene);
   scene::evaluate(scene, *clip, seconds, pose);
   const glm::mat4& world = pose.worlds.at(*camera.node);
@@ -73,18 +73,19 @@ std::vector<render::Frame> Stage::time(const protocol::Settings& settings, const
   for (int i = 0; i < shot.frames; ++i) {
     show_moment(*renderer, shot, i);
     frames.push_back(renderer->render());
-    // Only the last pictures are looked at.
+    // Only the last frames are compared.
     if (i < shot.frames - shot.compared) frames.back().rgba.clear();
   }
   return frames;
 }
 
-std::vector<render::Frame> Stage::truth(Truth source, const Shot& shot, int samples) const {
+std::vector<render::Frame> Stage::ground_truth(GroundTruth source, const Shot& shot,
+                                               int samples) const {
   protocol::Settings settings;
   settings.accumulation.max_samples = samples;
-  settings.accumulation.handover = 0;
+  settings.accumulation.blend_samples = 0;
   settings.antialiasing.temporal = false;
-  if (source == Truth::reference) {
+  if (source == GroundTruth::reference) {
     settings.reference.use = protocol::ReferenceUse::always;
     settings.reference.scope = protocol::ReferenceScope::same_paths;
   } else {

@@ -23,31 +23,31 @@ struct StageOptions {
 struct Shot {
   Movement movement = Movement::still;
   int frames = 60;
-  int compared = 3;  // of the last frames, which are held against the truth
+  int compared = 3;  // number of last frames that are compared with ground truth
   float frame_seconds = 1.0f / 60.0f;
 };
 
-/// Where the truth comes from.
-enum class Truth {
+/// Source of ground truth.
+enum class GroundTruth {
   reference,    // the path tracer along the hybrid's own light paths
-  accumulated,  // the hybrid without denoisers, averaged: tells denoising errors alone
+  accumulated,  // the mean of the hybrid without denoisers: isolates denoising errors
 };
 
 /// One scene with one swept value, on the device.
 class Stage {
  public:
-  /// Generates the scene and reads it back from a file, as any user's.
+  /// Generates the scene and imports it from a file.
   /// @throws std::exception
   Stage(render::Engine& engine, const std::string& scene, const scenes::Sweep& sweep,
         const StageOptions& options);
 
-  /// Plays the whole shot and gives its last `compared` frames.
+  /// Renders the whole shot and returns its last `compared` frames.
   std::vector<render::Frame> play(const protocol::Settings& settings, const Shot& shot) const;
 
-  /// What those frames should have shown, `samples` per pixel.
-  std::vector<render::Frame> truth(Truth source, const Shot& shot, int samples) const;
+  /// Ground truth of those frames, `samples` per pixel.
+  std::vector<render::Frame> ground_truth(GroundTruth source, const Shot& shot, int samples) const;
 
-  /// Plays the whole shot and gives every frame's times; pictures are left out.
+  /// Renders the whole shot and returns every frame's timings, without images.
   std::vector<render::Frame> time(const protocol::Settings& settings, const Shot& shot) const;
 
  private:

@@ -1,9 +1,9 @@
-"""Keeps a server busy for a long time and checks that nothing is lost, nothing comes in the wrong
-order and memory stays flat: soak.py --seconds 3600
+"""Keeps a server busy for a long time and checks that nothing is lost or reordered and that memory
+does not grow: soak.py --seconds 3600
 
-One viewer moves the camera and changes settings, others watch over WebSocket as JPEG and H.264, one
-after the other comes, looks, and goes without a word, sessions are made, watched and closed, pictures
-are captured. Ends with 1 if anything is wrong."""
+One viewer moves the camera and changes settings, others receive JPEG and H.264 over WebSocket,
+further ones connect and drop the connection, sessions are created, joined and closed, images are
+captured. Exits with 1 on any fault."""
 
 import argparse
 import asyncio
@@ -20,7 +20,7 @@ from harness.viewer import Viewer  # noqa: E402
 MEGABYTE = 1e6
 
 
-class Watcher:
+class Observer:
     """Checks the order of everything that one viewer is sent."""
 
     def __init__(self, name, viewer):
@@ -103,8 +103,8 @@ async def soak(server, seconds, report=print):
     async with Viewer(server) as driver, Viewer(server) as jpeg, \
             Viewer(server, greet=False) as video:
         await video.call("hello", {"client": "soak", "codecs": ["h264", "jpeg"]})
-        watchers = [Watcher("driver", driver), Watcher("jpeg", jpeg), Watcher("video", video)]
-        tasks = [asyncio.create_task(watcher.run()) for watcher in watchers]
+        observers = [Observer("driver", driver), Observer("jpeg", jpeg), Observer("video", video)]
+        tasks = [asyncio.create_task(observer.run()) for observer in observers]
         working = [asyncio.create_task(steer(driver, state)),
                    asyncio.create_task(make_and_close(server, state))]
         tasks += [*working, asyncio.create_task(come_and_go(server))]
@@ -114,12 +114,12 @@ async def soak(server, seconds, report=print):
             failed = [task for task in tasks if task.done()]
             if failed:
                 return [repr(task.exception()) for task in failed]
-            report(f"{time.monotonic() - begin:6.0f} s, {sum(w.frames for w in watchers)} frames, "
+            report(f"{time.monotonic() - begin:6.0f} s, {sum(w.frames for w in observers)} frames, "
                    f"{state['patches']} patches, {state['captures']} captures, "
                    f"{server.memory_bytes() / MEGABYTE:.1f} MB")
         state["ending"] = True
         await asyncio.gather(*working)
-        faults = await check_end(jpeg, state, watchers)
+        faults = await check_end(jpeg, state, observers)
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
@@ -136,13 +136,13 @@ async def soak(server, seconds, report=print):
     return faults
 
 
-async def check_end(jpeg, state, watchers):
+async def check_end(jpeg, state, observers):
     for _ in range(100):
         heard = sum(note["method"] == "settings.changed" for note in jpeg.notifications)
         if heard == state["patches"]:
             break
         await asyncio.sleep(0.1)
-    faults = [fault for watcher in watchers for fault in watcher.faults]
+    faults = [fault for observer in observers for fault in observer.faults]
     if heard != state["patches"]:
         faults.append(f"{state['patches']} patches, but {heard} were told")
     return faults

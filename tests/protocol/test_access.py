@@ -1,4 +1,4 @@
-"""Who may talk to the server, and in which words it refuses."""
+"""Access control: origins, host names, tokens, cookies, limits."""
 
 import base64
 
@@ -14,7 +14,7 @@ class Loopback(ServerTestCase):
     def own(self):
         return f"{self.server.host}:{self.server.port}"
 
-    def test_the_subprotocol_is_required_and_named(self):
+    def test_the_subprotocol_is_required_and_returned(self):
         for offered in (None, "heliograph.v2", "chat, superchat", "heliograph.v10",
                         "Heliograph.v1"):
             status, text = self.upgrade(Sec_WebSocket_Protocol=offered)
@@ -48,16 +48,16 @@ class Loopback(ServerTestCase):
         for host in (f"localhost:{self.server.port}", "127.0.0.1", "[::1]:80", "LOCALHOST"):
             self.assertEqual(self.upgrade(Host=host)[0], 101, host)
 
-    def test_a_rebound_name_does_not_pass_with_its_own_origin(self):
+    def test_dns_rebinding_is_refused(self):
         status, _ = self.upgrade(Host="evil.example", Origin="http://evil.example")
         self.assertEqual(status, 403)
 
-    def test_only_ws_is_a_websocket(self):
+    def test_only_the_path_ws_upgrades_to_websocket(self):
         with RawSocket(self.server) as raw:
             self.assertEqual(raw.upgrade("/elsewhere")[0], 404)
         self.assertEqual(self.server.get("/ws")[0], 426)
 
-    def test_pages_come_with_their_protection(self):
+    def test_pages_have_security_headers(self):
         for path in ("/", "/app.js", "/rpc", "/nothing"):
             _, headers, _ = self.server.get(path)
             self.assertIn("default-src 'self'", headers["content-security-policy"])
@@ -67,7 +67,7 @@ class Loopback(ServerTestCase):
             self.assertNotIn("access-control-allow-origin", headers)
         self.assertEqual(self.server.get("/health/live")[1]["cache-control"], "no-store")
 
-    def test_unchanged_files_are_not_sent_again(self):
+    def test_etags_give_304_for_unchanged_files(self):
         status, headers, body = self.server.get("/app.js")
         self.assertEqual(status, 200)
         self.assertGreater(len(body), 1000)
@@ -77,12 +77,12 @@ class Loopback(ServerTestCase):
         status, headers, body = self.server.request("HEAD", "/")
         self.assertEqual((status, body), (200, b""))
 
-    def test_paths_lead_nowhere(self):
+    def test_path_traversal_is_refused(self):
         for path in ("/../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd", "//etc/passwd",
                      "/api/v1/sessions/../../etc/frame.png", "/app.js/", "/APP.JS"):
             self.assertEqual(self.server.get(path)[0], 404, path)
 
-    def test_methods_that_do_not_fit(self):
+    def test_wrong_http_methods_give_405(self):
         self.assertEqual(self.server.get("/rpc")[0], 405)
         for method in ("POST", "PUT", "DELETE"):
             self.assertEqual(self.server.request(method, "/")[0], 405, method)
@@ -116,12 +116,12 @@ class Token(ServerTestCase):
             self.assertEqual(status, 401, wrong)
             self.assertNotIn("set-cookie", headers)
 
-    def test_a_program_shows_it_in_a_header(self):
+    def test_bearer_header_is_accepted(self):
         self.assertEqual(self.server.get("/metrics", **self.bearer(TOKEN))[0], 200)
         with RawSocket(self.server) as raw:
             self.assertEqual(raw.upgrade(Authorization="Bearer " + TOKEN)[0], 101)
 
-    def test_a_browser_trades_it_for_a_cookie(self):
+    def test_token_in_the_url_becomes_a_cookie(self):
         status, headers, body = self.server.get("/?token=" + TOKEN)
         self.assertEqual((status, headers["location"]), (303, "/"))
         more = self.server.get(f"/?session=a%26b&token={TOKEN}&enter=main")[1]["location"]
@@ -135,7 +135,7 @@ class Token(ServerTestCase):
         with RawSocket(self.server) as raw:
             self.assertEqual(raw.upgrade(Cookie=pair)[0], 101)
 
-    def test_a_socket_shows_it_as_a_subprotocol(self):
+    def test_token_as_websocket_subprotocol_is_accepted(self):
         encoded = base64.urlsafe_b64encode(TOKEN.encode()).decode().rstrip("=")
         with RawSocket(self.server) as raw:
             status, text = raw.upgrade(
@@ -150,12 +150,12 @@ class Token(ServerTestCase):
         with RawSocket(self.server) as raw:
             self.assertEqual(raw.upgrade()[0], 401)
 
-    def test_a_token_does_not_excuse_a_foreign_page(self):
+    def test_foreign_origins_are_refused_despite_a_token(self):
         status, _, _ = self.server.get("/metrics", Origin="http://evil.example",
                                        **self.bearer(TOKEN))
         self.assertEqual(status, 403)
 
-    def test_the_log_does_not_tell_it(self):
+    def test_the_log_does_not_contain_the_token(self):
         self.server.get("/?token=" + TOKEN)
         self.assertNotIn(TOKEN, self.server.log_text())
 
@@ -166,7 +166,7 @@ class AllowedOrigin(ServerTestCase):
     def setUp(self):
         pass
 
-    def test_the_list_is_compared_whole(self):
+    def test_allowed_origins_must_match_exactly(self):
         for origin, expected in (("https://viewer.example:8443", 101),
                                  ("https://viewer.example", 403),
                                  ("http://viewer.example:8443", 403),
@@ -181,7 +181,7 @@ class FullHouse(ServerTestCase):
     def setUp(self):
         pass
 
-    async def test_one_too_many_is_told_to_try_later(self):
+    async def test_a_viewer_beyond_the_limit_gets_try_again_later(self):
         from harness.viewer import Viewer
         async with Viewer(self.server) as first:
             async with Viewer(self.server, greet=False) as second:

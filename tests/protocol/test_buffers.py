@@ -1,10 +1,10 @@
-"""Buffers come and go with the settings, and never keep other settings from taking effect."""
+"""Buffers appear and disappear with the settings, and never block other settings."""
 
 import base64
 import os
 import tempfile
 
-from harness.pictures import decode_jpeg, decode_png, difference
+from harness.images import decode_jpeg, decode_png, difference
 from harness.server import Server, ServerTestCase
 from harness.viewer import Viewer
 
@@ -43,7 +43,7 @@ class Sessions:
         return sum(rgb) / len(rgb)
 
     def assert_exposed(self, session):
-        """Whether settings reach the renderer: the exposure, in a picture."""
+        """Whether settings reach the renderer: the exposure of an image."""
         self.patch(session, {"exposure": {"compensation": -8}})
         self.assertLess(self.brightness(session), 40)
         self.patch(session, {"exposure": {"compensation": 8}})
@@ -51,7 +51,7 @@ class Sessions:
 
 
 class SettingsTakeEffect(Sessions, ServerTestCase):
-    def test_when_the_viewed_buffer_is_not_made(self):
+    def test_when_the_viewed_buffer_does_not_exist(self):
         self.own("view")
         self.capture("view")
         self.patch("view", WITHOUT_REFLECTIONS, VIEW_OF_REFLECTIONS)
@@ -60,7 +60,7 @@ class SettingsTakeEffect(Sessions, ServerTestCase):
         state = self.server.call("frame.capture", session="view")
         self.assertEqual(state["samples"], 3)
 
-    def test_when_one_patch_does_both(self):
+    def test_when_one_patch_selects_and_removes_the_buffer(self):
         self.own("both")
         self.capture("both")
         self.patch("both", {**WITHOUT_REFLECTIONS, **VIEW_OF_REFLECTIONS})
@@ -70,7 +70,7 @@ class SettingsTakeEffect(Sessions, ServerTestCase):
                       ["settings"]["view"]["buffer"])
         self.capture("both", "specular.radiance")
 
-    def test_of_a_session_that_begins_so(self):
+    def test_of_a_session_created_with_them(self):
         wanted = {**WITHOUT_REFLECTIONS, **VIEW_OF_REFLECTIONS}
         self.own("made", settings=wanted)
         self.assert_exposed("made")
@@ -92,15 +92,15 @@ class SettingsTakeEffect(Sessions, ServerTestCase):
         self.own("steps")
         self.capture("steps")
         self.patch("steps", WITHOUT_REFLECTIONS, VIEW_OF_REFLECTIONS)
-        pictures = []
+        images = []
         for compensation in (-8, 8):
             self.patch("steps", {"exposure": {"compensation": compensation}})
             self.server.call("frame.step", {"frames": 1, "dt": 0.1}, session="steps")
-            pictures.append(self.brightness("steps"))
-        self.assertLess(pictures[0] + 50, pictures[1])
+            images.append(self.brightness("steps"))
+        self.assertLess(images[0] + 50, images[1])
         self.assert_error(self.ask_for("steps", "specular.denoised"), -32004, path="buffer")
 
-    async def test_viewers_see_the_picture_until_the_buffer_is_back(self):
+    async def test_viewers_see_the_output_until_the_buffer_exists_again(self):
         self.own("shown")
         async with Viewer(self.server, session="shown") as viewer:
             async def seen():
@@ -140,7 +140,7 @@ class TheListFollows(Sessions, ServerTestCase):
         self.assert_complete("truth", hybrid, ["reference"])
         self.patch("truth", {"view": {"buffer": "gbuffer.normals"}})
 
-    def test_passes_that_go_and_come(self):
+    def test_passes_that_are_disabled_and_enabled(self):
         self.own("passes", settings=WITHOUT_REFLECTIONS)
         self.assert_complete("passes", ["visibility.denoised"], ["specular.denoised"])
         self.patch("passes", {"specular": None})
@@ -152,14 +152,14 @@ class TheListFollows(Sessions, ServerTestCase):
         self.server.call("settings.preset", {"name": "svgf"}, session="preset")
         self.assert_complete("preset", ["visibility.temporal"], ["visibility.blur.half"])
 
-    def test_a_capture_at_once_after_the_patch(self):
+    def test_a_capture_immediately_after_the_patch(self):
         self.own("at-once")
         self.capture("at-once")
         for use, buffer in (("always", "reference"), ("never", "gbuffer.normals")):
             self.patch("at-once", {"reference": {"use": use}})
             self.capture("at-once", buffer)
 
-    def test_what_no_settings_make_is_refused(self):
+    def test_unknown_buffers_are_refused(self):
         self.own("names")
         self.assert_error(self.ask_for("names", "gbuffer.norml"), -32602, path="buffer",
                           limit="frame.buffers")

@@ -1,4 +1,4 @@
-"""What the client library in Python does when something goes wrong on its connection."""
+"""The Python client library and failures of its connection."""
 
 import asyncio
 import os
@@ -14,7 +14,7 @@ from test_tls import make_certificate
 
 
 class Mishaps(ServerTestCase):
-    async def test_a_listener_that_fails_ends_nothing(self):
+    async def test_exceptions_of_listeners_keep_the_connection(self):
         heard = asyncio.Event()
         async with await heliograph.connect_async(self.server.url) as view:
             view.listen("camera.changed", lambda params: params["no such member"])
@@ -26,7 +26,7 @@ class Mishaps(ServerTestCase):
             scenes = await asyncio.wait_for(view.scene.list(), 15)
             self.assertEqual(scenes["current"], "mirror")
 
-    def test_a_listener_that_calls_its_own_client_is_told(self):
+    def test_a_listener_that_calls_its_own_client_gets_an_error(self):
         with heliograph.connect(self.server.url) as view, \
                 self.assertLogs("heliograph", "ERROR") as logged:
             view.listen("camera.changed", lambda params: view.scene.list())
@@ -35,7 +35,7 @@ class Mishaps(ServerTestCase):
             self.server.wait_for(lambda: view.scene.list() and logged.output, "the refusal")
         self.assertIn("call from elsewhere", logged.output[0])
 
-    async def test_an_error_of_no_known_call_ends_all_that_wait(self):
+    async def test_an_error_without_id_fails_all_pending_calls(self):
         async with await heliograph.connect_async(self.server.url) as view:
             await view.settings.patch(patch={"accumulation": {"max_samples": 65536}})
             waiting = asyncio.ensure_future(view.capture(samples=65536))
@@ -46,7 +46,7 @@ class Mishaps(ServerTestCase):
             self.assertEqual(refused.exception.code, -32700)
             self.assertEqual((await view.scene.list())["current"], "mirror")
 
-    async def test_too_many_calls_are_all_answered(self):
+    async def test_rate_limited_calls_are_all_answered(self):
         async with await heliograph.connect_async(self.server.url) as view:
             calls = [view.session.info() for _ in range(1500)]
             answers = await asyncio.wait_for(asyncio.gather(*calls, return_exceptions=True), 60)
@@ -55,7 +55,7 @@ class Mishaps(ServerTestCase):
             self.assertLessEqual({one.code for one in refused}, {-32002})
             self.assertLess(len(refused), len(answers))
 
-    async def test_an_end_for_no_good_reason_fails_what_waits(self):
+    async def test_a_lost_connection_fails_pending_calls(self):
         view = await heliograph.connect_async(self.server.url)
         await view.settings.patch(patch={"accumulation": {"max_samples": 65536}})
         waiting = asyncio.ensure_future(view.capture(samples=65536))
@@ -69,7 +69,7 @@ class Mishaps(ServerTestCase):
 
 
 class PrivateAuthority(unittest.TestCase):
-    def test_it_is_trusted_when_the_caller_says_so(self):
+    def test_a_private_authority_is_trusted_with_an_ssl_context(self):
         with tempfile.TemporaryDirectory() as folder:
             certificate, key = make_certificate(folder)
             with Server("--scene", "mirror", "--token", TOKEN, "--tls-certificate", certificate,
@@ -84,7 +84,7 @@ class PrivateAuthority(unittest.TestCase):
     def run_program(self, server, certificate, folder):
         done = subprocess.run(
             [sys.executable, os.path.join(PROTOCOL, "examples", "turntable.py"), "--url",
-             server.url, "--token", TOKEN, "--tls-ca", certificate, "--pictures", "1", "--size",
+             server.url, "--token", TOKEN, "--tls-ca", certificate, "--images", "1", "--size",
              "64", "36", "--folder", "turn"], cwd=folder, capture_output=True, text=True,
             env={**os.environ, "PYTHONPATH": LIBRARY}, timeout=60)
         self.assertEqual(done.returncode, 0, done.stderr)

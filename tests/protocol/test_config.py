@@ -1,4 +1,4 @@
-"""Where options come from, which goes before which, and what is said about mistakes."""
+"""Sources of options, their precedence, and error messages."""
 
 import os
 import tempfile
@@ -39,7 +39,7 @@ class Config(unittest.TestCase):
         for part in saying:
             self.assertIn(part, err)
 
-    def test_flag_before_environment_before_file_before_default(self):
+    def test_precedence_is_flag_environment_file_default(self):
         path = self.file("[serve]\nport = 1001\nmax-viewers = 11\nwidth = 111\n")
         environment = {"HELIOGRAPH_PORT": "1002", "HELIOGRAPH_MAX_VIEWERS": "12"}
         values, _ = self.effective("--config", path, "--port", "1003", environment=environment)
@@ -48,7 +48,7 @@ class Config(unittest.TestCase):
         self.assertEqual(values["width"], ("111", "in " + path))
         self.assertEqual(values["host"], ('"127.0.0.1"', ""))
 
-    def test_the_file_may_come_from_the_environment(self):
+    def test_the_path_of_the_file_can_come_from_the_environment(self):
         path = self.file("[serve]\nport = 1001\n")
         values, _ = self.effective(environment={"HELIOGRAPH_CONFIG": path})
         self.assertEqual(values["port"][0], "1001")
@@ -70,7 +70,7 @@ class Config(unittest.TestCase):
         values, _ = self.effective(environment={"HELIOGRAPH_ALLOW_ORIGIN": "https://a.b,https://c"})
         self.assertEqual(values["allow-origin"][0], '["https://a.b", "https://c"]')
 
-    def test_what_is_printed_can_be_read_again(self):
+    def test_printed_configuration_can_be_read_back(self):
         first, out = self.effective("--port", "4711", "--set", "exposure.compensation=2",
                                     "--allow-origin", "https://a.b", "--insecure")
         again, _ = self.effective("--config", self.file(out))
@@ -94,13 +94,13 @@ class Config(unittest.TestCase):
             self.refused("--config", path, saying=(path, *parts))
         path = self.file("[serv]\nport = 1\n")
         self.refused("--config", path, saying=(path, "serv"))
-        self.refused("--config", path + "x", saying=(path + "x", "cannot be read"))
+        self.refused("--config", path + "x", saying=(path + "x", "cannot read"))
         self.refused(environment={"HELIOGRAPH_PORT": "70000"}, saying=("HELIOGRAPH_PORT", "65535"))
 
     def test_help_is_grouped_and_names_every_variable(self):
         code, out, _ = run("serve", "--help")
         self.assertEqual(code, 0)
-        for group in ("Network:", "Access:", "Capacity:", "Scenes:", "Pictures:", "Device:", "Log:"):
+        for group in ("Network:", "Access:", "Capacity:", "Scenes:", "Frames:", "Device:", "Log:"):
             self.assertIn(group, out)
         lines = [line.strip() for line in out.splitlines()]
         options = [line for line in lines if line.startswith("--") and " " in line]

@@ -144,7 +144,7 @@ UTF8 = [
 CLOSING = [
     *[(f"close {code}", [close(code, b"bye")], {code})
       for code in (1000, 1001, 1002, 1003, 1007, 1008, 1009, 1010, 1011, 3000, 3999, 4000, 4999)],
-    *[(f"close {code}, which nobody may send", [close(code)], {1002})
+    *[(f"close {code}, which must not be sent", [close(code)], {1002})
       for code in (0, 999, 1004, 1005, 1006, 1015, 1016, 1100, 2000, 2999)],
     # The RFC defines no range for these and forbids them nowhere.
     *[(f"close {code}, of which nothing is said", [close(code)], {1002, code})
@@ -242,7 +242,7 @@ class Conformance(ServerTestCase):
     def test_closing(self):
         self.run_cases(CLOSING)
 
-    def test_there_are_enough_cases(self):
+    def test_there_are_at_least_100_cases(self):
         cases = [*LENGTHS, *CONTROL, *RESERVED, *FRAGMENTS, *MASKS, *UTF8, *CLOSING]
         names = [name for name, _, _ in cases]
         self.assertEqual(len(names), len(set(names)))
@@ -264,7 +264,7 @@ class Handshake(ServerTestCase):
     def setUp(self):
         pass
 
-    def test_the_key_is_answered(self):
+    def test_accept_header_matches_the_key(self):
         for _ in range(3):
             key = base64.b64encode(os.urandom(16)).decode()
             with RawSocket(self.server) as raw:
@@ -279,7 +279,7 @@ class Handshake(ServerTestCase):
             self.assertEqual(headers["sec-websocket-protocol"], "heliograph.v1")
             self.assertNotIn("sec-websocket-extensions", headers)
 
-    def test_what_is_accepted(self):
+    def test_valid_handshakes_are_accepted(self):
         for headers in ({"Upgrade": "WebSocket"}, {"Connection": "keep-alive, Upgrade"},
                         {"Sec_WebSocket_Extensions": "permessage-deflate; client_max_window_bits"},
                         {"Sec_WebSocket_Protocol": "chat, heliograph.v1, other"}):
@@ -290,7 +290,7 @@ class Handshake(ServerTestCase):
                 raw.send(frame(TEXT, CALL))
                 self.assertEqual(raw.read_frame()[0], TEXT)
 
-    def test_what_is_refused(self):
+    def test_invalid_handshakes_are_refused(self):
         for headers in ({"Sec_WebSocket_Key": None}, {"Sec_WebSocket_Key": ""},
                         {"Sec_WebSocket_Key": "short"}, {"Sec_WebSocket_Key": "A" * 200},
                         {"Sec_WebSocket_Version": None}, {"Sec_WebSocket_Version": "8"},
@@ -312,13 +312,13 @@ class Handshake(ServerTestCase):
                 raw.send(f"{request}\r\n{head}".encode())
                 self.assertRegex(raw.read_until(b"\r\n"), rb"HTTP/1\.1 4\d\d", request)
 
-    def test_a_version_that_is_not_spoken_is_told_which_is(self):
+    def test_unsupported_websocket_versions_get_the_supported_one(self):
         with RawSocket(self.server) as raw:
             status, head = raw.upgrade(Sec_WebSocket_Version="8")
             self.assertEqual(status, 426)
             self.assertIn("sec-websocket-version: 13", head.lower())
 
-class Floods(ServerTestCase):
+class RateLimits(ServerTestCase):
     def setUp(self):
         pass
 
@@ -340,7 +340,7 @@ class Floods(ServerTestCase):
                 refused += 1
         return answered, refused
 
-    def test_too_many_messages_are_refused_and_who_goes_on_is_let_go(self):
+    def test_message_floods_are_rate_limited_then_disconnected(self):
         answered = refused = 0
         with RawSocket(self.server) as raw:
             raw.upgrade()

@@ -1,10 +1,10 @@
-"""Methods and errors, over POST /rpc and over the WebSocket: one dispatcher, one truth."""
+"""Methods and errors, over POST /rpc and over the WebSocket: both give the same results."""
 
 import asyncio
 import base64
 import json
 
-from harness.pictures import decode_png
+from harness.images import decode_png
 from harness.server import ServerTestCase
 from harness.viewer import Viewer
 
@@ -22,14 +22,14 @@ class Methods(ServerTestCase):
             async with Viewer(self.server) as other:
                 self.assertNotEqual(other.hello["viewer"], hello["viewer"])
 
-    async def test_hello_refuses_what_it_cannot_serve(self):
+    async def test_hello_refuses_unsupported_clients(self):
         async with Viewer(self.server, greet=False) as viewer:
             answer = await viewer.ask("hello", {"session": "elsewhere"})
             self.assert_error(answer, -32004, path="session")
             answer = await viewer.ask("hello", {"codecs": ["av1"]})
             self.assert_error(answer, -32602, path="codecs", limit="jpeg")
 
-    def test_every_method_that_is_declared_exists(self):
+    def test_every_declared_method_has_a_handler(self):
         document = self.server.call("rpc.discover")
         names = {method["name"] for method in document["methods"]}
         self.assertIn("frame.capture", names)
@@ -38,7 +38,7 @@ class Methods(ServerTestCase):
             self.assertNotEqual(answer.get("error", {}).get("code"), -32601, name)
             self.assertNotEqual(answer.get("error", {}).get("code"), -32603, name)
 
-    def test_the_schema_is_also_a_page(self):
+    def test_the_schema_is_served_over_http(self):
         status, headers, body = self.server.get("/api/v1/schema")
         self.assertEqual((status, headers["content-type"]), (200, "application/json"))
         document = json.loads(body)
@@ -66,7 +66,7 @@ class Methods(ServerTestCase):
         self.assert_error(self.server.ask("camera.set", {"name": "nowhere"}), -32004, path="name")
         self.assertEqual(self.server.call("camera.get"), before)
 
-    def test_settings_patches_apply_whole_or_not_at_all(self):
+    def test_settings_patches_are_atomic(self):
         answer = self.server.call("settings.patch", {"patch": {"exposure": {"compensation": 2}}})
         self.assertEqual(answer["applied"], {"exposure": {"compensation": 2}})
         before = self.server.call("settings.get")
@@ -85,7 +85,7 @@ class Methods(ServerTestCase):
         self.assertEqual(reset["applied"]["exposure"]["compensation"], 0)
         self.assertEqual(list(reset["applied"]), ["exposure"])
 
-    async def test_others_hear_what_one_viewer_changes(self):
+    async def test_changes_are_notified_to_other_viewers(self):
         async with Viewer(self.server) as causer, Viewer(self.server) as other:
             await causer.call("settings.patch", {"patch": {"exposure": {"compensation": 1}}})
             changed = await other.notification("settings.changed")
@@ -101,15 +101,15 @@ class Methods(ServerTestCase):
         self.server.call("stream.configure", {"width": 96, "height": 54})
         buffers = self.server.call("frame.buffers")["buffers"]
         self.assertEqual(buffers[0]["name"], "output")
-        pictures = {}
+        images = {}
         for buffer in buffers:
             self.assertTrue(buffer["description"])
             capture = self.server.call("frame.capture", {"buffer": buffer["name"], "samples": 1})
-            picture = decode_png(base64.b64decode(capture["data"], validate=True))
-            self.assertEqual((picture.width, picture.height), (96, 54), buffer)
-            pictures[buffer["name"]] = picture
-        self.assertGreater(pictures["output"].deviation(), 5, "the picture is nearly blank")
-        self.assertGreater(len({picture.rgb for picture in pictures.values()}), 3)
+            image = decode_png(base64.b64decode(capture["data"], validate=True))
+            self.assertEqual((image.width, image.height), (96, 54), buffer)
+            images[buffer["name"]] = image
+        self.assertGreater(images["output"].deviation(), 5, "the image is nearly blank")
+        self.assertGreater(len({image.rgb for image in images.values()}), 3)
 
     def test_a_capture_waits_for_its_samples(self):
         self.server.call("camera.set", {"eye": [3, 3, 3]})
@@ -121,12 +121,12 @@ class Methods(ServerTestCase):
         self.server.call("settings.patch", {"patch": {"accumulation": {"enabled": False}}})
         self.assertEqual(self.server.call("frame.capture", {"samples": 1000})["samples"], 1)
 
-    async def test_captures_that_wait_have_a_limit_and_end_with_who_asked(self):
+    async def test_pending_captures_are_limited_and_end_with_their_viewer(self):
         self.server.call("settings.patch", {"patch": {"accumulation": {"max_samples": 65536}}})
         endless = [{"jsonrpc": "2.0", "id": number, "method": "frame.capture",
                     "params": {"samples": 65536}} for number in range(32)]
         async with Viewer(self.server) as viewer:
-            self.assertEqual(len(endless), viewer.hello["limits"]["max_waiting"])
+            self.assertEqual(len(endless), viewer.hello["limits"]["max_pending"])
             self.assertEqual(len(endless), viewer.hello["limits"]["max_batch"])
             await viewer.send(json.dumps(endless))
             await viewer.call("camera.get")
@@ -139,7 +139,7 @@ class Methods(ServerTestCase):
             return "result" in self.server.ask("frame.capture", {"samples": 1})
         await asyncio.to_thread(self.server.wait_for, there_is_room, "room for another capture")
 
-    def test_captures_of_what_is_not_there_are_refused(self):
+    def test_captures_of_unknown_buffers_are_refused(self):
         self.assert_error(self.server.ask("frame.capture", {"buffer": "outptu"}), -32602,
                           path="buffer")
         self.assert_error(self.server.ask("frame.capture", {"format": "bmp"}), -32602,
@@ -154,7 +154,7 @@ class Calls(ServerTestCase):
         self.assert_error(answer, -32601)
         self.assertIn("camera.get", answer["error"]["message"])
 
-    def test_what_is_not_json_or_no_call(self):
+    def test_invalid_json_and_invalid_requests(self):
         for body in (b"{", b"", b"\xff\xfe", b"nonsense", b"{} {}"):
             self.assert_error(self.server.post_rpc(body)[1], -32700)
         for value in (1, "text", {}, {"jsonrpc": "1.0", "method": "camera.get", "id": 1},
@@ -194,7 +194,7 @@ class Calls(ServerTestCase):
         self.assertEqual((status, answer), (204, None))
         self.assertEqual(self.server.call("camera.get")["eye"], [1, 7, 1])
 
-    def test_streams_are_for_viewers(self):
+    def test_stream_methods_require_a_websocket(self):
         for method, params in (("stream.ack", {"frame_seq": 1}),
                                ("stats.subscribe", {"interval_ms": 100}),
                                ("stream.configure", {"quality": 50})):
@@ -214,7 +214,7 @@ class Calls(ServerTestCase):
             self.assert_error(answer, -32700)
             await viewer.call("camera.get")
 
-    async def test_a_flood_is_slowed_down_and_the_viewer_stays(self):
+    async def test_call_floods_are_throttled_without_disconnecting(self):
         async with Viewer(self.server) as viewer:
             # Fewer at a time than refusals end a connection: what was refused is heard before more.
             refused = []

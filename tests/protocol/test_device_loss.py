@@ -7,7 +7,7 @@ import tempfile
 import unittest
 
 from harness.gltf import document, grid, write_glb
-from harness.pictures import decode_jpeg, difference
+from harness.images import decode_jpeg, difference
 from harness.server import Server, ServerTestCase
 from harness.viewer import Viewer
 
@@ -48,7 +48,7 @@ class DeviceLoss(ServerTestCase):
             await asyncio.sleep(0.05)
         self.fail(f"device.changed with ready {ready} did not come:\n" + self.server.log_text())
 
-    async def test_sessions_survive_with_all_that_was_set(self):
+    async def test_sessions_keep_their_state(self):
         self.server.call("session.create", {"name": "other", "copy_of": "main"})
         self.server.call("settings.patch", {"patch": {"exposure": {"compensation": 1}}},
                          session="other")
@@ -77,16 +77,16 @@ class DeviceLoss(ServerTestCase):
         self.assertEqual(self.losses(), count + 1)
         self.server.call("session.close", {"session": "other"})
 
-    async def test_a_loss_while_loading_is_told_and_mended(self):
+    async def test_a_loss_while_loading_is_reported_and_recovered(self):
         shutil.copy(os.path.join(self.scenes, "mirror.glb"), os.path.join(self.scenes, "new.glb"))
         self.lose()
-        # Whoever asked for it hears of the second try only.
+        # The caller gets the result of the second attempt.
         self.assertEqual(self.server.call("scene.load", {"name": "new"})["name"], "new")
         self.assertFalse(os.path.exists(self.fault))
         self.server.wait_for(self.ready, "the recovery", timeout=60)
         self.assertGreaterEqual(self.server.call("frame.capture", {"samples": 1})["samples"], 1)
 
-    async def test_repeated_losses_are_waited_for_longer_and_commands_still_work(self):
+    async def test_repeated_losses_back_off_while_commands_work(self):
         async with Viewer(self.server) as viewer:
             await viewer.rest()
             begin = self.losses()
@@ -103,10 +103,10 @@ class DeviceLoss(ServerTestCase):
                 os.remove(self.fault)
             self.server.wait_for(self.ready, "the recovery", timeout=60)
             await viewer.rest()
-        self.assertIn("made anew in ", self.server.log_text())
+        self.assertIn("recovery in ", self.server.log_text())
 
 
-class LossBeforeTheFirstPicture(unittest.TestCase):
+class LossBeforeTheFirstFrame(unittest.TestCase):
     def test_the_first_scene_is_loaded_again(self):
         with tempfile.TemporaryDirectory() as folder:
             content, binary = document(*grid(500))
@@ -122,7 +122,7 @@ class LossBeforeTheFirstPicture(unittest.TestCase):
                 server.wait_for(load_lost_it, "the loss", timeout=60)
                 if os.path.exists(fault):
                     os.remove(fault)
-                server.wait_for(lambda: server.get("/health/ready")[0] == 200, "the first picture",
+                server.wait_for(lambda: server.get("/health/ready")[0] == 200, "the first frame",
                                 timeout=60)
                 self.assertEqual(server.call("scene.list")["current"], "first")
                 self.assertEqual(server.stop(), 0)

@@ -1,4 +1,4 @@
-"""What a session changes in its scene: lights, materials, environment; and what it asks of it."""
+"""Edits of a session: lights, materials, environment; picking and inspection."""
 
 import base64
 import json
@@ -8,7 +8,7 @@ import shutil
 import tempfile
 
 from harness.models import Model
-from harness.pictures import decode_png, difference
+from harness.images import decode_png, difference
 from harness.server import Server, ServerTestCase
 from harness.viewer import Viewer
 
@@ -41,7 +41,7 @@ class Edits(ServerTestCase):
         self.server.call("settings.patch", {"patch": {
             "environment": {"intensity": 0.1}, "accumulation": {"max_samples": 48}}})
 
-    def picture(self):
+    def image(self):
         capture = self.server.call("frame.capture")
         return decode_png(base64.b64decode(capture["data"]))
 
@@ -49,30 +49,30 @@ class Edits(ServerTestCase):
         lights = self.server.call("lights.list")["lights"]
         return next(light for light in lights if light["name"] == name)
 
-    def test_lights_are_listed_in_their_own_terms(self):
-        sun, lamp = self.server.call("lights.list")["lights"]
+    def test_lights_are_listed_with_members_of_their_type(self):
+        sun, point = self.server.call("lights.list")["lights"]
         self.assertEqual((sun["name"], sun["type"], sun["enabled"]), ("sun", "directional", True))
         self.assertEqual((sun["intensity"], sun["color"]), (3.0, [1.0, 0.5, 0.25]))
         self.assertAlmostEqual(sun["direction"][1], -1, places=5)
-        self.assertEqual((lamp["name"], lamp["type"]), ("sun 2", "point"))
-        self.assertEqual(lamp["position"], [0, 3, 0])
-        self.assertNotIn("angular_diameter", lamp)
+        self.assertEqual((point["name"], point["type"]), ("sun 2", "point"))
+        self.assertEqual(point["position"], [0, 3, 0])
+        self.assertNotIn("angular_diameter", point)
         self.assertNotIn("position", sun)
 
-    def test_a_patched_light_shows_in_the_next_picture(self):
-        before = self.picture()
+    def test_a_patched_light_shows_in_the_next_frame(self):
+        before = self.image()
         state = self.server.call("lights.patch", {"light": "sun", "patch": {"enabled": False}})
         self.assertFalse(state["light"]["enabled"])
-        dark = self.picture()
+        dark = self.image()
         self.assertLess(dark.mean(), before.mean() - 0.5)
         self.server.call("lights.patch", {"light": "sun", "patch": {"enabled": True}})
         self.server.call("lights.patch", {"light": "sun", "patch": {"intensity": 9}})
-        self.assertGreater(self.picture().mean(), before.mean() + 0.5)
+        self.assertGreater(self.image().mean(), before.mean() + 0.5)
         self.server.call("lights.patch", {"light": "sun", "patch": {"intensity": None}})
         self.assertEqual(self.light()["intensity"], 3.0)
-        self.assertLess(difference(self.picture(), before), 0.3 * difference(dark, before))
+        self.assertLess(difference(self.image(), before), 0.3 * difference(dark, before))
 
-    def test_bad_patches_are_refused_whole(self):
+    def test_invalid_patches_are_refused_atomically(self):
         before = self.server.call("lights.list")
         for patch, path, limit in (
                 ({"intensity": 1, "colour": [1, 1, 1]}, "patch.colour", "color"),
@@ -91,28 +91,28 @@ class Edits(ServerTestCase):
         self.assert_error(self.server.ask("lights.patch", {"light": "sun"}), -32602, path="patch")
         self.assertEqual(self.server.call("lights.list"), before)
 
-    def test_a_patched_material_shows_in_the_next_picture(self):
-        before = self.picture()
+    def test_a_patched_material_shows_in_the_next_frame(self):
+        before = self.image()
         names = [one["name"] for one in self.server.call("materials.list")["materials"]]
         self.assertIn("diffuse", names)
         state = self.server.call("materials.patch", {
             "material": "diffuse", "patch": {"base_color": [1, 0, 0], "roughness": 0.5}})
         self.assertEqual(state["material"]["base_color"], [1, 0, 0])
-        red = self.picture()
+        red = self.image()
         self.assertGreater(difference(red, before), 1)
         self.server.call("materials.patch", {
             "material": "diffuse", "patch": {"base_color": None, "roughness": None}})
-        self.assertLess(difference(self.picture(), before), 0.3 * difference(red, before))
+        self.assertLess(difference(self.image(), before), 0.3 * difference(red, before))
         self.server.call("materials.patch",
                          {"material": "diffuse", "patch": {"emissive": [0, 5, 0]}})
-        self.assertGreater(self.picture().mean(), before.mean())
+        self.assertGreater(self.image().mean(), before.mean())
         for patch, path in (({"roughness": 2}, "patch.roughness"),
                             ({"rouhgness": 1}, "patch.rouhgness"),
                             ({"base_color": 1}, "patch.base_color")):
             answer = self.server.ask("materials.patch", {"material": "diffuse", "patch": patch})
             self.assert_error(answer, -32602, path=path)
 
-    def test_other_sessions_of_the_scene_are_not_touched(self):
+    def test_edits_do_not_affect_other_sessions(self):
         methods = {one["name"] for one in self.server.call("rpc.discover")["methods"]}
         if "session.create" not in methods:
             self.skipTest("this server makes no other sessions")
@@ -127,12 +127,12 @@ class Edits(ServerTestCase):
         finally:
             self.server.call("session.close", {"session": "other"})
 
-    def test_another_scene_has_its_own(self):
+    def test_another_scene_has_its_own_edits(self):
         self.server.call("lights.patch", {"light": "sun", "patch": {"intensity": 7}})
         self.server.call("scene.load", {"name": "lit"})
         self.assertEqual(self.light()["intensity"], 3.0)
 
-    async def test_others_hear_of_it(self):
+    async def test_edits_are_notified_to_other_viewers(self):
         async with Viewer(self.server) as causer, Viewer(self.server) as other:
             await causer.call("lights.patch", {"light": "sun", "patch": {"intensity": 5}})
             heard = await other.notification("lights.changed")
@@ -152,14 +152,14 @@ class Edits(ServerTestCase):
         names = [one["name"] for one in listed["environments"]]
         self.assertEqual(sorted(names), ["broken", "sky", "white"])
         self.assertIsNone(listed["current"])
-        before = self.picture()
+        before = self.image()
         state = self.server.call("environment.set", {"name": "white", "rotation": 40})
         self.assertEqual((state["current"], state["rotation"]), ("white", 40))
-        white = self.picture()
+        white = self.image()
         self.assertGreater(difference(white, before), 5)
         state = self.server.call("environment.set", {"name": None, "rotation": 0})
         self.assertIsNone(state["current"])
-        self.assertLess(difference(self.picture(), before), 0.2 * difference(white, before))
+        self.assertLess(difference(self.image(), before), 0.2 * difference(white, before))
         self.assert_error(self.server.ask("environment.set", {"name": "whiet"}), -32004,
                           path="name")
         self.assert_error(self.server.ask("environment.set", {"name": "../sky"}), -32004,
@@ -169,7 +169,7 @@ class Edits(ServerTestCase):
         self.assert_error(self.server.ask("environment.set", {"rotation": 181}), -32602,
                           path="rotation")
 
-    def test_what_is_picked_lies_where_it_was_pointed_at(self):
+    def test_picked_positions_project_to_the_picked_pixel(self):
         self.server.call("camera.set", {"name": "main"})
         camera = self.server.call("camera.get")
         # The ball "diffuse": radius as the generator has it, middle at (0, .6, 0).
@@ -227,7 +227,7 @@ class Edits(ServerTestCase):
         self.assertAlmostEqual(math.dist(far["eye"], far["target"]), 7, places=4)
         self.assert_error(self.server.ask("camera.orbit", {"dolly": 0}), -32602, path="dolly")
 
-    def test_an_orbit_leads_nowhere_that_a_camera_may_not_be(self):
+    def test_an_orbit_keeps_the_camera_in_range(self):
         far = self.server.call("camera.set", {"eye": [0, 0, 9e8], "target": [0, 0, 0]})
         for params, path in (({"dolly": 1000}, "dolly"),
                              ({"distance": 1e9, "dolly": 2}, "distance"),
@@ -245,7 +245,7 @@ class Edits(ServerTestCase):
         self.server.call("camera.set", pose)
         self.server.call("camera.orbit", {"distance": 1e9})
 
-    def test_without_a_scene_nothing_is_there_to_ask(self):
+    def test_edits_and_picks_without_a_scene_are_refused(self):
         self.server.call("scene.unload")
         for method, params in (("lights.list", {}), ("materials.list", {}), ("camera.get", {}),
                                ("scene.pick", {"x": 0.5, "y": 0.5}), ("scene.info", {}),
@@ -254,4 +254,4 @@ class Edits(ServerTestCase):
         self.assertIsNone(self.server.call("scene.list")["current"])
         self.server.call("scene.unload")
         self.server.call("scene.load", {"name": "lit"})
-        self.assertGreater(self.picture().deviation(), 5)
+        self.assertGreater(self.image().deviation(), 5)

@@ -98,7 +98,7 @@ class Examples(ServerTestCase):
                 done.append(method["name"])
         self.assertGreater(len(done), 40)
 
-    def test_the_checker_can_say_no(self):
+    def test_the_checker_detects_mismatches(self):
         schema = {"type": "object", "required": ["a"], "properties": {
             "a": {"type": "integer", "minimum": 1}, "b": {"type": ["string", "null"]}}}
         self.assertEqual(list(problems(schema, {"a": 1, "b": None})), [])

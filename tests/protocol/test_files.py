@@ -1,4 +1,4 @@
-"""Buffers as files: what NumPy and OpenEXR find in them, over JSON-RPC and HTTP."""
+"""Buffers as files, read with NumPy and OpenEXR, over JSON-RPC and HTTP."""
 
 import base64
 import io
@@ -11,14 +11,14 @@ import zlib
 
 import numpy
 
-from harness.pictures import decode_jpeg, decode_png
+from harness.images import decode_jpeg, decode_png
 from harness.server import ServerTestCase
 
 PIXEL_TYPES = {0: numpy.dtype("<u4"), 2: numpy.dtype("<f4")}
 
 
 def read_exr(file):
-    """Channels by name of a scan line picture in blocks of 16 lines (ZIP), and its attributes."""
+    """Channels by name of a scan line image in blocks of 16 lines (ZIP), and its attributes."""
     assert struct.unpack_from("<II", file) == (20000630, 2), "not a plain OpenEXR file"
     position, attributes = 8, {}
 
@@ -101,9 +101,9 @@ class Files(ServerTestCase):
                               ("output.radiance", (90, 160, 4))):
             self.assertEqual(self.array(buffer).shape, shape, buffer)
 
-    def test_the_arrays_picture_is_that_of_the_png(self):
-        picture = decode_png(self.capture()[0])
-        self.assertEqual(self.array("output").tobytes(), picture.rgb)
+    def test_the_array_of_the_output_equals_the_png(self):
+        image = decode_png(self.capture()[0])
+        self.assertEqual(self.array("output").tobytes(), image.rgb)
 
     def test_depth_is_in_metres(self):
         depth = self.array("gbuffer.motion.view_z")
@@ -146,7 +146,7 @@ class Files(ServerTestCase):
         self.assertEqual(instances.dtype, numpy.uint32)
         numpy.testing.assert_array_equal(instances, self.array("gbuffer.instance"))
 
-    def test_radiance_is_what_the_picture_shows_before_tone_mapping(self):
+    def test_radiance_is_the_output_before_tone_mapping(self):
         patch = {"tone_map": {"curve": "linear"}, "exposure": {"compensation": -3}}
         self.server.call("settings.patch", {"patch": patch})
         radiance = self.array("output.radiance", samples=4)[..., :3] / 8
@@ -155,12 +155,12 @@ class Files(ServerTestCase):
         self.assertGreater(radiance.std(), 0.01)
         self.assertLess(numpy.abs(radiance.clip(0, 1) - linear).max(), 0.02)
 
-    def test_the_truth_has_no_surfaces(self):
+    def test_exr_of_the_reference_has_no_surface_layers(self):
         self.server.call("settings.patch", {"patch": {"reference": {"use": "always"}}})
         self.assertEqual(sorted(self.exr()), ["B", "G", "R"])
         self.assert_error(self.server.ask("scene.pick", {"x": 0.5, "y": 0.5}), -32009)
 
-    def test_files_have_addresses(self):
+    def test_files_are_served_over_http(self):
         for kind, content, begins in (("png", "image/png", b"\x89PNG"),
                                       ("jpg", "image/jpeg", b"\xff\xd8"),
                                       ("npy", "application/x-npy", b"\x93NUMPY"),
@@ -190,12 +190,12 @@ class Files(ServerTestCase):
             with open(path, "rb") as file:
                 return file.read()
 
-    def test_the_command_line_writes_them_too(self):
-        channels, _ = read_exr(self.render("picture.exr"))
+    def test_the_command_line_writes_the_same_files(self):
+        channels, _ = read_exr(self.render("image.exr"))
         radiance = numpy.load(io.BytesIO(self.render("it.npy", "--buffer", "output.radiance")))
         numpy.testing.assert_array_equal(channels["G"], radiance[..., 1])
         self.assertIn("depth.Z", channels)
-        self.assertIn(".bmp", self.render("picture.bmp"))
+        self.assertIn(".bmp", self.render("image.bmp"))
 
     def test_a_jpeg_has_full_colour(self):
         file, result = self.capture(format="jpeg")

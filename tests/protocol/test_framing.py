@@ -38,7 +38,7 @@ class Framing(ServerTestCase):
                     return json.loads(payload)
                 self.assertNotEqual(opcode, CLOSE, payload)
 
-    def test_lengths_at_their_borders(self):
+    def test_payload_lengths_at_encoding_boundaries(self):
         for size in (len(CALL), 125, 126, 127, 65534, 65535, 65536):
             padded = CALL + b" " * (size - len(CALL))
             self.assertIn("result", self.answer(frame(TEXT, padded)), size)
@@ -107,14 +107,14 @@ class Framing(ServerTestCase):
                 except (ConnectionError, OSError):
                     pass  # closed without a word is an answer, too
 
-    def test_who_says_nothing_is_let_go(self):
+    def test_silent_connections_time_out(self):
         begin = time.monotonic()
         with RawSocket(self.server, timeout=25) as raw:
             raw.send(b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n")
             self.assertRaises(ConnectionError, raw.read, 1)
         self.assertLess(time.monotonic() - begin, 20)
 
-    async def test_who_asks_without_listening_is_let_go(self):
+    async def test_clients_that_do_not_read_are_disconnected(self):
         def gone():
             return b"heliograph_viewers 0\n" in self.server.get("/metrics")[2]
         self.server.wait_for(gone, "the leaving of earlier viewers")
@@ -127,7 +127,7 @@ class Framing(ServerTestCase):
             self.server.wait_for(gone, "the end of the viewer")
         self.assertLess(self.server.memory_bytes(), 2e9)
 
-    async def test_random_bytes_beside_a_viewer(self):
+    async def test_random_bytes_do_not_disturb_a_viewer(self):
         chance = random.Random(7)
         async with Viewer(self.server) as viewer, viewer.moving():
             for _ in range(60):

@@ -1,8 +1,8 @@
-"""What has nothing to do with the picture before starts without its memory."""
+"""Histories are reset where the new frame has nothing in common with the previous one."""
 
 import base64
 
-from harness.pictures import decode_png
+from harness.images import decode_png
 from harness.server import Server, ServerTestCase
 from harness.viewer import FLAG_DISCONTINUITY, Viewer
 
@@ -13,26 +13,26 @@ class Histories(ServerTestCase):
         # One frame for every change, so that each is seen.
         cls.server = Server("--scene", "mirror", "--set", "accumulation.max_samples=1")
 
-    def remembered(self):
-        """How many lengths of history there are in the picture: surfaces that have just been
+    def history_lengths(self):
+        """How many lengths of history there are in the image: surfaces that have just been
         seen for the first time, all of them, have one; so has the background."""
         capture = self.server.call("frame.capture",
                                    {"buffer": "visibility.history", "samples": 1})
-        picture = decode_png(base64.b64decode(capture["data"], validate=True))
-        pixels = zip(picture.rgb[0::3], picture.rgb[1::3], picture.rgb[2::3])
+        image = decode_png(base64.b64decode(capture["data"], validate=True))
+        pixels = zip(image.rgb[0::3], image.rgb[1::3], image.rgb[2::3])
         return len(set(pixels))
 
     def move(self):
         """Steps beside the spheres, so that some of the floor comes into view each time."""
         for step in range(6):
             self.server.call("camera.set", {"eye": [3 - 0.1 * step, 2, 3], "target": [0, 0.5, 0]})
-            lengths = self.remembered()
-        self.assertGreater(lengths, 2, "nothing is remembered at all")
+            lengths = self.history_lengths()
+        self.assertGreater(lengths, 2, "there is no history at all")
 
     def assert_forgets(self, what):
-        self.assertLessEqual(self.remembered(), 2, f"{what}: the frames before are remembered")
+        self.assertLessEqual(self.history_lengths(), 2, f"{what}: the history was not reset")
 
-    def test_a_light_that_is_switched(self):
+    def test_switching_a_light_resets_the_history(self):
         for group, name in (("lighting", "direct"), ("lighting", "environment_diffuse"),
                             ("lighting", "environment_specular"), ("lighting", "emissive"),
                             ("shadows", "enabled"), ("ambient", "occlusion")):
@@ -41,30 +41,30 @@ class Histories(ServerTestCase):
                 self.server.call("settings.patch", {"patch": {group: {name: value}}})
                 self.assert_forgets(f"{group}.{name} = {value}")
 
-    def test_another_sun(self):
+    def test_another_sun_resets_the_history(self):
         for value in (False, True):
             self.move()
             self.server.call("settings.patch", {"patch": {"environment": {"separate_sun": value}}})
             self.assert_forgets("environment.separate_sun")
 
-    def test_a_camera_that_jumps(self):
+    def test_a_camera_jump_resets_the_history(self):
         self.move()
         self.server.call("camera.fit")
         self.assert_forgets("camera.fit")
 
-    def test_a_scene_and_its_environment(self):
+    def test_another_scene_or_environment_resets_the_history(self):
         self.move()
         self.server.call("scene.load", {"name": "mirror"})
         self.assert_forgets("scene.load")
 
-    def test_what_only_moves_is_remembered(self):
+    def test_motion_keeps_the_history(self):
         self.move()
         self.server.call("settings.patch", {"patch": {"tone_map": {"curve": "aces"}}})
         self.server.call("settings.patch", {"patch": {"environment": {"rotation": 5}}})
         self.server.call("camera.set", {"eye": [2.4, 2, 3]})
-        self.assertGreater(self.remembered(), 2)
+        self.assertGreater(self.history_lengths(), 2)
 
-    async def test_viewers_are_told_of_a_jump(self):
+    async def test_frames_after_a_jump_have_the_discontinuity_flag(self):
         async with Viewer(self.server) as viewer:
             async def flags_after(method, parameters, seq):
                 await viewer.call("camera.set", {"seq": seq})
@@ -74,7 +74,7 @@ class Histories(ServerTestCase):
                 while echo != seq + 1:
                     frame = await viewer.next_frame()
                     echo = frame.header["input_seq_echo"]
-                    # A picture may fall between the calls.
+                    # A frame may be rendered between the calls.
                     flags |= frame.header["flags"] if echo in (seq, seq + 1) else 0
                 return flags & FLAG_DISCONTINUITY
             await flags_after("camera.set", {"eye": [3, 2, 3]}, 1)

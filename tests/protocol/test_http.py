@@ -1,5 +1,5 @@
-"""HTTP itself: answers without body, many requests on one connection, streams of pictures that find no
-room, pages of other origins, answers too large for a WebSocket."""
+"""HTTP: responses without body, persistent connections, streams beyond the limit of viewers, pages of
+other origins, responses too large for a WebSocket."""
 
 import json
 import re
@@ -13,7 +13,7 @@ from harness.server import ServerTestCase
 from harness.viewer import Viewer
 
 STREAM = "/api/v1/sessions/main/stream.mjpg"
-PICTURE = "/api/v1/sessions/main/frame.png"
+IMAGE = "/api/v1/sessions/main/frame.png"
 
 
 def responses(server, status):
@@ -31,9 +31,9 @@ class Answers(ServerTestCase):
         length = int(length[1]) if length else None
         return int(head.split()[1]), length, raw.read(length or 0) if method == "GET" else b""
 
-    def test_head_tells_what_get_would_and_the_connection_goes_on(self):
-        for path, status in (("/", 200), ("/app.js", 200), (PICTURE, 200), ("/health/live", 200),
-                             ("/nothing", 404), ("/rpc", 405), (PICTURE + "?samples=x", 400),
+    def test_head_has_the_headers_of_get_and_keeps_the_connection(self):
+        for path, status in (("/", 200), ("/app.js", 200), (IMAGE, 200), ("/health/live", 200),
+                             ("/nothing", 404), ("/rpc", 405), (IMAGE + "?samples=x", 400),
                              ("/api/v1/sessions/none/frame.png", 404)):
             with RawSocket(self.server) as raw:
                 head = self.exchange(raw, "HEAD", path)
@@ -44,22 +44,22 @@ class Answers(ServerTestCase):
             self.assertGreater(get[1], 0, path)
             self.assertEqual(again[2], b"live\n", path)
 
-    def test_answers_that_have_no_body_tell_no_length(self):
+    def test_responses_without_body_have_no_content_length(self):
         tag = self.server.get("/app.js")[1]["etag"]
         _, headers, _ = self.server.get("/app.js", **{"If-None-Match": tag})
         self.assertNotIn("content-length", headers)
 
-    def test_pictures_have_all_samples_unless_fewer_are_asked_for(self):
+    def test_images_have_all_samples_unless_fewer_are_requested(self):
         self.server.call("settings.patch", {"patch": {"accumulation": {"max_samples": 9}}})
         for query, samples in (("", 9), ("?samples=9", 9), ("?samples=90", 9)):
             self.server.call("camera.orbit", {"yaw": 10})
-            self.assertEqual(self.server.get(PICTURE + query)[1]["x-heliograph-samples"],
+            self.assertEqual(self.server.get(IMAGE + query)[1]["x-heliograph-samples"],
                              str(samples))
         self.server.call("camera.orbit", {"yaw": 10})
-        few = int(self.server.get(PICTURE + "?samples=1")[1]["x-heliograph-samples"])
+        few = int(self.server.get(IMAGE + "?samples=1")[1]["x-heliograph-samples"])
         self.assertLessEqual(few, 9)
 
-    async def test_many_bytes_are_no_reason_to_let_go_of_who_reads_them(self):
+    async def test_large_responses_do_not_disconnect_a_reading_client(self):
         self.server.call("stream.configure", {"width": 1280, "height": 720})
         params = {"buffer": "gbuffer.motion", "format": "npy", "samples": 1}
 
@@ -80,7 +80,7 @@ class Answers(ServerTestCase):
                 self.assertEqual(answer["id"], f"capture {i}")
             await viewer.call("camera.get")
 
-    def test_many_answers_are_none_either(self):
+    def test_many_responses_do_not_disconnect_a_reading_client(self):
         with RawSocket(self.server) as raw:
             raw.upgrade()
             self.ask(raw, 600)
@@ -91,21 +91,21 @@ class Answers(ServerTestCase):
                 self.assertIn(opcode, (1, 2), payload)
                 seen += opcode == TEXT and b'"id":5' in payload[-200:] + payload[:200]
 
-    def test_who_reads_nothing_is_let_go(self):
-        def let_go():
+    def test_clients_that_do_not_read_responses_are_disconnected(self):
+        def disconnected():
             page = self.server.get("/metrics")[2].decode()
-            return int(re.search(r"^heliograph_viewers_let_go_total (\d+)", page, re.MULTILINE)[1])
-        before = let_go()
+            return int(re.search(r"^heliograph_slow_viewers_disconnected_total (\d+)", page, re.MULTILINE)[1])
+        before = disconnected()
         with RawSocket(self.server) as raw:
             raw.upgrade()
             self.ask(raw, 900)
-            self.server.wait_for(lambda: let_go() == before + 1, "the end of patience")
+            self.server.wait_for(lambda: disconnected() == before + 1, "the timeout")
 
     def ask(self, raw, count):
         raw.send(frame(TEXT, b'{"jsonrpc":"2.0","id":5,"method":"settings.schema"}') * count)
 
 
-class SmallHouse(ServerTestCase):
+class FewViewers(ServerTestCase):
     """Room for one viewer, and pages of another site may use it."""
 
     arguments = ("--max-viewers", "1", "--allow-origin", "https://good.example")
@@ -115,7 +115,7 @@ class SmallHouse(ServerTestCase):
         self.server.wait_for(lambda: b"heliograph_viewers 0\n" in self.server.get("/metrics")[2],
                              "room")
 
-    async def test_a_stream_that_finds_no_room_is_told_when_to_come_back(self):
+    async def test_a_stream_beyond_the_limit_gets_retry_after(self):
         before = responses(self.server, 503)
         async with Viewer(self.server):
             status, headers, body = self.server.get(STREAM)
@@ -125,11 +125,11 @@ class SmallHouse(ServerTestCase):
         self.assertIn(b"1 viewer", body)
         self.assertEqual(responses(self.server, 503), before + 1)
 
-    def test_a_stream_is_counted_and_its_connection_asks_whether_anybody_is_there(self):
+    def test_a_stream_counts_as_viewer_and_has_keepalive(self):
         before = responses(self.server, 200)
         with RawSocket(self.server) as raw:
             raw.send(f"GET {STREAM} HTTP/1.1\r\nHost: localhost\r\n\r\n".encode())
-            raw.read_until(b"--picture\r\n")
+            raw.read_until(b"--frame\r\n")
             self.server.wait_for(lambda: self.asks_for(raw.socket), "the timer of keep-alive")
         # The two pages of metrics are counted as well, the second one after it was written.
         self.assertEqual(responses(self.server, 200), before + 2)
@@ -148,26 +148,26 @@ class SmallHouse(ServerTestCase):
         raise AssertionError("no such connection")
 
 
-    def test_what_pages_of_other_origins_embed_is_refused(self):
+    def test_embedding_by_other_origins_is_refused(self):
         for site in ("cross-site", "same-site"):
-            for path in (STREAM, PICTURE + "?samples=65536", "/metrics", "/api/v1/schema"):
+            for path in (STREAM, IMAGE + "?samples=65536", "/metrics", "/api/v1/schema"):
                 status, _, _ = self.server.get(path, **{"Sec-Fetch-Site": site,
                                                         "Sec-Fetch-Mode": "no-cors"})
                 self.assertEqual(status, 403, (site, path))
             navigation = {"Sec-Fetch-Site": site, "Sec-Fetch-Mode": "navigate"}
             self.assertEqual(self.server.get("/", **navigation)[0], 200)
-            self.assertEqual(self.server.get(PICTURE, **navigation)[0], 403)
+            self.assertEqual(self.server.get(IMAGE, **navigation)[0], 403)
             self.assertEqual(self.server.get("/health/live", **navigation)[0], 200)
         for site in ("none", "same-origin"):
-            self.assertEqual(self.server.get(PICTURE, **{"Sec-Fetch-Site": site})[0], 200)
+            self.assertEqual(self.server.get(IMAGE, **{"Sec-Fetch-Site": site})[0], 200)
 
     def assert_shared(self, headers):
         self.assertEqual(headers["access-control-allow-origin"], self.good["Origin"])
         self.assertEqual(headers["cross-origin-resource-policy"], "cross-origin")
         self.assertEqual(headers["vary"], "Origin")
 
-    def test_allowed_pages_may_read_the_answers(self):
-        status, headers, _ = self.server.get(PICTURE, **self.good,
+    def test_cors_allows_listed_origins(self):
+        status, headers, _ = self.server.get(IMAGE, **self.good,
                                              **{"Sec-Fetch-Site": "cross-site"})
         self.assertEqual(status, 200)
         self.assert_shared(headers)
@@ -184,7 +184,7 @@ class SmallHouse(ServerTestCase):
         self.assertIn(f"Access-Control-Allow-Origin: {self.good['Origin']}\r\n", head)
         self.assertIn("Cross-Origin-Resource-Policy: cross-origin\r\n", head)
 
-    def test_others_may_not(self):
+    def test_cors_refuses_other_origins(self):
         for headers in ({}, {"Origin": "https://evil.example"}):
             _, answered, _ = self.server.get("/", **headers)
             self.assertNotIn("access-control-allow-origin", answered)
@@ -196,7 +196,7 @@ class SmallHouse(ServerTestCase):
             "Origin": origin, "Access-Control-Request-Method": "POST",
             "Access-Control-Request-Headers": "authorization,content-type", **more})
 
-    def test_allowed_pages_may_ask_first(self):
+    def test_cors_preflight_of_listed_origins(self):
         status, headers, body = self.preflight(
             self.good["Origin"], **{"Access-Control-Request-Private-Network": "true"})
         self.assertEqual((status, body), (204, b""))

@@ -1,5 +1,5 @@
 """Clients by other hands: ws (npm), websockets and aiohttp (Debian). Each greets, asks, pings, sees
-a picture and closes. Skipped, saying so, where a library is missing."""
+a frame and closes. Skipped with a message if a library is missing."""
 
 import asyncio
 import json

@@ -1,4 +1,4 @@
-"""Who takes too much: connections, slow senders, giant heads, deep and giant JSON, draining."""
+"""Limits: connections, slow senders, large headers, large or deep JSON, draining."""
 
 import asyncio
 import json
@@ -33,7 +33,7 @@ class Connections(ServerTestCase):
         except ConnectionError:
             return False
 
-    def test_one_address_has_its_share_and_all_have_a_limit(self):
+    def test_connections_are_limited_per_address_and_in_total(self):
         time.sleep(0.5)
         mine = [self.connect() for _ in range(10)]
         theirs = [self.connect("127.0.0.2") for _ in range(6)]
@@ -52,13 +52,13 @@ class Connections(ServerTestCase):
             return False
 
 
-class Slow(ServerTestCase):
+class SlowSenders(ServerTestCase):
     """All at once, since each takes the ten seconds that the server waits."""
 
     def setUp(self):
         pass
 
-    def test_senders_are_let_go(self):
+    def test_slow_senders_time_out(self):
         own = f"Host: {self.server.host}:{self.server.port}\r\n"
         upgrade = (f"GET /ws HTTP/1.1\r\n{own}Upgrade: websocket\r\nConnection: Upgrade\r\n"
                    "Sec-WebSocket-Version: 13\r\n")
@@ -90,13 +90,13 @@ class Sizes(ServerTestCase):
     def setUp(self):
         pass
 
-    def test_heads_have_a_limit(self):
+    def test_http_headers_are_limited(self):
         for path, headers in (("/" + "x" * 9000, {}), ("/", {"X-Long": "y" * 9000}),
                               ("/", {f"X-{i}": "z" * 100 for i in range(100)})):
             self.assertEqual(self.server.get(path, **headers)[0], 413)
         self.assertEqual(self.server.get("/", **{"X-Fine": "y" * 6000})[0], 200)
 
-    def test_json_has_limits(self):
+    def test_json_size_and_depth_are_limited(self):
         for text, code in (("[" * 40000, -32013), ('{"a":' * 10000, -32013),
                            ("[" * 65 + "]" * 65, -32013), ("[1," * 60, -32700),
                            ('"' + "x" * 60000, -32700), ("1e999999", -32700),
@@ -111,7 +111,7 @@ class Sizes(ServerTestCase):
             self.assertLess(len(json.dumps(answer)), 12000)
         self.assertEqual(self.server.request("POST", "/rpc", b" " * 70000)[0], 413)
 
-    def test_the_websocket_has_the_same(self):
+    def test_the_websocket_has_the_same_limits(self):
         for text, code in ((b"[" * 40000, -32013), (b'{"a":' * 10000, -32013)):
             with RawSocket(self.server) as raw:
                 raw.upgrade()
@@ -119,7 +119,7 @@ class Sizes(ServerTestCase):
                 opcode, payload = raw.read_frame()
                 self.assertEqual((opcode, json.loads(payload)["error"]["code"]), (TEXT, code))
 
-    def test_names_of_scenes_are_names(self):
+    def test_scene_names_cannot_leave_the_catalogue(self):
         for name in ("../../etc/passwd", "/etc/passwd", "..\\..\\x", "%2e%2e/secret", "mirror/../x",
                      "file:///etc/passwd", "http://evil.example/x.glb", "mirror\u0000.glb", "~",
                      "mirror.glb/", "./mirror", "//mirror", "\u202emirror", "x" * 500):
@@ -130,7 +130,7 @@ class Sizes(ServerTestCase):
 
 
 class Draining(unittest.IsolatedAsyncioTestCase):
-    async def test_balancers_are_told_first_and_nobody_new_comes_in(self):
+    async def test_readiness_fails_first_and_new_viewers_are_refused(self):
         with await asyncio.to_thread(Server, "--drain-notice", "3", "--drain-deadline", "4"
                                      ) as server:
             async with Viewer(server) as viewer:
@@ -167,7 +167,7 @@ class Draining(unittest.IsolatedAsyncioTestCase):
             self.assertNotEqual(await asyncio.to_thread(server.stop), 0)
             self.assertLess(time.monotonic() - begin, 2)
 
-    async def test_who_does_not_answer_the_close_is_waited_for_no_longer_than_said(self):
+    async def test_unanswered_close_handshakes_end_at_the_deadline(self):
         with await asyncio.to_thread(Server, "--drain-deadline", "1") as server:
             with RawSocket(server) as raw:
                 raw.upgrade()

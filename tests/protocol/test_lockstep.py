@@ -1,4 +1,4 @@
-"""Lockstep: time passes frame by frame as it is asked for, and the same calls give the same bytes."""
+"""Lockstep: time advances frame by frame on request, and the same calls give the same bytes."""
 
 import asyncio
 import base64
@@ -46,7 +46,7 @@ class Lockstep(ServerTestCase):
     def step(self, frames, dt=DT):
         return self.server.call("frame.step", {"frames": frames, "dt": dt})
 
-    def test_the_answer_comes_when_all_frames_are_done(self):
+    def test_step_returns_when_all_frames_are_rendered(self):
         state = self.step(3)
         self.assertEqual((state["lockstep"], state["frames"], state["samples"]), (True, 3, 3))
         self.assertAlmostEqual(state["seconds"], 3 * DT)
@@ -54,7 +54,7 @@ class Lockstep(ServerTestCase):
         self.assertEqual(state["frames"], 5)
         self.assertAlmostEqual(state["seconds"], 3 * DT + 1.0)
 
-    def test_a_clip_goes_on_by_steps_alone(self):
+    def test_a_clip_advances_by_steps_only(self):
         self.step(0)
         self.server.call("animation.play", {"clip": "hop", "rate": 2.0})
         self.assertEqual(self.server.call("animation.list")["seconds"], 0)
@@ -70,7 +70,7 @@ class Lockstep(ServerTestCase):
         return [message["params"] for message in viewer.notifications
                 if message["method"] == method]
 
-    async def test_others_hear_where_the_clip_stands(self):
+    async def test_clip_changes_are_notified_to_other_viewers(self):
         async with Viewer(self.server) as causer, Viewer(self.server) as other:
             by = causer.hello["viewer"]
             for method, params in (("animation.play", {"clip": "hop"}), ("animation.pause", {}),
@@ -92,7 +92,7 @@ class Lockstep(ServerTestCase):
             self.assertEqual(len(self.told(other, "animation.changed")), 1,
                              "time that passes is told")
 
-    async def test_others_hear_of_lockstep_and_not_of_its_steps(self):
+    async def test_lockstep_changes_are_notified_but_not_steps(self):
         async with Viewer(self.server) as causer, Viewer(self.server) as other:
             await causer.call("animation.play", {"clip": "hop"})
             await other.notification("animation.changed")
@@ -115,7 +115,7 @@ class Lockstep(ServerTestCase):
             self.assertEqual(clips, [True, False])
             self.assertEqual(self.told(causer, "lockstep.changed"), [], "an echo")
 
-    def test_running_again_goes_on_from_there(self):
+    def test_run_continues_from_the_current_time(self):
         self.step(0)
         self.server.call("animation.play", {"clip": "hop"})
         self.step(10)
@@ -125,7 +125,7 @@ class Lockstep(ServerTestCase):
         self.assertGreater(seconds, 10 * DT + 0.2)
         self.assertFalse(self.server.call("frame.run")["lockstep"], "running twice is no harm")
 
-    def test_nothing_is_drawn_between_steps(self):
+    def test_nothing_is_rendered_between_steps(self):
         self.step(2)
         first = self.capture("png")
         self.server.call("camera.orbit", {"yaw": 40})
@@ -133,25 +133,25 @@ class Lockstep(ServerTestCase):
         self.step(1)
         self.assertNotEqual(self.capture("png"), first)
 
-    def test_there_is_no_picture_before_the_first_step(self):
+    def test_captures_before_the_first_step_are_refused(self):
         self.step(0)
         self.assert_error(self.server.ask("frame.capture"), -32050)
         self.assert_error(self.server.ask("scene.pick", {"x": 0.5, "y": 0.5}), -32050)
 
-    def test_bad_steps_are_refused(self):
+    def test_invalid_steps_are_refused(self):
         for params, path in (({"frames": -1, "dt": 0.1}, "frames"), ({"frames": 1}, "dt"),
                              ({"frames": 1, "dt": 11}, "dt"), ({"frames": 1e9, "dt": 0}, "frames")):
             self.assert_error(self.server.ask("frame.step", params), -32602, path=path)
 
-    async def test_viewers_see_the_steps_and_only_them(self):
+    async def test_viewers_receive_exactly_the_stepped_frames(self):
         async with Viewer(self.server) as viewer:
             await viewer.call("frame.step", {"frames": 0, "dt": DT})
-            # Nothing before the step shows this; pictures from before may still be on the way.
+            # Nothing before the step shows this; earlier frames may still be in flight.
             await viewer.call("camera.set", {"seq": 5})
             await viewer.call("frame.step", {"frames": 1, "dt": DT})
             await viewer.frame_where(lambda frame: frame.header["input_seq_echo"] == 5)
             await asyncio.sleep(0.5)
-            self.assertTrue(viewer.frames.empty(), "a frame nobody asked for")
+            self.assertTrue(viewer.frames.empty(), "a frame without request")
             await viewer.call("frame.step", {"frames": 3, "dt": DT})
             frame = await asyncio.wait_for(viewer.frames.get(), 5)
             self.assertEqual(frame.header["full_width"], 160)
@@ -163,7 +163,7 @@ class Lockstep(ServerTestCase):
         self.server.call("animation.play", {"clip": "hop", "rate": 1.0})
         self.server.call("animation.seek", {"seconds": 0})
 
-    async def test_calls_take_place_in_their_order_whoever_waits(self):
+    async def test_calls_run_in_order_of_arrival(self):
         point = {"x": 0.5, "y": 0.5, "buffers": ["gbuffer.motion"]}
         calls = [("frame.step", {"frames": 20, "dt": DT}), ("frame.capture", {}),
                  ("frame.inspect", point), ("camera.orbit", {"yaw": 30}),
@@ -187,7 +187,7 @@ class Lockstep(ServerTestCase):
                 self.assertEqual(one, other, call)
         self.assertEqual(len({awaited[i]["data"] for i in (1, 6, 9)}), 3)
 
-    async def test_who_leaves_wants_no_more_steps(self):
+    async def test_steps_of_a_disconnected_viewer_are_dropped(self):
         async with Viewer(self.server) as viewer:
             await viewer.notify("frame.step", {"frames": 100000, "dt": DT})
             await viewer.frame_where(lambda frame: frame.header["render_id"] > 3)
@@ -196,7 +196,7 @@ class Lockstep(ServerTestCase):
         # The time of frames that were not drawn has not passed.
         self.assertAlmostEqual(state["seconds"], state["frames"] * DT)
 
-    async def test_steps_that_somebody_ends_are_told_so(self):
+    async def test_leaving_lockstep_fails_pending_steps(self):
         async with Viewer(self.server) as viewer:
             stepping = asyncio.create_task(
                 viewer.ask("frame.step", {"frames": 100000, "dt": 0.001}))
@@ -230,12 +230,12 @@ class Lockstep(ServerTestCase):
         marks.append(hashlib.sha256(self.capture("exr", server=server)).hexdigest())
         return marks
 
-    def test_two_servers_make_the_same_bytes(self):
+    def test_two_servers_render_the_same_bytes(self):
         # This one has a past, and the clip stands anywhere when lockstep begins.
         self.server.call("animation.play", {"clip": "hop", "rate": 3.7})
         self.server.call("frame.capture", {"samples": 1})
         first = self.film(self.server)
-        self.assertEqual(len(set(first)), len(first), "some pictures are the same")
+        self.assertEqual(len(set(first)), len(first), "some frames are equal")
         self.server.call("frame.run")
         again = self.film(self.server)
         self.assertEqual(again, first)
@@ -245,11 +245,11 @@ class Lockstep(ServerTestCase):
 
 
 class Reference(ServerTestCase):
-    def test_it_gathers_its_samples_unwatched(self):
+    def test_it_accumulates_samples_without_viewers(self):
         before = self.server.call("settings.get")["settings"]
         self.assertFalse(self.server.call("reference.status")["shown"])
         state = self.server.call("reference.start", {"scope": "full", "samples": 12})
-        self.assertEqual((state["shown"], state["scope"], state["wanted"]), (True, "full", 12))
+        self.assertEqual((state["shown"], state["scope"], state["target_samples"]), (True, "full", 12))
         self.server.wait_for(lambda: self.server.call("reference.status")["finished"],
                              "the end of the reference")
         self.assertEqual(self.server.call("reference.status")["samples"], 12)
@@ -262,7 +262,7 @@ class Reference(ServerTestCase):
         self.assertEqual(after["accumulation"], before["accumulation"])
         self.assertEqual(after["reference"]["use"], "never")
 
-    def test_stopping_puts_back_what_starting_changed(self):
+    def test_stop_restores_the_settings_changed_by_start(self):
         def settings(session="main"):
             return self.server.call("settings.get", session=session)["settings"]
         self.server.call("settings.patch", {"patch": {"accumulation": {"enabled": False}}})
@@ -279,15 +279,15 @@ class Reference(ServerTestCase):
         self.server.call("reference.stop")
         self.assertEqual(settings()["accumulation"], between["accumulation"])
 
-    def test_one_that_settings_end_is_drawn_no_more(self):
+    def test_settings_can_end_the_reference(self):
         with Server("--release-after", "1") as server:
             server.call("reference.start", {"samples": 2})
             server.wait_for(lambda: server.call("reference.status")["finished"], "the end")
-            self.assertNotIn("pictures let go", server.log_text())
+            self.assertNotIn("images released", server.log_text())
             server.call("settings.patch", {"patch": {"reference": {"use": "never"}}})
-            server.wait_for(lambda: "pictures let go" in server.log_text(), "letting go")
+            server.wait_for(lambda: "images released" in server.log_text(), "the release")
 
-    def test_bad_ones_are_refused(self):
+    def test_invalid_parameters_are_refused(self):
         self.assert_error(self.server.ask("reference.start", {"scope": "none"}), -32602,
                           path="scope")
         self.assert_error(self.server.ask("reference.start", {"samples": 0}), -32602,

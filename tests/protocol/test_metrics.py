@@ -1,4 +1,4 @@
-"""Metrics: the format to the letter, and that the figures are right."""
+"""Metrics: the exact format, and correct values."""
 
 import http.client
 import re
@@ -25,7 +25,7 @@ class Metrics(ServerTestCase):
         for name in ("heliograph_build_info", "heliograph_ready", "heliograph_sessions",
                      "heliograph_viewers", "heliograph_frames_sent_total",
                      "heliograph_sent_bytes_total", "heliograph_frames_dropped_total",
-                     "heliograph_frames_acknowledged_total", "heliograph_frames_waiting",
+                     "heliograph_frames_acknowledged_total", "heliograph_frames_pending",
                      "heliograph_ack_round_trip_seconds", "heliograph_render_seconds",
                      "heliograph_encode_seconds", "heliograph_pass_seconds",
                      "heliograph_scene_cache_hits_total", "heliograph_scene_cache_bytes",
@@ -50,7 +50,7 @@ class Metrics(ServerTestCase):
                 - before["frames_acknowledged_total"] == viewer.frames_received,
                 "every frame's acknowledgement")
             self.assertEqual(self.value("heliograph_viewers"), 1)
-            self.assertEqual(self.value("heliograph_frames_on_the_way"), 0)
+            self.assertEqual(self.value("heliograph_frames_in_flight"), 0)
         after = figures()
         self.assertGreaterEqual(after["frames_sent_total"] - before["frames_sent_total"], frames)
         self.assertGreater(after["sent_bytes_total"] - before["sent_bytes_total"], 0.5 * size)
@@ -99,7 +99,7 @@ class Metrics(ServerTestCase):
 
 
 class OwnPort(unittest.TestCase):
-    def test_metrics_have_a_door_of_their_own(self):
+    def test_metrics_can_have_their_own_port(self):
         with Server("--metrics-listen", "127.0.0.1:0", "--token", "a-secret-of-tests") as server:
             line = server.process.stdout.readline()
             port = int(re.match(r"metrics at http://127\.0\.0\.1:(\d+)/metrics", line)[1])

@@ -1,4 +1,4 @@
-"""Starting, watching and ending the server; the program's other commands."""
+"""Start, monitoring and shutdown of the server; the other commands of the program."""
 
 import asyncio
 import json
@@ -11,7 +11,7 @@ import tempfile
 import time
 import unittest
 
-from harness.pictures import decode_jpeg, decode_png
+from harness.images import decode_jpeg, decode_png
 from harness.server import Server, ServerTestCase
 from harness.viewer import Viewer
 
@@ -28,7 +28,7 @@ def scene_file(name):
     return os.path.join(os.environ["HELIOGRAPH_SCENES"], name)
 
 
-class Watching(ServerTestCase):
+class Monitoring(ServerTestCase):
     def test_health(self):
         for path in ("/health/live", "/health/ready"):
             self.assertEqual(self.server.get(path)[0], 200)
@@ -52,7 +52,7 @@ class Watching(ServerTestCase):
         self.assertGreater(value("resident_memory_bytes"), 1e6)
         self.assertIn(b'heliograph_pass_milliseconds{pass="', page)
 
-    def test_pictures_over_http(self):
+    def test_images_over_http(self):
         status, headers, body = self.server.get("/api/v1/sessions/main/frame.jpg?samples=2")
         self.assertEqual((status, headers["content-type"]), (200, "image/jpeg"))
         self.assertEqual(decode_jpeg(body).width, 160)
@@ -68,11 +68,11 @@ class Watching(ServerTestCase):
             status, _, body = self.server.get(
                 "/api/v1/sessions/main/frame.png?samples=" + samples)
             self.assertEqual((status, body),
-                             (400, b"samples: must be a whole number from 1 to 65536\n"))
+                             (400, b"samples: must be an integer from 1 to 65536\n"))
 
 
-class Ending(unittest.IsolatedAsyncioTestCase):
-    async def test_viewers_are_told_to_come_back(self):
+class Shutdown(unittest.IsolatedAsyncioTestCase):
+    async def test_viewers_are_told_to_reconnect(self):
         for number in (signal.SIGTERM, signal.SIGINT):
             with await asyncio.to_thread(Server) as server:
                 async with Viewer(server) as viewer:
@@ -85,7 +85,7 @@ class Ending(unittest.IsolatedAsyncioTestCase):
                 self.assertEqual(await asyncio.to_thread(server.wait), 0)
                 self.assertLess(time.monotonic() - begin, 6)
 
-    async def test_a_viewer_that_does_not_listen_does_not_hold_it_up(self):
+    async def test_a_viewer_that_does_not_read_does_not_delay_shutdown(self):
         with await asyncio.to_thread(Server, "--set", "accumulation.max_samples=60000") as server:
             viewer = Viewer(server)
             await viewer.__aenter__()
@@ -97,7 +97,7 @@ class Ending(unittest.IsolatedAsyncioTestCase):
             viewer.socket.transport.abort()
 
 
-    async def test_work_that_is_under_way_does_not_hold_it_up(self):
+    async def test_pending_work_does_not_delay_shutdown(self):
         with await asyncio.to_thread(Server, "--set", "accumulation.max_samples=60000") as server:
             async with Viewer(server) as viewer:
                 waiting = asyncio.create_task(viewer.ask("frame.capture"))
@@ -131,7 +131,7 @@ class CommandLine(unittest.TestCase):
             self.assertEqual(code, 0)
             self.assertIn("Example", out, command)
 
-    def test_mistakes_get_a_suggestion(self):
+    def test_mistyped_arguments_get_a_suggestion(self):
         self.fails("serv", saying="did you mean serve")
         self.fails("serve", "--prot", "1", saying="did you mean --port")
         self.fails("serve", "--set", "tone_map.curv=agx", saying="did you mean tone_map.curve")
@@ -139,7 +139,7 @@ class CommandLine(unittest.TestCase):
         self.fails("serve", "--scene", "mirorr", "--scene-root", os.environ["HELIOGRAPH_SCENES"],
                    saying="did you mean mirror")
 
-    def test_starts_that_cannot_work_say_why(self):
+    def test_failed_starts_report_the_reason(self):
         root = ("--scene-root", os.environ["HELIOGRAPH_SCENES"])
         with tempfile.TemporaryDirectory() as empty:
             self.fails("serve", "--scene-root", empty, saying="heliograph-scenes")
@@ -184,7 +184,7 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(code, 0)
         self.assertIn("Vulkan", out)
 
-    def test_health_of_nobody(self):
+    def test_health_without_a_server_fails(self):
         with socket.socket() as unused:
             unused.bind(("127.0.0.1", 0))
             port = unused.getsockname()[1]
@@ -192,7 +192,7 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("refused", err)
 
-    def test_health_asks_where_the_server_would_listen(self):
+    def test_health_queries_the_configured_address(self):
         with socket.socket() as unused:
             unused.bind(("127.0.0.1", 0))
             port = unused.getsockname()[1]
@@ -210,7 +210,7 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("--url", err)
 
-    def test_render_writes_a_picture(self):
+    def test_render_writes_an_image(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "out.png")
             code, out, err = run("render", scene_file("mirror.glb"), "-o", path, "--width", "96",
@@ -220,11 +220,11 @@ class CommandLine(unittest.TestCase):
             self.assertEqual(timings["frames"], 2)
             self.assertGreaterEqual(len(timings["passes"]), 3)
             with open(path, "rb") as file:
-                picture = decode_png(file.read())
-            self.assertEqual((picture.width, picture.height), (96, 64))
-            self.assertGreater(picture.deviation(), 5)
+                image = decode_png(file.read())
+            self.assertEqual((image.width, image.height), (96, 64))
+            self.assertGreater(image.deviation(), 5)
 
-    def test_render_says_what_is_wrong(self):
+    def test_render_reports_errors(self):
         with tempfile.TemporaryDirectory() as folder:
             out = ("-o", folder + "/out.png")
             self.fails("render", folder + "/missing.glb", *out, saying="missing.glb|not exist")

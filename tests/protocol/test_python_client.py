@@ -1,4 +1,4 @@
-"""The client library in Python, and the programs that show how to use it."""
+"""The Python client library and its example programs."""
 
 import asyncio
 import os
@@ -14,7 +14,7 @@ import xml.etree.ElementTree
 import numpy
 
 from harness.exposition import parse
-from harness.pictures import decode_jpeg, decode_png
+from harness.images import decode_jpeg, decode_png
 from harness.server import Server, ServerTestCase
 from test_lockstep import make_scenes
 
@@ -28,7 +28,7 @@ TOKEN = "a-token-of-the-library"
 SILENCE = 12.0  # seconds; the server waits 10 for an acknowledgement
 
 
-class Thinkers:
+class IdleClients:
     """Programs that have connected and ask for nothing for a while, beside the other tests."""
 
     def __init__(self):
@@ -49,7 +49,7 @@ class Thinkers:
 
 def setUpModule():
     global thinkers
-    thinkers = Thinkers()
+    thinkers = IdleClients()
 
 
 def tearDownModule():
@@ -64,7 +64,7 @@ class Generated(ServerTestCase):
     def setUp(self):
         pass
 
-    def test_the_wrappers_are_those_of_this_server(self):
+    def test_the_generated_methods_are_up_to_date(self):
         schema = subprocess.run([os.environ["HELIOGRAPH_BINARY"], "schema"], check=True,
                                 capture_output=True).stdout
         made = subprocess.run([sys.executable, os.path.join(LIBRARY, "generate.py")], check=True,
@@ -101,11 +101,11 @@ class Library(ServerTestCase):
             self.assertEqual((error.code, error.path), (-32602, "vertical_fov"))
             self.assertIn("170", error.limit)
 
-    def test_captures_in_every_form(self):
+    def test_captures_in_every_format(self):
         with self.connect() as view:
-            picture = view.capture(samples=1)
-            self.assertEqual(decode_png(picture._repr_png_()).width, 160)
-            self.assertIsNone(picture._repr_jpeg_())
+            image = view.capture(samples=1)
+            self.assertEqual(decode_png(image._repr_png_()).width, 160)
+            self.assertIsNone(image._repr_jpeg_())
             self.assertEqual(decode_png(view._repr_png_()).height, 90)
             self.assertTrue(decode_jpeg(view.capture(format="jpeg", samples=1)._repr_jpeg_()))
             pixels = view.array(samples=1)
@@ -113,11 +113,11 @@ class Library(ServerTestCase):
             depth = view.array("gbuffer.motion.view_z", samples=1)
             self.assertEqual((depth.shape, depth.dtype), ((90, 160), numpy.float32))
             with self.assertRaises(ValueError):
-                picture.numpy()
+                image.numpy()
             with tempfile.TemporaryDirectory() as folder:
-                picture.save(os.path.join(folder, "picture.png"))
-                with open(os.path.join(folder, "picture.png"), "rb") as file:
-                    self.assertEqual(file.read(), picture.data)
+                image.save(os.path.join(folder, "image.png"))
+                with open(os.path.join(folder, "image.png"), "rb") as file:
+                    self.assertEqual(file.read(), image.data)
 
     def test_frames_until_the_final_one(self):
         with self.connect() as view:
@@ -153,7 +153,7 @@ class Library(ServerTestCase):
             self.assertEqual((await view.array(samples=1)).shape, (90, 160, 3))
             self.assertEqual((await view.next_frame()).width, 160)
 
-    def test_the_end_of_the_server_ends_what_waits(self):
+    def test_the_end_of_the_server_fails_pending_calls(self):
         with Server("--scene", "mirror") as server:
             view = heliograph.connect(server.url)
             server.stop()
@@ -161,7 +161,7 @@ class Library(ServerTestCase):
                 view.scene.list()
             view.close()
 
-    def test_a_slow_program_gets_few_pictures_and_new_ones(self):
+    def test_a_slow_program_gets_fewer_but_recent_frames(self):
         with self.connect() as view:
             view.next_frame()
             before = frames_sent(self.server)
@@ -197,6 +197,18 @@ class Readme(unittest.TestCase):
             self.assertIn('"viewer"', done.stdout)
             with open(os.path.join(folder, "frame.jpg"), "rb") as file:
                 self.assertEqual(decode_jpeg(file.read()).width, 640)
+
+    def test_the_program_on_the_front_page_works(self):
+        with open(os.path.join(PROTOCOL, "../README.md"), encoding="utf-8") as file:
+            code, = re.findall("```python\n(.*?)```", file.read(), re.DOTALL)
+        with Server("--scene", "mirror") as server, tempfile.TemporaryDirectory() as folder:
+            code = code.replace("127.0.0.1:8080", f"{server.host}:{server.port}")
+            path = os.path.join(PROTOCOL, "python")
+            done = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True,
+                                  text=True, timeout=120, env={**os.environ, "PYTHONPATH": path})
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("(360, 640)", done.stdout)
+            self.assertTrue(os.path.exists(os.path.join(folder, "view.png")))
 
 
 class Examples(ServerTestCase):
@@ -236,7 +248,7 @@ class Examples(ServerTestCase):
                  **(environment or {})}, timeout=60)
 
     def run_aside(self, name, *arguments, returns=0):
-        """Runs one in a session of its own, which nobody notices afterwards."""
+        """Runs one in a session of its own, which is closed afterwards."""
         before = self.state()
         done = self.run_example(name, *arguments)
         self.assertEqual(done.returncode, returns, done.stdout + done.stderr)
@@ -246,27 +258,27 @@ class Examples(ServerTestCase):
     def path(self, *parts):
         return os.path.join(self.folder.name, *parts)
 
-    def picture(self, *parts):
+    def image(self, *parts):
         with open(self.path(*parts), "rb") as file:
             return decode_png(file.read())
 
     def test_turntable(self):
-        arguments = ("--scene", "hopping", "--size", "64", "36", "--pictures", "4",
+        arguments = ("--scene", "hopping", "--size", "64", "36", "--images", "4",
                      "--frames-each", "2", "--folder")
         for folder in ("turn", "again"):
             self.run_aside("turntable", *arguments, folder)
         self.assertEqual(sorted(os.listdir(self.path("turn"))),
                          ["000.png", "001.png", "002.png", "003.png"])
-        pictures = [self.picture("turn", f"{i:03d}.png").rgb for i in range(4)]
-        self.assertEqual(len(set(pictures)), 4)
-        self.assertEqual(pictures, [self.picture("again", f"{i:03d}.png").rgb for i in range(4)])
+        images = [self.image("turn", f"{i:03d}.png").rgb for i in range(4)]
+        self.assertEqual(len(set(images)), 4)
+        self.assertEqual(images, [self.image("again", f"{i:03d}.png").rgb for i in range(4)])
 
     def test_thumbnails(self):
         done = self.run_aside("thumbnails", "--models", "props", "--size", "48", "--samples", "2",
                               "--folder", "thumbs")
         self.assertIn("props/broken", done.stderr)
         self.assertEqual(os.listdir(self.path("thumbs", "props")), ["mirror.png"])
-        self.assertEqual(self.picture("thumbs", "props", "mirror.png").width, 48)
+        self.assertEqual(self.image("thumbs", "props", "mirror.png").width, 48)
 
     def test_roughness_sweep(self):
         self.server.call("session.create", {"name": "sweep", "copy_of": "main", "width": 64,
@@ -294,24 +306,24 @@ class Examples(ServerTestCase):
         self.assertIn("DIFFERENT", done.stdout)
         self.assertTrue(os.path.exists(self.path("expected", kept[:-4] + ".actual.png")))
 
-    def test_a_session_that_is_named_and_a_program_that_dies_in_it(self):
+    def test_own_session_survives_a_killed_program(self):
         self.server.call("session.create", {"name": "shared", "copy_of": "main"})
         in_the_way = self.path("dying", "001.png")
         os.makedirs(in_the_way)
         done = self.run_example(
-            "turntable", "--session", "shared", "--size", "64", "36", "--pictures", "4",
+            "turntable", "--session", "shared", "--size", "64", "36", "--images", "4",
             "--frames-each", "2", "--folder", "dying", "--token", TOKEN,
             environment={"HELIOGRAPH_TOKEN": "not-the-right-token"})
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn("001.png", done.stderr)
         info = self.server.call("session.info", session="shared")
         self.assertEqual((info["width"], info["height"]), (64, 36))
-        # Pictures come again without being stepped.
-        pictures = set()
+        # Frames are rendered again without steps.
+        images = set()
         for _ in range(2):
             self.server.call("camera.orbit", {"yaw": 60}, "shared")
-            pictures.add(self.server.call("frame.capture", {"samples": 1}, "shared")["data"])
-        self.assertEqual(len(pictures), 2)
+            images.add(self.server.call("frame.capture", {"samples": 1}, "shared")["data"])
+        self.assertEqual(len(images), 2)
         self.server.call("session.close", {"session": "shared"})
 
     def test_without_the_token(self):
@@ -320,10 +332,10 @@ class Examples(ServerTestCase):
         self.assertIn("401", done.stderr)
 
 
-class Thinking(unittest.TestCase):
+class IdleClient(unittest.TestCase):
     """Comes last: the time that it needs has passed by then."""
 
-    def test_who_thinks_is_neither_let_go_nor_drawn_for(self):
+    def test_an_idle_client_stays_connected_and_costs_no_rendering(self):
         thinkers.wait()
         for view in (thinkers.never, thinkers.once):
             self.assertEqual(view.scene.list()["current"], "mirror")

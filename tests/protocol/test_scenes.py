@@ -1,4 +1,4 @@
-"""Loading scenes: only from the catalogue, whole or not at all."""
+"""Loading scenes: only from the catalogue, atomically."""
 
 import asyncio
 import os
@@ -96,7 +96,7 @@ class Scenes(ServerTestCase):
         self.assertEqual(self.server.call("scene.info"), info)
         self.assertEqual(self.server.call("scene.list")["current"], "furnace")
 
-    def test_what_is_missing_or_broken_leaves_the_session_as_it_was(self):
+    def test_failed_loads_leave_the_session_unchanged(self):
         camera = self.server.call("camera.get")
         info = self.server.call("scene.info")
         for name in ("nowhere", "../secret", "/etc/passwd", "mirror.glb/..", "..", "."):
@@ -109,7 +109,7 @@ class Scenes(ServerTestCase):
         self.assertEqual(self.server.call("camera.get"), camera)
         self.assertEqual(self.server.call("frame.capture")["samples"], 4)
 
-    def test_what_the_device_cannot_hold_is_told(self):
+    def test_scenes_too_large_for_the_device_are_refused(self):
         content, binary = document(*grid(700))
         write_glb(os.path.join(self.root, "vast.glb"), content, binary)
         answer = self.server.ask("scene.load", {"name": "vast"})
@@ -118,7 +118,7 @@ class Scenes(ServerTestCase):
         self.assert_error(answer, -32602, path="name")
         self.assertIn("MiB; this device", answer["error"]["message"])
 
-    async def test_progress_and_change_are_announced(self):
+    async def test_progress_and_change_are_notified(self):
         async with Viewer(self.server) as loader, Viewer(self.server) as other:
             info = await loader.call("scene.load", {"name": "furnace"})
             progress = await other.notification("scene.progress")
@@ -127,7 +127,7 @@ class Scenes(ServerTestCase):
             self.assertEqual((await other.notification("scene.changed"))["scene"], info)
             self.assertNotIn("scene.changed", [m["method"] for m in loader.notifications])
 
-    async def test_the_newest_request_wins(self):
+    async def test_a_later_load_replaces_an_earlier_one(self):
         async with Viewer(self.server) as viewer:
             names = ["furnace", "mirror"] * 3
             answers = await asyncio.gather(
@@ -138,7 +138,7 @@ class Scenes(ServerTestCase):
                     self.assert_error(answer, -32009, path="name")
             self.assertEqual((await viewer.call("scene.info"))["name"], "mirror")
 
-    def test_a_scene_and_a_variant_of_a_file_are_chosen(self):
+    def test_scene_and_variant_of_a_file_can_be_chosen(self):
         info = self.server.call("scene.load", {"name": "choices"})
         self.assertEqual((info["scenes"], info["scene"], info["triangles"]), (["one", "two"], 0, 1))
         self.assertEqual((info["variants"], info["variant"]), (["day", "night"], None))
@@ -167,7 +167,7 @@ class Scenes(ServerTestCase):
             self.assertEqual(await viewer.call("scene.info"), shown)
             await viewer.call("scene.load", {"name": "furnace"})
 
-    async def test_a_session_that_ends_takes_its_load_with_it(self):
+    async def test_closing_a_session_cancels_its_load(self):
         ended = self.server.log_text().count("loading slow was ended")
         self.server.call("session.create", {"name": "passing"})
         async with Viewer(self.server, session="passing") as viewer:
@@ -181,7 +181,7 @@ class Scenes(ServerTestCase):
         self.server.wait_for(
             lambda: self.server.log_text().count("loading slow was ended") > ended, "its end")
 
-    async def test_one_load_serves_all_who_ask_for_the_same(self):
+    async def test_concurrent_loads_of_a_scene_are_shared(self):
         before = self.cache()
         async with Viewer(self.server) as viewer:
             answers = await asyncio.gather(
@@ -195,7 +195,7 @@ class Scenes(ServerTestCase):
         self.assertEqual(now["hits_total"] - before["hits_total"], 4)
         self.assertGreater(now["bytes"], before["bytes"])
 
-    def test_a_file_that_changed_is_read_again(self):
+    def test_a_changed_file_is_reloaded(self):
         path = os.path.join(self.root, "changing.gltf")
         self.write_choices(path)
         self.assertEqual(self.server.call("scene.load", {"name": "changing"})["triangles"], 1)
@@ -203,7 +203,7 @@ class Scenes(ServerTestCase):
         write_gltf(path, content, binary)
         self.assertEqual(self.server.call("scene.load", {"name": "changing"})["triangles"], 18)
 
-    async def test_pictures_go_on_after_a_failed_load(self):
+    async def test_frames_continue_after_a_failed_load(self):
         async with Viewer(self.server) as viewer:
             await viewer.ask("scene.load", {"name": "broken/truncated"})
             camera = await viewer.call("camera.set", {"eye": [3, 3, 3]})
@@ -213,7 +213,7 @@ class Scenes(ServerTestCase):
 class FirstScene(unittest.TestCase):
     """Clients who are there before the first scene is."""
 
-    def test_a_wrong_request_does_not_end_the_server(self):
+    def test_an_invalid_load_does_not_stop_the_server(self):
         with tempfile.TemporaryDirectory() as root:
             content, binary = document(*grid(700))
             write_glb(os.path.join(root, "first.glb"), content, binary)
@@ -226,10 +226,10 @@ class FirstScene(unittest.TestCase):
                 self.assertEqual(server.ask("scene.load", {"name": "broken"})["error"]["code"],
                                  -32602)
                 self.assertEqual(server.call("scene.load", {"name": "mirror"})["name"], "mirror")
-                server.wait_for(lambda: server.get("/health/ready")[0] == 200, "the first picture")
+                server.wait_for(lambda: server.get("/health/ready")[0] == 200, "the first frame")
                 self.assertEqual(server.stop(), 0)
 
-    def test_one_that_cannot_be_shown_ends_it_with_the_reason(self):
+    def test_a_first_scene_that_fails_stops_the_server_with_the_reason(self):
         with tempfile.TemporaryDirectory() as root:
             with open(os.path.join(root, "broken.glb"), "wb") as file:
                 file.write(b"this is not glTF")

@@ -1,9 +1,9 @@
-"""Sessions: made, joined, steered by everyone or by one, full, closed."""
+"""Sessions: create, join, shared and exclusive control, limits, close."""
 
 import asyncio
 import time
 
-from harness.pictures import decode_jpeg, difference
+from harness.images import decode_jpeg, difference
 from harness.server import ServerTestCase
 from harness.viewer import FLAG_DISCONTINUITY, Viewer
 
@@ -38,7 +38,7 @@ class Sessions(ServerTestCase):
             heard = {message["method"] for message in here.notifications}
             self.assertNotIn("camera.changed", heard)
 
-    def test_calls_without_a_stream_name_their_session(self):
+    def test_calls_without_a_stream_address_their_session(self):
         self.create("other", scene="furnace")
         self.assertEqual(self.server.call("scene.info", session="other")["name"], "furnace")
         self.assertEqual(self.server.call("scene.info")["name"], "mirror")
@@ -49,36 +49,36 @@ class Sessions(ServerTestCase):
         self.assert_error(self.server.ask("camera.get", session="othr"), NOT_FOUND, path="session")
         self.assertEqual(self.server.get("/api/v1/sessions/othr/frame.jpg")[0], 404)
 
-    async def test_an_address_may_name_one_session_and_enter_another(self):
+    async def test_the_url_addresses_one_session_and_enters_another(self):
         async with Viewer(self.server, session="for-a-balancer&enter=main") as viewer:
             self.assertEqual(viewer.hello["session"], "main")
-            self.assertIsNone(viewer.hello["bring"])
+            self.assertIsNone(viewer.hello["restore_state"])
         self.assertEqual(self.server.call("session.info", session="elsewhere&enter=main")["name"],
                          "main")
         self.assert_error(self.server.ask("session.info", session="main&enter=elsewhere"),
                           NOT_FOUND)
 
-    async def test_who_comes_back_from_another_run_disturbs_nobody(self):
-        self.server.call("camera.fit")  # main is somebody's now
+    async def test_reconnect_to_another_run_gets_an_unused_session(self):
+        self.server.call("camera.fit")  # main is in use now
         lost = {"instance": "0123456789abcdef", "session": "main"}
         async with Viewer(self.server, greet=False) as first, \
                 Viewer(self.server, greet=False) as second:
             hello = await first.call("hello", lost)
-            self.assertEqual((hello["session"], hello["bring"]), ("main-01234567", True))
+            self.assertEqual((hello["session"], hello["restore_state"]), ("main-01234567", True))
             hello = await second.call("hello", lost)
-            self.assertEqual((hello["session"], hello["bring"]), ("main-01234567", False))
+            self.assertEqual((hello["session"], hello["restore_state"]), ("main-01234567", False))
             self.assertEqual(self.server.call("session.info")["viewers"], [])
         async with Viewer(self.server) as viewer:
             same = {"instance": viewer.hello["instance"], "session": "main"}
             hello = await viewer.call("hello", same)
-            self.assertEqual((hello["session"], hello["bring"]), ("main", None))
+            self.assertEqual((hello["session"], hello["restore_state"]), ("main", None))
 
-    def test_names_and_models_are_checked(self):
+    def test_names_and_copied_sessions_are_checked(self):
         self.create("taken")
         self.assert_error(self.server.ask("session.create", {"name": "taken"}), CONFLICT,
                           path="name")
         self.assert_error(self.server.ask("session.create", {"name": "a/b"}), -32602, path="name")
-        self.assert_error(self.server.ask("session.create", {"copy_of": "nobody"}), NOT_FOUND,
+        self.assert_error(self.server.ask("session.create", {"copy_of": "missing"}), NOT_FOUND,
                           path="copy_of")
         before = len(self.server.call("session.list")["sessions"])
         self.assert_error(self.server.ask("session.create", {"scene": "nothing", "width": 16,
@@ -94,7 +94,7 @@ class Sessions(ServerTestCase):
         self.assertEqual(len(self.server.call("session.list")["sessions"]), before,
                          "a session that could not be made is there")
 
-    def test_full_is_an_answer(self):
+    def test_session_and_viewer_limits_return_full(self):
         for name in ("a", "b"):
             self.create(name)
         self.assert_error(self.server.ask("session.create", {"width": 320, "height": 180}), FULL,
@@ -109,7 +109,7 @@ class Sessions(ServerTestCase):
         self.server.call("session.close", {"session": "c"})
         self.create("d")
 
-    async def test_a_viewer_moves_and_finds_another_picture(self):
+    async def test_a_viewer_that_joins_another_session_gets_its_frames(self):
         self.create("away", copy_of="main")
         self.server.call("camera.set", {"eye": [4, 1, 1]}, session="away")
         async with Viewer(self.server) as viewer, Viewer(self.server, session="away") as other:
@@ -128,7 +128,7 @@ class Sessions(ServerTestCase):
                               path="session")
         self.assert_error(self.server.ask("session.join", {"session": "away"}), -32050)
 
-    async def test_who_was_cut_off_finds_everything_as_it_was(self):
+    async def test_a_reconnected_viewer_finds_the_session_unchanged(self):
         self.create("kept", copy_of="main", settings={"exposure": {"compensation": 1}})
         viewer = Viewer(self.server, session="kept")
         await viewer.__aenter__()
@@ -145,7 +145,7 @@ class Sessions(ServerTestCase):
         self.assertEqual(after.header["state_rev"], before.header["state_rev"])
         self.assertEqual(after.payload, before.payload)
 
-    async def test_everybody_hears_who_comes_and_goes(self):
+    async def test_joining_and_leaving_is_notified(self):
         self.create("room", copy_of="main")
         async with Viewer(self.server, session="room", name="Ada") as first:
             async with Viewer(self.server, session="room") as second:
@@ -162,7 +162,7 @@ class Sessions(ServerTestCase):
             await asyncio.sleep(0.05)
         self.fail(f"{expected} was never told, but {told[-1:]}")
 
-    async def test_everybody_hears_of_another_size(self):
+    async def test_a_changed_frame_size_is_notified(self):
         self.create("sized", copy_of="main")
         async with Viewer(self.server, session="sized") as one, \
                 Viewer(self.server, session="sized") as other:
@@ -178,19 +178,19 @@ class Sessions(ServerTestCase):
             await other.call("camera.get")
             self.assertEqual(other.notifications, [], "nothing changed for all")
 
-    async def test_one_in_control(self):
+    async def test_exclusive_control(self):
         self.create("led", copy_of="main")
         async with Viewer(self.server, session="led") as leader, \
                 Viewer(self.server, session="led") as other:
             ids = leader.hello["viewer"], other.hello["viewer"]
-            info = await leader.call("session.control", {"mode": "one"})
+            info = await leader.call("session.control", {"mode": "exclusive"})
             self.assertEqual([(one["viewer"], one["control"]) for one in info["viewers"]],
                              [(ids[0], True), (ids[1], False)])
             for method, params in (("camera.set", {"eye": [4, 4, 4]}), ("camera.fit", {}),
                                    ("settings.patch", {"patch": {"shadows": {"enabled": False}}}),
                                    ("scene.load", {"name": "furnace"}),
                                    ("stream.configure", {"width": 80}),
-                                   ("session.control", {"mode": "everyone"}),
+                                   ("session.control", {"mode": "shared"}),
                                    ("session.control", {"action": "take"}),
                                    ("session.close", {"session": "led"})):
                 answer = await other.ask(method, params)
@@ -213,25 +213,25 @@ class Sessions(ServerTestCase):
             await other.call("session.control", {"action": "release"})
             free = await other.ask("camera.fit")
             self.assert_error(free, FORBIDDEN, path="control", limit="take")
-            self.assertIn("nobody has control", free["error"]["message"])
+            self.assertIn("no viewer has control", free["error"]["message"])
             await leader.call("session.control", {"action": "take"})
             taken = await other.ask("camera.fit")
             self.assertIn("another viewer has control", taken["error"]["message"])
             await leader.call("camera.fit")
-            await leader.call("session.control", {"mode": "everyone"})
+            await leader.call("session.control", {"mode": "shared"})
             await other.call("camera.fit")
 
-    async def test_control_is_free_when_who_has_it_leaves(self):
+    async def test_control_is_released_when_its_viewer_leaves(self):
         self.create("left", copy_of="main")
         async with Viewer(self.server, session="left") as stays:
             async with Viewer(self.server, session="left") as leaves:
-                await leaves.call("session.control", {"mode": "one"})
+                await leaves.call("session.control", {"mode": "exclusive"})
                 self.assert_error(await stays.ask("session.control", {"action": "take"}), FORBIDDEN)
             await self.until_people(stays, [(None, True)])
             await stays.call("session.control", {"action": "take"})
             await stays.call("camera.fit")
 
-    async def test_the_end_of_a_session_is_told_in_words(self):
+    async def test_closing_a_session_is_notified_with_the_reason(self):
         self.create("ends", copy_of="main")
         async with Viewer(self.server, session="ends") as viewer, Viewer(self.server) as outsider:
             self.assert_error(await outsider.ask("session.close", {"session": "ends"}), FORBIDDEN)
@@ -244,7 +244,7 @@ class Sessions(ServerTestCase):
         self.assert_error(self.server.ask("camera.get", session="ends"), NOT_FOUND)
         self.assert_error(self.server.ask("session.close", {"session": "main"}), CONFLICT)
 
-    async def test_a_session_takes_so_many_viewers(self):
+    async def test_viewers_per_session_are_limited(self):
         self.create("small", copy_of="main")
         viewers = [Viewer(self.server, session="small") for _ in range(3)]
         for viewer in viewers:
@@ -260,7 +260,7 @@ class Sessions(ServerTestCase):
 class IdleSessions(ServerTestCase):
     arguments = ("--session-idle-timeout", "3")
 
-    async def test_a_session_that_nobody_needs_ends(self):
+    async def test_an_idle_session_is_closed(self):
         for name in ("watched", "called", "idle", "stepped"):
             self.server.call("session.create", {"name": name, "copy_of": "main"})
         self.server.call("frame.step", {"frames": 1, "dt": 0.04}, session="stepped")
@@ -275,12 +275,12 @@ class IdleSessions(ServerTestCase):
         self.assertRegex(self.server.log_text(), "the session ended: .* session=watched")
 
 
-class SharesOfTheDevice(ServerTestCase):
+class FairDeviceShare(ServerTestCase):
     def watch(self, name):
         return Viewer(self.server, session=name)
 
-    async def test_a_heavy_session_takes_no_more_than_its_share(self):
-        """The light one, whose pictures take a few milliseconds, gets several between two of the
+    async def test_an_expensive_session_gets_only_its_share(self):
+        """The light one, whose frames take a few milliseconds, gets several between two of the
         heavy one's, and the heavy one still about half of the time."""
         endless = {"accumulation": {"max_samples": 60000}}
         for name, (width, height) in {"light": (32, 18), "heavy": (960, 540)}.items():
@@ -309,7 +309,7 @@ class SharesOfTheDevice(ServerTestCase):
         self.assertGreater(beside["heavy"], 0.3 * alone["heavy"])
 
     async def keep_moving(self, name, viewer, seconds):
-        """Pictures a second while the camera moves all the time."""
+        """Frames a second while the camera moves all the time."""
         begin, before, step = time.monotonic(), viewer.frames_received, 0
         while time.monotonic() < begin + seconds:
             step += 1
@@ -321,7 +321,7 @@ class SharesOfTheDevice(ServerTestCase):
 class ManySessions(ServerTestCase):
     arguments = ("--max-sessions", "300", "--release-after", "1", "--session-idle-timeout", "0")
 
-    async def test_idle_sessions_cost_nearly_nothing(self):
+    async def test_idle_sessions_use_almost_no_cpu(self):
         self.server.call("frame.capture", {"samples": 1})
         self.server.call("session.create", {"name": "warm", "copy_of": "main"})
         before = self.server.memory_bytes()
@@ -335,15 +335,15 @@ class ManySessions(ServerTestCase):
         self.assertLess(grown, 100e6)
         self.assertLess(used, 0.1)
 
-    async def test_what_nobody_watches_is_let_go_and_comes_back(self):
+    async def test_images_of_unwatched_sessions_are_released_and_recreated(self):
         self.server.call("session.create", {"name": "seen", "copy_of": "main", "width": 640,
                                             "height": 360})
         async with Viewer(self.server, session="seen") as viewer:
             first = await viewer.rest()
-        self.server.wait_for(lambda: "pictures let go session=seen" in self.server.log_text(),
-                             "letting go", timeout=10)
+        self.server.wait_for(lambda: "images released session=seen" in self.server.log_text(),
+                             "the release", timeout=10)
         async with Viewer(self.server, session="seen") as viewer:
             again = await viewer.rest()
         self.assertGreater(again.header["render_id"], first.header["render_id"])
         apart = difference(decode_jpeg(first.payload), decode_jpeg(again.payload))
-        self.assertLess(apart, 2, "not the same picture")
+        self.assertLess(apart, 2, "not the same frame")

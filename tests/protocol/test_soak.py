@@ -5,6 +5,6 @@ from soak import soak
 
 
 class Soak(ServerTestCase):
-    async def test_nothing_is_lost_reordered_or_kept(self):
+    async def test_no_loss_no_reordering_no_leak(self):
         faults = await soak(self.server, 16, report=lambda line: None)
         self.assertEqual(faults, [])

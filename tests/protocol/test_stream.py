@@ -1,4 +1,4 @@
-"""The stream of pictures: headers, echoes, rest and silence."""
+"""The frame stream: headers, echoes, final frames, pacing."""
 
 import asyncio
 import base64
@@ -6,13 +6,13 @@ import contextlib
 import socket
 import time
 
-from harness.pictures import decode_jpeg, decode_png, difference
+from harness.images import decode_jpeg, decode_png, difference
 from harness.server import ServerTestCase
 from harness.viewer import FLAG_FIRST_AFTER_DROP, FLAG_KEY, Viewer
 
 
 class Frames(ServerTestCase):
-    async def test_headers_are_valid_and_pictures_decode(self):
+    async def test_headers_are_valid_and_frames_decode(self):
         async with Viewer(self.server) as viewer:
             await viewer.call("stream.configure", {"width": 160, "height": 90, "quality": 70})
             await viewer.call("camera.set", {"eye": [3, 2, 3]})
@@ -26,8 +26,8 @@ class Frames(ServerTestCase):
                 self.assertTrue(header["flags"] & FLAG_KEY)
                 self.assertEqual((header["full_width"], header["full_height"]),
                                  (header["width"], header["height"]))
-                picture = decode_jpeg(frame.payload)
-                self.assertEqual((picture.width, picture.height),
+                image = decode_jpeg(frame.payload)
+                self.assertEqual((image.width, image.height),
                                  (header["width"], header["height"]))
                 if last:
                     self.assertGreater(header["frame_seq"], last["frame_seq"])
@@ -35,7 +35,7 @@ class Frames(ServerTestCase):
                     self.assertGreaterEqual(header["render_start_us"], last["render_start_us"])
                 last = header
 
-    async def test_a_camera_changes_the_picture_and_its_seq_is_echoed(self):
+    async def test_a_camera_change_shows_and_its_seq_is_echoed(self):
         async with Viewer(self.server) as viewer:
             await viewer.call("camera.set", {"eye": [3, 1, 3], "seq": 41})
             first = await viewer.frame_where(
@@ -48,15 +48,15 @@ class Frames(ServerTestCase):
             self.assertGreater(apart, 3)
 
     async def test_each_viewer_gets_its_own_echo(self):
-        async with Viewer(self.server) as mover, Viewer(self.server) as watcher:
+        async with Viewer(self.server) as mover, Viewer(self.server) as observer:
             camera = await mover.call("camera.set", {"eye": [3, 1, 2], "seq": 9})
 
             def shows(frame):
                 return frame.header["state_rev"] >= camera["rev"]
             self.assertEqual((await mover.frame_where(shows)).header["input_seq_echo"], 9)
-            self.assertEqual((await watcher.frame_where(shows)).header["input_seq_echo"], 0)
+            self.assertEqual((await observer.frame_where(shows)).header["input_seq_echo"], 0)
 
-    async def test_a_resting_picture_is_finished_and_then_nothing_is_sent(self):
+    async def test_a_static_view_ends_with_a_final_frame_and_silence(self):
         async with Viewer(self.server) as viewer:
             await viewer.call("camera.set", {"eye": [3, 2, 2]})
             final = await viewer.rest()
@@ -68,12 +68,12 @@ class Frames(ServerTestCase):
             self.assertEqual(viewer.bytes_received, received, "something came after the final")
             self.assertLess(self.server.cpu_seconds() - cpu, 0.1, "an idle server computes")
 
-    async def test_a_resting_picture_is_sent_when_its_samples_have_doubled(self):
+    async def test_a_static_view_is_sent_when_its_samples_have_doubled(self):
         self.server.call("settings.patch", {"patch": {"accumulation": {"max_samples": 64}}})
         async with Viewer(self.server) as viewer:
             await viewer.call("camera.set", {"eye": [3, 2, 1]})
             await viewer.rest()
-            # The picture that is there gets better once more, from its first sample on.
+            # The same view is refined again, from its first sample.
             await viewer.call("camera.set", {"eye": [3, 2, 2]})
             samples, final = [], None
             while not final:
@@ -86,7 +86,7 @@ class Frames(ServerTestCase):
             self.assertLess(len(late), 24, samples)
             self.assertLess(len(samples), 64, samples)
 
-    async def test_pictures_that_take_long_follow_the_camera_all_the_same(self):
+    async def test_slow_frames_follow_the_camera(self):
         async with Viewer(self.server) as viewer:
             await viewer.call("settings.patch", {"patch": {"motion": {"scale": 1}}})
             await viewer.call("stream.configure", {"width": 1600, "height": 900})
@@ -95,7 +95,7 @@ class Frames(ServerTestCase):
                 while len(shown) < 4:  # of a camera that never comes to rest
                     shown.add((await viewer.next_frame(timeout=60)).header["state_rev"])
 
-    async def test_a_change_and_its_opposite_are_answered_by_a_picture(self):
+    async def test_a_change_and_its_reversal_produce_a_frame(self):
         async with Viewer(self.server) as viewer:
             await viewer.call("stream.configure", {"width": 960, "height": 540})
             await viewer.rest()
@@ -105,12 +105,12 @@ class Frames(ServerTestCase):
                                    {"patch": {"exposure": {"compensation": stops}}})
             for stops in (1, 0, 1):
                 await compensate(stops)
-                await asyncio.sleep(0.02)  # a picture of it is being drawn
+                await asyncio.sleep(0.02)  # a frame of it is being rendered
                 _, back = await asyncio.gather(compensate(2), compensate(stops))
                 await viewer.frame_where(
                     lambda frame, rev=back["rev"]: frame.header["state_rev"] >= rev, timeout=30)
 
-    async def test_the_final_picture_can_be_a_png(self):
+    async def test_the_final_frame_can_be_a_png(self):
         async with Viewer(self.server) as viewer:
             state = await viewer.call("stream.configure", {"still": "png"})
             self.assertEqual(state["still"], "png")
@@ -121,7 +121,7 @@ class Frames(ServerTestCase):
             self.assertEqual(decode_png(final.payload).rgb,
                              decode_png(base64.b64decode(capture["data"])).rgb)
 
-    async def test_statistics_tell_that_the_picture_is_done(self):
+    async def test_statistics_report_the_idle_state(self):
         async with Viewer(self.server) as viewer:
             await viewer.call("stats.subscribe", {"interval_ms": 60000})
             await viewer.call("camera.set", {"eye": [2, 3, 3]})
@@ -129,14 +129,14 @@ class Frames(ServerTestCase):
             for _ in range(200):
                 told = [note["params"] for note in viewer.notifications
                         if note["method"] == "stats.frame"]
-                if told and told[-1]["state"] == "still":
+                if told and told[-1]["state"] == "idle":
                     break
                 await asyncio.sleep(0.05)
             last = told[-1]
-            self.assertEqual(last["state"], "still")
+            self.assertEqual(last["state"], "idle")
             self.assertEqual((last["codec"], last["quality"], last["scale"]), ("jpeg", 80, 1))
 
-    async def test_the_final_picture_is_the_captured_one(self):
+    async def test_the_final_frame_equals_the_capture(self):
         async with Viewer(self.server) as viewer:
             await viewer.call("camera.set", {"eye": [2, 2, 3]})
             seen = decode_jpeg((await viewer.rest()).payload)
@@ -144,13 +144,13 @@ class Frames(ServerTestCase):
             captured = decode_png(base64.b64decode(capture["data"]))
             self.assertLess(difference(seen, captured), 2)
 
-    async def test_a_newcomer_sees_the_resting_picture(self):
+    async def test_a_new_viewer_gets_the_frame_of_a_static_view(self):
         async with Viewer(self.server) as first:
             await first.call("camera.set", {"eye": [2, 3, 3]})
-            resting = await first.rest()
+            static = await first.rest()
         async with Viewer(self.server) as second:
             frame = await second.next_frame(timeout=5)
-            self.assertEqual(frame.header["render_id"], resting.header["render_id"])
+            self.assertEqual(frame.header["render_id"], static.header["render_id"])
             self.assertEqual(frame.header["frame_seq"], 1)
 
     async def test_size_and_quality_take_effect(self):
@@ -181,11 +181,11 @@ class Frames(ServerTestCase):
             await viewer.call("stream.configure", {"paused": True})
             await viewer.call("stream.configure", {"paused": False})
             again = await viewer.next_frame()
-            self.assertTrue(again.final, "the picture that stays comes once more, and alone")
+            self.assertTrue(again.final, "only the final frame is sent again")
             await asyncio.sleep(0.5)
             self.assertEqual(viewer.frames_received, before + 1)
 
-    async def test_the_rate_limit_holds(self):
+    async def test_max_fps_is_respected(self):
         async with Viewer(self.server) as viewer, viewer.moving():
             await viewer.call("stream.configure", {"max_fps": 4})
             await viewer.next_frame()
@@ -207,23 +207,23 @@ class Frames(ServerTestCase):
             self.assertLessEqual({entry["kind"] for entry in stats["passes"]}, {"device", "host"})
 
 
-class Memory(ServerTestCase):
-    async def test_many_pictures_need_no_more_memory_than_few(self):
+class MemoryUse(ServerTestCase):
+    async def test_memory_does_not_grow_with_the_number_of_frames(self):
         for scene in ("furnace", "mirror"):
             self.server.call("scene.load", {"name": scene})
             async with Viewer(self.server) as viewer, viewer.moving():
-                await self.pictures(viewer, 20)
+                await self.frames(viewer, 20)
                 before = self.server.memory_bytes()
-                await self.pictures(viewer, 80)
+                await self.frames(viewer, 80)
                 grown = self.server.memory_bytes() - before
             self.assertLess(grown, 40e6, scene)
 
-    async def pictures(self, viewer, count):
+    async def frames(self, viewer, count):
         for _ in range(count):
             await viewer.next_frame()
 
 
-class NarrowWays(ServerTestCase):
+class SlowLinks(ServerTestCase):
     """A viewer behind a relay that passes only so many bytes a second."""
 
     async def relay(self, rate):
@@ -246,7 +246,7 @@ class NarrowWays(ServerTestCase):
                                  pump(server_reader, writer, rate))
         return await asyncio.start_server(serve, "127.0.0.1", 0)
 
-    async def test_pictures_become_smaller_until_they_come_in_time(self):
+    async def test_frames_shrink_until_they_arrive_in_time(self):
         relay = await self.relay(rate=60_000)
         port = relay.sockets[0].getsockname()[1]
         async with relay:
@@ -265,7 +265,7 @@ class NarrowWays(ServerTestCase):
                 else:
                     carried = (viewer.bytes_received - before) / (time.monotonic() - begin)
                     if carried < 40_000:
-                        self.skipTest("pictures come too seldom here to fill the way")
+                        self.skipTest("the frame rate is too low here to fill the link")
                 last = chosen[-1]
                 print(f"quality {last['quality']}, scale {last['scale']}, "
                       f"{chosen[0]['round_trip_ms']:.0f} -> {last['round_trip_ms']:.0f} ms ",
@@ -276,7 +276,7 @@ class NarrowWays(ServerTestCase):
                 await viewer.call("stream.configure", {"quality": 80, "max_fps": 60})
 
 
-class LongWays(ServerTestCase):
+class LongRoundTrips(ServerTestCase):
     """A viewer behind a relay that delays everything but holds nothing up."""
 
     async def relay(self, delay):
@@ -302,7 +302,7 @@ class LongWays(ServerTestCase):
             await asyncio.gather(pump(reader, there[1]), pump(there[0], writer))
         return await asyncio.start_server(serve, "127.0.0.1", 0)
 
-    async def test_a_far_viewer_gets_as_many_pictures_as_a_near_one(self):
+    async def test_a_long_round_trip_does_not_reduce_the_frame_rate(self):
         relay = await self.relay(delay=0.075)
         async with relay, Viewer(self.server) as near, near.moving(), \
                 Viewer(self.server, port=relay.sockets[0].getsockname()[1]) as far:
@@ -322,7 +322,7 @@ class LongWays(ServerTestCase):
 
 class SlowViewers(ServerTestCase):
     async def rate(self, viewer, seconds):
-        """Over so many seconds, and longer where pictures come so seldom that few would be counted."""
+        """Over this many seconds, and longer if the frame rate is too low to count."""
         begin, before = time.monotonic(), viewer.frames_received
         for _ in range(10):
             await asyncio.sleep(seconds)
@@ -347,7 +347,7 @@ class SlowViewers(ServerTestCase):
             self.assertTrue(fresh.header["flags"] & FLAG_FIRST_AFTER_DROP)
             self.assertGreater(fresh.header["frame_seq"], last.header["frame_seq"] + 1)
 
-    async def test_a_stalled_viewer_costs_the_others_nothing(self):
+    async def test_a_stalled_viewer_does_not_slow_down_others(self):
         async with Viewer(self.server) as brisk, brisk.moving():
             await brisk.call("stream.configure", {"width": 320, "height": 180, "quality": 100})
             await self.rate(brisk, 1)
@@ -370,7 +370,7 @@ class SlowViewers(ServerTestCase):
             self.assertGreater(beside, 0.7 * alone)
             self.assertLess(grown, 20e6)
 
-    async def test_viewers_that_vanish_in_the_middle_of_frames_are_forgotten(self):
+    async def test_viewers_that_vanish_during_a_frame_are_removed(self):
         async with Viewer(self.server) as stays, stays.moving():
             for _ in range(5):
                 viewer = Viewer(self.server)
@@ -391,14 +391,14 @@ class SlowViewers(ServerTestCase):
             await asyncio.sleep(0.1)
         self.fail(f"there are not {count} viewers:\n{metrics}")
 
-    async def test_who_takes_pictures_but_acknowledges_nothing_is_let_go(self):
+    async def test_viewers_without_acknowledgements_are_disconnected(self):
         async with Viewer(self.server, acknowledge=False) as lazy, Viewer(self.server) as brisk:
             await lazy.next_frame()
             code, reason = await lazy.closed(timeout=20)
             self.assertEqual(code, 4004, reason)
             await brisk.call("camera.get")
 
-    async def test_acknowledging_nonsense_does_no_harm(self):
+    async def test_invalid_acknowledgements_are_refused(self):
         async with Viewer(self.server) as viewer:
             for seq in (0, 7, 4294967295):
                 await viewer.notify("stream.ack", {"frame_seq": seq})

@@ -1,4 +1,4 @@
-"""HTTPS and secure WebSockets by the server itself, with a certificate that is made here."""
+"""HTTPS and secure WebSockets of the server, with a generated certificate."""
 
 import os
 import shutil
@@ -52,7 +52,7 @@ class Tls(ServerTestCase):
             with context.wrap_socket(plain, server_hostname="localhost") as secure:
                 return secure.version(), secure.cipher()[0], secure.getpeercert(True)
 
-    def test_the_address_says_so(self):
+    def test_the_printed_url_is_https(self):
         self.assertTrue(self.server.url.startswith("https://"))
 
     def test_pages_and_calls(self):
@@ -75,7 +75,7 @@ class Tls(ServerTestCase):
                 status, _ = raw.upgrade(Authorization="Bearer " + TOKEN, Origin=origin)
                 self.assertEqual(status, expected, origin)
 
-    def test_only_what_is_still_safe_is_spoken(self):
+    def test_only_secure_tls_versions_are_accepted(self):
         newest = ssl.create_default_context(cafile=self.certificate)
         self.assertEqual(self.handshake(newest)[0], "TLSv1.3")
         older = ssl.create_default_context(cafile=self.certificate)
@@ -116,7 +116,7 @@ class Tls(ServerTestCase):
                    "Sec-WebSocket-Protocol: heliograph.v1\r\n")
         self.assertNotIn(" 101 ", self.plain((upgrade + host).encode()))
 
-    def test_nonsense_and_silence_are_let_go(self):
+    def test_invalid_and_silent_handshakes_are_closed(self):
         with socket.create_connection((self.server.host, self.server.port), timeout=25) as raw:
             raw.sendall(b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc" + os.urandom(600))
             try:
@@ -132,7 +132,7 @@ class Tls(ServerTestCase):
 
     def test_health(self):
         url = self.server.url + "health/ready"
-        self.assertEqual(run("health", "--url", url)[0], 0, "on loopback anybody is believed")
+        self.assertEqual(run("health", "--url", url)[0], 0, "certificates are not verified on loopback")
         self.assertEqual(run("health", "--url", url, "--tls-ca", self.certificate)[0], 0)
         other, _ = make_certificate(self.folder.name, "other")
         code, _, err = run("health", "--url", url, "--tls-ca", other)
@@ -161,7 +161,7 @@ class Tls(ServerTestCase):
 
 
 class Reload(unittest.IsolatedAsyncioTestCase):
-    async def test_a_new_certificate_is_used_without_losing_anybody(self):
+    async def test_a_new_certificate_is_used_without_disconnecting_viewers(self):
         with tempfile.TemporaryDirectory() as folder:
             certificate, key = make_certificate(folder)
             with Server("--tls-certificate", certificate, "--tls-key", key,
@@ -191,7 +191,7 @@ class Reload(unittest.IsolatedAsyncioTestCase):
 
 
 class WrongOptions(unittest.TestCase):
-    def test_files_that_do_not_fit_are_named(self):
+    def test_mismatched_files_are_named(self):
         with tempfile.TemporaryDirectory() as folder:
             certificate, key = make_certificate(folder)
             _, other = make_certificate(folder, "other")

@@ -1,15 +1,27 @@
-"""The client library in TypeScript, run by Node. Skipped, saying so, where a package is missing."""
+"""The TypeScript client library, run by Node. Skipped with a message if a package is missing."""
 
 import os
 import shutil
 import subprocess
+import sys
 import unittest
 
 from harness.server import ServerTestCase
 from test_interop import NODE_CLIENT
 
 ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
+LIBRARY = os.path.join(ROOT, "protocol", "typescript")
 TOKEN = "a-token_of.the~library"
+
+
+class Generated(unittest.TestCase):
+    def test_the_messages_are_up_to_date(self):
+        schema = subprocess.run([os.environ["HELIOGRAPH_BINARY"], "schema"], check=True,
+                                capture_output=True).stdout
+        made = subprocess.run([sys.executable, os.path.join(LIBRARY, "generate.py")], check=True,
+                              input=schema, capture_output=True).stdout.decode()
+        with open(os.path.join(LIBRARY, "messages.ts"), encoding="utf-8") as file:
+            self.assertEqual(file.read(), made, "run protocol/typescript/generate.py")
 
 
 class TypeScriptLibrary(ServerTestCase):

@@ -1,4 +1,4 @@
-"""Scenes that clients send: off unless asked for, checked whole, in place at once or not at all."""
+"""Uploads of scenes: off by default, checked completely, stored atomically."""
 
 import json
 import os
@@ -61,7 +61,7 @@ class Uploads(ServerTestCase):
         return [file for _, _, files in os.walk(os.path.join(self.folder.name, "incoming"))
                 for file in files]
 
-    def test_a_scene_arrives_and_can_be_loaded(self):
+    def test_an_uploaded_scene_can_be_loaded(self):
         status, answer = self.put("my-scene_2", self.mirror)
         self.assertEqual(status, 201, answer)
         self.assertEqual(json.loads(answer)["bytes"], len(self.mirror))
@@ -74,18 +74,18 @@ class Uploads(ServerTestCase):
         self.assertEqual(self.put("my-scene_2", self.mirror)[0], 201, "it may be replaced")
         self.assertEqual(self.left_over(), [])
 
-    def test_the_address_takes_nothing_else(self):
+    def test_other_methods_and_paths_are_refused(self):
         for method in ("GET", "HEAD", "DELETE", "POST"):
             status, headers, _ = self.server.request(method, "/api/v1/scenes/mirror", None, BEARER)
             self.assertEqual((status, headers["allow"]), (405, "PUT"), method)
 
-    def test_names_lead_nowhere_and_take_nobody_elses_place(self):
+    def test_names_cannot_leave_the_folder_or_replace_other_scenes(self):
         for name in ("..", "../x", "a/b", "%2e%2e%2fx", ".hidden", "a.glb", "x" * 65, "-rf"):
             self.assertIn(self.put(name, self.mirror)[0], (400, 404), name)
         self.assertEqual(self.put("mirror", self.mirror)[0], 409)
         self.assertEqual(os.listdir(os.path.join(self.folder.name, "scenes")), [])
 
-    def test_what_is_no_whole_scene_is_refused(self):
+    def test_invalid_scenes_are_refused(self):
         buffer = {"asset": {"version": "2.0"}, "buffers": [{"byteLength": 4, "uri": "x.bin"}]}
         escape = {"asset": {"version": "2.0"},
                   "buffers": [{"byteLength": 4, "uri": "../../../etc/passwd"}]}
@@ -99,8 +99,8 @@ class Uploads(ServerTestCase):
         self.assertNotIn("broken", self.catalogue())
         self.assertEqual(self.left_over(), [])
 
-    def test_who_asks_first_is_invited_or_refused(self):
-        """As curl does for larger files, and then waits a second where nobody answers."""
+    def test_expect_100_continue(self):
+        """As curl does for larger files, and then waits a second without a response."""
         expect = b"\r\nExpect: 100-continue\r\n\r\n"
         with RawSocket(self.server) as raw:
             raw.send(self.head("asked", len(self.mirror)).strip() + expect)
@@ -133,7 +133,7 @@ class Uploads(ServerTestCase):
                 f"Authorization: Bearer {CONTROL}\r\n")
         return (head + (f"Content-Length: {length}\r\n\r\n" if length is not None else "")).encode()
 
-    def test_the_quota_counts_what_is_there_and_what_comes(self):
+    def test_the_quota_counts_stored_and_incoming_bytes(self):
         self.assertEqual(self.put("one", self.mirror)[0], 201)
         with RawSocket(self.server) as raw:
             raw.send(self.head("half", len(self.mirror)) + self.mirror[:1000])
@@ -145,7 +145,7 @@ class Uploads(ServerTestCase):
         self.assertEqual(sorted(os.listdir(os.path.join(self.folder.name, "scenes"))),
                          ["one.glb", "two.glb"])
 
-    def test_only_who_may_steer_may_send(self):
+    def test_read_only_tokens_cannot_upload(self):
         self.assertEqual(self.put("mine", self.mirror[:500], VIEW)[0], 403)
         self.assertEqual(self.put("mine", self.mirror[:500], "wrong-token-1")[0], 401)
         status, _, _ = self.server.request("PUT", "/api/v1/scenes/mine", self.mirror[:500],
@@ -153,15 +153,15 @@ class Uploads(ServerTestCase):
         self.assertEqual(status, 403)
         self.assertEqual(self.catalogue().count("mine"), 0)
 
-    def test_a_half_sent_scene_is_never_seen(self):
+    def test_an_incomplete_upload_is_never_listed(self):
         seen = set()
         stop = threading.Event()
 
         def watch():
             while not stop.is_set():
                 seen.update(self.catalogue())
-        watcher = threading.Thread(target=watch)
-        watcher.start()
+        observer = threading.Thread(target=watch)
+        observer.start()
         try:
             self.put("broken", self.mirror[:-10])
             with RawSocket(self.server) as raw:
@@ -169,7 +169,7 @@ class Uploads(ServerTestCase):
                 self.server.wait_for(self.left_over, "the begin of the upload")
         finally:
             stop.set()
-            watcher.join()
+            observer.join()
         self.server.wait_for(lambda: not self.left_over(), "the end of the broken upload")
         self.assertFalse(seen & {"broken", "half"})
 
@@ -178,7 +178,7 @@ class NoUploads(ServerTestCase):
     def setUp(self):
         pass
 
-    def test_are_the_rule(self):
+    def test_are_the_default(self):
         status, _, _ = self.server.request("PUT", "/api/v1/scenes/x", b"glTF")
         self.assertEqual(status, 405)
         with RawSocket(self.server) as raw:

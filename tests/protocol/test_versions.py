@@ -1,4 +1,4 @@
-"""What lets old clients and new servers live together."""
+"""Compatibility of older clients with newer servers."""
 
 from harness.raw_socket import RawSocket
 from harness.server import ServerTestCase
@@ -16,7 +16,7 @@ class Versions(ServerTestCase):
             self.assertIn("result", self.server.ask(method, params), method)
         self.assertEqual(self.server.call("camera.get")["eye"], plain["eye"])
 
-    def test_what_a_patch_names_must_exist(self):
+    def test_unknown_members_of_a_patch_are_refused(self):
         answer = self.server.ask("settings.patch", {"patch": {"smell": {"enabled": True}}})
         self.assert_error(answer, -32602, path="smell")
 
@@ -30,7 +30,7 @@ class Versions(ServerTestCase):
                                           "traceparent": "00-1-2-3"})
         self.assertIn("result", answer)
 
-    def test_another_version_is_refused_in_words(self):
+    def test_another_protocol_version_is_refused_with_a_message(self):
         for offered in ("heliograph.v2", "heliograph.v0, heliograph.v2"):
             with RawSocket(self.server) as raw:
                 status, text = raw.upgrade(Sec_WebSocket_Protocol=offered)
@@ -40,7 +40,7 @@ class Versions(ServerTestCase):
             status, text = raw.upgrade(Sec_WebSocket_Protocol="heliograph.v2, heliograph.v1")
         self.assertEqual(status, 101, "a client that speaks both is served in ours")
 
-    async def test_a_header_says_where_the_picture_begins(self):
+    async def test_the_frame_header_gives_the_offset_of_the_payload(self):
         async with Viewer(self.server) as viewer:
             frame = await viewer.frames.get()
             self.assertEqual(frame.header["version"], 1)

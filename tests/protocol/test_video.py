@@ -1,4 +1,4 @@
-"""Video over the WebSocket and pictures over HTTP, decoded by ffmpeg."""
+"""Video over the WebSocket and Motion JPEG over HTTP, decoded by ffmpeg."""
 
 import asyncio
 import base64
@@ -12,7 +12,7 @@ import subprocess
 import tempfile
 import unittest
 
-from harness.pictures import Picture, decode_jpeg, decode_png
+from harness.images import Image, decode_jpeg, decode_png
 from harness.server import Server, ServerTestCase
 from harness.viewer import FLAG_KEY, Viewer
 
@@ -20,7 +20,7 @@ JPEG, H264 = 1, 16
 FFMPEG = shutil.which("ffmpeg")
 VLC = shutil.which("cvlc")
 # VLC does not run as root.
-AS_NOBODY = ["setpriv", "--reuid", "65534", "--regid", "65534", "--clear-groups"]
+AS_UNPRIVILEGED = ["setpriv", "--reuid", "65534", "--regid", "65534", "--clear-groups"]
 
 
 class VideoViewer(Viewer):
@@ -42,7 +42,7 @@ class VideoViewer(Viewer):
 
 
 def decode_video(units, width, height):
-    """All pictures of an H.264 stream, by ffmpeg, which must not complain."""
+    """All images of an H.264 stream, by ffmpeg, which must not complain."""
     command = [FFMPEG, "-loglevel", "warning", "-f", "h264", "-i", "-", "-fps_mode", "passthrough",
                "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
     done = subprocess.run(command, input=b"".join(units), capture_output=True, timeout=60,
@@ -51,7 +51,7 @@ def decode_video(units, width, height):
     assert not complaints, complaints
     size = 3 * width * height
     assert len(done.stdout) % size == 0
-    return [Picture(width, height, done.stdout[i:i + size])
+    return [Image(width, height, done.stdout[i:i + size])
             for i in range(0, len(done.stdout), size)]
 
 
@@ -73,7 +73,7 @@ def needs_video(test):
 
 class Video(ServerTestCase):
     @needs_video
-    async def test_a_moving_picture_is_a_video_and_the_final_one_is_not(self, viewer):
+    async def test_moving_frames_are_video_and_the_final_frame_is_an_image(self, viewer):
         self.assertEqual(viewer.hello["codecs"], ["h264", "jpeg"])
         self.assertIsNone(viewer.hello["codec_reason"])
         async with viewer.moving():
@@ -93,7 +93,7 @@ class Video(ServerTestCase):
 
     @unittest.skipUnless(FFMPEG, "ffmpeg is not installed")
     @needs_video
-    async def test_it_decodes_to_what_is_captured(self, viewer):
+    async def test_decoded_video_matches_the_capture(self, viewer):
         # A buffer without noise, so that one sample is the whole truth.
         await viewer.call("settings.patch", {"patch": {"view": {"buffer": "gbuffer.base_color"},
                                                        "antialiasing": {"temporal": False, "jitter": False}}})
@@ -110,17 +110,17 @@ class Video(ServerTestCase):
                     break
             if len(frames) >= 12 and frame.header["codec"] == H264:
                 break
-        pictures = decode_video([frame.payload for frame in frames], 160, 90)
-        self.assertEqual(len(pictures), len(frames))
-        self.assertGreater(len({picture.rgb for picture in pictures}), 4, "it does not move")
+        images = decode_video([frame.payload for frame in frames], 160, 90)
+        self.assertEqual(len(images), len(frames))
+        self.assertGreater(len({image.rgb for image in images}), 4, "it does not move")
         capture = await viewer.call("frame.capture", {"buffer": "gbuffer.base_color"})
         truth = decode_png(base64.b64decode(capture["data"]))
-        ratio = signal_to_noise(pictures[-1], truth)
+        ratio = signal_to_noise(images[-1], truth)
         print(f"{ratio:.1f} dB ", end="")
         self.assertGreater(ratio, 28)
 
     @needs_video
-    async def test_a_newcomer_costs_the_others_no_key_frame_at_once(self, viewer):
+    async def test_a_new_viewer_does_not_force_a_key_frame_at_once(self, viewer):
         async with viewer.moving():
             await viewer.video_frames(3)
             async with VideoViewer(self.server) as newcomer:
@@ -133,7 +133,7 @@ class Video(ServerTestCase):
                     self.assertFalse(frame.header["flags"] & FLAG_KEY)
 
     @needs_video
-    async def test_a_change_of_size_begins_a_new_video(self, viewer):
+    async def test_a_change_of_size_starts_a_new_video(self, viewer):
         async with viewer.moving():
             await viewer.video_frames(2)
             await viewer.call("stream.configure", {"width": 200, "height": 121})
@@ -154,12 +154,12 @@ class Video(ServerTestCase):
             await viewer.call("stream.configure", {"codec": "h264"})
             await viewer.video_frames(2)
 
-    async def test_who_did_not_say_so_gets_no_video(self):
+    async def test_clients_without_the_codec_get_no_video(self):
         async with Viewer(self.server) as viewer:
             answer = await viewer.ask("stream.configure", {"codec": "h264"})
             self.assert_error(answer, -32602, path="codec")
 
-    async def test_an_unknown_codec_is_passed_over_and_named(self):
+    async def test_an_unknown_codec_is_skipped_and_named(self):
         async with VideoViewer(self.server, ["av1", "jpeg"]) as viewer:
             self.assertEqual(viewer.hello["codecs"], ["jpeg"])
             self.assertIn("av1", viewer.hello["codec_reason"])
@@ -188,35 +188,35 @@ class Parts:
         before, _, self.received = self.received.partition(mark)
         return before
 
-    def picture(self):
+    def image(self):
         """The next part, once the header of the one after it is there."""
-        self.until(b"--picture\r\nContent-Type: image/jpeg\r\n\r\n")
-        file = self.until(b"\r\n--picture\r\nContent-Type: image/jpeg\r\n\r\n")
-        self.received = b"--picture\r\nContent-Type: image/jpeg\r\n\r\n" + self.received
+        self.until(b"--frame\r\nContent-Type: image/jpeg\r\n\r\n")
+        file = self.until(b"\r\n--frame\r\nContent-Type: image/jpeg\r\n\r\n")
+        self.received = b"--frame\r\nContent-Type: image/jpeg\r\n\r\n" + self.received
         return decode_jpeg(file)
 
     def close(self):
         self.response.close()  # which has taken the socket over: nothing else comes on it
 
 
-class PicturesOverHttp(ServerTestCase):
-    async def test_parts_are_whole_pictures_and_follow_the_camera(self):
+class MjpegStream(ServerTestCase):
+    async def test_parts_are_complete_images_and_follow_the_camera(self):
         # Blocking reads in a thread: the loop goes on with the other viewer.
         parts = await asyncio.to_thread(Parts, self.server)
         self.assertEqual(parts.response.status, 200)
         self.assertEqual(parts.response.getheader("content-type"),
-                         "multipart/x-mixed-replace; boundary=picture")
+                         "multipart/x-mixed-replace; boundary=frame")
         self.assertEqual(parts.response.getheader("cache-control"), "no-store")
-        first = await asyncio.to_thread(parts.picture)
+        first = await asyncio.to_thread(parts.image)
         self.assertEqual((first.width, first.height), (160, 90))
         async with Viewer(self.server) as viewer, viewer.moving():
             for _ in range(5):
-                await asyncio.to_thread(parts.picture)
+                await asyncio.to_thread(parts.image)
         parts.close()
         self.server.wait_for(lambda: b"heliograph_viewers 0\n" in self.server.get("/metrics")[2],
                              "the viewer's departure")
 
-    async def test_who_may_not_watch_gets_no_pictures(self):
+    async def test_the_stream_requires_a_token(self):
         for path, headers, status in (
                 ("/api/v1/sessions/nowhere/stream.mjpg", {}, 404),
                 ("/api/v1/sessions/main/stream.mjpg?quality=abc", {}, 400),
@@ -226,7 +226,7 @@ class PicturesOverHttp(ServerTestCase):
             self.assertEqual(self.server.get(path, **headers)[0], status, path)
 
     @unittest.skipUnless(FFMPEG, "ffmpeg is not installed")
-    async def test_ffmpeg_takes_it(self):
+    async def test_ffmpeg_decodes_it(self):
         url = f"{self.server.url}api/v1/sessions/main/stream.mjpg?quality=90"
         async with Viewer(self.server) as viewer, viewer.moving():
             process = await asyncio.create_subprocess_exec(
@@ -235,8 +235,8 @@ class PicturesOverHttp(ServerTestCase):
                 stderr=subprocess.PIPE)
             output, complaints = await asyncio.wait_for(process.communicate(), 60)
         self.assertEqual(len(output), 6 * 3 * 160 * 90, complaints)
-        picture = Picture(160, 90, output[-3 * 160 * 90:])
-        self.assertGreater(picture.deviation(), 5)
+        image = Image(160, 90, output[-3 * 160 * 90:])
+        self.assertGreater(image.deviation(), 5)
 
     @unittest.skipUnless(VLC, "cvlc is not installed (Debian: vlc-bin, vlc-plugin-base)")
     async def test_vlc_plays_it(self):
@@ -250,7 +250,7 @@ class PicturesOverHttp(ServerTestCase):
             shown = set()
             async with Viewer(self.server) as viewer, viewer.moving():
                 player = await asyncio.create_subprocess_exec(
-                    *(AS_NOBODY if os.geteuid() == 0 else []), "env", f"HOME={folder}",
+                    *(AS_UNPRIVILEGED if os.geteuid() == 0 else []), "env", f"HOME={folder}",
                     VLC, "--intf", "dummy", "--no-audio", "--vout", "dummy", "--video-filter",
                     "scene", "--scene-format", "png", "--scene-ratio", "1", "--scene-path", folder,
                     url, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -265,19 +265,19 @@ class PicturesOverHttp(ServerTestCase):
                         player.kill()
                     await player.wait()
         self.assertGreater(len(shown), 3, f"VLC ended with {player.returncode}")
-        for picture in map(decode_png, shown):
+        for image in map(decode_png, shown):
             # It writes whole blocks of 16 rows.
-            self.assertEqual((picture.width, picture.height), (160, 96))
-            self.assertGreater(picture.deviation(), 5)
+            self.assertEqual((image.width, image.height), (160, 96))
+            self.assertGreater(image.deviation(), 5)
 
 
-class PicturesOverHttpAtTheEnd(unittest.TestCase):
+class MjpegStreamAtShutdown(unittest.TestCase):
     def test_draining_ends_the_stream_between_parts(self):
         with Server() as server:
             parts = Parts(server)
-            parts.until(b"\r\n--picture\r\n")
+            parts.until(b"\r\n--frame\r\n")
             server.process.send_signal(signal.SIGTERM)
-            parts.until(b"\r\n--picture--\r\n")
+            parts.until(b"\r\n--frame--\r\n")
             self.assertEqual(parts.response.read(), b"")
             parts.close()
             self.assertEqual(server.stop(), 0)

@@ -46,7 +46,7 @@ TEST(Smith, IsTheHeightCorrelatedForm) {
   }
   const auto got = call(visibility, inputs);
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const double expected = smith_visibility_twin(inputs[i].a.x, inputs[i].a.y, inputs[i].a.z);
+    const double expected = smith_visibility_reference(inputs[i].a.x, inputs[i].a.y, inputs[i].a.z);
     EXPECT_NEAR(got[i].x.x / expected, 1.0, 1e-4) << i;
   }
 }
@@ -68,7 +68,7 @@ glm::vec3 upper(RandomInputs& random) {
 }
 
 glm::vec4 split_sum(double n_dot_v, double roughness) {
-  return {glm::vec2(split_sum_twin(n_dot_v, roughness)), 0.0f, 0.0f};
+  return {glm::vec2(split_sum_reference(n_dot_v, roughness)), 0.0f, 0.0f};
 }
 
 TEST(ShadeLight, AgreesWithItsDefinition) {
@@ -85,7 +85,7 @@ TEST(ShadeLight, AgreesWithItsDefinition) {
   const auto got = call(shading, inputs);
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const auto& [a, b, c, d] = inputs[i];
-    const double expected = shade_light_twin(a.x, a.w, b.w, glm::vec3(b), glm::vec3(c));
+    const double expected = shade_light_reference(a.x, a.w, b.w, glm::vec3(b), glm::vec3(c));
     EXPECT_NEAR(got[i].x.x, expected, 1e-3 * expected + 1e-6) << i;
   }
 }

@@ -108,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(Rotations, Environment, testing::Values(0.0f, 90.0f, -3
 
 TEST(Lights, FollowKhrLightsPunctual) {
   SceneBuilder builder;
-  builder.add_sun({1, -2, 0.5f}, {3, 2, 1}).add_lamp({1, 2, 3}, {10, 20, 30});
+  builder.add_sun({1, -2, 0.5f}, {3, 2, 1}).add_point_light({1, 2, 3}, {10, 20, 30});
   auto scene = std::make_shared<scene::Scene>(*builder.build());
   scene::Light spot = scene->lights[1];
   const double inner = std::cos(glm::radians(20.0)), outer = std::cos(glm::radians(35.0));
@@ -210,7 +210,7 @@ TEST(Material, SpecularAndDiffuseAlbedoOfWhiteMakeOne) {
     EXPECT_NEAR(got[i].x.x + got[i].y.x, 1.0f, 1e-5f) << i;
     if (inputs[i].a.x > 0.0f) continue;
     // The dielectric's own share against the integral: the table is interpolated.
-    const glm::dvec2 split = split_sum_twin(inputs[i].a.z, inputs[i].a.y);
+    const glm::dvec2 split = split_sum_reference(inputs[i].a.z, inputs[i].a.y);
     const double regained = 1.0 / (split.x + split.y) - 1.0;
     const double expected = (0.04 * split.x + split.y) * (1.0 + 0.04 * regained);
     EXPECT_NEAR(got[i].x.x, expected, 0.01)

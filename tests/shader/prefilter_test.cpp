@@ -47,7 +47,7 @@ TEST(Prefilter, LevelsAreTheGgxLobesOfTheTwin) {
   RigOptions options;
   options.environment = make_environment(512, sky_with_lamp);
   const FrameRig rig(SceneBuilder().build(), look({0, 0, 3}, {0, 0, 0}), options);
-  const float levels = static_cast<float>(rig.constants().counts.z);
+  const float levels = static_cast<float>(rig.constants().prefiltered_levels);
   ASSERT_GE(levels, 4.0f);
   RandomInputs random(9);
   std::vector<ShaderInput> inputs;

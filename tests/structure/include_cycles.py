@@ -6,7 +6,7 @@ import collections
 import pathlib
 import sys
 
-from sources import INCLUDE, ROOT, report, sources
+from sources import INCLUDE, ROOT, circles, report, sources
 
 LARGEST = 6  # units in one circle
 
@@ -30,32 +30,6 @@ def dependencies(files):
             if target and unit_of(target) != unit_of(path):
                 edges[unit_of(path)].add(unit_of(target))
     return edges
-
-
-def circles(edges):
-    """Strongly connected components of more than one unit (Tarjan 1972)."""
-    index, low, stack, found = {}, {}, [], []
-
-    def visit(unit):
-        index[unit] = low[unit] = len(index)
-        stack.append(unit)
-        for target in edges.get(unit, ()):
-            if target not in index:
-                visit(target)
-            if target in stack:
-                low[unit] = min(low[unit], low[target])
-        if low[unit] == index[unit]:
-            circle = []
-            while not circle or circle[-1] != unit:
-                circle.append(stack.pop())
-            if len(circle) > 1:
-                found.append(sorted(circle))
-
-    sys.setrecursionlimit(10000)
-    for unit in sorted(edges):
-        if unit not in index:
-            visit(unit)
-    return sorted(found, key=len, reverse=True)
 
 
 files = sources("protocol", "server", "shaders")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks that a folder includes only folders below it (README, "Where things are")."""
+"""Checks that a folder includes only folders below it (ARCHITECTURE.md, "Layers")."""
 
 import pathlib
 import re

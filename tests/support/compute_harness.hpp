@@ -8,7 +8,7 @@
 
 namespace heliograph::test {
 
-/// What a function under test is given and gives back (tests/shader/harness.glsl).
+/// Arguments and results of a function under test (tests/shader/harness.glsl).
 struct ShaderInput {
   glm::vec4 a{0.0f}, b{0.0f}, c{0.0f}, d{0.0f};
 };
@@ -16,10 +16,10 @@ struct ShaderOutput {
   glm::vec4 x{0.0f}, y{0.0f};
 };
 
-/// The functions of one test shader, called on the device for many inputs at once.
+/// Calls functions of a test shader on the device for many inputs at once.
 class ShaderFunctions {
  public:
-  /// `rig` provides set 0 for functions that read the frame's constants or the environment.
+  /// `rig` provides set 0 for functions that read frame constants or the environment.
   explicit ShaderFunctions(const gpu::ShaderBinary& shader, const FrameRig* rig = nullptr);
 
   std::vector<ShaderOutput> call(std::uint32_t function, std::span<const ShaderInput> inputs) const;

@@ -39,21 +39,21 @@ render::Engine& engine(const std::string& tracer) {
   return *wanted;
 }
 
-std::vector<std::string> offered_tracers() {
+std::vector<std::string> supported_tracers() {
   std::vector<std::string> names;
-  for (const protocol::TracerKind kind : tracing::offered_tracers(device().report())) {
+  for (const protocol::TracerKind kind : tracing::supported_tracers(device().report())) {
     names.emplace_back(protocol::enum_name(kind));
   }
   return names;
 }
 
-bool is_offered(const std::string& tracer) {
-  const std::vector<std::string> names = offered_tracers();
+bool is_supported(const std::string& tracer) {
+  const std::vector<std::string> names = supported_tracers();
   return std::find(names.begin(), names.end(), tracer) != names.end();
 }
 
-std::string lacking(const std::string& tracer) {
-  return device().report().name + " does not offer the tracer " + tracer;
+std::string unsupported_reason(const std::string& tracer) {
+  return device().report().name + " does not support the tracer " + tracer;
 }
 
 std::uint64_t validation_messages() {

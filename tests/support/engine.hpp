@@ -8,8 +8,8 @@
 
 namespace heliograph::test {
 
-/// This run's engine with the tracer ("auto", "embree" ...) and the validation layers on, made
-/// at the first call. HELIOGRAPH_TEST_DEVICE names a part of another device's name.
+/// Shared engine with the tracer ("auto", "embree" ...) and validation layers, created on first
+/// use. HELIOGRAPH_TEST_DEVICE selects a device by part of its name.
 render::Engine& engine(const std::string& tracer = "auto");
 
 /// The device of the engine that tests share.
@@ -17,16 +17,16 @@ inline const gpu::Device& device() {
   return engine().parts().device;
 }
 
-/// What answers rays on this run's device, the best first.
-std::vector<std::string> offered_tracers();
-bool is_offered(const std::string& tracer);
-/// Why a test of a tracer that the device does not offer is skipped.
-std::string lacking(const std::string& tracer);
+/// Tracers that the test device supports, fastest first.
+std::vector<std::string> supported_tracers();
+bool is_supported(const std::string& tracer);
+/// Skip message for a tracer that the device does not support.
+std::string unsupported_reason(const std::string& tracer);
 
-/// What the validation layers have said to all engines so far.
+/// Number of validation messages of all engines so far.
 std::uint64_t validation_messages();
 
-/// Ends all engines.
+/// Destroys all engines.
 void release_engines();
 
 }  // namespace heliograph::test

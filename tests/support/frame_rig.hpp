@@ -17,7 +17,7 @@ struct RigOptions {
   std::string tracer = "auto";
 };
 
-/// A scene, a view and a frame plan, in which a test declares the passes it wants to see alone.
+/// A scene, a camera and a frame plan in which a test declares single passes.
 class FrameRig {
  public:
   FrameRig(std::shared_ptr<const scene::Scene> scene, const scene::Camera& camera,
@@ -31,17 +31,17 @@ class FrameRig {
   const render::SceneResources& scene() const { return moving_.rest(); }
   render::MovingScene& moving() { return moving_; }
 
-  /// The next frame's view: what was current becomes previous.
+  /// Sets the camera of the next frame; the current one becomes the previous one.
   void set_view(const scene::Camera& camera, std::uint32_t sample = 0);
   void set_settings(const protocol::Settings& settings) { settings_ = settings; }
-  /// Samples already in the accumulated picture.
+  /// Number of samples already accumulated.
   void set_accumulated(std::uint32_t samples) { samples_ = samples; }
-  /// Time from the frame before to the next one.
+  /// Time since the previous frame, in seconds.
   void set_seconds(float seconds) { seconds_ = seconds; }
-  /// To the next frame.
+  /// Motion of lights and geometry in the next frame.
   void set_scene_motion(const render::SceneMotion& motion) { scene_motion_ = motion; }
 
-  /// An image that the test fills: `texels` of the image's format for every pixel, row 0 on top.
+  /// An input image: `texels` in the format's layout, one per pixel, top row first.
   template <typename Texel>
   gpu::ImageRef input(const std::string& name, VkFormat format, const std::vector<Texel>& texels) {
     const gpu::ImageRef image = plan_.image(name, format);
@@ -56,7 +56,7 @@ class FrameRig {
 
   /// Compiles at the first call, then runs one frame.
   void run();
-  /// As the frame that ran last left it.
+  /// Contents after the last frame.
   render::FloatImage read(gpu::ImageRef image) const;
 
  private:
@@ -78,7 +78,7 @@ class FrameRig {
   gpu::FramePlan plan_;
 };
 
-/// A pixel's four values.
+/// RGBA of one pixel.
 inline glm::vec4 texel(const render::FloatImage& image, std::uint32_t x, std::uint32_t y) {
   const float* values = &image.rgba[(std::size_t{y} * image.width + x) * 4];
   return {values[0], values[1], values[2], values[3]};

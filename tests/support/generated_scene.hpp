@@ -7,7 +7,8 @@
 
 namespace heliograph::test {
 
-/// The document as any user's: written to a file with maps of `texture_size` pixels, and imported.
+/// Writes the document to a GLB file with maps of `texture_size` pixels and imports it, as the
+/// server does with a user's file.
 /// @throws std::exception
 scene::Scene import_generated(const scenes::Document& document, int texture_size);
 

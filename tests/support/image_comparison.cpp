@@ -37,7 +37,7 @@ render::Frame triptych(const render::Frame& expected, const render::Frame& actua
 
 }  // namespace
 
-void save_picture(const std::string& name, const render::Frame& frame) {
+void save_image(const std::string& name, const render::Frame& frame) {
   const char* folder = std::getenv("HELIOGRAPH_TEST_OUTPUT");
   if (!folder) return;
   std::filesystem::create_directories(folder);
@@ -60,7 +60,7 @@ void expect_similar(const std::string& name, const render::Frame& expected,
   EXPECT_LE(error, mean) << name;
   EXPECT_GE(alike, similarity) << name;
   if (error > mean || alike < similarity) {
-    save_picture(name + "_differs", triptych(expected, actual));
+    save_image(name + "_differs", triptych(expected, actual));
   }
 }
 

@@ -137,15 +137,15 @@ SceneBuilder& SceneBuilder::add_sun(const glm::vec3& direction, const glm::vec3&
   return *this;
 }
 
-SceneBuilder& SceneBuilder::add_lamp(const glm::vec3& position, const glm::vec3& intensity,
-                                     float radius) {
+SceneBuilder& SceneBuilder::add_point_light(const glm::vec3& position, const glm::vec3& intensity,
+                                            float radius) {
   shared::Light light{};
   light.type = shared::light_point;
   light.position = position;
   light.direction = {0, -1, 0};
   light.color = intensity;
   light.radius = radius;
-  scene_.lights.push_back({"lamp", light, 0.0f});
+  scene_.lights.push_back({"point light", light, 0.0f});
   return *this;
 }
 

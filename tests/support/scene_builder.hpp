@@ -14,30 +14,30 @@ namespace heliograph::test {
 /// A material without textures: linear base colour, perceptual roughness.
 shared::Material surface(const glm::vec3& color, float roughness = 1.0f, float metallic = 0.0f);
 
-/// Puts small scenes together by hand.
+/// Builds small scenes in code.
 class SceneBuilder {
  public:
   std::uint32_t add_material(const shared::Material& material);
-  /// `material` with what an extension adds to it.
+  /// `material` with the layers of material extensions.
   shared::Material with_layers(shared::Material material, const scene::MaterialLayers& layers);
   /// Four corners, counter-clockwise from outside; uv (0,0) (1,0) (1,1) (0,1), tangent along u.
   std::uint32_t add_quad(const std::array<glm::vec3, 4>& corners, const shared::Material& material);
-  /// Several of them as one thing.
+  /// Several quads as one mesh.
   std::uint32_t add_quads(std::span<const std::array<glm::vec3, 4>> quads,
                           const shared::Material& material);
-  /// About the origin, with exact normals.
+  /// Centered at the origin, with exact normals.
   std::uint32_t add_sphere(float radius, const shared::Material& material);
   SceneBuilder& place(std::uint32_t mesh, const glm::mat4& world = glm::mat4(1.0f));
 
-  /// A texture of sRGB or linear RGBA8 texels without mips, read by nearest texel, clamped.
+  /// RGBA8 texture, sRGB or linear, without mip levels; nearest filter, clamped.
   std::uint32_t add_texture(std::uint32_t width, std::uint32_t height, bool srgb,
                             std::vector<std::uint8_t> pixels);
 
-  /// Light that travels along `direction`; irradiance of a facing surface.
+  /// Light travels along `direction`; `irradiance` is that of a facing surface.
   SceneBuilder& add_sun(const glm::vec3& direction, const glm::vec3& irradiance,
                         float angular_diameter = 0.0f);
-  SceneBuilder& add_lamp(const glm::vec3& position, const glm::vec3& intensity,
-                         float radius = 0.0f);
+  SceneBuilder& add_point_light(const glm::vec3& position, const glm::vec3& intensity,
+                                float radius = 0.0f);
 
   std::shared_ptr<const scene::Scene> build();
 
@@ -48,7 +48,7 @@ class SceneBuilder {
 /// A camera at `eye` that looks at `target`.
 scene::Camera look(const glm::vec3& eye, const glm::vec3& target, float vertical_fov = 45.0f);
 
-/// An environment whose radiance is a function of the direction.
+/// Equirectangular environment of height `height`, sampled from a function of the direction.
 scene::Environment make_environment(std::uint32_t width,
                                     const std::function<glm::vec3(const glm::vec3&)>& radiance);
 

@@ -13,7 +13,7 @@ using Plane = std::vector<double>;
 
 template <typename Values>
 Difference compare(const Values& a, const Values& b) {
-  if (a.size() != b.size() || a.empty()) throw std::invalid_argument("pictures of different size");
+  if (a.size() != b.size() || a.empty()) throw std::invalid_argument("images differ in size");
   Difference result;
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (i % 4 == 3) continue;
@@ -48,7 +48,7 @@ std::array<double, window> gaussian() {
   return weights;
 }
 
-/// The window's weighted mean about every pixel that has a whole one.
+/// Gaussian-weighted mean around every pixel whose whole window lies inside.
 Plane blurred(const Plane& plane, int width, int height) {
   const auto weights = gaussian();
   const int inner_width = width - window + 1;
@@ -92,7 +92,7 @@ double ssim(const render::Frame& a, const render::Frame& b) {
   const int width = static_cast<int>(a.width);
   const int height = static_cast<int>(a.height);
   if (a.width != b.width || a.height != b.height || width < window || height < window) {
-    throw std::invalid_argument("pictures of different size, or smaller than the window");
+    throw std::invalid_argument("images differ in size or are smaller than the 11 x 11 window");
   }
   const Plane x = luma(a);
   const Plane y = luma(b);

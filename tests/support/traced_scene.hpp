@@ -12,7 +12,7 @@
 #include "scene/scene.hpp"
 #include "shaders/shared/ray.h"
 
-/// Scenes and rays for testing tracers, and the slow, plain answer that they are held against.
+/// Scenes and rays for tests of tracers, and brute-force ray casting as reference.
 namespace heliograph::test {
 
 using Random = std::mt19937;
@@ -46,8 +46,8 @@ inline void add_vertex(scene::Mesh& mesh, const glm::vec3& position, const glm::
   mesh.bounds.include(position);
 }
 
-/// `count` small triangles anywhere in a cube.
-inline scene::Mesh soup(Random& random, int count, float size) {
+/// `count` small random triangles in a cube.
+inline scene::Mesh triangle_soup(Random& random, int count, float size) {
   scene::Mesh mesh;
   for (int i = 0; i < count; ++i) {
     const glm::vec3 center = uniform_vector(random, size);
@@ -67,7 +67,7 @@ inline scene::Mesh sphere(int rings) {
     for (int x = 0; x <= columns; ++x) {
       const float theta = 3.14159265f * static_cast<float>(y) / static_cast<float>(rings);
       const float phi = 6.28318531f * static_cast<float>(x % columns) / static_cast<float>(columns);
-      const float around = y % rings ? std::sin(theta) : 0.0f;  // a pole is one point
+      const float around = y % rings ? std::sin(theta) : 0.0f;  // a pole is a single point
       add_vertex(mesh, {around * std::cos(phi), std::cos(theta), around * std::sin(phi)}, {});
     }
   }
@@ -107,7 +107,7 @@ inline void place(scene::Scene& scene, std::uint32_t mesh, const glm::mat4& worl
   }
 }
 
-/// A mask of 5 x 3 texels without symmetry, at an odd place in the heap.
+/// An asymmetric mask of 5 x 3 texels at an unaligned offset in the heap.
 inline shared::Material masked_material(scene::Scene& scene, std::uint32_t wrap_s,
                                         std::uint32_t wrap_t) {
   shared::Material material = plain_material();
@@ -121,14 +121,14 @@ inline shared::Material masked_material(scene::Scene& scene, std::uint32_t wrap_
   return material;
 }
 
-/// Rotated, mirrored, squeezed and nested instances of several meshes, some of them masked.
+/// Rotated, mirrored and non-uniformly scaled instances of several meshes, some of them masked.
 inline scene::Scene two_level_scene(std::uint32_t seed) {
   Random random(seed);
   scene::Scene scene;
-  std::vector<std::uint32_t> meshes{add_mesh(scene, soup(random, 60, 1.0f), plain_material()),
-                                    add_mesh(scene, sphere(8), plain_material()),
-                                    add_mesh(scene, quad(), plain_material()),
-                                    add_mesh(scene, soup(random, 1, 1.0f), plain_material())};
+  std::vector<std::uint32_t> meshes{
+      add_mesh(scene, triangle_soup(random, 60, 1.0f), plain_material()),
+      add_mesh(scene, sphere(8), plain_material()), add_mesh(scene, quad(), plain_material()),
+      add_mesh(scene, triangle_soup(random, 1, 1.0f), plain_material())};
   for (std::uint32_t wrap = shared::wrap_repeat; wrap <= shared::wrap_mirror; ++wrap) {
     shared::Material material = masked_material(scene, wrap, shared::wrap_mirror - wrap);
     material.base_color_texture.uv_set = wrap % 2;
@@ -168,7 +168,7 @@ inline std::vector<shared::Ray> random_rays(const scene::Scene& scene, std::size
   return rays;
 }
 
-/// glTF wrapping of a texel's index, by counting.
+/// Texel index after glTF wrapping.
 inline int wrapped_texel(double coordinate, std::uint32_t mode, int size) {
   int texel = static_cast<int>(std::floor(coordinate * size));
   if (mode == shared::wrap_clamp) return std::min(std::max(texel, 0), size - 1);
@@ -177,8 +177,8 @@ inline int wrapped_texel(double coordinate, std::uint32_t mode, int size) {
   return texel < size ? texel : period - 1 - texel;
 }
 
-inline bool mask_stops(const scene::Scene& scene, const scene::Mesh& mesh, std::size_t triangle,
-                       double u, double v) {
+inline bool passes_alpha_test(const scene::Scene& scene, const scene::Mesh& mesh,
+                              std::size_t triangle, double u, double v) {
   const shared::Material& material = scene.materials[mesh.material];
   if (!(material.flags & shared::material_alpha_mask)) return true;
   if (material.alpha_mask == shared::no_texture) {
@@ -201,8 +201,8 @@ inline bool mask_stops(const scene::Scene& scene, const scene::Mesh& mesh, std::
   return alpha / 255.0 * material.base_color.w >= material.alpha_cutoff;
 }
 
-/// The closest hit by asking every triangle, in double precision and world space.
-inline shared::Hit closest_by_search(const scene::Scene& scene, const shared::Ray& ray) {
+/// The closest hit by testing every triangle in double precision and world space.
+inline shared::Hit closest_hit_brute_force(const scene::Scene& scene, const shared::Ray& ray) {
   shared::Hit hit{};
   hit.instance = shared::hit_none;
   double nearest = ray.t_max;
@@ -227,7 +227,7 @@ inline shared::Hit closest_by_search(const scene::Scene& scene, const shared::Ra
       const double v = glm::dot(direction, q) / determinant;
       const double t = glm::dot(edge2, q) / determinant;
       if (u < 0.0 || v < 0.0 || u + v > 1.0 || t <= ray.t_min || t >= nearest) continue;
-      if (!mask_stops(scene, mesh, triangle, u, v)) continue;
+      if (!passes_alpha_test(scene, mesh, triangle, u, v)) continue;
       nearest = t;
       hit = {static_cast<float>(t),
              static_cast<std::uint32_t>(i),
@@ -242,7 +242,7 @@ inline shared::Hit closest_by_search(const scene::Scene& scene, const shared::Ra
   return hit;
 }
 
-/// Whether two answers to one ray are the same: the same triangle, or as far away.
+/// Whether two hits of one ray agree: same triangle or same distance.
 inline bool same_hit(const shared::Hit& a, const shared::Hit& b) {
   if (a.instance == shared::hit_none || b.instance == shared::hit_none) {
     return a.instance == b.instance;

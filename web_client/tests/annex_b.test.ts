@@ -10,7 +10,7 @@ test("the codec string comes from the first sequence parameter set", () => {
   assert.equal(codecString(Uint8Array.from([...delimiter, 0, 0, 1, 0x41, 1, 2, 3])), null);
 });
 
-test("file names become names that servers take", () => {
+test("file names become valid scene names", () => {
   assert.equal(sceneName("My model (1).glb"), "My_model_1");
   assert.equal(sceneName("../../x.glb"), "x");
   assert.equal(sceneName(".glb"), "scene");

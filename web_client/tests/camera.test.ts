@@ -1,10 +1,11 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { Camera, Vector3 } from "heliograph/messages.ts";
-import { dolly, orbit, pan, samePose, visibleHeight } from "../src/view/camera.ts";
+import type { Vector3 } from "heliograph/json.ts";
+import type { CameraPose } from "../src/common/camera_pose.ts";
 import { length, subtract } from "../src/common/vector.ts";
+import { dolly, orbit, pan, visibleHeight } from "../src/view/camera.ts";
 
-const front: Camera = {
+const front: CameraPose = {
   eye: [0, 0, 5],
   target: [0, 0, 0],
   up: [0, 1, 0],
@@ -27,7 +28,7 @@ test("positive pitch lifts the eye and keeps its distance", () => {
   near(lifted.eye, [0, 2.5, 5 * Math.cos(Math.PI / 6)]);
 });
 
-test("the turntable stops before the pole and comes back the same way", () => {
+test("the turntable stops before the pole and returns the same way", () => {
   const top = orbit(front, 0, 10);
   assert.ok(top.eye[1] < 5 && top.eye[1] > 4.99);
   const back = orbit(top, 0, -(89 * Math.PI) / 180);
@@ -35,13 +36,13 @@ test("the turntable stops before the pole and comes back the same way", () => {
 });
 
 test("a view from exactly above keeps its heading", () => {
-  const above: Camera = { ...front, eye: [0, 5, 0], up: [0, 0, -1] };
+  const above: CameraPose = { ...front, eye: [0, 5, 0], up: [0, 0, -1] };
   const tilted = orbit(above, 0, -0.5);
   assert.ok(tilted.eye[2] > 0 && Math.abs(tilted.eye[0]) < 1e-9, `${tilted.eye}`);
 });
 
 test("orbiting levels the horizon and leaves the named camera", () => {
-  const rolled: Camera = { ...front, up: [0.5, 0.8, 0] };
+  const rolled: CameraPose = { ...front, up: [0.5, 0.8, 0] };
   const turned = orbit(rolled, 0.1, 0);
   assert.deepEqual(turned.up, [0, 1, 0]);
   assert.equal(turned.name, null);
@@ -56,7 +57,7 @@ test("many small turns add up to one large one", () => {
 test("panning by the full height moves by what the view shows at the target", () => {
   const span = visibleHeight(90, 5);
   assert.ok(Math.abs(span - 10) < 1e-9);
-  near(pan(front, 1, 0).target, [-10, 0, 0]); // the scene follows the hand to the right
+  near(pan(front, 1, 0).target, [-10, 0, 0]); // the scene follows the pointer to the right
   near(pan(front, 0, 1).target, [0, 10, 0]); // and down
   const moved = pan(front, 0.3, -0.2);
   near(subtract(moved.eye, moved.target), [0, 0, 5]);
@@ -67,16 +68,9 @@ test("dolly scales the distance within its bounds", () => {
   near(dolly(front, 100, 0.1, 100).eye, [0, 0, 100]);
 });
 
-test("dolly beyond the nearest distance walks on and takes the target along", () => {
-  const close: Camera = { ...front, eye: [0, 0, 1] };
+test("dolly beyond the nearest distance moves eye and target", () => {
+  const close: CameraPose = { ...front, eye: [0, 0, 1] };
   const walked = dolly(close, 0.5, 1, 100);
   near(walked.eye, [0, 0, 0.5]);
   near(walked.target, [0, 0, -0.5]);
-});
-
-test("a pose that came back in single precision is the same pose", () => {
-  const wire: Camera = { ...front, eye: front.eye.map((v) => Math.fround(v + 0.1)) as Vector3 };
-  const sent: Camera = { ...front, eye: front.eye.map((v) => v + 0.1) as Vector3 };
-  assert.ok(samePose(wire, sent));
-  assert.ok(!samePose(front, orbit(front, 0.01, 0)));
 });

@@ -1,34 +1,35 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import type { SessionInfo, ViewerInfo } from "heliograph/messages.ts";
-import { explained, controlStateOf } from "../src/session/control_state.ts";
+import { controlStateOf, describeControl } from "../src/session/control_state.ts";
 
 function viewer(viewerId: string, name: string | null, control: boolean, you = false): ViewerInfo {
   return { viewer: viewerId, name, control, you };
 }
 
-function session(control: "everyone" | "one", ...viewers: ViewerInfo[]): SessionInfo {
-  return { name: "main", scene: null, viewers, control, rev: 1, idle_seconds: 0 };
+function session(control: SessionInfo["control"], ...viewers: ViewerInfo[]): SessionInfo {
+  const size = { width: 640, height: 360 };
+  return { name: "main", scene: null, viewers, control, rev: 1, idle_seconds: 0, ...size };
 }
 
-test("whoever has control may change things, with or without a session to tell of it", () => {
-  const alone = session("everyone", viewer("v1", null, true, true));
+test("a viewer with control may change the session, also without session info", () => {
+  const alone = session("shared", viewer("v1", null, true, true));
   assert.equal(controlStateOf(alone, undefined).kind, "may_change");
   assert.equal(controlStateOf(null, "control").kind, "may_change");
-  assert.equal(explained(controlStateOf(alone, undefined)), "");
+  assert.equal(describeControl(controlStateOf(alone, undefined)), "");
 });
 
-test("others are told who has control, by name or by number", () => {
+test("viewers without control see the name or number of the one in control", () => {
   const me = viewer("v2", null, false, true);
-  const named = controlStateOf(session("one", viewer("v1", "Ada", true), me), "control");
-  assert.match(explained(named), /^Ada is in control/);
-  const nameless = controlStateOf(session("one", viewer("v1", null, true), me), "control");
-  assert.match(explained(nameless), /^Viewer 1 is in control/);
-  assert.equal(controlStateOf(session("one", me), "control").kind, "nobody");
+  const named = controlStateOf(session("exclusive", viewer("v1", "Ada", true), me), "control");
+  assert.match(describeControl(named), /^Ada is in control/);
+  const nameless = controlStateOf(session("exclusive", viewer("v1", null, true), me), "control");
+  assert.match(describeControl(nameless), /^Viewer 1 is in control/);
+  assert.equal(controlStateOf(session("exclusive", me), "control").kind, "unclaimed");
 });
 
-test("who may only watch is told so, by the greeting or by having no control among everyone", () => {
+test("a viewer is read-only by its role, or without control in shared mode", () => {
   const me = viewer("v1", null, false, true);
-  assert.equal(controlStateOf(session("everyone", me), undefined).kind, "watching");
-  assert.equal(controlStateOf(session("one", me), "view").kind, "watching");
+  assert.equal(controlStateOf(session("shared", me), undefined).kind, "read_only");
+  assert.equal(controlStateOf(session("exclusive", me), "view").kind, "read_only");
 });

@@ -47,7 +47,7 @@ test("a longer header of a later server is skipped, not rejected", () => {
   assert.equal(parseFrameHeader(message(96)).headerBytes, 96);
 });
 
-test("what is not a frame is refused with a reason", () => {
+test("an invalid frame is rejected with a reason", () => {
   const truncated = message().slice(0, 63);
   assert.throws(() => parseFrameHeader(truncated), /no full header/);
   const otherMagic = message();
@@ -64,7 +64,7 @@ test("what is not a frame is refused with a reason", () => {
   assert.throws(() => parseFrameHeader(tooShort), /claims 32 bytes/);
 });
 
-test("still-picture codecs have a MIME type and video codecs have none", () => {
+test("image codecs have a MIME type and video codecs have none", () => {
   assert.equal(mimeType(1), "image/jpeg");
   assert.equal(mimeType(2), "image/png");
   assert.equal(mimeType(16), null);

@@ -1,9 +1,9 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { JsonObject } from "heliograph/messages.ts";
+import type { JsonObject } from "heliograph/json.ts";
 import { RpcPeer } from "heliograph/rpc.ts";
 import { describeControls } from "heliograph/settings_schema.ts";
-import { restore } from "../src/session/restore_view.ts";
+import { restoreView } from "../src/session/restore_view.ts";
 import { type ViewState, changesOf, patchTowards, withoutPath } from "../src/session/view_state.ts";
 
 const schema = describeControls({
@@ -31,18 +31,18 @@ const state = {
 
 type Answer = { result?: unknown; error?: { code: number; message: string; data?: object } };
 
-/** A server that starts with a.glb after a while and keeps account of what it is told. */
-function startingServer(refusals: (method: string, params: JsonObject) => Answer | null) {
+/** A server that has loaded a.glb after two requests and records all calls. */
+function startingServer(rejections: (method: string, params: JsonObject) => Answer | null) {
   const calls: string[] = [];
-  const lost: string[] = [];
+  const skipped: string[] = [];
   let scene: string | null = null;
-  let looks = 0;
+  let polls = 0;
   const answerTo = (method: string, params: JsonObject): Answer => {
-    const refused = refusals(method, params);
-    if (refused) return refused;
+    const rejected = rejections(method, params);
+    if (rejected) return rejected;
     if (method === "scene.info") {
-      looks += 1;
-      if (looks === 3) scene = "a.glb";
+      polls += 1;
+      if (polls === 3) scene = "a.glb";
       return scene
         ? { result: { name: scene, cameras: [] } }
         : { error: { code: -32050, message: "no scene is loaded" } };
@@ -52,7 +52,7 @@ function startingServer(refusals: (method: string, params: JsonObject) => Answer
     if (method === "settings.get") return { result: { settings: defaults } };
     if (method === "lights.list") {
       const sun = { name: "sun", intensity: 3, enabled: false, changed: ["enabled"] };
-      return { result: { lights: [sun, { name: "lamp", intensity: 1, changed: [] }] } };
+      return { result: { lights: [sun, { name: "bulb", intensity: 1, changed: [] }] } };
     }
     if (method === "environment.list") return { result: { environments: [], current: "dusk" } };
     if (method === "animation.list") {
@@ -73,17 +73,17 @@ function startingServer(refusals: (method: string, params: JsonObject) => Answer
   const host = {
     rpc,
     schema: () => schema,
-    capabilities: () => true,
-    wanted: () => true,
-    isOwn: () => false,
-    lost: (sentence: string) => void lost.push(sentence),
+    supports: () => true,
+    isCurrent: () => true,
+    ownsSession: () => false,
+    reportSkipped: (sentence: string) => void skipped.push(sentence),
   };
-  return { host, calls, lost };
+  return { host, calls, skipped };
 }
 
-test("a new server is brought to the old state, its own first scene waited for", async () => {
-  const { host, calls, lost } = startingServer(() => null);
-  assert.equal(await restore(host, state), true);
+test("a new server gets the previous state after its initial scene is loaded", async () => {
+  const { host, calls, skipped } = startingServer(() => null);
+  assert.equal(await restoreView(host, state), true);
   assert.deepEqual(calls, [
     'scene.load {"name":"b.glb"}',
     "settings.get {}",
@@ -94,67 +94,67 @@ test("a new server is brought to the old state, its own first scene waited for",
     "animation.pause {}",
     'camera.set {"eye":[1,2,3],"target":[0,0,0],"up":[0,1,0],"vertical_fov":40}',
   ]);
-  assert.deepEqual(lost, []);
+  assert.deepEqual(skipped, []);
 });
 
-test("a session of its own is given its scene at once: nobody else loads one there", async () => {
-  const { host, calls, lost } = startingServer((method) =>
+test("an own session gets its scene without waiting for an initial one", async () => {
+  const { host, calls, skipped } = startingServer((method) =>
     method === "scene.info" && calls.length === 0
       ? { error: { code: -32050, message: "no scene is loaded" } }
       : null,
   );
-  assert.equal(await restore({ ...host, isOwn: () => true }, state), true);
+  assert.equal(await restoreView({ ...host, ownsSession: () => true }, state), true);
   assert.equal(calls[0], 'scene.load {"name":"b.glb"}');
-  assert.deepEqual(lost, []);
+  assert.deepEqual(skipped, []);
 });
 
-test("a camera that is refused for the moment is sent again", async () => {
-  let refused = 0;
+test("a camera that fails with a transient error is sent again", async () => {
+  let rejected = 0;
   const { host, calls } = startingServer((method) => {
-    if (method !== "camera.set" || refused++ >= 2) return null;
+    if (method !== "camera.set" || rejected++ >= 2) return null;
     return { error: { code: -32050, message: "not yet" } };
   });
-  assert.equal(await restore(host, { camera: state.camera }), true);
-  assert.equal(refused, 3);
+  assert.equal(await restoreView(host, { camera: state.camera }), true);
+  assert.equal(rejected, 3);
   assert.match(calls.at(-1) ?? "", /^camera\.set/);
 });
 
-test("what another version refuses is left out, the rest arrives", async () => {
-  const { host, calls, lost } = startingServer((method, params) => {
+test("settings that the server rejects are left out, the others are restored", async () => {
+  const { host, calls, skipped } = startingServer((method, params) => {
     const patch = params.patch as { exposure?: { old?: number } } | undefined;
     if (method !== "settings.patch" || patch?.exposure?.old === undefined) return null;
     const data = { path: "exposure.old", reason: "unknown" };
     return { error: { code: -32602, message: "exposure.old", data } };
   });
-  await restore(host, { settings: { exposure: { ev: 2, old: 7 } } });
+  await restoreView(host, { settings: { exposure: { ev: 2, old: 7 } } });
   assert.ok(calls.includes('settings.patch {"patch":{"exposure":{"ev":2}}}'));
-  assert.match(lost.join(), /exposure\.old/);
+  assert.match(skipped.join(), /exposure\.old/);
 });
 
-test("lights become as they were: what differs is sent, other changes are taken back", async () => {
-  const { host, calls, lost } = startingServer((method, params) =>
-    method === "lights.patch" && params.light === "lamp"
+test("lights are restored: differences are sent, other edits are reset", async () => {
+  const { host, calls, skipped } = startingServer((method, params) =>
+    method === "lights.patch" && params.light === "bulb"
       ? { error: { code: -32004, message: "no such light" } }
       : null,
   );
-  const lights = { sun: { intensity: 3.5 }, lamp: { intensity: 2 }, gone: { intensity: 1 } };
-  assert.equal(await restore(host, { lights, environment: null }), true);
+  const lights = { sun: { intensity: 3.5 }, bulb: { intensity: 2 }, gone: { intensity: 1 } };
+  assert.equal(await restoreView(host, { lights, environment: null }), true);
   assert.deepEqual(calls, [
     "environment.list {}",
     'environment.set {"name":null}',
     "lights.list {}",
     'lights.patch {"light":"sun","patch":{"enabled":null,"intensity":3.5}}',
   ]);
-  assert.deepEqual(lost, ["The server does not take lamp as it was"]);
+  assert.deepEqual(skipped, ["The server rejects the previous state of bulb"]);
 });
 
-test("a state that is no longer wanted stops", async () => {
+test("a state that is not current any more stops", async () => {
   const { host, calls } = startingServer(() => null);
-  assert.equal(await restore({ ...host, wanted: () => calls.length < 2 }, state), false);
+  assert.equal(await restoreView({ ...host, isCurrent: () => calls.length < 2 }, state), false);
   assert.ok(!calls.some((call) => call.startsWith("camera.set")));
 });
 
-test("changes and patches speak of differences only", () => {
+test("changes and patches contain differences only", () => {
   const tree: JsonObject = { exposure: { ev: 2, old: 1 }, taa: { enabled: true } };
   assert.deepEqual(changesOf(schema, tree), { exposure: { ev: 2 } });
   assert.equal(patchTowards(schema, tree, { exposure: { ev: 2 } }), null);

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { JsonObject } from "heliograph/messages.ts";
+import type { JsonObject } from "heliograph/json.ts";
 import {
   type Control,
   type SliderControl,
@@ -78,7 +78,7 @@ test("each type becomes its widget", () => {
   assert.equal(kind(vector), "vector");
 });
 
-test("a setting of a shape nobody knows yet still gets a control", () => {
+test("a setting of unknown type gets a JSON control", () => {
   const control = only({ odd: { type: "object", default: { a: 1 }, description: "Odd." } });
   assert.equal(control.kind, "json");
   assert.equal(control.label, "Odd");
@@ -135,7 +135,7 @@ test("ranges from zero whose default is small leave room for small values", () =
   assert.equal(sliderValue(control, 0), 0);
 });
 
-test("typed numbers are kept in range and nonsense is refused", () => {
+test("typed numbers are clamped to the range and invalid ones rejected", () => {
   const range = { minimum: 0, maximum: 4, step: 0.1, integer: false };
   assert.equal(parseNumber("1,5", range), 1.5);
   assert.equal(parseNumber("9", range), 4);
@@ -159,7 +159,7 @@ test("steps are 1, 2 or 5 times a power of ten", () => {
   assert.equal(niceStep(7.3), 5);
 });
 
-test("names are written for people", () => {
+test("names become readable labels", () => {
   assert.equal(humanise("environment_diffuse"), "Environment diffuse");
   assert.equal(humanise("agx"), "AgX");
 });

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { JsonObject } from "heliograph/messages.ts";
+import type { JsonObject } from "heliograph/json.ts";
 import { RpcPeer } from "heliograph/rpc.ts";
 import { SettingsStore } from "../src/session/settings_store.ts";
 
@@ -22,11 +22,14 @@ interface Request {
   params: { patch?: JsonObject };
 }
 
-/** A channel whose far end is this test: it reads what was sent and answers when it likes. */
+/** A channel to a server that the test plays: it reads requests and answers on demand. */
 async function connected() {
   const sent: Request[] = [];
-  const refused: unknown[] = [];
-  const rpc: RpcPeer = new RpcPeer((text) => sent.push(JSON.parse(text) as Request), () => {});
+  const errors: unknown[] = [];
+  const rpc: RpcPeer = new RpcPeer(
+    (text) => sent.push(JSON.parse(text) as Request),
+    () => {},
+  );
   rpc.open();
   const answer = async (body: object): Promise<Request> => {
     const request = sent.shift();
@@ -35,12 +38,12 @@ async function connected() {
     await new Promise((resolve) => setTimeout(resolve, 0));
     return request;
   };
-  const store = new SettingsStore(rpc, (error) => refused.push(error));
+  const store = new SettingsStore(rpc, (error) => errors.push(error));
   const loaded = store.load();
   await answer({ result: schema });
   await answer({ result: { rev: 1, settings: { exposure: { ev: 0, auto: false } } } });
   await loaded;
-  return { store, sent, refused, answer };
+  return { store, sent, errors, answer };
 }
 
 test("a change shows at once and is sent as the smallest patch", async () => {
@@ -52,7 +55,7 @@ test("a change shows at once and is sent as the smallest patch", async () => {
   assert.deepEqual(request.params.patch, { exposure: { ev: 2 } });
 });
 
-test("changes during a request are joined into one and do not flicker back", async () => {
+test("changes during a request are merged and do not flicker", async () => {
   const { store, sent, answer } = await connected();
   store.change("exposure.ev", 1);
   store.change("exposure.ev", 2);
@@ -66,11 +69,11 @@ test("changes during a request are joined into one and do not flicker back", asy
   assert.equal(sent.length, 0);
 });
 
-test("a refused change is reported and what the server has comes back", async () => {
-  const { store, refused, answer } = await connected();
+test("a rejected change is reported and the server's value returns", async () => {
+  const { store, errors, answer } = await connected();
   store.change("exposure.ev", 4);
   await answer({ error: { code: -32602, message: "exposure.ev is locked" } });
-  assert.equal(refused.length, 1);
+  assert.equal(errors.length, 1);
   await answer({ result: { rev: 1, settings: { exposure: { ev: 0, auto: false } } } });
   assert.equal(store.value("exposure.ev"), 0);
 });

@@ -1,12 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import {
-  joinPatches,
-  mergePatch,
-  patchOf,
-  sameValue,
-  valueAt,
-} from "heliograph/settings_tree.ts";
+import { joinPatches, mergePatch, patchOf, sameValue, valueAt } from "heliograph/settings_tree.ts";
 
 test("paths lead to values and patches", () => {
   assert.equal(valueAt({ a: { b: [1] } }, "a.c"), undefined);
@@ -29,7 +23,7 @@ test("joined patches keep both parts, the later value and its nulls", () => {
   assert.deepEqual(joined, { a: { x: 1, y: null }, b: true });
 });
 
-test("values survive the trip through single precision", () => {
+test("values are equal after a round trip through single precision", () => {
   assert.ok(sameValue(Math.fround(0.1), 0.1));
   assert.ok(!sameValue(0.1, 0.1001));
   assert.ok(sameValue([1, 2], [1, 2]));

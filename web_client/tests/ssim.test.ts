@@ -1,16 +1,16 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { type GreyPicture, greyPicture, structuralSimilarity } from "../src/compare/ssim.ts";
+import { type GreyImage, greyImage, structuralSimilarity } from "../src/compare/ssim.ts";
 
 const size = 32;
-const picture = (of: (x: number, y: number) => number): GreyPicture => ({
+const image = (of: (x: number, y: number) => number): GreyImage => ({
   width: size,
   height: size,
   luma: Float32Array.from({ length: size * size }, (_, i) => of(i % size, Math.floor(i / size))),
 });
-const waves = picture((x, y) => 128 + 60 * Math.sin(x / 2) * Math.cos(y / 3));
+const waves = image((x, y) => 128 + 60 * Math.sin(x / 2) * Math.cos(y / 3));
 
-test("a picture is wholly like itself and less so the noisier it gets", () => {
+test("the similarity is 1 for equal images and falls with noise", () => {
   assert.equal(structuralSimilarity(waves, waves), 1);
   const noisy = (amount: number) => ({
     ...waves,
@@ -22,15 +22,18 @@ test("a picture is wholly like itself and less so the noisier it gets", () => {
   assert.ok(strong < 0.8 && strong < slight, String(strong));
 });
 
-test("flat pictures are compared by their mean alone, as the formula says", () => {
+test("uniform images are compared by their mean alone", () => {
   const [a, b] = [100, 150];
   const c1 = (0.01 * 255) ** 2;
   const expected = (2 * a * b + c1) / (a * a + b * b + c1);
-  const found = structuralSimilarity(picture(() => a), picture(() => b));
+  const found = structuralSimilarity(
+    image(() => a),
+    image(() => b),
+  );
   assert.ok(Math.abs(found - expected) < 1e-6);
 });
 
 test("luma weighs green most", () => {
-  const { luma } = greyPicture(Uint8ClampedArray.from([255, 0, 0, 255, 0, 255, 0, 255]), 2, 1);
+  const { luma } = greyImage(Uint8ClampedArray.from([255, 0, 0, 255, 0, 255, 0, 255]), 2, 1);
   assert.ok(Math.abs(luma[0]! - 54.2) < 0.1 && Math.abs(luma[1]! - 182.4) < 0.1);
 });

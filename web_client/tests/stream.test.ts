@@ -5,7 +5,7 @@ import { FramePipeline } from "../src/stream/frame_pipeline.ts";
 import { LatencyMeter } from "../src/stream/latency.ts";
 import { RateMeter } from "../src/stream/rates.ts";
 
-test("waiting doubles up to its longest and starts over after a reset", () => {
+test("back-off doubles up to its maximum and restarts after a reset", () => {
   const longest = new Backoff(400, 10_000, () => 1);
   const waits = Array.from({ length: 7 }, () => longest.next());
   assert.deepEqual(waits, [400, 800, 1600, 3200, 6400, 10_000, 10_000]);
@@ -13,12 +13,12 @@ test("waiting doubles up to its longest and starts over after a reset", () => {
   assert.equal(longest.next(), 400);
 });
 
-test("jitter spreads viewers over the second half of each wait", () => {
+test("jitter spreads viewers over the second half of each delay", () => {
   assert.equal(new Backoff(400, 10_000, () => 0).next(), 200);
   assert.equal(new Backoff(400, 10_000, () => 0.5).next(), 300);
 });
 
-test("latency counts the first frame that shows an input, not those that refine it", () => {
+test("latency is measured by the first frame of an input, not by refining frames", () => {
   const meter = new LatencyMeter();
   assert.equal(meter.median, null);
   meter.inputSent(1, 100);
@@ -29,7 +29,7 @@ test("latency counts the first frame that shows an input, not those that refine 
   assert.equal(meter.median, 40);
 });
 
-test("the latency shown is the median of the recent ones", () => {
+test("the displayed latency is the median of recent measurements", () => {
   const meter = new LatencyMeter(3);
   [500, 20, 30, 900, 40].forEach((delay, index) => {
     meter.inputSent(index + 1, 0);
@@ -38,7 +38,7 @@ test("the latency shown is the median of the recent ones", () => {
   assert.equal(meter.median, 40);
 });
 
-test("a new connection forgets inputs under way but keeps the figure", () => {
+test("a new connection discards pending inputs but keeps the median", () => {
   const meter = new LatencyMeter();
   meter.inputSent(5, 0);
   meter.frameDrawn(5, 30);
@@ -51,7 +51,7 @@ test("a new connection forgets inputs under way but keeps the figure", () => {
   assert.equal(meter.frameDrawn(1, 250), 50);
 });
 
-test("rates are those of the window and zero at rest", () => {
+test("rates are averages over the window and zero without frames", () => {
   const meter = new RateMeter(1000);
   for (let at = 0; at <= 2000; at += 50) meter.add(at, 10_000);
   const { fps, bytesPerSecond } = meter.read(2000);
@@ -72,8 +72,8 @@ function frameMessage(seq: number, rev = 0, width = 0): ArrayBuffer {
   return buffer;
 }
 
-/** A pipeline whose decoder finishes when the test says so. */
-function pipeline(sizePatienceMs?: number) {
+/** A pipeline whose decoder finishes on demand. */
+function pipeline(sizeTimeoutMs?: number) {
   const log: string[] = [];
   const finish: ((works: boolean) => void)[] = [];
   const frames = new FramePipeline(
@@ -87,7 +87,7 @@ function pipeline(sizePatienceMs?: number) {
         log.push(`decode ${bytes[0]}`);
         finish.push((works) => (works ? resolve({} as ImageBitmap) : reject(new Error("bad"))));
       }),
-    sizePatienceMs,
+    sizeTimeoutMs,
   );
   const decoded = async (works = true): Promise<void> => {
     finish.shift()?.(works);
@@ -96,7 +96,7 @@ function pipeline(sizePatienceMs?: number) {
   return { frames, log, decoded };
 }
 
-test("while one frame is decoded only the newest waits, and each is acknowledged", async () => {
+test("during decoding only the newest frame is queued, and all are acknowledged", async () => {
   const { frames, log, decoded } = pipeline();
   for (const seq of [1, 2, 3]) frames.push(frameMessage(seq));
   await decoded();
@@ -104,7 +104,7 @@ test("while one frame is decoded only the newest waits, and each is acknowledged
   assert.deepEqual(log, ["decode 1", "ack 2", "draw 1", "ack 1", "decode 3", "draw 3", "ack 3"]);
 });
 
-test("an undecodable frame is told, acknowledged and does not stop the next", async () => {
+test("an undecodable frame is reported, acknowledged and does not block the next", async () => {
   const { frames, log, decoded } = pipeline();
   frames.push(frameMessage(1));
   await decoded(false);
@@ -120,13 +120,13 @@ test("an undecodable frame is told, acknowledged and does not stop the next", as
   ]);
 });
 
-test("a message that is no frame is told and ignored", () => {
+test("an invalid frame message is reported and ignored", () => {
   const { frames, log } = pipeline();
   frames.push(new ArrayBuffer(3));
   assert.deepEqual(log, ["frame message of 3 bytes has no full header"]);
 });
 
-test("held frames wait, and are shown or dropped on release; none goes unacknowledged", async () => {
+test("held frames are drawn or skipped on release, and all are acknowledged", async () => {
   const { frames, log, decoded } = pipeline();
   frames.hold();
   for (const seq of [1, 2]) frames.push(frameMessage(seq, 7));
@@ -141,7 +141,7 @@ test("held frames wait, and are shown or dropped on release; none goes unacknowl
   assert.deepEqual(log, ["ack 3", "ack 4"]);
 });
 
-test("a new page waits for a picture of the size that it asked for", async () => {
+test("a new page waits for a frame of the requested size", async () => {
   const { frames, log, decoded } = pipeline();
   frames.hold();
   frames.push(frameMessage(1, 3, 640));
@@ -150,13 +150,13 @@ test("a new page waits for a picture of the size that it asked for", async () =>
   frames.push(frameMessage(3, 3, 800));
   await decoded();
   assert.deepEqual(log.splice(0), ["ack 1", "ack 2", "decode 3", "draw 3", "ack 3"]);
-  frames.push(frameMessage(4, 3, 640)); // others may choose another size later
+  frames.push(frameMessage(4, 3, 640)); // another viewer may choose another size later
   await decoded();
   assert.deepEqual(log, ["decode 4", "draw 4", "ack 4"]);
   frames.clear();
 });
 
-test("where no picture of that size comes, any is better than none", async () => {
+test("after the size timeout a frame of another size is drawn", async () => {
   const { frames, log } = pipeline(1);
   frames.hold();
   frames.release({ oldestRev: 0, size: { width: 800, height: 0 } });

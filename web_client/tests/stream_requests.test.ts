@@ -8,82 +8,85 @@ Object.assign(globalThis, { location: new URL("http://a.example/") });
 
 const hello = { codecs: ["h264", "jpeg"] } as Hello;
 
-/** A stream whose far end takes on whatever it is asked for. */
+/** A stream whose server accepts every request. */
 function stream() {
-  const asked: Partial<StreamSettings>[] = [];
-  const told: string[] = [];
+  const sent: Partial<StreamSettings>[] = [];
+  const informed: string[] = [];
   let settings = {};
-  const rpc: RpcPeer = new RpcPeer((text) => {
-    const { id, params } = JSON.parse(text) as { id: number; params: Partial<StreamSettings> };
-    asked.push(params);
-    settings = { ...settings, ...params };
-    const answer = JSON.stringify({ jsonrpc: "2.0", id, result: settings });
-    queueMicrotask(() => rpc.receive(answer));
-  }, () => {});
+  const rpc: RpcPeer = new RpcPeer(
+    (text) => {
+      const { id, params } = JSON.parse(text) as { id: number; params: Partial<StreamSettings> };
+      sent.push(params);
+      settings = { ...settings, ...params };
+      const answer = JSON.stringify({ jsonrpc: "2.0", id, result: settings });
+      queueMicrotask(() => rpc.receive(answer));
+    },
+    () => {},
+  );
   rpc.open();
   const requests = new StreamRequests(rpc, {
     mayResize: () => true,
     report: (error) => assert.fail(String(error)),
-    tell: (sentence) => told.push(sentence),
+    inform: (sentence) => informed.push(sentence),
   });
-  return { asked, told, requests };
+  return { sent, informed, requests };
 }
 
 const settled = () => new Promise((resolve) => setTimeout(resolve, 0));
-const pauses = (asked: Partial<StreamSettings>[]) => asked.map(({ paused }) => paused);
+const pauses = (sent: Partial<StreamSettings>[]) => sent.map(({ paused }) => paused);
 
-test("a video that breaks begins anew by a pause", async () => {
-  const { asked, told, requests } = stream();
+test("a video error restarts the stream by a pause", async () => {
+  const { sent, informed, requests } = stream();
   await requests.begin(hello, false);
-  requests.videoBroke();
+  requests.onVideoError();
   await settled();
-  assert.deepEqual(pauses(asked), [undefined, true, false]);
-  assert.deepEqual(told, []);
+  assert.deepEqual(pauses(sent), [undefined, true, false]);
+  assert.deepEqual(informed, []);
 });
 
-test("a video that breaks before anything was asked for begins anew at once", async () => {
-  const { asked, requests } = stream();
-  requests.videoBroke();
+test("a video error before the first request restarts the stream at once", async () => {
+  const { sent, requests } = stream();
+  requests.onVideoError();
   await requests.begin(hello, false);
-  assert.deepEqual(pauses(asked), [true, false]);
+  assert.deepEqual(pauses(sent), [true, false]);
   requests.end();
   await requests.begin(hello, false);
-  assert.deepEqual(pauses(asked), [true, false, undefined]);
+  assert.deepEqual(pauses(sent), [true, false, undefined]);
 });
 
-test("pictures that are held back stay so, though a video broke early", async () => {
-  const { asked, requests } = stream();
-  requests.videoBroke();
+test("a stream that starts paused stays paused after an early video error", async () => {
+  const { sent, requests } = stream();
+  requests.onVideoError();
   await requests.begin(hello, true);
-  assert.deepEqual(pauses(asked), [true]);
-  await requests.show();
-  assert.deepEqual(pauses(asked), [true, false]);
+  assert.deepEqual(pauses(sent), [true]);
+  await requests.resume();
+  assert.deepEqual(pauses(sent), [true, false]);
 });
 
-test("a video that keeps breaking gives way to single pictures, one that recovers does not", async () => {
-  const { asked, told, requests } = stream();
+test("repeated video errors switch to JPEG, errors with recovery in between do not", async () => {
+  const { sent, informed, requests } = stream();
   await requests.begin(hello, false);
   for (let round = 0; round < 6; round += 1) {
-    requests.videoBroke();
-    for (let picture = 0; picture < 60; picture += 1) requests.videoWorked();
+    requests.onVideoError();
+    for (let frame = 0; frame < 60; frame += 1) requests.onVideoFrame();
   }
-  assert.deepEqual(told, []);
-  for (let round = 0; round < 4; round += 1) requests.videoBroke();
+  assert.deepEqual(informed, []);
+  for (let round = 0; round < 4; round += 1) requests.onVideoError();
   await settled();
-  assert.equal(told.length, 1);
-  assert.ok(asked.some(({ codec }) => codec === "jpeg"));
+  assert.equal(informed.length, 1);
+  assert.ok(sent.some(({ codec }) => codec === "jpeg"));
 });
 
-test("the size that another viewer chose is in effect here, too", async () => {
-  const { asked, requests } = stream();
-  const sizeNow = () => requests.settings.value;
-  requests.sizeTold({ width: 320, height: 180 });
-  assert.equal(sizeNow(), null, "nothing is known yet");
+test("the frame size that another viewer chose applies to this page", async () => {
+  const { sent, requests } = stream();
+  const settings = () => requests.settings.value;
+  requests.onFrameSize({ width: 320, height: 180 });
+  assert.equal(settings(), null, "unknown before the first settings");
   await requests.begin(hello, false);
-  const before = asked.length;
-  requests.sizeTold({ width: 320, height: 180 });
-  assert.deepEqual([sizeNow()?.width, sizeNow()?.height], [320, 180]);
-  requests.sizeTold({});
-  assert.equal(sizeNow()?.width, 320);
-  assert.equal(asked.length, before, "nobody was asked");
+  const before = sent.length;
+  requests.onFrameSize({ width: 320, height: 180 });
+  assert.deepEqual([settings()?.width, settings()?.height], [320, 180]);
+  requests.onFrameSize({});
+  assert.equal(settings()?.width, 320);
+  assert.equal(sent.length, before, "no request was sent");
 });

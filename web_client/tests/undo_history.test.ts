@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import { UndoHistory, inverseOf } from "../src/session/undo_history.ts";
 
-test("the inverse of a patch holds what was there, and only that", () => {
+test("the inverse of a patch holds the previous values, and only those", () => {
   const tree = { taa: { enabled: true, frames: 8 }, seed: 3 };
   assert.deepEqual(inverseOf({ taa: { enabled: false } }, tree), { taa: { enabled: true } });
   assert.deepEqual(inverseOf({ seed: null }, tree), { seed: 3 });

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { linkTo, viewIn } from "../src/session/view_link.ts";
 import { editsOf, patchesTowards } from "../src/session/scene_edits.ts";
+import { linkTo, viewIn } from "../src/session/view_link.ts";
 import type { ViewState } from "../src/session/view_state.ts";
 
 const state: ViewState = {
@@ -14,38 +14,41 @@ const state: ViewState = {
   camera: { eye: [1, 2, 3], target: [0, 0.5, 0], up: [0, 1, 0], vertical_fov: 45, name: null },
 };
 
-test("a view survives the way through an address", () => {
+test("a view is unchanged after a round trip through a URL", () => {
   const { href: link, shortened } = linkTo("http://host:8080/?token=x#old", state);
   assert.equal(shortened, false);
   assert.match(link, /^http:\/\/host:8080\/\?token=x#view=[\w-]+$/);
   assert.deepEqual(viewIn(link), state);
 });
 
-test("an address without a view or with a damaged one gives none", () => {
+test("a URL without a view or with an invalid one gives null", () => {
   for (const hash of ["", "#view=", "#view=%%%", "#view=bm90IGpzb24", "#view=WzFd"]) {
     assert.equal(viewIn(`http://host/${hash}`), null);
   }
 });
 
-test("members of the wrong kind do not pass", () => {
+test("members of the wrong type are dropped", () => {
   const wrong = { scene: 7, camera: { eye: [1, 2], target: "x" }, clip: { clip: 1 } };
   assert.deepEqual(viewIn(linkTo("http://host/", wrong as unknown as ViewState).href), {});
 });
 
-test("edits that are none, or too many, do not pass", () => {
+test("invalid and too many edits are dropped", () => {
   const many = Object.fromEntries(
     Array.from({ length: 200 }, (_, index) => [`m${index}`, { roughness: 0.5 }]),
   );
-  const wrong = { sun: "bright", lamp: { intensity: "1e9" }, moon: { direction: [0, 1, {}] } };
+  const wrong = { sun: "bright", bulb: { intensity: "1e9" }, moon: { direction: [0, 1, {}] } };
   const given = { lights: wrong, materials: many } as unknown as ViewState;
   const seen = viewIn(linkTo("http://host/", given).href);
   assert.deepEqual(seen?.lights, {});
   assert.equal(Object.keys(seen?.materials ?? {}).length, 64);
 });
 
-test("a link stays short enough to be passed on, and tells what it left out", () => {
+test("a link has a limited length and reports what was left out", () => {
   const materials = Object.fromEntries(
-    Array.from({ length: 60 }, (_, index) => [`a long name ${"x".repeat(100)}${index}`, { metallic: 1 }]),
+    Array.from({ length: 60 }, (_, index) => [
+      `a long name ${"x".repeat(100)}${index}`,
+      { metallic: 1 },
+    ]),
   );
   const { href, shortened } = linkTo("http://host/", { ...state, materials });
   assert.ok(href.length <= 8000 && shortened);
@@ -53,10 +56,10 @@ test("a link stays short enough to be passed on, and tells what it left out", ()
   assert.equal(viewIn(href)?.materials, undefined);
 });
 
-test("only what differs from the file is kept of a light or a material", () => {
+test("edits of lights and materials contain only differences from the file", () => {
   const sun = { name: "sun", intensity: 2, enabled: true, changed: ["intensity"] };
-  assert.deepEqual(editsOf([sun, { name: "lamp", changed: [] }]), { sun: { intensity: 2 } });
-  assert.equal(editsOf([{ name: "sun" }]), undefined, "a server that does not tell");
+  assert.deepEqual(editsOf([sun, { name: "bulb", changed: [] }]), { sun: { intensity: 2 } });
+  assert.equal(editsOf([{ name: "sun" }]), undefined, "a server without changed");
   assert.deepEqual(patchesTowards([sun], {}), { sun: { intensity: null } });
   assert.deepEqual(patchesTowards([sun], { sun: { intensity: 2 } }), {});
 });

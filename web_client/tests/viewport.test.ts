@@ -4,12 +4,12 @@ import { frameSize } from "../src/view/viewport.ts";
 
 const limits = { maxWidth: 3840, maxHeight: 2160, maxPixels: Infinity };
 
-test("the picture has the view's device pixels, at most two per CSS pixel", () => {
+test("a frame has the view's device pixels, at most two per CSS pixel", () => {
   assert.deepEqual(frameSize(800, 600, 1, limits), { width: 800, height: 600 });
   assert.deepEqual(frameSize(360, 740, 3, limits), { width: 720, height: 1480 });
 });
 
-test("limits and budget shrink it without changing its shape", () => {
+test("limits reduce the size and keep the aspect ratio", () => {
   assert.deepEqual(frameSize(2560, 1440, 2, limits), { width: 3840, height: 2160 });
   const tall = frameSize(500, 2000, 2, limits);
   assert.deepEqual(tall, { width: 540, height: 2160 });
@@ -18,6 +18,6 @@ test("limits and budget shrink it without changing its shape", () => {
   assert.ok(Math.abs(frugal.width / frugal.height - 1.6) < 0.01);
 });
 
-test("a view without extent still asks for a valid picture", () => {
+test("a view of size zero still gives a valid frame size", () => {
   assert.deepEqual(frameSize(0, 0, 1, limits), { width: 16, height: 16 });
 });

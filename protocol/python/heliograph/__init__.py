@@ -9,13 +9,13 @@
         depth = view.array("gbuffer.motion.view_z")      # NumPy
 
 `connect` is for scripts and notebooks, `connect_async` for asyncio. Every method of the protocol is
-a method here, under the same name; the ones below add what a call alone does not give. Needs
-python3-websockets; NumPy only where arrays are asked for.
+a method here, under the same name; capture, array, step, next_frame and listen add waiting, decoding
+and frames. Needs python3-websockets; NumPy only for arrays.
 """
 
 from .client import AsyncClient, Client, connect, connect_async
 from .errors import HeliographError
-from .pictures import Capture, Frame
+from .images import Capture, Frame
 
 __all__ = ["AsyncClient", "Capture", "Client", "Frame", "HeliographError", "connect",
            "connect_async"]

@@ -1,60 +1,60 @@
-"""The client as programs use it: with asyncio, or without."""
+"""The public clients: with asyncio, or without."""
 
 import asyncio
 import threading
 
 from .connection import Connection
 from .methods import Methods
-from .pictures import Capture
+from .images import Capture
 
 
 class AsyncClient(Methods):
     """A viewer in a session. Every method of the protocol is one of its own or of its groups:
-    `await client.camera.orbit(yaw=15)`. No pictures are streamed until frames are asked for, nor
-    when none has been for a while: a client may think as long as it likes."""
+    `await client.camera.orbit(yaw=15)`. Frames are streamed only while `next_frame` is called; a
+    client that does not call it may stay connected for any time."""
 
     def __init__(self, connection):
         super().__init__(self._call)
         self._connection = connection
-        self.info = None  # what hello answered
+        self.info = None  # the result of hello
 
     async def _call(self, method, params):
         return await self._connection.call(method, params)
 
     async def greet(self, name):
         self.info = await self.hello(client=name)
-        await self._connection.pictures.pause()
+        await self._connection.frames.pause()
 
     async def capture(self, buffer="output", *, format="png", samples=None):
-        """One buffer as a file; waits for so many samples, at most the setting
-        accumulation.max_samples, or for all that accumulation gives."""
-        wanted = {"buffer": buffer, "format": format}
+        """One buffer as a file. Waits for this many samples per pixel, at most the setting
+        accumulation.max_samples, which is also the default."""
+        params = {"buffer": buffer, "format": format}
         if samples is not None:
-            wanted["samples"] = samples
-        return Capture.from_result(await self._call("frame.capture", wanted))
+            params["samples"] = samples
+        return Capture.from_result(await self._call("frame.capture", params))
 
     async def array(self, buffer="output", *, samples=None):
-        """One buffer as a NumPy array; frame.buffers tells what its channels are."""
+        """One buffer as a NumPy array; frame.buffers describes its channels."""
         return (await self.capture(buffer, format="npy", samples=samples)).numpy()
 
     async def step(self, frames=1, dt=1 / 30):
-        """Renders exactly so many frames of `dt` seconds: the session's clock is the caller's from
-        now on, until `frame.run` gives it back."""
+        """Renders exactly this many frames, `dt` seconds apart. The session is in lockstep from the
+        first call until `frame.run`: its time advances only with steps."""
         return await self._call("frame.step", {"frames": frames, "dt": dt})
 
     async def next_frame(self, timeout=60):
-        """The newest picture of the stream that was not given yet. The stream begins with the first
-        call, and pauses by itself while pictures come that nobody asks for; the next call then
-        begins with the newest of that moment."""
-        return await asyncio.wait_for(self._connection.pictures.next(), timeout)
+        """The newest frame of the stream that was not returned yet. The first call starts the
+        stream. It pauses when frames arrive and this is not called for 2 s; the next call
+        resumes it with the newest frame."""
+        return await asyncio.wait_for(self._connection.frames.next(), timeout)
 
     async def stop_frames(self):
-        """Lets no more pictures be sent."""
-        await self._connection.pictures.pause()
+        """Pauses the stream."""
+        await self._connection.frames.pause()
 
     def listen(self, notification, callback):
-        """Calls `callback(params)` at every such notification. Gives a function that ends it. What
-        the callback raises goes to the log of the name "heliograph" and ends nothing."""
+        """Calls `callback(params)` for every such notification. Returns a function that removes the
+        listener. Exceptions of the callback are logged by the logger "heliograph"."""
         return self._connection.listen(notification, callback)
 
     async def close(self):
@@ -71,8 +71,8 @@ async def connect_async(url="http://127.0.0.1:8080", *, session=None, token=None
                         name="python"):
     """A connection to the session of that name ("main" without one), as an AsyncClient.
 
-    token: What a server with tokens asks for.
-    ssl: For https: an ssl.SSLContext in place of Python's own, for instance
+    token: The token, if the server requires one.
+    ssl: For https: an ssl.SSLContext in place of Python's default, for instance
         ssl.create_default_context(cafile="private-ca.pem").
     """
     connection = await Connection.open(url, session=session, token=token, ssl=ssl)
@@ -86,8 +86,8 @@ async def connect_async(url="http://127.0.0.1:8080", *, session=None, token=None
 
 
 class Client(Methods):
-    """The same without asyncio, which runs in a thread behind it: `client.camera.orbit(yaw=15)`.
-    In a notebook its name alone at the end of a cell shows the picture."""
+    """The same without asyncio, which runs in a background thread: `client.camera.orbit(yaw=15)`.
+    In a notebook a client at the end of a cell is shown as an image."""
 
     def __init__(self, url, options):
         super().__init__(self._call)
@@ -102,7 +102,7 @@ class Client(Methods):
 
     @property
     def info(self):
-        """What hello answered."""
+        """The result of hello."""
         return self._client.info
 
     def capture(self, buffer="output", *, format="png", samples=None):
@@ -126,8 +126,8 @@ class Client(Methods):
         self._run(self._client.stop_frames())
 
     def listen(self, notification, callback):
-        """See AsyncClient.listen. The callback runs in the thread behind, where the calls of this
-        client are refused: their answers come by that very thread."""
+        """See AsyncClient.listen. The callback runs in the background thread and cannot call this
+        client: that thread receives the answers."""
         return self._client.listen(notification, callback)
 
     def close(self):
@@ -144,7 +144,7 @@ class Client(Methods):
     def _run(self, work):
         if threading.current_thread() is self._thread:
             work.close()
-            raise RuntimeError("a listener cannot wait for its own client: call from elsewhere")
+            raise RuntimeError("a listener cannot call its own client: call from another thread")
         return asyncio.run_coroutine_threadsafe(work, self._loop).result()
 
     def _end_thread(self):

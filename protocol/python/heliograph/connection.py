@@ -10,11 +10,11 @@ import urllib.parse
 import websockets
 
 from .errors import HeliographError
-from .picture_stream import PictureStream
-from .pictures import Frame
+from .frame_stream import FrameStream
+from .images import Frame
 
 SUBPROTOCOL = "heliograph.v1"
-# A little more than the longest that a capture waits in the server.
+# Slightly more than the server's timeout of captures.
 CALL_TIMEOUT = 310  # seconds
 
 log = logging.getLogger("heliograph")
@@ -31,7 +31,7 @@ def websocket_address(url, session):
 
 
 def offered_subprotocols(token):
-    """The token goes as a second subprotocol, where it is in no address and in no log."""
+    """The token is a second subprotocol, so that it is in no address and no log."""
     if not token:
         return [SUBPROTOCOL]
     encoded = base64.urlsafe_b64encode(token.encode()).decode().rstrip("=")
@@ -39,7 +39,7 @@ def offered_subprotocols(token):
 
 
 class Connection:
-    """Ends with the socket and not before: what goes wrong in a listener is logged."""
+    """Lives as long as its socket: exceptions of listeners are logged."""
 
     def __init__(self, socket):
         self._socket = socket
@@ -47,7 +47,7 @@ class Connection:
         self._next_id = 0
         self._listeners = collections.defaultdict(list)
         self._ended = None
-        self.pictures = PictureStream(self)
+        self.frames = FrameStream(self)
         self._reader = asyncio.ensure_future(self._read())
 
     @classmethod
@@ -63,13 +63,13 @@ class Connection:
         await self._reader
 
     def check(self):
-        """Raises ConnectionError when there is no connection any more."""
+        """Raises ConnectionError if the connection has ended."""
         if self._ended:
             raise ConnectionError(self._ended)
 
     async def call(self, method, params, timeout=CALL_TIMEOUT):
-        """Gives the result. Raises HeliographError when the server refuses, ConnectionError when
-        there is no connection any more."""
+        """Returns the result. Raises HeliographError if the server refuses, ConnectionError if the
+        connection has ended."""
         self.check()
         self._next_id += 1
         number = self._next_id
@@ -80,7 +80,7 @@ class Connection:
         finally:
             self._answers.pop(number, None)
         if method.startswith("stream.") and "paused" in result:
-            self.pictures.paused = result["paused"]
+            self.frames.paused = result["paused"]
         return result
 
     async def notify(self, method, params):
@@ -88,8 +88,8 @@ class Connection:
         await self._send({"jsonrpc": "2.0", "method": method, "params": params})
 
     def listen(self, method, callback):
-        """Calls `callback(params)` at every notification of that name. Gives a function that ends
-        it."""
+        """Calls `callback(params)` for every notification of that name. Returns a function that
+        removes the listener."""
         self._listeners[method].append(callback)
         return lambda: self._listeners[method].remove(callback)
 
@@ -110,7 +110,7 @@ class Connection:
         finally:
             self._ended = ended
             self._fail_all(lambda: ConnectionError(ended))
-            self.pictures.end()
+            self.frames.end()
 
     def _fail_all(self, error):
         for answer in self._answers.values():
@@ -122,15 +122,15 @@ class Connection:
             if isinstance(message, str):
                 self._take(json.loads(message))
             else:
-                self.pictures.put(Frame.parse(message))
+                self.frames.put(Frame.parse(message))
         except Exception:
-            log.exception("what the server sent could not be read")
+            log.exception("a message of the server could not be parsed")
 
     def _take(self, message):
         if "method" in message:
             self._tell(message["method"], message.get("params", {}))
         elif "error" in message and message.get("id") is None:
-            # Whose it is was not to be read: better all are told than one waits in vain.
+            # The id could not be read: fail all pending calls, or one would wait for its timeout.
             self._fail_all(lambda: HeliographError(message["error"]))
         else:
             self._answer(message)

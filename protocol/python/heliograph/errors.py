@@ -1,9 +1,9 @@
-"""What a call that is refused raises."""
+"""The exception of refused calls."""
 
 
 class HeliographError(Exception):
-    """An error that the server answered: `code` as protocol/README.md lists them, `path` the
-    parameter at fault, `reason` what is wrong with it, `limit` what would be right."""
+    """An error answered by the server: `code` as listed in protocol/README.md, `path` the invalid
+    parameter, `reason` what is wrong with it, `limit` what would be valid."""
 
     def __init__(self, error):
         data = error.get("data") or {}

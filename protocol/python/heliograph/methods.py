@@ -26,9 +26,9 @@ class Animation(_Group):
         """Lets time pass in a clip. A camera that the clip moves follows it until it is taken
         by hand.
 
-        clip: The clip to play from its start; left out: go on with the one that is there, or
-            play the first.
-        rate: Seconds of the clip that pass in a second.
+        clip: The clip to play from its start; absent: continue the current clip, or play the
+            first.
+        rate: Playback speed: clip seconds per second.
 
         Gives: clip, clips, lockstep, playing, rate, rev, seconds.
         """
@@ -44,7 +44,7 @@ class Animation(_Group):
     def seek(self, *, seconds: float) -> Dict[str, Any]:
         """Goes to a moment of the clip.
 
-        seconds: Where the clip shall stand. [seconds]
+        seconds: Time in the clip to seek to. [seconds]
 
         Gives: clip, clips, lockstep, playing, rate, rev, seconds.
         """
@@ -53,7 +53,7 @@ class Animation(_Group):
     def rate(self, *, rate: float) -> Dict[str, Any]:
         """Sets how fast time passes.
 
-        rate: Seconds of the clip that pass in a second.
+        rate: Playback speed: clip seconds per second.
 
         Gives: clip, clips, lockstep, playing, rate, rev, seconds.
         """
@@ -79,12 +79,13 @@ class Camera(_Group):
             vertical_fov: float = _UNSET) -> Dict[str, Any]:
         """Moves the camera; members that are left out stay as they are.
 
-        eye: Where the camera is, world space. [metres]
-        name: A scene camera to begin from; the other members are applied on top.
-        seq: The client's own count; frames that show this camera echo it as input_seq_echo.
-        target: The point in the middle of the picture. [metres]
-        up: The direction that points up in the picture.
-        vertical_fov: Field of view, top to bottom. [degrees]
+        eye: Position of the camera, world space. [metres]
+        name: A scene camera to start from; the other members are applied on top.
+        seq: The client's sequence number; frames that show this camera echo it as
+            input_seq_echo.
+        target: The point at the centre of the image. [metres]
+        up: The up direction of the image.
+        vertical_fov: Vertical field of view. [degrees]
 
         Gives: eye, name, rev, target, up, vertical_fov.
         """
@@ -102,12 +103,13 @@ class Camera(_Group):
             yaw: float = _UNSET) -> Dict[str, Any]:
         """Carries the camera about its target, nearer or farther.
 
-        distance: How far from the target to be. [metres]
-        dolly: Factor on the distance: below 1 comes closer.
-        pitch: Raises the camera, lowers it below 0; it stops short of straight above and below.
+        distance: New distance to the target. [metres]
+        dolly: Factor on the distance: below 1 moves closer.
+        pitch: Positive raises the camera, negative lowers it; it stops short of the poles.
             [degrees]
-        seq: The client's own count; frames that show this camera echo it as input_seq_echo.
-        yaw: Turns about the up axis, counter-clockwise seen from above. [degrees]
+        seq: The client's sequence number; frames that show this camera echo it as
+            input_seq_echo.
+        yaw: Rotation about the up axis, counter-clockwise seen from above. [degrees]
 
         Gives: eye, name, rev, target, up, vertical_fov.
         """
@@ -134,8 +136,8 @@ class Environment(_Group):
     def set(self, *, name: Optional[str] = _UNSET, rotation: float = _UNSET) -> Dict[str, Any]:
         """Puts another environment around this session's scene, or turns it.
 
-        name: A name that environment.list gave; null: the one that goes with the scene.
-        rotation: Sets environment.rotation, too. [degrees]
+        name: A name from environment.list; null: the scene's own.
+        rotation: Also sets environment.rotation. [degrees]
 
         Gives: current, environments, intensity, rev, rotation.
         """
@@ -159,10 +161,10 @@ class Frame(_Group):
             samples: int = _UNSET) -> Dict[str, Any]:
         """Renders one buffer and gives it as a file.
 
-        buffer: A name that frame.buffers gave.
-        format: Format of the file: png and jpeg for people, npy and exr for values.
-        samples: Samples per pixel to wait for, at most accumulation.max_samples, one without
-            accumulation; absent: all of them. The answer tells how many there are.
+        buffer: A name from frame.buffers.
+        format: Format of the file: png and jpeg for viewing, npy and exr for values.
+        samples: Samples per pixel to wait for, at most accumulation.max_samples, 1 without
+            accumulation; absent: wait for the converged frame.
 
         Gives: buffer, data, format, height, samples, width.
         """
@@ -172,8 +174,8 @@ class Frame(_Group):
     def inspect(self, *, x: float, y: float) -> Dict[str, Any]:
         """Gives the value of every buffer under a point of the picture.
 
-        x: Share of the picture's width, from the left.
-        y: Share of the picture's height, from the top.
+        x: Fraction of the image width, from the left.
+        y: Fraction of the image height, from the top.
 
         Gives: buffers, column, height, row, width.
         """
@@ -183,8 +185,8 @@ class Frame(_Group):
         """Renders exactly so many frames of dt seconds and answers when they are done. Time
         passes no other way until frame.run; the first call forgets every history.
 
-        dt: How much time passes before each of them. [seconds]
-        frames: How many frames to render; 0 enters lockstep and renders none.
+        dt: Time step before each frame. [seconds]
+        frames: Number of frames to render; 0 enters lockstep without rendering.
 
         Gives: frames, lockstep, rev, samples, seconds.
         """
@@ -209,8 +211,8 @@ class Lights(_Group):
     def patch(self, *, light: str, patch: Dict[str, Any]) -> Dict[str, Any]:
         """Changes a light of this session's scene by a merge patch (RFC 7386).
 
-        light: A name that lights.list gave.
-        patch: What shall change (RFC 7386): null brings back what the scene's file says.
+        light: A name from lights.list.
+        patch: A merge patch (RFC 7386); null restores the value of the scene file.
 
         Gives: light, rev.
         """
@@ -228,8 +230,8 @@ class Materials(_Group):
     def patch(self, *, material: str, patch: Dict[str, Any]) -> Dict[str, Any]:
         """Changes a material of this session's scene by a merge patch (RFC 7386).
 
-        material: A name that materials.list gave.
-        patch: What shall change (RFC 7386): null brings back what the scene's file says.
+        material: A name from materials.list.
+        patch: A merge patch (RFC 7386); null restores the value of the scene file.
 
         Gives: material, rev.
         """
@@ -244,24 +246,24 @@ class Reference(_Group):
             scope: Literal["same_paths", "full"] = _UNSET) -> Dict[str, Any]:
         """Shows the path traced truth and gathers its samples, whether anybody watches or not.
 
-        samples: Samples per pixel to gather: the setting accumulation.max_samples.
-        scope: Which light paths: the setting reference.scope.
+        samples: Samples per pixel to accumulate: sets accumulation.max_samples.
+        scope: Light paths to trace: sets reference.scope.
 
-        Gives: finished, rev, samples, scope, shown, wanted.
+        Gives: finished, rev, samples, scope, shown, target_samples.
         """
         return self._call("reference.start", _given({"samples": samples, "scope": scope}))
 
     def status(self) -> Dict[str, Any]:
         """Tells how far the path traced truth is.
 
-        Gives: finished, rev, samples, scope, shown, wanted.
+        Gives: finished, rev, samples, scope, shown, target_samples.
         """
         return self._call("reference.status", {})
 
     def stop(self) -> Dict[str, Any]:
         """Shows the hybrid picture again; what reference.start had set is as it was before.
 
-        Gives: finished, rev, samples, scope, shown, wanted.
+        Gives: finished, rev, samples, scope, shown, target_samples.
         """
         return self._call("reference.stop", {})
 
@@ -284,10 +286,10 @@ class Scene(_Group):
         """Loads a scene and shows it; scene.progress tells how far it is. On failure the scene
         that was shown stays.
 
-        name: A name that scene.list gave.
-        scene: Which scene of a file that holds several: its name, or its number from 0. Left
-            out: the file's default.
-        variant: Which of the file's material variants. Left out: the materials outside of them.
+        name: A name from scene.list.
+        scene: The scene to load from a file with several: its name, or its index from 0.
+            Absent: the file's default.
+        variant: Material variant of the file to apply. Absent: the default materials.
 
         Gives: bounds, cameras, clips, deforming, environment, images, instances, light_names,
             lights, material_names, materials, memory, meshes, name, nodes, scene, scenes,
@@ -318,8 +320,8 @@ class Scene(_Group):
     def pick(self, *, x: float, y: float) -> Dict[str, Any]:
         """Tells what surface lies under a point of the picture.
 
-        x: Share of the picture's width, from the left.
-        y: Share of the picture's height, from the top.
+        x: Fraction of the image width, from the left.
+        y: Fraction of the image height, from the top.
 
         Gives: distance, hit, material, normal, object, position.
         """
@@ -338,13 +340,13 @@ class Session(_Group):
             width: int = _UNSET) -> Dict[str, Any]:
         """Makes a session of its own scene, camera, settings, clock and histories.
 
-        copy_of: A session whose scene, camera, clip, settings and size it starts with.
-        height: Picture height. [pixels]
-        name: Letters, digits, dots, hyphens and underscores; left out: the server chooses.
-        scene: A name that scene.list gave; it is loaded before the answer comes.
-        settings: Part of the settings tree (RFC 7386), on top of the server's own or the
-            copied.
-        width: Picture width. [pixels]
+        copy_of: A session from which scene, camera, clip, settings and size are copied.
+        height: Frame height. [pixels]
+        name: Letters, digits, dots, hyphens and underscores; absent: the server chooses.
+        scene: A name from scene.list; the call returns when the scene is loaded.
+        settings: A merge patch of the settings tree (RFC 7386), applied to the server's
+            defaults or the copied settings.
+        width: Frame width. [pixels]
 
         Gives: control, height, idle_seconds, name, rev, scene, viewers, width.
         """
@@ -355,7 +357,7 @@ class Session(_Group):
     def join(self, *, session: str) -> Dict[str, Any]:
         """Brings this viewer, with its stream as it is, into another session.
 
-        session: A name that session.list gave.
+        session: A name from session.list.
 
         Gives: info, rev, session, viewer.
         """
@@ -379,16 +381,16 @@ class Session(_Group):
             self,
             *,
             action: Literal["take", "give", "release"] = _UNSET,
-            mode: Literal["everyone", "one"] = _UNSET,
+            mode: Literal["shared", "exclusive"] = _UNSET,
             viewer: str = _UNSET) -> Dict[str, Any]:
         """Decides who may change the session: everyone, or one viewer who takes, gives or
         releases control.
 
-        action: Where one has control: take it while nobody has it, give it to `viewer`, or
-            release it for anybody to take.
-        mode: Whether everyone has control or one viewer: the one that `viewer` names, else the
-            caller.
-        viewer: The id of who is to have control.
+        action: In exclusive mode: take control while it is free, give it to `viewer`, or
+            release it.
+        mode: shared: all viewers have control; exclusive: one viewer has, the one that `viewer`
+            names or the caller.
+        viewer: Id of the viewer that gets control.
 
         Gives: control, height, idle_seconds, name, rev, scene, viewers, width.
         """
@@ -398,7 +400,7 @@ class Session(_Group):
     def close(self, *, session: str) -> Dict[str, Any]:
         """Ends a session; its viewers are told and let go. main stays for ever.
 
-        session: A name that session.list gave.
+        session: A name from session.list.
         """
         return self._call("session.close", _given({"session": session}))
 
@@ -414,7 +416,7 @@ class Settings(_Group):
     def patch(self, *, patch: Dict[str, Any]) -> Dict[str, Any]:
         """Changes settings by a merge patch (RFC 7386): all of it or, on any error, nothing.
 
-        patch: Part of the settings tree (RFC 7386): null resets to the default.
+        patch: A merge patch of the settings tree (RFC 7386): null resets to the default.
 
         Gives: applied, rev.
         """
@@ -430,7 +432,7 @@ class Settings(_Group):
     def preset(self, *, name: str) -> Dict[str, Any]:
         """Applies a preset, as settings.patch would; settings it does not name stay.
 
-        name: A name that settings.presets gave.
+        name: A name from settings.presets.
 
         Gives: applied, rev.
         """
@@ -445,7 +447,8 @@ class Stats(_Group):
     def subscribe(self, *, interval_ms: int) -> Dict[str, Any]:
         """Asks for stats.frame notifications; gives the interval in effect.
 
-        interval_ms: Least time between two stats.frame notifications; 0: none. [milliseconds]
+        interval_ms: Minimum time between two stats.frame notifications; 0: no notifications.
+            [milliseconds]
 
         Gives: interval_ms.
         """
@@ -465,13 +468,14 @@ class Stream(_Group):
             width: int = _UNSET) -> Dict[str, Any]:
         """Sets size, quality and pace of this viewer's pictures; gives what is in effect.
 
-        codec: Codec while something moves; one that hello agreed on.
-        height: Picture height. [pixels]
-        max_fps: Most pictures in a second.
-        paused: Whether no pictures are sent.
+        codec: Codec of moving frames; one of those that hello returned.
+        height: Frame height. [pixels]
+        max_fps: Maximum frame rate.
+        paused: Whether the stream is paused.
         quality: Quality on the scale of JPEG, for any codec.
-        still: Format of the final picture: JPEG with all its colour, or PNG without any loss.
-        width: Picture width. [pixels]
+        still: Format of the final image of a static view: JPEG without chroma subsampling, or
+            lossless PNG.
+        width: Frame width. [pixels]
 
         Gives: codec, height, max_fps, paused, quality, still, width.
         """
@@ -501,8 +505,8 @@ class Stream(_Group):
             present_us: int = _UNSET) -> Dict[str, Any]:
         """Tells that a frame was displayed. The server sends only a window of frames ahead.
 
-        frame_seq: The frame's number from its header.
-        decode_us: Time the client took to decode it. [microseconds]
+        frame_seq: `frame_seq` of the frame's header.
+        decode_us: Time that the client took to decode it. [microseconds]
         present_us: Time from its arrival to its display. [microseconds]
         """
         return self._call("stream.ack", _given({
@@ -539,14 +543,15 @@ class Methods:
         """Introduces a viewer: says what it can decode and learns who serves it.
 
         client: Name and version of the client, for the log.
-        codecs: Picture codecs the client can decode, best first.
-        instance: Of who comes back: the run of the server that `session` was on. Where it is
-            another one, a place that disturbs nobody is found; `bring` tells of it.
-        name: What the person is called, for the others in the session.
-        session: The session to watch; left out: the one that /ws?session=NAME named, or main.
+        codecs: Frame codecs that the client can decode, preferred first.
+        instance: On reconnect: the `instance` of the server process that `session` was on. If
+            it differs, the server picks a session that other viewers do not use; see
+            `restore_state`.
+        name: Display name, shown to the other viewers of the session.
+        session: The session to join; absent: the one in /ws?session=NAME, or main.
 
-        Gives: bring, codec_reason, codecs, device, instance, limits, protocol, rev, role,
-            session, tracer, version, viewer.
+        Gives: codec_reason, codecs, device, instance, limits, protocol, restore_state, rev,
+            role, session, tracer, version, viewer.
         """
         return self._call("hello", _given({
             "client": client, "codecs": codecs, "instance": instance, "name": name,

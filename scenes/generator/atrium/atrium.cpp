@@ -34,7 +34,7 @@ void add_cameras(Document& document, int case_number) {
 
 Document make_atrium(int case_number, const ClearSky& sky) {
   if (case_number < 1 || case_number > 3) {
-    throw std::invalid_argument("the atrium comes in the cases 1, 2 and 3");
+    throw std::invalid_argument("atrium case must be 1, 2 or 3");
   }
   constexpr Gloss gloss[] = {Gloss::floor, Gloss::floor_columns_trim, Gloss::nearly_all};
   Document document;
@@ -54,7 +54,7 @@ Document make_atrium(int case_number, const ClearSky& sky) {
   add_outer_walls(document, materials);
   add_gallery(document, materials);
   add_roof(document, materials);
-  add_lamps(document, materials);
+  add_lanterns(document, materials);
   add_cloths(document, materials);
   add_plants(document, materials);
   add_clips(document, case_number);

@@ -9,7 +9,7 @@ namespace heliograph::scenes {
 inline constexpr float sun_elevation = 68.0f;  // degrees
 inline constexpr float sun_azimuth = 20.0f;
 
-/// The atrium of the paper's Glossy Sponza, lit by the sun of `sky` and its lamps.
+/// The atrium of the paper's Glossy Sponza, lit by the sun of `sky` and by hanging lights.
 /// `case_number` 1 to 3 chooses the glossy materials and which camera is `main`.
 Document make_atrium(int case_number, const ClearSky& sky);
 

@@ -5,17 +5,16 @@
 #include "scenes/generator/atrium/atrium_parts.hpp"
 #include "scenes/generator/atrium/atrium_plan.hpp"
 #include "scenes/generator/geometry/shapes.hpp"
+#include "scenes/generator/geometry/transforms.hpp"
 
 namespace heliograph::scenes {
 namespace {
 
-constexpr float pi = glm::pi<float>();
-constexpr float half_wall = 0.5f * plan::wall_thickness;
 constexpr float vault_height = 1.8f;
 
 // Clear spans of the aisles, from the arcade's back to the outer wall.
-constexpr glm::vec2 aisle_span = plan::walls - plan::arcade - half_wall;
-constexpr glm::vec2 aisle_middle = plan::arcade + half_wall + 0.5f * aisle_span;
+constexpr glm::vec2 aisle_span = plan::walls - plan::arcade - plan::half_wall;
+constexpr glm::vec2 aisle_middle = plan::arcade + plan::half_wall + 0.5f * aisle_span;
 
 // A groin vault: two elliptic barrels of the same height cross. Of each barrel only the part above
 // the other one stands, so that every web is a triangle of one cylinder and exactly smooth.
@@ -166,8 +165,8 @@ Mesh ceiling_beams() {
 }  // namespace
 
 void add_gallery(Document& document, const AtriumMaterials& m) {
-  const int floor =
-      document.add_mesh("gallery_floor", aisle_ring(plan::upper.floor, true, half_wall), m.brick);
+  const int floor = document.add_mesh(
+      "gallery_floor", aisle_ring(plan::upper.floor, true, plan::half_wall), m.brick);
   document.place(floor, glm::vec3(0.0f));
   const int panels = document.add_mesh("gallery_ceiling", aisle_ring(ceiling_height, false, 0.0f),
                                        m.painted_panel);

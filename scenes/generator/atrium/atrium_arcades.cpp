@@ -5,12 +5,10 @@
 #include "scenes/generator/atrium/atrium_parts.hpp"
 #include "scenes/generator/atrium/atrium_plan.hpp"
 #include "scenes/generator/geometry/shapes.hpp"
+#include "scenes/generator/geometry/transforms.hpp"
 
 namespace heliograph::scenes {
 namespace {
-
-constexpr float pi = glm::pi<float>();
-constexpr float half_wall = 0.5f * plan::wall_thickness;
 
 // The wall of one bay above the springing line, both faces, with a round opening. Local origin: on
 // the springing line in the middle of the bay; +Z faces the courtyard.
@@ -27,7 +25,8 @@ Mesh arcade_wall(float bay_width, float radius, float height, int segments) {
       const float inside = radius * radius - x * x;
       const float opening = inside > 1e-6f ? std::sqrt(inside) : 0.0f;
       for (const float y : {opening, height}) {
-        mesh.vertices.push_back({{x, y, side * half_wall}, {0.0f, 0.0f, side}, {}, {side * x, -y}});
+        mesh.vertices.push_back(
+            {{x, y, side * plan::half_wall}, {0.0f, 0.0f, side}, {}, {side * x, -y}});
       }
     }
     for (std::uint32_t i = 0; i + 1 < xs.size(); ++i) {
@@ -36,13 +35,13 @@ Mesh arcade_wall(float bay_width, float radius, float height, int segments) {
       mesh.add_triangle(corner, corner + 3, corner + 1);
     }
   }
-  Profile soffit({radius, half_wall});
-  soffit.line_to({radius, -half_wall});
+  Profile soffit({radius, plan::half_wall});
+  soffit.line_to({radius, -plan::half_wall});
   mesh.append(sweep(soffit, arch_stations(segments, radius)));
   for (const float side : {-1.0f, 1.0f}) {
-    mesh.append(quad_facing({side * radius, 0, -half_wall}, {side * half, 0, -half_wall},
-                            {side * half, 0, half_wall}, {side * radius, 0, half_wall},
-                            {0, -1, 0}));
+    mesh.append(quad_facing({side * radius, 0, -plan::half_wall},
+                            {side * half, 0, -plan::half_wall}, {side * half, 0, plan::half_wall},
+                            {side * radius, 0, plan::half_wall}, {0, -1, 0}));
   }
   return mesh;
 }
@@ -52,9 +51,9 @@ Mesh arcade_wall(float bay_width, float radius, float height, int segments) {
 Profile stone_section(float radius, float depth, float inset) {
   const float inner = radius - 0.03f + inset;
   const float outer = radius + depth - inset;
-  const float front = half_wall + 0.035f - inset;
+  const float front = plan::half_wall + 0.035f - inset;
   constexpr float chamfer = 0.014f;
-  Profile profile({outer, half_wall - 0.01f});
+  Profile profile({outer, plan::half_wall - 0.01f});
   profile.line_to({outer, front - chamfer})
       .line_to({outer - chamfer, front})
       .line_to({inner + chamfer, front})
@@ -62,7 +61,7 @@ Profile stone_section(float radius, float depth, float inset) {
       .line_to({inner, chamfer - front})
       .line_to({inner + chamfer, -front})
       .line_to({outer, -front})
-      .line_to({outer, 0.01f - half_wall});
+      .line_to({outer, 0.01f - plan::half_wall});
   return profile;
 }
 
@@ -105,17 +104,17 @@ Mesh voussoirs(float radius, float depth, int stones, int first_stone) {
 
 // A label moulding that frames the arch stones on the courtyard side.
 Mesh hood_mould(float radius, int segments) {
-  Profile profile({radius + 0.075f, half_wall - 0.01f});
+  Profile profile({radius + 0.075f, plan::half_wall - 0.01f});
   profile.line_by({0.0f, 0.055f})
       .arc_by({-0.035f, 0.035f}, 0.5f, 4)
       .line_by({-0.012f, 0.0f})
-      .arc_to({radius, half_wall + 0.03f}, -0.5f, 4);
+      .arc_to({radius, plan::half_wall + 0.03f}, -0.5f, 4);
   return sweep(profile, arch_stations(segments, radius));
 }
 
 // Three stepped fasciae and a bead round the arch of the gallery, on both faces.
 Mesh archivolt(float radius, int segments) {
-  const float front = half_wall;
+  const float front = plan::half_wall;
   Profile profile({radius + 0.24f, front - 0.01f});
   profile.line_to({radius + 0.24f, front + 0.06f})
       .arc_by({-0.045f, -0.022f}, 0.5f, 4)
@@ -137,14 +136,14 @@ Mesh keystone(float radius, float height) {
   const float upper_half = lower_half * (radius + height) / radius;
   const float bottom = radius - 0.06f;
   const float top = radius + height;
-  Profile side({half_wall - 0.02f, bottom});
-  side.line_to({half_wall + 0.07f, bottom})
+  Profile side({plan::half_wall - 0.02f, bottom});
+  side.line_to({plan::half_wall + 0.07f, bottom})
       .arc_by({0.0f, 0.10f}, 0.9f, 6)
-      .curve_through(
-          {{half_wall + 0.10f, bottom + 0.45f * (top - bottom)}, {half_wall + 0.16f, top - 0.05f}},
-          5)
-      .line_to({half_wall + 0.16f, top})
-      .line_to({half_wall - 0.02f, top});
+      .curve_through({{plan::half_wall + 0.10f, bottom + 0.45f * (top - bottom)},
+                      {plan::half_wall + 0.16f, top - 0.05f}},
+                     5)
+      .line_to({plan::half_wall + 0.16f, top})
+      .line_to({plan::half_wall - 0.02f, top});
   const auto half_at = [&](float y) {
     return glm::mix(lower_half, upper_half, (y - bottom) / (top - bottom));
   };
@@ -160,7 +159,7 @@ Mesh keystone(float radius, float height) {
     for (const float end : {-1.0f, 1.0f}) {
       mesh.append(patch(1, rows, [&](float u, float v) {
         const ProfilePoint& p = run[std::size_t(std::lround(v * float(rows)))];
-        const float z = glm::mix(half_wall - 0.02f, p.position.x, u);
+        const float z = glm::mix(plan::half_wall - 0.02f, p.position.x, u);
         return SurfacePoint{{end * half_at(p.position.y), p.position.y, z},
                             {end, 0.0f, 0.0f},
                             {end * z, -p.position.y}};
@@ -280,11 +279,11 @@ Mesh frieze(float length, float height) {
 void add_cornice_ring(Document& document, const AtriumMaterials& m, const plan::Storey& storey,
                       const std::string& prefix, float projection) {
   const float height = storey.top - storey.wall_top;
-  const glm::vec2 length = 2.0f * (plan::arcade - half_wall);
+  const glm::vec2 length = 2.0f * (plan::arcade - plan::half_wall);
   const int long_side = document.add_mesh(prefix, cornice(length.x, height, projection), m.trim);
   const int short_side =
       document.add_mesh(prefix + "_end", cornice(length.y, height, projection), m.trim);
-  for (const plan::Spot& side : plan::sides(-half_wall)) {
+  for (const plan::Spot& side : plan::sides(-plan::half_wall)) {
     document.place(side.on_long_side ? long_side : short_side, side.at(storey.wall_top), side.turn);
   }
 }
@@ -296,10 +295,10 @@ void add_cornices(Document& document, const AtriumMaterials& m) {
   add_cornice_ring(document, m, plan::upper, "eaves_cornice", 0.46f);
   // The painted band runs over the crowns of the upper arches, a hair before the wall.
   constexpr float band = 0.30f;
-  const glm::vec2 length = 2.0f * (plan::arcade - half_wall);
+  const glm::vec2 length = 2.0f * (plan::arcade - plan::half_wall);
   const int long_side = document.add_mesh("frieze", frieze(length.x, band), m.frieze);
   const int short_side = document.add_mesh("frieze_end", frieze(length.y, band), m.frieze);
-  for (const plan::Spot& side : plan::sides(-half_wall - 0.012f)) {
+  for (const plan::Spot& side : plan::sides(-plan::half_wall - 0.012f)) {
     document.place(side.on_long_side ? long_side : short_side, side.at(plan::upper.wall_top - band),
                    side.turn);
   }

@@ -25,7 +25,7 @@ Pose camera_pose(int case_number, float phase) {
   return look(eye, {2.0f + 2.0f * std::sin(angle), 2.6f, -3.2f});
 }
 
-// Something that hangs from `hook`; `base` is its pose at rest.
+// An object that hangs from `hook`; `base` is its default pose.
 Pose swung(const Pose& base, glm::vec3 hook, glm::vec3 axis, float angle) {
   const glm::quat swing = glm::angleAxis(angle, axis);
   return {hook + swing * (base.translation - hook), swing * base.rotation};
@@ -35,7 +35,7 @@ void animate_object(const Node& node, int index, Animation& animation) {
   const Pose base{node.translation, node.rotation};
   // Neighbours swing out of step.
   const float offset = 0.37f * node.translation.x + 0.61f * node.translation.z;
-  if (node.name.starts_with("lamp_")) {
+  if (node.name.starts_with("lantern_")) {
     glm::vec3 hook = node.translation;
     hook.y = plan::lower.springing + plan::lower.arch_radius;
     animate(animation, index, [=](float phase) {

@@ -5,11 +5,10 @@
 #include "scenes/generator/atrium/atrium_parts.hpp"
 #include "scenes/generator/atrium/atrium_plan.hpp"
 #include "scenes/generator/geometry/shapes.hpp"
+#include "scenes/generator/geometry/transforms.hpp"
 
 namespace heliograph::scenes {
 namespace {
-
-constexpr float pi = glm::pi<float>();
 
 struct ColumnMeasures {
   float pedestal_half;  // of its die

@@ -5,20 +5,12 @@
 #include "scenes/generator/atrium/atrium_parts.hpp"
 #include "scenes/generator/atrium/atrium_plan.hpp"
 #include "scenes/generator/geometry/shapes.hpp"
+#include "scenes/generator/geometry/transforms.hpp"
 
 namespace heliograph::scenes {
 namespace {
 
-constexpr float pi = glm::pi<float>();
-constexpr double two_pi = 2.0 * glm::pi<double>();
-
-glm::mat4 moved(glm::vec3 by) {
-  return glm::translate(glm::mat4(1.0f), by);
-}
-
-glm::mat4 turned(float angle, glm::vec3 axis) {
-  return glm::rotate(glm::mat4(1.0f), angle, axis);
-}
+constexpr double period = 2.0 * glm::pi<double>();
 
 Mesh rod(float radius, float length, int segments) {
   Profile profile({radius, 0.0f});
@@ -78,12 +70,12 @@ Mesh lantern_glass() {
 
 }  // namespace
 
-void add_lamps(Document& document, const AtriumMaterials& m) {
+void add_lanterns(Document& document, const AtriumMaterials& m) {
   constexpr float chain_length = 1.35f;
   const float hook = plan::lower.springing + plan::lower.arch_radius - 0.02f;
-  const int links = document.add_mesh("lamp_chain", chain(chain_length), m.iron);
-  const int frame = document.add_mesh("lamp_frame", lantern_frame(), m.bronze);
-  const int glass = document.add_mesh("lamp_glass", lantern_glass(), m.lamp_glass);
+  const int links = document.add_mesh("lantern_chain", chain(chain_length), m.iron);
+  const int frame = document.add_mesh("lantern_frame", lantern_frame(), m.bronze);
+  const int glass = document.add_mesh("lantern_glass", lantern_glass(), m.lantern_glass);
   const std::vector<plan::Spot> bays = plan::bays();
   for (const int bay : {1, 3, 4, 6, 9, 11, 12, 14, 17, 20}) {
     const plan::Spot& spot = bays[std::size_t(bay)];
@@ -94,7 +86,7 @@ void add_lamps(Document& document, const AtriumMaterials& m) {
     document.place(frame, spot.at(top - chain_length));
     document.place(glass, spot.at(top - chain_length));
     Light light;
-    light.name = "lamp_light";
+    light.name = "lantern_light";
     light.color = {1.0f, 0.62f, 0.30f};
     light.intensity = 2.2f;
     light.range = 9.0f;
@@ -118,8 +110,8 @@ Mesh banner_cloth(double phase) {
   return smooth_patch(14, 26, {banner_width, banner_length}, [=](double u, double v) {
     const double tail = 0.32 * std::abs(2.0 * u - 1.0) - 0.16;
     const double drop = v * (banner_length + tail * v * v);
-    const double wave = 0.055 * std::sin(two_pi * (1.15 * u - 0.55 * v) + phase) +
-                        0.035 * std::sin(two_pi * (2.3 * u + 0.7 * v) + 2.0 * phase);
+    const double wave = 0.055 * std::sin(period * (1.15 * u - 0.55 * v) + phase) +
+                        0.035 * std::sin(period * (2.3 * u + 0.7 * v) + 2.0 * phase);
     const double along = 0.38 + u * banner_width;
     return glm::dvec3(wave * (0.12 + v * 0.88), pole_rise * along / pole_length - drop, along);
   });
@@ -148,10 +140,10 @@ Mesh curtain_pair() {
       const double width =
           1.28 - 1.0 * to_tie * to_tie * (3.0 - 2.0 * to_tie) + 0.30 * below * (2.0 - below);
       const double depth = 0.055 + 0.045 * (1.28 - width);
-      const double folds = std::cos(two_pi * (4.6 * u + 0.3 * std::sin(3.0 * v)));
-      const double sag = 0.10 * std::sin(two_pi * 0.5 * u) * to_tie;
+      const double folds = std::cos(period * (4.6 * u + 0.3 * std::sin(3.0 * v)));
+      const double sag = 0.10 * std::sin(period * 0.5 * u) * to_tie;
       return glm::dvec3(side * (half_opening - width * u), -height * v - sag,
-                        depth * folds + 0.02 * std::sin(two_pi * 3.0 * u + 5.0 * v));
+                        depth * folds + 0.02 * std::sin(period * 3.0 * u + 5.0 * v));
     }));
   }
   return mesh;

@@ -117,8 +117,8 @@ AtriumMaterials add_atrium_materials(Document& document, Gloss gloss) {
   m.leaf = palette.add("leaf", recipes::leaf());
   m.soil = palette.add("soil", recipes::soil());
   m.water = palette.add("water", recipes::water());
-  m.lamp_glass =
-      palette.add_glowing("lamp_glass", {0.9f, 0.75f, 0.5f}, glm::vec3(6.0f, 3.6f, 1.5f));
+  m.lantern_glass =
+      palette.add_glowing("lantern_glass", {0.9f, 0.75f, 0.5f}, glm::vec3(6.0f, 3.6f, 1.5f));
   return m;
 }
 

@@ -20,7 +20,7 @@ struct AtriumMaterials {
   int roof, pot, majolica;
   std::array<int, 3> banners;
   int curtain;
-  int leaf, soil, water, lamp_glass;
+  int leaf, soil, water, lantern_glass;
 };
 
 AtriumMaterials add_atrium_materials(Document& document, Gloss gloss);

@@ -17,7 +17,7 @@ void add_aisle_walls(Document& document, const AtriumMaterials& materials);
 void add_outer_walls(Document& document, const AtriumMaterials& materials);
 void add_gallery(Document& document, const AtriumMaterials& materials);
 void add_roof(Document& document, const AtriumMaterials& materials);
-void add_lamps(Document& document, const AtriumMaterials& materials);
+void add_lanterns(Document& document, const AtriumMaterials& materials);
 void add_cloths(Document& document, const AtriumMaterials& materials);
 void add_plants(Document& document, const AtriumMaterials& materials);
 

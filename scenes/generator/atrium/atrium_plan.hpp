@@ -14,6 +14,7 @@ inline constexpr glm::vec2 arcade{16.0f, 5.0f};  // half extents of the column a
 inline constexpr glm::vec2 walls{20.0f, 10.0f};  // half extents inside the outer walls
 inline constexpr float short_bay = 2.0f * arcade.y / float(short_bays);
 inline constexpr float wall_thickness = 0.7f;
+inline constexpr float half_wall = 0.5f * wall_thickness;
 
 struct Storey {
   float floor;

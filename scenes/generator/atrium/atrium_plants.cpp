@@ -5,20 +5,11 @@
 #include "scenes/generator/atrium/atrium_parts.hpp"
 #include "scenes/generator/atrium/atrium_plan.hpp"
 #include "scenes/generator/geometry/shapes.hpp"
+#include "scenes/generator/geometry/transforms.hpp"
 #include "scenes/generator/textures/noise.hpp"
 
 namespace heliograph::scenes {
 namespace {
-
-constexpr float pi = glm::pi<float>();
-
-glm::mat4 moved(glm::vec3 by) {
-  return glm::translate(glm::mat4(1.0f), by);
-}
-
-glm::mat4 turned(float angle, glm::vec3 axis) {
-  return glm::rotate(glm::mat4(1.0f), angle, axis);
-}
 
 Mesh urn() {
   Profile profile({0.20f, 0.0f});

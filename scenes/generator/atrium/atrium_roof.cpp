@@ -5,11 +5,11 @@
 #include "scenes/generator/atrium/atrium_parts.hpp"
 #include "scenes/generator/atrium/atrium_plan.hpp"
 #include "scenes/generator/geometry/shapes.hpp"
+#include "scenes/generator/geometry/transforms.hpp"
 
 namespace heliograph::scenes {
 namespace {
 
-constexpr float pi = glm::pi<float>();
 constexpr float tile_pitch = 0.30f;
 const glm::vec2 eaves{-0.62f, 12.98f};  // outwards from the column axes, height
 const glm::vec2 ridge{plan::roof_depth, plan::ridge_height};

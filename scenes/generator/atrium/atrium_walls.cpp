@@ -6,15 +6,10 @@
 #include "scenes/generator/atrium/atrium_parts.hpp"
 #include "scenes/generator/atrium/atrium_plan.hpp"
 #include "scenes/generator/geometry/shapes.hpp"
+#include "scenes/generator/geometry/transforms.hpp"
 
 namespace heliograph::scenes {
 namespace {
-
-constexpr float pi = glm::pi<float>();
-
-glm::mat4 moved(glm::vec3 by) {
-  return glm::translate(glm::mat4(1.0f), by);
-}
 
 // A wall of one side from `bottom` to `top`, in the plane z = 0 facing +Z.
 Mesh wall_strip(float length, float bottom, float top) {
@@ -65,7 +60,7 @@ Mesh pilaster(float height) {
 }
 
 // A field between two pilasters, seen from the front.
-struct Field {
+struct WallField {
   float middle;
   float half_width;
 };
@@ -73,8 +68,8 @@ constexpr float field_bottom = 1.58f;
 constexpr float field_top = 3.62f;
 constexpr float field_height = 0.5f * (field_bottom + field_top);
 
-std::vector<Field> long_wall_fields() {
-  std::vector<Field> fields;
+std::vector<WallField> long_wall_fields() {
+  std::vector<WallField> fields;
   for (int i = 0; i < plan::long_bays; ++i) {
     fields.push_back({-plan::arcade.x + plan::bay * (float(i) + 0.5f), 1.26f});
   }
@@ -85,14 +80,14 @@ std::vector<Field> long_wall_fields() {
 }
 
 // The middle bay of the end walls holds a door.
-std::vector<Field> end_wall_fields() {
+std::vector<WallField> end_wall_fields() {
   const float corner = 0.5f * (plan::arcade.y + plan::walls.y) + 0.1f;
   return {{-plan::short_bay, 0.96f}, {plan::short_bay, 0.96f}, {-corner, 1.7f}, {corner, 1.7f}};
 }
 
-Mesh field_frames(const std::vector<Field>& fields) {
+Mesh field_frames(const std::vector<WallField>& fields) {
   Mesh mesh;
-  for (const Field& field : fields) {
+  for (const WallField& field : fields) {
     Profile profile({0.15f, 0.0f});
     profile.line_by({0.0f, 0.03f})
         .arc_by({-0.04f, 0.03f}, -0.5f, 3)
@@ -108,10 +103,10 @@ Mesh field_frames(const std::vector<Field>& fields) {
   return mesh;
 }
 
-Mesh field_paintings(const std::vector<Field>& fields) {
+Mesh field_paintings(const std::vector<WallField>& fields) {
   constexpr float off_the_wall = 0.006f;
   Mesh mesh;
-  for (const Field& field : fields) {
+  for (const WallField& field : fields) {
     const float left = field.middle - field.half_width;
     const float right = field.middle + field.half_width;
     mesh.append(quad({left, field_bottom, off_the_wall}, {right, field_bottom, off_the_wall},

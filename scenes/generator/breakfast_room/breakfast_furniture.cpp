@@ -83,7 +83,7 @@ void add_chair(Document& document, const ChairMeshes& meshes, int seat) {
   const float turn = 90.0f - seat_angle(seat);
   const glm::vec3 outward(std::cos(angle), 0.0f, std::sin(angle));
   const glm::vec3 right(outward.z, 0.0f, -outward.x);
-  // The one nearest the camera is pushed back a little, as if somebody had just left it.
+  // The one nearest the camera is pushed back a little, as if a guest had just left it.
   const float distance = seat == 1 ? 1.62f : 1.42f;
   const auto place = [&](int mesh, float x, float y, float z) {
     const glm::vec3 position = table_foot + outward * (distance + z) + right * x;
@@ -167,7 +167,7 @@ void add_table_and_chairs(Document& document, const BreakfastMaterials& m) {
   for (int seat = 0; seat < seats; ++seat) add_chair(document, meshes, seat);
 }
 
-void add_pictures(Document& document, const BreakfastMaterials& m) {
+void add_paintings(Document& document, const BreakfastMaterials& m) {
   constexpr glm::vec2 half(0.40f, 0.30f);
   Profile moulding({0.07f, 0.0f});
   moulding.line_to({0.07f, 0.03f}).arc_to({0.02f, 0.045f}, 0.5f, 3).line_to({0.0f, 0.012f});
@@ -176,7 +176,7 @@ void add_pictures(Document& document, const BreakfastMaterials& m) {
       glm::rotate(glm::mat4(1.0f), glm::radians(90.0f), glm::vec3(1.0f, 0.0f, 0.0f));
   Mesh frame;
   frame.append(rectangular_moulding(moulding, half), upright);
-  const int frame_mesh = document.add_mesh("picture_frame", std::move(frame), m.picture_frame);
+  const int frame_mesh = document.add_mesh("painting_frame", std::move(frame), m.painting_frame);
   for (int k = 0; k < 3; ++k) {
     const glm::vec3 middle(-2.4f + 2.2f * float(k), 1.75f, -half_room + 0.002f);
     document.place(frame_mesh, middle);
@@ -187,13 +187,13 @@ void add_pictures(Document& document, const BreakfastMaterials& m) {
   }
 }
 
-void add_lamp(Document& document, const BreakfastMaterials& m, Animation& objects) {
+void add_hanging_light(Document& document, const BreakfastMaterials& m, Animation& objects) {
   Profile profile({0.30f, 0.0f});
   profile.curve_through({{0.24f, 0.14f}, {0.12f, 0.26f}}, 3).line_to({0.03f, 0.27f});
   const int shade = document.add_mesh("lamp_shade", lathe(profile, 64, 0.25f, 0.6f), m.shade);
   const glm::vec3 rim = table_foot + glm::vec3(0.0f, 1.72f, 0.0f);
   Light light;
-  light.name = "lamp";
+  light.name = "hanging_light";
   light.color = {1.0f, 0.72f, 0.42f};
   light.intensity = 3.2f;
   light.range = 8.0f;
@@ -209,7 +209,7 @@ void add_lamp(Document& document, const BreakfastMaterials& m, Animation& object
   }
   Profile cord({0.006f, 0.0f});
   cord.line_to({0.006f, 1.05f}).line_to({0.05f, 1.10f}).line_to({0.05f, 1.13f});
-  put(document, "lamp_cord", lathe(cord, 12, 0.01f, 0.2f), m.bulb_cord,
+  put(document, "light_cord", lathe(cord, 12, 0.01f, 0.2f), m.bulb_cord,
       {table_foot.x, room_height - 1.13f, table_foot.z});
 }
 

@@ -10,7 +10,7 @@ struct BreakfastMaterials {
   int floor, plaster, accent, ceiling, frame, slat;
   int table, chair, cushion, rug, runner;
   int china, cup, bowl, lemon, steel, brass;
-  int shade, bulb_cord, picture_frame, toy;
+  int shade, bulb_cord, painting_frame, toy;
   int paintings[3];
 };
 
@@ -34,9 +34,9 @@ constexpr float seat_angle(int seat) {
 void add_shell(Document& document, const BreakfastMaterials& materials);
 void add_windows(Document& document, const BreakfastMaterials& materials);
 void add_table_and_chairs(Document& document, const BreakfastMaterials& materials);
-void add_pictures(Document& document, const BreakfastMaterials& materials);
-/// The lamp bobs over the table.
-void add_lamp(Document& document, const BreakfastMaterials& materials, Animation& objects);
+void add_paintings(Document& document, const BreakfastMaterials& materials);
+/// The hanging light moves up and down over the table.
+void add_hanging_light(Document& document, const BreakfastMaterials& materials, Animation& objects);
 void add_tableware(Document& document, const BreakfastMaterials& materials);
 
 }  // namespace heliograph::scenes

@@ -11,12 +11,12 @@
 namespace heliograph::scenes {
 namespace {
 
-constexpr glm::vec3 target(1.0f, 0.95f, -0.7f);
+constexpr glm::vec3 breakfast_target(1.0f, 0.95f, -0.7f);
 
-Pose camera_pose(float phase) {
+Pose breakfast_camera_pose(float phase) {
   const glm::vec3 eye(-2.7f + 0.8f * std::sin(two_pi * phase), 1.65f,
                       3.2f - 0.5f * there_and_back(phase));
-  return look(eye, target);
+  return look(eye, breakfast_target);
 }
 
 void add_fabrics(Palette& palette, BreakfastMaterials& m) {
@@ -54,12 +54,12 @@ BreakfastMaterials add_materials(Document& document) {
   m.steel = palette.add("steel", brushed_metal("steel", {0.90f, 0.89f, 0.87f}, 0.16f, 3111), true);
   m.brass = palette.add("brass", brushed_metal("brass", {0.93f, 0.77f, 0.45f}, 0.24f, 3112), true);
   m.bulb_cord = palette.add_plain("cord", {0.05f, 0.05f, 0.05f}, 0.55f, 0.0f);
-  m.picture_frame = palette.add("picture_frame", gold());
+  m.painting_frame = palette.add("painting_frame", gold());
   m.toy = palette.add("toy", checker("toy", {0.90f, 0.86f, 0.76f}, {0.74f, 0.13f, 0.10f}, 4, 1.0f));
   for (int k = 0; k < 3; ++k) {
     m.paintings[k] = palette.add("painting_" + std::to_string(k), painting(k));
   }
-  // A shade of cloth lets a little of the lamp through.
+  // The cloth shade transmits a little light.
   document.materials[std::size_t(m.shade)].emission = glm::vec3(0.75f, 0.48f, 0.22f);
   return m;
 }
@@ -84,16 +84,16 @@ Document make_breakfast_room(const PaperScene& scene, const ClearSky& sky) {
   document.name = scene.name;
   document.description = "A table laid for five in the morning sun behind mullioned windows";
   const BreakfastMaterials materials = add_materials(document);
-  document.add_camera("main", camera_pose(0.0f).translation, target, 56.0f);
+  document.add_camera("main", breakfast_camera_pose(0.0f).translation, breakfast_target, 56.0f);
   add_sun(document, scene.sun, sky);
   Animation camera{"moving_camera", {}};
   Animation objects{"moving_objects_light", {}};
-  animate(camera, find_node(document, "main"), camera_pose);
+  animate(camera, find_node(document, "main"), breakfast_camera_pose);
   add_shell(document, materials);
   add_windows(document, materials);
   add_table_and_chairs(document, materials);
-  add_pictures(document, materials);
-  add_lamp(document, materials, objects);
+  add_paintings(document, materials);
+  add_hanging_light(document, materials, objects);
   add_tableware(document, materials);
   add_toy(document, materials, objects);
   swing_sun(document, objects, scene.sun.elevation, scene.sun.azimuth, 20.0f);

@@ -7,10 +7,11 @@
 #include <map>
 #include <utility>
 
+#include "scenes/generator/geometry/transforms.hpp"
+
 namespace heliograph::scenes {
 namespace {
 
-constexpr float pi = glm::pi<float>();
 using Face = std::array<int, 3>;
 
 struct DirectionMesh {
@@ -63,7 +64,7 @@ bool is_pole(glm::vec3 direction) {
 }
 
 // Longitudes of a face in [0, 1.5): those past the seam go on above 1, and a pole takes the middle
-// of the two others, so that no triangle runs the long way round the picture.
+// of the two others, so that no triangle runs the long way round the texture.
 std::array<float, 3> longitudes(const std::array<glm::vec3, 3>& corners) {
   std::array<float, 3> u;
   for (std::size_t k = 0; k < 3; ++k) {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "scenes/generator/geometry/transforms.hpp"
+
 namespace heliograph::scenes {
 namespace {
-
-constexpr float pi = glm::pi<float>();
 
 // Joins vertices laid out row by row, `columns + 1` to a row, into quads.
 void join_grid(Mesh& mesh, std::uint32_t first, int columns, int rows) {

@@ -56,7 +56,7 @@ int find_node(const Document& document, const std::string& name) {
   for (std::size_t i = 0; i < document.nodes.size(); ++i) {
     if (document.nodes[i].name == name) return int(i);
   }
-  throw std::invalid_argument("no node is called " + name);
+  throw std::invalid_argument("there is no node " + name);
 }
 
 float there_and_back(float phase) {

@@ -5,12 +5,12 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "scenes/generator/geometry/transforms.hpp"
 #include "scenes/generator/gltf/document.hpp"
 
 namespace heliograph::scenes {
 
 inline constexpr float loop_seconds = 10.0f;
-inline constexpr float two_pi = 2.0f * glm::pi<float>();
 
 struct Pose {
   glm::vec3 translation{0.0f};

@@ -8,21 +8,21 @@
 #include "scenes/generator/textures/palette.hpp"
 #include "scenes/generator/textures/recipes.hpp"
 
-// Cubes at growing distance over a metal floor: every cube is mirrored from another height, so a
-// rough floor blurs each by another amount.
+// Cubes at increasing heights over a metal floor: a rough floor blurs each reflection by a
+// different amount.
 namespace heliograph::scenes {
 namespace {
 
 constexpr float floor_size = 60.0f;
 constexpr int cube_count = 8;
-constexpr int post_count = 6;
-constexpr glm::vec3 target(0.0f, 0.8f, -8.0f);
+constexpr int cubes_post_count = 6;
+constexpr glm::vec3 cubes_target(0.0f, 0.8f, -8.0f);
 
-Pose camera_pose(float phase) {
+Pose cubes_camera_pose(float phase) {
   const float angle = two_pi * phase;
   const glm::vec3 eye(4.0f * std::sin(angle), 2.2f + 0.4f * std::sin(2.0f * angle),
                       8.0f - 2.0f * there_and_back(phase));
-  return look(eye, target);
+  return look(eye, cubes_target);
 }
 
 std::vector<int> cube_materials(Palette& palette) {
@@ -46,11 +46,11 @@ std::vector<int> cube_materials(Palette& palette) {
       palette.add("cube_marble", marble(red, 1.0f))};
 }
 
-void add_posts(Document& document, Palette& palette) {
-  const glm::vec3 colors[post_count] = {{0.78f, 0.20f, 0.14f}, {0.86f, 0.58f, 0.16f},
-                                        {0.28f, 0.52f, 0.24f}, {0.14f, 0.46f, 0.52f},
-                                        {0.18f, 0.28f, 0.62f}, {0.50f, 0.22f, 0.46f}};
-  for (int k = 0; k < post_count; ++k) {
+void add_cubes_posts(Document& document, Palette& palette) {
+  const glm::vec3 colors[cubes_post_count] = {{0.78f, 0.20f, 0.14f}, {0.86f, 0.58f, 0.16f},
+                                              {0.28f, 0.52f, 0.24f}, {0.14f, 0.46f, 0.52f},
+                                              {0.18f, 0.28f, 0.62f}, {0.50f, 0.22f, 0.46f}};
+  for (int k = 0; k < cubes_post_count; ++k) {
     const std::string name = "post_" + std::to_string(k);
     const int material =
         palette.add(name, recipes::glazed(name, colors[k], 2700 + std::uint32_t(k)));
@@ -67,7 +67,7 @@ Document make_cubes_distance(const PaperScene& scene, const ClearSky& sky) {
   document.name = scene.name;
   document.description = "Cubes at growing heights and distances over a metal floor";
   Palette palette(document);
-  document.add_camera("main", {0.0f, 2.2f, 8.0f}, target, 42.0f);
+  document.add_camera("main", {0.0f, 2.2f, 8.0f}, cubes_target, 42.0f);
   add_sun(document, scene.sun, sky);
 
   const int metal =
@@ -78,7 +78,7 @@ Document make_cubes_distance(const PaperScene& scene, const ClearSky& sky) {
 
   Animation camera{"moving_camera", {}};
   Animation objects{"moving_objects_light", {}};
-  animate(camera, find_node(document, "main"), camera_pose);
+  animate(camera, find_node(document, "main"), cubes_camera_pose);
   const std::vector<int> materials = cube_materials(palette);
   for (int k = 0; k < cube_count; ++k) {
     const std::string name = "cube_" + std::to_string(k);
@@ -93,7 +93,7 @@ Document make_cubes_distance(const PaperScene& scene, const ClearSky& sky) {
                   glm::angleAxis(direction * two_pi * phase, glm::vec3(0, 1, 0))};
     });
   }
-  add_posts(document, palette);
+  add_cubes_posts(document, palette);
   swing_sun(document, objects, scene.sun.elevation, scene.sun.azimuth, 60.0f);
   document.animations = {std::move(camera), std::move(objects)};
   return document;

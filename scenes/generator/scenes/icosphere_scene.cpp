@@ -8,24 +8,24 @@
 #include "scenes/generator/textures/palette.hpp"
 #include "scenes/generator/textures/recipes.hpp"
 
-// A smooth metal sphere amid faceted ones: mirrors of every curvature.
+// A smooth metal sphere among faceted ones: reflectors of every curvature.
 namespace heliograph::scenes {
 namespace {
 
 constexpr float sphere_radius = 1.5f;
 constexpr float facet_radius = 0.8f;
 constexpr int facet_levels = 5;
-constexpr int post_count = 10;
-constexpr glm::vec3 target(0.0f, 1.4f, 0.0f);
+constexpr int icosphere_post_count = 10;
+constexpr glm::vec3 icosphere_target(0.0f, 1.4f, 0.0f);
 
 glm::vec3 on_circle(float radius, float height, float angle) {
   return {radius * std::cos(angle), height, radius * std::sin(angle)};
 }
 
-void add_posts(Document& document, Palette& palette) {
+void add_icosphere_posts(Document& document, Palette& palette) {
   using namespace recipes;
   const glm::vec3 cream(0.90f, 0.84f, 0.72f);
-  const int materials[post_count] = {
+  const int materials[icosphere_post_count] = {
       palette.add("post_mosaic", mosaic()),
       palette.add("post_red", glazed("post_red", {0.76f, 0.15f, 0.11f}, 2801)),
       palette.add("post_majolica", majolica()),
@@ -36,10 +36,10 @@ void add_posts(Document& document, Palette& palette) {
       palette.add("post_teal", glazed("post_teal", {0.12f, 0.50f, 0.56f}, 2804)),
       palette.add("post_brick", brick()),
       palette.add("post_blue", glazed("post_blue", {0.14f, 0.22f, 0.60f}, 2805))};
-  for (int k = 0; k < post_count; ++k) {
+  for (int k = 0; k < icosphere_post_count; ++k) {
     const int mesh =
         document.add_mesh("post_" + std::to_string(k), box({0.7f, 4.0f, 0.7f}), materials[k]);
-    const float angle = two_pi * float(k) / float(post_count);
+    const float angle = two_pi * float(k) / float(icosphere_post_count);
     document.place(mesh, on_circle(12.0f, 2.0f, angle), -glm::degrees(angle));
   }
 }
@@ -51,7 +51,7 @@ Document make_icosphere_scene(const PaperScene& scene, const ClearSky& sky) {
   document.name = scene.name;
   document.description = "A smooth metal sphere in a ring of faceted ones";
   Palette palette(document);
-  document.add_camera("main", {0.0f, 2.5f, 9.0f}, target, 50.0f);
+  document.add_camera("main", {0.0f, 2.5f, 9.0f}, icosphere_target, 50.0f);
   add_sun(document, scene.sun, sky);
 
   constexpr float half = 20.0f;
@@ -64,7 +64,7 @@ Document make_icosphere_scene(const PaperScene& scene, const ClearSky& sky) {
   Animation objects{"moving_objects_light", {}};
   animate(camera, find_node(document, "main"), [](float phase) {
     const float angle = two_pi * phase;
-    return look({9.0f * std::sin(angle), 2.5f, 9.0f * std::cos(angle)}, target);
+    return look({9.0f * std::sin(angle), 2.5f, 9.0f * std::cos(angle)}, icosphere_target);
   });
 
   const int metal = palette.add_plain("sphere", {0.92f, 0.90f, 0.86f}, 0.1f, 1.0f, true);
@@ -85,7 +85,7 @@ Document make_icosphere_scene(const PaperScene& scene, const ClearSky& sky) {
       return Pose{position, glm::angleAxis(direction * two_pi * phase, glm::vec3(0, 1, 0))};
     });
   }
-  add_posts(document, palette);
+  add_icosphere_posts(document, palette);
   swing_sun(document, objects, scene.sun.elevation, scene.sun.azimuth, 60.0f);
   document.animations = {std::move(camera), std::move(objects)};
   return document;

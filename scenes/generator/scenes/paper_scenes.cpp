@@ -43,7 +43,7 @@ const PaperScene& find_paper_scene(std::string_view name) {
   for (const PaperScene& scene : paper_scenes()) {
     if (scene.name == name) return scene;
   }
-  throw std::invalid_argument("no scene of the paper is called " + std::string(name));
+  throw std::invalid_argument("there is no scene of the paper named " + std::string(name));
 }
 
 }  // namespace heliograph::scenes

@@ -15,7 +15,7 @@ namespace {
 constexpr int columns = 12;
 constexpr int rows = 6;
 constexpr int heights = 6;
-constexpr glm::vec3 target(0.0f, 1.4f, -8.0f);
+constexpr glm::vec3 pillars_target(0.0f, 1.4f, -8.0f);
 
 /// Base, shaft with a slight swelling, capital; `height` metres in all.
 Mesh pillar(float height) {
@@ -92,12 +92,12 @@ Document make_pillars(const PaperScene& scene, const ClearSky& sky) {
   document.name = scene.name;
   document.description = "72 pillars of six heights under a low sun";
   Palette palette(document);
-  document.add_camera("main", {0.0f, 3.6f, 9.5f}, target, 52.0f);
+  document.add_camera("main", {0.0f, 3.6f, 9.5f}, pillars_target, 52.0f);
   add_sun(document, scene.sun, sky);
   Animation camera{"moving_camera", {}};
   Animation objects{"moving_objects_light", {}};
   animate(camera, find_node(document, "main"), [](float phase) {
-    return look({8.0f * std::sin(two_pi * phase), 3.6f, 9.5f}, target);
+    return look({8.0f * std::sin(two_pi * phase), 3.6f, 9.5f}, pillars_target);
   });
 
   constexpr float half = 40.0f;

@@ -8,11 +8,11 @@
 #include "scenes/generator/textures/palette.hpp"
 #include "scenes/generator/textures/recipes.hpp"
 
-// Shapes thin and thick, near their shadows and far from them: every width of penumbra.
+// Thin and thick shapes at various distances from their shadows: every width of penumbra.
 namespace heliograph::scenes {
 namespace {
 
-constexpr glm::vec3 target(0.0f, 1.2f, 0.0f);
+constexpr glm::vec3 shadow_objects_target(0.0f, 1.2f, 0.0f);
 constexpr int bar_count = 12;
 
 Mesh pole() {
@@ -104,14 +104,14 @@ Document make_shadow_objects(const PaperScene& scene, const ClearSky& sky) {
   document.name = scene.name;
   document.description = "Shapes that throw shadows of every sharpness on a floor and a wall";
   Palette palette(document);
-  document.add_camera("main", {0.0f, 5.0f, 13.0f}, target, 50.0f);
+  document.add_camera("main", {0.0f, 5.0f, 13.0f}, shadow_objects_target, 50.0f);
   add_sun(document, scene.sun, sky);
   Animation camera{"moving_camera", {}};
   Animation objects{"moving_objects_light", {}};
   animate(camera, find_node(document, "main"), [](float phase) {
     const glm::vec3 eye(5.0f * std::sin(two_pi * phase), 5.0f,
                         13.0f - 2.0f * there_and_back(phase));
-    return look(eye, target);
+    return look(eye, shadow_objects_target);
   });
 
   constexpr float half = 20.0f;

@@ -6,12 +6,11 @@
 #include <glm/gtc/constants.hpp>
 #include <string>
 
+#include "scenes/generator/geometry/transforms.hpp"
 #include "scenes/generator/textures/noise.hpp"
 
 namespace heliograph::scenes {
 namespace {
-
-constexpr float pi = glm::pi<float>();
 
 // `dither` in [-0.5, 0.5) hides the coarse steps of the mantissas in smooth skies.
 std::array<std::uint8_t, 4> to_rgbe(glm::vec3 color, glm::vec3 dither) {

@@ -6,7 +6,7 @@
 
 namespace heliograph::scenes {
 
-/// An equirectangular picture of radiance, rows from the zenith down:
+/// An equirectangular image of radiance, rows from the zenith down:
 /// u = 0.5 + atan2(d.z, d.x) / (2 pi), v = acos(d.y) / pi.
 struct Environment {
   int width = 0;

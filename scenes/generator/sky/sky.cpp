@@ -12,8 +12,6 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double pi = glm::pi<double>();
-
 // Earth's atmosphere at 680, 550 and 440 nm (Bruneton 2017; Hillaire 2020, table 1). Metres.
 constexpr double ground_radius = 6360e3;
 constexpr double top_altitude = 100e3;
@@ -52,14 +50,14 @@ Medium medium_at(double altitude) {
 }
 
 double rayleigh_phase(double cosine) {
-  return 3.0 / (16.0 * pi) * (1.0 + cosine * cosine);
+  return 3.0 / (16.0 * glm::pi<double>()) * (1.0 + cosine * cosine);
 }
 
 // Cornette and Shanks 1992.
 double mie_phase(double cosine) {
   constexpr double g = mie_asymmetry;
   const double base = 1.0 + g * g - 2.0 * g * cosine;
-  return 3.0 / (8.0 * pi) * (1.0 - g * g) * (1.0 + cosine * cosine) /
+  return 3.0 / (8.0 * glm::pi<double>()) * (1.0 - g * g) * (1.0 + cosine * cosine) /
          ((2.0 + g * g) * base * std::sqrt(base));
 }
 
@@ -154,12 +152,13 @@ dvec3 LightByAltitude::multiple_scattering(double altitude) const {
       const dvec3 through = exp_each(-medium.extinction * step);
       const dvec3 collected =
           transmittance * medium.scattering() * (1.0 - through) / medium.extinction;
-      second_order += collected * sun(height) / (4.0 * pi) / double(directions);
+      second_order += collected * sun(height) / (4.0 * glm::pi<double>()) / double(directions);
       passed_on += collected / double(directions);
       transmittance *= through;
     }
     if (ground > 0.0) {
-      second_order += transmittance * ground_albedo / pi * sun(0.0) / double(directions);
+      second_order +=
+          transmittance * ground_albedo / glm::pi<double>() * sun(0.0) / double(directions);
     }
   }
   return second_order / (1.0 - passed_on);
@@ -217,7 +216,7 @@ ClearSky make_clear_sky(glm::vec3 to_sun, int width, int height) {
   fill(0, height / 2, dvec3(0.0));
   const dvec3 from_sky(sky.environment.horizontal_irradiance());
   const dvec3 from_sun = light.sun(0.0) * sun_direction.y;
-  fill(height / 2, height, ground_albedo / pi * (from_sun + from_sky));
+  fill(height / 2, height, ground_albedo / glm::pi<double>() * (from_sun + from_sky));
 
   const dvec3 daylight = from_sun + from_sky;
   const dvec3 balance =

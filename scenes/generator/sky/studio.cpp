@@ -27,7 +27,7 @@ constexpr SoftBox boxes[] = {
     {84.0f, 0.0f, {0.50f, 0.50f}, {4.2f, 4.2f, 4.2f}},       // overhead
 };
 
-// How much of the box a direction sees: 1 inside, falling over a rim as the cloth does.
+// Visible fraction of the box in a direction: 1 inside, with a soft edge.
 float coverage(const SoftBox& box, glm::vec3 direction) {
   const glm::vec3 axis = direction_to_sun(box.elevation, box.azimuth);
   const float along = glm::dot(direction, axis);
@@ -38,7 +38,7 @@ float coverage(const SoftBox& box, glm::vec3 direction) {
       glm::abs(glm::vec2(glm::dot(direction, right), glm::dot(direction, up))) / along;
   constexpr float rim = 0.03f;
   const glm::vec2 inside = glm::clamp((box.half_size - at) / rim, 0.0f, 1.0f);
-  // The lamp sits behind the middle of the cloth.
+  // The light source is behind the center of the cloth.
   const glm::vec2 from_middle = at / box.half_size;
   const float hot = 1.0f - 0.35f * std::min(1.0f, 0.5f * glm::dot(from_middle, from_middle));
   return inside.x * inside.y * hot;

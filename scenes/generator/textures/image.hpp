@@ -6,7 +6,7 @@
 
 namespace heliograph::scenes {
 
-/// 8-bit picture, rows from the top, `channels` bytes to a pixel (3 or 4).
+/// 8-bit image, rows from the top, `channels` bytes to a pixel (3 or 4).
 struct Image {
   int width = 0;
   int height = 0;

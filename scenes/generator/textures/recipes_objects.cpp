@@ -1,14 +1,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenes/generator/geometry/transforms.hpp"
 #include "scenes/generator/textures/noise.hpp"
 #include "scenes/generator/textures/recipe_tools.hpp"
 #include "scenes/generator/textures/recipes.hpp"
 
 namespace heliograph::scenes::recipes {
 namespace {
-
-constexpr float two_pi = 6.2831853f;
 
 // 1 on the lines between `count` x `count` tiles, `half_width` wide to both sides (in repeats).
 float joints(glm::vec2 uv, int count, float half_width) {

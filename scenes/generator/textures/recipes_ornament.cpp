@@ -2,14 +2,13 @@
 #include <cmath>
 #include <string_view>
 
+#include "scenes/generator/geometry/transforms.hpp"
 #include "scenes/generator/textures/noise.hpp"
 #include "scenes/generator/textures/recipe_tools.hpp"
 #include "scenes/generator/textures/recipes.hpp"
 
 namespace heliograph::scenes::recipes {
 namespace {
-
-constexpr float two_pi = 6.2831853f;
 
 const glm::vec3 gilding(1.00f, 0.84f, 0.55f);
 const glm::vec3 lapis(0.075f, 0.125f, 0.30f);

@@ -1,15 +1,12 @@
 #include <cmath>
 
+#include "scenes/generator/geometry/transforms.hpp"
 #include "scenes/generator/textures/noise.hpp"
 #include "scenes/generator/textures/recipe_tools.hpp"
 #include "scenes/generator/textures/recipes.hpp"
 
 namespace heliograph::scenes::recipes {
-namespace {
-
-constexpr float two_pi = 6.2831853f;
-
-}  // namespace
+namespace {}  // namespace
 
 TextureRecipe wood(const std::string& name, glm::vec3 light, glm::vec3 dark, std::uint32_t seed) {
   const auto sample = [light, dark, seed](glm::vec2 uv) {

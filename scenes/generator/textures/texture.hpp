@@ -8,7 +8,7 @@
 
 namespace heliograph::scenes {
 
-/// What a material is made of at one point of its tile.
+/// Surface properties of a material at one point of its tile.
 struct SurfaceSample {
   glm::vec3 color{0.5f};  // sRGB, 0..1, as it goes into the base colour map
   float height = 0.0f;    // metres above the mean surface

@@ -105,7 +105,7 @@ protocol::Result<std::optional<std::uint32_t>> number_parameter(const HttpReques
   const std::optional<std::uint32_t> number = whole_number(*text);
   if (number && *number >= least && *number <= most) return number;
   return protocol::error::invalid(
-      name, "must be a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+      name, "must be an integer from " + std::to_string(least) + " to " + std::to_string(most));
 }
 
 std::string lower(std::string_view text) {

@@ -154,9 +154,9 @@ void add_streams(Page& page, const session::SessionHost& host) {
                number(totals.sent.dropped));
   page.counter("heliograph_frames_acknowledged_total", "Frames that viewers have confirmed.",
                number(totals.sent.acknowledged));
-  page.gauge("heliograph_frames_waiting", "Frames that cannot be sent yet.",
+  page.gauge("heliograph_frames_pending", "Frames that cannot be sent yet.",
              number(totals.waiting));
-  page.gauge("heliograph_frames_on_the_way", "Frames sent and not yet confirmed.",
+  page.gauge("heliograph_frames_in_flight", "Frames sent and not yet confirmed.",
              number(totals.in_flight));
   page.gauge("heliograph_round_trip_seconds",
              "Mean of the viewers' smoothed times from sending a frame to its confirmation.",
@@ -218,8 +218,8 @@ void add_traffic(Page& page, const Traffic& traffic) {
                number(traffic.calls));
   page.counter("heliograph_viewer_messages_refused_total",
                "Messages of viewers that came too fast.", number(traffic.calls_refused));
-  page.counter("heliograph_viewers_let_go_total", "Viewers that did not read what they were sent.",
-               number(traffic.viewers_let_go));
+  page.counter("heliograph_slow_viewers_disconnected_total",
+               "Viewers that did not read what they were sent.", number(traffic.viewers_let_go));
 }
 
 }  // namespace

@@ -32,9 +32,9 @@ constexpr std::chrono::seconds longest_silence{20};
 
 // Browsers show a part only when the header of the next one arrives, so that header goes out with
 // each picture, and cannot tell the next picture's length.
-constexpr std::string_view first_part = "--picture\r\nContent-Type: image/jpeg\r\n\r\n";
-constexpr std::string_view next_part = "\r\n--picture\r\nContent-Type: image/jpeg\r\n\r\n";
-constexpr std::string_view last_part = "\r\n--picture--\r\n";
+constexpr std::string_view first_part = "--frame\r\nContent-Type: image/jpeg\r\n\r\n";
+constexpr std::string_view next_part = "\r\n--frame\r\nContent-Type: image/jpeg\r\n\r\n";
+constexpr std::string_view last_part = "\r\n--frame--\r\n";
 
 /// A viewer that only takes pictures. What has been written counts as acknowledged: the small send
 /// buffer of its socket is all that lies between, and there is no queue.
@@ -66,8 +66,8 @@ class PictureStream : public Connection,
     session_ = session;
     client_ = context_.access.client_of(request);
     session::log_info({.session = session_, .viewer = viewer_, .client = client_},
-                      "a viewer takes pictures over HTTP");
-    headers_.set(http::field::content_type, "multipart/x-mixed-replace; boundary=picture");
+                      "a viewer streams images over HTTP");
+    headers_.set(http::field::content_type, "multipart/x-mixed-replace; boundary=frame");
     configure(wishes);
     writing_ = true;
     serializer_.emplace(headers_);
@@ -229,9 +229,11 @@ class PictureStream : public Connection,
 }  // namespace
 
 protocol::Result<protocol::StreamConfigure> picture_stream_wishes(const HttpRequest& request) {
-  const auto quality = number_parameter(request, "quality", 1, 100);
+  const auto quality =
+      number_parameter(request, "quality", protocol::min_quality, protocol::max_quality);
   if (!quality) return quality.error();
-  const auto rate = number_parameter(request, "max_fps", 1, 240);
+  const auto rate =
+      number_parameter(request, "max_fps", 1, static_cast<std::uint32_t>(protocol::max_frame_rate));
   if (!rate) return rate.error();
   protocol::StreamConfigure wishes;
   wishes.quality = *quality;

@@ -6,14 +6,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "protocol/limits.hpp"
 #include "protocol/settings/settings_json.hpp"
 #include "web_client/embedded_assets.hpp"
 
 namespace heliograph::net {
 namespace {
 
-// As in frame.capture.
-constexpr std::uint32_t most_capture_samples = 65536;
 constexpr std::string_view sessions_prefix = "/api/v1/sessions/";
 
 HttpResponse with_header(HttpResponse response, std::string name, std::string value) {
@@ -245,7 +244,7 @@ void Router::picture(const HttpRequest& request, std::string_view session,
   session::CaptureRequest capture;
   capture.format = kind->format;
   capture.buffer = request.parameter("buffer").value_or("output");
-  const auto samples = number_parameter(request, "samples", 1, most_capture_samples);
+  const auto samples = number_parameter(request, "samples", 1, protocol::max_samples_per_pixel);
   if (!samples) return reply(error_response(samples.error()));
   capture.samples = *samples;
   capture.done = [reply, kind](protocol::Result<session::Capture> result) {

@@ -96,10 +96,11 @@ protocol::Error too_many_messages() {
 }
 
 protocol::Error answer_too_large(std::string limit) {
-  return protocol::error::too_large({},
-                                    "the answer does not fit behind what waits to be read; ask for "
-                                    "less at once, or get captures over HTTP",
-                                    std::move(limit));
+  return protocol::error::too_large(
+      {},
+      "the response does not fit behind the responses that were not yet read; request "
+      "less at once, or use captures over HTTP",
+      std::move(limit));
 }
 
 }  // namespace heliograph::net

@@ -82,8 +82,8 @@ protocol::Result<void> check_buffer_name(std::string_view name, const std::strin
   const std::vector<std::string>& names = buffer_names();
   if (std::find(names.begin(), names.end(), name) != names.end()) return {};
   const std::vector<std::string_view> known(names.begin(), names.end());
-  return protocol::error::invalid(path, "names no buffer" + protocol::suggestion(name, known),
-                                  "a name that frame.buffers gives");
+  return protocol::error::invalid(path, "is not a buffer" + protocol::suggestion(name, known),
+                                  "a name from frame.buffers");
 }
 
 }  // namespace heliograph::render

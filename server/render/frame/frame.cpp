@@ -60,7 +60,7 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   GBuffer seen = gbuffer;
   seen.motion = blend_surfaces(plan, in, gbuffer, composed);
 
-  const bool truth = reference == protocol::ReferenceUse::resting;
+  const bool truth = reference == protocol::ReferenceUse::when_static;
   const gpu::History accumulated =
       accumulate(plan, in, truth ? trace_reference(plan, in) : hdr_raw);
   const Exposure exposure = expose(plan, in, hdr, accumulated.current);

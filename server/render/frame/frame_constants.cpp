@@ -30,18 +30,18 @@ glm::mat4 jittered(glm::mat4 projection, const glm::vec2& offset) {
 
 /// What depends on the environment; its intensity and rotation are there already.
 void add_environment(shared::FrameConstants& constants, const EnvironmentView& environment) {
-  constants.counts.z = environment.maps.prefiltered.desc().levels;
+  constants.prefiltered_levels = environment.maps.prefiltered.desc().levels;
   for (std::size_t i = 0; i < 9; ++i) constants.irradiance[i] = environment.maps.irradiance[i];
-  constants.sun = glm::vec4(0.0f, 1.0f, 0.0f, -1.0f);
+  constants.sun_direction = {0.0f, 1.0f, 0.0f};
+  constants.sun_radius = -1.0f;
   if (!environment.sun) return;
   const scene::Sun& sun = *environment.sun;
-  const glm::vec4& settings = constants.environment;
+  const float c = constants.environment_cos, s = constants.environment_sin;
   const glm::vec3& d = sun.direction;
-  const glm::vec3 world(settings.y * d.x + settings.z * d.z, d.y,
-                        settings.y * d.z - settings.z * d.x);
-  constants.sun = glm::vec4(world, std::tan(glm::radians(0.5f * sun.angular_diameter)));
-  constants.sun_irradiance = glm::vec4(sun.irradiance * settings.x, 0.0f);
-  ++constants.counts.x;
+  constants.sun_direction = {c * d.x + s * d.z, d.y, c * d.z - s * d.x};
+  constants.sun_radius = std::tan(glm::radians(0.5f * sun.angular_diameter));
+  constants.sun_irradiance = glm::vec4(sun.irradiance * constants.environment_intensity, 0.0f);
+  ++constants.light_count;
 }
 
 }  // namespace
@@ -73,17 +73,22 @@ shared::FrameConstants make_frame_constants(const scene::Camera& camera,
   const glm::vec2 scale{1.0f / projection[0][0], 1.0f / projection[1][1]};
   constants.unproject = {scale, -offset * scale};
   constants.eye = glm::vec4(camera.eye, 1.0f);
-  constants.extent = {extent.width, extent.height, sample,
-                      static_cast<std::uint32_t>(settings.sampling.seed)};
-  constants.counts = {static_cast<std::uint32_t>(scene.lights().size()), flags(settings, camera),
-                      0u, before ? 0u : 1u};
+  constants.extent = {extent.width, extent.height};
+  constants.sample_index = sample;
+  constants.seed = static_cast<std::uint32_t>(settings.sampling.seed);
+  constants.light_count = static_cast<std::uint32_t>(scene.lights().size());
+  constants.flags = flags(settings, camera);
+  constants.history_invalid = before ? 0u : 1u;
   const float rotation = glm::radians(settings.environment.rotation);
-  constants.environment = {settings.environment.intensity, std::cos(rotation), std::sin(rotation),
-                           settings.ambient.radius};
+  constants.environment_intensity = settings.environment.intensity;
+  constants.environment_cos = std::cos(rotation);
+  constants.environment_sin = std::sin(rotation);
+  constants.ambient_radius = settings.ambient.radius;
   const float diameter = settings.shadows.angular_diameter_override;
-  const float spread = diameter < 0.0f ? -1.0f : std::tan(glm::radians(0.5f * diameter));
-  constants.exposure = {std::exp2(settings.exposure.compensation),
-                        static_cast<float>(settings.tone_map.curve), spread, 0.0f};
+  constants.exposure_factor = std::exp2(settings.exposure.compensation);
+  constants.tone_map_curve = static_cast<std::uint32_t>(settings.tone_map.curve);
+  constants.directional_light_radius =
+      diameter < 0.0f ? -1.0f : std::tan(glm::radians(0.5f * diameter));
   add_environment(constants, scene.environment().view(settings.environment.separate_sun));
   return constants;
 }

@@ -70,14 +70,14 @@ protocol::Result<std::optional<SurfacePoint>> surface_at(const Drawing& drawing,
   const gpu::Image* const normals = drawing.find("gbuffer.normals");
   if (!instances || !motion || !normals) {
     return protocol::error::conflict(
-        "reference.use", "the path traced picture keeps no surfaces that could be picked");
+        "reference.use", "is on: the path traced reference image has no surfaces to pick");
   }
   const glm::uvec2 pixel = pixel_at(point, instances->desc().extent);
   const auto instance = static_cast<std::uint32_t>(texel(*instances, pixel).x);
   const float view_z = texel(*motion, pixel).w;
   if (instance == 0 || view_z <= 0.0f) return std::optional<SurfacePoint>();
 
-  const bool orthographic = (frame.counts.y & shared::frame_orthographic) != 0;
+  const bool orthographic = (frame.flags & shared::frame_orthographic) != 0;
   const glm::vec2 ndc = (glm::vec2(pixel) + 0.5f) / glm::vec2(frame.extent) * 2.0f - 1.0f;
   const glm::vec4& unproject = frame.unproject;
   glm::vec2 across = ndc * glm::vec2(unproject) + glm::vec2(unproject.z, unproject.w);

@@ -11,7 +11,7 @@
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "hwy/contrib/math/math-inl.h"
-#include "render/kernels/simd/pixels.hpp"
+#include "render/kernels/simd/guide.hpp"
 #include "render/kernels/simd/random.hpp"
 
 #ifndef HELIOGRAPH_ATROUS_JOB
@@ -48,7 +48,7 @@ class Row {
 
   using Texels = Quad<V>;
   struct Center {
-    V nx, ny, nz;
+    Triple<V> normal;
     V roughness;
     V view_z;
     V slope_x, slope_y;
@@ -71,8 +71,8 @@ class Row {
         y_(y),
         pitch_(static_cast<int>(job.images.guide.row_pitch / sizeof(float))),
         signal_pitch_(static_cast<int>(job.images.signal.row_pitch / sizeof(float))),
-        random_(hn::RebindToUnsigned<D>(), job.frame.extent.z,
-                48u + static_cast<unsigned>(c_.level), job.frame.extent.w),
+        random_(hn::RebindToUnsigned<D>(), job.frame.sample_index,
+                48u + static_cast<unsigned>(c_.level), job.frame.seed),
         variance_x_(variance),
         variance_y_(variance + job.width + 2) {}
 
@@ -131,19 +131,16 @@ class Row {
     return hn::Div(set(1.0f), hn::MulAdd(set(c_.luminance_sigma), noise, set(smallest)));
   }
 
-  HWY_INLINE Center center(int x, const Texels& guide, const Texels& value, V size) const {
+  HWY_INLINE Center center(int x, const Guide<V>& guide, const Texels& value) const {
     Center c;
-    const V inverse = hn::Div(set(1.0f), size);
-    c.nx = hn::Mul(guide.x, inverse);
-    c.ny = hn::Mul(guide.y, inverse);
-    c.nz = hn::Mul(guide.z, inverse);
-    c.roughness = hn::Sub(size, set(1.0f));
-    c.view_z = guide.w;
+    c.normal = guide.normal;
+    c.roughness = guide.roughness;
+    c.view_z = guide.view_z;
     hn::LoadInterleaved2(d_, row(job_.images.depth_slope, y_) + 2 * x, c.slope_x, c.slope_y);
-    c.curve = job_.orthographic ? hn::Zero(d_) : hn::Div(set(1.0f), guide.w);
+    c.curve = job_.orthographic ? hn::Zero(d_) : hn::Div(set(1.0f), guide.view_z);
     c.flattened = hn::Sub(set(1.0f), hn::Mul(c.view_z, c.curve));
     c.footprint = set(0.5f * job_.footprint);
-    if (!job_.orthographic) c.footprint = hn::Mul(c.footprint, guide.w);
+    if (!job_.orthographic) c.footprint = hn::Mul(c.footprint, guide.view_z);
     c.bright_x = brightness_x(value);
     c.bright_y = value.y;
     const bool smooth = has(shared::atrous_variance_prefilter);
@@ -166,14 +163,9 @@ class Row {
     const V allowed = hn::MulAdd(c.footprint, distance, hn::Abs(rise));
     V exponent =
         hn::Div(hn::Neg(off_plane), hn::Max(hn::Mul(set(c_.depth_sigma), allowed), set(1e-30f)));
-    const V square =
-        hn::MulAdd(guide.x, guide.x, hn::MulAdd(guide.y, guide.y, hn::Mul(guide.z, guide.z)));
-    const V size = hn::Sqrt(square);
-    const V projected =
-        hn::MulAdd(c.nx, guide.x, hn::MulAdd(c.ny, guide.y, hn::Mul(c.nz, guide.z)));
-    const V cosine = hn::Min(hn::Max(hn::Div(projected, size), set(1e-6f)), set(1.0f));
+    const V cosine = clamped(guide_cosine(c.normal, guide), 1e-6f, 1.0f);
     exponent = hn::MulAdd(set(c_.normal_power), hn::Log(d_, cosine), exponent);
-    const M counts = hn::And(wanted, hn::Gt(guide.w, hn::Zero(d_)));
+    const M counts = hn::And(wanted, guide_is_surface(guide));
     if constexpr (visibility) {
       const V wx = tap_weight(exponent, c.bright_x, value.x, c.reach_x, weight, counts);
       const V wy = tap_weight(exponent, c.bright_y, value.y, c.reach_y, weight, counts);
@@ -184,7 +176,7 @@ class Row {
       sums.total_x = hn::Add(sums.total_x, wx);
       sums.total_y = hn::Add(sums.total_y, wy);
     } else {
-      const V rougher = hn::Abs(hn::Sub(hn::Sub(size, set(1.0f)), c.roughness));
+      const V rougher = hn::Abs(hn::Sub(guide_roughness(guide), c.roughness));
       exponent = hn::NegMulAdd(rougher, c.roughness_reach, exponent);
       const V w = tap_weight(exponent, c.bright_x, brightness_x(value), c.reach_x, weight, counts);
       sums.value.x = hn::MulAdd(w, value.x, sums.value.x);
@@ -229,20 +221,18 @@ class Row {
 
   HWY_INLINE void block(int x) {
     const Texels value = load(row(job_.images.signal, y_) + 4 * x);
-    const Texels guide = load(row(job_.images.guide, y_) + 4 * x);
-    const V size = hn::Sqrt(
-        hn::MulAdd(guide.x, guide.x, hn::MulAdd(guide.y, guide.y, hn::Mul(guide.z, guide.z))));
-    const V roughness = hn::Sub(size, set(1.0f));
-    const M active = hn::And(hn::Gt(guide.w, hn::Zero(d_)),
-                             hn::Lt(set(static_cast<float>(c_.level)), levels(roughness)));
+    const Texels texel = load(row(job_.images.guide, y_) + 4 * x);
+    const Guide<V> guide = decode_guide(texel);
+    const M active = hn::And(guide_is_surface(texel),
+                             hn::Lt(set(static_cast<float>(c_.level)), levels(guide.roughness)));
     float* out = const_cast<float*>(row(job_.images.filtered, y_)) + 4 * x;
     if (hn::AllFalse(d_, active)) {
       hn::StoreInterleaved4(value.x, value.y, value.z, value.w, d_, out);
       return;
     }
-    const Center c = center(x, guide, value, size);
+    const Center c = center(x, guide, value);
     Sums sums{value, set(1.0f), set(1.0f)};
-    add_taps(x, active, steps(roughness), c, sums);
+    add_taps(x, active, steps(guide.roughness), c, sums);
 
     const V by_x = hn::Div(set(1.0f), sums.total_x);
     const V by_y = visibility ? hn::Div(set(1.0f), sums.total_y) : by_x;
@@ -376,7 +366,7 @@ HWY_EXPORT(filter_rows);
 
 void atrous(Signal signal, const shared::AtrousConstants& constants,
             const shared::FrameConstants& frame, const AtrousImages& images) {
-  const bool orthographic = (frame.counts.y & shared::frame_orthographic) != 0;
+  const bool orthographic = (frame.flags & shared::frame_orthographic) != 0;
   const float footprint = 2.0f * std::abs(frame.unproject.y) / static_cast<float>(frame.extent.y);
   const Job job{signal,
                 constants,

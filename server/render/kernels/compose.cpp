@@ -42,7 +42,7 @@ class Composition {
  private:
   HWY_INLINE V set(float value) const { return hn::Set(d_, value); }
   HWY_INLINE Triple<V> black() const { return {hn::Zero(d_), hn::Zero(d_), hn::Zero(d_)}; }
-  HWY_INLINE bool enabled(std::uint32_t flag) const { return (job_.frame.counts.y & flag) != 0; }
+  HWY_INLINE bool enabled(std::uint32_t flag) const { return (job_.frame.flags & flag) != 0; }
   HWY_INLINE Quad<V> load(const gpu::HostView& image, int x, int y) const {
     return load4(d_, row_of<const float>(image, y) + 4 * x);
   }
@@ -118,8 +118,7 @@ class Composition {
 
   /// environment_irradiance() of shaders/lib/lighting/environment.glsl
   HWY_INLINE Triple<V> irradiance(const Triple<V>& world) const {
-    const glm::vec4& environment = job_.frame.environment;
-    const V c = set(environment.y), s = set(environment.z);
+    const V c = set(job_.frame.environment_cos), s = set(job_.frame.environment_sin);
     const V x = hn::MulSub(c, world.x, s * world.z);
     const V y = world.y;
     const V z = hn::MulAdd(s, world.x, c * world.z);
@@ -131,7 +130,7 @@ class Composition {
     sum = sum + term(8) * hn::MulSub(x, x, y * y);
     const V zero = hn::Zero(d_);
     return Triple<V>{hn::Max(sum.x, zero), hn::Max(sum.y, zero), hn::Max(sum.z, zero)} *
-           set(environment.x);
+           set(job_.frame.environment_intensity);
   }
 
   HWY_INLINE void store(const Shares& shares, V shadow, V ambient, const Triple<V>& mirrored,
@@ -164,7 +163,7 @@ namespace heliograph::render::kernels {
 HWY_EXPORT(compose_rows);
 
 bool can_compose(const shared::FrameConstants& frame, float max_roughness) {
-  return max_roughness >= 1.0f || (frame.counts.y & shared::frame_environment_specular) == 0;
+  return max_roughness >= 1.0f || (frame.flags & shared::frame_environment_specular) == 0;
 }
 
 void compose(const ComposeJob& job) {

@@ -223,8 +223,8 @@ void camera_rays(const shared::FrameConstants& frame, shared::RayCount* count, s
   const auto tiles = across * static_cast<int>((frame.extent.y + 7) / 8);
   *count = {static_cast<std::uint32_t>(tiles) * 64, 0, 0, 1, 0, 0, 0, 0};
   set_groups(*count);
-  tbb::parallel_for(tbb::blocked_range<int>(0, tiles, 8), [&](const auto& some) {
-    for (int tile = some.begin(); tile < some.end(); ++tile) {
+  for_each_range(tiles, 8, [&](int first, int last) {
+    for (int tile = first; tile < last; ++tile) {
       HWY_DYNAMIC_DISPATCH(make_camera_rays)(frame, tile, across, rays + 64 * tile);
     }
   });

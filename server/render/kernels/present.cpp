@@ -20,7 +20,7 @@ class Presentation {
 
  public:
   HWY_INLINE explicit Presentation(const PresentJob& job)
-      : job_(job), curve_(static_cast<int>(job.frame.exposure.y)), dither_(DU(), 0u, 5u, 0u) {}
+      : job_(job), curve_(static_cast<int>(job.frame.tone_map_curve)), dither_(DU(), 0u, 5u, 0u) {}
 
   HWY_INLINE void rows(int first, int last) const {
     const int lanes = static_cast<int>(hn::Lanes(d_));

@@ -1,13 +1,11 @@
 #pragma once
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cstring>
 #include <span>
 
+#include "render/kernels/parallel.hpp"
 #include "shaders/shared/ray.h"
 
 namespace heliograph::render::kernels {
@@ -16,14 +14,8 @@ namespace heliograph::render::kernels {
 inline constexpr int ray_batch = 256;
 
 /// Calls `work(first, last)` for batches of `count` rays, on all processors.
-template <class Work>
-void for_each_batch(int count, const Work& work) {
-  const int batches = (count + ray_batch - 1) / ray_batch;
-  tbb::parallel_for(tbb::blocked_range<int>(0, batches), [&](const auto& some) {
-    for (int batch = some.begin(); batch < some.end(); ++batch) {
-      work(batch * ray_batch, std::min((batch + 1) * ray_batch, count));
-    }
-  });
+inline void for_each_batch(int count, RangeWork work) {
+  for_each_range(count, ray_batch, work);
 }
 
 /// The indirect dispatch that covers a stream, as shaders/lib/rays/ray_stream.glsl leaves it.

@@ -6,6 +6,7 @@
 #define HWY_TARGET_INCLUDE "render/kernels/reproject.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/simd/guide.hpp"
 #include "render/kernels/simd/history.hpp"
 #include "render/kernels/simd/view.hpp"
 
@@ -153,10 +154,10 @@ class Reprojection {
       const Triple<V> normal = normal_at(normals, x, y);
       const V roughness =
           unorm8<0>(d_, hn::LoadU(du_, row_of<const std::uint32_t>(job_.surface, y) + x));
-      const Triple<V> scaled = normal * (one + roughness);
-      guide = {hn::IfThenElseZero(seen, scaled.x), hn::IfThenElseZero(seen, scaled.y),
-               hn::IfThenElseZero(seen, scaled.z), hn::IfThenElseZero(seen, moved.w)};
-      if (job_.frame.counts.w == 0) {
+      const Quad<V> surface = encode_guide(Guide<V>{normal, roughness, moved.w});
+      guide = {hn::IfThenElseZero(seen, surface.x), hn::IfThenElseZero(seen, surface.y),
+               hn::IfThenElseZero(seen, surface.z), hn::IfThenElseZero(seen, surface.w)};
+      if (job_.frame.history_invalid == 0) {
         const Expected expected = expect(normals, view, x, y, moved, normal);
         const V was_x = hn::MulAdd(moved.x, set(static_cast<float>(job_.width)), here_x);
         const V was_y = hn::MulAdd(moved.y, set(static_cast<float>(job_.height)), here_y);

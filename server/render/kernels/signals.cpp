@@ -49,10 +49,9 @@ void accumulate(const AccumulateJob& job) {
 }
 
 void resolve_visibility(const ResolveJob& job) {
-  constexpr std::uint32_t grain = 4096;
-  const tbb::blocked_range<std::uint32_t> all(0, job.count.count, grain);
-  tbb::parallel_for(all, [&](const auto& some) {
-    for (std::uint32_t i = some.begin(); i < some.end(); ++i) {
+  constexpr int grain = 4096;
+  for_each_range(static_cast<int>(job.count.count), grain, [&](int first, int last) {
+    for (int i = first; i < last; ++i) {
       if (job.occluded[i] == 0) continue;
       const std::uint32_t pixel = job.rays[i].pixel;
       job.visibility.row<float>(pixel >> 16u)[pixel & 0xffffu] = 0.0f;

@@ -7,6 +7,7 @@
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "hwy/contrib/math/math-inl.h"
+#include "render/kernels/simd/guide.hpp"
 #include "render/kernels/simd/history.hpp"
 #include "render/kernels/simd/view.hpp"
 
@@ -43,7 +44,7 @@ class SpatialVariance {
   HWY_INLINE explicit SpatialVariance(const SpatialVarianceJob& job)
       : job_(job),
         visibility_(job.kind == Signal::visibility),
-        orthographic_((job.frame.counts.y & shared::frame_orthographic) != 0),
+        orthographic_((job.frame.flags & shared::frame_orthographic) != 0),
         bounds_(job.width, job.height) {}
 
   HWY_INLINE void rows(int first, int last) const {
@@ -68,7 +69,7 @@ class SpatialVariance {
     const V frames_x = history.x, frames_y = visibility_ ? history.y : history.x;
     const Quad<V> guide = load(job_.guide, x, y);
     const V enough = set(job_.constants.spatial_variance_frames);
-    M wanted = hn::And(hn::Gt(guide.w, hn::Zero(d_)), hn::Lt(hn::Min(frames_x, frames_y), enough));
+    M wanted = hn::And(guide_is_surface(guide), hn::Lt(hn::Min(frames_x, frames_y), enough));
     wanted = hn::And(wanted, from_column(d_, x, start));
     if (hn::AllFalse(d_, wanted)) return;
     const Sums sums = gathered(center(view, guide, x, y), x, y);
@@ -112,8 +113,7 @@ class SpatialVariance {
 
   HWY_INLINE Center center(const ViewedRow<D>& view, const Quad<V>& guide, int x, int y) const {
     Center c;
-    const Triple<V> scaled{guide.x, guide.y, guide.z};
-    c.normal = scaled * (set(1.0f) / hn::Max(length(scaled), set(1e-6f)));
+    c.normal = decode_guide(guide).normal;
     c.view_z = guide.w;
     c.slope = load2(d_, row_of<const float>(job_.depth_slope, y) + 2 * x);
     c.curve = orthographic_ ? hn::Zero(d_) : set(1.0f) / hn::Max(guide.w, set(1e-20f));
@@ -148,7 +148,7 @@ class SpatialVariance {
   /// Weights of shaders/lib/denoise/edge_stopping.glsl
   HWY_INLINE void add_tap(const Center& c, int dx, int dy, const Quad<V>& guide,
                           const Quad<V>& moments, M inside, Sums& sums) const {
-    const M counts = hn::And(inside, hn::Gt(guide.w, hn::Zero(d_)));
+    const M counts = hn::And(inside, guide_is_surface(guide));
     const float away = std::sqrt(static_cast<float>(dx * dx + dy * dy));
     const V rise =
         hn::MulAdd(c.slope.x, set(static_cast<float>(dx)), c.slope.y * set(static_cast<float>(dy)));
@@ -156,9 +156,8 @@ class SpatialVariance {
     const V off_plane =
         hn::Abs(hn::NegMulAdd(rise, c.flattened, hn::MulSub(guide.w, straight, c.view_z)));
     const V allowed = hn::MulAdd(c.footprint, set(away), hn::Abs(rise));
-    const Triple<V> normal{guide.x, guide.y, guide.z};
     const V zero = hn::Zero(d_);
-    const V cosine = dot(c.normal, normal) / length(normal);
+    const V cosine = guide_cosine(c.normal, guide);
     const V exponent = hn::MulAdd(set(128.0f), hn::Log(d_, clamped(cosine, 1e-6f, 1.0f)),
                                   hn::Neg(off_plane / hn::Max(allowed, set(1e-30f))));
     // Below e^-80 a weight is nothing; the exponential stays in its range.

@@ -87,7 +87,7 @@ class Generation {
   /// The pixel that traces for a cell: of 2 x 2 all take turns.
   HWY_INLINE PixelLanes traced_pixel(const PixelLanes& cell) const {
     if (scale_ == 1) return cell;
-    const std::uint32_t turn = frame_.extent.z & 3u;
+    const std::uint32_t turn = frame_.sample_index & 3u;
     const auto within = [&](Integer c, std::uint32_t step, std::uint32_t size) {
       const Integer at = hn::Add(hn::Add(c, c), integer(static_cast<int>(step)));
       return hn::Min(at, integer(static_cast<int>(size) - 1));
@@ -151,8 +151,8 @@ void make_specular_rays(const SpecularRaysJob& job) {
   const int across = (cells.width + tile_side - 1) / tile_side;
   const int tiles = across * ((cells.height + tile_side - 1) / tile_side);
   job.rays.begin();
-  tbb::parallel_for(tbb::blocked_range<int>(0, tiles), [&](const auto& some) {
-    for (int tile = some.begin(); tile < some.end(); ++tile) {
+  for_each_range(tiles, 1, [&](int first, int last) {
+    for (int tile = first; tile < last; ++tile) {
       HWY_DYNAMIC_DISPATCH(make_tile)(job, cells, tile % across, tile / across);
     }
   });

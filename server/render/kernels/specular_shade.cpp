@@ -63,7 +63,7 @@ class HitShading {
  private:
   static constexpr float distance_of_misses = 1e4f;  // metres
 
-  bool enabled(std::uint32_t flag) const { return (frame_.counts.y & flag) != 0; }
+  bool enabled(std::uint32_t flag) const { return (frame_.flags & flag) != 0; }
 
   /// Widths of the cones of the camera behind mirrors of the pixels' roughness.
   HWY_INLINE Float footprint(const PixelLanes& p, const HitLanes& hit) const {

@@ -6,6 +6,7 @@
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "hwy/contrib/math/math-inl.h"
+#include "render/kernels/simd/guide.hpp"
 #include "render/kernels/simd/moments.hpp"
 #include "render/kernels/simd/view.hpp"
 
@@ -30,11 +31,7 @@ class SpecularAccumulation {
   struct Views {
     ViewedRow<D> above, here, below;
   };
-  struct Surface {
-    Triple<V> normal;
-    V roughness;
-    V view_z;
-  };
+  using Surface = Guide<V>;
 
  public:
   HWY_INLINE explicit SpecularAccumulation(const TemporalSpecularJob& job)
@@ -109,19 +106,20 @@ class SpecularAccumulation {
   HWY_INLINE Bend bend(const Views& views, int x, int y, VI instance, const Surface& s,
                        const Triple<V>& position) const {
     const V zero = hn::Zero(d_);
-    if ((c_.flags & shared::temporal_bent_mirrors) == 0) return {zero, zero};
+    if ((c_.flags & shared::temporal_curved_reflectors) == 0) return {zero, zero};
     V curvature = zero, turns = zero, count = zero;
     for (int i = 0; i < 4; ++i) {
       const int column = x + (i < 2 ? 2 * i - 1 : 0), row = y + (i < 2 ? 0 : 2 * i - 5);
       const VI at_x = hn::Iota(di_, column), at_y = hn::Set(di_, row);
       const Spot<D> spot = bounds_.spot(at_x, at_y);
       const auto own = hn::Eq(spot.word(job_.instance), instance);
-      const Quad<V> found = spot.four(job_.guide);
+      const Quad<V> texel = spot.four(job_.guide);
       const M counts = hn::And(hn::And(bounds_.contain(at_x, at_y), hn::RebindMask(d_, own)),
-                               hn::Gt(found.w, zero));
+                               guide_is_surface(texel));
+      const Guide<V> found = decode_guide(texel);
       const auto& view = row < y ? views.above : row > y ? views.below : views.here;
-      const Triple<V> step = view.world_position(column, found.w) - position;
-      const Triple<V> turn = normalized(Triple<V>{found.x, found.y, found.z}) - s.normal;
+      const Triple<V> step = view.world_position(column, found.view_z) - position;
+      const Triple<V> turn = found.normal - s.normal;
       const V along = dot(turn, step) / hn::Max(dot(step, step), set(1e-20f));
       curvature = curvature + hn::IfThenElseZero(counts, along);
       turns = turns + hn::IfThenElseZero(counts, length(turn));
@@ -240,7 +238,7 @@ class SpecularAccumulation {
     if ((c_.flags & shared::temporal_holds) == 0) return nothing();
     const Quad<V> map = load(job_.reprojection, x, y);
     const HistoryTaps<D> own = remembered_taps<D>(map);
-    if ((c_.flags & shared::temporal_virtual_point) == 0) return recall(own);
+    if ((c_.flags & shared::temporal_virtual_motion) == 0) return recall(own);
     const VI instance = hn::LoadU(di_, row_of<const int>(job_.instance, y) + x);
     const Triple<V> position = views.here.world_position(x, s.view_z);
     const Bend bent = bend(views, x, y, instance, s, position);
@@ -295,7 +293,7 @@ class SpecularAccumulation {
   HWY_INLINE void block(const BandScratch& hits, const Views& views, int x, int y) const {
     const V zero = hn::Zero(d_), one = set(1.0f);
     const Quad<V> guide = load(job_.guide, x, y);
-    const M seen = hn::Gt(guide.w, zero);
+    const M seen = guide_is_surface(guide);
     const Quad<V> nothing_seen{zero, zero, zero, zero};
     float* const signal = row_of<float>(job_.signal, y) + 4 * x;
     float* const history = row_of<float>(job_.history, y) + 4 * x;
@@ -307,9 +305,7 @@ class SpecularAccumulation {
     const Quad<V> sample = load(job_.raw, x, y);
     Triple<V> now{sample.x, sample.y, sample.z};
     now = select(is_bad(now), Triple<V>{zero, zero, zero}, now);
-    const Triple<V> scaled{guide.x, guide.y, guide.z};
-    const V size = length(scaled);
-    const Surface s{scaled * (one / size), size - one, guide.w};
+    const Surface s = decode_guide(guide);
     const Remembered old = remembered(hits, views, x, y, seen, s);
 
     const V frames = hn::Min(old.frames + one, longest_memory(s.roughness));

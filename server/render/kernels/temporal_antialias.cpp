@@ -94,7 +94,7 @@ class Antialiasing {
 
   /// Of the background, which moves as the camera turns; to the previous frame, in uv.
   HWY_INLINE Pair<V> background_motion(const ViewedRow<D>& view, int x) const {
-    if (job_.frame.counts.y & shared::frame_orthographic) return {hn::Zero(d_), hn::Zero(d_)};
+    if (job_.frame.flags & shared::frame_orthographic) return {hn::Zero(d_), hn::Zero(d_)};
     const Triple<V> eye = view.to_eye(x);
     const Triple<V> before = directed(job_.frame.previous_unjittered, eye);
     const Triple<V> now = directed(job_.frame.unjittered, eye);
@@ -193,7 +193,7 @@ class Antialiasing {
     // Nothing is known of what was not in the picture.
     M known =
         hn::And(hn::And(hn::Ge(u, zero), hn::Le(u, one)), hn::And(hn::Ge(v, zero), hn::Le(v, one)));
-    if (job_.frame.counts.w != 0 || hn::AllFalse(d_, known)) {
+    if (job_.frame.history_invalid != 0 || hn::AllFalse(d_, known)) {
       store4(d_, center, out);
       return;
     }

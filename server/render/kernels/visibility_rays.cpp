@@ -58,8 +58,8 @@ class ShadowRays : public VisibilityRays<D, ShadowRays<D>> {
   HWY_INLINE explicit ShadowRays(const ShadowRaysJob& job)
       : job_(job),
         split_sum_(job.split_sum, job.split_sum_size),
-        picks_(DU(), job.common.frame.extent.z, 1u, job.common.frame.extent.w),
-        points_(DU(), job.common.frame.extent.z, 2u, job.common.frame.extent.w) {}
+        picks_(DU(), job.common.frame.sample_index, 1u, job.common.frame.seed),
+        points_(DU(), job.common.frame.sample_index, 2u, job.common.frame.seed) {}
 
   HWY_INLINE void rows(int first, int last) const { this->generate(job_.common, first, last); }
 
@@ -143,7 +143,7 @@ class AmbientRays : public VisibilityRays<D, AmbientRays<D>> {
 
  public:
   HWY_INLINE explicit AmbientRays(const VisibilityRaysJob& job)
-      : job_(job), directions_(DU(), job.frame.extent.z, 3u, job.frame.extent.w) {}
+      : job_(job), directions_(DU(), job.frame.sample_index, 3u, job.frame.seed) {}
 
   HWY_INLINE void rows(int first, int last) const { this->generate(job_, first, last); }
 
@@ -157,7 +157,7 @@ class AmbientRays : public VisibilityRays<D, AmbientRays<D>> {
     direction = sample_cosine(octahedral_decode(encoded.x, encoded.y), u, v);
     const ViewedRow<D> view(job_.frame, y);
     origin = offset_origin(view.world_position(x, view_z), geometric, view_z);
-    t_max = hn::Set(d_, job_.frame.environment.w);
+    t_max = hn::Set(d_, job_.frame.ambient_radius);
     wanted = hn::And(wanted, hn::Gt(dot(direction, geometric), hn::Zero(d_)));
   }
 

@@ -5,6 +5,7 @@
 #define HWY_TARGET_INCLUDE "render/kernels/visibility_temporal.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/simd/guide.hpp"
 #include "render/kernels/simd/moments.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -106,7 +107,7 @@ class VisibilityAccumulation {
   HWY_INLINE void block(int x, int y) const {
     const V zero = hn::Zero(d_);
     const Quad<V> now = load(job_.raw, x, y);
-    const M seen = hn::Gt(load(job_.guide, x, y).w, zero);
+    const M seen = guide_is_surface(load(job_.guide, x, y));
     const Remembered old = recall(x, y);
     const Channel shadow =
         accumulate(now.x, old.signal.x, old.moments.x, old.moments.z, old.frames.x, old.fast.x,

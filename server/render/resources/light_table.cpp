@@ -25,21 +25,22 @@ void write_lights(const gpu::Buffer& table, std::span<const shared::Light> light
 
 std::vector<shared::Light> frame_lights(const gpu::Buffer& table,
                                         const shared::FrameConstants& frame) {
-  const bool sun = frame.sun.w >= 0.0f;
-  const std::size_t count = frame.counts.x - (sun ? 1u : 0u);
+  const bool sun = frame.sun_radius >= 0.0f;
+  const std::size_t count = frame.light_count - (sun ? 1u : 0u);
   const auto* first = reinterpret_cast<const shared::Light*>(table.mapped());
   std::vector<shared::Light> lights(first, first + count);
   if (sun) {
     shared::Light light{};
     light.type = shared::light_directional;
-    light.direction = -glm::vec3(frame.sun);
+    light.direction = -frame.sun_direction;
     light.color = glm::vec3(frame.sun_irradiance);
-    light.radius = frame.sun.w;
+    light.radius = frame.sun_radius;
     lights.push_back(light);
   }
   for (shared::Light& light : lights) {
-    const bool overridden = light.type == shared::light_directional && frame.exposure.z >= 0.0f;
-    if (overridden) light.radius = frame.exposure.z;
+    const bool overridden =
+        light.type == shared::light_directional && frame.directional_light_radius >= 0.0f;
+    if (overridden) light.radius = frame.directional_light_radius;
   }
   return lights;
 }

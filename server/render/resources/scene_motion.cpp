@@ -65,14 +65,14 @@ SceneMotion scene_motion(const MovingScene& scene, const shared::FrameConstants&
   const auto& lights = scene.lights();
   const auto& previous = scene.previous_lights();
   for (std::size_t i = 0; i < lights.size(); ++i) {
-    add(sum, lights[i], previous[i], scene.rest().scene->bounds, now.exposure.z);
+    add(sum, lights[i], previous[i], scene.rest().scene->bounds, now.directional_light_radius);
   }
-  if (now.sun.w >= 0.0f && before->sun.w >= 0.0f) {
+  if (now.sun_radius >= 0.0f && before->sun_radius >= 0.0f) {
     sum.add(glm::dot(glm::vec3(now.sun_irradiance), luminance_weights),
-            half_turn(glm::vec3(before->sun), glm::vec3(now.sun)), now.sun.w);
+            half_turn(before->sun_direction, now.sun_direction), now.sun_radius);
   }
-  const glm::vec2 facing(now.environment.y, now.environment.z);
-  const glm::vec2 faced(before->environment.y, before->environment.z);
+  const glm::vec2 facing(now.environment_cos, now.environment_sin);
+  const glm::vec2 faced(before->environment_cos, before->environment_sin);
   const float turn = std::atan2(facing.x * faced.y - facing.y * faced.x, glm::dot(facing, faced));
   return {sum.light > 0.0f ? sum.moved / sum.light : 0.0f, std::abs(turn), scene.things_moved()};
 }

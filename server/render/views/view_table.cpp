@@ -113,7 +113,7 @@ glm::vec4 motion_error(const Pixel& pixel, const ViewContext& context) {
   const glm::vec2 ndc = pixel.position / size * 2.0f - 1.0f;
   const glm::vec4& unproject = frame.unproject;
   glm::vec2 slope = ndc * glm::vec2(unproject) + glm::vec2(unproject.z, unproject.w);
-  if ((frame.counts.y & shared::frame_orthographic) == 0) slope *= view_z;
+  if ((frame.flags & shared::frame_orthographic) == 0) slope *= view_z;
   const glm::vec4 world = frame.inverse_view * glm::vec4(slope, -view_z, 1.0f);
   const glm::vec4 before = frame.previous_unjittered * world, now = frame.unjittered * world;
   const glm::vec2 rest = (glm::vec2(before) / before.w - glm::vec2(now) / now.w) * 0.5f;

@@ -34,7 +34,7 @@ std::vector<glm::mat4> joint_matrices(const Skin& skin, const Pose& pose) {
 inline glm::vec3 unit_or(const glm::vec3& vector, const glm::vec3& fallback) {
   const float squared = glm::dot(vector, vector);
   if (squared > 1e-30f && squared < 1e30f) return vector * (1.0f / std::sqrt(squared));
-  const glm::dvec3 wide(vector);  // whose square neither vanishes nor overflows
+  const glm::dvec3 wide(vector);  // its square neither underflows nor overflows
   const double length = glm::length(wide);
   return length > 0.0 && std::isfinite(length) ? glm::vec3(wide / length) : fallback;
 }
@@ -59,7 +59,7 @@ shared::Vertex morphed(const shared::Vertex& base, std::size_t index,
   return vertex;
 }
 
-/// Cofactors divided by nothing: the inverse transpose's direction, whatever the scale.
+/// The cofactor matrix: the inverse transpose up to scale, without its division.
 glm::mat3 cofactors(const glm::mat3& m) {
   return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
 }

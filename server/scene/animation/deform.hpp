@@ -6,15 +6,14 @@
 
 namespace heliograph::scene {
 
-/// Whether a mesh that deforms has another shape in one pose than in another.
+/// Whether a deforming mesh has different vertices in two poses.
 bool shape_differs(const Scene& scene, const Deformation& deformation, const Pose& a,
                    const Pose& b);
 
-/// The vertices of a mesh that deforms, in `pose`: morph targets move them first (glTF 3.7.2.2),
-/// then joints (3.7.3.3), on all processors. Normals follow the inverse transpose of the blended
-/// joint matrices, or belong to the moved triangles where the file has none. `vertices` is as long
-/// as the shape's.
-/// @return a box around them, mesh space
+/// The vertices of a deforming mesh in `pose`: morph targets (glTF 3.7.2.2), then joints (3.7.3.3),
+/// on all cores. Normals use the inverse transpose of the blended joint matrices, or are those of
+/// the deformed triangles where the file has none. `vertices` has as many elements as the shape.
+/// @return their bounding box in mesh space
 Bounds deform(const Scene& scene, const Deformation& deformation, const Pose& pose,
               std::span<shared::Vertex> vertices);
 

@@ -8,7 +8,7 @@
 namespace heliograph::scene {
 namespace {
 
-/// Between which keys a moment lies, and how far from the first to the second.
+/// The two keys around a time, and the interpolation parameter between them.
 struct Span {
   std::size_t first;
   std::size_t second;
@@ -38,7 +38,7 @@ void store(const glm::quat& rotation, float* xyzw) {
   xyzw[3] = unit.w;
 }
 
-/// Along the shorter of the two great arcs; along the chord where they hardly differ.
+/// Spherical interpolation along the shorter arc; linear where the rotations hardly differ.
 glm::quat spherical(const glm::quat& from, glm::quat to, float fraction) {
   float cosine = glm::dot(from, to);
   if (cosine < 0.0f) {

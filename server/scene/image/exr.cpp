@@ -15,29 +15,29 @@
 #include <string>
 
 #include "scene/image/exr_header.hpp"
-#include "scene/image/image_decoder.hpp"
+#include "scene/image/image_size.hpp"
 #include "scene/import_error.hpp"
 
 namespace heliograph::scene {
 namespace {
 
-/// A file in memory, as OpenEXR reads it.
+/// A file in memory as an OpenEXR stream.
 class MemoryStream : public Imf::IStream {
  public:
-  explicit MemoryStream(std::span<const std::uint8_t> bytes) : IStream("picture"), bytes_(bytes) {}
+  explicit MemoryStream(std::span<const std::uint8_t> bytes) : IStream("image"), bytes_(bytes) {}
 
   bool read(char* target, int count) override {
-    const auto wanted = static_cast<std::size_t>(count);
-    if (count < 0 || wanted > bytes_.size() - position_) {
-      throw ImportError("is cut: its data ends early");
+    const auto requested = static_cast<std::size_t>(count);
+    if (count < 0 || requested > bytes_.size() - position_) {
+      throw ImportError("is truncated: its data ends early");
     }
-    std::memcpy(target, bytes_.data() + position_, wanted);
-    position_ += wanted;
+    std::memcpy(target, bytes_.data() + position_, requested);
+    position_ += requested;
     return position_ < bytes_.size();
   }
   std::uint64_t tellg() override { return position_; }
   void seekg(std::uint64_t position) override {
-    if (position > bytes_.size()) throw ImportError("is cut: its data ends early");
+    if (position > bytes_.size()) throw ImportError("is truncated: its data ends early");
     position_ = position;
   }
 
@@ -48,23 +48,23 @@ class MemoryStream : public Imf::IStream {
 
 ImageSize check_header(const Imf::Header& header, std::uint64_t most_pixels) {
   if (header.hasType() && header.type() != Imf::SCANLINEIMAGE && header.type() != Imf::TILEDIMAGE) {
-    throw ImportError("holds deep data, not a picture");
+    throw ImportError("has deep data, which is not supported");
   }
   if (Imf::hasEnvmap(header) && Imf::envmap(header) != Imf::ENVMAP_LATLONG) {
-    throw ImportError("is a cube map; longitude and latitude are read");
+    throw ImportError("is a cube map; only latitude-longitude images are supported");
   }
   const auto& window = header.dataWindow();
   const auto& display = header.displayWindow();
   if (window.min != display.min || window.max != display.max) {
-    throw ImportError("holds only a part of its picture, or more than that");
+    throw ImportError("has a data window that differs from its display window");
   }
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-  constexpr std::int64_t highest = largest_image_side / 2;
+  constexpr std::int64_t max_height = largest_image_side / 2;
   if (width < 1 || height < 1) throw ImportError("has no pixels");
-  if (width > largest_image_side || height > highest) {
+  if (width > largest_image_side || height > max_height) {
     throw ImportError("is larger than " + std::to_string(largest_image_side) + " x " +
-                      std::to_string(highest) + " pixels");
+                      std::to_string(max_height) + " pixels");
   }
   if (static_cast<std::uint64_t>(width * height) > most_pixels) {
     throw ImportError("has more than " + std::to_string(most_pixels) + " pixels");
@@ -72,13 +72,13 @@ ImageSize check_header(const Imf::Header& header, std::uint64_t most_pixels) {
   if (header.hasTileDescription()) {
     const auto& tiles = header.tileDescription();
     if (tiles.xSize > largest_image_side || tiles.ySize > largest_image_side) {
-      throw ImportError("has tiles larger than any picture");
+      throw ImportError("has tiles larger than an image may be");
     }
   }
   return {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
 }
 
-/// The names of red, green and blue, or nothing.
+/// The channel names of red, green and blue, or nullopt.
 std::optional<std::array<std::string, 3>> find_colors(const Imf::ChannelList& channels) {
   if (channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B")) {
     return std::array<std::string, 3>{"R", "G", "B"};
@@ -107,7 +107,7 @@ void read_channels(Imf::InputPart& part, const std::array<std::string, 3>& names
       throw ImportError("has channels of different resolutions");
     }
     char* first = reinterpret_cast<char*>(&environment.radiance[0][c]);
-    // The address of pixel (0, 0), which need not be in the window.
+    // The address of pixel (0, 0), which may be outside the data window.
     char* origin = first - std::int64_t{window.min.x} * std::int64_t{sizeof(glm::vec3)} -
                    std::int64_t{window.min.y} * static_cast<std::int64_t>(row);
     frame.insert(names[c], Imf::Slice(Imf::FLOAT, origin, sizeof(glm::vec3), row));
@@ -118,7 +118,7 @@ void read_channels(Imf::InputPart& part, const std::array<std::string, 3>& names
   for (glm::vec3& texel : environment.radiance) texel = glm::vec3(texel.x);
 }
 
-/// Luminance at every pixel, chroma at every fourth: OpenEXR puts them together.
+/// Luminance at every pixel and chroma at every fourth, combined by OpenEXR.
 void read_luminance_and_chroma(std::span<const std::uint8_t> file, Environment& environment) {
   MemoryStream stream(file);
   Imf::RgbaInputFile input(stream);
@@ -154,7 +154,7 @@ Environment decode_exr(std::span<const std::uint8_t> file, std::uint64_t most_pi
     if (channel_count > most_channels) throw ImportError("has more than 256 channels");
     const bool chroma = channels.findChannel("RY") && channels.findChannel("BY");
     const auto names = find_colors(channels);
-    if (!names) throw ImportError("has neither colour nor luminance channels");
+    if (!names) throw ImportError("has neither color nor luminance channels");
     Environment environment{size.width, size.height, {}};
     environment.radiance.resize(std::size_t{size.width} * size.height);
     if (chroma && (*names)[0] == "Y") {

@@ -4,16 +4,15 @@
 #include <span>
 
 #include "scene/environment.hpp"
-#include "scene/image/image_decoder.hpp"
+#include "scene/image/image_size.hpp"
 
 namespace heliograph::scene {
 
-/// Whether a file begins like an OpenEXR picture.
+/// Whether a file starts with the magic number of OpenEXR.
 bool is_exr(std::span<const std::uint8_t> file);
 
-/// Decodes the first part of an OpenEXR picture: scan lines or tiles, any compression, half, float
-/// or whole numbers, with channels R, G and B (of a layer, where the picture has none of its own),
-/// luminance and chroma, or Y alone.
+/// Decodes the first part of an OpenEXR image: scan lines or tiles, any compression, half, float or
+/// uint, with channels R, G and B (of a layer if the image has none), luminance and chroma, or Y.
 /// @throws ImportError, also when there are more than `most_pixels`
 Environment decode_exr(std::span<const std::uint8_t> file,
                        std::uint64_t most_pixels = most_environment_pixels);

@@ -15,7 +15,7 @@ struct FixedType {
   std::uint32_t bytes;
 };
 
-/// "OpenEXR File Layout": the types that always take the same room.
+/// "OpenEXR File Layout": the attribute types of fixed size.
 constexpr std::array<FixedType, 24> fixed_types{{{"box2i", 16},
                                                  {"box2f", 16},
                                                  {"chromaticities", 32},
@@ -98,7 +98,7 @@ void check_value(std::string_view type, std::span<const std::uint8_t> value) {
   if (type == "chlist") return check_channels(Bytes(value));
   if (type == "stringvector") return check_texts(Bytes(value));
   if (type == "preview") return check_preview(Bytes(value));
-  if (type == "idmanifest") throw ImportError("holds a manifest of identifiers, not a picture");
+  if (type == "idmanifest") throw ImportError("has an ID manifest, which is not supported");
   const auto fixed = std::find_if(fixed_types.begin(), fixed_types.end(),
                                   [&](const FixedType& known) { return known.name == type; });
   if (fixed != fixed_types.end() && fixed->bytes != value.size()) refuse();

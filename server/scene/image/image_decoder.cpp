@@ -23,7 +23,7 @@ ImageSize probe_known_format(std::span<const std::uint8_t> file) {
   if (is_png(file)) return probe_png(file);
   if (is_jpeg(file)) return probe_jpeg(file);
   if (is_webp(file)) return probe_webp(file);
-  if (is_ktx2(file)) throw ImportError("is KTX2 (KHR_texture_basisu), which is not read");
+  if (is_ktx2(file)) throw ImportError("is KTX2 (KHR_texture_basisu), which is not supported");
   throw ImportError("is neither PNG, JPEG nor WebP");
 }
 
@@ -41,7 +41,8 @@ ImageSize probe_image(std::span<const std::uint8_t> file) {
 
 void decode_image(std::span<const std::uint8_t> file, ImageSize size,
                   std::span<std::uint8_t> rgba) {
-  if (rgba.size() < std::size_t(size.width) * size.height * 4) throw ImportError("has no room");
+  if (rgba.size() < std::size_t(size.width) * size.height * 4)
+    throw ImportError("does not fit the output buffer");
   if (is_png(file)) return decode_png(file, size, rgba);
   if (is_webp(file)) return decode_webp(file, size, rgba);
   decode_jpeg(file, size, rgba);

@@ -22,8 +22,8 @@ Decompressor make_decompressor() {
   return decompressor;
 }
 
-// libjpeg fills what it cannot read with grey and calls that a warning. Only stray bytes between
-// segments, which some cameras leave behind, cost no pixels.
+// libjpeg fills missing data with gray and only warns. The one harmless warning is about stray
+// bytes between segments, which some cameras write.
 bool is_harmless(tjhandle handle) {
   return tjGetErrorCode(handle) == TJERR_WARNING &&
          std::string_view(tjGetErrorStr2(handle)).find("extraneous bytes") !=
@@ -51,9 +51,9 @@ ImageSize probe_jpeg(std::span<const std::uint8_t> file) {
 }
 
 void decode_jpeg(std::span<const std::uint8_t> file, ImageSize size, std::span<std::uint8_t> rgba) {
-  if (probe_jpeg(file) != size) throw ImportError("changes its size");
+  if (probe_jpeg(file) != size) throw ImportError("has a size that differs from its header");
   const Decompressor decompressor = make_decompressor();
-  // A progressive picture can repeat its scans without end.
+  // A progressive JPEG can repeat its scans without limit.
   constexpr int flags = TJFLAG_LIMITSCANS;
   if (tjDecompress2(decompressor.get(), file.data(), file.size(), rgba.data(),
                     static_cast<int>(size.width), 0, static_cast<int>(size.height), TJPF_RGBA,

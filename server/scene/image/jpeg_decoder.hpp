@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "scene/image/image_decoder.hpp"
+#include "scene/image/image_size.hpp"
 
 namespace heliograph::scene {
 

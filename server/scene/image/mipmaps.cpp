@@ -9,7 +9,7 @@
 namespace heliograph::scene {
 namespace {
 
-// Levels are computed in 16 bits a channel, in which sRGB's darkest steps stay apart.
+// Levels are computed with 16 bits per channel, which keeps the darkest sRGB steps distinct.
 struct ColorTables {
   std::array<std::uint16_t, 256> to_linear;
   std::array<std::uint16_t, 256> widen;
@@ -49,8 +49,8 @@ struct Taps {
   std::array<std::uint32_t, 3> weights{};
 };
 
-// Which pixels of a side of `source` one pixel of the halved side covers, and by how much, in units
-// of 1 / target: two whole ones where even, three where odd.
+// Source pixels along one axis that a target pixel covers, and their weights in units of 1 /
+// target: two equal weights for even sizes, three for odd ones.
 Taps taps_of(std::uint32_t pixel, std::uint32_t source, std::uint32_t target) {
   Taps taps;
   const std::uint64_t begin = std::uint64_t(pixel) * source;
@@ -99,7 +99,7 @@ void halve(const Level& source, const Level& target, bool srgb) {
   }
 }
 
-// The same for even sizes, where every weight is one: most textures, and much faster.
+// The same for even sizes, where all weights are equal: most textures, and much faster.
 void halve_even(const Level& source, const Level& target, bool srgb) {
   const ColorTables& tables = color_tables();
   const std::array<std::uint16_t, 256>& decode = srgb ? tables.to_linear : tables.widen;

@@ -35,7 +35,7 @@ void read_bytes(png_structp png, png_bytep target, png_size_t count) {
 
 void ignore_warning(png_structp, png_const_charp) {}
 
-// Whatever the file holds becomes 8-bit RGBA.
+// Converts every format to 8-bit RGBA.
 void request_rgba(png_structp png) {
   png_set_expand(png);
   png_set_scale_16(png);
@@ -44,8 +44,8 @@ void request_rgba(png_structp png) {
   png_set_interlace_handling(png);
 }
 
-// libpng reports errors by longjmp: between setjmp and the return there must be nothing that needs
-// destroying, so the rows are made by the caller.
+// libpng reports errors by longjmp: no object with a destructor may live between setjmp and the
+// return, so the caller allocates the rows.
 bool read_rows(png_structp png, png_infop info, ImageSize size, png_bytepp rows) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_read_info(png, info);
@@ -54,7 +54,7 @@ bool read_rows(png_structp png, png_infop info, ImageSize size, png_bytepp rows)
   if (png_get_image_width(png, info) != size.width ||
       png_get_image_height(png, info) != size.height ||
       png_get_rowbytes(png, info) != std::size_t(size.width) * 4) {
-    png_error(png, "its size is not the one in its header");
+    png_error(png, "its size differs from its header");
   }
   png_read_image(png, rows);
   png_read_end(png, nullptr);
@@ -72,7 +72,7 @@ class Reader {
     }
     png_set_read_fn(png_, &input_, read_bytes);
     png_set_user_limits(png_, largest_image_side, largest_image_side);
-    // Texts and profiles are not used: neither their number nor their size may cost anything.
+    // Text and profile chunks are not used and must not cost memory.
     png_set_chunk_cache_max(png_, 16);
     png_set_chunk_malloc_max(png_, 1 << 20);
     png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, 0);

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "scene/image/image_decoder.hpp"
+#include "scene/image/image_size.hpp"
 #include "scene/import_error.hpp"
 
 namespace heliograph::scene {
@@ -20,17 +20,17 @@ class ByteReader {
   explicit ByteReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
 
   std::uint8_t next() {
-    if (position_ == bytes_.size()) throw ImportError("is cut: its data ends early");
+    if (position_ == bytes_.size()) throw ImportError("is truncated: its data ends early");
     return bytes_[position_++];
   }
 
   Pixel next_pixel() { return {next(), next(), next(), next()}; }
 
   std::string next_line() {
-    constexpr std::size_t longest = 4096;
+    constexpr std::size_t max_line_length = 4096;
     std::string line;
     for (std::uint8_t byte = next(); byte != '\n'; byte = next()) {
-      if (line.size() == longest) throw ImportError("has a damaged header");
+      if (line.size() == max_line_length) throw ImportError("has a damaged header");
       line += static_cast<char>(byte);
     }
     return line;
@@ -57,16 +57,16 @@ ImageSize read_header(ByteReader& reader) {
   if (std::sscanf(resolution.c_str(), "-Y %9u +X %9u %c", &size.height, &size.width, &rest) != 2) {
     throw ImportError("has a damaged header or rows in an unusual order");
   }
-  constexpr std::uint32_t highest = largest_image_side / 2;
+  constexpr std::uint32_t max_height = largest_image_side / 2;
   if (size.width == 0 || size.height == 0) throw ImportError("has no pixels");
-  if (size.width > largest_image_side || size.height > highest) {
+  if (size.width > largest_image_side || size.height > max_height) {
     throw ImportError("is larger than " + std::to_string(largest_image_side) + " x " +
-                      std::to_string(highest) + " pixels");
+                      std::to_string(max_height) + " pixels");
   }
   return size;
 }
 
-// One channel of a row: runs of one value and stretches of many.
+// One channel of a row: runs of one value and literal sequences.
 void read_channel(ByteReader& reader, std::span<Pixel> row, std::size_t channel) {
   std::size_t x = 0;
   while (x < row.size()) {
@@ -81,7 +81,7 @@ void read_channel(ByteReader& reader, std::span<Pixel> row, std::size_t channel)
   }
 }
 
-// The older encoding: pixels one by one, where (1, 1, 1, n) repeats the one before.
+// The older encoding: pixel by pixel, where (1, 1, 1, n) repeats the previous pixel.
 void read_pixels(ByteReader& reader, std::span<Pixel> row, std::optional<Pixel> first) {
   std::size_t x = 0;
   int shift = 0;
@@ -121,9 +121,9 @@ Environment decode_radiance(std::span<const std::uint8_t> file, std::uint64_t mo
   if (std::uint64_t{size.width} * size.height > most_pixels) {
     throw ImportError("has more than " + std::to_string(most_pixels) + " pixels");
   }
-  // No encoding takes less than 4 bytes a row: refuse before making room.
+  // Every encoding takes at least 4 bytes per row: reject before allocating.
   if (reader.left() < std::size_t(size.height) * 4)
-    throw ImportError("is cut: its data ends early");
+    throw ImportError("is truncated: its data ends early");
   Environment environment{size.width, size.height, {}};
   environment.radiance.reserve(std::size_t(size.width) * size.height);
   std::vector<Pixel> row(size.width);

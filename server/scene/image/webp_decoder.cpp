@@ -18,12 +18,12 @@ ImageSize probe_webp(std::span<const std::uint8_t> file) {
   if (WebPGetFeatures(file.data(), file.size(), &features) != VP8_STATUS_OK) {
     throw ImportError("has a damaged WebP header");
   }
-  if (features.has_animation) throw ImportError("is a WebP animation, not a picture");
+  if (features.has_animation) throw ImportError("is an animated WebP, which is not supported");
   return {static_cast<std::uint32_t>(features.width), static_cast<std::uint32_t>(features.height)};
 }
 
 void decode_webp(std::span<const std::uint8_t> file, ImageSize size, std::span<std::uint8_t> rgba) {
-  if (probe_webp(file) != size) throw ImportError("changes its size");
+  if (probe_webp(file) != size) throw ImportError("has a size that differs from its header");
   const int stride = static_cast<int>(size.width) * 4;
   if (!WebPDecodeRGBAInto(file.data(), file.size(), rgba.data(), rgba.size(), stride)) {
     throw ImportError("is a damaged WebP");

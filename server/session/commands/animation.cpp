@@ -2,6 +2,8 @@
 
 namespace heliograph::session {
 
+namespace methods = protocol::methods;
+
 using protocol::AnimationPlay;
 using protocol::AnimationRate;
 using protocol::AnimationSeek;
@@ -9,25 +11,25 @@ using protocol::AnimationState;
 using protocol::Empty;
 
 void add_animation_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
-  add_command<Empty, AnimationState>(
-      dispatcher, host, "animation.list",
+  add_command<methods::animation_list>(
+      dispatcher, host,
       [](Session& session, const Empty&, const std::string&) { return session.animation(); });
-  add_command<AnimationPlay, AnimationState>(
-      dispatcher, host, "animation.play",
+  add_command<methods::animation_play>(
+      dispatcher, host,
       [](Session& session, const AnimationPlay& request, const std::string& viewer) {
         return session.play(request, viewer);
       });
-  add_command<Empty, AnimationState>(dispatcher, host, "animation.pause",
-                                     [](Session& session, const Empty&, const std::string& viewer) {
-                                       return session.pause(viewer);
-                                     });
-  add_command<AnimationSeek, AnimationState>(
-      dispatcher, host, "animation.seek",
+  add_command<methods::animation_pause>(
+      dispatcher, host, [](Session& session, const Empty&, const std::string& viewer) {
+        return session.pause(viewer);
+      });
+  add_command<methods::animation_seek>(
+      dispatcher, host,
       [](Session& session, const AnimationSeek& request, const std::string& viewer) {
         return session.seek(request, viewer);
       });
-  add_command<AnimationRate, AnimationState>(
-      dispatcher, host, "animation.rate",
+  add_command<methods::animation_rate>(
+      dispatcher, host,
       [](Session& session, const AnimationRate& request, const std::string& viewer) {
         return session.set_rate(request, viewer);
       });

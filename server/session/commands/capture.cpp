@@ -3,6 +3,8 @@
 
 namespace heliograph::session {
 
+namespace methods = protocol::methods;
+
 using protocol::CapturedFrame;
 using protocol::Empty;
 using protocol::FrameBuffers;
@@ -34,18 +36,18 @@ void capture(Session& session, const FrameCapture& request, const std::string& v
 }  // namespace
 
 void add_capture_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
-  add_command<Empty, FrameBuffers>(
-      dispatcher, host, "frame.buffers",
+  add_command<methods::frame_buffers>(
+      dispatcher, host,
       [](Session& session, const Empty&, const std::string&) -> Result<FrameBuffers> {
         return FrameBuffers{.buffers = session.buffers()};
       });
-  dispatcher.add<FrameCapture, CapturedFrame>(
-      "frame.capture", [&](const FrameCapture& request, const protocol::CallContext& context,
-                           protocol::Completion<CapturedFrame> done) {
-        const auto session = host.sessions().session_of(context);
-        if (!session) return done(session.error());
-        capture(**session, request, context.viewer, std::move(done));
-      });
+  dispatcher.add<methods::frame_capture>([&](const FrameCapture& request,
+                                             const protocol::CallContext& context,
+                                             protocol::Completion<CapturedFrame> done) {
+    const auto session = host.sessions().session_of(context);
+    if (!session) return done(session.error());
+    capture(**session, request, context.viewer, std::move(done));
+  });
 }
 
 }  // namespace heliograph::session

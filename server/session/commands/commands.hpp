@@ -22,13 +22,12 @@ void add_probe_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 
 /// Adds a command that answers at once: `command(session, request, viewer)` gives a
 /// Result<Response>. The session is the one that the call belongs to.
-template <class Request, class Response, class Command>
-void add_command(protocol::Dispatcher& dispatcher, SessionHost& host, std::string_view name,
-                 Command command) {
-  dispatcher.add<Request, Response>(
-      name, [&host, command = std::move(command)](const Request& request,
-                                                  const protocol::CallContext& context,
-                                                  protocol::Completion<Response> done) {
+template <class Method, class Command>
+void add_command(protocol::Dispatcher& dispatcher, SessionHost& host, Command command) {
+  dispatcher.add<Method>(
+      [&host, command = std::move(command)](const typename Method::Params& request,
+                                            const protocol::CallContext& context,
+                                            protocol::Completion<typename Method::Result> done) {
         const auto session = host.sessions().session_of(context);
         if (!session) return done(session.error());
         done(command(**session, request, context.viewer));

@@ -6,6 +6,8 @@
 
 namespace heliograph::session {
 
+namespace methods = protocol::methods;
+
 using protocol::Empty;
 using protocol::EnvironmentSet;
 using protocol::EnvironmentState;
@@ -56,35 +58,34 @@ void set_environment(SessionHost& host, const std::shared_ptr<Session>& session,
 }  // namespace
 
 void add_edit_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
-  add_command<Empty, LightList>(
-      dispatcher, host, "lights.list",
+  add_command<methods::lights_list>(
+      dispatcher, host,
       [](Session& session, const Empty&, const std::string&) { return session.lights(); });
-  add_command<LightsPatch, LightState>(
-      dispatcher, host, "lights.patch",
+  add_command<methods::lights_patch>(
+      dispatcher, host,
       [](Session& session, const LightsPatch& request, const std::string& viewer) {
         return session.patch_light(request, viewer);
       });
-  add_command<Empty, MaterialList>(
-      dispatcher, host, "materials.list",
+  add_command<methods::materials_list>(
+      dispatcher, host,
       [](Session& session, const Empty&, const std::string&) { return session.materials(); });
-  add_command<MaterialsPatch, MaterialState>(
-      dispatcher, host, "materials.patch",
+  add_command<methods::materials_patch>(
+      dispatcher, host,
       [](Session& session, const MaterialsPatch& request, const std::string& viewer) {
         return session.patch_material(request, viewer);
       });
-  add_command<Empty, EnvironmentState>(
-      dispatcher, host, "environment.list",
+  add_command<methods::environment_list>(
+      dispatcher, host,
       [&host](Session& session, const Empty&, const std::string&) -> Result<EnvironmentState> {
         return describe_environment(host, session);
       });
-  dispatcher.add<EnvironmentSet, EnvironmentState>(
-      "environment.set",
-      [&host](const EnvironmentSet& request, const protocol::CallContext& context,
-              protocol::Completion<EnvironmentState> done) {
-        const auto session = host.sessions().session_of(context);
-        if (!session) return done(session.error());
-        set_environment(host, *session, request, context.viewer, std::move(done));
-      });
+  dispatcher.add<methods::environment_set>([&host](const EnvironmentSet& request,
+                                                   const protocol::CallContext& context,
+                                                   protocol::Completion<EnvironmentState> done) {
+    const auto session = host.sessions().session_of(context);
+    if (!session) return done(session.error());
+    set_environment(host, *session, request, context.viewer, std::move(done));
+  });
 }
 
 }  // namespace heliograph::session

@@ -4,6 +4,8 @@
 
 namespace heliograph::session {
 
+namespace methods = protocol::methods;
+
 using protocol::Empty;
 using protocol::FrameStep;
 using protocol::ReferenceStart;
@@ -12,31 +14,31 @@ using protocol::Result;
 using protocol::StepState;
 
 void add_frame_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
-  dispatcher.add<FrameStep, StepState>(
-      "frame.step", [&host](const FrameStep& request, const protocol::CallContext& context,
-                            protocol::Completion<StepState> done) {
-        const auto session = host.sessions().session_of(context);
-        if (!session) return done(session.error());
-        const Result<void> accepted = (*session)->request_step(
-            {.frames = request.frames, .dt = request.dt, .viewer = context.viewer, .done = done});
-        if (!accepted) done(accepted.error());
-      });
-  add_command<Empty, StepState>(
-      dispatcher, host, "frame.run",
+  dispatcher.add<methods::frame_step>([&host](const FrameStep& request,
+                                              const protocol::CallContext& context,
+                                              protocol::Completion<StepState> done) {
+    const auto session = host.sessions().session_of(context);
+    if (!session) return done(session.error());
+    const Result<void> accepted = (*session)->request_step(
+        {.frames = request.frames, .dt = request.dt, .viewer = context.viewer, .done = done});
+    if (!accepted) done(accepted.error());
+  });
+  add_command<methods::frame_run>(
+      dispatcher, host,
       [](Session& session, const Empty&, const std::string& viewer) -> Result<StepState> {
         return session.run_freely(viewer);
       });
-  add_command<ReferenceStart, ReferenceState>(
-      dispatcher, host, "reference.start",
+  add_command<methods::reference_start>(
+      dispatcher, host,
       [](Session& session, const ReferenceStart& request, const std::string& viewer) {
         return session.start_reference(request, viewer);
       });
-  add_command<Empty, ReferenceState>(dispatcher, host, "reference.stop",
-                                     [](Session& session, const Empty&, const std::string& viewer) {
-                                       return session.stop_reference(viewer);
-                                     });
-  add_command<Empty, ReferenceState>(
-      dispatcher, host, "reference.status",
+  add_command<methods::reference_stop>(
+      dispatcher, host, [](Session& session, const Empty&, const std::string& viewer) {
+        return session.stop_reference(viewer);
+      });
+  add_command<methods::reference_status>(
+      dispatcher, host,
       [](Session& session, const Empty&, const std::string&) -> Result<ReferenceState> {
         return session.reference();
       });

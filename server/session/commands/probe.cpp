@@ -8,9 +8,11 @@
 
 namespace heliograph::session {
 
+namespace methods = protocol::methods;
+
+using protocol::ImagePoint;
 using protocol::Inspection;
 using protocol::PickResult;
-using protocol::PicturePoint;
 using protocol::Result;
 
 namespace {
@@ -63,35 +65,35 @@ Inspection inspect(const render::Renderer& renderer, const RenderState& state, g
 }
 
 /// Adds a method that reads something from the picture under a point.
-template <class Response, class Read>
-void add_probe(protocol::Dispatcher& dispatcher, SessionHost& host, std::string_view name,
-               Read read) {
-  dispatcher.add<PicturePoint, Response>(
-      name, [&host, read](const PicturePoint& request, const protocol::CallContext& context,
-                          protocol::Completion<Response> done) {
-        const auto session = host.sessions().session_of(context);
-        if (!session) return done(session.error());
-        const glm::vec2 point(request.x, request.y);
-        const Result<void> accepted = (*session)->request_probe(
-            {.read = [read, point, done](
-                         render::Renderer& renderer,
-                         const RenderState& state) { done(read(renderer, state, point)); },
-             .fail = [done](const protocol::Error& error) { done(error); }});
-        if (!accepted) done(accepted.error());
-      });
+template <class Method, class Read>
+void add_probe(protocol::Dispatcher& dispatcher, SessionHost& host, Read read) {
+  dispatcher.add<Method>([&host, read](const ImagePoint& request,
+                                       const protocol::CallContext& context,
+                                       protocol::Completion<typename Method::Result> done) {
+    const auto session = host.sessions().session_of(context);
+    if (!session) return done(session.error());
+    const glm::vec2 point(request.x, request.y);
+    const Result<void> accepted = (*session)->request_probe(
+        {.read = [read, point, done](
+                     render::Renderer& renderer,
+                     const RenderState& state) { done(read(renderer, state, point)); },
+         .fail = [done](const protocol::Error& error) { done(error); }});
+    if (!accepted) done(accepted.error());
+  });
 }
 
 }  // namespace
 
 void add_probe_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
-  add_probe<PickResult>(dispatcher, host, "scene.pick",
-                        [](const render::Renderer& renderer, const RenderState& state,
-                           glm::vec2 point) -> Result<PickResult> {
-                          if (!state.scene) return protocol::error::not_ready("no scene is loaded");
-                          return pick(renderer, *state.scene, point);
-                        });
-  add_probe<Inspection>(
-      dispatcher, host, "frame.inspect",
+  add_probe<methods::scene_pick>(dispatcher, host,
+                                 [](const render::Renderer& renderer, const RenderState& state,
+                                    glm::vec2 point) -> Result<PickResult> {
+                                   if (!state.scene)
+                                     return protocol::error::not_ready("no scene is loaded");
+                                   return pick(renderer, *state.scene, point);
+                                 });
+  add_probe<methods::frame_inspect>(
+      dispatcher, host,
       [](const render::Renderer& renderer, const RenderState& state,
          glm::vec2 point) -> Result<Inspection> { return inspect(renderer, state, point); });
 }

@@ -2,6 +2,8 @@
 
 namespace heliograph::session {
 
+namespace methods = protocol::methods;
+
 using protocol::Empty;
 using protocol::Result;
 using protocol::SceneCancelled;
@@ -23,27 +25,27 @@ Result<SceneListResult> list_scenes(const SessionHost& host, const Session& sess
 }  // namespace
 
 void add_scene_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
-  add_command<Empty, SceneListResult>(dispatcher, host, "scene.list",
-                                      [&](Session& session, const Empty&, const std::string&) {
-                                        return list_scenes(host, session);
-                                      });
-  add_command<Empty, SceneInfo>(
-      dispatcher, host, "scene.info",
+  add_command<methods::scene_list>(dispatcher, host,
+                                   [&](Session& session, const Empty&, const std::string&) {
+                                     return list_scenes(host, session);
+                                   });
+  add_command<methods::scene_info>(
+      dispatcher, host,
       [](Session& session, const Empty&, const std::string&) { return session.scene_info(); });
-  add_command<Empty, Empty>(
-      dispatcher, host, "scene.unload",
+  add_command<methods::scene_unload>(
+      dispatcher, host,
       [](Session& session, const Empty&, const std::string& viewer) -> Result<Empty> {
         session.unload(viewer);
         return Empty();
       });
-  dispatcher.add<SceneLoad, SceneInfo>(
-      "scene.load", [&](const SceneLoad& request, const protocol::CallContext& context,
-                        protocol::Completion<SceneInfo> done) {
-        const auto session = host.sessions().session_of(context);
-        if (!session) return done(session.error());
-        host.load_scene(*session, request, context.viewer, std::move(done));
-      });
-  add_command<Empty, SceneCancelled>(dispatcher, host, "scene.cancel",
+  dispatcher.add<methods::scene_load>([&](const SceneLoad& request,
+                                          const protocol::CallContext& context,
+                                          protocol::Completion<SceneInfo> done) {
+    const auto session = host.sessions().session_of(context);
+    if (!session) return done(session.error());
+    host.load_scene(*session, request, context.viewer, std::move(done));
+  });
+  add_command<methods::scene_cancel>(dispatcher, host,
                                      [&](Session& session, const Empty&, const std::string&) {
                                        return host.cancel_load(session);
                                      });

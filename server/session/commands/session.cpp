@@ -2,6 +2,8 @@
 
 namespace heliograph::session {
 
+namespace methods = protocol::methods;
+
 using protocol::Completion;
 using protocol::Empty;
 using protocol::Result;
@@ -49,7 +51,8 @@ Result<void> may_close(SessionHost& host, const SessionChoice& request, const st
   const bool inside = host.sessions().session_of_viewer(viewer) == *session;
   const bool empty = (*session)->viewers().empty();
   if (!viewer.empty() && !empty && !inside) {
-    return error::make(protocol::ErrorCode::forbidden, "session", "others are in this session");
+    return error::make(protocol::ErrorCode::forbidden, "session",
+                       "other viewers are in this session");
   }
   const ViewerSet& audience = (*session)->viewers();
   if (inside && !audience.may_change(viewer)) return no_control(audience);
@@ -68,42 +71,40 @@ void close(SessionHost& host, const SessionChoice& request, const std::string& v
 }  // namespace
 
 void add_session_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
-  dispatcher.add<SessionCreate, SessionInfo>(
-      "session.create", [&](const SessionCreate& request, const protocol::CallContext& context,
-                            Completion<SessionInfo> done) {
-        host.create_session(request, context.viewer,
-                            [done = std::move(done), viewer = context.viewer](
-                                const Result<std::shared_ptr<Session>>& session) {
-                              if (!session) return done(session.error());
-                              done((*session)->info(viewer));
-                            });
-      });
-  add_command<SessionChoice, SessionJoined>(
-      dispatcher, host, "session.join",
-      [&](Session&, const SessionChoice& request, const std::string& viewer) {
+  dispatcher.add<methods::session_create>([&](const SessionCreate& request,
+                                              const protocol::CallContext& context,
+                                              Completion<SessionInfo> done) {
+    host.create_session(request, context.viewer,
+                        [done = std::move(done),
+                         viewer = context.viewer](const Result<std::shared_ptr<Session>>& session) {
+                          if (!session) return done(session.error());
+                          done((*session)->info(viewer));
+                        });
+  });
+  add_command<methods::session_join>(
+      dispatcher, host, [&](Session&, const SessionChoice& request, const std::string& viewer) {
         return join(host, request, viewer);
       });
-  add_command<Empty, SessionList>(
-      dispatcher, host, "session.list",
+  add_command<methods::session_list>(
+      dispatcher, host,
       [&](Session&, const Empty&, const std::string& viewer) -> Result<SessionList> {
         return list_sessions(host, viewer);
       });
-  add_command<Empty, SessionInfo>(
-      dispatcher, host, "session.info",
+  add_command<methods::session_info>(
+      dispatcher, host,
       [](Session& session, const Empty&, const std::string& viewer) -> Result<SessionInfo> {
         return session.info(viewer);
       });
-  add_command<SessionControl, SessionInfo>(dispatcher, host, "session.control",
-                                           [](Session& session, const SessionControl& request,
-                                              const std::string& viewer) -> Result<SessionInfo> {
-                                             const auto changed =
-                                                 session.viewers().change_control(request, viewer);
-                                             if (!changed) return changed.error();
-                                             session.announce();
-                                             return session.info(viewer);
-                                           });
-  dispatcher.add<SessionChoice, Empty>(
-      "session.close",
+  add_command<methods::session_control>(dispatcher, host,
+                                        [](Session& session, const SessionControl& request,
+                                           const std::string& viewer) -> Result<SessionInfo> {
+                                          const auto changed =
+                                              session.viewers().change_control(request, viewer);
+                                          if (!changed) return changed.error();
+                                          session.announce();
+                                          return session.info(viewer);
+                                        });
+  dispatcher.add<methods::session_close>(
       [&](const SessionChoice& request, const protocol::CallContext& context,
           const Completion<Empty>& done) { close(host, request, context.viewer, done); });
 }

@@ -3,6 +3,8 @@
 
 namespace heliograph::session {
 
+namespace methods = protocol::methods;
+
 using protocol::Empty;
 using protocol::PresetChoice;
 using protocol::PresetList;
@@ -24,29 +26,28 @@ PresetList list_presets() {
 }  // namespace
 
 void add_settings_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
-  add_command<Empty, SettingsState>(
-      dispatcher, host, "settings.get",
+  add_command<methods::settings_get>(
+      dispatcher, host,
       [](Session& session, const Empty&, const std::string&) -> Result<SettingsState> {
         return session.settings();
       });
-  add_command<SettingsPatch, SettingsApplied>(
-      dispatcher, host, "settings.patch",
+  add_command<methods::settings_patch>(
+      dispatcher, host,
       [](Session& session, const SettingsPatch& request, const std::string& viewer) {
         return session.patch_settings(request.patch, viewer);
       });
-  add_command<Empty, PresetList>(
-      dispatcher, host, "settings.presets",
-      [](Session&, const Empty&, const std::string&) -> Result<PresetList> {
+  add_command<methods::settings_presets>(
+      dispatcher, host, [](Session&, const Empty&, const std::string&) -> Result<PresetList> {
         return list_presets();
       });
-  add_command<PresetChoice, SettingsApplied>(
-      dispatcher, host, "settings.preset",
-      [](Session& session, const PresetChoice& request,
-         const std::string& viewer) -> Result<SettingsApplied> {
-        const Result<protocol::Preset> preset = protocol::find_preset(request.name);
-        if (!preset) return preset.error();
-        return session.patch_settings(preset->settings, viewer);
-      });
+  add_command<methods::settings_preset>(dispatcher, host,
+                                        [](Session& session, const PresetChoice& request,
+                                           const std::string& viewer) -> Result<SettingsApplied> {
+                                          const Result<protocol::Preset> preset =
+                                              protocol::find_preset(request.name);
+                                          if (!preset) return preset.error();
+                                          return session.patch_settings(preset->settings, viewer);
+                                        });
 }
 
 }  // namespace heliograph::session

@@ -2,12 +2,14 @@
 
 namespace heliograph::session {
 
+namespace methods = protocol::methods;
+
 using protocol::Result;
 using protocol::StatsSubscription;
 
 void add_stats_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
-  add_command<StatsSubscription, StatsSubscription>(
-      dispatcher, host, "stats.subscribe",
+  add_command<methods::stats_subscribe>(
+      dispatcher, host,
       [](Session& session, const StatsSubscription& request,
          const std::string& viewer) -> Result<StatsSubscription> {
         const auto subscribed =

@@ -7,6 +7,8 @@
 
 namespace heliograph::session {
 
+namespace methods = protocol::methods;
+
 using protocol::Empty;
 using protocol::enum_name;
 using protocol::Hello;
@@ -41,7 +43,7 @@ Result<std::shared_ptr<Session>> choose_session(SessionHost& host, const Hello& 
 
 struct Chosen {
   std::shared_ptr<Session> session;
-  std::optional<bool> bring;
+  std::optional<bool> restore_state;
 };
 
 /// Where who introduces itself is from now on. Who comes back from another run of the server finds
@@ -52,14 +54,14 @@ Result<Chosen> choose_place(SessionHost& host, const Hello& request,
   if (!comes_back || call.viewer.empty()) {
     const auto session = choose_session(host, request, call);
     if (!session) return session.error();
-    return Chosen{.session = *session, .bring = {}};
+    return Chosen{.session = *session, .restore_state = {}};
   }
   const Origin from{.instance = *request.instance, .session = *request.session};
   const auto resumed = host.resume(call.viewer, from, call.view_only);
-  if (resumed) return Chosen{.session = resumed->session, .bring = resumed->first};
+  if (resumed) return Chosen{.session = resumed->session, .restore_state = resumed->first};
   const auto main = host.sessions().move(call.viewer, std::string(protocol::main_session));
   if (!main) return main.error();
-  return Chosen{.session = *main, .bring = {}};
+  return Chosen{.session = *main, .restore_state = {}};
 }
 
 HelloResult greeting(SessionHost& host, const Chosen& chosen, const protocol::CallContext& call,
@@ -83,11 +85,11 @@ HelloResult greeting(SessionHost& host, const Chosen& chosen, const protocol::Ca
       .max_message_bytes = static_cast<std::uint32_t>(host.dispatch_limits().max_message_bytes),
       .ack_window = stream::ack_window,
       .max_batch = static_cast<std::uint32_t>(host.dispatch_limits().max_batch),
-      .max_waiting = static_cast<std::uint32_t>(limits.max_captures),
+      .max_pending = static_cast<std::uint32_t>(limits.max_captures),
       .max_upload_bytes = call.view_only ? 0 : host.max_upload_bytes()};
   result.rev = session.rev();
   result.instance = instance();
-  result.bring = chosen.bring;
+  result.restore_state = chosen.restore_state;
   return result;
 }
 
@@ -95,7 +97,7 @@ Result<HelloResult> greet(SessionHost& host, const Hello& request,
                           const protocol::CallContext& call) {
   const auto& codecs = request.codecs;
   if (std::find(codecs.begin(), codecs.end(), "jpeg") == codecs.end()) {
-    return error::invalid("codecs", "must hold one that the server has", "jpeg");
+    return error::invalid("codecs", "must include a codec of the server", "jpeg");
   }
   const Result<Chosen> chosen = choose_place(host, request, call);
   if (!chosen) return chosen.error();
@@ -112,27 +114,26 @@ Result<HelloResult> greet(SessionHost& host, const Hello& request,
 }  // namespace
 
 void add_stream_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
-  dispatcher.add<Hello, HelloResult>(
-      "hello",
+  dispatcher.add<methods::hello>(
       [&](const Hello& request, const protocol::CallContext& context,
           protocol::Completion<HelloResult> done) { done(greet(host, request, context)); });
-  dispatcher.add<StreamConfigure, StreamState>(
-      "stream.configure", [&](const StreamConfigure& request, const protocol::CallContext& context,
-                              protocol::Completion<StreamState> done) {
-        const auto session = host.sessions().session_of(context);
-        if (!session) return done(session.error());
-        done((*session)->configure_stream(request, context.viewer, !context.view_only));
+  dispatcher.add<methods::stream_configure>([&](const StreamConfigure& request,
+                                                const protocol::CallContext& context,
+                                                protocol::Completion<StreamState> done) {
+    const auto session = host.sessions().session_of(context);
+    if (!session) return done(session.error());
+    done((*session)->configure_stream(request, context.viewer, !context.view_only));
+  });
+  add_command<methods::stream_pause>(dispatcher, host,
+                                     [](Session& session, const Empty&, const std::string& viewer) {
+                                       return session.configure_stream({.paused = true}, viewer);
+                                     });
+  add_command<methods::stream_resume>(
+      dispatcher, host, [](Session& session, const Empty&, const std::string& viewer) {
+        return session.configure_stream({.paused = false}, viewer);
       });
-  add_command<Empty, StreamState>(dispatcher, host, "stream.pause",
-                                  [](Session& session, const Empty&, const std::string& viewer) {
-                                    return session.configure_stream({.paused = true}, viewer);
-                                  });
-  add_command<Empty, StreamState>(dispatcher, host, "stream.resume",
-                                  [](Session& session, const Empty&, const std::string& viewer) {
-                                    return session.configure_stream({.paused = false}, viewer);
-                                  });
-  add_command<StreamAck, Empty>(
-      dispatcher, host, "stream.ack",
+  add_command<methods::stream_ack>(
+      dispatcher, host,
       [](Session& session, const StreamAck& request, const std::string& viewer) -> Result<Empty> {
         const auto taken = session.viewers().acknowledge(viewer, request);
         if (!taken) return taken.error();

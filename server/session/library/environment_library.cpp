@@ -52,7 +52,7 @@ Result<void> EnvironmentLibrary::put_around(Session& session, const CatalogueEnt
     log_error({.session = session.name()},
               fmt::format("loading {}: {}", entry.name, failure.what()));
     if (on_device_loss_) on_device_loss_();
-    return protocol::error::not_ready("the device was lost meanwhile; try again");
+    return protocol::error::not_ready("the device was lost during loading; try again");
   } catch (const std::exception& failure) {
     log_error({.session = session.name()},
               fmt::format("loading {}: {}", entry.name, failure.what()));

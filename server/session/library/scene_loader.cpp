@@ -30,23 +30,22 @@ constexpr std::chrono::seconds trim_interval{2};
 /// A scene may be what the device is lost to, so it is not tried for ever.
 constexpr int most_losses = 3;
 
-constexpr std::string_view progress_key = "scene.progress";
+constexpr std::string_view progress_key = protocol::notifications::scene_progress::name;
 
 std::string progress_text(const std::string& name, std::string_view stage, float fraction) {
-  return protocol::make_notification(
-      progress_key,
-      protocol::SceneProgress{.name = name, .stage = std::string(stage), .fraction = fraction});
+  return protocol::make_notification<protocol::notifications::scene_progress>(
+      {.name = name, .stage = std::string(stage), .fraction = fraction});
 }
 
 /// Thrown through the importer to end it.
 struct Abandoned {};
 
 protocol::Error superseded() {
-  return protocol::error::conflict("name", "another scene was asked for meanwhile");
+  return protocol::error::conflict("name", "was replaced by a later scene.load");
 }
 
 protocol::Error cancelled() {
-  return protocol::error::conflict("name", "was cancelled");
+  return protocol::error::conflict("name", "loading was cancelled");
 }
 
 protocol::Error session_ended() {
@@ -54,7 +53,7 @@ protocol::Error session_ended() {
 }
 
 protocol::Error stopped() {
-  return protocol::error::not_ready("the server is ending");
+  return protocol::error::not_ready("the server is shutting down");
 }
 
 protocol::Error no_such(const scene::NoSuchChoice& failure, const scene::SceneChoice& choice) {
@@ -251,7 +250,8 @@ void SceneLoader::report_device_loss(Job& job) {
   }
   if (on_device_loss_) on_device_loss_();
   if (++job.losses == most_losses) {
-    finish(job, protocol::error::not_ready("the device was lost to it again and again"));
+    finish(job,
+           protocol::error::not_ready("the device was lost repeatedly while loading this scene"));
   }
 }
 

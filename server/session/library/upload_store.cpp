@@ -62,7 +62,7 @@ UploadStore::UploadStore(UploadOptions options)
 protocol::Result<std::shared_ptr<UploadStore::Incoming>> UploadStore::begin(const std::string& name,
                                                                             std::uint64_t bytes) {
   if (!is_acceptable(name)) {
-    return protocol::error::invalid("name", "is not the name of a scene",
+    return protocol::error::invalid("name", "is not a valid name of a scene",
                                     "1 to 64 letters, digits, _ and -");
   }
   if (bytes > options_.max_bytes) {
@@ -71,7 +71,7 @@ protocol::Result<std::shared_ptr<UploadStore::Incoming>> UploadStore::begin(cons
   }
   const std::lock_guard lock(mutex_);
   if (bytes_kept() + promised_bytes_ + bytes > options_.quota) {
-    return protocol::error::full("there is no room for more scenes",
+    return protocol::error::full("the quota of uploaded scenes is used up",
                                  std::to_string(options_.quota) + " bytes");
   }
   const fs::path folder = incoming_ / std::to_string(++uploads_so_far_);

@@ -127,7 +127,7 @@ std::vector<std::uint8_t> npy(const render::FloatImage& image) {
 }
 
 std::vector<std::uint8_t> picture_file(const render::Frame& frame, ImageFormat format) {
-  const stream::PictureView view{.width = frame.width, .height = frame.height, .rgba = frame.rgba};
+  const stream::ImageView view{.width = frame.width, .height = frame.height, .rgba = frame.rgba};
   if (format == ImageFormat::npy) return npy(frame);
   if (format == ImageFormat::png) return stream::encode_png(view);
   return stream::JpegEncoder().encode(view, jpeg_quality, stream::ChromaSampling::full);

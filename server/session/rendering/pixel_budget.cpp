@@ -11,8 +11,8 @@ protocol::Result<void> PixelBudget::exchange(std::uint64_t held, std::uint64_t w
   // A picture may always become smaller, even where the rest is too much already.
   if (wanted > held && others + wanted > limit_) {
     return protocol::error::full(
-        "the pictures of all sessions together have too many pixels",
-        std::to_string(limit_) + " pixels, " + std::to_string(others) + " of them taken by others");
+        "the frames of all sessions have too many pixels",
+        std::to_string(limit_) + " pixels, " + std::to_string(others) + " used by other sessions");
   }
   used_ = others + wanted;
   return {};

@@ -199,8 +199,8 @@ void RenderLoop::on_device_lost(const std::string& why) {
       pause == Clock::duration::zero()
           ? "at once"
           : fmt::format("in {} s", std::chrono::duration_cast<std::chrono::seconds>(pause).count());
-  spdlog::error("the device was lost and is made anew {} ({})", when, why);
-  tell_viewers(false, "the device was lost and is made anew " + when);
+  spdlog::error("the device was lost; recovery {} ({})", when, why);
+  tell_viewers(false, "the device was lost; recovery " + when);
 }
 
 /// Makes the device anew once its time has come. Sessions keep everything but their histories.
@@ -232,8 +232,8 @@ bool RenderLoop::recover_device(const Views& views) {
 }
 
 void RenderLoop::tell_viewers(bool ready, const std::string& message) {
-  const std::string text = protocol::make_notification(
-      "device.changed", protocol::DeviceChanged{.ready = ready, .message = message});
+  const std::string text = protocol::make_notification<protocol::notifications::device_changed>(
+      {.ready = ready, .message = message});
   for (const auto& view : open_views()) {
     view->session()->viewers().send_all(text, "device.changed");
   }

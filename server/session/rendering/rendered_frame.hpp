@@ -19,7 +19,7 @@ struct RenderedFrame {
   std::uint64_t cuts = 0;  // how often the picture jumped up to this one
 };
 
-inline stream::PictureView image_view(const render::Frame& frame) {
+inline stream::ImageView image_view(const render::Frame& frame) {
   return {.width = frame.width, .height = frame.height, .rgba = frame.rgba};
 }
 

@@ -32,13 +32,13 @@ std::uint32_t microseconds_of(Clock::duration duration) {
   return static_cast<std::uint32_t>(duration_cast<microseconds>(duration).count());
 }
 
-std::vector<protocol::BufferInfo> to_protocol(const std::vector<render::BufferInfo>& buffers) {
+std::vector<protocol::BufferInfo> buffer_infos(const std::vector<render::BufferInfo>& buffers) {
   std::vector<protocol::BufferInfo> result;
   for (const auto& [name, description] : buffers) result.push_back({name, description});
   return result;
 }
 
-std::vector<protocol::PassTiming> to_protocol(const std::vector<render::PassTime>& passes) {
+std::vector<protocol::PassTiming> pass_timings_of(const std::vector<render::PassTime>& passes) {
   std::vector<protocol::PassTiming> result;
   for (const render::PassTime& pass : passes) {
     result.push_back({.name = pass.name, .kind = pass.kind, .ms = pass.milliseconds});
@@ -104,7 +104,7 @@ void SessionView::apply(const protocol::Settings& settings) {
 }
 
 void SessionView::tell_buffers() {
-  session_->set_buffers(to_protocol(renderer_->buffers()));
+  session_->set_buffers(buffer_infos(renderer_->buffers()));
 }
 
 void SessionView::release_renderer() {
@@ -115,7 +115,7 @@ void SessionView::release_renderer() {
   broadcast_.forget();
   state_ = {};
   session_->viewers().discard_latest();
-  log_info({.session = session_->name()}, "pictures let go");
+  log_info({.session = session_->name()}, "images released");
 }
 
 SessionView::Work SessionView::advance(bool may_draw) {
@@ -149,7 +149,7 @@ SessionView::Work SessionView::advance(bool may_draw) {
 }
 
 std::optional<Clock::time_point> SessionView::next_due() const {
-  std::optional<Clock::time_point> due = session_->viewers().next_turn();
+  std::optional<Clock::time_point> due = session_->viewers().next_send();
   if (session_->in_lockstep()) return due;
   const auto also = [&](Clock::time_point time) { due = due ? std::min(*due, time) : time; };
   if (newest_ && newest_->frame.converged && !broadcast_.finished() && !state_.animation.playing) {
@@ -303,7 +303,7 @@ void SessionView::render_frame(double seconds) {
   const Clock::time_point end = Clock::now();
   if (draws_whole()) whole_frame_ = end - start;
   services_.measurements.rendered(std::chrono::duration<double>(end - start).count(),
-                                  to_protocol(frame.passes));
+                                  pass_timings_of(frame.passes));
   newest_ = describe(std::move(frame), start, end);
   draws_unasked_ = false;
   newest_version_ = state_.version;

@@ -79,7 +79,7 @@ bool SessionView::settle_captures() {
       open.push_back(std::move(capture));
     } else {
       capture.request.done(
-          protocol::error::not_ready("the picture did not rest long enough to be captured"));
+          protocol::error::not_ready("the view did not stay static long enough for the capture"));
     }
   }
   captures_.swap(open);

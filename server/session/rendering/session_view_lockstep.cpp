@@ -42,7 +42,8 @@ std::optional<std::uint64_t> SessionView::first_waiting() const {
 
 /// Nothing was drawn in lockstep before their place, and nothing will be unasked.
 void SessionView::settle_unstepped() {
-  const protocol::Error why = protocol::error::not_ready("no frame was stepped yet");
+  const protocol::Error why =
+      protocol::error::not_ready("no frame was rendered since lockstep was entered");
   std::erase_if(captures_, [&](const PendingCapture& capture) {
     if (session_->step_due(capture.request.place)) return false;
     capture.request.done(why);

@@ -129,7 +129,7 @@ Result<void> change_own(const protocol::Change<T>& wanted, std::optional<T>& mem
   if (!initial) {
     return error::invalid(
         std::string("patch.") + name,
-        "is nothing that a " + std::string(protocol::enum_name(light.type)) + " light has");
+        "is not a member of " + std::string(protocol::enum_name(light.type)) + " lights");
   }
   change(wanted, member, initial);
   return {};
@@ -163,7 +163,7 @@ Result<LightInfo> patched(LightInfo light, const LightInfo& initial,
     return error::invalid("patch.direction", "must not be zero");
   }
   if (is_area(light.type) && light.radius && *light.radius <= 0.0f) {
-    return error::invalid("patch.radius", "must be more than 0 where the light is an area");
+    return error::invalid("patch.radius", "must be greater than 0 for area lights");
   }
   return light;
 }
@@ -176,8 +176,8 @@ Result<std::size_t> find(const std::vector<Info>& list, const std::string& name,
     if (list[i].name == name) return i;
     names.push_back(list[i].name);
   }
-  return error::not_found(kind, std::string("no ") + kind + " of the scene is called so" +
-                                    protocol::suggestion(name, names));
+  return error::not_found(
+      kind, std::string("the scene has no such ") + kind + protocol::suggestion(name, names));
 }
 
 shared::Material device_form(const MaterialInfo& info, shared::Material material) {

@@ -22,7 +22,7 @@ namespace error = protocol::error;
 protocol::Error no_control(const ViewerSet& audience) {
   if (audience.control_is_free()) {
     return error::make(protocol::ErrorCode::forbidden, "control",
-                       "nobody has control of this session; it must be taken first",
+                       "no viewer has control of this session; take control first",
                        "session.control with the action take");
   }
   return error::make(protocol::ErrorCode::forbidden, "control",
@@ -81,7 +81,7 @@ bool Session::renders_without_viewers() const {
 }
 
 bool Session::is_pristine(const std::string& viewer) const {
-  return !touched_ && viewers_.control_mode() == protocol::ControlMode::everyone &&
+  return !touched_ && viewers_.control_mode() == protocol::ControlMode::shared &&
          !viewers_.has_other_participant(viewer);
 }
 
@@ -178,7 +178,7 @@ void Session::show(LoadedScene scene, const std::string& by) {
   changed();
   viewers_.send_others(
       by,
-      protocol::make_notification("scene.changed", protocol::SceneChanged{.scene = scene_info_}),
+      protocol::make_notification<protocol::notifications::scene_changed>({.scene = scene_info_}),
       {});
 }
 
@@ -210,7 +210,8 @@ Result<protocol::SettingsApplied> Session::patch_locked(const protocol::RawJson&
     }
     changed();
     const protocol::SettingsChanged message{.rev = state_.rev, .patch = effective, .by = by};
-    viewers_.send_others(by, protocol::make_notification("settings.changed", message), {});
+    viewers_.send_others(
+        by, protocol::make_notification<protocol::notifications::settings_changed>(message), {});
   }
   return protocol::SettingsApplied{.rev = state_.rev, .applied = std::move(effective)};
 }
@@ -225,7 +226,7 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
   const bool resized = width != state_.width || height != state_.height;
   if (resized && !may_steer) {
     return error::make(protocol::ErrorCode::forbidden, width != state_.width ? "width" : "height",
-                       "is everybody's, and this access may only watch");
+                       "is shared by all viewers and cannot be changed with a read-only token");
   }
   if (resized && !viewers_.may_change(by)) return no_control(viewers_);
   // Fewer pixels are never refused: more are taken before anything is changed, fewer after it.
@@ -300,7 +301,7 @@ Result<void> Session::accept_capture(CaptureRequest request) {
     return known.error();
   }
   if (*open_captures_ >= options_.limits.max_captures) {
-    return error::full("too many captures are waiting",
+    return error::full("too many captures are pending",
                        std::to_string(options_.limits.max_captures));
   }
   ++*open_captures_;

@@ -28,7 +28,7 @@ Result<AnimationState> Session::play(const protocol::AnimationPlay& request,
     for (const scene::Clip& clip : scene_->clips) names.push_back(clip.name);
     if (!scene::find_clip(*scene_, *request.clip)) {
       return error::not_found(
-          "clip", "no clip of the scene is called so" + protocol::suggestion(*request.clip, names));
+          "clip", "the scene has no such clip" + protocol::suggestion(*request.clip, names));
     }
     clock.clip = *request.clip;
     clock.seconds = 0.0;
@@ -53,7 +53,7 @@ Result<AnimationState> Session::seek(const protocol::AnimationSeek& request,
   const std::lock_guard lock(mutex_);
   if (const Result<void> there = require_scene(); !there) return there.error();
   AnimationClock clock = rewound_clock();
-  if (clock.clip.empty()) return error::not_ready("no clip was played yet");
+  if (clock.clip.empty()) return error::not_ready("no clip is active; play one first");
   clock.seconds = request.seconds;
   return set_clock(clock, by);
 }
@@ -84,16 +84,18 @@ AnimationState Session::set_clock(const AnimationClock& clock, const std::string
 
 AnimationState Session::tell_animation(const std::string& by) {
   const protocol::AnimationChanged message{.animation = animation_message(), .by = by};
-  viewers_.send_others(by, protocol::make_notification("animation.changed", message),
-                       "animation.changed");
+  viewers_.send_others(
+      by, protocol::make_notification<protocol::notifications::animation_changed>(message),
+      "animation.changed");
   return message.animation;
 }
 
 /// The clip's clock is another one now, too.
 void Session::tell_lockstep(const std::string& by) {
   const protocol::LockstepChanged message{.state = step_message(state_), .by = by};
-  viewers_.send_others(by, protocol::make_notification("lockstep.changed", message),
-                       "lockstep.changed");
+  viewers_.send_others(
+      by, protocol::make_notification<protocol::notifications::lockstep_changed>(message),
+      "lockstep.changed");
   tell_animation(by);
 }
 

@@ -25,8 +25,8 @@ Result<scene::Camera> named_camera(const scene::Scene& scene, const std::string&
     if (camera.name == name) return camera;
     names.push_back(camera.name);
   }
-  return error::not_found(
-      "name", "no camera of the scene is called so" + protocol::suggestion(name, names));
+  return error::not_found("name",
+                          "the scene has no such camera" + protocol::suggestion(name, names));
 }
 
 /// Whether eye and target are far enough apart for floats to tell a direction. In doubles, since
@@ -39,7 +39,7 @@ bool has_direction(const scene::Camera& camera) {
 
 /// Whether camera.set would take these places, too.
 bool is_within_reach(const scene::Camera& camera) {
-  const glm::vec3 reach(protocol::camera_reach);
+  const glm::vec3 reach(protocol::max_coordinate);
   return glm::all(glm::lessThanEqual(glm::abs(camera.eye), reach)) &&
          glm::all(glm::lessThanEqual(glm::abs(camera.target), reach));
 }
@@ -127,8 +127,8 @@ Result<protocol::Camera> Session::orbit_camera(const protocol::CameraOrbit& requ
   const scene::Camera camera = orbited(state_.camera, request);
   if (!is_within_reach(camera)) {
     return error::invalid(
-        misleading_member(request), "leads out of range",
-        "eye " + protocol::range_text({-protocol::camera_reach, protocol::camera_reach}));
+        misleading_member(request), "moves the camera out of range",
+        "eye " + protocol::range_text({-protocol::max_coordinate, protocol::max_coordinate}));
   }
   if (!has_direction(camera)) {
     return error::invalid(misleading_member(request), "eye and target coincide");
@@ -152,8 +152,9 @@ protocol::Camera Session::moved_camera(const scene::Camera& camera, std::optiona
   camera_name_ = std::move(name);
   changed();
   const protocol::CameraChanged message{.camera = camera_message(), .by = by};
-  viewers_.send_others(by, protocol::make_notification("camera.changed", message),
-                       "camera.changed");
+  viewers_.send_others(
+      by, protocol::make_notification<protocol::notifications::camera_changed>(message),
+      "camera.changed");
   return message.camera;
 }
 

@@ -26,7 +26,8 @@ Result<protocol::LightState> Session::patch_light(const protocol::LightsPatch& r
     state_.lights = edits_.device_lights();
     changed();
     const protocol::LightsChanged message{.light = *light, .rev = state_.rev, .by = by};
-    viewers_.send_others(by, protocol::make_notification("lights.changed", message), {});
+    viewers_.send_others(
+        by, protocol::make_notification<protocol::notifications::lights_changed>(message), {});
   }
   return protocol::LightState{.light = *std::move(light), .rev = state_.rev};
 }
@@ -47,7 +48,8 @@ Result<protocol::MaterialState> Session::patch_material(const protocol::Material
     state_.materials = edits_.device_materials();
     changed();
     const protocol::MaterialsChanged message{.material = *material, .rev = state_.rev, .by = by};
-    viewers_.send_others(by, protocol::make_notification("materials.changed", message), {});
+    viewers_.send_others(
+        by, protocol::make_notification<protocol::notifications::materials_changed>(message), {});
   }
   return protocol::MaterialState{.material = *std::move(material), .rev = state_.rev};
 }
@@ -72,8 +74,9 @@ Result<void> Session::set_environment(std::optional<std::string> name,
   changed();
   const protocol::EnvironmentChanged message{
       .current = environment_name_, .rev = state_.rev, .by = by};
-  viewers_.send_others(by, protocol::make_notification("environment.changed", message),
-                       "environment.changed");
+  viewers_.send_others(
+      by, protocol::make_notification<protocol::notifications::environment_changed>(message),
+      "environment.changed");
   return {};
 }
 
@@ -92,7 +95,8 @@ void Session::unload(const std::string& by) {
   state_.environment = nullptr;
   state_.animation = {};
   changed();
-  viewers_.send_others(by, protocol::make_notification("scene.unloaded", message), {});
+  viewers_.send_others(
+      by, protocol::make_notification<protocol::notifications::scene_unloaded>(message), {});
 }
 
 Result<void> Session::request_probe(Probe probe) {
@@ -100,7 +104,7 @@ Result<void> Session::request_probe(Probe probe) {
     const std::lock_guard lock(mutex_);
     if (const Result<void> there = require_scene(); !there) return there;
     if (probes_.size() >= options_.limits.max_captures) {
-      return error::full("too many questions about the picture are waiting",
+      return error::full("too many picks and inspections are pending",
                          std::to_string(options_.limits.max_captures));
     }
     probe.place = next_place();

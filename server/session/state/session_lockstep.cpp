@@ -32,7 +32,7 @@ Result<void> Session::request_step(StepRequest request) {
     const std::lock_guard lock(mutex_);
     if (const Result<void> there = require_scene(); !there) return there;
     if (steps_.size() >= options_.limits.max_captures) {
-      return error::full("too many steps are waiting",
+      return error::full("too many steps are pending",
                          std::to_string(options_.limits.max_captures));
     }
     if (!state_.lockstep) enter_lockstep(request.viewer);
@@ -81,7 +81,7 @@ StepState Session::run_freely(const std::string& by) {
     state = step_message(state_);
   }
   for (const StepRequest& request : unfinished) {
-    request.done(error::conflict("frames", "somebody let time run freely before they were done"));
+    request.done(error::conflict("frames", "lockstep was left before the steps were finished"));
   }
   return state;
 }

@@ -34,7 +34,8 @@ Result<ReferenceState> Session::stop_reference(const std::string& by) {
   json patch{{"reference", {{"use", "never"}}}};
   if (before_reference_) {
     const auto& [reference, accumulation] = *before_reference_;
-    if (reference.use == protocol::ReferenceUse::resting) patch["reference"]["use"] = "resting";
+    if (reference.use == protocol::ReferenceUse::when_static)
+      patch["reference"]["use"] = "when_static";
     patch["reference"]["scope"] = protocol::enum_name(reference.scope);
     patch["accumulation"] = {{"enabled", accumulation.enabled},
                              {"max_samples", accumulation.max_samples}};
@@ -52,12 +53,13 @@ ReferenceState Session::reference() const {
 
 ReferenceState Session::reference_message() const {
   const protocol::Settings& settings = state_.settings;
-  ReferenceState state{.shown = settings.reference.use == protocol::ReferenceUse::always,
-                       .scope = settings.reference.scope,
-                       .samples = 0,
-                       .wanted = static_cast<std::uint32_t>(settings.accumulation.max_samples),
-                       .finished = false,
-                       .rev = state_.rev};
+  ReferenceState state{
+      .shown = settings.reference.use == protocol::ReferenceUse::always,
+      .scope = settings.reference.scope,
+      .samples = 0,
+      .target_samples = static_cast<std::uint32_t>(settings.accumulation.max_samples),
+      .finished = false,
+      .rev = state_.rev};
   if (state.shown && newest_frame_.version == state_.version) {
     state.samples = newest_frame_.samples;
     state.finished = newest_frame_.converged;

@@ -10,7 +10,7 @@ using std::chrono::microseconds;
 
 namespace {
 
-std::vector<protocol::PassTiming> to_protocol(const std::vector<render::PassTime>& passes) {
+std::vector<protocol::PassTiming> pass_timings(const std::vector<render::PassTime>& passes) {
   std::vector<protocol::PassTiming> result;
   for (const render::PassTime& pass : passes) {
     result.push_back({.name = pass.name, .kind = pass.kind, .ms = pass.milliseconds});
@@ -25,7 +25,7 @@ protocol::StreamPhase phase_of(Purpose purpose) {
     case Purpose::refining:
       return protocol::StreamPhase::refining;
     case Purpose::final:
-      return protocol::StreamPhase::still;
+      return protocol::StreamPhase::idle;
   }
   return protocol::StreamPhase::interactive;
 }
@@ -40,7 +40,7 @@ protocol::StatsFrame stats_of(const RenderedFrame& picture, protocol::TracerKind
           .samples = picture.frame.samples,
           .tracer = tracer,
           .state = phase,
-          .passes = to_protocol(picture.frame.passes)};
+          .passes = pass_timings(picture.frame.passes)};
 }
 
 /// The header of the picture with what the encoder says of its form.
@@ -61,7 +61,7 @@ protocol::FrameHeader merged(const protocol::FrameHeader& picture,
 struct Broadcast::Encoding {
   std::shared_ptr<Session> session;
   BroadcastServices services;
-  std::shared_ptr<stream::PictureEncoder> encoder;
+  std::shared_ptr<stream::FrameEncoder> encoder;
   std::shared_ptr<std::atomic<int>> count;
   std::shared_ptr<const RenderedFrame> picture;
   Purpose purpose;
@@ -88,10 +88,10 @@ struct Broadcast::Encoding {
   }
 
   std::vector<stream::SharedFrame> encode() {
-    const stream::PictureView view = image_view(picture->frame);
+    const stream::ImageView view = image_view(picture->frame);
     const EncodingPlan plan = session->viewers().plan(number, purpose, view.rgba.size() / 4);
     std::vector<stream::SharedFrame> frames;
-    for (const stream::FormRequest& request : plan.forms) {
+    for (const stream::VariantRequest& request : plan.requests) {
       frames.push_back(timed([&] { return encoder->encode(view, request); }));
     }
     for (const protocol::StillFormat format : plan.stills) {
@@ -121,7 +121,7 @@ struct Broadcast::Encoding {
 Broadcast::Broadcast(std::shared_ptr<Session> session, const BroadcastServices& services)
     : session_(std::move(session)),
       services_(services),
-      encoder_(std::make_shared<stream::PictureEncoder>(services.jpeg)),
+      encoder_(std::make_shared<stream::FrameEncoder>(services.jpeg)),
       encoding_(std::make_shared<std::atomic<int>>(0)) {}
 
 void Broadcast::rendered(std::shared_ptr<const RenderedFrame> picture, bool resting) {
@@ -144,7 +144,7 @@ void Broadcast::forget() {
   due_.reset();
   due_samples_ = 0;
   newer_than_due_ = false;
-  encoder_ = std::make_shared<stream::PictureEncoder>(services_.jpeg);
+  encoder_ = std::make_shared<stream::FrameEncoder>(services_.jpeg);
 }
 
 void Broadcast::finish() {

@@ -52,8 +52,8 @@ class Broadcast {
 
   std::shared_ptr<Session> session_;
   BroadcastServices services_;
-  std::shared_ptr<stream::PictureEncoder> encoder_;  // used by the encoding thread
-  std::shared_ptr<std::atomic<int>> encoding_;       // tasks that are not done
+  std::shared_ptr<stream::FrameEncoder> encoder_;  // used by the encoding thread
+  std::shared_ptr<std::atomic<int>> encoding_;     // tasks that are not done
   std::shared_ptr<const RenderedFrame> newest_;
   std::shared_ptr<const RenderedFrame> due_;
   Purpose due_purpose_ = Purpose::interactive;

@@ -17,13 +17,13 @@ protocol::Error forbidden(std::string reason) {
 }  // namespace
 
 bool Control::may_change(const std::string& viewer) const {
-  return mode_ == ControlMode::everyone || holder_ == viewer;
+  return mode_ == ControlMode::shared || holder_ == viewer;
 }
 
 Result<void> Control::apply(const SessionControl& request, const std::string& by,
                             const IsPresent& is_present) {
   if (!request.mode && !request.action) {
-    return error::invalid("mode", "or action must say what is to be done");
+    return error::invalid("mode", "or action is required");
   }
   Control changed = *this;
   if (request.mode) {
@@ -46,11 +46,11 @@ Result<void> Control::set_mode(const SessionControl& request, const std::string&
   if (!by.empty() && !may_change(by) && !free) {
     return forbidden("only who has control can say who may have it");
   }
-  const bool stays = mode_ == ControlMode::everyone || holder_ == by;
+  const bool stays = mode_ == ControlMode::shared || holder_ == by;
   if (*request.mode == mode_ && !request.viewer && stays) return {};
   mode_ = *request.mode;
   holder_.clear();
-  if (mode_ == ControlMode::everyone) return {};
+  if (mode_ == ControlMode::shared) return {};
   const std::string& holder = request.viewer.value_or(by);
   if (holder.empty()) return {};
   return hand_to(holder, is_present);
@@ -58,20 +58,20 @@ Result<void> Control::set_mode(const SessionControl& request, const std::string&
 
 Result<void> Control::act(ControlAction action, const SessionControl& request,
                           const std::string& by, const IsPresent& is_present) {
-  if (mode_ == ControlMode::everyone) {
-    return error::conflict("action", "everyone has control; set mode to \"one\" first");
+  if (mode_ == ControlMode::shared) {
+    return error::conflict("action", "all viewers have control; set mode to exclusive first");
   }
   const bool settles = by.empty() || holder_ == by;
   switch (action) {
     case ControlAction::take:
-      if (by.empty()) return error::not_ready("only a viewer on a WebSocket can take control");
+      if (by.empty()) return error::not_ready("requires a WebSocket connection");
       if (!holder_.empty() && holder_ != by) {
         return forbidden("another viewer has control and has not released it");
       }
       return hand_to(by, is_present);
     case ControlAction::give:
       if (!request.viewer) return error::invalid("viewer", "is required to give control");
-      if (!settles) return forbidden("only who has control can give it");
+      if (!settles) return forbidden("only the viewer that has control can give it");
       return hand_to(*request.viewer, is_present);
     case ControlAction::release:
       if (!settles) return forbidden("only who has control can release it");
@@ -83,7 +83,7 @@ Result<void> Control::act(ControlAction action, const SessionControl& request,
 
 Result<void> Control::hand_to(const std::string& viewer, const IsPresent& is_present) {
   if (!is_present(viewer)) {
-    return error::not_found("viewer", "is no viewer of this session who may have control");
+    return error::not_found("viewer", "is not a viewer of this session that may have control");
   }
   holder_ = viewer;
   return {};

@@ -18,7 +18,7 @@ class Control {
 
   protocol::ControlMode mode() const { return mode_; }
   /// Whether one viewer is to have control and none has.
-  bool is_free() const { return mode_ == protocol::ControlMode::one && holder_.empty(); }
+  bool is_free() const { return mode_ == protocol::ControlMode::exclusive && holder_.empty(); }
   /// `viewer` is empty for callers without a stream.
   bool may_change(const std::string& viewer) const;
 
@@ -36,7 +36,7 @@ class Control {
                              const IsPresent& is_present);
   protocol::Result<void> hand_to(const std::string& viewer, const IsPresent& is_present);
 
-  protocol::ControlMode mode_ = protocol::ControlMode::everyone;
+  protocol::ControlMode mode_ = protocol::ControlMode::shared;
   std::string holder_;  // in mode one; empty: nobody
 };
 

@@ -62,13 +62,13 @@ Result<ViewerStream> ViewerSet::configure(const std::string& viewer,
   if (!found) return found.error();
   Viewer& it = **found;
   if (change.codec && *change.codec != protocol::StreamCodec::jpeg && !it.stream.decodes_video) {
-    return protocol::error::invalid("codec", "was not agreed on in hello", "jpeg");
+    return protocol::error::invalid("codec", "is not one of the codecs of hello", "jpeg");
   }
   if (change.codec) it.stream.codec = *change.codec;
   if (change.still && it.stream.still != *change.still) {
     it.stream.still = *change.still;
     it.offered = 0;
-    if (it.pacer.frame_waiting()) it.pacer.withdraw();
+    if (it.pacer.frame_pending()) it.pacer.drop_pending();
   }
   if (change.quality) it.stream.quality = static_cast<int>(*change.quality);
   if (change.max_fps) {
@@ -93,7 +93,7 @@ Result<void> ViewerSet::acknowledge(const std::string& viewer, const protocol::S
   Viewer& it = **found;
   // Late and repeated acknowledgements are normal and say nothing new.
   it.pacer.acknowledge(ack.frame_seq, microseconds(ack.present_us), Clock::now());
-  if (it.pacer.frame_waiting()) announce(it);
+  if (it.pacer.frame_pending()) announce(it);
   on_capacity_.notify();
   return {};
 }
@@ -121,7 +121,7 @@ std::optional<stream::OutgoingFrame> ViewerSet::take(const std::string& viewer) 
   const auto taken = (*found)->pacer.take(Clock::now());
   if (!taken) {
     // A frame that waits only for its turn needs the render thread's clock.
-    if ((*found)->pacer.frame_waiting()) on_capacity_.notify();
+    if ((*found)->pacer.frame_pending()) on_capacity_.notify();
     return std::nullopt;
   }
   on_capacity_.notify();
@@ -156,12 +156,12 @@ bool ViewerSet::has_active_viewer() const {
   });
 }
 
-std::optional<Clock::time_point> ViewerSet::next_turn() const {
+std::optional<Clock::time_point> ViewerSet::next_send() const {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
   std::optional<Clock::time_point> next;
   for (const auto& [id, viewer] : viewers_) {
-    const Clock::time_point turn = viewer.pacer.next_turn();
+    const Clock::time_point turn = viewer.pacer.next_send();
     if (!viewer.started || viewer.stream.paused || turn <= now) continue;
     next = next ? std::min(*next, turn) : turn;
   }
@@ -194,7 +194,7 @@ EncodingPlan ViewerSet::plan(std::uint64_t number, Purpose purpose, std::uint64_
   pixels_ = pixels;
   EncodingPlan plan;
   std::vector<Viewer*> watching;
-  std::vector<stream::FormWish> wishes;
+  std::vector<stream::RequestedVariant> wishes;
   for (auto& [id, viewer] : viewers_) {
     if (!viewer.started || viewer.stream.paused) continue;
     const bool ready = needs_frame(viewer, number, now);
@@ -206,17 +206,17 @@ EncodingPlan ViewerSet::plan(std::uint64_t number, Purpose purpose, std::uint64_
       continue;
     }
     watching.push_back(&viewer);
-    wishes.push_back({.form = wish(viewer, purpose),
+    wishes.push_back({.variant = wish(viewer, purpose),
                       .ready = ready,
                       .decoder = viewer.pacer.decoder(),
                       .budget = viewer.pacer.link().budget()});
   }
-  stream::FormPlanner::Plan chosen = planner_.plan(wishes, now);
+  stream::VariantPlanner::Plan chosen = planner_.plan(wishes, now);
   for (std::size_t i = 0; i < watching.size(); ++i) {
-    watching[i]->form = chosen.assigned[i];
+    watching[i]->variant = chosen.assigned[i];
     if (purpose == Purpose::interactive) watching[i]->moving = chosen.assigned[i];
   }
-  plan.forms = std::move(chosen.requests);
+  plan.requests = std::move(chosen.requests);
   return plan;
 }
 
@@ -245,14 +245,16 @@ void ViewerSet::publish(std::uint64_t number, Purpose purpose,
 void ViewerSet::publish_stats(protocol::StatsFrame stats) {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
-  const bool finished = stats.state == protocol::StreamPhase::still;
+  const bool finished = stats.state == protocol::StreamPhase::idle;
   for (auto& [id, viewer] : viewers_) {
     const bool told = viewer.stats_interval.count() > 0 && viewer.last_bytes > 0;
     if (!told || (now < viewer.next_stats && !finished)) continue;
     viewer.next_stats = now + viewer.stats_interval;
     complete(stats, viewer);
     const auto link = viewer.link.lock();
-    if (link) link->send(protocol::make_notification("stats.frame", stats), "stats.frame");
+    if (link)
+      link->send(protocol::make_notification<protocol::notifications::stats_frame>(stats),
+                 "stats.frame");
   }
 }
 
@@ -275,8 +277,8 @@ ViewerTotals ViewerSet::totals() const {
   std::int64_t measured = 0;
   for (const auto& [id, viewer] : viewers_) {
     totals.sent += viewer.pacer.totals();
-    totals.waiting += viewer.pacer.frame_waiting() ? 1 : 0;
-    totals.in_flight += viewer.pacer.on_the_way();
+    totals.waiting += viewer.pacer.frame_pending() ? 1 : 0;
+    totals.in_flight += viewer.pacer.in_flight();
     totals.goodput += viewer.pacer.goodput();
     if (viewer.pacer.goodput() == 0.0) continue;
     totals.mean_round_trip += viewer.pacer.round_trip();
@@ -289,14 +291,14 @@ ViewerTotals ViewerSet::totals() const {
 Result<ViewerSet::Viewer*> ViewerSet::find(const std::string& viewer) {
   const auto found = viewers_.find(viewer);
   if (found == viewers_.end()) {
-    return protocol::error::not_ready("only a viewer on a WebSocket can ask for this");
+    return protocol::error::not_ready("requires a WebSocket connection");
   }
   return &found->second;
 }
 
 void ViewerSet::offer_latest(Viewer& viewer) {
   if (latest_.empty() || viewer.stream.paused) return;
-  viewer.form = wish(viewer, latest_purpose_);
+  viewer.variant = wish(viewer, latest_purpose_);
   const stream::SharedFrame frame = suited(viewer, latest_purpose_, latest_);
   // Otherwise the newest picture is encoded once more, for this viewer.
   if (!frame) return;
@@ -316,10 +318,11 @@ bool ViewerSet::needs_frame(const Viewer& viewer, std::uint64_t number,
   return viewer.started && viewer.offered < number && viewer.pacer.has_room(now);
 }
 
-stream::Form ViewerSet::wish(Viewer& viewer, Purpose purpose) const {
-  const stream::Form wanted{.codec = viewer.stream.codec, .quality = viewer.stream.quality};
+stream::EncodingVariant ViewerSet::wish(Viewer& viewer, Purpose purpose) const {
+  const stream::EncodingVariant wanted{.codec = viewer.stream.codec,
+                                       .quality = viewer.stream.quality};
   // Pictures at rest are few and each is better than the last: a video gains nothing.
-  if (purpose != Purpose::interactive) return viewer.pacer.link().resting(wanted);
+  if (purpose != Purpose::interactive) return viewer.pacer.link().choose_refining(wanted);
   return viewer.pacer.link().choose(wanted, pixels_);
 }
 
@@ -337,11 +340,12 @@ stream::SharedFrame ViewerSet::suited(const Viewer& viewer, Purpose purpose,
     });
   }
   const auto own = find([&](const stream::EncodedFrame& frame) {
-    return frame.form == viewer.form && viewer.pacer.can_show(frame);
+    return frame.variant == viewer.variant && viewer.pacer.can_show(frame);
   });
-  if (own || viewer.form.codec == protocol::StreamCodec::jpeg) return own;
-  const stream::Form stand_in = stream::FormPlanner::stand_in(viewer.form);
-  return find([&](const stream::EncodedFrame& frame) { return frame.form == stand_in; });
+  if (own || viewer.variant.codec == protocol::StreamCodec::jpeg) return own;
+  const stream::EncodingVariant jpeg_fallback =
+      stream::VariantPlanner::jpeg_fallback(viewer.variant);
+  return find([&](const stream::EncodedFrame& frame) { return frame.variant == jpeg_fallback; });
 }
 
 void ViewerSet::announce(const Viewer& viewer) {

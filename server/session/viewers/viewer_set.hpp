@@ -38,7 +38,7 @@ enum class Purpose { interactive, refining, final };
 
 /// The encodings of one picture.
 struct EncodingPlan {
-  std::vector<stream::FormRequest> forms;
+  std::vector<stream::VariantRequest> requests;
   std::vector<protocol::StillFormat> stills;
   int still_quality = 0;  // at least
 };
@@ -101,7 +101,7 @@ class ViewerSet {
   /// Whether somebody receives pictures at all.
   bool has_active_viewer() const;
   /// Until when nobody may have another frame only because of its rate limit.
-  std::optional<Clock::time_point> next_turn() const;
+  std::optional<Clock::time_point> next_send() const;
   /// Tells those whose turn has come about waiting frames.
   void announce_due_frames();
   /// Newcomers get no picture until another is published.
@@ -134,9 +134,9 @@ class ViewerSet {
     std::uint64_t cuts = 0;      // of the last frame that it took
     std::uint64_t offered = 0;   // number of the newest picture that it was offered or cannot have
     std::uint64_t planned = 0;   // number of the newest picture that was encoded for it
-    stream::Form form;           // of the pictures that it gets at present
-    stream::Form moving;         // of those that it gets while something moves
-    std::uint64_t last_bytes = 0;  // of the newest frame that it was offered
+    stream::EncodingVariant variant;  // of the pictures that it gets at present
+    stream::EncodingVariant moving;   // of those that it gets while something moves
+    std::uint64_t last_bytes = 0;     // of the newest frame that it was offered
     std::uint32_t last_encode_us = 0;
     std::chrono::milliseconds stats_interval{0};
     Clock::time_point next_stats;
@@ -152,7 +152,7 @@ class ViewerSet {
   void offer_latest(Viewer& viewer);
   static void offer(Viewer& viewer, const stream::SharedFrame& frame);
   bool needs_frame(const Viewer& viewer, std::uint64_t number, Clock::time_point now) const;
-  stream::Form wish(Viewer& viewer, Purpose purpose) const;
+  stream::EncodingVariant wish(Viewer& viewer, Purpose purpose) const;
   static stream::SharedFrame suited(const Viewer& viewer, Purpose purpose,
                                     const std::vector<stream::SharedFrame>& frames);
   static void announce(const Viewer& viewer);
@@ -161,7 +161,7 @@ class ViewerSet {
   WakeEvent& on_capacity_;
   mutable std::mutex mutex_;
   Viewers viewers_;
-  stream::FormPlanner planner_;
+  stream::VariantPlanner planner_;
   std::uint64_t arrivals_ = 0;
   Control control_;
   std::vector<stream::SharedFrame> latest_;

@@ -24,7 +24,7 @@ Result<void> ViewerSet::join(const std::string& id, std::weak_ptr<ViewerLink> li
 
 Result<void> ViewerSet::check_capacity() const {
   if (viewers_.size() < max_viewers_) return {};
-  return protocol::error::full("the session has no room for another viewer",
+  return protocol::error::full("the session's maximum number of viewers is reached",
                                std::to_string(max_viewers_) + " viewers");
 }
 
@@ -51,7 +51,7 @@ Result<void> ViewerSet::accept(Viewers::node_type& viewer) {
   if (const Result<void> capacity = check_capacity(); !capacity) return capacity;
   if (viewer.empty()) return {};
   Viewer& it = viewers_.insert(std::move(viewer)).position->second;
-  it.pacer.withdraw();
+  it.pacer.drop_pending();
   it.discontinuous = true;
   it.offered = 0;
   it.planned = 0;
@@ -148,7 +148,8 @@ void ViewerSet::announce_participants(protocol::SessionInfo session) {
     const auto link = viewer.started ? viewer.link.lock() : nullptr;
     if (!link) continue;
     session.viewers = participants_locked(id);
-    link->send(protocol::make_notification("session.changed", session), "session.changed");
+    link->send(protocol::make_notification<protocol::notifications::session_changed>(session),
+               "session.changed");
   }
 }
 

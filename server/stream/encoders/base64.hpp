@@ -12,7 +12,7 @@ namespace heliograph::stream {
 /// RFC 4648 section 4, with padding.
 std::string base64_encode(std::span<const std::uint8_t> bytes);
 
-/// The bytes behind base64url text (RFC 4648 section 5, without padding), or nothing if it is not.
+/// Decodes base64url text (RFC 4648 section 5, without padding); nullopt if it is malformed.
 std::optional<std::string> base64url_decode(std::string_view text);
 
 }  // namespace heliograph::stream

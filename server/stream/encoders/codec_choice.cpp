@@ -16,7 +16,7 @@ CodecChoice choose_codec(const std::vector<std::string>& offered) {
       break;
     }
     if (choice.reason) continue;
-    choice.reason = codec ? *h264_unavailable() : "this server does not encode " + name;
+    choice.reason = codec ? *h264_unavailable() : "the server cannot encode " + name;
   }
   return choice;
 }

@@ -10,10 +10,10 @@ namespace heliograph::stream {
 
 struct CodecChoice {
   protocol::StreamCodec codec = protocol::StreamCodec::jpeg;
-  std::optional<std::string> reason;  // why it is not the one that the client likes best
+  std::optional<std::string> reason;  // why it is not the client's preferred codec
 };
 
-/// The first of the codecs that a client offers, best first, that this server can encode.
+/// The first of the client's codecs, in order of its preference, that this server can encode.
 CodecChoice choose_codec(const std::vector<std::string>& offered);
 
 }  // namespace heliograph::stream

@@ -56,7 +56,8 @@ std::vector<std::uint8_t> encode_exr(
   counts.reserve(channels.size());
   for (const ExrChannel& channel : channels) {
     if (channel.values.size() != std::size_t{width} * height) {
-      throw std::runtime_error("the channel " + channel.name + " is not of the picture's size");
+      throw std::runtime_error("OpenEXR: channel " + channel.name +
+                               " does not have the size of the image");
     }
     const Imf::PixelType type = channel.counts ? Imf::UINT : Imf::FLOAT;
     header.channels().insert(channel.name, Imf::Channel(type));

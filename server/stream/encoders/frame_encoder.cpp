@@ -13,83 +13,84 @@ using protocol::StillFormat;
 namespace {
 
 constexpr int lossless_quality = 100;
-constexpr std::chrono::seconds longest_unused{10};
+constexpr std::chrono::seconds max_unused{10};
 
-std::shared_ptr<EncodedFrame> independent_frame(const PictureView& picture, FrameCodec codec,
+std::shared_ptr<EncodedFrame> independent_frame(const ImageView& image, FrameCodec codec,
                                                 int quality) {
   auto frame = std::make_shared<EncodedFrame>();
   frame->header.codec = codec;
   frame->header.flags = protocol::frame_flag::key;
   frame->header.quality = static_cast<std::uint16_t>(quality);
-  frame->header.width = static_cast<std::uint16_t>(picture.width);
-  frame->header.height = static_cast<std::uint16_t>(picture.height);
+  frame->header.width = static_cast<std::uint16_t>(image.width);
+  frame->header.height = static_cast<std::uint16_t>(image.height);
   return frame;
 }
 
 }  // namespace
 
-std::shared_ptr<EncodedFrame> PictureEncoder::encode(const PictureView& picture,
-                                                     const FormRequest& request) {
-  const PictureView scaled = scaler_.scale(picture, request.form.scale);
-  if (request.form.codec == protocol::StreamCodec::jpeg) return encode_jpeg(scaled, request.form);
+std::shared_ptr<EncodedFrame> FrameEncoder::encode(const ImageView& image,
+                                                   const VariantRequest& request) {
+  const ImageView scaled = scaler_.scale(image, request.variant.scale);
+  if (request.variant.codec == protocol::StreamCodec::jpeg)
+    return encode_jpeg(scaled, request.variant);
   if (scaled.width < 2 || scaled.height < 2) {
-    return encode_jpeg(scaled, FormPlanner::stand_in(request.form));
+    return encode_jpeg(scaled, VariantPlanner::jpeg_fallback(request.variant));
   }
   return encode_video(scaled, request);
 }
 
-std::shared_ptr<EncodedFrame> PictureEncoder::encode_jpeg(const PictureView& picture,
-                                                          const Form& form) {
-  auto frame = independent_frame(picture, FrameCodec::jpeg, form.quality);
-  frame->form = form;
-  frame->payload = jpeg_.encode(picture, form.quality, ChromaSampling::half);
+std::shared_ptr<EncodedFrame> FrameEncoder::encode_jpeg(const ImageView& image,
+                                                        const EncodingVariant& variant) {
+  auto frame = independent_frame(image, FrameCodec::jpeg, variant.quality);
+  frame->variant = variant;
+  frame->payload = jpeg_.encode(image, variant.quality, ChromaSampling::half);
   return frame;
 }
 
-std::shared_ptr<EncodedFrame> PictureEncoder::encode_video(const PictureView& picture,
-                                                           const FormRequest& request) {
-  Video& video = video_for(request.form, picture);
+std::shared_ptr<EncodedFrame> FrameEncoder::encode_video(const ImageView& image,
+                                                         const VariantRequest& request) {
+  Video& video = video_for(request.variant, image);
   const bool key = request.key || video.next.index == 0;
   H264Encoder::Unit unit = video.encoder->encode(
-      picture, {.quality = request.form.quality, .max_bytes_per_frame = request.max_bytes}, key);
+      image, {.quality = request.variant.quality, .max_bytes_per_frame = request.max_bytes}, key);
   auto frame = std::make_shared<EncodedFrame>();
   frame->header.codec = FrameCodec::h264;
   if (unit.key) frame->header.flags = protocol::frame_flag::key;
-  frame->header.quality = static_cast<std::uint16_t>(request.form.quality);
+  frame->header.quality = static_cast<std::uint16_t>(request.variant.quality);
   frame->header.width = static_cast<std::uint16_t>(video.encoder->width());
   frame->header.height = static_cast<std::uint16_t>(video.encoder->height());
-  frame->form = request.form;
+  frame->variant = request.variant;
   frame->video = video.next;
   ++video.next.index;
   frame->payload = std::move(unit.bytes);
   return frame;
 }
 
-PictureEncoder::Video& PictureEncoder::video_for(const Form& form, const PictureView& picture) {
+FrameEncoder::Video& FrameEncoder::video_for(const EncodingVariant& variant,
+                                             const ImageView& image) {
   const Clock::time_point now = Clock::now();
   std::erase_if(videos_, [&](const auto& entry) {
-    return entry.first != form && now > entry.second.used_at + longest_unused;
+    return entry.first != variant && now > entry.second.used_at + max_unused;
   });
-  Video& video = videos_[form];
+  Video& video = videos_[variant];
   video.used_at = now;
-  if (!video.encoder || video.width != picture.width || video.height != picture.height) {
-    video.encoder = std::make_unique<H264Encoder>(picture.width, picture.height);
-    video.width = picture.width;
-    video.height = picture.height;
-    video.next = {.video = ++videos_so_far_, .index = 0};
+  if (!video.encoder || video.width != image.width || video.height != image.height) {
+    video.encoder = std::make_unique<H264Encoder>(image.width, image.height);
+    video.width = image.width;
+    video.height = image.height;
+    video.next = {.video = ++video_count_, .index = 0};
   }
   return video;
 }
 
-std::shared_ptr<EncodedFrame> PictureEncoder::encode_still(const PictureView& picture,
-                                                           StillFormat format, int quality) {
+std::shared_ptr<EncodedFrame> FrameEncoder::encode_still(const ImageView& image, StillFormat format,
+                                                         int quality) {
   const bool lossless = format == StillFormat::png;
   const int used = lossless ? lossless_quality : std::max(still_quality, quality);
-  auto frame = independent_frame(picture, lossless ? FrameCodec::png : FrameCodec::jpeg, used);
+  auto frame = independent_frame(image, lossless ? FrameCodec::png : FrameCodec::jpeg, used);
   frame->header.flags |= protocol::frame_flag::final;
-  frame->form.quality = used;
-  frame->payload =
-      lossless ? encode_png(picture) : jpeg_.encode(picture, used, ChromaSampling::full);
+  frame->variant.quality = used;
+  frame->payload = lossless ? encode_png(image) : jpeg_.encode(image, used, ChromaSampling::full);
   return frame;
 }
 

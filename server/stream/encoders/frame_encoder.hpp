@@ -12,26 +12,26 @@
 
 namespace heliograph::stream {
 
-/// Least JPEG quality of a final picture.
+/// Minimum JPEG quality of a final image.
 inline constexpr int still_quality = 95;
 
-/// Encodes the pictures of one session in the forms that its viewers want. What it gives has its
-/// payload, its form, and the members of the header that tell about them. One thread at a time.
-class PictureEncoder {
+/// Encodes the frames of one session in the variants that its viewers need. Sets the payload, the
+/// variant, and the members of the header that describe them. One thread at a time.
+class FrameEncoder {
  public:
   /// `jpeg` is used by the same thread.
-  explicit PictureEncoder(JpegEncoder& jpeg) : jpeg_(jpeg) {}
+  explicit FrameEncoder(JpegEncoder& jpeg) : jpeg_(jpeg) {}
 
-  /// A picture out of many. A video that cannot be encoded, for instance because the picture is
-  /// one pixel wide, is replaced by its stand-in. @throws std::runtime_error
-  std::shared_ptr<EncodedFrame> encode(const PictureView& picture, const FormRequest& request);
-  /// The picture that stays: JPEG with all its colour, of `quality` or better, or PNG.
+  /// A moving frame. Where the image is too small for a video it becomes the JPEG fallback.
   /// @throws std::runtime_error
-  std::shared_ptr<EncodedFrame> encode_still(const PictureView& picture,
-                                             protocol::StillFormat format, int quality);
+  std::shared_ptr<EncodedFrame> encode(const ImageView& image, const VariantRequest& request);
+  /// The final image of a static view: JPEG without chroma subsampling, of `quality` or better, or
+  /// PNG. @throws std::runtime_error
+  std::shared_ptr<EncodedFrame> encode_still(const ImageView& image, protocol::StillFormat format,
+                                             int quality);
 
  private:
-  /// One video: a new one begins when the size of the picture changes.
+  /// One video stream; a change of the image size starts a new one.
   struct Video {
     std::unique_ptr<H264Encoder> encoder;
     std::uint32_t width = 0;
@@ -40,15 +40,14 @@ class PictureEncoder {
     Clock::time_point used_at;
   };
 
-  std::shared_ptr<EncodedFrame> encode_jpeg(const PictureView& picture, const Form& form);
-  std::shared_ptr<EncodedFrame> encode_video(const PictureView& picture,
-                                             const FormRequest& request);
-  Video& video_for(const Form& form, const PictureView& picture);
+  std::shared_ptr<EncodedFrame> encode_jpeg(const ImageView& image, const EncodingVariant& variant);
+  std::shared_ptr<EncodedFrame> encode_video(const ImageView& image, const VariantRequest& request);
+  Video& video_for(const EncodingVariant& variant, const ImageView& image);
 
   JpegEncoder& jpeg_;
-  PictureScaler scaler_;
-  std::map<Form, Video> videos_;
-  std::uint64_t videos_so_far_ = 0;
+  ImageScaler scaler_;
+  std::map<EncodingVariant, Video> videos_;
+  std::uint64_t video_count_ = 0;
 };
 
 }  // namespace heliograph::stream

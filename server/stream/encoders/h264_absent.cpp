@@ -1,4 +1,4 @@
-// Stands in for the encoder where the program is built without libavcodec.
+// Replaces h264_encoder.cpp in builds without libavcodec.
 #include <stdexcept>
 
 #include "stream/encoders/h264_encoder.hpp"
@@ -18,7 +18,7 @@ H264Encoder::H264Encoder(std::uint32_t, std::uint32_t) {
 
 H264Encoder::~H264Encoder() = default;
 
-H264Encoder::Unit H264Encoder::encode(const PictureView&, const H264Rate&, bool) {
+H264Encoder::Unit H264Encoder::encode(const ImageView&, const H264Rate&, bool) {
   return {};
 }
 

@@ -17,9 +17,9 @@ namespace {
 
 constexpr const char* encoder_name = "libx264";
 
-// The encoder's idea of time, for its rate control only: pictures come when they come.
+// Nominal frame rate, for the rate control only: frames arrive at any rate.
 constexpr int nominal_rate = 30;
-constexpr int frames_in_buffer = 3;  // so much larger than the average may a frame be
+constexpr int frames_in_buffer = 3;  // maximum frame size in multiples of the average
 constexpr int no_regular_key_frames = 1 << 30;
 
 struct ContextDeleter {
@@ -39,10 +39,11 @@ void check(int result, const char* what) {
   throw std::runtime_error(std::string("H.264: ") + what + ": " + reason.data());
 }
 
-/// Level 4.2 holds 1920x1080 at 60 frames a second, 5.2 the same of 3840x2160 (H.264, table A-1).
+/// Level 4.2 allows 1920x1080 at 60 frames per second, 5.2 the same for 3840x2160 (H.264 table
+///
 struct Level {
   int number;
-  double bits_per_second;  // of the high profile
+  double bits_per_second;  // limit of the high profile
 };
 
 Level level_for(std::uint32_t width, std::uint32_t height) {
@@ -60,8 +61,7 @@ double rate_factor(int quality) {
 const std::optional<std::string>& h264_unavailable() {
   static const std::optional<std::string> reason = []() -> std::optional<std::string> {
     if (avcodec_find_encoder_by_name(encoder_name)) return std::nullopt;
-    return "libavcodec on this server has no " + std::string(encoder_name) +
-           ", so that no H.264 can be encoded";
+    return "the server's libavcodec has no " + std::string(encoder_name) + " encoder for H.264";
   }();
   return reason;
 }
@@ -75,7 +75,7 @@ struct H264Encoder::State {
 
   void set_rate(const H264Rate& rate) {
     const double bytes = std::min(rate.max_bytes_per_frame, most_bytes_per_frame);
-    // libavcodec hands what changed on to the running encoder.
+    // libavcodec applies changed options to the running encoder.
     context->rc_max_rate = static_cast<std::int64_t>(bytes * 8 * nominal_rate);
     context->rc_buffer_size = static_cast<int>(bytes * 8 * frames_in_buffer);
     av_opt_set_double(context->priv_data, "crf", rate_factor(rate.quality), 0);
@@ -97,7 +97,7 @@ H264Encoder::H264Encoder(std::uint32_t width, std::uint32_t height)
   context.width = static_cast<int>(width & ~1u);
   context.height = static_cast<int>(height & ~1u);
   if (context.width == 0 || context.height == 0) {
-    throw std::runtime_error("H.264: the picture is too small");
+    throw std::runtime_error("H.264: images must be at least 2 x 2 pixels");
   }
   context.pix_fmt = AV_PIX_FMT_YUV420P;
   context.color_range = AVCOL_RANGE_MPEG;
@@ -118,29 +118,28 @@ H264Encoder::H264Encoder(std::uint32_t width, std::uint32_t height)
   check(av_opt_set_int(context.priv_data, "forced-idr", 1, 0), "forced-idr");
   check(av_opt_set(context.priv_data, "x264-params", "scenecut=0", 0), "scenecut");
   state_->set_rate({.max_bytes_per_frame = state_->most_bytes_per_frame});
-  check(avcodec_open2(&context, codec, nullptr), "the encoder does not start");
+  check(avcodec_open2(&context, codec, nullptr), "cannot start the encoder");
 
   AVFrame& frame = *state_->frame;
   frame.format = context.pix_fmt;
   frame.width = context.width;
   frame.height = context.height;
-  check(av_frame_get_buffer(&frame, 0), "no memory for a picture");
+  check(av_frame_get_buffer(&frame, 0), "cannot allocate an image");
 }
 
 H264Encoder::~H264Encoder() = default;
 
-H264Encoder::Unit H264Encoder::encode(const PictureView& picture, const H264Rate& rate, bool key) {
+H264Encoder::Unit H264Encoder::encode(const ImageView& image, const H264Rate& rate, bool key) {
   AVCodecContext& context = *state_->context;
   AVFrame& frame = *state_->frame;
-  if (!picture.complete() || (picture.width & ~1u) != width() ||
-      (picture.height & ~1u) != height()) {
-    throw std::runtime_error("H.264: a picture of another size");
+  if (!image.complete() || (image.width & ~1u) != width() || (image.height & ~1u) != height()) {
+    throw std::runtime_error("H.264: the image does not have the size of the video");
   }
-  check(av_frame_make_writable(&frame), "no memory for a picture");
+  check(av_frame_make_writable(&frame), "cannot allocate an image");
   const auto plane = [&](int i) {
     return Plane{.samples = frame.data[i], .stride = static_cast<std::size_t>(frame.linesize[i])};
   };
-  to_video_planes(picture, {.luma = plane(0), .blue = plane(1), .red = plane(2)});
+  to_video_planes(image, {.luma = plane(0), .blue = plane(1), .red = plane(2)});
   frame.pts = state_->count++;
   frame.pict_type = key ? AV_PICTURE_TYPE_I : AV_PICTURE_TYPE_NONE;
   state_->set_rate(rate);

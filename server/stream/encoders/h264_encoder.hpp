@@ -10,21 +10,21 @@
 
 namespace heliograph::stream {
 
-/// Why no H.264 can be encoded here, or nothing if it can.
+/// Why H.264 cannot be encoded here; nullopt if it can.
 const std::optional<std::string>& h264_unavailable();
 
 struct H264Rate {
   int quality = 80;            // on the scale of JPEG
-  double max_bytes_per_frame;  // on the average of a few frames
+  double max_bytes_per_frame;  // average over a few frames
 };
 
-/// Encodes a video for viewers who want every picture at once: H.264 Annex B without B-frames, a
-/// frame out for each one in, parameter sets before each key frame, which comes only on request.
-/// 4:2:0, BT.709, limited range, as its parameter sets say. One thread at a time.
+/// Encodes low-latency video: H.264 Annex B without B-frames, one frame out for each frame in, key
+/// frames only on request, preceded by parameter sets. 4:2:0, BT.709, limited range, as the
+/// parameter sets say. One thread at a time.
 class H264Encoder {
  public:
-  /// Pictures of `width` x `height` pixels; of odd ones the last column or row is left out.
-  /// @throws std::runtime_error when libavcodec has no encoder for it
+  /// Images of `width` x `height` pixels; an odd last column or row is cropped.
+  /// @throws std::runtime_error if libavcodec has no H.264 encoder
   H264Encoder(std::uint32_t width, std::uint32_t height);
   ~H264Encoder();
   H264Encoder(const H264Encoder&) = delete;
@@ -34,10 +34,10 @@ class H264Encoder {
     std::vector<std::uint8_t> bytes;
     bool key = false;
   };
-  /// The next frame. The picture has the encoder's size. @throws std::runtime_error
-  Unit encode(const PictureView& picture, const H264Rate& rate, bool key);
+  /// The next frame. @throws std::runtime_error, also if the image has another size
+  Unit encode(const ImageView& image, const H264Rate& rate, bool key);
 
-  std::uint32_t width() const;  // of the coded picture
+  std::uint32_t width() const;  // of the encoded image
   std::uint32_t height() const;
 
  private:

@@ -12,8 +12,9 @@ std::uint32_t scaled(std::uint32_t side, int percent) {
   return std::max<std::uint32_t>(1, (side * static_cast<std::uint32_t>(percent) + 50) / 100);
 }
 
-/// Calls `use(i, weight)` for each of `count` old positions that new position `at` of `new_count`
-/// covers. Weights count parts of `new_count` in an old position and add up to `count`.
+/// Calls `use(i, weight)` for each of the `count` source positions that target position `at` of
+/// `new_count` covers. Weights are in units of 1 / `new_count` of a source position; their sum is
+/// `count`.
 template <class Use>
 void for_covered(std::size_t at, std::size_t count, std::size_t new_count, Use use) {
   const std::size_t begin = at * count;
@@ -27,22 +28,22 @@ void for_covered(std::size_t at, std::size_t count, std::size_t new_count, Use u
 
 }  // namespace
 
-PictureView PictureScaler::scale(const PictureView& picture, int percent) {
-  const std::uint32_t width = scaled(picture.width, percent);
-  const std::uint32_t height = scaled(picture.height, percent);
-  if (width == picture.width && height == picture.height) return picture;
+ImageView ImageScaler::scale(const ImageView& image, int percent) {
+  const std::uint32_t width = scaled(image.width, percent);
+  const std::uint32_t height = scaled(image.height, percent);
+  if (width == image.width && height == image.height) return image;
   pixels_.resize(channels * width * height);
-  row_.resize(channels * picture.width);
-  const float area = static_cast<float>(picture.width) * static_cast<float>(picture.height);
+  row_.resize(channels * image.width);
+  const float area = static_cast<float>(image.width) * static_cast<float>(image.height);
   for (std::size_t y = 0; y < height; ++y) {
     std::fill(row_.begin(), row_.end(), 0.0f);
-    for_covered(y, picture.height, height, [&](std::size_t old_y, float weight) {
-      const std::uint8_t* const old_row = picture.rgba.data() + old_y * row_.size();
+    for_covered(y, image.height, height, [&](std::size_t old_y, float weight) {
+      const std::uint8_t* const old_row = image.rgba.data() + old_y * row_.size();
       for (std::size_t i = 0; i < row_.size(); ++i) row_[i] += weight * old_row[i];
     });
     for (std::size_t x = 0; x < width; ++x) {
       float sum[channels] = {};
-      for_covered(x, picture.width, width, [&](std::size_t old_x, float weight) {
+      for_covered(x, image.width, width, [&](std::size_t old_x, float weight) {
         for (std::size_t c = 0; c < channels; ++c) sum[c] += weight * row_[channels * old_x + c];
       });
       std::uint8_t* const pixel = pixels_.data() + channels * (y * width + x);

@@ -7,12 +7,12 @@
 
 namespace heliograph::stream {
 
-/// Makes pictures smaller; each pixel is the mean of the area that it covers. Keeps its memory from
-/// one picture to the next. One thread at a time.
-class PictureScaler {
+/// Downscales images with a box filter: each pixel is the mean of the area that it covers. Reuses
+/// its memory. One thread at a time.
+class ImageScaler {
  public:
-  /// `percent` of width and height, from 1 to 100. What it gives lives until the next call.
-  PictureView scale(const PictureView& picture, int percent);
+  /// `percent` of width and height, 1 to 100. The result is valid until the next call.
+  ImageView scale(const ImageView& image, int percent);
 
  private:
   std::vector<std::uint8_t> pixels_;

@@ -8,23 +8,21 @@
 
 namespace heliograph::stream {
 
-/// How much colour a JPEG keeps: 4:2:0 halves its resolution in both directions.
+/// Resolution of the colour channels: half is 4:2:0, full is 4:4:4.
 enum class ChromaSampling { half, full };
 
-/// Compresses pictures with libjpeg-turbo, keeping its state and buffer from one to the next.
-/// One thread at a time.
+/// Encodes images with libjpeg-turbo; reuses its state and buffer. One thread at a time.
 class JpegEncoder {
  public:
-  /// @throws std::runtime_error when the library cannot be set up
+  /// @throws std::runtime_error if the library cannot be initialized
   JpegEncoder();
   ~JpegEncoder();
   JpegEncoder(const JpegEncoder&) = delete;
   JpegEncoder& operator=(const JpegEncoder&) = delete;
 
   /// A JPEG file; `quality` from 1 to 100.
-  /// @throws std::runtime_error when the picture is incomplete or larger than JPEG allows
-  std::vector<std::uint8_t> encode(const PictureView& picture, int quality,
-                                   ChromaSampling sampling);
+  /// @throws std::runtime_error if the image is incomplete or larger than JPEG allows
+  std::vector<std::uint8_t> encode(const ImageView& image, int quality, ChromaSampling sampling);
 
  private:
   struct State;

@@ -13,12 +13,12 @@ struct PngFree {
   void operator()(png_image* image) const { png_image_free(image); }
 };
 
-std::vector<std::uint8_t> without_alpha(const PictureView& picture) {
-  const std::size_t count = std::size_t{picture.width} * picture.height;
+std::vector<std::uint8_t> without_alpha(const ImageView& image) {
+  const std::size_t count = std::size_t{image.width} * image.height;
   std::vector<std::uint8_t> rgb(3 * count);
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t channel = 0; channel < 3; ++channel) {
-      rgb[3 * i + channel] = picture.rgba[4 * i + channel];
+      rgb[3 * i + channel] = image.rgba[4 * i + channel];
     }
   }
   return rgb;
@@ -26,22 +26,22 @@ std::vector<std::uint8_t> without_alpha(const PictureView& picture) {
 
 }  // namespace
 
-std::vector<std::uint8_t> encode_png(const PictureView& picture) {
-  if (!picture.complete()) throw std::runtime_error("this picture does not fit into a PNG");
-  const std::vector<std::uint8_t> rgb = without_alpha(picture);
+std::vector<std::uint8_t> encode_png(const ImageView& image) {
+  if (!image.complete()) throw std::runtime_error("PNG: the image is incomplete");
+  const std::vector<std::uint8_t> rgb = without_alpha(image);
 
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  image.width = picture.width;
-  image.height = picture.height;
-  image.format = PNG_FORMAT_RGB;
-  image.flags = PNG_IMAGE_FLAG_FAST;
-  const std::unique_ptr<png_image, PngFree> cleanup(&image);
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  png.width = image.width;
+  png.height = image.height;
+  png.format = PNG_FORMAT_RGB;
+  png.flags = PNG_IMAGE_FLAG_FAST;
+  const std::unique_ptr<png_image, PngFree> cleanup(&png);
 
-  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
   std::vector<std::uint8_t> file(size);
-  if (!png_image_write_to_memory(&image, file.data(), &size, 0, rgb.data(), 0, nullptr)) {
-    throw std::runtime_error(std::string("PNG: ") + image.message);
+  if (!png_image_write_to_memory(&png, file.data(), &size, 0, rgb.data(), 0, nullptr)) {
+    throw std::runtime_error(std::string("PNG: ") + png.message);
   }
   file.resize(size);
   return file;

@@ -7,8 +7,8 @@
 
 namespace heliograph::stream {
 
-/// The picture as a PNG file, 8 bit RGB.
-/// @throws std::runtime_error when the picture is incomplete
-std::vector<std::uint8_t> encode_png(const PictureView& picture);
+/// The image as a PNG file, 8 bit RGB.
+/// @throws std::runtime_error if the image is incomplete
+std::vector<std::uint8_t> encode_png(const ImageView& image);
 
 }  // namespace heliograph::stream

@@ -72,11 +72,11 @@ void colour_row(const std::uint8_t* above, const std::uint8_t* below, std::size_
 
 }  // namespace
 
-void to_video_planes(const PictureView& picture, const VideoPlanes& planes) {
-  const std::size_t width = picture.width & ~1u;
-  const std::size_t height = picture.height & ~1u;
-  const std::size_t row_bytes = std::size_t{4} * picture.width;
-  const std::uint8_t* const rgba = picture.rgba.data();
+void to_video_planes(const ImageView& image, const VideoPlanes& planes) {
+  const std::size_t width = image.width & ~1u;
+  const std::size_t height = image.height & ~1u;
+  const std::size_t row_bytes = std::size_t{4} * image.width;
+  const std::uint8_t* const rgba = image.rgba.data();
   for (std::size_t y = 0; y < height; y += 2) {
     const std::uint8_t* const above = rgba + y * row_bytes;
     const std::uint8_t* const below = above + row_bytes;

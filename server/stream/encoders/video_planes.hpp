@@ -7,7 +7,7 @@
 
 namespace heliograph::stream {
 
-/// One channel of a video picture; rows are `stride` bytes apart.
+/// One channel of a video frame; rows are `stride` bytes apart.
 struct Plane {
   std::uint8_t* samples = nullptr;
   std::size_t stride = 0;
@@ -21,7 +21,7 @@ struct VideoPlanes {
 };
 
 /// Converts to Y'CbCr of ITU-R BT.709 with limited range (16 to 235, 16 to 240); colours are the
-/// mean of 2x2 pixels. An odd last column or row is left out.
-void to_video_planes(const PictureView& picture, const VideoPlanes& planes);
+/// mean of 2x2 pixels. An odd last column or row is cropped.
+void to_video_planes(const ImageView& image, const VideoPlanes& planes);
 
 }  // namespace heliograph::stream

@@ -9,54 +9,55 @@ using protocol::StreamCodec;
 
 namespace {
 
-bool cheaper(const Form& a, const Form& b) {
+bool cheaper(const EncodingVariant& a, const EncodingVariant& b) {
   const double bytes_a = relative_bytes(a);
   const double bytes_b = relative_bytes(b);
   return bytes_a != bytes_b ? bytes_a < bytes_b : a < b;
 }
 
-/// Keeps `count` of the sorted forms: the cheapest, then the dearest, then the middle.
-std::vector<Form> keep(const std::vector<Form>& forms, std::size_t count) {
-  if (forms.size() <= count) return forms;
-  if (count == 1) return {forms.front()};
-  if (count == 2) return {forms.front(), forms.back()};
-  return {forms.front(), forms[forms.size() / 2], forms.back()};
+/// Keeps `count` of the sorted variants: the cheapest, then the most expensive, then the middle.
+std::vector<EncodingVariant> keep(const std::vector<EncodingVariant>& variants, std::size_t count) {
+  if (variants.size() <= count) return variants;
+  if (count == 1) return {variants.front()};
+  if (count == 2) return {variants.front(), variants.back()};
+  return {variants.front(), variants[variants.size() / 2], variants.back()};
 }
 
 }  // namespace
 
-double relative_bytes(const Form& form) {
+double relative_bytes(const EncodingVariant& variant) {
   // Measured on rendered scenes: a step of 10 in quality is a factor of about 1.35.
-  const double by_quality = std::exp(0.03 * (form.quality - 80));
-  // Smaller pictures hold more detail in each pixel.
-  const double by_size = std::pow(form.scale / 100.0, 1.6);
+  const double by_quality = std::exp(0.03 * (variant.quality - 80));
+  // Smaller images have more detail per pixel.
+  const double by_size = std::pow(variant.scale / 100.0, 1.6);
   return by_quality * by_size;
 }
 
-std::vector<Form> reduce_forms(std::vector<Form> wanted) {
-  std::sort(wanted.begin(), wanted.end(), cheaper);
-  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-  if (wanted.size() <= max_forms) return wanted;
-  std::vector<Form> jpeg;
-  std::vector<Form> video;
-  for (const Form& form : wanted) {
-    (form.codec == StreamCodec::jpeg ? jpeg : video).push_back(form);
+std::vector<EncodingVariant> reduce_variants(std::vector<EncodingVariant> requested) {
+  std::sort(requested.begin(), requested.end(), cheaper);
+  requested.erase(std::unique(requested.begin(), requested.end()), requested.end());
+  if (requested.size() <= max_variants) return requested;
+  std::vector<EncodingVariant> jpeg;
+  std::vector<EncodingVariant> video;
+  for (const EncodingVariant& variant : requested) {
+    (variant.codec == StreamCodec::jpeg ? jpeg : video).push_back(variant);
   }
-  const std::size_t videos = std::min(video.size(), jpeg.empty() ? max_forms : max_forms - 1);
-  jpeg = keep(jpeg, max_forms - videos);
+  const std::size_t videos = std::min(video.size(), jpeg.empty() ? max_variants : max_variants - 1);
+  jpeg = keep(jpeg, max_variants - videos);
   video = keep(video, videos);
   jpeg.insert(jpeg.end(), video.begin(), video.end());
   std::sort(jpeg.begin(), jpeg.end(), cheaper);
   return jpeg;
 }
 
-Form assigned_form(const std::vector<Form>& forms, const Form& wanted) {
-  std::optional<Form> cheapest;
-  std::optional<Form> best;
-  for (const Form& form : forms) {
-    if (form.codec != wanted.codec) continue;
-    if (!cheapest || cheaper(form, *cheapest)) cheapest = form;
-    if (!cheaper(wanted, form) && (!best || cheaper(*best, form))) best = form;
+EncodingVariant assigned_variant(const std::vector<EncodingVariant>& variants,
+                                 const EncodingVariant& requested) {
+  std::optional<EncodingVariant> cheapest;
+  std::optional<EncodingVariant> best;
+  for (const EncodingVariant& variant : variants) {
+    if (variant.codec != requested.codec) continue;
+    if (!cheapest || cheaper(variant, *cheapest)) cheapest = variant;
+    if (!cheaper(requested, variant) && (!best || cheaper(*best, variant))) best = variant;
   }
   return best ? *best : *cheapest;
 }

@@ -10,16 +10,16 @@
 
 namespace heliograph::stream {
 
-/// How a picture is encoded: viewers who want the same share the bytes.
-struct Form {
+/// Parameters of an encoding; viewers with equal variants share the encoded frame.
+struct EncodingVariant {
   protocol::StreamCodec codec = protocol::StreamCodec::jpeg;
-  int scale = 100;   // percent of the picture's width and height
+  int scale = 100;   // percent of the frame's width and height
   int quality = 80;  // 1 to 100
 
-  friend auto operator<=>(const Form&, const Form&) = default;
+  friend auto operator<=>(const EncodingVariant&, const EncodingVariant&) = default;
 };
 
-/// Where a frame stands in a video. A frame that is not a key frame needs the one before it.
+/// Position of a frame in a video. Frames other than key frames depend on the previous one.
 struct VideoPosition {
   std::uint64_t video = 0;  // unique to each run of an encoder
   std::uint32_t index = 0;
@@ -29,19 +29,21 @@ struct VideoPosition {
   }
 };
 
-/// A moving picture is encoded at most so often, however many viewers there are.
-inline constexpr std::size_t max_forms = 3;
+/// Maximum number of encodings of a moving frame, for any number of viewers.
+inline constexpr std::size_t max_variants = 3;
 
-/// Roughly how many bytes a picture takes in this form, as a part of JPEG's at quality 80.
-double relative_bytes(const Form& form);
+/// Approximate size of a frame in this variant, relative to JPEG at quality 80.
+double relative_bytes(const EncodingVariant& variant);
 
-/// The forms to encode for viewers who want `wanted`: theirs if they are few enough, else the
-/// cheapest, the dearest and the one in the middle of each codec, with one left for JPEG if
-/// somebody needs that. Ascending, without repetition.
-std::vector<Form> reduce_forms(std::vector<Form> wanted);
+/// The variants to encode for viewers that request `requested`: all, if they are few enough,
+/// otherwise the cheapest, the most expensive and the middle one of each codec, with one kept for
+/// JPEG if a viewer needs it. Ascending, without duplicates.
+std::vector<EncodingVariant> reduce_variants(std::vector<EncodingVariant> requested);
 
-/// What a viewer who wants `wanted` gets of `forms`: the dearest one of its codec that is no dearer
-/// than it asked for, else the cheapest. `forms` holds one of its codec.
-Form assigned_form(const std::vector<Form>& forms, const Form& wanted);
+/// The one of `variants` for a viewer that requests `requested`: the most expensive one of its
+/// codec that is no more expensive than requested, otherwise the cheapest. `variants` contains at
+/// least one of its codec.
+EncodingVariant assigned_variant(const std::vector<EncodingVariant>& variants,
+                                 const EncodingVariant& requested);
 
 }  // namespace heliograph::stream

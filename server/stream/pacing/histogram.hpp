@@ -7,10 +7,10 @@
 
 namespace heliograph::stream {
 
-/// How often durations fell under each of fixed bounds, for metrics.
+/// A histogram of durations with fixed bounds, for metrics.
 class Histogram {
  public:
-  /// Seconds: from a pass that does nothing to a picture that takes an age.
+  /// Upper bounds, seconds.
   static constexpr std::array<double, 12> bounds{0.0001, 0.0003, 0.001, 0.0025, 0.005, 0.01,
                                                  0.025,  0.05,   0.1,   0.25,   1.0,   5.0};
 
@@ -24,7 +24,7 @@ class Histogram {
     sum_ += more.sum_;
   }
 
-  /// How many were at most bounds[i]; with i = bounds.size(): all.
+  /// Number of durations of at most bounds[i]; all for i = bounds.size().
   std::uint64_t up_to(std::size_t i) const {
     std::uint64_t count = 0;
     for (std::size_t k = 0; k <= i; ++k) count += counts_[k];

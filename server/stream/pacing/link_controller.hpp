@@ -9,35 +9,35 @@
 
 namespace heliograph::stream {
 
-/// A frame of the moving picture that arrived.
+/// An acknowledged moving frame.
 struct Arrival {
   std::uint64_t bytes = 0;
-  Form form;
-  std::chrono::microseconds delay{0};     // sending to acknowledgement, less what the client held
-  std::chrono::microseconds interval{0};  // how often there could be a picture, whatever the way
+  EncodingVariant variant;
+  std::chrono::microseconds delay{0};     // send to acknowledgement, minus processing in the client
+  std::chrono::microseconds interval{0};  // shortest possible frame interval, apart from the link
 };
 
-/// Fits the moving picture of one viewer to the way it takes. Learns from acknowledgements how
-/// large a picture may be: less by a factor as soon as they come late, more by a constant step
-/// while they come in time, with half a second between two changes and longer after a decrease.
+/// Adapts the moving frames of one viewer to its network link. Derives a byte budget per frame from
+/// acknowledgements: multiplicative decrease as soon as they are late, additive increase while they
+/// are in time (AIMD), with half a second between two changes and longer after a decrease.
 ///
-/// Late is measured against the time that an empty picture would take. That time is never taken
-/// from a queue: it is found by comparing the delays of larger and smaller pictures, which is what
-/// every decrease provides. Where smaller pictures do not come sooner, the way itself is long and
-/// the decrease is taken back. Pure logic: callers bring the time.
+/// Late is relative to the delay of an empty frame. That base delay does not include queueing: it
+/// is extrapolated from the delays of larger and smaller frames, which every decrease provides. If
+/// smaller frames do not arrive sooner, the round trip itself is long, and the decrease is undone.
+/// No I/O and no clock: callers pass the time.
 class LinkController {
  public:
   void arrived(const Arrival& arrival, Clock::time_point now);
 
-  /// The form for a viewer who wants `wanted`, of pictures of `pixels`: first quality goes, then
-  /// size. Asking changes what the next answer is compared with, so that it does not flicker.
-  Form choose(const Form& wanted, std::uint64_t pixels);
-  /// The form of a picture that rests but gets better: whole, of less quality on a narrow way.
-  Form resting(const Form& wanted) const;
+  /// The variant for a viewer that requests `requested`, for frames of `pixels`: quality is reduced
+  /// first, then size. Stores the chosen level for hysteresis.
+  EncodingVariant choose(const EncodingVariant& requested, std::uint64_t pixels);
+  /// The variant of a refining frame of a static view: full size, of less quality on a slow link.
+  EncodingVariant choose_refining(const EncodingVariant& requested) const;
 
-  /// Bytes that a picture may have; infinite as long as nothing limits it.
+  /// Bytes per frame; infinite while nothing limits it.
   double budget() const { return budget_; }
-  /// The time that an empty picture would take, as far as it is known.
+  /// Estimated delay of an empty frame.
   std::chrono::microseconds base_delay() const;
 
  private:
@@ -53,20 +53,20 @@ class LinkController {
 
   bool late(const Arrival& arrival) const;
   void lower(Clock::time_point now);
-  void judge_decrease();
-  std::size_t jpeg_rung(const Form& wanted) const;
-  std::size_t video_rung(std::uint64_t pixels) const;
+  void evaluate_decrease();
+  std::size_t jpeg_level(const EncodingVariant& requested) const;
+  std::size_t video_level(std::uint64_t pixels) const;
 
   double base_ = 0.0;  // microseconds
   double budget_ = unlimited;
-  double unit_bytes_ = 0.0;  // of a JPEG in the form whose relative size is 1; smoothed
-  std::size_t rung_ = 0;
-  bool late_ = false;  // the last arrival was
-  Mean now_;           // of arrivals that were late, or in time, like the last
-  Mean before_;        // the last decrease, while it is not judged
+  double unit_bytes_ = 0.0;  // of a JPEG whose relative_bytes() is 1; smoothed
+  std::size_t level_ = 0;
+  bool late_ = false;  // whether the last arrival was late
+  Mean now_;           // of consecutive arrivals that were late, or in time
+  Mean before_;        // before the last decrease, until it is evaluated
   double budget_before_ = unlimited;
-  bool judging_ = false;
-  Clock::time_point settled_at_;  // what comes earlier was sent before the last change
+  bool evaluating_ = false;
+  Clock::time_point settled_at_;  // earlier arrivals were sent before the last change
   Clock::time_point next_change_;
   Clock::time_point next_increase_;
 };

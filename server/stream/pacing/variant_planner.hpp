@@ -10,49 +10,49 @@
 
 namespace heliograph::stream {
 
-/// What one viewer could do with the next picture.
-struct FormWish {
-  Form form;
-  bool ready = false;                    // it could be sent at once
-  std::optional<VideoPosition> decoder;  // the last frame of a video that the viewer has
-  double budget = std::numeric_limits<double>::infinity();  // bytes of a frame of its video
+/// What one viewer requests for the next frame.
+struct RequestedVariant {
+  EncodingVariant variant;
+  bool ready = false;                    // the frame could be sent at once
+  std::optional<VideoPosition> decoder;  // the last video frame that the viewer decoded
+  double budget = std::numeric_limits<double>::infinity();  // bytes per video frame
 };
 
-/// One encoding of a picture.
-struct FormRequest {
-  Form form;
-  bool key = false;                                            // a video has to begin anew
-  double max_bytes = std::numeric_limits<double>::infinity();  // of a video's frame, on average
+/// One encoding of a frame.
+struct VariantRequest {
+  EncodingVariant variant;
+  bool key = false;                                            // the video needs a key frame
+  double max_bytes = std::numeric_limits<double>::infinity();  // average, per video frame
 };
 
-/// Decides in which forms a picture is encoded. A viewer that cannot go on with its video, because
-/// it is new or missed a frame, costs the others little: their video gets a key frame at most every
-/// `least_key_interval`, and until then the viewer is sent JPEGs. Pure logic.
-class FormPlanner {
+/// Chooses the variants in which a frame is encoded. A viewer that cannot continue its video,
+/// because it is new or missed a frame, costs the others little: their video gets a key frame at
+/// most every `min_key_interval`, and until then the viewer gets JPEGs. No I/O and no clock.
+class VariantPlanner {
  public:
-  static constexpr std::chrono::seconds least_key_interval{2};
+  static constexpr std::chrono::seconds min_key_interval{2};
 
   struct Plan {
-    std::vector<Form> assigned;  // for every wish
-    std::vector<FormRequest> requests;
+    std::vector<EncodingVariant> assigned;  // one per request
+    std::vector<VariantRequest> requests;
   };
-  /// Nothing is encoded for viewers who are not ready.
-  Plan plan(const std::vector<FormWish>& wishes, Clock::time_point now) const;
+  /// Encodes nothing for viewers that are not ready.
+  Plan plan(const std::vector<RequestedVariant>& requests, Clock::time_point now) const;
 
-  /// Tells what was encoded, so that viewers can go on with a video.
+  /// Records what was encoded, so that viewers can continue a video.
   void published(const EncodedFrame& frame, Clock::time_point now);
 
-  /// The JPEG for viewers of a video who cannot go on with it.
-  static Form stand_in(const Form& video);
+  /// The JPEG for viewers of a video that cannot continue it.
+  static EncodingVariant jpeg_fallback(const EncodingVariant& video);
 
  private:
   struct Video {
     VideoPosition newest;
     Clock::time_point key_at;
   };
-  bool in_step(const FormWish& wish, const Form& form) const;
+  bool in_step(const RequestedVariant& request, const EncodingVariant& variant) const;
 
-  std::map<Form, Video> videos_;
+  std::map<EncodingVariant, Video> videos_;
 };
 
 }  // namespace heliograph::stream

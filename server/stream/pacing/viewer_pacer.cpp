@@ -7,31 +7,31 @@ namespace heliograph::stream {
 namespace {
 
 /// Weight of a new measurement, as in TCP's smoothed round trip time (RFC 6298).
-constexpr double newest_weight = 1.0 / 8.0;
+constexpr double newest_frame_weight = 1.0 / 8.0;
 
 }  // namespace
 
 bool ViewerPacer::can_show(const EncodedFrame& frame) const {
   if (!frame.video || (frame.header.flags & protocol::frame_flag::key)) return true;
-  // A newer frame takes the place of one that waits, and would miss it.
-  const bool breaks = waiting_ && waiting_->video;
+  // This frame would replace the pending one and depend on it.
+  const bool breaks = pending_ && pending_->video;
   return decoder_ && !breaks && frame.video->follows(*decoder_);
 }
 
 void ViewerPacer::offer(SharedFrame frame) {
   if (paused_) return;
-  if (waiting_) {
+  if (pending_) {
     ++totals_.dropped;
     dropped_since_taken_ = true;
-    if (waiting_->video) decoder_.reset();
+    if (pending_->video) decoder_.reset();
   }
   if (frame->video) decoder_ = frame->video;
-  waiting_ = std::move(frame);
+  pending_ = std::move(frame);
   offered_ = ++last_number_;
 }
 
-void ViewerPacer::withdraw() {
-  waiting_ = nullptr;
+void ViewerPacer::drop_pending() {
+  pending_ = nullptr;
   decoder_.reset();
 }
 
@@ -46,21 +46,21 @@ std::optional<ViewerPacer::Taken> ViewerPacer::take(Clock::time_point now) {
   if (!sendable(now)) return std::nullopt;
   Taken taken{.frame_seq = offered_,
               .first_after_drop = std::exchange(dropped_since_taken_, false),
-              .frame = std::exchange(waiting_, nullptr)};
+              .frame = std::exchange(pending_, nullptr)};
   const EncodedFrame& frame = *taken.frame;
   const std::uint64_t bytes = frame.payload.size() + protocol::frame_header_bytes;
   const bool key_of_video = frame.video && (frame.header.flags & protocol::frame_flag::key);
-  const bool undisturbed = std::all_of(on_the_way_.begin(), on_the_way_.end(),
-                                       [](const Sent& sent) { return sent.telling; });
-  on_the_way_.push_back({.frame_seq = taken.frame_seq,
-                         .bytes = bytes,
-                         .at = now,
-                         .form = frame.form,
-                         .rendering = std::chrono::microseconds(frame.header.render_us),
-                         .ahead = on_the_way_.size(),
-                         .telling = frame.moving && !key_of_video && undisturbed});
-  // Turns keep their rhythm when one came a little late, but do not pile up over a pause.
-  next_turn_ = std::max(next_turn_ + least_interval_, now + least_interval_ / 2);
+  const bool all_measurable = std::all_of(in_flight_.begin(), in_flight_.end(),
+                                          [](const Sent& sent) { return sent.measurable; });
+  in_flight_.push_back({.frame_seq = taken.frame_seq,
+                        .bytes = bytes,
+                        .at = now,
+                        .variant = frame.variant,
+                        .rendering = std::chrono::microseconds(frame.header.render_us),
+                        .ahead = in_flight_.size(),
+                        .measurable = frame.moving && !key_of_video && all_measurable});
+  // The interval is kept if a frame is slightly late, but does not accumulate over a pause.
+  next_send_ = std::max(next_send_ + min_interval_, now + min_interval_ / 2);
   ++totals_.frames;
   totals_.bytes += bytes;
   return taken;
@@ -68,12 +68,12 @@ std::optional<ViewerPacer::Taken> ViewerPacer::take(Clock::time_point now) {
 
 bool ViewerPacer::acknowledge(std::uint32_t frame_seq, std::chrono::microseconds held,
                               Clock::time_point now) {
-  const auto known = std::find_if(on_the_way_.begin(), on_the_way_.end(),
+  const auto known = std::find_if(in_flight_.begin(), in_flight_.end(),
                                   [&](const Sent& sent) { return sent.frame_seq == frame_seq; });
-  if (known == on_the_way_.end()) return false;
+  if (known == in_flight_.end()) return false;
   measure(*known, held, now);
-  totals_.acknowledged += static_cast<std::uint64_t>(known + 1 - on_the_way_.begin());
-  on_the_way_.erase(on_the_way_.begin(), known + 1);
+  totals_.acknowledged += static_cast<std::uint64_t>(known + 1 - in_flight_.begin());
+  in_flight_.erase(in_flight_.begin(), known + 1);
   return true;
 }
 
@@ -81,47 +81,47 @@ void ViewerPacer::measure(const Sent& sent, std::chrono::microseconds held, Cloc
   using std::chrono::duration_cast;
   using std::chrono::microseconds;
   const auto total = std::max(duration_cast<microseconds>(now - sent.at), microseconds(1));
-  // A client's own figure is trusted only as far as it is possible.
+  // The client's figure is limited to the possible range.
   const auto sample = total - std::clamp(held, microseconds(0), total);
   totals_.round_trips.add(std::chrono::duration<double>(sample).count());
-  // A frame that waits behind another one begins its way when that has arrived.
+  // A frame queued behind another one starts its transfer when that has arrived.
   const auto alone = now - std::max(sent.at, last_acknowledgement_);
   last_acknowledgement_ = now;
   const auto taken = std::max(duration_cast<microseconds>(alone), microseconds(1));
   const double rate = static_cast<double>(sent.bytes) * 1e6 / static_cast<double>(taken.count());
   const bool first = goodput_ == 0.0;
-  const double weight = first ? 1.0 : newest_weight;
+  const double weight = first ? 1.0 : newest_frame_weight;
   goodput_ += weight * (rate - goodput_);
   round_trip_ += microseconds(
       static_cast<std::int64_t>(weight * static_cast<double>((sample - round_trip_).count())));
-  if (!sent.telling) return;
-  const auto interval = std::max(sent.rendering, least_interval_);
+  if (!sent.measurable) return;
+  const auto interval = std::max(sent.rendering, min_interval_);
   window_.arrived({.delay = sample, .interval = interval, .ahead = sent.ahead}, now);
-  link_.arrived({.bytes = sent.bytes, .form = sent.form, .delay = sample, .interval = interval},
-                now);
+  link_.arrived(
+      {.bytes = sent.bytes, .variant = sent.variant, .delay = sample, .interval = interval}, now);
 }
 
 void ViewerPacer::set_max_rate(double frames_per_second) {
-  least_interval_ = std::chrono::microseconds(static_cast<std::int64_t>(1e6 / frames_per_second));
-  next_turn_ = {};
+  min_interval_ = std::chrono::microseconds(static_cast<std::int64_t>(1e6 / frames_per_second));
+  next_send_ = {};
 }
 
 void ViewerPacer::set_paused(bool paused, Clock::time_point now) {
   if (paused_ && !paused) resumed_at_ = now;
   paused_ = paused;
   if (!paused_) return;
-  // Who comes back gets a key frame first, even if no frame was missed: that is how a viewer whose
-  // decoder failed asks for a fresh start.
+  // A resumed stream starts with a key frame, even if no frame was missed: a viewer whose decoder
+  // failed pauses and resumes to get one.
   decoder_.reset();
-  waiting_ = nullptr;
+  pending_ = nullptr;
 }
 
 bool ViewerPacer::sendable(Clock::time_point now) const {
-  return waiting_ && !paused_ && window_open() && now >= next_turn_;
+  return pending_ && !paused_ && window_open() && now >= next_send_;
 }
 
 bool ViewerPacer::has_room(Clock::time_point now) const {
-  return !paused_ && !waiting_ && window_open() && now >= next_turn_;
+  return !paused_ && !pending_ && window_open() && now >= next_send_;
 }
 
 }  // namespace heliograph::stream

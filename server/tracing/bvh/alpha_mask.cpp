@@ -19,13 +19,13 @@ std::uint32_t lowest_alpha(const shared::Material& material) {
   return alpha;
 }
 
-// Of a blended surface's alpha, of 65535.
+// Alpha of a blended surface, scaled to 65535.
 std::uint32_t blend_factor(const shared::Material& material) {
   const float factor = std::clamp(material.base_color.w * (1.0f - material.passing), 0.0f, 1.0f);
   return static_cast<std::uint32_t>(std::lround(factor * static_cast<float>(shared::mask_factor)));
 }
 
-// Into 0..1; the same as wrap() in shaders/lib/math/nearest_texel.glsl.
+// Wraps to 0..1; the same as wrap() in shaders/lib/math/nearest_texel.glsl.
 float wrap(float coordinate, std::uint32_t mode) {
   if (mode == shared::wrap_clamp) return std::clamp(coordinate, 0.0f, 1.0f);
   if (mode == shared::wrap_mirror) {

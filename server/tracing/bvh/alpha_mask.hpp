@@ -10,16 +10,16 @@
 
 namespace heliograph::tracing {
 
-/// How much of a material's surface rays meet: in part with glTF's alphaMode MASK and BLEND.
+/// Coverage of a material for rays: partial for glTF's alphaMode MASK and BLEND.
 enum class Coverage { whole, masked, none };
 
 Coverage coverage(const shared::Material& material);
 
-/// A number of a ray that decides which blended surfaces stop it, like ray_blending() in shaders.
-/// `blending`: of its stream; 0: all do.
+/// A random number of a ray that decides which blended surfaces stop it, like ray_blending() in
+/// shaders. `blending`: seed of its stream; 0: all blended surfaces stop it.
 std::uint32_t ray_blending(const shared::Ray& ray, std::uint32_t blending);
 
-/// Where rays pass through a mesh of masked coverage.
+/// Alpha test of rays for a mesh with partial coverage.
 struct AlphaMask {
   std::uint32_t texels = 0;  // offset into the scene's alpha heap
   std::uint32_t width = 0;   // 0: no texture, alpha is 255 all over
@@ -29,13 +29,13 @@ struct AlphaMask {
   std::uint32_t wrap_t = shared::wrap_repeat;
   std::vector<glm::vec2> uvs;  // three per triangle, texture transform applied
 
-  /// Whether a ray through barycentric (u, v) of `triangle` ends there. `heap`: the scene's.
+  /// Whether a ray stops at barycentric (u, v) of `triangle`. `heap`: the scene's alpha heap.
   /// `blending`: ray_blending() of the ray.
   bool stops_ray(std::span<const std::uint8_t> heap, std::uint32_t blending, std::uint32_t instance,
                  std::uint32_t triangle, float u, float v) const;
 
  private:
-  /// Of 255, at barycentric (u, v).
+  /// Alpha of 255 at barycentric (u, v).
   std::uint32_t alpha(std::span<const std::uint8_t> heap, std::uint32_t triangle, float u,
                       float v) const;
 };

@@ -38,7 +38,7 @@ std::array<glm::vec3, 3> corners(const scene::Mesh& mesh, std::size_t triangle) 
   return {corner(0), corner(1), corner(2)};
 }
 
-// Empty boxes for triangles with a corner that is not finite.
+// Triangles with a non-finite vertex get empty boxes.
 std::vector<scene::Bounds> triangle_boxes(const scene::Mesh& mesh) {
   std::vector<scene::Bounds> boxes(mesh.indices.size() / 3);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -150,8 +150,7 @@ scene::Bounds world_box(const scene::Bounds& box, const glm::mat4& world) {
                           corner & 4 ? box.maximum.z : box.minimum.z);
     result.include(glm::vec3(world * glm::vec4(point, 1.0f)));
   }
-  // The box is tested against the ray in world space, the triangles in mesh space: leave room for
-  // the rounding between the two.
+  // Boxes are tested in world space, triangles in mesh space: widened for rounding between them.
   const glm::vec3 largest = glm::max(glm::abs(result.minimum), glm::abs(result.maximum));
   const float slack = 4e-7f * (largest.x + largest.y + largest.z);
   return {result.minimum - slack, result.maximum + slack};
@@ -196,12 +195,11 @@ BvhTopLevel build_top_level(RTCDevice device, const Bvh& bvh,
     top.records.push_back(node);
   }
   top.root = moved_link(tree.root, first, 0);
-  // Besides both trees: the link that leaves the mesh, and the bottom of the stack.
+  // In addition to both trees: the link that leaves the mesh, and the bottom of the stack.
   top.depth = bvh.mesh_depth + tree.depth + 2;
   if (top.depth > shared::bvh_stack_size) {
-    throw std::length_error("the scene nests " + std::to_string(top.depth) +
-                            " boxes deep, rays can wait for " +
-                            std::to_string(shared::bvh_stack_size));
+    throw std::length_error("the scene's hierarchy is " + std::to_string(top.depth) +
+                            " levels deep, the limit is " + std::to_string(shared::bvh_stack_size));
   }
   return top;
 }

@@ -16,7 +16,8 @@ std::uint32_t node_link(std::uint32_t index) {
 
 constexpr std::uint32_t largest_leaf = shared::bvh_leaf_count_mask + 1;
 
-/// What Embree builds: an inner node, or a leaf when `count` is not zero. The memory is Embree's.
+/// A node of Embree's builder: an inner node, or a leaf when `count` is not zero. Allocated by
+/// Embree.
 struct BuildNode {
   std::uint32_t count = 0;
   std::array<std::uint32_t, largest_leaf> items{};
@@ -73,9 +74,9 @@ class Flattener {
   Flattener(Hierarchy& hierarchy, const LeafWriter& write_leaf)
       : hierarchy_(hierarchy), write_leaf_(write_leaf) {}
 
-  /// Appends the tree under `node`, which has `waiting` links on the stack when it is reached.
-  std::uint32_t add(const BuildNode& node, std::uint32_t waiting) {
-    hierarchy_.depth = std::max(hierarchy_.depth, waiting);
+  /// Appends the tree under `node`, which is reached with `stacked` links on the traversal stack.
+  std::uint32_t add(const BuildNode& node, std::uint32_t stacked) {
+    hierarchy_.depth = std::max(hierarchy_.depth, stacked);
     if (node.count > 0) return write_leaf_({node.items.data(), node.count});
     const auto index = static_cast<std::uint32_t>(hierarchy_.nodes.size());
     const auto& [left, right] = node.boxes;
@@ -87,7 +88,7 @@ class Flattener {
                                 0,
                                 0});
     const auto child = [&](int i) {
-      return add(*static_cast<const BuildNode*>(node.children[i]), waiting + 1);
+      return add(*static_cast<const BuildNode*>(node.children[i]), stacked + 1);
     };
     const std::uint32_t left_link = child(0);
     const std::uint32_t right_link = child(1);
@@ -106,7 +107,7 @@ RTCBuildArguments build_arguments(RTCBVH bvh, std::vector<RTCBuildPrimitive>& pr
   RTCBuildArguments arguments = rtcDefaultBuildArguments();
   arguments.buildQuality = RTC_BUILD_QUALITY_MEDIUM;
   arguments.maxBranchingFactor = 2;
-  // Embree splits by cost down to eight levels above this and in the middle from there.
+  // Embree splits by surface area cost down to eight levels above this, then at the median.
   arguments.maxDepth = 56;
   arguments.maxLeafSize = leaf_size;
   arguments.bvh = bvh;

@@ -11,15 +11,15 @@
 
 namespace heliograph::tracing {
 
-/// One level of a hierarchy: a binary tree over boxes, flattened depth first. Links in `nodes`
-/// count from its own first node.
+/// One level of a hierarchy: a binary tree over boxes, flattened depth first. Links in `nodes` are
+/// relative to its first node.
 struct Hierarchy {
   std::vector<shared::BvhNode> nodes;
   std::uint32_t root = shared::bvh_no_link;
-  std::uint32_t depth = 0;  // most links that wait on the stack while it is traversed
+  std::uint32_t depth = 0;  // maximum stack depth of traversal
 };
 
-/// @throws std::length_error when there are more triangles than links can name
+/// @throws std::length_error when there are more triangles than links can address
 std::uint32_t leaf_link(std::size_t first, std::size_t count);
 
 /// Called once per leaf, in depth-first order, with indices into `boxes`; returns the leaf's link.
@@ -27,7 +27,7 @@ using LeafWriter = std::function<std::uint32_t(std::span<const std::uint32_t> it
 
 /// Surface area heuristic, binned (Wald 2007), by Embree's builder. Boxes that are empty or not
 /// finite are left out. At most `leaf_size` (<= 8) items share a leaf. Thread safe.
-/// @throws std::runtime_error when the boxes nest too deeply for a stack of reasonable size
+/// @throws std::runtime_error when the tree is too deep for the traversal stack
 Hierarchy build_hierarchy(RTCDevice device, std::span<const scene::Bounds> boxes,
                           std::uint32_t leaf_size, const LeafWriter& write_leaf);
 

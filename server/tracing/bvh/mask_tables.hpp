@@ -9,8 +9,8 @@
 
 namespace heliograph::tracing {
 
-/// Where rays pass through a scene's masked meshes, for shaders that walk the driver's hierarchies:
-/// the buffers of shaders/lib/rays/driver_hierarchy.glsl.
+/// Alpha test tables of a scene for shaders that traverse the driver's acceleration structures: the
+/// buffers of shaders/lib/rays/driver_hierarchy.glsl.
 struct MaskTables {
   /// @throws gpu::GpuError when the device cannot bind tables of that size
   MaskTables(const gpu::Device& device, const scene::Scene& scene);

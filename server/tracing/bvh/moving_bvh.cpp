@@ -76,7 +76,7 @@ void MovingBvh::update(const Movement& movement, const Tables& tables) {
   if (!movement.deformed.empty() || !movement.moved.empty()) place(movement.worlds, tables);
 }
 
-// Children lie behind their parent, so that one sweep from the end meets them first.
+// Children follow their parent, so that one backward pass visits them first.
 void MovingBvh::refit(const Movement::Mesh& movement, const Tables& tables) {
   bounds_[movement.mesh] = movement.bounds;
   const auto found = deforming_.find(movement.mesh);

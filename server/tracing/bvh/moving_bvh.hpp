@@ -11,25 +11,26 @@
 
 namespace heliograph::tracing {
 
-/// Keeps a copy of a two-level hierarchy in step with a scene that moves: the trees of meshes that
-/// deform are refitted, the tree over the instances is built anew.
+/// Updates a copy of a two-level hierarchy for an animated scene: the trees of deforming meshes are
+/// refitted, the tree over the instances is rebuilt.
 class MovingBvh {
  public:
-  /// Where the copy's tables lie; the device reads them, so that they are only ever written here.
+  /// The copy's tables. The device reads them: write-only memory.
   struct Tables {
     std::span<shared::BvhNode> records;  // record_count() long
-    std::span<glm::vec4> triangles;      // as long as the rest's; empty when no mesh deforms
+    std::span<glm::vec4>
+        triangles;  // as long as those of the static hierarchy; empty when no mesh deforms
   };
 
-  /// `scene` is the one that `rest` was built for. Keeps no reference to it.
+  /// `scene`: the scene of the static hierarchy. Keeps no reference to it.
   MovingBvh(RTCDevice device, std::shared_ptr<const Bvh> rest, const scene::Scene& scene);
 
-  /// Records that the tables must hold: room for every instance, however it is placed.
+  /// Number of records that the tables need, for any placement of the instances.
   std::size_t record_count() const { return rest_->first_placed + 2 * mesh_of_.size(); }
   bool deforms() const { return !deforming_.empty(); }
   std::uint32_t root() const { return root_; }
 
-  /// Fills the tables with the hierarchy at rest.
+  /// Fills the tables with the static hierarchy.
   void start(const Tables& tables);
   /// @throws std::length_error when the instances nest too deeply
   void update(const Movement& movement, const Tables& tables);

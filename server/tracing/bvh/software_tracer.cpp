@@ -21,8 +21,8 @@ void check_texels(const gpu::Device& device, const std::string& name, std::size_
                       " texels, but the device reads at most " + std::to_string(most));
 }
 
-/// Uploads texels of four floats. The view is made here, where one thread builds, because plans on
-/// several threads share it later.
+/// Uploads RGBA32F texels. Creates the view here on the building thread, because plans of several
+/// threads share it.
 template <typename Element>
 gpu::Buffer upload_texels(const gpu::Device& device, const std::string& name,
                           const std::vector<Element>& elements) {
@@ -34,7 +34,7 @@ gpu::Buffer upload_texels(const gpu::Device& device, const std::string& name,
   return buffer;
 }
 
-/// What a pass that traces binds: the tables stay where they are, the root may change.
+/// Bindings of a tracing pass: the tables are constant, the root may change.
 struct SoftwareTables {
   const gpu::Buffer& records;
   const gpu::Buffer& triangles;
@@ -47,9 +47,9 @@ class SoftwareStructure : public virtual AccelerationStructure {
   virtual std::uint32_t root() const = 0;
 };
 
-class RestingSoftwareStructure : public SoftwareStructure {
+class StaticSoftwareStructure : public SoftwareStructure {
  public:
-  RestingSoftwareStructure(const gpu::Device& device, Bvh bvh, bool moves, const gpu::Buffer& masks)
+  StaticSoftwareStructure(const gpu::Device& device, Bvh bvh, bool moves, const gpu::Buffer& masks)
       : records_(upload_texels(device, "bvh.records", bvh.records)),
         triangles_(upload_texels(device, "bvh.triangles", bvh.triangles)),
         alpha_heap_(masks),
@@ -62,7 +62,7 @@ class RestingSoftwareStructure : public SoftwareStructure {
   SoftwareTables tables() const override { return {records_, triangles_, alpha_heap_}; }
   std::uint32_t root() const override { return root_; }
   std::uint64_t bytes() const override { return records_.size() + triangles_.size(); }
-  /// What moving copies start from; null for scenes without clips.
+  /// Source of the copies for animated scenes; null for scenes without clips.
   const std::shared_ptr<const Bvh>& bvh() const { return bvh_; }
 
  private:
@@ -76,7 +76,7 @@ class RestingSoftwareStructure : public SoftwareStructure {
 class MovingSoftwareStructure : public SoftwareStructure, public MovingStructure {
  public:
   MovingSoftwareStructure(const gpu::Device& device, RTCDevice embree,
-                          std::shared_ptr<const RestingSoftwareStructure> rest,
+                          std::shared_ptr<const StaticSoftwareStructure> rest,
                           const scene::Scene& scene)
       : rest_(std::move(rest)), bvh_(embree, rest_->bvh(), scene) {
     records_ = writable_texels(device, "bvh.moving_records",
@@ -113,7 +113,7 @@ class MovingSoftwareStructure : public SoftwareStructure, public MovingStructure
             span(triangles_, reinterpret_cast<glm::vec4*>(triangles_.mapped()))};
   }
 
-  std::shared_ptr<const RestingSoftwareStructure> rest_;
+  std::shared_ptr<const StaticSoftwareStructure> rest_;
   MovingBvh bvh_;
   gpu::Buffer records_;
   gpu::Buffer triangles_;
@@ -131,8 +131,8 @@ class SoftwareTracer : public RayTracer {
 
   std::shared_ptr<const AccelerationStructure> build(const scene::Scene& scene,
                                                      const SceneBuffers& buffers) const override {
-    return std::make_shared<RestingSoftwareStructure>(device_, build_bvh(embree_.get(), scene),
-                                                      !scene.clips.empty(), buffers.alpha_heap);
+    return std::make_shared<StaticSoftwareStructure>(device_, build_bvh(embree_.get(), scene),
+                                                     !scene.clips.empty(), buffers.alpha_heap);
   }
 
   std::unique_ptr<MovingStructure> build_moving(std::shared_ptr<const AccelerationStructure> rest,
@@ -140,7 +140,7 @@ class SoftwareTracer : public RayTracer {
                                                 const SceneTables&) const override {
     return std::make_unique<MovingSoftwareStructure>(
         device_, embree_.get(),
-        std::dynamic_pointer_cast<const RestingSoftwareStructure>(std::move(rest)), scene);
+        std::dynamic_pointer_cast<const StaticSoftwareStructure>(std::move(rest)), scene);
   }
 
   void trace_closest(gpu::FramePlan& plan, const std::string& name,
@@ -158,7 +158,7 @@ class SoftwareTracer : public RayTracer {
  private:
   static void add_pass(gpu::FramePlan& plan, const std::string& name,
                        const gpu::ComputeProgram& program, const AccelerationStructure& structure,
-                       const RayStream& rays, gpu::BufferRef answers) {
+                       const RayStream& rays, gpu::BufferRef results) {
     const auto& bvh = dynamic_cast<const SoftwareStructure&>(structure);
     const SoftwareTables tables = bvh.tables();
     plan.pass(name, program)
@@ -167,7 +167,7 @@ class SoftwareTracer : public RayTracer {
         .read(plan.import(tables.records))
         .read(plan.import(tables.triangles))
         .read(plan.import(tables.alpha_heap))
-        .write(answers)
+        .write(results)
         .constants([&bvh] { return bvh.root(); })
         .dispatch_indirect(rays.count, offsetof(shared::RayCount, groups_x));
   }

@@ -72,7 +72,7 @@ VkAccelerationStructureGeometryKHR triangle_geometry(const DeviceTriangles& mesh
   return geometry;
 }
 
-/// Scratch memory of which `size` bytes are usable from an aligned address on.
+/// Scratch memory with `size` usable bytes from an aligned address.
 gpu::Buffer make_scratch(const gpu::Device& device, VkDeviceSize size, VkDeviceSize alignment) {
   return {device, "build scratch", size + alignment, scratch_usage, gpu::Memory::device};
 }
@@ -132,7 +132,7 @@ void MeshHierarchies::record_rebuild(VkCommandBuffer commands,
     if (build.triangle_count == 0) continue;
     const VkDeviceSize needed = aligned(build.sizes.buildScratchSize, scratch_alignment_);
     if (room + needed > end) {
-      gpu::full_barrier(commands);  // those before have used the scratch memory to its end
+      gpu::full_barrier(commands);  // previous builds must have finished with the scratch memory
       room = start;
     }
     auto info = build_info(VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR, flags_, build.geometry);

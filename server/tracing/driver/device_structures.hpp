@@ -9,32 +9,33 @@
 
 namespace heliograph::tracing {
 
-/// Triangles in device buffers, as the driver reads them when it builds.
+/// Triangles in device buffers, as input of the driver's builder.
 struct DeviceTriangles {
-  VkDeviceAddress positions = 0;  // three floats each; not a number in x: the corner is nowhere
+  VkDeviceAddress positions = 0;  // three floats each; NaN in x: inactive
   std::uint32_t position_count = 0;
   VkDeviceAddress indices = 0;  // three uint per triangle
   std::uint32_t triangle_count = 0;
-  bool masked = false;  // some rays pass: the shader is asked
+  bool masked = false;  // alpha tested in the shader
 };
 
 enum class Rebuilds { never, often };
 
-/// The driver's hierarchies over meshes (bottom-level acceleration structures), one for each.
+/// Bottom-level acceleration structures, one per mesh.
 class MeshHierarchies {
  public:
   MeshHierarchies() = default;
-  /// Builds all of them. Meshes without triangles get none.
+  /// Builds all structures. Meshes without triangles get none.
   /// @throws gpu::GpuError when a mesh has more triangles than the device allows
   MeshHierarchies(const gpu::Device& device, std::span<const DeviceTriangles> meshes,
                   Rebuilds rebuilds);
 
-  /// Where instances of the mesh lead; 0 where it has no triangles.
+  /// Device address of a mesh's structure; 0 where it has no triangles.
   VkDeviceAddress address(std::size_t mesh) const { return hierarchies_[mesh].address(); }
   std::uint64_t bytes() const { return memory_.size() + scratch_.size(); }
 
-  /// Builds those of deforming meshes anew, over positions that changed where they lie. Built, not
-  /// refitted: as fast to trace in any pose, and corners may turn into nothing and back.
+  /// Rebuilds the structures of deforming meshes from positions updated in place. Rebuilt instead
+  /// of refitted: equally fast to trace in any pose, and triangles may become inactive and active
+  /// again.
   void record_rebuild(VkCommandBuffer commands, std::span<const std::size_t> meshes) const;
 
  private:
@@ -55,20 +56,20 @@ class MeshHierarchies {
   std::vector<gpu::RayHierarchy> hierarchies_;
 };
 
-/// The driver's hierarchy over instances (a top-level acceleration structure).
+/// The top-level acceleration structure over instances.
 class InstanceHierarchy {
  public:
-  /// Nothing is built yet. @throws gpu::GpuError when the device does not allow `count` instances
+  /// Does not build yet. @throws gpu::GpuError when the device does not allow `count` instances
   InstanceHierarchy(const gpu::Device& device, std::uint32_t count);
 
-  /// Places instance `index`, for the next build. `mesh`: 0 or an address from MeshHierarchies;
-  /// rays do not meet instances of 0, nor those whose matrix has no inverse.
+  /// Sets instance `index` for the next build. `mesh`: 0 or an address from MeshHierarchies; rays
+  /// miss instances with mesh 0 or a singular matrix.
   void place(std::uint32_t index, VkDeviceAddress mesh, const glm::mat4& world);
 
-  /// Builds over what was placed; the instances must not change until that is done.
+  /// Builds over the instances, which must not change until the build is done.
   void record_build(VkCommandBuffer commands) const;
 
-  /// The address that shaders enter it by, low half first.
+  /// Device address for shaders, low half first.
   glm::uvec2 address() const;
 
  private:

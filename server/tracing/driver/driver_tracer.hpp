@@ -9,21 +9,21 @@
 
 namespace heliograph::tracing {
 
-/// What the tracers over the driver's own hierarchies share: all but the kind of program and how it
-/// is started.
+/// Shared by the tracers over the driver's acceleration structures: everything but the kind of
+/// program and its dispatch.
 template <class Program>
 class DriverTracer : public RayTracer {
  public:
   std::shared_ptr<const AccelerationStructure> build(const scene::Scene& scene,
                                                      const SceneBuffers& buffers) const override {
-    return std::make_shared<RestingDeviceScene>(device_, scene, buffers.alpha_heap);
+    return std::make_shared<StaticDeviceScene>(device_, scene, buffers.alpha_heap);
   }
 
   std::unique_ptr<MovingStructure> build_moving(std::shared_ptr<const AccelerationStructure> rest,
                                                 const scene::Scene& scene,
                                                 const SceneTables& tables) const override {
     return std::make_unique<MovingDeviceScene>(
-        device_, std::dynamic_pointer_cast<const RestingDeviceScene>(std::move(rest)), scene,
+        device_, std::dynamic_pointer_cast<const StaticDeviceScene>(std::move(rest)), scene,
         tables.alpha_heap);
   }
 
@@ -49,12 +49,12 @@ class DriverTracer : public RayTracer {
 
   void add_pass(gpu::FramePlan& plan, const std::string& name, const Program& program,
                 const AccelerationStructure& structure, const RayStream& rays,
-                gpu::BufferRef answers) const {
+                gpu::BufferRef results) const {
     const auto& scene = dynamic_cast<const DeviceScene&>(structure);
     gpu::PassBuilder pass = plan.pass(name, program);
     pass.read(rays.count).read(rays.rays);
     scene.bind(plan, pass);
-    pass.write(answers).constants(scene.address());
+    pass.write(results).constants(scene.address());
     start(pass, rays);
   }
 

@@ -27,8 +27,8 @@ class RayPipelineTracer : public DriverTracer<gpu::RayProgram> {
   protocol::TracerKind kind() const override { return protocol::TracerKind::ray_pipeline; }
 
  private:
-  // Launches as many as the stream has room for: those beyond its count end at once, which costs
-  // less than a pass that turns the count into the arguments of an indirect launch.
+  // Launches the stream's capacity: threads beyond its count exit at once, which is cheaper than a
+  // pass that writes indirect launch arguments.
   void start(gpu::PassBuilder& pass, const RayStream& rays) const override {
     pass.launch(rays.capacity);
   }

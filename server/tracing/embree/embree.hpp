@@ -22,10 +22,11 @@ struct EmbreeRelease {
 template <typename Handle>
 using EmbreeHandle = std::unique_ptr<std::remove_pointer_t<Handle>, EmbreeRelease>;
 
-/// @throws std::runtime_error when this processor will not do
+/// @throws std::runtime_error when Embree does not support this CPU
 EmbreeHandle<RTCDevice> make_embree_device();
 
-/// @throws std::runtime_error naming `action` when something failed on this thread since last asked
+/// @throws std::runtime_error naming `action` when a call on this thread failed since the last
+/// check
 void check_embree(RTCDevice device, const char* action);
 
 }  // namespace heliograph::tracing

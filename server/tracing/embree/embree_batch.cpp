@@ -10,12 +10,12 @@
 namespace heliograph::tracing {
 namespace {
 
-// An interval that contains nothing: Embree leaves such rays alone.
+// An empty interval: Embree ignores such rays.
 constexpr float dead_from = 1.0f;
 constexpr float dead_to = 0.0f;
 
-// Embree, when robust, counts hits at both ends in, we do not. `t_min` >= 0, `t_max` > 0. Embree
-// takes numbers too small to be normal for zero.
+// Embree's robust mode includes hits at both ends, the tracers exclude them. `t_min` >= 0,
+// `t_max` > 0. Embree flushes denormals to zero.
 float first_after(float t_min) {
   const float next = std::bit_cast<float>(std::bit_cast<std::uint32_t>(t_min) + 1);
   return std::max(next, std::numeric_limits<float>::min());
@@ -35,8 +35,8 @@ shared::Hit miss(const shared::Ray& ray) {
 
 #if RTC_VERSION_MAJOR < 4
 
-// Embree 3: streams of rays, sorted by direction inside. 395k shadow rays of an atrium cost 12.5 ms
-// this way and 52 ms one by one.
+// Embree 3: ray streams, which it sorts by direction. 395k shadow rays of an atrium take 12.5 ms as
+// streams and 52 ms one by one.
 
 RTCIntersectContext incoherent() {
   RTCIntersectContext context;
@@ -57,7 +57,7 @@ RTCRay to_embree(const shared::Ray& ray, std::uint32_t blending) {
   result.dir_z = ray.direction.z;
   result.tfar = alive ? last_before(ray.t_max) : dead_to;
   result.mask = ~0u;
-  result.id = ray_blending(ray, blending);  // what filters are told of a ray
+  result.id = ray_blending(ray, blending);  // read by filter functions
   return result;
 }
 
@@ -87,13 +87,13 @@ void occluded_batch(RTCScene scene, std::span<const shared::Ray> rays, std::uint
   std::array<RTCRay, embree_batch> batch;
   for (std::size_t i = 0; i < rays.size(); ++i) batch[i] = to_embree(rays[i], blending);
   rtcOccluded1M(scene, &context, batch.data(), static_cast<unsigned>(rays.size()), sizeof(RTCRay));
-  // Embree sets tfar to -infinity where something was hit.
+  // Embree sets tfar to -infinity for hits.
   for (std::size_t i = 0; i < rays.size(); ++i) occluded[i] = batch[i].tfar < dead_to ? 1 : 0;
 }
 
 #else
 
-// Embree 4 has no streams: packets of 16, the widest it takes.
+// Embree 4 has no streams: packets of 16, the maximum.
 
 constexpr std::size_t packet = 16;
 
@@ -116,7 +116,7 @@ Lanes load(std::span<const shared::Ray> rays, std::uint32_t blending, RTCRay16& 
     lanes.time[i] = 0.0f;
     lanes.tfar[i] = result.valid[i] ? last_before(ray.t_max) : dead_to;
     lanes.mask[i] = ~0u;
-    lanes.id[i] = ray_blending(ray, blending);  // what filters are told of a ray
+    lanes.id[i] = ray_blending(ray, blending);  // read by filter functions
     lanes.flags[i] = 0;
   }
   return result;

@@ -9,11 +9,11 @@
 namespace heliograph::tracing {
 namespace {
 
-/// Robust: no ray slips through between two triangles.
+/// Robust: watertight between adjacent triangles.
 EmbreeHandle<RTCScene> new_scene(RTCDevice device, RTCBuildQuality quality,
                                  RTCSceneFlags flags = RTC_SCENE_FLAG_NONE) {
   EmbreeHandle<RTCScene> scene(rtcNewScene(device));
-  check_embree(device, "start a scene");
+  check_embree(device, "create a scene");
   rtcSetSceneBuildQuality(scene.get(), quality);
   rtcSetSceneFlags(scene.get(), flags | RTC_SCENE_FLAG_ROBUST);
   return scene;
@@ -26,15 +26,14 @@ EmbreeMesh::EmbreeMesh(RTCDevice device, const scene::Mesh& mesh, const shared::
   const Coverage seen = coverage(material);
   if (seen == Coverage::none || mesh.indices.size() < 3) return;
   geometry_.reset(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-  // Embree's own buffers: they are padded as its vector loads need and live as long as the
-  // geometry.
+  // Buffers owned by Embree: padded for its vector loads, with the lifetime of the geometry.
   positions_ = static_cast<glm::vec3*>(
       rtcSetNewGeometryBuffer(geometry_.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                               sizeof(glm::vec3), mesh.vertices.size()));
   auto* indices = static_cast<std::uint32_t*>(
       rtcSetNewGeometryBuffer(geometry_.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                               3 * sizeof(std::uint32_t), mesh.indices.size() / 3));
-  check_embree(device, "make room for a mesh");
+  check_embree(device, "allocate a mesh");
   std::ranges::transform(mesh.vertices, positions_, &shared::Vertex::position);
   std::ranges::copy(mesh.indices, indices);
   if (seen == Coverage::masked) {
@@ -43,8 +42,8 @@ EmbreeMesh::EmbreeMesh(RTCDevice device, const scene::Mesh& mesh, const shared::
     rtcSetGeometryIntersectFilterFunction(geometry_.get(), let_through);
     rtcSetGeometryOccludedFilterFunction(geometry_.get(), let_through);
   }
-  // Only scenes of low quality let a geometry be refitted, others build it anew with every commit.
-  // The tree that is refitted is one of medium quality all the same.
+  // Refitting requires a scene of low build quality; others rebuild on every commit. The refitted
+  // tree itself has medium quality.
   const bool deforms = use == Use::deforming;
   scene_ = new_scene(device, deforms ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM,
                      deforms ? RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_NONE);
@@ -89,7 +88,7 @@ EmbreeScene::EmbreeScene(RTCDevice device, const scene::Scene& scene,
     rtcAttachGeometryByID(top_.get(), geometry.get(), static_cast<unsigned>(index));
     place(index, scene.nodes[node].world);
   }
-  check_embree(device, "place meshes");
+  check_embree(device, "create instances");
   commit();
 }
 

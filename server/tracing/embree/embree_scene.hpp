@@ -12,7 +12,7 @@
 
 namespace heliograph::tracing {
 
-/// One mesh in Embree's hands, ready to be placed any number of times.
+/// One mesh as an Embree scene, for any number of instances.
 class EmbreeMesh {
  public:
   enum class Use { rigid, deforming };
@@ -21,7 +21,7 @@ class EmbreeMesh {
   EmbreeMesh(RTCDevice device, const scene::Mesh& mesh, const shared::Material& material,
              std::span<const std::uint8_t> alpha_heap, Use use);
 
-  /// Null where rays meet nothing.
+  /// Null for meshes without triangles.
   RTCScene handle() const { return scene_.get(); }
   /// Refits a deforming mesh to its moved vertices.
   void refit(std::span<const shared::Vertex> vertices);
@@ -34,27 +34,27 @@ class EmbreeMesh {
 
   static void let_through(const RTCFilterFunctionNArguments* arguments);
 
-  std::unique_ptr<const Mask> mask_;  // null where rays pass nowhere
+  std::unique_ptr<const Mask> mask_;  // null for opaque meshes
   EmbreeHandle<RTCGeometry> geometry_;
   EmbreeHandle<RTCScene> scene_;
-  glm::vec3* positions_ = nullptr;  // the geometry's own
+  glm::vec3* positions_ = nullptr;  // owned by the geometry
 };
 
 /// All meshes of a scene. @throws std::runtime_error when Embree fails
 std::vector<std::shared_ptr<EmbreeMesh>> make_embree_meshes(
     RTCDevice device, const scene::Scene& scene, std::span<const std::uint8_t> alpha_heap);
 
-/// Placed meshes; their geometry numbers are indices among the scene's instances.
+/// Instances of meshes; geometry ids are indices of the scene's instances.
 class EmbreeScene {
  public:
-  /// In the pose of `scene`, to which it keeps no reference. @throws std::runtime_error
+  /// In the pose of `scene`; keeps no reference to it. @throws std::runtime_error
   EmbreeScene(RTCDevice device, const scene::Scene& scene,
               std::vector<std::shared_ptr<EmbreeMesh>> meshes);
 
   RTCScene handle() const { return top_.get(); }
   const std::vector<std::shared_ptr<EmbreeMesh>>& meshes() const { return meshes_; }
 
-  /// What follows takes effect with commit().
+  /// The changes below take effect with commit().
   void place(std::size_t instance, const glm::mat4& world);
   void refit(std::span<const Movement::Mesh> deformed);
   void commit();
@@ -62,7 +62,7 @@ class EmbreeScene {
  private:
   struct Placed {
     std::uint32_t mesh;
-    EmbreeHandle<RTCGeometry> geometry;  // null where rays meet nothing
+    EmbreeHandle<RTCGeometry> geometry;  // null for meshes without triangles
   };
 
   RTCDevice device_;

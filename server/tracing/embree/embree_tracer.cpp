@@ -56,19 +56,19 @@ Element* mapped(const gpu::FramePlan& plan, gpu::BufferRef buffer) {
   return reinterpret_cast<Element*>(plan.get(buffer).mapped());
 }
 
-/// Calls `trace(rays, blending, answers)` for every batch of the stream, on all processors.
-template <typename Answer, typename Trace>
-void trace_batches(const gpu::FramePlan& plan, const RayStream& stream, gpu::BufferRef answers,
+/// Calls `trace(rays, blending, results)` for every batch of the stream, on all cores.
+template <typename Result, typename Trace>
+void trace_batches(const gpu::FramePlan& plan, const RayStream& stream, gpu::BufferRef results,
                    const Trace& trace) {
   const auto& header = *mapped<const shared::RayCount>(plan, stream.count);
   const std::size_t count = std::min(header.count, stream.capacity);
   const std::span rays(mapped<const shared::Ray>(plan, stream.rays), count);
-  auto* const results = mapped<Answer>(plan, answers);
+  auto* const output = mapped<Result>(plan, results);
   const std::size_t batches = (count + embree_batch - 1) / embree_batch;
   tbb::parallel_for(std::size_t(0), batches, [&](std::size_t batch) {
     const std::size_t first = batch * embree_batch;
     trace(rays.subspan(first, std::min(embree_batch, count - first)), header.blending,
-          results + first);
+          output + first);
   });
 }
 
@@ -77,8 +77,8 @@ class EmbreeTracer : public RayTracer {
   explicit EmbreeTracer(const gpu::Device& device) : embree_(make_embree_device()) {
     rtcSetDeviceMemoryMonitorFunction(embree_.get(), count_bytes, &bytes_);
     if (device.is_cpu()) return;
-    throw gpu::GpuError("the tracer \"embree\" works on rays in the processor's memory, but " +
-                        device.report().name + " is not a processor; use \"software\"");
+    throw gpu::GpuError("the tracer \"embree\" traces rays in CPU memory, but " +
+                        device.report().name + " is not a CPU device; use \"software\"");
   }
 
   protocol::TracerKind kind() const override { return protocol::TracerKind::embree; }
@@ -93,7 +93,7 @@ class EmbreeTracer : public RayTracer {
     return structure;
   }
 
-  // Shares the meshes that keep their shape; they hold on to what they need.
+  // Shares the rigid meshes, which own what they need.
   std::unique_ptr<MovingStructure> build_moving(std::shared_ptr<const AccelerationStructure> rest,
                                                 const scene::Scene& scene,
                                                 const SceneTables& tables) const override {
@@ -142,7 +142,7 @@ class EmbreeTracer : public RayTracer {
     return true;
   }
 
-  std::atomic<std::int64_t> bytes_ = 0;  // that Embree holds; outlives the device
+  std::atomic<std::int64_t> bytes_ = 0;  // allocated by Embree; outlives the device
   EmbreeHandle<RTCDevice> embree_;
 };
 

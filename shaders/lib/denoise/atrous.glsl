@@ -2,12 +2,13 @@
 // variance (Schied et al. 2017, equations 1 to 5), in any shape of kernel: 5 x 5, or 5 across and 5
 // down (paper section 3.3). What a signal is comes from the shader that includes this.
 #include "lib/denoise/edge_stopping.glsl"
+#include "lib/denoise/guide.glsl"
 #include "lib/frame.glsl"
 #include "lib/math/random.glsl"
 #include "shared/denoise.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = 1, binding = 0, rgba32f) readonly uniform image2D guide;  // normal (1 + roughness), Z
+layout(set = 1, binding = 0, rgba32f) readonly uniform image2D guide;
 layout(set = 1, binding = 1, rg32f) readonly uniform image2D depth_slope;
 layout(set = 1, binding = 2, rgba32f) readonly uniform image2D signal;
 layout(set = 1, binding = 3, rgba32f) writeonly uniform image2D filtered;
@@ -32,7 +33,7 @@ struct Center {
 
 /// Variance over 3x3 pixels with weights 1 2 1: one pixel's own estimate is too noisy to guide.
 vec2 smooth_variance(ivec2 pixel) {
-  ivec2 last = ivec2(frame.extent.xy) - 1;
+  ivec2 last = ivec2(frame.extent) - 1;
   vec2 sum = vec2(0.0);
   for (int y = -1; y <= 1; ++y) {
     for (int x = -1; x <= 1; ++x) {
@@ -67,18 +68,17 @@ int step_at(float roughness) {
 /// Moves the taps of large steps by up to a quarter step, another way in every pixel and frame.
 ivec2 jitter(ivec2 pixel, int step) {
   if (!has(atrous_jitter) || step <= 4) return ivec2(0);
-  vec2 share = random_pair(uvec2(pixel), frame.extent.z, 48u + uint(constants.level),
-                           frame.extent.w);
+  vec2 share = random_pair(uvec2(pixel), frame.sample_index, 48u + uint(constants.level),
+                           frame.seed);
   return ivec2(round((share - 0.5) * 0.5 * float(step)));
 }
 
-vec2 tap_exponent(Center c, vec4 guide_q, vec4 value, vec2 offset) {
-  float size = length(guide_q.xyz);
+vec2 tap_exponent(Center c, Guide q, vec4 value, vec2 offset) {
   float shared_exponent =
-      depth_exponent(plane_distance(c.view_z, c.slope, c.curve, guide_q.w, offset),
+      depth_exponent(plane_distance(c.view_z, c.slope, c.curve, q.view_z, offset),
                      depth_allowance(c.slope, offset, c.footprint), constants.depth_sigma) +
-      normal_exponent(dot(c.normal, guide_q.xyz / size), constants.normal_power) +
-      signal_exponent(c.roughness, size - 1.0);
+      normal_exponent(dot(c.normal, q.normal), constants.normal_power) +
+      signal_exponent(c.roughness, q.roughness);
   return shared_exponent + luminance_exponent(c.brightness, brightness(value), c.noise,
                                               constants.luminance_sigma, smallest_difference);
 }
@@ -88,16 +88,16 @@ void main() {
   if (outside_frame(pixel)) return;
   vec4 value = imageLoad(signal, pixel);
   vec4 guide_p = imageLoad(guide, pixel);
-  float size = length(guide_p.xyz);
-  if (guide_p.w <= 0.0 || constants.level >= levels(size - 1.0)) {
+  Guide p = decode_guide(guide_p);
+  if (guide_is_background(guide_p) || constants.level >= levels(p.roughness)) {
     imageStore(filtered, pixel, value);
     return;
   }
   Center c;
   c.pixel = pixel;
-  c.normal = guide_p.xyz / size;
-  c.roughness = size - 1.0;
-  c.view_z = guide_p.w;
+  c.normal = p.normal;
+  c.roughness = p.roughness;
+  c.view_z = p.view_z;
   c.slope = imageLoad(depth_slope, pixel).xy;
   c.curve = enabled(frame_orthographic) ? 0.0 : 1.0 / c.view_z;
   c.footprint = pixel_footprint(c.view_z);
@@ -114,10 +114,10 @@ void main() {
       ivec2 tap = pixel + ivec2(x, y) * step + shift;
       if ((x == 0 && y == 0) || any(lessThan(tap, ivec2(0))) || outside_frame(tap)) continue;
       vec4 guide_q = imageLoad(guide, tap);
-      if (guide_q.w <= 0.0) continue;
+      if (guide_is_background(guide_q)) continue;
       vec4 value_q = imageLoad(signal, tap);
       vec2 weight = kernel[abs(x)] * kernel[abs(y)] *
-                    exp(tap_exponent(c, guide_q, value_q, vec2(tap - pixel)));
+                    exp(tap_exponent(c, decode_guide(guide_q), value_q, vec2(tap - pixel)));
       sum += spread(weight) * value_q;
       total += weight;
     }

@@ -7,7 +7,7 @@
 /// shows each blended surface as its share.
 uint frame_blending() {
   if (!scene_has(scene_blends)) return 0u;
-  return mixed_bits(frame.extent.z ^ mixed_bits(frame.extent.w)) | 1u;
+  return mixed_bits(frame.sample_index ^ mixed_bits(frame.seed)) | 1u;
 }
 
 #endif

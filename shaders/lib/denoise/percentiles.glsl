@@ -1,6 +1,7 @@
 // The spread of each tile's brightness: its tenth and ninetieth percentile, by counting for every
 // pixel how many lie below (Alber 2025). What brightness is comes from the shader that includes
 // this. Background pixels do not count.
+#include "lib/denoise/guide.glsl"
 #include "lib/frame.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -19,7 +20,7 @@ uint before(float a, float b, uint i, uint j) { return b < a || (b == a && j < i
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   uint mine = gl_LocalInvocationIndex;
-  bool counts = !outside_frame(pixel) && imageLoad(guide, pixel).w > 0.0;
+  bool counts = !outside_frame(pixel) && !guide_is_background(imageLoad(guide, pixel));
   vec2 value = vec2(nothing);
   if (counts) {
     vec4 found = imageLoad(raw, pixel);

@@ -4,6 +4,7 @@
 // takes its mean, too, from what lies about as far away, while its history is short. What a signal
 // and its memory are comes from the shader that includes this.
 #include "lib/denoise/edge_stopping.glsl"
+#include "lib/denoise/guide.glsl"
 #include "lib/frame.glsl"
 #include "lib/denoise/reprojection.glsl"
 #include "shared/denoise.h"
@@ -22,33 +23,36 @@ layout(push_constant) uniform Constants { TemporalConstants constants; };
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (outside_frame(pixel)) return;
-  vec4 here = imageLoad(guide, pixel);
+  vec4 guide_p = imageLoad(guide, pixel);
+  Guide here = decode_guide(guide_p);
   vec2 frames = frames_of(imageLoad(history, pixel));
-  bool known = here.w <= 0.0 || min(frames.x, frames.y) >= constants.spatial_variance_frames;
+  bool known = guide_is_background(guide_p) ||
+               min(frames.x, frames.y) >= constants.spatial_variance_frames;
   // No rows to visit instead of a branch around them: that is what vector hardware can skip.
   int radius = known ? -1 : 3;
-  vec3 normal = here.xyz / max(length(here.xyz), 1e-6);
   vec2 slope = imageLoad(depth_slope, pixel).xy;
-  float curve = enabled(frame_orthographic) ? 0.0 : 1.0 / max(here.w, 1e-20);
-  float footprint = pixel_footprint(here.w);
+  float curve = enabled(frame_orthographic) ? 0.0 : 1.0 / max(here.view_z, 1e-20);
+  float footprint = pixel_footprint(here.view_z);
   vec4 sum = vec4(0.0), loose_sum = vec4(0.0);
   float total = 0.0, loose_total = 0.0;
   for (int y = -radius; y <= radius; ++y) {
     for (int x = -radius; x <= radius; ++x) {
       ivec2 tap = pixel + ivec2(x, y);
-      if (!inside(tap, ivec2(frame.extent.xy))) continue;
-      vec4 there = imageLoad(guide, tap);
-      if (there.w <= 0.0) continue;
+      if (!inside(tap, ivec2(frame.extent))) continue;
+      vec4 guide_q = imageLoad(guide, tap);
+      if (guide_is_background(guide_q)) continue;
+      Guide there = decode_guide(guide_q);
       vec2 offset = vec2(x, y);
       vec4 moments_there = imageLoad(moments, tap);
-      float cosine = dot(normal, normalize(there.xyz));
-      float weight = exp(depth_exponent(plane_distance(here.w, slope, curve, there.w, offset),
-                                        depth_allowance(slope, offset, footprint), 1.0) +
+      float cosine = dot(here.normal, there.normal);
+      float off_plane = plane_distance(here.view_z, slope, curve, there.view_z, offset);
+      float weight = exp(depth_exponent(off_plane, depth_allowance(slope, offset, footprint), 1.0) +
                          normal_exponent(cosine, 128.0));
       sum += weight * moments_there;
       total += weight;
-      float loose_weight = exp(depth_exponent(abs(there.w - here.w), here.w, nearby_depth)) *
-                           max(cosine, 0.0);
+      float apart = abs(there.view_z - here.view_z);
+      float loose_weight =
+          exp(depth_exponent(apart, here.view_z, nearby_depth)) * max(cosine, 0.0);
       loose_sum += loose_weight * moments_there;
       loose_total += loose_weight;
     }

@@ -31,7 +31,7 @@ struct Shares {
 
 vec3 direct_light(SurfaceMaterial m, vec3 position) {
   vec3 sum = vec3(0.0);
-  for (uint i = 0u; i < frame.counts.x; ++i) {
+  for (uint i = 0u; i < frame.light_count; ++i) {
     if (light_reaches(i, position)) sum += light_contribution(light_number(i), m, position);
   }
   return sum;

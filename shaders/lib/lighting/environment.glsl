@@ -7,34 +7,34 @@
 
 /// World direction -> direction in the environment's own frame.
 vec3 environment_direction(vec3 world) {
-  float c = frame.environment.y;
-  float s = frame.environment.z;
+  float c = frame.environment_cos;
+  float s = frame.environment_sin;
   return vec3(c * world.x - s * world.z, world.y, s * world.x + c * world.z);
 }
 
 vec3 world_of_environment(vec3 direction) {
-  float c = frame.environment.y;
-  float s = frame.environment.z;
+  float c = frame.environment_cos;
+  float s = frame.environment_sin;
   return vec3(c * direction.x + s * direction.z, direction.y, c * direction.z - s * direction.x);
 }
 
 /// What the eye sees behind the scene: with the sun's disk.
 vec3 environment_background(vec3 world) {
   vec2 uv = equirectangular_uv(environment_direction(world));
-  return textureLod(background_map, uv, 0.0).rgb * frame.environment.x;
+  return textureLod(background_map, uv, 0.0).rgb * frame.environment_intensity;
 }
 
 /// What lights the scene. Without the sun where it is separated: that is a light of its own.
 vec3 environment_radiance(vec3 world) {
   vec2 uv = equirectangular_uv(environment_direction(world));
-  return textureLod(environment_map, uv, 0.0).rgb * frame.environment.x;
+  return textureLod(environment_map, uv, 0.0).rgb * frame.environment_intensity;
 }
 
 /// GGX-prefiltered radiance about the mirror direction `world`.
 vec3 environment_reflection(vec3 world, float roughness) {
-  float level = roughness * float(frame.counts.z - 1u);
+  float level = roughness * float(frame.prefiltered_levels - 1u);
   return textureLod(prefiltered_environment, environment_direction(world), level).rgb *
-         frame.environment.x;
+         frame.environment_intensity;
 }
 
 /// Irradiance / pi of a surface facing `world` (Ramamoorthi and Hanrahan 2001, nine terms).
@@ -47,7 +47,7 @@ vec3 environment_irradiance(vec3 world) {
   sum += frame.irradiance[6].rgb * (3.0 * n.z * n.z - 1.0);
   sum += frame.irradiance[7].rgb * (n.x * n.z);
   sum += frame.irradiance[8].rgb * (n.x * n.x - n.y * n.y);
-  return max(sum, vec3(0.0)) * frame.environment.x;
+  return max(sum, vec3(0.0)) * frame.environment_intensity;
 }
 
 /// The material of a surface toward `eye`, with the albedos of its lobes looked up.

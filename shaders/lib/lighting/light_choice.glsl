@@ -24,7 +24,7 @@ struct LightChoice {
 
 LightChoice choose_light(SurfaceMaterial m, vec3 position, inout float pick) {
   LightChoice choice = LightChoice(0u, 0.0, 0.0);
-  for (uint i = 0u; i < frame.counts.x; ++i) {
+  for (uint i = 0u; i < frame.light_count; ++i) {
     if (!light_reaches(i, position)) continue;
     float weight = luminance(light_contribution(light_number(i), m, position));
     if (!takes(weight, choice.total, pick)) continue;

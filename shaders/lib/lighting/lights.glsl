@@ -19,10 +19,10 @@ Light environment_sun() {
   Light light;
   light.position = vec3(0.0);
   light.type = light_directional;
-  light.direction = -frame.sun.xyz;
+  light.direction = -frame.sun_direction;
   light.range = 0.0;
   light.color = frame.sun_irradiance.rgb;
-  light.radius = frame.sun.w;
+  light.radius = frame.sun_radius;
   light.tangent = vec3(0.0);
   light.half_width = light.half_height = 0.0;
   light.spot_scale = light.spot_offset = 0.0;
@@ -41,17 +41,17 @@ Light light_of_texels(uint number) {
                t4.z, t4.w);
 }
 
-/// The light number `number` of frame.counts.x; the environment's sun comes last, where it has one.
+/// The light number `number` of frame.light_count; the environment's sun comes last, where it has one.
 Light light_number(uint number) {
   Light light;
-  if (number + 1u == frame.counts.x && frame.sun.w >= 0.0) {
+  if (number + 1u == frame.light_count && frame.sun_radius >= 0.0) {
     light = environment_sun();
   } else if (!scene_has(scene_many_lights) || number < uniform_lights) {
     light = lights[min(number, uniform_lights - 1u)];
   } else {
     light = light_of_texels(number);
   }
-  if (light.type == light_directional && frame.exposure.z >= 0.0) light.radius = frame.exposure.z;
+  if (light.type == light_directional && frame.directional_light_radius >= 0.0) light.radius = frame.directional_light_radius;
   return light;
 }
 
@@ -73,7 +73,7 @@ bool light_reaches(uint number, vec3 position) {
     type = first.w;
     range = uintBitsToFloat(texelFetch(light_texels, texel + 1).w);
   }
-  bool sun = number + 1u == frame.counts.x && frame.sun.w >= 0.0;
+  bool sun = number + 1u == frame.light_count && frame.sun_radius >= 0.0;
   vec3 to_light = middle - position;
   return sun || type == light_directional || range <= 0.0 ||
          dot(to_light, to_light) < range * range;

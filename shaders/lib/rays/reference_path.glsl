@@ -40,11 +40,11 @@ vec3 carried(Ray ray) { return uintBitsToFloat(uvec3(ray.user, ray.padding0, ray
 uint dimension(uint round, uint which) { return 256u + 16u * round + which; }
 
 vec2 path_pair(ivec2 pixel, uint round, uint which) {
-  return random_pair(uvec2(pixel), frame.extent.z, dimension(round, which), frame.extent.w);
+  return random_pair(uvec2(pixel), frame.sample_index, dimension(round, which), frame.seed);
 }
 
 float path_number(ivec2 pixel, uint round, uint which) {
-  return random_number(uvec2(pixel), frame.extent.z, dimension(round, which), frame.extent.w);
+  return random_number(uvec2(pixel), frame.sample_index, dimension(round, which), frame.seed);
 }
 
 /// Whether a path goes straight on through a blended surface; its throughput becomes that of the

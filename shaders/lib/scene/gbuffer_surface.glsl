@@ -72,9 +72,9 @@ vec3 mapped_normal(vec3 normal, vec3 texel, float scale, uint map) {
 /// interpolated is a point of the triangle, but up to half a pixel beside the one that is looked at,
 /// and a point rebuilt from its depth would lie above or below the surface.
 float exact_view_z(vec3 geometric) {
-  vec2 ndc = gl_FragCoord.xy / vec2(frame.extent.xy) * 2.0 - 1.0;
+  vec2 ndc = gl_FragCoord.xy / vec2(frame.extent) * 2.0 - 1.0;
   vec2 slope = ndc * frame.unproject.xy + frame.unproject.zw;
-  float perspective = 1.0 - flag(frame.counts.y, frame_orthographic);
+  float perspective = 1.0 - flag(frame.flags, frame_orthographic);
   vec3 through = vec3(slope * perspective, -1.0);  // for a metre of Z
   vec3 passed = vec3(slope * mix(1.0, view_depths.x, perspective), -view_depths.x);
   vec3 normal = mat3(frame.view) * geometric;

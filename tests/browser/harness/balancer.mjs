@@ -1,15 +1,15 @@
-// What stands before several servers: requests that name a session go to the server that the name
-// leads to, others to the one that a cookie would have kept. A server that has ended is passed over.
+// A load balancer: requests with a session go to the server that its name selects, others to the
+// one that a cookie would select. Servers that have exited are skipped.
 
 import http from "node:http";
 import { once } from "node:events";
 
 export class Balancer {
-  /** `home` is where requests without a name go while it lives. */
+  /** Requests without a session go to `home` while it is alive. */
   constructor(servers, home = servers[0]) {
     this.servers = servers;
     this.home = home;
-    /** Whether upgrades get through. */
+    /** Whether upgrades are passed on. */
     this.upgrades = true;
     this.paths = [];
     this.pairs = new Set();
@@ -25,26 +25,26 @@ export class Balancer {
   }
 
   stop() {
-    this.cut();
+    this.disconnect();
     this.proxy.closeAllConnections();
     this.proxy.close();
   }
 
-  /** Breaks everything that is under way. */
-  cut() {
+  /** Closes all open connections. */
+  disconnect() {
     for (const end of this.pairs) end.destroy();
     this.pairs.clear();
   }
 
-  /** The server that a name leads to. */
+  /** The server that a name selects. */
   serverOf(name) {
     const living = this.servers.filter(isAlive);
     const sum = [...name].reduce((hash, letter) => (hash * 31 + letter.charCodeAt(0)) >>> 0, 7);
     return living[sum % living.length];
   }
 
-  /** A name that leads to this server. */
-  nameFor(server, stem = "room") {
+  /** A name that selects this server. */
+  nameFor(server, stem = "session") {
     let number = 1;
     while (this.serverOf(`${stem}-${number}`) !== server) number += 1;
     return `${stem}-${number}`;
@@ -56,7 +56,7 @@ export class Balancer {
     return isAlive(this.home) ? this.home : this.servers.find(isAlive);
   }
 
-  ask(request) {
+  forward(request) {
     this.paths.push(request.url);
     const { method, url: path, headers } = request;
     const { port } = this.choose(path);
@@ -75,9 +75,9 @@ export class Balancer {
   }
 
   pass(request, response) {
-    const asked = this.ask(request);
-    asked.on("error", () => response.destroy());
-    asked.on("response", (answer) => {
+    const outgoing = this.forward(request);
+    outgoing.on("error", () => response.destroy());
+    outgoing.on("response", (answer) => {
       response.writeHead(answer.statusCode, answer.headers);
       answer.on("error", () => response.destroy());
       answer.on("aborted", () => response.destroy());
@@ -85,7 +85,7 @@ export class Balancer {
       response.on("close", () => answer.destroy());
       answer.pipe(response);
     });
-    request.pipe(asked);
+    request.pipe(outgoing);
   }
 
   passSocket(request, socket, head) {
@@ -93,23 +93,27 @@ export class Balancer {
       socket.end("HTTP/1.1 501 Not Implemented\r\ncontent-length: 0\r\nconnection: close\r\n\r\n");
       return;
     }
-    const asked = this.ask(request);
+    const outgoing = this.forward(request);
     socket.on("error", () => {});
-    asked.on("error", () => socket.destroy());
-    asked.on("response", (answer) => {
-      socket.end(`HTTP/1.1 ${answer.statusCode} ${answer.statusMessage}\r\nconnection: close\r\n\r\n`);
+    outgoing.on("error", () => socket.destroy());
+    outgoing.on("response", (answer) => {
+      socket.end(
+        `HTTP/1.1 ${answer.statusCode} ${answer.statusMessage}\r\nconnection: close\r\n\r\n`,
+      );
       answer.resume();
     });
-    asked.on("upgrade", (answer, other, first) => {
+    outgoing.on("upgrade", (answer, other, first) => {
       const { rawHeaders } = answer;
-      const lines = rawHeaders.flatMap((name, i) => (i % 2 ? [] : [`${name}: ${rawHeaders[i + 1]}`]));
+      const lines = rawHeaders.flatMap((name, i) =>
+        i % 2 ? [] : [`${name}: ${rawHeaders[i + 1]}`],
+      );
       socket.write(`HTTP/1.1 101 Switching Protocols\r\n${lines.join("\r\n")}\r\n\r\n`);
       socket.write(first);
       other.write(head);
       this.keep(socket, other);
       socket.pipe(other).pipe(socket);
     });
-    asked.end();
+    outgoing.end();
   }
 }
 

@@ -1,5 +1,4 @@
-// A headless Chromium, pages that remember everything that went wrong in them, and what tests do
-// with both.
+// A headless Chromium, pages that record errors, and helpers of the tests.
 
 import { join } from "node:path";
 import { chromium } from "playwright-core";
@@ -22,15 +21,15 @@ export function launchBrowser() {
   });
 }
 
-/** Opens the client. `complaints` collects console errors, exceptions and CSP violations. */
+/** Opens the client. `pageErrors` collects console errors, exceptions and CSP violations. */
 export async function openViewer(context, url) {
   const page = await context.newPage();
-  const complaints = [];
+  const pageErrors = [];
   page.on("console", (message) => {
-    if (["error", "warning"].includes(message.type())) complaints.push(message.text());
+    if (["error", "warning"].includes(message.type())) pageErrors.push(message.text());
   });
-  page.on("pageerror", (error) => complaints.push(error.message));
-  await page.exposeFunction("reportViolation", (text) => complaints.push(text));
+  page.on("pageerror", (error) => pageErrors.push(error.message));
+  await page.exposeFunction("reportViolation", (text) => pageErrors.push(text));
   await page.addInitScript(observer);
   await page.addInitScript(() => {
     document.addEventListener("securitypolicyviolation", (event) => {
@@ -38,57 +37,57 @@ export async function openViewer(context, url) {
     });
   });
   const response = await page.goto(url);
-  return { page, context, complaints, response };
+  return { page, context, pageErrors, response };
 }
 
-/** Waits until the page is connected and a picture has been drawn. */
-export async function firstPicture(page, timeout = 120_000) {
+/** Waits until the page is connected and has drawn a frame. */
+export async function firstFrame(page, timeout = 120_000) {
   await page.waitForSelector('#pill[data-state="live"]', { timeout });
   await page.waitForFunction(
     () =>
       document.querySelector("#notice").hidden &&
-      /\d/.test(document.querySelector('[data-figure="picture"] dd').textContent),
+      /\d/.test(document.querySelector('[data-figure="frame_size"] dd').textContent),
     undefined,
     { timeout },
   );
 }
 
-/** Waits until the page shows the newest state of its session, final or nearly so. */
+/** Waits until the page shows the newest state of its session, converged or nearly so. */
 export async function settle(page, server, timeout = 120_000) {
   const { rev } = await server.call("session.info");
   await page.waitForFunction(
-    (wanted) => {
+    (minimum) => {
       const { frame } = window.seen;
-      return frame && frame.stateRev >= wanted && (frame.final || frame.samples >= 16);
+      return frame && frame.stateRev >= minimum && (frame.final || frame.samples >= 16);
     },
     rev,
     { timeout, polling: 100 },
   );
 }
 
-/** Moves the session's camera from outside and waits until the page has heard of it. */
+/** Moves the session's camera from outside and waits until the page was notified. */
 export async function setCamera(page, server, pose) {
   const { eye } = await server.call("camera.set", pose);
   await page.waitForFunction(
-    (wanted) => window.seen.camera?.eye.every((value, axis) => value === wanted[axis]),
+    (expected) => window.seen.camera?.eye.every((value, axis) => value === expected[axis]),
     eye,
     { timeout: 30_000 },
   );
 }
 
-/** Waits until the page moves the camera no more and the server has its last pose. */
-export async function restingCamera(page, server) {
+/** Waits until the page has stopped the camera and the server has its last pose. */
+export async function staticCamera(page, server) {
   await page.evaluate(
-    (quietFrames) =>
+    (staticFrames) =>
       new Promise((resolve) => {
-        let [poses, quiet] = [-1, 0];
-        const look = () => {
-          quiet = window.seen.poses === poses ? quiet + 1 : 0;
+        let [poses, unchanged] = [-1, 0];
+        const check = () => {
+          unchanged = window.seen.poses === poses ? unchanged + 1 : 0;
           poses = window.seen.poses;
-          if (quiet >= quietFrames) resolve();
-          else requestAnimationFrame(look);
+          if (unchanged >= staticFrames) resolve();
+          else requestAnimationFrame(check);
         };
-        look();
+        check();
       }),
     10,
   );
@@ -102,7 +101,7 @@ export async function restingCamera(page, server) {
 /** Between two points of space, as arrays. */
 export const distance = (a, b) => Math.hypot(...a.map((value, axis) => value - b[axis]));
 
-/** Has a script run in the stream worker before its own. */
+/** Runs a script in the stream worker before its own. */
 export function prepareWorker(context, source) {
   return context.addInitScript((prelude) => {
     const Native = window.Worker;
@@ -121,15 +120,13 @@ export async function openTab(page, name) {
   await page.locator(`#tab-${name}`).click();
 }
 
-/** Opens the tab that something in the panel stands in. */
+/** Opens the tab that contains an element of the panel. */
 export async function reveal(locator) {
-  const tab = await locator
-    .first()
-    .evaluate((node) => node.closest("[data-tab]").dataset.tab);
+  const tab = await locator.first().evaluate((node) => node.closest("[data-tab]").dataset.tab);
   await openTab(locator.page(), tab);
 }
 
-/** Unfolds every section of the panel. */
+/** Opens every section of the panel. */
 export function unfoldAll(page) {
   return page.evaluate(() => {
     for (const fold of document.querySelectorAll(".section details")) fold.open = true;
@@ -142,18 +139,18 @@ export async function chooseOutput(page, name) {
   await page.getByRole("menuitem", { name }).click();
 }
 
-/** The figure with this name as the performance section shows it. */
+/** A figure of the Timing tab, by its name. */
 export function figure(page, name) {
   return page.locator(`[data-figure="${name}"] dd`).textContent();
 }
 
-/** The pauses are the hand's own: nothing is waited for. */
-export async function dragPicture(page, from, to, steps = 12) {
+/** Pauses between the steps, like a real drag. */
+export async function dragView(page, from, to, steps = 12) {
   await page.mouse.move(from.x, from.y);
   await page.mouse.down();
   for (let step = 1; step <= steps; step += 1) {
-    const part = step / steps;
-    await page.mouse.move(from.x + (to.x - from.x) * part, from.y + (to.y - from.y) * part);
+    const t = step / steps;
+    await page.mouse.move(from.x + (to.x - from.x) * t, from.y + (to.y - from.y) * t);
     await page.waitForTimeout(16);
   }
   await page.mouse.up();
@@ -163,8 +160,8 @@ export function screenshot(page, name) {
   return page.screenshot({ path: join(outputFolder, `${name}.png`) });
 }
 
-/** A screenshot of the picture alone, without the panel and the pill that lie over it. */
-export async function pictureScreenshot(page, name) {
+/** A screenshot of the view, without panel, pill and toasts. */
+export async function viewScreenshot(page, name) {
   const show = (visibility) =>
     page.evaluate((value) => {
       for (const id of ["panel", "pill", "toasts"]) {

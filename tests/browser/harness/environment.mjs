@@ -1,4 +1,4 @@
-// What the tests take from their surroundings.
+// Settings of the tests from environment variables.
 
 import { mkdirSync } from "node:fs";
 import { tmpdir } from "node:os";

@@ -1,5 +1,5 @@
-// Firefox by its own remote protocol, Marionette: lengths and JSON over a TCP connection. Enough of
-// it to open a page, look into it, take a picture and hear what the browser has against the page.
+// Controls Firefox by its remote protocol, Marionette (lengths and JSON over TCP): opens a page,
+// runs scripts in it, takes screenshots, reads its errors.
 
 import { spawn } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -27,7 +27,7 @@ export class Firefox {
     this.child = child;
     this.socket = socket;
     this.profile = profile;
-    this.waiting = new Map();
+    this.pending = new Map();
     this.lastId = 0;
     this.received = Buffer.alloc(0);
     socket.on("data", (chunk) => this.read(chunk));
@@ -43,49 +43,51 @@ export class Firefox {
     const socket = connect(port, "127.0.0.1");
     await new Promise((resolve, reject) => socket.once("connect", resolve).once("error", reject));
     const firefox = new Firefox(child, socket, profile);
-    await firefox.ask("WebDriver:NewSession", { strictFileInteractability: true });
-    await firefox.ask("WebDriver:SetWindowRect", { width: 1000, height: 700 });
+    await firefox.send("WebDriver:NewSession", { strictFileInteractability: true });
+    await firefox.send("WebDriver:SetWindowRect", { width: 1000, height: 700 });
     return firefox;
   }
 
   open(url) {
-    return this.ask("WebDriver:Navigate", { url });
+    return this.send("WebDriver:Navigate", { url });
   }
 
-  /** Runs the body of a function in the page and gives what it returns. */
+  /** Runs a function body in the page and returns its result. */
   async evaluate(script, ...args) {
-    const { value } = await this.ask("WebDriver:ExecuteScript", { script, args });
+    const { value } = await this.send("WebDriver:ExecuteScript", { script, args });
     return value;
   }
 
-  /** Errors, warnings, exceptions and violations of the content security policy in pages of `url`. */
-  async complaints(url) {
-    await this.ask("Marionette:SetContext", { value: "chrome" });
+  /**
+   * Errors, warnings, exceptions and violations of the content security policy in pages of `url`.
+   */
+  async pageErrors(url) {
+    await this.send("Marionette:SetContext", { value: "chrome" });
     try {
-      return await this.evaluate(readComplaints, url);
+      return await this.evaluate(readPageErrors, url);
     } finally {
-      await this.ask("Marionette:SetContext", { value: "content" });
+      await this.send("Marionette:SetContext", { value: "content" });
     }
   }
 
   async screenshot(path) {
-    const { value } = await this.ask("WebDriver:TakeScreenshot", { full: false });
+    const { value } = await this.send("WebDriver:TakeScreenshot", { full: false });
     writeFileSync(path, Buffer.from(value, "base64"));
     return value;
   }
 
   async close() {
-    await this.ask("Marionette:Quit", { flags: ["eForceQuit"] }).catch(() => {});
+    await this.send("Marionette:Quit", { flags: ["eForceQuit"] }).catch(() => {});
     this.socket.destroy();
     this.child.kill("SIGKILL");
     rmSync(this.profile, { recursive: true, force: true, maxRetries: 5 });
   }
 
-  ask(command, parameters) {
+  send(command, parameters) {
     const id = ++this.lastId;
     const text = JSON.stringify([0, id, command, parameters]);
     this.socket.write(`${Buffer.byteLength(text)}:${text}`);
-    return new Promise((resolve, reject) => this.waiting.set(id, { resolve, reject }));
+    return new Promise((resolve, reject) => this.pending.set(id, { resolve, reject }));
   }
 
   read(chunk) {
@@ -97,20 +99,20 @@ export class Firefox {
       if (this.received.length < end) return;
       const message = JSON.parse(this.received.subarray(colon + 1, end));
       this.received = this.received.subarray(end);
-      if (Array.isArray(message)) this.answered(message); // the first one is a greeting
+      if (Array.isArray(message)) this.onResponse(message); // the first message is a greeting
     }
   }
 
-  answered([, id, error, result]) {
-    const { resolve, reject } = this.waiting.get(id);
-    this.waiting.delete(id);
+  onResponse([, id, error, result]) {
+    const { resolve, reject } = this.pending.get(id);
+    this.pending.delete(id);
     if (error) reject(new Error(error.message));
     else resolve(result);
   }
 }
 
-/** Runs beside the browser's own interface, which alone may read what all pages were told. */
-const readComplaints = `
+/** Runs in the browser's own context, which can read the errors of all pages. */
+const readPageErrors = `
   const [url] = arguments;
   const messages = Services.console
     .getMessageArray()
@@ -124,7 +126,7 @@ const readComplaints = `
   return [...messages, ...calls];
 `;
 
-/** Firefox writes down which port it took. */
+/** Reads the port from the file that Firefox writes. */
 async function portOf(profile) {
   const file = join(profile, "MarionetteActivePort");
   const deadline = Date.now() + startTimeoutMs;
@@ -135,5 +137,5 @@ async function portOf(profile) {
     }
     await new Promise((resolve) => setTimeout(resolve, 200));
   }
-  throw new Error("Firefox did not say where it listens");
+  throw new Error("Firefox did not write its port");
 }

@@ -1,26 +1,26 @@
-// What the page and its stream worker say to each other, noted for tests: they wait for what the
-// page knows and shows instead of for a time. Runs in the page before its own script.
+// Records the messages between the page and its stream worker, so that tests wait for states
+// instead of fixed times. Runs in the page before its own script.
 
-/** Keeps `window.seen` up to date; serialised into the page. */
+/** Updates `window.seen`; serialised into the page. */
 function observe() {
   const seen = {
-    /** The newest picture on the canvas, and how many there were of each codec. */
+    /** The newest frame on the canvas, and the number of frames of each codec. */
     frame: null,
     drawn: {},
     firstDrawnAt: null,
-    /** Milliseconds from each picture's arrival to the canvas. */
+    /** Milliseconds from each frame's arrival to the canvas. */
     delays: [],
-    /** Poses sent, the last of them, and the newest camera that somebody else chose. */
+    /** Number of poses sent, the last of them, and the newest camera of another viewer. */
     poses: 0,
     pose: null,
     camera: null,
-    /** Methods of what was sent and of what came, with their counts. */
+    /** Number of calls sent and notifications received, by method. */
     sent: {},
-    heard: {},
+    received: {},
   };
   window.seen = seen;
   const count = (table, name) => (table[name] = (table[name] ?? 0) + 1);
-  let stream = null; // the first worker is the page's own; others belong to comparisons
+  let stream = null; // the first worker; others belong to comparisons
 
   const sent = (text) => {
     const { method, params } = JSON.parse(text);
@@ -32,15 +32,15 @@ function observe() {
       seen.pose = null;
     }
   };
-  const heard = (text) => {
-    if (!/"method"/.test(text.slice(0, 60))) return; // an answer, which may be large
+  const received = (text) => {
+    if (!/"method"/.test(text.slice(0, 60))) return; // a result, which may be large
     const { method, params } = JSON.parse(text);
-    count(seen.heard, method);
+    count(seen.received, method);
     if (method !== "camera.changed") return;
     seen.camera = params.camera;
     seen.pose = null;
   };
-  let native = Worker.prototype; // a test may have put a class of its own before it
+  let native = Worker.prototype; // a test may have replaced the class
   while (!Object.hasOwn(native, "onmessage")) native = Object.getPrototypeOf(native);
   const post = native.postMessage;
   native.postMessage = function (message, ...rest) {
@@ -55,8 +55,8 @@ function observe() {
         listener(event);
         if (this !== stream) return;
         const { kind, frame, text } = event.data;
-        if (kind === "text") heard(text);
-        if (kind !== "drawn" && kind !== "picture") return;
+        if (kind === "text") received(text);
+        if (kind !== "drawn" && kind !== "decoded") return;
         seen.frame = frame;
         seen.firstDrawnAt ??= frame.drawnAt;
         seen.delays.push(frame.drawnAt - frame.receivedAt);

@@ -1,18 +1,18 @@
-// Starts and stops the real server and asks it things over HTTP, beside the browser.
+// Starts and stops the server, and calls its methods over HTTP.
 
 import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { sceneRoot, serverBinary } from "./environment.mjs";
 
 const startTimeoutMs = 180_000;
-const keptOutput = 4000; // characters
+const maxOutput = 4000; // characters
 
 export class Server {
   constructor(child) {
     this.child = child;
     this.url = "";
-    this.lastWords = "";
-    /** Headers that every call carries, such as a token's. */
+    this.lastOutput = "";
+    /** Headers of every call, such as authorization. */
     this.headers = {};
   }
 
@@ -20,7 +20,7 @@ export class Server {
     return Number(new URL(this.url).port);
   }
 
-  /** Asks one method and returns its result; throws with the server's message. */
+  /** Calls a method and returns its result; throws with the server's message. */
   async call(method, params = {}, session = "main") {
     const response = await fetch(new URL(`rpc?session=${session}`, this.url), {
       method: "POST",
@@ -41,24 +41,24 @@ export class Server {
     if (this.child.exitCode !== null || this.child.signalCode !== null) return;
     const exited = once(this.child, "exit");
     this.child.kill(signal);
-    const patience = setTimeout(() => this.child.kill("SIGKILL"), 10_000);
+    const killTimer = setTimeout(() => this.child.kill("SIGKILL"), 10_000);
     await exited;
-    clearTimeout(patience);
+    clearTimeout(killTimer);
   }
 
-  /** Takes what the process writes. */
-  hear(chunk) {
-    this.lastWords = (this.lastWords + chunk).slice(-keptOutput);
+  /** Records the output of the process. */
+  onOutput(chunk) {
+    this.lastOutput = (this.lastOutput + chunk).slice(-maxOutput);
   }
 }
 
-/** The token in a list of arguments, as the header that shows it. */
+/** The authorization header for the token in the arguments. */
 function headersFor(args) {
   const token = args[args.indexOf("--token") + 1];
   return args.includes("--token") ? { authorization: `Bearer ${token}` } : {};
 }
 
-/** Port 0 takes any free one. Resolves when the server has printed its address. */
+/** Port 0 selects a free port. Resolves when the server has printed its URL. */
 export function startServer(port = 0, args = []) {
   const child = spawn(
     serverBinary,
@@ -71,16 +71,16 @@ export function startServer(port = 0, args = []) {
     const fail = (reason) => {
       clearTimeout(timer);
       child.kill("SIGKILL");
-      reject(new Error(`${reason}; it said:\n${server.lastWords}`));
+      reject(new Error(`${reason}; its output:\n${server.lastOutput}`));
     };
-    const timer = setTimeout(() => fail("the server did not say where it listens"), startTimeoutMs);
+    const timer = setTimeout(() => fail("the server did not print its URL"), startTimeoutMs);
     const read = (chunk) => {
-      server.hear(chunk);
+      server.onOutput(chunk);
       if (server.url) return;
-      const address = /listening on (http:\/\/\S+)\n/.exec(server.lastWords);
-      if (!address) return;
+      const match = /listening on (http:\/\/\S+)\n/.exec(server.lastOutput);
+      if (!match) return;
       clearTimeout(timer);
-      server.url = address[1];
+      server.url = match[1];
       resolve(server);
     };
     child.stdout.on("data", read);

@@ -1,9 +1,9 @@
-// The server and the browser of one file of tests. Whatever a test opens is closed before the next
-// begins; after one that failed the server is another, so that one failure stays one.
+// The server and the browser of a test file. Everything that a test opens is closed before the next
+// one starts; after a failure the server is restarted, so that later tests are not affected.
 
 import assert from "node:assert/strict";
 import nodeTest, { after } from "node:test";
-import { firstPicture, launchBrowser, openViewer, screenshot } from "./browser.mjs";
+import { firstFrame, launchBrowser, openViewer, screenshot } from "./browser.mjs";
 import { startServer } from "./server.mjs";
 
 let browser = null; // all stages of a file share it
@@ -11,8 +11,9 @@ after(() => browser?.close());
 
 export class Stage {
   /**
-   * The server begins with `scene` and has `serverArguments`; a picture is finished after so many
-   * `samples`, or as many as by default where it is null. `view` are options of every page's context. `prepare` is run once with the page that tests share.
+   * The server loads `scene` and has `serverArguments`; a frame is converged after `samples`, or
+   * the server's default if null. `view` has options of every page's context. `prepare` runs once
+   * with the page that tests share.
    */
   constructor({
     scene = "shadow_objects",
@@ -32,22 +33,22 @@ export class Stage {
     after(() => this.server?.stop());
   }
 
-  /** A test of its own name; `body` gets node's test context. */
+  /** Defines a test; `body` gets node's test context. */
   test(name, body) {
     nodeTest(name, async (t) => {
       let passed = false;
       try {
         await this.begin();
         await body(t);
-        this.checkComplaints();
+        this.checkPageErrors();
         passed = true;
       } finally {
-        await this.tidy(passed, name);
+        await this.cleanUp(passed, name);
       }
     });
   }
 
-  /** A context of the browser that ends with the test. */
+  /** A browser context that is closed after the test. */
   async context(options = {}) {
     const context = await browser.newContext({
       viewport: { width: 960, height: 540 },
@@ -60,24 +61,24 @@ export class Stage {
   }
 
   /**
-   * Opens the client in a page of its own, in a new context unless one is given. Complaints of the
-   * page fail the test, unless `complaining` says that there will be some.
+   * Opens the client in a new page, in a new context unless one is given. Errors of the page fail
+   * the test, unless `expectErrors` is set.
    */
-  async open({ url = this.server.url, context: given, complaining = false, ...options } = {}) {
+  async open({ url = this.server.url, context: given, expectErrors = false, ...options } = {}) {
     const context = given ?? (await this.context(options));
     const viewer = await openViewer(context, url);
-    this.viewers.push({ ...viewer, complaining });
+    this.viewers.push({ ...viewer, expectErrors });
     return viewer;
   }
 
-  /** Opens the client and waits for its first picture. */
+  /** Opens the client and waits for its first frame. */
   async watch(options) {
     const viewer = await this.open(options);
-    await firstPicture(viewer.page);
+    await firstFrame(viewer.page);
     return viewer;
   }
 
-  /** The page that the tests of a file go through one after another, with its first picture. */
+  /** The page that the tests of a file share, with its first frame. */
   async sharedViewer() {
     if (!this.shared) {
       const viewer = await this.watch();
@@ -87,7 +88,7 @@ export class Stage {
     return this.shared;
   }
 
-  /** Whether the server has a method; skips the test where it has not. */
+  /** Whether the server lacks a method; the test is then skipped. */
   async lacks(t, method) {
     const { methods } = await this.server.call("rpc.discover");
     const lacks = !methods.some(({ name }) => name === method);
@@ -107,22 +108,22 @@ export class Stage {
     this.server ??= await startServer(0, this.serverArguments);
   }
 
-  checkComplaints() {
-    for (const { complaints, complaining } of this.viewers) {
-      if (!complaining) assert.deepEqual(complaints, [], "the page complained");
+  checkPageErrors() {
+    for (const { pageErrors, expectErrors } of this.viewers) {
+      if (!expectErrors) assert.deepEqual(pageErrors, [], "the page reported errors");
     }
   }
 
-  async tidy(passed, name) {
+  async cleanUp(passed, name) {
     if (!passed) await this.describeFailure(name);
-    const stays = passed ? this.shared?.context : null;
-    for (const context of [...this.contexts].filter((one) => one !== stays)) {
+    const kept = passed ? this.shared?.context : null;
+    for (const context of [...this.contexts].filter((one) => one !== kept)) {
       this.contexts.delete(context);
       await context.close().catch(() => {});
     }
-    this.viewers = this.viewers.filter(({ context }) => context === stays);
+    this.viewers = this.viewers.filter(({ context }) => context === kept);
     if (passed) {
-      await this.leaveMainAlone();
+      await this.resetSessions();
       return;
     }
     this.shared = null;
@@ -130,22 +131,22 @@ export class Stage {
     this.server = null;
   }
 
-  /** Ends every session but main, and gives main back to everyone. */
-  async leaveMainAlone() {
+  /** Closes every session but main, and resets control of main. */
+  async resetSessions() {
     const { sessions } = await this.server.call("session.list");
     for (const { name } of sessions.filter((one) => one.name !== "main")) {
-      // It may have been closed by its last viewer in this moment.
+      // Its last viewer may have closed it.
       await this.server.call("session.close", { session: name }).catch(() => {});
     }
-    await this.server.call("session.control", { mode: "everyone" });
+    await this.server.call("session.control", { mode: "shared" });
   }
 
   async describeFailure(name) {
     const stem = `failed_${name.replace(/\W+/g, "_").slice(0, 60)}`;
-    for (const [index, { page, complaints }] of this.viewers.entries()) {
+    for (const [index, { page, pageErrors }] of this.viewers.entries()) {
       await screenshot(page, `${stem}_${index}`).catch(() => {});
-      if (complaints.length > 0) console.log(`page ${index} complained:`, complaints);
+      if (pageErrors.length > 0) console.log(`errors of page ${index}:`, pageErrors);
     }
-    if (this.server) console.log(`the server said at last:\n${this.server.lastWords}`);
+    if (this.server) console.log(`last output of the server:\n${this.server.lastOutput}`);
   }
 }

@@ -11,8 +11,8 @@ OUTSIDE, INSIDE = "10.213.8.254", "10.213.8.1"
 NAME = "heliograph-boot"
 LINK = "hgboot"
 
-# What a container's manager prepares for systemd: /proc/sys and /sys cannot be written, so that
-# nothing of the machine's kernel is changed.
+# The mounts that a container manager prepares for systemd: /proc/sys and /sys are read-only, so that
+# the machine's kernel settings cannot change.
 _BOOT = r"""
 set -e
 cd "$0"
@@ -42,7 +42,7 @@ exec chroot . /bin/sh -c 'umount -l /mnt && exec env -i container=heliograph-tes
 
 
 def _control_groups():
-    """Where the second version of control groups is mounted."""
+    """The mount point of control groups v2."""
     with open("/proc/mounts", encoding="utf-8") as file:
         for line in file:
             _, folder, kind, *_ = line.split()
@@ -52,7 +52,7 @@ def _control_groups():
 
 
 class Booted:
-    """Use as a context. From this machine it is at INSIDE."""
+    """A context manager. From this machine its address is INSIDE."""
 
     def __init__(self, system):
         self.system = system
@@ -111,7 +111,7 @@ class Booted:
             run("nsenter", f"--net=/proc/{self._first}/ns/net", "ip", *words.split())
 
     def _wait(self):
-        """Until the system has come up, with units that cannot work here failed or not."""
+        """Waits until the system is up. Units that cannot work here may fail."""
         deadline = time.monotonic() + 300
         while True:
             state = self.run("systemctl", "is-system-running", check=False)
@@ -122,24 +122,24 @@ class Booted:
             time.sleep(0.1)
 
     def run(self, *words, **options):
-        """A program inside."""
+        """Runs a program inside."""
         return run("nsenter", "--target", self._first, "--mount", "--uts", "--ipc", "--net",
                    "--pid", "--cgroup", "env", "-i", "PATH=/usr/sbin:/usr/bin:/sbin:/bin",
                    "DEBIAN_FRONTEND=noninteractive", *words, **options)
 
     def properties(self, unit, *names):
-        """What systemd says of a unit."""
+        """The properties of a unit."""
         lines = self.run("systemctl", "show", unit, "--property", ",".join(names)).splitlines()
         return dict(line.split("=", 1) for line in lines)
 
     def status_of(self, process):
-        """The kernel's account of a process inside, by its number there: names to values."""
+        """/proc/PID/status of a process inside, by its inner PID: names to values."""
         lines = self.run("cat", f"/proc/{process}/status").splitlines()
         return dict(line.split(":", 1) for line in lines if ":" in line)
 
     def run_as(self, process, script):
-        """A script of the shell with the sight and the user, but not the filters, of a process
-        inside."""
+        """Runs a shell script with the namespaces and the user of a process inside, without its
+        system call filters."""
         user = self.status_of(process)["Uid"].split()[0]
         return self.run("nsenter", "--target", process, "--mount", "setpriv", f"--reuid={user}",
                         f"--regid={user}", "--clear-groups", "--no-new-privs",
@@ -159,7 +159,7 @@ class Booted:
         self._remove_groups()
 
     def _remove_groups(self):
-        """They empty themselves when the last of their processes is gone."""
+        """Control groups become empty when their last process has exited."""
         deadline = time.monotonic() + 10
         while os.path.exists(self._group) and time.monotonic() < deadline:
             for folder, _, _ in os.walk(self._group, topdown=False):

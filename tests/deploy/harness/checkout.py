@@ -1,4 +1,4 @@
-"""What is committed, as an image's builder sees it."""
+"""The committed files, as the image builder sees them."""
 
 import fnmatch
 import hashlib
@@ -10,13 +10,13 @@ from .files import DEPLOY, ROOT, text_of
 
 
 def clone(path):
-    """All that is committed, in a new folder."""
+    """Copies all committed files into a new folder."""
     run("git", "clone", "--quiet", "--depth", "1", f"file://{ROOT}", path)
 
 
 class Checkout:
-    """What is committed in a folder of the repository; of the whole of it, but for what the builder
-    is told to leave out."""
+    """The committed files of a folder; for the whole repository without those excluded by
+    .dockerignore."""
 
     def __init__(self, folder=""):
         self._tree = f"HEAD:{folder}"
@@ -24,14 +24,14 @@ class Checkout:
         self._left_out = [] if folder else text_of(ignored).split()
 
     def write(self, file):
-        """As a tar archive, out of which the builder would leave nothing."""
+        """A tar archive of the files, from which the builder would exclude nothing."""
         subprocess.run(["git", "-C", ROOT, "archive", self._tree], stdout=file, check=True)
 
     def files(self):
         return list(self._objects())
 
     def key(self):
-        """Another one when any file is another."""
+        """A digest that changes with any file."""
         lines = "\n".join(f"{path} {words}" for path, words in self._objects().items())
         return hashlib.sha256(lines.encode()).hexdigest()[:40]
 

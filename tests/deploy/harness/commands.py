@@ -1,4 +1,4 @@
-"""Runs programs; what they say is in the error when they fail."""
+"""Runs programs; the error of a failed one contains its output."""
 
 import os
 import shutil
@@ -7,12 +7,12 @@ import unittest
 
 
 class Skip(unittest.SkipTest):
-    """Why a test cannot run on this machine. With REQUIRE_CONTAINERS=1 it counts as a failure."""
+    """The reason why a test cannot run on this machine. A failure with REQUIRE_CONTAINERS=1."""
 
 
 class OutOfReach(Skip):
-    """Names what no package of this machine can bring, such as another distribution's archive: no
-    failure, whatever is required, but told at the end of every run."""
+    """A requirement that no package of this machine provides, such as another distribution's
+    archive. Never a failure, but reported at the end of every run."""
 
     MARK = "out of reach: "
 
@@ -21,7 +21,7 @@ class OutOfReach(Skip):
 
 
 def run(*command, timeout=120, check=True, **options):
-    """Gives the standard output, without the last line break."""
+    """Returns the standard output without the last line break."""
     done = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True, timeout=timeout, **options)
     if check and done.returncode != 0:
@@ -40,7 +40,7 @@ def succeeds(*command, **options):
 
 
 def program(name):
-    """The distribution's own program, whatever else of its name comes first in the path."""
+    """The distribution's program, even if another one of that name precedes it in PATH."""
     found = shutil.which(name, path="/usr/bin:/usr/sbin:" + os.environ.get("PATH", ""))
     if not found:
         raise Skip(f"{name} is not installed (deploy/setup.sh deploy installs what is needed)")

@@ -1,4 +1,4 @@
-"""What the tests of files share."""
+"""Shared by the static tests."""
 
 import glob
 import os

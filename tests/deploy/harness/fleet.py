@@ -13,7 +13,7 @@ from .servers import TOKEN, get, make_certificate
 
 
 class Fleet:
-    """Use as a context. Nodes are containers; the balancer's port is the machine's 8080."""
+    """A context manager. Nodes are containers; the balancer listens on the machine's port 8080."""
 
     def __init__(self, machine, nodes):
         self.machine, self.count = machine, nodes
@@ -47,7 +47,7 @@ class Fleet:
         return self.machine.compose(*self._base, *command, environment=self._environment, **options)
 
     def renew_balancer(self, **environment):
-        """With other values of what the file takes from the environment."""
+        """Changes variables of the compose file."""
         self._environment.update(environment)
         self.compose("up", "--detach", "--no-build", "--no-deps", "balancer")
         self.wait_ready(self.count)
@@ -64,11 +64,11 @@ class Fleet:
         return next(iter(networks.values()))["IPAddress"]
 
     def states(self):
-        """Of the nodes that the balancer knows an address for: {address: state}."""
+        """The nodes whose addresses the balancer knows: {address: state}."""
         return {row["addr"].rsplit(":", 1)[0]: row["status"] for row in self._rows()}
 
     def node_of(self, viewer):
-        """The container that a viewer was sent to, told by the balancer's cookie."""
+        """The container that the balancer's cookie names."""
         value = viewer.node.split("=", 1)[1]
         addresses = {row["addr"].rsplit(":", 1)[0] for row in self._rows() if row["cookie"] == value}
         found = [node for node in self.nodes() if self.address(node) in addresses]
@@ -85,13 +85,13 @@ class Fleet:
                 and row["svname"].startswith("node") and row["addr"]]
 
     def balancer(self):
-        """The name of its container, which depends on the version of Compose."""
+        """The container's name, which depends on the version of Compose."""
         name, = self.machine.docker("ps", "--filter", "label=com.docker.compose.service=balancer",
                                     "--format", "{{.Names}}").split()
         return name
 
     def wait_ready(self, count, timeout=600):
-        """Until as many nodes take viewers."""
+        """Waits until this many nodes are ready for viewers."""
         deadline = time.monotonic() + timeout
         while True:
             states = self.states()
@@ -103,7 +103,7 @@ class Fleet:
             time.sleep(0.2)
 
     def renew_certificate(self):
-        """In place: a container has the file itself, not its folder."""
+        """Rewrites the file in place: the container mounts the file, not its folder."""
         make_certificate(self.certificate, self.machine.address)
 
     def ask(self, path, **options):

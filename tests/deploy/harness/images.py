@@ -1,5 +1,5 @@
-"""The images under test, built as the documentation says, where no registry can be reached: the base
-image is made from Debian's packages."""
+"""The images under test, built as documented, without a registry: the base image is made from Debian
+packages."""
 
 import glob
 import os
@@ -20,7 +20,7 @@ PROMETHEUS = "heliograph-prometheus:latest"
 
 
 def cache_folder():
-    """Keeps the base image and the compiler's cache from one run of the tests to the next."""
+    """The folder that keeps the base image and the compiler cache between test runs."""
     folder = os.environ.get("HELIOGRAPH_DEPLOY_CACHE") or os.path.expanduser(
         "~/.cache/heliograph-deploy")
     os.makedirs(folder, exist_ok=True)
@@ -33,8 +33,8 @@ def add_base(machine, suite="trixie"):
 
 
 def base_archive(suite, mirror=None):
-    """Debian's essential packages, as small as the registry's slim image and trusting whom this
-    machine does. Made once."""
+    """Debian's essential packages, as small as the registry's slim image, with this machine's
+    certificate authorities. Made once."""
     target = os.path.join(cache_folder(), f"debian-{suite}-slim.tar")
     if not os.path.exists(target):
         _bootstrap(suite, target, mirror or debian_mirror())
@@ -63,7 +63,7 @@ def _bootstrap(suite, target, mirror):
 
 
 def debian_mirror():
-    """The mirror that this machine's apt uses."""
+    """The mirror of this machine's apt."""
     uris = run("apt-get", "indextargets", "--format", "$(REPO_URI)", "Created-By: Packages",
                "Component: main").splitlines()
     for uri in uris:
@@ -73,8 +73,8 @@ def debian_mirror():
 
 
 def build_server(machine):
-    """Builds the server's image from a clean checkout of what is committed, and takes the package
-    that it is made of along."""
+    """Builds the server's image from a clean checkout of the committed files, and keeps its Debian
+    package."""
     with tempfile.TemporaryDirectory(dir=cache_folder()) as folder:
         checkout = os.path.join(folder, "checkout")
         clone(checkout)
@@ -94,7 +94,7 @@ def build_server(machine):
 
 
 def add_server(machine):
-    """The same image, built only where no other test has built it of the same files."""
+    """The same image, built only if no other test has built it from the same files."""
     archive = os.environ.get("HELIOGRAPH_IMAGE_ARCHIVE") or _archive()
     if os.path.exists(archive):
         machine.docker("load", "--input", archive, timeout=300)
@@ -103,7 +103,7 @@ def add_server(machine):
 
 
 def package_path():
-    """Of the image's Debian package, once the image has been built of these files."""
+    """The path of the image's Debian package, after the image was built from these files."""
     return _of_these_files("deb")
 
 
@@ -124,7 +124,7 @@ def add_prometheus(machine):
 
 
 def _add(machine, tag, folder):
-    """Built once of the same files; then taken from the cache."""
+    """Built once from the same files, then taken from the cache."""
     archive = os.path.join(cache_folder(), f"{tag.split(':')[0]}-{Checkout(folder).key()}.tar")
     if os.path.exists(archive):
         machine.docker("load", "--input", archive, timeout=300)
@@ -140,7 +140,7 @@ def _add(machine, tag, folder):
 
 
 def copy_images(source, target, *tags):
-    """From one engine to another, as a registry would."""
+    """Copies an image from one engine to another, as a registry would."""
     with subprocess.Popen([program("docker"), "--host", f"unix://{source.socket}", "save", *tags],
                           stdout=subprocess.PIPE) as saving:
         target.docker("load", stdin=saving.stdout, timeout=300)
@@ -150,7 +150,7 @@ _CACHE_MOUNT = "--mount=type=cache,target=/cache,id=heliograph-ccache"
 
 
 def compiler_cache():
-    """What the compilers of the image's distribution remember."""
+    """The ccache folder of the image's distribution."""
     folder = os.path.join(cache_folder(), "ccache")
     os.makedirs(folder, exist_ok=True)
     return folder
@@ -165,7 +165,7 @@ def _seed_compiler_cache(machine):
 
 def _save_compiler_cache(machine):
     with tempfile.TemporaryDirectory(dir=cache_folder()) as folder:
-        # An argument makes it run each time; with --no-cache it would see an empty mount.
+        # An argument makes the step run each time; with --no-cache the mount would be empty.
         _small_build(machine, f"FROM {BASE} AS copy\nARG TIME\n"
                      f"RUN {_CACHE_MOUNT} cp -r /cache /saved\n"
                      "FROM scratch\nCOPY --from=copy /saved /\n", None, "--build-arg",

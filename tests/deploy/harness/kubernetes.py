@@ -1,4 +1,4 @@
-"""The Kubernetes objects, as they stand in their files and as an overlay makes them."""
+"""The Kubernetes objects, from their files and rendered by an overlay."""
 
 import json
 import os
@@ -19,7 +19,7 @@ def kustomization(folder=""):
 
 
 def objects():
-    """All that is applied, components included; what these patch is not changed."""
+    """All applied objects, components included, without the components' patches."""
     return [document for folder in ("", *COMPONENTS)
             for name in kustomization(folder).get("resources", [])
             for document in documents(os.path.join(FOLDER, folder, name))]
@@ -31,19 +31,19 @@ def one(listed, kind, name="heliograph"):
 
 
 def examples():
-    """The documentation's blocks that are YAML, as text."""
+    """The YAML blocks of the documentation, as text."""
     blocks = re.findall(r"(?ms)^```\n(.*?)^```$", text_of(os.path.join(DEPLOY, "README.md")))
     return [block for block in blocks if re.match(r"(#.*\n)?\w+:( |\n)", block)]
 
 
 def adapter_rules():
-    """The documentation's, of prometheus-adapter."""
+    """The documented rules of prometheus-adapter."""
     rules, = [block for block in examples() if block.startswith("rules:")]
     return yaml.safe_load(rules)["rules"]
 
 
 def rendered_overlay(folder):
-    """What kubectl makes of the documentation's overlay; `folder` is empty."""
+    """The documented overlay as rendered by kubectl; `folder` must be empty."""
     overlay, = [block for block in examples() if "\ncomponents:" in block]
     checkout = os.path.relpath(os.path.realpath(ROOT), os.path.realpath(folder))
     with open(os.path.join(folder, "kustomization.yaml"), "w", encoding="utf-8") as file:

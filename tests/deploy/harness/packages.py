@@ -9,7 +9,7 @@ from .site import Site
 
 
 def of_this_build(folder):
-    """For the distribution of this machine, out of the build folder."""
+    """For this machine's distribution, from the build folder."""
     run("cpack", "--config", os.path.join(os.environ["HELIOGRAPH_BUILD"], "CPackConfig.cmake"),
         "-B", folder, timeout=600)
     package, = glob.glob(os.path.join(folder, "*.deb"))
@@ -17,7 +17,7 @@ def of_this_build(folder):
 
 
 def of_the_image():
-    """For Debian 13: the one that the image was made of."""
+    """For Debian 13: the one installed in the image."""
     path = images.package_path()
     if not os.path.exists(path):
         with Site() as site:

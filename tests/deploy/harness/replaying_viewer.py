@@ -1,5 +1,5 @@
-"""A viewer that knows what it wants to see: whenever its connection is lost it comes back and says
-it all again, as the browser client does."""
+"""A viewer that restores its view: whenever its connection is lost it reconnects and sends its state
+again, as the browser client does."""
 
 import asyncio
 import base64
@@ -18,7 +18,7 @@ FIRST_PAUSE, LONGEST_PAUSE = 0.1, 1.0
 
 
 @dataclass
-class Wish:
+class ViewState:
     """The whole state of a viewer."""
 
     scene: str
@@ -34,11 +34,11 @@ class Wish:
 
 @dataclass
 class Loss:
-    """An interruption, seconds of the monotonic clock."""
+    """An interruption, in seconds of the monotonic clock."""
 
     at: float
     code: Optional[int]
-    back_at: Optional[float] = None  # the first picture of the whole wish
+    back_at: Optional[float] = None  # the first frame of the restored view
 
     @property
     def seconds(self):
@@ -46,24 +46,24 @@ class Loss:
 
 
 class ReplayingViewer:
-    """Use with `async with`; every frame is acknowledged."""
+    """An asynchronous context manager; acknowledges every frame."""
 
-    def __init__(self, url, token, wish):
+    def __init__(self, url, token, view):
         self.url = url  # http://host:port/
         self.token = token
-        self.wish = wish
+        self.view = view
         self.session = f"viewer-{uuid.uuid4().hex[:12]}"
         self.losses = []
         self.frames = 0
-        self.last_picture = None
-        self.longest_gap = 0.0  # seconds between two pictures while connected
-        self.round_trips = []   # seconds from camera.set to its picture
+        self.last_image = None
+        self.longest_gap = 0.0  # seconds between two frames while connected
+        self.round_trips = []   # seconds from camera.set to its frame
         self.node = None        # the balancer's cookie
         self.last_failure = None
         self.connected = asyncio.Event()
         self._sequence = 0
         self._sent_at = {}
-        self._whole = None      # the state and the input whose picture ends an interruption
+        self._whole = None      # the state and the input whose frame ends an interruption
         self._is_whole = False
         self._shown_rev, self._shown_input = -1, 0
         self._last_frame_at = None
@@ -85,27 +85,27 @@ class ReplayingViewer:
         await asyncio.gather(self._task, return_exceptions=True)
 
     async def whole(self, timeout=20):
-        """Waits until a picture of the whole wish is there."""
+        """Waits for a frame of the complete view."""
         deadline = time.monotonic() + timeout
         while not self.connected.is_set() or not self._is_whole:
             if self._task.done():
                 self._task.result()
             if time.monotonic() > deadline:
-                raise AssertionError(f"no picture in {timeout} s; interruptions: {self.losses}, "
+                raise AssertionError(f"no frame in {timeout} s; interruptions: {self.losses}, "
                                      f"latest failure: {self.last_failure!r}")
             await asyncio.sleep(0.01)
 
     async def look(self, eye):
-        """Moves the camera; the wish remembers."""
-        self.wish.eye = tuple(eye)
+        """Moves the camera, also of the view to restore."""
+        self.view.eye = tuple(eye)
         await self._send_camera()
 
-    async def pictures(self, count, timeout=60):
-        """Waits until as many more have come."""
-        wanted, deadline = self.frames + count, time.monotonic() + timeout
-        while self.frames < wanted:
+    async def wait_frames(self, count, timeout=60):
+        """Waits for this many more frames."""
+        expected, deadline = self.frames + count, time.monotonic() + timeout
+        while self.frames < expected:
             if time.monotonic() > deadline:
-                raise AssertionError(f"no {count} pictures in {timeout} s")
+                raise AssertionError(f"no {count} frames in {timeout} s")
             await asyncio.sleep(0.01)
 
     async def call(self, method, params=None, timeout=60):
@@ -120,18 +120,18 @@ class ReplayingViewer:
         return answer["result"]
 
     def awaited(self):
-        """Moves of the camera that no picture has shown yet."""
+        """Camera moves without a frame that shows them."""
         return sorted(self._sent_at)
 
     async def drop(self):
-        """Loses the connection as a bad network would, and comes back by itself."""
+        """Drops the connection as a bad network would; the viewer reconnects by itself."""
         count = len(self.losses)
         self._socket.transport.abort()
         while len(self.losses) == count:
             await asyncio.sleep(0.01)
 
     async def greet_once(self):
-        """Comes, greets and goes, without coming back."""
+        """Connects, calls hello and disconnects, without reconnecting."""
         async with _connect(self.url, self.token, None) as self._socket:
             reading = asyncio.create_task(self._read(self._socket))
             try:
@@ -179,21 +179,21 @@ class ReplayingViewer:
             await asyncio.gather(saying, reading, return_exceptions=True)
 
     async def _say_everything(self):
-        wish = self.wish
+        view = self.view
         self._whole, self._shown_rev, self._shown_input = None, -1, 0
         self._sent_at.clear()
         hello = await self.call("hello", {"client": "replaying viewer"})
         self.viewer = hello["viewer"]
         await self._enter_session()
-        if (await self.call("scene.list"))["current"] != wish.scene:
-            await self.call("scene.load", {"name": wish.scene})
-        await self.call("stream.configure", {"width": wish.size[0], "height": wish.size[1]})
-        # Only what changes something brings a picture of it; else the one that greets is right.
+        if (await self.call("scene.list"))["current"] != view.scene:
+            await self.call("scene.load", {"name": view.scene})
+        await self.call("stream.configure", {"width": view.size[0], "height": view.size[1]})
+        # Only a change causes a frame that shows it; otherwise the first frame is right.
         rev = sequence = 0
         present = (await self.call("settings.get"))["settings"]
-        if not _holds(present, wish.settings):
-            rev = (await self.call("settings.patch", {"patch": wish.settings}))["rev"]
-        if not _holds(await self.call("camera.get"), wish.camera()):
+        if not _holds(present, view.settings):
+            rev = (await self.call("settings.patch", {"patch": view.settings}))["rev"]
+        if not _holds(await self.call("camera.get"), view.camera()):
             await self._send_camera()
             sequence = self._sequence
         self._whole = (rev, sequence)
@@ -201,7 +201,7 @@ class ReplayingViewer:
         self._notice_whole(time.monotonic())
 
     async def _enter_session(self):
-        """One of its own, made where it is not: another node knows nothing of it."""
+        """Joins its own session, and creates it if it is missing, as on another node."""
         try:
             await self.call("session.create", {"name": self.session})
         except RuntimeError as exists:
@@ -213,13 +213,13 @@ class ReplayingViewer:
     async def _send_camera(self):
         self._sequence += 1
         self._sent_at[self._sequence] = time.monotonic()
-        await self.call("camera.set", {**self.wish.camera(), "seq": self._sequence})
+        await self.call("camera.set", {**self.view.camera(), "seq": self._sequence})
 
     async def _read(self, socket):
         try:
             async for message in socket:
                 if isinstance(message, bytes):
-                    await self._take_picture(socket, message)
+                    await self._receive_frame(socket, message)
                 else:
                     answer = json.loads(message)
                     waiting = self._answers.pop(answer.get("id"), None)
@@ -240,14 +240,14 @@ class ReplayingViewer:
         if self.losses and self.losses[-1].back_at is None:
             self.losses[-1].back_at = now
 
-    async def _take_picture(self, socket, message):
+    async def _receive_frame(self, socket, message):
         header_bytes, = struct.unpack_from("<H", message, 8)
         frame, = struct.unpack_from("<I", message, 12)
         echo, = struct.unpack_from("<I", message, 20)
         rev, = struct.unpack_from("<I", message, 24)
         now = time.monotonic()
         self.frames += 1
-        self.last_picture = message[header_bytes:]
+        self.last_image = message[header_bytes:]
         if self._last_frame_at is not None:
             self.longest_gap = max(self.longest_gap, now - self._last_frame_at)
         self._last_frame_at = now
@@ -259,16 +259,16 @@ class ReplayingViewer:
                                       "params": {"frame_seq": frame}}))
 
 
-def _holds(present, wanted):
-    """Whether `present` has every member of `wanted`, numbers nearly."""
-    if isinstance(wanted, dict):
+def _holds(present, expected):
+    """Whether `present` contains every member of `expected`; numbers within a tolerance."""
+    if isinstance(expected, dict):
         return all(name in present and _holds(present[name], value)
-                   for name, value in wanted.items())
-    if isinstance(wanted, list):
-        return len(present) == len(wanted) and all(map(_holds, present, wanted))
-    if isinstance(wanted, float) or isinstance(present, float):
-        return abs(present - wanted) < 1e-4
-    return present == wanted
+                   for name, value in expected.items())
+    if isinstance(expected, list):
+        return len(present) == len(expected) and all(map(_holds, present, expected))
+    if isinstance(expected, float) or isinstance(present, float):
+        return abs(present - expected) < 1e-4
+    return present == expected
 
 
 def _connect(url, token, node):
@@ -283,7 +283,7 @@ def _connect(url, token, node):
 
 
 def _cookie(socket):
-    """What the balancer gave, to be shown when coming back."""
+    """The balancer's cookies, to send when reconnecting."""
     response = getattr(socket, "response", None)
     headers = response.headers if response is not None else socket.response_headers
     given = headers.get("Set-Cookie")

@@ -1,4 +1,4 @@
-"""Small scenes for tests that are about connections, not pictures."""
+"""Small scenes for tests of connections."""
 
 import os
 
@@ -8,7 +8,7 @@ NAMES = ("mirror", "furnace")
 
 
 def make_scenes(folder):
-    """Generates them and gives their folder, which containers may read."""
+    """Generates them and returns their folder, which containers may read."""
     scenes = os.path.join(folder, "scenes")
     generate(scenes, "--texture-size", "64", "--only", "tests", "--only", "sky")
     os.chmod(folder, 0o755)
@@ -21,7 +21,7 @@ def generate(folder, *options):
 
 
 def service_override(scenes):
-    """For a compose file: the servers show these scenes, small."""
+    """Overrides of a compose file: the servers show these scenes at a small size."""
     return {"volumes": [f"{scenes}:/scenes:ro"],
             "environment": {"HELIOGRAPH_SCENE_ROOT": "/scenes", "HELIOGRAPH_SCENE": NAMES[0],
                             "HELIOGRAPH_WIDTH": "160", "HELIOGRAPH_HEIGHT": "90",

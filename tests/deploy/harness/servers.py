@@ -1,4 +1,4 @@
-"""Single servers in hardened containers, and what is asked of them over HTTP."""
+"""Single servers in hardened containers, and HTTP requests to them."""
 
 import http.client
 import json
@@ -18,7 +18,7 @@ HARDENED = ("--read-only", "--cap-drop", "ALL", "--security-opt", "no-new-privil
 
 
 class Container:
-    """A running server; ends with `remove`."""
+    """A running server; `remove` ends it."""
 
     def __init__(self, machine, name, *options, port=8080, serve=()):
         self.machine, self.name = machine, name
@@ -28,7 +28,7 @@ class Container:
                        "--env", f"HELIOGRAPH_TOKEN={TOKEN}", *options, SERVER, "serve", *serve)
 
     def wait_healthy(self, timeout=300):
-        """Gives the seconds that it took."""
+        """Returns the seconds that it took."""
         while self.machine.docker("inspect", "--format", "{{.State.Health.Status}}",
                                   self.name) != "healthy":
             if time.monotonic() - self.started_at > timeout or not self.running():
@@ -37,9 +37,9 @@ class Container:
         return time.monotonic() - self.started_at
 
     def wait_ready(self, timeout=300):
-        """Until it takes viewers, which is after its first picture. Gives the seconds of processor
-        time that this took: unlike those of the clock they tell of the server, not of what else
-        the machine has to do."""
+        """Waits until it is ready for viewers, which is after its first frame. Returns the seconds
+        of processor time until then: unlike wall clock time they do not depend on other load of
+        the machine."""
         while not self._is_ready():
             if time.monotonic() - self.started_at > timeout or not self.running():
                 raise AssertionError(f"{self.name} is not ready:\n{self.log()}")
@@ -50,23 +50,22 @@ class Container:
         try:
             return self.get("health/ready", timeout=5)[0] == 200
         except OSError:
-            return False  # it does not listen yet
+            return False  # not listening yet
 
     def processor_seconds(self):
-        """What the server, with all its threads, has used by now."""
+        """The processor time of all its threads so far."""
         process = self.machine.inspect(self.name, "{{.State.Pid}}")
         with open(f"/proc/{process}/stat", encoding="ascii") as file:
             fields = file.read().rsplit(")", 1)[1].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def threads(self):
-        """The name of each, without the number that some have."""
+        """The name of each thread, without trailing numbers."""
         tasks = f"/proc/{self.machine.inspect(self.name, '{{.State.Pid}}')}/task"
         return [text_of(f"{tasks}/{task}/comm").strip().split("-")[0] for task in os.listdir(tasks)]
 
     def memory_bytes(self):
-        """What its control group holds: all but what the kernel can take back by reading files
-        again."""
+        """The memory of its control group, without reclaimable file cache."""
         identity = self.machine.inspect(self.name, '"{{.Id}}"')
         for folder, usage in (("/sys/fs/cgroup/memory/docker", "memory.usage_in_bytes"),
                               ("/sys/fs/cgroup/docker", "memory.current")):
@@ -95,7 +94,7 @@ class Container:
 
 
 def make_certificate(path, address):
-    """Signed by itself, with its key in the same file, which every user may read."""
+    """A self-signed certificate with its key in the same file, readable by every user."""
     run(program("openssl"), "req", "-x509", "-newkey", "ec", "-pkeyopt",
         "ec_paramgen_curve:prime256v1", "-nodes", "-days", "2", "-subj", "/CN=heliograph", "-addext",
         f"subjectAltName=IP:{address}", "-keyout", path, "-out", f"{path}.certificate")
@@ -105,14 +104,14 @@ def make_certificate(path, address):
 
 
 def free_port():
-    """On this machine's loopback, at this moment."""
+    """A port that is free on this machine's loopback interface now."""
     with socket.create_server(("127.0.0.1", 0)) as server:
         return server.getsockname()[1]
 
 
 def get(url, *, token=TOKEN, headers=None, timeout=60, certificate=None):
-    """Status, headers and body of one exchange on a connection of its own; by TLS where the file is
-    given with the server's certificate."""
+    """Status, headers and body of one request on its own connection; with TLS if the file with the
+    server's certificate is given."""
     address = urllib.parse.urlsplit(url)
     if certificate:
         connection = http.client.HTTPSConnection(
@@ -131,8 +130,7 @@ def get(url, *, token=TOKEN, headers=None, timeout=60, certificate=None):
 
 
 def _by_name(headers):
-    """By names as in Set-Cookie, however they were sent; those that came more than once have a line
-    for each."""
+    """Headers by name in canonical case; repeated headers have one line each."""
     found = {}
     for name, value in headers:
         name = name.title()
@@ -156,7 +154,7 @@ def call(url, method, params=None, *, token=TOKEN, timeout=60):
 
 
 def measurement(url, name, *, token=TOKEN):
-    """A value of /metrics without labels, by its full name; None where there is none."""
+    """A metric without labels, by its full name; None if it does not exist."""
     status, _, page = get(url + "metrics", token=token)
     assert status == 200, status
     for line in page.decode().splitlines():

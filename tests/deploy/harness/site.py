@@ -1,5 +1,5 @@
-"""Machines made of network namespaces, each with a container engine of its own, on one bridge that
-leads out by address translation. Leaves nothing behind."""
+"""Machines made of network namespaces, each with its own container engine, on one bridge with address
+translation to the outside. Everything is removed at the end."""
 
 import atexit
 import json
@@ -20,7 +20,7 @@ BRIDGE = "hgbridge"
 
 
 def check_machine():
-    """Raises Skip where no engine can run."""
+    """Raises Skip if no engine can run."""
     if os.geteuid() != 0:
         raise Skip("container tests need root")
     if not succeeds("unshare", "--mount", "--net", "true"):
@@ -30,7 +30,7 @@ def check_machine():
 
 
 class Site:
-    """The bridge. Use as a context; machines are added with `add_machine`."""
+    """The bridge, a context manager; `add_machine` adds machines."""
 
     def __init__(self):
         check_machine()
@@ -45,7 +45,7 @@ class Site:
     def __enter__(self):
         if os.path.exists(f"/sys/class/net/{BRIDGE}"):
             raise RuntimeError(f"{BRIDGE} exists: another run of these tests is under way")
-        # Whatever ends this program, but SIGKILL, what it made goes with it.
+        # Clean up however this program ends, except by SIGKILL.
         atexit.register(self.__exit__)
         signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
         try:
@@ -111,7 +111,7 @@ class Machine:
         self._start_engine()
 
     def _start_engine(self):
-        # Its mounts are private and end with it. `ip netns exec` would hide the control groups.
+        # Its mounts are private to it. `ip netns exec` would hide the control groups.
         log = open(os.path.join(self.folder, "dockerd.log"), "w", encoding="utf-8")
         script = f"hostname {self.name}; exec {program('dockerd')} \"$@\""
         self._engine = subprocess.Popen(
@@ -156,7 +156,7 @@ class Machine:
         """Ends every container, the engine and the namespace, however slow the machine is."""
         if self._engine and self._engine.poll() is None:
             docker = (program("docker"), "--host", f"unix://{self.socket}")
-            # A swarm would make anew what is removed.
+            # A swarm would recreate removed containers.
             succeeds(*docker, "swarm", "leave", "--force")
             succeeds("sh", "-c", '"$@" ps --all --quiet | xargs --no-run-if-empty "$@" rm --force '
                      "--volumes", "sh", *docker)
@@ -171,8 +171,8 @@ class Machine:
         succeeds("ip", "netns", "del", self.name)
 
     def _end_what_is_left(self):
-        """Processes that name this machine's own folder, as containerd and its shims do, and those
-        whose root lies in it: containers that nobody watches any more."""
+        """Processes whose command line names this machine's folder (containerd and its shims), and
+        processes whose root lies in it: orphaned containers."""
         mark = f"{self.folder}/".encode()
         for entry in os.listdir("/proc"):
             if not entry.isdigit() or int(entry) == os.getpid():
@@ -190,13 +190,13 @@ def _contents(path):
 
 
 def _root_mount(process):
-    """The kernel's line about what is mounted at the root that the process sees."""
+    """The kernel's mountinfo line of the root of the process."""
     lines = _contents(f"/proc/{process}/mountinfo").splitlines()
     return b"".join(line for line in lines if line.split()[4] == b"/")
 
 
 def _smallest_mtu():
-    """Of the interfaces that lead out: what containers send must fit through all of them."""
+    """The smallest MTU of the outgoing interfaces: packets of containers must fit through all."""
     sizes = [1500]
     for _, name in socket.if_nameindex():
         if name != "lo":

@@ -1,4 +1,4 @@
-"""A Debian in a folder: packages are installed into it and programs run in it."""
+"""A Debian system in a folder, in which packages are installed and programs run."""
 
 import os
 import shutil
@@ -6,13 +6,13 @@ import shutil
 from . import images
 from .commands import Skip, run, succeeds
 
-# What apt, dpkg and the loader keep of every installation, and what is no file of the system.
+# State that apt, dpkg and the loader keep of installations, and files outside of the system.
 TRACES = ("var/lib/dpkg/", "var/cache/", "var/log/", "var/lib/apt/", "var/lib/systemd/", "tmp/",
           "proc/", "dev/", "sys/", "run/", "etc/ld.so.cache", "etc/resolv.conf", "var/lib/pam/")
 
 
 def check_machine():
-    """Raises Skip where no such folder can be entered."""
+    """Raises Skip if such a folder cannot be entered."""
     if os.geteuid() != 0:
         raise Skip("packages are installed by root")
     if not succeeds("unshare", "--mount", "true"):
@@ -20,13 +20,13 @@ def check_machine():
 
 
 def release_of_this_machine():
-    """Its code name, as in trixie."""
+    """Its code name, such as trixie."""
     lines = run("cat", "/etc/os-release").splitlines()
     return dict(line.split("=", 1) for line in lines if "=" in line)["VERSION_CODENAME"]
 
 
 class System:
-    """Mounts are private to each command, so that none stay."""
+    """Mounts are private to each command, so that none remain."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -38,7 +38,7 @@ class System:
         return cls(folder)
 
     def command(self, *words, binds=()):
-        """`binds` are folders outside and the paths at which they are seen inside."""
+        """`binds` are pairs of outer folders and inner paths."""
         more = "".join(f'mkdir -p "$0{inside}" && mount --bind "{outside}" "$0{inside}" && '
                        for outside, inside in binds)
         script = ('mount -t proc proc "$0/proc" && mount --rbind /dev "$0/dev" && ' + more +
@@ -47,13 +47,13 @@ class System:
                 *words]
 
     def run(self, *words, timeout=600, environment=(), binds=()):
-        """As root. The variables are given as NAME=VALUE."""
+        """Runs a command as root, with variables as NAME=VALUE."""
         return run(*self.command("env", "DEBIAN_FRONTEND=noninteractive", "LC_ALL=C.UTF-8",
                                  "XDG_CACHE_HOME=/tmp/cache", *environment, *words, binds=binds),
                    timeout=timeout)
 
     def install(self, *packages):
-        """By name, or a file of this machine."""
+        """Installs packages by name, or a file of this machine."""
         names = []
         for package in packages:
             if os.path.isabs(package):

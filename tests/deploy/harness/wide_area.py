@@ -1,5 +1,5 @@
-"""A slow, long and lossy line between two network namespaces, made of two TUN devices: the kernels'
-own TCP runs over it. As a program:
+"""A slow link with latency and loss between two network namespaces, made of two TUN devices; the
+kernel's own TCP runs over it. As a program:
 wide_area.py NAMESPACE LINE_AS_JSON"""
 
 import ctypes
@@ -33,7 +33,7 @@ class Line:
 
 
 class WideArea:
-    """Use as a context: from here, the machine is at FAR."""
+    """A context manager: the machine's address is FAR."""
 
     def __init__(self, machine, line):
         self.machine, self.line = machine, line
@@ -54,7 +54,7 @@ class WideArea:
 
 
 class Direction:
-    """What was read leaves after its turn on the line and the delay; order is kept."""
+    """Packets leave in order, after the transmission time of the queue and the delay."""
 
     def __init__(self, line, target):
         self.line, self.target = line, target
@@ -78,7 +78,7 @@ class Direction:
             try:
                 os.write(self.target, heapq.heappop(self.waiting)[2])
             except OSError:
-                pass  # the other side's queue is full: lost, as it would be
+                pass  # the receiver's queue is full: drop, as a network would
 
 
 def _enter(namespace):

@@ -1,5 +1,5 @@
-// Checks Kubernetes objects, a JSON list on standard input: their values against the schema of the
-// API, and their members against its types, which know no others.
+// Checks Kubernetes objects, a JSON list on standard input: values against the schema of the API, and
+// members against its types, which reject unknown ones.
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";

@@ -18,7 +18,7 @@ struct View {
 std::shared_ptr<const scene::Scene> lit_scene() {
   SceneBuilder scene;
   scene.add_sun({0.3f, -0.5f, -1.0f}, {3, 2, 1});
-  scene.add_lamp({0.5f, 1, 1}, {4, 5, 6}).add_lamp({-3, 0, -1}, {1, 0, 2});
+  scene.add_point_light({0.5f, 1, 1}, {4, 5, 6}).add_point_light({-3, 0, -1}, {1, 0, 2});
   auto made = std::make_shared<scene::Scene>(*scene.build());
   made->lights.back().device.range = 3.0f;
   scene::Light spot = made->lights[1];
@@ -37,10 +37,10 @@ scene::Camera camera(bool orthographic) {
   return made;
 }
 
-/// Composition twice over, by the shader and by its twin.
-class Twins {
+/// Composition by the shader and by its host kernel.
+class KernelComparison {
  public:
-  explicit Twins(const View& view)
+  explicit KernelComparison(const View& view)
       : rig_(lit_scene(), camera(view.orthographic),
              {.extent = view.extent,
               .environment = make_environment(
@@ -56,7 +56,7 @@ class Twins {
     }
     const auto background = random.four("background", glm::vec4(0), glm::vec4(2));
     const auto run = [&](bool host) {
-      return render::compose(rig_.plan(), with_kernels(rig_, host), gbuffer, raw, denoised,
+      return render::compose(rig_.plan(), with_host_kernels(rig_, host), gbuffer, raw, denoised,
                              background);
     };
     shader_ = run(false);
@@ -64,32 +64,34 @@ class Twins {
   }
 
   FrameRig& rig() { return rig_; }
-  Compared hdr() { return compare(rig_.read(shader_.hdr), rig_.read(host_.hdr)); }
-  Compared hdr_raw() { return compare(rig_.read(shader_.hdr_raw), rig_.read(host_.hdr_raw)); }
+  ErrorStatistics hdr() { return compare(rig_.read(shader_.hdr), rig_.read(host_.hdr)); }
+  ErrorStatistics hdr_raw() {
+    return compare(rig_.read(shader_.hdr_raw), rig_.read(host_.hdr_raw));
+  }
 
  private:
   FrameRig rig_;
   render::Composed shader_, host_;
 };
 
-class ComposeHost : public testing::Test {
+class ComposeKernel : public testing::Test {
  protected:
   void SetUp() override {
-    if (!has_host_kernels()) GTEST_SKIP() << "host kernels are for devices that are processors";
+    if (!has_host_kernels()) GTEST_SKIP() << "host kernels run on CPU devices only";
   }
 };
 
 void expect_same(const View& view, const std::string& which) {
-  Twins twins(view);
-  twins.rig().run();
-  for (const Compared& result : {twins.hdr(), twins.hdr_raw()}) {
+  KernelComparison comparison(view);
+  comparison.rig().run();
+  for (const ErrorStatistics& result : {comparison.hdr(), comparison.hdr_raw()}) {
     EXPECT_LT(result.mean, 2e-5) << which;
-    EXPECT_LT(result.worst, 5e-3) << which;
-    EXPECT_GT(result.size, 0.1) << "there is a picture: " << which;
+    EXPECT_LT(result.max, 5e-3) << which;
+    EXPECT_GT(result.magnitude, 0.1) << "image is nearly black: " << which;
   }
 }
 
-TEST_F(ComposeHost, DoesWhatTheShaderDoes) {
+TEST_F(ComposeKernel, MatchesShader) {
   for (const bool denoised : {true, false}) {
     for (const bool mirrors : {true, false}) {
       for (const bool orthographic : {true, false}) {
@@ -102,7 +104,7 @@ TEST_F(ComposeHost, DoesWhatTheShaderDoes) {
   }
 }
 
-TEST_F(ComposeHost, FollowsEverySwitch) {
+TEST_F(ComposeKernel, MatchesShaderForEverySwitch) {
   for (int which = 0; which < 6; ++which) {
     View view;
     view.settings.lighting.direct = which != 0;
@@ -118,26 +120,26 @@ TEST_F(ComposeHost, FollowsEverySwitch) {
   }
 }
 
-TEST_F(ComposeHost, LeavesThePrefilteredEnvironmentToTheShader) {
+TEST_F(ComposeKernel, PrefilteredEnvironmentRunsOnDevice) {
   View view;
   view.settings.specular.max_roughness = 0.3f;
-  Twins twins(view);
-  twins.rig().run();
-  for (const auto& timing : twins.rig().plan().timings()) {
+  KernelComparison comparison(view);
+  comparison.rig().run();
+  for (const auto& timing : comparison.rig().plan().timings()) {
     EXPECT_EQ(timing.host, timing.milliseconds < 0.0f) << timing.name;
   }
-  EXPECT_EQ(twins.hdr().worst, 0.0);
+  EXPECT_EQ(comparison.hdr().max, 0.0);
 }
 
-TEST_F(ComposeHost, WorksAtEverySize) {
+TEST_F(ComposeKernel, MatchesShaderAtAnySize) {
   for (const VkExtent2D extent : {VkExtent2D{1, 1}, {3, 5}, {16, 2}, {17, 31}, {130, 1}}) {
     expect_same({.extent = extent}, std::to_string(extent.width) + " wide");
   }
 }
 
-TEST_F(ComposeHost, IsFasterThanTheShader) {
-  Twins twins({.extent = {640, 360}});
-  expect_faster(twins.rig(), {"compose"}, 2.0);
+TEST_F(ComposeKernel, IsFasterThanShader) {
+  KernelComparison comparison({.extent = {640, 360}});
+  expect_faster(comparison.rig(), {"compose"}, 2.0);
 }
 
 }  // namespace

@@ -31,15 +31,15 @@ struct Inputs {
   protocol::Settings settings;
 };
 
-struct Pictures {
+struct ComposedImages {
   glm::vec3 hdr, hdr_raw;
 };
 
 /// What composition makes of a pixel in the middle, seen from (0, 0, 2) along -z.
-Pictures compose_both(SceneBuilder& scene, const Inputs& in) {
+ComposedImages compose_both(SceneBuilder& scene, const Inputs& in) {
   FrameRig rig(scene.build(), look({0, 0, 2}, {0, 0, 0}),
                {.extent = extent, .settings = in.settings});
-  const auto gbuffer = make_gbuffer(rig, in.pixel);
+  const auto gbuffer = make_uniform_gbuffer(rig, in.pixel);
   const auto flat = [&](const char* name, float value) {
     return rig.input(name, VK_FORMAT_R32_SFLOAT, std::vector(pixels, value));
   };
@@ -71,7 +71,7 @@ protocol::Settings only_direct() {
   return settings;
 }
 
-TEST(Compose, SunOnADielectricPlaneIsAnalytic) {
+TEST(Compose, SunOnDielectricPlaneIsAnalytic) {
   for (const float degrees : {0.0f, 30.0f, 60.0f, 80.0f}) {
     const float angle = glm::radians(degrees);
     SceneBuilder scene;
@@ -82,7 +82,7 @@ TEST(Compose, SunOnADielectricPlaneIsAnalytic) {
     const double albedo = std::pow(128.0 / 255.0, 2.0);
     const double cosine = std::cos(angle);
     const double expected =
-        4.0 * shade_light_twin(albedo, 0.0, 1.0, {0, 0, 1}, {std::sin(angle), 0, cosine});
+        4.0 * shade_light_reference(albedo, 0.0, 1.0, {0, 0, 1}, {std::sin(angle), 0, cosine});
     const glm::vec3 got = compose(scene, in);
     // The pixel beside the middle sees the plane from almost straight ahead.
     EXPECT_NEAR(got.x, expected, 0.01 * expected) << degrees;
@@ -91,7 +91,7 @@ TEST(Compose, SunOnADielectricPlaneIsAnalytic) {
   }
 }
 
-TEST(Compose, LightFromBehindTheSurfaceIsNone) {
+TEST(Compose, LightFromBehindContributesNothing) {
   SceneBuilder scene;
   scene.add_sun({0.2f, 0, 1}, glm::vec3(4.0f));
   Inputs in;
@@ -114,7 +114,7 @@ TEST(Compose, ShadowScalesDirectLightOnly) {
   EXPECT_NEAR(compose(scene, in).x, 1.0f, 0.02f) << "a white plane in a white furnace";
 }
 
-TEST(Compose, AmbientVisibilityAndOcclusionMapScaleTheEnvironment) {
+TEST(Compose, AmbientVisibilityAndOcclusionMapScaleEnvironment) {
   SceneBuilder scene;
   Inputs in;
   const float open = compose(scene, in).x;
@@ -126,7 +126,7 @@ TEST(Compose, AmbientVisibilityAndOcclusionMapScaleTheEnvironment) {
   EXPECT_NEAR(compose(scene, in).x, 0.2f * open, 1e-4f);
 }
 
-TEST(Compose, TracedReflectionsTakeThePlaceOfTheMirroredEnvironment) {
+TEST(Compose, TracedReflectionsReplacePrefilteredEnvironment) {
   SceneBuilder scene;
   Inputs in;
   in.pixel.metallic = 1.0f;
@@ -145,7 +145,7 @@ TEST(Compose, TracedReflectionsTakeThePlaceOfTheMirroredEnvironment) {
   EXPECT_NEAR(compose(scene, in).x, 0.25f, 0.01f) << "the prefiltered environment";
 }
 
-TEST(Compose, DenoisedSignalsMakeThePictureAndRawOnesTheSample) {
+TEST(Compose, DenoisedSignalsMakeHdrAndNoisyOnesMakeSample) {
   SceneBuilder scene;
   scene.add_sun({0, 0, -1}, glm::vec3(4.0f));
   Inputs in;
@@ -160,13 +160,13 @@ TEST(Compose, DenoisedSignalsMakeThePictureAndRawOnesTheSample) {
   smooth.specular = glm::vec3(2.0f);
   const glm::vec3 filtered = compose(scene, smooth);
   in.denoised = Denoised{{0.5f, 0.75f, 0.0f}, glm::vec3(2.0f)};
-  const Pictures both = compose_both(scene, in);
+  const ComposedImages both = compose_both(scene, in);
   EXPECT_EQ(both.hdr, filtered);
   EXPECT_EQ(both.hdr_raw, raw);
   EXPECT_NE(raw, filtered);
 }
 
-TEST(Compose, UnlitShowsItsColourAndEmissionIsAdded) {
+TEST(Compose, UnlitShowsBaseColorPlusEmission) {
   SceneBuilder scene;
   scene.add_sun({0, 0, -1}, glm::vec3(4.0f));
   Inputs in;
@@ -181,7 +181,7 @@ TEST(Compose, UnlitShowsItsColourAndEmissionIsAdded) {
   EXPECT_NEAR(compose(scene, in).z, in.pixel.color.x, 1e-5f);
 }
 
-TEST(Compose, BackgroundShowsWhereNothingIs) {
+TEST(Compose, BackgroundShowsWhereNoSurfaceIs) {
   SceneBuilder scene;
   Inputs in;
   in.pixel.view_z = 0.0f;
@@ -189,7 +189,7 @@ TEST(Compose, BackgroundShowsWhereNothingIs) {
   EXPECT_EQ(compose(scene, in), in.background);
 }
 
-TEST(Compose, ABadValueBecomesBlackInsteadOfSpreading) {
+TEST(Compose, NaNBecomesBlack) {
   SceneBuilder scene;
   scene.add_sun({0, 0, -1}, glm::vec3(4.0f));
   Inputs in;

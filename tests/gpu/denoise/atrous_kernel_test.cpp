@@ -14,7 +14,7 @@ namespace {
 using render::kernels::Signal;
 using Texels = std::vector<glm::vec4>;
 
-/// A guide with planes, edges, holes and roughnesses of all sorts, and a noisy signal.
+/// A guide with planes, edges, holes and various roughnesses, and a noisy signal.
 struct Field {
   Texels guide;
   std::vector<glm::vec2> slope;
@@ -77,21 +77,21 @@ class AtrousRig {
     rig_.set_view(camera(orthographic), 5);
   }
 
-  struct Compared {
+  struct ErrorStatistics {
     double mean;
-    double worst;
-    double changed;  // mean difference that the filter makes
+    double max;
+    double changed;  // mean change by the filter
   };
-  Compared compare(const shared::AtrousConstants& constants) {
+  ErrorStatistics compare(const shared::AtrousConstants& constants) {
     constants_ = constants;
     rig_.run();
     const render::FloatImage shader = rig_.read(by_shader_), host = rig_.read(by_host_);
     const render::FloatImage signal = rig_.read(signal_);
-    Compared result{};
+    ErrorStatistics result{};
     for (std::size_t i = 0; i < shader.rgba.size(); ++i) {
       const double off = std::abs(static_cast<double>(shader.rgba[i]) - host.rgba[i]);
       result.mean += std::isfinite(off) ? off : 1e9;
-      result.worst = std::max(result.worst, off);
+      result.max = std::max(result.max, off);
       result.changed += std::abs(static_cast<double>(shader.rgba[i]) - signal.rgba[i]);
     }
     result.mean /= static_cast<double>(shader.rgba.size());
@@ -99,7 +99,7 @@ class AtrousRig {
     return result;
   }
 
-  /// Milliseconds of the shader and of the host kernel, the best of several frames, by the clock.
+  /// Wall-clock milliseconds of the shader and of the host kernel, minimum of several frames.
   std::pair<double, double> time(const shared::AtrousConstants& constants) {
     using Clock = std::chrono::steady_clock;
     constants_ = constants;
@@ -148,14 +148,14 @@ shared::AtrousConstants constants(int level, int columns, int rows, std::uint32_
   return made;
 }
 
-class AtrousHost : public testing::TestWithParam<Signal> {
+class AtrousKernel : public testing::TestWithParam<Signal> {
  protected:
   void SetUp() override {
-    if (!device().is_cpu()) GTEST_SKIP() << "host kernels are for devices that are processors";
+    if (!device().is_cpu()) GTEST_SKIP() << "host kernels run on CPU devices only";
   }
 };
 
-TEST_P(AtrousHost, DoesWhatTheShaderDoes) {
+TEST_P(AtrousKernel, MatchesShader) {
   for (const bool orthographic : {false, true}) {
     AtrousRig rig({77, 45}, GetParam(), orthographic);
     for (const auto& [columns, rows] : {std::pair(2, 2), {2, 0}, {0, 2}}) {
@@ -168,8 +168,8 @@ TEST_P(AtrousHost, DoesWhatTheShaderDoes) {
                                       " flags " + std::to_string(flags) + " threshold " +
                                       std::to_string(threshold);
             EXPECT_LT(result.mean, 1e-4) << which;
-            EXPECT_LT(result.worst, 5e-3) << which;
-            EXPECT_GT(result.changed, 0.01) << "the filter does something: " << which;
+            EXPECT_LT(result.max, 5e-3) << which;
+            EXPECT_GT(result.changed, 0.01) << "the filter changes nothing: " << which;
           }
         }
       }
@@ -177,7 +177,7 @@ TEST_P(AtrousHost, DoesWhatTheShaderDoes) {
   }
 }
 
-TEST_P(AtrousHost, WorksAtEverySize) {
+TEST_P(AtrousKernel, MatchesShaderAtAnySize) {
   for (const VkExtent2D extent : {VkExtent2D{1, 1}, {3, 5}, {16, 2}, {17, 31}, {130, 1}}) {
     AtrousRig rig(extent, GetParam());
     for (const int level : {0, 4}) {
@@ -187,7 +187,7 @@ TEST_P(AtrousHost, WorksAtEverySize) {
   }
 }
 
-TEST_P(AtrousHost, IsFasterThanTheShader) {
+TEST_P(AtrousKernel, IsFasterThanShader) {
   AtrousRig rig({640, 360}, GetParam());
   const std::string kind = GetParam() == Signal::visibility ? "visibility" : "specular";
   double shader = 0.0, host = 0.0;
@@ -206,7 +206,8 @@ TEST_P(AtrousHost, IsFasterThanTheShader) {
   EXPECT_GT(shader, 1.5 * host);
 }
 
-INSTANTIATE_TEST_SUITE_P(Signals, AtrousHost, testing::Values(Signal::visibility, Signal::specular),
+INSTANTIATE_TEST_SUITE_P(Signals, AtrousKernel,
+                         testing::Values(Signal::visibility, Signal::specular),
                          [](const auto& test) {
                            return test.param == Signal::visibility ? "visibility" : "specular";
                          });

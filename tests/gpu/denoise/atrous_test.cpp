@@ -18,7 +18,7 @@ constexpr int width = 37, height = 23;
 constexpr VkExtent2D extent{width, height};
 constexpr std::size_t pixels = width * height;
 
-/// What the filter sees: a slanted floor and a wall, a strip of background, random everything.
+/// Filter input: a slanted floor, a wall and a strip of background, with random signal and normals.
 struct Input {
   std::vector<glm::vec4> guide{pixels}, signal{pixels};
   std::vector<glm::vec2> slope{pixels};
@@ -41,10 +41,11 @@ struct Input {
   }
 };
 
-/// The same sums in double, straight from the paper's equations.
-class Twin {
+/// Reference implementation in double: SVGF eq. 1-5 as the paper states them.
+class AtrousReference {
  public:
-  Twin(const Input& in, const shared::AtrousConstants& constants, bool specular, float footprint)
+  AtrousReference(const Input& in, const shared::AtrousConstants& constants, bool specular,
+                  float footprint)
       : in_(in), c_(constants), specular_(specular), footprint_(footprint) {}
 
   std::vector<glm::dvec4> run() const {
@@ -146,7 +147,7 @@ struct Filter {
     const auto& shader = specular ? shaders::specular_atrous : shaders::visibility_atrous;
     const auto& program = rig.inputs().programs.compute(shader);
     render::FrameInputs inputs = rig.inputs();
-    inputs.host_kernels = false;  // atrous_host_test.cpp holds the processor's against these
+    inputs.host_kernels = false;  // atrous_kernel_test.cpp compares the host kernel
     const auto kind =
         specular ? render::kernels::Signal::specular : render::kernels::Signal::visibility;
     filtered = render::blur(rig.plan(), inputs, gbuffer, guide,
@@ -178,7 +179,7 @@ INSTANTIATE_TEST_SUITE_P(Signals, Atrous, testing::Bool(), [](const auto& instan
   return instance.param ? "specular" : "visibility";
 });
 
-TEST_P(Atrous, IsThePapersSumOnRandomInput) {
+TEST_P(Atrous, MatchesReferenceOnRandomInput) {
   for (const float start : {2.0f, -1.0f}) {
     for (const std::uint32_t flags : {0u, shared::atrous_variance_prefilter}) {
       const Input in(7);
@@ -190,7 +191,7 @@ TEST_P(Atrous, IsThePapersSumOnRandomInput) {
       constants.columns = constants.rows = 2;
       const float footprint =
           2.0f * std::abs(filter.rig.constants().unproject.y) / static_cast<float>(height);
-      const auto expected = Twin(in, constants, GetParam(), footprint).run();
+      const auto expected = AtrousReference(in, constants, GetParam(), footprint).run();
       for (std::size_t i = 0; i < pixels; ++i) {
         for (int k = 0; k < 4; ++k) {
           ASSERT_NEAR(got.rgba[4 * i + k], expected[i][k], 2e-4 * std::abs(expected[i][k]) + 2e-5)
@@ -201,7 +202,7 @@ TEST_P(Atrous, IsThePapersSumOnRandomInput) {
   }
 }
 
-TEST_P(Atrous, LeavesAConstantAloneWithEitherKernel) {
+TEST_P(Atrous, ConstantSignalIsUnchanged) {
   Input in(1);
   for (auto& value : in.signal) value = glm::vec4(0.5f, 0.5f, 0.5f, 0.5f);
   for (const auto kernel : {protocol::BlurKernel::full, protocol::BlurKernel::separable}) {
@@ -211,10 +212,10 @@ TEST_P(Atrous, LeavesAConstantAloneWithEitherKernel) {
   }
 }
 
-TEST_P(Atrous, KeepsTheEdgeBetweenTwoSurfaces) {
+TEST_P(Atrous, PreservesEdgesBetweenSurfaces) {
   const std::array upper{glm::vec4(0, 0, 1.5f, 5), glm::vec4(0, 0, 1.5f, 5)};
   const std::array lower{glm::vec4(0, 1.5f, 0, 5),
-                         glm::vec4(0, 0, 1.5f, 50)};  // turned, far behind
+                         glm::vec4(0, 0, 1.5f, 50)};  // rotated; far behind
   for (std::size_t edge = 0; edge < upper.size(); ++edge) {
     Input in(1);
     for (std::size_t i = 0; i < pixels; ++i) {
@@ -228,7 +229,7 @@ TEST_P(Atrous, KeepsTheEdgeBetweenTwoSurfaces) {
       Filter filter(in, plain(), GetParam(), 4, kernel);
       const render::FloatImage got = filter.run();
       for (std::size_t i = 0; i < pixels; ++i) {
-        // Depth alone leaves a trace where the steps are widest; without it half would come over.
+        // Depth alone leaks slightly at the widest steps; without it half would leak.
         EXPECT_NEAR(got.rgba[4 * i], i / width > 11 ? 1.0f : 0.0f, edge == 0 ? 1e-4f : 0.01f)
             << i << ", edge " << edge;
       }
@@ -236,7 +237,7 @@ TEST_P(Atrous, KeepsTheEdgeBetweenTwoSurfaces) {
   }
 }
 
-TEST_P(Atrous, TakesMostNoiseAwayFromAnEvenSurface) {
+TEST_P(Atrous, ReducesNoiseAndVarianceOnUniformSurface) {
   Input in(3);
   for (std::size_t i = 0; i < pixels; ++i) {
     in.guide[i] = glm::vec4(0, 0, 1.3f, 5.0f);
@@ -255,11 +256,11 @@ TEST_P(Atrous, TakesMostNoiseAwayFromAnEvenSurface) {
     }
     EXPECT_NEAR(mean, 0.5, 0.06);
     EXPECT_LT(squares - mean * mean, 0.25 / 20.0) << "of a variance of 1/4";
-    EXPECT_LT(left, 0.25 / 20.0) << "and the filter knows it";
+    EXPECT_LT(left, 0.25 / 20.0) << "filtered variance";
   }
 }
 
-TEST_P(Atrous, NeverReadsTheBackgroundNorFiltersIt) {
+TEST_P(Atrous, IgnoresBackground) {
   Input in(5);
   for (std::size_t i = 0; i < pixels; ++i) {
     if (in.guide[i].w == 0.0f) in.signal[i] = glm::vec4(1e6f);
@@ -275,8 +276,8 @@ TEST_P(Atrous, NeverReadsTheBackgroundNorFiltersIt) {
   }
 }
 
-/// Where `flag` is set, surfaces of the first roughness are left alone, of the second filtered
-/// once, of the third in every iteration.
+/// With `flag`, surfaces of the first roughness are not filtered, of the second in one iteration,
+/// of the third in all.
 void expect_levels(std::uint32_t flag, const std::array<float, 3>& roughness) {
   Input in(9);
   const auto third = [](std::size_t i) { return std::min<std::size_t>(i % width / 12, 2); };
@@ -290,9 +291,9 @@ void expect_levels(std::uint32_t flag, const std::array<float, 3>& roughness) {
   const render::FloatImage one = once.run(), four = often.run();
   for (std::size_t i = 0; i < pixels; ++i) {
     if (third(i) == 0) {
-      EXPECT_EQ(four.rgba[4 * i], in.signal[i].x) << "a mirror is not blurred";
+      EXPECT_EQ(four.rgba[4 * i], in.signal[i].x) << "a perfect mirror must not be blurred";
     } else if (third(i) == 1) {
-      EXPECT_EQ(four.rgba[4 * i], one.rgba[4 * i]) << "once";
+      EXPECT_EQ(four.rgba[4 * i], one.rgba[4 * i]) << "one iteration";
       EXPECT_NE(four.rgba[4 * i], in.signal[i].x);
     } else {
       EXPECT_NE(four.rgba[4 * i], one.rgba[4 * i]);
@@ -300,16 +301,16 @@ void expect_levels(std::uint32_t flag, const std::array<float, 3>& roughness) {
   }
 }
 
-TEST(AtrousLevels, FollowTheRoughnessWhereHitsBringNoNoise) {
+TEST(AtrousLevels, FollowRoughnessForNoiseFreeHits) {
   expect_levels(shared::atrous_levels_by_roughness, {0.0f, 0.04f, 0.6f});
 }
 
-// Lobes less than a pixel wide, one to two pixels, and more than all iterations reach.
-TEST(AtrousLevels, EndWhereTheLobeOfASmoothSurfaceEnds) {
+// Lobes of less than a pixel, of one to two pixels, and wider than the filter's footprint.
+TEST(AtrousLevels, AreLimitedBySpecularLobeWidth) {
   expect_levels(shared::atrous_lobe_limit, {0.01f, 0.17f, 0.9f});
 }
 
-TEST(AtrousHalves, OfThePaperUpdateTheVarianceInTheSecondAlone) {
+TEST(SeparableAtrous, UpdatesVarianceInSecondPassOnly) {
   protocol::Settings settings;
   settings.specular_blur.variance_update = protocol::VarianceUpdate::vertical_only;
   const auto flags = [&](bool first) {

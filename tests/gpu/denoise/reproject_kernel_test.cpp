@@ -15,21 +15,23 @@ scene::Camera camera(bool orthographic) {
   return made;
 }
 
-/// Reprojection twice over, by the shader and by its twin.
-class Twins {
+/// Reprojection by the shader and by its host kernel.
+class KernelComparison {
  public:
-  explicit Twins(VkExtent2D extent, bool orthographic = false)
+  explicit KernelComparison(VkExtent2D extent, bool orthographic = false)
       : rig_(SceneBuilder().build(), camera(orthographic), {.extent = extent}) {
     RandomFrame random(rig_);
     const render::GBuffer gbuffer = random.gbuffer();
-    shader_ = render::reproject(rig_.plan(), with_kernels(rig_, false), gbuffer);
-    host_ = render::reproject(rig_.plan(), with_kernels(rig_, true), gbuffer);
+    shader_ = render::reproject(rig_.plan(), with_host_kernels(rig_, false), gbuffer);
+    host_ = render::reproject(rig_.plan(), with_host_kernels(rig_, true), gbuffer);
   }
 
   FrameRig& rig() { return rig_; }
-  Compared guide() { return compare(rig_.read(shader_.surface), rig_.read(host_.surface)); }
-  Compared map() { return compare(rig_.read(shader_.reprojection), rig_.read(host_.reprojection)); }
-  /// Pixels that were found by their bilinear neighbours, by another neighbour, and not at all.
+  ErrorStatistics guide() { return compare(rig_.read(shader_.surface), rig_.read(host_.surface)); }
+  ErrorStatistics map() {
+    return compare(rig_.read(shader_.reprojection), rig_.read(host_.reprojection));
+  }
+  /// Counts of pixels with bilinear history, with history at a single neighbor, and disoccluded.
   glm::ivec3 outcomes() {
     glm::ivec3 count(0);
     const render::FloatImage map = rig_.read(host_.reprojection);
@@ -45,47 +47,47 @@ class Twins {
   render::Guide shader_, host_;
 };
 
-class ReprojectHost : public testing::Test {
+class ReprojectKernel : public testing::Test {
  protected:
   void SetUp() override {
-    if (!has_host_kernels()) GTEST_SKIP() << "host kernels are for devices that are processors";
+    if (!has_host_kernels()) GTEST_SKIP() << "host kernels run on CPU devices only";
   }
 };
 
-void expect_same(Twins& twins, const std::string& which) {
-  const Compared guide = twins.guide(), map = twins.map();
-  EXPECT_LT(guide.worst, 1e-5) << which;
+void expect_same(KernelComparison& comparison, const std::string& which) {
+  const ErrorStatistics guide = comparison.guide(), map = comparison.map();
+  EXPECT_LT(guide.max, 1e-5) << which;
   EXPECT_LT(map.mean, 1e-3) << which;
-  EXPECT_LT(map.apart, 1e-3) << "but for a test that rounding decides: " << which;
+  EXPECT_LT(map.outliers, 1e-3) << "more differences than rounding explains: " << which;
 }
 
-TEST_F(ReprojectHost, DoesWhatTheShaderDoes) {
+TEST_F(ReprojectKernel, MatchesShader) {
   for (const bool orthographic : {false, true}) {
-    Twins twins({177, 95}, orthographic);
-    twins.rig().run();
-    expect_same(twins, "nothing before");
-    twins.rig().set_view(camera(orthographic), 1);
-    twins.rig().run();
-    expect_same(twins, orthographic ? "orthographic" : "perspective");
-    EXPECT_GT(twins.outcomes().x, 2000);
-    EXPECT_GT(twins.outcomes().y, 20);
-    EXPECT_GT(twins.outcomes().z, 20);
+    KernelComparison comparison({177, 95}, orthographic);
+    comparison.rig().run();
+    expect_same(comparison, "no history");
+    comparison.rig().set_view(camera(orthographic), 1);
+    comparison.rig().run();
+    expect_same(comparison, orthographic ? "orthographic" : "perspective");
+    EXPECT_GT(comparison.outcomes().x, 2000);
+    EXPECT_GT(comparison.outcomes().y, 20);
+    EXPECT_GT(comparison.outcomes().z, 20);
   }
 }
 
-TEST_F(ReprojectHost, WorksAtEverySize) {
+TEST_F(ReprojectKernel, MatchesShaderAtAnySize) {
   for (const VkExtent2D extent : {VkExtent2D{1, 1}, {3, 5}, {16, 2}, {17, 31}, {130, 1}}) {
-    Twins twins(extent);
-    twins.rig().set_view(camera(false), 1);
-    twins.rig().run();
-    expect_same(twins, std::to_string(extent.width) + " wide");
+    KernelComparison comparison(extent);
+    comparison.rig().set_view(camera(false), 1);
+    comparison.rig().run();
+    expect_same(comparison, std::to_string(extent.width) + " wide");
   }
 }
 
-TEST_F(ReprojectHost, IsFasterThanTheShader) {
-  Twins twins({640, 360});
-  twins.rig().set_view(camera(false), 1);
-  expect_faster(twins.rig(), {"denoise.reproject"}, 2.0);
+TEST_F(ReprojectKernel, IsFasterThanShader) {
+  KernelComparison comparison({640, 360});
+  comparison.rig().set_view(camera(false), 1);
+  expect_faster(comparison.rig(), {"denoise.reproject"}, 2.0);
 }
 
 }  // namespace

@@ -22,11 +22,11 @@ scene::Camera camera(const View& view, float turn) {
   return made;
 }
 
-/// Both signals' accumulation, with the variance of those that are short, twice over: by the
-/// shaders and by their twins, each from its own memory.
-class Twins {
+/// Temporal accumulation of both signals and spatial variance of short histories, by the shaders
+/// and by the host kernels, each with its own history.
+class KernelComparison {
  public:
-  explicit Twins(const View& view)
+  explicit KernelComparison(const View& view)
       : view_(view),
         rig_(SceneBuilder().build(), camera(view, 0.0f),
              {.extent = view.extent, .settings = view.settings}),
@@ -36,7 +36,7 @@ class Twins {
     raw_specular_ = random_.four("specular", glm::vec4(0), glm::vec4(2));
     const render::Guide guide = render::reproject(rig_.plan(), rig_.inputs(), gbuffer);
     for (const bool host : {false, true}) {
-      const auto in = with_kernels(rig_, host);
+      const auto in = with_host_kernels(rig_, host);
       auto& plan = rig_.plan();
       visibility_.push_back(render::accumulate_visibility(plan, in, guide, raw_visibility_, false));
       specular_.push_back(
@@ -48,7 +48,7 @@ class Twins {
 
   FrameRig& rig() { return rig_; }
 
-  /// A frame of another noise, turned a little; a few samples are no numbers, as they may be.
+  /// A frame of different noise from a slightly rotated camera; a few samples are NaN or infinite.
   void next() {
     rig_.set_scene_motion(view_.motion);
     const std::size_t count = std::size_t{view_.extent.width} * view_.extent.height;
@@ -68,9 +68,9 @@ class Twins {
     rig_.run();
   }
 
-  /// All images that a signal leaves behind, the shader's against the host's.
-  std::vector<Compared> compared() {
-    std::vector<Compared> all;
+  /// All output images of both signals, shader against host kernel.
+  std::vector<ErrorStatistics> statistics() {
+    std::vector<ErrorStatistics> all;
     for (const auto& signals : {visibility_, specular_}) {
       for (const auto image : {&render::Integrated::signal, &render::Integrated::moments,
                                &render::Integrated::history}) {
@@ -89,51 +89,51 @@ class Twins {
   std::uint32_t frames_ = 0;
 };
 
-class TemporalHost : public testing::Test {
+class TemporalKernel : public testing::Test {
  protected:
   void SetUp() override {
-    if (!has_host_kernels()) GTEST_SKIP() << "host kernels are for devices that are processors";
+    if (!has_host_kernels()) GTEST_SKIP() << "host kernels run on CPU devices only";
   }
 };
 
-void expect_same(Twins& twins, const std::string& which) {
+void expect_same(KernelComparison& comparison, const std::string& which) {
   int image = 0;
-  for (const Compared& result : twins.compared()) {
+  for (const ErrorStatistics& result : comparison.statistics()) {
     const std::string name = which + ", image " + std::to_string(image++);
     EXPECT_LT(result.mean, 1e-3) << name;
-    EXPECT_LT(result.apart, 4e-3) << "but for a test that rounding decides: " << name;
-    EXPECT_GT(result.size, 0.05) << name;
+    EXPECT_LT(result.outliers, 4e-3) << "more differences than rounding explains: " << name;
+    EXPECT_GT(result.magnitude, 0.05) << name;
   }
 }
 
 void expect_same_over_frames(const View& view, const std::string& which) {
-  Twins twins(view);
-  twins.rig().run();
-  expect_same(twins, which + ", nothing before");
+  KernelComparison comparison(view);
+  comparison.rig().run();
+  expect_same(comparison, which + ", no history");
   for (int i = 1; i < 5; ++i) {
-    twins.next();
-    // Rounding decides whether such a history is long enough to tell its variance.
+    comparison.next();
+    // Rounding decides whether this history is long enough for temporal variance.
     if (i + 1 == view.settings.specular_temporal.spatial_variance_frames) continue;
-    expect_same(twins, which + ", frame " + std::to_string(i));
+    expect_same(comparison, which + ", frame " + std::to_string(i));
   }
 }
 
-TEST_F(TemporalHost, DoesWhatTheShadersDo) {
-  expect_same_over_frames({}, "as set");
+TEST_F(TemporalKernel, MatchesShaders) {
+  expect_same_over_frames({}, "default settings");
   expect_same_over_frames({.orthographic = true}, "orthographic");
 }
 
-TEST_F(TemporalHost, FollowsEverySetting) {
+TEST_F(TemporalKernel, MatchesShadersForEverySetting) {
   View view;
   view.settings.shadow_temporal.mean_variance = view.settings.specular_temporal.mean_variance =
       false;
-  view.settings.specular_temporal.virtual_point = false;
+  view.settings.specular_temporal.virtual_motion = false;
   expect_same_over_frames(view, "own history, variance of samples");
 
   view = {};
   view.settings.shadow_temporal.bicubic = view.settings.specular_temporal.bicubic = false;
-  view.settings.specular_temporal.bent_mirrors = false;
-  expect_same_over_frames(view, "bilinear, mirrors as if they were flat");
+  view.settings.specular_temporal.curved_reflectors = false;
+  expect_same_over_frames(view, "bilinear, planar reflectors");
 
   view = {};
   view.settings.shadow_temporal.rectification = view.settings.specular_temporal.rectification =
@@ -151,36 +151,36 @@ TEST_F(TemporalHost, FollowsEverySetting) {
       protocol::Rectification::gradient;
   expect_same_over_frames(view, "gradients");
 
-  expect_same_over_frames({.motion = {.lights = 0.05f, .environment = 0.2f}}, "lights on the way");
+  expect_same_over_frames({.motion = {.lights = 0.05f, .environment = 0.2f}}, "moving lights");
 }
 
-TEST_F(TemporalHost, LeavesOtherRectificationsToTheShaders) {
+TEST_F(TemporalKernel, UnsupportedRectificationsRunOnDevice) {
   View view;
   view.settings.shadow_temporal.rectification = protocol::Rectification::color_clamp;
   view.settings.specular_temporal.rectification = protocol::Rectification::percentile;
-  Twins twins(view);
-  twins.rig().run();
-  for (const auto& timing : twins.rig().plan().timings()) {
+  KernelComparison comparison(view);
+  comparison.rig().run();
+  for (const auto& timing : comparison.rig().plan().timings()) {
     EXPECT_FALSE(timing.host && timing.name.ends_with(".temporal")) << timing.name;
   }
 }
 
-TEST_F(TemporalHost, WorksAtEverySize) {
+TEST_F(TemporalKernel, MatchesShadersAtAnySize) {
   for (const VkExtent2D extent : {VkExtent2D{1, 1}, {3, 5}, {16, 2}, {17, 31}, {130, 1}}) {
-    Twins twins({.extent = extent});
-    twins.rig().run();
-    twins.next();
-    for (const Compared& result : twins.compared()) {
+    KernelComparison comparison({.extent = extent});
+    comparison.rig().run();
+    comparison.next();
+    for (const ErrorStatistics& result : comparison.statistics()) {
       EXPECT_LT(result.mean, 5e-3) << extent.width << " x " << extent.height;
     }
   }
 }
 
-TEST_F(TemporalHost, IsFasterThanTheShaders) {
-  Twins twins({.extent = {640, 360}});
-  twins.rig().run();
-  twins.next();
-  expect_faster(twins.rig(),
+TEST_F(TemporalKernel, IsFasterThanShaders) {
+  KernelComparison comparison({.extent = {640, 360}});
+  comparison.rig().run();
+  comparison.next();
+  expect_faster(comparison.rig(),
                 {"visibility.temporal", "visibility.rectify", "specular.temporal",
                  "specular.rectify", "visibility.variance", "specular.variance"},
                 2.0);

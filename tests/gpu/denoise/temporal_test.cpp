@@ -16,8 +16,8 @@ namespace {
 constexpr std::uint32_t width = 48, height = 32, pixels = width * height;
 constexpr VkExtent2D extent{width, height};
 
-/// A post in front of a wall, everything `scale` times as large; `joined`: as one thing, whose
-/// parts only depth tells apart.
+/// A post in front of a wall, scaled by `scale`; `joined`: as one instance, whose parts differ in
+/// depth only.
 struct PostAndWall {
   explicit PostAndWall(float scale_, bool joined = false) : scale(scale_) {
     const auto corners = [&](float x0, float x1, float y, float z) {
@@ -43,7 +43,7 @@ struct PostAndWall {
   SceneBuilder builder;
 };
 
-/// Draws two frames from two places and finds the second in the first.
+/// Renders two frames from two camera positions and reprojects the second into the first.
 render::FloatImage reprojected(PostAndWall& scene, float before, float now,
                                protocol::Settings settings = {}) {
   settings.antialiasing.jitter = false;
@@ -56,7 +56,7 @@ render::FloatImage reprojected(PostAndWall& scene, float before, float now,
   return rig.read(guide.reprojection);
 }
 
-TEST(Reprojection, OfARestingViewIsThePixelItself) {
+TEST(Reprojection, StaticViewMapsPixelToItself) {
   PostAndWall scene(1.0f);
   const render::FloatImage found = reprojected(scene, 0.3f, 0.3f);
   for (std::uint32_t i = 0; i < pixels; ++i) {
@@ -67,7 +67,7 @@ TEST(Reprojection, OfARestingViewIsThePixelItself) {
   }
 }
 
-/// No history exactly where the post hid the wall, or where nothing was drawn.
+/// Expects disocclusion exactly where the post hid the wall or the texel was outside the frame.
 void expect_exact_history(bool joined) {
   PostAndWall scene(1.0f, joined);
   const float before = 0.0f, now = 1.2f;
@@ -78,15 +78,15 @@ void expect_exact_history(bool joined) {
     for (std::uint32_t x = 0; x < width; ++x) {
       const double slope = (x + 0.5 - 0.5 * width) / focal;
       const bool post = std::abs(now + 4.0 * slope) < 0.4;
-      const double place = post ? now + 4.0 * slope : now + 8.0 * slope;  // on post or wall
+      const double position = post ? now + 4.0 * slope : now + 8.0 * slope;  // on post or wall
       const double depth = post ? 4.0 : 8.0;
-      const double column = (place - before) / depth * focal + 0.5 * width;
-      // Seen from before, the post covers the wall where the way to it passes its plane.
-      const double at_post = before + (place - before) * 0.5;
+      const double column = (position - before) / depth * focal + 0.5 * width;
+      // From the previous camera the post hides the wall where the view ray crosses the post.
+      const double at_post = before + (position - before) * 0.5;
       const double from_edge = std::abs(std::abs(at_post) - 0.4) / 4.0 * focal;
       const bool covered = !post && std::abs(at_post) < 0.4;
       const double from_border = std::min(std::abs(column), std::abs(column - width));
-      if ((!post && from_edge < 1.6) || from_border < 1.6) continue;  // one pixel is searched about
+      if ((!post && from_edge < 1.6) || from_border < 1.6) continue;  // 3x3 search
       const bool outside = column < 0.0 || column > width;
       const bool lost = found.rgba[4 * (y * width + x) + 3] == 1.0f;
       EXPECT_EQ(lost, covered || outside) << x << " " << y;
@@ -96,26 +96,26 @@ void expect_exact_history(bool joined) {
       }
     }
   }
-  EXPECT_GT(hidden, 20) << "the test must see some";
+  EXPECT_GT(hidden, 20) << "too few disoccluded pixels for a test";
 }
 
-/// A public denoiser rebuilds the old position with the new matrix and gets this set wrong.
-TEST(Reprojection, FindsNoHistoryExactlyWhereThePostHidTheWallOrThePictureEnded) {
+/// A published denoiser reconstructs the previous position with the current matrix and fails this.
+TEST(Reprojection, DisocclusionMatchesAnalyticVisibility) {
   for (const bool joined : {false, true}) {
-    SCOPED_TRACE(joined ? "one thing" : "two things");
+    SCOPED_TRACE(joined ? "one instance" : "two instances");
     expect_exact_history(joined);
   }
 }
 
-/// Whether a pixel's middle shows the post; none where it is too close to its edge to tell.
+/// Whether a pixel's center shows the post; nullopt where it is too close to the edge to decide.
 std::optional<bool> shows_post(double x, double eye) {
   const double focal = 0.5 * height / std::tan(glm::radians(22.5));  // pixels
-  const double place = eye + 4.0 * (x - 0.5 * width) / focal;
-  if (std::abs(std::abs(place) - 0.4) / 4.0 * focal < 0.02) return std::nullopt;
-  return std::abs(place) < 0.4;
+  const double position = eye + 4.0 * (x - 0.5 * width) / focal;
+  if (std::abs(std::abs(position) - 0.4) / 4.0 * focal < 0.02) return std::nullopt;
+  return std::abs(position) < 0.4;
 }
 
-/// Of the four pixels about an old position, only those are taken that show the same surface.
+/// Expects that of the four bilinear taps only those on the same surface are used.
 void expect_own_taps(bool joined) {
   PostAndWall scene(1.0f, joined);
   const float before = 0.0f, now = 0.17f;
@@ -130,23 +130,23 @@ void expect_own_taps(bool joined) {
     const std::optional<bool> sides[2] = {shows_post(left + 0.5, before),
                                           shows_post(left + 1.5, before)};
     for (unsigned tap = 0; tap < 4; ++tap) {
-      const std::optional<bool> shown = sides[tap & 1];
-      if (!(mask >> tap & 1) || !shown) continue;
-      EXPECT_EQ(*shown, *own) << i % width << ", tap " << tap;
+      const std::optional<bool> tap_shows_post = sides[tap & 1];
+      if (!(mask >> tap & 1) || !tap_shows_post) continue;
+      EXPECT_EQ(*tap_shows_post, *own) << i % width << ", tap " << tap;
     }
     shared += sides[0] && sides[1] && *sides[0] != *sides[1];
   }
-  EXPECT_GT(shared, 20) << "the test must see some at the edges";
+  EXPECT_GT(shared, 20) << "too few edge pixels for a test";
 }
 
-TEST(Reprojection, TakesNoTapOfAnotherSurface) {
+TEST(Reprojection, RejectsTapsOfOtherSurfaces) {
   for (const bool joined : {false, true}) {
-    SCOPED_TRACE(joined ? "one thing" : "two things");
+    SCOPED_TRACE(joined ? "one instance" : "two instances");
     expect_own_taps(joined);
   }
 }
 
-TEST(Reprojection, DoesNotDependOnTheScaleOfTheScene) {
+TEST(Reprojection, IsScaleInvariant) {
   for (const bool joined : {false, true}) {
     PostAndWall one(1.0f, joined), small(0.01f, joined), large(100.0f, joined);
     const render::FloatImage expected = reprojected(one, 0.0f, 0.25f);
@@ -156,13 +156,13 @@ TEST(Reprojection, DoesNotDependOnTheScaleOfTheScene) {
       for (std::uint32_t i = 0; i < pixels; ++i) {
         different += found.rgba[4 * i + 3] != expected.rgba[4 * i + 3];
       }
-      EXPECT_LE(different, 2) << scene->scale << (joined ? ", one thing" : ", two things");
+      EXPECT_LE(different, 2) << scene->scale << (joined ? ", one instance" : ", two instances");
     }
   }
 }
 
-/// A wall that fills the picture, accumulated over frames that the test makes up.
-class Gathering : public testing::Test {
+/// A wall that fills the frame; the test supplies the signal of every frame.
+class TemporalAccumulation : public testing::Test {
  protected:
   void start(const protocol::Settings& settings, bool specular = false) {
     protocol::Settings plain = settings;
@@ -178,7 +178,7 @@ class Gathering : public testing::Test {
             ? render::accumulate_specular(rig_->plan(), rig_->inputs(), gbuffer, guide, raw_, false)
             : render::accumulate_visibility(rig_->plan(), rig_->inputs(), guide, raw_, false);
   }
-  /// One frame that shows `values`; the view rests.
+  /// One frame of a static view with signal `values`.
   void frame(const std::vector<glm::vec4>& values) {
     if (drawn_) rig_->set_view(scene_->from(5.0f));
     drawn_ = true;
@@ -192,8 +192,8 @@ class Gathering : public testing::Test {
   static protocol::Settings plain_settings() {
     protocol::Settings settings;
     for_both(settings, [](auto& s) {
-      s.seconds = 0.0f;
-      s.frames = 32;
+      s.history_seconds = 0.0f;
+      s.history_frames = 32;
       s.rectification = protocol::Rectification::off;
     });
     return settings;
@@ -211,7 +211,7 @@ class Gathering : public testing::Test {
   bool drawn_ = false;
 };
 
-TEST_F(Gathering, IsTheMeanWhileTheHistoryGrowsAndCountsItsFrames) {
+TEST_F(TemporalAccumulation, IsMeanWhileHistoryGrows) {
   start(plain_settings());
   double sum = 0.0;
   for (int i = 1; i <= 20; ++i) {
@@ -224,23 +224,23 @@ TEST_F(Gathering, IsTheMeanWhileTheHistoryGrowsAndCountsItsFrames) {
   }
 }
 
-TEST_F(Gathering, CountsSecondsNotFrames) {
+TEST_F(TemporalAccumulation, HistoryLengthIsInSecondsNotFrames) {
   for (const float rate : {20.0f, 200.0f}) {
     drawn_ = false;
     protocol::Settings settings = plain_settings();
-    settings.shadow_temporal.seconds = 0.5f;
-    settings.shadow_temporal.frames = 1;
+    settings.shadow_temporal.history_seconds = 0.5f;
+    settings.shadow_temporal.history_frames = 1;
     start(settings);
     rig_->set_seconds(1.0f / rate);
     const int half_a_second = static_cast<int>(0.5f * rate);
     for (int i = 0; i < 2 * half_a_second; ++i) frame(glm::vec4(0.0f));
     EXPECT_NEAR(history().x, half_a_second, 0.1);
     for (int i = 0; i < half_a_second; ++i) frame(glm::vec4(1.0f));
-    EXPECT_NEAR(signal().x, 1.0 - std::exp(-1.0), 0.03) << "after the same time at any rate";
+    EXPECT_NEAR(signal().x, 1.0 - std::exp(-1.0), 0.03) << "same elapsed time at any frame rate";
   }
 }
 
-TEST_F(Gathering, ForgetsShadowsSoonerWhileLightsMoveButNotWhatIsHiddenNearby) {
+TEST_F(TemporalAccumulation, MovingLightsShortenShadowHistoryNotAmbient) {
   start(plain_settings());
   for (int i = 0; i < 40; ++i) frame(glm::vec4(1.0f));
   rig_->set_scene_motion({.lights = 0.1f});
@@ -251,7 +251,7 @@ TEST_F(Gathering, ForgetsShadowsSoonerWhileLightsMoveButNotWhatIsHiddenNearby) {
   EXPECT_NEAR(signal().y, std::pow(31.0 / 32.0, 4), 1e-3);
 }
 
-TEST_F(Gathering, ForgetsReflectionsSoonerUnderATurningEnvironment) {
+TEST_F(TemporalAccumulation, RotatingEnvironmentShortensSpecularHistory) {
   start(plain_settings(), true);
   for (int i = 0; i < 40; ++i) frame(glm::vec4(1.0f));
   rig_->set_scene_motion({.environment = glm::radians(10.0f)});
@@ -260,7 +260,7 @@ TEST_F(Gathering, ForgetsReflectionsSoonerUnderATurningEnvironment) {
   EXPECT_NEAR(history().x, render::frames_under_motion(glm::radians(10.0f) / lobe), 1e-2);
 }
 
-TEST(SceneMotion, IsHowFarLightsWentAgainstTheirWidthWeighedByTheirLight) {
+TEST(SceneMotion, LightMotionIsRelativeToAngularSizeAndIntensity) {
   SceneBuilder builder;
   builder.add_quad({{{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}}}, surface(glm::vec3(1.0f)));
   builder.place(0).add_sun({0, -1, 0}, glm::vec3(3.0f), 4.0f).add_sun({0, -1, 0}, glm::vec3(1.0f));
@@ -282,19 +282,19 @@ TEST(SceneMotion, IsHowFarLightsWentAgainstTheirWidthWeighedByTheirLight) {
   };
   motion_at(0.0);
   EXPECT_NEAR(motion_at(1.0), 0.75f * 0.25f, 2e-3f) << "one of four degrees, three lights of four";
-  EXPECT_EQ(motion_at(1.0), 0.0f) << "at rest again";
-  EXPECT_NEAR(motion_at(9.0), 0.75f, 1e-5f) << "never more than all";
+  EXPECT_EQ(motion_at(1.0), 0.0f) << "static again";
+  EXPECT_NEAR(motion_at(9.0), 0.75f, 1e-5f) << "clamped to 1";
   EXPECT_EQ(render::scene_motion(rig.moving(), rig.constants(), nullptr).lights, 0.0f);
 }
 
-TEST(FramesUnderMotion, FallFromEndlessToOne) {
+TEST(FramesUnderMotion, DecreaseFromInfinityToOne) {
   EXPECT_GT(render::frames_under_motion(0.0f), 1e6f);
   EXPECT_NEAR(render::frames_under_motion(0.1f), 3.29f, 0.01f);
   EXPECT_EQ(render::frames_under_motion(1.0f), 1.0f);
   EXPECT_EQ(render::frames_under_motion(5.0f), 1.0f);
 }
 
-TEST_F(Gathering, GrowsWithoutEndWhileThePictureRests) {
+TEST_F(TemporalAccumulation, HistoryLengthIsUnlimitedForStaticView) {
   start(plain_settings());
   for (std::uint32_t i = 0; i < 60; ++i) {
     rig_->set_accumulated(i);
@@ -304,20 +304,20 @@ TEST_F(Gathering, GrowsWithoutEndWhileThePictureRests) {
   EXPECT_NEAR(signal().x, 0.5f, 1e-4f);
 }
 
-TEST_F(Gathering, OfAnHdrStepConvergesAndItsMomentsNeverStick) {
+TEST_F(TemporalAccumulation, HdrStepConvergesWithoutStuckMoments) {
   protocol::Settings settings = plain_settings();
-  settings.specular_temporal.frames = 100;
+  settings.specular_temporal.history_frames = 100;
   settings.specular_temporal.mean_variance = false;
   start(settings, true);
   for (int i = 0; i < 120; ++i) frame(glm::vec4(5000, 5000, 5000, 1));
   EXPECT_NEAR(signal().x, 5000.0f, 1.0f);
-  EXPECT_NEAR(history().w, 5000.0f * 5000.0f, 1e4f) << "beyond what half floats hold";
+  EXPECT_NEAR(history().w, 5000.0f * 5000.0f, 1e4f) << "exceeds half float range";
   for (int i = 0; i < 1200; ++i) frame(glm::vec4(0.01f, 0.01f, 0.01f, 1));
   EXPECT_NEAR(signal().x, 0.01f + 5000.0 * std::pow(0.99, 1200), 0.02f);
   EXPECT_NEAR(history().w, 1e-4f, 1e-4f);
 }
 
-TEST_F(Gathering, SwallowsWhatIsNoNumber) {
+TEST_F(TemporalAccumulation, NaNsAndInfinitiesBecomeBlack) {
   start(plain_settings(), true);
   frame(glm::vec4(1.0f));
   std::vector<glm::vec4> bad(pixels, glm::vec4(1.0f));
@@ -327,15 +327,15 @@ TEST_F(Gathering, SwallowsWhatIsNoNumber) {
   for (int i = 0; i < 3; ++i) frame(glm::vec4(1.0f));
   const render::FloatImage got = rig_->read(integrated_.signal);
   for (const float value : got.rgba) EXPECT_TRUE(std::isfinite(value));
-  EXPECT_NEAR(signal().x, 0.8f, 1e-5f) << "it counts as black, once";
+  EXPECT_NEAR(signal().x, 0.8f, 1e-5f) << "counts as one black sample";
 }
 
-TEST_F(Gathering, BeginsAnewWhereNoHistoryHolds) {
+TEST_F(TemporalAccumulation, RestartsWhereHistoryIsInvalid) {
   start(plain_settings());
   for (int i = 0; i < 5; ++i) frame(glm::vec4(1.0f));
   FrameRig fresh(scene_->builder.build(), scene_->from(5.0f), {.extent = extent});
-  EXPECT_EQ(fresh.constants().counts.w, 1u) << "the first frame says so";
-  EXPECT_EQ(rig_->constants().counts.w, 0u);
+  EXPECT_EQ(fresh.constants().history_invalid, 1u) << "history is invalid in the first frame";
+  EXPECT_EQ(rig_->constants().history_invalid, 0u);
   protocol::Settings off = plain_settings();
   off.shadow_temporal.enabled = false;
   rig_->set_settings(off);
@@ -344,16 +344,17 @@ TEST_F(Gathering, BeginsAnewWhereNoHistoryHolds) {
   EXPECT_EQ(history().x, 1.0f);
 }
 
-class Rectified : public Gathering, public testing::WithParamInterface<protocol::Rectification> {};
+class Rectification : public TemporalAccumulation,
+                      public testing::WithParamInterface<protocol::Rectification> {};
 INSTANTIATE_TEST_SUITE_P(
-    Modes, Rectified,
+    Modes, Rectification,
     testing::Values(protocol::Rectification::color_clamp, protocol::Rectification::color_clip,
                     protocol::Rectification::variance_clamp, protocol::Rectification::variance_clip,
                     protocol::Rectification::fast_history, protocol::Rectification::percentile,
                     protocol::Rectification::gradient),
     [](const auto& instance) { return std::string(protocol::enum_name(instance.param)); });
 
-TEST_P(Rectified, ForgetsALightThatWentOutSoonerThanWithout) {
+TEST_P(Rectification, SwitchedOffLightFadesFaster) {
   for (const bool specular : {false, true}) {
     drawn_ = false;
     protocol::Settings settings = plain_settings();
@@ -366,7 +367,7 @@ TEST_P(Rectified, ForgetsALightThatWentOutSoonerThanWithout) {
   }
 }
 
-TEST_P(Rectified, LeavesAnEvenPictureAlone) {
+TEST_P(Rectification, UniformSignalIsUnchanged) {
   for (const bool specular : {false, true}) {
     drawn_ = false;
     protocol::Settings settings = plain_settings();

@@ -21,7 +21,7 @@ const ShaderBinding& binding(const Reflection& reflection, const std::string& na
   throw std::out_of_range(name);
 }
 
-TEST(Reflection, ListsEveryResourceInOrder) {
+TEST(Reflection, ListsBindingsSortedBySetAndBinding) {
   const Reflection reflection = reflect(test::shaders::resources);
   ASSERT_EQ(reflection.bindings.size(), 6u);
   for (std::size_t i = 1; i < reflection.bindings.size(); ++i) {
@@ -34,7 +34,7 @@ TEST(Reflection, ListsEveryResourceInOrder) {
   EXPECT_EQ(reflection.local_size.depth, 3u);
 }
 
-TEST(Reflection, TellsTypesFormatsAndAccess) {
+TEST(Reflection, ReportsTypesFormatsAndAccess) {
   const Reflection reflection = reflect(test::shaders::resources);
   const ShaderBinding& image = binding(reflection, "half_image");
   EXPECT_EQ(image.type, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
@@ -58,38 +58,39 @@ TEST(Reflection, TellsTypesFormatsAndAccess) {
   EXPECT_EQ(access(7), std::pair(true, true)) << "buffer";
 }
 
-/// Has the next submission find the device lost, while it lives.
-class WantedLoss {
+/// Makes the next submission fail with a lost device during its lifetime.
+class InjectedDeviceLoss {
  public:
-  WantedLoss() : file_(std::filesystem::temp_directory_path() / "heliograph_wanted_loss") {
+  InjectedDeviceLoss()
+      : file_(std::filesystem::temp_directory_path() / "heliograph_injected_loss") {
     std::ofstream(file_).put(' ');
     setenv("HELIOGRAPH_TEST_DEVICE_LOSS", file_.c_str(), 1);
   }
-  ~WantedLoss() {
+  ~InjectedDeviceLoss() {
     unsetenv("HELIOGRAPH_TEST_DEVICE_LOSS");
     std::filesystem::remove(file_);
   }
-  WantedLoss(const WantedLoss&) = delete;
-  WantedLoss& operator=(const WantedLoss&) = delete;
+  InjectedDeviceLoss(const InjectedDeviceLoss&) = delete;
+  InjectedDeviceLoss& operator=(const InjectedDeviceLoss&) = delete;
 
  private:
   std::filesystem::path file_;
 };
 
-// The validation layers name what is left when a device goes.
-TEST(DeviceLoss, LeavesNothingOfWhatWasBeingMade) {
+// The validation layers report objects that outlive their device.
+TEST(DeviceLoss, LeaksNoVulkanObjects) {
   const char* const wanted = std::getenv("HELIOGRAPH_TEST_DEVICE");
   const Instance instance(true);
   {
     const Device device(instance, {.wanted = wanted ? wanted : "", .cache_folder = {}});
-    const WantedLoss loss;
+    const InjectedDeviceLoss loss;
     EXPECT_THROW(Image(device, {.name = "image", .extent = {8, 8}, .format = VK_FORMAT_R8_UNORM}),
                  DeviceLost);
   }
   EXPECT_EQ(instance.validation_messages(), 0u);
 }
 
-TEST(Program, NamesASetThatNobodyProvides) {
+TEST(Program, ErrorNamesMissingDescriptorSet) {
   try {
     const ComputeProgram program(test::device(), test::shaders::resources);
     FAIL() << "set 0 is missing";
@@ -99,7 +100,7 @@ TEST(Program, NamesASetThatNobodyProvides) {
   }
 }
 
-TEST(DeviceSurvey, ChoosesExactlyOneAndSaysWhyNotTheOthers) {
+TEST(DeviceSurvey, ChoosesOneDeviceAndGivesReasonForOthers) {
   const Instance instance(false);
   const auto reports = survey_devices(instance, "");
   ASSERT_FALSE(reports.empty());
@@ -113,7 +114,7 @@ TEST(DeviceSurvey, ChoosesExactlyOneAndSaysWhyNotTheOthers) {
   }
 }
 
-TEST(DeviceSurvey, RefusesANameThatNothingHas) {
+TEST(DeviceSurvey, UnknownDeviceNameIsRejected) {
   const Instance instance(false);
   const auto reports = survey_devices(instance, "no such device");
   for (const DeviceReport& report : reports) EXPECT_FALSE(report.chosen);
@@ -126,7 +127,7 @@ TEST(DeviceSurvey, RefusesANameThatNothingHas) {
   }
 }
 
-TEST(DeviceSurvey, FindsNamesWhateverTheirCase) {
+TEST(DeviceSurvey, MatchesNamesCaseInsensitively) {
   const Instance instance(false);
   std::string name = survey_devices(instance, "")[0].name.substr(0, 4);
   for (char& c : name) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
@@ -134,7 +135,7 @@ TEST(DeviceSurvey, FindsNamesWhateverTheirCase) {
   EXPECT_TRUE(std::any_of(reports.begin(), reports.end(), [](const auto& r) { return r.chosen; }));
 }
 
-TEST(Device, KeepsItsPipelineCacheAndLeavesNothingBehind) {
+TEST(Device, WritesPipelineCacheAndLeaksNoObjects) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::path(testing::TempDir()) / "heliograph_pipeline_cache";
   fs::remove_all(folder);
@@ -148,14 +149,14 @@ TEST(Device, KeepsItsPipelineCacheAndLeavesNothingBehind) {
     plan.compile();
     plan.execute();
   }
-  // Undestroyed objects are reported when their device goes.
+  // The validation layers report objects that outlive their device.
   EXPECT_EQ(instance.validation_messages(), 0u);
   ASSERT_TRUE(fs::exists(folder));
   EXPECT_FALSE(fs::is_empty(folder));
   fs::remove_all(folder);
 }
 
-TEST(Device, CountsWhatTheValidationLayersSay) {
+TEST(Device, CountsValidationMessages) {
   Instance instance(true);
   const Device device(instance, {});
   VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
@@ -163,13 +164,13 @@ TEST(Device, CountsWhatTheValidationLayersSay) {
   VkBuffer buffer = VK_NULL_HANDLE;
   vkCreateBuffer(device.handle(), &info, nullptr, &buffer);
   vkDestroyBuffer(device.handle(), buffer, nullptr);
-  EXPECT_GE(instance.validation_messages(), 1u) << "silence would prove nothing";
+  EXPECT_GE(instance.validation_messages(), 1u) << "validation layers are not active";
 }
 
-TEST(Image, ComesBackAsItWasUploaded) {
+TEST(Image, UploadDownloadRoundTrip) {
   for (const bool mapped : {false, true}) {
     if (mapped && !test::device().is_cpu()) continue;
-    ImageDesc desc{.name = "picture", .extent = {7, 5}, .format = VK_FORMAT_R32_SFLOAT};
+    ImageDesc desc{.name = "image", .extent = {7, 5}, .format = VK_FORMAT_R32_SFLOAT};
     desc.mapped = mapped;
     const Image image(test::device(), desc);
     std::vector<float> values(35);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr VkExtent2D extent{64, 36};
 
-class ViewConstants : public testing::Test {
+class FrameConstants : public testing::Test {
  protected:
   shared::FrameConstants make(const scene::Camera& camera, std::uint32_t sample,
                               const shared::FrameConstants* before = nullptr) {
@@ -22,7 +22,7 @@ class ViewConstants : public testing::Test {
   protocol::Settings settings_;
 };
 
-TEST_F(ViewConstants, JitterMovesThePictureByTheSamplesOffset) {
+TEST_F(FrameConstants, JitterShiftsProjectionBySampleOffset) {
   const auto still = make(camera_, 0), moved = make(camera_, 5);
   const glm::vec2 offset = render::sample_jitter(5);
   const glm::vec4 world(0.3f, 0.2f, -1.0f, 1.0f);
@@ -37,7 +37,7 @@ TEST_F(ViewConstants, JitterMovesThePictureByTheSamplesOffset) {
   EXPECT_EQ(make(camera_, 5).view_projection, still.view_projection);
 }
 
-TEST_F(ViewConstants, PreviousMatricesAreTheFramesBefore) {
+TEST_F(FrameConstants, PreviousMatricesAreThoseOfPreviousFrame) {
   const auto first = make(camera_, 0);
   EXPECT_EQ(first.previous_unjittered, first.unjittered);
   EXPECT_EQ(first.previous_view, first.view);
@@ -47,7 +47,7 @@ TEST_F(ViewConstants, PreviousMatricesAreTheFramesBefore) {
   EXPECT_NE(second.view, first.view);
 }
 
-TEST_F(ViewConstants, CarriesTheSettings) {
+TEST_F(FrameConstants, ContainSettings) {
   settings_.environment.intensity = 2.5f;
   settings_.environment.rotation = 90.0f;
   settings_.ambient.radius = 3.0f;
@@ -55,17 +55,19 @@ TEST_F(ViewConstants, CarriesTheSettings) {
   settings_.sampling.seed = 42;
   settings_.shadows.enabled = false;
   const auto constants = make(camera_, 9);
-  EXPECT_FLOAT_EQ(constants.environment.x, 2.5f);
-  EXPECT_NEAR(constants.environment.y, 0.0f, 1e-6f);
-  EXPECT_FLOAT_EQ(constants.environment.z, 1.0f);
-  EXPECT_FLOAT_EQ(constants.environment.w, 3.0f);
-  EXPECT_FLOAT_EQ(constants.exposure.x, 8.0f);
-  EXPECT_LT(constants.exposure.z, 0.0f) << "every light's own diameter";
-  EXPECT_EQ(constants.extent, glm::uvec4(64, 36, 9, 42));
-  EXPECT_EQ(constants.counts.y & shared::frame_shadows, 0u);
-  EXPECT_NE(constants.counts.y & shared::frame_direct, 0u);
+  EXPECT_FLOAT_EQ(constants.environment_intensity, 2.5f);
+  EXPECT_NEAR(constants.environment_cos, 0.0f, 1e-6f);
+  EXPECT_FLOAT_EQ(constants.environment_sin, 1.0f);
+  EXPECT_FLOAT_EQ(constants.ambient_radius, 3.0f);
+  EXPECT_FLOAT_EQ(constants.exposure_factor, 8.0f);
+  EXPECT_LT(constants.directional_light_radius, 0.0f) << "every light's own diameter";
+  EXPECT_EQ(constants.extent, glm::uvec2(64, 36));
+  EXPECT_EQ(constants.sample_index, 9u);
+  EXPECT_EQ(constants.seed, 42u);
+  EXPECT_EQ(constants.flags & shared::frame_shadows, 0u);
+  EXPECT_NE(constants.flags & shared::frame_direct, 0u);
   settings_.shadows.angular_diameter_override = 10.0f;
-  EXPECT_NEAR(make(camera_, 9).exposure.z, std::tan(glm::radians(5.0f)), 1e-6f);
+  EXPECT_NEAR(make(camera_, 9).directional_light_radius, std::tan(glm::radians(5.0f)), 1e-6f);
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ class FramePlanTest : public testing::Test {
     for (std::size_t i = 1; i < bytes.size() / 4; ++i) EXPECT_EQ(texels[i], texels[0]) << i;
     return texels[0];
   }
-  /// What compile() says.
+  /// The error of compile().
   std::string complaint() {
     try {
       plan_.compile();
@@ -75,7 +75,7 @@ TEST_F(FramePlanTest, EvaluatesConstantsEveryFrame) {
   EXPECT_EQ(value(b), 4.0f);
 }
 
-TEST_F(FramePlanTest, PutsBarriersWhereReadsFollowWrites) {
+TEST_F(FramePlanTest, BarrierBetweenWriteAndRead) {
   const auto a = image("a"), b = image("b"), c = image("c");
   add("writes b", a, b);
   add("reads b", b, c);
@@ -83,7 +83,7 @@ TEST_F(FramePlanTest, PutsBarriersWhereReadsFollowWrites) {
   EXPECT_EQ(plan_.barriers(), (std::vector<std::string>{"reads b"}));
 }
 
-TEST_F(FramePlanTest, PutsBarriersWhereWritesFollowReadsOrWrites) {
+TEST_F(FramePlanTest, BarrierBeforeWriteAfterReadOrWrite) {
   const auto a = image("a"), b = image("b"), c = image("c");
   add("reads a", a, b);
   add("writes a", c, a);
@@ -92,7 +92,7 @@ TEST_F(FramePlanTest, PutsBarriersWhereWritesFollowReadsOrWrites) {
   EXPECT_EQ(plan_.barriers(), (std::vector<std::string>{"writes a", "writes a again"}));
 }
 
-TEST_F(FramePlanTest, LeavesIndependentPassesAlone) {
+TEST_F(FramePlanTest, NoBarrierBetweenIndependentPasses) {
   const auto a = image("a"), b = image("b"), c = image("c"), d = image("d");
   add("a to b", a, b);
   add("a to c", a, c);
@@ -101,7 +101,7 @@ TEST_F(FramePlanTest, LeavesIndependentPassesAlone) {
   EXPECT_EQ(plan_.barriers(), (std::vector<std::string>{"b to d"}));
 }
 
-TEST_F(FramePlanTest, NeedsNoBarrierAfterAHostPass) {
+TEST_F(FramePlanTest, NoBarrierAfterHostPass) {
   const auto a = image("a"), b = image("b"), c = image("c");
   add("device", a, b);
   plan_.host("host", [] {});
@@ -110,7 +110,7 @@ TEST_F(FramePlanTest, NeedsNoBarrierAfterAHostPass) {
   EXPECT_TRUE(plan_.barriers().empty());
 }
 
-TEST_F(FramePlanTest, SwapsHistoriesAndResetsThem) {
+TEST_F(FramePlanTest, HistoriesSwapEveryFrameAndReset) {
   const History history = plan_.history("count", format);
   add("count", history.previous, history.current);
   plan_.compile();
@@ -123,7 +123,7 @@ TEST_F(FramePlanTest, SwapsHistoriesAndResetsThem) {
   EXPECT_EQ(value(history.current), 1.0f);
 }
 
-TEST_F(FramePlanTest, BringsTheAskedImageBackWithEveryFrame) {
+TEST_F(FramePlanTest, ReadsBackRequestedImageEveryFrame) {
   const History history = plan_.history("count", format);
   add("count", history.previous, history.current);
   plan_.read_back(history.current);
@@ -138,7 +138,7 @@ TEST_F(FramePlanTest, BringsTheAskedImageBackWithEveryFrame) {
   }
 }
 
-TEST_F(FramePlanTest, SkipsPassesWhoseConditionFails) {
+TEST_F(FramePlanTest, SkipsPassesWhoseConditionIsFalse) {
   const auto a = image("a"), b = image("b");
   bool wanted = false;
   add("maybe", a, b, 7.0f).when([&] { return wanted; });
@@ -198,53 +198,53 @@ TEST_F(FramePlanTest, ListsEveryWrittenImageOnceWithItsDescription) {
   EXPECT_NE(plan_.views()[1].description.find("to history"), std::string::npos);
 }
 
-TEST_F(FramePlanTest, NamesAWrongFormat) {
+TEST_F(FramePlanTest, ErrorNamesWrongFormat) {
   const auto a = plan_.image("vectors", VK_FORMAT_R32G32B32A32_SFLOAT);
   add("brighten", a, image("b"));
   expect_complaint({"\"brighten\"", "binding 0", "\"given\"", "\"vectors\""});
 }
 
-TEST_F(FramePlanTest, NamesAMissingBinding) {
+TEST_F(FramePlanTest, ErrorNamesMissingBinding) {
   plan_.pass("brighten", program_).read(image("a")).constants(1.0f).dispatch({1, 1});
   expect_complaint({"\"brighten\"", "binding 1", "\"sum\""});
 }
 
-TEST_F(FramePlanTest, NamesAResourceTooMany) {
+TEST_F(FramePlanTest, ErrorNamesSurplusResource) {
   const auto a = image("a"), b = image("b"), c = image("spare");
   plan_.pass("brighten", program_).read(a).write(b).read(c).constants(1.0f).dispatch({1, 1});
   expect_complaint({"\"brighten\"", "\"spare\""});
 }
 
-TEST_F(FramePlanTest, NamesAnImageGivenAsReadThatTheShaderWrites) {
+TEST_F(FramePlanTest, ErrorNamesReadImageThatShaderWrites) {
   const auto a = image("a"), b = image("b");
   plan_.pass("brighten", program_).read(a).read(b).constants(1.0f).dispatch({1, 1});
   expect_complaint({"\"brighten\"", "binding 1", "\"sum\"", "\"b\"", "only read"});
 }
 
-TEST_F(FramePlanTest, NamesAReadonlyImageDeclaredAsWritten) {
+TEST_F(FramePlanTest, ErrorNamesWrittenImageThatIsReadonly) {
   const auto a = image("a"), b = image("b");
   plan_.pass("brighten", program_).write(a).write(b).constants(1.0f).dispatch({1, 1});
   expect_complaint({"\"brighten\"", "binding 0", "\"given\"", "readonly"});
 }
 
-TEST_F(FramePlanTest, NamesABufferWhereAnImageBelongs) {
+TEST_F(FramePlanTest, ErrorNamesBufferBoundAsImage) {
   const auto buffer = plan_.buffer("bytes", 64, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, Memory::device);
   plan_.pass("brighten", program_).read(buffer).write(image("b")).constants(1.0f).dispatch({1, 1});
   expect_complaint({"\"brighten\"", "binding 0", "buffer \"bytes\""});
 }
 
-TEST_F(FramePlanTest, NamesConstantsOfTheWrongSize) {
+TEST_F(FramePlanTest, ErrorNamesWrongPushConstantSize) {
   const auto a = image("a"), b = image("b");
   plan_.pass("brighten", program_).read(a).write(b).constants(glm::vec2(1.0f)).dispatch({1, 1});
   expect_complaint({"\"brighten\"", "4 bytes of constants", "given 8"});
 }
 
-TEST_F(FramePlanTest, NamesAPassThatIsNeverDispatched) {
+TEST_F(FramePlanTest, ErrorNamesPassWithoutDispatch) {
   plan_.pass("brighten", program_).read(image("a")).write(image("b")).constants(1.0f);
   expect_complaint({"\"brighten\"", "never dispatched"});
 }
 
-TEST_F(FramePlanTest, RefusesToRunUncompiledAndToGrowCompiled) {
+TEST_F(FramePlanTest, RejectsExecuteBeforeAndDeclarationsAfterCompile) {
   EXPECT_THROW(plan_.execute(), GpuError);
   plan_.compile();
   EXPECT_THROW(plan_.image("late", format), GpuError);

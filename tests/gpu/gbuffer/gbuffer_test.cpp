@@ -24,7 +24,7 @@ glm::vec3 decode(const glm::vec2& p) {
 
 enum class Source { triangles, rays };
 
-/// The G-buffer of a scene alone.
+/// The G-buffer pass of a scene.
 struct Raster {
   Raster(Source source, SceneBuilder& builder, const scene::Camera& camera)
       : rig(builder.build(), camera, {.extent = extent}),
@@ -44,7 +44,7 @@ struct Raster {
     const glm::vec4 encoded = texel(normals, x, y);
     return decode({encoded.z, encoded.w});
   }
-  /// Where a pixel's middle lies in the world, from its stored depth.
+  /// World position of a pixel's center, from its stored depth.
   glm::vec3 world(std::uint32_t x, std::uint32_t y) const {
     const auto& constants = rig.constants();
     const glm::vec2 ndc =
@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(FoundBy, GBuffer, testing::Values(Source::triangles, So
                            return instance.param == Source::rays ? "Rays" : "Triangles";
                          });
 
-TEST_P(GBuffer, HoldsTheMaterialOfAFacingQuad) {
+TEST_P(GBuffer, StoresMaterialOfFacingQuad) {
   SceneBuilder builder;
   shared::Material material = surface({0.25f, 0.5f, 1.0f}, 0.4f, 0.8f);
   material.emissive = {2.0f, 0.5f, 0.0f};
@@ -99,7 +99,7 @@ TEST_P(GBuffer, HoldsTheMaterialOfAFacingQuad) {
   EXPECT_EQ(texel(raster.rig.read(raster.gbuffer.instance), 0, 0).x, 0.0f);
 }
 
-TEST_P(GBuffer, DepthAndItsSlopeFollowATiltedPlane) {
+TEST_P(GBuffer, DepthAndDepthSlopeOfTiltedPlane) {
   SceneBuilder builder;
   const glm::mat4 tilt = glm::rotate(glm::mat4(1.0f), 0.8f, glm::normalize(glm::vec3(1, 0.4f, 0)));
   builder.place(builder.add_quad(facing_quad, surface(glm::vec3(1.0f))),
@@ -125,7 +125,7 @@ TEST_P(GBuffer, DepthAndItsSlopeFollowATiltedPlane) {
       ASSERT_NEAR(texel(raster.motion, x, y).w, view_z, 2e-5 * view_z) << x << " " << y;
       const double across = 0.5 * (expected(x + 1.0, y) - expected(x - 1.0, y));
       const double down = 0.5 * (expected(x, y + 1.0) - expected(x, y - 1.0));
-      // Derivatives of a quad of pixels are one-sided.
+      // Derivatives within a 2x2 quad are one-sided.
       EXPECT_NEAR(texel(slope, x, y).x, across, 0.1 * std::abs(across) + 1e-3) << x << " " << y;
       EXPECT_NEAR(texel(slope, x, y).y, down, 0.1 * std::abs(down) + 1e-3) << x << " " << y;
       EXPECT_LE(glm::distance(glm::dvec3(raster.geometric(x, y)), normal), 2e-3);
@@ -134,16 +134,16 @@ TEST_P(GBuffer, DepthAndItsSlopeFollowATiltedPlane) {
   EXPECT_GT(raster.covered_pixels(), 2000);
 }
 
-TEST_P(GBuffer, NothingMovesWhileTheCameraRests) {
+TEST_P(GBuffer, MotionVectorsAreZeroForStaticCamera) {
   SceneBuilder builder;
   builder.place(builder.add_sphere(1.0f, surface(glm::vec3(1.0f))));
   const scene::Camera camera = look({1, 2, 4}, {0, 0, 0});
   Raster raster(GetParam(), builder, camera);
   for (std::uint32_t sample = 0; sample < 3; ++sample) {
-    raster.rig.set_view(camera, sample);  // the jitter differs, the motion must not show it
+    raster.rig.set_view(camera, sample);  // motion vectors must not contain the jitter
     raster.run();
     for (std::size_t i = 0; i < raster.motion.rgba.size(); i += 4) {
-      // Two equal sums may be contracted differently: less than 0.001 pixels of any picture.
+      // Compilers may contract equal sums differently: less than 0.001 pixels at any resolution.
       ASSERT_NEAR(raster.motion.rgba[i], 0.0f, 1e-7f);
       ASSERT_NEAR(raster.motion.rgba[i + 1], 0.0f, 1e-7f);
       ASSERT_NEAR(raster.motion.rgba[i + 2], 0.0f, 1e-7f);
@@ -153,7 +153,7 @@ TEST_P(GBuffer, NothingMovesWhileTheCameraRests) {
 
 class GBufferMotion : public testing::TestWithParam<std::tuple<Source, scene::Camera>> {};
 
-TEST_P(GBufferMotion, IsTheDifferenceOfTwoProjections) {
+TEST_P(GBufferMotion, EqualsDifferenceOfTwoProjections) {
   SceneBuilder builder;
   builder.place(builder.add_sphere(1.0f, surface(glm::vec3(1.0f))));
   builder.place(builder.add_quad({{{-9, -1, 9}, {9, -1, 9}, {9, -1, -9}, {-9, -1, -9}}},
@@ -216,16 +216,16 @@ void expect_sphere_normals(Source source, const glm::mat4& world) {
   EXPECT_GT(raster.covered_pixels(), 200);
 }
 
-TEST_P(GBuffer, NormalsOfASqueezedAndTurnedSphere) {
+TEST_P(GBuffer, NormalsOfNonUniformlyScaledSphere) {
   expect_sphere_normals(
       GetParam(), glm::rotate(glm::scale(glm::mat4(1.0f), {1.2f, 0.5f, 0.8f}), 0.6f, {0, 0, 1}));
 }
 
-TEST_P(GBuffer, NormalsOfAMirroredSpherePointOutward) {
+TEST_P(GBuffer, NormalsOfMirroredSpherePointOutward) {
   expect_sphere_normals(GetParam(), glm::scale(glm::mat4(1.0f), {-1.2f, 0.5f, 0.8f}));
 }
 
-TEST_P(GBuffer, BackFacesAreCulledUnlessDoubleSidedAndThenFaceTheViewer) {
+TEST_P(GBuffer, BackFacesAreCulledOrFlippedIfDoubleSided) {
   SceneBuilder culled;
   culled.place(culled.add_quad(facing_quad, surface(glm::vec3(1.0f))));
   Raster behind(GetParam(), culled, look({0, 0, -5}, {0, 0, 0}));
@@ -243,7 +243,7 @@ TEST_P(GBuffer, BackFacesAreCulledUnlessDoubleSidedAndThenFaceTheViewer) {
   EXPECT_LE(glm::distance(raster.geometric(32, 24), {0, 0, -1}), 1e-6f);
 }
 
-/// The shading normal in the middle of a quad whose normal map says `tilt` everywhere.
+/// The shading normal at the center of a quad whose normal map is `tilt` everywhere.
 glm::vec3 mapped(Source source, const glm::vec3& tilt, const glm::mat4& world,
                  const glm::vec3& eye) {
   SceneBuilder builder;
@@ -260,7 +260,7 @@ glm::vec3 mapped(Source source, const glm::vec3& tilt, const glm::mat4& world,
   return raster.shading(32, 24);
 }
 
-TEST_P(GBuffer, TiltsAlongTangentAndBitangent) {
+TEST_P(GBuffer, NormalMapTiltsAlongTangentAndBitangent) {
   const glm::vec3 tilt(0.5f, 0.3f, 0.8f);
   // The quad's tangent is +x; its bitangent, cross(normal, tangent), +y.
   EXPECT_LE(
@@ -268,7 +268,7 @@ TEST_P(GBuffer, TiltsAlongTangentAndBitangent) {
       0.01f);
 }
 
-TEST_P(GBuffer, OfAMirroredInstanceIsTheMirrorImage) {
+TEST_P(GBuffer, NormalMapOfMirroredInstanceIsMirrored) {
   const glm::vec3 tilt(0.5f, 0.3f, 0.8f);
   const glm::mat4 mirror = glm::scale(glm::mat4(1.0f), {-1, 1, 1});
   EXPECT_LE(glm::distance(mapped(GetParam(), tilt, mirror, {0, 0, 5}),
@@ -277,14 +277,14 @@ TEST_P(GBuffer, OfAMirroredInstanceIsTheMirrorImage) {
 }
 
 // glTF 2.0, 3.9.6: the back face's normals are reversed, mapped ones too.
-TEST_P(GBuffer, OfABackFaceIsReversed) {
+TEST_P(GBuffer, NormalMapOfBackFaceIsReversed) {
   const glm::vec3 tilt(0.5f, 0.3f, 0.8f);
   EXPECT_LE(
       glm::distance(mapped(GetParam(), tilt, glm::mat4(1.0f), {0, 0, -5}), -glm::normalize(tilt)),
       0.01f);
 }
 
-TEST_P(GBuffer, AlphaMaskLeavesHoles) {
+TEST_P(GBuffer, AlphaMaskCutsHoles) {
   SceneBuilder builder;
   shared::Material material = surface(glm::vec3(1.0f));
   material.flags |= shared::material_alpha_mask;
@@ -301,7 +301,7 @@ TEST_P(GBuffer, AlphaMaskLeavesHoles) {
   EXPECT_TRUE(raster.covered(38, 18)) << "alpha above the cutoff";
 }
 
-TEST_P(GBuffer, TexturesAreDecodedFromSrgbAndStandTheRightWayUp) {
+TEST_P(GBuffer, TexturesAreDecodedFromSrgbAndUpright) {
   SceneBuilder builder;
   shared::Material material = surface(glm::vec3(1.0f));
   material.base_color_texture.texture = builder.add_texture(
@@ -320,7 +320,7 @@ TEST_P(GBuffer, TexturesAreDecodedFromSrgbAndStandTheRightWayUp) {
   EXPECT_LE(glm::distance(linear(38, 18), glm::vec3(0.503f)), 0.01f);
 }
 
-TEST_P(GBuffer, NearerSurfacesCoverFartherOnes) {
+TEST_P(GBuffer, NearerSurfacesOccludeFartherOnes) {
   SceneBuilder builder;
   const auto quad = builder.add_quad(facing_quad, surface(glm::vec3(1.0f)));
   builder.place(quad, glm::translate(glm::mat4(1.0f), {0, 0, 1}));

@@ -23,9 +23,9 @@ glm::vec3 decode(const glm::vec2& p) {
   return glm::normalize(d);
 }
 
-/// One view twice: rasterised, and met by camera rays.
-struct BothWays {
-  BothWays(std::shared_ptr<const scene::Scene> scene, const scene::Camera& camera)
+/// One view rasterized and traced with camera rays.
+struct RasterizedAndTraced {
+  RasterizedAndTraced(std::shared_ptr<const scene::Scene> scene, const scene::Camera& camera)
       : rig(std::move(scene), camera, {.extent = extent}),
         gbuffer(render::rasterize_gbuffer(rig.plan(), rig.inputs())),
         camera_rays(device(), shaders::camera_rays, layouts()),
@@ -39,7 +39,7 @@ struct BothWays {
         plan.buffer("rays", sizeof(shared::Ray) * pixels, usage, gpu::Memory::device), pixels};
     const auto hits = plan.buffer("hits", sizeof(shared::Hit) * pixels, usage, gpu::Memory::device);
     for (gpu::ImageRef* image : {&normals, &color, &surface, &emissive, &place}) {
-      *image = plan.image("met", VK_FORMAT_R32G32B32A32_SFLOAT);
+      *image = plan.image("hit", VK_FORMAT_R32G32B32A32_SFLOAT);
       plan.get(*image).clear();
     }
     plan.pass("camera_rays", camera_rays).write(rays.count).write(rays.rays).dispatch(extent);
@@ -69,19 +69,19 @@ struct BothWays {
 };
 
 struct Differences {
-  int compared = 0;  // pixels that show the same instance both ways
-  int covered = 0;   // by the rasteriser
+  int compared = 0;  // pixels with the same instance in both
+  int covered = 0;   // by the rasterizer
   double color = 0.0, roughness = 0.0, metallic = 0.0, shading = 0.0, geometric = 0.0,
          emissive = 0.0;  // means
   double depth = 0.0;     // largest, relative
 };
 
-Differences compare(const BothWays& view) {
+Differences compare(const RasterizedAndTraced& view) {
   const auto read = [&](gpu::ImageRef image) { return view.rig.read(image); };
-  const auto normals = read(view.gbuffer.normals), met_normals = read(view.normals);
-  const auto color = read(view.gbuffer.base_color), met_color = read(view.color);
-  const auto surface = read(view.gbuffer.surface), met_surface = read(view.surface);
-  const auto emissive = read(view.gbuffer.emissive), met_emissive = read(view.emissive);
+  const auto normals = read(view.gbuffer.normals), hit_normals = read(view.normals);
+  const auto color = read(view.gbuffer.base_color), hit_color = read(view.color);
+  const auto surface = read(view.gbuffer.surface), hit_surface = read(view.surface);
+  const auto emissive = read(view.gbuffer.emissive), hit_emissive = read(view.emissive);
   const auto motion = read(view.gbuffer.motion), instance = read(view.gbuffer.instance);
   const auto place = read(view.place);
   Differences sum;
@@ -90,21 +90,21 @@ Differences compare(const BothWays& view) {
       const float id = texel(instance, x, y).x;
       sum.covered += id > 0.0f;
       if (id == 0.0f || texel(place, x, y).w != id) continue;
-      const glm::vec4 n = texel(normals, x, y), m = texel(met_normals, x, y);
+      const glm::vec4 n = texel(normals, x, y), m = texel(hit_normals, x, y);
       const glm::vec4 world(glm::vec3(texel(place, x, y)), 1.0f);
       const float view_z = -(view.rig.constants().view * world).z;
       const double depth = std::abs(view_z / texel(motion, x, y).w - 1.0f);
-      if (depth > 0.01) continue;  // another part of the same instance, at an edge
+      if (depth > 0.01) continue;  // another part of the instance, at an edge
       ++sum.compared;
       sum.depth = std::max(sum.depth, depth);
-      const glm::vec4 s = texel(surface, x, y) - texel(met_surface, x, y);
+      const glm::vec4 s = texel(surface, x, y) - texel(hit_surface, x, y);
       sum.roughness += std::abs(s.x);
       sum.metallic += std::abs(s.y);
-      sum.color += glm::distance(texel(color, x, y), texel(met_color, x, y));
+      sum.color += glm::distance(texel(color, x, y), texel(hit_color, x, y));
       sum.shading += glm::distance(decode({n.x, n.y}), decode({m.x, m.y}));
       sum.geometric += glm::distance(decode({n.z, n.w}), decode({m.z, m.w}));
       sum.emissive +=
-          glm::distance(glm::vec3(texel(emissive, x, y)), glm::vec3(texel(met_emissive, x, y)));
+          glm::distance(glm::vec3(texel(emissive, x, y)), glm::vec3(texel(hit_emissive, x, y)));
     }
   }
   for (double* mean :
@@ -114,14 +114,15 @@ Differences compare(const BothWays& view) {
   return sum;
 }
 
-TEST(HitSurface, IsWhatTheRasteriserDraws) {
+TEST(HitSurface, MatchesRasterizer) {
   const auto scene = textured_scene();
   scene::Camera orthographic = look({0.5f, 0.3f, 6}, {0, 0, 0});
   orthographic.orthographic_height = 4.5f;
   for (const scene::Camera& camera : {look({0.3f, 0.4f, 5}, {0, 0, 0}), orthographic}) {
-    const Differences mean = compare(BothWays(scene, camera));
+    const Differences mean = compare(RasterizedAndTraced(scene, camera));
     EXPECT_GT(mean.covered, 5000);
-    EXPECT_GE(mean.compared, mean.covered * 99 / 100) << "rays and pixels see the same";
+    EXPECT_GE(mean.compared, mean.covered * 99 / 100)
+        << "rays and rasterizer hit different instances";
     EXPECT_LE(mean.depth, 1e-4);
     EXPECT_LE(mean.color, 0.015);
     EXPECT_LE(mean.roughness, 0.008);
@@ -132,13 +133,13 @@ TEST(HitSurface, IsWhatTheRasteriserDraws) {
   }
 }
 
-TEST(HitSurface, HelmetIsWhatTheRasteriserDraws) {
+TEST(HitSurface, MatchesRasterizerForDamagedHelmet) {
   const auto file = asset("gltf/DamagedHelmet.glb");
   if (!file) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS is not set";
   const auto scene = std::make_shared<const scene::Scene>(scene::import_gltf(*file));
   const scene::Camera camera =
       scene::fit_camera(scene->bounds, 40.0f, static_cast<float>(extent.width) / extent.height);
-  const Differences mean = compare(BothWays(scene, camera));
+  const Differences mean = compare(RasterizedAndTraced(scene, camera));
   EXPECT_GT(mean.covered, 3000);
   EXPECT_GE(mean.compared, mean.covered * 98 / 100);
   EXPECT_LE(mean.color, 0.04);

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
-// Every pixel's camera ray, and what it meets, in the encoding of the G-buffer.
+// The surface that every camera ray hits, in the encoding of the G-buffer.
 #include "lib/rays/camera_ray.glsl"
 #include "lib/scene/hit_surface.glsl"
 #include "lib/math/octahedral.glsl"

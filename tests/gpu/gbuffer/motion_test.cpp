@@ -18,7 +18,7 @@ namespace {
 
 constexpr VkExtent2D extent{56, 48};
 
-/// The scene as a file would show it that rests in this pose.
+/// The scene with `pose` baked into its nodes and meshes.
 scene::Scene posed(const scene::Scene& source, const scene::Pose& pose) {
   scene::Scene scene = source;
   for (std::size_t i = 0; i < scene.nodes.size(); ++i) scene.nodes[i].world = pose.worlds[i];
@@ -35,7 +35,7 @@ scene::Scene posed(const scene::Scene& source, const std::string& clip, double s
   return posed(source, pose);
 }
 
-/// G-buffer and camera rays of a scene with clips, frame by frame.
+/// G-buffer and camera rays of an animated scene, frame by frame.
 class Stage {
  public:
   Stage(std::shared_ptr<const scene::Scene> source, const scene::Camera& camera,
@@ -72,7 +72,7 @@ class Stage {
     instances_ = rig_.read(gbuffer_.instance);
   }
 
-  /// Through the pixel's sample.
+  /// Camera ray through the pixel's sample.
   shared::Ray ray(std::uint32_t x, std::uint32_t y) const {
     const auto& c = rig_.constants();
     const glm::vec2 ndc =
@@ -123,32 +123,34 @@ glm::dvec2 project(const glm::mat4& matrix, const glm::dvec4& world) {
 struct Comparison {
   int covered = 0;
   int moving = 0;       // by more than a tenth of a pixel
-  int wrong = 0;        // motion differs from the two poses' projections
-  int rays_differ = 0;  // a traced camera ray met something else than the raster shows
-  int outline = 0;      // raster and search see different instances: edges only
+  int wrong = 0;        // motion differs from the difference of both projections
+  int rays_differ = 0;  // a traced camera ray hits another instance than the rasterizer
+  int outline = 0;      // rasterizer and brute force see different instances: edges only
 };
 
-/// Holds a frame against asking every triangle of both poses on the processor.
+/// Compares a frame with brute-force ray casting of both poses on the CPU.
 Comparison compare(const Stage& stage, const scene::Scene& now, const scene::Scene& before) {
   Comparison result;
   const auto& c = stage.constants();
   for (std::uint32_t y = 0; y < extent.height; ++y) {
     for (std::uint32_t x = 0; x < extent.width; ++x) {
-      const shared::Hit truth = closest_by_search(now, stage.ray(x, y));
+      const shared::Hit expected_hit = closest_hit_brute_force(now, stage.ray(x, y));
       const glm::vec4 motion = stage.motion(x, y);
-      const std::uint32_t shown = stage.instance(x, y);
-      const bool same =
-          truth.instance == shared::hit_none ? shown == 0 : shown == truth.instance + 1;
+      const std::uint32_t shown_instance = stage.instance(x, y);
+      const bool same = expected_hit.instance == shared::hit_none
+                            ? shown_instance == 0
+                            : shown_instance == expected_hit.instance + 1;
       if (!same) {
         ++result.outline;
         continue;
       }
-      if (!same_hit(stage.hit(x, y), truth)) ++result.rays_differ;
-      if (shown == 0) continue;
+      if (!same_hit(stage.hit(x, y), expected_hit)) ++result.rays_differ;
+      if (shown_instance == 0) continue;
       ++result.covered;
-      const glm::dvec4 world = point_of(now, truth), world_before = point_of(before, truth);
+      const glm::dvec4 world = point_of(now, expected_hit),
+                       world_before = point_of(before, expected_hit);
       const double depth = -(glm::dmat4(c.view) * world).z;
-      // Behind a silhouette the raster may show the neighbouring triangle of the same instance.
+      // At a silhouette the rasterizer may show an adjacent triangle of the same instance.
       if (std::abs(motion.w - depth) > 0.01 * depth) {
         ++result.outline;
         continue;
@@ -166,7 +168,7 @@ Comparison compare(const Stage& stage, const scene::Scene& now, const scene::Sce
   return result;
 }
 
-/// Frames the scene, looking a little from above and from its side.
+/// Frames the scene from slightly above, rotated by `turn` radians.
 scene::Camera around(const scene::Scene& scene, float turn) {
   scene::Camera camera;
   const float distance = 2.6f * scene.bounds.radius();
@@ -184,7 +186,7 @@ void expect_exact_motion(std::shared_ptr<const scene::Scene> source, const std::
   stage.show(clip, to, around(*source, 0.5f), 3);
   const Comparison still_camera = compare(stage, now, before);
   EXPECT_GT(still_camera.covered, 150);
-  EXPECT_GT(still_camera.moving, 50) << "a test in which nothing moves shows nothing";
+  EXPECT_GT(still_camera.moving, 50) << "too few moving pixels for a test";
   EXPECT_LE(still_camera.wrong, still_camera.covered / 200);
   EXPECT_LE(still_camera.rays_differ, 3);
   EXPECT_LE(still_camera.outline, still_camera.covered / 8 + 10);
@@ -194,8 +196,8 @@ void expect_exact_motion(std::shared_ptr<const scene::Scene> source, const std::
   EXPECT_LE(both.wrong, both.covered / 200);
   EXPECT_LE(both.rays_differ, 3);
 
-  // The motion ends with the frame after the last: whatever the jitter, but for what
-  // a compiler that contracts two equal sums differently leaves: less than 0.001 pixels.
+  // Motion is zero in the first static frame, whatever the jitter; compilers may contract equal
+  // sums differently: less than 0.001 pixels.
   EXPECT_TRUE(stage.moving().needs_advance());
   stage.show(clip, from, around(*source, 0.55f), 5);
   EXPECT_FALSE(stage.moving().needs_advance());
@@ -209,13 +211,13 @@ void expect_exact_motion(std::shared_ptr<const scene::Scene> source, const std::
 class Motion : public testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
-    if (!is_offered(GetParam())) GTEST_SKIP() << lacking(GetParam());
+    if (!is_supported(GetParam())) GTEST_SKIP() << unsupported_reason(GetParam());
   }
 
   static void expect_exact_motion_in(const std::string& file, const std::string& clip, double from,
                                      double to) {
     const char* assets = std::getenv("HELIOGRAPH_TEST_ASSETS");
-    if (!assets) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS names no folder of scenes";
+    if (!assets) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS is not set";
     auto scene = std::make_shared<scene::Scene>(
         scene::import_gltf(std::filesystem::path(assets) / "gltf" / file));
     const std::string name = clip.empty() ? scene->clips.at(0).name : clip;
@@ -234,7 +236,7 @@ scene::Channel turning(std::uint32_t node) {
   return channel;
 }
 
-/// A turning and a resting sphere over a floor.
+/// A rotating and a static sphere over a floor.
 std::shared_ptr<scene::Scene> rigid_scene() {
   SceneBuilder builder;
   const auto sphere = builder.add_sphere(0.8f, surface(glm::vec3(1.0f)));
@@ -249,53 +251,53 @@ std::shared_ptr<scene::Scene> rigid_scene() {
   return scene;
 }
 
-TEST_P(Motion, OfRigidMeshes) {
+TEST_P(Motion, VectorsOfRigidMeshes) {
   expect_exact_motion(rigid_scene(), "turn", 0.2, 0.6, GetParam());
 }
 
-TEST_P(Motion, OfAnimatedNodes) {
+TEST_P(Motion, VectorsOfAnimatedNodes) {
   expect_exact_motion_in("BoxAnimated.glb", "", 0.4, 0.5);
 }
 
-TEST_P(Motion, OfASkinnedFoxWithFlatNormals) {
+TEST_P(Motion, VectorsOfSkinnedFoxWithFlatNormals) {
   expect_exact_motion_in("Fox.glb", "Run", 0.1, 0.2);
 }
 
-TEST_P(Motion, OfASkinnedMan) {
+TEST_P(Motion, VectorsOfSkinnedCesiumMan) {
   expect_exact_motion_in("CesiumMan.glb", "", 0.3, 0.4);
 }
 
-TEST_P(Motion, OfAMorphedCube) {
+TEST_P(Motion, VectorsOfMorphedCube) {
   expect_exact_motion_in("AnimatedMorphCube.glb", "", 0.6, 0.9);
 }
 
 INSTANTIATE_TEST_SUITE_P(, Motion, testing::Values("embree", "software"),
                          [](const auto& test) { return test.param; });
 
-TEST(MovingScene, TwoRenderersShowOneSceneAtTheirOwnTimes) {
+TEST(MovingScene, RenderersAnimateSharedSceneIndependently) {
   const auto scene = rigid_scene();
   const auto resources = engine().upload(scene, scene::constant_environment(glm::vec3(1.0f)));
   auto& parts = engine().parts();
   render::MovingScene first(parts.device, *parts.tracer, resources);
   render::MovingScene second(parts.device, *parts.tracer, resources);
   EXPECT_TRUE(first.set_pose(&scene->clips[0], 0.5));
-  EXPECT_FALSE(first.set_pose(&scene->clips[0], 0.5)) << "it is going there already";
+  EXPECT_FALSE(first.set_pose(&scene->clips[0], 0.5)) << "this pose is already set";
   EXPECT_TRUE(first.advance());
   EXPECT_FALSE(second.advance());
   EXPECT_NE(first.pose().worlds[0], second.pose().worlds[0]);
   EXPECT_NE(&first.tables().instances, &second.tables().instances);
-  EXPECT_EQ(&first.tables().vertices, &second.tables().vertices) << "what never moves is shared";
+  EXPECT_EQ(&first.tables().vertices, &second.tables().vertices) << "static vertices are shared";
   EXPECT_TRUE(first.set_pose(nullptr, 0.0));
   EXPECT_TRUE(first.advance());
   EXPECT_EQ(first.pose().worlds[0], scene->nodes[0].world);
 }
 
-TEST(MovingScene, LightsRideOnTheirNodes) {
+TEST(MovingScene, LightsFollowAnimatedNodes) {
   const auto scene = rigid_scene();
-  scene::Light lamp;
-  lamp.device.type = shared::light_point;
-  lamp.node = 0;
-  scene->lights.push_back(lamp);
+  scene::Light light;
+  light.device.type = shared::light_point;
+  light.node = 0;
+  scene->lights.push_back(light);
   scene::Channel rise;
   rise.times = {0, 1};
   rise.values = {0, 0, 0, 0, 4, 0};
@@ -313,11 +315,11 @@ TEST(MovingScene, LightsRideOnTheirNodes) {
 class MovingCost : public testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
-    if (!is_offered(GetParam())) GTEST_SKIP() << lacking(GetParam());
+    if (!is_supported(GetParam())) GTEST_SKIP() << unsupported_reason(GetParam());
   }
 };
 
-TEST_P(MovingCost, OfAHundredRigidInstances) {
+TEST_P(MovingCost, HundredRigidInstancesUpdateInTime) {
   SceneBuilder builder;
   const auto sphere = builder.add_sphere(0.4f, surface(glm::vec3(1.0f)));
   for (int i = 0; i < 100; ++i) builder.place(sphere);
@@ -345,7 +347,7 @@ TEST_P(MovingCost, OfAHundredRigidInstances) {
   std::nth_element(times.begin(), times.begin() + 30, times.end());
   RecordProperty("milliseconds", std::to_string(times[30]));
   std::printf("100 moving instances, %s: %.3f ms a frame\n", GetParam().c_str(), times[30]);
-  EXPECT_LT(times[30], 10.0) << "2 ms are wanted; a loaded machine may take longer";
+  EXPECT_LT(times[30], 10.0) << "target: 2 ms; the bound allows for a loaded machine";
 }
 
 INSTANTIATE_TEST_SUITE_P(, MovingCost, testing::Values("embree", "software"),

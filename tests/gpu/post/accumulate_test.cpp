@@ -17,7 +17,7 @@ class AccumulateTest : public testing::Test {
  protected:
   void SetUp() override { history_ = render::accumulate(rig_.plan(), rig_.inputs(), hdr_); }
 
-  /// One frame that shows `color` everywhere, with so many samples before it.
+  /// One frame of uniform `color` after `samples` accumulated samples.
   glm::vec4 frame(const glm::vec4& color, std::uint32_t samples) {
     rig_.fill(hdr_, std::vector(pixels, color));
     rig_.set_accumulated(samples);
@@ -31,7 +31,7 @@ class AccumulateTest : public testing::Test {
   gpu::History history_;
 };
 
-TEST_F(AccumulateTest, IsTheMeanOfAllSamples) {
+TEST_F(AccumulateTest, IsMeanOfAllSamples) {
   glm::dvec3 sum(0.0);
   for (std::uint32_t i = 0; i < 40; ++i) {
     const glm::vec4 color(static_cast<float>(i * i % 17), 0.25f * static_cast<float>(i % 3), 1e4f,
@@ -45,17 +45,17 @@ TEST_F(AccumulateTest, IsTheMeanOfAllSamples) {
   }
 }
 
-TEST_F(AccumulateTest, StartsAnewWithTheFirstSample) {
+TEST_F(AccumulateTest, FirstSampleResetsHistory) {
   frame(glm::vec4(100, 50, 20, 1), 0);
   frame(glm::vec4(100, 50, 20, 1), 1);
   EXPECT_EQ(frame(glm::vec4(1, 2, 3, 1), 0), glm::vec4(1, 2, 3, 1));
 }
 
-TEST_F(AccumulateTest, ABrokenHistoryEndsWithARestart) {
+TEST_F(AccumulateTest, ResetDiscardsNaNHistory) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   frame(glm::vec4(nan), 0);
   const glm::vec4 broken = frame(glm::vec4(1.0f), 1);
-  EXPECT_TRUE(std::isnan(broken.x)) << "the history is read";
+  EXPECT_TRUE(std::isnan(broken.x)) << "a NaN history must be read here";
   EXPECT_EQ(frame(glm::vec4(1, 2, 3, 1), 0), glm::vec4(1, 2, 3, 1));
   EXPECT_EQ(frame(glm::vec4(1, 2, 3, 1), 1), glm::vec4(1, 2, 3, 1));
 }

@@ -30,11 +30,11 @@ class Meter {
         hdr_(rig_.input("hdr", VK_FORMAT_R32G32B32A32_SFLOAT, Texels(pixels))),
         exposure_(render::expose(rig_.plan(), rig_.inputs(), hdr_, hdr_)) {}
 
-  shared::ExposureState frame(const Texels& picture, float seconds = 1.0f / 60.0f) {
-    rig_.fill(hdr_, picture);
+  shared::ExposureState frame(const Texels& image, float seconds = 1.0f / 60.0f) {
+    rig_.fill(hdr_, image);
     rig_.set_seconds(seconds);
     rig_.run();
-    rig_.set_view(look({0, 0, 3}, {0, 0, 0}));  // from now on there is a history
+    rig_.set_view(look({0, 0, 3}, {0, 0, 0}));  // later frames have a history
     shared::ExposureState state;
     std::memcpy(&state, rig_.plan().get(exposure_.report).mapped(), sizeof state);
     return state;
@@ -54,7 +54,7 @@ class Meter {
   render::Exposure exposure_;
 };
 
-TEST(Exposure, ByHandItIsTheCompensationAlone) {
+TEST(Exposure, ManualIsCompensationOnly) {
   protocol::Settings settings;
   settings.exposure.compensation = -3.0f;
   Meter meter(settings);
@@ -62,44 +62,45 @@ TEST(Exposure, ByHandItIsTheCompensationAlone) {
   EXPECT_TRUE(meter.settled());
 }
 
-TEST(Exposure, AutomaticBringsAPlainPictureToMiddleGrey) {
+TEST(Exposure, AutomaticMapsUniformImageToMiddleGrey) {
   for (const float grey : {0.002f, 0.18f, 1.0f, 37.0f, 20000.0f}) {
     Meter meter(automatic(0.6f));
     EXPECT_NEAR(meter.frame(grey).factor * grey, 0.18f, 0.002f) << grey;
-    EXPECT_TRUE(meter.settled()) << "the first frame starts with what it wants";
+    EXPECT_TRUE(meter.settled()) << "the first frame needs no adaptation";
   }
 }
 
-TEST(Exposure, CompensationComesOnTop) {
+TEST(Exposure, CompensationScalesAutomaticExposure) {
   protocol::Settings settings = automatic(0.6f);
   settings.exposure.compensation = 2.0f;
   Meter meter(settings);
   EXPECT_NEAR(meter.frame(5.0f).factor * 5.0f, 0.72f, 0.01f);
 }
 
-TEST(Exposure, MetersTheMeanLogarithmAndNeitherBlackNorAFewSuns) {
+TEST(Exposure, MetersLogMeanIgnoringBlackAndBrightOutliers) {
   Meter meter(automatic(0.0f));
-  Texels picture(pixels);
+  Texels image(pixels);
   for (std::size_t i = 0; i < pixels; ++i) {
     const std::size_t row = i / extent.width;
-    picture[i] = glm::vec4(glm::vec3(row % 4 == 0 ? 4.0f : 1.0f), 1);  // every second metered row
+    image[i] = glm::vec4(glm::vec3(row % 4 == 0 ? 4.0f : 1.0f), 1);  // half of the metered rows
   }
-  EXPECT_NEAR(meter.frame(picture).factor, 0.18f / std::sqrt(4.0f), 0.01f);
-  picture.assign(pixels, glm::vec4(1, 1, 1, 1));
-  for (std::size_t i = 0; i < pixels / 4; ++i) picture[i] = glm::vec4(0, 0, 0, 1);
-  for (std::size_t i = pixels / 2; i < pixels / 2 + 12; ++i) picture[i] = glm::vec4(9e5f);
-  EXPECT_NEAR(meter.frame(picture).factor, 0.18f, 0.004f);
+  EXPECT_NEAR(meter.frame(image).factor, 0.18f / std::sqrt(4.0f), 0.01f);
+  image.assign(pixels, glm::vec4(1, 1, 1, 1));
+  for (std::size_t i = 0; i < pixels / 4; ++i) image[i] = glm::vec4(0, 0, 0, 1);
+  for (std::size_t i = pixels / 2; i < pixels / 2 + 12; ++i) image[i] = glm::vec4(9e5f);
+  EXPECT_NEAR(meter.frame(image).factor, 0.18f, 0.004f);
 }
 
-TEST(Exposure, StaysWithinItsRangeAndSurvivesTheDark) {
+TEST(Exposure, IsClampedAndKeptWhereImageIsBlack) {
   Meter meter(automatic(0.0f));
   EXPECT_NEAR(std::log2(meter.frame(0.0003f).factor), shared::exposure_highest, 1e-4);
   EXPECT_NEAR(std::log2(meter.frame(1e6f).factor), shared::exposure_lowest, 1.5);
   const float before = meter.frame(0.5f).factor;
-  EXPECT_EQ(meter.frame(0.0f).factor, before) << "nothing to meter: what it was";
+  EXPECT_EQ(meter.frame(0.0f).factor, before) << "nothing to meter: unchanged";
 }
 
-/// Stops after `time` seconds behind a step from 1 to 8, in frames of `seconds`.
+/// Exposure change in stops `time` seconds after a luminance step from 1 to 8, in frames of
+/// `seconds`.
 float stops_after(float time, float seconds, float adaptation) {
   Meter meter(automatic(adaptation));
   const float start = meter.frame(1.0f).stops;
@@ -109,17 +110,17 @@ float stops_after(float time, float seconds, float adaptation) {
   return state.stops - start;
 }
 
-TEST(Exposure, FollowsAStepWithItsTimeConstantAtEveryFrameRate) {
+TEST(Exposure, StepResponseHasTimeConstantAtAnyFrameRate) {
   for (const float seconds : {1.0f / 60.0f, 1.0f / 15.0f, 0.2f}) {
     EXPECT_NEAR(stops_after(0.6f, seconds, 0.6f), -3.0f * (1.0f - std::exp(-1.0f)), 0.02f)
         << seconds;
     EXPECT_NEAR(stops_after(0.6f, seconds, 2.0f), -3.0f * (1.0f - std::exp(-0.3f)), 0.02f)
         << seconds;
   }
-  EXPECT_NEAR(stops_after(0.2f, 0.2f, 0.0f), -3.0f, 0.01f) << "0: at once";
+  EXPECT_NEAR(stops_after(0.2f, 0.2f, 0.0f), -3.0f, 0.01f) << "0: immediate";
 }
 
-TEST(Exposure, SettlesAfterAStepAndSaysSo) {
+TEST(Exposure, ReportsSettledAfterStep) {
   Meter meter(automatic(0.1f));
   meter.frame(1.0f);
   meter.frame(8.0f);
@@ -132,13 +133,13 @@ TEST(Exposure, SettlesAfterAStepAndSaysSo) {
   EXPECT_NEAR(frames / 60.0, 0.1 * std::log(3.0 / 0.01), 0.04);
 }
 
-TEST(Exposure, IsTheSameEveryTime) {
-  Texels picture(pixels);
+TEST(Exposure, IsDeterministic) {
+  Texels image(pixels);
   for (std::size_t i = 0; i < pixels; ++i) {
-    picture[i] = glm::vec4(glm::vec3(std::exp2(static_cast<float>(i % 23) - 9.0f)), 1);
+    image[i] = glm::vec4(glm::vec3(std::exp2(static_cast<float>(i % 23) - 9.0f)), 1);
   }
   Meter a(automatic(0.3f)), b(automatic(0.3f));
-  for (int i = 0; i < 6; ++i) EXPECT_EQ(a.frame(picture).factor, b.frame(picture).factor);
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(a.frame(image).factor, b.frame(image).factor);
 }
 
 }  // namespace

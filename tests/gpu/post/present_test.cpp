@@ -11,23 +11,23 @@ namespace {
 
 constexpr VkExtent2D extent{64, 64};
 
-// A triangle half as wide as would keep the mean exactly leaves an eighth of a code value.
+// The dither's triangular distribution is half as wide as an exact mean would need: 1/8 code value.
 constexpr double tolerance = 0.13 / 255.0;
 
 class PresentTest : public testing::Test {
  protected:
-  /// The picture, in code values, of `radiance` everywhere.
+  /// The presented image of uniform `radiance`, in code values.
   render::FloatImage present(const glm::vec3& radiance, const protocol::Settings& settings) {
     FrameRig rig(SceneBuilder().build(), look({0, 0, 3}, {0, 0, 0}),
                  {.extent = extent, .settings = settings});
     const auto image = rig.input("radiance", VK_FORMAT_R32G32B32A32_SFLOAT,
                                  std::vector(extent.width * extent.height, glm::vec4(radiance, 1)));
     const auto exposure = render::expose(rig.plan(), rig.inputs(), image, image);
-    const auto picture = render::present(rig.plan(), rig.inputs(), exposure, image, image);
+    const auto image = render::present(rig.plan(), rig.inputs(), exposure, image, image);
     rig.run();
-    const render::FloatImage first = rig.read(picture);
+    const render::FloatImage first = rig.read(image);
     rig.run();
-    EXPECT_EQ(first.rgba, rig.read(picture).rgba) << "the dither must stand still";
+    EXPECT_EQ(first.rgba, rig.read(image).rgba) << "dither must not change between frames";
     return first;
   }
   static glm::dvec3 mean(const render::FloatImage& image) {
@@ -49,17 +49,17 @@ class PresentTest : public testing::Test {
   }
 };
 
-TEST_F(PresentTest, DitherKeepsTheMeanAndAddsAtMostOneCodeValue) {
+TEST_F(PresentTest, DitherKeepsMeanWithinOneCodeValue) {
   const glm::vec3 radiance(0.1f, 0.4f, 0.02f);
-  const render::FloatImage picture = present(radiance, linear());
-  const glm::dvec3 average = mean(picture);
+  const render::FloatImage image = present(radiance, linear());
+  const glm::dvec3 average = mean(image);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(average[c], encode(radiance[c]), tolerance) << c;
-  for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
-    ASSERT_NEAR(picture.rgba[i], encode(0.1), 1.01 / 255.0);
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+    ASSERT_NEAR(image.rgba[i], encode(0.1), 1.01 / 255.0);
   }
 }
 
-TEST_F(PresentTest, ExposureCountsInStops) {
+TEST_F(PresentTest, ExposureIsInStops) {
   protocol::Settings settings = linear();
   settings.exposure.compensation = 2.0f;
   EXPECT_NEAR(mean(present(glm::vec3(0.1f), settings)).x, encode(0.4), tolerance);
@@ -67,9 +67,9 @@ TEST_F(PresentTest, ExposureCountsInStops) {
   EXPECT_NEAR(mean(present(glm::vec3(0.1f), settings)).x, encode(0.05), tolerance);
 }
 
-TEST_F(PresentTest, BlendsTheFrameAndTheMeanByTheSamplesOfTheMean) {
+TEST_F(PresentTest, BlendsDenoisedAndAccumulatedBySampleCount) {
   protocol::Settings settings = linear();
-  settings.accumulation.handover = 8;
+  settings.accumulation.blend_samples = 8;
   FrameRig rig(SceneBuilder().build(), look({0, 0, 3}, {0, 0, 0}),
                {.extent = extent, .settings = settings});
   const auto flat = [&](const char* name, float value) {
@@ -78,29 +78,29 @@ TEST_F(PresentTest, BlendsTheFrameAndTheMeanByTheSamplesOfTheMean) {
   };
   const auto frame = flat("frame", 0.9f), average = flat("mean", 0.1f);
   const auto exposure = render::expose(rig.plan(), rig.inputs(), frame, average);
-  const auto picture = render::present(rig.plan(), rig.inputs(), exposure, frame, average);
+  const auto image = render::present(rig.plan(), rig.inputs(), exposure, frame, average);
   for (const auto& [samples, expected] :
        {std::pair(0u, 0.9), {8u, 0.5}, {24u, 0.3}, {8000u, 0.1008}}) {
     rig.set_accumulated(samples);
     rig.run();
-    EXPECT_NEAR(mean(rig.read(picture)).x, encode(expected), tolerance) << samples;
+    EXPECT_NEAR(mean(rig.read(image)).x, encode(expected), tolerance) << samples;
   }
-  settings.antialiasing.temporal = false;  // nothing left that filters: the mean is the picture
+  settings.antialiasing.temporal = false;  // nothing filters: the accumulated mean is shown
   settings.shadow_temporal.enabled = settings.shadow_blur.enabled = false;
   settings.specular.enabled = false;
   rig.set_settings(settings);
   rig.set_accumulated(0);
   rig.run();
-  EXPECT_NEAR(mean(rig.read(picture)).x, encode(0.1), tolerance);
+  EXPECT_NEAR(mean(rig.read(image)).x, encode(0.1), tolerance);
 }
 
-TEST_F(PresentTest, ClipsWhatIsTooBrightAndBlackensWhatIsNegative) {
-  const render::FloatImage picture = present({50.0f, -1.0f, 0.0f}, linear());
-  EXPECT_GT(mean(picture).x, 1.0 - 0.2 / 255.0);
-  EXPECT_LT(mean(picture).y, 0.2 / 255.0);
+TEST_F(PresentTest, ClampsOverexposedAndNegativeValues) {
+  const render::FloatImage image = present({50.0f, -1.0f, 0.0f}, linear());
+  EXPECT_GT(mean(image).x, 1.0 - 0.2 / 255.0);
+  EXPECT_LT(mean(image).y, 0.2 / 255.0);
 }
 
-TEST_F(PresentTest, EveryCurveIsAnother) {
+TEST_F(PresentTest, ToneMapCurvesDiffer) {
   std::vector<double> greens;
   for (const auto curve : {protocol::ToneMapCurve::neutral, protocol::ToneMapCurve::aces,
                            protocol::ToneMapCurve::agx, protocol::ToneMapCurve::linear}) {

@@ -26,10 +26,10 @@ RigOptions options(const View& view) {
   return made;
 }
 
-/// Antialiasing twice over, by the shader and by its twin.
-class Twins {
+/// Temporal antialiasing by the shader and by its host kernel.
+class KernelComparison {
  public:
-  explicit Twins(const View& view)
+  explicit KernelComparison(const View& view)
       : view_(view),
         rig_(SceneBuilder().build(), camera(view, 0.0f), options(view)),
         random_(rig_) {
@@ -37,17 +37,17 @@ class Twins {
     radiance_ = random_.four("radiance", glm::vec4(0), glm::vec4(3));
     const auto exposure = render::expose(rig_.plan(), rig_.inputs(), radiance_, radiance_);
     const auto run = [&](bool host) {
-      return render::temporal_antialias(rig_.plan(), with_kernels(rig_, host), gbuffer, exposure,
-                                        radiance_);
+      return render::temporal_antialias(rig_.plan(), with_host_kernels(rig_, host), gbuffer,
+                                        exposure, radiance_);
     };
     shader_ = run(false);
     host_ = run(true);
   }
 
   FrameRig& rig() { return rig_; }
-  Compared compared() { return compare(rig_.read(shader_), rig_.read(host_)); }
+  ErrorStatistics statistics() { return compare(rig_.read(shader_), rig_.read(host_)); }
 
-  /// A frame of another noise, turned a little.
+  /// A frame of different noise from a slightly rotated camera.
   void next() {
     std::vector<glm::vec4> texels(std::size_t{view_.extent.width} * view_.extent.height);
     for (glm::vec4& texel : texels) {
@@ -68,45 +68,46 @@ class Twins {
   std::uint32_t frames_ = 0;
 };
 
-class AntialiasHost : public testing::Test {
+class TemporalAntialiasKernel : public testing::Test {
  protected:
   void SetUp() override {
-    if (!has_host_kernels()) GTEST_SKIP() << "host kernels are for devices that are processors";
+    if (!has_host_kernels()) GTEST_SKIP() << "host kernels run on CPU devices only";
   }
 };
 
-TEST_F(AntialiasHost, DoesWhatTheShaderDoes) {
+TEST_F(TemporalAntialiasKernel, MatchesShader) {
   for (const bool orthographic : {false, true}) {
     for (const bool anti_flicker : {false, true}) {
-      Twins twins({.orthographic = orthographic, .anti_flicker = anti_flicker});
-      twins.rig().run();
-      EXPECT_EQ(twins.compared().worst, 0.0) << "without a history";
+      KernelComparison comparison({.orthographic = orthographic, .anti_flicker = anti_flicker});
+      comparison.rig().run();
+      EXPECT_EQ(comparison.statistics().max, 0.0) << "without history";
       for (int i = 0; i < 4; ++i) {
-        twins.next();
-        const Compared result = twins.compared();
+        comparison.next();
+        const ErrorStatistics result = comparison.statistics();
         EXPECT_LT(result.mean, 1e-4) << i;
-        EXPECT_LT(result.apart, 1e-3) << "but for rounding at the border: " << i;
-        EXPECT_GT(result.size, 0.3);
+        EXPECT_LT(result.outliers, 1e-3)
+            << "more differences than rounding at the border explains: " << i;
+        EXPECT_GT(result.magnitude, 0.3);
       }
     }
   }
 }
 
-TEST_F(AntialiasHost, WorksAtEverySize) {
+TEST_F(TemporalAntialiasKernel, MatchesShaderAtAnySize) {
   for (const VkExtent2D extent : {VkExtent2D{1, 1}, {3, 5}, {16, 2}, {17, 31}, {130, 1}}) {
-    Twins twins({.extent = extent});
-    twins.rig().run();
-    twins.next();
-    twins.next();
-    EXPECT_LT(twins.compared().mean, 2e-4) << extent.width << " x " << extent.height;
+    KernelComparison comparison({.extent = extent});
+    comparison.rig().run();
+    comparison.next();
+    comparison.next();
+    EXPECT_LT(comparison.statistics().mean, 2e-4) << extent.width << " x " << extent.height;
   }
 }
 
-TEST_F(AntialiasHost, IsFasterThanTheShader) {
-  Twins twins({.extent = {640, 360}});
-  twins.rig().run();
-  twins.next();
-  expect_faster(twins.rig(), {"temporal_antialias"}, 2.0);
+TEST_F(TemporalAntialiasKernel, IsFasterThanShader) {
+  KernelComparison comparison({.extent = {640, 360}});
+  comparison.rig().run();
+  comparison.next();
+  expect_faster(comparison.rig(), {"temporal_antialias"}, 2.0);
 }
 
 }  // namespace

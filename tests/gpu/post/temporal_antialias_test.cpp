@@ -27,10 +27,10 @@ Texels paint(const Paint& color) {
   return texels;
 }
 
-/// The pass alone, fed with pictures and motion by hand.
-class AntialiasTest : public testing::Test {
+/// The pass alone, with synthetic images and motion vectors.
+class TemporalAntialiasTest : public testing::Test {
  protected:
-  AntialiasTest() {
+  TemporalAntialiasTest() {
     const auto image = [&](const char* name, const glm::vec4& texel) {
       return rig_.input(name, VK_FORMAT_R32G32B32A32_SFLOAT, Texels(width * height, texel));
     };
@@ -40,15 +40,15 @@ class AntialiasTest : public testing::Test {
     resolved_ = render::temporal_antialias(rig_.plan(), rig_.inputs(), gbuffer_, exposure, hdr_);
   }
 
-  /// Everything moves by so many pixels a frame, at this distance.
+  /// Uniform motion in pixels per frame at view depth `view_z`.
   void move(const glm::vec2& pixels, float view_z = 5.0f) {
     const glm::vec2 uv = -pixels / glm::vec2(extent.width, extent.height);
     rig_.fill(gbuffer_.motion, Texels(width * height, glm::vec4(uv, 0, view_z)));
   }
-  render::FloatImage frame(const Texels& picture) {
-    rig_.fill(hdr_, picture);
+  render::FloatImage frame(const Texels& image) {
+    rig_.fill(hdr_, image);
     rig_.run();
-    rig_.set_view(look({0, 0, 3}, {0, 0, 0}));  // from now on there is a history
+    rig_.set_view(look({0, 0, 3}, {0, 0, 0}));  // later frames have a history
     return rig_.read(resolved_);
   }
   render::FloatImage frame(const Paint& color) { return frame(paint(color)); }
@@ -59,7 +59,7 @@ class AntialiasTest : public testing::Test {
   gpu::ImageRef resolved_;
 };
 
-TEST_F(AntialiasTest, APictureThatStandsStillStaysWhatItIs) {
+TEST_F(TemporalAntialiasTest, StaticImageIsUnchanged) {
   const Paint waves = [](float x, float y) {
     return glm::vec3(2.0f + std::sin(0.4f * x), 300.0f + 5.0f * y, 0.1f * x + 0.05f * y);
   };
@@ -75,8 +75,8 @@ TEST_F(AntialiasTest, APictureThatStandsStillStaysWhatItIs) {
   }
 }
 
-// A public implementation reads beyond the picture's edge there: a smear (no off-screen test).
-TEST_F(AntialiasTest, ColumnsThatComeInFromOutsideShowTheFrameAlone) {
+// A published implementation lacks the off-screen test and smears here.
+TEST_F(TemporalAntialiasTest, ColumnsEnteringTheFrameHaveNoHistory) {
   const auto shade = [](int frame_number) {
     return [frame_number](float x, float y) {
       const float pattern =
@@ -85,26 +85,25 @@ TEST_F(AntialiasTest, ColumnsThatComeInFromOutsideShowTheFrameAlone) {
     };
   };
   frame(shade(0));
-  move({-3, 0});  // the camera pans right: the picture moves left, three columns are new
+  move({-3, 0});  // the camera pans right: three columns enter at the right edge
   for (int i = 1; i < 8; ++i) {
-    const Texels picture = paint(shade(i));
-    const render::FloatImage image = frame(picture);
+    const Texels image = paint(shade(i));
+    const render::FloatImage image = frame(image);
     double inside = 0.0;
     for (std::uint32_t y = 0; y < height; ++y) {
       for (std::uint32_t x = width - 3; x < width; ++x) {
-        ASSERT_EQ(texel(image, x, y), picture[y * width + x]) << x << " " << y << " frame " << i;
+        ASSERT_EQ(texel(image, x, y), image[y * width + x]) << x << " " << y << " frame " << i;
       }
       for (std::uint32_t x = 8; x < width - 8; ++x) {
-        inside =
-            std::max<double>(inside, std::abs(texel(image, x, y).x - picture[y * width + x].x));
+        inside = std::max<double>(inside, std::abs(texel(image, x, y).x - image[y * width + x].x));
       }
     }
-    // The pattern moves by whole pixels: the history fits wherever there is one.
+    // The pattern moves by whole pixels, so that the history is exact where it is valid.
     EXPECT_LT(inside, 0.12) << "frame " << i;
   }
 }
 
-TEST_F(AntialiasTest, NothingIsRememberedAcrossACut) {
+TEST_F(TemporalAntialiasTest, HistoryResetDiscardsPreviousFrame) {
   frame([](float, float) { return glm::vec3(100.0f); });
   FrameRig fresh(SceneBuilder().build(), look({0, 0, 3}, {0, 0, 0}), {.extent = extent});
   const auto hdr =
@@ -118,11 +117,11 @@ TEST_F(AntialiasTest, NothingIsRememberedAcrossACut) {
   fresh.run();
   const Texels dim = paint([](float x, float) { return glm::vec3(0.01f * x); });
   fresh.fill(hdr, dim);
-  fresh.run();  // still the constants of a first frame
+  fresh.run();  // frame constants still mark the history as invalid
   for (std::uint32_t x = 0; x < width; ++x) EXPECT_EQ(texel(fresh.read(resolved), x, 5), dim[x]);
 }
 
-TEST_F(AntialiasTest, ASquareThatMovedLeavesNoGhost) {
+TEST_F(TemporalAntialiasTest, MovedSquareLeavesNoGhost) {
   const auto square = [](float left) {
     return [left](float x, float y) {
       const bool inside = x > left && x < left + 8 && y > 10 && y < 18;
@@ -130,7 +129,7 @@ TEST_F(AntialiasTest, ASquareThatMovedLeavesNoGhost) {
     };
   };
   for (int i = 0; i < 10; ++i) frame(square(4));
-  frame(square(30));  // without motion vectors: the worst case
+  frame(square(30));  // without motion vectors: worst case
   const Paint behind = square(30);
   render::FloatImage image;
   for (int i = 0; i < 3; ++i) image = frame(behind);
@@ -139,8 +138,8 @@ TEST_F(AntialiasTest, ASquareThatMovedLeavesNoGhost) {
   }
 }
 
-// Without weights by brightness the mean of one bright and many dark frames is bright.
-TEST_F(AntialiasTest, AFireflyIsNearlyGoneInTheNextFrames) {
+// Without luminance weights the mean of one bright and many dark frames is bright.
+TEST_F(TemporalAntialiasTest, FireflyFadesWithinFewFrames) {
   const auto sky = [](float spark) {
     return [spark](float x, float y) {
       const bool there = std::abs(x - 20.5f) < 0.6f && std::abs(y - 15.5f) < 0.6f;
@@ -149,33 +148,31 @@ TEST_F(AntialiasTest, AFireflyIsNearlyGoneInTheNextFrames) {
   };
   for (int i = 0; i < 5; ++i) frame(sky(0.4f));
   const float during = texel(frame(sky(5000.0f)), 20, 15).x;
-  EXPECT_LT(during, 1.5f) << "one frame's spark counts by its compressed brightness";
+  EXPECT_LT(during, 1.5f) << "one firefly is weighted by its compressed luminance";
   const float after = texel(frame(sky(0.4f)), 20, 15).x;
   EXPECT_LT(after, 0.5f);
 }
 
-TEST_F(AntialiasTest, TheMotionOfAnEdgeIsThatOfTheNearerSurface) {
-  // Left half near and moving right by 2, right half far and still; a bright line in front of the
-  // edge must be followed by the far pixels beside it too.
+TEST_F(TemporalAntialiasTest, EdgeUsesMotionOfNearestSurface) {
+  // Left half near and moving right by 2 pixels, right half far and static: far pixels beside the
+  // edge must use the motion of the near half.
   Texels motion;
   for (std::uint32_t i = 0; i < width * height; ++i) {
     const bool near = i % width < 24;
     motion.push_back(near ? glm::vec4(-2.0f / width, 0, 0, 2) : glm::vec4(0, 0, 0, 9));
   }
   rig_.fill(gbuffer_.motion, motion);
-  const auto picture = [](float x, float) {
-    return x < 24 ? glm::vec3(2.0f) : glm::vec3(0.1f * x);
-  };
-  frame(picture);
-  const render::FloatImage image = frame(picture);
-  // Pixel 24 is far, beside the edge: with the near motion its history is column 22's, darker, as
-  // far as the box lets it be; with its own motion it would be what it was.
-  const float own = picture(24.5f, 0).x;
+  const auto image = [](float x, float) { return x < 24 ? glm::vec3(2.0f) : glm::vec3(0.1f * x); };
+  frame(image);
+  const render::FloatImage image = frame(image);
+  // Pixel 24 is far, beside the edge: with the near motion its history is column 22, darker as far
+  // as the neighborhood box permits; with its own motion it would not change.
+  const float own = image(24.5f, 0).x;
   EXPECT_LT(texel(image, 24, 10).x, own - 0.1f);
-  EXPECT_NEAR(texel(image, 30, 10).x, picture(30.5f, 0).x, 0.02f);
+  EXPECT_NEAR(texel(image, 30, 10).x, image(30.5f, 0).x, 0.02f);
 }
 
-TEST_F(AntialiasTest, StaysPositiveBesideHardEdges) {
+TEST_F(TemporalAntialiasTest, BicubicHistoryStaysPositiveAtHardEdges) {
   const auto edge = [](float offset) {
     return
         [offset](float x, float) { return x < 20 + offset ? glm::vec3(0.0f) : glm::vec3(80.0f); };

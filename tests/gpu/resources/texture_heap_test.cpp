@@ -13,7 +13,7 @@
 namespace heliograph::test {
 namespace {
 
-/// Texels without any order, so that reading the wrong one shows.
+/// Random texels, so that reading a wrong one shows.
 scene::Image noise(std::uint32_t width, std::uint32_t height, bool srgb) {
   scene::Image image{"noise", width, height, scene::mip_level_count(width, height), srgb, {}};
   image.pixels.resize(scene::mip_chain_bytes(width, height));
@@ -46,7 +46,7 @@ VkSamplerCreateInfo sampler_info(const scene::Sampler& from) {
   return info;
 }
 
-/// The same places read by the device's sampler.
+/// The same texture coordinates read through the device's sampler.
 std::vector<glm::vec4> sampled(const scene::Image& from, const scene::Sampler& sampler,
                                const std::vector<ShaderInput>& inputs) {
   gpu::ImageDesc desc{.name = "image", .extent = {from.width, from.height}};
@@ -91,7 +91,7 @@ std::vector<scene::Sampler> samplers() {
 
 class TextureHeap : public testing::TestWithParam<bool> {};
 
-TEST_P(TextureHeap, ReadsLikeTheSampler) {
+TEST_P(TextureHeap, MatchesHardwareSampler) {
   scene::Scene scene = *SceneBuilder().build();
   scene.images = {noise(7, 5, false), noise(37, 20, GetParam())};
   for (const scene::Sampler& sampler : samplers()) scene.textures.push_back({1, sampler});
@@ -111,8 +111,7 @@ TEST_P(TextureHeap, ReadsLikeTheSampler) {
     for (std::size_t i = 0; i < inputs.size(); ++i) {
       const float distance = glm::distance(got[i].x, expected[i]);
       sum += distance;
-      // Samplers weigh texels in steps of 1/256 and round to a texel or level with little
-      // precision.
+      // Samplers weight texels in steps of 1/256 and select texels and levels with low precision.
       different += distance > 0.02f;
     }
     EXPECT_LE(different, 40) << "sampler " << texture;
@@ -122,7 +121,7 @@ TEST_P(TextureHeap, ReadsLikeTheSampler) {
 
 INSTANTIATE_TEST_SUITE_P(Encodings, TextureHeap, testing::Bool());
 
-TEST(PackTextures, KeepsWhatFitsFromTheFirstSmallLevel) {
+TEST(PackTextures, DropsTopMipLevelsToFitBudget) {
   scene::Scene scene;
   scene.images = {noise(2048, 8, false), noise(64, 64, false)};
   scene.textures = {{0, {}}, {1, {}}};

@@ -97,25 +97,25 @@ gpu::ImageRef RandomFrame::bits(const std::string& name) {
   return rig_.input(name, VK_FORMAT_R32_SFLOAT, texels);
 }
 
-render::FrameInputs with_kernels(const FrameRig& rig, bool host) {
+render::FrameInputs with_host_kernels(const FrameRig& rig, bool host) {
   render::FrameInputs made = rig.inputs();
   made.host_kernels = host;
   return made;
 }
 
-Compared compare(const render::FloatImage& expected, const render::FloatImage& found) {
-  Compared result{};
+ErrorStatistics compare(const render::FloatImage& expected, const render::FloatImage& actual) {
+  ErrorStatistics result{};
   for (std::size_t i = 0; i < expected.rgba.size(); ++i) {
     const double value = expected.rgba[i];
-    double off = std::abs(value - found.rgba[i]) / (1.0 + std::abs(value));
+    double off = std::abs(value - actual.rgba[i]) / (1.0 + std::abs(value));
     if (!std::isfinite(off)) off = 1e9;
     result.mean += off;
-    result.worst = std::max(result.worst, off);
-    result.apart += off > 0.01 ? 1.0 : 0.0;
-    result.size += std::abs(value);
+    result.max = std::max(result.max, off);
+    result.outliers += off > 0.01 ? 1.0 : 0.0;
+    result.magnitude += std::abs(value);
   }
   const auto count = static_cast<double>(expected.rgba.size());
-  return {result.mean / count, result.worst, result.apart / count, result.size / count};
+  return {result.mean / count, result.max, result.outliers / count, result.magnitude / count};
 }
 
 void expect_faster(FrameRig& rig, const std::set<std::string>& passes, double least) {
@@ -139,7 +139,7 @@ void expect_faster(FrameRig& rig, const std::set<std::string>& passes, double le
   for (const std::string& name : passes) names += name + " ";
   std::printf("%s: shaders %.2f ms, host %.2f ms, ratio %.1f\n", names.c_str(), shader, host,
               shader / host);
-  EXPECT_GT(host, 0.0) << "the kernels run";
+  EXPECT_GT(host, 0.0) << "no host kernel ran";
   EXPECT_GT(shader, least * host) << names;
 }
 

@@ -8,18 +8,18 @@
 
 namespace heliograph::test {
 
-/// Made-up images of what a frame holds, with planes, edges, holes and materials of all sorts, for
-/// tests that compare host kernels with the shaders they are twins of.
+/// Synthetic frame images with planes, edges, holes and various materials, for tests that compare
+/// host kernels with their shaders.
 class RandomFrame {
  public:
   explicit RandomFrame(FrameRig& rig, unsigned seed = 7) : rig_(rig), random_(seed) {}
 
-  /// A G-buffer, and that of a frame before in which most surfaces lie elsewhere by a little.
+  /// A G-buffer and that of the previous frame, in which most surfaces are slightly displaced.
   render::GBuffer gbuffer();
-  /// Four numbers from `low` to `high`.
+  /// RGBA32F, uniform between `low` and `high`.
   gpu::ImageRef four(const std::string& name, const glm::vec4& low, const glm::vec4& high);
   gpu::ImageRef two(const std::string& name, float low, float high);
-  /// 0 or 1, as visibility is.
+  /// R32F of 0 or 1, like noisy visibility.
   gpu::ImageRef bits(const std::string& name);
 
   float unit() { return std::uniform_real_distribution<float>(0.0f, 1.0f)(random_); }
@@ -32,20 +32,20 @@ class RandomFrame {
   std::mt19937 random_;
 };
 
-/// The same frame by shaders alone, or with host kernels.
-render::FrameInputs with_kernels(const FrameRig& rig, bool host);
+/// The rig's inputs with host kernels on or off.
+render::FrameInputs with_host_kernels(const FrameRig& rig, bool host);
 
-struct Compared {
-  double mean;   // of the absolute difference, over 1 + the value
-  double worst;  // of pixels
-  double apart;  // share of values that differ by more than a hundredth
-  double size;   // mean of the absolute value
+struct ErrorStatistics {
+  double mean;       // of |expected - actual| / (1 + |expected|)
+  double max;        // of the same
+  double outliers;   // fraction of values that differ by more than 0.01
+  double magnitude;  // mean of |expected|
 };
-Compared compare(const render::FloatImage& expected, const render::FloatImage& found);
+ErrorStatistics compare(const render::FloatImage& expected, const render::FloatImage& actual);
 
-/// Prints how many times longer everything on the device takes than the host's passes of these
-/// names, its twins, and requires `least`. The best of several frames, the device's by the clock:
-/// its timers stand still in some drivers.
+/// Prints by what factor the device passes are slower than the host kernels of `passes`, and
+/// expects at least `least`. Minimum of several frames; the device is timed by the wall clock,
+/// because GPU timestamps do not advance in some drivers.
 void expect_faster(FrameRig& rig, const std::set<std::string>& passes, double least);
 
 bool has_host_kernels();

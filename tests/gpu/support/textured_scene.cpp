@@ -9,7 +9,7 @@
 namespace heliograph::test {
 namespace {
 
-/// Waves in every channel, slow enough that a level of detail more or less changes little.
+/// Sine waves in every channel, smooth enough that one mip level more or less changes little.
 std::uint32_t add_waves(scene::Scene& scene, bool srgb, double phase) {
   constexpr std::uint32_t size = 256;
   scene::Image image{"waves", size, size, scene::mip_level_count(size, size), srgb, {}};
@@ -56,7 +56,7 @@ std::shared_ptr<const scene::Scene> textured_scene() {
     return glm::scale(glm::rotate(glm::translate(glm::mat4(1.0f), to), angle, axis), scale);
   };
   builder.place(quad, turned({-1.2f, 0.9f, 0}, 0.4f, {0, 1, 0}, {1, 1, 1}));
-  builder.place(quad, turned({1.2f, 0.9f, 0}, 2.7f, {0, 1, 0}, {1, 0.8f, 1}));  // from behind
+  builder.place(quad, turned({1.2f, 0.9f, 0}, 2.7f, {0, 1, 0}, {1, 0.8f, 1}));  // back face
   builder.place(quad, turned({-1.2f, -1, 0}, 0.5f, {1, 0, 0}, {-1, 0.7f, 2}));  // mirrored
   builder.place(quad, turned({1.2f, -1, 0}, 2.5f, {1, 0, 0}, {-1, 1, 1}));      // both
   builder.place(ball, turned({0, 0, -1}, 0.3f, {0, 0, 1}, {-1, 1.4f, 0.7f}));

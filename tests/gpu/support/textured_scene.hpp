@@ -6,7 +6,8 @@
 
 namespace heliograph::test {
 
-/// Quads with a texture in every slot and a ball: tilted, mirrored, squeezed and seen from behind.
+/// Quads with a texture in every slot and a sphere: tilted, mirrored, non-uniformly scaled, and
+/// seen from behind.
 std::shared_ptr<const scene::Scene> textured_scene();
 
 }  // namespace heliograph::test

@@ -6,7 +6,7 @@
 
 namespace heliograph::test {
 
-render::GBuffer make_gbuffer(FrameRig& rig, const SurfacePixel& pixel) {
+render::GBuffer make_uniform_gbuffer(FrameRig& rig, const SurfacePixel& pixel) {
   const std::size_t count = std::size_t{rig.plan().extent().width} * rig.plan().extent().height;
   const auto everywhere = [&]<typename Texel>(const char* name, std::size_t signal, Texel texel) {
     return rig.input(name, render::gbuffer_formats[signal], std::vector(count, texel));

@@ -7,7 +7,7 @@
 
 namespace heliograph::test {
 
-/// What a made-up G-buffer shows in every pixel.
+/// The surface that a synthetic G-buffer has in every pixel.
 struct SurfacePixel {
   glm::vec3 normal{0, 0, 1};
   glm::vec3 color{1.0f};
@@ -19,7 +19,7 @@ struct SurfacePixel {
   float view_z = 2.0f;       // 0: background
 };
 
-/// The octahedral code of a unit vector (Cigolle et al. 2014).
+/// Octahedral encoding of a unit vector (Cigolle et al. 2014).
 inline glm::vec2 octahedral(const glm::vec3& d) {
   const glm::vec2 p = glm::vec2(d) / (std::abs(d.x) + std::abs(d.y) + std::abs(d.z));
   if (d.z >= 0.0f) return p;
@@ -27,7 +27,7 @@ inline glm::vec2 octahedral(const glm::vec3& d) {
           (1.0f - std::abs(p.x)) * (p.y >= 0.0f ? 1.0f : -1.0f)};
 }
 
-/// A G-buffer that no rasteriser drew: `pixel` everywhere.
-render::GBuffer make_gbuffer(FrameRig& rig, const SurfacePixel& pixel);
+/// A synthetic G-buffer with `pixel` everywhere.
+render::GBuffer make_uniform_gbuffer(FrameRig& rig, const SurfacePixel& pixel);
 
 }  // namespace heliograph::test

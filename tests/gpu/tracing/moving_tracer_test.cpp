@@ -7,8 +7,9 @@
 namespace heliograph::tracing {
 namespace {
 
-/// Gives every third instance another place, squeezes one of them flat, and deforms the meshes.
-std::vector<std::uint32_t> stir(scene::Scene& scene, Random& random, std::uint32_t step) {
+/// Moves every third instance, scales one of them flat, and deforms the meshes.
+std::vector<std::uint32_t> move_and_deform(scene::Scene& scene, Random& random,
+                                           std::uint32_t step) {
   std::vector<std::uint32_t> moved;
   for (std::uint32_t i = step % 3; i < scene.instances.size(); i += 3) {
     glm::mat4& world = scene.nodes[scene.instances[i].node].world;
@@ -31,22 +32,22 @@ std::vector<std::uint32_t> stir(scene::Scene& scene, Random& random, std::uint32
 
 class MovingTracerTest : public TracerTest {};
 
-TEST_P(MovingTracerTest, FollowsWhatMovesAndDeforms) {
+TEST_P(MovingTracerTest, MatchesBruteForceForMovingAndDeformedMeshes) {
   scene::Scene scene = two_level_scene(10);
   scene.clips.emplace_back();
   constexpr std::uint32_t a_sphere = 1, a_masked_quad = 4;
   for (const std::uint32_t mesh : {a_sphere, a_masked_quad}) {
     scene.deformations.push_back({.mesh = mesh, .shape = 0, .node = 0, .skin = {}});
   }
-  const TracedScene at_rest = traced(scene, GetParam());
-  const auto structure = at_rest.moving(scene);
+  const TracedScene static_scene = traced(scene, GetParam());
+  const auto structure = static_scene.moving(scene);
   const std::vector<shared::Ray> rays = random_rays(scene, 3000, 10);
   Tracing tracing(rig_->device, *rig_->tracers.at(GetParam()), *structure, rays.size());
-  const Answers resting = search(scene, rays);
-  EXPECT_LT(disagreement(tracing.run(rays), resting), 1e-3) << "before anything moves";
+  const TraceResults at_start = brute_force(scene, rays);
+  EXPECT_LT(disagreement(tracing.run(rays), at_start), 1e-3) << "before any motion";
   Random random(10);
   for (std::uint32_t step = 0; step < 4; ++step) {
-    const std::vector<std::uint32_t> moved = stir(scene, random, step);
+    const std::vector<std::uint32_t> moved = move_and_deform(scene, random, step);
     std::vector<glm::mat4> worlds;
     for (const scene::Instance& instance : scene.instances) {
       worlds.push_back(scene.nodes[instance.node].world);
@@ -57,11 +58,12 @@ TEST_P(MovingTracerTest, FollowsWhatMovesAndDeforms) {
       deformed.push_back({deformation.mesh, mesh.vertices, mesh.bounds});
     }
     structure->update({worlds, moved, deformed});
-    const Answers expected = search(scene, rays);
-    EXPECT_GT(disagreement(expected, resting), 0.1) << "what hardly moves shows nothing";
+    const TraceResults expected = brute_force(scene, rays);
+    EXPECT_GT(disagreement(expected, at_start), 0.1) << "scene hardly moves";
     EXPECT_LT(disagreement(tracing.run(rays), expected), 1e-3) << "step " << step;
   }
-  EXPECT_LT(disagreement(at_rest.trace(rays), resting), 1e-3) << "the scene at rest stays";
+  EXPECT_LT(disagreement(static_scene.trace(rays), at_start), 1e-3)
+      << "the static scene must not change";
 }
 
 INSTANTIATE_TEST_SUITE_P(, MovingTracerTest, testing::ValuesIn(all_tracers), test_name);

@@ -14,19 +14,19 @@
 #include "tests/support/traced_scene.hpp"
 #include "tracing/tracer_choice.hpp"
 
-/// What the tests of tracers share: every tracer of the device, and rays through each.
+/// Shared by the tests of tracers: all tracers of the device, and rays through each.
 namespace heliograph::tracing {
 
 using namespace heliograph::test;
 
 inline constexpr float untouched = -7.0f;
 
-struct Answers {
+struct TraceResults {
   std::vector<shared::Hit> hits;
   std::vector<std::uint32_t> occluded;
 };
 
-/// A plan that traces one stream of rays, again and again.
+/// A frame plan that traces one ray stream repeatedly.
 class Tracing {
  public:
   Tracing(const gpu::Device& device, const RayTracer& tracer,
@@ -44,32 +44,33 @@ class Tracing {
     plan_.compile();
   }
 
-  /// Traces the first `count` of the rays; answers beyond them come back as they were. `blending`:
-  /// see shared::RayCount.
-  Answers run(std::span<const shared::Ray> rays, std::uint32_t count, std::uint32_t blending = 0) {
-    Answers answers{std::vector(rays.size(), shared::Hit{untouched, 0, 0, 0, 0, 0, 0, 0}),
-                    std::vector(rays.size(), 7u)};
+  /// Traces the first `count` rays and leaves the other results untouched. `blending`: see
+  /// shared::RayCount.
+  TraceResults run(std::span<const shared::Ray> rays, std::uint32_t count,
+                   std::uint32_t blending = 0) {
+    TraceResults results{std::vector(rays.size(), shared::Hit{untouched, 0, 0, 0, 0, 0, 0, 0}),
+                         std::vector(rays.size(), 7u)};
     const std::uint32_t groups = (count + shared::rays_per_group - 1) / shared::rays_per_group;
     const std::uint32_t rows = (groups + shared::groups_per_row - 1) / shared::groups_per_row;
     const shared::RayCount header{count, std::min(groups, shared::groups_per_row), rows, 1,
                                   blending};
     std::memcpy(plan_.get(stream_.count).mapped(), &header, sizeof(header));
     std::memcpy(plan_.get(stream_.rays).mapped(), rays.data(), rays.size_bytes());
-    const auto hit_bytes = std::as_writable_bytes(std::span(answers.hits));
-    const auto occluded_bytes = std::as_writable_bytes(std::span(answers.occluded));
+    const auto hit_bytes = std::as_writable_bytes(std::span(results.hits));
+    const auto occluded_bytes = std::as_writable_bytes(std::span(results.occluded));
     std::memcpy(plan_.get(hits_).mapped(), hit_bytes.data(), hit_bytes.size());
     std::memcpy(plan_.get(occluded_).mapped(), occluded_bytes.data(), occluded_bytes.size());
     plan_.execute();
     std::memcpy(hit_bytes.data(), plan_.get(hits_).mapped(), hit_bytes.size());
     std::memcpy(occluded_bytes.data(), plan_.get(occluded_).mapped(), occluded_bytes.size());
-    return answers;
+    return results;
   }
 
-  Answers run(std::span<const shared::Ray> rays) {
+  TraceResults run(std::span<const shared::Ray> rays) {
     return run(rays, static_cast<std::uint32_t>(rays.size()));
   }
 
-  /// The least that each pass took to answer the same rays again, "closest 1.2 ms, any 0.8 ms".
+  /// Minimum time of each pass over repeated runs, e.g. "closest 1.2 ms, any 0.8 ms".
   std::string least_times(int repetitions) {
     std::map<std::string, float> least;
     for (int i = 0; i < repetitions; ++i) {
@@ -95,7 +96,7 @@ class Tracing {
   gpu::BufferRef occluded_;
 };
 
-/// A scene on the device as one tracer sees it.
+/// A scene with the acceleration structure of one tracer.
 class TracedScene {
  public:
   TracedScene(const gpu::Device& device, const RayTracer& tracer, const scene::Scene& scene)
@@ -106,12 +107,12 @@ class TracedScene {
     structure_ = tracer.build(scene, buffers_);
   }
 
-  Answers trace(std::span<const shared::Ray> rays, std::uint32_t count,
-                std::uint32_t blending = 0) const {
+  TraceResults trace(std::span<const shared::Ray> rays, std::uint32_t count,
+                     std::uint32_t blending = 0) const {
     return tracing(rays.size()).run(rays, count, blending);
   }
 
-  Answers trace(std::span<const shared::Ray> rays) const {
+  TraceResults trace(std::span<const shared::Ray> rays) const {
     return trace(rays, static_cast<std::uint32_t>(rays.size()));
   }
 
@@ -138,10 +139,10 @@ inline gpu::DeviceOptions device_options() {
   return {.wanted = device ? device : "", .cache_folder = {}};
 }
 
-/// The tests' device with every tracer that it offers.
+/// The test device with every tracer that it supports.
 struct Rig {
   Rig() {
-    for (const protocol::TracerKind kind : offered_tracers(device.report())) {
+    for (const protocol::TracerKind kind : supported_tracers(device.report())) {
       tracers.emplace(kind, make_tracer(kind, device));
     }
   }
@@ -156,11 +157,11 @@ class TracersTest : public testing::Test {
   static void SetUpTestSuite() { rig_ = std::make_unique<Rig>(); }
   static void TearDownTestSuite() { rig_.reset(); }
   void TearDown() override {
-    EXPECT_EQ(rig_->instance.validation_messages(), 0u) << "the validation layers complained";
+    EXPECT_EQ(rig_->instance.validation_messages(), 0u) << "validation layers reported messages";
   }
 
   static bool offered(protocol::TracerKind kind) { return rig_->tracers.contains(kind); }
-  static std::string lacking(protocol::TracerKind kind) {
+  static std::string unsupported_reason(protocol::TracerKind kind) {
     return rig_->device.report().name + " (" + rig_->device.report().driver +
            ") does not offer the tracer " + std::string(protocol::enum_name(kind));
   }
@@ -175,13 +176,14 @@ class TracerTest : public TracersTest, public testing::WithParamInterface<protoc
  protected:
   void SetUp() override {
     if (offered(GetParam())) return;
-    ASSERT_EQ(std::getenv("HELIOGRAPH_TEST_ALL_TRACERS"), nullptr) << lacking(GetParam());
-    GTEST_SKIP() << lacking(GetParam());
+    ASSERT_EQ(std::getenv("HELIOGRAPH_TEST_ALL_TRACERS"), nullptr)
+        << unsupported_reason(GetParam());
+    GTEST_SKIP() << unsupported_reason(GetParam());
   }
 };
 
-/// Share of rays with different answers.
-inline double disagreement(const Answers& a, const Answers& b) {
+/// Fraction of rays with different results.
+inline double disagreement(const TraceResults& a, const TraceResults& b) {
   std::size_t different = 0;
   for (std::size_t i = 0; i < a.hits.size(); ++i) {
     different += !same_hit(a.hits[i], b.hits[i]) || a.occluded[i] != b.occluded[i];
@@ -189,19 +191,19 @@ inline double disagreement(const Answers& a, const Answers& b) {
   return static_cast<double>(different) / static_cast<double>(a.hits.size());
 }
 
-inline std::size_t hit_count(const Answers& answers) {
+inline std::size_t hit_count(const TraceResults& results) {
   std::size_t count = 0;
-  for (const shared::Hit& hit : answers.hits) count += hit.instance != shared::hit_none;
+  for (const shared::Hit& hit : results.hits) count += hit.instance != shared::hit_none;
   return count;
 }
 
-inline Answers search(const scene::Scene& scene, std::span<const shared::Ray> rays) {
-  Answers answers;
+inline TraceResults brute_force(const scene::Scene& scene, std::span<const shared::Ray> rays) {
+  TraceResults results;
   for (const shared::Ray& ray : rays) {
-    answers.hits.push_back(closest_by_search(scene, ray));
-    answers.occluded.push_back(answers.hits.back().instance != shared::hit_none ? 1 : 0);
+    results.hits.push_back(closest_hit_brute_force(scene, ray));
+    results.occluded.push_back(results.hits.back().instance != shared::hit_none ? 1 : 0);
   }
-  return answers;
+  return results;
 }
 
 inline std::string test_name(const testing::TestParamInfo<protocol::TracerKind>& test) {

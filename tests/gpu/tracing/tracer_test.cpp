@@ -14,24 +14,24 @@
 namespace heliograph::tracing {
 namespace {
 
-TEST_P(TracerTest, AgreesWithAskingEveryTriangle) {
+TEST_P(TracerTest, MatchesBruteForce) {
   for (std::uint32_t seed = 1; seed <= 3; ++seed) {
     const scene::Scene scene = two_level_scene(seed);
     const std::vector<shared::Ray> rays = random_rays(scene, 5000, seed);
-    const Answers expected = search(scene, rays);
-    const Answers answers = traced(scene, GetParam()).trace(rays);
-    EXPECT_GT(hit_count(expected), rays.size() / 6) << "a test without hits shows nothing";
+    const TraceResults expected = brute_force(scene, rays);
+    const TraceResults results = traced(scene, GetParam()).trace(rays);
+    EXPECT_GT(hit_count(expected), rays.size() / 6) << "too few hits for a test";
     EXPECT_LT(hit_count(expected), rays.size() * 3 / 4);
-    EXPECT_LT(disagreement(answers, expected), 1e-3) << "seed " << seed;
+    EXPECT_LT(disagreement(results, expected), 1e-3) << "seed " << seed;
   }
 }
 
-TEST_P(TracerTest, BarycentricsAndDistanceNameTheSamePoint) {
+TEST_P(TracerTest, BarycentricsAgreeWithDistance) {
   const scene::Scene scene = two_level_scene(4);
   const std::vector<shared::Ray> rays = random_rays(scene, 5000, 4);
-  const Answers answers = traced(scene, GetParam()).trace(rays);
+  const TraceResults results = traced(scene, GetParam()).trace(rays);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const shared::Hit& hit = answers.hits[i];
+    const shared::Hit& hit = results.hits[i];
     if (hit.instance == shared::hit_none) {
       EXPECT_EQ(hit.t, rays[i].t_max);
       continue;
@@ -52,7 +52,7 @@ TEST_P(TracerTest, BarycentricsAndDistanceNameTheSamePoint) {
   }
 }
 
-/// Straight down on the quad, many to a texel.
+/// Rays straight down onto the quad, several per texel.
 std::vector<shared::Ray> rays_from_above() {
   std::vector<shared::Ray> rays;
   for (int z = 0; z < 90; ++z) {
@@ -68,14 +68,14 @@ std::vector<shared::Ray> rays_from_above() {
   return rays;
 }
 
-TEST_P(TracerTest, MasksLetRaysThroughTexelByTexel) {
+TEST_P(TracerTest, AlphaMaskIsTestedPerTexel) {
   const std::vector<shared::Ray> rays = rays_from_above();
   for (std::uint32_t wrap_s = shared::wrap_repeat; wrap_s <= shared::wrap_mirror; ++wrap_s) {
     for (std::uint32_t wrap_t = shared::wrap_repeat; wrap_t <= shared::wrap_mirror; ++wrap_t) {
       scene::Scene scene;
       const shared::Material material = masked_material(scene, wrap_s, wrap_t);
       place(scene, add_mesh(scene, quad(), material), glm::mat4(1.0f));
-      const Answers expected = search(scene, rays);
+      const TraceResults expected = brute_force(scene, rays);
       EXPECT_GT(hit_count(expected), rays.size() / 4);
       EXPECT_LT(hit_count(expected), rays.size() * 3 / 4);
       EXPECT_EQ(disagreement(traced(scene, GetParam()).trace(rays), expected), 0.0)
@@ -84,11 +84,11 @@ TEST_P(TracerTest, MasksLetRaysThroughTexelByTexel) {
   }
 }
 
-double stopped_share(const Answers& answers) {
-  return static_cast<double>(hit_count(answers)) / static_cast<double>(answers.hits.size());
+double hit_fraction(const TraceResults& results) {
+  return static_cast<double>(hit_count(results)) / static_cast<double>(results.hits.size());
 }
 
-/// Its alpha is that of masked_material() times `factor`.
+/// Material whose alpha is that of masked_material() times `factor`.
 shared::Material blended_material(scene::Scene& scene, float factor) {
   shared::Material material = masked_material(scene, shared::wrap_repeat, shared::wrap_repeat);
   material.flags = shared::material_alpha_blend;
@@ -96,7 +96,7 @@ shared::Material blended_material(scene::Scene& scene, float factor) {
   return material;
 }
 
-TEST_P(TracerTest, BlendedSurfacesStopTheirShareOfTheRaysThatAskForIt) {
+TEST_P(TracerTest, BlendedSurfacesStopRaysInProportionToAlpha) {
   const std::vector<shared::Ray> rays = rays_from_above();
   const auto count = static_cast<std::uint32_t>(rays.size());
   for (const float factor : {0.0f, 0.3f, 1.0f}) {
@@ -108,23 +108,22 @@ TEST_P(TracerTest, BlendedSurfacesStopTheirShareOfTheRaysThatAskForIt) {
     material.base_color.w = factor;
     place(plain, add_mesh(plain, quad(), material), glm::mat4(1.0f));
     const TracedScene textured = traced(scene, GetParam()), uniform = traced(plain, GetParam());
-    // Without the stream's number they stop every ray.
+    // Without a blending seed every blended surface stops the ray.
     EXPECT_EQ(hit_count(textured.trace(rays)), rays.size());
     EXPECT_EQ(hit_count(uniform.trace(rays)), rays.size());
-    // Over the image of uv -1 to 2 every texel is seen as often: 8 of 15 have alpha 220, 7 have
-    // 120.
+    // Texels are hit equally often for uv in -1..2: 8 of 15 have alpha 220, 7 have 120.
     const double mean_alpha = (8.0 * 220.0 + 7.0 * 120.0) / 15.0 / 255.0;
-    const Answers seen = textured.trace(rays, count, 12345);
-    EXPECT_NEAR(stopped_share(seen), factor * mean_alpha, 0.012) << "factor " << factor;
-    EXPECT_NEAR(stopped_share(uniform.trace(rays, count, 12345)), factor, 0.012);
+    const TraceResults seen = textured.trace(rays, count, 12345);
+    EXPECT_NEAR(hit_fraction(seen), factor * mean_alpha, 0.012) << "factor " << factor;
+    EXPECT_NEAR(hit_fraction(uniform.trace(rays, count, 12345)), factor, 0.012);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       ASSERT_EQ(seen.occluded[i] != 0, seen.hits[i].instance != shared::hit_none) << i;
     }
   }
 }
 
-// Another frame's number takes other rays, layers decide on their own, and all tracers alike.
-TEST_P(TracerTest, BlendedSurfacesStopOtherRaysInEveryFrame) {
+// Frames and layers are independent, and all tracers decide alike.
+TEST_P(TracerTest, StochasticTransparencyDiffersPerFrame) {
   scene::Scene scene;
   const std::uint32_t mesh = add_mesh(scene, quad(), blended_material(scene, 0.6f));
   place(scene, mesh, glm::mat4(1.0f));
@@ -132,7 +131,7 @@ TEST_P(TracerTest, BlendedSurfacesStopOtherRaysInEveryFrame) {
   const std::vector<shared::Ray> rays = rays_from_above();
   const auto count = static_cast<std::uint32_t>(rays.size());
   const TracedScene subject = traced(scene, GetParam());
-  const Answers first = subject.trace(rays, count, 1), second = subject.trace(rays, count, 2);
+  const TraceResults first = subject.trace(rays, count, 1), second = subject.trace(rays, count, 2);
   double alpha = 0.0, squares = 0.0, both = 0.0, below = 0.0;
   const double share[] = {0.6 * 220.0 / 255.0, 0.6 * 120.0 / 255.0};
   for (int i = 0; i < 15; ++i) {
@@ -147,67 +146,68 @@ TEST_P(TracerTest, BlendedSurfacesStopOtherRaysInEveryFrame) {
     both += a && b;
     below += a && first.hits[i].instance == 1;
   }
-  EXPECT_NEAR(stopped_share(first), alpha, 0.015);
+  EXPECT_NEAR(hit_fraction(first), alpha, 0.015);
   EXPECT_NEAR(both / count, squares, 0.015) << "frames are independent";
-  EXPECT_GT(below, 0.1 * count) << "some pass the upper layer and end on the lower";
+  EXPECT_GT(below, 0.1 * count) << "too few rays pass the upper layer and stop at the lower";
   if (!offered(protocol::TracerKind::software)) return;
-  const Answers reference = traced(scene, protocol::TracerKind::software).trace(rays, count, 1);
+  const TraceResults reference =
+      traced(scene, protocol::TracerKind::software).trace(rays, count, 1);
   EXPECT_LT(disagreement(first, reference), 1e-3);
 }
 
-// The dispatch of a long stream has several rows: a 4K picture asks 8.3 million rays at once. Two
-// rows are what the 128 MiB hold that lavapipe binds.
-TEST_P(TracerTest, AnswersStreamsLongerThanARowOfGroups) {
+// Long streams dispatch several rows of workgroups: a 4K frame traces 8.3 million rays at once. Two
+// rows fit the 128 MiB that lavapipe can bind.
+TEST_P(TracerTest, TracesStreamsLongerThanOneDispatchRow) {
   constexpr std::uint32_t count = shared::rays_per_row + 1000;
   scene::Scene scene;
   place(scene, add_mesh(scene, quad(), plain_material()), glm::mat4(1.0f));
   std::vector<shared::Ray> rays(count);
   for (std::uint32_t i = 0; i < count; ++i) {
-    // Every third ray passes beside the quad.
+    // Every third ray misses the quad.
     rays[i].origin = {i % 3 == 0 ? 5.0f : 0.3f, 1.0f + static_cast<float>(i % 1000), 0.2f};
     rays[i].direction = {0, -1, 0};
     rays[i].t_max = 1e30f;
   }
-  const Answers answers = traced(scene, GetParam()).trace(rays);
+  const TraceResults results = traced(scene, GetParam()).trace(rays);
   std::size_t wrong = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     const bool hits = i % 3 != 0;
     const float t = hits ? rays[i].origin.y : 1e30f;
-    wrong += answers.occluded[i] != (hits ? 1u : 0u) || std::abs(answers.hits[i].t - t) > 1e-3f * t;
+    wrong += results.occluded[i] != (hits ? 1u : 0u) || std::abs(results.hits[i].t - t) > 1e-3f * t;
   }
   EXPECT_EQ(wrong, 0u);
 }
 
-TEST_P(TracerTest, AnswersOnlyTheRaysThatAreCounted) {
+TEST_P(TracerTest, TracesOnlyCountedRays) {
   const scene::Scene scene = two_level_scene(5);
   const std::vector<shared::Ray> rays = random_rays(scene, 1000, 5);
   const TracedScene subject = traced(scene, GetParam());
   for (const std::uint32_t count : {0u, 1u, 63u, 257u, 999u}) {
-    const Answers answers = subject.trace(rays, count);
+    const TraceResults results = subject.trace(rays, count);
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      EXPECT_EQ(answers.hits[i].t == untouched, i >= count) << i << " of " << count;
-      EXPECT_EQ(answers.occluded[i] == 7, i >= count) << i << " of " << count;
+      EXPECT_EQ(results.hits[i].t == untouched, i >= count) << i << " of " << count;
+      EXPECT_EQ(results.occluded[i] == 7, i >= count) << i << " of " << count;
     }
   }
 }
 
-TEST_P(TracerTest, MissesEverythingInAnEmptyScene) {
+TEST_P(TracerTest, EmptySceneHasNoHits) {
   const std::vector<shared::Ray> rays = random_rays({}, 300, 6);
   EXPECT_EQ(hit_count(traced({}, GetParam()).trace(rays)), 0u);
 }
 
-TEST_P(TracerTest, MissesWithRaysThatReachNowhere) {
+TEST_P(TracerTest, EmptyIntervalsHaveNoHits) {
   const scene::Scene scene = two_level_scene(7);
   std::vector<shared::Ray> rays = random_rays(scene, 600, 7);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     rays[i].t_max = i % 3 == 0 ? rays[i].t_min : i % 3 == 1 ? 0.0f : -1e30f;
   }
-  const Answers answers = traced(scene, GetParam()).trace(rays);
-  EXPECT_EQ(hit_count(answers), 0u);
-  for (const std::uint32_t occluded : answers.occluded) EXPECT_EQ(occluded, 0u);
+  const TraceResults results = traced(scene, GetParam()).trace(rays);
+  EXPECT_EQ(hit_count(results), 0u);
+  for (const std::uint32_t occluded : results.occluded) EXPECT_EQ(occluded, 0u);
 }
 
-TEST_P(TracerTest, LeavesOutBothEndsOfTheInterval) {
+TEST_P(TracerTest, IntervalIsOpenAtBothEnds) {
   scene::Scene scene;
   place(scene, add_mesh(scene, quad(), plain_material()), glm::mat4(1.0f));
   const shared::Ray down{{0.25f, 2, 0.5f}, 0.0f, {0, -1, 0}, 10.0f, 0, 0, 0, 0};
@@ -217,15 +217,15 @@ TEST_P(TracerTest, LeavesOutBothEndsOfTheInterval) {
   rays[2].t_min = std::nextafter(2.0f, 0.0f);
   rays[3].t_max = std::nextafter(2.0f, 3.0f);
   rays[4].origin.y = 0.0f;  // starts on the surface
-  const Answers answers = traced(scene, GetParam()).trace(rays);
+  const TraceResults results = traced(scene, GetParam()).trace(rays);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const bool within = i == 2 || i == 3;
-    EXPECT_EQ(answers.hits[i].instance == 0, within) << "ray " << i;
-    EXPECT_EQ(answers.occluded[i], within ? 1u : 0u) << "ray " << i;
+    EXPECT_EQ(results.hits[i].instance == 0, within) << "ray " << i;
+    EXPECT_EQ(results.occluded[i], within ? 1u : 0u) << "ray " << i;
   }
 }
 
-TEST_P(TracerTest, DoesNotMeetFlatInstancesAndCornersWithoutAPlace) {
+TEST_P(TracerTest, FlatInstancesAndNaNVerticesHaveNoHits) {
   scene::Scene scene;
   const std::uint32_t mesh = add_mesh(scene, quad(), plain_material());
   place(scene, mesh, glm::scale(glm::mat4(1.0f), glm::vec3(1, 1, 0)));
@@ -237,22 +237,22 @@ TEST_P(TracerTest, DoesNotMeetFlatInstancesAndCornersWithoutAPlace) {
   EXPECT_EQ(hit_count(traced(scene, GetParam()).trace(random_rays(scene, 500, 9))), 0u);
 }
 
-TEST_P(TracerTest, SeesBothFacesOfMirroredInstances) {
+TEST_P(TracerTest, HitsBothFacesOfMirroredInstances) {
   scene::Scene scene;
   const std::uint32_t mesh = add_mesh(scene, quad(), plain_material());
   place(scene, mesh, glm::scale(glm::mat4(1.0f), glm::vec3(-1, 1, 1)));
   std::vector<shared::Ray> rays(2);
   rays[0] = {{0.25f, 2, 0.5f}, 0.0f, {0, -1, 0}, 10.0f, 0, 0, 0, 0};
   rays[1] = {{0.25f, -2, 0.5f}, 0.0f, {0, 1, 0}, 10.0f, 0, 0, 0, 0};
-  const Answers answers = traced(scene, GetParam()).trace(rays);
+  const TraceResults results = traced(scene, GetParam()).trace(rays);
   for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_EQ(answers.hits[i].instance, 0u);
-    EXPECT_FLOAT_EQ(answers.hits[i].t, 2.0f);
-    EXPECT_EQ(answers.occluded[i], 1u);
+    EXPECT_EQ(results.hits[i].instance, 0u);
+    EXPECT_FLOAT_EQ(results.hits[i].t, 2.0f);
+    EXPECT_EQ(results.occluded[i], 1u);
   }
 }
 
-/// From inside a closed mesh, toward its corners and toward points of its edges.
+/// Rays from inside a closed mesh toward its vertices and edges.
 std::vector<shared::Ray> rays_at_edges(const scene::Mesh& mesh, const glm::mat4& world,
                                        std::uint32_t seed) {
   Random random(seed);
@@ -271,16 +271,16 @@ std::vector<shared::Ray> rays_at_edges(const scene::Mesh& mesh, const glm::mat4&
   return rays;
 }
 
-TEST_P(TracerTest, LetsNothingThroughBetweenTriangles) {
+TEST_P(TracerTest, ClosedMeshIsWatertight) {
   scene::Scene scene;
   glm::mat4 world = glm::translate(glm::mat4(1.0f), {13.1f, -7.7f, 31.3f});
   world = glm::rotate(world, 0.7f, glm::normalize(glm::vec3(1, 2, 3)));
   world = glm::scale(world, {1.3f, 0.9f, 1.1f});
   place(scene, add_mesh(scene, sphere(24), plain_material()), world);
   const std::vector<shared::Ray> rays = rays_at_edges(scene.meshes[0], world, 10);
-  const Answers answers = traced(scene, GetParam()).trace(rays);
-  EXPECT_EQ(hit_count(answers), rays.size());
-  EXPECT_EQ(std::ranges::count(answers.occluded, 0u), 0);
+  const TraceResults results = traced(scene, GetParam()).trace(rays);
+  EXPECT_EQ(hit_count(results), rays.size());
+  EXPECT_EQ(std::ranges::count(results.occluded, 0u), 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(, TracerTest, testing::ValuesIn(all_tracers), test_name);
@@ -289,11 +289,11 @@ class AssetTest : public TracersTest {
  protected:
   static void expect_agreement(const char* file) {
     const char* assets = std::getenv("HELIOGRAPH_TEST_ASSETS");
-    if (!assets) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS names no folder of scenes";
+    if (!assets) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS is not set";
     const scene::Scene scene = scene::import_gltf(std::filesystem::path(assets) / file);
     const bool cpu = rig_->device.is_cpu();
     const std::vector<shared::Ray> rays = random_rays(scene, cpu ? 200'000 : 2'000'000, 8);
-    const Answers expected = traced(scene, protocol::TracerKind::software).trace(rays);
+    const TraceResults expected = traced(scene, protocol::TracerKind::software).trace(rays);
     EXPECT_GT(hit_count(expected), rays.size() / 50);
     for (const auto& [kind, tracer] : rig_->tracers) {
       const std::string name(protocol::enum_name(kind));
@@ -307,18 +307,18 @@ class AssetTest : public TracersTest {
   }
 };
 
-TEST_F(TracersTest, WhatIsNotOfferedIsRefused) {
+TEST_F(TracersTest, UnsupportedTracerIsRejected) {
   for (const protocol::TracerKind kind : all_tracers) {
     if (offered(kind)) continue;
     EXPECT_THROW(make_tracer(kind, rig_->device), gpu::GpuError) << protocol::enum_name(kind);
   }
 }
 
-TEST_F(AssetTest, TracersAgreeOnAHelmet) {
+TEST_F(AssetTest, TracersAgreeOnDamagedHelmet) {
   expect_agreement("gltf/DamagedHelmet.glb");
 }
 
-TEST_F(AssetTest, TracersAgreeInAnAtrium) {
+TEST_F(AssetTest, TracersAgreeOnAtrium) {
   expect_agreement("standins/glossy_sponza_1.glb");
 }
 

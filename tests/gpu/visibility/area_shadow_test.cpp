@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t width = 64, height = 48;
 
-/// A white, rough ground with a square table above it; lit by what a test adds.
+/// A white rough ground below a square table; tests add the light.
 std::shared_ptr<scene::Scene> table_scene() {
   SceneBuilder builder;
   const auto square = [&](float size, float at) {
@@ -27,7 +27,7 @@ std::shared_ptr<scene::Scene> table_scene() {
 
 struct Shadow {
   std::vector<double> mean;
-  std::vector<glm::dvec3> positions;  // NaN where nothing is seen or the table is
+  std::vector<glm::dvec3> positions;  // NaN where the pixel shows the table or the background
 };
 
 Shadow trace(const std::shared_ptr<scene::Scene>& scene, std::uint32_t samples) {
@@ -62,15 +62,15 @@ Shadow trace(const std::shared_ptr<scene::Scene>& scene, std::uint32_t samples) 
   return shadow;
 }
 
-bool hidden_by_the_table(const glm::dvec3& from, const glm::dvec3& to) {
+bool occluded_by_table(const glm::dvec3& from, const glm::dvec3& to) {
   if (to.y <= 1.0) return false;
   const glm::dvec3 at = from + (to - from) * ((1.0 - from.y) / (to.y - from.y));
   return std::abs(at.x) < 0.5 && std::abs(at.z) < 0.5;
 }
 
-/// Share of the ground's diffuse light that arrives, by so many points of the light.
-double lit_share(const glm::dvec3& position, const glm::dvec3& direction,
-                 const std::function<glm::dvec3(double, double)>& point) {
+/// Fraction of unoccluded diffuse light at `position`, by numerical integration over the light.
+double visible_fraction(const glm::dvec3& position, const glm::dvec3& direction,
+                        const std::function<glm::dvec3(double, double)>& point) {
   constexpr int strata = 64;
   double lit = 0.0, all = 0.0;
   for (int i = 0; i < strata * strata; ++i) {
@@ -80,18 +80,18 @@ double lit_share(const glm::dvec3& position, const glm::dvec3& direction,
     const double weight =
         std::max(-glm::dot(offset, direction), 0.0) * std::max(offset.y, 0.0) / (squared * squared);
     all += weight;
-    if (!hidden_by_the_table(position, to)) lit += weight;
+    if (!occluded_by_table(position, to)) lit += weight;
   }
   return all > 0.0 ? lit / all : NAN;
 }
 
-void expect_shares(const Shadow& shadow, const glm::dvec3& direction,
-                   const std::function<glm::dvec3(double, double)>& point) {
+void expect_visible_fractions(const Shadow& shadow, const glm::dvec3& direction,
+                              const std::function<glm::dvec3(double, double)>& point) {
   double error = 0.0, bias = 0.0;
   int compared = 0, half_lit = 0;
   for (std::size_t i = 0; i < shadow.mean.size(); ++i) {
     if (std::isnan(shadow.positions[i].x)) continue;
-    const double expected = lit_share(shadow.positions[i], direction, point);
+    const double expected = visible_fraction(shadow.positions[i], direction, point);
     if (std::isnan(expected)) continue;
     EXPECT_NEAR(shadow.mean[i], expected, 0.2) << shadow.positions[i].x;
     error += std::abs(shadow.mean[i] - expected);
@@ -105,7 +105,7 @@ void expect_shares(const Shadow& shadow, const glm::dvec3& direction,
   EXPECT_LT(std::abs(bias / compared), 0.005);
 }
 
-TEST(AreaShadows, ARectangleIsHiddenByItsShareOfTheLight) {
+TEST(AreaShadows, RectangleLightVisibilityMatchesIntegral) {
   const auto scene = table_scene();
   shared::Light light{};
   light.type = shared::light_rectangle;
@@ -117,13 +117,13 @@ TEST(AreaShadows, ARectangleIsHiddenByItsShareOfTheLight) {
   light.half_height = 0.4f;
   scene->lights.push_back({"panel", light});
   const glm::dvec3 across = glm::cross(light.direction, light.tangent);
-  expect_shares(trace(scene, 128), light.direction, [&](double u, double v) {
+  expect_visible_fractions(trace(scene, 128), light.direction, [&](double u, double v) {
     return glm::dvec3(light.position) + (2.0 * u - 1.0) * 0.9 * glm::dvec3(light.tangent) +
            (2.0 * v - 1.0) * 0.4 * across;
   });
 }
 
-TEST(AreaShadows, ADiskIsHiddenByItsShareOfTheLight) {
+TEST(AreaShadows, DiskLightVisibilityMatchesIntegral) {
   const auto scene = table_scene();
   shared::Light light{};
   light.type = shared::light_disk;
@@ -133,15 +133,15 @@ TEST(AreaShadows, ADiskIsHiddenByItsShareOfTheLight) {
   light.color = glm::vec3(5.0f);
   light.radius = 0.7f;
   scene->lights.push_back({"disk", light});
-  expect_shares(trace(scene, 128), light.direction, [&](double u, double v) {
+  expect_visible_fractions(trace(scene, 128), light.direction, [&](double u, double v) {
     const double radius = 0.7 * std::sqrt(u), angle = 2.0 * M_PI * v;
     return glm::dvec3(light.position) +
            glm::dvec3(radius * std::cos(angle), 0.0, radius * std::sin(angle));
   });
 }
 
-// A spot's disk faces the surface; inside the full cone its light is a point's.
-TEST(AreaShadows, ASpotWithARadiusCastsASoftShadowAndOneWithoutAHardOne) {
+// The disk of a spot light faces the surface; inside the inner cone it shines like a point light.
+TEST(AreaShadows, SpotLightShadowIsSoftOnlyWithRadius) {
   for (const float radius : {0.0f, 0.6f}) {
     const auto scene = table_scene();
     shared::Light light{};
@@ -160,7 +160,8 @@ TEST(AreaShadows, ASpotWithARadiusCastsASoftShadowAndOneWithoutAHardOne) {
       soft += shadow.mean[i] > 0.02 && shadow.mean[i] < 0.98;
       const glm::dvec2 at(shadow.positions[i].x, shadow.positions[i].z);
       const double reach = std::max(std::abs(at.x), std::abs(at.y));
-      // The edge of the table throws its shadow to 0.75; half the disk is as wide again below it.
+      // The table's edge casts its shadow at 0.75; the penumbra extends the same distance on both
+      // sides.
       const double penumbra = 0.5 * radius + 0.02;
       if (reach < 0.75 - penumbra) {
         EXPECT_EQ(shadow.mean[i], 0.0) << at.x << " " << at.y;

@@ -10,7 +10,7 @@
 namespace heliograph::test {
 namespace {
 
-/// Lights all about, of which a surface sees some, between leaves that hide half of everything.
+/// Lights on all sides, about half of them occluded by leaves.
 std::shared_ptr<const scene::Scene> leafy_scene() {
   SceneBuilder scene;
   const auto leaf = scene.add_quad(
@@ -22,20 +22,21 @@ std::shared_ptr<const scene::Scene> leafy_scene() {
     scene.place(leaf, glm::rotate(glm::translate(glm::mat4(1.0f), place), a, glm::vec3(0, 1, 0)));
   }
   scene.add_sun({0.3f, -0.5f, -1.0f}, {3, 2, 1}, 4.0f);
-  scene.add_lamp({4, 3, 5}, {40, 50, 60}, 0.3f).add_lamp({-5, -2, 3}, {90, 80, 70}, 0.5f);
+  scene.add_point_light({4, 3, 5}, {40, 50, 60}, 0.3f)
+      .add_point_light({-5, -2, 3}, {90, 80, 70}, 0.5f);
   return scene.build();
 }
 
 const scene::Camera camera = look({0, 0, 3}, {0, 0, 0});
 
-/// Both kinds of visibility twice over, made by shaders and by their twins.
-class Twins {
+/// Shadow and ambient visibility by the shaders and by the host kernels.
+class KernelComparison {
  public:
-  explicit Twins(VkExtent2D extent) : rig_(leafy_scene(), camera, {.extent = extent}) {
+  explicit KernelComparison(VkExtent2D extent) : rig_(leafy_scene(), camera, {.extent = extent}) {
     RandomFrame random(rig_);
     const render::GBuffer gbuffer = random.gbuffer();
     for (const bool host : {false, true}) {
-      const auto in = with_kernels(rig_, host);
+      const auto in = with_host_kernels(rig_, host);
       signals_.push_back(render::trace_shadows(rig_.plan(), in, gbuffer));
       signals_.push_back(render::trace_ambient(rig_.plan(), in, gbuffer));
     }
@@ -44,10 +45,10 @@ class Twins {
   }
 
   FrameRig& rig() { return rig_; }
-  Compared shadows() { return compare(rig_.read(signals_[0]), rig_.read(signals_[2])); }
-  Compared ambient() { return compare(rig_.read(signals_[1]), rig_.read(signals_[3])); }
+  ErrorStatistics shadows() { return compare(rig_.read(signals_[0]), rig_.read(signals_[2])); }
+  ErrorStatistics ambient() { return compare(rig_.read(signals_[1]), rig_.read(signals_[3])); }
 
-  /// Entries of the streams that passes of this name work on, in order.
+  /// Ray counts of all passes named `pass`, in order of execution.
   std::vector<std::uint64_t> rays(const std::string& pass) {
     std::vector<std::uint64_t> found;
     for (const auto& work : rig_.plan().work()) {
@@ -61,39 +62,39 @@ class Twins {
   std::vector<gpu::ImageRef> signals_;
 };
 
-class VisibilityRaysHost : public testing::Test {
+class VisibilityRaysKernel : public testing::Test {
  protected:
   void SetUp() override {
-    if (!has_host_kernels()) GTEST_SKIP() << "host kernels are for devices that are processors";
+    if (!has_host_kernels()) GTEST_SKIP() << "host kernels run on CPU devices only";
   }
 };
 
-TEST_F(VisibilityRaysHost, FindWhatTheShadersRaysFind) {
-  Twins twins({177, 95});
-  for (const Compared& result : {twins.shadows(), twins.ambient()}) {
-    EXPECT_LT(result.apart, 2e-3) << "but for rays that graze an edge";
-    EXPECT_GT(result.size, 0.2);
-    EXPECT_LT(result.size, 0.9);
+TEST_F(VisibilityRaysKernel, MatchesShaders) {
+  KernelComparison comparison({177, 95});
+  for (const ErrorStatistics& result : {comparison.shadows(), comparison.ambient()}) {
+    EXPECT_LT(result.outliers, 2e-3) << "more differences than rays that graze an edge";
+    EXPECT_GT(result.magnitude, 0.2);
+    EXPECT_LT(result.magnitude, 0.9);
   }
   for (const char* pass : {"shadows.trace", "ambient.trace"}) {
-    const auto rays = twins.rays(pass);
+    const auto rays = comparison.rays(pass);
     ASSERT_EQ(rays.size(), 2u);
     EXPECT_GT(rays[0], 1000u);
     EXPECT_NEAR(static_cast<double>(rays[0]), static_cast<double>(rays[1]), 3.0);
   }
 }
 
-TEST_F(VisibilityRaysHost, WorkAtEverySize) {
+TEST_F(VisibilityRaysKernel, MatchesShadersAtAnySize) {
   for (const VkExtent2D extent : {VkExtent2D{1, 1}, {3, 5}, {16, 2}, {17, 31}, {130, 1}}) {
-    Twins twins(extent);
-    EXPECT_LT(twins.shadows().apart, 3e-3) << extent.width << " x " << extent.height;
-    EXPECT_LT(twins.ambient().apart, 3e-3) << extent.width << " x " << extent.height;
+    KernelComparison comparison(extent);
+    EXPECT_LT(comparison.shadows().outliers, 3e-3) << extent.width << " x " << extent.height;
+    EXPECT_LT(comparison.ambient().outliers, 3e-3) << extent.width << " x " << extent.height;
   }
 }
 
-TEST_F(VisibilityRaysHost, AreMadeFasterThanByTheShaders) {
-  Twins twins({640, 360});
-  expect_faster(twins.rig(), {"shadows.rays", "ambient.rays"}, 2.0);
+TEST_F(VisibilityRaysKernel, IsFasterThanShaders) {
+  KernelComparison comparison({640, 360});
+  expect_faster(comparison.rig(), {"shadows.rays", "ambient.rays"}, 2.0);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ glm::vec3 decode(const glm::vec2& p) {
   return glm::normalize(d);
 }
 
-/// Rasters a scene, traces one kind of visibility and averages it over samples.
+/// Rasterizes a scene, traces shadows or ambient visibility and averages over samples.
 struct Trace {
   Trace(SceneBuilder& builder, const scene::Camera& view, const std::string& tracer,
         const protocol::Settings& settings = {}, bool ambient = false)
@@ -69,7 +69,7 @@ std::uint32_t add_ground(SceneBuilder& builder, float size, float height = 0.0f)
                           surface(glm::vec3(1.0f)));
 }
 
-/// A roof at `height` that ends at x = 0 and reaches far toward -x.
+/// A roof at `height` that covers x < 0.
 std::uint32_t add_roof(SceneBuilder& builder, float height) {
   return builder.add_quad(
       {{{-50, height, 50}, {0, height, 50}, {0, height, -50}, {-50, height, -50}}},
@@ -79,12 +79,12 @@ std::uint32_t add_roof(SceneBuilder& builder, float height) {
 class Shadows : public testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
-    if (!is_offered(GetParam())) GTEST_SKIP() << lacking(GetParam());
+    if (!is_supported(GetParam())) GTEST_SKIP() << unsupported_reason(GetParam());
   }
 };
 
-// A sun straight above seen past a straight edge: the uncovered part of its disk.
-TEST_P(Shadows, PenumbraIsAsWideAsTheSunAndAsTallAsTheDiskSays) {
+// Overhead sun past a straight edge: the uncovered fraction of its disk.
+TEST_P(Shadows, PenumbraMatchesAnalyticSunDisk) {
   constexpr float height = 2.0f, diameter = 20.0f;
   SceneBuilder builder;
   builder.place(add_ground(builder, 50)).place(add_roof(builder, height));
@@ -107,7 +107,7 @@ TEST_P(Shadows, PenumbraIsAsWideAsTheSunAndAsTallAsTheDiskSays) {
   EXPECT_LT(error / compared, 0.012);
 }
 
-TEST_P(Shadows, ASunWithoutDiameterCastsASharpShadow) {
+TEST_P(Shadows, SunWithoutDiameterCastsHardShadow) {
   SceneBuilder builder;
   builder.place(add_ground(builder, 50)).place(add_roof(builder, 2.0f));
   builder.add_sun({0.5f, -1, 0}, glm::vec3(1.0f), 0.0f);
@@ -121,7 +121,7 @@ TEST_P(Shadows, ASunWithoutDiameterCastsASharpShadow) {
   }
 }
 
-TEST_P(Shadows, TheOverrideReplacesTheSunsOwnDiameter) {
+TEST_P(Shadows, AngularDiameterOverrideReplacesSunDiameter) {
   SceneBuilder builder;
   builder.place(add_ground(builder, 50)).place(add_roof(builder, 2.0f));
   builder.add_sun({0, -1, 0}, glm::vec3(1.0f), 20.0f);
@@ -136,26 +136,26 @@ TEST_P(Shadows, TheOverrideReplacesTheSunsOwnDiameter) {
 }
 
 // Heitz et al. 2018: the expectation is sum(L V) / sum(L).
-TEST_P(Shadows, SeveralLightsConvergeToTheRatioOfShadowedToUnshadowedLight) {
+TEST_P(Shadows, MultipleLightsConvergeToShadowRatio) {
   SceneBuilder builder;
   builder.place(add_ground(builder, 50)).place(add_roof(builder, 2.0f));
   builder.add_sun({0, -1, 0}, glm::vec3(1.0f));
   builder.add_sun({-1, -1, 0}, glm::vec3(3.0f));
-  builder.add_lamp({0.5f, 1.0f, 0}, glm::vec3(0.8f));
+  builder.add_point_light({0.5f, 1.0f, 0}, glm::vec3(0.8f));
   Trace trace(builder, look({-0.5f, 1.5f, 2}, {-0.5f, 0, 0}), GetParam());
   trace.run(256);
   int compared = 0, mixed = 0;
   for (std::size_t i = 0; i < trace.mean.size(); ++i) {
     if (!trace.covered(i)) continue;
     const glm::dvec3 p = trace.world(i);
-    // From the first sun the roof hides x < 0; from the second, which comes from +x, x < -2.
+    // The roof shadows x < 0 from the first sun and x < -2 from the second, which comes from +x.
     if (std::abs(p.x) < 1e-3 || std::abs(p.x + 2.0) < 1e-3) continue;
-    const glm::dvec3 to_lamp = glm::dvec3(0.5, 1.0, 0.0) - p;
-    const double squared = glm::dot(to_lamp, to_lamp);
-    const double lamp = 0.8 / squared * to_lamp.y / std::sqrt(squared);
+    const glm::dvec3 to_light = glm::dvec3(0.5, 1.0, 0.0) - p;
+    const double squared = glm::dot(to_light, to_light);
+    const double light = 0.8 / squared * to_light.y / std::sqrt(squared);
     const double above = 1.0, aslant = 3.0 * std::sqrt(0.5);
-    const double lit = (p.x > 0.0 ? above : 0.0) + (p.x > -2.0 ? aslant : 0.0) + lamp;
-    ASSERT_NEAR(trace.mean[i], lit / (above + aslant + lamp), 0.05) << p.x;
+    const double lit = (p.x > 0.0 ? above : 0.0) + (p.x > -2.0 ? aslant : 0.0) + light;
+    ASSERT_NEAR(trace.mean[i], lit / (above + aslant + light), 0.05) << p.x;
     ++compared;
     mixed += p.x < 0.0;
   }
@@ -163,16 +163,15 @@ TEST_P(Shadows, SeveralLightsConvergeToTheRatioOfShadowedToUnshadowedLight) {
   EXPECT_GT(mixed, 500);
 }
 
-TEST_P(Shadows, ASphericalLampHasAPenumbraToo) {
-  constexpr double lamp_height = 3.0, roof_height = 1.0, lamp_radius = 0.5;
+TEST_P(Shadows, SphereLightCastsPenumbra) {
+  constexpr double light_height = 3.0, roof_height = 1.0, light_radius = 0.5;
   SceneBuilder builder;
   builder.place(add_ground(builder, 50)).place(add_roof(builder, roof_height));
-  builder.add_lamp({0, lamp_height, 0}, glm::vec3(10.0f), lamp_radius);
+  builder.add_point_light({0, light_height, 0}, glm::vec3(10.0f), light_radius);
   Trace trace(builder, look({0, 0.9f, 1.5f}, {0, 0, 0}), GetParam());
   trace.run(64);
-  // Straight under the lamp its disk is half hidden; the half shadow is as wide as seen through
-  // the edge.
-  const double half_width = lamp_radius * roof_height / (lamp_height - roof_height);
+  // Below the light half of its disk is hidden; the penumbra is the disk projected past the edge.
+  const double half_width = light_radius * roof_height / (light_height - roof_height);
   int full = 0, none = 0, half = 0;
   for (std::size_t i = 0; i < trace.mean.size(); ++i) {
     if (!trace.covered(i) || std::abs(trace.world(i).z) > 0.3f) continue;
@@ -193,7 +192,7 @@ TEST_P(Shadows, ASphericalLampHasAPenumbraToo) {
   EXPECT_GT(half, 2);
 }
 
-/// Whether every lit-facing pixel of a convex thing is lit: rays must leave their own surface.
+/// Expects every pixel of a convex mesh that faces the light to be lit: no self-intersection.
 void expect_no_acne(SceneBuilder& builder, const scene::Camera& camera, const glm::vec3& to_sun,
                     const std::string& tracer, const std::string& what) {
   builder.add_sun(-to_sun, glm::vec3(1.0f));
@@ -212,7 +211,7 @@ void expect_no_acne(SceneBuilder& builder, const scene::Camera& camera, const gl
   EXPECT_EQ(dark, 0) << what << ": of " << tested << " pixels";
 }
 
-TEST_P(Shadows, ConvexThingsDoNotShadowThemselvesAtAnyScale) {
+TEST_P(Shadows, ConvexMeshesHaveNoShadowAcneAtAnyScale) {
   for (const float scale : {1e-3f, 1e-2f, 1.0f, 10.0f, 100.0f, 1e3f, 1e4f}) {
     SceneBuilder builder;
     builder.place(builder.add_sphere(scale, surface(glm::vec3(1.0f))));
@@ -223,7 +222,7 @@ TEST_P(Shadows, ConvexThingsDoNotShadowThemselvesAtAnyScale) {
   }
 }
 
-TEST_P(Shadows, GroundsDoNotShadowThemselvesFromAfar) {
+TEST_P(Shadows, GroundHasNoShadowAcneFarFromCamera) {
   for (const float height : {0.0f, 1e-4f, 0.033f, 0.5f, 3.0f, -0.04f}) {
     for (const float distance : {2.0f, 20.0f, 200.0f}) {
       SceneBuilder builder;
@@ -236,7 +235,7 @@ TEST_P(Shadows, GroundsDoNotShadowThemselvesFromAfar) {
   }
 }
 
-TEST_P(Shadows, AmbientRaysSeeTheShareOfTheSkyThatCosineWeighs) {
+TEST_P(Shadows, AmbientVisibilityIsCosineWeightedSky) {
   constexpr float height = 0.5f;
   SceneBuilder builder;
   builder.place(add_ground(builder, 50)).place(add_roof(builder, height));
@@ -249,7 +248,7 @@ TEST_P(Shadows, AmbientRaysSeeTheShareOfTheSkyThatCosineWeighs) {
   for (std::size_t i = 0; i < trace.mean.size(); ++i) {
     const glm::vec3 p = trace.covered(i) ? trace.world(i) : glm::vec3(99.0f);
     if (std::abs(p.x) > 4.0f || std::abs(p.z) > 4.0f) continue;
-    // Open beyond the elevation at which the edge is seen: (1 + sin of its angle) / 2.
+    // The sky is open beyond the elevation of the roof's edge: (1 + sin(elevation)) / 2.
     const double expected = 0.5 * (1.0 + p.x / std::hypot(p.x, height));
     error += std::abs(trace.mean[i] - expected);
     ++compared;

@@ -1,11 +1,11 @@
-// Blended surfaces cover their share: of what the camera sees, of what mirrors show, of the light
-// of lamps and of the sky.
+// Alpha-blended surfaces along rays: reflections, shadow rays and ambient rays pass with
+// probability 1 - alpha.
 
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "tests/image/support/scene_renderer.hpp"
+#include "tests/image/support/renderer_rig.hpp"
 
 namespace heliograph::test {
 namespace {
@@ -27,12 +27,12 @@ protocol::Settings path_traced(protocol::ReferenceScope scope) {
   return settings;
 }
 
-/// Mean of the middle of the picture, away from edges.
-glm::vec3 middle(Still& still, const protocol::Settings& settings, std::uint32_t samples,
-                 const char* name) {
-  still.apply(settings);
-  save_picture(name, still.accumulate(samples));
-  const render::FloatImage radiance = still.capture("accumulated");
+/// Mean over the center of the image, away from edges.
+glm::vec3 center_mean(RendererRig& rig, const protocol::Settings& settings, std::uint32_t samples,
+                      const char* name) {
+  rig.apply(settings);
+  save_image(name, rig.accumulate(samples));
+  const render::FloatImage radiance = rig.capture("accumulated");
   glm::vec3 sum(0.0f);
   int count = 0;
   for (std::uint32_t y = radiance.height / 4; y < 3 * radiance.height / 4; ++y) {
@@ -43,7 +43,7 @@ glm::vec3 middle(Still& still, const protocol::Settings& settings, std::uint32_t
   return sum / static_cast<float>(count);
 }
 
-/// A pane of alpha 0.3, white and black, that does not reflect the little there is.
+/// A black pane of alpha 0.3.
 shared::Material pane(bool unlit) {
   shared::Material material = surface(glm::vec3(0.0f), 1.0f);
   material.base_color = {0.0f, 0.0f, 0.0f, 0.3f};
@@ -52,35 +52,36 @@ shared::Material pane(bool unlit) {
   return material;
 }
 
-class Blended : public testing::TestWithParam<const char*> {
+class BlendedRays : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    if (!is_offered(GetParam())) GTEST_SKIP() << lacking(GetParam());
+    if (!is_supported(GetParam())) GTEST_SKIP() << unsupported_reason(GetParam());
   }
 
-  static void expect_all(Still& still, float expected, float tolerance, const std::string& what) {
+  static void expect_all(RendererRig& rig, float expected, float tolerance,
+                         const std::string& what) {
     using enum protocol::ReferenceScope;
-    const std::vector<std::pair<const char*, protocol::Settings>> ways{
+    const std::vector<std::pair<const char*, protocol::Settings>> methods{
         {"hybrid", undenoised()},
         {"same_paths", path_traced(same_paths)},
         {"full", path_traced(full)}};
-    for (const auto& [name, settings] : ways) {
-      const std::string picture = "blended_" + what + "_" + name;
-      EXPECT_NEAR(middle(still, settings, 128, picture.c_str()).x, expected, tolerance * expected)
+    for (const auto& [name, settings] : methods) {
+      const std::string file = "blended_" + what + "_" + name;
+      EXPECT_NEAR(center_mean(rig, settings, 128, file.c_str()).x, expected, tolerance * expected)
           << name;
     }
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Tracers, Blended, testing::Values("embree", "software"),
+INSTANTIATE_TEST_SUITE_P(Tracers, BlendedRays, testing::Values("embree", "software"),
                          [](const auto& tested) { return std::string(tested.param); });
 
-TEST_P(Blended, MirrorsShowWhatLiesBehindByTheShareThatIsNotCovered) {
+TEST_P(BlendedRays, ReflectionsPassThroughByOneMinusAlpha) {
   SceneBuilder builder;
   shared::Material glow = surface(glm::vec3(0.0f), 1.0f, 1.0f);
   glow.emissive = glm::vec3(2.0f);
   glow.flags = shared::material_double_sided;
-  // A mirror at 45 degrees sends the eye's rays up: through two panes, to a glowing ceiling.
+  // A mirror at 45 degrees reflects camera rays up through two panes to an emissive ceiling.
   builder.place(builder.add_quad({{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}},
                                  surface(glm::vec3(1.0f), 0.0f, 1.0f)),
                 glm::rotate(glm::mat4(1.0f), -0.7853982f, glm::vec3(1, 0, 0)));
@@ -90,16 +91,16 @@ TEST_P(Blended, MirrorsShowWhatLiesBehindByTheShareThatIsNotCovered) {
   builder.place(builder.add_quad(level(3), pane(true)));
   builder.place(builder.add_quad(level(4), pane(true)));
   builder.place(builder.add_quad(level(6), glow));
-  Still still(builder.build(), scene::constant_environment(glm::vec3(0.0f)),
-              look({0, 0, 5}, {0, 0, 0}, 20.0f), 32, 32, GetParam());
-  expect_all(still, 2.0f * 0.7f * 0.7f, 0.03f, "mirror");
+  RendererRig rig(builder.build(), scene::constant_environment(glm::vec3(0.0f)),
+                  look({0, 0, 5}, {0, 0, 0}, 20.0f), 32, 32, GetParam());
+  expect_all(rig, 2.0f * 0.7f * 0.7f, 0.03f, "mirror");
 }
 
-TEST_P(Blended, ShadowsAreAsDarkAsWhatCastsThemCovers) {
+TEST_P(BlendedRays, ShadowsAreProportionalToAlpha) {
   SceneBuilder builder;
   builder.place(builder.add_quad({{{-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}}},
                                  surface(glm::vec3(0.5f), 1.0f)));
-  // Beside the camera's way to the floor, in the sun's.
+  // Between the sun and the floor, outside the camera's view.
   builder.place(builder.add_quad({{{-3, 1, 3}, {3, 1, 3}, {3, 1, -3}, {-3, 1, -3}}}, pane(false)),
                 glm::translate(glm::mat4(1.0f), {8.0f, 7.0f, 0}));
   builder.add_sun({-1, -1, 0}, glm::vec3(3.0f));
@@ -107,34 +108,35 @@ TEST_P(Blended, ShadowsAreAsDarkAsWhatCastsThemCovers) {
   camera.up = {0, 0, -1};
   camera.orthographic_height = 2.0f;
   const auto scene = builder.build();
-  Still shaded(scene, scene::constant_environment(glm::vec3(0.0f)), camera, 32, 32, GetParam());
+  RendererRig shaded(scene, scene::constant_environment(glm::vec3(0.0f)), camera, 32, 32,
+                     GetParam());
   protocol::Settings open = undenoised();
   open.shadows.enabled = false;
-  const float lit = middle(shaded, open, 4, "blended_open").x;
+  const float lit = center_mean(shaded, open, 4, "blended_open").x;
   EXPECT_GT(lit, 0.1f);
   expect_all(shaded, 0.7f * lit, 0.03f, "shadow");
 }
 
-TEST_P(Blended, TheSkyIsHiddenByTheShareThatIsCovered) {
+TEST_P(BlendedRays, AmbientOcclusionIsProportionalToAlpha) {
   SceneBuilder builder;
   builder.place(builder.add_quad({{{-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}}},
                                  surface(glm::vec3(0.5f), 1.0f)));
-  // Above the eye.
+  // Above the camera.
   builder.place(
       builder.add_quad({{{-90, 3, 90}, {90, 3, 90}, {90, 3, -90}, {-90, 3, -90}}}, pane(false)));
   scene::Camera camera = look({0, 2, 0}, {0, 0, 0});
   camera.up = {0, 0, -1};
   camera.orthographic_height = 2.0f;
-  Still still(builder.build(), scene::constant_environment(glm::vec3(1.0f)), camera, 32, 32,
-              GetParam());
+  RendererRig rig(builder.build(), scene::constant_environment(glm::vec3(1.0f)), camera, 32, 32,
+                  GetParam());
   protocol::Settings settings = undenoised();
   settings.ambient.radius = 100.0f;
   settings.lighting.environment_specular = false;
   settings.ambient.occlusion = false;
-  const float open = middle(still, settings, 4, "blended_open_sky").x;
+  const float open = center_mean(rig, settings, 4, "blended_open_sky").x;
   EXPECT_GT(open, 0.1f);
   settings.ambient.occlusion = true;
-  EXPECT_NEAR(middle(still, settings, 48, "blended_sky").x, 0.7f * open, 0.02f * open);
+  EXPECT_NEAR(center_mean(rig, settings, 48, "blended_sky").x, 0.7f * open, 0.02f * open);
 }
 
 }  // namespace

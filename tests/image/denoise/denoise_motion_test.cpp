@@ -1,4 +1,4 @@
-// What is left of an old picture where things and lights went on.
+// Ghosting of previous frames where objects and lights move.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,8 +21,8 @@ scene::Channel channel(std::uint32_t node, scene::Property property, std::vector
   return channel;
 }
 
-/// A red box over a ground that mirrors a little, under a sun of `sun_width` degrees. The clip
-/// "slide" takes the box to the right, "swing" turns the sun by half a right angle.
+/// A red box over a glossy ground, under a sun of `sun_width` degrees. The clip "slide" moves the
+/// box to the right, "swing" rotates the sun by 45 degrees.
 std::shared_ptr<const scene::Scene> box_under_a_sun(float sun_width) {
   SceneBuilder builder;
   builder.place(builder.add_quad({{{-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}}},
@@ -54,13 +54,13 @@ std::shared_ptr<const scene::Scene> box_under_a_sun(float sun_width) {
   scene->lights[0].node = static_cast<std::uint32_t>(scene->nodes.size());
   const glm::quat facing = glm::rotation({0, 0, -1}, scene->lights[0].device.direction);
   const glm::quat swung = glm::angleAxis(glm::radians(45.0f), glm::vec3(0, 1, 0)) * facing;
-  scene::Transform place;
-  place.rotation = facing;
+  scene::Transform position;
+  position.rotation = facing;
   scene->nodes.push_back({.name = "sun",
                           .parent = {},
-                          .local = place.matrix(),
-                          .world = place.matrix(),
-                          .transform = place});
+                          .local = position.matrix(),
+                          .world = position.matrix(),
+                          .transform = position});
   const auto rotation =
       channel(*scene->lights[0].node, scene::Property::rotation,
               {facing.x, facing.y, facing.z, facing.w, swung.x, swung.y, swung.z, swung.w});
@@ -68,17 +68,17 @@ std::shared_ptr<const scene::Scene> box_under_a_sun(float sun_width) {
   return scene;
 }
 
-/// Which part of `before` shows in `shown` that should be `truth`: 0 none, 1 all of it. By least
-/// squares over the pixels that changed and that `counts` lets through.
-template <class Counts>
-double ghost(const render::Frame& before, const render::Frame& truth, const render::Frame& shown,
-             Counts counts) {
+/// Fraction of `before` that remains in `shown`, 0 to 1, where `reference` is correct: least
+/// squares over the pixels that changed and for which `selected` is true.
+template <class Selected>
+double ghost(const render::Frame& before, const render::Frame& reference,
+             const render::Frame& shown, Selected selected) {
   double along = 0.0, all = 0.0;
-  for (std::size_t i = 0; i < truth.rgba.size(); ++i) {
-    if (i % 4 == 3 || !counts(i / 4)) continue;
-    const double change = double(before.rgba[i]) - double(truth.rgba[i]);
+  for (std::size_t i = 0; i < reference.rgba.size(); ++i) {
+    if (i % 4 == 3 || !selected(i / 4)) continue;
+    const double change = double(before.rgba[i]) - double(reference.rgba[i]);
     if (std::abs(change) < 8.0) continue;
-    along += change * (double(shown.rgba[i]) - double(truth.rgba[i]));
+    along += change * (double(shown.rgba[i]) - double(reference.rgba[i]));
     all += change * change;
   }
   EXPECT_GT(all, 0.0) << "nothing changed";
@@ -87,69 +87,70 @@ double ghost(const render::Frame& before, const render::Frame& truth, const rend
 
 constexpr auto everywhere = [](std::size_t) { return true; };
 
-/// Where the picture was darker before: a shadow has left.
-auto lit_again(const render::Frame& before, const render::Frame& truth) {
-  return [&](std::size_t pixel) { return before.rgba[4 * pixel + 1] < truth.rgba[4 * pixel + 1]; };
+/// Pixels that were darker before: a shadow has moved away.
+auto lit_again(const render::Frame& before, const render::Frame& reference) {
+  return
+      [&](std::size_t pixel) { return before.rgba[4 * pixel + 1] < reference.rgba[4 * pixel + 1]; };
 }
 
-/// The truth of a moment, and the instance that every pixel of it shows.
+/// Ground reference at one time of a clip, with the instance of every pixel.
 struct Moment {
-  render::Frame picture;
+  render::Frame frame;
   render::FloatImage instances;
 };
 
 Moment moment(const std::shared_ptr<const scene::Scene>& scene, const char* clip, double seconds) {
-  Things still(scene, raw_alone());
-  EXPECT_TRUE(still.renderer.set_pose(clip, seconds));
-  Moment shown{still.accumulate(128), {}};
-  shown.instances = still.capture("gbuffer.instance");
+  SpheresRig rig(scene, noisy_only());
+  EXPECT_TRUE(rig.renderer.set_pose(clip, seconds));
+  Moment shown{rig.accumulate(128), {}};
+  shown.instances = rig.capture("gbuffer.instance");
   return shown;
 }
 
-/// Rests for a while, then plays `clip` up to `seconds` in steps of a thirtieth.
+/// Renders 10 static frames, then `frames` of `clip` at 30 frames per second.
 render::Frame played(const std::shared_ptr<const scene::Scene>& scene,
                      const protocol::Settings& settings, const char* clip, int frames) {
-  Things still(scene, settings);
-  still.renderer.set_frame_seconds(1.0f / 30.0f);
+  SpheresRig rig(scene, settings);
+  rig.renderer.set_frame_seconds(1.0f / 30.0f);
   render::Frame shown;
   for (int i = -10; i <= frames; ++i) {
-    EXPECT_TRUE(still.renderer.set_pose(clip, std::max(i, 0) / 30.0));
-    shown = still.renderer.render();
+    EXPECT_TRUE(rig.renderer.set_pose(clip, std::max(i, 0) / 30.0));
+    shown = rig.renderer.render();
   }
   return shown;
 }
 
-TEST(MovingObject, LeavesNoTrailWhereItWas) {
+TEST(MovingObject, LeavesNoGhost) {
   const auto scene = box_under_a_sun(4.0f);
   const int frames = 16;
-  const render::Frame shown = played(scene, denoised_alone(), "slide", frames);
+  const render::Frame shown = played(scene, denoised_only(), "slide", frames);
   const Moment start = moment(scene, "slide", 0.0);
   const Moment before = moment(scene, "slide", (frames - 4) / 30.0);
   const Moment now = moment(scene, "slide", frames / 30.0);
-  save_picture("sliding_box", shown);
-  save_picture("sliding_box_truth", now.picture);
+  save_image("sliding_box", shown);
+  save_image("sliding_box_ground_truth", now.frame);
   const auto is_box = [](const Moment& m, std::size_t pixel) {
-    return m.instances.rgba[4 * pixel] > 1.5f;  // after the ground
+    return m.instances.rgba[4 * pixel] > 1.5f;  // instance 1 is the ground
   };
   const auto uncovered = [&](std::size_t pixel) {
     return (is_box(start, pixel) || is_box(before, pixel)) && !is_box(now, pixel);
   };
   const auto lit_beside = [&](std::size_t pixel) {
     return !is_box(start, pixel) && !is_box(before, pixel) && !is_box(now, pixel) &&
-           before.picture.rgba[4 * pixel + 1] < now.picture.rgba[4 * pixel + 1];
+           before.frame.rgba[4 * pixel + 1] < now.frame.rgba[4 * pixel + 1];
   };
-  const double trail_start = ghost(start.picture, now.picture, shown, uncovered);
-  const double trail = ghost(before.picture, now.picture, shown, uncovered);
-  EXPECT_NEAR(trail_start, 0.0, 0.03);
-  EXPECT_NEAR(trail, 0.0, 0.04);
-  EXPECT_LT(ghost(before.picture, now.picture, shown, lit_beside), 0.25)
-      << "of the shadow four frames ago";
-  EXPECT_LT(difference(now.picture, shown).mean, 1.1);
+  const double ghost_of_start = ghost(start.frame, now.frame, shown, uncovered);
+  const double ghost_of_before = ghost(before.frame, now.frame, shown, uncovered);
+  EXPECT_NEAR(ghost_of_start, 0.0, 0.03);
+  EXPECT_NEAR(ghost_of_before, 0.0, 0.04);
+  EXPECT_LT(ghost(before.frame, now.frame, shown, lit_beside), 0.25)
+      << "ghost of the shadow four frames ago";
+  EXPECT_LT(difference(now.frame, shown).mean, 1.1);
 
-  protocol::Settings held = denoised_alone();
+  protocol::Settings held = denoised_only();
   held.shadow_temporal.rectification = protocol::Rectification::fast_history;
-  const render::Frame dragging = played(scene, held, "slide", frames);
-  EXPECT_LT(difference(now.picture, shown).mean, 0.7 * difference(now.picture, dragging).mean);
+  const render::Frame lagging = played(scene, held, "slide", frames);
+  EXPECT_LT(difference(now.frame, shown).mean, 0.7 * difference(now.frame, lagging).mean);
 }
 
 class MovingSun : public testing::TestWithParam<float> {};
@@ -158,22 +159,22 @@ INSTANTIATE_TEST_SUITE_P(Widths, MovingSun, testing::Values(0.0f, 2.0f, 10.0f),
                            return "of_" + std::to_string(int(width.param)) + "_degrees";
                          });
 
-TEST_P(MovingSun, DragsNoShadowBehind) {
+TEST_P(MovingSun, ShadowLeavesNoGhost) {
   const auto scene = box_under_a_sun(GetParam());
   const int frames = 16;
-  const render::Frame before = moment(scene, "swing", (frames - 8) / 30.0).picture;
-  const render::Frame now = moment(scene, "swing", frames / 30.0).picture;
-  protocol::Settings settings = denoised_alone();
+  const render::Frame before = moment(scene, "swing", (frames - 8) / 30.0).frame;
+  const render::Frame now = moment(scene, "swing", frames / 30.0).frame;
+  protocol::Settings settings = denoised_only();
   const render::Frame shown = played(scene, settings, "swing", frames);
   settings.shadow_temporal.follow_lights = settings.specular_temporal.follow_lights = false;
-  const render::Frame dragging = played(scene, settings, "swing", frames);
+  const render::Frame lagging = played(scene, settings, "swing", frames);
   const std::string name = "swinging_sun_" + std::to_string(int(GetParam()));
-  save_picture(name, shown);
-  save_picture(name + "_dragging", dragging);
-  save_picture(name + "_truth", now);
+  save_image(name, shown);
+  save_image(name + "_lagging", lagging);
+  save_image(name + "_ground_truth", now);
   const double left = ghost(before, now, shown, lit_again(before, now));
-  const double unfollowed = ghost(before, now, dragging, lit_again(before, now));
-  EXPECT_LT(left, 0.1) << "of the shadow eight frames ago";
+  const double unfollowed = ghost(before, now, lagging, lit_again(before, now));
+  EXPECT_LT(left, 0.1) << "ghost of the shadow eight frames ago";
   EXPECT_LT(left, unfollowed - 0.2);
 }
 
@@ -182,34 +183,34 @@ struct Sky {
   double error;
 };
 
-/// After the sky has turned for some frames, against the truth.
-Sky turned_sky(const protocol::Settings& wanted, const std::string& name) {
-  protocol::Settings settings = wanted;
-  Things still(settings);
+/// Ghost and error after the sky has rotated for 12 frames.
+Sky rotated_sky(const protocol::Settings& requested, const std::string& name) {
+  protocol::Settings settings = requested;
+  SpheresRig rig(settings);
   render::Frame shown;
   const auto turned = [](int frame) { return static_cast<float>(std::max(frame - 12, 0)) * 8.0f; };
   for (int i = 0; i < 24; ++i) {
     settings.environment.rotation = turned(i);
-    still.apply(settings);
-    shown = still.renderer.render();
+    rig.apply(settings);
+    shown = rig.renderer.render();
   }
-  save_picture(name, shown);
-  const render::Frame truth = truth_from(eye(), turned(23));
-  return {ghost(truth_from(eye(), turned(19)), truth, shown, everywhere),
-          difference(truth, shown).mean};
+  save_image(name, shown);
+  const render::Frame reference = ground_truth_from(spheres_camera(), turned(23));
+  return {ghost(ground_truth_from(spheres_camera(), turned(19)), reference, shown, everywhere),
+          difference(reference, shown).mean};
 }
 
-TEST(TurningSky, LeavesLittleOfItsOldReflections) {
-  protocol::Settings settings = denoised_alone();
-  const Sky followed = turned_sky(settings, "turning_followed");
+TEST(RotatingEnvironment, ReflectionsLeaveLittleGhost) {
+  protocol::Settings settings = denoised_only();
+  const Sky compensated = rotated_sky(settings, "rotating_compensated");
   settings.shadow_temporal.follow_lights = settings.specular_temporal.follow_lights = false;
-  const Sky rectified = turned_sky(settings, "turning_fast_history");
+  const Sky rectified = rotated_sky(settings, "rotating_fast_history");
   settings.shadow_temporal.rectification = settings.specular_temporal.rectification =
       protocol::Rectification::off;
-  const Sky off = turned_sky(settings, "turning_off");
-  EXPECT_LT(followed.ghost, 0.05);
+  const Sky off = rotated_sky(settings, "rotating_off");
+  EXPECT_LT(compensated.ghost, 0.05);
   EXPECT_LT(rectified.error, 0.95 * off.error);
-  EXPECT_LT(followed.error, 0.6 * rectified.error);
+  EXPECT_LT(compensated.error, 0.6 * rectified.error);
 }
 
 }  // namespace

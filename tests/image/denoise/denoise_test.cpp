@@ -7,47 +7,47 @@
 namespace heliograph::test {
 namespace {
 
-TEST(RestingView, FlickersEverLessAndNearsTheTruth) {
-  const render::Frame truth = truth_from(eye());
-  Things still(denoised_alone());
-  render::Frame before = still.renderer.render(), now;
+TEST(StaticView, FlickerDecreasesAndConvergesToGroundTruth) {
+  const render::Frame reference = ground_truth_from(spheres_camera());
+  SpheresRig rig(denoised_only());
+  render::Frame before = rig.renderer.render(), now;
   double early = 0.0, late = 0.0;
   for (int i = 2; i <= 48; ++i) {
-    now = still.renderer.render();
+    now = rig.renderer.render();
     const double change = difference(before, now).mean;
     if (i <= 5) early = std::max(early, change);
     if (i > 44) late = std::max(late, change);
     before = now;
   }
-  save_picture("denoised_resting", now);
-  save_picture("denoised_resting_truth", truth);
+  save_image("denoised_static", now);
+  save_image("denoised_static_ground_truth", reference);
   EXPECT_LT(late, 0.15 * early);
   EXPECT_LT(late, 0.22) << "code values of 255";
-  EXPECT_LT(difference(truth, now).mean, 0.75);
-  EXPECT_GT(ssim(truth, now), 0.985);
+  EXPECT_LT(difference(reference, now).mean, 0.75);
+  EXPECT_GT(ssim(reference, now), 0.985);
 }
 
-// With all that makes pictures differ: jitter, antialiasing, and the mean that takes over.
-TEST(RestingView, StandsStillInTheEnd) {
+// With everything that changes between frames: jitter, antialiasing and accumulation.
+TEST(StaticView, ConvergesToConstantImage) {
   protocol::Settings settings;
   settings.accumulation.max_samples = 4096;
-  Things still(settings);
+  SpheresRig rig(settings);
   render::Frame before, now;
   const auto change_after = [&](std::uint32_t samples) {
-    before = still.accumulate(samples);
-    now = still.renderer.render();
+    before = rig.accumulate(samples);
+    now = rig.renderer.render();
     return difference(before, now);
   };
   const double early = change_after(32).mean, middle = change_after(96).mean;
   const Difference late = change_after(288);
-  EXPECT_LT(middle, 0.6 * early) << "as 1 / samples: a third";
+  EXPECT_LT(middle, 0.6 * early) << "error is proportional to 1 / samples: a third";
   EXPECT_LT(late.mean, 0.5 * middle);
   EXPECT_LT(late.mean, 0.035) << "code values of 255";
   EXPECT_LE(late.maximum, 2.0);
 }
 
-TEST(RestingView, ChangesNoBrightness) {
-  Things raw(raw_alone()), denoised(denoised_alone());
+TEST(StaticView, DenoisingPreservesMeanLuminance) {
+  SpheresRig raw(noisy_only()), denoised(denoised_only());
   raw.accumulate(192);
   denoised.accumulate(32);
   const double expected = mean_luminance(raw.capture("accumulated"));
@@ -55,7 +55,7 @@ TEST(RestingView, ChangesNoBrightness) {
 }
 
 scene::Camera yawed(int frame) {
-  scene::Camera camera = eye();
+  scene::Camera camera = spheres_camera();
   const float angle = glm::radians(0.7f * static_cast<float>(frame));
   const glm::mat4 turn = glm::rotate(glm::mat4(1.0f), angle, {0, 1, 0});
   camera.target = camera.eye + glm::vec3(turn * glm::vec4(camera.target - camera.eye, 0));
@@ -63,7 +63,7 @@ scene::Camera yawed(int frame) {
 }
 
 scene::Camera pitched(int frame) {
-  scene::Camera camera = eye();
+  scene::Camera camera = spheres_camera();
   const float angle = glm::radians(0.5f * static_cast<float>(frame));
   const glm::mat4 turn = glm::rotate(glm::mat4(1.0f), angle, {1, 0, 0});
   camera.target = camera.eye + glm::vec3(turn * glm::vec4(camera.target - camera.eye, 0));
@@ -71,7 +71,7 @@ scene::Camera pitched(int frame) {
 }
 
 scene::Camera dollied(int frame) {
-  scene::Camera camera = eye();
+  scene::Camera camera = spheres_camera();
   camera.eye += (camera.target - camera.eye) * (0.012f * static_cast<float>(frame));
   return camera;
 }
@@ -83,28 +83,28 @@ struct Movement {
 
 class MovingView : public testing::TestWithParam<Movement> {};
 
-INSTANTIATE_TEST_SUITE_P(Ways, MovingView,
+INSTANTIATE_TEST_SUITE_P(Directions, MovingView,
                          testing::Values(Movement{"yaw", yawed}, Movement{"pitch", pitched},
                                          Movement{"dolly", dollied}),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
-// A mirrored axis anywhere in the motion is invisible at rest and shows in one of the three.
-TEST_P(MovingView, HasLittleOfTheNoiseOfOneSample) {
+// A flipped axis in the motion vectors is invisible in a static view; one of the three reveals it.
+TEST_P(MovingView, IsFarLessNoisyThanOneSample) {
   const int frames = 16;
-  Things still(denoised_alone()), raw(raw_alone());
+  SpheresRig rig(denoised_only()), raw(noisy_only());
   render::Frame shown, noisy;
   for (int i = 0; i < frames; ++i) {
-    still.renderer.set_camera(GetParam().camera(i));
-    shown = still.renderer.render();
+    rig.renderer.set_camera(GetParam().camera(i));
+    shown = rig.renderer.render();
   }
   raw.renderer.set_camera(GetParam().camera(frames - 1));
   noisy = raw.renderer.render();
-  const render::Frame truth = truth_from(GetParam().camera(frames - 1));
-  save_picture(std::string("denoised_") + GetParam().name, shown);
-  save_picture(std::string("denoised_") + GetParam().name + "_truth", truth);
-  EXPECT_LT(difference(truth, shown).mean, 0.2 * difference(truth, noisy).mean);
-  EXPECT_GT(ssim(truth, shown), 0.955);
-  EXPECT_LT(ssim(truth, noisy), ssim(truth, shown) - 0.2);
+  const render::Frame reference = ground_truth_from(GetParam().camera(frames - 1));
+  save_image(std::string("denoised_") + GetParam().name, shown);
+  save_image(std::string("denoised_") + GetParam().name + "_ground_truth", reference);
+  EXPECT_LT(difference(reference, shown).mean, 0.2 * difference(reference, noisy).mean);
+  EXPECT_GT(ssim(reference, shown), 0.955);
+  EXPECT_LT(ssim(reference, noisy), ssim(reference, shown) - 0.2);
 }
 
 }  // namespace

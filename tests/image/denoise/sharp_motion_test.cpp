@@ -1,4 +1,4 @@
-// Fine shadows and what bent mirrors show must stay sharp while the camera moves.
+// Thin shadows and reflections in curved surfaces must stay sharp under camera motion.
 #include <gtest/gtest.h>
 
 #include "tests/image/denoise/spheres.hpp"
@@ -8,8 +8,8 @@ namespace {
 
 constexpr int frames = 20;
 
-/// Thin bars and their thin shadows around a metal ball on a bright ground.
-std::shared_ptr<const scene::Scene> bars_around_a_mirror(float roughness) {
+/// Thin bars with thin shadows around a metal sphere on a bright ground.
+std::shared_ptr<const scene::Scene> bars_around_sphere(float roughness) {
   SceneBuilder builder;
   builder.place(builder.add_quad({{{-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}}},
                                  surface({0.8f, 0.8f, 0.75f}, 0.9f)));
@@ -32,63 +32,63 @@ scene::Camera orbit(int frame) {
   return look({5.0f * std::sin(angle), 1.8f, 5.0f * std::cos(angle)}, {0, 0.5f, 0});
 }
 
-/// Mean error of the last frame of an orbit, over the pixels whose instance `counts` lets through.
-template <class Counts>
-double error_in_motion(protocol::Settings settings, const std::string& name, Counts counts,
+/// Mean error of the last frame of an orbit, over the pixels whose instance is selected.
+template <class Selected>
+double error_in_motion(protocol::Settings settings, const std::string& name, Selected selected,
                        float roughness = 0.03f) {
   settings.antialiasing.jitter = settings.antialiasing.temporal = true;
-  const auto scene = bars_around_a_mirror(roughness);
-  Things still(scene, settings);
-  still.renderer.set_frame_seconds(1.0f / 30.0f);
+  const auto scene = bars_around_sphere(roughness);
+  SpheresRig rig(scene, settings);
+  rig.renderer.set_frame_seconds(1.0f / 30.0f);
   render::Frame shown;
   for (int i = -frames; i <= 0; ++i) {
-    still.renderer.set_camera(orbit(i));
-    shown = still.renderer.render();
+    rig.renderer.set_camera(orbit(i));
+    shown = rig.renderer.render();
   }
-  save_picture(name, shown);
-  protocol::Settings smooth = raw_alone();
+  save_image(name, shown);
+  protocol::Settings smooth = noisy_only();
   smooth.antialiasing.jitter = true;
-  Things resting(scene, smooth);
-  resting.renderer.set_camera(orbit(0));
-  const render::Frame truth = resting.accumulate(128);
-  save_picture(name + "_truth", truth);
-  const render::FloatImage instances = resting.capture("gbuffer.instance");
+  SpheresRig reference(scene, smooth);
+  reference.renderer.set_camera(orbit(0));
+  const render::Frame expected = reference.accumulate(128);
+  save_image(name + "_ground_truth", expected);
+  const render::FloatImage instances = reference.capture("gbuffer.instance");
   double sum = 0.0;
   int count = 0;
-  for (std::size_t i = 0; i < truth.rgba.size(); ++i) {
-    if (i % 4 == 3 || !counts(static_cast<int>(instances.rgba[i - i % 4]))) continue;
-    sum += std::abs(double(shown.rgba[i]) - double(truth.rgba[i]));
+  for (std::size_t i = 0; i < expected.rgba.size(); ++i) {
+    if (i % 4 == 3 || !selected(static_cast<int>(instances.rgba[i - i % 4]))) continue;
+    sum += std::abs(double(shown.rgba[i]) - double(expected.rgba[i]));
     ++count;
   }
   return sum / count;
 }
 
-constexpr auto is_ball = [](int instance) { return instance == 2; };
+constexpr auto is_sphere = [](int instance) { return instance == 2; };
 
-// One ray a pixel is all that a mirror needs.
-TEST(SharpMotion, AMirrorIsAsSharpAsWithoutDenoising) {
-  protocol::Settings settings = denoised_alone();
-  const double denoised = error_in_motion(settings, "orbit_mirror", is_ball);
+// A perfect mirror is noise-free with one ray per pixel.
+TEST(SharpMotion, MirrorIsAsSharpAsWithoutDenoising) {
+  protocol::Settings settings = denoised_only();
+  const double denoised = error_in_motion(settings, "orbit_mirror", is_sphere);
   settings.specular_temporal.enabled = settings.specular_blur.enabled = false;
-  const double raw = error_in_motion(settings, "orbit_mirror_raw", is_ball);
+  const double raw = error_in_motion(settings, "orbit_mirror_raw", is_sphere);
   EXPECT_LT(denoised, 1.1 * raw);
 }
 
-TEST(SharpMotion, AGlossyBallDoesNotDragItsReflectionAlong) {
-  protocol::Settings settings = denoised_alone();
+TEST(SharpMotion, GlossySphereReflectionDoesNotLag) {
+  protocol::Settings settings = denoised_only();
   for (const float roughness : {0.1f, 0.2f}) {
     const std::string name = "orbit_ball_" + std::to_string(int(100.0f * roughness));
-    settings.specular_temporal.virtual_point = true;
-    const double followed = error_in_motion(settings, name, is_ball, roughness);
-    settings.specular_temporal.virtual_point = false;
-    const double dragged = error_in_motion(settings, name + "_dragged", is_ball, roughness);
-    EXPECT_LT(followed, 0.85 * dragged) << roughness;
+    settings.specular_temporal.virtual_motion = true;
+    const double compensated = error_in_motion(settings, name, is_sphere, roughness);
+    settings.specular_temporal.virtual_motion = false;
+    const double lagging = error_in_motion(settings, name + "_lagging", is_sphere, roughness);
+    EXPECT_LT(compensated, 0.85 * lagging) << roughness;
   }
 }
 
-TEST(SharpMotion, ThinShadowsStayOnTheGround) {
+TEST(SharpMotion, ThinShadowsAreNotSmeared) {
   const auto is_ground = [](int instance) { return instance == 1; };
-  protocol::Settings settings = denoised_alone();
+  protocol::Settings settings = denoised_only();
   const double sharp = error_in_motion(settings, "orbit_bars", is_ground);
   settings.shadow_temporal.bicubic = false;
   const double smeared = error_in_motion(settings, "orbit_bars_bilinear", is_ground);

@@ -3,15 +3,15 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "tests/image/support/scene_renderer.hpp"
+#include "tests/image/support/renderer_rig.hpp"
 
-// What the denoised picture is looked at with.
+// The scene, settings and ground truth that the denoiser's tests share.
 namespace heliograph::test {
 
-inline constexpr std::uint32_t things_width = 160, things_height = 90;
+inline constexpr std::uint32_t spheres_width = 160, spheres_height = 90;
 
-/// Soft shadows, a matt ball and a nearly smooth metal one, on a ground that mirrors a little.
-inline std::shared_ptr<const scene::Scene> things() {
+/// A rough and a nearly smooth metal sphere on a glossy floor, with soft shadows.
+inline std::shared_ptr<const scene::Scene> spheres_on_floor() {
   SceneBuilder builder;
   builder.place(builder.add_quad({{{-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}}},
                                  surface({0.6f, 0.55f, 0.5f}, 0.4f)));
@@ -23,48 +23,50 @@ inline std::shared_ptr<const scene::Scene> things() {
   return builder.build();
 }
 
-/// A sky with one bright side, so that turning it is a light that moves.
-inline glm::vec3 sky(const glm::vec3& d) {
+/// A sky with one bright side: rotating it moves a light.
+inline glm::vec3 one_sided_sky(const glm::vec3& d) {
   return glm::vec3(0.4f, 0.5f, 0.7f) + (d.x > 0.8f ? glm::vec3(4.0f, 3.0f, 2.0f) : glm::vec3(0.0f));
 }
 
-inline scene::Camera eye() {
+inline scene::Camera spheres_camera() {
   return look({0.5f, 2, 4.5f}, {0, 0.5f, 0});
 }
 
-/// What is shown is the denoised frame alone.
-inline protocol::Settings denoised_alone() {
+/// Shows the denoised frame without accumulation or antialiasing.
+inline protocol::Settings denoised_only() {
   protocol::Settings settings;
   settings.antialiasing.jitter = settings.antialiasing.temporal = false;
-  settings.accumulation.handover = 4096;
+  settings.accumulation.blend_samples = 4096;
   settings.accumulation.max_samples = 4096;
   return settings;
 }
 
-inline protocol::Settings raw_alone() {
-  protocol::Settings settings = denoised_alone();
+inline protocol::Settings noisy_only() {
+  protocol::Settings settings = denoised_only();
   settings.shadow_temporal.enabled = settings.shadow_blur.enabled = false;
   settings.specular_temporal.enabled = settings.specular_blur.enabled = false;
-  settings.accumulation.handover = 0;
+  settings.accumulation.blend_samples = 0;
   settings.sampling.seed = 5;
   return settings;
 }
 
-class Things : public Still {
+class SpheresRig : public RendererRig {
  public:
-  explicit Things(const protocol::Settings& settings) : Things(things(), settings) {}
-  Things(std::shared_ptr<const scene::Scene> scene, const protocol::Settings& settings)
-      : Still(std::move(scene), make_environment(64, sky), eye(), things_width, things_height) {
+  explicit SpheresRig(const protocol::Settings& settings)
+      : SpheresRig(spheres_on_floor(), settings) {}
+  SpheresRig(std::shared_ptr<const scene::Scene> scene, const protocol::Settings& settings)
+      : RendererRig(std::move(scene), make_environment(64, one_sided_sky), spheres_camera(),
+                    spheres_width, spheres_height) {
     apply(settings);
   }
 };
 
-inline render::Frame truth_from(const scene::Camera& camera, float rotation = 0.0f) {
-  protocol::Settings settings = raw_alone();
+inline render::Frame ground_truth_from(const scene::Camera& camera, float rotation = 0.0f) {
+  protocol::Settings settings = noisy_only();
   settings.environment.rotation = rotation;
-  Things still(settings);
-  still.renderer.set_camera(camera);
-  return still.accumulate(192);
+  SpheresRig rig(settings);
+  rig.renderer.set_camera(camera);
+  return rig.accumulate(192);
 }
 
 }  // namespace heliograph::test

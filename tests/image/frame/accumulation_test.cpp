@@ -2,7 +2,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "tests/image/support/scene_renderer.hpp"
+#include "tests/image/support/renderer_rig.hpp"
 #include "tracing/tracer_choice.hpp"
 
 namespace heliograph::test {
@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::uint32_t width = 160, height = 90;
 
-/// Things on a ground under a soft sun and a grey sky, with noise of every kind.
-std::shared_ptr<const scene::Scene> things() {
+/// SpheresRig on a ground under a soft sun and a grey sky, with noise of every kind.
+std::shared_ptr<const scene::Scene> spheres() {
   SceneBuilder builder;
   builder.place(builder.add_quad({{{-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}}},
                                  surface({0.6f, 0.55f, 0.5f})));
@@ -20,70 +20,69 @@ std::shared_ptr<const scene::Scene> things() {
   builder.place(builder.add_sphere(0.6f, surface({0.9f, 0.8f, 0.6f}, 0.2f, 1.0f)),
                 glm::translate(glm::mat4(1.0f), {0.8f, 0.6f, 0.5f}));
   builder.add_sun({-0.6f, -1, -0.4f}, glm::vec3(2.5f), 8.0f);
-  builder.add_lamp({1.5f, 2, 1}, {2, 1, 0.5f}, 0.2f);
+  builder.add_point_light({1.5f, 2, 1}, {2, 1, 0.5f}, 0.2f);
   return builder.build();
 }
 
-Still make(const std::string& tracer = "auto") {
-  return Still(things(), scene::constant_environment(glm::vec3(0.5f, 0.6f, 0.8f)),
-               look({0.5f, 2, 4.5f}, {0, 0.5f, 0}), width, height, tracer);
+RendererRig make(const std::string& tracer = "auto") {
+  return RendererRig(spheres(), scene::constant_environment(glm::vec3(0.5f, 0.6f, 0.8f)),
+                     look({0.5f, 2, 4.5f}, {0, 0.5f, 0}), width, height, tracer);
 }
 
-TEST(Accumulation, ConvergesTowardThePictureOfManySamples) {
-  Still truth = make();
+TEST(Accumulation, ErrorDecreasesWithSampleCount) {
+  RendererRig reference = make();
   protocol::Settings settings;
   settings.accumulation.max_samples = 256;
   settings.sampling.seed = 99;
-  truth.apply(settings);
-  const render::Frame expected = truth.accumulate(256);
-  save_picture("things", expected);
+  reference.apply(settings);
+  const render::Frame expected = reference.accumulate(256);
+  save_image("spheres", expected);
 
-  Still still = make();
+  RendererRig rig = make();
   double before = 1e9;
   for (const std::uint32_t samples : {1u, 4u, 16u, 64u}) {
-    const double error = difference(expected, still.accumulate(samples)).mean;
-    // Independent samples would halve it. The first picture borrows most from its neighbours and
-    // leaves less to gain.
+    const double error = difference(expected, rig.accumulate(samples)).mean;
+    // Independent samples would halve the error. Spatial filtering helps the first frame most.
     EXPECT_LT(error, (samples == 4u ? 0.78 : 0.72) * before) << samples;
     before = error;
   }
   EXPECT_LT(before, 0.8) << "code values";
 }
 
-TEST(Accumulation, EndsAndResumesOnlyWhenSomethingChanges) {
-  Still still = make();
+TEST(Accumulation, StopsWhenConvergedAndResumesOnChange) {
+  RendererRig rig = make();
   protocol::Settings settings;
   settings.accumulation.max_samples = 5;
-  still.apply(settings);
+  rig.apply(settings);
   for (std::uint32_t i = 1; i <= 5; ++i) {
-    EXPECT_TRUE(still.renderer.needs_frame());
-    const render::Frame frame = still.renderer.render();
+    EXPECT_TRUE(rig.renderer.needs_frame());
+    const render::Frame frame = rig.renderer.render();
     EXPECT_EQ(frame.samples, i);
     EXPECT_EQ(frame.converged, i == 5);
   }
-  EXPECT_FALSE(still.renderer.needs_frame());
-  still.renderer.set_camera(look({0.5f, 2, 4.5f}, {0, 0.5f, 0}));
-  still.apply(settings);
-  still.renderer.set_size(width, height);
-  EXPECT_FALSE(still.renderer.needs_frame()) << "nothing changed";
+  EXPECT_FALSE(rig.renderer.needs_frame());
+  rig.renderer.set_camera(look({0.5f, 2, 4.5f}, {0, 0.5f, 0}));
+  rig.apply(settings);
+  rig.renderer.set_size(width, height);
+  EXPECT_FALSE(rig.renderer.needs_frame()) << "nothing changed";
 
   settings.exposure.compensation = 1.0f;
-  still.apply(settings);
-  EXPECT_TRUE(still.renderer.needs_frame());
-  EXPECT_GE(still.renderer.render().samples, 5u) << "exposure throws no sample away";
-  EXPECT_FALSE(still.renderer.needs_frame());
+  rig.apply(settings);
+  EXPECT_TRUE(rig.renderer.needs_frame());
+  EXPECT_GE(rig.renderer.render().samples, 5u) << "exposure must not reset accumulation";
+  EXPECT_FALSE(rig.renderer.needs_frame());
 
   settings.lighting.direct = false;
-  still.apply(settings);
-  EXPECT_EQ(still.renderer.render().samples, 1u) << "light does";
-  still.accumulate(5);
-  still.renderer.set_camera(look({0.6f, 2, 4.5f}, {0, 0.5f, 0}));
-  EXPECT_TRUE(still.renderer.needs_frame());
-  EXPECT_EQ(still.renderer.render().samples, 1u);
+  rig.apply(settings);
+  EXPECT_EQ(rig.renderer.render().samples, 1u) << "lighting must reset accumulation";
+  rig.accumulate(5);
+  rig.renderer.set_camera(look({0.6f, 2, 4.5f}, {0, 0.5f, 0}));
+  EXPECT_TRUE(rig.renderer.needs_frame());
+  EXPECT_EQ(rig.renderer.render().samples, 1u);
 }
 
-TEST(Accumulation, LeavesNothingOfTheOldView) {
-  Still moved = make(), fresh = make();
+TEST(Accumulation, CameraMoveResetsAccumulation) {
+  RendererRig moved = make(), fresh = make();
   moved.renderer.set_camera(look({-3, 1, 3}, {0, 0.5f, 0}));
   moved.accumulate(10);
   moved.renderer.set_camera(look({0.5f, 2, 4.5f}, {0, 0.5f, 0}));
@@ -95,9 +94,9 @@ TEST(Accumulation, LeavesNothingOfTheOldView) {
   EXPECT_EQ(moved.accumulate(3).rgba, fresh.accumulate(3).rgba);
 }
 
-TEST(Determinism, TheSeedDecidesEveryByte) {
-  for (const std::string& tracer : offered_tracers()) {
-    Still a = make(tracer), b = make(tracer), other = make(tracer);
+TEST(Determinism, SeedDeterminesEveryByte) {
+  for (const std::string& tracer : supported_tracers()) {
+    RendererRig a = make(tracer), b = make(tracer), other = make(tracer);
     protocol::Settings settings;
     settings.sampling.seed = 7;
     a.apply(settings);
@@ -110,27 +109,27 @@ TEST(Determinism, TheSeedDecidesEveryByte) {
   }
 }
 
-TEST(Tracers, GiveNearlyTheSamePicture) {
+TEST(Tracers, ProduceNearlyEqualImages) {
   const render::Frame expected = make().accumulate(16);
-  for (const std::string& name : offered_tracers()) {
-    Still still = make(name);
+  for (const std::string& name : supported_tracers()) {
+    RendererRig rig = make(name);
     EXPECT_EQ(protocol::enum_name(engine(name).tracer()), name);
-    const render::Frame actual = still.accumulate(16);
-    save_picture("things_" + name, actual);
+    const render::Frame actual = rig.accumulate(16);
+    save_image("spheres_" + name, actual);
     expect_similar("tracers_" + name, expected, actual, 0.02, 0.9995);
   }
 }
 
-TEST(Shadows, DarkenOnlyAndOnlyWhenWanted) {
-  Still still = make();
-  still.accumulate(32);
-  const render::FloatImage with = still.capture("accumulated");
+TEST(Shadows, OnlyDarkenAndOnlyIfEnabled) {
+  RendererRig rig = make();
+  rig.accumulate(32);
+  const render::FloatImage with = rig.capture("accumulated");
   protocol::Settings settings;
   settings.shadows.enabled = false;
-  still.apply(settings);
-  still.renderer.cut();  // the same places in every pixel
-  save_picture("things_without_shadows", still.accumulate(32));
-  const render::FloatImage without = still.capture("accumulated");
+  rig.apply(settings);
+  rig.renderer.cut();  // same sample positions
+  save_image("spheres_without_shadows", rig.accumulate(32));
+  const render::FloatImage without = rig.capture("accumulated");
   EXPECT_LT(mean_luminance(with), 0.99 * mean_luminance(without));
   int darker = 0;
   for (std::size_t i = 0; i < with.rgba.size(); i += 4) {
@@ -140,16 +139,16 @@ TEST(Shadows, DarkenOnlyAndOnlyWhenWanted) {
   EXPECT_GT(darker, 300) << "pixels in shadow";
 }
 
-TEST(Settings, EachLightSwitchTakesLightAway) {
-  Still still = make();
-  still.accumulate(4);
-  const double all = mean_luminance(still.capture("accumulated"));
+TEST(Settings, EachLightingSwitchRemovesLight) {
+  RendererRig rig = make();
+  rig.accumulate(4);
+  const double all = mean_luminance(rig.capture("accumulated"));
   const auto without = [&](auto change) {
     protocol::Settings settings;
     change(settings);
-    still.apply(settings);
-    still.accumulate(4);
-    return mean_luminance(still.capture("accumulated"));
+    rig.apply(settings);
+    rig.accumulate(4);
+    return mean_luminance(rig.capture("accumulated"));
   };
   EXPECT_LT(without([](auto& s) { s.lighting.direct = false; }), 0.9 * all);
   EXPECT_LT(without([](auto& s) { s.lighting.environment_diffuse = false; }), 0.9 * all);

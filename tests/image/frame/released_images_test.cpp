@@ -1,5 +1,5 @@
-// What lets go of its pixels once they are on the device must look as before, there and on the
-// device that comes after a loss.
+// Images whose CPU copy is released after upload must render identically, also on a new device
+// after a device loss.
 #include <gtest/gtest.h>
 
 #include "scenes/generator/scenes/paper_scenes.hpp"
@@ -16,8 +16,8 @@ class ReleasedImages : public testing::Test {
     return import_generated(recipe.make_document(recipe.make_sky(64, 32)), 64);
   }
 
-  static std::vector<std::uint8_t> picture(std::shared_ptr<const render::SceneResources> scene,
-                                           protocol::PrimaryVisibility source) {
+  static std::vector<std::uint8_t> render_once(std::shared_ptr<const render::SceneResources> scene,
+                                               protocol::PrimaryVisibility source) {
     render::Renderer renderer(engine());
     protocol::Settings settings;
     settings.gbuffer.source = source;
@@ -34,12 +34,12 @@ class ReleasedImages : public testing::Test {
       std::make_shared<const scene::Environment>(scene::constant_environment(glm::vec3(1.0f)));
 };
 
-TEST_F(ReleasedImages, LookAsBeforeHoweverTheyAreRead) {
-  auto given_away = std::make_unique<scene::Scene>(textured());
-  const std::uint64_t decoded = given_away->bytes();
-  ASSERT_FALSE(given_away->images.empty());
-  const auto kept = engine().upload(std::make_shared<const scene::Scene>(*given_away), white_);
-  const auto released = engine().upload(std::move(given_away), white_);
+TEST_F(ReleasedImages, RenderSameImageAfterReleaseAndDeviceLoss) {
+  auto scene = std::make_unique<scene::Scene>(textured());
+  const std::uint64_t decoded = scene->bytes();
+  ASSERT_FALSE(scene->images.empty());
+  const auto kept = engine().upload(std::make_shared<const scene::Scene>(*scene), white_);
+  const auto released = engine().upload(std::move(scene), white_);
   EXPECT_FALSE(render::scene_of(*kept)->images[0].pixels.empty());
   for (const scene::Image& image : render::scene_of(*released)->images) {
     EXPECT_TRUE(image.pixels.empty()) << image.name;
@@ -48,20 +48,20 @@ TEST_F(ReleasedImages, LookAsBeforeHoweverTheyAreRead) {
   const auto renewed = engine().renew(*released);
   for (const auto source :
        {protocol::PrimaryVisibility::rays, protocol::PrimaryVisibility::raster}) {
-    const auto expected = picture(kept, source);
-    EXPECT_EQ(picture(released, source), expected);
-    EXPECT_EQ(picture(renewed, source), expected);
+    const auto expected = render_once(kept, source);
+    EXPECT_EQ(render_once(released, source), expected);
+    EXPECT_EQ(render_once(renewed, source), expected);
   }
 }
 
-// Textures for the rasteriser are as large as the heap: who does not rasterise does not need them.
-TEST_F(ReleasedImages, ProcessorsHaveTexturesForTheRasteriserOnceItRuns) {
-  if (!device().is_cpu()) GTEST_SKIP() << "other devices have them from the start";
+// Raster textures take as much memory as the texture heap: tracing alone does not need them.
+TEST_F(ReleasedImages, CpuDevicesUploadRasterTexturesOnFirstUse) {
+  if (!device().is_cpu()) GTEST_SKIP() << "other devices upload them with the scene";
   const auto scene = engine().upload(std::make_unique<scene::Scene>(textured()), white_);
   const std::uint64_t before = render::memory_bytes(*scene);
-  picture(scene, protocol::PrimaryVisibility::rays);
+  render_once(scene, protocol::PrimaryVisibility::rays);
   EXPECT_EQ(render::memory_bytes(*scene), before);
-  picture(scene, protocol::PrimaryVisibility::raster);
+  render_once(scene, protocol::PrimaryVisibility::raster);
   EXPECT_GT(render::memory_bytes(*scene), before);
 }
 

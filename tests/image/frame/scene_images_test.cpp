@@ -4,7 +4,8 @@
 
 #include "scene/import.hpp"
 #include "scenes/generator/atrium/atrium.hpp"
-#include "tests/image/support/scene_renderer.hpp"
+#include "tests/image/support/renderer_rig.hpp"
+#include "tests/support/generated_scene.hpp"
 
 namespace heliograph::test {
 namespace {
@@ -22,18 +23,19 @@ double covered_share(const render::FloatImage& instance) {
   return count / static_cast<double>(instance.rgba.size() / 4);
 }
 
-TEST(Atrium, IsLitBySkyAndSun) {
+TEST(Atrium, IsLitBySunAndSky) {
   const auto sky = scenes::make_clear_sky(
       scenes::direction_to_sun(scenes::sun_elevation, scenes::sun_azimuth), 512, 256);
-  const auto scene = import_document(scenes::make_atrium(1, sky), 128);
+  const auto scene =
+      std::make_shared<const scene::Scene>(import_generated(scenes::make_atrium(1, sky), 128));
   EXPECT_GT(scene->triangle_count(), 200'000u);
   ASSERT_FALSE(scene->cameras.empty());
-  Still still(scene, convert(sky.environment), scene->cameras[0], 320, 180);
-  const render::Frame frame = still.accumulate(16);
-  save_picture("atrium", frame);
-  const render::FloatImage radiance = still.capture("accumulated");
-  const render::FloatImage visibility = still.capture("shadows.visibility");
-  const render::FloatImage instance = still.capture("gbuffer.instance");
+  RendererRig rig(scene, import_generated(sky.environment), scene->cameras[0], 320, 180);
+  const render::Frame frame = rig.accumulate(16);
+  save_image("atrium", frame);
+  const render::FloatImage radiance = rig.capture("accumulated");
+  const render::FloatImage visibility = rig.capture("shadows.visibility");
+  const render::FloatImage instance = rig.capture("gbuffer.instance");
   expect_sane(radiance);
   EXPECT_GT(covered_share(instance), 0.5);
   double code_values = 0.0;
@@ -50,39 +52,39 @@ TEST(Atrium, IsLitBySkyAndSun) {
   }
   EXPECT_GT(lit_count, 500);
   EXPECT_GT(shadowed_count, 5000);
-  EXPECT_GT(lit / lit_count, 2.0 * shadowed / shadowed_count) << "sun patches stand out";
+  EXPECT_GT(lit / lit_count, 2.0 * shadowed / shadowed_count) << "sunlit areas must be brighter";
 }
 
 struct Model {
   const char* name;
   const char* file;
-  glm::vec3 eye_direction;  // from the middle of the scene
+  glm::vec3 eye_direction;  // from the center of the scene
   double least_cover, most_cover;
 };
 
 class Models : public testing::TestWithParam<Model> {};
 
-TEST_P(Models, LooksSane) {
+TEST_P(Models, RadianceAndCoverageAreInRange) {
   const auto file = asset(std::filesystem::path("gltf") / GetParam().file);
   const auto sky = asset("hdr/venice.hdr");
-  if (!file) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS does not say where other people's scenes are";
+  if (!file) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS is not set";
   const auto scene = std::make_shared<const scene::Scene>(scene::import_gltf(*file));
   const glm::vec3 center = scene->bounds.center();
   const scene::Camera camera =
       look(center + 2.6f * scene->bounds.radius() * glm::normalize(GetParam().eye_direction),
            center, 40.0f);
-  Still still(scene, scene::load_environment(*sky), camera, 640, 480);
-  save_picture(GetParam().name, still.accumulate(16));
+  RendererRig rig(scene, scene::load_environment(*sky), camera, 640, 480);
+  save_image(GetParam().name, rig.accumulate(16));
   for (const char* buffer :
        {"gbuffer.normals", "gbuffer.base_color", "gbuffer.surface", "gbuffer.emissive"}) {
-    save_picture(std::string(GetParam().name) + "_" + (buffer + 8),
-                 *still.renderer.capture_view(buffer));
+    save_image(std::string(GetParam().name) + "_" + (buffer + 8),
+               *rig.renderer.capture_view(buffer));
   }
-  expect_sane(still.capture("accumulated"));
-  const double cover = covered_share(still.capture("gbuffer.instance"));
+  expect_sane(rig.capture("accumulated"));
+  const double cover = covered_share(rig.capture("gbuffer.instance"));
   EXPECT_GT(cover, GetParam().least_cover);
   EXPECT_LT(cover, GetParam().most_cover);
-  const double brightness = mean_luminance(still.capture("accumulated"));
+  const double brightness = mean_luminance(rig.capture("accumulated"));
   EXPECT_GT(brightness, 0.02);
   EXPECT_LT(brightness, 20.0);
 }
@@ -99,15 +101,15 @@ INSTANTIATE_TEST_SUITE_P(
         Model{"normal_tangent_test", "NormalTangentTest.glb", {0, 0, 1}, 0.1, 0.95}),
     model_name);
 
-TEST(DamagedHelmet, GlowsWhereItIsKnownToGlow) {
+TEST(DamagedHelmet, EmissiveTextureIsVisible) {
   const auto file = asset("gltf/DamagedHelmet.glb");
-  if (!file) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS does not say where other people's scenes are";
+  if (!file) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS is not set";
   const auto scene = std::make_shared<const scene::Scene>(scene::import_gltf(*file));
   const scene::Camera camera =
       look(scene->bounds.center() + glm::vec3(0.5f, 0.3f, 3.2f), scene->bounds.center(), 45.0f);
-  Still still(scene, scene::constant_environment(glm::vec3(0.0f)), camera, 320, 240);
-  save_picture("damaged_helmet_emissive_only", still.accumulate(2));
-  const render::FloatImage radiance = still.capture("accumulated");
+  RendererRig rig(scene, scene::constant_environment(glm::vec3(0.0f)), camera, 320, 240);
+  save_image("damaged_helmet_emissive_only", rig.accumulate(2));
+  const render::FloatImage radiance = rig.capture("accumulated");
   int glowing = 0;
   for (std::size_t i = 0; i < radiance.rgba.size(); i += 4) {
     glowing += radiance.rgba[i + 2] > 0.1f || radiance.rgba[i] > 0.1f;

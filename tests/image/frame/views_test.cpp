@@ -8,24 +8,24 @@
 #include <vector>
 
 #include "render/api/buffer_names.hpp"
-#include "tests/image/support/scene_renderer.hpp"
+#include "tests/image/support/renderer_rig.hpp"
 
 namespace heliograph::test {
 namespace {
 
 constexpr std::uint32_t width = 160, height = 90;
 
-/// Something of everything that a buffer can show; the camera moved before the last frame.
+/// A scene with every kind of buffer content; the camera moves before the last frame.
 class Views : public testing::Test {
  protected:
   Views() {
     for (int i = 0; i < 6; ++i) {
-      still_.renderer.set_camera(camera(0.15f * static_cast<float>(i - 5)));
-      still_.renderer.render();
+      rig_.renderer.set_camera(camera(0.15f * static_cast<float>(i - 5)));
+      rig_.renderer.render();
     }
   }
   static scene::Camera camera(float x) { return look({0.5f + x, 2, 4.5f}, {0, 0.5f, 0}); }
-  static std::shared_ptr<const scene::Scene> things() {
+  static std::shared_ptr<const scene::Scene> spheres() {
     SceneBuilder builder;
     builder.place(builder.add_quad({{{-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}}},
                                    surface({0.6f, 0.55f, 0.5f}, 0.7f)));
@@ -41,141 +41,141 @@ class Views : public testing::Test {
     return builder.build();
   }
   std::array<int, 3> shown(const char* view, std::uint32_t x, std::uint32_t y) {
-    const render::Frame frame = *still_.renderer.capture_view(view);
+    const render::Frame frame = *rig_.renderer.capture_view(view);
     const std::uint8_t* texel = &frame.rgba[(std::size_t{y} * width + x) * 4];
     return {texel[0], texel[1], texel[2]};
   }
 
-  Still still_{things(), scene::constant_environment(glm::vec3(0.5f, 0.6f, 0.8f)), camera(0.0f),
-               width, height};
+  RendererRig rig_{spheres(), scene::constant_environment(glm::vec3(0.5f, 0.6f, 0.8f)),
+                   camera(0.0f), width, height};
 };
 
-TEST_F(Views, EveryOneIsListedWithItsUnitCapturedAndShownAndNoneIsBlank) {
-  ASSERT_GE(still_.renderer.buffers().size(), 30u);
-  EXPECT_EQ(still_.renderer.buffers()[0].name, "output");
-  for (const render::BufferInfo& buffer : still_.renderer.buffers()) {
+TEST_F(Views, EveryBufferIsListedCapturedAndNotBlank) {
+  ASSERT_GE(rig_.renderer.buffers().size(), 30u);
+  EXPECT_EQ(rig_.renderer.buffers()[0].name, "output");
+  for (const render::BufferInfo& buffer : rig_.renderer.buffers()) {
     EXPECT_GT(buffer.description.size(), 15u) << buffer.name;
     EXPECT_EQ(buffer.description.find("Written by the pass"), std::string::npos)
-        << buffer.name << " says only where it comes from";
-    const auto values = still_.renderer.capture(buffer.name);
+        << buffer.name << " has no description of its own";
+    const auto values = rig_.renderer.capture(buffer.name);
     ASSERT_TRUE(values) << buffer.name;
     EXPECT_EQ(values->rgba.size(), std::size_t{4} * width * height) << buffer.name;
-    const auto view = still_.renderer.capture_view(buffer.name);
+    const auto view = rig_.renderer.capture_view(buffer.name);
     ASSERT_TRUE(view) << buffer.name;
-    save_picture("buffer_" + buffer.name, *view);
+    save_image("buffer_" + buffer.name, *view);
     bool differs = false;
     for (std::size_t i = 4; i < view->rgba.size(); ++i) {
       differs |= view->rgba[i] != view->rgba[i % 4];
     }
-    // In a scene at rest no motion is wrong and no shadow is moved: those views are all dark.
-    const bool rests =
+    // A static scene has neither motion errors nor rectified shadows: these views are black.
+    const bool is_black =
         buffer.name == "gbuffer.motion.error" || buffer.name == "visibility.history.moved";
-    EXPECT_EQ(differs, !rests) << buffer.name;
+    EXPECT_EQ(differs, !is_black) << buffer.name;
   }
 }
 
-TEST_F(Views, AnyOfThemCanBeStreamed) {
+TEST_F(Views, StreamedViewEqualsCapturedView) {
   for (const char* name : {"gbuffer.normals.geometric", "gbuffer.motion.view_z", "hdr"}) {
     protocol::Settings settings;
     settings.view.buffer = name;
-    still_.apply(settings);
-    const render::Frame streamed = still_.renderer.render();
-    EXPECT_EQ(streamed.rgba, still_.renderer.capture_view(name)->rgba) << name;
+    rig_.apply(settings);
+    const render::Frame streamed = rig_.renderer.render();
+    EXPECT_EQ(streamed.rgba, rig_.renderer.capture_view(name)->rgba) << name;
   }
   protocol::Settings settings;
   settings.view.buffer = "gbuffer.motion.nothing";
-  EXPECT_FALSE(still_.renderer.set_settings(settings));
-  EXPECT_FALSE(still_.renderer.capture("no such buffer"));
+  EXPECT_FALSE(rig_.renderer.set_settings(settings));
+  EXPECT_FALSE(rig_.renderer.capture("no such buffer"));
 }
 
-TEST_F(Views, ANameThatIsRefusedCostsNoHistory) {
-  still_.renderer.render();
-  const render::Frame before = still_.renderer.render();
+TEST_F(Views, RejectedBufferNameKeepsHistory) {
+  rig_.renderer.render();
+  const render::Frame before = rig_.renderer.render();
   protocol::Settings settings;
-  settings.specular.enabled = false;  // other passes, other buffers
+  settings.specular.enabled = false;  // changes the passes and buffers
   settings.view.buffer = "specular.nothing";
-  const auto refused = still_.renderer.set_settings(settings);
+  const auto refused = rig_.renderer.set_settings(settings);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().path, "view.buffer");
-  EXPECT_EQ(still_.renderer.render().samples, before.samples + 1);
+  EXPECT_EQ(rig_.renderer.render().samples, before.samples + 1);
 }
 
-TEST_F(Views, ThePictureStandsInForABufferThatTheSettingsDoNotMake) {
+TEST_F(Views, OutputReplacesBufferThatSettingsDisable) {
   protocol::Settings settings;
   settings.specular.enabled = false;
   settings.view.buffer = "specular.radiance";
   settings.exposure.compensation = 3.0f;
-  still_.apply(settings);
-  const render::Frame bright = still_.renderer.render();
-  EXPECT_EQ(bright.rgba, still_.renderer.capture_view("output")->rgba);
+  rig_.apply(settings);
+  const render::Frame bright = rig_.renderer.render();
+  EXPECT_EQ(bright.rgba, rig_.renderer.capture_view("output")->rgba);
   settings.exposure.compensation = 0.0f;
-  still_.apply(settings);
-  EXPECT_NE(still_.renderer.render().rgba, bright.rgba) << "it is not applied";
+  rig_.apply(settings);
+  EXPECT_NE(rig_.renderer.render().rgba, bright.rgba) << "exposure must not be applied";
   settings.specular.enabled = true;
-  still_.apply(settings);
-  const render::Frame back = still_.renderer.render();
-  EXPECT_EQ(back.rgba, still_.renderer.capture_view("specular.radiance")->rgba);
+  rig_.apply(settings);
+  const render::Frame back = rig_.renderer.render();
+  EXPECT_EQ(back.rgba, rig_.renderer.capture_view("specular.radiance")->rgba);
 }
 
-/// Settings that make every buffer between them.
+/// Settings that together create every buffer.
 std::vector<protocol::Settings> settings_for_all_buffers() {
   std::vector<protocol::Settings> all(3);
   all[0].reference.use = protocol::ReferenceUse::always;
   all[1].specular.half_resolution = true;
   for (const char* assignment :
-       {"reference.use=resting", "reinhard.mode=exact", "shadow_temporal.rectification=percentile",
-        "specular_temporal.rectification=percentile", "shadow_blur.feedback=1",
-        "specular_blur.feedback=1"}) {
+       {"reference.use=when_static", "reinhard.mode=exact",
+        "shadow_temporal.rectification=percentile", "specular_temporal.rectification=percentile",
+        "shadow_blur.feedback=1", "specular_blur.feedback=1"}) {
     EXPECT_TRUE(protocol::set_by_path(all[2], assignment)) << assignment;
   }
   return all;
 }
 
-TEST(BufferNames, AreThoseOfAllThatSettingsMake) {
+TEST(BufferNames, MatchBuffersOfAllSettings) {
   SceneBuilder builder;
   shared::Material glass = surface({0.5f, 0.7f, 0.5f}, 0.1f);
   glass.base_color.w = 0.4f;
   glass.flags = shared::material_alpha_blend;
   builder.place(builder.add_sphere(1.0f, surface(glm::vec3(0.5f))));
   builder.place(builder.add_quad({{{-1, -1, 2}, {1, -1, 2}, {1, 1, 2}, {-1, 1, 2}}}, glass));
-  Still still(builder.build(), scene::constant_environment(glm::vec3(1.0f)),
-              look({0, 0, 5}, {0, 0, 0}), 32, 18);
-  std::set<std::string> made;
+  RendererRig rig(builder.build(), scene::constant_environment(glm::vec3(1.0f)),
+                  look({0, 0, 5}, {0, 0, 0}), 32, 18);
+  std::set<std::string> created;
   for (const protocol::Settings& settings : settings_for_all_buffers()) {
-    still.apply(settings);
-    for (const render::BufferInfo& buffer : still.renderer.buffers()) made.insert(buffer.name);
+    rig.apply(settings);
+    for (const render::BufferInfo& buffer : rig.renderer.buffers()) created.insert(buffer.name);
   }
   const std::vector<std::string>& names = render::buffer_names();
-  EXPECT_EQ(made, std::set<std::string>(names.begin(), names.end()));
+  EXPECT_EQ(created, std::set<std::string>(names.begin(), names.end()));
 }
 
-TEST_F(Views, ShowKnownValuesInKnownColours) {
-  // The middle of the metal sphere, about; the lowest row is ground, the highest sky.
+TEST_F(Views, ShowKnownValuesInKnownColors) {
+  // Near the center of the metal sphere; the bottom row is ground, the top row sky.
   const std::uint32_t x = 96, y = 56;
   EXPECT_EQ(shown("gbuffer.surface.metallic", x, y), (std::array{253, 231, 37})) << "1: yellow";
   EXPECT_EQ(shown("gbuffer.surface.metallic", x, height - 1), (std::array{68, 1, 84})) << "0";
   EXPECT_EQ(shown("gbuffer.normals", 20, height - 1), (std::array{128, 255, 128})) << "upward";
   EXPECT_EQ(shown("gbuffer.normals", 20, 0), (std::array{0, 0, 0})) << "none";
   EXPECT_EQ(shown("gbuffer.motion.view_z", 20, 0), (std::array{0, 0, 0})) << "none";
-  const render::FloatImage depth = still_.capture("gbuffer.motion.view_z");
+  const render::FloatImage depth = rig_.capture("gbuffer.motion.view_z");
   EXPECT_NEAR(rgb(depth, x, y).x, 4.0f, 0.7f) << "metres";
 }
 
-// The middle of the octahedron is +Z, and no code for nothing.
-TEST(NormalsView, ShowsSurfacesThatFaceZ) {
+// +Z is the center of the octahedral map and must not be taken for "no surface".
+TEST(NormalsView, SurfaceFacingZIsNotBlack) {
   for (const auto source :
        {protocol::PrimaryVisibility::raster, protocol::PrimaryVisibility::rays}) {
     SceneBuilder builder;
     builder.place(builder.add_quad({{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}},
                                    surface(glm::vec3(0.5f))));
-    Still still(builder.build(), scene::constant_environment(glm::vec3(1.0f)),
-                look({0, 0, 4}, {0, 0, 0}), 32, 18);
+    RendererRig rig(builder.build(), scene::constant_environment(glm::vec3(1.0f)),
+                    look({0, 0, 4}, {0, 0, 0}), 32, 18);
     protocol::Settings settings;
     settings.gbuffer.source = source;
-    still.apply(settings);
-    still.renderer.render();
+    rig.apply(settings);
+    rig.renderer.render();
     for (const char* view : {"gbuffer.normals", "gbuffer.normals.geometric"}) {
-      const render::Frame frame = *still.renderer.capture_view(view);
+      const render::Frame frame = *rig.renderer.capture_view(view);
       const std::uint8_t* middle = &frame.rgba[(std::size_t{9} * 32 + 16) * 4];
       EXPECT_EQ((std::array{middle[0], middle[1], middle[2]}),
                 (std::array<std::uint8_t, 3>{128, 128, 255}))
@@ -187,16 +187,16 @@ TEST(NormalsView, ShowsSurfacesThatFaceZ) {
   }
 }
 
-TEST_F(Views, MotionOfARestingSceneIsWhatTheCameraMakesOfIt) {
-  const render::FloatImage motion = still_.capture("gbuffer.motion");
-  const render::FloatImage error = still_.capture("gbuffer.motion.error");
-  float fastest = 0.0f, worst = 0.0f;
+TEST_F(Views, MotionOfStaticSceneHasNoError) {
+  const render::FloatImage motion = rig_.capture("gbuffer.motion");
+  const render::FloatImage error = rig_.capture("gbuffer.motion.error");
+  float fastest = 0.0f, largest = 0.0f;
   for (std::size_t i = 0; i < error.rgba.size(); i += 4) {
     fastest = std::max(fastest, std::abs(motion.rgba[i]) * width);
-    worst = std::max(worst, error.rgba[i]);
+    largest = std::max(largest, error.rgba[i]);
   }
   EXPECT_GT(fastest, 0.5f) << "pixels";
-  EXPECT_LT(worst, 0.02f) << "pixels";
+  EXPECT_LT(largest, 0.02f) << "pixels";
 }
 
 }  // namespace

@@ -2,14 +2,14 @@
 
 #include <cmath>
 
-#include "tests/image/support/scene_renderer.hpp"
+#include "tests/image/support/renderer_rig.hpp"
 
 namespace heliograph::test {
 namespace {
 
 constexpr std::array roughnesses{0.05f, 0.2f, 0.4f, 0.7f, 1.0f};
 
-/// Spheres from smooth to rough, metal in front of plastic, in a corner of a room.
+/// Spheres from smooth to rough, metals in front of dielectrics, in a room corner.
 void furnish_room(SceneBuilder& builder) {
   const auto wall = surface({0.7f, 0.68f, 0.65f}, 0.8f);
   builder.place(builder.add_quad({{{-8, 0, 6}, {8, 0, 6}, {8, 0, -4}, {-8, 0, -4}}}, wall));
@@ -23,7 +23,7 @@ void furnish_room(SceneBuilder& builder) {
   }
 }
 
-/// With a panel and a disk above.
+/// Adds a rectangle and a disk light.
 std::shared_ptr<scene::Scene> lit_scene(SceneBuilder& builder) {
   const auto scene = std::make_shared<scene::Scene>(*builder.build());
   shared::Light panel{};
@@ -52,7 +52,7 @@ protocol::Settings plain_settings() {
   settings.specular.enabled = false;
   settings.ambient.occlusion = false;
   settings.antialiasing.temporal = false;
-  settings.accumulation.handover = 0;
+  settings.accumulation.blend_samples = 0;
   settings.accumulation.max_samples = 512;
   settings.reference.scope = protocol::ReferenceScope::full;
   settings.reference.bounces = 1;
@@ -62,10 +62,11 @@ protocol::Settings plain_settings() {
 render::FloatImage take(const std::string& name, const std::shared_ptr<scene::Scene>& scene,
                         const scene::Camera& camera, const protocol::Settings& settings,
                         VkExtent2D size, std::uint32_t samples) {
-  Still still(scene, scene::constant_environment(glm::vec3(0.0f)), camera, size.width, size.height);
-  still.apply(settings);
-  save_picture(name, still.accumulate(samples));
-  return still.capture("accumulated");
+  RendererRig rig(scene, scene::constant_environment(glm::vec3(0.0f)), camera, size.width,
+                  size.height);
+  rig.apply(settings);
+  save_image(name, rig.accumulate(samples));
+  return rig.capture("accumulated");
 }
 
 double mean_light(const render::FloatImage& image) {
@@ -74,9 +75,9 @@ double mean_light(const render::FloatImage& image) {
   return sum;
 }
 
-// The truth samples the lights' areas and the real lobes; the hybrid integrates both by its fit.
-// One sphere alone is lit by nothing else.
-TEST(AreaLights, LightASphereLikeManySamplesOfTheirArea) {
+// The reference samples light areas and BRDF lobes; the hybrid uses linearly transformed cosines.
+// A single sphere has no interreflections.
+TEST(AreaLights, SphereMatchesAreaSampledGroundTruth) {
   for (const auto& [roughness, metallic] :
        {std::pair{0.2f, 1.0f}, {0.4f, 1.0f}, {0.7f, 1.0f}, {1.0f, 1.0f}, {0.4f, 0.0f}}) {
     SceneBuilder builder;
@@ -86,17 +87,18 @@ TEST(AreaLights, LightASphereLikeManySamplesOfTheirArea) {
     protocol::Settings settings = plain_settings();
     const auto hybrid = take("area_lit_sphere", scene, camera, settings, {48, 48}, 16);
     settings.reference.use = protocol::ReferenceUse::always;
-    const auto truth = take("area_lit_sphere_truth", scene, camera, settings, {48, 48}, 64);
-    const double ratio = mean_light(hybrid) / mean_light(truth);
-    std::printf("roughness %.2f, metallic %.0f: light %.4f of the truth\n", roughness, metallic,
+    const auto reference =
+        take("area_lit_sphere_ground_truth", scene, camera, settings, {48, 48}, 64);
+    const double ratio = mean_light(hybrid) / mean_light(reference);
+    std::printf("roughness %.2f, metallic %.0f: light %.4f of the reference\n", roughness, metallic,
                 ratio);
-    // One cosine cannot follow a lobe with a peak and long tails everywhere: measured, 5 %.
+    // One cosine lobe cannot fit a peak with long tails everywhere: 5 % measured.
     EXPECT_NEAR(ratio, 1.0, 0.06) << roughness << " " << metallic;
   }
 }
 
-// For the eye: the truth has light between rough surfaces as well.
-TEST(AreaLights, CastSoftShadowsInARoom) {
+// Saved for visual inspection: the reference also has diffuse interreflections.
+TEST(AreaLights, CastSoftShadowsInRoom) {
   SceneBuilder builder;
   furnish_room(builder);
   const auto scene = lit_scene(builder);
@@ -106,9 +108,10 @@ TEST(AreaLights, CastSoftShadowsInARoom) {
   settings.exposure.compensation = 1.5f;
   const auto hybrid = take("area_lit_room", scene, camera, settings, {240, 120}, 24);
   settings.reference.use = protocol::ReferenceUse::always;
-  const auto truth = take("area_lit_room_truth", scene, camera, settings, {240, 120}, 16);
+  const auto reference =
+      take("area_lit_room_ground_truth", scene, camera, settings, {240, 120}, 16);
   for (const float value : hybrid.rgba) ASSERT_TRUE(std::isfinite(value));
-  const double ratio = mean_light(hybrid) / mean_light(truth);
+  const double ratio = mean_light(hybrid) / mean_light(reference);
   EXPECT_LT(ratio, 1.0);
   EXPECT_GT(ratio, 0.6);
 }

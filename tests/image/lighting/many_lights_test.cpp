@@ -2,14 +2,14 @@
 
 #include <random>
 
-#include "tests/image/support/scene_renderer.hpp"
+#include "tests/image/support/renderer_rig.hpp"
 
 namespace heliograph::test {
 namespace {
 
 constexpr std::uint32_t width = 64, height = 48;
 
-/// A ground and some spheres under small lamps that reach 2 m each.
+/// A ground with spheres, for lights with a range of 2 m.
 std::shared_ptr<scene::Scene> courtyard() {
   SceneBuilder builder;
   builder.place(builder.add_quad({{{-20, 0, 20}, {20, 0, 20}, {20, 0, -20}, {-20, 0, -20}}},
@@ -22,51 +22,51 @@ std::shared_ptr<scene::Scene> courtyard() {
   return std::make_shared<scene::Scene>(*builder.build());
 }
 
-std::vector<scene::Light> lamps(int count) {
+std::vector<scene::Light> many_lights(int count) {
   std::mt19937 generator(17);
-  std::uniform_real_distribution<float> place(-16.0f, 16.0f), color(0.1f, 1.0f);
+  std::uniform_real_distribution<float> position(-16.0f, 16.0f), color(0.1f, 1.0f);
   std::vector<scene::Light> all;
   for (int i = 0; i < count; ++i) {
     shared::Light light{};
     light.type = i % 3 ? shared::light_point : shared::light_disk;
-    light.position = {place(generator), 1.0f, place(generator)};
+    light.position = {position(generator), 1.0f, position(generator)};
     light.direction = {0, -1, 0};
     light.tangent = {1, 0, 0};
     light.color = glm::vec3(color(generator), color(generator), color(generator));
     light.range = 2.0f;
     light.radius = 0.1f;
     if (light.type == shared::light_disk) light.color *= 20.0f;
-    all.push_back({"lamp", light});
+    all.push_back({"light", light});
   }
   return all;
 }
 
-render::FloatImage picture(const std::shared_ptr<scene::Scene>& scene, const char* name) {
-  Still still(scene, scene::constant_environment(glm::vec3(0.0f)), look({0, 9, 12}, {0, 0, 0}),
-              width, height);
+render::FloatImage render_hdr(const std::shared_ptr<scene::Scene>& scene, const char* name) {
+  RendererRig rig(scene, scene::constant_environment(glm::vec3(0.0f)), look({0, 9, 12}, {0, 0, 0}),
+                  width, height);
   protocol::Settings settings;
   settings.shadows.enabled = false;
   settings.antialiasing.jitter = false;
   settings.specular.enabled = false;
   settings.environment.visible = false;
-  still.apply(settings);
-  const render::Frame frame = still.accumulate(1);
-  if (name) save_picture(name, frame);
-  return still.capture("hdr");
+  rig.apply(settings);
+  const render::Frame frame = rig.accumulate(1);
+  if (name) save_image(name, frame);
+  return rig.capture("hdr");
 }
 
-TEST(ManyLights, TwoThousandLightTheSceneLikeTheirSum) {
-  const std::vector<scene::Light> all = lamps(2000);
+TEST(ManyLights, TwoThousandLightsEqualSumOfBatches) {
+  const std::vector<scene::Light> all = many_lights(2000);
   const auto scene = courtyard();
   scene->lights = all;
-  const render::FloatImage together = picture(scene, "two_thousand_lights");
+  const render::FloatImage together = render_hdr(scene, "two_thousand_lights");
   std::vector<double> sum(together.rgba.size(), 0.0);
-  constexpr std::size_t at_once = 190;  // all of these are read from the uniform block
+  constexpr std::size_t at_once = 190;  // all lights fit the uniform block
   static_assert(at_once < shared::uniform_lights);
   for (std::size_t first = 0; first < all.size(); first += at_once) {
     const std::size_t last = std::min(first + at_once, all.size());
     scene->lights.assign(all.begin() + first, all.begin() + last);
-    const render::FloatImage part = picture(std::make_shared<scene::Scene>(*scene), nullptr);
+    const render::FloatImage part = render_hdr(std::make_shared<scene::Scene>(*scene), nullptr);
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += part.rgba[i];
   }
   double brightness = 0.0;

@@ -1,12 +1,12 @@
-// What extensions add to glTF's own material: index of refraction, specular strength and colour,
-// clear coats, sheen, light that passes through; their factors and their textures.
+// Material extensions of glTF: ior, specular, clearcoat, sheen, transmission and volume; factors
+// and textures.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "scene/import.hpp"
-#include "tests/image/support/scene_renderer.hpp"
+#include "tests/image/support/renderer_rig.hpp"
 
 namespace heliograph::test {
 namespace {
@@ -53,8 +53,8 @@ MaterialLayers sheen(const glm::vec3& color, float roughness) {
   return layers;
 }
 
-/// Spheres of white surfaces of many layers, roughnesses and metalnesses.
-SceneBuilder white_things() {
+/// White spheres with various layers, roughness and metalness.
+SceneBuilder white_spheres() {
   SceneBuilder builder;
   shared::Material dense = surface(glm::vec3(1.0f), 0.3f);
   dense.ior = 2.4f;
@@ -83,59 +83,60 @@ SceneBuilder white_things() {
   return builder;
 }
 
-TEST(LayersInAFurnace, KeepTheEnergy) {
-  Still still(white_things().build(), scene::constant_environment(glm::vec3(1.0f)),
-              look({0, 0, 6}, {0, 0, 0}, 36.0f), 160, 90);
+TEST(LayerFurnace, LayersConserveEnergy) {
+  RendererRig rig(white_spheres().build(), scene::constant_environment(glm::vec3(1.0f)),
+                  look({0, 0, 6}, {0, 0, 0}, 36.0f), 160, 90);
   protocol::Settings settings;
   settings.ambient.occlusion = false;
   settings.lighting.direct = false;
   settings.specular.enabled = false;
-  still.apply(settings);
-  save_picture("furnace_layers", still.accumulate(4));
-  const render::FloatImage radiance = still.capture("accumulated");
+  rig.apply(settings);
+  save_image("furnace_layers", rig.accumulate(4));
+  const render::FloatImage radiance = rig.capture("accumulated");
   for (std::size_t i = 0; i < radiance.rgba.size(); ++i) {
     ASSERT_NEAR(radiance.rgba[i], 1.0f, 0.02f) << "pixel " << i / 4 % 160 << ", " << i / 640;
   }
 }
 
-TEST(LayersInAFurnace, KeepItAlongRaysToo) {
-  Still still(white_things().build(), scene::constant_environment(glm::vec3(1.0f)),
-              look({0, 0, 6}, {0, 0, 0}, 36.0f), 96, 54);
+TEST(LayerFurnace, LayersConserveEnergyAlongRays) {
+  RendererRig rig(white_spheres().build(), scene::constant_environment(glm::vec3(1.0f)),
+                  look({0, 0, 6}, {0, 0, 0}, 36.0f), 96, 54);
   protocol::Settings settings = undenoised();
   settings.ambient.occlusion = false;
   settings.lighting.direct = false;
-  still.apply(settings);
-  save_picture("furnace_layers_rays", still.accumulate(96));
-  const render::FloatImage radiance = still.capture("accumulated");
+  rig.apply(settings);
+  save_image("furnace_layers_rays", rig.accumulate(96));
+  const render::FloatImage radiance = rig.capture("accumulated");
   double sum = 0.0;
   for (std::size_t i = 0; i < radiance.rgba.size(); i += 4) sum += radiance.rgba[i];
   EXPECT_NEAR(sum / (96.0 * 54.0), 1.0, 0.01);
 }
 
-// White glass takes nothing: what passes, what is mirrored and what is scattered back make one.
-TEST(LayersInAFurnace, WhiteGlassVanishes) {
+// White glass absorbs nothing: transmission, reflection and diffuse scattering sum to 1.
+TEST(LayerFurnace, WhiteGlassVanishes) {
   SceneBuilder builder;
   for (int i = 0; i < 4; ++i) {
-    const float share = static_cast<float>(i + 1) / 4.0f;
+    const float transmission = static_cast<float>(i + 1) / 4.0f;
     const auto material = surface(glm::vec3(1.0f), 0.1f * static_cast<float>(i));
-    builder.place(builder.add_sphere(0.45f, builder.with_layers(material, glass(share))),
+    builder.place(builder.add_sphere(0.45f, builder.with_layers(material, glass(transmission))),
                   at(static_cast<float>(i) - 1.5f, 0, 0));
   }
-  Still still(builder.build(), scene::constant_environment(glm::vec3(1.0f)),
-              look({0, 0, 6}, {0, 0, 0}, 36.0f), 160, 60);
+  RendererRig rig(builder.build(), scene::constant_environment(glm::vec3(1.0f)),
+                  look({0, 0, 6}, {0, 0, 0}, 36.0f), 160, 60);
   protocol::Settings settings = undenoised();
   settings.ambient.occlusion = false;
   settings.lighting.direct = false;
   settings.specular.enabled = false;
-  still.apply(settings);
-  save_picture("furnace_glass", still.accumulate(4));
-  const render::FloatImage radiance = still.capture("accumulated");
+  rig.apply(settings);
+  save_image("furnace_glass", rig.accumulate(4));
+  const render::FloatImage radiance = rig.capture("accumulated");
   for (std::size_t i = 0; i < radiance.rgba.size(); ++i) {
     ASSERT_NEAR(radiance.rgba[i], 1.0f, 0.02f) << "pixel " << i / 4 % 160 << ", " << i / 640;
   }
 }
 
-/// Coated, tinted, dense, see-through and velvet things on a coated floor under sun and lamp.
+/// Spheres with clearcoat, specular color, high ior, transmission and sheen on a coated floor,
+/// under sun and point light.
 std::shared_ptr<const scene::Scene> workshop() {
   SceneBuilder builder;
   shared::Material dense = surface({0.1f, 0.1f, 0.3f}, 0.1f);
@@ -154,7 +155,7 @@ std::shared_ptr<const scene::Scene> workshop() {
     builder.place(builder.add_sphere(0.6f, materials[i]),
                   at(1.4f * static_cast<float>(i) - 2.8f, 0.6f, i % 2 ? 0.4f : 0.0f));
   }
-  builder.add_sun({0.5f, -1, -0.4f}, {3.0f, 2.8f, 2.4f}).add_lamp({2, 2, 1}, {4, 3, 2});
+  builder.add_sun({0.5f, -1, -0.4f}, {3.0f, 2.8f, 2.4f}).add_point_light({2, 2, 1}, {4, 3, 2});
   return builder.build();
 }
 
@@ -162,11 +163,11 @@ glm::vec3 sky(const glm::vec3& d) {
   return glm::vec3(0.5f, 0.6f, 0.8f) + glm::vec3(0.3f, 0.2f, 0.1f) * d.y + 0.2f * d.x;
 }
 
-glm::dvec3 mean_color(Still& still, const protocol::Settings& settings, const std::string& name,
+glm::dvec3 mean_color(RendererRig& rig, const protocol::Settings& settings, const std::string& name,
                       std::uint32_t samples = 96) {
-  still.apply(settings);
-  save_picture(name, still.accumulate(samples));
-  const render::FloatImage radiance = still.capture("accumulated");
+  rig.apply(settings);
+  save_image(name, rig.accumulate(samples));
+  const render::FloatImage radiance = rig.capture("accumulated");
   glm::dvec3 sum(0.0);
   for (std::size_t i = 0; i < radiance.rgba.size(); i += 4) {
     for (int c = 0; c < 3; ++c) sum[c] += radiance.rgba[i + static_cast<std::size_t>(c)];
@@ -177,16 +178,16 @@ glm::dvec3 mean_color(Still& still, const protocol::Settings& settings, const st
 
 class Layers : public testing::TestWithParam<protocol::PrimaryVisibility> {};
 
-// However the first surface is found, and whatever mirrored rays cost.
-TEST_P(Layers, HybridConvergesToTheSamePaths) {
-  Still still(workshop(), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 96, 54);
+// For primary visibility by rasterization and by rays.
+TEST_P(Layers, HybridConvergesToPathTracerAlongSamePaths) {
+  RendererRig rig(workshop(), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 96, 54);
   protocol::Settings hybrid = undenoised();
   hybrid.gbuffer.source = GetParam();
-  protocol::Settings truth = undenoised();
-  truth.reference.use = protocol::ReferenceUse::always;
-  truth.reference.scope = protocol::ReferenceScope::same_paths;
-  const glm::dvec3 got = mean_color(still, hybrid, "layers_hybrid");
-  const glm::dvec3 expected = mean_color(still, truth, "layers_reference");
+  protocol::Settings reference = undenoised();
+  reference.reference.use = protocol::ReferenceUse::always;
+  reference.reference.scope = protocol::ReferenceScope::same_paths;
+  const glm::dvec3 got = mean_color(rig, hybrid, "layers_hybrid");
+  const glm::dvec3 expected = mean_color(rig, reference, "layers_reference");
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[c] / expected[c], 1.0, 0.012) << "channel " << c;
 }
 
@@ -194,19 +195,19 @@ INSTANTIATE_TEST_SUITE_P(Sources, Layers,
                          testing::Values(protocol::PrimaryVisibility::rays,
                                          protocol::PrimaryVisibility::raster));
 
-TEST(LayersOfTheReference, GlobalIlluminationIsBrighterByLittle) {
-  Still still(workshop(), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 96, 54);
+TEST(LayersInReference, GlobalIlluminationIsSlightlyBrighter) {
+  RendererRig rig(workshop(), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 96, 54);
   protocol::Settings settings = undenoised();
   settings.reference.use = protocol::ReferenceUse::always;
   settings.reference.scope = protocol::ReferenceScope::same_paths;
-  const double single = mean_color(still, settings, "layers_same").y;
+  const double single = mean_color(rig, settings, "layers_same").y;
   settings.reference.scope = protocol::ReferenceScope::full;
-  const double full = mean_color(still, settings, "layers_full").y;
+  const double full = mean_color(rig, settings, "layers_full").y;
   EXPECT_GT(full / single, 0.9);
   EXPECT_LT(full / single, 1.35);
 }
 
-/// A wall whose layer has every texture: its quarters differ in each of them.
+/// A wall with a texture in every layer slot; its four quarters differ in each texture.
 std::shared_ptr<const scene::Scene> textured_wall() {
   SceneBuilder builder;
   using Texels = std::vector<std::uint8_t>;
@@ -242,11 +243,12 @@ std::shared_ptr<const scene::Scene> textured_wall() {
   builder.place(builder.add_quad({{{-2, -1, 0}, {2, -1, 0}, {2, 1, 0}, {-2, 1, 0}}}, material));
   builder.place(builder.add_quad({{{-3, -2, -1}, {3, -2, -1}, {3, 2, -1}, {-3, 2, -1}}},
                                  surface({0.2f, 0.3f, 0.7f}, 0.7f)));
-  builder.add_sun({0.3f, -0.5f, -1}, {2.0f, 1.8f, 1.6f}).add_lamp({0.5f, 0.3f, 1.5f}, {2, 2, 3});
+  builder.add_sun({0.3f, -0.5f, -1}, {2.0f, 1.8f, 1.6f})
+      .add_point_light({0.5f, 0.3f, 1.5f}, {2, 2, 3});
   return builder.build();
 }
 
-/// Mean of a quarter of the wall, away from its rims.
+/// Mean of a quarter of the wall, away from its edges.
 glm::dvec3 quarter_mean(const render::FloatImage& radiance, std::uint32_t column,
                         std::uint32_t row) {
   glm::dvec3 sum(0.0);
@@ -263,20 +265,20 @@ glm::dvec3 quarter_mean(const render::FloatImage& radiance, std::uint32_t column
 
 class LayerTextures : public testing::TestWithParam<protocol::PrimaryVisibility> {};
 
-// The hybrid keeps what textures say of a layer in its G-buffer; the path tracer asks them itself.
-TEST_P(LayerTextures, LookTheSameInTheHybridAndInTheReference) {
+// The hybrid stores textured layer values in the G-buffer; the path tracer samples the textures.
+TEST_P(LayerTextures, HybridMatchesReference) {
   scene::Camera camera = look({0, 0, 3}, {0, 0, 0});
   camera.orthographic_height = 2.0f;
-  Still still(textured_wall(), make_environment(128, sky), camera, 96, 48);
+  RendererRig rig(textured_wall(), make_environment(128, sky), camera, 96, 48);
   protocol::Settings hybrid = undenoised();
   hybrid.gbuffer.source = GetParam();
-  protocol::Settings truth = undenoised();
-  truth.reference.use = protocol::ReferenceUse::always;
-  truth.reference.scope = protocol::ReferenceScope::same_paths;
-  mean_color(still, hybrid, "layer_textures_hybrid");
-  const render::FloatImage got = still.capture("accumulated");
-  mean_color(still, truth, "layer_textures_reference");
-  const render::FloatImage expected = still.capture("accumulated");
+  protocol::Settings reference = undenoised();
+  reference.reference.use = protocol::ReferenceUse::always;
+  reference.reference.scope = protocol::ReferenceScope::same_paths;
+  mean_color(rig, hybrid, "layer_textures_hybrid");
+  const render::FloatImage got = rig.capture("accumulated");
+  mean_color(rig, reference, "layer_textures_reference");
+  const render::FloatImage expected = rig.capture("accumulated");
   for (std::uint32_t quarter = 0; quarter < 4; ++quarter) {
     const glm::dvec3 a = quarter_mean(got, quarter % 2, quarter / 2);
     const glm::dvec3 b = quarter_mean(expected, quarter % 2, quarter / 2);
@@ -290,11 +292,11 @@ INSTANTIATE_TEST_SUITE_P(Sources, LayerTextures,
                          testing::Values(protocol::PrimaryVisibility::rays,
                                          protocol::PrimaryVisibility::raster));
 
-// A chart by others: five rows of spheres whose dielectric grows weaker or takes colours, the rows
-// of textures the same as those of factors.
-TEST(SpecularChart, TexturesWorkLikeFactors) {
+// Khronos sample: rows of spheres with varying specular factor and color; textured rows must equal
+// the rows with factors.
+TEST(SpecularChart, TexturesMatchFactors) {
   const auto file = asset("gltf/SpecularTest.glb");
-  if (!file) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS names no folder";
+  if (!file) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS is not set";
   const auto scene = std::make_shared<const scene::Scene>(scene::import_gltf(*file));
   for (const std::string& warning : scene->warnings) {
     EXPECT_EQ(warning.find("left out"), std::string::npos) << warning;
@@ -305,18 +307,18 @@ TEST(SpecularChart, TexturesWorkLikeFactors) {
                 layer.specular_color_texture.texture != shared::no_texture;
   }
   EXPECT_GE(textured, 2u);
-  Still still(scene, make_environment(128, sky),
-              scene::fit_camera(scene->bounds, 40.0f, 4.0f / 3.0f), 160, 120);
-  protocol::Settings truth = undenoised();
-  truth.reference.use = protocol::ReferenceUse::always;
-  truth.reference.scope = protocol::ReferenceScope::same_paths;
-  const glm::dvec3 got = mean_color(still, undenoised(), "specular_chart", 8);
-  const glm::dvec3 expected = mean_color(still, truth, "specular_chart_reference", 8);
+  RendererRig rig(scene, make_environment(128, sky),
+                  scene::fit_camera(scene->bounds, 40.0f, 4.0f / 3.0f), 160, 120);
+  protocol::Settings reference = undenoised();
+  reference.reference.use = protocol::ReferenceUse::always;
+  reference.reference.scope = protocol::ReferenceScope::same_paths;
+  const glm::dvec3 got = mean_color(rig, undenoised(), "specular_chart", 8);
+  const glm::dvec3 expected = mean_color(rig, reference, "specular_chart_reference", 8);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[c] / expected[c], 1.0, 0.01) << "channel " << c;
 }
 
-// Coats take no bumps from what lies under them (KHR_materials_clearcoat).
-TEST(Coat, HasItsOwnNormals) {
+// The clearcoat does not use the base normal map (KHR_materials_clearcoat).
+TEST(Coat, IgnoresBaseNormalMap) {
   const auto tilted = [](bool coat_too) {
     SceneBuilder builder;
     const auto bump = builder.add_texture(1, 1, false, {200, 128, 220, 255});
@@ -327,27 +329,27 @@ TEST(Coat, HasItsOwnNormals) {
     builder.place(builder.add_quad({{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}},
                                    builder.with_layers(rough, layers)));
     builder.add_sun({0, 0, -1}, glm::vec3(1.0f));
-    Still still(builder.build(), scene::constant_environment(glm::vec3(0.0f)),
-                look({0, 0, 3}, {0, 0, 0}, 20.0f), 33, 33);
-    still.apply(undenoised());
-    still.accumulate(1);
-    return rgb(still.capture("hdr"), 16, 16).y;
+    RendererRig rig(builder.build(), scene::constant_environment(glm::vec3(0.0f)),
+                    look({0, 0, 3}, {0, 0, 0}, 20.0f), 33, 33);
+    rig.apply(undenoised());
+    rig.accumulate(1);
+    return rgb(rig.capture("hdr"), 16, 16).y;
   };
   EXPECT_GT(tilted(false), 20.0f * tilted(true));
 }
 
-// Velvet shines toward the light from behind its rim.
-TEST(Sheen, BrightensTheRim) {
+// Sheen scatters light at grazing angles.
+TEST(Sheen, BrightensRim) {
   const auto rim = [](const MaterialLayers& layers) {
     SceneBuilder builder;
     builder.place(
         builder.add_sphere(1.0f, builder.with_layers(surface(glm::vec3(0.02f), 1.0f), layers)));
     builder.add_sun({0, 0.3f, -1}, glm::vec3(1.0f));
-    Still still(builder.build(), scene::constant_environment(glm::vec3(0.0f)),
-                look({0, 0, 4}, {0, 0, 0}, 36.0f), 65, 65);
-    still.apply(undenoised());
-    save_picture("sheen_rim", still.accumulate(1));
-    const render::FloatImage radiance = still.capture("hdr");
+    RendererRig rig(builder.build(), scene::constant_environment(glm::vec3(0.0f)),
+                    look({0, 0, 4}, {0, 0, 0}, 36.0f), 65, 65);
+    rig.apply(undenoised());
+    save_image("sheen_rim", rig.accumulate(1));
+    const render::FloatImage radiance = rig.capture("hdr");
     return std::pair(rgb(radiance, 32, 32).y, rgb(radiance, 32, 55).y);
   };
   const auto [plain_middle, plain_rim] = rim({});
@@ -356,19 +358,19 @@ TEST(Sheen, BrightensTheRim) {
   EXPECT_GT(edge / middle, 1.5f * plain_rim / plain_middle);
 }
 
-// A coat's highlight is as sharp as the coat, whatever lies under it.
-TEST(Coat, MirrorsTheSunOnARoughSurface) {
+// The roughness of a clearcoat highlight is that of the coat.
+TEST(Coat, HighlightOnRoughBaseHasCoatRoughness) {
   const auto highlight = [](const MaterialLayers& layers) {
     SceneBuilder builder;
     builder.place(
         builder.add_sphere(1.0f, builder.with_layers(surface({0.3f, 0.0f, 0.0f}, 0.9f), layers)));
     builder.add_sun({0, 0, -1}, glm::vec3(1.0f));
-    Still still(builder.build(), scene::constant_environment(glm::vec3(0.0f)),
-                look({0, 0, 4}, {0, 0, 0}, 36.0f), 65, 65);
+    RendererRig rig(builder.build(), scene::constant_environment(glm::vec3(0.0f)),
+                    look({0, 0, 4}, {0, 0, 0}, 36.0f), 65, 65);
     protocol::Settings settings = undenoised();
-    still.apply(settings);
-    still.accumulate(1);
-    return rgb(still.capture("hdr"), 32, 32).y;
+    rig.apply(settings);
+    rig.accumulate(1);
+    return rgb(rig.capture("hdr"), 32, 32).y;
   };
   EXPECT_GT(highlight(coat(1.0f, 0.2f)), 20.0f * highlight({}));
   EXPECT_NEAR(highlight(coat(0.5f, 0.2f)) / highlight(coat(1.0f, 0.2f)), 0.5f, 0.02f);

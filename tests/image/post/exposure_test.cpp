@@ -1,26 +1,26 @@
 #include <gtest/gtest.h>
 
-#include "tests/image/support/scene_renderer.hpp"
+#include "tests/image/support/renderer_rig.hpp"
 
 namespace heliograph::test {
 namespace {
 
 constexpr std::uint32_t width = 64, height = 40;
 
-/// A room's worth of light, or a sunny day's.
-class Lit : public Still {
+/// A ground under uniform light of adjustable intensity, with automatic exposure.
+class ExposureRig : public RendererRig {
  public:
-  Lit()
-      : Still(ground(), scene::constant_environment(glm::vec3(0.3f)), look({0, 1, 3}, {0, 0, 0}),
-              width, height) {
+  ExposureRig()
+      : RendererRig(ground(), scene::constant_environment(glm::vec3(0.3f)),
+                    look({0, 1, 3}, {0, 0, 0}), width, height) {
     settings.exposure.mode = protocol::ExposureMode::automatic;
     settings.exposure.adaptation = 0.5f;
     settings.accumulation.max_samples = 4;
     apply(settings);
     renderer.set_frame_seconds(0.1f);
   }
-  /// Frames until the picture is finished.
-  int finish() {
+  /// Renders until the frame is converged and returns the number of frames.
+  int render_until_converged() {
     int frames = 0;
     while (renderer.needs_frame() && frames < 300) {
       last = renderer.render();
@@ -46,29 +46,29 @@ class Lit : public Still {
   }
 };
 
-TEST(AutomaticExposure, BrighterLightGivesThePictureOfBefore) {
-  Lit lit;
-  lit.finish();
-  const double before = lit.brightness();
-  lit.settings.environment.intensity = 30.0f;
-  lit.apply(lit.settings);
-  lit.last = lit.renderer.render();
-  const double dazzled = lit.brightness();
-  EXPECT_GT(dazzled, before + 60.0) << "the eye needs its time";
-  const int frames = lit.finish();
-  EXPECT_NEAR(lit.brightness(), before, 3.0) << "code values";
-  // log2(30) stops, down to a hundredth, half a second each e-fold, ten frames a second.
-  EXPECT_NEAR(frames, 31, 4) << "the picture is finished when its exposure is, not sooner";
-  EXPECT_TRUE(lit.last.converged);
+TEST(AutomaticExposure, AdaptsToBrighterLight) {
+  ExposureRig rig;
+  rig.render_until_converged();
+  const double before = rig.brightness();
+  rig.settings.environment.intensity = 30.0f;
+  rig.apply(rig.settings);
+  rig.last = rig.renderer.render();
+  const double overexposed = rig.brightness();
+  EXPECT_GT(overexposed, before + 60.0) << "adaptation must not be immediate";
+  const int frames = rig.render_until_converged();
+  EXPECT_NEAR(rig.brightness(), before, 3.0) << "code values";
+  // log2(30) stops decay to 0.01 with a time constant of 0.5 s at 10 frames per second.
+  EXPECT_NEAR(frames, 31, 4) << "convergence must wait for exposure";
+  EXPECT_TRUE(rig.last.converged);
 }
 
-TEST(AutomaticExposure, EndsWhenNoTimePasses) {
-  Lit lit;
-  lit.finish();
-  lit.settings.environment.intensity = 30.0f;
-  lit.apply(lit.settings);
-  lit.renderer.set_frame_seconds(0.0f);
-  EXPECT_LE(lit.finish(), 5);
+TEST(AutomaticExposure, ConvergesWithoutElapsedTime) {
+  ExposureRig rig;
+  rig.render_until_converged();
+  rig.settings.environment.intensity = 30.0f;
+  rig.apply(rig.settings);
+  rig.renderer.set_frame_seconds(0.0f);
+  EXPECT_LE(rig.render_until_converged(), 5);
 }
 
 }  // namespace

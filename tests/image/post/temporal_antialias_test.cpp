@@ -3,14 +3,14 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "tests/image/support/scene_renderer.hpp"
+#include "tests/image/support/renderer_rig.hpp"
 
 namespace heliograph::test {
 namespace {
 
 constexpr std::uint32_t width = 96, height = 64;
 
-/// Edges of every slope, thin bars and a curved outline in front of a bright sky; nothing is noisy.
+/// Thin bars of many slopes and a sphere's outline in front of a bright sky, without noise.
 std::shared_ptr<const scene::Scene> edges() {
   SceneBuilder builder;
   builder.place(builder.add_sphere(0.7f, surface({0.9f, 0.3f, 0.1f})),
@@ -32,15 +32,15 @@ protocol::Settings without_noise() {
   settings.specular.enabled = false;
   settings.ambient.occlusion = false;
   settings.accumulation.max_samples = 4096;
-  settings.accumulation.handover = 4096;  // what is shown is the filtered frame
+  settings.accumulation.blend_samples = 4096;  // shows the antialiased frame
   return settings;
 }
 
 /// The edges in front of a bright sky.
-class Edges : public Still {
+class Edges : public RendererRig {
  public:
   explicit Edges(const scene::Camera& camera)
-      : Still(edges(), make_environment(64, sky), camera, width, height) {
+      : RendererRig(edges(), make_environment(64, sky), camera, width, height) {
     apply(without_noise());
   }
 
@@ -58,43 +58,43 @@ double mean_square(const render::FloatImage& a, const render::FloatImage& b) {
   return sum / static_cast<double>(a.rgba.size() / 4 * 3);
 }
 
-// Motion that still held the jitter would make the picture creep or shimmer for ever.
-TEST(Antialias, AJitteredPictureThatStandsStillSettlesOnTheTruth) {
+// Motion vectors that contain the jitter would make the image drift or shimmer.
+TEST(TemporalAntialias, JitteredStaticViewConvergesToGroundTruth) {
   const scene::Camera camera = look({0, 0, 3}, {0, 0, 0});
-  Edges still(camera);
-  still.accumulate(200);
+  Edges rig(camera);
+  rig.accumulate(200);
   double resolved = 0.0, raw = 0.0, change = 0.0, raw_change = 0.0;
-  render::FloatImage before = still.capture("antialiased"), raw_before = still.capture("hdr");
+  render::FloatImage before = rig.capture("antialiased"), raw_before = rig.capture("hdr");
   for (int i = 0; i < 16; ++i) {
-    save_picture("antialiased", still.renderer.render());
-    const render::FloatImage truth = still.capture("accumulated");
-    const render::FloatImage now = still.capture("antialiased"), sample = still.capture("hdr");
-    resolved += mean_square(truth, now);
-    raw += mean_square(truth, sample);
+    save_image("antialiased", rig.renderer.render());
+    const render::FloatImage reference = rig.capture("accumulated");
+    const render::FloatImage now = rig.capture("antialiased"), sample = rig.capture("hdr");
+    resolved += mean_square(reference, now);
+    raw += mean_square(reference, sample);
     change += mean_square(before, now);
     raw_change += mean_square(raw_before, sample);
     before = now;
     raw_before = sample;
   }
   RecordProperty("error", std::to_string(resolved / raw));
-  EXPECT_GT(raw_change, 0.0) << "the frames themselves are jittered";
-  EXPECT_LT(resolved, 0.25 * raw) << "nearer to 200 samples than one is";
-  EXPECT_LT(change, 0.02 * raw_change) << "and almost still";
+  EXPECT_GT(raw_change, 0.0) << "unfiltered frames must be jittered";
+  EXPECT_LT(resolved, 0.25 * raw) << "closer to 200 samples than one sample is";
+  EXPECT_LT(change, 0.02 * raw_change) << "almost constant";
 }
 
-TEST(Antialias, WithoutJitterAStillPictureStandsStill) {
-  Edges still(look({0, 0, 3}, {0, 0, 0}));
+TEST(TemporalAntialias, StaticViewWithoutJitterIsConstant) {
+  Edges rig(look({0, 0, 3}, {0, 0, 0}));
   protocol::Settings settings = without_noise();
   settings.antialiasing.jitter = false;
-  still.apply(settings);
-  still.accumulate(30);
-  const render::FloatImage before = still.capture("antialiased");
-  still.renderer.render();
-  const double change = difference(before, still.capture("antialiased")).maximum;
-  EXPECT_LT(change, 2e-3) << "the history is where the frame is: not a fraction of a pixel beside";
+  rig.apply(settings);
+  rig.accumulate(30);
+  const render::FloatImage before = rig.capture("antialiased");
+  rig.renderer.render();
+  const double change = difference(before, rig.capture("antialiased")).maximum;
+  EXPECT_LT(change, 2e-3) << "history is offset from the frame";
 }
 
-TEST(Antialias, EdgesAreBetterThanOneSampleWhileTheCameraMoves) {
+TEST(TemporalAntialias, MovingEdgesAreBetterThanOneSample) {
   for (const auto& [name, step] : {std::pair("yaw", glm::vec3(0.02f, 0, 0)),
                                    {"pitch", glm::vec3(0, 0.02f, 0)},
                                    {"dolly", glm::vec3(0, 0, -0.03f)}}) {
@@ -106,35 +106,35 @@ TEST(Antialias, EdgesAreBetterThanOneSampleWhileTheCameraMoves) {
       moving.renderer.set_camera(look(eye, target));
       moving.renderer.render();
     }
-    Edges resting(look(eye, target));
-    resting.accumulate(128);
-    const render::FloatImage truth = resting.capture("accumulated");
-    const double resolved = mean_square(truth, moving.capture("antialiased"));
-    const double raw = mean_square(truth, moving.capture("hdr"));
+    Edges reference(look(eye, target));
+    reference.accumulate(128);
+    const render::FloatImage expected = reference.capture("accumulated");
+    const double resolved = mean_square(expected, moving.capture("antialiased"));
+    const double raw = mean_square(expected, moving.capture("hdr"));
     EXPECT_LT(resolved, 0.75 * raw) << name << ": " << resolved << " " << raw;
-    save_picture(std::string("antialias_") + name, *moving.renderer.capture_view("antialiased"));
+    save_image(std::string("antialias_") + name, *moving.renderer.capture_view("antialiased"));
   }
 }
 
-// The whole picture, as streamed: the share of the mean grows until nothing changes any more.
-TEST(Handover, FramesOfAStillViewDifferLessAndLess) {
+// The output frame: the weight of the accumulated mean grows until the frame is constant.
+TEST(AccumulationBlend, StaticViewConverges) {
   SceneBuilder builder;
   builder.place(builder.add_quad({{{-3, -0.7f, 3}, {3, -0.7f, 3}, {3, -0.7f, -3}, {-3, -0.7f, -3}}},
                                  surface({0.6f, 0.6f, 0.5f})));
   builder.place(builder.add_sphere(0.6f, surface({0.8f, 0.3f, 0.2f}, 0.5f)));
   builder.add_sun({-0.5f, -1, -0.3f}, glm::vec3(2.0f), 6.0f);
-  Still still(builder.build(), scene::constant_environment(glm::vec3(0.4f)),
-              look({0, 0.6f, 3}, {0, 0, 0}), width, height);
+  RendererRig rig(builder.build(), scene::constant_environment(glm::vec3(0.4f)),
+                  look({0, 0.6f, 3}, {0, 0, 0}), width, height);
   protocol::Settings settings;
   settings.accumulation.max_samples = 512;
-  settings.accumulation.handover = 16;
-  still.apply(settings);
+  settings.accumulation.blend_samples = 16;
+  rig.apply(settings);
   const auto change_after = [&](std::uint32_t samples) {
-    const render::Frame before = still.accumulate(samples);
+    const render::Frame before = rig.accumulate(samples);
     double sum = 0.0;
     render::Frame last = before;
     for (int i = 0; i < 4; ++i) {
-      const render::Frame next = still.renderer.render();
+      const render::Frame next = rig.renderer.render();
       sum += difference(last, next).mean;
       last = next;
     }
@@ -148,32 +148,32 @@ TEST(Handover, FramesOfAStillViewDifferLessAndLess) {
   EXPECT_LT(late, 0.04) << "code values";
 }
 
-TEST(Handover, ZeroShowsTheMeanAloneAndAMovingPictureNoneOfIt) {
-  Edges still(look({0, 0, 3}, {0, 0, 0}));
+TEST(AccumulationBlend, ZeroShowsMeanAndMotionShowsFrame) {
+  Edges rig(look({0, 0, 3}, {0, 0, 0}));
   protocol::Settings settings = without_noise();
   settings.tone_map.curve = protocol::ToneMapCurve::linear;
   const auto shown_is = [&](const char* buffer) {
-    const render::FloatImage radiance = still.capture(buffer);
-    const render::FloatImage shown = still.capture("output");
-    double worst = 0.0;
+    const render::FloatImage radiance = rig.capture(buffer);
+    const render::FloatImage shown = rig.capture("output");
+    double largest = 0.0;
     for (std::size_t i = 0; i < shown.rgba.size(); ++i) {
       if (i % 4 == 3) continue;
       const double c = std::min(radiance.rgba[i], 1.0f);
       const double encoded = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
-      worst = std::max(worst, std::abs(encoded - shown.rgba[i]));
+      largest = std::max(largest, std::abs(encoded - shown.rgba[i]));
     }
-    return worst < 1.5 / 255.0;
+    return largest < 1.5 / 255.0;
   };
-  settings.accumulation.handover = 0;
-  still.apply(settings);
-  still.accumulate(7);
+  settings.accumulation.blend_samples = 0;
+  rig.apply(settings);
+  rig.accumulate(7);
   EXPECT_TRUE(shown_is("accumulated"));
   EXPECT_FALSE(shown_is("antialiased"));
-  settings.accumulation.handover = 4;
-  still.apply(settings);
+  settings.accumulation.blend_samples = 4;
+  rig.apply(settings);
   for (int i = 0; i < 5; ++i) {
-    still.renderer.set_camera(look({0.05f * static_cast<float>(i), 0, 3}, {0, 0, 0}));
-    still.renderer.render();
+    rig.renderer.set_camera(look({0.05f * static_cast<float>(i), 0, 3}, {0, 0, 0}));
+    rig.renderer.render();
   }
   EXPECT_TRUE(shown_is("antialiased"));
   EXPECT_FALSE(shown_is("accumulated"));

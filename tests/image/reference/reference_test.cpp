@@ -4,7 +4,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "scene/import.hpp"
-#include "tests/image/support/scene_renderer.hpp"
+#include "tests/image/support/renderer_rig.hpp"
 #include "tests/support/brdf_reference.hpp"
 
 namespace heliograph::test {
@@ -13,7 +13,7 @@ namespace {
 using protocol::ReferenceScope;
 using protocol::ReferenceUse;
 
-/// The hybrid's rays alone: nothing is denoised, the picture is the mean of what they found.
+/// The hybrid without denoising: the mean over all samples.
 protocol::Settings undenoised() {
   protocol::Settings settings;
   settings.shadow_temporal.enabled = settings.shadow_blur.enabled = false;
@@ -30,12 +30,12 @@ protocol::Settings traced(ReferenceScope scope) {
   return settings;
 }
 
-/// Mean luminance of the picture after so many samples.
-double mean_luminance(Still& still, const protocol::Settings& settings, std::uint32_t samples,
+/// Mean luminance of the accumulated image after `samples` samples.
+double mean_luminance(RendererRig& rig, const protocol::Settings& settings, std::uint32_t samples,
                       const std::string& name) {
-  still.apply(settings);
-  save_picture(name, still.accumulate(samples));
-  const render::FloatImage radiance = still.capture("accumulated");
+  rig.apply(settings);
+  save_image(name, rig.accumulate(samples));
+  const render::FloatImage radiance = rig.capture("accumulated");
   double sum = 0.0;
   for (std::size_t i = 0; i < radiance.rgba.size(); i += 4) {
     const double luminance =
@@ -50,7 +50,7 @@ glm::vec3 sky(const glm::vec3& d) {
   return glm::vec3(0.5f, 0.6f, 0.8f) + glm::vec3(0.3f, 0.2f, 0.1f) * d.y + 0.2f * d.x;
 }
 
-/// Boxes and balls of one roughness on a floor, metals and not, that shadow and mirror each other.
+/// Metal and dielectric spheres of one roughness on a floor, with shadows and interreflections.
 std::shared_ptr<const scene::Scene> still_life(float roughness) {
   SceneBuilder builder;
   const auto floor = builder.add_quad({{{-6, 0, 4}, {6, 0, 4}, {6, 0, -6}, {-6, 0, -6}}},
@@ -61,35 +61,35 @@ std::shared_ptr<const scene::Scene> still_life(float roughness) {
   glowing.emissive = {1.5f, 1.0f, 0.5f};
   const auto metal = builder.add_sphere(0.7f, surface({0.9f, 0.7f, 0.5f}, roughness, 1.0f));
   const auto plastic = builder.add_sphere(0.6f, surface({0.1f, 0.6f, 0.2f}, roughness, 0.0f));
-  const auto lamp = builder.add_sphere(0.3f, glowing);
+  const auto glowing_sphere = builder.add_sphere(0.3f, glowing);
   const auto at = [](float x, float y, float z) {
     return glm::translate(glm::mat4(1.0f), glm::vec3(x, y, z));
   };
   builder.place(floor).place(wall);
   builder.place(metal, at(-1, 0.7f, 0)).place(plastic, at(0.8f, 0.6f, 0.4f));
-  builder.place(lamp, at(0, 0.3f, 1.2f));
-  builder.add_sun({0.5f, -1, -0.4f}, {3.0f, 2.8f, 2.4f}).add_lamp({2, 2, 1}, {4, 3, 2});
+  builder.place(glowing_sphere, at(0, 0.3f, 1.2f));
+  builder.add_sun({0.5f, -1, -0.4f}, {3.0f, 2.8f, 2.4f}).add_point_light({2, 2, 1}, {4, 3, 2});
   return builder.build();
 }
 
 struct Case {
   float roughness;
-  float angle;  // degrees, of the sun
+  float angle;  // angular diameter of the sun in degrees
 };
 
 class SamePaths : public testing::TestWithParam<Case> {};
 
-TEST_P(SamePaths, AreWhatTheHybridConvergesTo) {
+TEST_P(SamePaths, HybridConvergesToReference) {
   const auto [roughness, angle] = GetParam();
-  Still still(still_life(roughness), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 96,
-              54);
+  RendererRig rig(still_life(roughness), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}),
+                  96, 54);
   protocol::Settings hybrid = undenoised();
-  protocol::Settings truth = traced(ReferenceScope::same_paths);
-  hybrid.shadows.angular_diameter_override = truth.shadows.angular_diameter_override = angle;
+  protocol::Settings reference = traced(ReferenceScope::same_paths);
+  hybrid.shadows.angular_diameter_override = reference.shadows.angular_diameter_override = angle;
   const std::string name = "same_paths_" + std::to_string(static_cast<int>(100 * roughness)) + "_" +
                            std::to_string(static_cast<int>(angle));
-  const double got = mean_luminance(still, hybrid, 64, name + "_hybrid");
-  const double expected = mean_luminance(still, truth, 64, name + "_reference");
+  const double got = mean_luminance(rig, hybrid, 64, name + "_hybrid");
+  const double expected = mean_luminance(rig, reference, 64, name + "_reference");
   EXPECT_NEAR(got / expected, 1.0, 0.01) << "roughness " << roughness << ", angle " << angle;
 }
 
@@ -100,9 +100,10 @@ INSTANTIATE_TEST_SUITE_P(Roughness, SamePaths,
 INSTANTIATE_TEST_SUITE_P(Angle, SamePaths,
                          testing::Values(Case{0.3f, 0.0f}, Case{0.3f, 6.0f}, Case{0.3f, 10.0f}));
 
-// Every switch takes away the same light from both.
-TEST(SamePaths, FollowTheSwitches) {
-  Still still(still_life(0.3f), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 96, 54);
+// Every lighting switch removes the same light from hybrid and reference.
+TEST(SamePaths, LightingSwitchesMatchHybrid) {
+  RendererRig rig(still_life(0.3f), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 96,
+                  54);
   using Change = void (*)(protocol::Settings&);
   const std::vector<Change> changes{
       [](protocol::Settings& s) { s.lighting.direct = false; },
@@ -115,49 +116,49 @@ TEST(SamePaths, FollowTheSwitches) {
       [](protocol::Settings& s) { s.environment.visible = false; }};
   for (std::size_t i = 0; i < changes.size(); ++i) {
     protocol::Settings hybrid = undenoised();
-    protocol::Settings truth = traced(ReferenceScope::same_paths);
+    protocol::Settings reference = traced(ReferenceScope::same_paths);
     changes[i](hybrid);
-    changes[i](truth);
-    const double got = mean_luminance(still, hybrid, 16, "switch_hybrid");
-    const double expected = mean_luminance(still, truth, 16, "switch_reference");
+    changes[i](reference);
+    const double got = mean_luminance(rig, hybrid, 16, "switch_hybrid");
+    const double expected = mean_luminance(rig, reference, 16, "switch_reference");
     EXPECT_NEAR(got / expected, 1.0, 0.015) << "switch " << i;
   }
 }
 
-class StandIns : public testing::TestWithParam<const char*> {};
+class PaperScenes : public testing::TestWithParam<const char*> {};
 
-TEST_P(StandIns, HybridConvergesToTheSamePaths) {
+TEST_P(PaperScenes, HybridConvergesToReference) {
   const auto file = asset(std::string("standins/") + GetParam() + ".glb");
   if (!file) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS is not set";
   const auto scene = std::make_shared<const scene::Scene>(scene::import_gltf(*file));
   ASSERT_FALSE(scene->cameras.empty());
-  Still still(scene, make_environment(128, sky), scene->cameras.at(0), 160, 90);
-  const double got = mean_luminance(still, undenoised(), 32, std::string(GetParam()) + "_hybrid");
-  const double expected = mean_luminance(still, traced(ReferenceScope::same_paths), 32,
+  RendererRig rig(scene, make_environment(128, sky), scene->cameras.at(0), 160, 90);
+  const double got = mean_luminance(rig, undenoised(), 32, std::string(GetParam()) + "_hybrid");
+  const double expected = mean_luminance(rig, traced(ReferenceScope::same_paths), 32,
                                          std::string(GetParam()) + "_reference");
   EXPECT_NEAR(got / expected, 1.0, 0.01);
 }
 
-INSTANTIATE_TEST_SUITE_P(Paper, StandIns, testing::Values("cubes_distance", "pillars"));
+INSTANTIATE_TEST_SUITE_P(Paper, PaperScenes, testing::Values("cubes_distance", "pillars"));
 
-// White surfaces under white light lose nothing, however often light goes between them.
+// White surfaces in a white furnace lose no energy over any number of bounces.
 TEST(FullReference, WhiteFurnaceStaysWhite) {
   SceneBuilder builder;
   for (int i = 0; i < 10; ++i) {
     const float roughness = 0.25f * static_cast<float>(i % 5);
     const float metallic = i < 5 ? 0.0f : 1.0f;
-    const glm::vec3 place(static_cast<float>(i % 5) - 2.0f, i < 5 ? 0.5f : -0.5f, 0);
+    const glm::vec3 position(static_cast<float>(i % 5) - 2.0f, i < 5 ? 0.5f : -0.5f, 0);
     builder.place(builder.add_sphere(0.45f, surface(glm::vec3(1.0f), roughness, metallic)),
-                  glm::translate(glm::mat4(1.0f), place));
+                  glm::translate(glm::mat4(1.0f), position));
   }
-  Still still(builder.build(), scene::constant_environment(glm::vec3(1.0f)),
-              look({0, 0, 6}, {0, 0, 0}, 36.0f), 160, 64);
+  RendererRig rig(builder.build(), scene::constant_environment(glm::vec3(1.0f)),
+                  look({0, 0, 6}, {0, 0, 0}, 36.0f), 160, 64);
   protocol::Settings settings = traced(ReferenceScope::full);
   settings.reference.bounces = 12;
-  still.apply(settings);
-  save_picture("reference_furnace", still.accumulate(32));
-  const render::FloatImage radiance = still.capture("accumulated");
-  // Means of blocks: single pixels are noisy.
+  rig.apply(settings);
+  save_image("reference_furnace", rig.accumulate(32));
+  const render::FloatImage radiance = rig.capture("accumulated");
+  // Block means, because single pixels are noisy.
   for (std::uint32_t y = 0; y < 64; y += 16) {
     for (std::uint32_t x = 0; x < 160; x += 16) {
       glm::vec3 sum(0.0f);
@@ -169,7 +170,7 @@ TEST(FullReference, WhiteFurnaceStaysWhite) {
 
 class BothScopes : public testing::TestWithParam<ReferenceScope> {};
 
-TEST_P(BothScopes, SunOnAFloorIsAnalytic) {
+TEST_P(BothScopes, SunOnFloorIsAnalytic) {
   SceneBuilder builder;
   builder.place(builder.add_quad({{{-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}}},
                                  surface(glm::vec3(0.5f), 1.0f)));
@@ -178,15 +179,15 @@ TEST_P(BothScopes, SunOnAFloorIsAnalytic) {
   scene::Camera camera = look({0, 5, 0}, {0, 0, 0});
   camera.up = {0, 0, -1};
   camera.orthographic_height = 2.0f;
-  Still still(builder.build(), scene::constant_environment(glm::vec3(0.0f)), camera, 16, 16);
-  still.apply(traced(GetParam()));
-  still.accumulate(4);
-  const double expected =
-      3.0 * shade_light_twin(0.5, 0.0, 1.0, {0, 0, 1}, {toward_sun.x, toward_sun.z, toward_sun.y});
-  EXPECT_NEAR(rgb(still.capture("accumulated"), 8, 8).x, expected, 0.005 * expected);
+  RendererRig rig(builder.build(), scene::constant_environment(glm::vec3(0.0f)), camera, 16, 16);
+  rig.apply(traced(GetParam()));
+  rig.accumulate(4);
+  const double expected = 3.0 * shade_light_reference(0.5, 0.0, 1.0, {0, 0, 1},
+                                                      {toward_sun.x, toward_sun.z, toward_sun.y});
+  EXPECT_NEAR(rgb(rig.capture("accumulated"), 8, 8).x, expected, 0.005 * expected);
 }
 
-TEST_P(BothScopes, MirrorShowsTheEmitterAsItIs) {
+TEST_P(BothScopes, MirrorShowsEmitterUnchanged) {
   SceneBuilder builder;
   shared::Material emitter = surface(glm::vec3(0.0f), 1.0f, 1.0f);
   emitter.emissive = {2.0f, 1.0f, 0.5f};
@@ -195,73 +196,75 @@ TEST_P(BothScopes, MirrorShowsTheEmitterAsItIs) {
                                  surface(glm::vec3(1.0f), 0.0f, 1.0f)),
                 glm::rotate(glm::mat4(1.0f), -0.7853982f, glm::vec3(1, 0, 0)));
   builder.place(builder.add_quad({{{-9, 6, 9}, {9, 6, 9}, {9, 6, -9}, {-9, 6, -9}}}, emitter));
-  Still still(builder.build(), scene::constant_environment(glm::vec3(0.0f)),
-              look({0, 0, 5}, {0, 0, 0}, 20.0f), 16, 16);
-  still.apply(traced(GetParam()));
-  still.accumulate(4);
-  const glm::vec3 seen = rgb(still.capture("accumulated"), 8, 8);
+  RendererRig rig(builder.build(), scene::constant_environment(glm::vec3(0.0f)),
+                  look({0, 0, 5}, {0, 0, 0}, 20.0f), 16, 16);
+  rig.apply(traced(GetParam()));
+  rig.accumulate(4);
+  const glm::vec3 seen = rgb(rig.capture("accumulated"), 8, 8);
   EXPECT_LE(glm::distance(seen, glm::vec3(2.0f, 1.0f, 0.5f)), 0.01f);
 }
 
-TEST_P(BothScopes, BlendedSurfacesCoverTheirShare) {
+TEST_P(BothScopes, BlendedSurfacesCoverByAlpha) {
   SceneBuilder builder;
-  shared::Material veil = surface({0.8f, 0.4f, 0.2f});
-  veil.base_color.w = 0.25f;
-  veil.flags = shared::material_alpha_blend | shared::material_unlit;
-  const auto quad = builder.add_quad({{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}}, veil);
+  shared::Material translucent = surface({0.8f, 0.4f, 0.2f});
+  translucent.base_color.w = 0.25f;
+  translucent.flags = shared::material_alpha_blend | shared::material_unlit;
+  const auto quad =
+      builder.add_quad({{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}}, translucent);
   builder.place(quad).place(quad, glm::translate(glm::mat4(1.0f), {0, 0, -1}));
-  Still still(builder.build(), scene::constant_environment(glm::vec3(1.0f)),
-              look({0, 0, 4}, {0, 0, 0}, 20.0f), 32, 32);
-  const double got = mean_luminance(still, traced(GetParam()), 32, "blended");
-  const double veiled = 0.2126 * 0.8 + 0.7152 * 0.4 + 0.0722 * 0.2;
-  EXPECT_NEAR(got, (0.25 + 0.75 * 0.25) * veiled + 0.75 * 0.75, 0.01);
+  RendererRig rig(builder.build(), scene::constant_environment(glm::vec3(1.0f)),
+                  look({0, 0, 4}, {0, 0, 0}, 20.0f), 32, 32);
+  const double got = mean_luminance(rig, traced(GetParam()), 32, "blended");
+  const double pane = 0.2126 * 0.8 + 0.7152 * 0.4 + 0.0722 * 0.2;
+  EXPECT_NEAR(got, (0.25 + 0.75 * 0.25) * pane + 0.75 * 0.75, 0.01);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scopes, BothScopes,
                          testing::Values(ReferenceScope::same_paths, ReferenceScope::full));
 
-TEST(FullReference, FindsTheLightBetweenWallsThatTheHybridDoesNot) {
+TEST(FullReference, IncludesInterreflections) {
   SceneBuilder builder;
   const shared::Material white = surface(glm::vec3(0.8f));
   builder.place(builder.add_quad({{{-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}}}, white));
   builder.place(builder.add_quad({{{-2, 0, -2}, {2, 0, -2}, {2, 4, -2}, {-2, 4, -2}}}, white));
   builder.place(builder.add_quad({{{-2, 0, 2}, {-2, 0, -2}, {-2, 4, -2}, {-2, 4, 2}}}, white));
   builder.add_sun({0.2f, -1, -0.3f}, glm::vec3(3.0f));
-  Still still(builder.build(), scene::constant_environment(glm::vec3(0.0f)),
-              look({4, 3, 6}, {0, 1, 0}, 40.0f), 64, 36);
+  RendererRig rig(builder.build(), scene::constant_environment(glm::vec3(0.0f)),
+                  look({4, 3, 6}, {0, 1, 0}, 40.0f), 64, 36);
   const double same =
-      mean_luminance(still, traced(ReferenceScope::same_paths), 32, "corner_same_paths");
+      mean_luminance(rig, traced(ReferenceScope::same_paths), 32, "corner_same_paths");
   protocol::Settings settings = traced(ReferenceScope::full);
   settings.reference.bounces = 1;
-  const double one = mean_luminance(still, settings, 32, "corner_one_bounce");
+  const double one = mean_luminance(rig, settings, 32, "corner_one_bounce");
   settings.reference.bounces = 8;
-  const double eight = mean_luminance(still, settings, 32, "corner_full");
+  const double eight = mean_luminance(rig, settings, 32, "corner_full");
   EXPECT_GT(one, 1.05 * same);
   EXPECT_GT(eight, 1.02 * one);
   EXPECT_LT(eight, 2.0 * same);
 }
 
-TEST(FullReference, IsTheSameWhateverTraces) {
+TEST(FullReference, TracersAgree) {
   std::vector<double> mean;
-  for (const std::string& tracer : offered_tracers()) {
-    Still still(still_life(0.3f), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 48, 27,
-                tracer);
-    mean.push_back(mean_luminance(still, traced(ReferenceScope::full), 8, "traced_by_" + tracer));
+  for (const std::string& tracer : supported_tracers()) {
+    RendererRig rig(still_life(0.3f), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 48,
+                    27, tracer);
+    mean.push_back(mean_luminance(rig, traced(ReferenceScope::full), 8, "traced_by_" + tracer));
   }
   for (const double other : mean) EXPECT_NEAR(other / mean[0], 1.0, 1e-3);
 }
 
-TEST(RestingReference, IsWhatARestingCameraConvergesTo) {
-  Still still(still_life(0.4f), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 64, 36);
-  const double expected = mean_luminance(still, traced(ReferenceScope::full), 64, "rest_full");
+TEST(ReferenceWhenStatic, StaticCameraConvergesToReference) {
+  RendererRig rig(still_life(0.4f), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 64,
+                  36);
+  const double expected = mean_luminance(rig, traced(ReferenceScope::full), 64, "static_full");
   protocol::Settings settings = traced(ReferenceScope::full);
-  settings.reference.use = ReferenceUse::resting;
-  settings.accumulation.handover = 4;
-  EXPECT_NEAR(mean_luminance(still, settings, 65, "rest_resting"), expected, 0.01 * expected);
-  // More samples go on where the picture stands.
+  settings.reference.use = ReferenceUse::when_static;
+  settings.accumulation.blend_samples = 4;
+  EXPECT_NEAR(mean_luminance(rig, settings, 65, "static_hybrid"), expected, 0.01 * expected);
+  // Raising max_samples continues the accumulation.
   settings.accumulation.max_samples = 70;
-  still.apply(settings);
-  EXPECT_EQ(still.renderer.render().samples, 66u);
+  rig.apply(settings);
+  EXPECT_EQ(rig.renderer.render().samples, 66u);
 }
 
 }  // namespace

@@ -6,7 +6,8 @@
 
 #include "scenes/generator/scenes/test_scenes.hpp"
 #include "scenes/generator/sky/sky.hpp"
-#include "tests/image/support/scene_renderer.hpp"
+#include "tests/image/support/renderer_rig.hpp"
+#include "tests/support/generated_scene.hpp"
 
 namespace heliograph::test {
 namespace {
@@ -15,8 +16,8 @@ constexpr std::uint32_t width = 240, height = 180;
 constexpr glm::dvec3 center(0.0, 0.45, 0.0);
 constexpr double radius = 0.45;
 
-/// Bilinear, with the equator joined and the poles clamped.
-glm::dvec3 look_up(const scene::Environment& sky, const glm::dvec3& d) {
+/// Bilinear lookup; wraps in longitude and clamps at the poles.
+glm::dvec3 sample_environment(const scene::Environment& sky, const glm::dvec3& d) {
   const double u = (0.5 + std::atan2(d.z, d.x) / (2.0 * std::numbers::pi)) * sky.width - 0.5;
   const double v = std::acos(std::clamp(d.y, -1.0, 1.0)) / std::numbers::pi * sky.height - 0.5;
   const auto texel = [&](int x, int y) {
@@ -28,7 +29,7 @@ glm::dvec3 look_up(const scene::Environment& sky, const glm::dvec3& d) {
                   glm::mix(texel(x, y + 1), texel(x + 1, y + 1), u - x), v - y);
 }
 
-/// World direction through a pixel's middle.
+/// World direction through a pixel's center.
 glm::dvec3 view_ray(const scene::Camera& camera, std::uint32_t x, std::uint32_t y) {
   const double slope = std::tan(glm::radians(0.5 * camera.vertical_fov));
   const glm::dvec3 forward = glm::normalize(glm::dvec3(camera.target - camera.eye));
@@ -40,16 +41,17 @@ glm::dvec3 view_ray(const scene::Camera& camera, std::uint32_t x, std::uint32_t 
 }
 
 struct Errors {
-  double median = 0.0, worst = 0.0;  // relative to what the sphere should show
+  double median = 0.0, largest = 0.0;  // relative to the expected radiance
   int pixels = 0;
 };
 
-/// Holds every pixel of the mirror sphere against the environment in the direction it reflects.
+/// Compares every pixel of the mirror sphere with the environment in the reflected direction.
 Errors reflection_errors(const scene::Environment& sky, float rotation, bool traced,
                          const std::string& name) {
-  const auto scene = import_document(scenes::make_mirror(), 16);
+  const auto scene =
+      std::make_shared<const scene::Scene>(import_generated(scenes::make_mirror(), 16));
   const scene::Camera camera = scene->cameras.at(0);
-  Still still(scene, sky, camera, width, height);
+  RendererRig rig(scene, sky, camera, width, height);
   protocol::Settings settings;
   settings.ambient.occlusion = false;
   settings.antialiasing.jitter = settings.antialiasing.temporal = false;
@@ -57,9 +59,9 @@ Errors reflection_errors(const scene::Environment& sky, float rotation, bool tra
   settings.specular_temporal.enabled = settings.specular_blur.enabled = false;
   settings.specular.enabled = traced;
   settings.environment.rotation = rotation;
-  still.apply(settings);
-  save_picture(name + (traced ? "_traced" : "_prefiltered"), still.accumulate(1));
-  const render::FloatImage hdr = still.capture("hdr");
+  rig.apply(settings);
+  save_image(name + (traced ? "_traced" : "_prefiltered"), rig.accumulate(1));
+  const render::FloatImage hdr = rig.capture("hdr");
   const double angle = glm::radians(-static_cast<double>(rotation));
   std::vector<double> errors;
   for (std::uint32_t y = 0; y < height; ++y) {
@@ -69,12 +71,12 @@ Errors reflection_errors(const scene::Environment& sky, float rotation, bool tra
       const double b = glm::dot(to_eye, ray), c = glm::dot(to_eye, to_eye) - radius * radius;
       if (b * b <= c) continue;
       const glm::dvec3 normal = (to_eye + ray * (-b - std::sqrt(b * b - c))) / radius;
-      if (-glm::dot(normal, ray) < 0.25) continue;  // flat triangles show at the rim
+      if (-glm::dot(normal, ray) < 0.25) continue;  // triangles are visible at the silhouette
       const glm::dvec3 r = glm::reflect(ray, normal);
-      if (traced && r.y < 0.05) continue;  // the ground is in the way
-      const glm::dvec3 turned(std::cos(angle) * r.x + std::sin(angle) * r.z, r.y,
-                              std::cos(angle) * r.z - std::sin(angle) * r.x);
-      const glm::dvec3 expected = look_up(sky, turned);
+      if (traced && r.y < 0.05) continue;  // reflects the ground
+      const glm::dvec3 rotated(std::cos(angle) * r.x + std::sin(angle) * r.z, r.y,
+                               std::cos(angle) * r.z - std::sin(angle) * r.x);
+      const glm::dvec3 expected = sample_environment(sky, rotated);
       errors.push_back(glm::distance(glm::dvec3(rgb(hdr, x, y)), expected) / glm::length(expected));
     }
   }
@@ -82,56 +84,58 @@ Errors reflection_errors(const scene::Environment& sky, float rotation, bool tra
   return {errors.at(errors.size() / 2), errors.back(), static_cast<int>(errors.size())};
 }
 
-// What the environment's prefiltered cube shows, and what rays do.
+// For the prefiltered environment and for traced reflections.
 class Mirror : public testing::TestWithParam<bool> {};
 
-TEST_P(Mirror, ShowsTheGeneratedSkyWhereItReflects) {
+TEST_P(Mirror, ReflectsGeneratedSky) {
   const auto sky = scenes::make_clear_sky(scenes::direction_to_sun(50.0f, 30.0f), 512, 256);
-  const Errors errors = reflection_errors(convert(sky.environment), 0.0f, GetParam(), "mirror_sky");
+  const Errors errors =
+      reflection_errors(import_generated(sky.environment), 0.0f, GetParam(), "mirror_sky");
   EXPECT_GT(errors.pixels, GetParam() ? 1500 : 2000);
   EXPECT_LT(errors.median, GetParam() ? 0.002 : 0.01);
-  EXPECT_LT(errors.worst, GetParam() ? 0.05 : 0.15);  // at the horizon, sharper than the cube
+  EXPECT_LT(errors.largest,
+            GetParam() ? 0.05 : 0.15);  // at the horizon, which is sharper than the cube map
 }
 
-/// Every axis another colour, and a red glow in one direction: a flip or a turn moves it.
-glm::vec3 coloured_sky(const glm::vec3& d) {
+/// A different color along each axis and a red spot: reveals flips and rotations.
+glm::vec3 colored_sky(const glm::vec3& d) {
   const glm::vec3 glow = glm::normalize(glm::vec3(0.8f, 0.5f, 0.6f));
   return glm::vec3(1.0f) + 0.6f * d +
          glm::vec3(8, 0, 0) * std::pow(std::max(glm::dot(d, glow), 0.0f), 40.0f);
 }
 
-TEST_P(Mirror, ShowsAColouredSkyTheRightWayRound) {
+TEST_P(Mirror, ReflectsColoredSkyInCorrectOrientation) {
   const Errors errors =
-      reflection_errors(make_environment(512, coloured_sky), 0.0f, GetParam(), "mirror_coloured");
+      reflection_errors(make_environment(512, colored_sky), 0.0f, GetParam(), "mirror_colored");
   EXPECT_LT(errors.median, GetParam() ? 0.001 : 0.005);
-  EXPECT_LT(errors.worst, GetParam() ? 0.02 : 0.05);
+  EXPECT_LT(errors.largest, GetParam() ? 0.02 : 0.05);
 }
 
-TEST_P(Mirror, TurnsWithTheEnvironment) {
+TEST_P(Mirror, RotatesWithEnvironment) {
   const Errors errors =
-      reflection_errors(make_environment(512, coloured_sky), 70.0f, GetParam(), "mirror_turned");
+      reflection_errors(make_environment(512, colored_sky), 70.0f, GetParam(), "mirror_rotated");
   EXPECT_LT(errors.median, GetParam() ? 0.001 : 0.005);
-  EXPECT_LT(errors.worst, GetParam() ? 0.02 : 0.05);
+  EXPECT_LT(errors.largest, GetParam() ? 0.02 : 0.05);
 }
 
-std::string way_name(const testing::TestParamInfo<bool>& way) {
-  return way.param ? "traced" : "prefiltered";
+std::string method_name(const testing::TestParamInfo<bool>& method) {
+  return method.param ? "traced" : "prefiltered";
 }
 
-INSTANTIATE_TEST_SUITE_P(Ways, Mirror, testing::Bool(), way_name);
+INSTANTIATE_TEST_SUITE_P(Methods, Mirror, testing::Bool(), method_name);
 
-TEST(Background, IsTheEnvironmentBehindEveryPixel) {
-  const scene::Environment sky = make_environment(512, coloured_sky);
+TEST(Background, ShowsEnvironmentBehindEveryPixel) {
+  const scene::Environment sky = make_environment(512, colored_sky);
   const scene::Camera camera = look({0, 0, 0}, {1, 0.3f, 0.8f}, 60.0f);
-  Still still(SceneBuilder().build(), sky, camera, width, height);
+  RendererRig rig(SceneBuilder().build(), sky, camera, width, height);
   protocol::Settings settings;
   settings.antialiasing.jitter = false;
-  still.apply(settings);
-  save_picture("background", still.accumulate(1));
-  const render::FloatImage hdr = still.capture("hdr");
+  rig.apply(settings);
+  save_image("background", rig.accumulate(1));
+  const render::FloatImage hdr = rig.capture("hdr");
   for (std::uint32_t y = 0; y < height; y += 3) {
     for (std::uint32_t x = 0; x < width; x += 3) {
-      const glm::dvec3 expected = look_up(sky, view_ray(camera, x, y));
+      const glm::dvec3 expected = sample_environment(sky, view_ray(camera, x, y));
       ASSERT_LE(glm::distance(glm::dvec3(rgb(hdr, x, y)), expected), 0.01 * glm::length(expected));
     }
   }

@@ -1,4 +1,4 @@
-"""glTF models made of others: lights, clips and cameras added to a .glb file."""
+"""Modified glTF models: lights, clips and cameras added to a .glb file."""
 
 import json
 import math
@@ -50,7 +50,7 @@ class Model:
             "KHR_lights_punctual": {"light": len(lights) - 1}})
 
     def add_clip(self, name, node, times, translations):
-        """A clip that carries a node along a line."""
+        """A clip that moves a node along a line."""
         sampler = {"input": self._floats("SCALAR", [[time] for time in times]),
                    "output": self._floats("VEC3", translations)}
         self.json.setdefault("animations", []).append({

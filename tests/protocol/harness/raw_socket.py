@@ -1,4 +1,4 @@
-"""WebSocket by hand, for what no well-behaved library would send."""
+"""A WebSocket on the level of bytes, for messages that no library would send."""
 
 import os
 import socket

@@ -1,4 +1,4 @@
-"""Starts the real server and asks it things over HTTP."""
+"""Starts the real server and calls it over HTTP."""
 
 import functools
 import http.client
@@ -24,7 +24,7 @@ class Server:
 
     def __init__(self, *arguments, scenes=None, environment=None, certificate=None, early=False):
         """`certificate` is the one to trust where the server speaks TLS; `early`: not to wait for
-        the first picture, only until somebody answers."""
+        the first frame, only for the listener."""
         self.errors_seen = set()  # (method, code) of answers
         self.headers = {}  # that every request carries, such as a token's
         self.tls = ssl.create_default_context(cafile=certificate) if certificate else None
@@ -125,12 +125,12 @@ class Server:
         return status, json.loads(answer) if answer else None
 
     def ask(self, method, params=None, session=None):
-        """The whole JSON-RPC answer, be it a result or an error."""
+        """The complete JSON-RPC response, with a result or an error."""
         call = {"jsonrpc": "2.0", "id": 1, "method": method, "params": params or {}}
         return self.seen(method, self.post_rpc(call, session)[1])
 
     def seen(self, method, answer):
-        """Takes down which errors a method gave."""
+        """Records the errors that a method returned."""
         if "error" in answer and answer["error"]["code"] != UNKNOWN_METHOD:
             self.errors_seen.add((method, answer["error"]["code"]))
         return answer

@@ -69,7 +69,7 @@ class Viewer:
         return self
 
     async def __aexit__(self, *_):
-        # One that reads nothing may have been let go before it could say goodbye.
+        # A viewer that reads nothing may have been disconnected before it could close.
         with contextlib.suppress(websockets.ConnectionClosed):
             await self.socket.close()
         await self._reader
@@ -147,7 +147,7 @@ class Viewer:
 
     @contextlib.asynccontextmanager
     async def moving(self, rate=60):
-        """The camera goes round in a circle meanwhile, so that pictures keep coming."""
+        """Moves the camera in a circle in the background, so that frames keep coming."""
         async def orbit():
             angle = 0.0
             while True:
@@ -164,7 +164,7 @@ class Viewer:
                 await task
 
     async def rest(self, timeout=60):
-        """Waits for the final picture of the present state, after which nothing should come. It may
+        """Waits for the final frame of the current state, after which nothing should be sent. It may
         have been looked at already."""
         rev = (await self.call("camera.get"))["rev"]
 

@@ -1,9 +1,9 @@
-// A viewer by the library ws: greets, asks, pings, looks at a picture, closes. Prints what it saw
+// A viewer with the library ws: hello, calls, pings, one frame, close. Prints what it received
 // as one line of JSON.
 import WebSocket from "ws";
 
 const socket = new WebSocket(process.argv[2], ["heliograph.v1"], { perMessageDeflate: true });
-const saw = { pictures: 0 };
+const saw = { frames: 0 };
 
 function call(id, method, params = {}) {
   socket.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
@@ -11,7 +11,7 @@ function call(id, method, params = {}) {
 
 /** In whatever order it all came. */
 function closeWhenAllIsSeen() {
-  if (saw.pictures > 0 && saw.methods && saw.hello && saw.pong) socket.close(1000, "enough");
+  if (saw.frames > 0 && saw.methods && saw.hello && saw.pong) socket.close(1000, "enough");
 }
 
 const failure = setTimeout(() => {
@@ -35,7 +35,7 @@ socket.on("pong", (data) => {
 });
 socket.on("message", (data, isBinary) => {
   if (isBinary) {
-    saw.pictures += 1;
+    saw.frames += 1;
     saw.magic = data.toString("latin1", 0, 4);
     const frame_seq = data.readUInt32LE(12);
     socket.send(JSON.stringify({ jsonrpc: "2.0", method: "stream.ack", params: { frame_seq } }));

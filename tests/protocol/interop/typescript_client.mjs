@@ -1,5 +1,5 @@
-// The TypeScript library by itself against a real server: as it stands where Node takes TypeScript,
-// bundled where it does not; with Node's own WebSocket where there is one, else that of ws.
+// The TypeScript library against a real server: run directly where Node supports TypeScript, bundled
+// otherwise; with Node's WebSocket class if it has one, otherwise that of ws.
 
 import assert from "node:assert/strict";
 import { mkdtempSync, rmSync } from "node:fs";
@@ -34,7 +34,7 @@ const { HeliographClient } = await (process.features.typescript
   ? import(source.href)
   : bundled());
 
-/** Runs `use` with a client, which is closed then. */
+/** Runs `use` with a client, which is closed afterwards. */
 async function connected(options, use) {
   const client = await HeliographClient.connect(url, { token, webSocket, ...options });
   try {
@@ -45,32 +45,32 @@ async function connected(options, use) {
 }
 
 /** A promise and the function that fulfils it. */
-function moment() {
-  let come;
-  const comes = new Promise((resolve) => (come = resolve));
-  return { come, comes };
+function deferred() {
+  let resolve;
+  const promise = new Promise((fulfil) => (resolve = fulfil));
+  return { promise, resolve };
 }
 
-/** A call that the server answers only after minutes. */
+/** A call that takes minutes. */
 async function slowCall(client, timeoutMs) {
   await client.request("settings.patch", { patch: { accumulation: { max_samples: 65536 } } });
   return client.request("frame.capture", { samples: 65536 }, timeoutMs);
 }
 
-test("only who shows the token is let in", async () => {
+test("only clients with the token are accepted", async () => {
   await connected({}, (client) => assert.equal(client.hello.protocol, "heliograph.v1"));
   for (const wrong of [undefined, `${token}-and-more`]) {
-    await assert.rejects(connected({ token: wrong }, () => {}), /lets this client in/);
+    await assert.rejects(connected({ token: wrong }, () => {}), /accepts this client/);
   }
 });
 
-test("a client may be in another session", async () => {
+test("a client can join another session", async () => {
   await connected({}, async (client) => {
-    await client.request("session.create", { name: "aside", width: 48, height: 32 });
-    await connected({ session: "aside" }, async (other) => {
-      assert.equal(other.hello.session, "aside");
+    await client.request("session.create", { name: "second", width: 48, height: 32 });
+    await connected({ session: "second" }, async (other) => {
+      assert.equal(other.hello.session, "second");
       assert.equal((await other.request("session.info")).width, 48);
-      await other.request("session.close", { session: "aside" });
+      await other.request("session.close", { session: "second" });
     });
   });
   await assert.rejects(
@@ -79,7 +79,7 @@ test("a client may be in another session", async () => {
   );
 });
 
-test("calls wait as long as they are told to", { timeout: 20_000 }, async () => {
+test("calls have the given timeout", { timeout: 20_000 }, async () => {
   const late = ({ code, message }) => code === 0 && message.includes("0.2 s");
   await connected({ timeoutMs: 200 }, async (client) => {
     await assert.rejects(slowCall(client), late);
@@ -88,28 +88,28 @@ test("calls wait as long as they are told to", { timeout: 20_000 }, async () => 
   await connected({}, (client) => assert.rejects(slowCall(client, 200), late));
 });
 
-test("pictures go on coming where their function fails", { timeout: 60_000 }, async () => {
-  const enough = moment();
+test("frames continue after an error in their callback", { timeout: 60_000 }, async () => {
+  const enough = deferred();
   const errors = [];
-  let pictures = 0;
+  let frames = 0;
   await connected({}, async (mover) => {
     const frame = () => {
       mover.notify("camera.orbit", { yaw: 3 });
-      pictures += 1;
-      if (pictures === 20) enough.come();
-      const error = new Error(`picture ${pictures}`);
-      if (pictures % 2) throw error;
+      frames += 1;
+      if (frames === 20) enough.resolve();
+      const error = new Error(`frame ${frames}`);
+      if (frames % 2) throw error;
       return Promise.reject(error);
     };
     await connected({ frame, error: (error) => errors.push(error.message) }, async (client) => {
-      await enough.comes;
+      await enough.promise;
       assert.ok(await client.request("scene.list"));
     });
   });
-  assert.deepEqual(errors.slice(0, 3), ["picture 1", "picture 2", "picture 3"]);
+  assert.deepEqual(errors.slice(0, 3), ["frame 1", "frame 2", "frame 3"]);
 });
 
-test("without a function for them no pictures come", async () => {
+test("without a frame callback the stream is paused", async () => {
   await connected({}, async (client) => {
     assert.equal((await client.configureStream({})).paused, true);
   });
@@ -118,25 +118,25 @@ test("without a function for them no pictures come", async () => {
   });
 });
 
-test("a listener that fails ends nothing", { timeout: 20_000 }, async () => {
-  const told = moment();
+test("an error in a notification callback does not end the connection", { timeout: 20_000 }, async () => {
+  const reported = deferred();
   const notification = (method) => {
     throw new Error(method);
   };
-  await connected({ notification, error: told.come }, async (client) => {
+  await connected({ notification, error: reported.resolve }, async (client) => {
     await connected({}, (other) => other.request("camera.orbit", { yaw: 3 }));
-    assert.match((await told.comes).message, /changed/);
+    assert.match((await reported.promise).message, /changed/);
     assert.ok(await client.request("scene.list"));
   });
 });
 
-test("an error of no known call ends all that wait", { timeout: 20_000 }, async () => {
+test("an error without an id fails all pending calls", { timeout: 20_000 }, async () => {
   await connected({}, async (client) => {
-    const refused = assert.rejects(slowCall(client), ({ code }) => code === -32700);
+    const rejected = assert.rejects(slowCall(client), ({ code }) => code === -32700);
     await client.request("scene.list");
     await client.request("scene.list");
-    client.socket.send("no JSON");
-    await refused;
+    client.socket.send("not JSON");
+    await rejected;
     assert.ok(await client.request("scene.list"));
   });
 });

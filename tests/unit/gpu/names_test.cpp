@@ -12,7 +12,7 @@
 namespace heliograph::gpu {
 namespace {
 
-TEST(Check, NamesWhatFailedAndWhy) {
+TEST(Check, ErrorNamesActionAndResult) {
   EXPECT_NO_THROW(check(VK_SUCCESS, "do something"));
   EXPECT_NO_THROW(check(VK_INCOMPLETE, "list things")) << "not an error";
   try {
@@ -25,7 +25,7 @@ TEST(Check, NamesWhatFailedAndWhy) {
   }
 }
 
-TEST(Formats, KnowTheirSize) {
+TEST(Formats, HaveTexelSize) {
   EXPECT_EQ(texel_bytes(VK_FORMAT_R32G32B32A32_SFLOAT), 16u);
   EXPECT_EQ(texel_bytes(VK_FORMAT_R16G16B16A16_SFLOAT), 8u);
   EXPECT_EQ(texel_bytes(VK_FORMAT_R32G32_SFLOAT), 8u);
@@ -38,7 +38,7 @@ TEST(Formats, KnowTheirSize) {
   EXPECT_FALSE(is_depth(VK_FORMAT_R32_SFLOAT));
 }
 
-TEST(Reflect, RefusesWhatIsNotSpirv) {
+TEST(Reflect, RejectsInvalidSpirv) {
   constexpr std::array<std::uint32_t, 4> words{1, 2, 3, 4};
   try {
     reflect({"broken.comp", words});
@@ -48,7 +48,7 @@ TEST(Reflect, RefusesWhatIsNotSpirv) {
   }
 }
 
-TEST(DriverFiles, SaysWhatIsWrongWithEachAndLeavesTheEnvironmentAlone) {
+TEST(DriverFiles, ReportsEachErrorAndKeepsEnvironment) {
   const std::string broken = testing::TempDir() + "heliograph_driver.json";
   const std::string files = broken + ":/no/such/driver.json";
   std::ofstream(broken) << "{}";

@@ -36,7 +36,7 @@ std::vector<std::uint8_t> bytes_of(const FrameHeader& header) {
   return {bytes.begin(), bytes.end()};
 }
 
-TEST(FrameHeader, HasTheBytesOfTheContract) {
+TEST(FrameHeader, HasTheBytesOfTheProtocol) {
   const std::vector<std::uint8_t> golden{'H',  'V',  'R',  'F',   // 0 magic
                                          1,    2,    3,    3,     // 4 version, type, codec, flags
                                          64,   0,    0x50, 0x01,  // 8 header bytes, quality
@@ -56,15 +56,15 @@ TEST(FrameHeader, HasTheBytesOfTheContract) {
   EXPECT_EQ(bytes_of(example()), golden);
 }
 
-TEST(FrameHeader, ComesBackAsItWasSent) {
+TEST(FrameHeader, SurvivesTheRoundTrip) {
   std::vector<std::uint8_t> message = bytes_of(example());
-  message.insert(message.end(), 100, 0xff);  // the payload is none of its business
+  message.insert(message.end(), 100, 0xff);  // the payload is ignored
   const Result<FrameHeader> decoded = decode_frame_header(message);
   ASSERT_TRUE(decoded) << decoded.error().message;
   EXPECT_EQ(*decoded, example());
 }
 
-TEST(FrameHeader, ReadersSkipAHeaderThatHasGrown) {
+TEST(FrameHeader, ReadersAcceptALongerHeader) {
   FrameHeader longer = example();
   longer.header_bytes = 72;
   std::vector<std::uint8_t> message = bytes_of(longer);
@@ -94,7 +94,7 @@ void PrintTo(const Damage& damage, std::ostream* out) {
 
 class FrameHeaderRefuses : public testing::TestWithParam<Damage> {};
 
-TEST_P(FrameHeaderRefuses, NamesTheFieldAtFault) {
+TEST_P(FrameHeaderRefuses, NamesTheInvalidField) {
   std::vector<std::uint8_t> message = bytes_of(example());
   message[GetParam().offset] = GetParam().value;
   const Result<FrameHeader> decoded = decode_frame_header(message);
@@ -112,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Damage{29, 255, "full_width"}, Damage{33, 255, "full_width"},
                     Damage{39, 0, "full_height"}));
 
-TEST(FrameHeaderRefuses, AnEmptyPictureUnlessItIsOnlyTiming) {
+TEST(FrameHeaderRefuses, AnEmptyImageExceptInTimingMessages) {
   FrameHeader header = example();
   header.width = 0;
   EXPECT_FALSE(decode_frame_header(bytes_of(header)));

@@ -13,35 +13,32 @@ namespace {
 
 using nlohmann::json;
 
-/// A dispatcher with a few handlers of the real protocol that keep what they were given.
+/// A dispatcher with a few handlers of the real protocol that record their calls.
 class DispatcherTest : public testing::Test {
  protected:
   DispatcherTest() {
-    dispatcher.add<CameraSet, Camera>(
-        "camera.set", [this](CameraSet request, const CallContext& context, auto done) {
+    dispatcher.add<methods::camera_set>(
+        [this](CameraSet request, const CallContext& context, auto done) {
           viewers.push_back(context.viewer);
           Camera camera;
           camera.eye = request.eye.value_or(camera.eye);
           done(camera);
         });
-    dispatcher.add<SceneLoad, SceneInfo>(
-        "scene.load", [this](SceneLoad, const CallContext&, Completion<SceneInfo> done) {
+    dispatcher.add<methods::scene_load>(
+        [this](SceneLoad, const CallContext&, Completion<SceneInfo> done) {
           loads.push_back(std::move(done));
         });
-    dispatcher.add<Empty, Camera>("camera.get", [](Empty, const CallContext&, auto) {
-      throw std::runtime_error("secret detail");
+    dispatcher.add<methods::camera_get>(
+        [](Empty, const CallContext&, auto) { throw std::runtime_error("secret detail"); });
+    dispatcher.add<methods::camera_fit>(
+        [](Empty, const CallContext&, auto done) { done(error::not_ready("no scene is loaded")); });
+    dispatcher.add<methods::frame_buffers>([this](Empty, const CallContext&, auto done) {
+      ++buffer_calls;
+      done(FrameBuffers{});
     });
-    dispatcher.add<Empty, Camera>("camera.fit", [](Empty, const CallContext&, auto done) {
-      done(error::not_ready("no scene is loaded"));
-    });
-    dispatcher.add<Empty, FrameBuffers>("frame.buffers",
-                                        [this](Empty, const CallContext&, auto done) {
-                                          ++buffer_calls;
-                                          done(FrameBuffers{});
-                                        });
   }
 
-  /// The reply's text; fails unless it comes at once and only once.
+  /// The response text; fails unless it arrives synchronously and once.
   std::string text_of(std::string_view message) {
     std::vector<std::string> replies;
     dispatcher.handle(message, CallContext{"v1"},
@@ -89,7 +86,7 @@ TEST_F(DispatcherTest, RefusesOtherIds) {
   EXPECT_TRUE(viewers.empty());
 }
 
-TEST_F(DispatcherTest, CarriesOutNotificationsWithoutAnswer) {
+TEST_F(DispatcherTest, ExecutesNotificationsWithoutResponse) {
   EXPECT_EQ(text_of(R"({"jsonrpc":"2.0","method":"camera.set","params":{"eye":[1,2,3]}})"), "");
   EXPECT_EQ(viewers.size(), 1u);
   // Neither errors nor unknown methods are answered.
@@ -98,14 +95,14 @@ TEST_F(DispatcherTest, CarriesOutNotificationsWithoutAnswer) {
   EXPECT_EQ(viewers.size(), 1u);
 }
 
-TEST_F(DispatcherTest, DropsQueriesThatNobodyWouldHearTheAnswerOf) {
+TEST_F(DispatcherTest, DropsQueriesWithoutId) {
   EXPECT_EQ(text_of(R"({"jsonrpc":"2.0","method":"frame.buffers"})"), "");
   EXPECT_EQ(buffer_calls, 0);
   reply_to(R"({"jsonrpc":"2.0","id":1,"method":"frame.buffers"})");
   EXPECT_EQ(buffer_calls, 1);
 }
 
-TEST_F(DispatcherTest, RefusesWhatIsNotJson) {
+TEST_F(DispatcherTest, RefusesInvalidJson) {
   for (const char* text : {"", " ", "{", "nonsense", "{\"a\":1,}", "[1", "\"\xff\"", "1 2",
                            "{\"jsonrpc\":\"2.0\",\"id\":1e999}", "// comment\n{}"}) {
     const json answer = reply_to(text);
@@ -114,7 +111,7 @@ TEST_F(DispatcherTest, RefusesWhatIsNotJson) {
   }
 }
 
-TEST_F(DispatcherTest, RefusesWhatIsNotARequest) {
+TEST_F(DispatcherTest, RefusesInvalidRequests) {
   for (const char* text :
        {"1", "null", "\"x\"", "{}", R"({"jsonrpc":"1.0","method":"camera.set"})",
         R"({"jsonrpc":2.0,"method":"camera.set"})", R"({"jsonrpc":"2.0"})",
@@ -125,7 +122,7 @@ TEST_F(DispatcherTest, RefusesWhatIsNotARequest) {
   EXPECT_EQ(reply_to(R"({"jsonrpc":"1.0","id":3,"method":"camera.set"})").at("id"), 3);
 }
 
-TEST_F(DispatcherTest, SuggestsTheMethodThatWasMeant) {
+TEST_F(DispatcherTest, SuggestsTheNearestMethod) {
   const json answer = reply_to(R"({"jsonrpc":"2.0","id":1,"method":"camera.sett"})");
   EXPECT_EQ(code_of(answer), -32601);
   EXPECT_EQ(answer.at("error").at("data").at("path"), "method");
@@ -136,7 +133,7 @@ TEST_F(DispatcherTest, SuggestsTheMethodThatWasMeant) {
   EXPECT_EQ(far.at("error").at("data").at("reason"), "unknown method");
 }
 
-TEST_F(DispatcherTest, TellsWhichParameterIsWrongAndWhatWouldBeRight) {
+TEST_F(DispatcherTest, NamesTheInvalidParameterAndItsLimit) {
   const json answer =
       reply_to(R"({"jsonrpc":"2.0","id":1,"method":"camera.set","params":{"vertical_fov":500}})");
   EXPECT_EQ(code_of(answer), -32602);
@@ -146,7 +143,7 @@ TEST_F(DispatcherTest, TellsWhichParameterIsWrongAndWhatWouldBeRight) {
   EXPECT_TRUE(viewers.empty());
 }
 
-TEST_F(DispatcherTest, TakesParametersByNameOnly) {
+TEST_F(DispatcherTest, AcceptsParametersByNameOnly) {
   EXPECT_EQ(
       code_of(reply_to(R"({"jsonrpc":"2.0","id":1,"method":"camera.set","params":[[1,2,3]]})")),
       -32602);
@@ -154,13 +151,13 @@ TEST_F(DispatcherTest, TakesParametersByNameOnly) {
       reply_to(R"({"jsonrpc":"2.0","id":1,"method":"camera.set","params":[]})").contains("result"));
 }
 
-TEST_F(DispatcherTest, PassesOnTheErrorOfAHandler) {
+TEST_F(DispatcherTest, ReturnsTheErrorOfAHandler) {
   const json answer = reply_to(R"({"jsonrpc":"2.0","id":1,"method":"camera.fit"})");
   EXPECT_EQ(code_of(answer), -32050);
   EXPECT_EQ(answer.at("error").at("message"), "no scene is loaded");
 }
 
-TEST_F(DispatcherTest, HidesTheDetailOfAnExceptionButReportsIt) {
+TEST_F(DispatcherTest, HidesExceptionsFromClientsButReportsThem) {
   std::string reported;
   dispatcher.on_handler_failure([&](std::string_view method, std::string_view what) {
     reported = std::string(method) + ": " + std::string(what);
@@ -180,13 +177,13 @@ TEST_F(DispatcherTest, AnswersLaterAndFromAnotherThread) {
     SceneInfo info;
     info.name = "a";
     done(info);
-    done(info);  // only the first answer counts
+    done(info);  // only the first result is used
   });
   worker.join();
   EXPECT_EQ(json::parse(replied.get_future().get()).at("result").at("name"), "a");
 }
 
-TEST_F(DispatcherTest, AnswersForAHandlerThatForgot) {
+TEST_F(DispatcherTest, AnswersForAHandlerThatDropsItsCompletion) {
   std::vector<std::string> replies;
   dispatcher.handle(R"({"jsonrpc":"2.0","id":1,"method":"scene.load","params":{"name":"a"}})",
                     CallContext{}, [&](std::string text) { replies.push_back(text); });
@@ -279,7 +276,7 @@ TEST_F(DispatcherTest, RefusesDeepJson) {
   EXPECT_EQ(code_of(reply_to(std::string(60000, '{'))), -32013);
 }
 
-TEST_F(DispatcherTest, BracketsInTextsAreNotDepth) {
+TEST_F(DispatcherTest, BracketsInStringsAreNotDepth) {
   const std::string brackets(200, '[');
   EXPECT_TRUE(reply_to(R"({"jsonrpc":"2.0","id":1,"method":"camera.set","params":{"x":"\"\\)" +
                        brackets + "\"}}")
@@ -301,14 +298,14 @@ TEST_F(DispatcherTest, DescribesItself) {
   EXPECT_TRUE(schema.at("result").at("properties").contains("tone_map"));
 }
 
-TEST_F(DispatcherTest, HandlersMustFitTheContract) {
+TEST_F(DispatcherTest, RefusesSecondHandlersAndMethodsItDoesNotServe) {
   const auto nothing = [](auto&&...) {};
-  EXPECT_THROW((dispatcher.add<Empty, Camera>("camera.wiggle", nothing)), std::logic_error);
-  EXPECT_THROW((dispatcher.add<Empty, Camera>("scene.info", nothing)), std::logic_error);
-  EXPECT_THROW((dispatcher.add<CameraSet, Camera>("camera.set", nothing)), std::logic_error);
+  EXPECT_THROW((dispatcher.add<methods::camera_set>(nothing)), std::logic_error) << "added twice";
+  Dispatcher of_no_method({}, {});
+  EXPECT_THROW((of_no_method.add<methods::camera_set>(nothing)), std::logic_error);
 }
 
-TEST_F(DispatcherTest, KnowsWhichMethodsNobodyServes) {
+TEST_F(DispatcherTest, ListsMethodsWithoutHandler) {
   const auto missing = dispatcher.missing_handlers();
   EXPECT_NE(std::find(missing.begin(), missing.end(), "hello"), missing.end());
   EXPECT_EQ(std::find(missing.begin(), missing.end(), "camera.set"), missing.end());
@@ -332,7 +329,7 @@ TEST_F(DispatcherTest, SurvivesArbitraryDamage) {
 TEST(Notification, IsARequestWithoutId) {
   StatsFrame stats;
   stats.passes.push_back({"gbuffer", PassKind::device, 1.5});
-  const json text = json::parse(make_notification("stats.frame", stats));
+  const json text = json::parse(make_notification<notifications::stats_frame>(stats));
   EXPECT_EQ(text.at("jsonrpc"), "2.0");
   EXPECT_EQ(text.at("method"), "stats.frame");
   EXPECT_FALSE(text.contains("id"));

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "protocol/json/codec_templates.hpp"
+#include "protocol/json/codec.hpp"
 #include "protocol/json/json_values.hpp"
 
 namespace heliograph::protocol {
@@ -45,8 +45,8 @@ struct Everything {
   static constexpr auto fields() {
     return std::tuple{
         field("flag", &Everything::flag, "A flag."),
-        field("small", &Everything::small, "A whole number."),
-        field("whole", &Everything::whole, "A whole number from 0."),
+        field("small", &Everything::small, "An integer."),
+        field("whole", &Everything::whole, "An integer from 0."),
         field("large", &Everything::large, "A large number.").unit("bytes"),
         field("single", &Everything::single, "A number."),
         field("number", &Everything::number, "A number.").range(0, 1),
@@ -99,7 +99,7 @@ TEST(Messages, AbsentOrNullMembersKeepTheirDefault) {
   EXPECT_EQ(decode<Everything>(RawJson(without))->names, std::vector<std::string>{"first"});
 }
 
-TEST(Messages, EmptyOptionalsAreLeftOutUnlessDeclaredNullable) {
+TEST(Messages, EmptyOptionalsAreOmittedUnlessNullable) {
   EXPECT_EQ(encode(Inner{}).value(), json::parse(R"({"position":[0.0,0.0,0.0]})"));
   EXPECT_TRUE(encode(Everything{}).value().at("maybe").is_null());
 }
@@ -136,8 +136,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadMember{"/flag", "0", "flag", "true or false", ""},
         BadMember{"/flag", "null", "flag", "is required", ""},
         BadMember{"/small", "2147483648", "small", "out of range", "-2147483648 to 2147483647"},
-        BadMember{"/small", "1.5", "small", "whole number", "-2147483648 to 2147483647"},
-        BadMember{"/small", "\"1\"", "small", "whole number", "-2147483648 to 2147483647"},
+        BadMember{"/small", "1.5", "small", "integer", "-2147483648 to 2147483647"},
+        BadMember{"/small", "\"1\"", "small", "integer", "-2147483648 to 2147483647"},
         BadMember{"/whole", "-1", "whole", "out of range", "0 to 4294967295"},
         BadMember{"/whole", "4294967296", "whole", "out of range", "0 to 4294967295"},
         BadMember{"/large", "-1", "large", "out of range", "0 to 9007199254740991"},
@@ -148,9 +148,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadMember{"/number", "1.01", "number", "out of range", "0 to 1"},
         BadMember{"/text", "\"a\"", "text", "number of characters", "2 to 4"},
         BadMember{"/text", "\"abcde\"", "text", "number of characters", "2 to 4"},
-        BadMember{"/text", "7", "text", "must be a text", ""},
+        BadMember{"/text", "7", "text", "must be a string", ""},
         BadMember{"/colour", "\"gren\"", "colour", "did you mean green?", "red, green or default"},
-        BadMember{"/colour", "1", "colour", "must be a text", "red, green or default"},
+        BadMember{"/colour", "1", "colour", "must be a string", "red, green or default"},
         BadMember{"/list", "{}", "list", "must be a list", ""},
         BadMember{"/list", "[]", "list", "number of elements", "1 to 3"},
         BadMember{"/list", "[1]", "list[0]", "must be an object", ""},
@@ -161,7 +161,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadMember{"/list/1/position", "[1,null,3]", "list[1].position[1]", "must be a number",
                   "-10 to 10"},
         BadMember{"/list/0/count", "6", "list[0].count", "out of range", "0 to 5"},
-        BadMember{"/names", "[\"a\", 1]", "names[1]", "must be a text", ""}));
+        BadMember{"/names", "[\"a\", 1]", "names[1]", "must be a string", ""}));
 
 TEST(MessageRefuses, AMissingMember) {
   json message = example();
@@ -172,7 +172,7 @@ TEST(MessageRefuses, AMissingMember) {
   EXPECT_EQ(read.error().reason, "is required");
 }
 
-TEST(MessageRefuses, WhatIsNoObject) {
+TEST(MessageRefuses, ValuesOtherThanObjects) {
   for (const char* text : {"[]", "1", "null", "\"x\""}) {
     const Result<Everything> read = decode<Everything>(*RawJson::parse(text));
     ASSERT_FALSE(read) << text;
@@ -188,7 +188,7 @@ TEST(MessageRefuses, NumbersThatAreNotFinite) {
   EXPECT_NE(read.error().reason.find("finite"), std::string::npos);
 }
 
-TEST(MessageSchema, SaysWhatParsingChecks) {
+TEST(MessageSchema, HasTheLimitsOfParsing) {
   const RawJson schema_holder = schema_of<Everything>();
   const json& schema = schema_holder.value();
   const json& members = schema.at("properties");
@@ -214,7 +214,7 @@ TEST(MessageSchema, SaysWhatParsingChecks) {
   EXPECT_FALSE(is_required("names"));
 }
 
-TEST(Patch, TellsAbsentFromNullFromAValue) {
+TEST(Patch, DistinguishesAbsentNullAndValue) {
   const auto patch = decode<LightsPatch>(
       RawJson(json{{"light", "sun"}, {"patch", {{"intensity", 2}, {"color", nullptr}}}}));
   ASSERT_TRUE(patch);
@@ -225,7 +225,7 @@ TEST(Patch, TellsAbsentFromNullFromAValue) {
             (json{{"light", "sun"}, {"patch", {{"intensity", 2.0}, {"color", nullptr}}}}));
 }
 
-TEST(Patch, RefusesMembersItDoesNotKnowAndNamesTheNearest) {
+TEST(Patch, RefusesUnknownMembersAndNamesTheNearest) {
   const auto refused =
       decode<LightsPatch>(RawJson(json{{"light", "sun"}, {"patch", {{"intesity", 2}}}}));
   ASSERT_FALSE(refused);
@@ -233,7 +233,7 @@ TEST(Patch, RefusesMembersItDoesNotKnowAndNamesTheNearest) {
   EXPECT_NE(refused.error().reason.find("intensity"), std::string::npos);
 }
 
-TEST(Patch, SaysSoInItsSchema) {
+TEST(Patch, SchemaForbidsUnknownMembers) {
   const RawJson holder = schema_of<LightsPatch>();
   const json& patch = holder.value().at("properties").at("patch");
   EXPECT_EQ(patch.at("additionalProperties"), false);
@@ -241,7 +241,7 @@ TEST(Patch, SaysSoInItsSchema) {
   EXPECT_FALSE(patch.contains("required"));
 }
 
-TEST(CameraSet, TakesAnyPartAndRefusesWhatNoCameraCanBe) {
+TEST(CameraSet, AcceptsPartsAndRefusesInvalidCameras) {
   const auto read = [](const char* text) { return decode<CameraSet>(*RawJson::parse(text)); };
   EXPECT_TRUE(read("{}"));
   EXPECT_EQ(read(R"({"eye":[1,2,3],"seq":9})")->eye, (Vec3{1, 2, 3}));
@@ -252,7 +252,7 @@ TEST(CameraSet, TakesAnyPartAndRefusesWhatNoCameraCanBe) {
   EXPECT_EQ(read(R"({"seq":-1})").error().path, "seq");
 }
 
-TEST(Limits, AreWrittenAsPeopleWriteThem) {
+TEST(Limits, AreWrittenInShortestForm) {
   EXPECT_EQ(range_text({0, 100000}), "0 to 100000");
   EXPECT_EQ(range_text({-1e9, 1e9}), "-1e9 to 1e9");
   EXPECT_EQ(range_text({1e-6, 0.25}), "1e-6 to 0.25");
@@ -261,7 +261,7 @@ TEST(Limits, AreWrittenAsPeopleWriteThem) {
   EXPECT_EQ(number_text(1e-10), "1e-10");
 }
 
-TEST(HelloResult, WritesTheNamesOfTheContract) {
+TEST(HelloResult, WritesTheNamesOfTheProtocol) {
   HelloResult result;
   result.device.type = DeviceType::virtual_;
   result.tracer = TracerKind::embree;

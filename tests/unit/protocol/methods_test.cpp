@@ -3,10 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "protocol/result.hpp"
 
@@ -15,61 +21,28 @@ namespace {
 
 using nlohmann::json;
 
-TEST(Methods, AreThoseOfTheContract) {
-  std::set<std::string_view> names;
-  for (const MethodDescriptor& method : methods()) names.insert(method.name);
-  EXPECT_EQ(names.size(), methods().size());
-  EXPECT_EQ(names, (std::set<std::string_view>{"hello",
-                                               "session.create",
-                                               "session.join",
-                                               "session.list",
-                                               "session.info",
-                                               "session.control",
-                                               "session.close",
-                                               "scene.list",
-                                               "scene.load",
-                                               "scene.cancel",
-                                               "scene.info",
-                                               "camera.get",
-                                               "camera.set",
-                                               "camera.fit",
-                                               "animation.list",
-                                               "animation.play",
-                                               "animation.pause",
-                                               "animation.seek",
-                                               "animation.rate",
-                                               "settings.get",
-                                               "settings.patch",
-                                               "settings.presets",
-                                               "settings.preset",
-                                               "settings.schema",
-                                               "stream.configure",
-                                               "stream.pause",
-                                               "stream.resume",
-                                               "stream.ack",
-                                               "stats.subscribe",
-                                               "frame.buffers",
-                                               "frame.capture",
-                                               "rpc.discover",
-                                               "scene.unload",
-                                               "scene.pick",
-                                               "camera.orbit",
-                                               "lights.list",
-                                               "lights.patch",
-                                               "materials.list",
-                                               "materials.patch",
-                                               "environment.list",
-                                               "environment.set",
-                                               "frame.inspect",
-                                               "frame.step",
-                                               "frame.run",
-                                               "reference.start",
-                                               "reference.stop",
-                                               "reference.status"}));
+std::string with_underscores(std::string_view name) {
+  std::string text(name);
+  std::replace(text.begin(), text.end(), '.', '_');
+  return text;
 }
 
-TEST(Methods, ExamplesAreWhatTheMethodsTakeAndGive) {
-  for (const MethodDescriptor& method : methods()) {
+TEST(Methods, TagsAndNamesAgreeAndAreUnique) {
+  const std::vector<std::pair<std::string_view, std::string_view>> declared{
+#define METHOD(tag, name, ...) {#tag, name},
+#define NOTIFICATION(tag, name, ...) {#tag, name},
+#include "protocol/methods/methods.def"
+  };
+  std::set<std::string_view> names;
+  for (const auto& [tag, name] : declared) {
+    EXPECT_EQ(tag, with_underscores(name));
+    EXPECT_TRUE(names.insert(name).second) << name << " is declared twice";
+  }
+  EXPECT_EQ(declared.size(), method_table().size() + notification_table().size());
+}
+
+TEST(Methods, ExamplesMatchTheirSchemas) {
+  for (const MethodDescriptor& method : method_table()) {
     const Result<RawJson> params = RawJson::parse(method.example_params);
     ASSERT_TRUE(params) << method.name;
     const Result<void> params_fit = method.check_params(*params);
@@ -82,16 +55,60 @@ TEST(Methods, ExamplesAreWhatTheMethodsTakeAndGive) {
   }
 }
 
-TEST(Readme, NamesEveryMethodNotificationAndErrorCode) {
+std::string readme() {
   const auto folder = std::filesystem::path(__FILE__).parent_path();
   std::ifstream file(folder / "../../../protocol/README.md");
-  ASSERT_TRUE(file);
-  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// The words of a table's cell that are set in backquotes, or separated by commas.
+std::set<std::string> words_of(const std::string& cell) {
+  std::set<std::string> words;
+  std::string word;
+  for (const char c : cell + ",") {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.') {
+      word += c;
+    } else if (!word.empty()) {
+      words.insert(std::exchange(word, {}));
+    }
+  }
+  return words;
+}
+
+/// The rows of the table of methods: name, names of the parameters.
+std::map<std::string, std::set<std::string>> methods_of_readme() {
+  std::map<std::string, std::set<std::string>> rows;
+  std::istringstream lines(readme());
+  bool inside = false;
+  for (std::string line; std::getline(lines, line);) {
+    inside = line.starts_with("| `hello` |") || (inside && line.starts_with("|"));
+    if (!inside) continue;
+    const std::size_t first = line.find('|', 1);
+    const std::size_t second = line.find('|', first + 1);
+    const auto parameters = words_of(line.substr(first + 1, second - first - 1));
+    for (const std::string& name : words_of(line.substr(1, first - 1))) rows[name] = parameters;
+  }
+  return rows;
+}
+
+TEST(Readme, ListsTheMethodsWithTheirParameters) {
+  std::map<std::string, std::set<std::string>> declared;
+  for (const MethodDescriptor& method : method_table()) {
+    std::set<std::string>& parameters = declared[std::string(method.name)];
+    const RawJson schema = method.params_schema();
+    for (const auto& [name, member] : schema.value().at("properties").items()) {
+      parameters.insert(name);
+    }
+  }
+  EXPECT_EQ(methods_of_readme(), declared);
+}
+
+TEST(Readme, NamesEveryNotificationAndErrorCode) {
+  const std::string page = readme();
   const auto names = [&](const std::string& text) {
     EXPECT_NE(page.find(text), std::string::npos) << text << " is missing";
   };
-  for (const MethodDescriptor& method : methods()) names("`" + std::string(method.name) + "`");
-  for (const NotificationDescriptor& sent : notifications()) names(std::string(sent.name));
+  for (const NotificationDescriptor& sent : notification_table()) names(std::string(sent.name));
   const RawJson document = openrpc_document();
   for (const json& error : document.value().at("components").at("errors")) {
     names(error.at("code").dump());
@@ -102,8 +119,8 @@ TEST(OpenRpc, DescribesEveryMethodWithItsParameters) {
   const RawJson holder = openrpc_document();
   const json& document = holder.value();
   EXPECT_EQ(document.at("openrpc"), "1.3.2");
-  EXPECT_EQ(document.at("methods").size(), methods().size());
-  EXPECT_EQ(document.at("x-notifications").size(), notifications().size());
+  EXPECT_EQ(document.at("methods").size(), method_table().size());
+  EXPECT_EQ(document.at("x-notifications").size(), notification_table().size());
   for (const json& method : document.at("methods")) {
     bool optional_seen = false;
     for (const json& param : method.at("params")) {
@@ -117,7 +134,7 @@ TEST(OpenRpc, DescribesEveryMethodWithItsParameters) {
   }
 }
 
-TEST(OpenRpc, EveryErrorThatIsReferredToExists) {
+TEST(OpenRpc, ReferencedErrorsExist) {
   const RawJson holder = openrpc_document();
   const json& document = holder.value();
   std::set<int> codes;
@@ -131,12 +148,12 @@ TEST(OpenRpc, EveryErrorThatIsReferredToExists) {
   for (const json& error : document.at("components").at("errors")) {
     codes.insert(error.at("code").get<int>());
   }
-  for (const MethodDescriptor& method : methods()) {
+  for (const MethodDescriptor& method : method_table()) {
     const auto also = [&](ErrorCode code) {
       return std::count(method.errors.begin(), method.errors.end(), code) == 1;
     };
-    EXPECT_TRUE(!method.needs_control || also(ErrorCode::forbidden)) << method.name;
-    EXPECT_TRUE(method.for_watchers || also(ErrorCode::forbidden)) << method.name;
+    EXPECT_TRUE(!method.needs_control() || also(ErrorCode::forbidden)) << method.name;
+    EXPECT_TRUE(method.read_only() || also(ErrorCode::forbidden)) << method.name;
   }
   EXPECT_EQ(codes, (std::set<int>{-32700, -32600, -32601, -32602, -32603, -32000, -32001, -32002,
                                   -32004, -32009, -32013, -32029, -32050}));

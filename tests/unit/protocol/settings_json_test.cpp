@@ -55,7 +55,7 @@ TEST(SettingsJson, EverySettingIsInTheTreeAndNothingElse) {
   }
 }
 
-TEST(SettingsJson, FloatsAreWrittenAsPeopleWroteThem) {
+TEST(SettingsJson, FloatsAreWrittenInShortestForm) {
   Settings settings;
   settings.ambient.radius = 0.1f;
   EXPECT_EQ(to_json(settings)["ambient"].dump(), R"({"occlusion":true,"radius":0.1})");
@@ -123,7 +123,7 @@ INSTANTIATE_TEST_SUITE_P(
         PatchCase{R"({"shadows":{"enabled":false,"angular_diameter_override":2}})",
                   R"({"shadows":{"enabled":null}})", R"({"shadows":{"enabled":true}})",
                   R"({"shadows":{"angular_diameter_override":2.0}})"},
-        // ... or a whole group, even one that stands at its defaults.
+        // ... or a whole group, even one with default values.
         PatchCase{R"({"shadows":{"enabled":false,"angular_diameter_override":2}})",
                   R"({"shadows":null})",
                   R"({"shadows":{"enabled":true,"angular_diameter_override":-1.0}})", "{}"},
@@ -132,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(
         PatchCase{R"({"sampling":{"seed":5}})", "{}", "{}", R"({"sampling":{"seed":5}})"},
         PatchCase{R"({"sampling":{"seed":5}})", R"({"sampling":{}})", "{}",
                   R"({"sampling":{"seed":5}})"},
-        // JavaScript does not tell 5.0 from 5.
+        // JavaScript does not distinguish 5.0 from 5.
         PatchCase{"{}", R"({"sampling":{"seed":5.0},"exposure":{"compensation":1}})",
                   R"({"sampling":{"seed":5},"exposure":{"compensation":1.0}})",
                   R"({"sampling":{"seed":5},"exposure":{"compensation":1.0}})"}));
@@ -201,7 +201,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "0 to 2147483647"},
         BadPatch{R"({"view":{"buffer":""}})", "view.buffer", "not a name",
                  "1 to 64 characters of A-Z a-z 0-9 _ . -"},
-        // All or nothing: one good member does not slip through beside a bad one.
+        // Atomic: a valid member next to an invalid one is not applied.
         BadPatch{R"({"exposure":{"compensation":1},"sampling":{"seed":-1}})", "sampling.seed",
                  "out of range", "0 to 2147483647"},
         BadPatch{R"({"exposure":{"compensation":1},"zzz":1})", "zzz", "unknown setting", ""}));
@@ -243,7 +243,7 @@ TEST(SettingsSchema, DescribesEveryLeaf) {
   }
 }
 
-TEST(SettingsSchema, TellsTypesAndLimits) {
+TEST(SettingsSchema, HasTypesAndLimits) {
   const json groups = settings_schema().at("properties");
   const json curve = groups["tone_map"]["properties"]["curve"];
   EXPECT_EQ(curve["type"], "string");

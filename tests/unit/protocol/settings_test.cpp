@@ -10,7 +10,7 @@ namespace {
 
 static_assert(std::is_enum_v<ToneMapCurve> && !std::is_convertible_v<ToneMapCurve, int>);
 
-TEST(Settings, PathsAreUniqueAndMadeOfTheirGroupAndName) {
+TEST(Settings, PathsAreUniqueAndConsistOfGroupAndName) {
   std::set<std::string_view> paths;
   for (const SettingDescriptor& setting : setting_descriptors()) {
     EXPECT_TRUE(paths.insert(setting.path).second) << setting.path << " stands twice";
@@ -21,7 +21,7 @@ TEST(Settings, PathsAreUniqueAndMadeOfTheirGroupAndName) {
   EXPECT_EQ(find_setting(""), nullptr);
 }
 
-TEST(Settings, EveryGroupThatASettingNamesIsDeclaredInTheSameOrder) {
+TEST(Settings, GroupsAndSettingsHaveTheSameOrder) {
   std::vector<std::string_view> in_use;
   for (const SettingDescriptor& setting : setting_descriptors()) {
     if (in_use.empty() || in_use.back() != setting.group) in_use.push_back(setting.group);
@@ -31,7 +31,7 @@ TEST(Settings, EveryGroupThatASettingNamesIsDeclaredInTheSameOrder) {
   EXPECT_EQ(in_use, declared);
 }
 
-TEST(Settings, VisitHandsOutTheMemberThatTheDescriptorNames) {
+TEST(Settings, VisitPassesTheMemberOfTheDescriptor) {
   Settings settings;
   settings.tone_map.curve = ToneMapCurve::agx;
   settings.sampling.seed = 17;
@@ -55,7 +55,7 @@ TEST(Settings, VisitHandsOutTheMemberThatTheDescriptorNames) {
   EXPECT_EQ(visited, setting_descriptors().size());
 }
 
-TEST(Settings, DescriptorsTellTheDefaultsOfTheStruct) {
+TEST(Settings, DescriptorsHaveTheDefaultsOfTheStruct) {
   const Settings settings;
   visit_settings(settings, [&](const SettingDescriptor& setting, const auto& value) {
     using Value = std::remove_cvref_t<decltype(value)>;
@@ -68,7 +68,7 @@ TEST(Settings, DescriptorsTellTheDefaultsOfTheStruct) {
   });
 }
 
-TEST(Settings, DefaultsLieWithinTheirLimitsAndAreExplained) {
+TEST(Settings, DefaultsAreWithinTheirLimitsAndDescribed) {
   for (const SettingDescriptor& setting : setting_descriptors()) {
     double value = setting.limits.minimum;
     if (const int* whole = std::get_if<int>(&setting.initial)) value = *whole;
@@ -85,7 +85,7 @@ TEST(Settings, DefaultsLieWithinTheirLimitsAndAreExplained) {
   }
 }
 
-TEST(Settings, OnlyChangesOfTheSampledLightDropTheAccumulatedPicture) {
+TEST(Settings, OnlyChangesOfTheSampledLightResetTheAccumulation) {
   const Settings before;
   Settings after = before;
   EXPECT_EQ(changed_scope(before, after), ResetScope::none);
@@ -127,7 +127,7 @@ void PrintTo(const Refusal& refusal, std::ostream* out) {
 
 class SetByPathRefuses : public testing::TestWithParam<Refusal> {};
 
-TEST_P(SetByPathRefuses, NamesPathAndRemedyAndChangesNothing) {
+TEST_P(SetByPathRefuses, NamesPathAndValidValuesAndChangesNothing) {
   Settings settings;
   const Result<void> result = set_by_path(settings, GetParam().assignment);
   ASSERT_FALSE(result);

@@ -26,7 +26,7 @@ Frustum frustum(const scene::Camera& camera) {
   return Frustum(scene::projection_matrix(camera, 1.0f) * scene::view_matrix(camera));
 }
 
-TEST(Frustum, KeepsWhatIsInViewAndDropsWhatIsNot) {
+TEST(Frustum, KeepsVisibleBoxesAndCullsOthers) {
   const Frustum view = frustum(down_the_axis());
   EXPECT_TRUE(view.may_contain(box({0, 0, -5}, 0.5f)));
   EXPECT_TRUE(view.may_contain(box({0, 0, -1e6f}, 0.5f))) << "there is no far plane";
@@ -39,7 +39,7 @@ TEST(Frustum, KeepsWhatIsInViewAndDropsWhatIsNot) {
   EXPECT_FALSE(view.may_contain(box({0, -7, -5}, 0.5f))) << "below";
 }
 
-TEST(Frustum, NearPlaneOfAnOrthographicCamera) {
+TEST(Frustum, OrthographicNearPlaneCulls) {
   scene::Camera camera = down_the_axis();
   camera.orthographic_height = 4.0f;
   camera.far_plane = 100.0f;
@@ -49,7 +49,7 @@ TEST(Frustum, NearPlaneOfAnOrthographicCamera) {
   EXPECT_FALSE(view.may_contain(box({0, 0, 5}, 0.1f)));
 }
 
-TEST(Frustum, NeverDropsABoxWithAVisiblePoint) {
+TEST(Frustum, NeverCullsBoxWithVisiblePoint) {
   const scene::Camera camera = down_the_axis();
   const glm::mat4 matrix = scene::projection_matrix(camera, 1.0f) * scene::view_matrix(camera);
   const Frustum view(matrix);

@@ -14,7 +14,7 @@ gpu::DeviceReport device(VkPhysicalDeviceType type, bool query, bool pipeline) {
   return report;
 }
 
-TEST(GBufferSource, IsWhatIsFasterOnTheDevice) {
+TEST(GBufferSource, PrefersFasterMethodOfDevice) {
   const auto processor = device(VK_PHYSICAL_DEVICE_TYPE_CPU, true, true);
   EXPECT_TRUE(rays_find_gbuffer_sooner(processor, TracerKind::embree));
   EXPECT_FALSE(rays_find_gbuffer_sooner(processor, TracerKind::software));

@@ -8,7 +8,7 @@
 namespace heliograph::render {
 namespace {
 
-/// A sky of the given radiance by direction.
+/// A sky from a function of the direction.
 template <typename Radiance>
 scene::Environment make_sky(Radiance radiance) {
   scene::Environment sky{256, 128, {}};
@@ -32,7 +32,7 @@ const std::array<glm::vec3, 8> normals{{{1, 0, 0},
                                         {0.6f, 0.8f, 0},
                                         {0, -0.6f, 0.8f}}};
 
-TEST(Irradiance, OfAConstantSkyIsThatConstant) {
+TEST(Irradiance, ConstantSkyGivesThatConstant) {
   const glm::vec3 radiance(1.0f, 0.5f, 3.0f);
   const auto coefficients = project_irradiance(scene::constant_environment(radiance));
   for (const glm::vec3& normal : normals) {
@@ -41,7 +41,7 @@ TEST(Irradiance, OfAConstantSkyIsThatConstant) {
 }
 
 // The cosine lobe's factor of band 1 is 2 pi / 3: a sky of radiance 1 + d.a gives 1 + 2/3 n.a.
-TEST(Irradiance, OfALinearSkyIsAnalytic) {
+TEST(Irradiance, LinearSkyIsAnalytic) {
   const glm::dvec3 axis(0.3, -0.5, 0.2);
   const auto coefficients = project_irradiance(
       make_sky([&](const glm::dvec3& d) { return glm::vec3(1.0 + glm::dot(d, axis)); }));
@@ -52,7 +52,7 @@ TEST(Irradiance, OfALinearSkyIsAnalytic) {
 }
 
 // Band 2 carries a quarter: x y keeps its shape and a fourth of its size.
-TEST(Irradiance, OfAQuadraticSkyIsAnalytic) {
+TEST(Irradiance, QuadraticSkyIsAnalytic) {
   const auto coefficients = project_irradiance(make_sky([](const glm::dvec3& d) {
     return glm::vec3(1.0 + d.x * d.y, 1.0 + d.y * d.z + d.x * d.z,
                      1.0 + 0.5 * (d.x * d.x - d.y * d.y));
@@ -66,7 +66,7 @@ TEST(Irradiance, OfAQuadraticSkyIsAnalytic) {
 }
 
 // Ramamoorthi and Hanrahan 2001: nine terms are within a few percent of any sky.
-TEST(Irradiance, OfHalfASkyIsWithinAFewPercent) {
+TEST(Irradiance, HalfSkyIsWithinFewPercent) {
   const auto coefficients = project_irradiance(
       make_sky([](const glm::dvec3& d) { return glm::vec3(d.y > 0.0 ? 1.0f : 0.0f); }));
   for (const glm::vec3& normal : normals) {

@@ -5,7 +5,7 @@
 namespace heliograph::render {
 namespace {
 
-TEST(SampleJitter, BeginsInTheMiddleAndStaysInsideThePixel) {
+TEST(SampleJitter, StartsAtCenterAndStaysInsidePixel) {
   EXPECT_EQ(sample_jitter(0), glm::vec2(0.0f));
   for (std::uint32_t i = 0; i < 70000; ++i) {
     EXPECT_LE(glm::abs(sample_jitter(i)).x, 0.5f);
@@ -13,8 +13,8 @@ TEST(SampleJitter, BeginsInTheMiddleAndStaysInsideThePixel) {
   }
 }
 
-// A drift would move the picture as samples accumulate.
-TEST(SampleJitter, AveragesToTheMiddle) {
+// A biased mean would shift the image as samples accumulate.
+TEST(SampleJitter, AveragesToCenter) {
   for (const std::uint32_t count : {16u, 64u, 256u, 4096u}) {
     glm::dvec2 sum(0.0);
     for (std::uint32_t i = 0; i < count; ++i) sum += glm::dvec2(sample_jitter(i));
@@ -22,7 +22,7 @@ TEST(SampleJitter, AveragesToTheMiddle) {
   }
 }
 
-TEST(SampleJitter, FillsThePixelEvenly) {
+TEST(SampleJitter, CoversPixelEvenly) {
   std::array<int, 16> counts{};
   for (std::uint32_t i = 0; i < 256; ++i) {
     const glm::vec2 cell = (sample_jitter(i) + 0.5f) * 3.9999f;
@@ -31,8 +31,8 @@ TEST(SampleJitter, FillsThePixelEvenly) {
   for (const int count : counts) EXPECT_NEAR(count, 16, 5);
 }
 
-// What moves is resolved from the last dozen frames, wherever in the sequence they lie.
-TEST(SampleJitter, AnyFramesInARowReachAllPartsOfThePixel) {
+// Moving surfaces use the last dozen frames, from any position in the sequence.
+TEST(SampleJitter, ConsecutiveFramesCoverAllQuarters) {
   for (std::uint32_t first = 1; first < 2000; ++first) {
     std::array<bool, 4> quarters{};
     glm::dvec2 sum(0.0);
@@ -42,7 +42,7 @@ TEST(SampleJitter, AnyFramesInARowReachAllPartsOfThePixel) {
       sum += glm::dvec2(offset);
     }
     for (const bool reached : quarters) EXPECT_TRUE(reached) << first;
-    EXPECT_LT(glm::length(sum / 16.0), 0.15) << "the picture wanders: " << first;
+    EXPECT_LT(glm::length(sum / 16.0), 0.15) << "mean offset is biased: " << first;
   }
 }
 

@@ -27,7 +27,7 @@ int brightness(const Rgb& c) {
 
 constexpr Rgb dark_blue{68, 1, 84}, yellow{253, 231, 37};
 
-TEST(Heat, RunsFromDarkBlueToYellowAndGetsEverBrighter) {
+TEST(Heat, RunsFromDarkBlueToYellowMonotonically) {
   FloatImage ramp{101, 1, {}};
   for (int i = 0; i <= 100; ++i) {
     ramp.rgba.insert(ramp.rgba.end(), {static_cast<float>(i) / 100.0f, 0, 0, 1});
@@ -40,27 +40,27 @@ TEST(Heat, RunsFromDarkBlueToYellowAndGetsEverBrighter) {
   }
 }
 
-TEST(Heat, OneOutlierDoesNotDimTheRest) {
+TEST(Heat, OutlierDoesNotDimOtherPixels) {
   FloatImage image{100, 1, {}};
   for (int i = 0; i < 100; ++i)
     image.rgba.insert(image.rgba.end(), {i == 7 ? 1e6f : 2.0f, 0, 0, 1});
   EXPECT_EQ(texel(colorize(ViewColors::heat, image), 50), yellow);
 }
 
-TEST(Colors, DistancesTakeEqualStepsOfTheLogarithm) {
+TEST(Colors, DistancesAreLogarithmic) {
   const Frame frame = colorize(ViewColors::distance,
                                row({{1, 0, 0, 1}, {10, 0, 0, 1}, {100, 0, 0, 1}, {0, 0, 0, 1}}));
   EXPECT_EQ(texel(frame, 0), dark_blue);
-  EXPECT_EQ(texel(frame, 3), (Rgb{0, 0, 0})) << "nothing there";
+  EXPECT_EQ(texel(frame, 3), (Rgb{0, 0, 0})) << "background";
   const Frame scaled = colorize(ViewColors::distance,
                                 row({{7, 0, 0, 1}, {70, 0, 0, 1}, {700, 0, 0, 1}, {0, 0, 0, 1}}));
-  EXPECT_EQ(frame.rgba, scaled.rgba) << "whatever the size of the scene";
+  EXPECT_EQ(frame.rgba, scaled.rgba) << "must be scale invariant";
 }
 
-TEST(Colors, WhatIsNoNumberIsBlack) {
+TEST(Colors, NaNIsBlack) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const ViewColors colors :
-       {ViewColors::picture, ViewColors::radiance, ViewColors::squared, ViewColors::channels,
+       {ViewColors::image, ViewColors::radiance, ViewColors::squared, ViewColors::channels,
         ViewColors::grey, ViewColors::direction, ViewColors::octahedral, ViewColors::share,
         ViewColors::heat, ViewColors::distance, ViewColors::stops, ViewColors::pixels}) {
     EXPECT_EQ(texel(colorize(colors, row({{nan, nan, nan, nan}, {1, 1, 1, 1}})), 0), (Rgb{0, 0, 0}))
@@ -68,7 +68,7 @@ TEST(Colors, WhatIsNoNumberIsBlack) {
   }
 }
 
-TEST(Views, EveryBufferHasTheColoursOfItsKind) {
+TEST(Views, EveryBufferHasColorsOfItsKind) {
   EXPECT_EQ(colors_of("shadows.visibility"), ViewColors::grey);
   EXPECT_EQ(colors_of("ambient.denoised.visibility"), ViewColors::grey);
   EXPECT_EQ(colors_of("gbuffer.normals"), ViewColors::octahedral);
@@ -80,7 +80,7 @@ TEST(Views, EveryBufferHasTheColoursOfItsKind) {
   EXPECT_EQ(colors_of("something.new"), ViewColors::radiance);
 }
 
-TEST(Views, AspectsNameTheBufferTheyAreOf) {
+TEST(Views, AspectsNameTheirBuffer) {
   for (const char* buffer : {"gbuffer.normals", "gbuffer.motion", "visibility.history"}) {
     ASSERT_FALSE(aspects_of(buffer).empty()) << buffer;
     for (const std::string& aspect : aspects_of(buffer)) {
@@ -96,7 +96,7 @@ TEST(Views, AspectsNameTheBufferTheyAreOf) {
 class Extract : public testing::Test {
  protected:
   Extract() {
-    constants_.extent = {4, 2, 0, 0};
+    constants_.extent = {4, 2};
     constants_.inverse_view = constants_.unjittered = glm::mat4(1.0f);
     constants_.previous_unjittered = glm::mat4(1.0f);
     constants_.unproject = {1, 1, 0, 0};
@@ -114,14 +114,14 @@ class Extract : public testing::Test {
   shared::FrameConstants constants_{};
 };
 
-TEST_F(Extract, TakesTheChannelsThatTheAspectIsAbout) {
+TEST_F(Extract, TakesChannelsOfAspect) {
   EXPECT_EQ(extract_from("gbuffer.motion.view_z", {1, 2, 3, 4}).rgba[0], 4.0f);
   EXPECT_EQ(extract_from("gbuffer.normals.geometric", {1, 2, 3, 4}).rgba[1], 4.0f);
   EXPECT_EQ(extract_from("gbuffer.surface.metallic", {1, 2, 3, 4}).rgba[0], 2.0f);
 }
 
-TEST_F(Extract, MotionOfAMovingCameraAloneIsNoError) {
-  constants_.previous_unjittered[3][0] = 0.5f;  // the camera stood half a metre further left
+TEST_F(Extract, CameraMotionAloneIsNoError) {
+  constants_.previous_unjittered[3][0] = 0.5f;  // the camera moved by half a metre
   const float uv = 0.5f / 2.0f * 0.5f;          // at two metres
   for (const float value : {0.0f, 1.0f}) {
     const FloatImage error = extract_from("gbuffer.motion.error", {uv + value / 4.0f, 0, 0, 2});
@@ -132,7 +132,7 @@ TEST_F(Extract, MotionOfAMovingCameraAloneIsNoError) {
   EXPECT_EQ(extract_from("gbuffer.motion.error", {0.3f, 0, 0, 0}).rgba[0], 0.0f) << "background";
 }
 
-TEST_F(Extract, StopsCountFromMiddleGreyAsExposed) {
+TEST_F(Extract, StopsAreRelativeToExposedMiddleGray) {
   EXPECT_NEAR(extract_from("accumulated.stops", {0.09f, 0.09f, 0.09f, 1}).rgba[0], 0.0f, 1e-5f);
   EXPECT_NEAR(extract_from("accumulated.stops", {0.72f, 0.72f, 0.72f, 1}).rgba[0], 3.0f, 1e-5f);
 }

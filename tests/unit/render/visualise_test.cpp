@@ -17,31 +17,31 @@ std::array<int, 3> shown(std::string_view buffer, const std::array<float, 4>& va
 
 using Rgb = std::array<int, 3>;
 
-TEST(Visualise, ShowsTheOutputAsItIs) {
+TEST(Visualise, OutputIsUnchanged) {
   EXPECT_EQ(shown("output", {0.0f, 0.5f, 1.0f, 1.0f}), (Rgb{0, 128, 255}));
 }
 
-TEST(Visualise, NormalsAreColouredByAxisAndNothingIsBlack) {
+TEST(Visualise, NormalsAreColoredByAxisAndBackgroundIsBlack) {
   EXPECT_EQ(shown("gbuffer.normals", {2, 2, 2, 2}), (Rgb{0, 0, 0})) << "no normal";
   EXPECT_EQ(shown("gbuffer.normals", {0, 0, 0, 0}), (Rgb{128, 128, 255})) << "toward +Z";
   EXPECT_EQ(shown("gbuffer.normals", {1, 0, 1, 0}), (Rgb{255, 128, 128}));
   EXPECT_EQ(shown("gbuffer.normals", {0, 0, 0, 0.1f}), (Rgb{128, 128, 255}));
 }
 
-TEST(Visualise, BadPixelsAreBlack) {
+TEST(Visualise, NonFinitePixelsAreBlack) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(shown("hdr", {nan, nan, nan, 1}), (Rgb{0, 0, 0}));
   EXPECT_EQ(shown("output", {nan, 1, -5, 1}), (Rgb{0, 255, 0}));
 }
 
-TEST(Visualise, RadianceOfAnySizeStaysBelowWhite) {
+TEST(Visualise, RadianceIsToneMappedBelowWhite) {
   const Rgb one = shown("hdr", {1, 1, 1, 1}), many = shown("hdr", {100, 100, 100, 1});
   EXPECT_EQ(one[0], 188) << "Reinhard's half, encoded";
   EXPECT_GT(many[0], one[0]);
   EXPECT_LT(many[0], 255);
 }
 
-TEST(Visualise, NeighbouringInstancesDiffer) {
+TEST(Visualise, ConsecutiveInstanceColorsDiffer) {
   EXPECT_EQ(shown("gbuffer.instance", {0, 0, 0, 1}), (Rgb{0, 0, 0}));
   for (int id = 1; id < 60; ++id) {
     const Rgb a = shown("gbuffer.instance", {static_cast<float>(id), 0, 0, 1});
@@ -52,7 +52,7 @@ TEST(Visualise, NeighbouringInstancesDiffer) {
   }
 }
 
-TEST(Visualise, MotionIsScaledToThePictureAndStillnessIsGrey) {
+TEST(Visualise, MotionIsScaledAndZeroIsGray) {
   FloatImage image{2, 1, {0.01f, 0, 0, 1, 0, 0, 0, 1}};
   const Frame frame = visualise("gbuffer.motion", image);
   EXPECT_EQ(frame.rgba[0], 255);

@@ -1,4 +1,4 @@
-// Files made by others, found through HELIOGRAPH_TEST_ASSETS.
+// Sample files in HELIOGRAPH_TEST_ASSETS.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -18,7 +18,7 @@ class Assets : public testing::Test {
  protected:
   void SetUp() override {
     const char* folder = std::getenv("HELIOGRAPH_TEST_ASSETS");
-    if (!folder) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS does not name a folder of test scenes";
+    if (!folder) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS is not set";
     folder_ = folder;
   }
 
@@ -70,7 +70,7 @@ TEST_F(Assets, EverySceneLoads) {
   }
 }
 
-TEST_F(Assets, DamagedHelmetHasAllItsTextures) {
+TEST_F(Assets, DamagedHelmetHasAllTextures) {
   const Scene scene = import_gltf(folder_ / "gltf/DamagedHelmet.glb");
   ASSERT_EQ(scene.materials.size(), 1u);
   const shared::Material& material = scene.materials[0];
@@ -103,7 +103,7 @@ TEST_F(Assets, LightsOfEveryKind) {
   }
 }
 
-TEST_F(Assets, EmissionOfTheCornellBox) {
+TEST_F(Assets, CornellBoxEmission) {
   const Scene scene = import_gltf(folder_ / "gltf/CornellBox.glb");
   float brightest = 0.0f;
   for (const shared::Material& material : scene.materials)
@@ -111,14 +111,13 @@ TEST_F(Assets, EmissionOfTheCornellBox) {
   EXPECT_GT(brightest, 1.0f) << "KHR_materials_emissive_strength";
 }
 
-TEST_F(Assets, TheMaskedHouseHasAlphaForRays) {
+TEST_F(Assets, MaskedHouseHasAlphaHeap) {
   const Scene scene = import_gltf(folder_ / "gltf/house.glb");
   EXPECT_EQ(scene.alpha_heap.size(), 1024u * 1024u);
 }
 
-// FlightHelmet brings tangents made by the reference implementation: ours, made from scratch, must
-// be the same frames.
-TEST_F(Assets, MadeTangentsAgreeWithTheReference) {
+// FlightHelmet has tangents of the MikkTSpace reference implementation: generated ones must match.
+TEST_F(Assets, GeneratedTangentsMatchMikkTSpace) {
   const Scene scene = import_gltf(folder_ / "gltf/FlightHelmet/FlightHelmet.gltf");
   const shared::TextureSlot plain = default_material().normal_texture;
   std::size_t compared = 0;
@@ -140,7 +139,7 @@ TEST_F(Assets, MadeTangentsAgreeWithTheReference) {
   EXPECT_GT(static_cast<double>(close) / compared, 0.98);
 }
 
-TEST_F(Assets, EnvironmentsHaveLight) {
+TEST_F(Assets, EnvironmentsAreNotBlack) {
   for (const char* file : {"hdr/studio.hdr", "hdr/venice.hdr", "hdr/std_env.hdr"}) {
     SCOPED_TRACE(file);
     const Environment environment = load_environment(folder_ / file);

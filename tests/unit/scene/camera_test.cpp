@@ -22,7 +22,7 @@ Camera looking_down_z() {
   return camera;
 }
 
-TEST(CameraMath, UpInTheWorldIsMinusYOnTheScreen) {
+TEST(CameraMath, WorldUpIsMinusYInClipSpace) {
   const glm::vec3 above = project(looking_down_z(), 2.0f, {0, 5, 0});
   EXPECT_NEAR(above.x, 0.0f, 1e-6f);
   EXPECT_NEAR(above.y, -1.0f, 1e-5f) << "45 degrees up is the upper edge";
@@ -39,7 +39,7 @@ TEST(CameraMath, DepthIsNearOverDistance) {
   EXPECT_LT(far_away, 1e-6f);
 }
 
-TEST(CameraMath, OrthographicDepthRunsFromOneToZero) {
+TEST(CameraMath, OrthographicDepthIsReversed) {
   Camera camera = looking_down_z();
   camera.orthographic_height = 4.0f;
   camera.near_plane = 1.0f;
@@ -50,7 +50,7 @@ TEST(CameraMath, OrthographicDepthRunsFromOneToZero) {
   EXPECT_NEAR(project(camera, 2.0f, {4, 0, 0}).x, 1.0f, 1e-6f);
 }
 
-TEST(CameraMath, LookingStraightUpOrNowhereStaysFinite) {
+TEST(CameraMath, DegenerateViewDirectionsStayFinite) {
   for (const glm::vec3& target : {glm::vec3(0, 1, 5), glm::vec3(0, -1, 5), glm::vec3(0, 0, 5)}) {
     Camera camera = looking_down_z();
     camera.target = target;
@@ -59,7 +59,7 @@ TEST(CameraMath, LookingStraightUpOrNowhereStaysFinite) {
   }
 }
 
-TEST(CameraFit, ShowsTheWholeBoxAndFillsThePicture) {
+TEST(CameraFit, FramesWholeBoxTightly) {
   for (const glm::vec3& size : {glm::vec3(1), glm::vec3(100, 1, 1), glm::vec3(0.01f, 5, 0.01f)}) {
     for (const float aspect : {0.5f, 1.0f, 16.0f / 9.0f}) {
       Bounds bounds;
@@ -82,7 +82,7 @@ TEST(CameraFit, ShowsTheWholeBoxAndFillsThePicture) {
   }
 }
 
-TEST(CameraFit, AnEmptySceneStillHasACamera) {
+TEST(CameraFit, EmptySceneHasDefaultCamera) {
   const Camera camera = fit_camera(Bounds{}, 45.0f, 1.5f);
   EXPECT_TRUE(std::isfinite(glm::length(camera.eye)));
   EXPECT_GT(glm::distance(camera.eye, camera.target), 0.5f);

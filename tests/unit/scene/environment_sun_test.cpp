@@ -17,7 +17,7 @@ glm::dvec3 direction_of(std::uint32_t width, double x, double y) {
   return {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
 }
 
-/// Each texel holds the mean of 8 x 8 directions.
+/// Each texel is the mean of 8 x 8 directions.
 Environment paint(std::uint32_t width,
                   const std::function<glm::dvec3(const glm::dvec3&)>& radiance) {
   Environment map{width, width / 2, {}};
@@ -33,7 +33,7 @@ Environment paint(std::uint32_t width,
   return map;
 }
 
-/// A sky of radiance 1 with a disk of so many degrees around `towards`.
+/// A sky of radiance 1 with a disk of `degrees` diameter around `towards`.
 Environment sky_with_disk(const glm::dvec3& towards, double degrees, const glm::dvec3& radiance,
                           std::uint32_t width = 512) {
   const double cosine = std::cos(0.5 * degrees * pi / 180.0);
@@ -55,8 +55,8 @@ glm::dvec3 flux(const Environment& map) {
 
 class SunSeparation : public testing::TestWithParam<glm::dvec3> {};
 
-// One lies on the seam of the map, one close to a pole.
-TEST_P(SunSeparation, FindsDirectionSizeAndStrength) {
+// One sun is on the seam of the map, one close to a pole.
+TEST_P(SunSeparation, FindsDirectionDiameterAndIrradiance) {
   const glm::dvec3 towards = glm::normalize(GetParam());
   const glm::dvec3 radiance(8000.0, 6000.0, 3000.0);
   for (const double degrees : {1.5, 3.0, 5.0}) {
@@ -76,11 +76,11 @@ TEST_P(SunSeparation, FindsDirectionSizeAndStrength) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Places, SunSeparation,
+INSTANTIATE_TEST_SUITE_P(Positions, SunSeparation,
                          testing::Values(glm::dvec3(0.3, 0.5, -0.6), glm::dvec3(-1.0, 0.4, 0.0),
                                          glm::dvec3(0.05, 1.0, 0.1)));
 
-TEST(SunSeparation, AOneTexelSunIsAsLargeAsItsTexel) {
+TEST(SunSeparation, SunOfOneTexelHasDiameterOfTexel) {
   Environment map = constant_environment(glm::vec3(1.0f));
   map = {256, 128, std::vector<glm::vec3>(256 * 128, glm::vec3(1.0f))};
   map.radiance[60 * 256 + 10] = glm::vec3(1e5f);
@@ -90,7 +90,7 @@ TEST(SunSeparation, AOneTexelSunIsAsLargeAsItsTexel) {
   EXPECT_EQ(separated.sky.radiance[60 * 256 + 10], glm::vec3(1.0f));
 }
 
-TEST(SunSeparation, LeavesSoftBoxesDimSpotsAndEvenSkiesAlone) {
+TEST(SunSeparation, IgnoresLargeDimAndUniformLights) {
   const glm::dvec3 towards = glm::normalize(glm::dvec3(0.3, 0.5, -0.6));
   EXPECT_FALSE(separate_sun(sky_with_disk(towards, 20.0, glm::dvec3(500.0))).sun) << "too large";
   EXPECT_FALSE(separate_sun(sky_with_disk(towards, 2.0, glm::dvec3(10.0))).sun) << "too dim";
@@ -100,7 +100,7 @@ TEST(SunSeparation, LeavesSoftBoxesDimSpotsAndEvenSkiesAlone) {
   EXPECT_EQ(even.sky.radiance[5], glm::vec3(3.0f));
 }
 
-TEST(SunSeparation, KeepsTheLightOfPhotographs) {
+TEST(SunSeparation, PreservesFluxOfPhotographs) {
   const char* assets = std::getenv("HELIOGRAPH_TEST_ASSETS");
   if (!assets) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS is not set";
   for (const char* name : {"venice.hdr", "studio.hdr", "std_env.hdr"}) {

@@ -43,7 +43,7 @@ std::string refusal(const Bytes& file) {
   return "";
 }
 
-TEST(Environment, ReadsLinearRadianceTopRowFirst) {
+TEST(Environment, ReadsLinearRadianceFromTopRow) {
   const TemporaryFolder folder;
   const Environment environment = load_environment(folder.write("sky.hdr", small_environment()));
   ASSERT_EQ(environment.width, 16u);
@@ -52,7 +52,7 @@ TEST(Environment, ReadsLinearRadianceTopRowFirst) {
   EXPECT_EQ(environment.radiance[31], glm::vec3(0.5f, 0.0f, 0.0f));
 }
 
-TEST(Environment, ReadsFlatAndOldRunLengthEncodedRows) {
+TEST(Environment, ReadsUncompressedAndOldRunLengthEncodedRows) {
   Bytes file = header("-Y 2 +X 5");
   for (int x = 0; x < 5; ++x) file.insert(file.end(), {128, 0, 64, 129});
   file.insert(file.end(), {64, 128, 0, 130, 1, 1, 1, 3, 0, 0, 0, 0});
@@ -63,7 +63,7 @@ TEST(Environment, ReadsFlatAndOldRunLengthEncodedRows) {
   EXPECT_EQ(environment.radiance[9], glm::vec3(0.0f));
 }
 
-TEST(Environment, RefusesRunsThatLeaveTheirRow) {
+TEST(Environment, RejectsRunsBeyondRow) {
   const Bytes good = small_environment();
   const std::size_t first_row = header("-Y 2 +X 16").size() + 4;
   for (const std::uint8_t code : {128 + 17, 17, 0}) {
@@ -76,7 +76,7 @@ TEST(Environment, RefusesRunsThatLeaveTheirRow) {
   EXPECT_NE(refusal(repeat_of_nothing), "");
 }
 
-TEST(Environment, RefusesDataCutAtAnyByte) {
+TEST(Environment, RejectsTruncatedData) {
   const Bytes file = small_environment();
   for (std::size_t size = 0; size < file.size(); ++size) {
     EXPECT_NE(refusal(Bytes(file.begin(), file.begin() + size)), "")
@@ -84,7 +84,7 @@ TEST(Environment, RefusesDataCutAtAnyByte) {
   }
 }
 
-TEST(Environment, RefusesPicturesWithoutPixelsOrWithTooMany) {
+TEST(Environment, RejectsEmptyAndOversizedImages) {
   for (const char* size : {"-Y 0 +X 0", "-Y 0 +X 16", "-Y 2 +X 0", "-Y -2 +X -2", "-Y 4097 +X 16",
                            "-Y 2 +X 8193", "-Y 2000000000 +X 2000000000", "nonsense"}) {
     Bytes file = header(size);
@@ -93,14 +93,14 @@ TEST(Environment, RefusesPicturesWithoutPixelsOrWithTooMany) {
   }
 }
 
-TEST(Environment, RefusesOtherFiles) {
+TEST(Environment, RejectsOtherFileFormats) {
   EXPECT_NE(refusal({}), "");
   EXPECT_NE(refusal(png(2, 2, 3, Bytes(12, 1))).find("not a Radiance"), std::string::npos);
   EXPECT_THROW(load_environment("/nonexistent/sky.hdr"), ImportError);
   EXPECT_THROW(load_environment("/dev/zero"), ImportError);
 }
 
-TEST(Environment, AFurnaceIsTheSameEverywhere) {
+TEST(Environment, ConstantEnvironmentIsUniform) {
   const Environment furnace = constant_environment({1, 2, 3});
   ASSERT_EQ(furnace.radiance.size(), std::size_t(furnace.width) * furnace.height);
   for (const glm::vec3& texel : furnace.radiance) EXPECT_EQ(texel, glm::vec3(1, 2, 3));

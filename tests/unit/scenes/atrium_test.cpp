@@ -23,23 +23,23 @@ const Document& atrium() {
   return document;
 }
 
-TEST(Atrium, HasTheSizeOfThePapersScene) {
+TEST(Atrium, MatchesSizeOfPaperScene) {
   EXPECT_NEAR(double(atrium().drawn_triangles()), 344e3, 10e3);
   EXPECT_NEAR(double(atrium().instance_count()), 476.0, 8.0);
   EXPECT_GE(atrium().materials.size(), 22u);
 }
 
 TEST(Atrium, ClosedShapesAreWoundConsistently) {
-  // Of a closed surface every edge is shared by two triangles that run along it in opposite
-  // directions. Vertices are split at kinks and seams, so positions identify the edges.
+  // In a closed surface every edge belongs to two triangles of opposite direction. Vertices are
+  // split at creases and seams, so positions identify edges.
   using Point = std::tuple<long, long, long>;
   const auto point = [](glm::vec3 p) {
     return Point{std::lround(p.x * 1e5), std::lround(p.y * 1e5), std::lround(p.z * 1e5)};
   };
   int checked = 0;
   for (const NamedMesh& named : atrium().meshes) {
-    if (named.name != "hero_sphere" && named.name != "lamp_chain" && named.name != "corner_piers" &&
-        named.name != "gallery_beams") {
+    if (named.name != "hero_sphere" && named.name != "lantern_chain" &&
+        named.name != "corner_piers" && named.name != "gallery_beams") {
       continue;
     }
     std::map<std::pair<Point, Point>, int> edges;
@@ -58,7 +58,7 @@ TEST(Atrium, ClosedShapesAreWoundConsistently) {
   EXPECT_EQ(checked, 4);
 }
 
-TEST(Atrium, HasItsCamerasAndASunThatAgreesWithTheSky) {
+TEST(Atrium, HasCamerasAndSunMatchesSky) {
   std::set<std::string> cameras;
   for (const Camera& camera : atrium().cameras) cameras.insert(camera.name);
   for (const char* name : {"main", "gallery", "courtyard", "floor"}) {
@@ -76,7 +76,7 @@ TEST(Atrium, HasItsCamerasAndASunThatAgreesWithTheSky) {
   EXPECT_NEAR(sun.intensity * sun.color.y, small_sky().sun_irradiance.y, 1e-3f);
 }
 
-TEST(Atrium, TheSunReachesTheFloorButNotAllOfIt) {
+TEST(Atrium, SunReachesPartOfFloor) {
   // The shadow of the southern eaves, 13 m high at z = 4.4, must end on the floor of the nave.
   const glm::vec3 to_sun = direction_to_sun(sun_elevation, sun_azimuth);
   const float shadow = 13.0f * to_sun.z / to_sun.y;
@@ -84,7 +84,7 @@ TEST(Atrium, TheSunReachesTheFloorButNotAllOfIt) {
   EXPECT_LT(4.4f - shadow, 3.0f);
 }
 
-TEST(Atrium, TheThreeCasesDifferInWhatIsSwept) {
+TEST(Atrium, CasesDifferInSweptMaterials) {
   const auto swept = [](const Document& document) {
     return std::count_if(document.materials.begin(), document.materials.end(),
                          [](const Material& material) { return material.swept; });

@@ -8,7 +8,7 @@
 namespace heliograph::scenes {
 namespace {
 
-TEST(Icosphere, EveryLevelHasFourTimesTheTriangles) {
+TEST(Icosphere, EachLevelHasFourTimesAsManyTriangles) {
   std::size_t triangles = 20;
   for (int level = 0; level < 5; ++level, triangles *= 4) {
     EXPECT_EQ(icosphere(1.0f, level).triangle_count(), triangles);
@@ -16,15 +16,15 @@ TEST(Icosphere, EveryLevelHasFourTimesTheTriangles) {
   }
 }
 
-TEST(Icosphere, NormalsOfTheSphereAreItsDirections) {
+TEST(Icosphere, NormalsAreRadial) {
   for (const Vertex& vertex : icosphere(2.0f, 3).vertices) {
     EXPECT_NEAR(glm::length(vertex.position), 2.0f, 1e-5f);
     EXPECT_GT(glm::dot(vertex.normal, vertex.position), 1.99999f);
   }
 }
 
-// A triangle that crosses the seam must not run backwards through the whole picture.
-TEST(Icosphere, NoTriangleSpansMostOfThePicture) {
+// A triangle that crosses the uv seam must not span the whole texture.
+TEST(Icosphere, UvSeamTrianglesDoNotWrap) {
   constexpr int level = 3;
   const Mesh mesh = icosphere(level, {1.0f, 1.0f}, [](glm::vec3 direction) {
     return SurfacePoint{direction, direction, {}};
@@ -52,8 +52,8 @@ TEST(Icosphere, FacetsAreFlat) {
   }
 }
 
-// Normals of a surface carried by a formula must agree with those measured on its triangles.
-TEST(Icosphere, CarriesAnySurfaceWithItsNormals) {
+// Normals of a displaced surface must agree with those of its triangles.
+TEST(Icosphere, DisplacedNormalsMatchTriangles) {
   const glm::vec3 axes(1.0f, 2.0f, 0.5f);
   const Mesh mesh = icosphere(5, {1.0f, 1.0f}, [&](glm::vec3 direction) {
     const glm::vec3 position = direction / glm::length(direction / axes);

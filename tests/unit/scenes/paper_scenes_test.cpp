@@ -69,9 +69,9 @@ TEST_P(GeneratedScene, NormalsAndTangentsAreOrthonormal) {
   }
 }
 
-// A wrong winding shows as a face that looks away from the normals of its corners; normals taken
-// over a kink, as a face far from all of them.
-TEST_P(GeneratedScene, FacesLookWhereTheirNormalsPoint) {
+// Wrong winding gives a face normal opposite to the vertex normals; normals smoothed over a crease
+// give a large angle.
+TEST_P(GeneratedScene, FaceNormalsAgreeWithVertexNormals) {
   for (const NamedMesh& named : document().meshes) {
     const Mesh& mesh = named.mesh;
     std::size_t off = 0;
@@ -90,7 +90,7 @@ TEST_P(GeneratedScene, FacesLookWhereTheirNormalsPoint) {
   }
 }
 
-TEST_P(GeneratedScene, TangentsFollowTheTextureCoordinates) {
+TEST_P(GeneratedScene, TangentsFollowTextureCoordinates) {
   for (const NamedMesh& named : document().meshes) {
     const Mesh& mesh = named.mesh;
     if (!document().materials[std::size_t(named.material)].texture) continue;
@@ -99,7 +99,7 @@ TEST_P(GeneratedScene, TangentsFollowTheTextureCoordinates) {
       const Vertex& a = mesh.vertices[mesh.indices[i]];
       const Vertex& b = mesh.vertices[mesh.indices[i + 1]];
       const Vertex& c = mesh.vertices[mesh.indices[i + 2]];
-      // What the tangent says of the edges must be what their uv says.
+      // Tangents must agree with the uv derivatives along the edges.
       const glm::vec3 edges[2] = {b.position - a.position, c.position - a.position};
       const glm::vec2 uvs[2] = {b.uv - a.uv, c.uv - a.uv};
       const float area = uvs[0].x * uvs[1].y - uvs[1].x * uvs[0].y;
@@ -114,7 +114,7 @@ TEST_P(GeneratedScene, TangentsFollowTheTextureCoordinates) {
   }
 }
 
-TEST_P(GeneratedScene, ClipsAreLoopsOfTenSecondsWithUnitRotations) {
+TEST_P(GeneratedScene, ClipsLoopInTenSecondsWithUnitQuaternions) {
   ASSERT_EQ(document().animations.size(), 2u);
   EXPECT_EQ(document().animations[0].name, "moving_camera");
   EXPECT_EQ(document().animations[1].name, "moving_objects_light");
@@ -135,13 +135,13 @@ TEST_P(GeneratedScene, ClipsAreLoopsOfTenSecondsWithUnitRotations) {
   }
 }
 
-TEST_P(GeneratedScene, TheSameSceneGivesTheSameBytes) {
+TEST_P(GeneratedScene, IsDeterministic) {
   const PaperScene& scene = find_paper_scene(GetParam());
   const auto again = scene.make_document(scene.make_sky(64, 32));
   EXPECT_EQ(encode_glb(document(), texture_size), encode_glb(again, texture_size));
 }
 
-TEST_P(GeneratedScene, HasItsMainCameraFirstAndASunThatAgreesWithTheSky) {
+TEST_P(GeneratedScene, MainCameraIsFirstAndSunMatchesSky) {
   EXPECT_EQ(document().cameras.front().name, "main");
   const PaperScene& scene = find_paper_scene(GetParam());
   const auto sun = std::find_if(document().nodes.begin(), document().nodes.end(),
@@ -160,8 +160,8 @@ struct Size {
   double instances;
 };
 
-// What the paper's tables give; only the room's and the objects' counts may be off a little.
-TEST(PaperScenes, HaveTheSizesOfThePapersTables) {
+// The counts of the paper's tables; small deviations only for the room and the objects.
+TEST(PaperScenes, MatchSizesOfPaperTables) {
   for (const Size& size : {Size{"cubes_distance", 170, 15}, Size{"icosphere", 27e3, 17},
                            Size{"glossy_sponza_1", 344e3, 476}, Size{"shadow_objects", 18e3, 22},
                            Size{"pillars", 62e3, 77}, Size{"breakfast_room", 40e3, 167}}) {
@@ -172,7 +172,7 @@ TEST(PaperScenes, HaveTheSizesOfThePapersTables) {
   }
 }
 
-TEST(PaperScenes, AreEightAndFoundByName) {
+TEST(PaperScenes, AreFoundByName) {
   EXPECT_EQ(paper_scenes().size(), 8u);
   for (const PaperScene& scene : paper_scenes()) {
     EXPECT_EQ(find_paper_scene(scene.name).name, scene.name);
@@ -180,7 +180,7 @@ TEST(PaperScenes, AreEightAndFoundByName) {
   EXPECT_THROW(find_paper_scene("teapot"), std::invalid_argument);
 }
 
-TEST(Sweep, GivesSweptMaterialsOneRoughnessAllOver) {
+TEST(Sweep, SetsUniformRoughnessOfSweptMaterials) {
   Document document = document_of("breakfast_room");
   apply({.roughness = 0.6f, .shadow_angle = {}}, document);
   const nlohmann::json gltf = parse_glb(encode_glb(document, texture_size));
@@ -198,7 +198,7 @@ TEST(Sweep, GivesSweptMaterialsOneRoughnessAllOver) {
   EXPECT_EQ(swept, 5);  // floor, table, chairs, steel, brass
 }
 
-TEST(Sweep, AShadowAngleOfZeroIsWrittenToo) {
+TEST(Sweep, WritesShadowAngleOfZero) {
   Document document = document_of("pillars");
   apply({.roughness = {}, .shadow_angle = 0.0f}, document);
   const nlohmann::json gltf = parse_glb(encode_glb(document, texture_size));

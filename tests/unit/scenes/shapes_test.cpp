@@ -7,7 +7,7 @@
 namespace heliograph::scenes {
 namespace {
 
-TEST(Profile, ArcOfBulgeOneIsAHalfCircleWithExactNormals) {
+TEST(Profile, BulgeOneIsHalfCircleWithExactNormals) {
   Profile profile({1.0f, 0.0f});
   profile.arc_to({1.0f, 2.0f}, 1.0f, 16);
   for (const ProfilePoint& point : profile.runs().front()) {
@@ -17,7 +17,7 @@ TEST(Profile, ArcOfBulgeOneIsAHalfCircleWithExactNormals) {
   }
 }
 
-TEST(Profile, HollowArcPointsToItsCentre) {
+TEST(Profile, ConcaveArcNormalsPointToCenter) {
   Profile profile({1.0f, 0.0f});
   profile.arc_to({1.0f, 2.0f}, -1.0f, 8);
   const ProfilePoint& middle = profile.runs().front()[4];
@@ -25,8 +25,8 @@ TEST(Profile, HollowArcPointsToItsCentre) {
   EXPECT_NEAR(middle.normal.x, 1.0f, 1e-5f);
 }
 
-// The defect to avoid: one normal for both sides of an edge, which shades a cylinder's rim round.
-TEST(Lathe, KeepsKinksSharp) {
+// A shared normal on both sides of a crease would shade a cylinder's rim as round.
+TEST(Lathe, KeepsCreasesSharp) {
   Profile profile({1.0f, 0.0f});
   profile.line_to({1.0f, 1.0f}).line_to({0.5f, 1.0f});
   const Mesh mesh = lathe(profile, 12, 1.0f, 1.0f);
@@ -37,7 +37,7 @@ TEST(Lathe, KeepsKinksSharp) {
   }
 }
 
-TEST(Lathe, TextureRepeatsAWholeNumberOfTimesRound) {
+TEST(Lathe, TextureRepeatsIntegralTimesAround) {
   Profile profile({0.37f, 0.0f});
   profile.line_to({0.37f, 1.0f});
   const Mesh mesh = lathe(profile, 8, 0.37f, 0.6f);
@@ -57,14 +57,14 @@ double signed_volume(const Mesh& mesh) {
   return volume;
 }
 
-TEST(Shapes, ClosedOnesHaveTheirVolumeOutwards) {
+TEST(Shapes, ClosedShapesHavePositiveVolume) {
   EXPECT_NEAR(signed_volume(box({1, 2, 3})), 6.0, 1e-5);
   EXPECT_NEAR(signed_volume(bevelled_box({1, 2, 3}, 0.05f)), 6.0, 0.05);
   EXPECT_NEAR(signed_volume(sphere(1.0f, 96, 48, glm::vec2(1.0f))), 4.18879, 0.02);
   EXPECT_NEAR(signed_volume(torus(1.0f, 0.25f, 64, 32)), 1.2337, 0.02);
 }
 
-TEST(Mesh, MirroredCopiesKeepTheirFacesOutwards) {
+TEST(Mesh, MirroredCopiesKeepOutwardFaces) {
   glm::mat4 mirror(1.0f);
   mirror[0][0] = -1.0f;
   Mesh mesh;
@@ -72,7 +72,7 @@ TEST(Mesh, MirroredCopiesKeepTheirFacesOutwards) {
   EXPECT_NEAR(signed_volume(mesh), 1.0, 1e-6);
 }
 
-TEST(Tangents, AreRightHandedOnAnUprightQuad) {
+TEST(Tangents, AreRightHandedOnUprightQuad) {
   Mesh mesh = quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
   compute_tangents(mesh);
   for (const Vertex& vertex : mesh.vertices) {
@@ -81,7 +81,7 @@ TEST(Tangents, AreRightHandedOnAnUprightQuad) {
   }
 }
 
-TEST(Tangents, AreLeftHandedWhereTheTextureIsMirrored) {
+TEST(Tangents, AreLeftHandedForMirroredTexture) {
   Mesh mesh = quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
   for (Vertex& vertex : mesh.vertices) vertex.uv.x = -vertex.uv.x;
   compute_tangents(mesh);

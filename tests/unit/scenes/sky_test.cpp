@@ -21,7 +21,7 @@ float luminance(glm::vec3 c) {
   return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
 }
 
-// The simplest decoder of the format the encoder writes.
+// A minimal decoder of the format that the encoder writes.
 Environment decode_hdr(const std::vector<std::uint8_t>& file, int width, int height) {
   Environment out(width, height);
   std::size_t at = std::string(file.begin(), file.end()).find("+X ");
@@ -59,7 +59,7 @@ TEST(Sky, IsFiniteAndPositive) {
   }
 }
 
-TEST(Sky, HasNoDiscOfTheSun) {
+TEST(Sky, HasNoSunDisk) {
   float mean = 0.0f;
   float brightest = 0.0f;
   for (const glm::vec3& pixel : sky().environment.radiance) {
@@ -69,7 +69,7 @@ TEST(Sky, HasNoDiscOfTheSun) {
   EXPECT_LT(brightest, 8.0f * mean);
 }
 
-TEST(Sky, IsBrightestAroundTheSun) {
+TEST(Sky, IsBrightestAroundSun) {
   const glm::vec3 to_sun = direction_to_sun(sun_elevation, sun_azimuth);
   const Environment& e = sky().environment;
   float brightest = 0.0f;
@@ -84,7 +84,7 @@ TEST(Sky, IsBrightestAroundTheSun) {
   EXPECT_GT(glm::dot(where, to_sun), std::cos(glm::radians(4.0f)));
 }
 
-TEST(Sky, SunlightIsWarmAndFourToSixTimesTheSkylight) {
+TEST(Sky, SunlightIsWarmAndFourToSixTimesSkylight) {
   const float sun =
       luminance(sky().sun_irradiance) * direction_to_sun(sun_elevation, sun_azimuth).y;
   const float ratio = sun / luminance(sky().sky_irradiance);
@@ -94,7 +94,7 @@ TEST(Sky, SunlightIsWarmAndFourToSixTimesTheSkylight) {
   EXPECT_LT(sky().sky_irradiance.x, sky().sky_irradiance.z);
 }
 
-TEST(Sky, MeetsTheGroundSoftly) {
+TEST(Sky, HorizonIsContinuous) {
   const Environment& e = sky().environment;
   for (int x = 0; x < e.width; x += 16) {
     const float above = luminance(e.at(x, e.height / 2 - 1));
@@ -103,7 +103,7 @@ TEST(Sky, MeetsTheGroundSoftly) {
   }
 }
 
-TEST(Hdr, DecodesToWhatWasEncoded) {
+TEST(Hdr, RoundTrip) {
   const Environment& e = sky().environment;
   const Environment decoded = decode_hdr(encode_hdr(e), e.width, e.height);
   for (std::size_t i = 0; i < e.radiance.size(); ++i) {
@@ -119,7 +119,7 @@ TEST(Hdr, WhiteStaysExactlyOne) {
   for (const glm::vec3& pixel : decoded.radiance) ASSERT_EQ(pixel, glm::vec3(1.0f));
 }
 
-TEST(Environment, IrradianceOfAConstantIsPi) {
+TEST(Environment, ConstantIrradianceIsPi) {
   const glm::vec3 irradiance = make_white_environment().horizontal_irradiance();
   EXPECT_NEAR(irradiance.x, 3.14159f, 0.01f);
 }

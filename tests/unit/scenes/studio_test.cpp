@@ -7,12 +7,12 @@
 namespace heliograph::scenes {
 namespace {
 
-TEST(Studio, LightsWhiteToAboutOne) {
+TEST(Studio, WhiteIrradianceIsAboutPi) {
   const glm::vec3 irradiance = make_studio(128, 64).horizontal_irradiance();
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(irradiance[c], 3.1416f, 0.15f);
 }
 
-TEST(Studio, HasBoxesFarBrighterThanItsWalls) {
+TEST(Studio, SoftboxesAreBrighterThanWalls) {
   const Environment studio = make_studio(128, 64);
   float brightest = 0.0f;
   std::size_t bright = 0;
@@ -27,8 +27,8 @@ TEST(Studio, HasBoxesFarBrighterThanItsWalls) {
   EXPECT_LT(share, 0.30);
 }
 
-TEST(Studio, EveryDirectionsMeanHoldsAtAnySize) {
-  // Edges are averaged inside pixels: half the size gives half the detail, not another light.
+TEST(Studio, MeanRadianceIsIndependentOfSize) {
+  // Edges are averaged inside pixels: the size changes the detail, not the mean radiance.
   const glm::vec3 small = make_studio(64, 32).horizontal_irradiance();
   const glm::vec3 large = make_studio(256, 128).horizontal_irradiance();
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(small[c], large[c], 0.05f * large[c]);

@@ -32,19 +32,19 @@ double largest_inner_step(const Image& image, bool columns) {
   return largest;
 }
 
-TEST(Textures, TileWithoutASeam) {
+TEST(Textures, TileSeamlessly) {
   Document document;
   add_atrium_materials(document, Gloss::floor);
   int textured = 0;
   for (const Material& material : document.materials) {
     if (!material.texture) continue;
     ++textured;
-    if (material.masked) continue;  // one picture, not a tile
+    if (material.masked) continue;  // a single image, not a tile
     const TextureSet set = bake(*material.texture, 256);
     for (const Image* image : {&set.color, &set.normal, &set.surface}) {
       for (const bool columns : {true, false}) {
         const int last = (columns ? image->width : image->height) - 1;
-        // Across the border the picture may change as much as it does somewhere inside.
+        // The step across the border must not exceed the largest step inside.
         EXPECT_LE(step_between(*image, last, 0, columns),
                   1.1 * largest_inner_step(*image, columns) + 0.5)
             << material.name;
@@ -54,7 +54,7 @@ TEST(Textures, TileWithoutASeam) {
   EXPECT_GE(textured, 22);
 }
 
-TEST(Textures, MaskedPicturesAreTransparentAtTheirBorder) {
+TEST(Textures, MaskedTexturesAreTransparentAtBorder) {
   Document document;
   add_atrium_materials(document, Gloss::floor);
   int masked = 0;
@@ -74,7 +74,7 @@ TEST(Textures, MaskedPicturesAreTransparentAtTheirBorder) {
   EXPECT_GE(masked, 1);
 }
 
-TEST(Textures, NormalMapLeansAwayFromARise) {
+TEST(Textures, NormalMapTiltsAwayFromSlope) {
   TextureRecipe ramp;
   ramp.name = "ramp";
   ramp.width = 1.0f;

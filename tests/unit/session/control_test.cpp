@@ -36,22 +36,22 @@ TEST_F(ControlTest, BelongsToEveryoneAtFirst) {
 }
 
 TEST_F(ControlTest, WhoAsksForOneBecomesIt) {
-  ASSERT_TRUE(ask("a", {.mode = ControlMode::one}));
+  ASSERT_TRUE(ask("a", {.mode = ControlMode::exclusive}));
   EXPECT_EQ(holders(), "a");
   EXPECT_FALSE(control_.may_change(""));
-  EXPECT_EQ(ask("b", {.mode = ControlMode::everyone}).error().code, ErrorCode::forbidden);
-  EXPECT_EQ(ask("b", {.mode = ControlMode::one}).error().code, ErrorCode::forbidden);
+  EXPECT_EQ(ask("b", {.mode = ControlMode::shared}).error().code, ErrorCode::forbidden);
+  EXPECT_EQ(ask("b", {.mode = ControlMode::exclusive}).error().code, ErrorCode::forbidden);
   EXPECT_EQ(ask("b", {.action = ControlAction::take}).error().code, ErrorCode::forbidden);
   EXPECT_EQ(ask("b", {.action = ControlAction::release}).error().code, ErrorCode::forbidden);
   EXPECT_EQ(ask("b", {.action = ControlAction::give, .viewer = "b"}).error().code,
             ErrorCode::forbidden);
   EXPECT_EQ(holders(), "a");
-  ASSERT_TRUE(ask("a", {.mode = ControlMode::everyone}));
+  ASSERT_TRUE(ask("a", {.mode = ControlMode::shared}));
   EXPECT_EQ(holders(), "ab");
 }
 
 TEST_F(ControlTest, IsGivenReleasedAndTaken) {
-  ASSERT_TRUE(ask("a", {.mode = ControlMode::one}));
+  ASSERT_TRUE(ask("a", {.mode = ControlMode::exclusive}));
   EXPECT_EQ(ask("a", {.action = ControlAction::give, .viewer = "c"}).error().code,
             ErrorCode::not_found);
   EXPECT_EQ(ask("a", {.action = ControlAction::give}).error().path, "viewer");
@@ -59,12 +59,12 @@ TEST_F(ControlTest, IsGivenReleasedAndTaken) {
   EXPECT_EQ(holders(), "b");
   ASSERT_TRUE(ask("b", {.action = ControlAction::release}));
   EXPECT_EQ(holders(), "");
-  ASSERT_TRUE(ask("a", {.mode = ControlMode::one}));
+  ASSERT_TRUE(ask("a", {.mode = ControlMode::exclusive}));
   EXPECT_EQ(holders(), "a");
 }
 
 TEST_F(ControlTest, IsFreeWhenItsHolderLeaves) {
-  ASSERT_TRUE(ask("a", {.mode = ControlMode::one}));
+  ASSERT_TRUE(ask("a", {.mode = ControlMode::exclusive}));
   control_.left("b");
   EXPECT_EQ(holders(), "a");
   control_.left("a");
@@ -74,18 +74,19 @@ TEST_F(ControlTest, IsFreeWhenItsHolderLeaves) {
 }
 
 TEST_F(ControlTest, ProgramsSettleMatters) {
-  ASSERT_TRUE(ask("", {.mode = ControlMode::one}));
+  ASSERT_TRUE(ask("", {.mode = ControlMode::exclusive}));
   EXPECT_EQ(holders(), "") << "nobody, so that programs alone change it";
   EXPECT_TRUE(control_.may_change(""));
-  ASSERT_TRUE(ask("", {.mode = ControlMode::one, .viewer = "a"}));
+  ASSERT_TRUE(ask("", {.mode = ControlMode::exclusive, .viewer = "a"}));
   ASSERT_TRUE(ask("", {.action = ControlAction::give, .viewer = "b"}));
   EXPECT_EQ(holders(), "b");
-  ASSERT_TRUE(ask("", {.mode = ControlMode::everyone}));
+  ASSERT_TRUE(ask("", {.mode = ControlMode::shared}));
   EXPECT_EQ(holders(), "ab");
 }
 
 TEST_F(ControlTest, RefusedRequestsChangeNothing) {
-  EXPECT_EQ(ask("a", {.mode = ControlMode::one, .viewer = "c"}).error().code, ErrorCode::not_found);
+  EXPECT_EQ(ask("a", {.mode = ControlMode::exclusive, .viewer = "c"}).error().code,
+            ErrorCode::not_found);
   EXPECT_EQ(holders(), "ab");
 }
 

@@ -215,7 +215,7 @@ TEST_F(SessionTest, StoppingAReferencePutsBackWhatStartingItChanged) {
     return session_.patch_settings(protocol::RawJson(std::move(members)), "");
   };
   ASSERT_TRUE(patch({{"accumulation", {{"enabled", false}, {"max_samples", 5}}},
-                     {"reference", {{"use", "resting"}, {"scope", "full"}}}}));
+                     {"reference", {{"use", "when_static"}, {"scope", "full"}}}}));
   const protocol::Settings before = session_.render_state().settings;
   ASSERT_TRUE(session_.start_reference({.samples = 9}, ""));
   ASSERT_TRUE(session_.start_reference({.samples = 7}, "")) << "goes on with other samples";
@@ -254,9 +254,10 @@ TEST_F(SessionTest, CapturesAreCheckedAndLimited) {
 }
 
 /// What the encoder does, without pixels.
-std::shared_ptr<stream::EncodedFrame> encoded(std::uint32_t render_id, const stream::Form& form) {
+std::shared_ptr<stream::EncodedFrame> encoded(std::uint32_t render_id,
+                                              const stream::EncodingVariant& form) {
   auto frame = std::make_shared<stream::EncodedFrame>();
-  frame->form = form;
+  frame->variant = form;
   frame->header.render_id = render_id;
   frame->header.quality = static_cast<std::uint16_t>(form.quality);
   frame->header.width = frame->header.full_width = 16;
@@ -267,20 +268,20 @@ std::shared_ptr<stream::EncodedFrame> encoded(std::uint32_t render_id, const str
 }
 
 /// Plans, encodes and hands out picture `number`; gives the forms it was encoded in.
-std::vector<stream::Form> show(ViewerSet& audience, std::uint32_t number,
-                               Purpose purpose = Purpose::interactive) {
+std::vector<stream::EncodingVariant> show(ViewerSet& audience, std::uint32_t number,
+                                          Purpose purpose = Purpose::interactive) {
   const EncodingPlan plan = audience.plan(number, purpose, 16 * 16);
-  std::vector<stream::Form> forms;
+  std::vector<stream::EncodingVariant> forms;
   std::vector<stream::SharedFrame> frames;
-  for (const stream::FormRequest& request : plan.forms) {
-    forms.push_back(request.form);
-    frames.push_back(encoded(number, request.form));
+  for (const stream::VariantRequest& request : plan.forms) {
+    forms.push_back(request.variant);
+    frames.push_back(encoded(number, request.variant));
   }
   for (const protocol::StillFormat format : plan.stills) {
     const bool lossless = format == protocol::StillFormat::png;
     auto frame = encoded(number, {.quality = lossless ? 100 : 95});
     if (lossless) frame->header.codec = protocol::FrameCodec::png;
-    forms.push_back(frame->form);
+    forms.push_back(frame->variant);
     frames.push_back(frame);
   }
   audience.publish(number, purpose, frames);
@@ -292,7 +293,8 @@ TEST_F(SessionTest, ViewersGetTheirQualityAndShareTheBytes) {
   const Joined first = join();
   const Joined second = join();
   ASSERT_TRUE(session_.configure_stream({.quality = 40}, first.id));
-  EXPECT_EQ(show(audience, 7), (std::vector<stream::Form>{{.quality = 40}, {.quality = 80}}));
+  EXPECT_EQ(show(audience, 7),
+            (std::vector<stream::EncodingVariant>{{.quality = 40}, {.quality = 80}}));
   const auto low = audience.take(first.id);
   const auto high = audience.take(second.id);
   ASSERT_TRUE(low && high);
@@ -300,7 +302,8 @@ TEST_F(SessionTest, ViewersGetTheirQualityAndShareTheBytes) {
   EXPECT_EQ(protocol::decode_frame_header(low->header)->frame_seq, 1u);
   EXPECT_EQ(protocol::decode_frame_header(high->header)->quality, 80);
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  EXPECT_EQ(show(audience, 8, Purpose::final), (std::vector<stream::Form>{{.quality = 95}}));
+  EXPECT_EQ(show(audience, 8, Purpose::final),
+            (std::vector<stream::EncodingVariant>{{.quality = 95}}));
   EXPECT_EQ(audience.take(first.id)->frame, audience.take(second.id)->frame);
 }
 
@@ -339,7 +342,7 @@ TEST_F(SessionTest, ANewcomerWhoWantsAnotherFormAwaitsThePicture) {
   ASSERT_TRUE(session_.configure_stream({.quality = 40, .paused = true}, viewer.id));
   ASSERT_TRUE(session_.configure_stream({.paused = false}, viewer.id));
   EXPECT_TRUE(audience.needs_frame(3));
-  EXPECT_EQ(show(audience, 3), (std::vector<stream::Form>{{.quality = 40}}));
+  EXPECT_EQ(show(audience, 3), (std::vector<stream::EncodingVariant>{{.quality = 40}}));
   EXPECT_EQ(audience.take(viewer.id)->frame->header.quality, 40);
   EXPECT_FALSE(audience.take(first.id)) << "it has this picture";
 }
@@ -412,9 +415,9 @@ TEST_F(SessionTest, StatsComeNoMoreOftenThanAskedFor) {
   for (int i = 0; i < 3; ++i) session_.viewers().publish_stats({.render_id = 5});
   ASSERT_EQ(viewer.link->messages.size(), 1u);
   EXPECT_EQ(viewer.link->messages[0]["params"]["render_id"], 5);
-  session_.viewers().publish_stats({.state = protocol::StreamPhase::still});
+  session_.viewers().publish_stats({.state = protocol::StreamPhase::idle});
   ASSERT_EQ(viewer.link->messages.size(), 2u) << "how it ends is always told";
-  EXPECT_EQ(viewer.link->messages[1]["params"]["state"], "still");
+  EXPECT_EQ(viewer.link->messages[1]["params"]["state"], "idle");
 }
 
 }  // namespace

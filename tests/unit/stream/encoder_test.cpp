@@ -18,11 +18,11 @@ struct Pixels {
   std::uint32_t width;
   std::uint32_t height;
   std::vector<std::uint8_t> rgba;
-  PictureView view() const { return {width, height, rgba}; }
+  ImageView view() const { return {width, height, rgba}; }
 };
 
-/// A smooth picture with one hard red and blue edge, odd in both sizes.
-Pixels test_picture(std::uint32_t width = 97, std::uint32_t height = 61) {
+/// A smooth image with one hard red and blue edge, odd in both sizes.
+Pixels test_image(std::uint32_t width = 97, std::uint32_t height = 61) {
   Pixels pixels{width, height, {}};
   for (std::uint32_t y = 0; y < height; ++y) {
     for (std::uint32_t x = 0; x < width; ++x) {
@@ -67,7 +67,7 @@ double mean_error(const std::vector<std::uint8_t>& a, const std::vector<std::uin
 }
 
 TEST(JpegEncoder, KeepsSizeAndColours) {
-  const Pixels pixels = test_picture();
+  const Pixels pixels = test_image();
   JpegEncoder encoder;
   const Decoded decoded = decode_jpeg(encoder.encode(pixels.view(), 80, ChromaSampling::half));
   EXPECT_EQ(decoded.width, 97);
@@ -77,7 +77,7 @@ TEST(JpegEncoder, KeepsSizeAndColours) {
 }
 
 TEST(JpegEncoder, FullChromaKeepsColouredEdgesThatHalfChromaSmears) {
-  const Pixels pixels = test_picture();
+  const Pixels pixels = test_image();
   JpegEncoder encoder;
   const Decoded full = decode_jpeg(encoder.encode(pixels.view(), 95, ChromaSampling::full));
   const Decoded half = decode_jpeg(encoder.encode(pixels.view(), 95, ChromaSampling::half));
@@ -87,15 +87,15 @@ TEST(JpegEncoder, FullChromaKeepsColouredEdgesThatHalfChromaSmears) {
 
 TEST(JpegEncoder, IsReusableForOtherSizesAndQualities) {
   JpegEncoder encoder;
-  const std::size_t good = encoder.encode(test_picture().view(), 95, ChromaSampling::half).size();
-  const auto large = encoder.encode(test_picture(640, 360).view(), 50, ChromaSampling::half);
+  const std::size_t good = encoder.encode(test_image().view(), 95, ChromaSampling::half).size();
+  const auto large = encoder.encode(test_image(640, 360).view(), 50, ChromaSampling::half);
   EXPECT_EQ(decode_jpeg(large).width, 640);
-  EXPECT_LT(encoder.encode(test_picture().view(), 30, ChromaSampling::half).size(), good);
-  EXPECT_EQ(encoder.encode(test_picture().view(), 95, ChromaSampling::half).size(), good);
+  EXPECT_LT(encoder.encode(test_image().view(), 30, ChromaSampling::half).size(), good);
+  EXPECT_EQ(encoder.encode(test_image().view(), 95, ChromaSampling::half).size(), good);
 }
 
-TEST(JpegEncoder, RefusesAPictureThatLacksPixels) {
-  Pixels pixels = test_picture();
+TEST(JpegEncoder, RefusesAnIncompleteImage) {
+  Pixels pixels = test_image();
   pixels.rgba.pop_back();
   JpegEncoder encoder;
   EXPECT_THROW(encoder.encode(pixels.view(), 80, ChromaSampling::half), std::runtime_error);
@@ -103,7 +103,7 @@ TEST(JpegEncoder, RefusesAPictureThatLacksPixels) {
 }
 
 TEST(PngEncoder, IsLossless) {
-  const Pixels pixels = test_picture();
+  const Pixels pixels = test_image();
   const std::vector<std::uint8_t> file = encode_png(pixels.view());
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
@@ -116,7 +116,7 @@ TEST(PngEncoder, IsLossless) {
   EXPECT_EQ(mean_error(rgba, pixels.rgba), 0.0);
 }
 
-TEST(PngEncoder, RefusesAPictureThatLacksPixels) {
+TEST(PngEncoder, RefusesAnIncompleteImage) {
   EXPECT_THROW(encode_png({}), std::runtime_error);
 }
 

@@ -25,27 +25,27 @@ struct Pixels {
   std::vector<std::uint8_t> rgba;
 
   Pixels(std::uint32_t w, std::uint32_t h) : width(w), height(h), rgba(4ull * w * h, 255) {}
-  PictureView view() const { return {.width = width, .height = height, .rgba = rgba}; }
+  ImageView view() const { return {.width = width, .height = height, .rgba = rgba}; }
   std::uint8_t* at(std::uint32_t x, std::uint32_t y) { return &rgba[4ull * (y * width + x)]; }
 };
 
 /// Smooth colours that move to the left by two pixels a frame.
-Pixels moving_picture(std::uint32_t width, std::uint32_t height, int frame) {
-  Pixels picture(width, height);
+Pixels moving_image(std::uint32_t width, std::uint32_t height, int frame) {
+  Pixels image(width, height);
   for (std::uint32_t y = 0; y < height; ++y) {
     for (std::uint32_t x = 0; x < width; ++x) {
       const double u = (static_cast<double>(x) + 2.0 * frame) * 0.05;
       const double v = static_cast<double>(y) * 0.07;
-      std::uint8_t* const pixel = picture.at(x, y);
+      std::uint8_t* const pixel = image.at(x, y);
       pixel[0] = static_cast<std::uint8_t>(128 + 100 * std::sin(u));
       pixel[1] = static_cast<std::uint8_t>(128 + 100 * std::cos(u + v));
       pixel[2] = static_cast<std::uint8_t>(128 + 100 * std::sin(v));
     }
   }
-  return picture;
+  return image;
 }
 
-/// libavcodec's own decoder, as a viewer would use it.
+/// libavcodec's decoder, used as by a viewer.
 class Decoder {
  public:
   Decoder() : context_(avcodec_alloc_context3(avcodec_find_decoder(AV_CODEC_ID_H264))) {
@@ -61,7 +61,7 @@ class Decoder {
   Decoder(const Decoder&) = delete;
   Decoder& operator=(const Decoder&) = delete;
 
-  /// The picture of this access unit, at once; null if there is none.
+  /// The decoded image of this access unit; null if there is none.
   const AVFrame* decode(const std::vector<std::uint8_t>& unit) {
     std::vector<std::uint8_t> padded = unit;
     padded.resize(unit.size() + AV_INPUT_BUFFER_PADDING_SIZE);
@@ -70,7 +70,7 @@ class Decoder {
     packet->size = static_cast<int>(unit.size());
     const bool taken = avcodec_send_packet(context_, packet) >= 0;
     av_packet_free(&packet);
-    // A decoder without delay still holds the picture back until the next packet or the end.
+    // A decoder without delay still keeps the image until the next packet or the end.
     return taken && avcodec_receive_frame(context_, frame_) >= 0 ? frame_ : nullptr;
   }
 
@@ -120,7 +120,7 @@ std::vector<int> unit_types(const std::vector<std::uint8_t>& bytes) {
 constexpr int slice = 1;
 constexpr int key_slice = 5;
 constexpr int sequence_parameters = 7;
-constexpr int picture_parameters = 8;
+constexpr int parameter_set = 8;
 
 bool holds(const std::vector<int>& types, int type) {
   return std::find(types.begin(), types.end(), type) != types.end();
@@ -133,24 +133,24 @@ class H264Test : public testing::Test {
   }
 };
 
-TEST_F(H264Test, EveryPictureComesOutAtOnceAndLooksLikeWhatWentIn) {
+TEST_F(H264Test, EncodesEveryFrameWithoutDelay) {
   H264Encoder encoder(320, 180);
   Decoder decoder;
   for (int i = 0; i < 12; ++i) {
-    const Pixels picture = moving_picture(320, 180, i);
+    const Pixels image = moving_image(320, 180, i);
     const auto unit =
-        encoder.encode(picture.view(), {.quality = 85, .max_bytes_per_frame = unlimited}, i == 0);
+        encoder.encode(image.view(), {.quality = 85, .max_bytes_per_frame = unlimited}, i == 0);
     EXPECT_EQ(unit.key, i == 0);
     const AVFrame* const decoded = decoder.decode(unit.bytes);
     ASSERT_TRUE(decoded) << "frame " << i;
-    EXPECT_GT(signal_to_noise(*decoded, picture), 34.0) << "frame " << i;
+    EXPECT_GT(signal_to_noise(*decoded, image), 34.0) << "frame " << i;
   }
 }
 
-TEST_F(H264Test, SaysHowItsColoursAreMeant) {
+TEST_F(H264Test, SignalsItsColourSpace) {
   H264Encoder encoder(64, 64);
   Decoder decoder;
-  Pixels picture(64, 64);
+  Pixels image(64, 64);
   constexpr std::array<std::array<std::uint8_t, 3>, 8> colours{{{255, 0, 0},
                                                                 {0, 255, 0},
                                                                 {0, 0, 255},
@@ -162,11 +162,11 @@ TEST_F(H264Test, SaysHowItsColoursAreMeant) {
   for (std::uint32_t y = 0; y < 64; ++y) {
     for (std::uint32_t x = 0; x < 64; ++x) {
       const auto& colour = colours[(x / 32) * 4 + y / 16];
-      std::copy(colour.begin(), colour.end(), picture.at(x, y));
+      std::copy(colour.begin(), colour.end(), image.at(x, y));
     }
   }
   const auto unit =
-      encoder.encode(picture.view(), {.quality = 100, .max_bytes_per_frame = unlimited}, true);
+      encoder.encode(image.view(), {.quality = 100, .max_bytes_per_frame = unlimited}, true);
   const AVFrame* const decoded = decoder.decode(unit.bytes);
   ASSERT_TRUE(decoded);
   EXPECT_EQ(decoded->color_range, AVCOL_RANGE_MPEG);
@@ -184,35 +184,35 @@ TEST_F(H264Test, SaysHowItsColoursAreMeant) {
 TEST_F(H264Test, KeyFramesComeOnRequestWithTheirParameters) {
   H264Encoder encoder(160, 96);
   for (int i = 0; i < 8; ++i) {
-    // A cut in the middle: no key frame may come of itself.
-    const Pixels picture = moving_picture(160, 96, i < 5 ? i : 1000 + 37 * i);
+    // A scene change in the middle must not cause a key frame.
+    const Pixels image = moving_image(160, 96, i < 5 ? i : 1000 + 37 * i);
     const bool asked = i == 0 || i == 3;
     const auto unit =
-        encoder.encode(picture.view(), {.quality = 80, .max_bytes_per_frame = unlimited}, asked);
+        encoder.encode(image.view(), {.quality = 80, .max_bytes_per_frame = unlimited}, asked);
     const auto types = unit_types(unit.bytes);
     EXPECT_EQ(unit.key, asked) << "frame " << i;
     EXPECT_EQ(holds(types, key_slice), asked) << "frame " << i;
     EXPECT_EQ(holds(types, sequence_parameters), asked) << "frame " << i;
-    EXPECT_EQ(holds(types, picture_parameters), asked) << "frame " << i;
+    EXPECT_EQ(holds(types, parameter_set), asked) << "frame " << i;
     EXPECT_EQ(holds(types, slice), !asked) << "frame " << i;
   }
 }
 
-TEST_F(H264Test, AViewerCanBeginAtALaterKeyFrame) {
+TEST_F(H264Test, AViewerCanStartAtALaterKeyFrame) {
   H264Encoder encoder(160, 96);
   Decoder late;
   for (int i = 0; i < 6; ++i) {
-    const Pixels picture = moving_picture(160, 96, i);
-    const auto unit = encoder.encode(picture.view(),
-                                     {.quality = 85, .max_bytes_per_frame = unlimited}, i % 3 == 0);
+    const Pixels image = moving_image(160, 96, i);
+    const auto unit =
+        encoder.encode(image.view(), {.quality = 85, .max_bytes_per_frame = unlimited}, i % 3 == 0);
     if (i < 3) continue;
     const AVFrame* const decoded = late.decode(unit.bytes);
     ASSERT_TRUE(decoded);
-    EXPECT_GT(signal_to_noise(*decoded, picture), 32.0);
+    EXPECT_GT(signal_to_noise(*decoded, image), 32.0);
   }
 }
 
-TEST_F(H264Test, KeepsToTheRateAndFollowsItsChanges) {
+TEST_F(H264Test, KeepsTheRateAndFollowsItsChanges) {
   H264Encoder encoder(320, 180);
   std::mt19937 random(7);
   const auto mean_bytes = [&](double limit) {
@@ -234,47 +234,47 @@ TEST_F(H264Test, KeepsToTheRateAndFollowsItsChanges) {
   EXPECT_GT(mean_bytes(unlimited), 0.7 * free);
 }
 
-TEST_F(H264Test, OddSizesLoseTheirLastColumnAndRow) {
+TEST_F(H264Test, CropsAnOddLastColumnAndRow) {
   H264Encoder encoder(161, 97);
   EXPECT_EQ(encoder.width(), 160u);
   EXPECT_EQ(encoder.height(), 96u);
   Decoder decoder;
-  const Pixels picture = moving_picture(161, 97, 0);
+  const Pixels image = moving_image(161, 97, 0);
   const auto unit =
-      encoder.encode(picture.view(), {.quality = 85, .max_bytes_per_frame = unlimited}, true);
+      encoder.encode(image.view(), {.quality = 85, .max_bytes_per_frame = unlimited}, true);
   const AVFrame* const decoded = decoder.decode(unit.bytes);
   ASSERT_TRUE(decoded);
-  EXPECT_GT(signal_to_noise(*decoded, picture), 34.0);
+  EXPECT_GT(signal_to_noise(*decoded, image), 34.0);
 }
 
-TEST_F(H264Test, AVideoBeginsAnewWhenTheSizeChanges) {
+TEST_F(H264Test, AVideoRestartsWhenTheSizeChanges) {
   JpegEncoder jpeg;
-  PictureEncoder encoder(jpeg);
-  const Form form{.codec = protocol::StreamCodec::h264, .quality = 80};
+  FrameEncoder encoder(jpeg);
+  const EncodingVariant variant{.codec = protocol::StreamCodec::h264, .quality = 80};
   const auto encode = [&](std::uint32_t side, bool key) {
-    return encoder.encode(moving_picture(side, side, 0).view(), {.form = form, .key = key});
+    return encoder.encode(moving_image(side, side, 0).view(), {.variant = variant, .key = key});
   };
   const auto first = encode(64, true);
   const auto second = encode(64, false);
   EXPECT_TRUE(second->video->follows(*first->video));
   EXPECT_FALSE(second->header.flags & protocol::frame_flag::key);
   const auto resized = encode(96, false);
-  EXPECT_TRUE(resized->header.flags & protocol::frame_flag::key) << "nobody could decode it";
+  EXPECT_TRUE(resized->header.flags & protocol::frame_flag::key) << "it could not be decoded";
   EXPECT_NE(resized->video->video, first->video->video);
   EXPECT_EQ(resized->header.width, 96);
   const auto tiny = encode(1, false);
   EXPECT_EQ(tiny->header.codec, protocol::FrameCodec::jpeg);
-  EXPECT_EQ(tiny->form, FormPlanner::stand_in(form));
+  EXPECT_EQ(tiny->variant, VariantPlanner::jpeg_fallback(form));
 }
 
-TEST(PictureScaler, KeepsTheMeanAndTheEdges) {
-  Pixels picture(40, 24);
+TEST(ImageScaler, KeepsTheMeanAndTheEdges) {
+  Pixels image(40, 24);
   for (std::uint32_t y = 0; y < 24; ++y) {
-    for (std::uint32_t x = 20; x < 40; ++x) picture.at(x, y)[0] = 0;
+    for (std::uint32_t x = 20; x < 40; ++x) image.at(x, y)[0] = 0;
   }
-  PictureScaler scaler;
+  ImageScaler scaler;
   for (const int percent : {100, 75, 50, 33}) {
-    const PictureView small = scaler.scale(picture.view(), percent);
+    const ImageView small = scaler.scale(image.view(), percent);
     EXPECT_EQ(small.width, static_cast<std::uint32_t>(std::lround(40 * percent / 100.0)));
     ASSERT_TRUE(small.complete());
     double red = 0.0;

@@ -16,8 +16,8 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// A link that passes `rate` bytes a second, one frame after another, and takes `way` there and
-/// back besides; a renderer that makes a picture every `interval` while the viewer has room.
+/// A link of `rate` bytes per second, on which frames queue, with a round trip of `way`; a renderer
+/// that makes a frame every `interval` while the viewer's window is open.
 struct Link {
   double rate;
   microseconds way;
@@ -27,40 +27,40 @@ class LinkControllerTest : public testing::Test {
  protected:
   struct Sent {
     std::uint64_t bytes;
-    Form form;
+    EncodingVariant form;
     Clock::time_point at;
     Clock::time_point back;
   };
 
-  /// Lets time pass; gives the last second's frames.
-  std::vector<Sent> run(const Link& link, seconds time, Form wanted = {},
+  /// Advances the time; returns the frames of the last second.
+  std::vector<Sent> run(const Link& link, seconds time, EncodingVariant wanted = {},
                         microseconds interval = milliseconds(33)) {
     const Clock::time_point end = now_ + time;
     std::vector<Sent> last;
     while (now_ < end) {
-      while (!on_the_way_.empty() && on_the_way_.front().back <= now_) {
-        const Sent& sent = on_the_way_.front();
+      while (!in_flight_.empty() && in_flight_.front().back <= now_) {
+        const Sent& sent = in_flight_.front();
         controller_.arrived({.bytes = sent.bytes,
-                             .form = sent.form,
+                             .variant = sent.variant,
                              .delay = duration_cast<microseconds>(sent.back - sent.at),
                              .interval = interval},
                             now_);
         if (now_ > end - seconds(1)) last.push_back(sent);
-        on_the_way_.pop_front();
+        in_flight_.pop_front();
       }
-      if (on_the_way_.size() < ack_window && now_ >= next_picture_) {
-        const Form form = controller_.choose(wanted, pixels_);
+      if (in_flight_.size() < ack_window && now_ >= next_frame_) {
+        const EncodingVariant form = controller_.choose(wanted, pixels_);
         double bytes = whole_bytes_ * relative_bytes(form);
         if (form.codec == protocol::StreamCodec::h264) {
           bytes = std::min(0.2 * whole_bytes_, controller_.budget());
         }
         busy_until_ = std::max(busy_until_, now_) +
                       duration_cast<Clock::duration>(duration<double>(bytes / link.rate));
-        on_the_way_.push_back({.bytes = static_cast<std::uint64_t>(bytes),
-                               .form = form,
-                               .at = now_,
-                               .back = busy_until_ + link.way});
-        next_picture_ = now_ + interval;
+        in_flight_.push_back({.bytes = static_cast<std::uint64_t>(bytes),
+                              .variant = form,
+                              .at = now_,
+                              .back = busy_until_ + link.way});
+        next_frame_ = now_ + interval;
       }
       now_ += milliseconds(1);
     }
@@ -76,15 +76,15 @@ class LinkControllerTest : public testing::Test {
   }
 
   LinkController controller_;
-  std::deque<Sent> on_the_way_;
+  std::deque<Sent> in_flight_;
   Clock::time_point now_ = Clock::time_point() + std::chrono::hours(1);
-  Clock::time_point next_picture_;
+  Clock::time_point next_frame_;
   Clock::time_point busy_until_;
   double whole_bytes_ = 100'000;
   std::uint64_t pixels_ = 1280 * 720;
 };
 
-const Form whole{};
+const EncodingVariant whole{};
 
 TEST_F(LinkControllerTest, AFastLinkChangesNothing) {
   const auto frames = run({.rate = 50e6, .way = milliseconds(2)}, seconds(10));
@@ -92,25 +92,25 @@ TEST_F(LinkControllerTest, AFastLinkChangesNothing) {
   EXPECT_GT(frames.size(), 28u);
 }
 
-TEST_F(LinkControllerTest, ALongWayIsNotTakenForANarrowOne) {
+TEST_F(LinkControllerTest, ALongRoundTripIsNotMistakenForASlowLink) {
   const auto frames = run({.rate = 50e6, .way = milliseconds(200)}, seconds(20));
   EXPECT_EQ(controller_.choose(whole, pixels_), whole);
   EXPECT_NEAR(static_cast<double>(controller_.base_delay().count()), 200e3, 15e3);
   EXPECT_GE(frames.size(), 8u) << "a window of two every 200 ms";
 }
 
-TEST_F(LinkControllerTest, ANarrowLinkGetsSmallerPicturesThatComeSoon) {
+TEST_F(LinkControllerTest, ASlowLinkGetsSmallerFramesInTime) {
   const Link link{.rate = 1e6, .way = milliseconds(20)};
   const auto before = run(link, seconds(1));
   const auto frames = run(link, seconds(15));
   EXPECT_LT(longest_delay_ms(frames), 0.5 * longest_delay_ms(before));
-  EXPECT_GT(frames.size(), 25u) << "every picture that is rendered";
+  EXPECT_GT(frames.size(), 25u) << "every rendered frame";
   double bytes = 0.0;
   for (const Sent& sent : frames) bytes += static_cast<double>(sent.bytes);
   EXPECT_GT(bytes, 0.4 * link.rate) << "most of the link is used";
 }
 
-TEST_F(LinkControllerTest, ALinkThatBecomesNarrowIsFollowedSoonAndBackAgain) {
+TEST_F(LinkControllerTest, AdaptsQuicklyToASlowerLinkAndBack) {
   run({.rate = 50e6, .way = milliseconds(10)}, seconds(5));
   run({.rate = 1e6, .way = milliseconds(10)}, seconds(4));
   EXPECT_LT(relative_bytes(controller_.choose(whole, pixels_)), 0.6);
@@ -118,29 +118,29 @@ TEST_F(LinkControllerTest, ALinkThatBecomesNarrowIsFollowedSoonAndBackAgain) {
   EXPECT_EQ(controller_.choose(whole, pixels_), whole);
 }
 
-TEST_F(LinkControllerTest, AFullQueueIsNeverTakenForTheLengthOfTheWay) {
-  // So narrow that the smallest pictures do not fit: late for ever.
+TEST_F(LinkControllerTest, AFullQueueIsNotMistakenForALongRoundTrip) {
+  // So slow that the smallest frames do not fit: always late.
   run({.rate = 60e3, .way = milliseconds(20)}, std::chrono::minutes(2));
   EXPECT_LT(controller_.base_delay(), milliseconds(120));
   EXPECT_LE(controller_.choose(whole, pixels_).scale, 50);
 }
 
-TEST_F(LinkControllerTest, ChangesAreRareOnceTheFormIsFound) {
+TEST_F(LinkControllerTest, ChangesAreRareOnceTheVariantHasSettled) {
   const Link link{.rate = 1.2e6, .way = milliseconds(15)};
   run(link, seconds(20));
   int changes = 0;
-  Form last = controller_.choose(whole, pixels_);
+  EncodingVariant last = controller_.choose(whole, pixels_);
   for (int second = 0; second < 20; ++second) {
     run(link, seconds(1));
-    const Form form = controller_.choose(whole, pixels_);
+    const EncodingVariant form = controller_.choose(whole, pixels_);
     changes += form != last ? 1 : 0;
     last = form;
   }
   EXPECT_LE(changes, 8);
 }
 
-TEST_F(LinkControllerTest, AVideoIsGivenABudgetBeforeItIsMadeSmaller) {
-  Form video = whole;
+TEST_F(LinkControllerTest, AVideoGetsABudgetBeforeASmallerSize) {
+  EncodingVariant video = whole;
   video.codec = protocol::StreamCodec::h264;
   run({.rate = 400e3, .way = milliseconds(20)}, seconds(10), video);
   EXPECT_LT(controller_.budget(), 20'000);
@@ -149,9 +149,9 @@ TEST_F(LinkControllerTest, AVideoIsGivenABudgetBeforeItIsMadeSmaller) {
   EXPECT_NE(controller_.choose(video, pixels_), video) << "those on better ways must not share it";
 }
 
-TEST_F(LinkControllerTest, WhoAsksForLessNeverGetsMore) {
+TEST_F(LinkControllerTest, NeverExceedsTheRequestedVariant) {
   run({.rate = 500e3, .way = milliseconds(20)}, seconds(10));
-  const Form low{.quality = 8};
+  const EncodingVariant low{.quality = 8};
   EXPECT_LE(controller_.choose(low, pixels_).quality, 8);
 }
 

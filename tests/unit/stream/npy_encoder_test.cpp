@@ -9,7 +9,7 @@
 namespace heliograph::stream {
 namespace {
 
-TEST(Npy, IsTheHeaderOfTheFormatAndTheValues) {
+TEST(Npy, HasTheHeaderOfTheFormatAndTheValues) {
   const std::array values{1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f};
   const std::array shape{3u, 2u};
   const auto file = encode_npy(NpyElement::float32, shape, std::as_bytes(std::span(values)));
@@ -23,7 +23,7 @@ TEST(Npy, IsTheHeaderOfTheFormatAndTheValues) {
   EXPECT_EQ(std::string(file.end() - 4, file.end()), std::string("\x00\x00\xc0\x40", 4));
 }
 
-TEST(Npy, RefusesValuesThatDoNotFillTheirShape) {
+TEST(Npy, RefusesValuesThatDoNotMatchTheShape) {
   const std::array<std::byte, 5> values{};
   const std::array shape{2u, 3u};
   EXPECT_THROW(encode_npy(NpyElement::uint8, shape, values), std::invalid_argument);

@@ -39,7 +39,7 @@ TEST_F(ViewerPacerTest, SendsAWindowAheadOfTheAcknowledgements) {
   EXPECT_EQ(take()->frame->header.render_id, 3u);
 }
 
-TEST_F(ViewerPacerTest, AStalledViewerKeepsOneWaitingFrameAndGetsTheNewest) {
+TEST_F(ViewerPacerTest, AStalledViewerHasOnePendingFrameAndGetsTheNewest) {
   std::weak_ptr<const EncodedFrame> old;
   for (std::uint32_t id = 1; id <= 1000; ++id) {
     SharedFrame made = frame(id);
@@ -76,7 +76,7 @@ TEST_F(ViewerPacerTest, AnAcknowledgementCoversEarlierFrames) {
   EXPECT_FALSE(pacer_.has_room(now_)) << "doubled acknowledgements must not widen the window";
 }
 
-TEST_F(ViewerPacerTest, IgnoresAcknowledgementsOfWhatWasNeverSent) {
+TEST_F(ViewerPacerTest, RefusesAcknowledgementsOfUnsentFrames) {
   EXPECT_FALSE(acknowledge(0));
   EXPECT_FALSE(acknowledge(7));
   pacer_.offer(frame(1));
@@ -85,7 +85,7 @@ TEST_F(ViewerPacerTest, IgnoresAcknowledgementsOfWhatWasNeverSent) {
   EXPECT_TRUE(acknowledge(1));
 }
 
-TEST_F(ViewerPacerTest, WhilePausedNothingIsKeptOrSent) {
+TEST_F(ViewerPacerTest, WhilePausedNothingIsPendingOrSent) {
   pacer_.offer(frame(1));
   pacer_.set_paused(true, now_);
   EXPECT_FALSE(pacer_.has_room(now_));
@@ -115,7 +115,7 @@ TEST_F(ViewerPacerTest, OwesNoAcknowledgementWhilePaused) {
   EXPECT_FALSE(pacer_.unacknowledged_since(now_));
 }
 
-TEST_F(ViewerPacerTest, KeepsToTheMostFramesInASecond) {
+TEST_F(ViewerPacerTest, RespectsTheMaximumFrameRate) {
   pacer_.set_max_rate(10.0);
   int sent = 0;
   for (int millisecond = 0; millisecond < 5000; millisecond += 7) {
@@ -127,10 +127,10 @@ TEST_F(ViewerPacerTest, KeepsToTheMostFramesInASecond) {
     now_ += milliseconds(7);
   }
   EXPECT_NEAR(sent, 50, 2);
-  EXPECT_GT(pacer_.next_turn(), now_ - milliseconds(100));
+  EXPECT_GT(pacer_.next_send(), now_ - milliseconds(100));
 }
 
-TEST_F(ViewerPacerTest, MeasuresTheWayWithoutTheClientsOwnTime) {
+TEST_F(ViewerPacerTest, RoundTripExcludesTheClientsProcessing) {
   for (std::uint32_t id = 1; id <= 40; ++id) {
     pacer_.offer(frame(id));
     const auto taken = take();
@@ -141,7 +141,7 @@ TEST_F(ViewerPacerTest, MeasuresTheWayWithoutTheClientsOwnTime) {
   EXPECT_NEAR(pacer_.goodput(), 1000.0 / 0.030, 300.0);
 }
 
-TEST_F(ViewerPacerTest, LateFramesOfTheMovingPictureLowerItsBudgetButStillsDoNot) {
+TEST_F(ViewerPacerTest, LateMovingFramesLowerTheBudgetButStillsDoNot) {
   const auto send = [&](bool moving) {
     auto made = std::make_shared<EncodedFrame>();
     made->payload.resize(50'000);
@@ -152,12 +152,12 @@ TEST_F(ViewerPacerTest, LateFramesOfTheMovingPictureLowerItsBudgetButStillsDoNot
     acknowledge(taken->frame_seq);
   };
   for (int i = 0; i < 20; ++i) send(false);
-  EXPECT_EQ(pacer_.link().choose({}, 1280 * 720), Form{});
+  EXPECT_EQ(pacer_.link().choose({}, 1280 * 720), EncodingVariant{});
   for (int i = 0; i < 8; ++i) send(true);
   EXPECT_LT(pacer_.link().budget(), 50'000);
 }
 
-TEST_F(ViewerPacerTest, AnImpossibleClientTimeDoesNotMakeTheWayNegative) {
+TEST_F(ViewerPacerTest, AnImpossibleClientTimeDoesNotMakeTheRoundTripNegative) {
   pacer_.offer(frame(1));
   const auto taken = take();
   now_ += milliseconds(5);
@@ -167,13 +167,13 @@ TEST_F(ViewerPacerTest, AnImpossibleClientTimeDoesNotMakeTheWayNegative) {
 
 SharedFrame video_frame(std::uint64_t video, std::uint32_t index) {
   auto made = std::make_shared<EncodedFrame>();
-  made->form.codec = protocol::StreamCodec::h264;
+  made->variant.codec = protocol::StreamCodec::h264;
   made->video = VideoPosition{.video = video, .index = index};
   if (index == 0) made->header.flags = protocol::frame_flag::key;
   return made;
 }
 
-TEST_F(ViewerPacerTest, AVideoIsShownFromAKeyFrameOnAndWithoutGaps) {
+TEST_F(ViewerPacerTest, AVideoStartsAtAKeyFrameAndHasNoGaps) {
   EXPECT_FALSE(pacer_.can_show(*video_frame(1, 5))) << "the beginning is missing";
   pacer_.offer(video_frame(1, 0));
   EXPECT_FALSE(pacer_.can_show(*video_frame(1, 1))) << "it would replace the frame it needs";
@@ -186,7 +186,7 @@ TEST_F(ViewerPacerTest, AVideoIsShownFromAKeyFrameOnAndWithoutGaps) {
   EXPECT_TRUE(pacer_.can_show(*frame(3)));
 }
 
-TEST_F(ViewerPacerTest, AVideoFrameThatIsReplacedBreaksTheVideo) {
+TEST_F(ViewerPacerTest, ReplacingAPendingVideoFrameBreaksTheVideo) {
   pacer_.offer(video_frame(1, 0));
   pacer_.offer(frame(2));
   ASSERT_TRUE(take());
@@ -194,7 +194,7 @@ TEST_F(ViewerPacerTest, AVideoFrameThatIsReplacedBreaksTheVideo) {
   EXPECT_FALSE(pacer_.can_show(*video_frame(1, 1)));
 }
 
-TEST_F(ViewerPacerTest, APictureOfItsOwnLeavesTheVideoAsItIs) {
+TEST_F(ViewerPacerTest, AnIndependentFrameDoesNotBreakTheVideo) {
   pacer_.offer(video_frame(1, 0));
   ASSERT_TRUE(take());
   pacer_.offer(frame(2));
@@ -202,7 +202,7 @@ TEST_F(ViewerPacerTest, APictureOfItsOwnLeavesTheVideoAsItIs) {
   EXPECT_TRUE(pacer_.can_show(*video_frame(1, 1)));
 }
 
-TEST_F(ViewerPacerTest, WhatAViewerCannotHaveIsADrop) {
+TEST_F(ViewerPacerTest, ASkippedFrameCountsAsDropped) {
   pacer_.offer(frame(1));
   EXPECT_EQ(take()->frame_seq, 1u);
   acknowledge(1);

@@ -93,7 +93,7 @@ class BvhTest : public testing::Test {
 
 constexpr Box everywhere{glm::vec3(-1e30f), glm::vec3(1e30f)};
 
-TEST_F(BvhTest, HoldsEveryTriangleOnceWithinItsBoxes) {
+TEST_F(BvhTest, ContainsEveryTriangleOnceWithinItsBoxes) {
   const scene::Scene scene = two_level_scene(1);
   const Bvh bvh = build(scene);
   const auto instances = instances_below(bvh, bvh.root);
@@ -113,7 +113,7 @@ TEST_F(BvhTest, HoldsEveryTriangleOnceWithinItsBoxes) {
   EXPECT_LE(bvh.depth, shared::bvh_stack_size);
 }
 
-TEST_F(BvhTest, EveryWordOfALinkIsANormalFloat) {
+TEST_F(BvhTest, LinksAreNormalFloats) {
   const Bvh bvh = build(two_level_scene(2));
   for (const shared::BvhInstance& record : instances_below(bvh, bvh.root)) {
     EXPECT_TRUE(std::isnormal(std::bit_cast<float>(record.root)));
@@ -123,7 +123,7 @@ TEST_F(BvhTest, EveryWordOfALinkIsANormalFloat) {
   }
 }
 
-TEST_F(BvhTest, NothingIsTheRootOfAnEmptyScene) {
+TEST_F(BvhTest, EmptySceneHasNoRoot) {
   EXPECT_EQ(build({}).root, shared::bvh_no_link);
   scene::Scene scene;
   add_mesh(scene, quad(), plain_material());
@@ -144,7 +144,7 @@ TEST_F(BvhTest, OneTriangleInOneInstance) {
   EXPECT_EQ(leaf_count(instances[0].root), 1u);
 }
 
-TEST_F(BvhTest, LeavesOutWhatNoRayCanMeet) {
+TEST_F(BvhTest, ExcludesDegenerateInstances) {
   scene::Scene scene;
   shared::Material invisible = plain_material();
   invisible.flags = shared::material_alpha_mask;
@@ -159,7 +159,7 @@ TEST_F(BvhTest, LeavesOutWhatNoRayCanMeet) {
   EXPECT_EQ(instances[0].instance & shared::bvh_number_mask, 2u);
 }
 
-TEST_F(BvhTest, StaysShallowOverThousandsOfEqualTriangles) {
+TEST_F(BvhTest, StaysShallowForThousandsOfEqualTriangles) {
   Random random(4);
   scene::Mesh mesh = soup(random, 1, 1.0f);
   for (int i = 0; i < 5000; ++i) mesh.indices.insert(mesh.indices.end(), {0, 1, 2});
@@ -168,7 +168,7 @@ TEST_F(BvhTest, StaysShallowOverThousandsOfEqualTriangles) {
   EXPECT_LT(build(scene).depth, 24u);
 }
 
-TEST_F(BvhTest, FitsTheStackWhenEveryTriangleIsHalfAsLarge) {
+TEST_F(BvhTest, DepthFitsStackForGeometricSeriesOfTriangles) {
   scene::Mesh mesh;
   float size = 1e6f;
   for (int i = 0; i < 70; ++i, size *= 0.5f) {
@@ -182,7 +182,7 @@ TEST_F(BvhTest, FitsTheStackWhenEveryTriangleIsHalfAsLarge) {
   EXPECT_LE(build(scene).depth, shared::bvh_stack_size);
 }
 
-TEST_F(BvhTest, IgnoresTrianglesWithoutAPlace) {
+TEST_F(BvhTest, IgnoresNonFiniteTriangles) {
   Random random(5);
   scene::Mesh mesh = soup(random, 8, 1.0f);
   mesh.vertices[4].position.x = std::numeric_limits<float>::quiet_NaN();

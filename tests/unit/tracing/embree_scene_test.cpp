@@ -15,42 +15,43 @@ namespace {
 
 using namespace heliograph::test;
 
-struct Answers {
+struct TraceResults {
   std::vector<shared::Hit> hits;
   std::vector<std::uint32_t> occluded;
 };
 
-Answers trace(const scene::Scene& scene, std::span<const shared::Ray> rays) {
+TraceResults trace(const scene::Scene& scene, std::span<const shared::Ray> rays) {
   const auto device = make_embree_device();
   const EmbreeScene built(device.get(), scene,
                           make_embree_meshes(device.get(), scene, scene.alpha_heap));
-  Answers answers{std::vector<shared::Hit>(rays.size()), std::vector<std::uint32_t>(rays.size())};
+  TraceResults results{std::vector<shared::Hit>(rays.size()),
+                       std::vector<std::uint32_t>(rays.size())};
   for (std::size_t i = 0; i < rays.size(); i += embree_batch) {
     const auto batch = rays.subspan(i, std::min(embree_batch, rays.size() - i));
-    intersect_batch(built.handle(), batch, 0, &answers.hits[i]);
-    occluded_batch(built.handle(), batch, 0, &answers.occluded[i]);
+    intersect_batch(built.handle(), batch, 0, &results.hits[i]);
+    occluded_batch(built.handle(), batch, 0, &results.occluded[i]);
   }
-  return answers;
+  return results;
 }
 
-TEST(EmbreeScene, AgreesWithAskingEveryTriangle) {
+TEST(EmbreeScene, MatchesBruteForce) {
   const scene::Scene scene = two_level_scene(11);
   // Not a multiple of any packet or batch.
   const std::vector<shared::Ray> rays = random_rays(scene, 3001, 11);
-  const Answers answers = trace(scene, rays);
+  const TraceResults results = trace(scene, rays);
   int different = 0;
   int hits = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const shared::Hit expected = closest_by_search(scene, rays[i]);
+    const shared::Hit expected = closest_hit_brute_force(scene, rays[i]);
     const bool hit = expected.instance != shared::hit_none;
     hits += hit;
-    different += !same_hit(answers.hits[i], expected) || answers.occluded[i] != (hit ? 1u : 0u);
+    different += !same_hit(results.hits[i], expected) || results.occluded[i] != (hit ? 1u : 0u);
   }
   EXPECT_GT(hits, 500);
   EXPECT_LE(different, 3);
 }
 
-TEST(EmbreeScene, LeavesOutWhatNoRayCanMeet) {
+TEST(EmbreeScene, ExcludesDegenerateInstances) {
   scene::Scene scene;
   shared::Material invisible = plain_material();
   invisible.flags = shared::material_alpha_mask;
@@ -66,16 +67,16 @@ TEST(EmbreeScene, LeavesOutWhatNoRayCanMeet) {
   EXPECT_FLOAT_EQ(hit.t, 2.0f);
 }
 
-TEST(EmbreeScene, IgnoresRaysThatReachNowhere) {
+TEST(EmbreeScene, EmptyIntervalsHaveNoHits) {
   const scene::Scene scene = two_level_scene(12);
   std::vector<shared::Ray> rays = random_rays(scene, 300, 12);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     rays[i].t_max = i % 2 ? rays[i].t_min : -std::numeric_limits<float>::infinity();
   }
-  const Answers answers = trace(scene, rays);
+  const TraceResults results = trace(scene, rays);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    EXPECT_EQ(answers.hits[i].instance, shared::hit_none);
-    EXPECT_EQ(answers.occluded[i], 0u);
+    EXPECT_EQ(results.hits[i].instance, shared::hit_none);
+    EXPECT_EQ(results.occluded[i], 0u);
   }
 }
 

@@ -1,32 +1,32 @@
-// Puts the page together.
+// Entry point: creates the page's parts and connects them.
 
-import { mountStatus } from "../overlay/status.ts";
-import { Toasts } from "../overlay/toasts.ts";
 import { Comparison } from "../compare/comparison.ts";
-import { viewIn } from "../session/view_link.ts";
 import { outputActions } from "../output/output_actions.ts";
 import { createHelp } from "../overlay/help.ts";
 import { mountMjpegFallback } from "../overlay/mjpeg_fallback.ts";
 import { mountParticipants } from "../overlay/participants.ts";
+import { mountStatus } from "../overlay/status.ts";
+import { Toasts } from "../overlay/toasts.ts";
 import { mountTransport } from "../overlay/transport.ts";
-import { bringScene, mountUpload } from "../overlay/upload.ts";
-import { mountTooltips } from "../widgets/tooltip.ts";
+import { mountUpload, uploadScene } from "../overlay/upload.ts";
 import { mountPanel } from "../panel/panel.ts";
+import { mountThumbnails } from "../previews/thumbnails.ts";
+import { viewIn } from "../session/view_link.ts";
+import { Viewer } from "../session/viewer.ts";
 import { focusOn } from "../view/camera.ts";
 import { createDivider } from "../view/divider.ts";
 import { Navigation } from "../view/navigation.ts";
-import { mountThumbnails } from "../previews/thumbnails.ts";
 import { createPicker } from "../view/picker.ts";
 import { frameSize, watchSize } from "../view/viewport.ts";
-import { Viewer } from "../session/viewer.ts";
+import { mountTooltips } from "../widgets/tooltip.ts";
 
-const typedInto = "input:not([type=range], [type=checkbox])";
-const resizeQuietMs = 150;
+const textInputs = "input:not([type=range], [type=checkbox])";
+const resizeDelayMs = 150;
 
-/** Focusing on a point leaves this part of the way to it. */
-const focusCloser = 0.6;
+/** Focusing on a point keeps this fraction of the distance to it. */
+const focusDistance = 0.6;
 
-/** What a processor that renders in software is asked for at most: about 1024 x 576. */
+/** Most pixels to request of a server that renders on its CPU: about 1024 x 576. */
 const softwarePixels = 590_000;
 
 function find<Type extends HTMLElement>(id: string): Type {
@@ -45,7 +45,7 @@ function main(): void {
   const viewer = new Viewer(document.baseURI, canvas);
   const toasts = new Toasts(find("toasts"));
   viewer.onError = (message) => toasts.show(message);
-  viewer.onInfo = (message) => toasts.tell(message);
+  viewer.onInfo = (message) => toasts.inform(message);
   const navigation = new Navigation(canvas, {
     camera: () => (viewer.hello && viewer.mayChange ? viewer.camera.value : null),
     sceneSize: () => viewer.sceneSize(),
@@ -58,23 +58,23 @@ function main(): void {
     const pick = await viewer.pick(x, y);
     const camera = viewer.camera.value;
     if (!camera || !pick?.position || pick.distance === null) return;
-    navigation.goTo(focusOn(camera, pick.position, pick.distance * focusCloser));
+    navigation.goTo(focusOn(camera, pick.position, pick.distance * focusDistance));
   };
-  viewer.jumpTo = (camera) => navigation.goTo(camera);
+  viewer.animateCameraTo = (camera) => navigation.goTo(camera);
   viewer.cameraBusy = () => navigation.active;
 
   const divider = createDivider(find("compare"));
-  mountMjpegFallback(viewer, find("plain"));
-  mountParticipants(viewer, find("people"), (message) => toasts.tell(message));
+  mountMjpegFallback(viewer, find("mjpeg"));
+  mountParticipants(viewer, find("participants"), (message) => toasts.inform(message));
   const help = createHelp(find<HTMLDialogElement>("help"));
   const panel = mountPanel(find("panel"), viewer, {
-    output: outputActions(viewer, { tell: (message) => toasts.tell(message) }),
+    output: outputActions(viewer, { inform: (message) => toasts.inform(message) }),
     inspect: {
       comparison: new Comparison(viewer, () => divider.newCanvas()),
       divider,
       picker: createPicker(canvas, find("mark")),
     },
-    bring: (file) => void bringScene(viewer, file, toasts),
+    upload: (file) => void uploadScene(viewer, file, toasts),
     help: help.open,
     fullscreen: document.fullscreenEnabled ? toggleFullscreen : null,
   });
@@ -93,27 +93,27 @@ function main(): void {
   let resizeTimer = 0;
   watchSize(canvas, () => {
     clearTimeout(resizeTimer);
-    resizeTimer = window.setTimeout(() => viewer.stream.updateSize(), resizeQuietMs);
+    resizeTimer = window.setTimeout(() => viewer.stream.updateSize(), resizeDelayMs);
   });
   panel.resolution.watch(() => viewer.stream.updateSize());
 
-  viewer.controlState.watch(({ kind }) => canvas.classList.toggle("still", kind !== "may_change"));
+  viewer.controlState.watch(({ kind }) => canvas.classList.toggle("locked", kind !== "may_change"));
   viewer.scene.watch((scene) => {
     document.title = scene ? `${scene.name} · Heliograph` : "Heliograph";
   });
-  const pauseUnseen = (): void => viewer.stream.request({ paused: document.hidden });
-  document.addEventListener("visibilitychange", pauseUnseen);
-  pauseUnseen();
+  const pauseHidden = (): void => viewer.stream.request({ paused: document.hidden });
+  document.addEventListener("visibilitychange", pauseHidden);
+  pauseHidden();
   addEventListener("keydown", (event) => {
-    const undoing = (event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z";
-    if (undoing && viewer.mayChange && !document.activeElement?.matches(typedInto)) {
+    const isUndo = (event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z";
+    if (isUndo && viewer.mayChange && !document.activeElement?.matches(textInputs)) {
       if (event.shiftKey) viewer.settings.redo();
       else viewer.settings.undo();
       event.preventDefault();
     }
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const focused = document.activeElement;
-    if (focused?.matches(`${typedInto}, select, dialog *`)) return;
+    if (focused?.matches(`${textInputs}, select, dialog *`)) return;
     if (event.key === "?") help.open();
     else if (event.key === "h" || event.key === "H") panel.toggle();
     else if (event.key === "b" || event.key === "B") viewer.addBookmark();

@@ -1,4 +1,4 @@
-// Pictures as files, and smaller ones of them.
+// Captures as files, and thumbnails of them.
 
 import type { Capture } from "heliograph/messages.ts";
 
@@ -14,9 +14,9 @@ export function captureBlob({ data, format }: Capture): Blob {
   return new Blob([bytes], { type: mimeTypes[format] ?? "application/octet-stream" });
 }
 
-/** A picture of the given width with the same shape, as a data address. */
-export async function shrunk(picture: Blob, width: number): Promise<string> {
-  const whole = await createImageBitmap(picture);
+/** A smaller image of the given width and the same aspect ratio, as a data URL. */
+export async function thumbnailUrl(image: Blob, width: number): Promise<string> {
+  const whole = await createImageBitmap(image);
   const canvas = document.createElement("canvas");
   canvas.width = width;
   canvas.height = Math.max(1, Math.round((width * whole.height) / whole.width));
@@ -29,7 +29,7 @@ export async function shrunk(picture: Blob, width: number): Promise<string> {
   return canvas.toDataURL("image/jpeg", 0.8);
 }
 
-/** Hands a file to the person. */
+/** Downloads a file. */
 export function saveFile(content: Blob, name: string): void {
   const url = URL.createObjectURL(content);
   const link = document.createElement("a");

@@ -1,40 +1,40 @@
-// Sends patches of one thing after another: what comes while one is under way is joined, so that a
-// drag never queues up.
+// Sends patches of one object after another. Patches that arrive during a call are merged, so that
+// a drag never builds up a queue.
 
-import type { JsonObject } from "heliograph/messages.ts";
+import type { JsonObject } from "heliograph/json.ts";
 import { joinPatches } from "heliograph/settings_tree.ts";
 
 export class PatchSender {
   private readonly send: (key: string, patch: JsonObject) => Promise<void>;
-  private readonly waiting = new Map<string, JsonObject>();
-  private readonly busy = new Set<string>();
+  private readonly queued = new Map<string, JsonObject>();
+  private readonly sending = new Set<string>();
 
-  /** `send` deals with its own failures. */
+  /** `send` handles its own errors. */
   constructor(send: (key: string, patch: JsonObject) => Promise<void>) {
     this.send = send;
   }
 
-  /** Whether something about this thing has not been answered yet. */
-  unsettled(key: string): boolean {
-    return this.busy.has(key) || this.waiting.has(key);
+  /** Whether a patch of this object is queued or unanswered. */
+  isBusy(key: string): boolean {
+    return this.sending.has(key) || this.queued.has(key);
   }
 
-  /** Whether something newer than what is under way has still to be sent. */
-  waits(key: string): boolean {
-    return this.waiting.has(key);
+  /** Whether a patch of this object is still to be sent. */
+  hasQueued(key: string): boolean {
+    return this.queued.has(key);
   }
 
   push(key: string, patch: JsonObject): void {
-    this.waiting.set(key, joinPatches(this.waiting.get(key) ?? {}, patch));
-    if (!this.busy.has(key)) void this.run(key);
+    this.queued.set(key, joinPatches(this.queued.get(key) ?? {}, patch));
+    if (!this.sending.has(key)) void this.run(key);
   }
 
   private async run(key: string): Promise<void> {
-    this.busy.add(key);
-    for (let patch = this.waiting.get(key); patch; patch = this.waiting.get(key)) {
-      this.waiting.delete(key);
+    this.sending.add(key);
+    for (let patch = this.queued.get(key); patch; patch = this.queued.get(key)) {
+      this.queued.delete(key);
       await this.send(key, patch);
     }
-    this.busy.delete(key);
+    this.sending.delete(key);
   }
 }

@@ -1,4 +1,4 @@
-// What this browser remembers about the page. Works without storage, only forgetful then.
+// Preferences stored in this browser. Without storage they last until the page closes.
 
 const prefix = "heliograph.";
 
@@ -14,17 +14,17 @@ function write(key: string, value: string): void {
   try {
     localStorage.setItem(prefix + key, value);
   } catch {
-    // Storage is off or full; the choice holds until the page closes.
+    // Storage is disabled or full.
   }
 }
 
 export const preferences = {
-  flag: (key: string, standard: boolean): boolean => {
+  flag: (key: string, defaultValue: boolean): boolean => {
     const stored = read(key);
-    return stored === null ? standard : stored === "1";
+    return stored === null ? defaultValue : stored === "1";
   },
   setFlag: (key: string, value: boolean): void => write(key, value ? "1" : "0"),
-  text: (key: string, standard: string): string => read(key) ?? standard,
+  text: (key: string, defaultValue: string): string => read(key) ?? defaultValue,
   setText: (key: string, value: string): void => write(key, value),
 };
 

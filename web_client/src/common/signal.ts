@@ -1,4 +1,4 @@
-// A value that tells its listeners when it changes.
+// A value that notifies its listeners of changes.
 export class Signal<Value> {
   private current: Value;
   private readonly listeners = new Set<(value: Value) => void>();

@@ -1,6 +1,6 @@
-// Three-component vectors as the wire carries them.
+// Vectors of three components, as in the protocol's messages.
 
-import type { Vector3 } from "heliograph/messages.ts";
+import type { Vector3 } from "heliograph/json.ts";
 
 export const add = (a: Vector3, b: Vector3): Vector3 => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
 

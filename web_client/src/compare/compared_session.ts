@@ -1,31 +1,32 @@
-// The other side of a comparison: a session of its own on the server, which shows what ours shows,
-// made in another way. It follows our camera, clip, lights, materials, sky and size of picture.
+// The second session of a comparison. It follows the camera, clip, lights, materials, environment
+// and frame size of the page's session, and renders them in another way.
 
-import type { Hello, JsonObject, StreamSettings } from "heliograph/messages.ts";
-import type { ComparisonState, Counterpart } from "./comparison_state.ts";
+import type { JsonObject } from "heliograph/json.ts";
+import type { Hello, Methods, StreamConfigureParams } from "heliograph/messages.ts";
 import { type Edits, editsBetween } from "../session/scene_edits.ts";
+import type { Viewer } from "../session/viewer.ts";
 import { Connection } from "../stream/connection.ts";
 import { SessionAddress } from "../stream/session_address.ts";
-import type { Viewer } from "../session/viewer.ts";
+import type { ComparisonState, Counterpart } from "./comparison_state.ts";
 
-/** Settings that both sides share: how a picture is shown, not how it is made. */
+/** Settings that both sessions share: how a frame is displayed, not how it is rendered. */
 const sharedGroups = ["exposure", "tone_map", "environment"];
 const measureMs = 1000;
 
-export interface ComparedStart {
+interface ComparedStart {
   counterpart: Counterpart;
-  /** What was changed in the scene that the session was copied from. */
+  /** Edits in the scene that the session was copied from. */
   copied: { lights?: Edits; materials?: Edits };
 }
 
-export interface ComparedEvents {
+interface ComparedEvents {
   changed(state: ComparisonState): void;
-  /** The session has ended without our doing. */
-  gone(): void;
+  /** The session was closed by the server or another client. */
+  closed(): void;
 }
 
 export class ComparedSession {
-  private readonly shown: ComparisonState;
+  private readonly state: ComparisonState;
   private readonly viewer: Viewer;
   private readonly name: string;
   private readonly events: ComparedEvents;
@@ -36,7 +37,7 @@ export class ComparedSession {
   private live = false;
   private lights: Edits;
   private materials: Edits;
-  /** What was sent last of each kind, to send only what is new. */
+  /** The last message of each kind, so that only changes are sent. */
   private readonly sent = new Map<string, string>();
 
   constructor(
@@ -49,7 +50,7 @@ export class ComparedSession {
     this.viewer = viewer;
     this.name = name;
     this.events = events;
-    this.shown = { counterpart, frame: null, similarity: null };
+    this.state = { counterpart, frame: null, similarity: null };
     this.lights = copied.lights ?? {};
     this.materials = copied.materials ?? {};
     this.connection = new Connection(
@@ -59,14 +60,14 @@ export class ComparedSession {
         live: (hello) => this.becomeLive(hello),
         notification: () => {},
         drawn: (frame) => {
-          this.shown.frame = frame;
+          this.state.frame = frame;
           this.changed();
         },
-        draw: (picture) => picture.close(),
+        draw: (image) => image.close(),
         warning: (message) => viewer.onError(message),
-        undecodable: (_, video) => video && this.beginVideoAnew(),
+        decodeFailed: (_, video) => video && this.restartVideo(),
       },
-      new SessionAddress(document.baseURI, viewer.connection.place.route, name),
+      new SessionAddress(document.baseURI, viewer.connection.address.route, name),
     );
     this.connection.state.watch(({ kind }) => {
       if (kind !== "live") this.live = false;
@@ -74,7 +75,7 @@ export class ComparedSession {
     this.connection.open();
     this.worker.onmessage = ({ data }: MessageEvent<{ similarity: number }>) => {
       this.measuring = false;
-      this.shown.similarity = data.similarity;
+      this.state.similarity = data.similarity;
       this.changed();
     };
     this.timer = window.setInterval(() => void this.measure(), measureMs);
@@ -92,8 +93,8 @@ export class ComparedSession {
   end(): void {
     clearInterval(this.timer);
     this.worker.terminate();
-    // From inside, since a session that somebody is in cannot be closed by others. What cannot be
-    // closed any more ends when it has been idle for long enough.
+    // Other viewers cannot close a session that has viewers. If this fails, it ends by its idle
+    // timeout.
     void this.connection.rpc
       .request("session.close", { session: this.name })
       .catch(() => {})
@@ -101,20 +102,20 @@ export class ComparedSession {
   }
 
   private changed(): void {
-    this.events.changed({ ...this.shown });
+    this.events.changed({ ...this.state });
   }
 
   private async becomeLive(hello: Hello): Promise<void> {
     if (hello.session !== undefined && hello.session !== this.name) {
-      this.events.gone(); // and this is another one, which is not ours to change
+      this.events.closed(); // the reconnect led to another session, which must not be changed
       return;
     }
     const { rpc } = this.connection;
-    const { counterpart } = this.shown;
+    const { counterpart } = this.state;
     if (counterpart.kind === "preset") {
       await rpc.request("settings.preset", { name: counterpart.name });
     } else {
-      const patch =
+      const patch: JsonObject =
         counterpart.kind === "reference"
           ? { reference: { use: "always" } }
           : { view: { buffer: counterpart.name } };
@@ -125,12 +126,12 @@ export class ComparedSession {
     this.follow();
   }
 
-  /** Pictures of the same size, made by the same codec, and none while nobody looks. */
+  /** Copies size, quality, codec and pause of the stream. */
   followStream(): void {
     const settings = this.viewer.stream.settings.value;
     if (!settings) return;
     const { width, height, codec, quality, max_fps, paused } = settings;
-    const change: Partial<StreamSettings> = { width, height, quality, max_fps, paused };
+    const change: StreamConfigureParams = { width, height, quality, max_fps, paused };
     this.send("stream.configure", codec ? { ...change, codec } : change);
   }
 
@@ -159,7 +160,7 @@ export class ComparedSession {
     if (environment !== undefined) this.send("environment.set", { name: environment });
   }
 
-  /** Follows the clip: when it starts, stops or jumps, not while it just goes on. */
+  /** Follows the clip when it starts, stops or seeks. */
   followClip(): void {
     const animation = this.viewer.animation.value;
     if (!animation?.clip) return;
@@ -178,20 +179,20 @@ export class ComparedSession {
     this.send("camera.set", { eye, target, up, vertical_fov });
   }
 
-  private send(method: string, params: object): void {
+  private send<Name extends keyof Methods>(method: Name, params: Methods[Name]["params"]): void {
     if (this.isNew(method, params)) this.connection.rpc.notify(method, params);
   }
 
-  private isNew(kind: string, what: object): boolean {
+  private isNew(kind: string, message: object): boolean {
     if (!this.live) return false;
-    const text = JSON.stringify(what);
+    const text = JSON.stringify(message);
     if (this.sent.get(kind) === text) return false;
     this.sent.set(kind, text);
     return true;
   }
 
-  /** A viewer that comes back gets a key picture first. */
-  private beginVideoAnew(): void {
+  /** A stream that resumes starts with a key frame. */
+  private restartVideo(): void {
     this.connection.rpc.notify("stream.pause", {});
     if (!this.viewer.stream.settings.value?.paused) {
       this.connection.rpc.notify("stream.resume", {});
@@ -199,16 +200,16 @@ export class ComparedSession {
   }
 
   private async measure(): Promise<void> {
-    if (this.measuring || !this.shown.frame || this.shown.counterpart.kind === "buffer") return;
-    const pictures = await Promise.all([
+    if (this.measuring || !this.state.frame || this.state.counterpart.kind === "buffer") return;
+    const frames = await Promise.all([
       this.viewer.connection.copyFrame(),
       this.connection.copyFrame(),
     ]);
-    if (pictures[0] && pictures[1] && !this.measuring) {
+    if (frames[0] && frames[1] && !this.measuring) {
       this.measuring = true;
-      this.worker.postMessage({ id: 0, pictures }, [pictures[0], pictures[1]]);
+      this.worker.postMessage({ id: 0, frames }, [frames[0], frames[1]]);
     } else {
-      pictures.forEach((picture) => picture?.close());
+      frames.forEach((frame) => frame?.close());
     }
   }
 }

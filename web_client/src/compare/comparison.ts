@@ -1,11 +1,11 @@
-// A second view of the same scene, beside or over the first: another preset, the path traced
-// reference, or a buffer.
+// A second session with the same scene, shown beside or over the first: another preset, the path
+// traced reference, or a buffer.
 
-import type { SceneInfo, SessionInfo } from "heliograph/messages.ts";
-import { ComparedSession } from "./compared_session.ts";
-import type { ComparisonState, Counterpart } from "./comparison_state.ts";
+import type { SceneInfo } from "heliograph/messages.ts";
 import { Signal } from "../common/signal.ts";
 import type { Viewer } from "../session/viewer.ts";
+import { ComparedSession } from "./compared_session.ts";
+import type { ComparisonState, Counterpart } from "./comparison_state.ts";
 
 const createTimeoutMs = 120_000;
 
@@ -14,11 +14,11 @@ export class Comparison {
   private readonly viewer: Viewer;
   private readonly newCanvas: () => HTMLCanvasElement;
   private running: ComparedSession | null = null;
-  /** Of starts and stops: what was begun before the last one is not wanted any more. */
-  private wanted = 0;
+  /** Counts starts and stops: an operation of an older generation is cancelled. */
+  private generation = 0;
   private scene = "";
 
-  /** `newCanvas` puts a fresh canvas in the place of the last one. */
+  /** `newCanvas` replaces the last canvas by a new one. */
   constructor(viewer: Viewer, newCanvas: () => HTMLCanvasElement) {
     this.viewer = viewer;
     this.newCanvas = newCanvas;
@@ -35,42 +35,39 @@ export class Comparison {
     viewer.scene.watch((scene) => this.sceneChanged(scene));
   }
 
-  /** Whether this server and this browser can do it. */
+  /** Whether server and browser support comparisons. */
   get possible(): boolean {
     const { capabilities, controlState } = this.viewer;
-    const drawsAside = typeof HTMLCanvasElement.prototype.transferControlToOffscreen === "function";
-    const mayOpen = controlState.value.kind !== "watching" && capabilities.has("session.create");
-    return drawsAside && mayOpen && capabilities.has("session.close");
+    const hasOffscreenCanvas =
+      typeof HTMLCanvasElement.prototype.transferControlToOffscreen === "function";
+    const mayCreate = controlState.value.kind !== "read_only" && capabilities.has("session.create");
+    return hasOffscreenCanvas && mayCreate && capabilities.has("session.close");
   }
 
   async start(counterpart: Counterpart): Promise<void> {
     this.end();
-    const wanted = this.wanted;
+    const generation = this.generation;
     const canvas = this.newCanvas();
     this.state.set({ counterpart, frame: null, similarity: null });
     try {
       const { rpc, parts, hello } = this.viewer;
-      const model = hello?.session ?? "main";
+      const source = hello?.session ?? "main";
       const copied = parts.edits();
-      const { name } = await rpc.request<SessionInfo>(
-        "session.create",
-        { copy_of: model },
-        createTimeoutMs,
-      );
-      if (wanted !== this.wanted) {
+      const { name } = await rpc.request("session.create", { copy_of: source }, createTimeoutMs);
+      if (generation !== this.generation) {
         rpc.notify("session.close", { session: name });
         return;
       }
       this.running = new ComparedSession(this.viewer, name, { counterpart, copied }, canvas, {
         changed: (state) => {
-          if (wanted === this.wanted) this.state.set(state);
+          if (generation === this.generation) this.state.set(state);
         },
-        gone: () => {
-          if (wanted === this.wanted) this.stop();
+        closed: () => {
+          if (generation === this.generation) this.stop();
         },
       });
     } catch (error) {
-      if (wanted !== this.wanted) return;
+      if (generation !== this.generation) return;
       this.stop();
       this.viewer.report(error);
     }
@@ -83,12 +80,12 @@ export class Comparison {
   }
 
   private end(): void {
-    this.wanted += 1;
+    this.generation += 1;
     this.running?.end();
     this.running = null;
   }
 
-  /** Another scene is compared in the same way as the last. */
+  /** Restarts the comparison with another scene. */
   private sceneChanged(scene: SceneInfo | null): void {
     const key = JSON.stringify(scene && { ...scene, memory: null });
     if (key === this.scene) return;

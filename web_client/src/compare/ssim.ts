@@ -1,12 +1,12 @@
-// Structural similarity of two grey pictures (Wang et al. 2004), with windows of 8 x 8 pixels that
-// overlap by half: close to the Gaussian form and cheap enough to follow a live picture.
+// Structural similarity of two grey images (Wang et al. 2004), with windows of 8 x 8 pixels that
+// overlap by half: close to the Gaussian form and fast enough for a live stream.
 
 const windowSize = 8;
 const stride = 4;
 const k1 = (0.01 * 255) ** 2;
 const k2 = (0.03 * 255) ** 2;
 
-export interface GreyPicture {
+export interface GreyImage {
   width: number;
   height: number;
   /** Luma, 0 to 255, row by row from the top. */
@@ -14,7 +14,7 @@ export interface GreyPicture {
 }
 
 /** Luma of RGBA bytes by Rec. 709, on the encoded values as is usual for this measure. */
-export function greyPicture(rgba: Uint8ClampedArray, width: number, height: number): GreyPicture {
+export function greyImage(rgba: Uint8ClampedArray, width: number, height: number): GreyImage {
   const luma = new Float32Array(width * height);
   for (let i = 0; i < luma.length; i += 1) {
     const at = 4 * i;
@@ -23,8 +23,8 @@ export function greyPicture(rgba: Uint8ClampedArray, width: number, height: numb
   return { width, height, luma };
 }
 
-/** Mean over all windows: 1 for the same picture. Both must have the same size. */
-export function structuralSimilarity(a: GreyPicture, b: GreyPicture): number {
+/** Mean over all windows: 1 for equal images. Both must have the same size. */
+export function structuralSimilarity(a: GreyImage, b: GreyImage): number {
   let sum = 0;
   let count = 0;
   for (let top = 0; top + windowSize <= a.height; top += stride) {
@@ -36,7 +36,7 @@ export function structuralSimilarity(a: GreyPicture, b: GreyPicture): number {
   return count > 0 ? sum / count : 1;
 }
 
-function windowSimilarity(a: GreyPicture, b: GreyPicture, left: number, top: number): number {
+function windowSimilarity(a: GreyImage, b: GreyImage, left: number, top: number): number {
   let [sumA, sumB, sumAA, sumBB, sumAB] = [0, 0, 0, 0, 0];
   for (let y = top; y < top + windowSize; y += 1) {
     for (let at = y * a.width + left, end = at + windowSize; at < end; at += 1) {
@@ -53,6 +53,6 @@ function windowSimilarity(a: GreyPicture, b: GreyPicture, left: number, top: num
   const varianceA = sumAA / n - meanA * meanA;
   const varianceB = sumBB / n - meanB * meanB;
   const covariance = sumAB / n - meanA * meanB;
-  const alike = (2 * meanA * meanB + k1) * (2 * covariance + k2);
-  return alike / ((meanA * meanA + meanB * meanB + k1) * (varianceA + varianceB + k2));
+  const numerator = (2 * meanA * meanB + k1) * (2 * covariance + k2);
+  return numerator / ((meanA * meanA + meanB * meanB + k1) * (varianceA + varianceB + k2));
 }

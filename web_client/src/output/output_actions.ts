@@ -1,15 +1,15 @@
-// What one takes away from here: pictures, a recording, a link, a snippet for another page.
+// The "Save and share" menu: images, recordings, links, code to embed.
 
 import { copyText } from "../common/clipboard.ts";
-import { linkTo } from "../session/view_link.ts";
-import type { MenuItem } from "../widgets/menu.ts";
 import { captureBlob, saveFile } from "../common/image_files.ts";
-import { Recorder } from "./recorder.ts";
+import { linkTo } from "../session/view_link.ts";
 import type { Viewer } from "../session/viewer.ts";
+import type { MenuItem } from "../widgets/menu.ts";
+import { Recorder } from "./recorder.ts";
 
-export interface OutputHost {
-  /** Says in one sentence what was done. */
-  tell(message: string): void;
+interface OutputHost {
+  /** Shows the result as one sentence. */
+  inform(message: string): void;
 }
 
 export function outputActions(viewer: Viewer, host: OutputHost): MenuItem[] {
@@ -17,44 +17,44 @@ export function outputActions(viewer: Viewer, host: OutputHost): MenuItem[] {
     void action().catch((error: unknown) => viewer.report(error));
   };
   const recorder = new Recorder(viewer);
-  const save = (format: string) =>
+  const save = (format: "png" | "exr") =>
     attempt(async () => {
-      host.tell(`The ${format.toUpperCase()} is being rendered`);
+      host.inform(`Rendering the ${format.toUpperCase()} image`);
       const capture = await viewer.capture(undefined, format);
       const suffix = capture.buffer === "output" ? "" : `-${capture.buffer}`;
       saveFile(captureBlob(capture), `${fileStem(viewer)}${suffix}.${format}`);
     });
   return [
-    { label: "Save picture as PNG", icon: "save", run: save("png") },
+    { label: "Save image as PNG", icon: "save", run: save("png") },
     {
-      label: "Save picture as EXR",
+      label: "Save image as EXR",
       icon: "save",
       run: save("exr"),
-      offered: () => viewer.capabilities.captureFormats.value.has("exr"),
+      isAvailable: () => viewer.capabilities.captureFormats.value.has("exr"),
     },
     {
-      label: "Copy picture",
+      label: "Copy image",
       icon: "copy",
       run: attempt(async () => {
-        const picture = viewer.capture().then(captureBlob);
-        await navigator.clipboard.write([new ClipboardItem({ "image/png": picture })]);
-        host.tell("The picture is in the clipboard");
+        const image = viewer.capture().then(captureBlob);
+        await navigator.clipboard.write([new ClipboardItem({ "image/png": image })]);
+        host.inform("Image copied to the clipboard");
       }),
-      offered: () => "clipboard" in navigator && typeof ClipboardItem === "function",
+      isAvailable: () => "clipboard" in navigator && typeof ClipboardItem === "function",
     },
     {
-      label: "Record a clip",
-      labelNow: () => (recorder.running ? "Stop recording" : "Record a clip"),
+      label: "Record a video",
+      currentLabel: () => (recorder.running ? "Stop recording" : "Record a video"),
       icon: "record",
       run: attempt(async () => {
         if (!recorder.running) {
           await recorder.start();
-          host.tell("Recording: choose Stop recording to save it");
+          host.inform('Recording. Choose "Stop recording" to save the video.');
           return;
         }
         saveFile(await recorder.stop(), `${fileStem(viewer)}.webm`);
       }),
-      offered: () => Recorder.possible,
+      isAvailable: () => Recorder.possible,
     },
     {
       label: "Copy link to this view",
@@ -62,10 +62,10 @@ export function outputActions(viewer: Viewer, host: OutputHost): MenuItem[] {
       run: attempt(async () => {
         const { href, shortened } = linkTo(location.href, viewer.viewState());
         await copyText(href);
-        host.tell(
+        host.inform(
           shortened
-            ? "The link is in the clipboard, without all the changed materials: they are too many"
-            : "The link to this view is in the clipboard",
+            ? "Link copied. It does not contain all changed materials: there are too many."
+            : "Link copied to the clipboard",
         );
       }),
     },
@@ -79,7 +79,7 @@ export function outputActions(viewer: Viewer, host: OutputHost): MenuItem[] {
           `<iframe src="${link}" title="${title}" width="960" height="540" ` +
             `style="border:0" allow="fullscreen; clipboard-write"></iframe>`,
         );
-        host.tell("The code is in the clipboard; the server must allow the page it is put on");
+        host.inform("Code copied to the clipboard. The server must allow the page that embeds it.");
       }),
     },
   ];

@@ -1,5 +1,5 @@
-// Records what is drawn as WebM. The visible canvas belongs to the stream worker, so that each
-// drawn picture is copied onto another one, which the recorder listens to.
+// Records the frames as WebM. The visible canvas belongs to the stream worker, so every frame is
+// copied to another canvas, which the recorder captures.
 
 import type { Viewer } from "../session/viewer.ts";
 
@@ -26,7 +26,7 @@ export class Recorder {
 
   async start(): Promise<void> {
     const first = await this.viewer.connection.copyFrame();
-    if (!first) throw new Error("There is no picture to record yet");
+    if (!first) throw new Error("There is no frame to record yet");
     this.parts.length = 0;
     this.paint(first);
     const type = types.find((candidate) => MediaRecorder.isTypeSupported(candidate));
@@ -35,29 +35,29 @@ export class Recorder {
     recorder.addEventListener("dataavailable", ({ data }) => this.parts.push(data));
     recorder.start(1000);
     this.recorder = recorder;
-    this.viewer.connection.pictureCopies = (picture) => this.paint(picture);
+    this.viewer.connection.onFrameCopy = (image) => this.paint(image);
   }
 
-  /** Ends the recording and gives the file. */
+  /** Ends the recording and returns the file. */
   async stop(): Promise<Blob> {
     const { recorder } = this;
-    this.viewer.connection.pictureCopies = null;
+    this.viewer.connection.onFrameCopy = null;
     this.recorder = null;
-    if (!recorder) throw new Error("Nothing is being recorded");
+    if (!recorder) throw new Error("No recording is running");
     const stopped = new Promise((resolve) => recorder.addEventListener("stop", resolve));
     recorder.stop();
     await stopped;
     return new Blob(this.parts, { type: recorder.mimeType });
   }
 
-  private paint(picture: ImageBitmap): void {
-    // The size stays: recorders do not take a change of it.
+  private paint(image: ImageBitmap): void {
+    // The size is fixed at the start: recorders do not support a change.
     if (!this.recorder) {
-      this.canvas.width = picture.width;
-      this.canvas.height = picture.height;
+      this.canvas.width = image.width;
+      this.canvas.height = image.height;
     }
     const context = this.canvas.getContext("2d", { alpha: false });
-    context?.drawImage(picture, 0, 0, this.canvas.width, this.canvas.height);
-    picture.close();
+    context?.drawImage(image, 0, 0, this.canvas.width, this.canvas.height);
+    image.close();
   }
 }

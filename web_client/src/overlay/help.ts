@@ -1,4 +1,4 @@
-// The list of what mouse, fingers and keys do.
+// The dialog that lists mouse, touch and keyboard controls.
 
 import { button, element } from "../widgets/element.ts";
 
@@ -7,31 +7,31 @@ const entries: [title: string, rows: [keys: string[], meaning: string][]][] = [
     "Mouse",
     [
       [["Drag"], "Orbit"],
-      [["Right drag"], "Pan (also middle, or Shift and drag)"],
-      [["Wheel"], "Towards what is under the pointer, and away"],
-      [["Double click"], "Focus on what is there"],
+      [["Right drag"], "Pan (also middle drag or Shift + drag)"],
+      [["Wheel"], "Zoom towards the pointer"],
+      [["Double click"], "Focus on the surface under the pointer"],
     ],
   ],
   [
     "Touch",
     [
       [["One finger"], "Orbit"],
-      [["Two fingers"], "Pan and pinch"],
+      [["Two fingers"], "Pan, pinch to zoom"],
     ],
   ],
   [
     "Keys",
     [
       [["←", "→", "↑", "↓"], "Orbit (with Shift: pan)"],
-      [["+", "−"], "Closer, farther"],
-      [["W", "A", "S", "D"], "Fly (Q, E: down, up; Shift: faster; drag: look)"],
+      [["+", "−"], "Zoom in, zoom out"],
+      [["W", "A", "S", "D"], "Fly (Q, E: down, up; Shift: faster; drag: look around)"],
       [["Space"], "Play or pause"],
       [["F"], "Fit the scene into view"],
       [["B"], "Bookmark this view"],
       [["Ctrl Z"], "Undo a setting (Ctrl Shift Z: redo)"],
       [["H"], "Hide or show the panel"],
-      [["Enter"], "Fullscreen (with the picture focused)"],
-      [["?"], "This help"],
+      [["Enter"], "Fullscreen (while the view has the focus)"],
+      [["?"], "Show this help"],
     ],
   ],
 ];
@@ -39,7 +39,7 @@ const entries: [title: string, rows: [keys: string[], meaning: string][]][] = [
 export function createHelp(dialog: HTMLDialogElement): { open(): void } {
   const close = button("Close", "close", () => dialog.close());
   dialog.append(
-    element("header", {}, element("h1", { id: "help-title" }, "Getting around"), close),
+    element("header", {}, element("h1", { id: "help-title" }, "Navigation"), close),
     ...entries.map(([title, rows]) =>
       element(
         "section",

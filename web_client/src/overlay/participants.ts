@@ -1,30 +1,30 @@
-// Who watches with us and who may change things: a list that opens from the pill.
+// The viewers of the session and who controls it: a card that opens from a button beside the pill.
 
 import type { ViewerInfo } from "heliograph/messages.ts";
 import { copyText } from "../common/clipboard.ts";
+import { participantName, setParticipantName } from "../common/preferences.ts";
+import { viewerName } from "../session/control_state.ts";
+import type { Viewer } from "../session/viewer.ts";
 import { button, element, icon, setText } from "../widgets/element.ts";
 import { createTakeControlButton } from "../widgets/take_control_button.ts";
-import { participantName, setParticipantName } from "../common/preferences.ts";
-import { nameOf } from "../session/control_state.ts";
-import type { Viewer } from "../session/viewer.ts";
 
 export function mountParticipants(
   viewer: Viewer,
   root: HTMLElement,
-  tell: (message: string) => void,
+  inform: (message: string) => void,
 ): void {
-  const count = element("span", { class: "people-count" });
-  const list = element("ul", { class: "people-list", "aria-label": "Who is here" });
-  const room = element("p", { class: "facts" });
+  const count = element("span", { class: "participants-count" });
+  const list = element("ul", { class: "participants-list", "aria-label": "Participants" });
+  const sessionName = element("p", { class: "facts" });
   const own = element("input", {
     type: "text",
-    name: "person",
+    name: "participant",
     "aria-label": "Your name",
     placeholder: "Your name",
     maxlength: "64",
     change: () => {
       setParticipantName(own.value);
-      viewer.connection.reintroduce();
+      viewer.connection.updateName();
     },
   });
   own.value = participantName() ?? "";
@@ -37,7 +37,7 @@ export function mountParticipants(
       click: () => {
         void linkToJoin(viewer)
           .then(copyText)
-          .then(() => tell("The link to join is in the clipboard"))
+          .then(() => inform("Link to join copied to the clipboard"))
           .catch((error: unknown) => viewer.report(error));
       },
     },
@@ -45,8 +45,8 @@ export function mountParticipants(
   );
   const card = element(
     "div",
-    { class: "people-card", id: "people-card", hidden: true },
-    room,
+    { class: "participants-card", id: "participants-card", hidden: true },
+    sessionName,
     list,
     own,
     invite,
@@ -56,14 +56,14 @@ export function mountParticipants(
     "button",
     {
       type: "button",
-      class: "people-button",
+      class: "participants-button",
       "aria-expanded": "false",
       "aria-controls": card.id,
-      "aria-label": "Who is here",
-      "data-tip": "Who is here, and who may change things",
+      "aria-label": "Participants",
+      "data-tip": "Participants and control of the session",
       click: () => open(card.hidden),
     },
-    icon("people"),
+    icon("participants"),
     count,
   );
   const open = (shown: boolean): void => {
@@ -81,49 +81,53 @@ export function mountParticipants(
   root.append(opener, card);
 
   mode.addEventListener("click", () => {
-    const one = viewer.session.value?.control === "one";
-    void viewer.control({ mode: one ? "everyone" : "one" });
+    const exclusive = viewer.session.value?.control === "exclusive";
+    void viewer.setControl({ mode: exclusive ? "shared" : "exclusive" });
   });
-  // Who was here last means nothing to who is not here.
-  const appear = (): void => {
+  // Without a connection the list is out of date.
+  const updateVisibility = (): void => {
     const { kind } = viewer.connection.state.value;
     root.hidden = viewer.session.value === null || (kind !== "live" && kind !== "connecting");
   };
-  viewer.connection.state.watch(appear);
+  viewer.connection.state.watch(updateVisibility);
   viewer.session.watch((session) => {
-    appear();
+    updateVisibility();
     if (!session) return;
     const me = session.viewers.find(({ you }) => you);
     setText(count, String(session.viewers.length));
-    opener.setAttribute("aria-label", `Who is here: ${session.viewers.length}`);
-    setText(room, `Session ${session.name}`);
-    const one = session.control === "one";
-    setText(mode, one ? "Let everyone change things" : "Only I change things");
+    opener.setAttribute("aria-label", `Participants: ${session.viewers.length}`);
+    setText(sessionName, `Session ${session.name}`);
+    const exclusive = session.control === "exclusive";
+    setText(mode, exclusive ? "Share control with all viewers" : "Take exclusive control");
     mode.hidden = !me?.control;
-    const taken = session.viewers.some((person) => person.control);
+    const claimed = session.viewers.some(({ control }) => control);
     list.replaceChildren(
-      ...session.viewers.map((person, index) => personLine(person, index)),
-      ...(one && !taken && viewer.controlState.value.kind !== "watching" ? [takeLine()] : []),
+      ...session.viewers.map((participant, index) => participantLine(participant, index)),
+      ...(exclusive && !claimed && viewer.controlState.value.kind !== "read_only"
+        ? [takeLine()]
+        : []),
     );
   });
   viewer.controlState.watch(({ kind }) => {
     opener.classList.toggle("without-control", kind !== "may_change");
   });
 
-  const personLine = (person: ViewerInfo, index: number): HTMLElement => {
+  const participantLine = (participant: ViewerInfo, index: number): HTMLElement => {
     const session = viewer.session.value;
     const me = session?.viewers.find(({ you }) => you);
-    const name = nameOf(person, index);
-    const inControl = session?.control === "one" && person.control;
-    const givable = session?.control === "one" && me?.control && !person.you;
+    const name = viewerName(participant, index);
+    const inControl = session?.control === "exclusive" && participant.control;
+    const canHandOver = session?.control === "exclusive" && me?.control && !participant.you;
     return element(
       "li",
       {},
-      element("span", { class: "person" }, person.you ? `${name} (you)` : name),
+      element("span", { class: "participant" }, participant.you ? `${name} (you)` : name),
       inControl ? element("span", { class: "in-control" }, "in control") : null,
-      givable
-        ? button(`Hand over to ${name}`, "target", () =>
-            void viewer.control({ action: "give", viewer: person.viewer }),
+      canHandOver
+        ? button(
+            `Hand over to ${name}`,
+            "target",
+            () => void viewer.setControl({ action: "give", viewer: participant.viewer }),
           )
         : null,
     );
@@ -131,11 +135,11 @@ export function mountParticipants(
   const takeLine = (): HTMLElement => element("li", {}, createTakeControlButton(viewer));
 }
 
-/** The page's address as it leads everybody to the session that is watched here. */
+/** A URL of the page that leads other browsers to this session. */
 async function linkToJoin({ connection, hello }: Viewer): Promise<string> {
-  if (!hello) throw new Error("There is no session to join at the moment");
-  const place = await connection.place.findShareable(hello);
-  const link = place.pageUrl(location.href);
+  if (!hello) throw new Error("There is no connection to the server");
+  const address = await connection.address.findShareable(hello);
+  const link = address.pageUrl(location.href);
   link.hash = "";
   return link.href;
 }

@@ -1,21 +1,21 @@
-// Where the connection stands: a quiet pill while all is well, a card when there is no picture.
+// State of the connection: a pill in the corner, and a notice while there is no frame.
 
-import { element, setText } from "../widgets/element.ts";
 import { humanise } from "heliograph/settings_schema.ts";
-import type { ControlState } from "../session/control_state.ts";
-import type { ConnectionState } from "../stream/connection.ts";
 import { thumbnailOf } from "../previews/thumbnails.ts";
+import type { ControlState } from "../session/control_state.ts";
 import type { Viewer } from "../session/viewer.ts";
+import type { ConnectionState } from "../stream/connection.ts";
+import { element, setText } from "../widgets/element.ts";
 
 interface Notice {
   title: string;
   detail: string;
-  /** In [0, 1]; undefined shows no bar, null an endless one. */
+  /** In [0, 1]; undefined shows no bar, null an indeterminate one. */
   progress?: number | null;
-  /** A picture of what is to come, where one is known. */
+  /** A preview of the scene that is being loaded, if there is one. */
   poster?: string | null;
   action?: { label: string; run: () => void };
-  /** Whether the last picture stays visible, dimmed, behind the notice. */
+  /** Whether the last frame stays visible, dimmed, behind the notice. */
   dims: boolean;
 }
 
@@ -37,10 +37,10 @@ export function mountStatus(viewer: Viewer, pill: HTMLElement, card: HTMLElement
   viewer.restoring.watch(update);
   viewer.scenes.watch(update);
   viewer.scene.watch(update);
-  let hadPicture = false;
+  let hadFrame = false;
   viewer.frame.watch((frame) => {
-    if ((frame !== null) === hadPicture) return;
-    hadPicture = frame !== null;
+    if ((frame !== null) === hadFrame) return;
+    hadFrame = frame !== null;
     update();
   });
   setInterval(() => {
@@ -57,11 +57,11 @@ function pillLabel(state: ConnectionState, controlState: ControlState): string {
     case "lost":
       return "Reconnecting";
     case "mjpeg_fallback":
-      return "Pictures only";
+      return "View only (no WebSocket)";
     case "full":
       return "Server full";
     case "wrong_version":
-      return "Other version";
+      return "Version mismatch";
     case "forbidden":
       return "No access";
   }
@@ -71,20 +71,20 @@ function liveLabel(controlState: ControlState): string {
   switch (controlState.kind) {
     case "may_change":
       return "Live";
-    case "watching":
-      return "Live, to watch";
+    case "read_only":
+      return "Live, read-only";
     case "other":
       return `Live, ${controlState.name} is in control`;
-    case "nobody":
-      return "Live, nobody is in control";
+    case "unclaimed":
+      return "Live, no viewer is in control";
   }
 }
 
 function noticeFor(viewer: Viewer, state: ConnectionState): Notice | null {
-  const retry = { label: "Try now", run: () => viewer.connection.retryNow() };
+  const retry = { label: "Retry now", run: () => viewer.connection.retryNow() };
   switch (state.kind) {
     case "connecting":
-      return { title: "Connecting", detail: "Looking for the server", progress: null, dims: true };
+      return { title: "Connecting", detail: "Waiting for the server", progress: null, dims: true };
     case "lost":
       return {
         title: "Connection lost",
@@ -97,21 +97,21 @@ function noticeFor(viewer: Viewer, state: ConnectionState): Notice | null {
     case "full":
       return {
         title: "The server is full",
-        detail: `No place is free for another viewer. ${countdown(state.retryAt)}`,
+        detail: `It accepts no more viewers. ${countdown(state.retryAt)}`,
         action: retry,
         dims: true,
       };
     case "wrong_version":
       return {
-        title: "This page is of another version",
-        detail: `The server speaks ${state.detail || "another protocol"}. Reload to get its page.`,
+        title: "Version mismatch",
+        detail: `The server uses ${state.detail || "another protocol"}. Reload the page.`,
         action: { label: "Reload", run: () => location.reload() },
         dims: true,
       };
     case "forbidden":
       return {
         title: "No access",
-        detail: state.detail ? asSentence(state.detail) : "The server does not let this page in.",
+        detail: state.detail ? asSentence(state.detail) : "The server denies access to this page.",
         action: { label: "Reload", run: () => location.reload() },
         dims: true,
       };
@@ -135,21 +135,21 @@ function liveNotice(viewer: Viewer): Notice | null {
     };
   }
   if (viewer.restoring.value) {
-    const detail = "Bringing back scene, settings and camera";
+    const detail = "Restoring scene, settings and camera";
     return { title: "Restoring the view", detail, progress: null, dims: true };
   }
   if (!viewer.scene.value) {
     return viewer.scenes.value.scenes.length > 0
-      ? { title: "No scene yet", detail: "Choose one in the panel.", dims: false }
+      ? { title: "No scene loaded", detail: "Choose a scene in the panel.", dims: false }
       : {
           title: "No scenes found",
-          detail: "Put .glb or .gltf files into the folder that the server was started with.",
-          action: { label: "Look again", run: () => void viewer.refreshScenes() },
+          detail: "Put .glb or .gltf files into the scene folder of the server.",
+          action: { label: "Refresh", run: () => void viewer.refreshScenes() },
           dims: false,
         };
   }
   if (!viewer.frame.value) {
-    const detail = "The first picture is on its way";
+    const detail = "Waiting for the first frame";
     return { title: "Rendering", detail, progress: null, dims: false };
   }
   return null;
@@ -157,7 +157,7 @@ function liveNotice(viewer: Viewer): Notice | null {
 
 function countdown(retryAt: number): string {
   const seconds = Math.ceil((retryAt - Date.now()) / 1000);
-  return seconds > 0 ? `Trying again in ${seconds} s.` : "Trying again now.";
+  return seconds > 0 ? `Retrying in ${seconds} s.` : "Retrying now.";
 }
 
 function createCard(card: HTMLElement): { show(notice: Notice | null): void } {
@@ -180,7 +180,7 @@ function createCard(card: HTMLElement): { show(notice: Notice | null): void } {
       if (notice.poster && poster.src !== notice.poster) poster.src = notice.poster;
       setText(detail, notice.detail);
       progress.hidden = notice.progress === undefined;
-      progress.classList.toggle("endless", notice.progress === null);
+      progress.classList.toggle("indeterminate", notice.progress === null);
       bar.style.width = typeof notice.progress === "number" ? `${notice.progress * 100}%` : "";
       progress.setAttribute("aria-label", notice.title);
       if (typeof notice.progress === "number") {
@@ -195,8 +195,8 @@ function createCard(card: HTMLElement): { show(notice: Notice | null): void } {
   };
 }
 
-/** A server's reason, as the page's own words are written. */
+/** A reason given by the server, with a capital letter and a full stop. */
 function asSentence(reason: string): string {
-  const begun = reason.charAt(0).toUpperCase() + reason.slice(1);
-  return /[.!?]$/.test(begun) ? begun : `${begun}.`;
+  const capitalised = reason.charAt(0).toUpperCase() + reason.slice(1);
+  return /[.!?]$/.test(capitalised) ? capitalised : `${capitalised}.`;
 }

@@ -1,10 +1,10 @@
-// Short messages that come and go in a corner. The same message is not stacked twice.
+// Short messages in a corner, which disappear after some seconds. Equal messages are not repeated.
 
 import { element, icon, setText } from "../widgets/element.ts";
 
-const shownMs = 8000;
-const quietMs = 3500;
-const mostAtOnce = 4;
+const errorMs = 8000;
+const infoMs = 3500;
+const maxShown = 4;
 
 export class Toasts {
   private readonly container: HTMLElement;
@@ -14,12 +14,12 @@ export class Toasts {
     this.container = container;
   }
 
-  /** Something went well or is under way: quieter, and gone sooner. */
-  tell(message: string): void {
-    this.show(message, true);
+  /** A message that is no error: without a warning sign, and for a shorter time. */
+  inform(message: string): void {
+    this.show(message, false);
   }
 
-  show(message: string, quiet = false): void {
+  show(message: string, isError = true): void {
     const known = this.open.get(message);
     if (known) {
       known.renew();
@@ -33,7 +33,7 @@ export class Toasts {
     };
     const renew = (): void => {
       clearTimeout(timer);
-      timer = window.setTimeout(close, quiet ? quietMs : shownMs);
+      timer = window.setTimeout(close, isError ? errorMs : infoMs);
     };
     const text = element("span", { class: "toast-text" });
     setText(text, message);
@@ -44,7 +44,7 @@ export class Toasts {
         mouseenter: () => clearTimeout(timer),
         mouseleave: renew,
       },
-      quiet ? null : icon("warning"),
+      isError ? icon("warning") : null,
       text,
       element(
         "button",
@@ -55,7 +55,7 @@ export class Toasts {
     this.open.set(message, { node, renew });
     this.container.append(node);
     renew();
-    if (this.open.size > mostAtOnce) {
+    if (this.open.size > maxShown) {
       const oldest = this.open.keys().next().value as string;
       this.open.get(oldest)?.node.remove();
       this.open.delete(oldest);

@@ -1,32 +1,39 @@
-// Play, pause, scrub and rate of the scene's clips; there only when the scene has any.
+// Playback controls of the scene's animation clips; hidden where the scene has none.
 
-import type { AnimationState } from "heliograph/messages.ts";
-import { requiresControl } from "../widgets/requires_control.ts";
-import { button, element, icon, setOptions, setText } from "../widgets/element.ts";
+import type { AnimationState, Methods } from "heliograph/messages.ts";
+import type { RequestArguments } from "heliograph/rpc.ts";
 import type { Viewer } from "../session/viewer.ts";
+import { button, element, icon, setOptions, setText } from "../widgets/element.ts";
+import { requiresControl } from "../widgets/requires_control.ts";
+
+/** The methods whose result is the state of the animation. */
+type AnimationMethod = Extract<keyof Methods, `animation.${string}`>;
 
 const refreshMs = 200;
-const stepsMs = 500;
+const lockstepRefreshMs = 500;
 const scrubSteps = 1000;
 const rates = [0.25, 0.5, 1, 2, 4];
 
 export function mountTransport(viewer: Viewer, root: HTMLElement): void {
   let readAt = 0;
   let scrubbing = false;
-  const ask = async (method: string, params: object = {}): Promise<void> => {
+  const call = async <Name extends AnimationMethod>(
+    method: Name,
+    ...params: RequestArguments<Methods[Name]["params"]>
+  ): Promise<void> => {
     try {
-      viewer.onAnimationState(await viewer.rpc.request<AnimationState>(method, params));
+      viewer.onAnimationState(await viewer.rpc.request(method, ...params));
     } catch (error) {
       viewer.report(error);
     }
   };
   const play = button("Play", "play", () => {
-    void ask(viewer.animation.value?.playing ? "animation.pause" : "animation.play");
+    void call(viewer.animation.value?.playing ? "animation.pause" : "animation.play");
   });
   const clip = element("select", {
     name: "clip",
     "aria-label": "Clip",
-    change: () => void ask("animation.play", { clip: clip.value }),
+    change: () => void call("animation.play", { clip: clip.value }),
   });
   const scrub = element("input", {
     type: "range",
@@ -34,7 +41,7 @@ export function mountTransport(viewer: Viewer, root: HTMLElement): void {
     min: "0",
     max: String(scrubSteps),
     step: "1",
-    "aria-label": "Moment of the clip",
+    "aria-label": "Time in the clip",
     input: () => {
       scrubbing = true;
       seek();
@@ -46,7 +53,7 @@ export function mountTransport(viewer: Viewer, root: HTMLElement): void {
     {
       name: "rate",
       "aria-label": "Speed",
-      change: () => void ask("animation.rate", { rate: Number(rate.value) }),
+      change: () => void call("animation.rate", { rate: Number(rate.value) }),
     },
     ...rates.map((value) => element("option", { value: String(value) }, `${value}×`)),
   );
@@ -55,40 +62,40 @@ export function mountTransport(viewer: Viewer, root: HTMLElement): void {
 
   const duration = (state: AnimationState): number => {
     const name = state.clip ?? clip.value;
-    return state.clips.find((one) => one.name === name)?.duration ?? 0;
+    return state.clips.find((clip) => clip.name === name)?.duration ?? 0;
   };
-  let seekUnderWay = false;
-  /** One request at a time; the last place of a drag is always sent. */
+  let seeking = false;
+  /** One request at a time; the last position of a drag is always sent. */
   const seek = (): void => {
     const state = viewer.animation.value;
-    if (!state || seekUnderWay) return;
-    const place = scrub.value;
-    seekUnderWay = true;
-    const seconds = (Number(place) / scrubSteps) * duration(state);
-    const chosen = state.clip ? Promise.resolve() : startPaused();
-    void chosen
-      .then(() => ask("animation.seek", { seconds }))
+    if (!state || seeking) return;
+    const position = scrub.value;
+    seeking = true;
+    const seconds = (Number(position) / scrubSteps) * duration(state);
+    const ready = state.clip ? Promise.resolve() : startPaused();
+    void ready
+      .then(() => call("animation.seek", { seconds }))
       .then(() => {
-        seekUnderWay = false;
-        if (scrubbing && scrub.value !== place) seek();
+        seeking = false;
+        if (scrubbing && scrub.value !== position) seek();
       });
   };
   const startPaused = async (): Promise<void> => {
-    await ask("animation.play", { clip: clip.value });
-    await ask("animation.pause");
+    await call("animation.play", { clip: clip.value });
+    await call("animation.pause");
   };
   const refresh = (): void => {
     const state = viewer.animation.value;
     if (!state || root.hidden) return;
     const length = duration(state);
-    const passes = state.playing && !state.lockstep;
-    const passed = passes ? ((performance.now() - readAt) / 1000) * state.rate : 0;
-    const now = length > 0 ? (state.seconds + passed) % length : 0;
+    const advances = state.playing && !state.lockstep;
+    const elapsed = advances ? ((performance.now() - readAt) / 1000) * state.rate : 0;
+    const now = length > 0 ? (state.seconds + elapsed) % length : 0;
     setText(time, `${now.toFixed(1)} / ${length.toFixed(1)} s`);
     if (scrubbing) return;
-    const part = length > 0 ? now / length : 0;
-    scrub.value = String(Math.round(part * scrubSteps));
-    scrub.style.setProperty("--filled", `${part * 100}%`);
+    const fraction = length > 0 ? now / length : 0;
+    scrub.value = String(Math.round(fraction * scrubSteps));
+    scrub.style.setProperty("--filled", `${fraction * 100}%`);
   };
   viewer.animation.watch((state) => {
     readAt = performance.now();
@@ -96,7 +103,10 @@ export function mountTransport(viewer: Viewer, root: HTMLElement): void {
     root.hidden = clips.length === 0;
     document.body.classList.toggle("with-transport", clips.length > 0);
     if (!state || clips.length === 0) return;
-    setOptions(clip, clips.map(({ name }) => ({ value: name, label: name.replaceAll("_", " ") })));
+    setOptions(
+      clip,
+      clips.map(({ name }) => ({ value: name, label: name.replaceAll("_", " ") })),
+    );
     clip.value = state.clip ?? clips[0]?.name ?? "";
     const nearest = rates.reduce((a, b) =>
       Math.abs(b - state.rate) < Math.abs(a - state.rate) ? b : a,
@@ -108,16 +118,16 @@ export function mountTransport(viewer: Viewer, root: HTMLElement): void {
     refresh();
   });
   setInterval(refresh, refreshMs);
-  let stepAsked = false;
-  // Single steps of lockstep are not told: they show in pictures.
+  let refreshPending = false;
+  // Steps in lockstep send no notification, only frames.
   viewer.frame.watch(() => {
     const state = viewer.animation.value;
-    if (stepAsked || !state?.playing || !state.lockstep) return;
-    stepAsked = true;
+    if (refreshPending || !state?.playing || !state.lockstep) return;
+    refreshPending = true;
     setTimeout(() => {
-      stepAsked = false;
-      if (viewer.hello) void ask("animation.list");
-    }, stepsMs);
+      refreshPending = false;
+      if (viewer.hello) void call("animation.list");
+    }, lockstepRefreshMs);
   });
   viewer.togglePlay = () => play.click();
 }

@@ -1,22 +1,22 @@
-// A scene file dropped on the page or chosen goes to the server, where that is allowed, and is shown.
+// Uploads a scene file that was dropped on the page or chosen, and loads it.
 
-import { element, setText } from "../widgets/element.ts";
-import { explained } from "../session/control_state.ts";
+import { describeControl } from "../session/control_state.ts";
 import type { Viewer } from "../session/viewer.ts";
+import { element, setText } from "../widgets/element.ts";
 import type { Toasts } from "./toasts.ts";
 
-const off = "This server takes no files from viewers";
+const uploadsDisabled = "This server does not accept uploads";
 const megabyte = 1024 * 1024;
 
 export function mountUpload(viewer: Viewer, root: HTMLElement, toasts: Toasts): void {
-  const words = element("p");
-  const veil = element("div", { class: "drop-veil", hidden: true }, words);
+  const text = element("p");
+  const veil = element("div", { class: "drop-veil", hidden: true }, text);
   root.append(veil);
   const carriesFile = (event: DragEvent): boolean =>
     event.dataTransfer?.types.includes("Files") ?? false;
   addEventListener("dragenter", (event) => {
     if (!carriesFile(event) || !viewer.hello) return;
-    setText(words, refusalNow(viewer) ?? "Drop a .glb file to show it");
+    setText(text, uploadError(viewer) ?? "Drop a .glb file to load it");
     veil.hidden = false;
   });
   addEventListener("dragover", (event) => {
@@ -30,22 +30,22 @@ export function mountUpload(viewer: Viewer, root: HTMLElement, toasts: Toasts): 
     event.preventDefault();
     veil.hidden = true;
     const file = event.dataTransfer?.files[0];
-    if (file) void bringScene(viewer, file, toasts);
+    if (file) void uploadScene(viewer, file, toasts);
   });
 }
 
-/** Sends a scene file to the server and shows it; says in one sentence why not. */
-export async function bringScene(viewer: Viewer, file: File, toasts: Toasts): Promise<void> {
-  const refused = refusalNow(viewer) ?? refusalOf(viewer, file);
-  if (refused) {
-    toasts.show(refused);
+/** Uploads a scene file and loads it; shows why if it cannot. */
+export async function uploadScene(viewer: Viewer, file: File, toasts: Toasts): Promise<void> {
+  const error = uploadError(viewer) ?? fileError(viewer, file);
+  if (error) {
+    toasts.show(error);
     return;
   }
   const name = sceneName(file.name);
   try {
-    const address = viewer.connection.place.address(`api/v1/scenes/${name}`);
-    await upload(address, name, file, (fraction) => {
-      viewer.loading.set({ name, stage: "sending the file", fraction });
+    const url = viewer.connection.address.url(`api/v1/scenes/${name}`);
+    await upload(url, name, file, (fraction) => {
+      viewer.loading.set({ name, stage: "uploading", fraction });
     });
     await viewer.refreshScenes();
     await viewer.loadScene(name);
@@ -55,71 +55,72 @@ export async function bringScene(viewer: Viewer, file: File, toasts: Toasts): Pr
   }
 }
 
-/** Why no file at all can be brought at the moment; null if it can. */
-function refusalNow(viewer: Viewer): string | null {
+/** Why no file can be uploaded at the moment; null if it can. */
+function uploadError(viewer: Viewer): string | null {
   const { hello } = viewer;
   if (!hello) return "There is no connection to the server";
-  if (!viewer.mayChange) return explained(viewer.controlState.value);
-  return hello.limits.max_upload_bytes === 0 ? off : null;
+  if (!viewer.mayChange) return describeControl(viewer.controlState.value);
+  return hello.limits.max_upload_bytes === 0 ? uploadsDisabled : null;
 }
 
-/** Why this file cannot be brought, as far as one can tell without sending it. */
-function refusalOf(viewer: Viewer, file: File): string | null {
+/** Why this file cannot be uploaded, as far as is known before sending it. */
+function fileError(viewer: Viewer, file: File): string | null {
   if (!file.name.toLowerCase().endsWith(".glb")) {
-    return "Only .glb files can be brought along: they hold everything in one";
+    return "Only .glb files can be uploaded: they contain all buffers and images";
   }
-  const most = viewer.hello?.limits.max_upload_bytes ?? Infinity;
-  if (file.size > most) {
-    return `${file.name} has ${spoken(file.size)}; the server takes up to ${spoken(most)}`;
+  const limit = viewer.hello?.limits.max_upload_bytes ?? Infinity;
+  if (file.size > limit) {
+    const [size, most] = [formatSize(file.size), formatSize(limit)];
+    return `${file.name} has ${size}; the server accepts up to ${most}`;
   }
   return file.size === 0 ? `${file.name} is empty` : null;
 }
 
-function spoken(bytes: number): string {
+function formatSize(bytes: number): string {
   const [size, unit] = bytes < megabyte ? [bytes / 1024, "kB"] : [bytes / megabyte, "MB"];
   return `${size.toFixed(size < 10 ? 1 : 0)} ${unit}`;
 }
 
-/** "My model (1).glb" -> "My_model_1": what servers take for a name. */
+/** "My model (1).glb" -> "My_model_1": a valid scene name. */
 export function sceneName(file: string): string {
   const stem = file.replace(/\.[^.]*$/, "");
   const name = stem.replace(/[^A-Za-z0-9-]+/g, "_").replace(/^[_-]+|[_-]+$/g, "");
   return name.slice(0, 64) || "scene";
 }
 
-/** Rejects with a sentence for the person. XMLHttpRequest, because fetch tells no progress. */
+/** Rejects with a sentence for the user. XMLHttpRequest, because fetch reports no progress. */
 function upload(
-  address: URL,
+  url: URL,
   name: string,
   file: File,
   progress: (fraction: number) => void,
 ): Promise<void> {
   return new Promise((resolve, reject) => {
     const request = new XMLHttpRequest();
-    request.open("PUT", address);
+    request.open("PUT", url);
     request.upload.onprogress = ({ loaded, total }) => progress(total > 0 ? loaded / total : 0);
-    request.onerror = () => reject(new Error("The file could not be sent"));
+    request.onerror = () => reject(new Error("The upload failed: no connection to the server"));
     request.onload = () => {
       if (request.status === 201) resolve();
-      else reject(new Error(refusalSentence(name, request.status, request.responseText.trim())));
+      else reject(new Error(rejectionSentence(name, request.status, request.responseText.trim())));
     };
     progress(0);
     request.send(file);
   });
 }
 
-function refusalSentence(name: string, status: number, text: string): string {
+function rejectionSentence(name: string, status: number, text: string): string {
   switch (status) {
     case 400:
       return `The server cannot read this file: ${text}`;
     case 404:
     case 405:
-      return off;
+      return uploadsDisabled;
     case 409:
-      return `The server has a scene called ${name} of its own: give the file another name`;
+      return `The server has its own scene ${name}: rename the file`;
     case 413:
-      return "The file is larger than the server takes";
+      return "The file is larger than the server accepts";
     default:
-      return text || `The server refused the file (${status})`;
+      return text || `The server rejected the file (HTTP ${status})`;
   }
 }

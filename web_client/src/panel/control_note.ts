@@ -1,6 +1,6 @@
-// Why the controls below are out of use, and the way to get them back.
+// Explains why the controls below are disabled, and offers to take control.
 
-import { explained } from "../session/control_state.ts";
+import { describeControl } from "../session/control_state.ts";
 import type { Viewer } from "../session/viewer.ts";
 import { element, icon, setText } from "../widgets/element.ts";
 import { createTakeControlButton } from "../widgets/take_control_button.ts";
@@ -8,12 +8,17 @@ import { createTakeControlButton } from "../widgets/take_control_button.ts";
 export function createControlNote(viewer: Viewer): HTMLElement {
   const text = element("p");
   const take = createTakeControlButton(viewer);
-  const words = element("div", {}, text, take);
-  const note = element("div", { class: "control-note", role: "status" }, icon("people"), words);
+  const body = element("div", {}, text, take);
+  const note = element(
+    "div",
+    { class: "control-note", role: "status" },
+    icon("participants"),
+    body,
+  );
   viewer.controlState.watch((controlState) => {
     note.hidden = controlState.kind === "may_change";
-    take.hidden = controlState.kind !== "nobody";
-    setText(text, explained(controlState));
+    take.hidden = controlState.kind !== "unclaimed";
+    setText(text, describeControl(controlState));
   });
   return note;
 }

@@ -1,28 +1,28 @@
-// The frame of the side panel, which becomes a bottom sheet on narrow screens.
+// The side panel, which becomes a bottom sheet on narrow screens.
 
 import { preferences } from "../common/preferences.ts";
+import type { Signal } from "../common/signal.ts";
 import { type Viewer, bufferSetting } from "../session/viewer.ts";
 import { button, element, icon } from "../widgets/element.ts";
+import { type MenuItem, createMenu } from "../widgets/menu.ts";
+import { createTabs } from "../widgets/tabs.ts";
+import { createControlNote } from "./control_note.ts";
 import { type InspectParts, createInspectTab } from "./inspect/inspect_tab.ts";
 import { createSceneTab, appearanceGroups } from "./scene/scene_tab.ts";
-import { type MenuItem, createMenu } from "../widgets/menu.ts";
 import { createSettingsTab } from "./settings/settings_tab.ts";
-import { createControlNote } from "./control_note.ts";
-import { createStatsTab } from "./timing/timing_tab.ts";
 import { type ResolutionChoice, createStreamSection } from "./timing/stream_section.ts";
-import { createTabs } from "../widgets/tabs.ts";
-import type { Signal } from "../common/signal.ts";
+import { createTimingTab } from "./timing/timing_tab.ts";
 
-export interface PanelActions {
+interface PanelActions {
   output: MenuItem[];
   inspect: InspectParts;
-  /** Sends a scene file to the server and shows it. */
-  bring(file: File): void;
+  /** Uploads a scene file and loads it. */
+  upload(file: File): void;
   help(): void;
   fullscreen: (() => void) | null;
 }
 
-export interface Panel {
+interface Panel {
   resolution: Signal<ResolutionChoice>;
   toggle(): void;
 }
@@ -31,19 +31,24 @@ const narrow = matchMedia("(max-width: 640px)");
 
 export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActions): Panel {
   const stream = createStreamSection(viewer);
-  const tabs = createTabs("Parts of the panel", [
-    { id: "scene", label: "Scene", icon: "scene", body: createSceneTab(viewer, actions.bring) },
+  const tabs = createTabs("Panel", [
+    { id: "scene", label: "Scene", icon: "scene", body: createSceneTab(viewer, actions.upload) },
     {
       id: "settings",
       label: "Settings",
       icon: "sliders",
       body: createSettingsTab(viewer, [...appearanceGroups, bufferSetting]),
     },
-    { id: "inspect", label: "Inspect", icon: "layers", body: createInspectTab(viewer, actions.inspect) },
-    { id: "stats", label: "Timing", icon: "chart", body: createStatsTab(viewer, stream.node) },
+    {
+      id: "inspect",
+      label: "Inspect",
+      icon: "layers",
+      body: createInspectTab(viewer, actions.inspect),
+    },
+    { id: "timing", label: "Timing", icon: "chart", body: createTimingTab(viewer, stream.node) },
   ]);
   viewer.controlState.watch(({ kind }) => {
-    // Keys scroll it by what is in it, unless all of that is locked.
+    // While all controls are disabled, the panel itself takes the focus, so that keys scroll it.
     if (kind === "may_change") tabs.pages.removeAttribute("tabindex");
     else tabs.pages.tabIndex = 0;
   });
@@ -72,12 +77,12 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
     content.inert = !open || !live;
     content.classList.toggle("idle", !live);
   };
-  const follow = (): void => {
+  const updateLive = (): void => {
     live = viewer.connection.state.value.kind === "live" && !viewer.restoring.value;
     enable();
   };
-  viewer.connection.state.watch(follow);
-  viewer.restoring.watch(follow);
+  viewer.connection.state.watch(updateLive);
+  viewer.restoring.watch(updateLive);
   const show = (shown: boolean): void => {
     open = shown;
     root.classList.toggle("folded", !shown);
@@ -100,7 +105,7 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
   return { resolution: stream.resolution, toggle };
 }
 
-/** On a phone the header is the handle of the sheet: a swipe up opens it, down closes it. */
+/** On narrow screens the header is the sheet's handle: a swipe up opens it, down closes it. */
 function mountSheetDrag(header: HTMLElement, isOpen: () => boolean, toggle: () => void): void {
   let startedAt: number | null = null;
   header.addEventListener("pointerdown", (event) => {

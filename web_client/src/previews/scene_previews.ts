@@ -1,24 +1,24 @@
-// Small pictures of scenes that this browser has not seen yet. The server makes each in a session
-// of its own, one after another, and only while nothing else needs it.
+// Renders thumbnails of scenes that this browser has not shown yet: one after another, each in a
+// session of its own, and only while the server is idle.
 
-import type { SceneList, SessionInfo } from "heliograph/messages.ts";
-import { shrunk } from "../common/image_files.ts";
-import { keepThumbnail, thumbnailOf } from "./thumbnails.ts";
+import type { SceneList } from "heliograph/messages.ts";
+import { thumbnailUrl } from "../common/image_files.ts";
 import type { Viewer } from "../session/viewer.ts";
+import { storeThumbnail, thumbnailOf } from "./thumbnails.ts";
 
 const size = { width: 240, height: 135 };
 const samples = 8;
-const lookAgainMs = 700;
+const pollMs = 700;
 const createTimeoutMs = 60_000;
 
-/** Larger files cost more than a small picture is worth. */
-const largestFile = 128 * 1024 * 1024; // bytes
+/** Larger files take too long to load for a thumbnail. */
+const maxFileBytes = 128 * 1024 * 1024;
 
 export class ScenePreviews {
   private readonly viewer: Viewer;
-  /** Scenes that gave no picture; not asked for again. */
-  private readonly refused = new Set<string>();
-  private wanted = false;
+  /** Scenes that could not be rendered; not requested again. */
+  private readonly failed = new Set<string>();
+  private active = false;
   private running = false;
   private interruption: AbortController | null = null;
 
@@ -29,22 +29,22 @@ export class ScenePreviews {
     });
   }
 
-  /** Makes what is missing, until `stop`. */
+  /** Renders the missing thumbnails until `stop`. */
   start(): void {
-    this.wanted = true;
+    this.active = true;
     if (!this.running) void this.run();
   }
 
   stop(): void {
-    this.wanted = false;
+    this.active = false;
     this.interruption?.abort();
   }
 
   private async run(): Promise<void> {
     this.running = true;
-    for (let scene = this.next(); this.wanted && scene; scene = this.next()) {
-      if (await this.serverIsFree()) await this.portray(scene);
-      else await new Promise((resolve) => setTimeout(resolve, lookAgainMs));
+    for (let scene = this.next(); this.active && scene; scene = this.next()) {
+      if (await this.serverIsIdle()) await this.renderPreview(scene);
+      else await new Promise((resolve) => setTimeout(resolve, pollMs));
     }
     this.running = false;
   }
@@ -52,46 +52,49 @@ export class ScenePreviews {
   private next(): string | undefined {
     const { scenes }: SceneList = this.viewer.scenes.value;
     return scenes.find(
-      ({ name, bytes }) => bytes <= largestFile && !this.refused.has(name) && !thumbnailOf(name),
+      ({ name, bytes }) => bytes <= maxFileBytes && !this.failed.has(name) && !thumbnailOf(name),
     )?.name;
   }
 
-  /** Nothing moves here, and nobody watches anything else. */
-  private async serverIsFree(): Promise<boolean> {
+  /** Nothing moves in this session, and no other session has viewers. */
+  private async serverIsIdle(): Promise<boolean> {
     const { viewer } = this;
     const busy = viewer.loading.value || viewer.restoring.value || viewer.animation.value?.playing;
     if (document.hidden || !viewer.hello || busy || !viewer.frame.value?.final) return false;
-    if (!viewer.capabilities.has("session.create") || viewer.controlState.value.kind === "watching") {
-      this.wanted = false;
+    if (
+      !viewer.capabilities.has("session.create") ||
+      viewer.controlState.value.kind === "read_only"
+    ) {
+      this.active = false;
       return false;
     }
     try {
-      const { sessions } = await viewer.rpc.request<{ sessions: SessionInfo[] }>("session.list");
+      const { sessions } = await viewer.rpc.request("session.list");
       const own = viewer.hello?.session;
       return sessions.every(({ name, viewers }) => name === own || viewers.length === 0);
     } catch {
-      return false; // the connection is gone: it is asked again with the next
+      return false; // the connection is lost; the next one tries again
     }
   }
 
-  private async portray(scene: string): Promise<void> {
+  private async renderPreview(scene: string): Promise<void> {
     const interruption = new AbortController();
     this.interruption = interruption;
     let session: string | null = null;
     try {
       const settings = { accumulation: { max_samples: samples } };
-      const asked = { scene, settings, ...size };
+      const params = { scene, settings, ...size };
       const { rpc } = this.viewer;
-      session = (await rpc.request<SessionInfo>("session.create", asked, createTimeoutMs)).name;
-      const address = this.viewer.connection.place.address(`api/v1/sessions/${session}/frame.jpg`);
-      address.searchParams.set("samples", String(samples));
+      session = (await rpc.request("session.create", params, createTimeoutMs)).name;
+      const url = this.viewer.connection.address.url(`api/v1/sessions/${session}/frame.jpg`);
+      url.searchParams.set("samples", String(samples));
       const { signal } = interruption;
-      const response = await fetch(address, { signal });
+      const response = await fetch(url, { signal });
       if (!response.ok) throw new Error(await response.text());
-      keepThumbnail(scene, await shrunk(await response.blob(), size.width));
+      storeThumbnail(scene, await thumbnailUrl(await response.blob(), size.width));
     } catch {
-      // What was interrupted is taken up again; what cannot be shown stays without a picture.
-      if (!interruption.signal.aborted) this.refused.add(scene);
+      // Interrupted previews are rendered later; scenes that fail stay without one.
+      if (!interruption.signal.aborted) this.failed.add(scene);
     } finally {
       this.interruption = null;
       if (session) await this.close(session);
@@ -99,7 +102,7 @@ export class ScenePreviews {
   }
 
   private async close(session: string): Promise<void> {
-    // It ends by itself, later, where it cannot be closed now.
+    // If this fails, the session ends by its idle timeout.
     await this.viewer.rpc.request("session.close", { session }).catch(() => {});
   }
 }

@@ -1,14 +1,14 @@
-// Views that a person keeps, per scene, in this browser.
+// Camera bookmarks per scene, stored in this browser.
 
-import type { Camera } from "heliograph/messages.ts";
+import type { CameraPose } from "../common/camera_pose.ts";
 import { preferences } from "../common/preferences.ts";
 
-export interface Bookmark {
+interface Bookmark {
   name: string;
-  camera: Camera;
+  camera: CameraPose;
 }
 
-const most = 24;
+const maxBookmarks = 24;
 
 function keyOf(scene: string): string {
   return `bookmarks.${scene}`;
@@ -23,17 +23,20 @@ export function readBookmarks(scene: string): Bookmark[] {
   }
 }
 
-/** Adds a view under the first free number. */
-export function addBookmark(scene: string, camera: Camera): Bookmark[] {
-  const kept = readBookmarks(scene);
+/** Adds a bookmark under the first free number. */
+export function addBookmark(scene: string, camera: CameraPose): Bookmark[] {
+  const existing = readBookmarks(scene);
   let number = 1;
-  while (kept.some(({ name }) => name === `View ${number}`)) number += 1;
-  const all = [...kept, { name: `View ${number}`, camera: { ...camera, name: null } }];
-  return store(scene, all.slice(-most));
+  while (existing.some(({ name }) => name === `View ${number}`)) number += 1;
+  const all = [...existing, { name: `View ${number}`, camera: { ...camera, name: null } }];
+  return store(scene, all.slice(-maxBookmarks));
 }
 
 export function removeBookmark(scene: string, name: string): Bookmark[] {
-  return store(scene, readBookmarks(scene).filter((bookmark) => bookmark.name !== name));
+  return store(
+    scene,
+    readBookmarks(scene).filter((bookmark) => bookmark.name !== name),
+  );
 }
 
 function store(scene: string, bookmarks: Bookmark[]): Bookmark[] {

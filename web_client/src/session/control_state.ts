@@ -1,41 +1,44 @@
-// Whether the person at this page may change what all see, and if not, why.
+// Whether this page may change the session, and if not, why.
 
 import type { Hello, SessionInfo, ViewerInfo } from "heliograph/messages.ts";
 
 export type ControlState =
   | { kind: "may_change" }
-  /** The token lets this page watch only. */
-  | { kind: "watching" }
-  /** Only one viewer may change things, and it is this one. */
+  /** The access token is read-only. */
+  | { kind: "read_only" }
+  /** Another viewer has exclusive control. */
   | { kind: "other"; name: string }
-  /** Only one viewer may change things, and nobody took that place yet. */
-  | { kind: "nobody" };
+  /** Control is exclusive, and no viewer has it. */
+  | { kind: "unclaimed" };
 
-export function controlStateOf(session: SessionInfo | null, role: Hello["role"]): ControlState {
-  if (role === "view") return { kind: "watching" };
+export function controlStateOf(
+  session: SessionInfo | null,
+  role: Hello["role"] | undefined,
+): ControlState {
+  if (role === "view") return { kind: "read_only" };
   const me = session?.viewers.find(({ you }) => you);
   if (!session || !me || me.control) return { kind: "may_change" };
-  if (session.control === "everyone") return { kind: "watching" };
+  if (session.control === "shared") return { kind: "read_only" };
   const index = session.viewers.findIndex(({ control }) => control);
   const holder = session.viewers[index];
-  return holder ? { kind: "other", name: nameOf(holder, index) } : { kind: "nobody" };
+  return holder ? { kind: "other", name: viewerName(holder, index) } : { kind: "unclaimed" };
 }
 
-/** One sentence for the person; empty where there is nothing to explain. */
-export function explained(controlState: ControlState): string {
-  switch (controlState.kind) {
+/** One sentence for the user; empty where there is nothing to explain. */
+export function describeControl(state: ControlState): string {
+  switch (state.kind) {
     case "may_change":
       return "";
-    case "watching":
-      return "You are here to watch: your access does not let you change anything.";
+    case "read_only":
+      return "Your access is read-only.";
     case "other":
-      return `${controlState.name} is in control and can hand it over to you.`;
-    case "nobody":
-      return "Nobody is in control at the moment.";
+      return `${state.name} is in control and can hand it over to you.`;
+    case "unclaimed":
+      return "No viewer is in control at the moment.";
   }
 }
 
-/** What a viewer is called; the number is its place in the order of arrival, from 0. */
-export function nameOf({ name }: ViewerInfo, index: number): string {
+/** The name of a viewer; `index` is its position in the order of arrival, from 0. */
+export function viewerName({ name }: ViewerInfo, index: number): string {
   return name || `Viewer ${index + 1}`;
 }

@@ -1,38 +1,32 @@
-// Puts a view state back onto a server, in the order in which each part keeps the ones before it:
-// a scene resets camera and clip, a clip may carry the camera. Every step is acknowledged.
+// Restores a view state in a session. The order matters: a scene resets camera and clip, a clip may
+// animate the camera. Every step is acknowledged.
 
-import {
-  type AnimationState,
-  type Camera,
-  type EnvironmentState,
-  type JsonObject,
-  type SceneInfo,
-  ErrorCode,
-} from "heliograph/messages.ts";
-import { ChannelClosed, RpcError, type RpcPeer } from "heliograph/rpc.ts";
+import type { JsonObject } from "heliograph/json.ts";
+import { ErrorCode } from "heliograph/messages.ts";
+import { ChannelClosed, RpcError, type RpcPeer, timedOut } from "heliograph/rpc.ts";
 import type { ControlGroup } from "heliograph/settings_schema.ts";
-import { type Edits, type Part, patchesTowards } from "./scene_edits.ts";
+import { type Edits, patchesTowards } from "./scene_edits.ts";
 import { type ViewState, patchTowards, withoutPath } from "./view_state.ts";
 
 const retryMs = 300;
 const loadTimeoutMs = 600_000;
-const mostRefusals = 12;
+const maxRejectedSettings = 12;
 
 export interface RestoreHost {
   rpc: RpcPeer;
   schema(): ControlGroup;
   /** Whether the server has this method. */
-  capabilities(method: string): boolean;
-  /** Whether this state is still wanted: not after a newer wish or on a newer connection. */
-  wanted(): boolean;
-  /** Whether the session was made for this state, so that nothing is loaded there by others. */
-  isOwn(): boolean;
-  /** Tells what could not be put back. */
-  lost(sentence: string): void;
+  supports(method: string): boolean;
+  /** False once a newer state is pending or the connection has changed. */
+  isCurrent(): boolean;
+  /** Whether the session was created for this state, so that no other client loads a scene. */
+  ownsSession(): boolean;
+  /** Reports a part that could not be restored. */
+  reportSkipped(sentence: string): void;
 }
 
-/** Resolves with true when every part is acknowledged, false when it is no longer wanted. */
-export async function restore(host: RestoreHost, state: ViewState): Promise<boolean> {
+/** Resolves to true when every part is acknowledged, to false when the state is not current. */
+export async function restoreView(host: RestoreHost, state: ViewState): Promise<boolean> {
   const steps = [
     restoreScene,
     restoreSettings,
@@ -43,21 +37,21 @@ export async function restore(host: RestoreHost, state: ViewState): Promise<bool
     restoreCamera,
   ];
   for (const step of steps) {
-    if (!(await insist(host, () => step(host, state)))) return false;
+    if (!(await retryWhileBusy(host, () => step(host, state)))) return false;
   }
-  return host.wanted();
+  return host.isCurrent();
 }
 
-/** Repeats a step while the server is busy or not ready; gives up only with the connection. */
-async function insist(host: RestoreHost, step: () => Promise<void>): Promise<boolean> {
-  while (host.wanted()) {
+/** Repeats a step while the server is busy or not ready, until the connection is lost. */
+async function retryWhileBusy(host: RestoreHost, step: () => Promise<void>): Promise<boolean> {
+  while (host.isCurrent()) {
     try {
       await step();
       return true;
     } catch (error) {
       if (error instanceof ChannelClosed) return false;
-      if (!isPassing(error)) {
-        host.lost(error instanceof RpcError ? error.sentence : (error as Error).message);
+      if (!isTransient(error)) {
+        host.reportSkipped(error instanceof RpcError ? error.sentence : (error as Error).message);
         return true;
       }
       await new Promise((resolve) => setTimeout(resolve, retryMs));
@@ -66,70 +60,72 @@ async function insist(host: RestoreHost, step: () => Promise<void>): Promise<boo
   return false;
 }
 
-/** Errors that go away by themselves: no scene yet, too many calls, no answer in time. */
-function isPassing(error: unknown): boolean {
-  const passing: number[] = [ErrorCode.notReady, ErrorCode.tooManyCalls, ErrorCode.timedOut];
-  return error instanceof RpcError && passing.includes(error.code);
+/** Errors that a retry can resolve: no scene yet, rate limit, timeout. */
+function isTransient(error: unknown): boolean {
+  const transient: number[] = [ErrorCode.notReady, ErrorCode.rateLimited, timedOut];
+  return error instanceof RpcError && transient.includes(error.code);
 }
 
-/** Also waits for the scene that the server starts with: loading another meanwhile would end it. */
-async function restoreScene({ rpc, isOwn }: RestoreHost, state: ViewState): Promise<void> {
-  const info = await rpc.request<SceneInfo>("scene.info").catch((error: unknown) => {
-    if (!isOwn() || state.scene === undefined || !isPassing(error)) throw error;
+/** Waits for the server's initial scene first: loading another one would cancel it. */
+async function restoreScene({ rpc, ownsSession }: RestoreHost, state: ViewState): Promise<void> {
+  const info = await rpc.request("scene.info").catch((error: unknown) => {
+    if (!ownsSession() || state.scene === undefined || !isTransient(error)) throw error;
     return null;
   });
-  const same = <Value>(wanted: Value | undefined, there: Value | undefined): boolean =>
-    wanted === undefined || wanted === there;
+  const matches = <Value>(expected: Value | undefined, actual: Value | undefined): boolean =>
+    expected === undefined || expected === actual;
   const { scene, part, variant } = state;
-  const there = info && same(scene, info.name) && same(part, info.scene);
-  if (there && same(variant, info.variant)) return;
-  const chosen = part === undefined ? undefined : String(part);
-  const load = { name: scene ?? info?.name, scene: chosen, variant };
+  const loaded = info && matches(scene, info.name) && matches(part, info.scene);
+  if (loaded && matches(variant, info.variant)) return;
+  const index = part === undefined ? undefined : String(part);
+  const name = scene ?? info?.name;
+  if (name === undefined) return;
+  const load = { name, scene: index, variant };
   await rpc.request("scene.load", load, loadTimeoutMs);
 }
 
-/** What this server does not know or accept is left out; the rest is put back all the same. */
+/** Settings that this server rejects are left out; all others are restored. */
 async function restoreSettings(host: RestoreHost, { settings }: ViewState): Promise<void> {
   if (!settings) return;
-  const state = await host.rpc.request<{ settings: JsonObject }>("settings.get");
+  const state = await host.rpc.request("settings.get");
   let patch = patchTowards(host.schema(), state.settings, settings);
-  for (let refused = 0; patch && refused < mostRefusals; refused += 1) {
+  for (let rejected = 0; patch && rejected < maxRejectedSettings; rejected += 1) {
     try {
       await host.rpc.request("settings.patch", { patch });
       return;
     } catch (error) {
       const path = error instanceof RpcError ? error.data.path : undefined;
-      if (!path || isPassing(error)) throw error;
+      if (!path || isTransient(error)) throw error;
       const smaller: JsonObject = withoutPath(patch, path);
       patch = Object.keys(smaller).length > 0 ? smaller : null;
-      host.lost(`The server does not take ${path} as it was`);
+      host.reportSkipped(`The server rejects the previous value of ${path}`);
     }
   }
 }
 
 async function restoreEnvironment(host: RestoreHost, { environment }: ViewState): Promise<void> {
-  if (environment === undefined || !host.capabilities("environment.set")) return;
-  const { current } = await host.rpc.request<EnvironmentState>("environment.list");
+  if (environment === undefined || !host.supports("environment.set")) return;
+  const { current } = await host.rpc.request("environment.list");
   if (current !== environment) await host.rpc.request("environment.set", { name: environment });
 }
 
 async function restoreLights(host: RestoreHost, { lights }: ViewState): Promise<void> {
-  if (!lights || !host.capabilities("lights.patch")) return;
-  const there = await host.rpc.request<{ lights: Part[] }>("lights.list");
-  await restoreParts(host, patchesTowards(there.lights, lights), (light, patch) =>
+  if (!lights || !host.supports("lights.patch")) return;
+  const { lights: current } = await host.rpc.request("lights.list");
+  await restoreParts(host, patchesTowards(current, lights), (light, patch) =>
     host.rpc.request("lights.patch", { light, patch }),
   );
 }
 
 async function restoreMaterials(host: RestoreHost, { materials }: ViewState): Promise<void> {
-  if (!materials || !host.capabilities("materials.patch")) return;
-  const there = await host.rpc.request<{ materials: Part[] }>("materials.list");
-  await restoreParts(host, patchesTowards(there.materials, materials), (material, patch) =>
+  if (!materials || !host.supports("materials.patch")) return;
+  const { materials: current } = await host.rpc.request("materials.list");
+  await restoreParts(host, patchesTowards(current, materials), (material, patch) =>
     host.rpc.request("materials.patch", { material, patch }),
   );
 }
 
-/** What the server does not take of one light or material leaves the others in place. */
+/** A light or material that the server rejects does not stop the others. */
 async function restoreParts(
   host: RestoreHost,
   patches: Edits,
@@ -139,20 +135,20 @@ async function restoreParts(
     try {
       await send(name, patch);
     } catch (error) {
-      if (!(error instanceof RpcError) || isPassing(error)) throw error;
-      host.lost(`The server does not take ${name} as it was`);
+      if (!(error instanceof RpcError) || isTransient(error)) throw error;
+      host.reportSkipped(`The server rejects the previous state of ${name}`);
     }
   }
 }
 
 async function restoreClip({ rpc }: RestoreHost, { clip }: ViewState): Promise<void> {
   if (clip === undefined) return;
-  const there = await rpc.request<AnimationState>("animation.list");
+  const current = await rpc.request("animation.list");
   if (clip === null) {
-    if (there.playing) await rpc.request("animation.pause");
+    if (current.playing) await rpc.request("animation.pause");
     return;
   }
-  if (!there.clips.some(({ name }) => name === clip.clip)) return;
+  if (!current.clips.some(({ name }) => name === clip.clip)) return;
   await rpc.request("animation.play", { clip: clip.clip, rate: clip.rate });
   await rpc.request("animation.seek", { seconds: clip.seconds });
   if (!clip.playing) await rpc.request("animation.pause");
@@ -161,7 +157,7 @@ async function restoreClip({ rpc }: RestoreHost, { clip }: ViewState): Promise<v
 async function restoreCamera({ rpc }: RestoreHost, { camera }: ViewState): Promise<void> {
   if (!camera) return;
   const { eye, target, up, vertical_fov, name } = camera;
-  const there = await rpc.request<SceneInfo>("scene.info");
-  const named = name !== null && there.cameras.includes(name);
-  await rpc.request<Camera>("camera.set", named ? { name } : { eye, target, up, vertical_fov });
+  const info = await rpc.request("scene.info");
+  const named = name !== null && info.cameras.includes(name);
+  await rpc.request("camera.set", named ? { name } : { eye, target, up, vertical_fov });
 }

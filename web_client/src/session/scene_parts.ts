@@ -1,19 +1,21 @@
-// What is in the scene and can be changed: lights, materials, environment.
+// The parts of the scene that can be changed: lights, materials, environment.
 
+import type { JsonObject } from "heliograph/json.ts";
 import type {
   EnvironmentState,
-  JsonObject,
   LightInfo,
   MaterialInfo,
+  Methods,
+  Notifications,
   SceneInfo,
 } from "heliograph/messages.ts";
 import { ChannelClosed, type RpcPeer } from "heliograph/rpc.ts";
 import { PatchSender } from "../common/patch_sender.ts";
-import { type Edits, type Part, editsOf } from "./scene_edits.ts";
 import { Signal } from "../common/signal.ts";
+import { type Edits, type Part, editsOf } from "./scene_edits.ts";
 import type { ServerCapabilities } from "./server_capabilities.ts";
 
-export interface ScenePartsHost {
+interface ScenePartsHost {
   rpc: RpcPeer;
   scene: Signal<SceneInfo | null>;
   capabilities: ServerCapabilities;
@@ -50,22 +52,22 @@ export class SceneParts {
     this.materialSender.push(name, patch as unknown as JsonObject);
   }
 
-  /** What differs from the file, as far as the server tells. */
+  /** Differences from the file, as far as the server tells. */
   edits(): { lights?: Edits; materials?: Edits } {
     return { lights: editsOf(this.lights.value), materials: editsOf(this.materials.value) };
   }
 
-  /** Back to what the file says. */
+  /** Resets the light to the values of the file. */
   async resetLight(name: string): Promise<void> {
-    const light = this.lights.value.find((one) => one.name === name);
+    const light = this.lights.value.find((part) => part.name === name);
     const shown = ["direction", "angular_diameter", "radius", "intensity", "enabled"];
-    const patch = resetting(light, shown);
+    const patch = resetPatch(light, shown);
     this.takeLight(await this.attempt("lights.patch", { light: name, patch }));
   }
 
   async resetMaterial(name: string): Promise<void> {
-    const material = this.materials.value.find((one) => one.name === name);
-    const patch = resetting(material, ["base_color", "roughness", "metallic"]);
+    const material = this.materials.value.find((part) => part.name === name);
+    const patch = resetPatch(material, ["base_color", "roughness", "metallic"]);
     this.takeMaterial(await this.attempt("materials.patch", { material: name, patch }));
   }
 
@@ -74,51 +76,56 @@ export class SceneParts {
     await this.read();
   }
 
-  /** Takes a change made by another viewer. */
+  /** Takes a change by another viewer. */
   notified(method: string, params: unknown): void {
-    const { light, material } = params as Partial<LightAnswer & MaterialAnswer>;
-    if (light && !this.lightSender.unsettled(light.name)) this.takeLight({ light });
-    if (material && !this.materialSender.unsettled(material.name)) this.takeMaterial({ material });
+    const { light, material } = params as Partial<LightChange & MaterialChange>;
+    if (light && !this.lightSender.isBusy(light.name)) this.takeLight({ light });
+    if (material && !this.materialSender.isBusy(material.name)) this.takeMaterial({ material });
     if (method === "environment.changed") void this.read();
   }
 
-  /** What the server has, unless something newer has still to be sent there. */
-  private takeLight(answer: LightAnswer | null): void {
+  /** Takes the server's state, unless a newer patch is still to be sent. */
+  private takeLight(answer: LightChange | null): void {
     const light = answer?.light;
-    if (!light || this.lightSender.waits(light.name)) return;
+    if (!light || this.lightSender.hasQueued(light.name)) return;
     this.lights.set(merged(this.lights.value, light.name, light));
   }
 
-  private takeMaterial(answer: MaterialAnswer | null): void {
+  private takeMaterial(answer: MaterialChange | null): void {
     const material = answer?.material;
-    if (!material || this.materialSender.waits(material.name)) return;
+    if (!material || this.materialSender.hasQueued(material.name)) return;
     this.materials.set(merged(this.materials.value, material.name, material));
   }
 
   private async read(): Promise<void> {
     if (!this.host.scene.value) return;
     const [lights, materials, environment] = await Promise.all([
-      this.ask<{ lights: LightInfo[] }>("lights.list"),
-      this.ask<{ materials: MaterialInfo[] }>("materials.list"),
-      this.ask<EnvironmentState>("environment.list"),
+      this.list("lights.list"),
+      this.list("materials.list"),
+      this.list("environment.list"),
     ]);
     this.lights.set(lights?.lights ?? []);
     this.materials.set(materials?.materials ?? []);
     this.environment.set(environment);
   }
 
-  private async ask<Answer>(method: string): Promise<Answer | null> {
+  private async list<Name extends "lights.list" | "materials.list" | "environment.list">(
+    method: Name,
+  ): Promise<Methods[Name]["result"] | null> {
     if (!this.host.capabilities.has(method)) return null;
     try {
-      return await this.host.rpc.request<Answer>(method);
+      return await this.host.rpc.request(method, {} as Methods[Name]["params"]);
     } catch {
-      return null; // no scene yet, or the connection is gone: asked again with the next
+      return null; // no scene or no connection: it is read again with the next one
     }
   }
 
-  private async attempt<Answer>(method: string, params: object): Promise<Answer | null> {
+  private async attempt<Name extends "lights.patch" | "materials.patch" | "environment.set">(
+    method: Name,
+    params: Methods[Name]["params"],
+  ): Promise<Methods[Name]["result"] | null> {
     try {
-      return await this.host.rpc.request<Answer>(method, params);
+      return await this.host.rpc.request(method, params);
     } catch (error) {
       this.host.report(error);
       if (!(error instanceof ChannelClosed)) await this.read();
@@ -127,20 +134,15 @@ export class SceneParts {
   }
 }
 
-interface LightAnswer {
-  light: LightInfo;
-}
+type LightChange = { light: Notifications["lights.changed"]["light"] };
+type MaterialChange = { material: Notifications["materials.changed"]["material"] };
 
-interface MaterialAnswer {
-  material: MaterialInfo;
-}
-
-function merged<One extends Part>(parts: One[], name: string, patch: Partial<One>): One[] {
+function merged<Item extends Part>(parts: Item[], name: string, patch: Partial<Item>): Item[] {
   return parts.map((part) => (part.name === name ? { ...part, ...patch } : part));
 }
 
-/** Resets what differs; where the server does not tell, what can be changed here and is there. */
-function resetting(part: Part | undefined, shown: string[]): JsonObject {
+/** A patch of nulls for the changed members; without `changed`, for the members shown here. */
+function resetPatch(part: Part | undefined, shown: string[]): JsonObject {
   const members = part?.changed ?? shown.filter((member) => part && member in part);
   return Object.fromEntries(members.map((member) => [member, null]));
 }

@@ -1,4 +1,4 @@
-// What this server can do; what it lacks is not offered.
+// Methods, file formats, presets and buffers of the server. The page offers nothing else.
 
 import type { BufferInfo, PresetInfo } from "heliograph/messages.ts";
 import { type OpenRpc, choicesOf } from "heliograph/openrpc.ts";
@@ -10,7 +10,7 @@ export class ServerCapabilities {
   /** File formats of `frame.capture`. */
   readonly captureFormats = new Signal<ReadonlySet<string>>(new Set(["png"]));
   readonly presets = new Signal<PresetInfo[]>([]);
-  /** Names of the methods that the server has. */
+  /** Names of the server's methods. */
   readonly methods = new Signal<ReadonlySet<string>>(new Set());
   private readonly rpc: RpcPeer;
 
@@ -23,18 +23,18 @@ export class ServerCapabilities {
   }
 
   async read(): Promise<void> {
-    const [openrpc, answer] = await Promise.all([
-      this.rpc.request<OpenRpc>("rpc.discover"),
-      this.rpc.request<{ presets: PresetInfo[] }>("settings.presets"),
+    const [document, { presets }] = await Promise.all([
+      this.rpc.request("rpc.discover"),
+      this.rpc.request("settings.presets"),
     ]);
+    const openrpc = document as unknown as OpenRpc;
     this.methods.set(new Set(openrpc.methods.map(({ name }) => name)));
     this.captureFormats.set(new Set(choicesOf(openrpc, "frame.capture", "format")));
-    this.presets.set(answer.presets);
+    this.presets.set(presets);
   }
 
-  /** Which buffers there are depends on the scene and on settings. */
+  /** The list of buffers depends on the scene and on settings. */
   async readBuffers(): Promise<void> {
-    const answer = await this.rpc.request<{ buffers: BufferInfo[] }>("frame.buffers");
-    this.buffers.set(answer.buffers);
+    this.buffers.set((await this.rpc.request("frame.buffers")).buffers);
   }
 }

@@ -5,7 +5,7 @@ import type { Hello } from "heliograph/messages.ts";
 import { type SessionOrigin, mainSession } from "../stream/session_address.ts";
 import type { ViewState } from "./view_state.ts";
 
-export interface SessionRestoreHost {
+interface SessionRestoreHost {
   /** The session before the reconnect; null on the first connection. */
   origin(): SessionOrigin | null;
   mayChange(): boolean;
@@ -31,8 +31,9 @@ export class SessionRestore {
   pendingStateFor(hello: Hello, pending: ViewState | null): ViewState | null {
     const origin = this.host.origin();
     if (!origin || origin.instance === hello.instance) return pending;
-    // A server without `bring` has a single session.
-    const restores = hello.bring ?? (hello.bring === undefined && this.host.mayChange());
+    // A server without `restore_state` has a single session.
+    const restores =
+      hello.restore_state ?? (hello.restore_state === undefined && this.host.mayChange());
     if (restores) this.restoringAt = keyOf(hello);
     this.host.inform(describeReconnect(hello, origin, this.isRestoring(hello)));
     if (this.isRestoring(hello)) return pending ?? this.host.viewState();
@@ -62,14 +63,14 @@ function keyOf({ instance, session }: Hello): string {
 }
 
 function describeReconnect(
-  { bring, role, session }: Hello,
+  { restore_state, role, session }: Hello,
   from: SessionOrigin,
   restores: boolean,
 ): string {
   if (restores && session === from.session) return "The server restarted. Your view is restored.";
   if (restores) return `Connected to another server. Your view continues in session ${session}.`;
   if (role === "view") return `Connected to another server, session ${session}.`;
-  return bring === null || bring === undefined
+  return restore_state === null || restore_state === undefined
     ? `Connected to another server, which has no free session. This is session ${session}.`
     : `Connected to another server. All viewers of your session continue in session ${session}.`;
 }

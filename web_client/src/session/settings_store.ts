@@ -1,6 +1,6 @@
-// The settings of the session as this page knows them: shown at once, confirmed by the server.
+// The settings of the session. Changes show at once and are then confirmed by the server.
 
-import type { JsonObject, JsonValue } from "heliograph/messages.ts";
+import type { JsonObject, JsonValue } from "heliograph/json.ts";
 import { ChannelClosed, type RpcPeer } from "heliograph/rpc.ts";
 import {
   type Control,
@@ -38,12 +38,12 @@ export class SettingsStore {
     this.failed = failed;
   }
 
-  /** Reads schema and values anew, for a new connection. */
+  /** Reads schema and values, for a new connection. */
   async load(): Promise<void> {
     this.unsent = null;
     const [schema, state] = await Promise.all([
-      this.rpc.request<JsonObject>("settings.schema"),
-      this.rpc.request<{ settings: JsonObject }>("settings.get"),
+      this.rpc.request("settings.schema"),
+      this.rpc.request("settings.get"),
     ]);
     const schemaText = JSON.stringify(schema);
     if (schemaText !== this.schemaText) {
@@ -76,7 +76,7 @@ export class SettingsStore {
     this.apply(patchOf(path, null));
   }
 
-  /** A change that can be undone. */
+  /** Applies a change that can be undone. */
   apply(patch: JsonObject): void {
     this.history.add(patch, inverseOf(patch, this.tree.value));
     this.patch(patch);
@@ -92,10 +92,10 @@ export class SettingsStore {
     if (patch) this.patch(patch);
   }
 
-  /** Chooses a preset on the server: a patch that only the server knows. */
+  /** Applies a preset of the server; its result is the patch that it stands for. */
   async choosePreset(name: string): Promise<JsonObject> {
     const before = this.tree.value;
-    const answer = await this.rpc.request<{ applied: JsonObject }>("settings.preset", { name });
+    const answer = await this.rpc.request("settings.preset", { name });
     this.history.add(answer.applied, inverseOf(answer.applied, before));
     this.tree.set(mergePatch(this.tree.value, answer.applied, this.defaults));
     return answer.applied;
@@ -118,12 +118,12 @@ export class SettingsStore {
     if (changed.length > 0) this.apply(patch);
   }
 
-  /** Takes a change made by another viewer. */
+  /** Takes a change by another viewer. */
   receive(patch: JsonObject): void {
     this.tree.set(mergePatch(this.tree.value, patch, this.defaults));
   }
 
-  /** Shows the change now; sends at most one patch at a time, joining what comes meanwhile. */
+  /** Shows the change now; sends one patch at a time and merges those that arrive during a call. */
   private patch(patch: JsonObject): void {
     this.tree.set(mergePatch(this.tree.value, patch, this.defaults));
     this.unsent = this.unsent ? joinPatches(this.unsent, patch) : patch;
@@ -136,7 +136,7 @@ export class SettingsStore {
       const patch = this.unsent;
       this.unsent = null;
       try {
-        const answer = await this.rpc.request<{ applied: JsonObject }>("settings.patch", { patch });
+        const answer = await this.rpc.request("settings.patch", { patch });
         const confirmed = mergePatch(this.tree.value, answer.applied, this.defaults);
         this.tree.set(mergePatch(confirmed, this.unsent ?? {}, this.defaults));
       } catch (error) {
@@ -148,10 +148,10 @@ export class SettingsStore {
     this.sending = false;
   }
 
-  /** After a refusal: back to what the server has. */
+  /** Returns to the server's values after an error. */
   private async restore(): Promise<void> {
     try {
-      const state = await this.rpc.request<{ settings: JsonObject }>("settings.get");
+      const state = await this.rpc.request("settings.get");
       this.tree.set(state.settings);
     } catch {
       // The connection is gone; the next one loads everything.

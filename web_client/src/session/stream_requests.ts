@@ -1,6 +1,6 @@
-// What this page asks of its stream: size, quality, codec, and a fresh start where video broke.
+// What this page requests of its stream: size, quality, codec, and a restart after decoding errors.
 
-import type { Hello, StreamSettings } from "heliograph/messages.ts";
+import type { Hello, StreamConfigureParams, StreamSettings } from "heliograph/messages.ts";
 import type { RpcPeer } from "heliograph/rpc.ts";
 import { preferences } from "../common/preferences.ts";
 import { Signal } from "../common/signal.ts";
@@ -10,132 +10,134 @@ export interface FrameSize {
   height: number;
 }
 
-/** Video that breaks this often, with fewer good pictures between, is given up. */
-const mostBreaks = 3;
-const goodPictures = 60;
+/** More decoding errors than this, with fewer good frames in between, switch to JPEG. */
+const maxVideoErrors = 3;
+const stableFrames = 60;
 
-export interface StreamHost {
-  /** Whether the size, which all viewers share, is this page's to choose. */
+interface StreamHost {
+  /** Whether this page may change the frame size, which all viewers share. */
   mayResize(): boolean;
   report(error: unknown): void;
-  tell(sentence: string): void;
+  inform(sentence: string): void;
 }
 
 export class StreamRequests {
-  /** What is in effect, as the server said last. */
+  /** The settings in effect, as last confirmed by the server. */
   readonly settings = new Signal<StreamSettings | null>(null);
-  /** The size of picture that suits the view and this server. */
+  /** The frame size that suits the view and this server. */
   chooseSize: (hello: Hello) => FrameSize = () => ({ width: 640, height: 360 });
   private readonly rpc: RpcPeer;
   private readonly host: StreamHost;
   private hello: Hello | null = null;
-  private asked: FrameSize | null = null;
-  private wanted: Partial<StreamSettings> = {};
-  private breaks = 0;
-  private goodSince = 0;
-  /** The server sends from its hello on, so that a video can break before anything can be asked. */
-  private brokeEarly = false;
+  private sentSize: FrameSize | null = null;
+  /** Choices that outlive the connection. */
+  private preferred: StreamConfigureParams = {};
+  private videoErrors = 0;
+  private framesSinceError = 0;
+  /** The server streams from its hello on, so an error can come before the first request. */
+  private failedBeforeBegin = false;
 
   constructor(rpc: RpcPeer, host: StreamHost) {
     this.rpc = rpc;
     this.host = host;
   }
 
-  /** Asks for everything on a new connection; `unseen` holds the pictures back at first. */
-  async begin(hello: Hello, unseen: boolean): Promise<void> {
+  /** Sends all choices over a new connection. `startPaused` waits for `resume`. */
+  async begin(hello: Hello, startPaused: boolean): Promise<void> {
     this.hello = hello;
-    this.asked = null;
-    const anew = this.brokeEarly;
-    this.brokeEarly = false;
+    this.sentSize = null;
+    const restart = this.failedBeforeBegin;
+    this.failedBeforeBegin = false;
     const codec = preferences.text("codec", isLocal() ? "jpeg" : "h264");
-    const coded = hello.codecs.length > 1 && hello.codecs.includes(codec) ? { codec } : {};
-    const paused = unseen || anew ? { paused: true } : {};
-    await this.configure({ ...this.wanted, ...this.size(), ...coded, ...paused });
-    if (anew && !unseen) await this.show();
+    const choice = { codec: codec as StreamSettings["codec"] };
+    const coded = hello.codecs.length > 1 && hello.codecs.includes(codec) ? choice : {};
+    const paused = startPaused || restart ? { paused: true } : {};
+    await this.configure({ ...this.preferred, ...this.size(), ...coded, ...paused });
+    if (restart && !startPaused) await this.resume();
   }
 
   end(): void {
     this.hello = null;
-    this.breaks = 0;
-    this.brokeEarly = false;
+    this.videoErrors = 0;
+    this.failedBeforeBegin = false;
   }
 
-  /** Lets pictures come that `begin` held back, unless nobody looks at the page. */
-  async show(): Promise<void> {
-    await this.configure({ paused: this.wanted.paused ?? false });
+  /** Starts the stream after a paused `begin`, unless the page is hidden. */
+  async resume(): Promise<void> {
+    await this.configure({ paused: this.preferred.paused ?? false });
   }
 
-  /** Changes the stream; remembered for the next connection. */
-  request(change: Partial<StreamSettings>): void {
-    this.wanted = { ...this.wanted, ...change };
+  /** Changes the stream, also for later connections. */
+  request(change: StreamConfigureParams): void {
+    this.preferred = { ...this.preferred, ...change };
     void this.configure(change);
   }
 
-  /** Asks for pictures of another size if the view, the screen or the choice has changed. */
+  /** Requests another frame size if the view, the screen or the choice has changed. */
   updateSize(): void {
     void this.configure(this.size());
   }
 
-  /** The pictures have this size now; another viewer may have chosen it. */
-  sizeTold({ width, height }: Partial<FrameSize>): void {
+  /** Frames have this size now; another viewer may have chosen it. */
+  onFrameSize({ width, height }: Partial<FrameSize>): void {
     const now = this.settings.value;
     if (!now || width === undefined || height === undefined) return;
     if (now.width !== width || now.height !== height) this.settings.set({ ...now, width, height });
   }
 
-  /** The size that pictures will have because this page asked for it; undefined if it did not. */
-  get askedSize(): FrameSize | undefined {
+  /** The frame size that this page has requested; undefined if it has not. */
+  get requestedSize(): FrameSize | undefined {
     const now = this.settings.value;
-    return this.asked && now ? { width: now.width, height: now.height } : undefined;
+    return this.sentSize && now ? { width: now.width, height: now.height } : undefined;
   }
 
-  /** A picture of a video was lost: the next ones are useless until it starts anew. */
-  videoBroke(): void {
-    if (this.wanted.paused) return;
-    this.breaks = this.goodSince >= goodPictures ? 1 : this.breaks + 1;
-    this.goodSince = 0;
-    if (this.breaks > mostBreaks) {
-      this.breaks = 0;
-      this.host.tell("The video breaks too often; single pictures come instead");
+  /** A video frame could not be decoded: the next ones depend on it, so the video restarts. */
+  onVideoError(): void {
+    if (this.preferred.paused) return;
+    this.videoErrors = this.framesSinceError >= stableFrames ? 1 : this.videoErrors + 1;
+    this.framesSinceError = 0;
+    if (this.videoErrors > maxVideoErrors) {
+      this.videoErrors = 0;
+      this.host.inform("Video decoding fails too often. The stream uses JPEG now.");
       this.request({ codec: "jpeg" });
     } else if (!this.hello) {
-      this.brokeEarly = true;
+      this.failedBeforeBegin = true;
     } else {
-      // A viewer that comes back gets a key picture first.
-      void this.configure({ paused: true }).then(() => this.show());
+      // A stream that resumes starts with a key frame.
+      void this.configure({ paused: true }).then(() => this.resume());
     }
   }
 
-  /** A picture of a video is on the screen. */
-  videoWorked(): void {
-    this.goodSince += 1;
+  /** A video frame was drawn. */
+  onVideoFrame(): void {
+    this.framesSinceError += 1;
   }
 
-  /** The size to ask for; nothing where it is known already or for others to choose. */
+  /** The size to request; empty where it is unchanged or other viewers choose it. */
   private size(): Partial<FrameSize> {
     if (!this.hello) return {};
     if (!this.host.mayResize()) {
-      this.asked = null; // others may choose another one meanwhile
+      this.sentSize = null; // another viewer may change it
       return {};
     }
     const size = this.chooseSize(this.hello);
-    const before = this.asked;
+    const before = this.sentSize;
     if (before && before.width === size.width && before.height === size.height) return {};
-    this.asked = size;
+    this.sentSize = size;
     return size;
   }
 
-  private async configure(change: Partial<StreamSettings>): Promise<void> {
+  private async configure(change: StreamConfigureParams): Promise<void> {
     if (Object.keys(change).length === 0 || !this.hello) return;
     try {
-      this.settings.set(await this.rpc.request<StreamSettings>("stream.configure", change));
+      this.settings.set(await this.rpc.request("stream.configure", change));
     } catch (error) {
       this.host.report(error);
     }
   }
 }
 
-/** JPEG is the sharper picture in motion; away from this machine bandwidth counts for more. */
+/** JPEG is sharper in motion; over a network, bandwidth matters more. */
 function isLocal(): boolean {
   return ["localhost", "127.0.0.1", "[::1]"].includes(location.hostname);
 }

@@ -1,21 +1,20 @@
-// Steps of changed settings, to go back and forth through. What a drag changes on its way is one
-// step.
+// Undo and redo of settings. All changes of one drag are one step.
 
-import type { JsonObject, JsonValue } from "heliograph/messages.ts";
+import type { JsonObject, JsonValue } from "heliograph/json.ts";
 import { isObject, joinPatches } from "heliograph/settings_tree.ts";
 
 interface Step {
-  back: JsonObject;
-  forth: JsonObject;
-  /** Which settings it changes; only steps of the same ones are joined. */
+  undo: JsonObject;
+  redo: JsonObject;
+  /** The settings that it changes; only steps with the same ones are merged. */
   paths: string;
   at: number;
 }
 
-const joinWithinMs = 900;
-const longest = 200;
+const mergeWithinMs = 900;
+const maxSteps = 200;
 
-/** The part of the tree that a patch is about to change: applied later, it undoes the patch. */
+/** The values that a patch will replace: applied later, they undo it. */
 export function inverseOf(patch: JsonObject, tree: JsonObject): JsonObject {
   const inverse: JsonObject = {};
   for (const [name, value] of Object.entries(patch)) {
@@ -48,34 +47,34 @@ export class UndoHistory {
     return this.undone.length > 0;
   }
 
-  /** Takes a change that is being made; `back` leads to what was before. */
-  add(forth: JsonObject, back: JsonObject): void {
+  /** Adds a change; `undo` leads back to the values before it. */
+  add(redo: JsonObject, undo: JsonObject): void {
     const at = this.clock();
-    const paths = leafPaths(forth).sort().join();
+    const paths = leafPaths(redo).sort().join();
     const last = this.done[this.done.length - 1];
     this.undone = [];
-    if (last && last.paths === paths && at - last.at < joinWithinMs) {
-      last.forth = joinPatches(last.forth, forth);
+    if (last && last.paths === paths && at - last.at < mergeWithinMs) {
+      last.redo = joinPatches(last.redo, redo);
       last.at = at;
       return;
     }
-    this.done.push({ forth, back, paths, at });
-    if (this.done.length > longest) this.done.shift();
+    this.done.push({ redo, undo, paths, at });
+    if (this.done.length > maxSteps) this.done.shift();
   }
 
-  /** The patch that takes the last step back, or null. */
+  /** The patch that undoes the last step, or null. */
   undo(): JsonObject | null {
     const step = this.done.pop();
     if (!step) return null;
     this.undone.push(step);
-    return step.back;
+    return step.undo;
   }
 
   redo(): JsonObject | null {
     const step = this.undone.pop();
     if (!step) return null;
     this.done.push({ ...step, at: -Infinity });
-    return step.forth;
+    return step.redo;
   }
 
   clear(): void {

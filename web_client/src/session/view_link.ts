@@ -1,34 +1,34 @@
-// A view in the fragment of an address: whoever opens the link sees the same. The fragment never
-// reaches the server's log.
+// A view state in the fragment of a URL, which browsers do not send to the server.
 
-import type { Camera, JsonObject, JsonValue, Vector3 } from "heliograph/messages.ts";
+import type { JsonObject, JsonValue, Vector3 } from "heliograph/json.ts";
 import { isObject } from "heliograph/settings_tree.ts";
-import { checkedEdits, mostEdits } from "./scene_edits.ts";
+import type { CameraPose } from "../common/camera_pose.ts";
+import { checkedEdits, maxEdits } from "./scene_edits.ts";
 import type { ClipState, ViewState } from "./view_state.ts";
 
 const key = "view";
 const digits = 6;
 
-/** Longer ones are cut by mail programs and messengers. */
-const longestLink = 8000;
+/** Mail programs and messengers truncate longer links. */
+const maxLinkLength = 8000;
 
-export interface Link {
+interface Link {
   href: string;
-  /** Whether changes of lights or materials had to be left out. */
+  /** Whether changes of lights or materials were left out. */
   shortened: boolean;
 }
 
-/** The page's address with a view in its fragment, of a length that can be passed on. */
+/** The page's URL with a view in its fragment, of at most `maxLinkLength` characters. */
 export function linkTo(page: string, state: ViewState): Link {
   const [lights, materials] = [state.lights, state.materials];
   const [full, lit, bare] = [
     state,
     { ...state, materials: undefined },
     { ...state, materials: undefined, lights: undefined },
-  ].map((one) => hrefOf(page, one)) as [string, string, string];
-  const href = [full, lit].find(({ length }) => length <= longestLink) ?? bare;
-  const most = Math.max(...[lights, materials].map((edits) => Object.keys(edits ?? {}).length));
-  return { href, shortened: href !== full || most >= mostEdits };
+  ].map((view) => hrefOf(page, view)) as [string, string, string];
+  const href = [full, lit].find(({ length }) => length <= maxLinkLength) ?? bare;
+  const largest = Math.max(...[lights, materials].map((edits) => Object.keys(edits ?? {}).length));
+  return { href, shortened: href !== full || largest >= maxEdits };
 }
 
 function hrefOf(page: string, state: ViewState): string {
@@ -37,7 +37,7 @@ function hrefOf(page: string, state: ViewState): string {
   return url.href;
 }
 
-/** The view in an address, or null when there is none or it is damaged. */
+/** The view in a URL; null without one or with an invalid one. */
 export function viewIn(address: string): ViewState | null {
   const text = new URLSearchParams(new URL(address).hash.slice(1)).get(key);
   if (!text) return null;
@@ -62,7 +62,7 @@ function bytesOf(text: string): Uint8Array {
   return Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
 }
 
-/** A link comes from anywhere: only members of the expected kind pass. */
+/** Links are untrusted: only members of the expected type pass. */
 function checked(value: unknown): ViewState | null {
   if (!isObject(value)) return null;
   const { scene, part, variant, environment, settings, clip, camera } = value as JsonObject;
@@ -87,7 +87,7 @@ function isClip(value: unknown): value is ClipState {
   return typeof clip === "string" && numbers && typeof playing === "boolean";
 }
 
-function isCamera(value: JsonValue | undefined): value is JsonObject & Camera {
+function isCamera(value: JsonValue | undefined): value is JsonObject & CameraPose {
   if (!isObject(value)) return false;
   const { eye, target, up, vertical_fov, name } = value;
   const pose = [eye, target, up].every(isVector) && typeof vertical_fov === "number";

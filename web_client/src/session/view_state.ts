@@ -1,8 +1,10 @@
-// What a person sees, in a form that survives: a lost connection, a link, a bookmark.
+// What the page shows, in a form for links, bookmarks and the restore after a reconnect.
 
-import type { AnimationState, Camera, JsonObject } from "heliograph/messages.ts";
+import type { JsonObject } from "heliograph/json.ts";
+import type { AnimationState } from "heliograph/messages.ts";
 import { type ControlGroup, allControls } from "heliograph/settings_schema.ts";
 import { joinPatches, patchOf, sameValue, valueAt } from "heliograph/settings_tree.ts";
+import type { CameraPose } from "../common/camera_pose.ts";
 import type { Edits } from "./scene_edits.ts";
 
 export interface ClipState {
@@ -12,25 +14,25 @@ export interface ClipState {
   playing: boolean;
 }
 
-/** Parts that are left out stay as the server has them. */
+/** Members that are left out keep the server's values. */
 export interface ViewState {
   scene?: string;
   /** Which scene of a file that holds several. */
   part?: number;
   variant?: string;
-  /** null: the one that goes with the scene. */
+  /** null: the scene's own. */
   environment?: string | null;
-  /** What differs from the scene's file; all else is as there. */
+  /** Differences from the scene's file. */
   lights?: Edits;
   materials?: Edits;
-  /** Only what differs from the defaults; everything else means the default. */
+  /** Differences from the defaults. */
   settings?: JsonObject;
-  /** null: the scene rests in the pose of its file. */
+  /** null: the scene is in its rest pose. */
   clip?: ClipState | null;
-  camera?: Camera;
+  camera?: CameraPose;
 }
 
-/** What `tree` changes of the defaults, as the smallest patch. */
+/** The smallest patch that leads from the defaults to `tree`. */
 export function changesOf(schema: ControlGroup, tree: JsonObject): JsonObject {
   return allControls(schema).reduce<JsonObject>((patch, control) => {
     const value = valueAt(tree, control.path);
@@ -39,35 +41,35 @@ export function changesOf(schema: ControlGroup, tree: JsonObject): JsonObject {
   }, {});
 }
 
-/** The patch that leads from `tree` to the defaults with `changes`; null where nothing differs. */
+/** The patch that leads from `tree` to the defaults with `changes`; null if they are equal. */
 export function patchTowards(
   schema: ControlGroup,
   tree: JsonObject,
   changes: JsonObject,
 ): JsonObject | null {
   let patch: JsonObject | null = null;
-  for (const { path, default: standard } of allControls(schema)) {
-    const wanted = valueAt(changes, path) ?? standard;
-    const there = valueAt(tree, path);
-    if (wanted === undefined || there === undefined || sameValue(wanted, there)) continue;
-    patch = joinPatches(patch ?? {}, patchOf(path, wanted));
+  for (const { path, default: defaultValue } of allControls(schema)) {
+    const target = valueAt(changes, path) ?? defaultValue;
+    const current = valueAt(tree, path);
+    if (target === undefined || current === undefined || sameValue(target, current)) continue;
+    patch = joinPatches(patch ?? {}, patchOf(path, target));
   }
   return patch;
 }
 
-/** Leaves a path out of a patch, with the groups that it leaves empty. */
+/** Removes a path from a patch, and the groups that become empty. */
 export function withoutPath(patch: JsonObject, path: string): JsonObject {
   const [name, ...rest] = path.split(".");
   const { [name as string]: inner, ...others } = patch;
   if (rest.length === 0 || inner === undefined) return others;
-  const kept = withoutPath(inner as JsonObject, rest.join("."));
-  return Object.keys(kept).length > 0 ? { ...others, [name as string]: kept } : others;
+  const remaining = withoutPath(inner as JsonObject, rest.join("."));
+  return Object.keys(remaining).length > 0 ? { ...others, [name as string]: remaining } : others;
 }
 
-/** The clip as it stands now, or null when none poses the scene. */
+/** The clip at the current time; null while no clip is active. */
 export function clipState(animation: AnimationState | null, readAt: number): ClipState | null {
   if (!animation?.clip) return null;
   const { clip, rate, playing, lockstep } = animation;
-  const passed = playing && !lockstep ? ((Date.now() - readAt) / 1000) * rate : 0;
-  return { clip, rate, playing, seconds: animation.seconds + passed };
+  const elapsed = playing && !lockstep ? ((Date.now() - readAt) / 1000) * rate : 0;
+  return { clip, rate, playing, seconds: animation.seconds + elapsed };
 }

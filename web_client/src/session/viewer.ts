@@ -1,41 +1,45 @@
-// What this page knows about the session it watches, and what it can ask of it. No DOM here
-// except the canvas that the pictures go to.
+// The session that this page shows, and the calls that change it. No DOM here except the canvas
+// that the frames are drawn to.
 
+import { Codec } from "heliograph/frame_header.ts";
 import {
   type AnimationState,
-  type Camera,
   type Capture,
+  type FrameCaptureParams,
   type FrameStats,
   type Hello,
-  type JsonObject,
+  type Notifications,
   type Pick,
   type SceneInfo,
   type SceneList,
   type SceneProgress,
+  type SessionControlParams,
   type SessionInfo,
   ErrorCode,
 } from "heliograph/messages.ts";
-import { Codec } from "heliograph/frame_header.ts";
 import { ChannelClosed, RpcError, type RpcPeer } from "heliograph/rpc.ts";
-import { SessionRestore } from "./session_restore.ts";
-import { ServerCapabilities } from "./server_capabilities.ts";
-import { captureBlob, shrunk } from "../common/image_files.ts";
-import { type RestoreHost, restore } from "./restore_view.ts";
-import { SceneParts } from "./scene_parts.ts";
-import { SettingsStore } from "./settings_store.ts";
+import type { CameraPose } from "../common/camera_pose.ts";
+import { captureBlob, thumbnailUrl } from "../common/image_files.ts";
 import { Signal } from "../common/signal.ts";
-import { type ControlState, explained, controlStateOf } from "./control_state.ts";
+import { length, subtract } from "../common/vector.ts";
 import { CanvasPainter } from "../stream/canvas_painter.ts";
 import { Connection } from "../stream/connection.ts";
 import { LatencyMeter } from "../stream/latency.ts";
 import { RateMeter } from "../stream/rates.ts";
 import { type DrawnFrame, clockMs } from "../stream/worker_messages.ts";
+import { type ControlState, controlStateOf, describeControl } from "./control_state.ts";
+import { type RestoreHost, restoreView } from "./restore_view.ts";
+import { SceneParts } from "./scene_parts.ts";
+import { ServerCapabilities } from "./server_capabilities.ts";
+import { SessionRestore } from "./session_restore.ts";
+import { SettingsStore } from "./settings_store.ts";
 import { StreamRequests } from "./stream_requests.ts";
-import { length, subtract } from "../common/vector.ts";
 import { type ViewState, changesOf, clipState } from "./view_state.ts";
 
 const statsIntervalMs = 250;
-const progressSilenceMs = 20_000;
+const progressTimeoutMs = 20_000;
+const loadTimeoutMs = 600_000;
+const captureTimeoutMs = 120_000;
 
 export const bufferSetting = "view.buffer";
 
@@ -49,37 +53,37 @@ export class Viewer {
   readonly scenes = new Signal<SceneList>({ scenes: [], current: null });
   readonly scene = new Signal<SceneInfo | null>(null);
   readonly loading = new Signal<SceneProgress | null>(null);
-  /** True while the session is being brought to a state that was asked for as a whole. */
+  /** True while a whole view state is being restored. */
   readonly restoring = new Signal(false);
-  readonly camera = new Signal<Camera | null>(null);
+  readonly camera = new Signal<CameraPose | null>(null);
   readonly animation = new Signal<AnimationState | null>(null);
-  /** Who is here; null where the server does not tell. */
+  /** The session and its viewers; null where the server does not tell. */
   readonly session = new Signal<SessionInfo | null>(null);
-  /** Whether this page may change what is shown. */
+  /** Whether this page may change the session. */
   readonly controlState = new Signal<ControlState>({ kind: "may_change" });
   readonly stats = new Signal<FrameStats | null>(null);
   readonly frame = new Signal<DrawnFrame | null>(null);
   readonly latency = new LatencyMeter();
   readonly rates = new RateMeter();
-  /** Says in one sentence what went wrong. */
+  /** Shows an error as one sentence. */
   onError: (message: string) => void = () => {};
-  /** Says in one sentence what is worth knowing. */
+  /** Shows other news as one sentence. */
   onInfo: (message: string) => void = () => {};
-  /** Goes to a pose, on a way that one can follow. */
-  jumpTo: (camera: Camera) => void = (camera) => this.moveCamera(camera);
+  /** Moves to a pose in a visible transition. */
+  animateCameraTo: (camera: CameraPose) => void = (camera) => this.moveCamera(camera);
   /** Starts or stops the clip. */
   togglePlay: () => void = () => {};
-  /** Keeps the view of now as a bookmark. */
+  /** Stores the current view as a bookmark. */
   addBookmark: () => void = () => {};
-  /** True while a hand is on the camera; poses from elsewhere then wait. */
+  /** True while the user moves the camera; poses of other viewers are then ignored. */
   cameraBusy: () => boolean = () => false;
   private inputSeq = 0;
   private progressTimer = 0;
   private animationReadAt = 0;
   private animationRev = 0;
-  /** The server's hello, from its arrival until the connection is gone. */
-  private greeting: Hello | null = null;
-  /** What the session still has to be brought to; a wish outlives lost connections. */
+  /** From the arrival of the server's hello until the connection is lost. */
+  private receivedHello: Hello | null = null;
+  /** The state that is still to be restored; it survives lost connections. */
   private pendingViewState: ViewState | null = null;
   private readonly sessionRestore: SessionRestore;
 
@@ -93,11 +97,11 @@ export class Viewer {
       live: (hello) => this.becomeLive(hello),
       notification: (method, params) => this.notified(method, params),
       drawn: (frame) => this.frameDrawn(frame),
-      draw: (picture, frame) => painter?.draw(picture, frame.width, frame.height),
+      draw: (image, frame) => painter?.draw(image, frame.width, frame.height),
       warning: (message) => this.onError(message),
-      undecodable: (message, video) => {
-        if (video) this.stream.videoBroke();
-        else this.onError(`A picture could not be shown: ${message}`);
+      decodeFailed: (message, video) => {
+        if (video) this.stream.onVideoError();
+        else this.onError(`A frame could not be shown: ${message}`);
       },
     });
     this.rpc = this.connection.rpc;
@@ -123,13 +127,13 @@ export class Viewer {
     this.stream = new StreamRequests(this.rpc, {
       mayResize: () => this.mayChange,
       report: (error) => this.report(error),
-      tell: (sentence) => this.onInfo(sentence),
+      inform: (sentence) => this.onInfo(sentence),
     });
     this.connection.state.watch(({ kind }) => {
       if (kind === "live") return;
-      this.greeting = null;
+      this.receivedHello = null;
       this.stream.end();
-      // What a server has at first, of another size or another view, would flash by.
+      // The first frames of a new connection may have another size or view.
       this.connection.hold();
     });
     this.animation.watch(() => (this.animationReadAt = Date.now()));
@@ -144,14 +148,14 @@ export class Viewer {
     return this.controlState.value.kind === "may_change";
   }
 
-  /** Largest extent of the scene in metres; 1 while none is known. */
+  /** Largest extent of the scene in metres; 1 while it is unknown. */
   sceneSize(): number {
     const bounds = this.scene.value?.bounds;
     const size = bounds ? length(subtract(bounds.max, bounds.min)) : 0;
     return size > 0 && Number.isFinite(size) ? size : 1;
   }
 
-  /** What the page shows, complete enough to be shown again elsewhere. */
+  /** What the page shows, complete enough to restore it in another session. */
   viewState(): ViewState {
     const scene = this.scene.value;
     return {
@@ -166,11 +170,11 @@ export class Viewer {
     };
   }
 
-  /** Brings the session to this state, now or when there is a connection. */
+  /** Restores this state, now or as soon as there is a connection. */
   show(state: ViewState): Promise<void> {
     this.pendingViewState = state;
-    if (this.greeting) {
-      this.dropForbiddenViewState();
+    if (this.receivedHello) {
+      this.dropViewStateWithoutControl();
       return this.restorePendingViewState();
     }
     this.connection.hold();
@@ -178,7 +182,7 @@ export class Viewer {
   }
 
   /** Sends an absolute pose. Call at most once per animation frame. */
-  moveCamera(camera: Camera): void {
+  moveCamera(camera: CameraPose): void {
     this.camera.set(camera);
     if (this.pendingViewState) this.pendingViewState.camera = camera;
     this.inputSeq += 1;
@@ -187,7 +191,7 @@ export class Viewer {
     this.rpc.notify("camera.set", { eye, target, up, vertical_fov, seq: this.inputSeq });
   }
 
-  /** Takes what the server tells of the clip, unless something newer came before. */
+  /** Takes the state of the animation, unless a newer one came before. */
   onAnimationState(animation: AnimationState): void {
     if (animation.rev < this.animationRev) return;
     this.animationRev = animation.rev;
@@ -198,20 +202,19 @@ export class Viewer {
     await this.attempt(async () => {
       this.inputSeq += 1;
       this.latency.inputSent(this.inputSeq, clockMs());
-      this.camera.set(await this.rpc.request<Camera>("camera.set", { name, seq: this.inputSeq }));
+      this.camera.set(await this.rpc.request("camera.set", { name, seq: this.inputSeq }));
     });
   }
 
   async fitCamera(): Promise<void> {
     if (this.pendingViewState || !this.mayChange) return;
-    await this.attempt(async () => this.camera.set(await this.rpc.request<Camera>("camera.fit")));
+    await this.attempt(async () => this.camera.set(await this.rpc.request("camera.fit")));
   }
 
   async loadScene(name: string, part: { scene?: string; variant?: string } = {}): Promise<void> {
     this.showProgress({ name, stage: "starting", fraction: 0 });
     try {
-      const tenMinutes = 600_000;
-      const info = await this.rpc.request<SceneInfo>("scene.load", { name, ...part }, tenMinutes);
+      const info = await this.rpc.request("scene.load", { name, ...part }, loadTimeoutMs);
       await this.sceneChanged(info);
     } catch (error) {
       this.showProgress(null);
@@ -219,22 +222,22 @@ export class Viewer {
     }
   }
 
-  /** Ends the load that is under way. */
+  /** Cancels the running load. */
   async cancelLoad(): Promise<void> {
     await this.attempt(() => this.rpc.request("scene.cancel"));
   }
 
   async refreshScenes(): Promise<void> {
     await this.attempt(async () => {
-      this.scenes.set(await this.rpc.request<SceneList>("scene.list"));
+      this.scenes.set(await this.rpc.request("scene.list"));
     });
   }
 
-  /** What lies under a point of the picture, in fractions of its width and height from the top left. */
+  /** The surface at a point, given in fractions of the image size from the top left. */
   async pick(x: number, y: number): Promise<Pick | null> {
     if (!this.capabilities.has("scene.pick")) return null;
     try {
-      const pick = await this.rpc.request<Pick>("scene.pick", { x, y });
+      const pick = await this.rpc.request("scene.pick", { x, y });
       return pick.hit ? pick : null;
     } catch (error) {
       this.report(error);
@@ -242,40 +245,39 @@ export class Viewer {
     }
   }
 
-  /** A buffer of the frame as a small picture, a data address. */
-  async smallPicture(buffer: string, width: number): Promise<string> {
+  /** A buffer of the frame as a small image, in a data URL. */
+  async captureThumbnail(buffer: string, width: number): Promise<string> {
     const format = this.capabilities.captureFormats.value.has("jpeg") ? "jpeg" : "png";
     const capture = await this.capture(buffer, format);
-    return shrunk(captureBlob(capture), width);
+    return thumbnailUrl(captureBlob(capture), width);
   }
 
-  /** A buffer as a file; the one that is shown unless another is named. */
-  async capture(name?: string, format = "png"): Promise<Capture> {
+  /** A buffer as a file; by default the one that is shown. */
+  async capture(name?: string, format: FrameCaptureParams["format"] = "png"): Promise<Capture> {
     const buffer = name ?? String(this.settings.value(bufferSetting) ?? "output");
-    return this.rpc.request<Capture>("frame.capture", { buffer, format }, 120_000);
+    return this.rpc.request("frame.capture", { buffer, format }, captureTimeoutMs);
   }
 
-  /** Says who may change things. */
-  async control(wanted: object): Promise<void> {
+  /** Takes or passes on control of the session, or changes its mode. */
+  async setControl(params: SessionControlParams): Promise<void> {
     await this.attempt(async () => {
-      this.setSession(await this.rpc.request<SessionInfo>("session.control", wanted));
+      this.setSession(await this.rpc.request("session.control", params));
     });
   }
 
   report(error: unknown): void {
     if (error instanceof ChannelClosed) return;
-    const known = error instanceof RpcError ? error.sentence : (error as Error).message;
-    this.onError(known);
+    this.onError(error instanceof RpcError ? error.sentence : (error as Error).message);
   }
 
   private async becomeLive(hello: Hello): Promise<void> {
-    this.greeting = hello;
+    this.receivedHello = hello;
     this.latency.reset();
     this.inputSeq = 0;
     this.animationRev = 0;
     await this.readSession();
     this.pendingViewState = this.sessionRestore.pendingStateFor(hello, this.pendingViewState);
-    this.dropForbiddenViewState();
+    this.dropViewStateWithoutControl();
     await Promise.all([
       this.stream.begin(hello, this.pendingViewState !== null),
       this.settings.load(),
@@ -287,82 +289,84 @@ export class Viewer {
     if (this.pendingViewState) {
       void this.attempt(() => this.restorePendingViewState());
     } else {
-      this.connection.release({ oldestRev: 0, size: this.stream.askedSize });
+      this.connection.release({ oldestRev: 0, size: this.stream.requestedSize });
       await this.readScene();
       this.sessionRestore.arrived(hello);
     }
   }
 
-  /** Who has no control gets to see what others chose, whatever a link says. */
-  private dropForbiddenViewState(): void {
+  /** Without control, the page shows what other viewers chose, not what its link says. */
+  private dropViewStateWithoutControl(): void {
     if (!this.pendingViewState || this.mayChange) return;
     this.pendingViewState = null;
-    this.onInfo(`The view of the link is not shown. ${explained(this.controlState.value)}`);
+    this.onInfo(
+      `The view in the link was not applied. ${describeControl(this.controlState.value)}`,
+    );
   }
 
   private async restorePendingViewState(): Promise<void> {
-    const { greeting, pendingViewState: state } = this;
-    if (!greeting || !state) return;
+    const { receivedHello: hello, pendingViewState: state } = this;
+    if (!hello || !state) return;
     const host: RestoreHost = {
       rpc: this.rpc,
       schema: () => this.settings.schema.value,
-      capabilities: (method) => this.capabilities.has(method),
-      wanted: () => this.greeting === greeting && this.pendingViewState === state,
-      lost: (sentence) => this.onError(sentence),
-      isOwn: () => this.sessionRestore.ownsSession(greeting),
+      supports: (method) => this.capabilities.has(method),
+      isCurrent: () => this.receivedHello === hello && this.pendingViewState === state,
+      reportSkipped: (sentence) => this.onError(sentence),
+      ownsSession: () => this.sessionRestore.ownsSession(hello),
     };
     this.restoring.set(true);
     if (this.connection.state.value.kind !== "live") this.frame.set(null);
-    if (!(await restore(host, state))) return;
+    if (!(await restoreView(host, state))) return;
     this.pendingViewState = null;
-    this.sessionRestore.arrived(greeting);
+    this.sessionRestore.arrived(hello);
     try {
       await Promise.all([this.settings.load(), this.refreshScenes(), this.readScene()]);
       this.connection.release({ oldestRev: this.camera.value?.rev ?? 0 });
-      await this.stream.show();
+      await this.stream.resume();
     } finally {
       this.restoring.set(false);
     }
   }
 
-  /** Reads what is shown; there may be nothing yet. */
+  /** Reads scene, camera and animation; there may be no scene yet. */
   private async readScene(): Promise<void> {
     try {
-      const info = await this.rpc.request<SceneInfo>("scene.info");
-      const camera = await this.rpc.request<Camera>("camera.get");
+      const info = await this.rpc.request("scene.info");
+      const camera = await this.rpc.request("camera.get");
       this.scene.set(info);
       this.showProgress(null);
       this.camera.set(camera);
-      this.onAnimationState(await this.rpc.request<AnimationState>("animation.list"));
+      this.onAnimationState(await this.rpc.request("animation.list"));
     } catch (error) {
-      const waiting =
+      const noScene =
         error instanceof RpcError &&
         (error.code === ErrorCode.notReady || error.code === ErrorCode.notFound);
-      if (!waiting) throw error;
+      if (!noScene) throw error;
     }
   }
 
-  /** Nothing, where the server has no sessions to tell of. */
+  /** Does nothing where the server has no sessions. */
   private async readSession(): Promise<void> {
     try {
-      this.setSession(await this.rpc.request<SessionInfo>("session.info"));
+      this.setSession(await this.rpc.request("session.info"));
     } catch (error) {
       if (error instanceof ChannelClosed) throw error;
     }
   }
 
-  /** The list is the same for all who get it; which entry is ours the greeting told. */
+  /** All viewers get the same list; hello told which entry is this page. */
   private setSession(session: SessionInfo): void {
-    const own = this.greeting?.viewer;
-    const viewers = session.viewers.map((one) => ({ ...one, you: one.viewer === own }));
+    const own = this.receivedHello?.viewer;
+    const viewers = session.viewers.map((viewer) => ({ ...viewer, you: viewer.viewer === own }));
     this.session.set({ ...session, viewers });
-    this.controlState.set(controlStateOf(this.session.value, this.greeting?.role));
-    this.stream.sizeTold(session);
+    this.controlState.set(controlStateOf(this.session.value, this.receivedHello?.role));
+    this.stream.onFrameSize(session);
     this.stream.updateSize();
   }
 
   private async sceneChanged(info: SceneInfo): Promise<void> {
-    // While a wish is carried out this may be a scene on the way: what is wished for stays.
+    // During a restore this may be an intermediate scene.
     if (this.pendingViewState) return;
     this.showProgress(null);
     this.scene.set(info);
@@ -374,28 +378,28 @@ export class Viewer {
   private frameDrawn(frame: DrawnFrame): void {
     this.rates.add(frame.drawnAt, frame.bytes);
     this.latency.frameDrawn(frame.inputSeqEcho, frame.drawnAt);
-    if (frame.codec === Codec.h264) this.stream.videoWorked();
+    if (frame.codec === Codec.h264) this.stream.onVideoFrame();
     this.frame.set(frame);
   }
 
   private notified(method: string, params: unknown): void {
     switch (method) {
       case "settings.changed":
-        this.settings.receive((params as { patch: JsonObject }).patch);
+        this.settings.receive((params as Notifications["settings.changed"]).patch);
         break;
       case "camera.changed":
         if (this.pendingViewState || this.cameraBusy()) break;
-        this.camera.set((params as { camera: Camera }).camera);
+        this.camera.set((params as Notifications["camera.changed"]).camera);
         break;
       case "animation.changed":
         if (this.pendingViewState) break;
-        this.onAnimationState((params as { animation: AnimationState }).animation);
+        this.onAnimationState((params as Notifications["animation.changed"]).animation);
         break;
       case "scene.changed":
-        void this.sceneChanged((params as { scene: SceneInfo }).scene);
+        void this.sceneChanged((params as Notifications["scene.changed"]).scene);
         break;
       case "session.changed":
-        this.setSession(params as SessionInfo);
+        this.setSession(params as Notifications["session.changed"]);
         break;
       case "lights.changed":
       case "materials.changed":
@@ -403,20 +407,20 @@ export class Viewer {
         this.parts.notified(method, params);
         break;
       case "scene.progress":
-        this.showProgress(params as SceneProgress);
+        this.showProgress(params as Notifications["scene.progress"]);
         break;
       case "stats.frame":
-        this.stats.set(params as FrameStats);
+        this.stats.set(params as Notifications["stats.frame"]);
         break;
     }
   }
 
-  /** A load that another viewer started may fail without word; its bar must not stay for ever. */
+  /** A failed load of another viewer sends no message, so the progress expires. */
   private showProgress(progress: SceneProgress | null): void {
     clearTimeout(this.progressTimer);
     this.loading.set(progress);
     if (progress) {
-      this.progressTimer = window.setTimeout(() => this.loading.set(null), progressSilenceMs);
+      this.progressTimer = window.setTimeout(() => this.loading.set(null), progressTimeoutMs);
     }
   }
 

@@ -1,20 +1,20 @@
-// Waiting times between attempts to reconnect: exponential, capped, with jitter so that many
-// viewers of a restarted server do not all come back in the same instant.
+// Delays between attempts to reconnect: exponential back-off, capped, with jitter so that the
+// viewers of a restarted server do not all reconnect at the same time.
 export class Backoff {
   private attempts = 0;
-  private readonly firstMs: number;
-  private readonly longestMs: number;
+  private readonly firstDelayMs: number;
+  private readonly maxDelayMs: number;
   private readonly random: () => number;
 
-  constructor(firstMs = 400, longestMs = 10_000, random: () => number = Math.random) {
-    this.firstMs = firstMs;
-    this.longestMs = longestMs;
+  constructor(firstDelayMs = 400, maxDelayMs = 10_000, random: () => number = Math.random) {
+    this.firstDelayMs = firstDelayMs;
+    this.maxDelayMs = maxDelayMs;
     this.random = random;
   }
 
   /** Milliseconds to wait before the next attempt; between half and all of the current bound. */
   next(): number {
-    const bound = Math.min(this.longestMs, this.firstMs * 2 ** this.attempts);
+    const bound = Math.min(this.maxDelayMs, this.firstDelayMs * 2 ** this.attempts);
     this.attempts += 1;
     return Math.round(bound * (0.5 + 0.5 * this.random()));
   }

@@ -1,4 +1,4 @@
-// Puts decoded pictures on a canvas. The canvas takes the size of the picture and CSS scales it.
+// Draws decoded frames on a canvas. The canvas takes the size of the frame, CSS scales it.
 export class CanvasPainter {
   private readonly canvas: HTMLCanvasElement | OffscreenCanvas;
   private readonly context: CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D;
@@ -7,26 +7,24 @@ export class CanvasPainter {
 
   constructor(canvas: HTMLCanvasElement | OffscreenCanvas) {
     const context = canvas.getContext("2d", { alpha: false }) as
-      | CanvasRenderingContext2D
-      | OffscreenCanvasRenderingContext2D
-      | null;
-    if (!context) throw new Error("This browser capabilities no 2D canvas");
+      CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D | null;
+    if (!context) throw new Error("This browser has no 2D canvas");
     this.canvas = canvas;
     this.context = context;
   }
 
-  /** A copy of what is shown; null before the first picture. */
+  /** A copy of the canvas; null before the first frame. */
   async copy(): Promise<ImageBitmap | null> {
     return this.drawn ? createImageBitmap(this.canvas) : null;
   }
 
-  draw(picture: ImageBitmap | VideoFrame, width: number, height: number): void {
+  draw(image: ImageBitmap | VideoFrame, width: number, height: number): void {
     if (this.canvas.width !== width || this.canvas.height !== height) {
       this.canvas.width = width;
       this.canvas.height = height;
     }
-    this.context.drawImage(picture, 0, 0);
+    this.context.drawImage(image, 0, 0);
     this.drawn = true;
-    picture.close();
+    image.close();
   }
 }

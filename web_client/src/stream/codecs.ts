@@ -1,8 +1,8 @@
-// Which codecs this browser decodes.
+// The codecs that this browser decodes.
 
 import { videoConfig } from "./video_frames.ts";
 
-/** Names as hello knows them. A server that has none but JPEG ignores the others. */
+/** Codec names for `hello`. A server ignores those that it does not have. */
 export async function decodableCodecs(): Promise<string[]> {
   return (await decodesVideo()) ? ["h264", "jpeg"] : ["jpeg"];
 }

@@ -1,74 +1,79 @@
-// The connection to the server: opens it, says hello, notices loss, comes back.
+// The connection to the server: opens it, sends hello, detects its loss and reconnects.
 
 import { type Hello, ErrorCode, subprotocol } from "heliograph/messages.ts";
 import { ChannelClosed, RpcError, RpcPeer } from "heliograph/rpc.ts";
-import { Signal } from "../common/signal.ts";
 import { participantName } from "../common/preferences.ts";
+import { Signal } from "../common/signal.ts";
 import { Backoff } from "./backoff.ts";
 import { decodableCodecs } from "./codecs.ts";
-import { type SessionOrigin, SessionAddress, mainSession, rendezvousRoute } from "./session_address.ts";
-import type { DrawnFrame, Freshness, FromWorker, ToWorker } from "./worker_messages.ts";
+import {
+  type SessionOrigin,
+  SessionAddress,
+  mainSession,
+  rendezvousRoute,
+} from "./session_address.ts";
+import type { DrawnFrame, FrameRequirement, FromWorker, ToWorker } from "./worker_messages.ts";
 
 export type ConnectionState =
   | { kind: "connecting" }
   | { kind: "live"; hello: Hello }
   | { kind: "lost"; retryAt: number }
-  /** The server answers, but nothing between us lets a WebSocket through. */
+  /** The server answers HTTP, but WebSockets do not get through. */
   | { kind: "mjpeg_fallback"; retryAt: number }
   | { kind: "wrong_version"; detail: string }
   | { kind: "full"; retryAt: number }
   | { kind: "forbidden"; detail: string };
 
-export interface ConnectionEvents {
+interface ConnectionEvents {
   live(hello: Hello): Promise<void>;
   notification(method: string, params: unknown): void;
   drawn(frame: DrawnFrame): void;
-  /** Only where the worker cannot draw: shows the picture and takes ownership of it. */
-  draw(picture: ImageBitmap | VideoFrame, frame: DrawnFrame): void;
+  /** Only where the worker cannot draw: draws the image and takes ownership of it. */
+  draw(image: ImageBitmap | VideoFrame, frame: DrawnFrame): void;
   warning(message: string): void;
-  /** A picture was lost; of a video also those that would have built on it. */
-  undecodable(message: string, video: boolean): void;
+  /** A frame was lost; with `video`, all frames that depend on it as well. */
+  decodeFailed(message: string, video: boolean): void;
 }
 
 const closeCode = { policy: 1008, tryAgainLater: 1013, unauthorised: 4001, version: 4005 };
 const stableAfterMs = 5000;
-const refusalsBeforeFallback = 2;
+const rejectionsBeforeFallback = 2;
 const aliveCheckMs = 15_000;
 const aliveTimeoutMs = 10_000;
-/** Who may only watch finds the others on another server once they have found their place. */
-const watchersComeAfterMs = 2000;
+/** Read-only viewers cannot create a session, so they follow the others to a new server. */
+const readOnlyDelayMs = 2000;
 
 export class Connection {
   readonly state = new Signal<ConnectionState>({ kind: "connecting" });
   readonly rpc: RpcPeer;
-  readonly place: SessionAddress;
-  /** The session to come back to. On another server whose place is taken, it finds a new one. */
+  readonly address: SessionAddress;
+  /** The session to reconnect to. On another server, it may get another name. */
   origin: SessionOrigin | null = null;
   private readonly worker: Worker;
   private readonly events: ConnectionEvents;
   private readonly backoff = new Backoff();
   private retryTimer = 0;
   private stableTimer = 0;
-  private heardAt = 0;
-  private refusals = 0;
-  private watches = false;
+  private lastMessageAt = 0;
+  private rejectedUpgrades = 0;
+  private readOnly = false;
   private readonly disposal = new AbortController();
   private readonly aliveTimer: number;
-  private lastCopy = 0;
-  private readonly copies = new Map<number, (picture: ImageBitmap | null) => void>();
-  private takeCopy: ((picture: ImageBitmap) => void) | null = null;
+  private lastCopyId = 0;
+  private readonly copies = new Map<number, (image: ImageBitmap | null) => void>();
+  private copyListener: ((image: ImageBitmap) => void) | null = null;
 
   constructor(
     base: string,
     canvas: OffscreenCanvas | null,
     events: ConnectionEvents,
-    place = SessionAddress.ofPage(base),
+    address = SessionAddress.ofPage(base),
   ) {
-    this.place = place;
+    this.address = address;
     this.events = events;
     this.worker = new Worker(new URL("worker.js", base), { name: "stream" });
     this.worker.onmessage = ({ data }: MessageEvent<FromWorker>) => this.receive(data);
-    this.worker.onerror = () => this.events.warning("The stream worker could not be started");
+    this.worker.onerror = () => this.events.warning("The stream worker did not start");
     this.rpc = new RpcPeer(
       (text) => this.post({ kind: "send", text }),
       (method, params) => this.events.notification(method, params),
@@ -76,14 +81,14 @@ export class Connection {
     if (canvas) this.post({ kind: "canvas", canvas }, [canvas]);
     const { signal } = this.disposal;
     addEventListener("online", () => this.retryNow(), { signal });
-    const seen = (): void => {
+    const onVisible = (): void => {
       if (!document.hidden) this.retryNow();
     };
-    document.addEventListener("visibilitychange", seen, { signal });
+    document.addEventListener("visibilitychange", onVisible, { signal });
     this.aliveTimer = window.setInterval(() => void this.checkAlive(), aliveCheckMs);
   }
 
-  /** Closes for good. */
+  /** Closes the connection permanently. */
   dispose(): void {
     this.disposal.abort();
     clearInterval(this.aliveTimer);
@@ -93,66 +98,66 @@ export class Connection {
     this.worker.terminate();
   }
 
-  /** Tells the server anew what this person is called. */
-  reintroduce(): void {
-    if (this.state.value.kind === "live") void this.greet().catch(() => {});
+  /** Sends the participant's name again. */
+  updateName(): void {
+    if (this.state.value.kind === "live") void this.requestHello().catch(() => {});
   }
 
   open(): void {
     clearTimeout(this.retryTimer);
     this.retryTimer = 0;
-    void this.findWay().then(() => {
-      const url = this.place.address("ws");
+    void this.chooseRoute().then(() => {
+      const url = this.address.url("ws");
       url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
       this.post({ kind: "open", url: url.href, subprotocol });
     });
   }
 
-  /** Another server than before: there we go where the others from that session go too. */
-  private async findWay(): Promise<void> {
-    const { origin, place } = this;
+  /** On another server instance, all viewers of the previous session choose the same route. */
+  private async chooseRoute(): Promise<void> {
+    const { origin, address } = this;
     if (!origin) return;
-    const there = await place.fetchHello();
-    if (!there || there.instance === origin.instance) return;
-    place.route = rendezvousRoute(origin);
-    if (this.watches) await new Promise((resolve) => setTimeout(resolve, watchersComeAfterMs));
+    const hello = await address.fetchHello();
+    if (!hello || hello.instance === origin.instance) return;
+    address.route = rendezvousRoute(origin);
+    if (this.readOnly) await new Promise((resolve) => setTimeout(resolve, readOnlyDelayMs));
   }
 
-  /** Has the page's address lead to the session that was found, after a reload too. */
+  /** Puts the session into the page's URL, so that a reload leads there. */
   async persistRoute({ instance, session }: SessionOrigin): Promise<void> {
-    const { place } = this;
-    place.session = session;
-    if (session === mainSession && (await place.fetchHello(null))?.instance === instance) {
-      place.route = null; // the page's bare address leads here
+    const { address } = this;
+    address.session = session;
+    if (session === mainSession && (await address.fetchHello(null))?.instance === instance) {
+      address.route = null; // the page's plain URL leads to this server
     }
-    history.replaceState(null, "", place.pageUrl(location.href));
+    history.replaceState(null, "", address.pageUrl(location.href));
   }
 
-  /** A copy of the picture that is shown; null while there is none. */
+  /** A copy of the current frame; null before the first. */
   copyFrame(): Promise<ImageBitmap | null> {
-    const id = ++this.lastCopy;
+    const id = ++this.lastCopyId;
     return new Promise((resolve) => {
       this.copies.set(id, resolve);
       this.post({ kind: "copy", id });
     });
   }
 
-  /** Takes a copy of every picture drawn from now on, and with it the duty to close it. */
-  set pictureCopies(take: ((picture: ImageBitmap) => void) | null) {
-    this.takeCopy = take;
-    this.post({ kind: "copies", wanted: take !== null });
+  /** Sends a copy of every frame to the listener, which must close it; null stops it. */
+  set onFrameCopy(listener: ((image: ImageBitmap) => void) | null) {
+    this.copyListener = listener;
+    this.post({ kind: "copy_frames", enabled: listener !== null });
   }
 
-  /** Pictures that arrive wait for `release`, which shows those that are new enough. */
+  /** Holds frames back until `release`, which shows those that are new enough. */
   hold(): void {
     this.post({ kind: "hold" });
   }
 
-  release(from: Freshness): void {
-    this.post({ kind: "release", from });
+  release(required: FrameRequirement): void {
+    this.post({ kind: "release", required });
   }
 
-  /** Cuts a waiting time short, after a click or when the network is back. */
+  /** Ends the delay before the next attempt, after a click or when the network is back. */
   retryNow(): void {
     if (this.retryTimer) this.open();
   }
@@ -162,12 +167,12 @@ export class Connection {
   }
 
   private receive(message: FromWorker): void {
-    this.heardAt = performance.now();
+    this.lastMessageAt = performance.now();
     switch (message.kind) {
       case "opened":
-        this.refusals = 0;
+        this.rejectedUpgrades = 0;
         this.rpc.open();
-        void this.sayHello(message.subprotocol);
+        void this.startSession(message.subprotocol);
         break;
       case "closed":
         void this.closed(message.code, message.reason, message.wasOpen);
@@ -178,67 +183,67 @@ export class Connection {
       case "drawn":
         this.events.drawn(message.frame);
         break;
-      case "picture":
-        this.events.draw(message.picture, message.frame);
+      case "decoded":
+        this.events.draw(message.image, message.frame);
         this.events.drawn(message.frame);
         break;
       case "copied":
-        this.copied(message.id, message.picture);
+        this.onCopy(message.id, message.image);
         break;
-      case "undecodable":
-        this.events.undecodable(message.message, message.video);
+      case "decode_failed":
+        this.events.decodeFailed(message.message, message.video);
         break;
     }
   }
 
-  private copied(id: number, picture: ImageBitmap | null): void {
-    const asked = this.copies.get(id);
+  private onCopy(id: number, image: ImageBitmap | null): void {
+    const resolve = this.copies.get(id);
     this.copies.delete(id);
-    if (asked) asked(picture);
-    else if (picture && this.takeCopy) this.takeCopy(picture);
-    else picture?.close();
+    if (resolve) resolve(image);
+    else if (image && this.copyListener) this.copyListener(image);
+    else image?.close();
   }
 
-  private async sayHello(spoken: string): Promise<void> {
-    if (spoken !== subprotocol) {
-      this.stop({ kind: "wrong_version", detail: spoken || "no known version" });
+  private async startSession(offered: string): Promise<void> {
+    if (offered !== subprotocol) {
+      this.stop({ kind: "wrong_version", detail: offered || "no known version" });
       return;
     }
     try {
-      const hello = await this.greet();
+      const hello = await this.requestHello();
       if (hello.protocol !== subprotocol) {
         this.stop({ kind: "wrong_version", detail: hello.protocol });
         return;
       }
-      this.watches = hello.role === "view";
+      this.readOnly = hello.role === "view";
       await this.events.live(hello);
       this.state.set({ kind: "live", hello });
       clearTimeout(this.stableTimer);
       this.stableTimer = window.setTimeout(() => this.backoff.reset(), stableAfterMs);
     } catch (error) {
       if (error instanceof ChannelClosed) return;
-      this.helloRefused(error as Error);
+      this.onHelloError(error as Error);
     }
   }
 
-  private async greet(): Promise<Hello> {
-    return this.rpc.request<Hello>("hello", {
+  private async requestHello(): Promise<Hello> {
+    return this.rpc.request("hello", {
       client: "heliograph-web",
       codecs: await decodableCodecs(),
-      session: this.origin?.session ?? this.place.session,
+      session: this.origin?.session ?? this.address.session,
       instance: this.origin?.instance,
       name: participantName(),
     });
   }
 
-  private helloRefused(error: Error): void {
+  private onHelloError(error: Error): void {
     const code = error instanceof RpcError ? error.code : 0;
-    const wanted = this.origin?.session ?? this.place.session;
-    if (code === ErrorCode.notFound && wanted !== undefined) {
-      this.events.warning(`There is no session ${wanted} here; this is the main one`);
-      this.place.session = undefined;
+    const requested = this.origin?.session ?? this.address.session;
+    if (code === ErrorCode.notFound && requested !== undefined) {
+      this.events.warning(`Session ${requested} does not exist. This is the main session.`);
+      this.address.session = undefined;
       this.origin = null;
-      void this.sayHello(subprotocol);
+      void this.startSession(subprotocol);
       return;
     }
     if (code === ErrorCode.unauthenticated || code === ErrorCode.forbidden) {
@@ -261,14 +266,16 @@ export class Connection {
     } else if (code === closeCode.tryAgainLater) {
       this.retryLater("full");
     } else {
-      // A browser does not tell why an upgrade was refused. Plain HTTP does: a server that answers
-      // there but names another protocol is alive and merely of another version.
-      const spoken = wasOpen ? null : ((await this.place.fetchHello())?.protocol ?? null);
-      if (spoken && spoken !== subprotocol) {
-        this.state.set({ kind: "wrong_version", detail: spoken });
+      // Browsers hide why an upgrade was rejected, plain HTTP does not: a server that answers there
+      // with another protocol runs another version.
+      const protocol = wasOpen ? null : ((await this.address.fetchHello())?.protocol ?? null);
+      if (protocol && protocol !== subprotocol) {
+        this.state.set({ kind: "wrong_version", detail: protocol });
       } else {
-        this.refusals = spoken ? this.refusals + 1 : 0;
-        this.retryLater(this.refusals >= refusalsBeforeFallback ? "mjpeg_fallback" : "lost");
+        this.rejectedUpgrades = protocol ? this.rejectedUpgrades + 1 : 0;
+        this.retryLater(
+          this.rejectedUpgrades >= rejectionsBeforeFallback ? "mjpeg_fallback" : "lost",
+        );
       }
     }
   }
@@ -286,10 +293,10 @@ export class Connection {
     this.state.set(state);
   }
 
-  /** A silently dropped network path looks open for ever unless something asks now and then. */
+  /** A silently dropped connection looks open until a request times out. */
   private async checkAlive(): Promise<void> {
-    const quiet = performance.now() - this.heardAt >= aliveCheckMs;
-    if (this.state.value.kind !== "live" || !quiet) return;
+    const silent = performance.now() - this.lastMessageAt >= aliveCheckMs;
+    if (this.state.value.kind !== "live" || !silent) return;
     try {
       await this.rpc.request("camera.get", {}, aliveTimeoutMs);
     } catch (error) {

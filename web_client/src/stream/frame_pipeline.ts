@@ -1,5 +1,5 @@
-// Decodes and draws the newest frame. A still picture that arrives while another is being decoded
-// replaces any that still waits: what matters is the latest picture, not every picture.
+// Decodes and draws the newest frame. An image that arrives while another is being decoded replaces
+// the queued one: the latest frame matters, not every frame.
 
 import {
   Codec,
@@ -9,44 +9,41 @@ import {
   parseFrameHeader,
 } from "heliograph/frame_header.ts";
 import { type ArrivedFrame, VideoFrames } from "./video_frames.ts";
-import { type DrawnFrame, type Freshness, clockMs } from "./worker_messages.ts";
+import { type DrawnFrame, type FrameRequirement, clockMs } from "./worker_messages.ts";
 
 export interface FrameSink {
-  /** Shows the picture and takes ownership of it. */
-  draw(picture: ImageBitmap | VideoFrame, frame: DrawnFrame): void;
-  /** Tells the server that a frame is dealt with, shown or skipped. */
+  /** Draws the image and takes ownership of it. */
+  draw(image: ImageBitmap | VideoFrame, frame: DrawnFrame): void;
+  /** Acknowledges a frame to the server, whether drawn or skipped. */
   acknowledge(frameSeq: number, decodeUs: number, presentUs: number): void;
-  /** A picture is lost; with one of a video all up to the next key picture. */
+  /** A frame is lost; with `video`, all frames up to the next key frame as well. */
   failed(message: string, video: boolean): void;
 }
 
-export type Decode = (
-  bytes: Uint8Array<ArrayBuffer>,
-  type: string,
-) => Promise<ImageBitmap | VideoFrame>;
+type Decode = (bytes: Uint8Array<ArrayBuffer>, type: string) => Promise<ImageBitmap | VideoFrame>;
 
 export class FramePipeline {
   private readonly sink: FrameSink;
   private readonly decode: Decode;
   private readonly video: VideoFrames;
-  /** So long a picture of the size that was asked for is waited for; then any is better than none. */
-  private readonly sizePatienceMs: number;
-  private waiting: ArrivedFrame | null = null;
+  /** How long to wait for a frame of the requested size before any size is shown. */
+  private readonly sizeTimeoutMs: number;
+  private queued: ArrivedFrame | null = null;
   private busy = false;
   private held = false;
-  private fresh: Freshness = { oldestRev: 0 };
+  private required: FrameRequirement = { oldestRev: 0 };
   private newestDrawn = 0;
-  /** The newest picture of another size, and when it is shown for want of a better one. */
-  private aside: ArrivedFrame | null = null;
-  private asideTimer: ReturnType<typeof setTimeout> | undefined;
+  /** The newest frame of another size, shown when the timer expires. */
+  private otherSize: ArrivedFrame | null = null;
+  private otherSizeTimer: ReturnType<typeof setTimeout> | undefined;
 
-  constructor(sink: FrameSink, decode: Decode, sizePatienceMs = 10_000) {
-    this.sizePatienceMs = sizePatienceMs;
+  constructor(sink: FrameSink, decode: Decode, sizeTimeoutMs = 10_000) {
+    this.sizeTimeoutMs = sizeTimeoutMs;
     this.sink = sink;
     this.decode = decode;
     this.video = new VideoFrames(
       {
-        decoded: (picture, frame, startedAt) => this.present(picture, frame, startedAt),
+        decoded: (image, frame, startedAt) => this.present(image, frame, startedAt),
         skipped: (frame) => this.skip(frame),
         failed: (message) => sink.failed(`the video could not be decoded: ${message}`, true),
       },
@@ -54,7 +51,7 @@ export class FramePipeline {
     );
   }
 
-  /** Takes one binary message from the socket. */
+  /** Takes one binary message of the WebSocket. */
   push(message: ArrayBuffer): void {
     let header: FrameHeader;
     try {
@@ -69,55 +66,55 @@ export class FramePipeline {
       return;
     }
     if (!this.held && this.hasOtherSize(header)) {
-      this.setAside(frame);
+      this.keepOtherSize(frame);
       return;
     }
-    if (header.stateRev < this.fresh.oldestRev) {
+    if (header.stateRev < this.required.oldestRev) {
       this.skip(frame);
       return;
     }
-    if (this.waiting) this.skip(this.waiting);
-    this.waiting = frame;
+    if (this.queued) this.skip(this.queued);
+    this.queued = frame;
     if (!this.busy && !this.held) void this.run();
   }
 
-  /** Keeps what arrives from being shown, until it is known whether it is wanted. */
+  /** Shows no frames until `release`. */
   hold(): void {
     this.held = true;
   }
 
-  /** Goes on showing, but nothing older than this. */
-  release(from: Freshness): void {
+  /** Shows frames again, but none that is older than required. */
+  release(required: FrameRequirement): void {
     if (!this.held) return;
     this.held = false;
-    this.fresh = from;
-    this.asideTimer = setTimeout(() => this.showAside(), this.sizePatienceMs);
-    const { waiting } = this;
-    if (waiting && this.hasOtherSize(waiting.header)) {
-      this.waiting = null;
-      this.setAside(waiting);
-    } else if (waiting && waiting.header.stateRev < from.oldestRev) {
-      this.waiting = null;
-      this.skip(waiting);
+    this.required = required;
+    this.otherSizeTimer = setTimeout(() => this.showOtherSize(), this.sizeTimeoutMs);
+    const { queued } = this;
+    if (queued && this.hasOtherSize(queued.header)) {
+      this.queued = null;
+      this.keepOtherSize(queued);
+    } else if (queued && queued.header.stateRev < required.oldestRev) {
+      this.queued = null;
+      this.skip(queued);
     }
     if (!this.busy) void this.run();
   }
 
-  /** Forgets what is left of a connection that is gone. */
+  /** Discards the frames of a lost connection. */
   clear(): void {
-    this.waiting = null;
-    this.aside = null;
-    clearTimeout(this.asideTimer);
-    this.fresh = { oldestRev: 0 };
+    this.queued = null;
+    this.otherSize = null;
+    clearTimeout(this.otherSizeTimer);
+    this.required = { oldestRev: 0 };
     this.newestDrawn = 0;
     this.video.clear();
   }
 
   private async run(): Promise<void> {
     this.busy = true;
-    while (this.waiting && !this.held) {
-      const frame = this.waiting;
-      this.waiting = null;
+    while (this.queued && !this.held) {
+      const frame = this.queued;
+      this.queued = null;
       await this.show(frame);
     }
     this.busy = false;
@@ -127,14 +124,14 @@ export class FramePipeline {
     const { header, message } = frame;
     const type = mimeType(header.codec);
     if (!type) {
-      this.sink.failed(`the server sent a picture in codec ${header.codec}`, false);
+      this.sink.failed(`unknown codec ${header.codec}`, false);
       this.skip(frame);
       return;
     }
     const startedAt = clockMs();
     try {
-      const picture = await this.decode(new Uint8Array(message, header.headerBytes), type);
-      this.present(picture, frame, startedAt);
+      const image = await this.decode(new Uint8Array(message, header.headerBytes), type);
+      this.present(image, frame, startedAt);
     } catch {
       this.sink.failed(`it could not be decoded as ${type}`, false);
       this.skip(frame);
@@ -142,21 +139,21 @@ export class FramePipeline {
   }
 
   private present(
-    picture: ImageBitmap | VideoFrame,
+    image: ImageBitmap | VideoFrame,
     { header, message, receivedAt }: ArrivedFrame,
     startedAt: number,
   ): void {
-    const { fresh, held, newestDrawn } = this;
-    const unwanted = held || this.hasOtherSize(header) || header.stateRev < fresh.oldestRev;
-    if (unwanted || header.frameSeq < newestDrawn) {
-      picture.close();
+    const { required, held, newestDrawn } = this;
+    const skipped = held || this.hasOtherSize(header) || header.stateRev < required.oldestRev;
+    if (skipped || header.frameSeq < newestDrawn) {
+      image.close();
       this.sink.acknowledge(header.frameSeq, 0, 0);
       return;
     }
     this.newestDrawn = header.frameSeq;
-    this.fresh.size = undefined;
+    this.required.size = undefined;
     const decodedAt = clockMs();
-    this.sink.draw(picture, {
+    this.sink.draw(image, {
       frameSeq: header.frameSeq,
       inputSeqEcho: header.inputSeqEcho,
       renderId: header.renderId,
@@ -180,21 +177,21 @@ export class FramePipeline {
   }
 
   private hasOtherSize({ fullWidth, fullHeight }: FrameHeader): boolean {
-    const { size } = this.fresh;
+    const { size } = this.required;
     return size !== undefined && (fullWidth !== size.width || fullHeight !== size.height);
   }
 
-  private setAside(frame: ArrivedFrame): void {
+  private keepOtherSize(frame: ArrivedFrame): void {
     this.skip(frame);
-    this.aside = frame;
+    this.otherSize = frame;
   }
 
-  private showAside(): void {
-    const frame = this.aside;
-    this.aside = null;
-    this.fresh.size = undefined;
+  private showOtherSize(): void {
+    const frame = this.otherSize;
+    this.otherSize = null;
+    this.required.size = undefined;
     if (!frame || this.held || frame.header.frameSeq < this.newestDrawn) return;
-    this.waiting ??= frame;
+    this.queued ??= frame;
     if (!this.busy) void this.run();
   }
 
@@ -203,7 +200,7 @@ export class FramePipeline {
   }
 }
 
-/** The fastest decoder of still pictures this browser has. ImageDecoder reads them where they lie. */
+/** The fastest image decoder of this browser. ImageDecoder reads the data without a copy. */
 export async function chooseDecoder(): Promise<Decode> {
   if ("ImageDecoder" in globalThis && (await ImageDecoder.isTypeSupported("image/jpeg"))) {
     return async (bytes, type) => {

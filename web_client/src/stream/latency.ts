@@ -1,4 +1,4 @@
-// Input to picture: the time from sending a camera to drawing the first frame that shows it.
+// Input latency: the time from sending a camera to drawing the first frame that shows it.
 export class LatencyMeter {
   private readonly sent = new Map<number, number>();
   private readonly recent: number[] = [];
@@ -9,14 +9,14 @@ export class LatencyMeter {
     this.window = window;
   }
 
-  /** Remembers when a camera left. Times in milliseconds on one clock. */
+  /** Records when a camera was sent. All times in milliseconds on one clock. */
   inputSent(seq: number, at: number): void {
     this.sent.set(seq, at);
   }
 
   /**
-   * Takes a drawn frame. Returns its latency, or null when it shows nothing newer than the last:
-   * frames that only refine a resting picture repeat the echo and would measure the waiting.
+   * Takes a drawn frame. Returns its latency, or null when it shows no newer camera than the last:
+   * frames that refine a static view repeat the echo and would measure the idle time.
    */
   frameDrawn(inputSeqEcho: number, at: number): number | null {
     if (inputSeqEcho <= this.newestEcho) return null;
@@ -39,7 +39,7 @@ export class LatencyMeter {
     return sorted[sorted.length >> 1] ?? null;
   }
 
-  /** Forgets what is under way: a new connection starts with new echoes. */
+  /** Discards pending inputs: a new connection starts with new sequence numbers. */
   reset(): void {
     this.sent.clear();
     this.newestEcho = 0;

@@ -9,12 +9,12 @@ export class RateMeter {
 
   add(at: number, bytes: number): void {
     this.entries.push({ at, bytes });
-    this.forget(at);
+    this.dropOld(at);
   }
 
-  /** Rates at the given time. Both are zero when nothing came within the window. */
+  /** Rates at the given time. Both are zero when no frame came within the window. */
   read(now: number): { fps: number; bytesPerSecond: number } {
-    this.forget(now);
+    this.dropOld(now);
     const first = this.entries[0];
     const last = this.entries[this.entries.length - 1];
     if (!first || !last || this.entries.length < 2) return { fps: 0, bytesPerSecond: 0 };
@@ -24,7 +24,7 @@ export class RateMeter {
     return { fps: (this.entries.length - 1) / seconds, bytesPerSecond: bytes / seconds };
   }
 
-  private forget(now: number): void {
+  private dropOld(now: number): void {
     while (this.entries[0] && now - this.entries[0].at > this.windowMs) this.entries.shift();
   }
 }

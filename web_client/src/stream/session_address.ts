@@ -1,21 +1,23 @@
-// Where a page's session is: what leads to its server, past a balancer too, and its name there.
+// The address of a session: the route that leads to its server, also through a load balancer, and
+// its name there.
 
 import type { Hello } from "heliograph/messages.ts";
 
 export const mainSession = "main";
-const answerWithinMs = 5000;
-/** Of 16 servers one is missed by so many names in one of fifty cases. */
-const namesToTry = 60;
+const helloTimeoutMs = 5000;
+/** With 16 servers, this many random routes miss one of them in 2 % of cases. */
+const maxRoutesTried = 60;
 
-/** A session of a certain run of a server. */
+/** A session on one instance of a server. */
 export interface SessionOrigin {
   instance: string;
   session: string;
 }
 
 /**
- * What leads everyone who lost a session to one and the same server: its name, which may be tried
- * again, or for the main one, which every server has, a name that tells of the lost run.
+ * The route that all viewers of a lost session choose, so that they meet on one server: the
+ * session's name or, for the main session, which every server has, a name made from the lost
+ * instance.
  */
 export function rendezvousRoute({ instance, session }: SessionOrigin): string {
   return session === mainSession ? `${mainSession}-${instance.slice(0, 8)}` : session;
@@ -23,9 +25,9 @@ export function rendezvousRoute({ instance, session }: SessionOrigin): string {
 
 export class SessionAddress {
   private readonly base: string;
-  /** A balancer sends requests with the same one to the same server; null: a cookie decides. */
+  /** A load balancer sends requests of one route to one server; null: a cookie selects it. */
   route: string | null;
-  /** The session to be in; undefined: the server's own. */
+  /** The session to join; undefined: the server's default. */
   session: string | undefined;
 
   constructor(base: string, route: string | null, session: string | undefined) {
@@ -41,8 +43,8 @@ export class SessionAddress {
     return new SessionAddress(base, route, (searchParams.get("enter") || route) ?? undefined);
   }
 
-  /** An address on our server. What it does not name otherwise is about the main session. */
-  address(path: string, route = this.route): URL {
+  /** A URL on the session's server. Unless the path names a session, it is about the main one. */
+  url(path: string, route = this.route): URL {
     const url = new URL(path, this.base);
     if (route === null) return url;
     url.searchParams.set("session", route);
@@ -50,7 +52,7 @@ export class SessionAddress {
     return url;
   }
 
-  /** The page's address as it leads to this place. */
+  /** The page's URL for this session. */
   pageUrl(page: string): URL {
     const url = new URL(page);
     url.searchParams.delete("session");
@@ -63,16 +65,16 @@ export class SessionAddress {
     return url;
   }
 
-  /** Who answers plain HTTP there; null where nobody does. */
+  /** The server's hello over HTTP; null where no server answers. */
   async fetchHello(route = this.route): Promise<Partial<Hello> | null> {
-    const patience = new AbortController();
-    const timer = setTimeout(() => patience.abort(), answerWithinMs);
+    const timeout = new AbortController();
+    const timer = setTimeout(() => timeout.abort(), helloTimeoutMs);
     try {
-      const response = await fetch(this.address("rpc", route), {
+      const response = await fetch(this.url("rpc", route), {
         method: "POST",
         headers: { "content-type": "application/json" },
         body: JSON.stringify({ jsonrpc: "2.0", id: 1, method: "hello", params: {} }),
-        signal: patience.signal,
+        signal: timeout.signal,
       });
       return ((await response.json()) as { result?: Partial<Hello> }).result ?? null;
     } catch {
@@ -83,16 +85,17 @@ export class SessionAddress {
   }
 
   /**
-   * A place from which an address leads everybody here. Every server has a main session, and who is
-   * in it by a cookie needs a name that happens to lead to the same server.
+   * An address of this session that works for other browsers. Where a cookie selects the server, a
+   * route is needed that leads to the same server: random ones are tried.
    */
   async findShareable({ instance, session }: SessionOrigin): Promise<SessionAddress> {
-    const known = this.route === null ? [] : [this.route];
-    for (let tried = 0; tried < namesToTry; tried += 1) {
-      const route = [...known, session][tried] ?? `to-${Math.random().toString(36).slice(2, 10)}`;
-      const there = await this.fetchHello(route);
-      if (!there || there.instance === instance) return new SessionAddress(this.base, route, session);
+    const current = this.route === null ? [] : [this.route];
+    for (let tried = 0; tried < maxRoutesTried; tried += 1) {
+      const route = [...current, session][tried] ?? `to-${Math.random().toString(36).slice(2, 10)}`;
+      const hello = await this.fetchHello(route);
+      if (!hello || hello.instance === instance)
+        return new SessionAddress(this.base, route, session);
     }
-    throw new Error("No link was found that leads others to the server that you are on");
+    throw new Error("No link leads other viewers to this server. Try again later.");
   }
 }

@@ -1,10 +1,10 @@
-// Pictures of a video stream (H.264, Annex B). Each builds on the one before, so that all are
-// decoded in turn; after a loss everything up to the next key picture is useless.
+// Decodes a video stream (H.264, Annex B). Every frame depends on the one before: all are decoded
+// in order, and after a loss the frames up to the next key frame are skipped.
 
-import { codecString } from "./annex_b.ts";
 import { type FrameHeader, FrameFlag } from "heliograph/frame_header.ts";
+import { codecString } from "./annex_b.ts";
 
-/** Constrained baseline, level 4.2: no picture waits for a later one. */
+/** Constrained baseline, level 4.2: no frame depends on a later one. */
 export const videoConfig: VideoDecoderConfig = {
   codec: "avc1.42E02A",
   optimizeForLatency: true,
@@ -16,10 +16,10 @@ export interface ArrivedFrame {
   receivedAt: number;
 }
 
-export interface VideoSink {
-  /** Takes ownership of the picture. */
-  decoded(picture: VideoFrame, frame: ArrivedFrame, startedAt: number): void;
-  /** This frame will not be shown. */
+interface VideoSink {
+  /** Takes ownership of the image. */
+  decoded(image: VideoFrame, frame: ArrivedFrame, startedAt: number): void;
+  /** This frame is not shown. */
   skipped(frame: ArrivedFrame): void;
   failed(message: string): void;
 }
@@ -29,7 +29,7 @@ export class VideoFrames {
   private readonly clock: () => number;
   private decoder: VideoDecoder | null = null;
   private codec = "";
-  private readonly waiting = new Map<number, { frame: ArrivedFrame; startedAt: number }>();
+  private readonly pending = new Map<number, { frame: ArrivedFrame; startedAt: number }>();
 
   constructor(sink: VideoSink, clock: () => number) {
     this.sink = sink;
@@ -45,33 +45,33 @@ export class VideoFrames {
       return;
     }
     const timestamp = frame.header.frameSeq;
-    this.waiting.set(timestamp, { frame, startedAt: this.clock() });
+    this.pending.set(timestamp, { frame, startedAt: this.clock() });
     try {
       this.decoder.decode(new EncodedVideoChunk({ type: key ? "key" : "delta", timestamp, data }));
     } catch (error) {
-      // A key picture that is none is found out at once, everything else by the decoder's own word.
-      this.broke(this.decoder, error as Error);
+      // Thrown for an invalid key frame; all other errors go to the decoder's callback.
+      this.fail(this.decoder, error as Error);
     }
   }
 
-  /** Forgets a stream that has ended; the next begins with a key picture. */
+  /** Discards a stream that has ended; the next one starts with a key frame. */
   clear(): void {
-    this.waiting.clear();
+    this.pending.clear();
     if (this.decoder && this.decoder.state !== "closed") this.decoder.close();
     this.decoder = null;
   }
 
-  /** What is under way is lost, and all up to the next key picture. */
-  private broke(decoder: VideoDecoder, error: Error): void {
-    const lost = [...this.waiting.values()];
-    this.waiting.clear();
+  /** Pending frames are lost, and all others up to the next key frame. */
+  private fail(decoder: VideoDecoder, error: Error): void {
+    const lost = [...this.pending.values()];
+    this.pending.clear();
     if (this.decoder === decoder) this.decoder = null;
     if (decoder.state !== "closed") decoder.close();
     lost.forEach(({ frame }) => this.sink.skipped(frame));
     this.sink.failed(error.message);
   }
 
-  /** Sets the decoder up, unless it already takes such a stream. */
+  /** Configures the decoder, unless it already decodes this codec. */
   private open(codec: string): void {
     if (this.decoder?.state === "configured" && this.codec === codec) return;
     if (this.decoder?.state === "configured") {
@@ -81,13 +81,13 @@ export class VideoFrames {
     }
     this.codec = codec;
     const decoder = new VideoDecoder({
-      output: (picture) => {
-        const entry = this.waiting.get(picture.timestamp);
-        this.waiting.delete(picture.timestamp);
-        if (entry) this.sink.decoded(picture, entry.frame, entry.startedAt);
-        else picture.close();
+      output: (image) => {
+        const entry = this.pending.get(image.timestamp);
+        this.pending.delete(image.timestamp);
+        if (entry) this.sink.decoded(image, entry.frame, entry.startedAt);
+        else image.close();
       },
-      error: (error) => this.broke(decoder, error),
+      error: (error) => this.fail(decoder, error),
     });
     decoder.configure({ ...videoConfig, codec });
     this.decoder = decoder;

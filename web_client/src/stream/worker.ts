@@ -1,4 +1,4 @@
-// The stream worker: owns the socket, decodes and draws, so that a busy page delays no frame.
+// The stream worker: owns the WebSocket, decodes and draws, so that a busy page delays no frame.
 
 import { CanvasPainter } from "./canvas_painter.ts";
 import { FramePipeline, type FrameSink, chooseDecoder } from "./frame_pipeline.ts";
@@ -12,16 +12,16 @@ const scope = self as unknown as WorkerScope;
 
 let socket: WebSocket | null = null;
 let painter: CanvasPainter | null = null;
-let copiesWanted = false;
+let copyFrames = false;
 
 const sink: FrameSink = {
-  draw(picture, frame) {
+  draw(image, frame) {
     if (painter) {
-      painter.draw(picture, frame.width, frame.height);
+      painter.draw(image, frame.width, frame.height);
       scope.postMessage({ kind: "drawn", frame });
-      if (copiesWanted) void postCopy(0);
+      if (copyFrames) void postCopy(0);
     } else {
-      scope.postMessage({ kind: "picture", picture, frame }, [picture]);
+      scope.postMessage({ kind: "decoded", image, frame }, [image]);
     }
   },
   acknowledge(frameSeq, decodeUs, presentUs) {
@@ -29,7 +29,7 @@ const sink: FrameSink = {
     send(JSON.stringify({ jsonrpc: "2.0", method: "stream.ack", params }));
   },
   failed(message, video) {
-    scope.postMessage({ kind: "undecodable", message, video });
+    scope.postMessage({ kind: "decode_failed", message, video });
   },
 };
 const pipeline = chooseDecoder().then((decode) => new FramePipeline(sink, decode));
@@ -39,8 +39,8 @@ function send(text: string): void {
 }
 
 async function postCopy(id: number): Promise<void> {
-  const picture = (await painter?.copy()) ?? null;
-  scope.postMessage({ kind: "copied", id, picture }, picture ? [picture] : []);
+  const image = (await painter?.copy()) ?? null;
+  scope.postMessage({ kind: "copied", id, image }, image ? [image] : []);
 }
 
 function close(): void {
@@ -87,14 +87,14 @@ scope.onmessage = ({ data }) => {
     case "copy":
       void postCopy(data.id);
       break;
-    case "copies":
-      copiesWanted = data.wanted;
+    case "copy_frames":
+      copyFrames = data.enabled;
       break;
     case "hold":
       void pipeline.then((frames) => frames.hold());
       break;
     case "release":
-      void pipeline.then((frames) => frames.release(data.from));
+      void pipeline.then((frames) => frames.release(data.required));
       break;
     case "send":
       send(data.text);

@@ -1,6 +1,6 @@
-// What the page and the stream worker say to each other.
+// Messages between the page and the stream worker.
 
-/** A frame that reached the canvas. Times are milliseconds since the epoch, sub-millisecond. */
+/** A frame that was drawn. Times are milliseconds since the epoch, sub-millisecond. */
 export interface DrawnFrame {
   frameSeq: number;
   inputSeqEcho: number;
@@ -9,9 +9,9 @@ export interface DrawnFrame {
   width: number;
   height: number;
   samples: number;
-  /** Nothing better follows until something changes. */
+  /** Converged: no better frame follows until something changes. */
   final: boolean;
-  /** Revision of the session's state that it shows. */
+  /** Revision of the session's state in this frame. */
   stateRev: number;
   quality: number;
   bytes: number;
@@ -22,10 +22,10 @@ export interface DrawnFrame {
   drawnAt: number;
 }
 
-/** Which pictures are new enough to be shown. */
-export interface Freshness {
+/** The oldest frame to be shown. */
+export interface FrameRequirement {
   oldestRev: number;
-  /** The full size that was asked for: older pictures may have another one. */
+  /** The requested full size; older frames may have another one. */
   size?: { width: number; height: number };
 }
 
@@ -34,11 +34,11 @@ export type ToWorker =
   | { kind: "open"; url: string; subprotocol: string }
   | { kind: "close" }
   | { kind: "copy"; id: number }
-  /** Whether every drawn picture is copied to the page, for a recording. */
-  | { kind: "copies"; wanted: boolean }
-  /** From now on pictures wait, until `release` says which of them are new enough. */
+  /** Whether every drawn frame is copied to the page, for a recording. */
+  | { kind: "copy_frames"; enabled: boolean }
+  /** Holds frames back until `release`. */
   | { kind: "hold" }
-  | { kind: "release"; from: Freshness }
+  | { kind: "release"; required: FrameRequirement }
   | { kind: "send"; text: string };
 
 export type FromWorker =
@@ -46,14 +46,14 @@ export type FromWorker =
   | { kind: "closed"; code: number; reason: string; wasOpen: boolean }
   | { kind: "text"; text: string }
   | { kind: "drawn"; frame: DrawnFrame }
-  /** Only without OffscreenCanvas: the page draws the decoded picture itself. */
-  | { kind: "picture"; picture: ImageBitmap | VideoFrame; frame: DrawnFrame }
-  /** An answer to `copy` (null: nothing was drawn yet), or with id 0 a picture just drawn. */
-  | { kind: "copied"; id: number; picture: ImageBitmap | null }
-  /** A picture that was lost; of a video also those that would have built on it. */
-  | { kind: "undecodable"; message: string; video: boolean };
+  /** Only without OffscreenCanvas: the page draws the image itself. */
+  | { kind: "decoded"; image: ImageBitmap | VideoFrame; frame: DrawnFrame }
+  /** Answers `copy` (null: nothing was drawn yet), or has id 0 for `copy_frames`. */
+  | { kind: "copied"; id: number; image: ImageBitmap | null }
+  /** A frame was lost; with `video`, all frames that depend on it as well. */
+  | { kind: "decode_failed"; message: string; video: boolean };
 
-/** One clock for the page and its workers, whose performance.now() start at different times. */
+/** Milliseconds on one clock for the page and its workers, whose time origins differ. */
 export function clockMs(): number {
   return performance.timeOrigin + performance.now();
 }

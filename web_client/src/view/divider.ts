@@ -1,22 +1,22 @@
-// The line between two pictures that lie over each other: drag it, or move it by keys.
+// The divider between two overlaid frames, moved by dragging or by keys.
 
 import { element, icon } from "../widgets/element.ts";
 
-const keyStep = 2; // per cent
+const keyStep = 2; // percent
 const largeStep = 10;
 
 export interface Divider {
-  /** Shows the second picture to the right of the line, or over all of the first, see-through. */
-  arrange(as: "split" | "overlay", opacity: number): void;
+  /** Shows the second frame right of the divider, or transparently over all of the first. */
+  setMode(mode: "split" | "overlay", opacity: number): void;
   newCanvas(): HTMLCanvasElement;
   show(shown: boolean, label: string): void;
 }
 
 export function createDivider(root: HTMLElement): Divider {
   let canvas = element("canvas", { class: "second", "aria-hidden": "true" });
-  let place = 50;
-  let way: "split" | "overlay" = "split";
-  let seeThrough = 1;
+  let position = 50;
+  let mode: "split" | "overlay" = "split";
+  let overlayOpacity = 1;
   const label = element("span", { class: "second-label" });
   const first = element("span", { class: "first-label" }, "This session");
   const handle = element("span", { class: "divider-handle" }, icon("code"));
@@ -26,7 +26,7 @@ export function createDivider(root: HTMLElement): Divider {
       class: "divider",
       role: "slider",
       tabindex: "0",
-      "aria-label": "Line between the two pictures",
+      "aria-label": "Divider between the two frames",
       "aria-valuemin": "0",
       "aria-valuemax": "100",
       pointerdown: (event: PointerEvent) => {
@@ -44,40 +44,40 @@ export function createDivider(root: HTMLElement): Divider {
         if (step === undefined) return;
         event.preventDefault();
         event.stopPropagation();
-        set(place + step);
+        set(position + step);
       },
     },
     handle,
   );
   root.append(canvas, line, first, label);
   const draw = (): void => {
-    const split = way === "split";
-    canvas.style.clipPath = split ? `inset(0 0 0 ${place}%)` : "";
-    canvas.style.opacity = split ? "" : String(seeThrough);
+    const split = mode === "split";
+    canvas.style.clipPath = split ? `inset(0 0 0 ${position}%)` : "";
+    canvas.style.opacity = split ? "" : String(overlayOpacity);
     line.hidden = !split;
     first.hidden = !split;
-    line.style.left = `${place}%`;
-    first.style.right = `${100 - place}%`;
-    label.style.left = split ? `${place}%` : "0";
-    line.setAttribute("aria-valuenow", place.toFixed(0));
+    line.style.left = `${position}%`;
+    first.style.right = `${100 - position}%`;
+    label.style.left = split ? `${position}%` : "0";
+    line.setAttribute("aria-valuenow", position.toFixed(0));
   };
   const set = (percent: number): void => {
-    place = Math.max(0, Math.min(100, percent));
+    position = Math.max(0, Math.min(100, percent));
     draw();
   };
   draw();
   return {
-    arrange(as, opacity) {
-      way = as;
-      seeThrough = opacity;
+    setMode(next, opacity) {
+      mode = next;
+      overlayOpacity = opacity;
       draw();
     },
     newCanvas() {
-      const fresh = element("canvas", { class: "second", "aria-hidden": "true" });
-      canvas.replaceWith(fresh);
-      canvas = fresh;
+      const next = element("canvas", { class: "second", "aria-hidden": "true" });
+      canvas.replaceWith(next);
+      canvas = next;
       draw();
-      return fresh;
+      return next;
     },
     show(shown, text) {
       root.hidden = !shown;

@@ -1,17 +1,17 @@
-// Mouse, touch and keyboard to camera poses: at most one absolute pose per animation frame.
+// Turns mouse, touch and keyboard input into camera poses: at most one per animation frame.
 
-import type { Camera } from "heliograph/messages.ts";
-import { between, dolly, dollyToPoint, fly, look, orbit, pan } from "./camera.ts";
+import type { CameraPose } from "../common/camera_pose.ts";
+import { dolly, dollyToPoint, fly, interpolate, look, orbit, pan } from "./camera.ts";
 
-export interface NavigationHost {
+interface NavigationHost {
   /** The pose to start from; null while there is no scene. */
-  camera(): Camera | null;
-  /** Largest extent of the scene in metres; bounds how near and far one can go. */
+  camera(): CameraPose | null;
+  /** Largest extent of the scene in metres; it limits the distance to the target. */
   sceneSize(): number;
   /** Takes the new pose, once per animation frame. */
-  moved(camera: Camera): void;
+  moved(camera: CameraPose): void;
   fit(): void;
-  /** Looks for what lies at a point of the view, in fractions of its width and height. */
+  /** Focuses on the surface at a point, in fractions of the view's width and height. */
   focus(x: number, y: number): void;
 }
 
@@ -23,15 +23,15 @@ interface Point {
 
 const orbitPerHeight = 1.5 * Math.PI; // radians for a drag over the height of the view
 const inertiaMs = 110;
-const slowestGlide = 4e-5; // radians per millisecond
+const minInertiaSpeed = 4e-5; // radians per millisecond
 const keyOrbitPerMs = 1.3e-3;
 const keyPanPerMs = 5e-4;
 const keyDollyPerMs = 1.4e-3;
 const firstKeyStepMs = 35;
 const lookPerHeight = 0.6 * Math.PI; // radians for a drag over the height of the view
-const flyPerMs = 2e-4; // sizes of the scene
-const flyFaster = 4;
-const glideToMs = 450;
+const flyPerMs = 2e-4; // scene sizes per millisecond
+const fastFlyFactor = 4;
+const transitionMs = 450;
 
 const navigationKeys = new Set([
   "ArrowLeft",
@@ -44,7 +44,7 @@ const navigationKeys = new Set([
   "_",
 ]);
 
-/** By their place on the keyboard, whatever the letters on them are. */
+/** Key codes name the position on the keyboard, independent of its layout. */
 const flyKeys: Record<string, [right: number, up: number, forward: number]> = {
   KeyW: [0, 0, 1],
   KeyS: [0, 0, -1],
@@ -61,13 +61,13 @@ export class Navigation {
   private readonly pointers = new Map<number, Point>();
   private readonly heldKeys = new Set<string>();
   private gesture: Gesture | null = null;
-  private next: Camera | null = null;
+  private pendingPose: CameraPose | null = null;
   private frameRequest = 0;
   private lastFrameAt = 0;
   private lastMoveAt = 0;
-  private glide = { yaw: 0, pitch: 0 };
+  private inertia = { yaw: 0, pitch: 0 };
   private shiftHeld = false;
-  private journey: { from: Camera; to: Camera; startedAt: number } | null = null;
+  private transition: { from: CameraPose; to: CameraPose; startedAt: number } | null = null;
 
   constructor(surface: HTMLElement, host: NavigationHost) {
     this.surface = surface;
@@ -87,19 +87,19 @@ export class Navigation {
     addEventListener("blur", () => this.heldKeys.clear());
   }
 
-  /** True while a hand is on the camera; poses from elsewhere should wait. */
+  /** True while the user moves the camera. */
   get active(): boolean {
-    const handOn = this.pointers.size > 0 || this.heldKeys.size > 0;
-    return handOn || this.next !== null || this.journey !== null;
+    const hasInput = this.pointers.size > 0 || this.heldKeys.size > 0;
+    return hasInput || this.pendingPose !== null || this.transition !== null;
   }
 
-  /** Goes to a pose in a moment; at once where motion is unwelcome. */
-  goTo(camera: Camera): void {
+  /** Moves to a pose in a short transition; at once if the user prefers reduced motion. */
+  goTo(camera: CameraPose): void {
     const from = this.host.camera();
     if (!from) return;
-    this.stopGliding();
+    this.stopMotion();
     if (this.reducedMotion.matches) this.change(() => camera);
-    else this.journey = { from, to: camera, startedAt: performance.now() };
+    else this.transition = { from, to: camera, startedAt: performance.now() };
     this.schedule();
   }
 
@@ -107,15 +107,15 @@ export class Navigation {
     return [...this.heldKeys].some((key) => key in flyKeys);
   }
 
-  private stopGliding(): void {
-    this.glide = { yaw: 0, pitch: 0 };
-    this.journey = null;
+  private stopMotion(): void {
+    this.inertia = { yaw: 0, pitch: 0 };
+    this.transition = null;
   }
 
   private readonly pointerDown = (event: PointerEvent): void => {
     this.surface.setPointerCapture(event.pointerId);
     this.pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
-    this.stopGliding();
+    this.stopMotion();
     if (this.pointers.size > 1) this.gesture = "pinch";
     else if (this.flying) this.gesture = "look";
     else this.gesture = event.button !== 0 || event.shiftKey ? "pan" : "orbit";
@@ -133,8 +133,7 @@ export class Navigation {
     else if (this.gesture === "pan") this.change((camera) => pan(camera, right, down));
     else if (this.gesture === "look") {
       this.change((camera) => look(camera, right * lookPerHeight, down * lookPerHeight));
-    }
-    else this.dragOrbit(right * orbitPerHeight, down * orbitPerHeight, event.timeStamp);
+    } else this.dragOrbit(right * orbitPerHeight, down * orbitPerHeight, event.timeStamp);
     this.pointers.set(event.pointerId, after);
   };
 
@@ -142,12 +141,12 @@ export class Navigation {
     if (!this.pointers.delete(event.pointerId)) return;
     if (this.pointers.size > 0) {
       this.gesture = this.pointers.size > 1 ? "pinch" : "orbit";
-      this.glide = { yaw: 0, pitch: 0 };
+      this.inertia = { yaw: 0, pitch: 0 };
       return;
     }
-    const restedBeforeRelease = event.timeStamp - this.lastMoveAt > 60;
-    if (this.gesture !== "orbit" || restedBeforeRelease || this.reducedMotion.matches) {
-      this.glide = { yaw: 0, pitch: 0 };
+    const stoppedBeforeRelease = event.timeStamp - this.lastMoveAt > 60;
+    if (this.gesture !== "orbit" || stoppedBeforeRelease || this.reducedMotion.matches) {
+      this.inertia = { yaw: 0, pitch: 0 };
     }
     this.gesture = null;
     this.surface.classList.remove("grabbing");
@@ -158,8 +157,8 @@ export class Navigation {
     const elapsed = Math.max(4, Math.min(100, at - this.lastMoveAt));
     this.lastMoveAt = at;
     const blend = Math.min(1, elapsed / 40);
-    this.glide.yaw += (-right / elapsed - this.glide.yaw) * blend;
-    this.glide.pitch += (down / elapsed - this.glide.pitch) * blend;
+    this.inertia.yaw += (-right / elapsed - this.inertia.yaw) * blend;
+    this.inertia.pitch += (down / elapsed - this.inertia.pitch) * blend;
     this.change((camera) => orbit(camera, -right, down));
   }
 
@@ -186,7 +185,7 @@ export class Navigation {
     const { left, top, width, height } = this.surface.getBoundingClientRect();
     const right = (event.clientX - left - width / 2) / height;
     const down = (event.clientY - top) / height - 0.5;
-    this.stopGliding();
+    this.stopMotion();
     this.change((camera) => {
       const factor = Math.exp(pixels * rate);
       return dollyToPoint(camera, factor, this.distances(), right, down);
@@ -207,7 +206,7 @@ export class Navigation {
       this.host.fit();
     } else if (navigationKeys.has(key) || key in flyKeys) {
       if (!this.heldKeys.has(key)) {
-        this.stopGliding();
+        this.stopMotion();
         this.heldKeys.add(key);
         this.applyKeys(firstKeyStepMs);
       }
@@ -236,33 +235,34 @@ export class Navigation {
         moved = orbit(moved, right * keyOrbitPerMs * elapsedMs, up * keyOrbitPerMs * elapsedMs);
       }
       if (away) moved = this.zoom(moved, Math.exp(away * keyDollyPerMs * elapsedMs));
-      return this.flying ? this.flown(moved, elapsedMs) : moved;
+      return this.flying ? this.applyFlyKeys(moved, elapsedMs) : moved;
     });
   }
 
-  private flown(camera: Camera, elapsedMs: number): Camera {
-    const metres = this.host.sceneSize() * flyPerMs * elapsedMs * (this.shiftHeld ? flyFaster : 1);
-    const way = [0, 0, 0] as [number, number, number];
+  private applyFlyKeys(camera: CameraPose, elapsedMs: number): CameraPose {
+    const metres =
+      this.host.sceneSize() * flyPerMs * elapsedMs * (this.shiftHeld ? fastFlyFactor : 1);
+    const offset = [0, 0, 0] as [number, number, number];
     for (const key of this.heldKeys) {
-      flyKeys[key]?.forEach((part, axis) => (way[axis as 0 | 1 | 2] += part * metres));
+      flyKeys[key]?.forEach((direction, axis) => (offset[axis as 0 | 1 | 2] += direction * metres));
     }
-    return fly(camera, ...way);
+    return fly(camera, ...offset);
   }
 
-  /** How near and how far from the target one may go, metres. */
+  /** Limits of the distance to the target, metres. */
   private distances(): [nearest: number, farthest: number] {
     const size = this.host.sceneSize();
     return [0.02 * size, 20 * size];
   }
 
-  private zoom(camera: Camera, factor: number): Camera {
+  private zoom(camera: CameraPose, factor: number): CameraPose {
     return dolly(camera, factor, ...this.distances());
   }
 
-  private change(move: (camera: Camera) => Camera): void {
-    const camera = this.next ?? this.host.camera();
+  private change(move: (camera: CameraPose) => CameraPose): void {
+    const camera = this.pendingPose ?? this.host.camera();
     if (!camera) return;
-    this.next = move(camera);
+    this.pendingPose = move(camera);
     this.schedule();
   }
 
@@ -276,38 +276,38 @@ export class Navigation {
     this.frameRequest = 0;
     const elapsed = Math.min(100, Math.max(0, now - this.lastFrameAt));
     if (this.heldKeys.size > 0) this.applyKeys(elapsed);
-    const gliding =
-      this.continueJourney(now) || (this.pointers.size === 0 && this.continueGlide(elapsed));
-    if (this.next) {
-      const camera = this.next;
-      this.next = null;
+    const moving =
+      this.continueTransition(now) || (this.pointers.size === 0 && this.continueInertia(elapsed));
+    if (this.pendingPose) {
+      const camera = this.pendingPose;
+      this.pendingPose = null;
       this.host.moved(camera);
     }
-    if (gliding || this.heldKeys.size > 0) {
+    if (moving || this.heldKeys.size > 0) {
       cancelAnimationFrame(this.frameRequest);
       this.lastFrameAt = now;
       this.frameRequest = requestAnimationFrame(this.frame);
     }
   };
 
-  private continueJourney(now: number): boolean {
-    if (!this.journey) return false;
-    const { from, to, startedAt } = this.journey;
-    const part = Math.min(1, Math.max(0, (now - startedAt) / glideToMs));
-    this.next = between(from, to, part * part * (3 - 2 * part));
-    if (part >= 1) this.journey = null;
-    return part < 1;
+  private continueTransition(now: number): boolean {
+    if (!this.transition) return false;
+    const { from, to, startedAt } = this.transition;
+    const t = Math.min(1, Math.max(0, (now - startedAt) / transitionMs));
+    this.pendingPose = interpolate(from, to, t * t * (3 - 2 * t));
+    if (t >= 1) this.transition = null;
+    return t < 1;
   }
 
-  private continueGlide(elapsedMs: number): boolean {
-    const { yaw, pitch } = this.glide;
-    if (Math.hypot(yaw, pitch) < slowestGlide) {
-      this.glide = { yaw: 0, pitch: 0 };
+  private continueInertia(elapsedMs: number): boolean {
+    const { yaw, pitch } = this.inertia;
+    if (Math.hypot(yaw, pitch) < minInertiaSpeed) {
+      this.inertia = { yaw: 0, pitch: 0 };
       return false;
     }
     this.change((camera) => orbit(camera, yaw * elapsedMs, pitch * elapsedMs));
     const decay = Math.exp(-elapsedMs / inertiaMs);
-    this.glide = { yaw: yaw * decay, pitch: pitch * decay };
+    this.inertia = { yaw: yaw * decay, pitch: pitch * decay };
     return true;
   }
 }

@@ -1,4 +1,4 @@
-// Takes clicks on the picture that are not the start of a drag.
+// Clicks on the view that do not start a drag.
 
 export interface PointPicker {
   /** Sends every click, in fractions of width and height, to the function; null stops it. */
@@ -8,7 +8,7 @@ export interface PointPicker {
   unmark(): void;
 }
 
-const mostMovement = 4; // CSS pixels
+const maxMovement = 4; // CSS pixels
 
 export function createPicker(surface: HTMLElement, mark: HTMLElement): PointPicker {
   let listener: ((x: number, y: number) => void) | null = null;
@@ -20,7 +20,7 @@ export function createPicker(surface: HTMLElement, mark: HTMLElement): PointPick
     const from = pressed;
     pressed = null;
     if (!listener || !from) return;
-    if (Math.hypot(clientX - from.x, clientY - from.y) > mostMovement) return;
+    if (Math.hypot(clientX - from.x, clientY - from.y) > maxMovement) return;
     const { left, top, width, height } = surface.getBoundingClientRect();
     listener((clientX - left) / width, (clientY - top) / height);
   });

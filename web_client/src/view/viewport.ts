@@ -1,39 +1,39 @@
-// The size of the picture to ask for: the canvas in device pixels, within limits and a budget.
+// The frame size to request: the canvas in device pixels, within limits.
 
 import type { FrameSize } from "../session/stream_requests.ts";
 
-export interface SizeLimits {
+interface SizeLimits {
   maxWidth: number;
   maxHeight: number;
-  /** Most pixels worth asking for; Infinity asks for every device pixel. */
+  /** Most pixels of a frame; Infinity for no limit. */
   maxPixels: number;
 }
 
-const sharpestPixelRatio = 2;
+const maxPixelRatio = 2;
 
-/** Keeps the shape of the view, so that the picture always fills it. CSS pixels in. */
+/** A size with the view's aspect ratio, so that the frame fills it. Takes CSS pixels. */
 export function frameSize(
   cssWidth: number,
   cssHeight: number,
   pixelRatio: number,
   limits: SizeLimits,
 ): FrameSize {
-  const ratio = Math.min(sharpestPixelRatio, Math.max(0.5, pixelRatio));
+  const ratio = Math.min(maxPixelRatio, Math.max(0.5, pixelRatio));
   const width = Math.max(1, cssWidth * ratio);
   const height = Math.max(1, cssHeight * ratio);
-  const shrink = Math.min(
+  const scale = Math.min(
     1,
     limits.maxWidth / width,
     limits.maxHeight / height,
     Math.sqrt(limits.maxPixels / (width * height)),
   );
   return {
-    width: Math.max(16, Math.round(width * shrink)),
-    height: Math.max(16, Math.round(height * shrink)),
+    width: Math.max(16, Math.round(width * scale)),
+    height: Math.max(16, Math.round(height * scale)),
   };
 }
 
-/** Reports every change of the element's size or the screen's pixel ratio. */
+/** Reports changes of the element's size and the screen's pixel ratio. */
 export function watchSize(element: HTMLElement, changed: () => void): void {
   new ResizeObserver(changed).observe(element);
   const watchRatio = (): void => {

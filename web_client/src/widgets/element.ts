@@ -1,9 +1,9 @@
-// Small helpers to build DOM trees.
+// Helpers to build DOM trees.
 
 type Attributes = Record<string, string | boolean | ((event: never) => void) | undefined>;
 type Child = Node | string | null | undefined;
 
-/** Makes an element. Functions become listeners, true an empty attribute, false none. */
+/** Creates an element. Functions become listeners, true an empty attribute, false no attribute. */
 export function element<Name extends keyof HTMLElementTagNameMap>(
   name: Name,
   attributes: Attributes = {},
@@ -22,13 +22,13 @@ export function element<Name extends keyof HTMLElementTagNameMap>(
 /** One of the symbols defined in index.html. */
 export function icon(name: string): SVGSVGElement {
   const namespace = "http://www.w3.org/2000/svg";
-  const picture = document.createElementNS(namespace, "svg");
-  picture.setAttribute("class", "icon");
-  picture.setAttribute("aria-hidden", "true");
+  const svg = document.createElementNS(namespace, "svg");
+  svg.setAttribute("class", "icon");
+  svg.setAttribute("aria-hidden", "true");
   const use = document.createElementNS(namespace, "use");
   use.setAttribute("href", `#icon-${name}`);
-  picture.append(use);
-  return picture;
+  svg.append(use);
+  return svg;
 }
 
 export function button(label: string, iconName: string, action: () => void): HTMLButtonElement {
@@ -39,7 +39,7 @@ export function button(label: string, iconName: string, action: () => void): HTM
   );
 }
 
-/** Replaces text only when it differs, so that unchanged figures cost no layout. */
+/** Replaces text only if it differs, so that unchanged text causes no layout. */
 export function setText(node: Element, text: string): void {
   if (node.textContent !== text) node.textContent = text;
 }
@@ -50,7 +50,7 @@ export function uniqueId(prefix: string): string {
   return `${prefix}-${lastId}`;
 }
 
-/** Fills a select, keeping its choice; does nothing when the options are the same. */
+/** Sets the options of a select and keeps its value; does nothing if they are unchanged. */
 export function setOptions(
   select: HTMLSelectElement,
   options: { value: string; label: string; disabled?: boolean }[],
@@ -58,11 +58,11 @@ export function setOptions(
   const signature = JSON.stringify(options);
   if (select.dataset.options === signature) return;
   select.dataset.options = signature;
-  const chosen = select.value;
+  const current = select.value;
   select.replaceChildren(
     ...options.map(({ value, label, disabled }) =>
       element("option", { value, disabled: disabled === true }, label),
     ),
   );
-  select.value = chosen;
+  select.value = current;
 }

@@ -1,4 +1,4 @@
-// A labelled control of the hand-made part of the panel.
+// A labelled control that is not generated from the settings' schema.
 
 import { element, uniqueId } from "./element.ts";
 

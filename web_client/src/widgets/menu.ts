@@ -1,4 +1,4 @@
-// A button that opens a short list of things to do (ARIA menu button).
+// A button that opens a list of actions (ARIA menu button).
 
 import { button, element, icon, setText } from "./element.ts";
 
@@ -6,10 +6,10 @@ export interface MenuItem {
   label: string;
   icon: string;
   run: () => void;
-  /** Whether it is there at the moment; always when left out. */
-  offered?: () => boolean;
-  /** What it is called at the moment, where that changes. */
-  labelNow?: () => string;
+  /** Whether the item is shown now; always if left out. */
+  isAvailable?: () => boolean;
+  /** The label now, where it changes. */
+  currentLabel?: () => string;
 }
 
 export function createMenu(label: string, iconName: string, items: MenuItem[]): HTMLElement {
@@ -38,18 +38,18 @@ export function createMenu(label: string, iconName: string, items: MenuItem[]): 
   opener.setAttribute("aria-expanded", "false");
   const open = (): void => {
     for (const { node, text, item } of entries) {
-      node.hidden = item.offered ? !item.offered() : false;
-      if (item.labelNow) setText(text, item.labelNow());
+      node.hidden = item.isAvailable ? !item.isAvailable() : false;
+      if (item.currentLabel) setText(text, item.currentLabel());
     }
     list.hidden = false;
     opener.setAttribute("aria-expanded", "true");
     focusEntry(0);
   };
-  const close = (backToOpener: boolean): void => {
+  const close = (focusOpener: boolean): void => {
     if (list.hidden) return;
     list.hidden = true;
     opener.setAttribute("aria-expanded", "false");
-    if (backToOpener) opener.focus();
+    if (focusOpener) opener.focus();
   };
   const focusEntry = (index: number): void => {
     const shown = entries.filter(({ node }) => !node.hidden);

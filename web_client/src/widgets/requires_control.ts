@@ -1,11 +1,11 @@
-// Parts of the page that change what all viewers see: out of use, visibly, for who may not.
+// Controls that change the session: disabled while this page is not in control.
 
 import type { Viewer } from "../session/viewer.ts";
 import { element } from "./element.ts";
 
-/** Wraps controls so that all of them are disabled while this page may change nothing. */
+/** Wraps controls that are disabled while this page may not change the session. */
 export function requiresControl(viewer: Viewer, ...controls: HTMLElement[]): HTMLFieldSetElement {
-  const set = element("fieldset", { class: "requiresControl" }, ...controls);
+  const set = element("fieldset", { class: "requires-control" }, ...controls);
   viewer.controlState.watch(({ kind }) => {
     set.disabled = kind !== "may_change";
     for (const node of set.querySelectorAll("[role=slider]")) {
@@ -15,7 +15,7 @@ export function requiresControl(viewer: Viewer, ...controls: HTMLElement[]): HTM
   return set;
 }
 
-/** For what is no form control: whether it stands among disabled ones. */
+/** Whether an element that is no form control is inside a disabled fieldset. */
 export function isDisabled(node: Element): boolean {
   return node.closest("fieldset:disabled") !== null;
 }

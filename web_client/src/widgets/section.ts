@@ -1,17 +1,17 @@
-// A foldable section of the panel that remembers whether it was open.
+// A collapsible section of the panel. Its state is stored in the preferences.
 
 import { preferences } from "../common/preferences.ts";
 import { element, icon } from "./element.ts";
 
-export interface SectionParts {
-  /** Identifies the section between visits. */
+interface SectionParts {
+  /** Identifies the section in the preferences. */
   id: string;
   title: string;
   body: HTMLElement;
-  openAtFirst: boolean;
-  /** A quiet text at the right of the title. */
+  openByDefault: boolean;
+  /** A text at the right of the title. */
   note?: HTMLElement;
-  /** A button in the header's corner; beside the fold switch, not inside it. */
+  /** A button in the header's corner, beside the toggle. */
   action?: HTMLElement;
 }
 
@@ -20,16 +20,11 @@ export function createSection(parts: SectionParts): HTMLElement {
   const fold = element(
     "details",
     {
-      open: preferences.flag(key, parts.openAtFirst),
+      open: preferences.flag(key, parts.openByDefault),
       toggle: () => preferences.setFlag(key, fold.open),
     },
     element("summary", {}, icon("chevron"), element("h2", {}, parts.title), parts.note),
     parts.body,
   );
-  return element(
-    "section",
-    { class: "section", "data-section": parts.id },
-    fold,
-    parts.action,
-  );
+  return element("section", { class: "section", "data-section": parts.id }, fold, parts.action);
 }

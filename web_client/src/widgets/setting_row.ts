@@ -1,6 +1,6 @@
-// One row per setting: its widget, its changed mark and its reset button.
+// One row per setting: its widget, its "changed" marker and its reset button.
 
-import type { JsonValue } from "heliograph/messages.ts";
+import type { JsonValue } from "heliograph/json.ts";
 import {
   type ChoiceControl,
   type Control,
@@ -24,10 +24,10 @@ export interface Row {
 }
 
 interface Widget {
-  /** What the label names; null when the widget labels its parts itself. */
+  /** The element that the label is for; null when the widget labels its parts itself. */
   labelled: HTMLElement | null;
   node: HTMLElement;
-  /** A part that stands below the row instead of beside the label. */
+  /** A part that is placed below the row instead of beside the label. */
   below?: HTMLElement;
   show(value: JsonValue | undefined): void;
 }
@@ -36,8 +36,8 @@ type Report = (value: JsonValue) => void;
 
 const sliderSteps = 1000;
 
-/** Longer units have no room beside the number; the tooltip tells them. */
-const longestSymbol = 3;
+/** Longer units are shown in the tooltip, not beside the number. */
+const maxSymbolLength = 3;
 
 const unitSymbols: Record<string, string> = {
   seconds: "s",
@@ -53,7 +53,7 @@ const unitSymbols: Record<string, string> = {
   "1": "",
 };
 
-export function unitSymbol(unit: string): string {
+function unitSymbol(unit: string): string {
   return unitSymbols[unit] ?? unit;
 }
 
@@ -97,7 +97,7 @@ export function createRow(control: Control, report: Report, reset: () => void): 
   };
 }
 
-/** The tooltip of a row: help text, then range, default and path in one quiet line. */
+/** The tooltip of a row: help text, then range, default and path. */
 function describe(node: HTMLElement, control: Control): void {
   node.dataset.tip = control.description || control.label;
   const unit = unitSymbol(control.unit);
@@ -114,14 +114,14 @@ function describe(node: HTMLElement, control: Control): void {
 }
 
 function describeValue(control: Control): string {
-  const standard = control.default;
-  if (typeof standard === "boolean") return standard ? "on" : "off";
+  const value = control.default;
+  if (typeof value === "boolean") return value ? "on" : "off";
   if (control.kind === "choice") {
-    const option = control.options.find(({ value }) => sameValue(value, standard));
-    return option?.label ?? String(standard);
+    const option = control.options.find((choice) => sameValue(choice.value, value));
+    return option?.label ?? String(value);
   }
-  if (typeof standard === "number" && "step" in control) return formatNumber(standard, control);
-  return typeof standard === "string" ? standard || "empty" : JSON.stringify(standard);
+  if (typeof value === "number" && "step" in control) return formatNumber(value, control);
+  return typeof value === "string" ? value || "empty" : JSON.stringify(value);
 }
 
 function createWidget(control: Control, report: Report): Widget {
@@ -186,8 +186,8 @@ function slider(control: SliderControl, report: Report): Widget {
       entry.show(value);
       shown = Number(value ?? control.minimum);
       track.value = String(Math.round(sliderPosition(control, shown) * sliderSteps));
-      const spoken = `${formatNumber(shown, control)} ${control.unit}`.trim();
-      track.setAttribute("aria-valuetext", spoken);
+      const valueText = `${formatNumber(shown, control)} ${control.unit}`.trim();
+      track.setAttribute("aria-valuetext", valueText);
       fill();
     },
   };
@@ -199,7 +199,7 @@ function arrowDirection(event: KeyboardEvent): number {
   return 0;
 }
 
-/** The next value on the control's grid; on a curved scale a step is a hundredth of the way. */
+/** The next value on the control's grid; on a non-linear scale, a step is 1 % of the track. */
 function stepped(control: SliderControl, value: number, steps: number): number {
   if (control.scale === "linear") {
     return parseNumber(String(value + steps * control.step), control) ?? value;
@@ -301,7 +301,7 @@ function json(report: Report): Widget {
   };
 }
 
-/** A typed number with its unit; up and down step it, nonsense restores what was shown. */
+/** A number input with its unit; arrow keys step it, invalid input restores the value. */
 function numberEntry(range: NumberRange, unit: string, report: Report, label: string) {
   let shown = 0;
   const write = (): void => {
@@ -334,7 +334,7 @@ function numberEntry(range: NumberRange, unit: string, report: Report, label: st
   });
   const symbol = unitSymbol(unit);
   const node = element("span", { class: "entry" }, input);
-  if (symbol && symbol.length <= longestSymbol) {
+  if (symbol && symbol.length <= maxSymbolLength) {
     node.classList.add("with-unit");
     node.append(element("span", { class: "unit", "aria-hidden": "true" }, symbol));
   }

@@ -1,14 +1,14 @@
-// A row like those of the settings, for a number that is no setting.
+// A slider like those of the settings, for a number that is not a setting.
 
 import { type NumberRange, type SliderControl } from "heliograph/settings_schema.ts";
 import { createRow } from "./setting_row.ts";
 
-export interface SliderRow {
+interface SliderRow {
   node: HTMLElement;
   show(value: number): void;
 }
 
-export interface SliderParts {
+interface SliderParts {
   label: string;
   description: string;
   unit: string;
@@ -32,6 +32,10 @@ export function createSliderRow(parts: SliderParts, report: (value: number) => v
     ...range,
     ...parts,
   };
-  const row = createRow(control, (value) => report(Number(value)), () => {});
+  const row = createRow(
+    control,
+    (value) => report(Number(value)),
+    () => {},
+  );
   return { node: row.node, show: (value) => row.show(value, false) };
 }

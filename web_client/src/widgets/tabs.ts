@@ -1,19 +1,19 @@
-// Tabs over the parts of the panel; arrow keys move between them (ARIA authoring practices).
+// Tabs; arrow keys move between them (ARIA authoring practices).
 
 import { preferences } from "../common/preferences.ts";
 import { element, icon } from "./element.ts";
 
-export interface TabParts {
+interface TabParts {
   id: string;
   label: string;
   icon: string;
   body: HTMLElement;
 }
 
-export interface Tabs {
+interface Tabs {
   list: HTMLElement;
   pages: HTMLElement;
-  choose(id: string): void;
+  select(id: string): void;
 }
 
 const storageKey = "tab";
@@ -51,9 +51,9 @@ export function createTabs(label: string, parts: TabParts[]): Tabs {
     pages.append(page);
     return { tab, page, id: part.id };
   });
-  const show = (chosen: number): void => {
+  const show = (active: number): void => {
     tabs.forEach(({ tab, page, id }, index) => {
-      const selected = index === chosen;
+      const selected = index === active;
       tab.setAttribute("aria-selected", String(selected));
       tab.tabIndex = selected ? 0 : -1;
       page.hidden = !selected;
@@ -69,9 +69,14 @@ export function createTabs(label: string, parts: TabParts[]): Tabs {
     show(next);
     tabs[next]?.tab.focus();
   };
-  const choose = (id: string): void => {
-    show(Math.max(0, tabs.findIndex((tab) => tab.id === id)));
+  const select = (id: string): void => {
+    show(
+      Math.max(
+        0,
+        tabs.findIndex((tab) => tab.id === id),
+      ),
+    );
   };
-  choose(preferences.text(storageKey, parts[0]?.id ?? ""));
-  return { list, pages, choose };
+  select(preferences.text(storageKey, parts[0]?.id ?? ""));
+  return { list, pages, select };
 }

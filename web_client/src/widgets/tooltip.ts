@@ -1,5 +1,5 @@
-// One tooltip for everything that carries data-tip: after a moment under the mouse, or at once
-// for the keyboard.
+// One tooltip for all elements with data-tip: after a delay under the mouse, at once for the
+// keyboard.
 
 import { element, setText } from "./element.ts";
 

@@ -51,7 +51,7 @@ class EnvironmentLanes {
     const Float across = x - corner_x, down = y - corner_y;
     return mix(mix(texel(top, left), texel(top, right), across),
                mix(texel(bottom, left), texel(bottom, right), across), down) *
-           number(frame_.environment.x);
+           number(frame_.environment_intensity);
   }
 
   /// GGX-prefiltered radiance about the mirror direction `world`.
@@ -63,7 +63,7 @@ class EnvironmentLanes {
     const Integer coarser = hn::Min(hn::Add(finer, integer(1)), integer(last));
     const Float share = level - to_float(finer);
     return mix(cube_texel(face, finer), cube_texel(face, coarser), share) *
-           number(frame_.environment.x);
+           number(frame_.environment_intensity);
   }
 
   /// Irradiance / pi of surfaces facing `world`.
@@ -80,13 +80,13 @@ class EnvironmentLanes {
     sum = multiply_add(term(7), n.x * n.z, sum);
     sum = multiply_add(term(8), hn::MulSub(n.x, n.x, n.y * n.y), sum);
     return Float3{at_least(sum.x, 0.0f), at_least(sum.y, 0.0f), at_least(sum.z, 0.0f)} *
-           number(frame_.environment.x);
+           number(frame_.environment_intensity);
   }
 
  private:
   /// World direction -> direction in the environment's own frame.
   HWY_INLINE Float3 own_direction(const Float3& world) const {
-    const Float c = number(frame_.environment.y), s = number(frame_.environment.z);
+    const Float c = number(frame_.environment_cos), s = number(frame_.environment_sin);
     return {hn::MulSub(c, world.x, s * world.z), world.y, hn::MulAdd(s, world.x, c * world.z)};
   }
 

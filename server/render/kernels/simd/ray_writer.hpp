@@ -102,7 +102,7 @@ class CameraLanes {
  public:
   explicit CameraLanes(const shared::FrameConstants& frame)
       : frame_(frame),
-        orthographic_((frame.counts.y & shared::frame_orthographic) != 0),
+        orthographic_((frame.flags & shared::frame_orthographic) != 0),
         scale_(2.0f / glm::vec2(frame.extent)) {}
 
   bool orthographic() const { return orthographic_; }

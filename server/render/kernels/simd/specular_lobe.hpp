@@ -28,18 +28,18 @@ struct SequencePlace {
 };
 inline SequencePlace sequence_place(const shared::FrameConstants& frame, std::uint32_t dimension,
                                     int scale) {
-  if (scale == 1) return {frame.extent.z, dimension};
-  return {frame.extent.z >> 2u, 16u + 4u * dimension + (frame.extent.z & 3u)};
+  if (scale == 1) return {frame.sample_index, dimension};
+  return {frame.sample_index >> 2u, 16u + 4u * dimension + (frame.sample_index & 3u)};
 }
 inline RandomPairs<UnsignedTag> specular_pairs(const shared::FrameConstants& frame,
                                                std::uint32_t dimension, int scale) {
   const SequencePlace place = sequence_place(frame, dimension, scale);
-  return {unsigned_tag, place.sample, place.dimension, frame.extent.w};
+  return {unsigned_tag, place.sample, place.dimension, frame.seed};
 }
 inline RandomNumbers<UnsignedTag> specular_numbers(const shared::FrameConstants& frame,
                                                    std::uint32_t dimension, int scale) {
   const SequencePlace place = sequence_place(frame, dimension, scale);
-  return {unsigned_tag, place.sample, place.dimension, frame.extent.w};
+  return {unsigned_tag, place.sample, place.dimension, frame.seed};
 }
 
 /// The shading normal, or as close to it as the mirror direction stays above the triangle.

@@ -35,7 +35,7 @@ class ViewedRow {
  public:
   HWY_INLINE ViewedRow(const shared::FrameConstants& frame, int y)
       : frame_(frame),
-        orthographic_((frame.counts.y & shared::frame_orthographic) != 0),
+        orthographic_((frame.flags & shared::frame_orthographic) != 0),
         slope_y_(
             ((static_cast<float>(y) + 0.5f) / static_cast<float>(frame.extent.y) * 2.0f - 1.0f) *
                 frame.unproject.y +

@@ -1,5 +1,6 @@
 #include "render/passes/blend/blend_surfaces.hpp"
 
+#include "render/passes/formats.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/reflections/trace_specular.hpp"
 #include "render/resources/moving_scene.hpp"
@@ -8,12 +9,12 @@
 namespace heliograph::render {
 namespace {
 
-constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-constexpr VkFormat four_floats = VK_FORMAT_R32G32B32A32_SFLOAT;
+using formats::four_floats;
+using formats::storage;
 
 /// Grows by the pixels that a box may cover.
 void include(glm::uvec4& region, const scene::Bounds& bounds, const shared::FrameConstants& frame) {
-  const glm::vec2 size(frame.extent.x, frame.extent.y);
+  const glm::vec2 size(frame.extent);
   for (int corner = 0; corner < 8; ++corner) {
     const glm::vec4 point(corner & 1 ? bounds.maximum.x : bounds.minimum.x,
                           corner & 2 ? bounds.maximum.y : bounds.minimum.y,
@@ -33,8 +34,7 @@ void include(glm::uvec4& region, const scene::Bounds& bounds, const shared::Fram
 
 /// The pixels that blended surfaces may cover: the first, and the one behind the last.
 glm::uvec4 blended_region(const FrameInputs& in) {
-  const glm::uvec4& extent = in.constants.extent;
-  glm::uvec4 region(extent.x, extent.y, 0, 0);
+  glm::uvec4 region(in.constants.extent, 0, 0);
   for (const Draw& draw : in.moving.draws()) {
     const std::uint32_t flags = in.scene.scene->materials[draw.material].flags;
     if (flags & shared::material_alpha_blend) include(region, draw.bounds, in.constants);

@@ -61,7 +61,7 @@ gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& g
     if (separable) {
       // Which half comes first changes from iteration to iteration and frame to frame: streaks
       // would all run one way.
-      const auto half_shape = [&frame = in.constants.extent.z, level](bool first_half) {
+      const auto half_shape = [&frame = in.constants.sample_index, level](bool first_half) {
         const bool across = ((frame + static_cast<std::uint32_t>(level)) % 2 == 0) == first_half;
         return KernelShape{level, across ? 2 : 0, across ? 0 : 2, first_half};
       };

@@ -23,13 +23,12 @@ inline float rested_box(const FrameInputs& in, protocol::Rectification mode) {
 /// What the passes of one signal's accumulation read, this frame. The memory is counted in
 /// seconds, so that it does not depend on the rate, and grows with the picture while that rests, so
 /// that it converges.
-template <class TemporalSettings>
-shared::TemporalConstants temporal_constants(const FrameInputs& in,
-                                             const TemporalSettings& settings) {
+inline shared::TemporalConstants temporal_constants(const FrameInputs& in,
+                                                    const protocol::TemporalSettings& settings) {
   const auto rests = static_cast<float>(in.samples + 1);
-  const float by_time = in.seconds > 0.0f ? settings.seconds / in.seconds : 0.0f;
+  const float by_time = in.seconds > 0.0f ? settings.history_seconds / in.seconds : 0.0f;
   shared::TemporalConstants constants{};
-  constants.frames = std::max({static_cast<float>(settings.frames), by_time, rests});
+  constants.frames = std::max({static_cast<float>(settings.history_frames), by_time, rests});
   constants.moments_frames = std::max(static_cast<float>(settings.moments_frames), rests);
   constants.rectification = static_cast<std::uint32_t>(settings.rectification);
   constants.radius = settings.rectification_radius;
@@ -45,7 +44,7 @@ shared::TemporalConstants temporal_constants(const FrameInputs& in,
     constants.light_frames = constants.frames;
   }
   constants.spatial_variance_frames = static_cast<float>(settings.spatial_variance_frames);
-  const bool holds = settings.enabled && in.constants.counts.w == 0;
+  const bool holds = settings.enabled && in.constants.history_invalid == 0;
   constants.flags = (holds ? shared::temporal_holds : 0u) |
                     (settings.mean_variance ? shared::temporal_mean_variance : 0u) |
                     (settings.bicubic ? shared::temporal_bicubic : 0u);
@@ -60,8 +59,8 @@ struct KernelShape {
   bool first_half;
 };
 
-template <class BlurSettings>
-shared::AtrousConstants atrous_constants(const BlurSettings& settings, const KernelShape& shape) {
+inline shared::AtrousConstants atrous_constants(const protocol::BlurSettings& settings,
+                                                const KernelShape& shape) {
   shared::AtrousConstants constants{};
   constants.level = shape.level;
   constants.columns = shape.columns;

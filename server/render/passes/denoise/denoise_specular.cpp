@@ -3,12 +3,13 @@
 #include "render/passes/denoise/atrous.hpp"
 #include "render/passes/denoise/denoise_constants.hpp"
 #include "render/passes/denoise/temporal.hpp"
+#include "render/passes/formats.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
 namespace {
 
-constexpr VkFormat four_floats = VK_FORMAT_R32G32B32A32_SFLOAT;
+using formats::four_floats;
 
 gpu::ImageRef compress(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef raw) {
   const auto compressed = plan.image("specular.compressed", four_floats);
@@ -39,7 +40,7 @@ gpu::ImageRef expand(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef 
   return expanded;
 }
 
-Blur blur_of(const FrameInputs& in) {
+Blur specular_blur(const FrameInputs& in) {
   const auto& settings = in.settings.specular_blur;
   const auto constants = [in, &settings](const KernelShape& shape) {
     shared::AtrousConstants made = atrous_constants(settings, shape);
@@ -68,7 +69,7 @@ gpu::ImageRef denoise_specular(gpu::FramePlan& plan, const FrameInputs& in, cons
   signal = integrated.signal;
   if (blurring.enabled) {
     estimate_specular_variance(plan, in, gbuffer, guide, integrated);
-    signal = blur(plan, in, gbuffer, guide, blur_of(in), integrated.signal,
+    signal = blur(plan, in, gbuffer, guide, specular_blur(in), integrated.signal,
                   feedback ? std::optional(Feedback{blurring.feedback, integrated.remembered})
                            : std::nullopt);
   }

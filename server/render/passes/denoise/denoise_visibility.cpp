@@ -30,7 +30,7 @@ float widest_light(const FrameInputs& in) {
   return widest;
 }
 
-Blur blur_of(const FrameInputs& in) {
+Blur visibility_blur(const FrameInputs& in) {
   const auto& settings = in.settings.shadow_blur;
   const auto constants = [in, &settings](const KernelShape& shape) {
     shared::AtrousConstants made = atrous_constants(settings, shape);
@@ -77,7 +77,7 @@ gpu::ImageRef denoise_visibility(gpu::FramePlan& plan, const FrameInputs& in,
 
   estimate_visibility_variance(plan, in, gbuffer, guide, integrated);
   return blur(
-      plan, in, gbuffer, guide, blur_of(in), integrated.signal,
+      plan, in, gbuffer, guide, visibility_blur(in), integrated.signal,
       feedback ? std::optional(Feedback{blurring.feedback, integrated.remembered}) : std::nullopt);
 }
 

@@ -3,12 +3,13 @@
 #include "render/kernels/spatial_variance.hpp"
 #include "render/kernels/temporal.hpp"
 #include "render/passes/denoise/denoise_constants.hpp"
+#include "render/passes/formats.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
 namespace {
 
-constexpr VkFormat four_floats = VK_FORMAT_R32G32B32A32_SFLOAT;
+using formats::four_floats;
 
 /// The spread of brightness in every tile of 8x8 pixels of `raw`, for the rectification that needs
 /// it; otherwise any image, which nobody reads.
@@ -141,8 +142,8 @@ Integrated accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in, cons
   const auto& settings = in.settings.specular_temporal;
   const auto constants = [in, &settings] {
     shared::TemporalConstants made = temporal_constants(in, settings);
-    if (settings.virtual_point) made.flags |= shared::temporal_virtual_point;
-    if (settings.bent_mirrors) made.flags |= shared::temporal_bent_mirrors;
+    if (settings.virtual_motion) made.flags |= shared::temporal_virtual_motion;
+    if (settings.curved_reflectors) made.flags |= shared::temporal_curved_reflectors;
     return made;
   };
   const gpu::ImageRef signal =

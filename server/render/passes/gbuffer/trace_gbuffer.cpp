@@ -4,6 +4,7 @@
 
 #include "render/kernels/gbuffer_hits.hpp"
 #include "render/passes/blend/blend_surfaces.hpp"
+#include "render/passes/formats.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/resources/moving_scene.hpp"
 #include "shaders/embedded.hpp"
@@ -11,7 +12,7 @@
 namespace heliograph::render {
 namespace {
 
-constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+using formats::storage;
 
 void camera_rays(gpu::FramePlan& plan, const FrameInputs& in, const tracing::RayStream& rays) {
   const auto run_host = [&plan, &frame = in.constants, rays] {

@@ -16,13 +16,13 @@ bool is_filtered(const protocol::Settings& settings) {
          (settings.specular.enabled &&
           (settings.specular_temporal.enabled || settings.specular_blur.enabled)) ||
          settings.antialiasing.temporal ||
-         settings.reference.use == protocol::ReferenceUse::resting;
+         settings.reference.use == protocol::ReferenceUse::when_static;
 }
 
 /// Samples in the mean when this frame's is in it.
 std::uint32_t mean_of(const FrameInputs& in) {
-  const bool late = in.settings.reference.use == protocol::ReferenceUse::resting &&
-                    in.settings.accumulation.handover > 0;
+  const bool late = in.settings.reference.use == protocol::ReferenceUse::when_static &&
+                    in.settings.accumulation.blend_samples > 0;
   return late ? std::max(in.samples, 1u) : in.samples + 1;
 }
 
@@ -57,12 +57,12 @@ gpu::History accumulate(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageR
 float mean_share(const FrameInputs& in) {
   const protocol::Settings& settings = in.settings;
   if (settings.reference.use == protocol::ReferenceUse::always || !is_filtered(settings) ||
-      settings.accumulation.handover == 0) {
+      settings.accumulation.blend_samples == 0) {
     return 1.0f;
   }
   // The first sample does not count: what moves shows none of the mean's noise.
   const auto samples = static_cast<float>(in.samples);
-  return samples / (samples + static_cast<float>(settings.accumulation.handover));
+  return samples / (samples + static_cast<float>(settings.accumulation.blend_samples));
 }
 
 }  // namespace heliograph::render

@@ -11,7 +11,7 @@ gpu::History accumulate(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageR
 
 /// The mean's share of the picture that is shown in this frame, 0..1. A picture that moves is what
 /// the denoiser makes of it; the longer it rests, the more it is the mean, which converges to the
-/// truth. `accumulation.handover` samples after the first both count the same.
+/// truth. `accumulation.blend_samples` samples after the first both count the same.
 float mean_share(const FrameInputs& in);
 
 }  // namespace heliograph::render

@@ -16,8 +16,7 @@ tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
 
 std::uint32_t frame_blending(const FrameInputs& in) {
   if ((in.scene.features & shared::scene_blends) == 0) return 0;
-  const glm::uvec4& extent = in.constants.extent;
-  return shared::mixed_bits(extent.z ^ shared::mixed_bits(extent.w)) | 1u;
+  return shared::mixed_bits(in.constants.sample_index ^ shared::mixed_bits(in.constants.seed)) | 1u;
 }
 
 void begin_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,

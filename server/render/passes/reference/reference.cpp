@@ -1,6 +1,7 @@
 #include "render/passes/reference/reference.hpp"
 
 #include "render/passes/blend/blend_surfaces.hpp"
+#include "render/passes/formats.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "shaders/embedded.hpp"
 #include "shaders/shared/ray.h"
@@ -13,11 +14,11 @@ namespace {
 /// alone is shown.
 bool traces_reference(const FrameInputs& in) {
   return in.settings.reference.use == protocol::ReferenceUse::always || in.samples > 0 ||
-         in.settings.accumulation.handover == 0;
+         in.settings.accumulation.blend_samples == 0;
 }
 
 constexpr std::uint32_t passed_layers = most_blended;  // that a path goes straight on through
-constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+using formats::storage;
 
 auto constants(const FrameInputs& in, std::uint32_t round, std::uint32_t limit) {
   return [&s = in.settings.specular, round, limit] {

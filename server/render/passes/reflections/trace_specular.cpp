@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "render/kernels/specular.hpp"
+#include "render/passes/formats.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/rays/sort_rays.hpp"
 #include "render/resources/light_table.hpp"
@@ -12,8 +13,8 @@
 namespace heliograph::render {
 namespace {
 
-constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-constexpr VkFormat four_floats = VK_FORMAT_R32G32B32A32_SFLOAT;
+using formats::four_floats;
+using formats::storage;
 
 /// What rays write: of the plan's size, or of half of it with the direction of every ray.
 struct Target {

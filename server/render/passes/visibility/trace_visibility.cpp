@@ -73,7 +73,7 @@ gpu::ImageRef trace_visibility(gpu::FramePlan& plan, const FrameInputs& in, cons
   const auto visibility = plan.image(name + ".visibility", VK_FORMAT_R32_SFLOAT);
   // Without new rays the stream stays empty and tracing it costs nothing.
   const auto wanted = [&constants = in.constants, flag = generation.flag] {
-    return (constants.counts.y & flag) != 0;
+    return (constants.flags & flag) != 0;
   };
 
   begin_rays(plan, in, name, rays);

@@ -102,8 +102,8 @@ bool is_index_type(ComponentType type) {
   return type == ComponentType::u8 || type == ComponentType::u16 || type == ComponentType::u32;
 }
 
-/// Calls `store(element, component, value)` for the first `components` of the first `count`
-/// elements.
+/// Calls `store(element, component, value)` for the first `components` components of the first
+/// `count` elements.
 template <typename Store>
 void read_elements(const Accessor& accessor, int components, std::size_t count,
                    const Store& store) {
@@ -242,7 +242,7 @@ std::vector<Accessor> read_accessors(const GltfFile& file, const ImportLimits& l
   std::uint64_t replacements = 0;
   for (const JsonValue& json : file.root().objects("accessors")) {
     result.push_back(read_accessor(json, file, limits));
-    // Accessors may share the bytes of their replacements, so that the file's size is no bound.
+    // Accessors may share the bytes of their sparse values, so that the file's size is no limit.
     if (result.back().sparse) replacements += result.back().sparse->indices.size();
     if (replacements > 3 * limits.triangles) {
       json.refuse("exceeds the limit of " + std::to_string(3 * limits.triangles) +

@@ -15,9 +15,9 @@ namespace heliograph::scene {
 enum class ComponentType { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5123, u32 = 5125, f32 = 5126 };
 enum class ElementType { scalar, vec2, vec3, vec4, mat2, mat3, mat4 };
 
-/// A typed array of the file, every range of it checked against its buffers.
+/// A typed array of the file, with all ranges checked against its buffers.
 struct Accessor {
-  /// Values that replace some of the elements: indices ascend, each below `count`.
+  /// Sparse values: indices ascend and are below `count`.
   struct Sparse {
     std::vector<std::uint32_t> indices;
     std::span<const std::uint8_t> values;  // tightly packed
@@ -44,8 +44,8 @@ std::uint32_t element_bytes(ElementType element, ComponentType component);
 /// @throws ImportError
 std::vector<Accessor> read_accessors(const GltfFile& file, const ImportLimits& limits);
 
-/// All elements as float vectors, normalised integers mapped per glTF 3.11; components that the
-/// accessor lacks are 0. For scalars and vectors only.
+/// All elements as float vectors, normalized integers mapped per glTF 3.11; missing components are
+/// 0. For scalars and vectors only.
 /// @throws ImportError when an element is not finite
 template <int components>
 std::vector<glm::vec<components, float>> read_vectors(const Accessor& accessor);

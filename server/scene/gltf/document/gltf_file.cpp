@@ -55,16 +55,16 @@ struct Chunk {
 };
 
 std::vector<Chunk> read_glb_chunks(std::span<const std::uint8_t> file) {
-  if (file.size() < 12) throw ImportError("GLB header is cut");
+  if (file.size() < 12) throw ImportError("GLB header is truncated");
   const std::uint32_t version = read_u32(file, 4);
   if (version != 2) throw ImportError("GLB version " + std::to_string(version) + " is not 2");
   const std::uint32_t length = read_u32(file, 8);
   if (length > file.size() || length < 12)
-    throw ImportError("GLB is cut: its header promises more bytes");
+    throw ImportError("GLB is truncated: its header claims more bytes");
   std::vector<Chunk> chunks;
   std::size_t offset = 12;
   while (offset < length && chunks.size() < 2) {
-    if (length - offset < 8) throw ImportError("GLB chunk header is cut");
+    if (length - offset < 8) throw ImportError("GLB chunk header is truncated");
     const std::uint32_t size = read_u32(file, offset);
     const std::uint32_t type = read_u32(file, offset + 4);
     offset += 8;
@@ -78,7 +78,7 @@ std::vector<Chunk> read_glb_chunks(std::span<const std::uint8_t> file) {
   return chunks;
 }
 
-/// A buffer that EXT_meshopt_compression leaves empty for those who can unpack.
+/// A fallback buffer of EXT_meshopt_compression, which has no data.
 bool is_fallback(const JsonValue& buffer) {
   const auto extension = buffer.object("extensions", meshopt_extension);
   return extension && extension->boolean("fallback", false);
@@ -218,7 +218,7 @@ BufferView GltfFile::read_view(const JsonValue& view, std::uint64_t& unpacked_bu
         *packed, source.bytes.subspan(packed_offset, packed_length), length, unpacked_budget));
     return {unpacked_views_.back(), static_cast<std::uint32_t>(stride)};
   }
-  if (buffer.bytes.empty()) view.refuse("buffer", "names a buffer without data");
+  if (buffer.bytes.empty()) view.refuse("buffer", "refers to a buffer without data");
   return {buffer.bytes.subspan(offset, length), static_cast<std::uint32_t>(stride)};
 }
 

@@ -21,14 +21,13 @@ struct BufferView {
 };
 
 struct Buffer {
-  std::span<const std::uint8_t> bytes;  // empty: a place holder for what is unpacked
+  std::span<const std::uint8_t> bytes;  // empty: placeholder of a compressed view
   std::uint64_t length = 0;
 };
 
-/// A glTF document with its bytes: container, buffers and buffer views read and checked, asset
-/// version and required extensions accepted. The document is read here and in the files beside this
-/// one rather than through a loader library: each value is checked where it is read, before any
-/// narrowing, and nothing that is refused has cost more than its parsing.
+/// A glTF document with its bytes: container, buffers and buffer views are read and checked, asset
+/// version and required extensions accepted. No loader library is used: each value is checked where
+/// it is read, before any narrowing, and a rejected file costs no more than its parsing.
 class GltfFile {
  public:
   /// @throws ImportError
@@ -42,9 +41,9 @@ class GltfFile {
   const std::vector<BufferView>& views() const { return views_; }
   /// Bytes behind a "uri" member: base64 data or a file beside the scene. @throws ImportError
   std::vector<std::uint8_t> resource(const JsonValue& owner);
-  /// The file itself and all that was read beside it, as they were before.
+  /// The file itself and all files read with it, as they were before reading.
   std::vector<SourceFile> sources() const;
-  /// Extensions in use that change nothing here.
+  /// Extensions in use that are ignored.
   const std::vector<std::string>& ignored_extensions() const { return ignored_extensions_; }
 
  private:

@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-// Exporters write whole numbers as 3.0 now and then: those count as integers too.
+// Some exporters write integers as 3.0: accepted as integers.
 std::optional<std::uint64_t> as_integer(const json& value) {
   if (value.is_number_unsigned()) return value.get<std::uint64_t>();
   if (!value.is_number_float()) return std::nullopt;
@@ -56,7 +56,7 @@ void check_shape(std::string_view text, std::uint32_t max_depth, std::uint64_t m
       throw ImportError("JSON nests deeper than " + std::to_string(max_depth) + " levels");
     }
     if (values > max_values) {
-      throw ImportError("JSON holds more than " + std::to_string(max_values) + " values");
+      throw ImportError("JSON has more than " + std::to_string(max_values) + " values");
     }
   }
 }
@@ -135,7 +135,7 @@ std::vector<std::string> JsonValue::texts(std::string_view key) const {
   if (!found) return result;
   if (!found->is_array()) refuse(key, "must be an array");
   for (const json& item : *found) {
-    if (!item.is_string()) refuse(key, "must hold strings only");
+    if (!item.is_string()) refuse(key, "must contain strings only");
     result.push_back(item.get<std::string>());
   }
   return result;
@@ -209,7 +209,7 @@ std::vector<std::uint32_t> JsonValue::indices(std::string_view key, std::size_t 
   result.reserve(found->size());
   for (const json& item : *found) {
     const auto value = as_integer(item);
-    if (!value) refuse(key, "must hold whole numbers, zero or more");
+    if (!value) refuse(key, "must contain whole numbers, zero or more");
     if (*value >= count) refuse(key, index_reason(*value, count, plural));
     result.push_back(static_cast<std::uint32_t>(*value));
   }

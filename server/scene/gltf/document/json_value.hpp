@@ -10,9 +10,9 @@
 
 namespace heliograph::scene {
 
-/// A place in a glTF document that knows its own path, so that whatever is wrong can be named:
-/// "nodes[3].mesh: 7 is not an index into 2 meshes". Every access checks type and range; a member
-/// that is absent yields its default, a member of the wrong kind is refused.
+/// A value in a glTF document that knows its path for error messages: "nodes[3].mesh: 7 is not an
+/// index into 2 meshes". Every access checks type and range; an absent member yields its default, a
+/// member of the wrong type is rejected.
 /// All members throw ImportError.
 class JsonValue {
  public:
@@ -71,8 +71,8 @@ class JsonValue {
   std::string path_;
 };
 
-/// Parses a glTF document after checking, in one pass over the bytes, that it nests no deeper than
-/// `max_depth` and holds no more than `max_values` values.
+/// Parses a glTF document after a pass over the bytes has checked that it nests no deeper than
+/// `max_depth` and has at most `max_values` values.
 /// @throws ImportError
 nlohmann::json parse_json(std::string_view text, std::uint32_t max_depth, std::uint64_t max_values);
 

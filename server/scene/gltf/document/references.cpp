@@ -10,7 +10,7 @@ void check_sampler(const JsonValue& sampler, std::span<const Accessor> accessors
   const Accessor& output =
       accessors[sampler.required_index("output", accessors.size(), "accessors")];
   if (input.element != ElementType::scalar || input.component != ComponentType::f32) {
-    sampler.refuse("input", "must hold float scalars");
+    sampler.refuse("input", "must contain float scalars");
   }
   const std::string interpolation = sampler.text("interpolation");
   if (!interpolation.empty() && interpolation != "LINEAR" && interpolation != "STEP" &&
@@ -47,10 +47,10 @@ void check_skins(const JsonValue& root, std::span<const Accessor> accessors) {
     if (!matrices) continue;
     const Accessor& accessor = accessors[*matrices];
     if (accessor.element != ElementType::mat4 || accessor.component != ComponentType::f32) {
-      skin.refuse("inverseBindMatrices", "must hold float 4x4 matrices");
+      skin.refuse("inverseBindMatrices", "must contain float 4x4 matrices");
     }
     if (accessor.count < joints.size())
-      skin.refuse("inverseBindMatrices", "holds fewer than there are joints");
+      skin.refuse("inverseBindMatrices", "has fewer matrices than there are joints");
   }
 }
 

@@ -7,8 +7,7 @@
 
 namespace heliograph::scene {
 
-/// Checks the parts of a document that a still picture does not need, skins and animations, so that
-/// a damaged file is refused as a whole.
+/// Checks skins and animations, which are read later, so that a damaged file is rejected early.
 /// @throws ImportError
 void check_skins(const JsonValue& root, std::span<const Accessor> accessors);
 void check_animations(const JsonValue& root, std::span<const Accessor> accessors);

@@ -9,9 +9,9 @@
 namespace heliograph::scene {
 namespace {
 
-std::optional<std::uint32_t> place_of(const std::vector<std::string>& names,
-                                      const std::string& wanted) {
-  const auto found = std::find(names.begin(), names.end(), wanted);
+std::optional<std::uint32_t> index_of(const std::vector<std::string>& names,
+                                      const std::string& requested) {
+  const auto found = std::find(names.begin(), names.end(), requested);
   if (found == names.end()) return std::nullopt;
   return static_cast<std::uint32_t>(found - names.begin());
 }
@@ -26,9 +26,9 @@ std::optional<std::uint32_t> number_below(std::size_t count, const std::string& 
 
 }  // namespace
 
-NoSuchChoice::NoSuchChoice(std::string member, const std::string& wanted,
+NoSuchChoice::NoSuchChoice(std::string member, const std::string& requested,
                            std::vector<std::string> names)
-    : ImportError("the file has no " + member + " " + in_quotes(wanted)),
+    : ImportError("the file has no " + member + " " + in_quotes(requested)),
       member_(std::move(member)),
       names_(std::move(names)) {}
 
@@ -38,13 +38,13 @@ std::vector<std::string> read_scene_names(const JsonValue& root) {
   return names;
 }
 
-std::optional<std::uint32_t> choose_scene(const JsonValue& root, const std::string& wanted) {
+std::optional<std::uint32_t> choose_scene(const JsonValue& root, const std::string& requested) {
   const std::vector<std::string> names = read_scene_names(root);
   const auto shown = root.index("scene", names.size(), "scenes");
-  if (!wanted.empty()) {
-    auto chosen = place_of(names, wanted);
-    if (!chosen) chosen = number_below(names.size(), wanted);
-    if (!chosen) throw NoSuchChoice("scene", wanted, names);
+  if (!requested.empty()) {
+    auto chosen = index_of(names, requested);
+    if (!chosen) chosen = number_below(names.size(), requested);
+    if (!chosen) throw NoSuchChoice("scene", requested, names);
     return chosen;
   }
   if (names.empty()) return std::nullopt;
@@ -52,10 +52,10 @@ std::optional<std::uint32_t> choose_scene(const JsonValue& root, const std::stri
 }
 
 std::optional<std::uint32_t> choose_variant(const std::vector<std::string>& variants,
-                                            const std::string& wanted) {
-  if (wanted.empty()) return std::nullopt;
-  const auto chosen = place_of(variants, wanted);
-  if (!chosen) throw NoSuchChoice("variant", wanted, variants);
+                                            const std::string& requested) {
+  if (requested.empty()) return std::nullopt;
+  const auto chosen = index_of(variants, requested);
+  if (!chosen) throw NoSuchChoice("variant", requested, variants);
   return chosen;
 }
 

@@ -12,13 +12,13 @@ namespace heliograph::scene {
 /// The names of the document's scenes, empty where one has none.
 std::vector<std::string> read_scene_names(const JsonValue& root);
 
-/// The scene called `wanted`, or of that number; the document's default when `wanted` is empty.
-/// Nothing when the document has no scenes. @throws NoSuchChoice, ImportError
-std::optional<std::uint32_t> choose_scene(const JsonValue& root, const std::string& wanted);
+/// The scene with name or index `requested`; the document's default when `requested` is empty.
+/// Nullopt when the document has no scenes. @throws NoSuchChoice, ImportError
+std::optional<std::uint32_t> choose_scene(const JsonValue& root, const std::string& requested);
 
-/// The place of `wanted` among the names of variants; nothing when `wanted` is empty.
+/// The index of `requested` among the names of variants; nullopt when `requested` is empty.
 /// @throws NoSuchChoice
 std::optional<std::uint32_t> choose_variant(const std::vector<std::string>& variants,
-                                            const std::string& wanted);
+                                            const std::string& requested);
 
 }  // namespace heliograph::scene

@@ -25,14 +25,15 @@ constexpr std::array<std::uint8_t, 256> make_base64_values() {
 std::vector<std::uint8_t> decode_base64(std::string_view text) {
   static constexpr std::array<std::uint8_t, 256> values = make_base64_values();
   while (!text.empty() && text.back() == '=') text.remove_suffix(1);
-  if (text.size() % 4 == 1) throw ImportError("a data URI's base64 text is cut");
+  if (text.size() % 4 == 1) throw ImportError("a data URI's base64 text is truncated");
   std::vector<std::uint8_t> bytes;
   bytes.reserve(text.size() / 4 * 3 + 2);
   std::uint32_t bits = 0;
   int bit_count = 0;
   for (const char c : text) {
     const std::uint8_t value = values[static_cast<unsigned char>(c)];
-    if (value == not_base64) throw ImportError("a data URI holds a character that is not base64");
+    if (value == not_base64)
+      throw ImportError("a data URI contains a character that is not base64");
     bits = bits << 6 | value;
     bit_count += 6;
     if (bit_count >= 8) {
@@ -85,7 +86,7 @@ std::string decode_file_uri(std::string_view uri) {
     }
     const int high = i + 2 < uri.size() ? hex_value(uri[i + 1]) : -1;
     const int low = i + 2 < uri.size() ? hex_value(uri[i + 2]) : -1;
-    if (high < 0 || low < 0) throw ImportError("a URI holds a malformed percent escape");
+    if (high < 0 || low < 0) throw ImportError("a URI contains a malformed percent escape");
     path += static_cast<char>(high * 16 + low);
     i += 2;
   }

@@ -8,7 +8,7 @@
 
 namespace heliograph::scene {
 
-/// The bytes of a base64 "data:" URI (RFC 2397), or nothing when `uri` is not one.
+/// The bytes of a base64 "data:" URI (RFC 2397), or nullopt when `uri` is none.
 /// @throws ImportError when it is one but cannot be decoded
 std::optional<std::vector<std::uint8_t>> decode_data_uri(std::string_view uri);
 

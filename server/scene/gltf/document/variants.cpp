@@ -16,9 +16,9 @@ void check_mappings(const JsonValue& primitive, std::size_t variant_count,
   for (const JsonValue& mapping : own->objects("mappings")) {
     mapping.required_index("material", material_count, "materials");
     const auto variants = mapping.indices("variants", variant_count, "variants");
-    if (variants.empty()) mapping.refuse("variants", "must name at least one variant");
+    if (variants.empty()) mapping.refuse("variants", "must refer to at least one variant");
     for (const std::uint32_t variant : variants) {
-      if (!mapped.insert(variant).second) mapping.refuse("variants", "names a variant twice");
+      if (!mapped.insert(variant).second) mapping.refuse("variants", "lists a variant twice");
     }
   }
 }

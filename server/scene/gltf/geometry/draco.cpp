@@ -26,16 +26,16 @@ draco::DracoHeader read_header(const DracoGeometry& geometry, draco::DecoderBuff
   if (!draco::PointCloudDecoder::DecodeHeader(&buffer, &header).ok()) {
     refuse(geometry, "is not a Draco stream");
   }
-  // The only version that KHR_draco_mesh_compression speaks of.
+  // The only version that KHR_draco_mesh_compression permits.
   if (header.version_major != 2 || header.version_minor != 2) {
     refuse(geometry, "has a bitstream version other than 2.2");
   }
-  if (header.encoder_type != draco::TRIANGULAR_MESH) refuse(geometry, "does not hold a mesh");
+  if (header.encoder_type != draco::TRIANGULAR_MESH) refuse(geometry, "does not contain a mesh");
   buffer.set_bitstream_version(DRACO_BITSTREAM_VERSION(2, 2));
   return header;
 }
 
-/// Walks over a stream's metadata, which nothing here reads, to what stands behind.
+/// Skips a stream's metadata, which is not used.
 class MetadataSkipper {
  public:
   explicit MetadataSkipper(draco::DecoderBuffer& buffer) : buffer_(buffer) {}
@@ -81,13 +81,12 @@ class MetadataSkipper {
   draco::DecoderBuffer& buffer_;
 };
 
-/// Stops between the list of attributes and their data, which may be almost nothing in the file and
-/// yet take any amount of memory.
+/// Stops after the list of attributes, before their data, which a few bytes can expand to any size.
 template <typename Decoder>
 class BoundedDecoder : public Decoder {
  protected:
   bool DecodeAllAttributes() override {
-    // Sixteen attributes of four numbers of four bytes: as many as glTF can name.
+    // 16 attributes of four 4-byte components: the maximum that glTF can use.
     constexpr std::int64_t most_bytes_a_vertex = 256;
     std::int64_t bytes = 0;
     for (int i = 0; i < this->point_cloud()->num_attributes(); ++i) {
@@ -112,7 +111,7 @@ std::unique_ptr<draco::Mesh> decode_mesh(const DracoGeometry& geometry) {
   auto mesh = std::make_unique<draco::Mesh>();
   const draco::DecoderOptions options;
   const auto decoder = make_decoder(header.encoder_method);
-  if (!decoder->Decode(options, &buffer, mesh.get()).ok()) refuse(geometry, "holds damaged data");
+  if (!decoder->Decode(options, &buffer, mesh.get()).ok()) refuse(geometry, "has damaged data");
   return mesh;
 }
 
@@ -163,7 +162,8 @@ class Unpacker {
   UnpackedPrimitive unpack() {
     Primitive& primitive = result_.primitive;
     primitive.draco.reset();
-    primitive.mode = Primitive::Mode::triangles;  // whatever the document draws, these are faces
+    primitive.mode =
+        Primitive::Mode::triangles;  // Draco meshes are triangles whatever the document's mode
     primitive.for_each_attribute([&](std::string_view name, std::uint32_t& accessor) {
       accessor = take_attribute(name, accessors_[accessor]);
     });

@@ -7,7 +7,7 @@
 
 namespace heliograph::scene {
 
-/// How much a Draco stream claims to hold, from its header alone.
+/// Counts that a Draco stream's header claims.
 struct DracoCounts {
   std::uint64_t triangles = 0;
   std::uint64_t vertices = 0;  // at most
@@ -16,15 +16,15 @@ struct DracoCounts {
 /// @throws ImportError when the header is damaged, or is not of a mesh of bitstream 2.2
 DracoCounts probe_draco(const DracoGeometry& geometry);
 
-/// A primitive with accessors of its own, which need no others.
+/// A primitive with its own self-contained accessors.
 struct UnpackedPrimitive {
   Primitive primitive;
   std::vector<Accessor> accessors;
-  std::vector<std::vector<std::uint8_t>> storage;  // what the accessors point into
+  std::vector<std::vector<std::uint8_t>> storage;  // data of the accessors
 };
 
-/// Unpacks `primitive.draco`. Attributes come in the types that their accessors have; what is not
-/// in the stream stays as the document has it.
+/// Decodes `primitive.draco`. Attributes get the types of their accessors; attributes that are not
+/// in the stream keep the document's data.
 /// @throws ImportError when the stream is damaged or does not fit the primitive
 UnpackedPrimitive unpack_draco(const Primitive& primitive, std::span<const Accessor> accessors);
 

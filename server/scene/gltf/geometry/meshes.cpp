@@ -12,7 +12,7 @@ namespace {
 
 using shared::Vertex;
 
-// Corners in the order drawn -> triangles, wound alike (glTF 3.7.2.1).
+// Corners in drawing order -> triangles of consistent winding (glTF 3.7.2.1).
 std::vector<std::uint32_t> to_triangles(Primitive::Mode mode, std::vector<std::uint32_t> corners) {
   const std::size_t count = corners.size();
   if (mode == Primitive::Mode::triangles) {
@@ -77,7 +77,7 @@ std::vector<Vertex> read_vertices(const Primitive& primitive, std::span<const Ac
 }
 
 glm::vec3 face_normal(const Vertex& a, const Vertex& b, const Vertex& c) {
-  // In double: the product of tiny edges underflows, that of huge ones overflows.
+  // In double: the float product of tiny edges underflows, that of huge ones overflows.
   const glm::dvec3 first = glm::dvec3(b.position) - glm::dvec3(a.position);
   const glm::dvec3 second = glm::dvec3(c.position) - glm::dvec3(a.position);
   const glm::dvec3 normal = glm::cross(first, second);
@@ -86,7 +86,7 @@ glm::vec3 face_normal(const Vertex& a, const Vertex& b, const Vertex& c) {
                                                : glm::vec3(0.0f, 0.0f, 1.0f);
 }
 
-// Flat shading: no two triangles share a vertex.
+// Flat shading: triangles share no vertices.
 void make_flat(std::vector<Vertex>& vertices, std::vector<std::uint32_t>& indices) {
   std::vector<Vertex> flat;
   flat.reserve(indices.size());
@@ -102,7 +102,7 @@ void make_flat(std::vector<Vertex>& vertices, std::vector<std::uint32_t>& indice
   std::iota(indices.begin(), indices.end(), 0u);
 }
 
-// Files bring normals of any length; where they bring none at all, a triangle's own steps in.
+// Normals in files have any length; zero normals are replaced by the face normal.
 void normalize_normals(std::vector<Vertex>& vertices, const std::vector<std::uint32_t>& indices) {
   bool all_valid = true;
   for (Vertex& vertex : vertices) {
@@ -135,7 +135,7 @@ void orthonormalize_tangents(std::vector<Vertex>& vertices) {
   }
 }
 
-/// Vertices were duplicated on the way, but corners kept their order.
+/// Vertices were duplicated, but corners kept their order.
 std::vector<std::uint32_t> trace_back(const Mesh& mesh, std::span<const std::uint32_t> corners) {
   std::vector<std::uint32_t> sources(mesh.vertices.size(), 0);
   for (std::size_t i = 0; i < corners.size(); ++i) sources[mesh.indices[i]] = corners[i];
@@ -158,7 +158,7 @@ BuiltMesh build_mesh(const Primitive& primitive, std::span<const Accessor> acces
   } else {
     make_flat(mesh.vertices, mesh.indices);
   }
-  // Tangents without normals are to be ignored (glTF 3.7.2.1).
+  // Tangents without normals are ignored (glTF 3.7.2.1).
   const bool has_tangents = primitive.tangent && primitive.normal;
   const shared::TextureSlot& normal_map = materials[material].normal_texture;
   if (has_tangents || normal_map.texture == shared::no_texture) {

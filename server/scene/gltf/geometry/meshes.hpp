@@ -12,12 +12,12 @@ namespace heliograph::scene {
 
 struct BuiltMesh {
   Mesh mesh;
-  std::vector<std::uint32_t> sources;  // by vertex: the vertex of the file that it was made of
+  std::vector<std::uint32_t> sources;  // per vertex: index of its source vertex in the file
 };
 
-/// Reads one primitive's triangles. Missing normals become flat ones (glTF 3.7.2.1); missing
-/// tangents are made for `material`'s normal map, or arbitrary where there is none. `material` is
-/// the index stored in the mesh, `materials` what it indexes.
+/// Reads one primitive's triangles. Missing normals become face normals (glTF 3.7.2.1); missing
+/// tangents are generated for `material`'s normal map, or arbitrary without one. `material` is an
+/// index into `materials`.
 /// @throws ImportError when an index is out of range or a number is not finite
 BuiltMesh build_mesh(const Primitive& primitive, std::span<const Accessor> accessors,
                      std::uint32_t material, std::span<const shared::Material> materials);

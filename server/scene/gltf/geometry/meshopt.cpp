@@ -11,11 +11,11 @@ namespace heliograph::scene {
 namespace {
 
 enum class Mode { attributes, triangles, indices };
-enum class Filter { none, octahedral, quaternion, exponential };
+enum class MeshoptFilter { none, octahedral, quaternion, exponential };
 
 struct Layout {
   Mode mode = Mode::attributes;
-  Filter filter = Filter::none;
+  MeshoptFilter filter = MeshoptFilter::none;
   std::size_t count = 0;
   std::size_t stride = 0;  // bytes
 };
@@ -28,30 +28,30 @@ Mode read_mode(const JsonValue& packed) {
   packed.refuse("mode", in_quotes(name) + " is not ATTRIBUTES, TRIANGLES or INDICES");
 }
 
-Filter read_filter(const JsonValue& packed) {
+MeshoptFilter read_filter(const JsonValue& packed) {
   const std::string name = packed.text("filter");
-  if (name.empty() || name == "NONE") return Filter::none;
-  if (name == "OCTAHEDRAL") return Filter::octahedral;
-  if (name == "QUATERNION") return Filter::quaternion;
-  if (name == "EXPONENTIAL") return Filter::exponential;
+  if (name.empty() || name == "NONE") return MeshoptFilter::none;
+  if (name == "OCTAHEDRAL") return MeshoptFilter::octahedral;
+  if (name == "QUATERNION") return MeshoptFilter::quaternion;
+  if (name == "EXPONENTIAL") return MeshoptFilter::exponential;
   packed.refuse("filter", in_quotes(name) + " is not a filter");
 }
 
-// The decoders take these for granted.
+// Preconditions of the decoders.
 void check_stride(const JsonValue& packed, const Layout& layout) {
   const std::size_t stride = layout.stride;
   if (layout.mode != Mode::attributes) {
     if (stride != 2 && stride != 4) packed.refuse("byteStride", "must be 2 or 4 for indices");
-    if (layout.filter != Filter::none) packed.refuse("filter", "is for attributes only");
+    if (layout.filter != MeshoptFilter::none) packed.refuse("filter", "is for attributes only");
     return;
   }
   if (stride < 4 || stride > 256 || stride % 4 != 0) {
     packed.refuse("byteStride", "must be a multiple of 4 from 4 to 256");
   }
-  if (layout.filter == Filter::octahedral && stride != 4 && stride != 8) {
+  if (layout.filter == MeshoptFilter::octahedral && stride != 4 && stride != 8) {
     packed.refuse("byteStride", "must be 4 or 8 for the octahedral filter");
   }
-  if (layout.filter == Filter::quaternion && stride != 8) {
+  if (layout.filter == MeshoptFilter::quaternion && stride != 8) {
     packed.refuse("byteStride", "must be 8 for the quaternion filter");
   }
 }
@@ -94,13 +94,13 @@ bool decode(const Layout& layout, std::span<const std::uint8_t> source, std::uin
 
 void apply_filter(const Layout& layout, std::uint8_t* bytes) {
   switch (layout.filter) {
-    case Filter::none:
+    case MeshoptFilter::none:
       return;
-    case Filter::octahedral:
+    case MeshoptFilter::octahedral:
       return meshopt_decodeFilterOct(bytes, layout.count, layout.stride);
-    case Filter::quaternion:
+    case MeshoptFilter::quaternion:
       return meshopt_decodeFilterQuat(bytes, layout.count, layout.stride);
-    case Filter::exponential:
+    case MeshoptFilter::exponential:
       return meshopt_decodeFilterExp(bytes, layout.count, layout.stride);
   }
 }
@@ -113,7 +113,7 @@ std::vector<std::uint8_t> unpack_meshopt(const JsonValue& packed,
   const Layout layout = read_layout(packed, length, budget);
   budget -= length;
   std::vector<std::uint8_t> bytes(length);
-  if (!decode(layout, source, bytes.data())) packed.refuse("holds damaged data");
+  if (!decode(layout, source, bytes.data())) packed.refuse("has damaged data");
   apply_filter(layout, bytes.data());
   return bytes;
 }

@@ -8,10 +8,9 @@
 
 namespace heliograph::scene {
 
-/// Unpacks a buffer view of EXT_meshopt_compression: all three modes, all filters.
-/// `packed` is the extension's object on the view, `source` the bytes that it names, `length` the
-/// view's own byteLength, which the result has. `budget` is what may still be unpacked in this
-/// file, and shrinks.
+/// Decodes a buffer view of EXT_meshopt_compression: all modes and filters. `packed` is the
+/// extension's object, `source` its bytes, `length` the view's byteLength and the size of the
+/// result. `budget` is the number of bytes that this file may still decode, and is reduced.
 /// @throws ImportError
 std::vector<std::uint8_t> unpack_meshopt(const JsonValue& packed,
                                          std::span<const std::uint8_t> source, std::uint64_t length,

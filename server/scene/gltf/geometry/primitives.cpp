@@ -20,7 +20,7 @@ class PrimitiveReader {
         budget_(budget),
         warnings_(warnings) {}
 
-  /// Nothing for points, lines and primitives without a triangle.
+  /// Nullopt for points, lines and primitives without a triangle.
   std::optional<Primitive> read(const JsonValue& json) {
     const std::uint64_t mode = json.integer("mode", 4);
     if (mode > 6) json.refuse("mode", std::to_string(mode) + " is not a primitive mode");
@@ -83,7 +83,7 @@ class PrimitiveReader {
     return index;
   }
 
-  // Every attribute, known or not, must cover the same vertices.
+  // All attributes, known or not, must have the same count.
   void check_counts(const JsonValue& attributes) {
     std::optional<std::uint32_t> count;
     for (const std::string& name : attributes.keys()) {
@@ -152,8 +152,8 @@ class PrimitiveReader {
     }
   }
 
-  /// Corners as drawn; vertices are added up on the way. A compressed primitive has as many as its
-  /// stream says, whatever the document says of it.
+  /// Number of triangle corners; adds to the vertex count. For a compressed primitive the stream's
+  /// counts are used, not the document's.
   std::uint64_t count_corners(const Primitive& primitive) {
     if (primitive.draco) {
       const DracoCounts counts = probe_draco(*primitive.draco);
@@ -178,11 +178,11 @@ class PrimitiveReader {
       json.refuse("exceeds the limit of " + std::to_string(limits_.triangles) +
                   " triangles for the whole scene");
     }
-    pay(json, primitive, triangles);
+    charge(json, primitive, triangles);
     return true;
   }
 
-  void pay(const JsonValue& json, const Primitive& primitive, std::uint64_t triangles) {
+  void charge(const JsonValue& json, const Primitive& primitive, std::uint64_t triangles) {
     // Flat triangles share no vertices.
     const std::uint64_t vertices =
         primitive.normal && !primitive.draco ? vertex_count_ : 3 * triangles;

@@ -16,18 +16,18 @@
 
 namespace heliograph::scene {
 
-/// Geometry as KHR_draco_mesh_compression holds it.
+/// Compressed geometry of KHR_draco_mesh_compression.
 struct DracoGeometry {
   std::string path;  // for errors: "meshes[0].primitives[1].extensions.KHR_draco_mesh_compression"
   std::span<const std::uint8_t> bytes;
   std::map<std::string, std::uint32_t, std::less<>> attributes;  // name -> id in the stream
 };
 
-/// One triangle primitive of the document: which accessors it is made of, types and counts checked.
+/// The accessors of one triangle primitive, with types and counts checked.
 struct Primitive {
   enum class Mode { triangles = 4, strip = 5, fan = 6 };
 
-  /// What a morph target changes.
+  /// The accessors of a morph target.
   struct Target {
     std::optional<std::uint32_t> position;
     std::optional<std::uint32_t> normal;
@@ -43,12 +43,12 @@ struct Primitive {
   std::optional<std::uint32_t> color;
   std::optional<std::uint32_t> indices;
   std::optional<std::uint32_t> material;
-  std::array<std::optional<std::uint32_t>, 2> joints;  // both or none of a set with its weights
+  std::array<std::optional<std::uint32_t>, 2> joints;  // each set requires its weights
   std::array<std::optional<std::uint32_t>, 2> weights;
   std::vector<Target> targets;
-  std::optional<DracoGeometry> draco;  // what takes the place of the accessors' bytes
+  std::optional<DracoGeometry> draco;  // replaces the accessors' bytes
 
-  /// Calls `visit(name, accessor)` for each attribute there is, by its name in the document.
+  /// Calls `visit(name, accessor)` for each attribute that the primitive has.
   template <typename Visit>
   void for_each_attribute(const Visit& visit) {
     visit("POSITION", position);
@@ -66,15 +66,14 @@ struct Primitive {
   bool deforms() const { return joints[0] || !targets.empty(); }
 };
 
-/// All primitives that have triangles, and which of them make up each mesh of the document.
+/// All triangle primitives, and which of them form each mesh of the document.
 struct PrimitiveTable {
   std::vector<Primitive> primitives;
   std::vector<std::vector<std::uint32_t>> of_mesh;
 };
 
-/// Points and lines are left out with a warning. Materials are those of `variant`, where there is
-/// one. What the others will take once read is taken from
-/// `budget`.
+/// Points and lines are left out with a warning. Materials are those of `variant` if given. Charges
+/// `budget` with the memory of the geometry.
 /// @throws ImportError
 PrimitiveTable read_primitives(const GltfFile& file, std::span<const Accessor> accessors,
                                std::size_t material_count, std::optional<std::uint32_t> variant,

@@ -16,7 +16,7 @@ std::vector<glm::vec3> read_differences(std::optional<std::uint32_t> accessor,
   return result;
 }
 
-/// Shares that sum to 1; a vertex that no joint claims belongs to its first.
+/// Normalizes weights to sum 1; a vertex without weights follows its first joint.
 void normalize(std::span<JointWeight> influences) {
   float sum = 0.0f;
   for (const JointWeight& influence : influences) sum += influence.weight;
@@ -41,7 +41,7 @@ void read_influences(const Primitive& primitive, std::span<const Accessor> acces
         const float weight = weights[sources[i]][lane];
         if (weight < 0.0f) weight_accessor.refuse("holds a negative weight");
         JointWeight& target = shape.influences[i * shape.joints_per_vertex + 4 * set + lane];
-        // What has no share may name any joint.
+        // A joint of weight 0 may have any index.
         if (weight > 0.0f) {
           target = {static_cast<std::uint32_t>(joints[sources[i]][lane]), weight};
         }
@@ -73,8 +73,9 @@ Shape build_shape(const Primitive& primitive, std::span<const Accessor> accessor
 void check_joints(const Shape& shape, const Skin& skin, const std::string& path) {
   for (const JointWeight& influence : shape.influences) {
     if (influence.joint < skin.joints.size()) continue;
-    throw ImportError(path + ".mesh: names joint " + std::to_string(influence.joint) +
-                      " of a skin with " + std::to_string(skin.joints.size()));
+    throw ImportError(path + ".mesh: joint " + std::to_string(influence.joint) +
+                      " is out of range for a skin with " + std::to_string(skin.joints.size()) +
+                      " joints");
   }
 }
 

@@ -10,13 +10,13 @@
 
 namespace heliograph::scene {
 
-/// What `mesh`, built from `primitive`, deforms from. `sources` are the primitive's vertices that
-/// the mesh's were made of.
+/// The deformation source of `mesh`, which was built from `primitive`. `sources`: the primitive's
+/// vertex of every mesh vertex.
 /// @throws ImportError when a number is not finite or a weight negative
 Shape build_shape(const Primitive& primitive, std::span<const Accessor> accessors, const Mesh& mesh,
                   std::span<const std::uint32_t> sources);
 
-/// Whether every joint that the shape names exists. @throws ImportError when not
+/// Checks that every joint index of the shape exists. @throws ImportError when not
 void check_joints(const Shape& shape, const Skin& skin, const std::string& path);
 
 }  // namespace heliograph::scene

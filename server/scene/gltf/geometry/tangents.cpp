@@ -16,7 +16,7 @@ glm::vec2 transformed_uv(const shared::Vertex& vertex, const shared::TextureSlot
           glm::dot(glm::vec3(slot.transform_row1), uv)};
 }
 
-// What corners must agree in to share a tangent.
+// Corners share a tangent if these are equal.
 using WeldKey = std::array<float, 8>;
 
 WeldKey weld_key(const shared::Vertex& vertex, const glm::vec2& uv) {
@@ -33,7 +33,7 @@ WeldKey weld_key(const shared::Vertex& vertex, const glm::vec2& uv) {
 std::uint64_t hash_of(const WeldKey& key) {
   std::uint64_t hash = 0x9e3779b97f4a7c15ull;
   for (const float value : key) {
-    // Adding zero makes the two zeros one.
+    // Adding zero turns -0 into +0.
     hash = (hash ^ std::bit_cast<std::uint32_t>(value + 0.0f)) * 0xff51afd7ed558ccdull;
     hash ^= hash >> 32;
   }
@@ -79,7 +79,7 @@ FaceTangent face_tangent(const std::array<glm::vec3, 3>& p, const std::array<glm
   const glm::vec3 edge2 = p[2] - p[0];
   const glm::vec2 uv1 = uv[1] - uv[0];
   const glm::vec2 uv2 = uv[2] - uv[0];
-  // glTF's v runs down the picture while the tangent space's y runs up: hence v negated.
+  // v is negated: glTF's v runs down the image, the tangent space's y runs up.
   const float area = uv2.x * uv1.y - uv1.x * uv2.y;
   if (area == 0.0f || !std::isfinite(area)) return {};
   const glm::vec3 along_u = (edge2 * uv1.y - edge1 * uv2.y) * (area > 0.0f ? 1.0f : -1.0f);
@@ -162,7 +162,7 @@ class TangentBuilder {
 
   void finish(std::uint32_t index) {
     shared::Vertex& vertex = vertices_[index];
-    // A corner of collapsed texture area borrows from its neighbours, whichever hand they have.
+    // A corner without texture area takes the sum of its neighbors, of either handedness.
     Hand hand = hands_[index];
     if (hand == Hand::undefined) {
       hand = sum(index, Hand::right) != glm::vec3(0.0f) ? Hand::right : Hand::left;
@@ -179,7 +179,7 @@ class TangentBuilder {
   std::vector<std::uint32_t>& indices_;
   std::vector<glm::vec2> uvs_;
   std::vector<std::uint32_t> welded_;
-  std::vector<glm::vec3> sums_;  // two a welded vertex: right and left handed
+  std::vector<glm::vec3> sums_;  // two per welded vertex: right- and left-handed
   std::vector<Hand> hands_;
 };
 

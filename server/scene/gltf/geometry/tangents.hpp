@@ -8,8 +8,8 @@
 
 namespace heliograph::scene {
 
-/// Makes the tangents of a triangle mesh after MikkTSpace's convention (M. Mikkelsen, "Simulation
-/// of Wrinkled Surfaces Revisited", 2008), which glTF 3.7.2.1 prescribes where a file brings none:
+/// Generates the tangents of a triangle mesh by MikkTSpace's convention (M. Mikkelsen, "Simulation
+/// of Wrinkled Surfaces Revisited", 2008), which glTF 3.7.2.1 prescribes where a file has none:
 /// each triangle's tangent is projected onto the plane of the corner's normal and weighted by the
 /// corner's angle; corners that agree in position, normal, texture coordinates and handedness share
 /// the sum. Vertices used with both hands are split, so `vertices` may grow and `indices` change.

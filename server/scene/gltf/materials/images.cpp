@@ -33,7 +33,7 @@ std::vector<ImageSize> probe_images(std::span<const ImageSource> sources,
     }
     texels += std::uint64_t(width) * height;
     if (texels > limits.texels) {
-      throw ImportError("the images hold more than the limit of " + std::to_string(limits.texels) +
+      throw ImportError("the images exceed the limit of " + std::to_string(limits.texels) +
                         " texels");
     }
   }
@@ -42,7 +42,8 @@ std::vector<ImageSize> probe_images(std::span<const ImageSource> sources,
 
 using SharedFile = std::shared_ptr<const std::vector<std::uint8_t>>;
 
-/// The files of the sources that are used; one in a buffer is copied, since buffers go.
+/// The encoded files of the images in use; those in buffers are copied, because buffers are
+/// released.
 std::vector<SharedFile> share_files(std::span<const ImageSource> sources,
                                     std::span<const ImageUse> uses) {
   std::vector<SharedFile> files(sources.size());

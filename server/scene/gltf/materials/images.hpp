@@ -20,8 +20,7 @@ struct ImageSource {
   std::span<const std::uint8_t> bytes;
 };
 
-/// One way in which an image is sampled: a picture used both as colour and as data is decoded
-/// twice.
+/// One use of an image: an image used both as color and as data is decoded twice.
 struct ImageUse {
   std::uint32_t source = 0;
   bool srgb = false;
@@ -36,7 +35,7 @@ std::vector<Image> decode_images(std::span<const ImageSource> sources,
                                  std::span<const ImageUse> uses, const ImportLimits& limits,
                                  const std::function<void()>& decoded);
 
-/// All levels of an image, decoded again where it has let go of its own.
+/// All levels of an image, decoded again if its pixels were released.
 class ImagePixels {
  public:
   /// `image` outlives this.

@@ -7,15 +7,15 @@
 namespace heliograph::scene {
 namespace {
 
-// The least part of a see-through surface that stops rays: what it mirrors must fit in.
+// Minimum opacity of a transmissive surface, so that its reflection fits in.
 constexpr float least_coverage = 0.08f;
 
 bool same(const shared::MaterialLayer& a, const shared::MaterialLayer& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-/// Reflectance of a boundary toward air, head on. An index of 0 mirrors everything (the extension's
-/// way to say specular-glossiness).
+/// Reflectance at normal incidence of a boundary to air. An ior of 0 reflects everything
+/// (KHR_materials_ior for specular-glossiness).
 float reflectance_of(float ior) {
   const float ratio = (ior - 1.0f) / (ior + 1.0f);
   return ior == 0.0f ? 1.0f : ratio * ratio;
@@ -25,8 +25,7 @@ float luminance(const glm::vec3& color) {
   return glm::dot(color, glm::vec3(0.2126f, 0.7152f, 0.0722f));
 }
 
-/// The mean of a slot's texels, linear: that of its smallest level. White where there is no
-/// texture.
+/// Linear mean of a slot's texels, from the smallest mip level. White without a texture.
 glm::vec3 mean_texel(const Scene& scene, const shared::TextureSlot& slot) {
   if (slot.texture == shared::no_texture) return glm::vec3(1.0f);
   const Image& image = scene.images[scene.textures[slot.texture].image];
@@ -46,7 +45,7 @@ glm::vec3 absorption(const MaterialLayers& from) {
   return -glm::log(color) * (from.thickness / from.attenuation_distance);
 }
 
-/// The share of light that comes through, by its mean over colours and texels.
+/// Transmitted fraction of light, averaged over colors and texels.
 float passing(const Scene& scene, const shared::Material& material, const MaterialLayers& from) {
   const glm::vec3 tint = glm::vec3(material.base_color) *
                          mean_texel(scene, material.base_color_texture) *
@@ -59,7 +58,7 @@ float passing(const Scene& scene, const shared::Material& material, const Materi
 
 shared::MaterialLayer layer_of(const shared::Material& material, const MaterialLayers& from) {
   shared::MaterialLayer layer = plain_layer();
-  // Exactly the usual 0.04 for the usual index.
+  // Exactly 0.04 for the default ior of 1.5.
   if (material.ior != 1.5f) layer.dielectric = reflectance_of(material.ior);
   layer.specular = from.specular;
   layer.specular_color = from.specular_color;
@@ -88,7 +87,7 @@ shared::MaterialLayer layer_of(const shared::Material& material, const MaterialL
   return layer;
 }
 
-/// Has the surface drawn like a blended one, whose rays go on by the share that passes.
+/// Treats a transmissive surface as a blended one, with the transmitted fraction as transparency.
 void let_light_through(const Scene& scene, shared::Material& material, const MaterialLayers& from) {
   if (!(material.flags & shared::material_alpha_blend)) {
     material.base_color.w = 1.0f;

@@ -55,15 +55,15 @@ class LayerReader {
   }
 
   void read_transmission(MaterialLayers& layers) {
-    const auto json = open("KHR_materials_transmission",
-                           "light passes straight on, rough surfaces do not blur it");
+    const auto json =
+        open("KHR_materials_transmission", "transmitted light is neither refracted nor blurred");
     if (!json) return;
     layers.transmission = unit(*json, "transmissionFactor", 0.0f);
     layers.transmission_texture = texture(*json, "transmissionTexture");
   }
 
   void read_volume(MaterialLayers& layers) {
-    const auto json = open("KHR_materials_volume", "walls are thin and refract nothing");
+    const auto json = open("KHR_materials_volume", "thin walled, without refraction");
     if (!json) return;
     layers.thickness = at_least_zero(*json, "thicknessFactor", 0.0f);
     layers.attenuation_distance = at_least_zero(*json, "attenuationDistance", 0.0f);

@@ -7,9 +7,8 @@
 
 namespace heliograph::scene {
 
-/// Reads what a material's `extensions` say beyond metallic and roughness: specular, clearcoat,
-/// sheen, transmission and volume. The textures they use are registered in `textures`; what the
-/// picture does not show of it is said in `warnings`.
+/// Reads a material's extensions: specular, clearcoat, sheen, transmission and volume. Registers
+/// their textures in `textures` and adds a warning for every approximation.
 /// @throws ImportError
 MaterialLayers read_material_layers(const JsonValue& extensions, TextureTable& textures,
                                     Warnings& warnings);

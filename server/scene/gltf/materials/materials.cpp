@@ -64,7 +64,7 @@ class MaterialReader {
     }
   }
 
-  // Old exporters write emissive factors above one; light may be bright, but not negative.
+  // Old exporters write emissive factors above one: accepted, but not negative ones.
   void read_emissive_factor(const JsonValue& json, shared::Material& material) {
     const auto factor = json.numbers<3>("emissiveFactor", {0.0f, 0.0f, 0.0f});
     for (int i = 0; i < 3; ++i) {
@@ -94,7 +94,7 @@ class MaterialReader {
       if (factor < 0.0f) strength->refuse("emissiveStrength", "must not be negative");
       material.emissive *= factor;
       if (!std::isfinite(material.emissive.x + material.emissive.y + material.emissive.z)) {
-        strength->refuse("emissiveStrength", "makes the emission too large");
+        strength->refuse("emissiveStrength", "makes the emission overflow");
       }
     }
     if (const auto ior = extensions->object("KHR_materials_ior")) {

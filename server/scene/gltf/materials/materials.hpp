@@ -23,8 +23,8 @@ shared::Material default_material();
 /// @throws ImportError
 MaterialTable read_materials(const JsonValue& root, TextureTable& textures, Warnings& warnings);
 
-/// Copies the level-0 alpha of masked base colours into scene.alpha_heap, where rays look it up,
-/// and points the materials at it. Images shared by materials are stored once.
+/// Copies the level-0 alpha of masked base colors into scene.alpha_heap, for alpha tests of rays,
+/// and links the materials to it. Shared images are stored once.
 void build_alpha_heap(Scene& scene);
 
 }  // namespace heliograph::scene

@@ -5,9 +5,9 @@
 namespace heliograph::scene {
 namespace {
 
-// KHR_texture_transform: translation * rotation * scale, the rotation counter-clockwise as seen
-// with v pointing down. The sample matrix in the extension's text turns the other way; its test
-// model and the implementations agree on this one (github.com/KhronosGroup/glTF/issues/1563).
+// KHR_texture_transform: translation * rotation * scale; the rotation is counter-clockwise with v
+// pointing down. The sample matrix in the extension's text rotates the other way; its test model
+// and the implementations agree on this one (github.com/KhronosGroup/glTF/issues/1563).
 void apply_transform(const JsonValue& transform, shared::TextureSlot& slot) {
   const auto offset = transform.numbers<2>("offset", {0.0f, 0.0f});
   const auto scale = transform.numbers<2>("scale", {1.0f, 1.0f});

@@ -6,8 +6,8 @@
 
 namespace heliograph::scene {
 
-/// A textureInfo of a material: the texture registered in `textures` as colour (sRGB) or data, its
-/// set of coordinates and its transform.
+/// A textureInfo of a material: the texture registered in `textures` as color (sRGB) or data, its
+/// texCoord set and its transform.
 /// @throws ImportError
 shared::TextureSlot read_texture_slot(const JsonValue& json, bool srgb, TextureTable& textures,
                                       Warnings& warnings);

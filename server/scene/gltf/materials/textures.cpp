@@ -41,7 +41,7 @@ Sampler read_sampler(const JsonValue& json) {
     default:
       json.refuse("minFilter", "is not a minification filter");
   }
-  // 9984 and up: bit 0 is the filter within a level, bit 1 the one between levels.
+  // 9984 and up: bit 0 is the filter within a level, bit 1 the filter between levels.
   sampler.minify = minify % 2 == 0 ? Filter::nearest : Filter::linear;
   sampler.mipmapped = minify >= 9984;
   sampler.mip_filter = minify >= 9986 ? Filter::linear : Filter::nearest;

@@ -12,8 +12,8 @@
 
 namespace heliograph::scene {
 
-/// The document's textures, and those of them that materials turn out to use: each as colour
-/// (sRGB), as data, or as both, without duplicates.
+/// The document's textures, and the scene textures that materials use: as color (sRGB), as data, or
+/// both, without duplicates.
 class TextureTable {
  public:
   /// @throws ImportError
@@ -22,7 +22,7 @@ class TextureTable {
   std::size_t size() const { return textures_.size(); }
 
   /// The scene texture for one use of document texture `index`, or shared::no_texture when its
-  /// image is only given through an extension that is not supported.
+  /// image requires an unsupported extension.
   std::uint32_t use(std::uint32_t index, bool srgb);
 
   const std::vector<ImageUse>& image_uses() const { return image_uses_; }

@@ -62,7 +62,7 @@ Channel read_curve(const JsonValue& sampler, std::span<const Accessor> accessors
   return channel;
 }
 
-/// Nothing for channels that move nothing that is shown.
+/// Nullopt for channels that animate nothing in the scene.
 std::optional<Channel> read_target(const JsonValue& json, const NodeTable& nodes,
                                    Warnings& warnings) {
   const JsonValue target = *json.object("target");
@@ -111,8 +111,8 @@ Clip read_clip(const JsonValue& json, std::span<const Accessor> accessors, const
   return clip;
 }
 
-/// Channels may share samplers and clips accessors, so that the file's size is no bound: all are
-/// paid for before the first is read.
+/// Channels may share samplers and clips may share accessors, so that the file's size is no limit:
+/// charges all of them before the first is read.
 void pay_for_keys(const JsonValue& animation, std::span<const Accessor> accessors,
                   ByteBudget& budget) {
   const std::vector<JsonValue> samplers = animation.objects("samplers");
@@ -145,9 +145,9 @@ std::vector<Clip> read_clips(const JsonValue& root, std::span<const Accessor> ac
     Clip clip = read_clip(json, accessors, nodes, warnings);
     if (clip.channels.empty()) continue;
     if (clip.name.empty()) clip.name = "clip " + std::to_string(clips.size() + 1);
-    const std::string wanted = clip.name;
+    const std::string requested = clip.name;
     for (int number = 2; !names.insert(clip.name).second; ++number) {
-      clip.name = wanted + " " + std::to_string(number);
+      clip.name = requested + " " + std::to_string(number);
     }
     clips.push_back(std::move(clip));
   }

@@ -9,13 +9,13 @@
 
 namespace heliograph::scene {
 
-/// The document's animations, as far as they move nodes that are shown. Names are unique, so that
-/// each can be asked for; what has none is called "clip" and a number.
+/// The document's animations of nodes in the scene. Names are made unique; unnamed clips are called
+/// "clip N".
 /// @throws ImportError
 std::vector<Clip> read_clips(const JsonValue& root, std::span<const Accessor> accessors,
                              const NodeTable& nodes, ByteBudget& budget, Warnings& warnings);
 
-/// The document's skins, in its order; one whose joints are not all shown comes out without joints.
+/// The document's skins, in order; a skin with joints outside the scene has no joints.
 /// @throws ImportError
 std::vector<Skin> read_skins(const JsonValue& root, std::span<const Accessor> accessors,
                              const NodeTable& nodes, ByteBudget& budget);

@@ -38,13 +38,13 @@ void read_orthographic(const JsonValue& json, Camera& camera) {
   if (camera.far_plane <= camera.near_plane) json.refuse("zfar", "must be more than znear");
 }
 
-glm::vec3 unit_or(const glm::vec3& vector, const glm::vec3& fallback) {
+glm::vec3 normalized_or(const glm::vec3& vector, const glm::vec3& fallback) {
   const float length = glm::length(vector);
   return length > 0.0f && std::isfinite(length) ? vector / length : fallback;
 }
 
-/// How far ahead a view turns about, metres. From outside that is the scene's middle; from inside
-/// a point close by, so that orbiting looks around the room and does not swing through its walls.
+/// Orbit distance of a camera in metres: to the scene's center from outside; short from inside, so
+/// that orbiting stays within a room.
 float focus_distance(const Camera& camera, const glm::vec3& forward, const Bounds& bounds) {
   if (bounds.empty()) return 1.0f;
   const bool inside = glm::all(glm::greaterThan(camera.eye, bounds.minimum)) &&
@@ -74,9 +74,9 @@ std::vector<Camera> read_cameras(const JsonValue& root) {
 Camera place_camera(Camera camera, const std::string& node_name, const glm::mat4& world,
                     const Bounds& bounds) {
   if (!node_name.empty()) camera.name = node_name;
-  const glm::vec3 forward = unit_or(-glm::vec3(world[2]), {0.0f, 0.0f, -1.0f});
+  const glm::vec3 forward = normalized_or(-glm::vec3(world[2]), {0.0f, 0.0f, -1.0f});
   camera.eye = glm::vec3(world[3]);
-  camera.up = unit_or(glm::vec3(world[1]), {0.0f, 1.0f, 0.0f});
+  camera.up = normalized_or(glm::vec3(world[1]), {0.0f, 1.0f, 0.0f});
   camera.target = camera.eye + forward * focus_distance(camera, forward, bounds);
   return camera;
 }

@@ -8,11 +8,11 @@
 
 namespace heliograph::scene {
 
-/// The document's cameras, still without a place. @throws ImportError
+/// The document's cameras, before they are placed by nodes. @throws ImportError
 std::vector<Camera> read_cameras(const JsonValue& root);
 
-/// `camera` as the node with this world transform carries it: it looks along the node's -Z. The
-/// target lies on that axis as far out as the middle of `bounds`, at least 0.1 m away.
+/// `camera` in world space, attached to a node with this world transform: it looks along the node's
+/// -Z. The target is on that axis at the depth of the center of `bounds`, at least 0.1 m away.
 Camera place_camera(Camera camera, const std::string& node_name, const glm::mat4& world,
                     const Bounds& bounds);
 

@@ -5,7 +5,7 @@
 namespace heliograph::scene {
 namespace {
 
-/// The values of one attribute, or `fallback` for each of the `count` places.
+/// The values of one attribute, or `fallback` for each of the `count` instances.
 template <int components>
 std::vector<glm::vec<components, float>> read_places(const JsonValue& attributes,
                                                      std::string_view name, ElementType type,
@@ -32,13 +32,13 @@ std::uint32_t count_places(const JsonValue& attributes, std::span<const Accessor
     }
     count = accessors[index].count;
   }
-  if (!count) attributes.refuse("must name at least one attribute");
+  if (!count) attributes.refuse("must have at least one attribute");
   return *count;
 }
 
 glm::quat to_rotation(const JsonValue& attributes, const glm::vec4& value) {
   const float length = glm::length(value);
-  if (!(length > 1e-6f)) attributes.refuse("ROTATION", "holds a quaternion without length");
+  if (!(length > 1e-6f)) attributes.refuse("ROTATION", "contains a quaternion of zero length");
   return {value.w / length, value.x / length, value.y / length, value.z / length};
 }
 
@@ -61,11 +61,11 @@ std::optional<std::vector<Transform>> read_instancing(const JsonValue& node,
                                         count, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
   const auto scales =
       read_places<3>(*attributes, "SCALE", ElementType::vec3, accessors, count, glm::vec3(1.0f));
-  std::vector<Transform> places(count);
+  std::vector<Transform> instance_transforms(count);
   for (std::uint32_t i = 0; i < count; ++i) {
-    places[i] = {translations[i], to_rotation(*attributes, rotations[i]), scales[i]};
+    instance_transforms[i] = {translations[i], to_rotation(*attributes, rotations[i]), scales[i]};
   }
-  return places;
+  return instance_transforms;
 }
 
 }  // namespace heliograph::scene

@@ -10,8 +10,8 @@
 
 namespace heliograph::scene {
 
-/// Where EXT_mesh_gpu_instancing puts the mesh of a node, relative to the node; nothing without the
-/// extension. No more than `limit`.
+/// The instance transforms of EXT_mesh_gpu_instancing, relative to the node; empty without the
+/// extension. At most `limit`.
 /// @throws ImportError
 std::optional<std::vector<Transform>> read_instancing(const JsonValue& node,
                                                       std::span<const Accessor> accessors,

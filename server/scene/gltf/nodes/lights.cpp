@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace heliograph::scene {
 namespace {
 
-constexpr float pi = 3.14159265359f;
-constexpr float half_pi = 0.5f * pi;
+constexpr float half_pi = 0.5f * std::numbers::pi_v<float>;
 
 // The cone's falloff as a scale and an offset to the cosine, from the extension's text.
 void read_cone(const JsonValue& json, shared::Light& light) {
@@ -32,7 +32,7 @@ std::uint32_t read_type(const JsonValue& json) {
   json.refuse("type", "is not directional, point or spot");
 }
 
-// "color" times the number called `strength`.
+// "color" times the member `strength`.
 glm::vec3 read_color(const JsonValue& json, std::string_view strength) {
   const float factor = json.number(strength, 1.0f);
   if (factor < 0.0f) json.refuse(strength, "must not be negative");
@@ -63,10 +63,11 @@ Light read_light(const JsonValue& json) {
 }
 
 float read_length(const JsonValue& json, std::string_view key) {
-  constexpr float longest = 1e6f;
+  constexpr float max_length = 1e6f;
   const auto length = json.number(key);
   if (!length) json.refuse(key, "is missing");
-  if (*length <= 0.0f || *length > longest) json.refuse(key, "must be from above 0 to 1e6 metres");
+  if (*length <= 0.0f || *length > max_length)
+    json.refuse(key, "must be more than 0 and at most 1e6 metres");
   return *length;
 }
 
@@ -81,7 +82,8 @@ Light read_area_light(const JsonValue& json) {
     light.device.type = shared::light_rectangle;
     light.device.half_width = 0.5f * read_length(json, "width");
     light.device.half_height = 0.5f * read_length(json, "height");
-    light.device.radius = std::sqrt(4.0f * light.device.half_width * light.device.half_height / pi);
+    light.device.radius = std::sqrt(4.0f * light.device.half_width * light.device.half_height /
+                                    std::numbers::pi_v<float>);
   } else if (shape == "disk") {
     light.device.type = shared::light_disk;
     light.device.radius = read_length(json, "radius");
@@ -98,7 +100,7 @@ NodeLight read_node_light(const JsonValue& node, std::size_t light_count) {
   if (const auto extension = node.object("extensions", "KHR_lights_punctual")) {
     result.punctual = extension->required_index("light", light_count, "lights");
   }
-  // "extras" may be of any type (glTF 3.12) and hold anything: only our own keys are looked at.
+  // "extras" may be of any type (glTF 3.12): only our own keys are read.
   if (!node.is_object("extras")) return result;
   const auto extras = node.object("extras");
   if (extras->is_object("areaLight")) result.area = read_area_light(*extras->object("areaLight"));
@@ -125,7 +127,7 @@ shared::Light place_light(shared::Light light, const glm::mat4& world) {
   const glm::vec3 direction = -glm::vec3(world[2]);
   const float length = glm::length(direction);
   if (length > 0.0f && std::isfinite(length)) light.direction = direction / length;
-  // Upright even where the node's transform is skewed or flat.
+  // Orthonormal even where the node's transform is skewed or singular.
   glm::vec3 tangent(world[0]);
   tangent -= light.direction * glm::dot(light.direction, tangent);
   const float width = glm::length(tangent);

@@ -43,7 +43,7 @@ Transform read_transform(const JsonValue& json) {
   return {{translation[0], translation[1], translation[2]}, unit, {scale[0], scale[1], scale[2]}};
 }
 
-/// Of each mesh of the document: the weights of its morph targets, 0 unless given.
+/// Per mesh of the document: default weights of its morph targets, 0 unless given.
 std::vector<std::vector<float>> read_mesh_weights(const JsonValue& root) {
   std::vector<std::vector<float>> weights;
   for (const JsonValue& mesh : root.objects("meshes")) {
@@ -64,7 +64,7 @@ struct Context {
   std::size_t cameras;
   std::size_t lights;
   std::size_t skins;
-  std::uint64_t instances;  // that may still be placed
+  std::uint64_t instances;  // remaining budget of instances
 };
 
 DocumentNode read_node(const JsonValue& json, const Context& context) {
@@ -89,11 +89,11 @@ DocumentNode read_node(const JsonValue& json, const Context& context) {
   result.attachments.camera = json.index("camera", context.cameras, "cameras");
   result.attachments.skin = json.index("skin", context.skins, "skins");
   result.attachments.light = read_node_light(json, context.lights);
-  const auto places = read_instancing(json, context.accessors, context.instances);
-  if (places) {
-    // What skinned vertices follow are joints, not the node.
+  const auto instance_transforms = read_instancing(json, context.accessors, context.instances);
+  if (instance_transforms) {
+    // Skinned vertices follow joints, not the node.
     if (result.attachments.skin) json.refuse("skin", "cannot be instanced");
-    result.attachments.places = *places;
+    result.attachments.instance_transforms = *instance_transforms;
   }
   return result;
 }
@@ -127,7 +127,7 @@ std::size_t visit_hierarchy(const std::vector<DocumentNode>& nodes,
     pending.pop_back();
     const DocumentNode& node = nodes[next.node];
     if (next.depth > max_depth) {
-      throw ImportError(node.path + ": lies deeper than " + std::to_string(max_depth) + " levels");
+      throw ImportError(node.path + ": is deeper than " + std::to_string(max_depth) + " levels");
     }
     visit(next.node, next.parent);
     for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
@@ -138,7 +138,7 @@ std::size_t visit_hierarchy(const std::vector<DocumentNode>& nodes,
   return visited;
 }
 
-// With one parent at most for each node, those that no root reaches lie on or below a cycle.
+// Every node has at most one parent, so nodes that no root reaches are on or below a cycle.
 void check_no_cycles(const std::vector<DocumentNode>& nodes, std::uint32_t max_depth) {
   std::vector<std::uint32_t> roots;
   for (std::uint32_t i = 0; i < nodes.size(); ++i) {
@@ -159,10 +159,10 @@ std::vector<std::uint32_t> read_roots(const JsonValue& root, const std::vector<D
     std::vector<std::uint32_t> sorted = roots;
     std::sort(sorted.begin(), sorted.end());
     if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
-      scene.refuse("nodes", "names a node twice");
+      scene.refuse("nodes", "lists a node twice");
     }
     for (const std::uint32_t node : roots) {
-      if (nodes[node].has_parent) scene.refuse("nodes", "names a node that is not a root");
+      if (nodes[node].has_parent) scene.refuse("nodes", "lists a node that is not a root");
     }
     roots_of_scene.push_back(std::move(roots));
   }
@@ -174,20 +174,21 @@ std::vector<std::uint32_t> read_roots(const JsonValue& root, const std::vector<D
   return all;
 }
 
-/// Children behind all others, one for each place that a node gives its mesh.
+/// Appends one child node per instance of EXT_mesh_gpu_instancing.
 void add_places(NodeTable& table) {
   const std::size_t count = table.nodes.size();
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::vector<Transform> places = std::move(table.attachments[i].places);
-    if (places.empty()) continue;
+    const std::vector<Transform> instance_transforms =
+        std::move(table.attachments[i].instance_transforms);
+    if (instance_transforms.empty()) continue;
     const auto mesh = std::exchange(table.attachments[i].mesh, std::nullopt);
-    for (const Transform& place : places) {
+    for (const Transform& instance : instance_transforms) {
       Node node;
       node.name = table.nodes[i].name;
       node.parent = i;
-      node.local = place.matrix();
+      node.local = instance.matrix();
       node.world = table.nodes[i].world * node.local;
-      node.transform = place;
+      node.transform = instance;
       node.weights = table.nodes[i].weights;
       table.nodes.push_back(std::move(node));
       table.attachments.emplace_back().mesh = mesh;
@@ -218,9 +219,9 @@ NodeTable read_nodes(const JsonValue& root, std::span<const Accessor> accessors,
   std::uint64_t weights = 0;
   for (const JsonValue& json : documents) {
     nodes.push_back(read_node(json, context));
-    context.instances -= nodes.back().attachments.places.size();
+    context.instances -= nodes.back().attachments.instance_transforms.size();
     weights += nodes.back().node.weights.size();
-    if (weights > limits.json_values) json.refuse("has more morph weights than are accepted");
+    if (weights > limits.json_values) json.refuse("has too many morph weights");
   }
   link_parents(nodes);
   check_no_cycles(nodes, limits.node_depth);

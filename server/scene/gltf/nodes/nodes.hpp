@@ -12,27 +12,28 @@
 
 namespace heliograph::scene {
 
-/// What hangs on a node, as indices into the document's arrays.
+/// Objects attached to a node, as indices into the document's arrays.
 struct NodeAttachments {
   std::optional<std::uint32_t> mesh;
   std::optional<std::uint32_t> skin;
   std::optional<std::uint32_t> camera;
   NodeLight light;
-  std::vector<Transform> places;  // EXT_mesh_gpu_instancing: of its mesh, relative to the node
+  std::vector<Transform>
+      instance_transforms;  // EXT_mesh_gpu_instancing: instance transforms relative to the node
 };
 
-/// The nodes of the shown scene, parents first, with world transforms. `attachments[i]` belongs to
-/// `nodes[i]`; `paths[i]` names it in errors.
+/// The nodes of the selected scene, parents first, with world transforms. `attachments[i]` belongs
+/// to `nodes[i]`; `paths[i]` names it in errors.
 struct NodeTable {
   std::vector<Node> nodes;
   std::vector<NodeAttachments> attachments;
   std::vector<std::string> paths;
-  std::vector<std::optional<std::uint32_t>> of_document;  // into `nodes`, by number in the file
+  std::vector<std::optional<std::uint32_t>>
+      of_document;  // index into `nodes`, by index in the file
 };
 
-/// Reads all nodes, refuses cycles, second parents and excessive depth, and keeps those that scene
-/// number `shown` shows, all where there is none. A node that places its mesh
-/// many times gets a child for each place instead of the mesh.
+/// Reads all nodes, rejects cycles, second parents and excessive depth, and keeps those of scene
+/// `shown`, or all where there is none. A node with mesh instances gets one child per instance.
 /// @throws ImportError
 NodeTable read_nodes(const JsonValue& root, std::span<const Accessor> accessors,
                      std::size_t light_count, std::optional<std::uint32_t> shown,

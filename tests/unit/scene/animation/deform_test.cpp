@@ -19,8 +19,8 @@ shared::Vertex vertex_at(const glm::vec3& position, const glm::vec3& normal = {0
   return vertex;
 }
 
-/// A shape of `count` vertices anywhere, under two joints.
-Scene puppet(std::size_t count, std::uint32_t joints_per_vertex) {
+/// A shape of `count` random vertices with two joints.
+Scene skinned_scene(std::size_t count, std::uint32_t joints_per_vertex) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
   const auto vector = [&] { return glm::vec3(uniform(random), uniform(random), uniform(random)); };
@@ -46,8 +46,8 @@ Scene puppet(std::size_t count, std::uint32_t joints_per_vertex) {
 
 class Skinning : public testing::TestWithParam<std::uint32_t> {};
 
-TEST_P(Skinning, FollowsTheDefinition) {
-  const Scene scene = puppet(5000, GetParam());
+TEST_P(Skinning, MatchesDefinition) {
+  const Scene scene = skinned_scene(5000, GetParam());
   const Shape& shape = scene.shapes[0];
   std::vector<shared::Vertex> moved(shape.vertices.size());
   const Bounds bounds = deform(scene, scene.deformations[0], rest_pose(scene), moved);
@@ -72,10 +72,10 @@ TEST_P(Skinning, FollowsTheDefinition) {
 
 INSTANTIATE_TEST_SUITE_P(FourAndEightJoints, Skinning, testing::Values(4u, 8u));
 
-// A renderer of note once multiplied normals by the transpose, not the inverse transpose: on a
-// slope squeezed in x by 4 the two differ by tens of degrees.
-TEST(Skinning, NormalsOfASqueezedSlopeStayPerpendicular) {
-  Scene scene = puppet(1, 4);
+// A published renderer multiplied normals by the transpose instead of the inverse transpose: for a
+// slope scaled in x by 1/4 the two differ by tens of degrees.
+TEST(Skinning, NormalsUseInverseTranspose) {
+  Scene scene = skinned_scene(1, 4);
   scene.nodes[1].world = glm::scale(glm::mat4(1.0f), {0.25f, 1, 1});
   Shape& shape = scene.shapes[0];
   shape.vertices[0] = vertex_at({1, 1, 0}, glm::normalize(glm::vec3(1, 1, 0)));
@@ -88,8 +88,8 @@ TEST(Skinning, NormalsOfASqueezedSlopeStayPerpendicular) {
   EXPECT_LE(glm::distance(moved[0].normal, glm::normalize(glm::vec3(4, 1, 0))), 1e-6f);
 }
 
-TEST(Skinning, MirroredJointsKeepNormalsOutside) {
-  Scene scene = puppet(1, 4);
+TEST(Skinning, MirroredJointsKeepNormalsOutward) {
+  Scene scene = skinned_scene(1, 4);
   scene.nodes[1].world = glm::scale(glm::mat4(1.0f), {-1, 1, 1});
   Shape& shape = scene.shapes[0];
   shape.vertices[0] = vertex_at({1, 0, 0}, {1, 0, 0});
@@ -102,9 +102,10 @@ TEST(Skinning, MirroredJointsKeepNormalsOutside) {
   EXPECT_EQ(moved[0].tangent, glm::vec4(0, 1, 0, -1));
 }
 
-TEST(Skinning, NormalsAreUnitVectorsWhateverTheScale) {
-  for (const float size : {1e-12f, 1e-6f, 1e6f, 1e12f}) {  // their squares have no place in a float
-    Scene scene = puppet(1, 4);
+TEST(Skinning, NormalsAreUnitLengthAtAnyScale) {
+  for (const float size :
+       {1e-12f, 1e-6f, 1e6f, 1e12f}) {  // their squares overflow or underflow a float
+    Scene scene = skinned_scene(1, 4);
     scene.nodes[1].world = glm::scale(glm::mat4(1.0f), glm::vec3(2.0f * size, size, size));
     Shape& shape = scene.shapes[0];
     shape.vertices[0] = vertex_at({1, 0, 0}, glm::normalize(glm::vec3(1, 1, 0)));
@@ -117,7 +118,7 @@ TEST(Skinning, NormalsAreUnitVectorsWhateverTheScale) {
   }
 }
 
-TEST(Morphing, AddsWeightedDifferences) {
+TEST(Morphing, AddsWeightedDisplacements) {
   Scene scene;
   scene.nodes.resize(1);
   Shape shape;
@@ -136,7 +137,7 @@ TEST(Morphing, AddsWeightedDifferences) {
             1e-6f);
 }
 
-TEST(Morphing, FlatNormalsBelongToTheMovedTriangle) {
+TEST(Morphing, FlatNormalsAreOfDeformedTriangle) {
   Scene scene;
   scene.nodes.resize(1);
   Shape shape;

@@ -20,16 +20,16 @@ std::array<float, 4> at(const Channel& channel, float seconds) {
   return value;
 }
 
-TEST(Sample, LinearGoesStraightAndStopsAtTheEnds) {
+TEST(Sample, LinearInterpolatesAndClampsAtEnds) {
   const Channel channel =
       curve(Property::translation, Interpolation::linear, 3, {1, 3}, {0, 10, -2, 4, 20, 6});
   EXPECT_EQ(at(channel, 0.0f), (std::array<float, 4>{0, 10, -2, 0})) << "before the first key";
   EXPECT_EQ(at(channel, 1.5f), (std::array<float, 4>{1, 12.5f, 0, 0}));
   EXPECT_EQ(at(channel, 3.0f), (std::array<float, 4>{4, 20, 6, 0}));
-  EXPECT_EQ(at(channel, 9.0f), (std::array<float, 4>{4, 20, 6, 0})) << "behind the last";
+  EXPECT_EQ(at(channel, 9.0f), (std::array<float, 4>{4, 20, 6, 0})) << "after the last key";
 }
 
-TEST(Sample, StepHoldsUntilTheNextKey) {
+TEST(Sample, StepHoldsUntilNextKey) {
   const Channel channel =
       curve(Property::scale, Interpolation::step, 3, {0, 1}, {1, 1, 1, 2, 3, 4});
   EXPECT_EQ(at(channel, 0.999f), (std::array<float, 4>{1, 1, 1, 0}));
@@ -38,7 +38,7 @@ TEST(Sample, StepHoldsUntilTheNextKey) {
 
 // By hand from glTF 2.0, C.5: at the middle of two seconds, with start 0, end 8, out-tangent 6 and
 // in-tangent -2 per second: 0.5*0 + 0.125*2*6 + 0.5*8 - 0.125*2*(-2) = 6.
-TEST(Sample, SplineTangentsAreScaledByTheTimeBetweenKeys) {
+TEST(Sample, SplineTangentsAreScaledByKeyInterval) {
   const Channel channel =
       curve(Property::weights, Interpolation::cubic_spline, 1, {0, 2}, {99, 0, 6, -2, 8, 99});
   EXPECT_FLOAT_EQ(at(channel, 1.0f)[0], 6.0f);
@@ -46,16 +46,17 @@ TEST(Sample, SplineTangentsAreScaledByTheTimeBetweenKeys) {
   EXPECT_FLOAT_EQ(at(channel, 2.0f)[0], 8.0f);
   // The slope at the start is the out-tangent itself.
   EXPECT_NEAR(at(channel, 0.001f)[0] / 0.001f, 6.0f, 0.02f);
-  EXPECT_FLOAT_EQ(at(channel, 7.0f)[0], 8.0f) << "values, not tangents, hold beyond the ends";
+  EXPECT_FLOAT_EQ(at(channel, 7.0f)[0], 8.0f) << "beyond the ends the value is constant";
 }
 
 float angle_about_y(const std::array<float, 4>& xyzw) {
   return 2.0f * std::atan2(xyzw[1], xyzw[3]);
 }
 
-TEST(Sample, RotationsTakeTheShortWayAtAnEvenPace) {
+TEST(Sample, RotationsTakeShortestArcAtConstantSpeed) {
   const float half = std::numbers::pi_v<float> / 4.0f;  // of a quarter turn about y
-  // The second key is the same rotation with all signs turned: the long way round.
+  // The second key is the negated quaternion of the same rotation: naive interpolation takes the
+  // long way.
   const Channel channel = curve(Property::rotation, Interpolation::linear, 4, {0, 1},
                                 {0, 0, 0, 1, 0, -std::sin(half), 0, -std::cos(half)});
   for (const float time : {0.1f, 0.25f, 0.5f, 0.9f}) {
@@ -65,7 +66,7 @@ TEST(Sample, RotationsTakeTheShortWayAtAnEvenPace) {
   }
 }
 
-TEST(Sample, SplinesOfRotationsComeOutWithUnitLength) {
+TEST(Sample, RotationSplinesAreNormalized) {
   const Channel channel =
       curve(Property::rotation, Interpolation::cubic_spline, 4, {0, 1},
             {0, 0, 0, 0, 0, 0, 0, 1, 2, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0});
@@ -75,13 +76,13 @@ TEST(Sample, SplinesOfRotationsComeOutWithUnitLength) {
   EXPECT_NEAR(length, 1.0f, 1e-6f);
 }
 
-TEST(Sample, AZeroQuaternionIsNoRotation) {
+TEST(Sample, ZeroQuaternionIsIdentity) {
   const Channel channel = curve(Property::rotation, Interpolation::linear, 4, {0}, {0, 0, 0, 0});
   EXPECT_EQ(at(channel, 0.0f), (std::array<float, 4>{0, 0, 0, 1}));
 }
 
-/// A turning parent with a child one metre off, beside a node that rests.
-Scene mobile() {
+/// A rotating parent with a child at one metre, and a static node.
+Scene animated_scene() {
   Scene scene;
   Transform child;
   child.translation = {1, 0, 0};
@@ -100,41 +101,41 @@ Scene mobile() {
   return scene;
 }
 
-glm::vec3 place_of(const Pose& pose, std::size_t node) {
+glm::vec3 position_of(const Pose& pose, std::size_t node) {
   return glm::vec3(pose.worlds[node][3]);
 }
 
-TEST(Evaluate, ChildrenFollowTheirParents) {
-  const Scene scene = mobile();
+TEST(Evaluate, ChildrenFollowParents) {
+  const Scene scene = animated_scene();
   Pose pose = rest_pose(scene);
   evaluate(scene, *find_clip(scene, "turn"), 2.0, pose);
-  EXPECT_LE(glm::distance(place_of(pose, 1), {0, 0, -1}), 1e-6f) << "a quarter turn about y";
+  EXPECT_LE(glm::distance(position_of(pose, 1), {0, 0, -1}), 1e-6f) << "a quarter turn about y";
   EXPECT_EQ(pose.worlds[2], glm::mat4(1.0f));
   EXPECT_EQ(pose.weights[2], std::vector<float>{0.25f});
 }
 
-TEST(Evaluate, LoopsAndKeepsItsLastMoment) {
-  const Scene scene = mobile();
+TEST(Evaluate, LoopsAndIncludesEndTime) {
+  const Scene scene = animated_scene();
   Pose once = rest_pose(scene), again = rest_pose(scene);
   evaluate(scene, scene.clips[0], 0.5, once);
   evaluate(scene, scene.clips[0], 4.5, again);
   EXPECT_EQ(once.worlds[1], again.worlds[1]);
   evaluate(scene, scene.clips[0], -1.0, again);
   EXPECT_EQ(again.worlds[1], scene.nodes[1].world);
-  // Hours of play lose no precision: the time is wound back in double.
+  // Long playback loses no precision: the time is wrapped in double.
   evaluate(scene, scene.clips[0], 2.0e6 + 0.5, again);
-  EXPECT_LE(glm::distance(place_of(again, 1), place_of(once, 1)), 1e-5f);
+  EXPECT_LE(glm::distance(position_of(again, 1), position_of(once, 1)), 1e-5f);
 }
 
-TEST(Evaluate, AnotherClipStartsFromRest) {
-  Scene scene = mobile();
+TEST(Evaluate, OtherClipStartsFromDefaultPose) {
+  Scene scene = animated_scene();
   Clip other{"lift", 1.0f, {}};
   other.channels.push_back(curve(Property::translation, Interpolation::linear, 3, {0}, {0, 5, 0}));
   scene.clips.push_back(other);
   Pose pose = rest_pose(scene);
   evaluate(scene, scene.clips[0], 2.0, pose);
   evaluate(scene, scene.clips[1], 0.0, pose);
-  EXPECT_EQ(place_of(pose, 1), glm::vec3(1, 5, 0));
+  EXPECT_EQ(position_of(pose, 1), glm::vec3(1, 5, 0));
   EXPECT_EQ(find_clip(scene, "walk"), nullptr);
 }
 

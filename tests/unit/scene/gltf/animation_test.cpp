@@ -12,7 +12,7 @@ namespace {
 
 using Numbers = std::vector<float>;
 
-/// A triangle of a skin with two joints, whose second rises; `skin` goes to the node.
+/// A skinned triangle with two joints, the second of which is animated upward.
 GltfBuilder skinned_triangle() {
   GltfBuilder b = triangle();
   const auto joints = b.add_accessor(std::vector<std::uint8_t>{0, 9, 9, 9, 1, 0, 0, 0, 0, 1, 0, 0},
@@ -43,7 +43,7 @@ std::vector<glm::vec3> corners(const Mesh& mesh) {
   return result;
 }
 
-TEST(Skins, AreShownWhereTheirJointsRestAndNotWhereTheirNodeIs) {
+TEST(Skins, MeshIsPlacedByJointsNotByNode) {
   const Scene scene = skinned_triangle().import();
   ASSERT_EQ(scene.instances.size(), 1u);
   EXPECT_EQ(scene.nodes[scene.instances[0].node].world, glm::mat4(1.0f));
@@ -54,19 +54,19 @@ TEST(Skins, AreShownWhereTheirJointsRestAndNotWhereTheirNodeIs) {
   EXPECT_LE(glm::distance(scene.bounds.maximum, {1, 4, 0}), 1e-5f);
 }
 
-TEST(Skins, JointsThatDoNotExistAreRefused) {
+TEST(Skins, InvalidJointIndicesAreRejected) {
   GltfBuilder b = skinned_triangle();
   b.json["skins"][0]["joints"] = {1};
   EXPECT_NE(refusal_of(b).find("joint 1 of a skin with 1"), std::string::npos) << refusal_of(b);
 }
 
-TEST(Skins, JointsWithoutWeightsAreRefused) {
+TEST(Skins, JointsWithoutWeightsAreRejected) {
   GltfBuilder b = skinned_triangle();
   b.json["meshes"][0]["primitives"][0]["attributes"].erase("WEIGHTS_0");
   EXPECT_NE(refusal_of(b).find("WEIGHTS_0: is missing"), std::string::npos) << refusal_of(b);
 }
 
-TEST(Skins, EveryPlaceHasItsOwnShape) {
+TEST(Skins, EachSkinnedInstanceHasOwnMesh) {
   GltfBuilder b = skinned_triangle();
   b.json["scenes"][0]["nodes"].push_back(b.add("nodes", {{"mesh", 0}, {"skin", 0}}));
   const Scene scene = b.import();
@@ -98,7 +98,7 @@ struct Damage {
 
 class MalformedAnimation : public testing::TestWithParam<Damage> {};
 
-TEST_P(MalformedAnimation, IsRefusedWithAReason) {
+TEST_P(MalformedAnimation, IsRejectedWithReason) {
   GltfBuilder b = skinned_triangle();
   GetParam().damage(b);
   const std::string refusal = refusal_of(b);
@@ -149,7 +149,7 @@ GltfBuilder morphing_triangle() {
   return b;
 }
 
-TEST(MorphTargets, RestWithTheWeightsOfMeshOrNode) {
+TEST(MorphTargets, DefaultWeightsComeFromMeshOrNode) {
   GltfBuilder b = morphing_triangle();
   EXPECT_FLOAT_EQ(b.import().meshes[0].bounds.maximum.y, 2.0f);
   b.json["nodes"][0]["weights"] = {1.0};
@@ -158,7 +158,7 @@ TEST(MorphTargets, RestWithTheWeightsOfMeshOrNode) {
   EXPECT_NE(refusal_of(b).find("array of 1 numbers"), std::string::npos) << refusal_of(b);
 }
 
-TEST(Clips, OfNormalisedWeightsAreMappedToFloats) {
+TEST(Clips, NormalizedWeightsBecomeFloats) {
   GltfBuilder b = morphing_triangle();
   const auto times = b.add_accessor(Numbers{0, 1}, 5126, "SCALAR", 2);
   const auto values =
@@ -171,7 +171,7 @@ TEST(Clips, OfNormalisedWeightsAreMappedToFloats) {
   EXPECT_EQ(scene.clips[0].channels[0].values, (Numbers{0.0f, 1.0f}));
 }
 
-TEST(Clips, OfNormalisedRotationsAreMappedToFloats) {
+TEST(Clips, NormalizedRotationsBecomeFloats) {
   GltfBuilder b = skinned_triangle();
   const auto times = b.add_accessor(Numbers{0, 1}, 5126, "SCALAR", 2);
   const auto with_values = [&](std::uint32_t values) {
@@ -187,7 +187,7 @@ TEST(Clips, OfNormalisedRotationsAreMappedToFloats) {
             (Numbers{0, 0, 0, 1, -1, 0, 0, 0}));
 }
 
-TEST(Clips, OfEveryInterpolationMoveEveryProperty) {
+TEST(Clips, EveryInterpolationAnimatesEveryProperty) {
   const struct {
     const char* path;
     const char* type;
@@ -219,7 +219,7 @@ TEST(Clips, OfEveryInterpolationMoveEveryProperty) {
       sample(channel, 1.0f, found.data());
       const bool step = std::string_view(interpolation) == "STEP";
       for (std::size_t i = 0; i < found.size(); ++i) {
-        // Half way, with tangents of zero, a spline is where a line is; a half turn is an arc.
+        // Halfway a spline with zero tangents equals linear interpolation; rotations are on an arc.
         const float straight = 0.5f * (first[i] + second[i]);
         const bool arc = std::string_view(path) == "rotation" && straight != 0.0f;
         const float expected = step ? first[i] : arc ? std::sqrt(0.5f) : straight;
@@ -229,7 +229,7 @@ TEST(Clips, OfEveryInterpolationMoveEveryProperty) {
   }
 }
 
-TEST(LightsAndCameras, KnowTheirNodes) {
+TEST(LightsAndCameras, ReferToTheirNodes) {
   const Scene scene = everything().import();
   ASSERT_TRUE(scene.cameras[0].node && scene.lights[0].node);
   EXPECT_EQ(scene.nodes[*scene.cameras[0].node].world[3], glm::vec4(0, 0, 3, 1));

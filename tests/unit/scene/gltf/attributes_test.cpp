@@ -1,4 +1,4 @@
-// Every kind of component that glTF and KHR_mesh_quantization allow, of every attribute.
+// Every component type of every attribute that glTF and KHR_mesh_quantization permit.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,9 +13,9 @@ using nlohmann::json;
 using Numbers = std::vector<double>;
 
 struct Component {
-  int type;  // glTF's number
+  int type;  // glTF's enum value
   bool normalized;
-  double largest;  // of the whole numbers; 0: a float
+  double largest;  // largest integer value; 0: float
 };
 
 constexpr Component f32{5126, false, 0.0};
@@ -47,7 +47,7 @@ void append_as(Bytes& bytes, const Component& component, double value) {
   }
 }
 
-/// `values` in elements of `width`, each padded to four bytes as glTF 3.6.2.4 asks.
+/// `values` in elements of `width` components, padded to 4 bytes (glTF 3.6.2.4).
 std::uint32_t add_values(GltfBuilder& builder, const Component& component, std::size_t width,
                          const Numbers& values) {
   Bytes bytes;
@@ -66,7 +66,7 @@ json& attributes_of(GltfBuilder& builder) {
   return builder.json["meshes"][0]["primitives"][0]["attributes"];
 }
 
-/// A triangle with this attribute as well.
+/// A triangle with this additional attribute.
 Mesh mesh_with(const char* name, const Component& component, std::size_t width,
                const Numbers& values) {
   GltfBuilder builder = triangle();
@@ -82,7 +82,7 @@ double step_of(const Component& component) {
   return component.normalized ? 0.51 / component.largest : 1e-6;
 }
 
-TEST(Attributes, PositionsOfEveryComponent) {
+TEST(Attributes, PositionsOfEveryComponentType) {
   for (const Component& component : {f32, i8n, u8n, i16n, u16n}) {
     const Mesh mesh = mesh_with("POSITION", component, 3, {0, 0, 0, 1, 0, 0, 0, 0.5, 0});
     EXPECT_NEAR(mesh.vertices[1].position.x, 1.0, 1e-6) << component.type;
@@ -99,7 +99,7 @@ TEST(Attributes, PositionsOfEveryComponent) {
   }
 }
 
-TEST(Attributes, NormalsAndTangentsOfEveryComponent) {
+TEST(Attributes, NormalsAndTangentsOfEveryComponentType) {
   for (const Component& component : {f32, i8n, i16n}) {
     const Mesh normals = mesh_with("NORMAL", component, 3, {0, 0, 1, 0, 0.6, 0.8, -1, 0, 0});
     EXPECT_LE(glm::distance(normals.vertices[1].normal, {0, 0.6f, 0.8f}), 0.01f) << component.type;
@@ -112,7 +112,7 @@ TEST(Attributes, NormalsAndTangentsOfEveryComponent) {
   }
 }
 
-// Without normals those of the file's tangents have nothing to stand on (glTF 3.7.2.1).
+// Tangents without normals are ignored (glTF 3.7.2.1).
 TEST(Attributes, TangentsWithoutNormalsAreIgnored) {
   GltfBuilder builder = triangle();
   attributes_of(builder)["TANGENT"] =
@@ -124,7 +124,7 @@ TEST(Attributes, TangentsWithoutNormalsAreIgnored) {
   }
 }
 
-TEST(Attributes, BothSetsOfTextureCoordinatesOfEveryComponent) {
+TEST(Attributes, BothTexCoordSetsOfEveryComponentType) {
   for (const char* const name : {"TEXCOORD_0", "TEXCOORD_1"}) {
     const auto uv = [&](const Mesh& mesh, std::size_t vertex) {
       return std::string_view(name).ends_with('0') ? mesh.vertices[vertex].uv0
@@ -143,7 +143,7 @@ TEST(Attributes, BothSetsOfTextureCoordinatesOfEveryComponent) {
   }
 }
 
-TEST(Attributes, ColorsOfEveryComponentWithAndWithoutAlpha) {
+TEST(Attributes, ColorsOfEveryComponentTypeWithAndWithoutAlpha) {
   for (const Component& component : {f32, u8n, u16n}) {
     const Mesh opaque = mesh_with("COLOR_0", component, 3, {1, 0, 0, 0, 0.25, 0, 0, 0, 0.5});
     EXPECT_NEAR(glm::unpackUnorm2x16(opaque.vertices[0].color_rg).x, 1.0, 1e-6);
@@ -158,7 +158,7 @@ TEST(Attributes, ColorsOfEveryComponentWithAndWithoutAlpha) {
   }
 }
 
-TEST(Attributes, JointsAndWeightsOfEveryComponent) {
+TEST(Attributes, JointsAndWeightsOfEveryComponentType) {
   for (const Component& joints : {u8, u16}) {
     for (const Component& weights : {f32, u8n, u16n}) {
       GltfBuilder builder = triangle();
@@ -202,7 +202,7 @@ TEST(Attributes, SkinsOfSevenHundredJoints) {
   EXPECT_EQ(vertices[1].position, glm::vec3(351, 0, 0));
 }
 
-// Strips and fans count corners, not vertices.
+// Strips and fans index corners.
 TEST(Attributes, StripsAndFansMayHaveIndices) {
   for (const int mode : {5, 6}) {
     GltfBuilder builder = triangle();
@@ -217,7 +217,7 @@ TEST(Attributes, StripsAndFansMayHaveIndices) {
   }
 }
 
-TEST(Attributes, SparseIndicesOfEveryWidthReplaceAnyKindOfElement) {
+TEST(Attributes, SparseIndicesOfEveryTypeReplaceAnyElementType) {
   const auto with_sparse = [](int type, std::uint32_t indices_view, GltfBuilder& builder,
                               std::uint32_t accessor, std::uint32_t values) {
     builder.json["accessors"][accessor]["sparse"] = {
@@ -227,7 +227,7 @@ TEST(Attributes, SparseIndicesOfEveryWidthReplaceAnyKindOfElement) {
   };
   for (const int type : {5121, 5123, 5125}) {
     GltfBuilder builder = triangle();
-    // The number 1, of any width.
+    // Index 1 in every width.
     const auto index = builder.add_view(Bytes{1, 0, 0, 0});
     const auto uv = add_values(builder, u16n, 2, {0, 0, 0, 0, 0, 0});
     with_sparse(type, index, builder, uv,
@@ -245,7 +245,7 @@ TEST(Attributes, SparseIndicesOfEveryWidthReplaceAnyKindOfElement) {
   }
 }
 
-TEST(Attributes, MorphTargetsMoveNormalsAndTangentsOfEveryComponent) {
+TEST(Attributes, MorphTargetsOfEveryComponentTypeMoveNormalsAndTangents) {
   for (const Component& component : {f32, i8n, i16n}) {
     GltfBuilder builder = triangle();
     attributes_of(builder)["NORMAL"] = add_values(builder, f32, 3, {0, 0, 1, 0, 0, 1, 0, 0, 1});

@@ -1,5 +1,5 @@
-// KHR_draco_mesh_compression, EXT_meshopt_compression and EXT_texture_webp: files that other
-// people's encoders wrote, as far as their libraries are those encoders.
+// KHR_draco_mesh_compression, EXT_meshopt_compression and EXT_texture_webp, with data from the
+// reference encoders.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ using nlohmann::json;
 
 constexpr int grid_side = 12;
 
-/// A bent sheet of 12 x 12 vertices.
+/// A curved sheet of 12 x 12 vertices.
 DracoInput sheet() {
   DracoInput input;
   for (int y = 0; y < grid_side; ++y) {
@@ -38,7 +38,7 @@ DracoInput sheet() {
   return input;
 }
 
-/// A document whose only geometry is compressed: its accessors have no buffer views.
+/// A document with compressed geometry only: its accessors have no buffer views.
 GltfBuilder with_draco(const DracoOutput& compressed) {
   GltfBuilder builder;
   const auto accessor = [&](int component, std::string_view type, std::uint32_t count) {
@@ -73,7 +73,7 @@ float farthest_from(const std::vector<shared::Vertex>& vertices,
 
 class Draco : public testing::TestWithParam<bool> {};
 
-TEST_P(Draco, BringsBackTheSheet) {
+TEST_P(Draco, RoundTrip) {
   DracoInput input = sheet();
   input.sequential = GetParam();
   input.metadata = GetParam();
@@ -91,7 +91,7 @@ TEST_P(Draco, BringsBackTheSheet) {
   }
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
     const auto at = [&](std::size_t k) { return mesh.vertices[mesh.indices[i + k]].position; };
-    EXPECT_GT(glm::cross(at(1) - at(0), at(2) - at(0)).z, 0.0f) << "wound as before";
+    EXPECT_GT(glm::cross(at(1) - at(0), at(2) - at(0)).z, 0.0f) << "winding must be kept";
   }
 }
 
@@ -99,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, Draco, testing::Bool(), [](const auto& test) {
   return test.param ? "Sequential" : "Edgebreaker";
 });
 
-TEST(DracoGeometry, JointsAreKeptAsWholeNumbers) {
+TEST(DracoGeometry, JointsStayIntegers) {
   DracoInput input = sheet();
   for (std::size_t i = 0; i < input.positions.size(); ++i) input.joints.push_back({1, 0, 0, 0});
   GltfBuilder builder = with_draco(draco(input));
@@ -118,7 +118,7 @@ TEST(DracoGeometry, JointsAreKeptAsWholeNumbers) {
   EXPECT_EQ(scene.shapes[0].influences[1].joint, 0u);
 }
 
-TEST(DracoGeometry, DamageIsRefused) {
+TEST(DracoGeometry, DamageIsRejected) {
   const GltfBuilder good = with_draco(draco(sheet()));
   ASSERT_EQ(refusal_of(good), "");
   const auto refusal_with = [&](auto change) {
@@ -133,7 +133,7 @@ TEST(DracoGeometry, DamageIsRefused) {
   };
   expect(refusal_with([](auto& b, auto&) { b.binary[0] = 'X'; }), "is not a Draco stream");
   expect(refusal_with([](auto& b, auto&) { b.binary[6] = 1; }), "version other than 2.2");
-  expect(refusal_with([](auto& b, auto&) { b.binary[7] = 0; }), "does not hold a mesh");
+  expect(refusal_with([](auto& b, auto&) { b.binary[7] = 0; }), "does not contain a mesh");
   expect(refusal_with([](auto& b, auto&) { b.binary[8] = 7; }), "unknown encoding");
   expect(refusal_with([](auto&, auto& d) { d["bufferView"] = 9; }), "bufferView: 9");
   expect(refusal_with([](auto&, auto& d) { d.erase("attributes"); }), "attributes: is missing");
@@ -144,7 +144,7 @@ TEST(DracoGeometry, DamageIsRefused) {
   expect(refusal_with(
              [](auto&, auto& d) { d["attributes"]["TEXCOORD_0"] = d["attributes"]["POSITION"]; }),
          "another element type");
-  // Faces beyond all bounds: three billion, in five bytes.
+  // A face count of three billion, in five bytes.
   expect(refusal_with([](auto& b, auto&) {
            for (int i = 0; i < 4; ++i) b.binary[14 + i] = 0xff;
            b.binary[18] = 0x0b;
@@ -152,7 +152,7 @@ TEST(DracoGeometry, DamageIsRefused) {
          "limit of");
 }
 
-TEST(DracoGeometry, RandomDamageNeverGetsPastTheChecks) {
+TEST(DracoGeometry, RandomDamageIsSafe) {
   for (const bool sequential : {false, true}) {
     DracoInput input = sheet();
     input.sequential = sequential;
@@ -171,8 +171,8 @@ TEST(DracoGeometry, RandomDamageNeverGetsPastTheChecks) {
   }
 }
 
-/// Replaces a buffer view by its compressed form in a second buffer, as encoders do: the first one
-/// stays as a place holder.
+/// Adds the compressed form of a buffer view in a second buffer, as encoders do; the first one
+/// stays as fallback.
 std::uint32_t add_packed_view(GltfBuilder& builder, const Bytes& packed, const json& extension,
                               std::size_t length, std::uint32_t stride = 0) {
   const std::uint32_t view = builder.add_view(packed);
@@ -228,7 +228,7 @@ GltfBuilder with_meshopt() {
   return finish_meshopt(std::move(builder));
 }
 
-TEST(Meshopt, BringsBackTheSheet) {
+TEST(Meshopt, RoundTrip) {
   const DracoInput input = sheet();
   const Scene scene = with_meshopt().import();
   const Mesh& mesh = scene.meshes.at(0);
@@ -239,7 +239,7 @@ TEST(Meshopt, BringsBackTheSheet) {
     EXPECT_EQ(mesh.vertices[i].uv0, input.uv[i]);
   }
   ASSERT_EQ(mesh.indices.size(), input.indices.size());
-  // The codec may turn a triangle's corners, but not over.
+  // The codec may rotate a triangle's corners, but not flip its winding.
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
     const auto smallest = std::min_element(&mesh.indices[i], &mesh.indices[i] + 3);
     std::array<std::uint32_t, 3> turned{};
@@ -251,7 +251,7 @@ TEST(Meshopt, BringsBackTheSheet) {
   }
 }
 
-TEST(Meshopt, SequencesAndQuaternions) {
+TEST(Meshopt, IndexSequencesAndQuaternions) {
   GltfBuilder builder;
   const auto positions =
       builder.add_accessor(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}, 5126, "VEC3", 4);
@@ -273,11 +273,11 @@ TEST(Meshopt, SequencesAndQuaternions) {
   for (std::size_t i = 0; i < 2; ++i) {
     const glm::quat turned = scene.nodes[scene.instances[i].node].transform->rotation;
     const glm::vec4 found(turned.x, turned.y, turned.z, turned.w);
-    EXPECT_GT(std::abs(glm::dot(found, rotations[i])), 0.9999f) << "either sign turns alike";
+    EXPECT_GT(std::abs(glm::dot(found, rotations[i])), 0.9999f) << "q and -q are the same rotation";
   }
 }
 
-TEST(Meshopt, DamageIsRefused) {
+TEST(Meshopt, DamageIsRejected) {
   const GltfBuilder good = with_meshopt();
   ASSERT_EQ(refusal_of(good), "");
   const auto refusal_with = [&](std::size_t view, auto change, const ImportLimits& limits = {}) {
@@ -316,7 +316,7 @@ TEST(Meshopt, DamageIsRefused) {
          "limit");
 }
 
-TEST(Meshopt, RandomDamageNeverGetsPastTheChecks) {
+TEST(Meshopt, RandomDamageIsSafe) {
   const GltfBuilder good = with_meshopt();
   std::mt19937 random(3);
   for (int round = 0; round < 500; ++round) {
@@ -340,7 +340,7 @@ Bytes gradient(std::uint32_t width, std::uint32_t height) {
   return rgba;
 }
 
-TEST(WebP, LosslessPixelsComeBackExactly) {
+TEST(WebP, LosslessRoundTripIsExact) {
   GltfBuilder builder = everything();
   const Bytes rgba = gradient(40, 24);
   const auto image = builder.add_image(webp(40, 24, rgba));
@@ -353,7 +353,7 @@ TEST(WebP, LosslessPixelsComeBackExactly) {
   EXPECT_TRUE(std::equal(rgba.begin(), rgba.end(), decoded.pixels.begin()));
 }
 
-TEST(WebP, WithoutAFallbackAndLossy) {
+TEST(WebP, LossyWithoutFallback) {
   GltfBuilder builder = everything();
   const Bytes rgba = gradient(64, 64);
   builder.json["textures"][0].erase("source");
@@ -365,7 +365,7 @@ TEST(WebP, WithoutAFallbackAndLossy) {
   EXPECT_LT(difference / static_cast<double>(rgba.size()), 4.0);
 }
 
-TEST(WebP, DamageIsRefused) {
+TEST(WebP, DamageIsRejected) {
   const Bytes good = webp(64, 64, gradient(64, 64), false);
   const auto refusal_with = [](const Bytes& file) {
     GltfBuilder builder = everything();
@@ -380,14 +380,14 @@ TEST(WebP, DamageIsRefused) {
   }
 }
 
-TEST(Ktx2, IsNamedInTheRefusal) {
+TEST(Ktx2, ErrorNamesExtension) {
   GltfBuilder builder = everything();
   builder.json["extensionsRequired"] = {"KHR_texture_basisu"};
   EXPECT_NE(refusal_of(builder).find("KHR_texture_basisu"), std::string::npos);
   builder.json.erase("extensionsRequired");
   builder.json["extensionsUsed"] = {"KHR_texture_basisu"};
   builder.json["textures"][0]["extensions"]["KHR_texture_basisu"]["source"] = 0;
-  EXPECT_EQ(refusal_of(builder), "") << "its fallback is read";
+  EXPECT_EQ(refusal_of(builder), "") << "the fallback image must be used";
   Bytes ktx2 = {0xab, 'K', 'T', 'X', ' ', '2', '0', 0xbb, '\r', '\n', 0x1a, '\n'};
   ktx2.resize(100);
   builder.json["images"][0]["bufferView"] = builder.add_view(ktx2);

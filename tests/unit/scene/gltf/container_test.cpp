@@ -30,7 +30,7 @@ void set_u32(Bytes& file, std::size_t offset, std::uint32_t value) {
   std::memcpy(file.data() + offset, &value, sizeof value);
 }
 
-TEST(Container, MissingEmptyAndSpecialFiles) {
+TEST(Container, MissingEmptyAndSpecialFilesAreRejected) {
   const TemporaryFolder folder;
   EXPECT_TRUE(contains(refusal_of(folder.path() / "nothing.glb"), "does not exist"));
   EXPECT_TRUE(contains(refusal_of(folder.path()), "not a regular file"));
@@ -38,15 +38,15 @@ TEST(Container, MissingEmptyAndSpecialFiles) {
   EXPECT_TRUE(contains(refusal_of_text(""), "empty"));
   ASSERT_EQ(mkfifo((folder.path() / "pipe.glb").c_str(), 0600), 0);
   EXPECT_TRUE(contains(refusal_of(folder.path() / "pipe.glb"), "not a regular file"))
-      << "and must not hang";
+      << "opening a pipe must not block";
 }
 
-TEST(Container, ErrorsNameNoPathOutsideTheScene) {
+TEST(Container, ErrorsDoNotRevealAbsolutePaths) {
   const TemporaryFolder folder;
   EXPECT_FALSE(contains(refusal_of(folder.path() / "nothing.glb"), folder.path().string()));
 }
 
-TEST(Container, EveryCutOfAGlbIsRefused) {
+TEST(Container, TruncatedGlbIsRejected) {
   const Bytes file = everything().glb();
   ASSERT_EQ(refusal_of_bytes(file), "");
   for (std::size_t size = 0; size < file.size(); size += 7) {
@@ -54,7 +54,7 @@ TEST(Container, EveryCutOfAGlbIsRefused) {
   }
 }
 
-TEST(Container, GlbHeaderFields) {
+TEST(Container, InvalidGlbHeadersAreRejected) {
   const Bytes good = triangle().glb();
   Bytes file = good;
   file[0] = 'G';
@@ -79,7 +79,7 @@ TEST(Container, GlbHeaderFields) {
   EXPECT_TRUE(contains(refusal_of_bytes(file), "JSON chunk"));
 }
 
-TEST(Container, TextThatIsNotGltf) {
+TEST(Container, TextOtherThanGltfIsRejected) {
   EXPECT_TRUE(contains(refusal_of_text("hello"), "neither GLB nor JSON"));
   EXPECT_TRUE(contains(refusal_of_text("[1, 2]"), "neither GLB nor JSON"));
   EXPECT_TRUE(contains(refusal_of_text("{\"name\": \"a package\"}"), "asset is missing"));
@@ -90,19 +90,19 @@ TEST(Container, TextThatIsNotGltf) {
   EXPECT_TRUE(contains(refusal_of_text("{\"asset\": \"\xff\xfe\"}"), "JSON syntax error"));
 }
 
-TEST(Container, JsonThatNestsDeeply) {
+TEST(Container, DeeplyNestedJsonIsRejected) {
   for (const char* bracket : {"[", "{\"a\":"}) {
     std::string text = "{\"asset\": {\"version\": \"2.0\"}, \"extras\": ";
     for (int i = 0; i < 100'000; ++i) text += bracket;
     EXPECT_TRUE(contains(refusal_of_text(text), "nests deeper than 64"));
   }
-  // Brackets in strings do not nest.
+  // Brackets inside strings are not nesting.
   EXPECT_EQ(refusal_of_text("{\"asset\": {\"version\": \"2.0\"}, \"extras\": \"\\\"" +
                             std::string(1000, '[') + "\"}"),
             "");
 }
 
-TEST(Container, LimitsAreNamed) {
+TEST(Container, ErrorsNameLimits) {
   const GltfBuilder builder = everything();
   ImportLimits limits;
   limits.file_bytes = 100;
@@ -130,7 +130,7 @@ TEST(Container, LimitsAreNamed) {
   EXPECT_TRUE(contains(refusal_of(builder, limits), "10 values"));
 }
 
-TEST(Container, AChainOfNodesAHundredThousandDeep) {
+TEST(Container, NodeChainOfHundredThousandIsRejected) {
   GltfBuilder builder;
   constexpr int depth = 100'000;
   for (int i = 0; i < depth; ++i) {
@@ -156,15 +156,15 @@ class Confinement : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(Confinement, FilesInsideAreRead) {
+TEST_F(Confinement, FilesInsideFolderAreRead) {
   EXPECT_EQ(refusal_of_uri("data.bin"), "");
   EXPECT_EQ(refusal_of_uri("./data.bin"), "");
   EXPECT_EQ(refusal_of_uri("d%61ta.bin"), "");
   std::filesystem::create_symlink("data.bin", folder_.path() / "inside/alias.bin");
-  EXPECT_EQ(refusal_of_uri("alias.bin"), "") << "a link that stays inside";
+  EXPECT_EQ(refusal_of_uri("alias.bin"), "") << "a symlink within the folder";
 }
 
-TEST_F(Confinement, NothingOutsideIsRead) {
+TEST_F(Confinement, FilesOutsideFolderAreRejected) {
   const std::string absolute = (folder_.path() / "secret.bin").string();
   for (const std::string& uri :
        {std::string("../secret.bin"), std::string("x/../../secret.bin"),
@@ -176,21 +176,21 @@ TEST_F(Confinement, NothingOutsideIsRead) {
   }
 }
 
-TEST_F(Confinement, LinksOutAreNotFollowed) {
+TEST_F(Confinement, SymlinksOutOfFolderAreRejected) {
   std::filesystem::create_symlink("../secret.bin", folder_.path() / "inside/link.bin");
   std::filesystem::create_directory_symlink("..", folder_.path() / "inside/up");
   EXPECT_TRUE(contains(refusal_of_uri("link.bin"), "outside"));
   EXPECT_TRUE(contains(refusal_of_uri("up/secret.bin"), "outside"));
 }
 
-TEST_F(Confinement, OnlyRegularFilesAreRead) {
+TEST_F(Confinement, SpecialFilesAreRejected) {
   ASSERT_EQ(mkfifo((folder_.path() / "inside/pipe").c_str(), 0600), 0);
   EXPECT_TRUE(contains(refusal_of_uri("pipe"), "not a regular file"));
   EXPECT_TRUE(contains(refusal_of_uri("."), "not a regular file"));
   EXPECT_TRUE(contains(refusal_of_uri("missing.bin"), "is missing"));
 }
 
-TEST_F(Confinement, OtherSchemesAndBrokenEscapes) {
+TEST_F(Confinement, OtherUriSchemesAndBrokenEscapesAreRejected) {
   for (const char* uri :
        {"http://example.org/data.bin", "file:///etc/passwd", "FILE:/etc/passwd"}) {
     EXPECT_TRUE(contains(refusal_of_uri(uri), "scheme")) << uri;
@@ -204,8 +204,8 @@ TEST_F(Confinement, OtherSchemesAndBrokenEscapes) {
                        "more than the 3 bytes"));
 }
 
-// Whatever the damage: a scene or an ImportError, nothing else. Sanitizers watch.
-TEST(Container, RandomDamageNeverGetsPastTheChecks) {
+// Damage gives a scene or an ImportError; the sanitizers find everything else.
+TEST(Container, RandomDamageIsSafe) {
   const Bytes good = everything().glb();
   const TemporaryFolder folder;
   std::mt19937 random(7);
@@ -223,8 +223,8 @@ TEST(Container, RandomDamageNeverGetsPastTheChecks) {
   EXPECT_LT(refused, 3000) << "some changes are harmless";
 }
 
-// The same for values: every member of the document in turn becomes something else.
-TEST(Container, OddValuesNeverGetPastTheChecks) {
+// The same with JSON values: each member in turn gets each of several wrong values.
+TEST(Container, WrongJsonValuesAreSafe) {
   const GltfBuilder good = everything();
   const json flat = good.json.flatten();
   const json odd[] = {
@@ -242,7 +242,7 @@ TEST(Container, OddValuesNeverGetPastTheChecks) {
   EXPECT_GT(refused, static_cast<int>(flat.size()) * 8) << "of " << flat.size() * std::size(odd);
 }
 
-TEST(Container, ProgressRisesFromNothingToAll) {
+TEST(Container, ProgressRisesFromZeroToOne) {
   const TemporaryFolder folder;
   std::vector<float> fractions;
   import_gltf(folder.write("scene.glb", everything().glb()), {},

@@ -15,7 +15,7 @@ void expect_vector(const glm::vec3& actual, const glm::vec3& expected, float tol
       << expected.y << " " << expected.z;
 }
 
-// Five points of which every mode makes a different set of triangles.
+// Five points that form different triangles in every mode.
 GltfBuilder five_points(int mode) {
   GltfBuilder builder;
   const auto position = builder.add_accessor(
@@ -26,7 +26,7 @@ GltfBuilder five_points(int mode) {
   return builder;
 }
 
-TEST(Geometry, ReadsATriangleWithoutIndicesOrNormals) {
+TEST(Geometry, ReadsTriangleWithoutIndicesOrNormals) {
   const Scene scene = triangle().import();
   ASSERT_EQ(scene.meshes.size(), 1u);
   ASSERT_EQ(scene.instances.size(), 1u);
@@ -41,21 +41,21 @@ TEST(Geometry, ReadsATriangleWithoutIndicesOrNormals) {
     EXPECT_NEAR(glm::length(glm::vec3(vertex.tangent)), 1.0f, 1e-6f);
   }
   expect_vector(scene.bounds.maximum, {1, 1, 0});
-  ASSERT_EQ(scene.materials.size(), 1u) << "the default material stands in";
+  ASSERT_EQ(scene.materials.size(), 1u) << "the default material is used";
   EXPECT_EQ(mesh.material, 0u);
 }
 
-TEST(Geometry, StripsAlternateTheirWinding) {
+TEST(Geometry, StripsAlternateWinding) {
   const Scene scene = five_points(5).import();
   EXPECT_EQ(scene.meshes[0].indices, (std::vector<std::uint32_t>{0, 1, 2, 1, 3, 2, 2, 3, 4}));
 }
 
-TEST(Geometry, FansShareTheirFirstVertex) {
+TEST(Geometry, FansShareFirstVertex) {
   const Scene scene = five_points(6).import();
   EXPECT_EQ(scene.meshes[0].indices, (std::vector<std::uint32_t>{1, 2, 0, 2, 3, 0, 3, 4, 0}));
 }
 
-TEST(Geometry, PointsAndLinesAreLeftOutWithAWarning) {
+TEST(Geometry, PointsAndLinesAreSkippedWithWarning) {
   for (int mode = 0; mode < 4; ++mode) {
     const Scene scene = five_points(mode).import();
     EXPECT_TRUE(scene.meshes.empty());
@@ -65,7 +65,7 @@ TEST(Geometry, PointsAndLinesAreLeftOutWithAWarning) {
   }
 }
 
-TEST(Geometry, APartOfATriangleIsDropped) {
+TEST(Geometry, IncompleteTriangleIsDropped) {
   const Scene scene = five_points(4).import();
   EXPECT_EQ(scene.meshes[0].indices.size(), 3u);
   EXPECT_EQ(scene.warnings.size(), 1u);
@@ -79,13 +79,13 @@ void expect_indices_of_type(int component_type) {
   EXPECT_EQ(builder.import().meshes[0].indices, (std::vector<std::uint32_t>{4, 2, 3, 0, 1, 2}));
 }
 
-TEST(Geometry, IndicesOfEveryWidth) {
+TEST(Geometry, IndicesOfEveryType) {
   expect_indices_of_type<std::uint8_t>(5121);
   expect_indices_of_type<std::uint16_t>(5123);
   expect_indices_of_type<std::uint32_t>(5125);
 }
 
-TEST(Geometry, InterleavedAttributesFollowTheirStride) {
+TEST(Geometry, InterleavedAttributesUseStride) {
   GltfBuilder builder;
   const std::vector<float> interleaved = {0, 0, 0, 0, 0, 2, 1, 0, 0, 0, 0, 2, 0, 1, 0, 0, 0, 2};
   const auto view = builder.add_view(interleaved, 24);
@@ -96,10 +96,10 @@ TEST(Geometry, InterleavedAttributesFollowTheirStride) {
   const Mesh mesh = builder.import().meshes[0];
   expect_vector(mesh.vertices[1].position, {1, 0, 0});
   expect_vector(mesh.vertices[2].position, {0, 1, 0});
-  expect_vector(mesh.vertices[2].normal, {0, 0, 1});  // made unit length
+  expect_vector(mesh.vertices[2].normal, {0, 0, 1});  // normalized
 }
 
-TEST(Geometry, NormalizedIntegersFollowTheSpecification) {
+TEST(Geometry, NormalizedIntegersFollowSpecification) {
   GltfBuilder builder = triangle();
   json& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
   attributes["TEXCOORD_0"] = builder.add_accessor(
@@ -132,7 +132,7 @@ TEST(Geometry, QuantizedPositionsNeedNoConversion) {
   expect_vector(builder.import().bounds.maximum, {65535, 300, 0});
 }
 
-TEST(Geometry, VertexColorsAreKeptInSixteenBits) {
+TEST(Geometry, VertexColorsHaveSixteenBits) {
   GltfBuilder builder = triangle();
   json& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
   attributes["COLOR_0"] = builder.add_accessor(
@@ -143,10 +143,10 @@ TEST(Geometry, VertexColorsAreKeptInSixteenBits) {
   EXPECT_NEAR(red_green.x, 1.0f, 1e-4f);
   EXPECT_NEAR(red_green.y, 0.5f, 1e-4f);
   EXPECT_NEAR(blue_alpha.x, 1.0f, 1e-4f);
-  EXPECT_NEAR(blue_alpha.y, 1.0f, 1e-4f) << "no alpha in the file means opaque";
+  EXPECT_NEAR(blue_alpha.y, 1.0f, 1e-4f) << "without alpha the color is opaque";
 }
 
-TEST(Geometry, SparseAccessorsReplaceSomeElements) {
+TEST(Geometry, SparseAccessorsReplaceElements) {
   GltfBuilder builder = triangle();
   const auto indices = builder.add_view(std::vector<std::uint8_t>{1});
   const auto values = builder.add_view(std::vector<float>{7, 0, 0});
@@ -155,12 +155,12 @@ TEST(Geometry, SparseAccessorsReplaceSomeElements) {
       {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
       {"values", {{"bufferView", values}}}};
   EXPECT_EQ(builder.import().bounds.maximum, glm::vec3(7, 1, 0));
-  // Without a buffer view of its own, the rest is zero.
+  // Without a buffer view all other elements are zero.
   builder.json["accessors"][0].erase("bufferView");
   EXPECT_EQ(builder.import().bounds.maximum, glm::vec3(7, 0, 0));
 }
 
-TEST(Geometry, SparseAccessorsWithoutABufferViewBeginAtZero) {
+TEST(Geometry, SparseAccessorsWithoutBufferViewStartAtZero) {
   GltfBuilder builder = triangle();
   const auto indices = builder.add_view(std::vector<std::uint8_t>{1, 2});
   const auto values = builder.add_view(std::vector<float>{2, 0, 0, 0, 3, 0});
@@ -175,14 +175,14 @@ TEST(Geometry, SparseAccessorsWithoutABufferViewBeginAtZero) {
   EXPECT_EQ(vertices[2].position, glm::vec3(0, 3, 0));
 }
 
-TEST(Geometry, EightJointsAVertexShareItByTheirWeights) {
+TEST(Geometry, EightJointWeightsAreNormalized) {
   GltfBuilder builder = triangle();
   auto& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
   const std::vector<std::uint16_t> first = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
   const std::vector<std::uint8_t> second = {4, 5, 6, 7, 4, 5, 6, 7, 4, 5, 6, 7};
   attributes["JOINTS_0"] = builder.add_accessor(first, 5123, "VEC4", 3);
   attributes["JOINTS_1"] = builder.add_accessor(second, 5121, "VEC4", 3);
-  // Normalised bytes: they sum to 2, and so are halved.
+  // Normalized bytes that sum to 2 are halved.
   const std::vector<std::uint8_t> heavy = {102, 51, 51, 51, 102, 51, 51, 51, 102, 51, 51, 51};
   const auto weights = builder.add_accessor(builder.add_view(heavy), 5121, "VEC4", 3, true);
   attributes["WEIGHTS_0"] = weights;
@@ -204,7 +204,7 @@ TEST(Geometry, EightJointsAVertexShareItByTheirWeights) {
   }
 }
 
-TEST(Geometry, FlatNormalsSeparateTheTrianglesOfAFold) {
+TEST(Geometry, FlatNormalsSplitVertices) {
   GltfBuilder builder;
   const auto position =
       builder.add_accessor(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, 5126, "VEC3", 4);
@@ -217,7 +217,7 @@ TEST(Geometry, FlatNormalsSeparateTheTrianglesOfAFold) {
   for (int i = 3; i < 6; ++i) expect_vector(mesh.vertices[mesh.indices[i]].normal, {1, 0, 0});
 }
 
-TEST(Geometry, ZeroNormalsAreReplacedByTheFaces) {
+TEST(Geometry, ZeroNormalsBecomeFaceNormals) {
   GltfBuilder builder = triangle();
   builder.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
       builder.add_accessor(std::vector<float>{0, 0, 0, 0, 0, 0, 0, 5, 0}, 5126, "VEC3", 3);
@@ -226,7 +226,7 @@ TEST(Geometry, ZeroNormalsAreReplacedByTheFaces) {
   expect_vector(mesh.vertices[2].normal, {0, 1, 0});
 }
 
-TEST(Geometry, DegenerateTrianglesKeepFiniteFrames) {
+TEST(Geometry, DegenerateTrianglesHaveFiniteFrames) {
   GltfBuilder builder = everything();
   const std::size_t offset = builder.json["bufferViews"][0]["byteOffset"];
   std::fill_n(builder.binary.begin() + offset, 48, std::uint8_t(0));
@@ -238,7 +238,7 @@ TEST(Geometry, DegenerateTrianglesKeepFiniteFrames) {
   }
 }
 
-TEST(Geometry, PrimitivesOfAMeshBecomeMeshesOfTheirOwn) {
+TEST(Geometry, PrimitivesBecomeSeparateMeshes) {
   GltfBuilder builder = triangle();
   json& primitives = builder.json["meshes"][0]["primitives"];
   primitives.push_back(primitives[0]);
@@ -251,7 +251,7 @@ TEST(Geometry, PrimitivesOfAMeshBecomeMeshesOfTheirOwn) {
   EXPECT_EQ(scene.instances[1].node, 0u);
 }
 
-TEST(Geometry, ASharedMeshIsStoredOnceAndShownTwice) {
+TEST(Geometry, SharedMeshIsStoredOnce) {
   GltfBuilder builder = triangle();
   builder.add("nodes", {{"mesh", 0}, {"translation", {5, 0, 0}}});
   builder.json["scenes"][0]["nodes"].push_back(1);
@@ -262,7 +262,7 @@ TEST(Geometry, ASharedMeshIsStoredOnceAndShownTwice) {
   expect_vector(scene.bounds.maximum, {6, 1, 0});
 }
 
-TEST(Geometry, AllZeroScaleIsLeftOut) {
+TEST(Geometry, ZeroScaleIsSkippedWithWarning) {
   GltfBuilder builder = triangle();
   builder.json["nodes"][0]["scale"] = {0, 0, 0};
   const Scene scene = builder.import();

@@ -26,7 +26,7 @@ GltfBuilder instanced() {
   return builder;
 }
 
-TEST(Instancing, PlacesTheMeshRelativeToItsNode) {
+TEST(Instancing, TransformsAreRelativeToNode) {
   const Scene scene = instanced().import();
   ASSERT_EQ(scene.instances.size(), 3u);
   EXPECT_EQ(scene.triangle_count(), 3u);
@@ -34,20 +34,21 @@ TEST(Instancing, PlacesTheMeshRelativeToItsNode) {
     return glm::vec3(scene.nodes[scene.instances[i].node].world * glm::vec4(1, 0, 0, 1));
   };
   EXPECT_LT(glm::distance(corner(0), glm::vec3(11, 1, 0)), 1e-4f);
-  EXPECT_LT(glm::distance(corner(1), glm::vec3(10, 4, 0)), 1e-4f) << "turned a quarter, doubled";
+  EXPECT_LT(glm::distance(corner(1), glm::vec3(10, 4, 0)), 1e-4f)
+      << "rotated by 90 degrees, scaled by 2";
   EXPECT_LT(glm::distance(corner(2), glm::vec3(11, 3, 0)), 1e-4f);
   EXPECT_EQ(scene.nodes[scene.instances[1].node].parent, 0u);
   EXPECT_EQ(scene.nodes[scene.instances[1].node].name, "leaf");
 }
 
-TEST(Instancing, OwnAttributesOnlyCount) {
+TEST(Instancing, CustomAttributesAreIgnored) {
   GltfBuilder builder = instanced();
   attributes_of(builder)["_ID"] =
       builder.add_accessor(std::vector<float>{1, 2, 3}, 5126, "SCALAR", 3);
   EXPECT_EQ(builder.import().instances.size(), 3u);
 }
 
-TEST(Instancing, DamageIsRefused) {
+TEST(Instancing, DamageIsRejected) {
   const auto refusal_with = [](auto change, const ImportLimits& limits = {}) {
     GltfBuilder builder = instanced();
     change(builder, attributes_of(builder));
@@ -66,7 +67,7 @@ TEST(Instancing, DamageIsRefused) {
   expect(refusal_with([](auto& b, auto& a) {
            a["ROTATION"] = b.add_accessor(std::vector<float>(12, 0.0f), 5126, "VEC4", 3);
          }),
-         "without length");
+         "of zero length");
   expect(refusal_with([](auto& b, auto& a) {
            const auto index = a["ROTATION"].template get<std::size_t>();
            b.json["accessors"][index].erase("normalized");
@@ -81,8 +82,8 @@ TEST(Instancing, DamageIsRefused) {
   expect(refusal_with([](auto&, auto&) {}, limits), "limit of 2 instances");
 }
 
-// Ten nodes, each with all the places that are allowed to one: the sum counts.
-TEST(Instancing, TheLimitHoldsForTheWholeScene) {
+// Ten nodes, each with as many instances as the limit: the sum is limited.
+TEST(Instancing, LimitAppliesToWholeScene) {
   GltfBuilder builder = instanced();
   for (int i = 0; i < 9; ++i) builder.add("nodes", builder.json["nodes"][0]);
   builder.json["scenes"][0]["nodes"] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};

@@ -16,7 +16,7 @@ GltfBuilder with_material(json material) {
   return builder;
 }
 
-TEST(Materials, AnEmptyOneIsTheDefault) {
+TEST(Materials, EmptyMaterialHasDefaults) {
   const Scene scene = with_material(json::object()).import();
   ASSERT_EQ(scene.materials.size(), 1u);
   const shared::Material& material = scene.materials[0];
@@ -28,7 +28,7 @@ TEST(Materials, AnEmptyOneIsTheDefault) {
   EXPECT_EQ(material.flags, 0u);
   EXPECT_EQ(material.base_color_texture.texture, shared::no_texture);
   EXPECT_EQ(material.alpha_mask, shared::no_texture);
-  EXPECT_TRUE(scene.images.empty()) << "nothing uses the image";
+  EXPECT_TRUE(scene.images.empty()) << "unused images are not decoded";
 }
 
 TEST(Materials, FactorsAndFlags) {
@@ -57,7 +57,7 @@ TEST(Materials, FactorsAndFlags) {
             shared::material_alpha_blend | shared::material_double_sided | shared::material_unlit);
 }
 
-TEST(Materials, EverySlotKeepsItsTextureSetAndStrength) {
+TEST(Materials, SlotsKeepTexCoordSetAndStrength) {
   GltfBuilder builder =
       with_material({{"pbrMetallicRoughness",
                       {{"baseColorTexture", {{"index", 0}}},
@@ -72,7 +72,7 @@ TEST(Materials, EverySlotKeepsItsTextureSetAndStrength) {
   EXPECT_EQ(material.metallic_roughness_texture.uv_set, 1u);
   EXPECT_EQ(material.occlusion_texture.uv_set, 1u);
   EXPECT_EQ(material.base_color_texture.uv_set, 0u);
-  // One picture, used as colour and as data: two images, two textures, nothing more.
+  // One image used as color and as data: two images and two textures.
   ASSERT_EQ(scene.images.size(), 2u);
   ASSERT_EQ(scene.textures.size(), 2u);
   const auto srgb = [&](const shared::TextureSlot& slot) {
@@ -87,7 +87,7 @@ TEST(Materials, EverySlotKeepsItsTextureSetAndStrength) {
   EXPECT_EQ(scene.textures[0].sampler.wrap_t, shared::wrap_repeat);
 }
 
-TEST(Materials, TextureTransformScalesRotatesThenMoves) {
+TEST(Materials, TextureTransformScalesRotatesThenTranslates) {
   GltfBuilder builder = everything();
   builder.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"] = {
       {"KHR_texture_transform",
@@ -95,12 +95,12 @@ TEST(Materials, TextureTransformScalesRotatesThenMoves) {
   const shared::TextureSlot slot = builder.import().materials[0].base_color_texture;
   EXPECT_EQ(slot.uv_set, 1u);
   const glm::vec3 uv(1.0f, 0.0f, 1.0f);
-  // A quarter turn counter-clockwise with v down takes +u to -v.
+  // A counter-clockwise rotation by 90 degrees with v down takes +u to -v.
   EXPECT_NEAR(glm::dot(glm::vec3(slot.transform_row0), uv), 0.5f, 1e-6f);
   EXPECT_NEAR(glm::dot(glm::vec3(slot.transform_row1), uv), 0.25f - 2.0f, 1e-6f);
 }
 
-TEST(Materials, FactorsOutsideTheirRangeAreClampedAndSaidSo) {
+TEST(Materials, OutOfRangeFactorsAreClampedWithWarning) {
   const Scene scene = with_material({{"pbrMetallicRoughness", {{"roughnessFactor", 3}}}}).import();
   EXPECT_EQ(scene.materials[0].roughness, 1.0f);
   ASSERT_EQ(scene.warnings.size(), 1u);
@@ -108,7 +108,7 @@ TEST(Materials, FactorsOutsideTheirRangeAreClampedAndSaidSo) {
             std::string::npos);
 }
 
-TEST(Materials, ExtensionsThatAreNotSupportedAreNamed) {
+TEST(Materials, WarningNamesUnsupportedExtension) {
   GltfBuilder builder = triangle();
   builder.json["extensionsUsed"] = {"KHR_materials_iridescence"};
   const Scene scene = builder.import();
@@ -116,7 +116,7 @@ TEST(Materials, ExtensionsThatAreNotSupportedAreNamed) {
   EXPECT_NE(scene.warnings[0].find("KHR_materials_iridescence"), std::string::npos);
 }
 
-TEST(Materials, LayersAreReadAndSaidToBeApproximated) {
+TEST(Materials, LayersAreReadAndApproximationIsWarned) {
   const GltfBuilder builder =
       with_material({{"extensions",
                       {{"KHR_materials_specular",
@@ -148,7 +148,7 @@ TEST(Materials, LayersAreReadAndSaidToBeApproximated) {
   }
 }
 
-TEST(Materials, LayersOutsideTheirRangeAreRefused) {
+TEST(Materials, OutOfRangeLayersAreRejected) {
   const auto refusal_with = [](const char* extension, const nlohmann::json& value) {
     return refusal_of(with_material({{"extensions", {{extension, value}}}}));
   };
@@ -167,36 +167,36 @@ TEST(Materials, LayersOutsideTheirRangeAreRefused) {
   expect(refusal_with("KHR_materials_volume", 5), "must be an object");
 }
 
-/// The one material's layer as drawn.
-shared::MaterialLayer drawn_layer(const Scene& scene) {
+/// The shading layer of the only material.
+shared::MaterialLayer shading_layer(const Scene& scene) {
   return scene.layers.at(scene.materials.at(0).layer);
 }
 
-TEST(Layers, OfPlainMaterialsAreTheModelsOwn) {
+TEST(Layers, DefaultsForPlainMaterials) {
   const Scene scene = with_material({{"name", "plain"}}).import();
   EXPECT_EQ(scene.layers.size(), 1u);
-  EXPECT_EQ(drawn_layer(scene).dielectric, 0.04f);
+  EXPECT_EQ(shading_layer(scene).dielectric, 0.04f);
   const Scene usual = with_material({{"extensions",
                                       {{"KHR_materials_ior", {{"ior", 1.5}}},
                                        {"KHR_materials_specular", {{"specularFactor", 1.0}}}}}})
                           .import();
-  EXPECT_EQ(usual.layers.size(), 1u) << "said, but nothing else";
+  EXPECT_EQ(usual.layers.size(), 1u) << "explicit defaults add no layer";
 }
 
-TEST(Layers, TakeIndexStrengthAndColourOfTheDielectric) {
+TEST(Layers, IorSpecularFactorAndColor) {
   const Scene scene =
       with_material({{"extensions",
                       {{"KHR_materials_ior", {{"ior", 2.0}}},
                        {"KHR_materials_specular",
                         {{"specularFactor", 0.5}, {"specularColorFactor", {0.5, 1, 30}}}}}}})
           .import();
-  const shared::MaterialLayer layer = drawn_layer(scene);
+  const shared::MaterialLayer layer = shading_layer(scene);
   EXPECT_NEAR(layer.dielectric, 1.0f / 9.0f, 1e-6f);
   EXPECT_EQ(layer.specular_color, glm::vec3(0.5f, 1.0f, 30.0f));
   EXPECT_EQ(layer.specular, 0.5f);
 }
 
-TEST(Layers, OfCoatAndSheenAreThoseOfTheFile) {
+TEST(Layers, ClearcoatAndSheenFactors) {
   const Scene scene =
       with_material({{"extensions",
                       {{"KHR_materials_clearcoat",
@@ -204,13 +204,13 @@ TEST(Layers, OfCoatAndSheenAreThoseOfTheFile) {
                        {"KHR_materials_sheen",
                         {{"sheenColorFactor", {1, 0.5, 0.25}}, {"sheenRoughnessFactor", 0.75}}}}}})
           .import();
-  EXPECT_FLOAT_EQ(drawn_layer(scene).coat, 0.8f);
-  EXPECT_FLOAT_EQ(drawn_layer(scene).coat_roughness, 0.2f);
-  EXPECT_EQ(drawn_layer(scene).sheen, glm::vec3(1.0f, 0.5f, 0.25f));
-  EXPECT_EQ(drawn_layer(scene).sheen_roughness, 0.75f);
+  EXPECT_FLOAT_EQ(shading_layer(scene).coat, 0.8f);
+  EXPECT_FLOAT_EQ(shading_layer(scene).coat_roughness, 0.2f);
+  EXPECT_EQ(shading_layer(scene).sheen, glm::vec3(1.0f, 0.5f, 0.25f));
+  EXPECT_EQ(shading_layer(scene).sheen_roughness, 0.75f);
 }
 
-TEST(Layers, TexturesAreColourOrDataAsTheirExtensionsSay) {
+TEST(Layers, TexturesHaveColorSpaceOfTheirExtension) {
   const auto slot = [](int set) { return nlohmann::json{{"index", 0}, {"texCoord", set}}; };
   nlohmann::json normal = slot(1);
   normal["scale"] = 0.5;
@@ -231,7 +231,7 @@ TEST(Layers, TexturesAreColourOrDataAsTheirExtensionsSay) {
                         {{"transmissionFactor", 1}, {"transmissionTexture", slot(1)}}},
                        {"KHR_materials_volume", {{"thicknessTexture", slot(0)}}}}}});
   const Scene scene = builder.import();
-  const shared::MaterialLayer layer = drawn_layer(scene);
+  const shared::MaterialLayer layer = shading_layer(scene);
   const auto expect = [&](const shared::TextureSlot& drawn, bool srgb, std::uint32_t set) {
     ASSERT_NE(drawn.texture, shared::no_texture);
     EXPECT_EQ(scene.images[scene.textures[drawn.texture].image].srgb, srgb);
@@ -249,7 +249,7 @@ TEST(Layers, TexturesAreColourOrDataAsTheirExtensionsSay) {
   EXPECT_EQ(layer.coat_normal_scale, 0.5f);
 }
 
-TEST(Layers, LightThatPassesMakesABlendedSurface) {
+TEST(Layers, TransmissionMakesSurfaceBlended) {
   const Scene scene =
       with_material(
           {{"pbrMetallicRoughness",
@@ -258,13 +258,14 @@ TEST(Layers, LightThatPassesMakesABlendedSurface) {
           .import();
   const shared::Material& material = scene.materials[0];
   EXPECT_TRUE(material.flags & shared::material_alpha_blend);
-  EXPECT_TRUE(material.flags & shared::material_whole_alpha) << "opaque: alpha says nothing";
+  EXPECT_TRUE(material.flags & shared::material_whole_alpha)
+      << "alphaMode is OPAQUE: alpha is ignored";
   EXPECT_EQ(material.base_color.w, 1.0f);
   EXPECT_NEAR(material.passing, 0.5f, 1e-6f);
-  EXPECT_EQ(drawn_layer(scene).transmission, 0.5f);
+  EXPECT_EQ(shading_layer(scene).transmission, 0.5f);
 }
 
-TEST(Layers, MasksLetNoLightThrough) {
+TEST(Layers, MaskedMaterialsHaveNoTransmission) {
   const Scene scene =
       with_material({{"alphaMode", "MASK"},
                      {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}})
@@ -273,7 +274,7 @@ TEST(Layers, MasksLetNoLightThrough) {
   EXPECT_EQ(scene.layers.size(), 1u);
 }
 
-TEST(Materials, VariantsAreListedAndTheDefaultIsShown) {
+TEST(Materials, VariantsAreListedAndDefaultIsUsed) {
   GltfBuilder builder = with_material({{"name", "plain"}});
   builder.add("materials", {{"name", "golden"}});
   builder.json["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "beach"}},
@@ -301,7 +302,7 @@ TEST(Materials, VariantsAreListedAndTheDefaultIsShown) {
   EXPECT_NE(refusal_of(builder).find("material: 7"), std::string::npos);
 }
 
-TEST(Materials, ATextureOnlyInAnotherFormatIsLeftOut) {
+TEST(Materials, TextureInUnsupportedFormatIsSkipped) {
   GltfBuilder builder = everything();
   builder.json["textures"][0].erase("source");
   const Scene scene = builder.import();
@@ -309,7 +310,7 @@ TEST(Materials, ATextureOnlyInAnotherFormatIsLeftOut) {
   EXPECT_FALSE(scene.warnings.empty());
 }
 
-TEST(Materials, MaskedAlphaIsLaidOutForRays) {
+TEST(Materials, MaskedAlphaIsPackedForRays) {
   GltfBuilder builder = everything();
   const Bytes pixels = {1, 2, 3, 10, 1, 2, 3, 20, 1, 2, 3, 30,
                         1, 2, 3, 40, 1, 2, 3, 50, 1, 2, 3, 60};
@@ -332,11 +333,11 @@ TEST(Materials, MaskedAlphaIsLaidOutForRays) {
   EXPECT_EQ(scene.materials[0].alpha_mask_wrap, shared::wrap_clamp | shared::wrap_repeat << 8);
   EXPECT_EQ(scene.alpha_heap[4], 10);
   EXPECT_EQ(scene.alpha_heap[9], 60);
-  EXPECT_EQ(scene.materials[2].alpha_mask, 4u) << "the same picture is stored once";
+  EXPECT_EQ(scene.materials[2].alpha_mask, 4u) << "the same image must be stored once";
   EXPECT_EQ(scene.materials[3].alpha_mask, shared::no_texture);
 }
 
-TEST(Materials, SamplersFollowTheirCodes) {
+TEST(Materials, SamplersFollowGltfCodes) {
   GltfBuilder builder = everything();
   builder.json["samplers"][0] = {
       {"magFilter", 9728}, {"minFilter", 9986}, {"wrapS", 33648}, {"wrapT", 33071}};

@@ -8,11 +8,11 @@
 namespace heliograph::scene::test {
 namespace {
 
-/// A scene with one node that has these extras, turned so that its -Z points down.
+/// A scene with one node that has these extras, rotated so that its -Z points down.
 GltfBuilder with_extras(const nlohmann::json& extras) {
   constexpr double quarter_turn = 0.70710678118;
   GltfBuilder builder = triangle();
-  builder.add("nodes", {{"name", "lamp"},
+  builder.add("nodes", {{"name", "light"},
                         {"translation", {1, 2, 3}},
                         {"rotation", {-quarter_turn, 0, 0, quarter_turn}},
                         {"scale", {2, 2, 2}},
@@ -21,7 +21,7 @@ GltfBuilder with_extras(const nlohmann::json& extras) {
   return builder;
 }
 
-TEST(AreaLights, ARectangleShinesDownItsNodesAxis) {
+TEST(AreaLights, RectangleEmitsAlongNodeMinusZ) {
   const Scene scene = with_extras({{"areaLight",
                                     {{"shape", "rect"},
                                      {"width", 3},
@@ -31,18 +31,18 @@ TEST(AreaLights, ARectangleShinesDownItsNodesAxis) {
                           .import();
   ASSERT_EQ(scene.lights.size(), 1u);
   const shared::Light& light = scene.lights[0].device;
-  EXPECT_EQ(scene.lights[0].name, "lamp");
+  EXPECT_EQ(scene.lights[0].name, "light");
   EXPECT_EQ(light.type, shared::light_rectangle);
   EXPECT_EQ(light.position, glm::vec3(1, 2, 3));
   EXPECT_LT(glm::distance(light.direction, glm::vec3(0, -1, 0)), 1e-5f);
   EXPECT_LT(glm::distance(light.tangent, glm::vec3(1, 0, 0)), 1e-5f);
   EXPECT_EQ(light.color, glm::vec3(8, 4, 2));
-  EXPECT_EQ(light.half_width, 1.5f) << "the node's scale does not count";
+  EXPECT_EQ(light.half_width, 1.5f) << "the node's scale is ignored";
   EXPECT_EQ(light.half_height, 0.5f);
   EXPECT_NEAR(light.radius, std::sqrt(3.0f / 3.14159265f), 1e-5f);
 }
 
-TEST(AreaLights, ADiskHasItsRadius) {
+TEST(AreaLights, DiskHasRadius) {
   const Scene scene = with_extras({{"areaLight", {{"shape", "disk"}, {"radius", 0.3}}}}).import();
   ASSERT_EQ(scene.lights.size(), 1u);
   EXPECT_EQ(scene.lights[0].device.type, shared::light_disk);
@@ -50,7 +50,7 @@ TEST(AreaLights, ADiskHasItsRadius) {
   EXPECT_EQ(scene.lights[0].device.color, glm::vec3(1.0f));
 }
 
-TEST(AreaLights, WhatIsWrongIsNamed) {
+TEST(AreaLights, InvalidExtrasAreRejected) {
   const nlohmann::json disk = {{"shape", "disk"}, {"radius", 0.3}};
   const auto refused = [](const nlohmann::json& light) {
     EXPECT_THROW(with_extras({{"areaLight", light}}).import(), ImportError) << light;
@@ -66,10 +66,10 @@ TEST(AreaLights, WhatIsWrongIsNamed) {
     light[key] = value;
     refused(light);
   }
-  EXPECT_TRUE(with_extras({{"areaLight", "of no concern"}}).import().lights.empty());
+  EXPECT_TRUE(with_extras({{"areaLight", "not an object"}}).import().lights.empty());
 }
 
-TEST(Lights, PointAndSpotLightsMayHaveARadius) {
+TEST(Lights, PointAndSpotLightsHaveOptionalRadius) {
   GltfBuilder builder = with_extras({{"radius", 0.25}});
   builder.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
   builder.json["nodes"][1]["extensions"] = {{"KHR_lights_punctual", {{"light", 0}}}};

@@ -12,7 +12,7 @@ using nlohmann::json;
 
 constexpr float quarter_turn = 0.70710678f;
 
-TEST(Nodes, WorldTransformsMultiplyDownTheHierarchy) {
+TEST(Nodes, WorldTransformsMultiplyAlongHierarchy) {
   GltfBuilder builder = triangle();
   builder.json["nodes"] = {
       {{"name", "leaf"}, {"mesh", 0}, {"translation", {1, 0, 0}}},
@@ -30,13 +30,13 @@ TEST(Nodes, WorldTransformsMultiplyDownTheHierarchy) {
   EXPECT_EQ(scene.instances[0].node, 2u);
 }
 
-TEST(Nodes, AMatrixIsColumnMajor) {
+TEST(Nodes, MatrixIsColumnMajor) {
   GltfBuilder builder = triangle();
   builder.json["nodes"][0]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 3, 4, 5, 1};
   EXPECT_EQ(glm::vec3(builder.import().nodes[0].world[3]), glm::vec3(3, 4, 5));
 }
 
-TEST(Nodes, OnlyTheDefaultSceneIsShown) {
+TEST(Nodes, OnlyDefaultSceneIsShown) {
   GltfBuilder builder = triangle();
   builder.add("nodes", {{"mesh", 0}, {"name", "other"}});
   builder.json["scenes"].push_back({{"nodes", {1}}});
@@ -56,7 +56,7 @@ TEST(Nodes, WithoutScenesAllRootsAreShown) {
   EXPECT_EQ(builder.import().instances.size(), 2u);
 }
 
-TEST(Nodes, AnEmptyDocumentIsAnEmptyScene) {
+TEST(Nodes, EmptyDocumentIsEmptyScene) {
   GltfBuilder builder;
   const Scene scene = builder.import();
   EXPECT_TRUE(scene.instances.empty());
@@ -64,7 +64,7 @@ TEST(Nodes, AnEmptyDocumentIsAnEmptyScene) {
   EXPECT_EQ(scene.materials.size(), 1u);
 }
 
-TEST(Cameras, LookAlongTheirNodesMinusZ) {
+TEST(Cameras, LookAlongNodeMinusZ) {
   GltfBuilder builder = triangle();
   builder.add("cameras", {{"type", "perspective"},
                           {"perspective", {{"yfov", 1.0}, {"znear", 0.2}, {"aspectRatio", 2.0}}}});
@@ -78,7 +78,7 @@ TEST(Cameras, LookAlongTheirNodesMinusZ) {
   const Camera& camera = scene.cameras[0];
   EXPECT_EQ(camera.name, "main");
   EXPECT_LT(glm::distance(camera.eye, glm::vec3(10, 0.5f, 0)), 1e-5f);
-  // Turned by 90 degrees about Y, -Z becomes -X; the triangle's middle lies at x = 0.5.
+  // Rotated by 90 degrees about Y, -Z becomes -X; the triangle's center is at x = 0.5.
   EXPECT_LT(glm::distance(camera.target, glm::vec3(0.5f, 0.5f, 0)), 1e-4f);
   EXPECT_LT(glm::distance(camera.up, glm::vec3(0, 1, 0)), 1e-5f);
   EXPECT_NEAR(camera.vertical_fov, 57.29578f, 1e-3f);
@@ -86,12 +86,12 @@ TEST(Cameras, LookAlongTheirNodesMinusZ) {
   EXPECT_EQ(camera.orthographic_height, 0.0f);
 }
 
-TEST(Cameras, InsideTheSceneTurnAboutAPointCloseBy) {
+TEST(Cameras, TargetIsNearWhenCameraIsInsideScene) {
   GltfBuilder builder = triangle();
   builder.add("cameras",
               {{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.2}}}});
   builder.json["nodes"][0]["scale"] = {20, 20, 1};
-  // A second, turned copy gives the scene depth, so that there is an inside.
+  // A second, rotated copy gives the scene depth, so that the camera can be inside.
   builder.add("nodes", {{"mesh", 0}, {"scale", {20, 20, 1}}, {"translation", {0, 0, 8}}});
   builder.add("nodes", {{"camera", 0}, {"translation", {3, 3, 6}}});
   builder.json["scenes"][0]["nodes"] = {0, 1, 2};
@@ -102,7 +102,7 @@ TEST(Cameras, InsideTheSceneTurnAboutAPointCloseBy) {
   EXPECT_LT(camera.target.z, camera.eye.z);
 }
 
-TEST(Cameras, OrthographicOnesKeepTheirFullHeight) {
+TEST(Cameras, OrthographicHeightIsFullHeight) {
   GltfBuilder builder = everything();
   builder.json["cameras"][0] = {
       {"type", "orthographic"},
@@ -112,18 +112,18 @@ TEST(Cameras, OrthographicOnesKeepTheirFullHeight) {
   EXPECT_FLOAT_EQ(camera.far_plane, 20.0f);
 }
 
-TEST(Cameras, TheTargetIsNeverBehindTheEye) {
+TEST(Cameras, TargetIsNeverBehindEye) {
   GltfBuilder builder = everything();
   builder.json["nodes"][1]["translation"] = {0, 0, -50};
   const Camera camera = builder.import().cameras[0];
   EXPECT_NEAR(camera.target.z, -50.1f, 1e-3f);
 }
 
-TEST(Lights, AreTakenToTheWorld) {
+TEST(Lights, AreTransformedToWorldSpace) {
   GltfBuilder builder = triangle();
   builder.json["extensions"]["KHR_lights_punctual"]["lights"] = {
       {{"type", "spot"},
-       {"name", "lamp"},
+       {"name", "light"},
        {"color", {1, .5, .25}},
        {"intensity", 40},
        {"range", 9},
@@ -135,18 +135,18 @@ TEST(Lights, AreTakenToTheWorld) {
   const Scene scene = builder.import();
   ASSERT_EQ(scene.lights.size(), 1u);
   const shared::Light& light = scene.lights[0].device;
-  EXPECT_EQ(scene.lights[0].name, "lamp");
+  EXPECT_EQ(scene.lights[0].name, "light");
   EXPECT_EQ(light.type, shared::light_spot);
   EXPECT_EQ(light.position, glm::vec3(1, 2, 3));
   EXPECT_LT(glm::distance(light.direction, glm::vec3(0, -1, 0)), 1e-5f);
   EXPECT_EQ(light.color, glm::vec3(40, 20, 10));
   EXPECT_EQ(light.range, 9.0f);
-  // Full inside the inner cone, nothing at the outer one.
+  // Full intensity inside the inner cone, zero at the outer one.
   EXPECT_NEAR(std::cos(0.2f) * light.spot_scale + light.spot_offset, 1.0f, 1e-4f);
   EXPECT_NEAR(std::cos(0.6f) * light.spot_scale + light.spot_offset, 0.0f, 1e-4f);
 }
 
-TEST(Lights, TheSunHasTheAngleItsNodeSays) {
+TEST(Lights, SunAngularDiameterComesFromNodeExtras) {
   GltfBuilder builder = everything();
   Light sun = builder.import().lights[0];
   EXPECT_FLOAT_EQ(sun.angular_diameter, 0.53f);

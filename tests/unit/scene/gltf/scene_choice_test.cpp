@@ -23,7 +23,7 @@ std::string shown_node(const GltfBuilder& builder, const std::string& scene) {
   return builder.import({}, {.scene = scene, .variant = ""}).nodes.at(0).name;
 }
 
-TEST(SceneChoice, TakesAScenesNameOrNumber) {
+TEST(SceneChoice, AcceptsSceneNameOrIndex) {
   const GltfBuilder builder = three_scenes();
   EXPECT_EQ(shown_node(builder, ""), "middle");
   EXPECT_EQ(shown_node(builder, "day"), "near");
@@ -33,17 +33,17 @@ TEST(SceneChoice, TakesAScenesNameOrNumber) {
   EXPECT_EQ(scene.scenes, (std::vector<std::string>{"day", "night", ""}));
 }
 
-TEST(SceneChoice, ANameComesBeforeANumber) {
+TEST(SceneChoice, NameTakesPrecedenceOverIndex) {
   GltfBuilder builder = three_scenes();
   builder.json["scenes"][0]["name"] = "2";
   EXPECT_EQ(shown_node(builder, "2"), "near");
 }
 
-TEST(SceneChoice, NamesWhatThereIsWhenThereIsNoSuch) {
-  for (const char* wanted : {"dusk", "3", "-1", "1x", "99999999999999999999"}) {
+TEST(SceneChoice, ErrorListsAvailableScenes) {
+  for (const char* requested : {"dusk", "3", "-1", "1x", "99999999999999999999"}) {
     try {
-      three_scenes().import({}, {.scene = wanted, .variant = ""});
-      FAIL() << wanted;
+      three_scenes().import({}, {.scene = requested, .variant = ""});
+      FAIL() << requested;
     } catch (const NoSuchChoice& failure) {
       EXPECT_EQ(failure.member(), "scene");
       EXPECT_EQ(failure.names().size(), 3u);
@@ -51,7 +51,7 @@ TEST(SceneChoice, NamesWhatThereIsWhenThereIsNoSuch) {
   }
 }
 
-TEST(SceneSources, AreEveryFileThatWasRead) {
+TEST(SceneSources, ListEveryFileRead) {
   const test::TemporaryFolder folder;
   GltfBuilder builder = test::triangle();
   builder.json["buffers"] = {{{"uri", "data.bin"}, {"byteLength", builder.binary.size()}}};

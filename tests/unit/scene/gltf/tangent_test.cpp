@@ -20,7 +20,7 @@ Vertex corner(const glm::vec3& position, const glm::vec2& uv, const glm::vec3& n
   return vertex;
 }
 
-TEST(Tangents, AnUprightPictureHasItsUpAsBitangent) {
+TEST(Tangents, UprightTextureHasUpAsBitangent) {
   std::vector<Vertex> vertices = {corner({0, 0, 0}, {0, 1}), corner({1, 0, 0}, {1, 1}),
                                   corner({0, 1, 0}, {0, 0})};
   std::vector<std::uint32_t> indices = {0, 1, 2};
@@ -33,7 +33,7 @@ TEST(Tangents, AnUprightPictureHasItsUpAsBitangent) {
   }
 }
 
-TEST(Tangents, AMirroredPictureHasTheOtherHand) {
+TEST(Tangents, MirroredTextureIsLeftHanded) {
   std::vector<Vertex> vertices = {corner({0, 0, 0}, {1, 1}), corner({1, 0, 0}, {0, 1}),
                                   corner({0, 1, 0}, {1, 0})};
   std::vector<std::uint32_t> indices = {0, 1, 2};
@@ -41,8 +41,8 @@ TEST(Tangents, AMirroredPictureHasTheOtherHand) {
   EXPECT_LT(glm::distance(vertices[0].tangent, glm::vec4(-1, 0, 0, -1)), 1e-6f);
 }
 
-TEST(Tangents, AVertexOnAMirrorSeamIsSplit) {
-  // Two triangles left and right of the y axis that show the same half of a picture.
+TEST(Tangents, VertexOnMirrorSeamIsSplit) {
+  // Two triangles left and right of the y axis with the same half of an image.
   std::vector<Vertex> vertices = {corner({0, 0, 0}, {0, 1}), corner({1, 0, 0}, {1, 1}),
                                   corner({0, 1, 0}, {0, 0}), corner({-1, 0, 0}, {1, 1})};
   std::vector<std::uint32_t> indices = {0, 1, 2, 0, 2, 3};
@@ -55,9 +55,9 @@ TEST(Tangents, AVertexOnAMirrorSeamIsSplit) {
   EXPECT_EQ(vertices[indices[3]].position, glm::vec3(0));
 }
 
-TEST(Tangents, EqualVerticesShareTheirTangentAngleWeighted) {
-  // A ridge along y with a common normal: a triangle of 90 degrees on one side, of 45 on the other,
-  // each with vertices of its own. Welding must give both the same tangent at the shared corner.
+TEST(Tangents, EqualVerticesShareAngleWeightedTangent) {
+  // A ridge along y with a common normal: triangles of 90 and of 45 degrees with separate vertices.
+  // Welding must give both the same tangent at the shared corner.
   const glm::vec3 normal(0, 0, 1);
   std::vector<Vertex> vertices = {
       corner({0, 0, 0}, {0, 1}, normal), corner({1, 0, -1}, {1, 1}, normal),
@@ -70,8 +70,8 @@ TEST(Tangents, EqualVerticesShareTheirTangentAngleWeighted) {
   EXPECT_LT(glm::distance(vertices[2].tangent, vertices[4].tangent), 1e-6f);
 }
 
-TEST(Tangents, TheWeightIsTheAngleNotTheArea) {
-  // Around one corner: tangent x from a right angle, tangent y from half of one, whatever the size.
+TEST(Tangents, WeightIsAngleNotArea) {
+  // At one corner: tangent x from 90 degrees, tangent y from 45 degrees, independent of size.
   for (const float size : {1.0f, 100.0f}) {
     std::vector<Vertex> vertices = {
         corner({0, 0, 0}, {0, 0}),      corner({1, 0, 0}, {1, 0}),
@@ -86,7 +86,7 @@ TEST(Tangents, TheWeightIsTheAngleNotTheArea) {
   }
 }
 
-TEST(Tangents, TheTexturesTransformTurnsTheFrame) {
+TEST(Tangents, TextureTransformRotatesFrame) {
   shared::TextureSlot turned = plain;
   turned.transform_row0 = {0, 1, 0, 0};
   turned.transform_row1 = {-1, 0, 0, 0};
@@ -97,7 +97,7 @@ TEST(Tangents, TheTexturesTransformTurnsTheFrame) {
   EXPECT_LT(glm::distance(vertices[0].tangent, glm::vec4(0, -1, 0, 1)), 1e-6f);
 }
 
-TEST(Tangents, CollapsedTextureCoordinatesGiveSomeFrame) {
+TEST(Tangents, DegenerateTexCoordsGiveValidFrame) {
   std::vector<Vertex> vertices = {corner({0, 0, 0}, {0, 0}), corner({1, 0, 0}, {0, 0}),
                                   corner({0, 1, 0}, {0, 0})};
   std::vector<std::uint32_t> indices = {0, 1, 2};
@@ -109,7 +109,7 @@ TEST(Tangents, CollapsedTextureCoordinatesGiveSomeFrame) {
   }
 }
 
-TEST(Tangents, PerpendicularToEveryDirection) {
+TEST(Tangents, PerpendicularVectorForAnyDirection) {
   for (int i = 0; i < 1000; ++i) {
     const float z = -1.0f + 2.0f * (i + 0.5f) / 1000.0f;
     const float angle = 2.3999632f * i;

@@ -26,10 +26,10 @@ glm::vec3 color_at(int x, int y, float peak) {
   return peak * glm::vec3(float(x) / width, float(y) / height, 0.5f + 0.4f * float(x * y) / 2048);
 }
 
-/// What a stream was given, kept.
+/// An output stream into memory.
 class MemorySink : public Imf::OStream {
  public:
-  MemorySink() : OStream("picture") {}
+  MemorySink() : OStream("image") {}
   void write(const char* bytes, int count) override {
     if (position_ + count > bytes_.size()) bytes_.resize(position_ + count);
     std::memcpy(bytes_.data() + position_, bytes, count);
@@ -112,7 +112,7 @@ TEST(Exr, ReadsEveryCompression) {
                                                {Imf::DWAB_COMPRESSION, 0.03f}}) {
     SCOPED_TRACE(int(compression));
     expect_colors(decode_exr(write_rgb({.compression = compression})), 100.0f, tolerance);
-    // B44 packs half floats with a loss, and only those.
+    // B44 is lossy and compresses half floats only.
     const float of_halves = std::max(
         tolerance, compression == Imf::B44_COMPRESSION || compression == Imf::B44A_COMPRESSION
                        ? 0.05f
@@ -122,13 +122,13 @@ TEST(Exr, ReadsEveryCompression) {
   }
 }
 
-TEST(Exr, ReadsTilesAndLayersAndMoreThanHalfFloatsHold) {
+TEST(Exr, ReadsTilesLayersAndFullFloats) {
   expect_colors(decode_exr(write_rgb({.tiled = true})), 100.0f, 1e-6f);
   expect_colors(decode_exr(write_rgb({.layer = "sky.top."})), 100.0f, 1e-6f);
   expect_colors(decode_exr(write_rgb({.peak = 3e5f})), 3e5f, 1e-6f);
 }
 
-TEST(Exr, AWindowMayLieAnywhere) {
+TEST(Exr, DataWindowMayHaveAnyOffset) {
   Imf::Header header(Imath::Box2i({-20, 30}, {-20 + width - 1, 30 + height - 1}),
                      Imath::Box2i({-20, 30}, {-20 + width - 1, 30 + height - 1}));
   header.compression() = Imf::NO_COMPRESSION;
@@ -162,7 +162,7 @@ TEST(Exr, ReadsLuminanceAndChroma) {
     file.setFrameBuffer(pixels.data(), 1, width);
     file.writePixels(height);
   }
-  // Chroma is filtered, and cut at the edges.
+  // Chroma is filtered, with errors at the edges.
   expect_colors(decode_exr(sink.bytes()), 1.0f, 0.1f);
 }
 
@@ -175,21 +175,21 @@ std::string refusal(const std::vector<std::uint8_t>& file) {
   return "";
 }
 
-TEST(Exr, SaysWhatItCannotRead) {
+TEST(Exr, ErrorsNameUnsupportedFeatures) {
   Imf::Header cube(width, height);
   Imf::addEnvmap(cube, Imf::ENVMAP_CUBE);
   EXPECT_NE(refusal(write_rgb({}, cube)).find("cube map"), std::string::npos);
   Imf::Header part(Imath::Box2i({0, 0}, {2 * width, height}),
                    Imath::Box2i({0, 0}, {width - 1, height - 1}));
-  EXPECT_NE(refusal(write_rgb({}, part)).find("part of its picture"), std::string::npos);
+  EXPECT_NE(refusal(write_rgb({}, part)).find("display window"), std::string::npos);
   const std::vector<std::uint8_t> whole = write_rgb({.compression = Imf::ZIP_COMPRESSION});
   for (const std::size_t length : {4, 40, 300, int(whole.size()) / 2, int(whole.size()) - 1}) {
     EXPECT_NE(refusal({whole.begin(), whole.begin() + length}), "") << length;
   }
 }
 
-// Whatever the bytes: an error or a picture, never a crash.
-TEST(Exr, SurvivesDamage) {
+// Damaged files give an error or an image, never a crash.
+TEST(Exr, DamageIsSafe) {
   for (const auto compression :
        {Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION, Imf::DWAB_COMPRESSION}) {
     const std::vector<std::uint8_t> whole = write_rgb({.compression = compression});
@@ -201,8 +201,8 @@ TEST(Exr, SurvivesDamage) {
   }
 }
 
-// Found by fuzzing: room was made for what an attribute claims before its data was looked for.
-TEST(Exr, AttributesCannotClaimMoreThanTheFileHas) {
+// Found by fuzzing: OpenEXR allocated the claimed size of an attribute before checking its data.
+TEST(Exr, AttributeSizesAreLimitedByFileSize) {
   const std::vector<std::uint8_t> whole = write_rgb({});
   const auto with_attribute = [&](std::uint32_t claimed, std::size_t bytes) {
     std::vector<std::uint8_t> file = whole;
@@ -216,7 +216,7 @@ TEST(Exr, AttributesCannotClaimMoreThanTheFileHas) {
   for (const std::uint32_t claimed : {0x00100000u, 0x65726373u, 0x7fffffffu, 0xffffffffu}) {
     EXPECT_EQ(with_attribute(claimed, 100), "has a damaged header");
   }
-  // A list of channels that says it is shorter than it is: what follows would be read out of step.
+  // A channel list that claims to be too short: the rest would be misread.
   std::vector<std::uint8_t> file = whole;
   const std::string_view type = "chlist";
   const auto found = std::search(file.begin(), file.end(), type.begin(), type.end());
@@ -224,8 +224,8 @@ TEST(Exr, AttributesCannotClaimMoreThanTheFileHas) {
   EXPECT_EQ(refusal(file), "has a damaged header");
 }
 
-TEST(Exr, FilesAreRecognisedByTheirFirstBytesAndMadePhysical) {
-  const auto path = std::filesystem::temp_directory_path() / "heliograph_exr_test.picture";
+TEST(Exr, DetectsFormatByMagicAndClampsNegativeRadiance) {
+  const auto path = std::filesystem::temp_directory_path() / "heliograph_exr_test.image";
   std::vector<std::uint8_t> file = write_rgb({.peak = -1.0f});
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(file.data()), std::streamsize(file.size()));

@@ -32,7 +32,7 @@ Image with_mips(std::uint32_t width, std::uint32_t height, bool srgb, const Byte
   return image;
 }
 
-TEST(ImageDecoder, GreyAndRgbBecomeOpaqueRgba) {
+TEST(ImageDecoder, GrayAndRgbBecomeOpaqueRgba) {
   EXPECT_EQ(decoded(png(2, 1, 1, {7, 9})), (Bytes{7, 7, 7, 255, 9, 9, 9, 255}));
   EXPECT_EQ(decoded(png(1, 1, 3, {1, 2, 3})), (Bytes{1, 2, 3, 255}));
   EXPECT_EQ(decoded(png(1, 1, 4, {1, 2, 3, 4})), (Bytes{1, 2, 3, 4}));
@@ -55,15 +55,15 @@ TEST(ImageDecoder, ReadsJpegBaselineAndProgressive) {
   }
 }
 
-TEST(ImageDecoder, GammaInTheFileIsIgnored) {
-  // A gAMA chunk that says linear: a decoder that honours it would brighten the picture.
+TEST(ImageDecoder, GammaChunkIsIgnored) {
+  // A gAMA chunk for linear data: a decoder that uses it would brighten the image.
   Bytes file = png(1, 1, 3, {100, 100, 100});
   const Bytes gamma = {0, 0, 0, 4, 'g', 'A', 'M', 'A', 0, 1, 0x86, 0xa0, 0x31, 0xe8, 0x96, 0x5f};
   file.insert(file.begin() + 33, gamma.begin(), gamma.end());
   EXPECT_EQ(decoded(file), (Bytes{100, 100, 100, 255}));
 }
 
-TEST(ImageDecoder, RefusesWhatIsCutAtAnyByte) {
+TEST(ImageDecoder, RejectsTruncatedFiles) {
   Bytes noise(48 * 48 * 3);
   for (std::size_t i = 0; i < noise.size(); ++i)
     noise[i] = static_cast<std::uint8_t>(i * 2654435761u >> 13);
@@ -77,43 +77,43 @@ TEST(ImageDecoder, RefusesWhatIsCutAtAnyByte) {
   }
 }
 
-TEST(ImageDecoder, RefusesOtherFormats) {
+TEST(ImageDecoder, RejectsOtherFormats) {
   EXPECT_NE(reason_of({}).find("neither PNG, JPEG nor WebP"), std::string::npos);
   EXPECT_NE(reason_of({'G', 'I', 'F', '8', '9', 'a', 1, 0, 1, 0, 0, 0, 0}).find("neither"),
             std::string::npos);
 }
 
-TEST(ImageDecoder, RefusesPicturesWithoutPixelsOrWithTooMany) {
+TEST(ImageDecoder, RejectsEmptyAndOversizedImages) {
   EXPECT_NE(reason_of(png(0, 0, 4, {})), "");
   EXPECT_NE(reason_of(png(1, 0, 4, {})), "");
   EXPECT_NE(reason_of(png(100'000, 100'000, 4, {})), "");
   EXPECT_NE(reason_of(png(8193, 1, 4, Bytes(8193 * 4))), "");
 }
 
-TEST(ImageDecoder, RowsBeyondThePictureAreNotRead) {
-  // 16 MiB of rows behind a header of 4 x 4: a loader that inflates first would hold them all.
+TEST(ImageDecoder, RowsBeyondImageHeightAreIgnored) {
+  // 16 MiB of rows after a header of 4 x 4: a decoder that inflates first would allocate them all.
   Bytes samples(16 << 20, 77);
   std::fill_n(samples.begin(), 64, std::uint8_t(5));
   EXPECT_EQ(decoded(png(4, 4, 4, samples)), Bytes(64, 5));
 }
 
-TEST(Mipmaps, ChainsEndAtOnePixel) {
+TEST(Mipmaps, ChainEndsAtOnePixel) {
   EXPECT_EQ(mip_level_count(1, 1), 1u);
   EXPECT_EQ(mip_level_count(256, 256), 9u);
   EXPECT_EQ(mip_level_count(5, 3), 3u);
   EXPECT_EQ(mip_chain_bytes(5, 3), (15u + 2u + 1u) * 4u);
 }
 
-TEST(Mipmaps, ColorsAreAveragedAsLight) {
+TEST(Mipmaps, SrgbColorsAreAveragedInLinearSpace) {
   const Bytes checker = {0, 0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255, 0, 0, 0, 0};
   const Image color = with_mips(2, 2, true, checker);
   const Image data = with_mips(2, 2, false, checker);
-  EXPECT_EQ(color.pixels[16], 188) << "half the light of white is 188 in sRGB";
-  EXPECT_EQ(color.pixels[19], 128) << "alpha is not a colour";
+  EXPECT_EQ(color.pixels[16], 188) << "half of white's luminance is 188 in sRGB";
+  EXPECT_EQ(color.pixels[19], 128) << "alpha is linear";
   EXPECT_EQ(data.pixels[16], 128);
 }
 
-TEST(Mipmaps, AFlatPictureStaysExactlyWhatItIs) {
+TEST(Mipmaps, UniformImageIsUnchanged) {
   for (int value = 0; value < 256; ++value) {
     for (const bool srgb : {false, true}) {
       for (const std::uint32_t side : {4u, 7u}) {
@@ -126,8 +126,8 @@ TEST(Mipmaps, AFlatPictureStaysExactlyWhatItIs) {
   }
 }
 
-TEST(Mipmaps, OddSizesWeighEveryPixelAlike) {
-  // 3 -> 1: a bright pixel at either end or in the middle counts a third.
+TEST(Mipmaps, OddSizesWeightPixelsEqually) {
+  // 3 -> 1: each of the three pixels has weight 1/3.
   for (int bright = 0; bright < 3; ++bright) {
     Bytes row(12, 0);
     row[4 * bright] = 255;
@@ -135,13 +135,13 @@ TEST(Mipmaps, OddSizesWeighEveryPixelAlike) {
   }
 }
 
-TEST(Images, ReadFromFilesBesideTheScene) {
+TEST(Images, AreReadFromFilesBesideScene) {
   GltfBuilder builder = everything();
   builder.json["images"][0] = {{"uri", "my%20picture.png"}};
   builder.json["buffers"][0]["uri"] = "data.bin";
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder.path() / "textures");
-  folder.write("my picture.png", png(2, 2, 3, Bytes(12, 50)));
+  folder.write("my image.png", png(2, 2, 3, Bytes(12, 50)));
   folder.write("data.bin", builder.binary);
   const Scene scene = import_gltf(folder.write("scene.gltf", builder.json.dump()));
   ASSERT_EQ(scene.images.size(), 2u);
@@ -153,7 +153,7 @@ TEST(Images, ReadFromFilesBesideTheScene) {
   EXPECT_EQ(import_gltf(folder.write("scene.gltf", builder.json.dump())).images[0].pixels[0], 60);
 }
 
-TEST(Images, ReadFromDataUris) {
+TEST(Images, AreReadFromDataUris) {
   GltfBuilder builder = everything();
   builder.json["images"][0] = {
       {"uri", "data:image/png;base64," + base64(png(2, 2, 3, Bytes(12, 77)))}};

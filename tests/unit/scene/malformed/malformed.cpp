@@ -8,14 +8,14 @@
 namespace heliograph::scene::test {
 namespace {
 
-// The files are small: nothing comes near these. Seconds are the processor's, so that other work on
-// the machine does not count; sanitizers take several times as much of either.
+// Bounds for small files, with a wide margin. Seconds of CPU time, so that other load does not
+// matter; sanitizers take several times as much time and memory.
 #if defined(__SANITIZE_ADDRESS__) || defined(__clang__)
-constexpr double most_seconds = 20.0;
-constexpr std::uint64_t most_bytes = 1024ull << 20;
+constexpr double max_seconds = 20.0;
+constexpr std::uint64_t max_bytes = 1024ull << 20;
 #else
-constexpr double most_seconds = 2.0;
-constexpr std::uint64_t most_bytes = 192ull << 20;
+constexpr double max_seconds = 2.0;
+constexpr std::uint64_t max_bytes = 192ull << 20;
 #endif
 
 double processor_seconds() {
@@ -31,7 +31,7 @@ std::optional<std::uint64_t> read_status(std::string_view key) {
   return std::nullopt;
 }
 
-/// The kernel's own mark of how much memory was resident at the worst moment.
+/// Peak resident memory, as the kernel reports it.
 class PeakMemory {
  public:
   PeakMemory() {
@@ -62,8 +62,8 @@ std::string Malformed::import(const std::string& what, const std::filesystem::pa
   std::string refusal = refusal_of(path);
   const double elapsed = processor_seconds() - start;
   const auto growth = memory.growth();
-  EXPECT_LT(elapsed, most_seconds) << what;
-  EXPECT_LT(growth.value_or(0), most_bytes) << what;
+  EXPECT_LT(elapsed, max_seconds) << what;
+  EXPECT_LT(growth.value_or(0), max_bytes) << what;
   ++count_;
   worst_.seconds = std::max(worst_.seconds, elapsed);
   if (growth) worst_.bytes = std::max(worst_.bytes.value_or(0), *growth);
@@ -98,7 +98,7 @@ void Malformed::expect_bounded(const std::string& what, const GltfBuilder& docum
 void Malformed::TearDown() {
   RecordProperty("files", count_);
   std::ostringstream line;
-  line << count_ << " files, at worst " << worst_.seconds * 1000.0 << " ms";
+  line << count_ << " files, at most " << worst_.seconds * 1000.0 << " ms";
   if (worst_.bytes) line << " and " << double(*worst_.bytes >> 10) / 1024.0 << " MiB";
   std::cout << "             " << line.str() << "\n";
 }
@@ -113,7 +113,7 @@ std::string named_in_errors(const std::string& json_pointer) {
       result += (result.empty() ? "" : ".") + part;
     }
   }
-  // Of a list of numbers the list is named, not the number.
+  // Errors name an array of numbers, not its elements.
   static constexpr std::string_view lists[] = {"children", "joints",   "nodes",
                                                "variants", "children", "weights"};
   for (const std::string_view list : lists) {

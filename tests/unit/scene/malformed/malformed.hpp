@@ -9,23 +9,23 @@
 
 namespace heliograph::scene::test {
 
-/// What an import cost.
+/// Cost of an import.
 struct ImportCost {
   double seconds = 0.0;
-  std::optional<std::uint64_t> bytes;  // resident at the worst moment, beyond those before
+  std::optional<std::uint64_t> bytes;  // peak resident memory above that at the start
 };
 
-/// Feeds files of one class of damage to the importer. Each must be refused with one line that says
-/// where and why, within the bounds below.
+/// Imports damaged files. Each must be rejected with one line that says where and why, within
+/// bounds of time and memory.
 class Malformed : public testing::Test {
  protected:
-  /// `place` is what the line must name, e.g. "nodes[2].mesh".
+  /// `place`: what the error must name, e.g. "nodes[2].mesh".
   void expect_refused(const std::string& what, const GltfBuilder& document, std::string_view place);
   void expect_refused(const std::string& what, const Bytes& file, std::string_view place,
                       const char* name = "scene.glb");
-  /// For damage that leaves something to show.
+  /// For damage that the importer tolerates.
   void expect_loaded(const std::string& what, const GltfBuilder& document);
-  /// Either will do, as long as it costs no more.
+  /// The import may succeed or fail, within the bounds.
   void expect_bounded(const std::string& what, const GltfBuilder& document);
 
   const std::filesystem::path& folder() const { return folder_.path(); }
@@ -41,7 +41,7 @@ class Malformed : public testing::Test {
   ImportCost worst_;
 };
 
-/// "/nodes/0/children/2" -> "nodes[0].children": how errors name a place in the document.
+/// "/nodes/0/children/2" -> "nodes[0].children": how errors name a member of the document.
 std::string named_in_errors(const std::string& json_pointer);
 
 }  // namespace heliograph::scene::test

@@ -1,5 +1,5 @@
-// Documents that are well formed and yet say what cannot be: wrong types, numbers out of range,
-// graphs that are no trees, and data that does not fit what is said of it.
+// Valid JSON with invalid content: wrong types, numbers out of range, node graphs that are no
+// trees, and data that does not match its description.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ class MalformedData : public Malformed {
     expect_refused(place + " = " + value.dump(), damaged, named);
   }
 
-  /// Overwrites a component of an accessor that member `place` names.
+  /// Overwrites a component of the accessor that member `place` refers to.
   void refuse_number(const std::string& place, std::size_t component, float value) {
     GltfBuilder damaged = good_;
     const auto accessor = at(damaged, place).get<std::size_t>();
@@ -112,7 +112,7 @@ TEST_F(MalformedData, NumbersOutOfRange) {
   for (const auto& [place, value] : cases) refuse(place, value, named_in_errors(place));
 }
 
-// Factors beyond 0..1 are common in files and harmless: clamped, and said so.
+// Factors outside 0..1 are common in files and harmless: clamped, with a warning.
 TEST_F(MalformedData, FactorsOutOfRangeAreClamped) {
   for (const char* const place : {"/materials/0/pbrMetallicRoughness/metallicFactor",
                                   "/materials/0/pbrMetallicRoughness/roughnessFactor",
@@ -129,7 +129,7 @@ TEST_F(MalformedData, FactorsOutOfRangeAreClamped) {
   }
 }
 
-TEST_F(MalformedData, AttributesOfOtherTypes) {
+TEST_F(MalformedData, AttributesOfWrongType) {
   const struct {
     const char* place;
     std::vector<std::string_view> wrong;
@@ -152,7 +152,7 @@ TEST_F(MalformedData, AttributesOfOtherTypes) {
   for (const auto& [place, wrong] : cases) {
     for (const std::string_view type : wrong) {
       GltfBuilder damaged = good_;
-      // An accessor of its own, of zeros: only its type is wrong.
+      // A new accessor of zeros: only its type is wrong.
       json accessor = good_.json["accessors"][at(damaged, place).get<std::size_t>()];
       accessor.erase("bufferView");
       accessor.erase("sparse");
@@ -163,7 +163,7 @@ TEST_F(MalformedData, AttributesOfOtherTypes) {
   }
 }
 
-TEST_F(MalformedData, AttributesOfOtherComponents) {
+TEST_F(MalformedData, AttributesOfWrongComponentType) {
   const struct {
     const char* place;
     std::vector<int> wrong;
@@ -191,7 +191,7 @@ TEST_F(MalformedData, AttributesOfOtherComponents) {
   }
 }
 
-TEST_F(MalformedData, CountsThatDiffer) {
+TEST_F(MalformedData, MismatchedCounts) {
   for (const char* const place :
        {"/meshes/0/primitives/0/attributes/NORMAL", "/meshes/0/primitives/0/attributes/TEXCOORD_0",
         "/meshes/0/primitives/0/attributes/COLOR_0", "/meshes/1/primitives/0/attributes/JOINTS_0",
@@ -213,7 +213,7 @@ TEST_F(MalformedData, CountsThatDiffer) {
   expect_refused("too few matrices", damaged, "skins[0].inverseBindMatrices");
 }
 
-TEST_F(MalformedData, NumbersThatAreNotFinite) {
+TEST_F(MalformedData, NonFiniteNumbers) {
   for (const char* const place :
        {"/meshes/0/primitives/0/attributes/POSITION", "/meshes/0/primitives/0/attributes/NORMAL",
         "/meshes/0/primitives/0/attributes/TEXCOORD_0",
@@ -229,7 +229,7 @@ TEST_F(MalformedData, NumbersThatAreNotFinite) {
   }
 }
 
-TEST_F(MalformedData, NumbersThatMakeNoSense) {
+TEST_F(MalformedData, InconsistentValues) {
   refuse_number("/meshes/1/primitives/0/attributes/WEIGHTS_0", 2, -1.0f);
   refuse_number("/meshes/0/primitives/0/attributes/POSITION", 0, 3e38f);
   refuse_number("/animations/0/samplers/0/input", 0, -1.0f);
@@ -238,7 +238,7 @@ TEST_F(MalformedData, NumbersThatMakeNoSense) {
   refuse_number("/animations/0/samplers/0/input", 1, 0.0f);
 }
 
-TEST_F(MalformedData, IndicesOfVerticesThatAreNone) {
+TEST_F(MalformedData, InvalidVertexIndices) {
   const auto refuse_indices = [&]<typename T>(int component, T last) {
     GltfBuilder damaged = good_;
     at(damaged, "/meshes/0/primitives/0/indices") =
@@ -252,7 +252,7 @@ TEST_F(MalformedData, IndicesOfVerticesThatAreNone) {
   }
 }
 
-TEST_F(MalformedData, JointsThatAreNone) {
+TEST_F(MalformedData, InvalidJoints) {
   GltfBuilder damaged = good_;
   const auto accessor =
       at(damaged, "/meshes/1/primitives/0/attributes/JOINTS_0").get<std::size_t>();
@@ -264,7 +264,7 @@ TEST_F(MalformedData, JointsThatAreNone) {
   }
 }
 
-TEST_F(MalformedData, SparseIndicesThatAreNone) {
+TEST_F(MalformedData, InvalidSparseIndices) {
   const auto with_sparse = [&](const std::vector<std::uint32_t>& indices) {
     GltfBuilder damaged = good_;
     json& sparse = at(damaged, "/accessors/5/sparse");
@@ -284,7 +284,7 @@ TEST_F(MalformedData, SparseIndicesThatAreNone) {
   refuse("/accessors/5/sparse/indices/componentType", 5122, "accessors[5].sparse.indices");
 }
 
-TEST_F(MalformedData, GraphsThatAreNoTrees) {
+TEST_F(MalformedData, CyclicAndSharedNodes) {
   for (int length = 1; length <= 20; ++length) {
     GltfBuilder damaged = good_;
     const int first = static_cast<int>(damaged.json["nodes"].size());
@@ -300,7 +300,7 @@ TEST_F(MalformedData, GraphsThatAreNoTrees) {
   diamond.add("nodes", {{"children", {first + 3}}});
   diamond.add("nodes", json::object());
   expect_refused("a diamond", diamond, "has more than one parent");
-  // Each node names the next one twice: 2^30 leaves, if anybody walked down.
+  // Each node refers to the next one twice: 2^30 leaves if they were traversed.
   GltfBuilder doubling = good_;
   for (int i = 0; i < 30; ++i) {
     const int next = static_cast<int>(doubling.json["nodes"].size()) + 1;
@@ -314,7 +314,7 @@ TEST_F(MalformedData, GraphsThatAreNoTrees) {
   refuse("/nodes/0/children", {0}, "cycle");
 }
 
-TEST_F(MalformedData, AnimationsThatCannotBe) {
+TEST_F(MalformedData, InvalidAnimations) {
   GltfBuilder twice = good_;
   at(twice, "/animations/0/channels").push_back(at(twice, "/animations/0/channels/0"));
   expect_refused("a property twice", twice, "animations[0].channels[3].target");
@@ -326,8 +326,8 @@ TEST_F(MalformedData, AnimationsThatCannotBe) {
   refuse("/animations/0/channels", json::array(), "animations[0]");
 }
 
-// What costs nothing in the file and much in memory.
-TEST_F(MalformedData, FilesThatClaimMuch) {
+// Small files that claim large amounts of memory.
+TEST_F(MalformedData, SmallFilesWithHugeClaims) {
   GltfBuilder zeros = triangle();
   zeros.json["accessors"][0].erase("bufferView");
   zeros.json["accessors"][0]["count"] = 60'000'001;
@@ -368,7 +368,7 @@ TEST_F(MalformedData, FilesThatClaimMuch) {
   for (int i = 0; i < 3000; ++i) {
     skins.add("skins", {{"joints", {1, 2}}, {"inverseBindMatrices", matrices}});
   }
-  expect_loaded("matrices that nobody asks for", skins);
+  expect_loaded("matrices that unknown asks for", skins);
 
   GltfBuilder crowd = good_;
   const auto vertices =

@@ -1,4 +1,4 @@
-// Damage to the container, the text, what the document points to outside itself, and its images.
+// Damage to the container, the JSON text, external references and images.
 #include <gtest/gtest.h>
 
 #include "tests/unit/scene/malformed/malformed.hpp"
@@ -38,7 +38,7 @@ class MalformedFiles : public Malformed {
   const GltfBuilder good_ = rich_document();
 };
 
-TEST_F(MalformedFiles, Headers) {
+TEST_F(MalformedFiles, InvalidHeaders) {
   const Bytes good = good_.glb();
   const std::uint32_t json_size = get_u32(good, 12);
   const auto refuse_with = [&](std::size_t offset, std::uint32_t value) {
@@ -62,14 +62,14 @@ TEST_F(MalformedFiles, Headers) {
   refuse_with(24 + json_size, 0x4e4f534a);
 }
 
-TEST_F(MalformedFiles, Cuts) {
+TEST_F(MalformedFiles, TruncatedFiles) {
   const Bytes good = good_.glb();
   for (std::size_t size = 1; size < good.size(); size += size < 24 ? 1 : 97) {
     expect_refused("cut to " + std::to_string(size), Bytes(good.begin(), good.begin() + size), "");
   }
 }
 
-TEST_F(MalformedFiles, Texts) {
+TEST_F(MalformedFiles, InvalidJsonTexts) {
   const std::string good = "{\"asset\": {\"version\": \"2.0\"}}";
   refuse_text("nothing but space", " \n\t ", "not a glTF file");
   refuse_text("an array", "[" + good + "]", "not a glTF file");
@@ -94,14 +94,14 @@ TEST_F(MalformedFiles, Texts) {
   }
 }
 
-TEST_F(MalformedFiles, ManyValues) {
+TEST_F(MalformedFiles, TooManyJsonValues) {
   std::string text = "{\"asset\": {\"version\": \"2.0\"}, \"extras\": [";
   for (int i = 0; i < 17'000'000; ++i) text += "0,";
   text += "0]}";
   refuse_text("more values than the limit", text, "values");
 }
 
-TEST_F(MalformedFiles, Versions) {
+TEST_F(MalformedFiles, UnsupportedVersions) {
   for (const json& version : {json("1.0"), json("3.0"), json("2"), json(""), json("x"), json(2.0),
                               json("20.0"), json(nullptr)}) {
     GltfBuilder damaged = good_;
@@ -115,10 +115,9 @@ TEST_F(MalformedFiles, Versions) {
   }
 }
 
-TEST_F(MalformedFiles, RequiredExtensions) {
-  for (const char* const name :
-       {"KHR_texture_basisu", "KHR_materials_pbrSpecularGlossiness", "MSFT_texture_dds",
-        "EXT_nobody_knows", "khr_lights_punctual", ""}) {
+TEST_F(MalformedFiles, UnsupportedRequiredExtensions) {
+  for (const char* const name : {"KHR_texture_basisu", "KHR_materials_pbrSpecularGlossiness",
+                                 "MSFT_texture_dds", "EXT_unknown", "khr_lights_punctual", ""}) {
     GltfBuilder damaged = good_;
     damaged.json["extensionsRequired"].push_back(name);
     expect_refused(name, damaged,
@@ -129,7 +128,7 @@ TEST_F(MalformedFiles, RequiredExtensions) {
   expect_refused("two of three", damaged, "\"EXT_one\", \"EXT_two\"");
 }
 
-TEST_F(MalformedFiles, AddressesThatAreNotRead) {
+TEST_F(MalformedFiles, RejectedUris) {
   files().write("beside.bin", Bytes(64, 'b'));
   const std::string_view cases[] = {"../beside.bin",
                                     "..%2Fbeside.bin",
@@ -177,13 +176,13 @@ TEST_F(MalformedFiles, AddressesThatAreNotRead) {
   }
 }
 
-TEST_F(MalformedFiles, PngPictures) {
+TEST_F(MalformedFiles, DamagedPngImages) {
   const Bytes good = png(16, 16, 4, Bytes(1024, 9));
   for (std::size_t size = 0; size < good.size(); size += size < 40 ? 3 : 41) {
     if (size != 0)
       refuse_image("cut to " + std::to_string(size), Bytes(good.begin(), good.begin() + size));
   }
-  // Width, height, depth, colour type, compression, filter, interlace: with the old checksum.
+  // Width, height, depth, color type, compression, filter, interlace: with the old checksum.
   for (std::size_t offset = 16; offset < 29; ++offset) {
     Bytes file = good;
     file[offset] ^= 0x41;
@@ -201,7 +200,7 @@ TEST_F(MalformedFiles, PngPictures) {
   refuse_image("fewer rows than said", png(16, 64, 4, Bytes(1024, 9)));
 }
 
-TEST_F(MalformedFiles, JpegPictures) {
+TEST_F(MalformedFiles, DamagedJpegImages) {
   for (const bool progressive : {false, true}) {
     const Bytes good = jpeg(32, 32, Bytes(32 * 32 * 3, 77), progressive);
     for (std::size_t size = 1; size + 2 < good.size(); size += 29) {
@@ -210,7 +209,7 @@ TEST_F(MalformedFiles, JpegPictures) {
   }
 }
 
-TEST_F(MalformedFiles, WebPPictures) {
+TEST_F(MalformedFiles, DamagedWebPImages) {
   Bytes pixels;
   for (int i = 0; i < 32 * 32 * 4; ++i) pixels.push_back(static_cast<std::uint8_t>(i * i >> 4));
   for (const bool lossless : {false, true}) {
@@ -221,7 +220,7 @@ TEST_F(MalformedFiles, WebPPictures) {
   }
 }
 
-TEST_F(MalformedFiles, PicturesOfOtherFormats) {
+TEST_F(MalformedFiles, UnsupportedImageFormats) {
   refuse_image("text", to_bytes("<svg xmlns='http://www.w3.org/2000/svg'/>"));
   refuse_image("GIF", to_bytes("GIF89a\x01\x01"));
   refuse_image("BMP", to_bytes("BM0000000000"));
@@ -230,8 +229,8 @@ TEST_F(MalformedFiles, PicturesOfOtherFormats) {
   refuse_image("half a RIFF", to_bytes("RIFF\x10\x10\x10\x10WEBP"));
 }
 
-// Pictures of the greatest size that takes nothing in the file must cost no more than they show.
-TEST_F(MalformedFiles, PicturesBeyondTheBudget) {
+// Images of maximum size with tiny files must not exceed the budget.
+TEST_F(MalformedFiles, ImagesBeyondBudget) {
   GltfBuilder damaged = good_;
   for (int i = 0; i < 8; ++i) {
     const auto image = damaged.add_image(png(8192, 8192, 4, {}));

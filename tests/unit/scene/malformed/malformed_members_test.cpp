@@ -1,5 +1,4 @@
-// Damage to single members of the document, generated: every member of a kind gets every value that
-// its kind must refuse.
+// Damage to single members: every member of a kind gets every value that is invalid for it.
 #include <gtest/gtest.h>
 
 #include "tests/unit/scene/malformed/malformed.hpp"
@@ -10,7 +9,7 @@ namespace {
 
 using nlohmann::json;
 
-// Every place that holds the number of something else.
+// All members that are indices.
 const char* const indices[] = {
     "/scene",
     "/scenes/0/nodes/0",
@@ -67,7 +66,7 @@ const char* const counts[] = {
     "/bufferViews/0/byteStride",
 };
 
-// Members without which there is nothing to read.
+// Required members.
 const char* const required[] = {
     "/asset",
     "/asset/version",
@@ -194,7 +193,7 @@ const char* const texts[] = {
     "/bufferViews/15/extensions/EXT_meshopt_compression/filter",
 };
 
-/// Text that stands for nothing, where only some texts stand for something.
+/// Members that are enumerations of strings.
 const char* const names_of_choices[] = {
     "/asset/version",
     "/accessors/0/type",
@@ -221,7 +220,7 @@ class MalformedMembers : public Malformed {
   const GltfBuilder good_ = rich_document();
 };
 
-TEST_F(MalformedMembers, IndicesOfNothing) {
+TEST_F(MalformedMembers, InvalidIndices) {
   const json values[] = {999, -1,   4294967296u, 18446744073709551615ull, 1.5, 1e300,
                          "0", true, nullptr,     json::object(),          {0}};
   for (const char* const place : indices) {
@@ -229,14 +228,14 @@ TEST_F(MalformedMembers, IndicesOfNothing) {
   }
 }
 
-TEST_F(MalformedMembers, CountsThatAreNone) {
+TEST_F(MalformedMembers, InvalidCounts) {
   const json values[] = {-1, 1.5, 1e300, "1", true, nullptr, json::array()};
   for (const char* const place : counts) {
     for (const json& value : values) refuse(place, value);
   }
 }
 
-TEST_F(MalformedMembers, CountsBeyondWhatThereIs) {
+TEST_F(MalformedMembers, CountsBeyondData) {
   for (const char* const place : counts) {
     for (const std::uint64_t value :
          {0x7fffffffull, 0x80000000ull, 0xffffffffull, 0x100000000ull, 0x7fffffffffffffffull,
@@ -250,7 +249,7 @@ TEST_F(MalformedMembers, CountsBeyondWhatThereIs) {
   }
 }
 
-TEST_F(MalformedMembers, RequiredOnesMissing) {
+TEST_F(MalformedMembers, MissingRequiredMembers) {
   for (const char* const place : required) {
     const std::string text = place;
     const json::json_pointer pointer(text);
@@ -262,7 +261,7 @@ TEST_F(MalformedMembers, RequiredOnesMissing) {
   }
 }
 
-TEST_F(MalformedMembers, VectorsOfOtherSizesAndKinds) {
+TEST_F(MalformedMembers, VectorsOfWrongSizeAndType) {
   for (const char* const place : vectors) {
     json longer = good_.json[json::json_pointer(place)];
     longer.push_back(1);
@@ -279,7 +278,7 @@ TEST_F(MalformedMembers, VectorsOfOtherSizesAndKinds) {
   }
 }
 
-TEST_F(MalformedMembers, NumbersThatAreNone) {
+TEST_F(MalformedMembers, InvalidNumbers) {
   for (const char* const place : numbers) {
     for (const json& value : {json("1"), json(true), json(nullptr), json::array(), json(1e300)}) {
       refuse(place, value);
@@ -287,7 +286,7 @@ TEST_F(MalformedMembers, NumbersThatAreNone) {
   }
 }
 
-TEST_F(MalformedMembers, ArraysThatAreNone) {
+TEST_F(MalformedMembers, InvalidArrays) {
   for (const char* const place : arrays) {
     for (const json& value :
          {json(5), json("x"), json(nullptr), json{{"0", 1}}, json::array({7})}) {
@@ -296,7 +295,7 @@ TEST_F(MalformedMembers, ArraysThatAreNone) {
   }
 }
 
-TEST_F(MalformedMembers, TextsThatAreNone) {
+TEST_F(MalformedMembers, InvalidStrings) {
   for (const char* const place : texts) {
     for (const json& value : {json(5), json(true), json(nullptr), json::array(), json::object()}) {
       refuse(place, value);
@@ -304,15 +303,15 @@ TEST_F(MalformedMembers, TextsThatAreNone) {
   }
 }
 
-TEST_F(MalformedMembers, ChoicesThatDoNotExist) {
+TEST_F(MalformedMembers, InvalidEnumValues) {
   for (const char* const place : names_of_choices) {
     for (const char* const value : {"x", "linear ", "\n\x01", "0"}) refuse(place, value);
     refuse(place, std::string(100'000, 'a'));
   }
 }
 
-// Whatever stands in for a whole object, it is no object.
-TEST_F(MalformedMembers, ObjectsThatAreNone) {
+// Values other than objects in place of objects.
+TEST_F(MalformedMembers, InvalidObjects) {
   for (const char* const place :
        {"/asset", "/nodes/0", "/nodes/2/extensions", "/materials/0/pbrMetallicRoughness",
         "/materials/0/normalTexture", "/materials/0/extensions/KHR_materials_ior",

@@ -48,9 +48,9 @@ const Damage damages[] = {
     {"AssetMinVersion", [](auto& b) { b.json["asset"]["minVersion"] = "2.7"; }, "asset.minVersion"},
     {"UnknownRequiredExtension",
      [](auto& b) {
-       b.json["extensionsRequired"] = {"EXT_nobody_knows", "KHR_lights_punctual"};
+       b.json["extensionsRequired"] = {"EXT_unknown", "KHR_lights_punctual"};
      },
-     "EXT_nobody_knows"},
+     "EXT_unknown"},
     {"ArrayIsObject", [](auto& b) { b.json["meshes"] = json::object(); },
      "meshes: must be an array"},
     {"ElementIsNumber", [](auto& b) { b.json["nodes"][1] = 5; }, "nodes[1]: must be an object"},
@@ -116,7 +116,7 @@ const Damage damages[] = {
      "not finite"},
     {"PositionInfinite",
      [](auto& b) { overwrite(b, 0, 8, std::numeric_limits<float>::infinity()); }, "not finite"},
-    {"PositionFarOut", [](auto& b) { overwrite(b, 0, 8, 3e38f); }, "too far out"},
+    {"PositionFarOut", [](auto& b) { overwrite(b, 0, 8, 3e38f); }, "coordinate limit"},
     {"UvNaN", [](auto& b) { overwrite(b, 2, 0, std::numeric_limits<float>::quiet_NaN()); },
      "not finite"},
     {"PositionIsVec2", [](auto& b) { primitive(b)["attributes"]["POSITION"] = 2; }, "element type"},
@@ -281,18 +281,18 @@ const Damage damages[] = {
      "neither a uri"},
 };
 
-class Malformed : public testing::TestWithParam<Damage> {};
+class MalformedDocument : public testing::TestWithParam<Damage> {};
 
-TEST_P(Malformed, IsRefusedWithAReason) {
+TEST_P(MalformedDocument, IsRejectedWithReason) {
   GltfBuilder builder = everything();
   ASSERT_EQ(refusal_of(builder), "");
   GetParam().inflict(builder);
   const std::string refusal = refusal_of(builder);
   EXPECT_NE(refusal.find(GetParam().expected), std::string::npos)
-      << (refusal.empty() ? "it was accepted" : refusal);
+      << (refusal.empty() ? "accepted" : refusal);
 }
 
-INSTANTIATE_TEST_SUITE_P(Document, Malformed, testing::ValuesIn(damages),
+INSTANTIATE_TEST_SUITE_P(Damages, MalformedDocument, testing::ValuesIn(damages),
                          [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace

@@ -4,9 +4,9 @@
 
 namespace heliograph::scene::test {
 
-/// A small valid document that has nearly everything an importer reads: both kinds of camera, all
-/// kinds of light, a skin, morph targets, sparse values, an animation, instances, variants, layered
-/// materials, and each kind of compression. Tests damage it, fuzzers begin with it.
+/// A small valid document with nearly all features of the importer: both kinds of camera, all kinds
+/// of light, a skin, morph targets, sparse accessors, an animation, instances, variants, layered
+/// materials and each kind of compression. Tests damage it; fuzzers use it as a seed.
 GltfBuilder rich_document();
 
 }  // namespace heliograph::scene::test

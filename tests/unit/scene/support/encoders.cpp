@@ -107,7 +107,7 @@ Bytes quaternions(const std::vector<glm::vec4>& rotations) {
 }
 
 Bytes exponential(const std::vector<glm::vec3>& vectors) {
-  // 2^E * M with an exponent of its own for each number: 8 bits of E, 24 of M.
+  // 2^E * M with a separate exponent per component: 8 bits of E, 24 of M.
   Bytes bytes(vectors.size() * 12);
   for (std::size_t i = 0; i < vectors.size() * 3; ++i) {
     int exponent = 0;

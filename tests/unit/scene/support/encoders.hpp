@@ -9,7 +9,7 @@
 
 namespace heliograph::scene::test {
 
-/// A mesh before and the ids of its attributes after compression.
+/// A mesh before compression, and its attribute ids after it.
 struct DracoInput {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;
@@ -33,11 +33,11 @@ DracoOutput draco(const DracoInput& input);
 Bytes pack_vertices(const Bytes& vertices, std::size_t stride);
 Bytes pack_triangles(const std::vector<std::uint32_t>& indices, std::size_t vertex_count);
 Bytes pack_sequence(const std::vector<std::uint32_t>& indices, std::size_t vertex_count);
-/// Unit vectors as the octahedral filter takes them, four bytes each.
+/// Unit vectors encoded for the octahedral filter, 4 bytes each.
 Bytes octahedral(const std::vector<glm::vec4>& vectors);
-/// Unit quaternions as the quaternion filter takes them, eight bytes each.
+/// Unit quaternions encoded for the quaternion filter, 8 bytes each.
 Bytes quaternions(const std::vector<glm::vec4>& rotations);
-/// Floats as the exponential filter takes them, three to a vector.
+/// Float vectors encoded for the exponential filter.
 Bytes exponential(const std::vector<glm::vec3>& vectors);
 
 Bytes webp(std::uint32_t width, std::uint32_t height, const Bytes& rgba, bool lossless = true);

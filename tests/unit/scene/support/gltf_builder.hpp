@@ -16,7 +16,7 @@ namespace heliograph::scene::test {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// A folder of its own for one test, gone afterwards.
+/// A temporary folder, removed by the destructor.
 class TemporaryFolder {
  public:
   TemporaryFolder();
@@ -32,7 +32,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// A glTF document under construction: JSON that tests edit at will, and one binary buffer.
+/// A glTF document under construction: JSON for tests to edit, and one binary buffer.
 struct GltfBuilder {
   nlohmann::json json = {{"asset", {{"version", "2.0"}}}};
   Bytes binary;
@@ -52,7 +52,7 @@ struct GltfBuilder {
   }
   /// Appends to a top-level array and returns the index.
   std::uint32_t add(const std::string& array, nlohmann::json value);
-  /// A node at the root of the only scene that shows a mesh of this one primitive.
+  /// Adds a root node with a mesh of this primitive to the only scene.
   void show(nlohmann::json primitive);
   std::uint32_t add_image(const Bytes& file);
 
@@ -63,8 +63,8 @@ struct GltfBuilder {
 /// One triangle in the plane z = 0, counter-clockwise seen from +Z, without normals.
 GltfBuilder triangle();
 
-/// A valid document that uses a bit of everything: indexed, textured, lit, with a camera, a skin
-/// and an animation, for tests to damage.
+/// A valid document for tests to damage: indexed, textured, lit, with a camera, a skin and an
+/// animation.
 GltfBuilder everything();
 
 /// Uncompressed PNG; `channels` 1..4, `depth` 8 or 16 (big-endian samples).
@@ -74,7 +74,7 @@ Bytes jpeg(std::uint32_t width, std::uint32_t height, const Bytes& rgb, bool pro
 
 std::string base64(const Bytes& bytes);
 
-/// What import says about the file, or "" when it is accepted.
+/// The import's error message, or "" when the file is accepted.
 std::string refusal_of(const std::filesystem::path& path, const ImportLimits& limits = {});
 std::string refusal_of(const GltfBuilder& builder, const ImportLimits& limits = {});
 

@@ -1,4 +1,4 @@
-// Which buffer of the frame is shown, by name or by picture.
+// Selects the buffer that is shown, by name or by thumbnail.
 
 import { humanise } from "heliograph/settings_schema.ts";
 import { type Viewer, bufferSetting } from "../../session/viewer.ts";
@@ -12,7 +12,7 @@ export const bufferLabel = (name: string): string => humanise(name.replaceAll(".
 export function createBufferFields(viewer: Viewer): HTMLElement[] {
   const gallery = element("div", { class: "gallery", id: "buffer-gallery", hidden: true });
   const tiles = new Map<string, HTMLElement>();
-  let round = 0;
+  let generation = 0;
   const fill = (): void => {
     tiles.clear();
     gallery.replaceChildren(
@@ -26,7 +26,7 @@ export function createBufferFields(viewer: Viewer): HTMLElement[] {
             "data-tip": description,
             click: () => viewer.settings.change(bufferSetting, name),
           },
-          element("span", { class: "tile-picture" }),
+          element("span", { class: "tile-image" }),
           element("span", { class: "tile-name" }, bufferLabel(name)),
         );
         tiles.set(name, tile);
@@ -39,27 +39,27 @@ export function createBufferFields(viewer: Viewer): HTMLElement[] {
     const shown = viewer.settings.value(bufferSetting);
     for (const [name, tile] of tiles) tile.setAttribute("aria-pressed", String(name === shown));
   };
-  /** One capture after another: the renderer has more to do than small pictures. */
-  const photograph = async (): Promise<void> => {
-    const mine = ++round;
+  /** One capture after another, so that thumbnails do not block the renderer. */
+  const loadThumbnails = async (): Promise<void> => {
+    const own = ++generation;
     for (const [name, tile] of [...tiles]) {
-      if (gallery.hidden || mine !== round || !viewer.hello) return;
-      const source = await viewer.smallPicture(name, thumbnailWidth).catch(() => null);
-      const image = element("img", { class: "tile-picture", alt: "" });
+      if (gallery.hidden || own !== generation || !viewer.hello) return;
+      const source = await viewer.captureThumbnail(name, thumbnailWidth).catch(() => null);
+      const image = element("img", { class: "tile-image", alt: "" });
       if (source) image.src = source;
       tile.firstElementChild?.replaceWith(image);
     }
   };
-  const toggle = button("Show all buffers as pictures", "grid", () => {
+  const toggle = button("Show thumbnails of all buffers", "grid", () => {
     gallery.hidden = !gallery.hidden;
     toggle.setAttribute("aria-expanded", String(!gallery.hidden));
-    if (!gallery.hidden) void photograph();
+    if (!gallery.hidden) void loadThumbnails();
   });
   toggle.setAttribute("aria-expanded", "false");
   toggle.setAttribute("aria-controls", gallery.id);
   viewer.capabilities.buffers.watch(() => {
     fill();
-    if (!gallery.hidden) void photograph();
+    if (!gallery.hidden) void loadThumbnails();
   });
   viewer.settings.tree.watch(mark);
   return [field("Buffer", bufferPicker(viewer), toggle), gallery];
@@ -75,10 +75,13 @@ function bufferPicker(viewer: Viewer): HTMLSelectElement {
     const buffers = viewer.capabilities.buffers.value;
     const known = buffers.some(({ name }) => name === shown);
     const names = known ? buffers.map(({ name }) => name) : [shown, ...buffers.map((b) => b.name)];
-    setOptions(select, names.map((name) => ({ value: name, label: bufferLabel(name) })));
+    setOptions(
+      select,
+      names.map((name) => ({ value: name, label: bufferLabel(name) })),
+    );
     select.value = shown;
     select.dataset.tip =
-      buffers.find(({ name }) => name === shown)?.description || "Which picture to show";
+      buffers.find(({ name }) => name === shown)?.description || "The buffer to show";
   };
   viewer.capabilities.buffers.watch(update);
   viewer.settings.tree.watch(update);

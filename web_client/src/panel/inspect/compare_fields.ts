@@ -1,17 +1,18 @@
-// What to compare with, and how alike the two are.
+// Selects what to compare with and shows the similarity.
 
 import type { Comparison } from "../../compare/comparison.ts";
 import type { Counterpart } from "../../compare/comparison_state.ts";
-import type { Divider } from "../../view/divider.ts";
 import type { Viewer } from "../../session/viewer.ts";
-import { bufferLabel } from "./buffer_fields.ts";
+import type { Divider } from "../../view/divider.ts";
 import { element, setOptions, setText } from "../../widgets/element.ts";
 import { field } from "../../widgets/field.ts";
-import { presetLabel } from "../settings/preset_labels.ts";
 import { createSliderRow } from "../../widgets/slider_row.ts";
+import { presetLabel } from "../settings/preset_labels.ts";
+import { bufferLabel } from "./buffer_fields.ts";
 
-const nothing = "";
-const overlaid = /history|disocclusion/;
+const none = "";
+/** Buffers that are shown over the frame instead of beside it. */
+const overlaidBuffers = /history|disoccluded/;
 
 export function createCompareFields(
   viewer: Viewer,
@@ -19,17 +20,17 @@ export function createCompareFields(
   divider: Divider,
 ): HTMLElement {
   const select = element("select", { name: "compare", change: () => choose() });
-  const way = element(
+  const mode = element(
     "select",
-    { name: "compare_way", change: () => arrange() },
+    { name: "compare_mode", change: () => updateLayout() },
     element("option", { value: "split" }, "Side by side"),
-    element("option", { value: "overlay" }, "One over the other"),
+    element("option", { value: "overlay" }, "Overlay"),
   );
   let opacity = 0.6;
   const opacityRow = createSliderRow(
     {
       label: "Opacity",
-      description: "How much the picture on top covers.",
+      description: "Opacity of the upper frame.",
       unit: "",
       minimum: 0,
       maximum: 1,
@@ -37,15 +38,15 @@ export function createCompareFields(
     },
     (value) => {
       opacity = value;
-      arrange();
+      updateLayout();
     },
   );
   const facts = element("p", { class: "facts", role: "status", "data-figure-of": "similarity" });
-  const arrange = (): void => {
-    const split = way.value === "split";
-    opacityRow.node.hidden = split || select.value === nothing;
+  const updateLayout = (): void => {
+    const split = mode.value === "split";
+    opacityRow.node.hidden = split || select.value === none;
     opacityRow.show(opacity);
-    divider.arrange(split ? "split" : "overlay", opacity);
+    divider.setMode(split ? "split" : "overlay", opacity);
   };
   const choose = (): void => {
     const counterpart = parsed(select.value);
@@ -53,14 +54,15 @@ export function createCompareFields(
       comparison.stop();
       return;
     }
-    if (counterpart.kind === "buffer" && overlaid.test(counterpart.name)) way.value = "overlay";
-    if (counterpart.kind !== "buffer") way.value = "split";
-    arrange();
+    if (counterpart.kind === "buffer" && overlaidBuffers.test(counterpart.name))
+      mode.value = "overlay";
+    if (counterpart.kind !== "buffer") mode.value = "split";
+    updateLayout();
     void comparison.start(counterpart);
   };
   const fill = (): void => {
     setOptions(select, [
-      { value: nothing, label: "Nothing" },
+      { value: none, label: "Nothing" },
       { value: "reference", label: "Path traced reference" },
       ...viewer.capabilities.presets.value.map(({ name }) => ({
         value: `preset:${name}`,
@@ -74,37 +76,37 @@ export function createCompareFields(
   viewer.capabilities.presets.watch(fill);
   viewer.capabilities.buffers.watch(fill);
   comparison.state.watch((state) => {
-    select.value = state ? valueOf(state.counterpart) : nothing;
+    select.value = state ? valueOf(state.counterpart) : none;
     const label = state ? (select.selectedOptions[0]?.textContent ?? "") : "";
     divider.show(state !== null, label);
-    way.closest<HTMLElement>(".field")?.toggleAttribute("hidden", state === null);
+    mode.closest<HTMLElement>(".field")?.toggleAttribute("hidden", state === null);
     if (!state) {
       opacityRow.node.hidden = true;
       setText(facts, "");
       return;
     }
-    const alike = state.similarity === null ? "…" : state.similarity.toFixed(4);
+    const similarity = state.similarity === null ? "…" : state.similarity.toFixed(4);
     const count = state.frame?.samples ?? 0;
     const samples = count === 1 ? " · 1 sample" : ` · ${count} samples`;
     if (state.counterpart.kind === "buffer") setText(facts, "");
-    else if (!state.frame) setText(facts, "The second session starts");
-    else setText(facts, `SSIM ${alike}${samples}`);
+    else if (!state.frame) setText(facts, "Starting the second session");
+    else setText(facts, `SSIM ${similarity}${samples}`);
   });
   const node = element(
     "div",
     { class: "fields", "data-section": "compare" },
     field("Compare", select),
-    field("As", way),
+    field("Layout", mode),
     opacityRow.node,
     facts,
   );
-  way.closest<HTMLElement>(".field")?.setAttribute("hidden", "");
+  mode.closest<HTMLElement>(".field")?.setAttribute("hidden", "");
   opacityRow.node.hidden = true;
-  const offer = (): void => {
+  const updateVisibility = (): void => {
     node.hidden = !comparison.possible;
   };
-  viewer.capabilities.methods.watch(offer);
-  viewer.controlState.watch(offer);
+  viewer.capabilities.methods.watch(updateVisibility);
+  viewer.controlState.watch(updateVisibility);
   return node;
 }
 

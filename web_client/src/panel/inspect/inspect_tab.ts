@@ -1,13 +1,13 @@
-// Looking into the renderer: its buffers, two ways of rendering side by side, single pixels.
+// The Inspect tab: buffers, comparison, pixel values.
 
 import type { Comparison } from "../../compare/comparison.ts";
+import type { Viewer } from "../../session/viewer.ts";
 import type { Divider } from "../../view/divider.ts";
 import type { PointPicker } from "../../view/picker.ts";
-import type { Viewer } from "../../session/viewer.ts";
-import { createBufferFields } from "./buffer_fields.ts";
-import { requiresControl } from "../../widgets/requires_control.ts";
-import { createCompareFields } from "./compare_fields.ts";
 import { element } from "../../widgets/element.ts";
+import { requiresControl } from "../../widgets/requires_control.ts";
+import { createBufferFields } from "./buffer_fields.ts";
+import { createCompareFields } from "./compare_fields.ts";
 import { createInspector } from "./pixel_inspector.ts";
 
 export interface InspectParts {

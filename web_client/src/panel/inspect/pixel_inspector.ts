@@ -1,16 +1,16 @@
-// The pixel inspector: a click on the picture lists every buffer's value there.
+// The pixel inspector: a click on the view lists the value of every buffer there.
 
 import type { Inspection } from "heliograph/messages.ts";
 import type { Viewer } from "../../session/viewer.ts";
 import type { PointPicker } from "../../view/picker.ts";
-import { bufferLabel } from "./buffer_fields.ts";
 import { element, setText } from "../../widgets/element.ts";
+import { bufferLabel } from "./buffer_fields.ts";
 
 const shownDigits = 4;
 
-export function createInspector(viewer: Viewer, host: PointPicker): HTMLElement {
+export function createInspector(viewer: Viewer, picker: PointPicker): HTMLElement {
   const rows = element("dl", { class: "pixel-values" });
-  const where = element("p", { class: "facts" });
+  const position = element("p", { class: "facts" });
   const toggle = element("input", {
     type: "checkbox",
     role: "switch",
@@ -18,27 +18,31 @@ export function createInspector(viewer: Viewer, host: PointPicker): HTMLElement 
     name: "inspect",
     id: "inspect-switch",
     change: () => {
-      host.onClick(toggle.checked ? (x, y) => void inspect(x, y) : null);
-      if (!toggle.checked) host.unmark();
-      setText(where, toggle.checked ? "Click a point of the picture." : "");
+      picker.onClick(toggle.checked ? (x, y) => void inspect(x, y) : null);
+      if (!toggle.checked) picker.unmark();
+      setText(position, toggle.checked ? "Click a point in the view." : "");
       rows.replaceChildren();
     },
   });
   const inspect = async (x: number, y: number): Promise<void> => {
-    host.mark(x, y);
-    setText(where, "Reading the pixel");
+    picker.mark(x, y);
+    setText(position, "Reading the pixel values");
     try {
-      show(await viewer.rpc.request<Inspection>("frame.inspect", { x, y }));
+      show(await viewer.rpc.request("frame.inspect", { x, y }));
     } catch (error) {
       viewer.report(error);
     }
   };
   const show = (inspection: Inspection): void => {
-    setText(where, `Pixel ${inspection.column}, ${inspection.row}`);
+    setText(position, `Pixel ${inspection.column}, ${inspection.row}`);
     rows.replaceChildren(
       ...inspection.buffers.flatMap(({ name, value, unit }) => [
         element("dt", { "data-tip": name }, bufferLabel(name)),
-        element("dd", { "data-value": name }, `${value.map(written).join("  ")} ${unit}`.trim()),
+        element(
+          "dd",
+          { "data-value": name },
+          `${value.map(formatValue).join("  ")} ${unit}`.trim(),
+        ),
       ]),
     );
   };
@@ -51,14 +55,14 @@ export function createInspector(viewer: Viewer, host: PointPicker): HTMLElement 
       element("label", { class: "row-label", for: toggle.id }, "Inspect pixels"),
       toggle,
     ),
-    where,
+    position,
     rows,
   );
   viewer.capabilities.methods.watch((methods) => (node.hidden = !methods.has("frame.inspect")));
   return node;
 }
 
-function written(value: number | null): string {
+function formatValue(value: number | null): string {
   if (value === null) return "–";
   return String(Number(value.toPrecision(shownDigits)));
 }

@@ -1,4 +1,4 @@
-// Where one looks from: the cameras of the scene, bookmarks, fit.
+// The cameras of the scene, bookmarks and "fit into view".
 
 import { addBookmark, readBookmarks, removeBookmark } from "../../session/bookmarks.ts";
 import type { Viewer } from "../../session/viewer.ts";
@@ -20,7 +20,7 @@ export function createCameraFields(viewer: Viewer): HTMLElement[] {
           { class: "chip removable" },
           element(
             "button",
-            { type: "button", click: () => viewer.jumpTo(camera), "data-bookmark": name },
+            { type: "button", click: () => viewer.animateCameraTo(camera), "data-bookmark": name },
             name,
           ),
           element(
@@ -28,7 +28,7 @@ export function createCameraFields(viewer: Viewer): HTMLElement[] {
             {
               type: "button",
               class: "remove",
-              "aria-label": `Forget ${name}`,
+              "aria-label": `Remove ${name}`,
               click: () => {
                 if (scene) removeBookmark(scene.name, name);
                 show();
@@ -40,7 +40,7 @@ export function createCameraFields(viewer: Viewer): HTMLElement[] {
       ),
     );
   };
-  const keep = (): void => {
+  const add = (): void => {
     const scene = viewer.scene.value;
     const camera = viewer.camera.value;
     if (!scene || !camera) return;
@@ -49,8 +49,8 @@ export function createCameraFields(viewer: Viewer): HTMLElement[] {
   };
   viewer.scene.watch(show);
   const fit = button("Fit the scene into view (F)", "fit", () => void viewer.fitCamera());
-  const bookmark = button("Bookmark this view (B)", "bookmark", keep);
-  viewer.addBookmark = keep;
+  const bookmark = button("Bookmark this view (B)", "bookmark", add);
+  viewer.addBookmark = add;
   return [field("Camera", cameraPicker(viewer), fit, bookmark), chips];
 }
 

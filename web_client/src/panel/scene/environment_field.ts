@@ -1,4 +1,4 @@
-// Which environment lights the scene.
+// Selects the environment map.
 
 import type { SceneParts } from "../../session/scene_parts.ts";
 import { element, setOptions } from "../../widgets/element.ts";
@@ -11,12 +11,12 @@ export function createEnvironmentField(parts: SceneParts): HTMLElement {
     name: "environment",
     change: () => void parts.chooseEnvironment(select.value || null),
   });
-  const node = field("Sky", select);
+  const node = field("Environment", select);
   parts.environment.watch((state) => {
     node.hidden = !state || state.environments.length === 0;
     if (!state) return;
     setOptions(select, [
-      { value: withScene, label: "The scene's own" },
+      { value: withScene, label: "From the scene file" },
       ...state.environments.map(({ name }) => ({ value: name, label: name })),
     ]);
     select.value = state.current ?? withScene;

@@ -1,4 +1,4 @@
-// The lights of the scene: which one, whether it shines, how strong, how large, from where.
+// Edits one light of the scene: on or off, intensity, size, direction.
 
 import type { LightInfo } from "heliograph/messages.ts";
 import type { SceneParts } from "../../session/scene_parts.ts";
@@ -10,10 +10,10 @@ import { createSunDial } from "./sun_dial.ts";
 
 export function createLightSection(parts: SceneParts): HTMLElement {
   const select = element("select", { name: "light", change: () => show() });
-  const chosen = (): LightInfo | undefined =>
+  const selected = (): LightInfo | undefined =>
     parts.lights.value.find(({ name }) => name === select.value) ?? parts.lights.value[0];
   const patch = (change: Partial<LightInfo>): void => {
-    const light = chosen();
+    const light = selected();
     if (light) parts.patchLight(light.name, change);
   };
   const enabled = element("input", {
@@ -21,18 +21,18 @@ export function createLightSection(parts: SceneParts): HTMLElement {
     role: "switch",
     class: "switch",
     name: "light_enabled",
-    "aria-label": "Whether this light shines",
+    "aria-label": "Light enabled",
     change: () => patch({ enabled: enabled.checked }),
   });
   const reset = button("Reset this light", "reset", () => {
-    const light = chosen();
+    const light = selected();
     if (light) void parts.resetLight(light.name);
   });
   const dial = createSunDial("Direction of the sun", (direction) => patch({ direction }));
   const diameter = createSliderRow(
     {
       label: "Angular diameter",
-      description: "How large the light appears in the sky: larger lights cast softer shadows.",
+      description: "Apparent size of the light: larger lights cast softer shadows.",
       unit: "degrees",
       minimum: 0,
       maximum: 20,
@@ -43,7 +43,7 @@ export function createLightSection(parts: SceneParts): HTMLElement {
   const radius = createSliderRow(
     {
       label: "Radius",
-      description: "How large the light is: larger lights cast softer shadows.",
+      description: "Size of the light: larger lights cast softer shadows.",
       unit: "metres",
       minimum: 0,
       maximum: 2,
@@ -72,7 +72,7 @@ export function createLightSection(parts: SceneParts): HTMLElement {
     radius.node,
   );
   const show = (): void => {
-    const light = chosen();
+    const light = selected();
     if (!light) return;
     select.value = light.name;
     enabled.checked = light.enabled;
@@ -84,10 +84,13 @@ export function createLightSection(parts: SceneParts): HTMLElement {
     radius.node.hidden = light.radius === undefined;
     radius.show(light.radius ?? 0);
   };
-  const section = createSection({ id: "lights", title: "Lights", body, openAtFirst: true });
+  const section = createSection({ id: "lights", title: "Lights", body, openByDefault: true });
   parts.lights.watch((lights) => {
     section.hidden = lights.length === 0;
-    setOptions(select, lights.map(({ name }) => ({ value: name, label: name })));
+    setOptions(
+      select,
+      lights.map(({ name }) => ({ value: name, label: name })),
+    );
     show();
   });
   return section;

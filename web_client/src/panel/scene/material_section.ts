@@ -1,6 +1,7 @@
-// The materials of the scene, and a sweep through the roughness of one of them.
+// Edits one material of the scene, and sweeps its roughness.
 
-import type { MaterialInfo, Vector3 } from "heliograph/messages.ts";
+import type { Vector3 } from "heliograph/json.ts";
+import type { MaterialInfo } from "heliograph/messages.ts";
 import type { SceneParts } from "../../session/scene_parts.ts";
 import { button, element, setOptions } from "../../widgets/element.ts";
 import { field } from "../../widgets/field.ts";
@@ -10,7 +11,7 @@ import { createSliderRow } from "../../widgets/slider_row.ts";
 const sweepMs = 6000;
 const sweepStepMs = 100;
 
-export interface MaterialSection {
+interface MaterialSection {
   node: HTMLElement;
   /** Shows the material of this name. */
   choose(name: string): void;
@@ -18,10 +19,10 @@ export interface MaterialSection {
 
 export function createMaterialSection(parts: SceneParts): MaterialSection {
   const select = element("select", { name: "material", change: () => show() });
-  const chosen = (): MaterialInfo | undefined =>
+  const selected = (): MaterialInfo | undefined =>
     parts.materials.value.find(({ name }) => name === select.value) ?? parts.materials.value[0];
   const patch = (change: Partial<MaterialInfo>): void => {
-    const material = chosen();
+    const material = selected();
     if (material) parts.patchMaterial(material.name, change);
   };
   const fraction = (label: string, description: string, report: (value: number) => void) =>
@@ -31,12 +32,12 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
     );
   const roughness = fraction(
     "Roughness",
-    "From a mirror (0) to a matt surface (1); a factor on the texture, if there is one.",
+    "From a perfect mirror (0) to a matt surface (1). A factor on the texture, if there is one.",
     (value) => patch({ roughness: value }),
   );
   const metallic = fraction(
     "Metallic",
-    "Whether it reflects like a metal; a factor on the texture, if there is one.",
+    "Metal (1) or dielectric (0). A factor on the texture, if there is one.",
     (value) => patch({ metallic: value }),
   );
   const colour = element("input", {
@@ -46,10 +47,13 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
     input: () => patch({ base_color: linearColour(colour.value) }),
   });
   const reset = button("Reset this material", "reset", () => {
-    const material = chosen();
+    const material = selected();
     if (material) void parts.resetMaterial(material.name);
   });
-  const sweep = createSweep((value) => patch({ roughness: value }), () => chosen()?.roughness);
+  const sweep = createSweep(
+    (value) => patch({ roughness: value }),
+    () => selected()?.roughness,
+  );
   const body = element(
     "div",
     { class: "section-body" },
@@ -60,17 +64,20 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
     sweep,
   );
   const show = (): void => {
-    const material = chosen();
+    const material = selected();
     if (!material) return;
     select.value = material.name;
     roughness.show(material.roughness);
     metallic.show(material.metallic);
     colour.value = displayColour(material.base_color);
   };
-  const node = createSection({ id: "materials", title: "Materials", body, openAtFirst: false });
+  const node = createSection({ id: "materials", title: "Materials", body, openByDefault: false });
   parts.materials.watch((materials) => {
     node.hidden = materials.length === 0;
-    setOptions(select, materials.map(({ name }) => ({ value: name, label: name })));
+    setOptions(
+      select,
+      materials.map(({ name }) => ({ value: name, label: name })),
+    );
     show();
   });
   const choose = (name: string): void => {
@@ -80,7 +87,7 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
   return { node, choose };
 }
 
-/** Runs the roughness from 0 to 1 and puts back what it was. */
+/** Animates the roughness from 0 to 1, then restores it. */
 function createSweep(
   set: (roughness: number) => void,
   get: () => number | undefined,
@@ -107,9 +114,9 @@ function createSweep(
         const startedAt = performance.now();
         sweep.textContent = "Stop the sweep";
         timer = window.setInterval(() => {
-          const part = (performance.now() - startedAt) / sweepMs;
-          if (part >= 1) stop();
-          else set(Math.round(part * 100) / 100);
+          const fraction = (performance.now() - startedAt) / sweepMs;
+          if (fraction >= 1) stop();
+          else set(Math.round(fraction * 100) / 100);
         }, sweepStepMs);
       },
     },
@@ -118,7 +125,7 @@ function createSweep(
   return sweep;
 }
 
-/** The transfer function of sRGB (IEC 61966-2-1), which colour inputs speak. */
+/** The hex colour of an sRGB colour input (transfer function: IEC 61966-2-1). */
 export function displayColour(linear: Vector3): string {
   const byte = (value: number): string => {
     const encoded = value <= 0.0031308 ? 12.92 * value : 1.055 * value ** (1 / 2.4) - 0.055;
@@ -130,9 +137,9 @@ export function displayColour(linear: Vector3): string {
 }
 
 export function linearColour(display: string): Vector3 {
-  const part = (start: number): number => {
+  const component = (start: number): number => {
     const value = Number.parseInt(display.slice(start, start + 2), 16) / 255;
     return value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4;
   };
-  return [part(1), part(3), part(5)];
+  return [component(1), component(3), component(5)];
 }

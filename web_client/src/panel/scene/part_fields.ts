@@ -1,4 +1,4 @@
-// Which of the scenes and of the material variants that a file holds; there only where it does.
+// Selects one of the scenes and material variants of a file; hidden for files with one scene.
 
 import type { Viewer } from "../../session/viewer.ts";
 import { element, setOptions } from "../../widgets/element.ts";
@@ -17,19 +17,22 @@ export function createPartFields(viewer: Viewer): HTMLElement[] {
   };
   const parts = element("select", { name: "part", change: load });
   const variants = element("select", { name: "variant", change: load });
-  const partField = field("Part", parts);
+  const partField = field("Scene in file", parts);
   const variantField = field("Variant", variants);
   viewer.scene.watch((scene) => {
     const names = scene?.scenes ?? [];
     partField.hidden = names.length < 2;
     setOptions(
       parts,
-      names.map((name, number) => ({ value: String(number), label: name || `Scene ${number + 1}` })),
+      names.map((name, number) => ({
+        value: String(number),
+        label: name || `Scene ${number + 1}`,
+      })),
     );
     parts.value = String(scene?.scene ?? 0);
     variantField.hidden = !scene || scene.variants.length === 0;
     setOptions(variants, [
-      { value: fileDefault, label: "As in the file" },
+      { value: fileDefault, label: "None" },
       ...(scene?.variants ?? []).map((name) => ({ value: name, label: name })),
     ]);
     variants.value = scene?.variant ?? fileDefault;

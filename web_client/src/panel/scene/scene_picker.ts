@@ -1,4 +1,4 @@
-// Which scene: a list, a gallery of pictures, or a file of one's own.
+// Selects the scene: from a list, from a gallery, or by uploading a file.
 
 import { ScenePreviews } from "../../previews/scene_previews.ts";
 import { thumbnailChanged, thumbnailOf } from "../../previews/thumbnails.ts";
@@ -6,10 +6,10 @@ import type { Viewer } from "../../session/viewer.ts";
 import { button, element, icon, setOptions } from "../../widgets/element.ts";
 import { field } from "../../widgets/field.ts";
 
-export function createScenePicker(viewer: Viewer, bring: (file: File) => void): HTMLElement[] {
+export function createScenePicker(viewer: Viewer, upload: (file: File) => void): HTMLElement[] {
   const previews = new ScenePreviews(viewer);
   const gallery = createGallery(viewer);
-  const toggle = button("Show all scenes as pictures", "grid", () => {
+  const toggle = button("Show thumbnails of all scenes", "grid", () => {
     gallery.hidden = !gallery.hidden;
     toggle.setAttribute("aria-expanded", String(!gallery.hidden));
     if (gallery.hidden) previews.stop();
@@ -17,7 +17,7 @@ export function createScenePicker(viewer: Viewer, bring: (file: File) => void): 
   });
   toggle.setAttribute("aria-expanded", "false");
   toggle.setAttribute("aria-controls", gallery.id);
-  return [field("Scene", sceneList(viewer), toggle, fileButton(viewer, bring)), gallery];
+  return [field("Scene", sceneList(viewer), toggle, fileButton(viewer, upload)), gallery];
 }
 
 function createGallery(viewer: Viewer): HTMLElement {
@@ -27,7 +27,7 @@ function createGallery(viewer: Viewer): HTMLElement {
   const fill = (): void => {
     const { scenes, current } = viewer.scenes.value;
     const names = scenes.map(({ name }) => name);
-    // Made anew only when scenes come or go: who stands on a tile stays there.
+    // Rebuilt only when scenes are added or removed, so that a tile keeps the focus.
     if (shown !== names.join("\n")) {
       shown = names.join("\n");
       tiles.clear();
@@ -38,7 +38,7 @@ function createGallery(viewer: Viewer): HTMLElement {
   };
   viewer.scenes.watch(fill);
   thumbnailChanged.watch((name) => {
-    tiles.get(name)?.firstElementChild?.replaceWith(picture(thumbnailOf(name)));
+    tiles.get(name)?.firstElementChild?.replaceWith(thumbnail(thumbnailOf(name)));
   });
   return gallery;
 }
@@ -47,29 +47,29 @@ function createTile(viewer: Viewer, name: string): HTMLElement {
   return element(
     "button",
     { type: "button", class: "tile", click: () => void viewer.loadScene(name) },
-    picture(thumbnailOf(name)),
+    thumbnail(thumbnailOf(name)),
     element("span", { class: "tile-name" }, name),
   );
 }
 
-function picture(source: string | null): HTMLElement {
-  if (source) return element("img", { src: source, alt: "", class: "tile-picture" });
-  return element("span", { class: "tile-picture unseen" }, icon("scene"));
+function thumbnail(source: string | null): HTMLElement {
+  if (source) return element("img", { src: source, alt: "", class: "tile-image" });
+  return element("span", { class: "tile-image placeholder" }, icon("scene"));
 }
 
-/** For who cannot drop a file; there only where the server takes any. */
-function fileButton(viewer: Viewer, bring: (file: File) => void): HTMLElement {
+/** An alternative to dropping a file; hidden where the server does not accept uploads. */
+function fileButton(viewer: Viewer, upload: (file: File) => void): HTMLElement {
   const input = element("input", {
     type: "file",
     accept: ".glb",
     hidden: true,
     change: () => {
       const file = input.files?.[0];
-      if (file) bring(file);
+      if (file) upload(file);
       input.value = "";
     },
   });
-  const opener = button("Bring a .glb file", "upload", () => input.click());
+  const opener = button("Upload a .glb file", "upload", () => input.click());
   opener.hidden = true;
   viewer.connection.state.watch((state) => {
     if (state.kind === "live") opener.hidden = !state.hello.limits.max_upload_bytes;

@@ -1,35 +1,35 @@
-// What is shown and in which light.
+// The Scene tab: scene, camera, environment, lights, materials.
 
 import type { SceneInfo } from "heliograph/messages.ts";
 import type { Viewer } from "../../session/viewer.ts";
-import { createCameraFields } from "./camera_fields.ts";
-import { requiresControl } from "../../widgets/requires_control.ts";
 import { element, icon, setText } from "../../widgets/element.ts";
+import { requiresControl } from "../../widgets/requires_control.ts";
+import { mountSettings } from "../settings/settings_sections.ts";
+import { createCameraFields } from "./camera_fields.ts";
 import { createEnvironmentField } from "./environment_field.ts";
 import { createLightSection } from "./light_section.ts";
 import { createMaterialSection } from "./material_section.ts";
 import { createPartFields } from "./part_fields.ts";
 import { createScenePicker } from "./scene_picker.ts";
-import { mountSettings } from "../settings/settings_sections.ts";
 
-/** Settings of the scene's look, which stand here instead of among the renderer's. */
+/** Groups of settings that are shown here instead of in the Settings tab. */
 export const appearanceGroups = ["exposure", "tone_map", "environment"];
 
-export function createSceneTab(viewer: Viewer, bring: (file: File) => void): HTMLElement {
+export function createSceneTab(viewer: Viewer, upload: (file: File) => void): HTMLElement {
   const facts = element("p", { class: "facts" });
   const warnings = element("details", { class: "warnings", hidden: true });
   viewer.scene.watch((scene) => {
     setText(facts, scene ? describeScene(scene) : "");
     showWarnings(warnings, scene?.warnings ?? []);
   });
-  const look = element("div", { class: "settings" });
-  mountSettings(look, viewer.settings, { id: "look", only: appearanceGroups });
+  const appearance = element("div", { class: "settings" });
+  mountSettings(appearance, viewer.settings, { id: "appearance", only: appearanceGroups });
   return requiresControl(
     viewer,
     element(
       "div",
       { class: "fields", "data-section": "scene" },
-      ...createScenePicker(viewer, bring),
+      ...createScenePicker(viewer, upload),
       facts,
       warnings,
       ...createPartFields(viewer),
@@ -37,14 +37,14 @@ export function createSceneTab(viewer: Viewer, bring: (file: File) => void): HTM
       createEnvironmentField(viewer.parts),
     ),
     createLightSection(viewer.parts),
-    look,
+    appearance,
     createMaterialSection(viewer.parts).node,
   );
 }
 
 function describeScene(scene: SceneInfo): string {
-  const count = (value: number, one: string): string =>
-    value > 0 ? `${compact(value)} ${one}${value === 1 ? "" : "s"}` : "";
+  const count = (value: number, noun: string): string =>
+    value > 0 ? `${compact(value)} ${noun}${value === 1 ? "" : "s"}` : "";
   return [
     count(scene.triangles, "triangle"),
     count(scene.materials, "material"),

@@ -1,16 +1,16 @@
-// Where a directional light comes from, as a point on a disc: its edge is the horizon, its middle
-// straight above; the direction on the disc is that on a map with +Z down.
+// The direction of a directional light as a point on a disc: the edge is the horizon, the centre
+// the zenith; the disc is a map seen from above, with +Z down.
 
-import type { Vector3 } from "heliograph/messages.ts";
+import type { Vector3 } from "heliograph/json.ts";
 import { normalize, scale } from "../../common/vector.ts";
-import { isDisabled } from "../../widgets/requires_control.ts";
 import { element } from "../../widgets/element.ts";
+import { isDisabled } from "../../widgets/requires_control.ts";
 
 const keyStep = 2; // degrees
 const largeStep = 10;
 
 /** Azimuth clockwise from -Z seen from above, elevation over the horizon; degrees. */
-export interface SunPosition {
+interface SunPosition {
   azimuth: number;
   elevation: number;
 }
@@ -29,7 +29,7 @@ export function sunDirection({ azimuth, elevation }: SunPosition): Vector3 {
   return [-Math.sin(turn) * level, -Math.sin(rise), Math.cos(turn) * level];
 }
 
-export interface SunDial {
+interface SunDial {
   node: HTMLElement;
   show(direction: Vector3): void;
 }
@@ -46,14 +46,14 @@ export function createSunDial(label: string, changed: (direction: Vector3) => vo
       "aria-label": label,
       "aria-valuemin": "-180",
       "aria-valuemax": "180",
-      "data-tip": "Drag the sun; arrow keys turn and lift it, with Shift in larger steps",
+      "data-tip": "Drag to set the direction, or use the arrow keys (with Shift: larger steps).",
       pointerdown: (event: PointerEvent) => {
         if (isDisabled(disc)) return;
         disc.setPointerCapture(event.pointerId);
-        place(event);
+        setFromPointer(event);
       },
       pointermove: (event: PointerEvent) => {
-        if (disc.hasPointerCapture(event.pointerId)) place(event);
+        if (disc.hasPointerCapture(event.pointerId)) setFromPointer(event);
       },
       keydown: (event: KeyboardEvent) => step(event),
     },
@@ -65,12 +65,12 @@ export function createSunDial(label: string, changed: (direction: Vector3) => vo
     draw();
     changed(sunDirection(position));
   };
-  const place = (event: PointerEvent): void => {
+  const setFromPointer = (event: PointerEvent): void => {
     const { left, top, width, height } = disc.getBoundingClientRect();
     const x = ((event.clientX - left) / width) * 2 - 1;
     const y = ((event.clientY - top) / height) * 2 - 1;
-    const away = Math.min(1, Math.hypot(x, y));
-    set({ azimuth: (Math.atan2(x, -y) * 180) / Math.PI, elevation: 90 * (1 - away) });
+    const radius = Math.min(1, Math.hypot(x, y));
+    set({ azimuth: (Math.atan2(x, -y) * 180) / Math.PI, elevation: 90 * (1 - radius) });
   };
   const step = (event: KeyboardEvent): void => {
     const size = event.shiftKey ? largeStep : keyStep;
@@ -86,13 +86,13 @@ export function createSunDial(label: string, changed: (direction: Vector3) => vo
     set({ azimuth: position.azimuth + (turn ?? 0), elevation: position.elevation + (lift ?? 0) });
   };
   const draw = (): void => {
-    const away = 1 - Math.max(0, position.elevation) / 90;
+    const radius = 1 - Math.max(0, position.elevation) / 90;
     const turn = (position.azimuth * Math.PI) / 180;
-    knob.style.left = `${50 + 50 * away * Math.sin(turn)}%`;
-    knob.style.top = `${50 - 50 * away * Math.cos(turn)}%`;
-    const text = `${position.azimuth.toFixed(0)}° around, ${position.elevation.toFixed(0)}° high`;
-    disc.setAttribute("aria-valuenow", position.azimuth.toFixed(0));
-    disc.setAttribute("aria-valuetext", text);
+    knob.style.left = `${50 + 50 * radius * Math.sin(turn)}%`;
+    knob.style.top = `${50 - 50 * radius * Math.cos(turn)}%`;
+    const [azimuth, elevation] = [position.azimuth.toFixed(0), position.elevation.toFixed(0)];
+    disc.setAttribute("aria-valuenow", azimuth);
+    disc.setAttribute("aria-valuetext", `${azimuth}° azimuth, ${elevation}° elevation`);
   };
   return {
     node: disc,

@@ -1,10 +1,10 @@
-// The generated part of the panel: one foldable section per group of settings.
+// The generated part of the panel: one collapsible section per group of settings.
 
 import type { ControlGroup } from "heliograph/settings_schema.ts";
 import type { SettingsStore } from "../../session/settings_store.ts";
-import { type Row, createRow } from "../../widgets/setting_row.ts";
 import { element, icon, setText } from "../../widgets/element.ts";
 import { createSection } from "../../widgets/section.ts";
+import { type Row, createRow } from "../../widgets/setting_row.ts";
 
 interface Section {
   node: HTMLElement;
@@ -12,21 +12,21 @@ interface Section {
   showChanges(count: number): void;
 }
 
-export interface SettingsParts {
-  /** Tells this place's sections from those elsewhere. */
+interface SettingsParts {
+  /** Distinguishes these sections from those of other tabs. */
   id: string;
   /** Only these groups; all when left out. */
   only?: string[];
-  /** Groups and settings that have their place elsewhere. */
+  /** Groups and settings that are shown elsewhere. */
   without?: string[];
 }
 
-export interface MountedSettings {
-  /** Shows only what the words occur in; returns how many settings that are. */
+interface MountedSettings {
+  /** Shows only settings that contain all words; returns their number. */
   filter(words: string): number;
 }
 
-/** Builds the sections and keeps them in step with the server. */
+/** Builds the sections and updates them when settings change. */
 export function mountSettings(
   container: HTMLElement,
   store: SettingsStore,
@@ -50,7 +50,7 @@ export function mountSettings(
     const general = { ...shown, path: "general", title: "General", groups: [] };
     const all = shown.controls.length > 0 && !only ? [general, ...groups] : groups;
     sections = all.map((group, index) =>
-      buildSection(group, store, { id, without, openAtFirst: index === 0 || only !== undefined }),
+      buildSection(group, store, { id, without, openByDefault: index === 0 || only !== undefined }),
     );
     container.replaceChildren(...sections.map(({ node }) => node));
     update();
@@ -61,29 +61,29 @@ export function mountSettings(
 
 function filterSections(container: HTMLElement, sections: Section[], typed: string): number {
   const words = typed.toLowerCase().split(/\s+/).filter(Boolean);
-  let found = 0;
+  let total = 0;
   container.classList.toggle("searching", words.length > 0);
   for (const { node, rows } of sections) {
     const title = node.querySelector("h2")?.textContent ?? "";
-    let here = 0;
+    let matches = 0;
     for (const row of rows) {
       const { label, path, description } = row.control;
       const text = `${title} ${label} ${path} ${description}`.toLowerCase();
       row.node.hidden = !words.every((word) => text.includes(word));
-      if (!row.node.hidden) here += 1;
+      if (!row.node.hidden) matches += 1;
     }
-    node.hidden = here === 0;
-    unfoldFor(node, words.length > 0);
-    found += here;
+    node.hidden = matches === 0;
+    openForSearch(node, words.length > 0);
+    total += matches;
     for (const part of node.querySelectorAll<HTMLElement>(".subgroup")) {
       part.hidden = part.querySelector(".row:not([hidden])") === null;
     }
   }
-  return found;
+  return total;
 }
 
-/** Found settings must be seen; after the search sections are as folded as before. */
-function unfoldFor(node: HTMLElement, searching: boolean): void {
+/** Opens sections during a search and restores them afterwards. */
+function openForSearch(node: HTMLElement, searching: boolean): void {
   const fold = node.querySelector("details");
   if (!fold || searching === (node.dataset.folded !== undefined)) return;
   if (searching) {
@@ -98,7 +98,7 @@ function unfoldFor(node: HTMLElement, searching: boolean): void {
 function buildSection(
   group: ControlGroup,
   store: SettingsStore,
-  { id, without, openAtFirst }: { id: string; without: string[]; openAtFirst: boolean },
+  { id, without, openByDefault }: { id: string; without: string[]; openByDefault: boolean },
 ): Section {
   const rows: Row[] = [];
   const body = element("div", { class: "section-body" });
@@ -119,7 +119,7 @@ function buildSection(
     id: `${id}.${group.path}`,
     title: group.title,
     body,
-    openAtFirst,
+    openByDefault,
     note: count,
     action: resetAll,
   });

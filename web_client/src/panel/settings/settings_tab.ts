@@ -1,10 +1,9 @@
-// Everything the renderer can be told: presets, a search, steps back and forth, and the generated
-// sections.
+// The Settings tab: presets, search, undo and redo, and the generated sections.
 
-import type { JsonObject } from "heliograph/messages.ts";
+import type { JsonObject } from "heliograph/json.ts";
 import type { Viewer } from "../../session/viewer.ts";
-import { requiresControl } from "../../widgets/requires_control.ts";
 import { button, element, icon, setText } from "../../widgets/element.ts";
+import { requiresControl } from "../../widgets/requires_control.ts";
 import { presetLabel } from "./preset_labels.ts";
 import { mountSettings } from "./settings_sections.ts";
 
@@ -13,13 +12,13 @@ interface Preset {
   description: string;
 }
 
-export function createSettingsTab(viewer: Viewer, handled: string[]): HTMLElement {
+export function createSettingsTab(viewer: Viewer, shownElsewhere: string[]): HTMLElement {
   const sections = element("div", { class: "settings" });
   const mounted = mountSettings(sections, viewer.settings, {
     id: "settings",
-    without: handled,
+    without: shownElsewhere,
   });
-  const nothing = element("p", { class: "facts nothing", hidden: true });
+  const noResults = element("p", { class: "facts no-results", hidden: true });
   const search = element("input", {
     type: "search",
     name: "search",
@@ -36,9 +35,8 @@ export function createSettingsTab(viewer: Viewer, handled: string[]): HTMLElemen
     },
   });
   const find = (): void => {
-    const found = mounted.filter(search.value);
-    nothing.hidden = found > 0;
-    setText(nothing, `No setting is called or described so.`);
+    noResults.hidden = mounted.filter(search.value) > 0;
+    setText(noResults, "No matching settings.");
   };
   const { settings } = viewer;
   const undo = button("Undo (Ctrl Z)", "undo", () => settings.undo());
@@ -55,34 +53,34 @@ export function createSettingsTab(viewer: Viewer, handled: string[]): HTMLElemen
     { class: "settings-tab" },
     requiresControl(viewer, createPresetChips(viewer)),
     element("div", { class: "toolbar" }, searchBox, undo, redo),
-    nothing,
+    noResults,
     requiresControl(viewer, sections),
   );
 }
 
-/** The presets in their order, the one in effect marked. */
+/** The presets in their order; the active one is marked. */
 function createPresetChips(viewer: Viewer): HTMLElement {
-  const ladder = element("div", { class: "chips", role: "group", "aria-label": "Presets" });
-  let chosen: { name: string; settings: JsonObject } | null = null;
+  const chips = element("div", { class: "chips", role: "group", "aria-label": "Presets" });
+  let applied: { name: string; settings: JsonObject } | null = null;
   const mark = (): void => {
-    for (const chip of ladder.querySelectorAll<HTMLButtonElement>("button")) {
-      const active = chip.dataset.preset === chosen?.name;
-      const kept = active && chosen !== null && viewer.settings.matches(chosen.settings);
-      chip.setAttribute("aria-pressed", String(kept));
-      chip.classList.toggle("left", active && !kept);
+    for (const chip of chips.querySelectorAll<HTMLButtonElement>("button")) {
+      const active = chip.dataset.preset === applied?.name;
+      const unmodified = active && applied !== null && viewer.settings.matches(applied.settings);
+      chip.setAttribute("aria-pressed", String(unmodified));
+      chip.classList.toggle("modified", active && !unmodified);
     }
   };
-  const choose = async (name: string): Promise<void> => {
+  const apply = async (name: string): Promise<void> => {
     try {
-      chosen = { name, settings: await viewer.settings.choosePreset(name) };
+      applied = { name, settings: await viewer.settings.choosePreset(name) };
       mark();
     } catch (error) {
       viewer.report(error);
     }
   };
   viewer.capabilities.presets.watch((presets: Preset[]) => {
-    ladder.hidden = presets.length === 0;
-    ladder.replaceChildren(
+    chips.hidden = presets.length === 0;
+    chips.replaceChildren(
       ...presets.map(({ name, description }) =>
         element(
           "button",
@@ -92,7 +90,7 @@ function createPresetChips(viewer: Viewer): HTMLElement {
             "data-preset": name,
             "data-tip": description,
             "aria-pressed": "false",
-            click: () => void choose(name),
+            click: () => void apply(name),
           },
           presetLabel(name),
         ),
@@ -101,5 +99,5 @@ function createPresetChips(viewer: Viewer): HTMLElement {
     mark();
   });
   viewer.settings.tree.watch(mark);
-  return element("div", { class: "ladder" }, element("h2", {}, "Denoiser presets"), ladder);
+  return element("div", { class: "presets" }, element("h2", {}, "Denoiser presets"), chips);
 }

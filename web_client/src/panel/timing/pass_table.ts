@@ -1,5 +1,5 @@
-// Where the time of a frame goes: a line per stage that unfolds into its passes. Times are
-// smoothed and lines stay where they first appeared, so that the eye can rest on them.
+// GPU and CPU time of a frame: one line per stage, which expands into its passes. Times are
+// smoothed and lines keep their order, so that the table is readable.
 
 import { humanise } from "heliograph/settings_schema.ts";
 import { element, icon, setText } from "../../widgets/element.ts";
@@ -20,7 +20,7 @@ interface StageLine extends Line {
 
 export const hues = 10;
 const smoothing = 0.35;
-const forgetAfterMs = 4000;
+const removeAfterMs = 4000;
 
 export class PassTable {
   readonly node: HTMLElement;
@@ -28,28 +28,28 @@ export class PassTable {
   private readonly stages = new Map<string, StageLine>();
   private readonly hueOf: (stage: string) => number;
 
-  /** The colours are those of the chart. */
+  /** `hueOf` gives the colour of a stage in the chart. */
   constructor(hueOf: (stage: string) => number) {
     this.hueOf = hueOf;
     const empty = element("p", { class: "facts empty" }, "Timings appear with the first frames.");
     this.node = element("div", { class: "pass-table" }, this.list, empty);
   }
 
-  /** `exactly` shows one moment as it was, otherwise values glide. */
-  show(stages: Stage[], exactly = false): void {
+  /** `exact` shows the values of one frame, otherwise they are smoothed. */
+  show(stages: Stage[], exact = false): void {
     const now = performance.now();
     const longest = Math.max(1e-6, ...stages.map(({ ms }) => ms));
     for (const stage of stages) {
       const line = this.stages.get(stage.name) ?? this.addStage(stage.name);
-      update(line, stage.ms, longest, now, exactly);
+      update(line, stage.ms, longest, now, exact);
       for (const pass of stage.passes) {
         const inner = line.lines.get(pass.name) ?? this.addPass(line, stage.name, pass.name);
-        update(inner, pass.ms, longest, now, exactly);
+        update(inner, pass.ms, longest, now, exact);
       }
-      forget(line.lines, now);
+      removeStale(line.lines, now);
       line.node.classList.toggle("single", stage.passes.length < 2);
     }
-    forget(this.stages, now);
+    removeStale(this.stages, now);
   }
 
   private addStage(name: string): StageLine {
@@ -64,8 +64,8 @@ export class PassTable {
   }
 
   private addPass(stage: StageLine, stageName: string, name: string): Line {
-    const rest = name.slice(stageName.length + 1) || name;
-    const line = createLine(humanise(rest.replaceAll(".", " · ")), this.hueOf(stageName));
+    const shortName = name.slice(stageName.length + 1) || name;
+    const line = createLine(humanise(shortName.replaceAll(".", " · ")), this.hueOf(stageName));
     stage.passes.append(element("li", { "data-pass": name }, line.node));
     stage.lines.set(name, line);
     return line;
@@ -85,16 +85,16 @@ function createLine(label: string, hue: number): Line {
   return { node, bar, value, ms: 0, seenAt: 0 };
 }
 
-function update(line: Line, ms: number, longest: number, now: number, exactly: boolean): void {
-  line.ms += (ms - line.ms) * (exactly || line.seenAt === 0 ? 1 : smoothing);
+function update(line: Line, ms: number, longest: number, now: number, exact: boolean): void {
+  line.ms += (ms - line.ms) * (exact || line.seenAt === 0 ? 1 : smoothing);
   line.seenAt = now;
   line.bar.style.transform = `scaleX(${Math.min(1, line.ms / longest)})`;
   setText(line.value, line.ms.toFixed(line.ms < 9.95 ? 2 : line.ms < 999.5 ? 1 : 0));
 }
 
-function forget(lines: Map<string, Line>, now: number): void {
+function removeStale(lines: Map<string, Line>, now: number): void {
   for (const [name, line] of lines) {
-    if (now - line.seenAt < forgetAfterMs) continue;
+    if (now - line.seenAt < removeAfterMs) continue;
     line.node.closest("li")?.remove();
     lines.delete(name);
   }

@@ -1,4 +1,4 @@
-// The passes of a frame gathered into its stages: the first part of a pass's name.
+// Groups the passes of a frame into stages by the first part of the pass name.
 
 import type { FrameStats, PassTiming } from "heliograph/messages.ts";
 
@@ -8,7 +8,7 @@ export interface Stage {
   passes: PassTiming[];
 }
 
-/** In the order of the frame; the encoder, which works beside the frame, comes last. */
+/** In the order of the frame; the encoder, which runs in parallel, comes last. */
 export function stagesOf(stats: FrameStats): Stage[] {
   const stages = new Map<string, Stage>();
   const passes = [...stats.passes, { name: "encode", kind: "host", ms: stats.encode_ms } as const];

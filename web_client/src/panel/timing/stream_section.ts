@@ -1,5 +1,6 @@
-// How much picture to ask for: resolution and JPEG quality.
+// Resolution, quality and codec of the stream.
 
+import type { StreamSettings } from "heliograph/messages.ts";
 import { preferences } from "../../common/preferences.ts";
 import { Signal } from "../../common/signal.ts";
 import type { Viewer } from "../../session/viewer.ts";
@@ -7,9 +8,9 @@ import { element, setOptions } from "../../widgets/element.ts";
 import { field } from "../../widgets/field.ts";
 
 export interface ResolutionChoice {
-  /** Fraction of the screen's own pixels in each direction. */
+  /** Fraction of the screen's device pixels in each direction. */
   scale: number;
-  /** Whether a slow device may be spared some of them. */
+  /** Whether the resolution is lower for servers that render on a CPU. */
   automatic: boolean;
 }
 
@@ -41,7 +42,7 @@ export function createStreamSection(viewer: Viewer): {
     "select",
     {
       name: "resolution",
-      "data-tip": "Fewer pixels answer faster. Automatic asks a processor for less than a GPU.",
+      "data-tip": "Fewer pixels render faster. Automatic: fewer pixels where a CPU renders.",
       change: () => {
         preferences.setText("resolution", sizes.value);
         resolution.set(resolutions[sizes.value]?.choice ?? automatic);
@@ -65,7 +66,7 @@ function qualityPicker(viewer: Viewer): HTMLSelectElement {
     "select",
     {
       name: "quality",
-      "data-tip": "JPEG quality of the stream. Saved pictures are always lossless.",
+      "data-tip": "JPEG quality of the stream. Saved images are always lossless.",
       change: () => {
         preferences.setText("quality", select.value);
         viewer.stream.request({ quality: Number(select.value) });
@@ -84,25 +85,25 @@ function qualityPicker(viewer: Viewer): HTMLSelectElement {
   return select;
 }
 
-/** There only where server and browser have a choice. */
+/** Hidden where server and browser have only one codec in common. */
 function codecField(viewer: Viewer): HTMLElement {
-  const select = element(
-    "select",
-    {
-      name: "codec",
-      "data-tip": "H.264 needs a fraction of the bandwidth, JPEG is sharper while things move.",
-      change: () => {
-        preferences.setText("codec", select.value);
-        viewer.stream.request({ codec: select.value });
-      },
+  const select = element("select", {
+    name: "codec",
+    "data-tip": "H.264 needs a fraction of the bandwidth, JPEG is sharper during motion.",
+    change: () => {
+      preferences.setText("codec", select.value);
+      viewer.stream.request({ codec: select.value as StreamSettings["codec"] });
     },
-  );
+  });
   const node = field("Codec", select);
   viewer.connection.state.watch((state) => {
     if (state.kind !== "live") return;
     const { codecs } = state.hello;
     node.hidden = codecs.length < 2;
-    setOptions(select, codecs.map((name) => ({ value: name, label: codecLabels[name] ?? name })));
+    setOptions(
+      select,
+      codecs.map((name) => ({ value: name, label: codecLabels[name] ?? name })),
+    );
     select.value = viewer.stream.settings.value?.codec ?? codecs[0] ?? "jpeg";
   });
   viewer.stream.settings.watch((stream) => {

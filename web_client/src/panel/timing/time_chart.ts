@@ -1,4 +1,4 @@
-// The last frames as stacked bars, a colour per stage. Drawn only when a measurement came.
+// The last frames as stacked bars, one colour per stage. Redrawn for each measurement.
 
 import { element } from "../../widgets/element.ts";
 import { hues } from "./pass_table.ts";
@@ -14,28 +14,28 @@ export class TimeChart {
   private readonly canvas = element("canvas", { class: "chart" });
   private readonly scale = element("span", { class: "chart-scale" });
   private readonly hueOrder: string[] = [];
-  private readonly moments: Stage[][] = [];
+  private readonly samples: Stage[][] = [];
   private top = 0;
-  private pointed: number | null = null;
-  /** Called with the moment under the pointer, and with null when it leaves. */
-  private readonly pointedAt: (stages: Stage[] | null) => void;
+  private hovered: number | null = null;
+  /** Called with the sample under the pointer, and with null when it leaves. */
+  private readonly onHover: (stages: Stage[] | null) => void;
 
-  constructor(pointedAt: (stages: Stage[] | null) => void) {
-    this.pointedAt = pointedAt;
+  constructor(onHover: (stages: Stage[] | null) => void) {
+    this.onHover = onHover;
     this.canvas.setAttribute("role", "img");
-    this.canvas.setAttribute("aria-label", "Time of the last frames by stage");
+    this.canvas.setAttribute("aria-label", "Time of the last frames, by stage");
     this.canvas.addEventListener("pointermove", (event) => {
       const { left, width } = this.canvas.getBoundingClientRect();
       const column = Math.floor(((event.clientX - left) / width) * columns);
-      this.point(column - (columns - this.moments.length));
+      this.hover(column - (columns - this.samples.length));
     });
-    this.canvas.addEventListener("pointerleave", () => this.point(-1));
+    this.canvas.addEventListener("pointerleave", () => this.hover(-1));
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
     new ResizeObserver(() => this.draw()).observe(this.canvas);
     this.node = element("div", { class: "chart-box" }, this.canvas, this.scale);
   }
 
-  /** A stage keeps the colour that it had first. */
+  /** The colour of a stage; it never changes. */
   hueOf(stage: string): number {
     let index = this.hueOrder.indexOf(stage);
     if (index < 0) index = this.hueOrder.push(stage) - 1;
@@ -43,25 +43,25 @@ export class TimeChart {
   }
 
   add(stages: Stage[]): void {
-    this.moments.push(stages);
-    if (this.moments.length > columns) this.moments.shift();
-    const longest = Math.max(...this.moments.map(total));
-    const wanted = niceCeiling(longest * headroom);
-    if (wanted > this.top || wanted < this.top * 0.5) this.top = wanted;
+    this.samples.push(stages);
+    if (this.samples.length > columns) this.samples.shift();
+    const longest = Math.max(...this.samples.map(total));
+    const ceiling = niceCeiling(longest * headroom);
+    if (ceiling > this.top || ceiling < this.top * 0.5) this.top = ceiling;
     this.draw();
   }
 
-  private point(index: number): void {
-    const moment = this.moments[index];
-    this.pointed = moment ? index : null;
-    this.pointedAt(moment ?? null);
+  private hover(index: number): void {
+    const sample = this.samples[index];
+    this.hovered = sample ? index : null;
+    this.onHover(sample ?? null);
     this.draw();
   }
 
   private draw(): void {
     const ratio = Math.min(2, devicePixelRatio);
     const width = this.canvas.clientWidth;
-    if (width === 0) return; // folded away
+    if (width === 0) return; // collapsed
     const [wide, high] = [Math.round(width * ratio), Math.round(height * ratio)];
     if (this.canvas.width !== wide || this.canvas.height !== high) {
       this.canvas.width = wide;
@@ -74,9 +74,9 @@ export class TimeChart {
     const style = getComputedStyle(this.canvas);
     const colours = Array.from({ length: hues }, (_, i) => style.getPropertyValue(`--hue-${i}`));
     const step = width / columns;
-    const first = columns - this.moments.length;
-    this.moments.forEach((stages, index) => {
-      context.globalAlpha = this.pointed === null || this.pointed === index ? 1 : 0.45;
+    const first = columns - this.samples.length;
+    this.samples.forEach((stages, index) => {
+      context.globalAlpha = this.hovered === null || this.hovered === index ? 1 : 0.45;
       let bottom = height;
       for (const { name, ms } of stages) {
         const size = (ms / this.top) * height;
@@ -85,7 +85,7 @@ export class TimeChart {
         bottom -= size;
       }
     });
-    const shown = this.pointed === null ? null : this.moments[this.pointed];
+    const shown = this.hovered === null ? null : this.samples[this.hovered];
     this.scale.textContent = shown ? `${total(shown).toFixed(1)} ms` : `${this.top} ms`;
   }
 }

@@ -1,4 +1,4 @@
-// How fast it runs: the figures a person asks for first, then where a frame's time goes.
+// The Timing tab: key figures, time per pass, and the stream's settings.
 
 import type { Viewer } from "../../session/viewer.ts";
 import { element, setText } from "../../widgets/element.ts";
@@ -8,32 +8,35 @@ import { type Stage, stagesOf } from "./stage_times.ts";
 import { TimeChart } from "./time_chart.ts";
 
 const refreshMs = 250;
-const restingAfterMs = 1200;
+const idleAfterMs = 1200;
 
-export function createStatsTab(viewer: Viewer, streamFields: HTMLElement): HTMLElement {
-  const rate = figure("Frame rate", "Pictures drawn per second. At rest nothing is sent.");
-  const latency = figure("Latency", "From moving the camera to drawing the picture that shows it.");
-  const bandwidth = figure("Bandwidth", "What the stream needs right now.");
-  const size = figure("Picture", "Pixels the server renders and sends.");
-  const samples = figure("Samples", "Samples per pixel gathered while the view rests.");
-  const frameTime = figure("Frame", "Time the server spends on one frame.");
-  const quality = figure("Quality", "Of the JPEG pictures, out of 100.");
-  const scale = figure("Scale", "Pixels sent for each pixel of the screen, in each direction.");
-  const decode = figure("Decoding", "Time this browser takes to decode and draw a picture.");
+export function createTimingTab(viewer: Viewer, streamFields: HTMLElement): HTMLElement {
+  const rate = figure("Frame rate", "Frames drawn per second. A converged view sends no frames.");
+  const latency = figure(
+    "Latency",
+    "From moving the camera to drawing the first frame that shows it.",
+  );
+  const bandwidth = figure("Bandwidth", "Data rate of the stream.");
+  const size = figure("Frame size", "Pixels that the server renders and sends.");
+  const samples = figure("Samples", "Samples per pixel, accumulated while the view is static.");
+  const frameTime = figure("Frame time", "Time that the server spends on one frame.");
+  const quality = figure("Quality", "JPEG quality, 1 to 100.");
+  const scale = figure("Scale", "Sent pixels per screen pixel, in each direction.");
+  const decode = figure("Decoding", "Time that this browser needs to decode and draw a frame.");
   let newest: Stage[] = [];
-  const chart = new TimeChart((moment) => table.show(moment ?? newest, moment !== null));
+  const chart = new TimeChart((sample) => table.show(sample ?? newest, sample !== null));
   const table = new PassTable((stage) => chart.hueOf(stage));
   const device = element("p", { class: "facts device" });
   const refresh = (): void => {
     const now = performance.timeOrigin + performance.now();
     const frame = viewer.frame.value;
-    const resting = !frame || now - frame.drawnAt > restingAfterMs;
-    const rest = frame?.final ? "at rest" : "refining";
+    const idle = !frame || now - frame.drawnAt > idleAfterMs;
+    const idleText = frame?.final ? "converged" : "refining";
     const { fps, bytesPerSecond } = viewer.rates.read(now);
     const median = viewer.latency.median;
-    setText(rate.value, resting ? (frame ? rest : "–") : `${formatRate(fps)} fps`);
+    setText(rate.value, idle ? (frame ? idleText : "–") : `${formatRate(fps)} fps`);
     setText(latency.value, median === null ? "–" : `${median.toFixed(0)} ms`);
-    const bytes = formatBandwidth(resting ? 0 : bytesPerSecond);
+    const bytes = formatBandwidth(idle ? 0 : bytesPerSecond);
     setText(bandwidth.value, frame ? bytes : "–");
     setText(size.value, frame ? `${frame.width} × ${frame.height}` : "–");
     setText(samples.value, frame ? String(frame.samples) : "–");
@@ -63,7 +66,7 @@ export function createStatsTab(viewer: Viewer, streamFields: HTMLElement): HTMLE
     "div",
     { "data-section": "performance" },
     body,
-    createSection({ id: "stream", title: "Stream", body: streamFields, openAtFirst: true }),
+    createSection({ id: "stream", title: "Stream", body: streamFields, openByDefault: true }),
   );
 }
 
@@ -83,15 +86,15 @@ function figure(label: string, help: string): { node: HTMLElement; value: HTMLEl
   return { node, value };
 }
 
-export function formatRate(fps: number): string {
+function formatRate(fps: number): string {
   return fps < 9.95 ? fps.toFixed(1) : fps.toFixed(0);
 }
 
-export function formatMs(ms: number): string {
+function formatMs(ms: number): string {
   return ms < 9.95 ? ms.toFixed(1) : ms.toFixed(0);
 }
 
-export function formatBandwidth(bytesPerSecond: number): string {
+function formatBandwidth(bytesPerSecond: number): string {
   return bytesPerSecond < 999_500
     ? `${(bytesPerSecond / 1e3).toFixed(0)} kB/s`
     : `${(bytesPerSecond / 1e6).toFixed(1)} MB/s`;

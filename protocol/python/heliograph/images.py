@@ -1,4 +1,4 @@
-"""Pictures as they come: captured files and frames of the stream. Notebooks show both."""
+"""Captured files and frames of the stream. Notebooks show both as images."""
 
 import base64
 import io
@@ -15,7 +15,7 @@ CODEC_JPEG, CODEC_PNG = 1, 2
 
 
 class _Shown:
-    """What notebooks look for: the bytes of a format that they can show, else None."""
+    """Display in notebooks: the bytes of a format that they can show, else None."""
 
     def _repr_png_(self):
         return self.data if self.data[:4] == b"\x89PNG" else None
@@ -24,7 +24,7 @@ class _Shown:
         return self.data if self.data[:2] == b"\xff\xd8" else None
 
     def save(self, path):
-        """Writes the file as it is."""
+        """Writes the file unchanged."""
         with open(path, "wb") as file:
             file.write(self.data)
 
@@ -49,7 +49,7 @@ class Capture(_Shown):
         """The array of an npy capture: (height, width) or (height, width, channels)."""
         import numpy
         if self.format != "npy":
-            raise ValueError(f"a capture as {self.format} is no array; capture it as npy")
+            raise ValueError(f"a capture as {self.format} is not an array; capture it as npy")
         return numpy.load(io.BytesIO(self.data), allow_pickle=False)
 
     def __repr__(self):
@@ -59,7 +59,7 @@ class Capture(_Shown):
 
 @dataclass(repr=False)
 class Frame(_Shown):
-    """One picture of the stream; `header` holds the fields that protocol/README.md lists."""
+    """One frame of the stream; `header` holds the fields listed in protocol/README.md."""
 
     header: dict
     data: bytes
@@ -85,7 +85,7 @@ class Frame(_Shown):
 
     @property
     def final(self):
-        """Whether it is the finished picture in full quality."""
+        """Whether it is the final frame of a static view, in full quality."""
         return bool(self.header["flags"] & FLAG_FINAL)
 
     def __repr__(self):

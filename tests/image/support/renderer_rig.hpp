@@ -9,12 +9,12 @@
 
 namespace heliograph::test {
 
-/// A scene in the renderer, as a session has it.
-class Still {
+/// A renderer with a scene and a camera, as a session uses it.
+class RendererRig {
  public:
-  Still(std::shared_ptr<const scene::Scene> scene, const scene::Environment& environment,
-        const scene::Camera& camera, std::uint32_t width, std::uint32_t height,
-        const std::string& tracer = "auto")
+  RendererRig(std::shared_ptr<const scene::Scene> scene, const scene::Environment& environment,
+              const scene::Camera& camera, std::uint32_t width, std::uint32_t height,
+              const std::string& tracer = "auto")
       : renderer(engine(tracer)) {
     renderer.set_scene(engine(tracer).upload(std::move(scene), environment));
     renderer.set_camera(camera);
@@ -24,7 +24,7 @@ class Still {
   void apply(const protocol::Settings& settings) {
     if (!renderer.set_settings(settings)) throw std::runtime_error("settings refused");
   }
-  /// Renders until so many samples are in the picture.
+  /// Renders until `samples` samples are accumulated.
   render::Frame accumulate(std::uint32_t samples) {
     render::Frame frame;
     do frame = renderer.render();

@@ -1,4 +1,4 @@
-"""Motion JPEG of a resting picture goes on, so that no proxy takes the stream for dead."""
+"""Motion JPEG of a static view repeats its last image, so that no proxy times out."""
 
 import time
 
@@ -8,17 +8,17 @@ from test_video import Parts
 LONGEST_SILENCE = 30  # seconds: the shortest of the usual limits of proxies
 
 
-class PicturesAtRest(ServerTestCase):
-    def test_the_last_picture_is_sent_again(self):
+class MjpegKeepalive(ServerTestCase):
+    def test_the_last_image_is_repeated_for_a_static_view(self):
         self.server.call("settings.patch", {"patch": {"accumulation": {"max_samples": 1}}})
         parts = Parts(self.server, timeout=LONGEST_SILENCE)
         pauses, repeated = [], 0
         newest = None
         while repeated < 2:
             before = time.monotonic()
-            picture = parts.picture().rgb
+            image = parts.image().rgb
             pauses.append(time.monotonic() - before)
-            repeated = repeated + 1 if picture == newest and pauses[-1] > 1 else 0
-            newest = picture
+            repeated = repeated + 1 if image == newest and pauses[-1] > 1 else 0
+            newest = image
         self.assertLess(max(pauses), LONGEST_SILENCE)
         parts.close()

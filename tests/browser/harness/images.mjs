@@ -1,9 +1,9 @@
-// Looks at pictures: reduces them in the browser, which can decode them, and compares.
+// Compares images: they are decoded and reduced in the browser.
 
 const columns = 48;
 const rows = 27;
 
-/** Average colours on a coarse grid, components in [0, 1]. The page only lends its decoder. */
+/** Average colours on a coarse grid, components in [0, 1]. The page decodes the image. */
 export async function thumbnail(page, png) {
   const values = await page.evaluate(
     async ({ base64, width, height }) => {
@@ -29,7 +29,7 @@ export function statistics(cells) {
   return { mean, deviation: Math.sqrt(variance) };
 }
 
-/** Mean absolute difference of two thumbnails; 0 for the same picture. */
+/** Mean absolute difference of two thumbnails; 0 for equal images. */
 export function difference(a, b) {
   return a.reduce((sum, value, index) => sum + Math.abs(value - b[index]), 0) / a.length;
 }

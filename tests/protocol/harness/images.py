@@ -1,4 +1,4 @@
-"""Decodes pictures: PNG here, JPEG with the library that the server itself needs."""
+"""Decodes images: PNG in Python, JPEG with the library that the server needs."""
 
 import ctypes
 import struct
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 
 @dataclass
-class Picture:
+class Image:
     width: int
     height: int
     rgb: bytes
@@ -67,7 +67,7 @@ def decode_png(file):
         line = bytearray(data[start + 1:start + 1 + 3 * width])
         above = _unfilter(data[start], line, above)
         lines.append(bytes(above))
-    return Picture(width, height, b"".join(lines))
+    return Image(width, height, b"".join(lines))
 
 
 _turbo = None
@@ -97,6 +97,6 @@ def decode_jpeg(file):
         assert not failed, "damaged JPEG"
     finally:
         _turbo.tjDestroy(handle)
-    picture = Picture(width.value, height.value, pixels.raw)
-    picture.full_chroma = sampling.value == 0
-    return picture
+    image = Image(width.value, height.value, pixels.raw)
+    image.full_chroma = sampling.value == 0
+    return image

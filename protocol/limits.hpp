@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+// Limits that messages, settings, the command line and HTTP parameters share. Both ends of a range
+// are allowed.
+
+namespace heliograph::protocol {
+
+/// Samples per pixel of a capture, a reference image or a converged frame.
+inline constexpr std::uint32_t max_samples_per_pixel = 65536;
+
+/// Width and height of rendered frames, pixels.
+inline constexpr std::uint32_t min_frame_size = 16;
+inline constexpr std::uint32_t max_frame_size = 16384;
+
+/// Quality of encoded frames on the scale of JPEG.
+inline constexpr int min_quality = 1;
+inline constexpr int max_quality = 100;
+
+/// Frame rate of a stream, frames per second.
+inline constexpr double min_frame_rate = 0.1;
+inline constexpr double max_frame_rate = 240.0;
+
+/// Distance from the origin along each axis of cameras, their targets and lights; metres.
+inline constexpr float max_coordinate = 1e9f;
+
+/// Lengths of names, bytes.
+inline constexpr std::size_t max_session_name = 64;  // viewers, presets and buffers as well
+inline constexpr std::size_t max_node_name = 256;    // cameras, clips, lights, materials, variants
+inline constexpr std::size_t max_scene_name = 512;   // paths in the catalogue; environments as well
+
+}  // namespace heliograph::protocol

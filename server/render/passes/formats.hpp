@@ -1,0 +1,12 @@
+#pragma once
+
+#include "gpu/device/vulkan.hpp"
+
+// Formats and usages of images and buffers that several passes share.
+
+namespace heliograph::render::formats {
+
+inline constexpr VkFormat four_floats = VK_FORMAT_R32G32B32A32_SFLOAT;
+inline constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+
+}  // namespace heliograph::render::formats
