@@ -46,7 +46,7 @@ shared::TemporalConstants temporal_constants(const FrameInputs& in,
   }
   constants.spatial_variance_frames = static_cast<float>(settings.spatial_variance_frames);
   const bool holds = settings.enabled && in.constants.counts.w == 0;
-  constants.flags = (holds ? shared::temporal_holds : 0u) |
+  constants.flags = (holds ? shared::temporal_history_valid : 0u) |
                     (settings.mean_variance ? shared::temporal_mean_variance : 0u) |
                     (settings.bicubic ? shared::temporal_bicubic : 0u);
   return constants;

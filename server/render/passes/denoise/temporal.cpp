@@ -141,8 +141,8 @@ Integrated accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in, cons
   const auto& settings = in.settings.specular_temporal;
   const auto constants = [in, &settings] {
     shared::TemporalConstants made = temporal_constants(in, settings);
-    if (settings.virtual_point) made.flags |= shared::temporal_virtual_point;
-    if (settings.bent_mirrors) made.flags |= shared::temporal_bent_mirrors;
+    if (settings.virtual_point) made.flags |= shared::temporal_virtual_motion;
+    if (settings.bent_mirrors) made.flags |= shared::temporal_curved_reflectors;
     return made;
   };
   const gpu::ImageRef signal =
