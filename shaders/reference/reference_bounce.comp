@@ -21,7 +21,7 @@ const float least_roughness = 0.1;  // whose lobe is wide enough to be met by ch
 
 vec3 environment_at_miss(ReferencePath path, vec3 direction) {
   if (path.bounces == 0u) return background(direction);
-  uint lobe = (path.flags & path_mirrored) != 0u ? frame_environment_specular
+  uint lobe = (path.flags & path_specular) != 0u ? frame_environment_specular
                                                  : frame_environment_diffuse;
   if (!enabled(lobe)) return vec3(0.0);
   // Two ways lead here, each weighed by how likely it is (Veach and Guibas 1995).
@@ -129,7 +129,7 @@ bool scatter(inout ReferencePath path, SurfaceMaterial m, RayCone cone, float t,
     SpecularSample drawn = sample_specular(m, u);
     direction = drawn.direction;
     path.throughput *= drawn.weight / specular_probability;
-    path.flags = path_mirrored;
+    path.flags = path_specular;
     path.density = drawn.roughness >= least_roughness ? specular_probability * drawn.density : 0.0;
     next = reflected_cone(cone, t, drawn.roughness);
   } else {

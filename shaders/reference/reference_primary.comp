@@ -83,7 +83,7 @@ void main() {
         }
         RayCone cone_behind = reflected_cone(cone, hit.t, specular_roughness(m));
         paths[index] = ReferencePath(path.throughput * drawn.weight, 1u, cone_behind.width,
-                                     cone_behind.spread, path_mirrored, 0.0);
+                                     cone_behind.spread, path_specular, 0.0);
       } else if (enabled(frame_environment_specular)) {
         open += environment_specular(m);
       }

@@ -4,7 +4,7 @@
 #include "types.h"
 SHARED_BEGIN
 
-SHARED_CONSTANT uint path_mirrored = 1u;  // the ray left by the specular lobe, not the diffuse one
+SHARED_CONSTANT uint path_specular = 1u;  // the ray left by the specular lobe, not the diffuse one
 
 struct ReferencePath {
   vec3 throughput;

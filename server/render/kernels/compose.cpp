@@ -18,7 +18,7 @@ class Composition {
   using M = hn::Mask<D>;
 
   /// What each signal of a pixel is multiplied by, and what needs none.
-  struct Composition {
+  struct Terms {
     Triple<V> own;
     Triple<V> direct;
     Triple<V> ambient;
@@ -57,7 +57,7 @@ class Composition {
   HWY_INLINE void block(const ViewedRow<D>& view, int x, int y) const {
     const V view_z = load(job_.motion, x, y).w;
     const M seen = hn::Gt(view_z, hn::Zero(d_));
-    Composition terms{black(), black(), black(), black()};
+    Terms terms{black(), black(), black(), black()};
     if (!hn::AllFalse(d_, seen)) add_surface(view, x, y, view_z, seen, terms);
     if (!hn::AllTrue(d_, seen)) {
       terms.own = select(seen, terms.own, color(job_.background, x, y));
@@ -76,7 +76,7 @@ class Composition {
   }
 
   HWY_INLINE void add_surface(const ViewedRow<D>& view, int x, int y, V view_z, M seen,
-                              Composition& terms) const {
+                              Terms& terms) const {
     const Quad<V> root = load_unorm8(d_, row_of<const std::uint32_t>(job_.base_color, y) + x);
     const Quad<V> packed = load_unorm8(d_, row_of<const std::uint32_t>(job_.surface, y) + x);
     const Triple<V> base_color{root.x * root.x, root.y * root.y, root.z * root.z};
@@ -97,7 +97,7 @@ class Composition {
   }
 
   HWY_INLINE void add_lit(const ViewedRow<D>& view, int x, V view_z, M lit,
-                          const SurfaceMaterial<V>& m, V occlusion, Composition& terms) const {
+                          const SurfaceMaterial<V>& m, V occlusion, Terms& terms) const {
     if (enabled(shared::frame_direct)) {
       const Triple<V> position = view.world_position(x, view_z);
       for (const shared::Light& light : job_.lights) {
@@ -134,7 +134,7 @@ class Composition {
            set(environment.x);
   }
 
-  HWY_INLINE void store(const Composition& terms, V shadow, V ambient, const Triple<V>& specular,
+  HWY_INLINE void store(const Terms& terms, V shadow, V ambient, const Triple<V>& specular,
                         const gpu::HostView& to, int x, int y) const {
     const V one = set(1.0f);
     const V lit = enabled(shared::frame_shadows) ? shadow : one;

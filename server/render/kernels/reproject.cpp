@@ -26,7 +26,7 @@ class Reprojection {
     V depth_allowance;
     VI instance;
   };
-  struct Reprojection {
+  struct Match {
     V x, y;
     V taps;     // bits of those that are valid, as a number
     V nowhere;  // 1 where there is none
@@ -104,7 +104,7 @@ class Reprojection {
     return hn::And(same, hn::Gt(dot(expected.normal, normal), hn::Zero(d_)));
   }
 
-  HWY_INLINE Reprojection find(V x, V y, M requested, const Expected& expected) const {
+  HWY_INLINE Match find(V x, V y, M requested, const Expected& expected) const {
     HistoryTaps<D> taps(x, y);
     const V zero = hn::Zero(d_);
     V bits = zero;
@@ -116,7 +116,7 @@ class Reprojection {
     }
     const V sum = taps.weights[0] + taps.weights[1] + taps.weights[2] + taps.weights[3];
     const M known = hn::Ge(sum, set(0.01f));
-    Reprojection result{x, y, hn::IfThenElseZero(known, bits),
+    Match result{x, y, hn::IfThenElseZero(known, bits),
                         hn::IfThenZeroElse(known, set(1.0f))};
     const M missing = hn::AndNot(known, requested);
     if (!hn::AllFalse(d_, missing)) find_nearest(x, y, missing, expected, result);
@@ -125,7 +125,7 @@ class Reprojection {
 
   /// The nearest of the 3x3 pixels about the position that shows the surface, as an exact position.
   HWY_INLINE void find_nearest(V x, V y, M missing, const Expected& expected,
-                               Reprojection& result) const {
+                               Match& result) const {
     V nearest = set(1e9f);
     for (int i = 0; i < 9; ++i) {
       const V column = clamped(hn::Floor(x) + set(static_cast<float>(i % 3 - 1)), -1e6f, 1e6f);
@@ -149,7 +149,7 @@ class Reprojection {
     const M seen = hn::Gt(moved.w, zero);
     const V here_x = hn::Iota(d_, static_cast<float>(x)) + half;
     const V here_y = set(static_cast<float>(y) + 0.5f);
-    Reprojection result{here_x, here_y, zero, hn::IfThenElseZero(seen, one)};
+    Match result{here_x, here_y, zero, hn::IfThenElseZero(seen, one)};
     Quad<V> guide{zero, zero, zero, zero};
     if (!hn::AllFalse(d_, seen)) {
       const Triple<V> normal = normal_at(normals, x, y);
@@ -162,7 +162,7 @@ class Reprojection {
         const Expected expected = expect(normals, view, x, y, moved, normal);
         const V was_x = hn::MulAdd(moved.x, set(static_cast<float>(job_.width)), here_x);
         const V was_y = hn::MulAdd(moved.y, set(static_cast<float>(job_.height)), here_y);
-        const Reprojection moved_to = find(was_x, was_y, seen, expected);
+        const Match moved_to = find(was_x, was_y, seen, expected);
         result = {hn::IfThenElse(seen, moved_to.x, here_x),
                   hn::IfThenElse(seen, moved_to.y, here_y), hn::IfThenElseZero(seen, moved_to.taps),
                   hn::IfThenElseZero(seen, moved_to.nowhere)};

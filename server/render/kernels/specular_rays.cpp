@@ -121,8 +121,8 @@ void make_tile(const SpecularRaysJob& job, const Cells& cells, int tile_x, int t
     float* const row = job.radiance.row<float>(static_cast<std::uint32_t>(y));
     std::fill(row + 4 * left, row + 4 * right, 0.0f);
     if (!job.directions) continue;
-    float* const row = job.directions->row<float>(static_cast<std::uint32_t>(y));
-    std::fill(row + 4 * left, row + 4 * right, 0.0f);
+    float* const directions = job.directions->row<float>(static_cast<std::uint32_t>(y));
+    std::fill(directions + 4 * left, directions + 4 * right, 0.0f);
   }
   const Generation generation(job);
   std::array<shared::Ray, tile_side * tile_side> made;

@@ -82,7 +82,7 @@ HWY_INLINE SurfaceMaterial<V> make_material(D d, const Triple<V>& base_color, V 
                                             const Triple<V>& geometric, const Triple<V>& eye,
                                             const SquareTable<D>& split_sum) {
   const V one = hn::Set(d, 1.0f);
-  const V f0 = hn::Set(d, dielectric_f0);
+  const V plain_f0 = hn::Set(d, dielectric_f0);
   SurfaceMaterial<V> m;
   m.normal = normal;
   m.geometric = geometric;
@@ -92,14 +92,14 @@ HWY_INLINE SurfaceMaterial<V> make_material(D d, const Triple<V>& base_color, V 
   const Pair<V> split = split_sum.at(m.n_dot_v, roughness);
   const V whole = split.x + split.y;
   const V energy_compensation = one / hn::Max(whole, hn::Set(d, 1e-3f)) - one;
-  const V dielectric_scale = hn::MulAdd(f0, energy_compensation, one);
+  const V dielectric_scale = hn::MulAdd(plain_f0, energy_compensation, one);
   const V dielectric = (one - metallic) * dielectric_scale;
-  const V albedo = hn::MulAdd(f0, split.x, split.y) * dielectric_scale;
+  const V albedo = hn::MulAdd(plain_f0, split.x, split.y) * dielectric_scale;
   const V diffuse = (one - metallic) * (one - hn::Min(albedo, one));
   const auto channel = [&](V color, V& f0, V& f90_minus_f0, V& specular) HWY_ATTR {
     const V metal = metallic * hn::MulAdd(color, energy_compensation, one);
-    f0 = hn::MulAdd(dielectric, f0, metal * color);
-    f90_minus_f0 = hn::MulAdd(dielectric, one - f0, metal * (one - color));
+    f0 = hn::MulAdd(dielectric, plain_f0, metal * color);
+    f90_minus_f0 = hn::MulAdd(dielectric, one - plain_f0, metal * (one - color));
     specular = hn::MulAdd(f0, whole, f90_minus_f0 * split.y);
   };
   channel(base_color.x, m.f0.x, m.f90_minus_f0.x, m.specular_albedo.x);

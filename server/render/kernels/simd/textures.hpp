@@ -29,8 +29,8 @@ struct Neighbours {
 HWY_INLINE Neighbours neighbours(Float coordinate, Integer size, Integer wrap, Mask nearest) {
   const Mask repeats = float_mask(hn::Eq(wrap, integer(shared::wrap_repeat)));
   Float at = clamped(coordinate, 0.0f, 1.0f);
-  const Float wrapped = hn::Sub(coordinate, hn::Floor(coordinate));
-  at = select(repeats, wrapped, at);
+  const Float repeated = hn::Sub(coordinate, hn::Floor(coordinate));
+  at = select(repeats, repeated, at);
   const Mask mirrored = float_mask(hn::Eq(wrap, integer(shared::wrap_mirror)));
   if (!none(mirrored)) {
     const Float half = hn::Mul(number(0.5f), coordinate);
