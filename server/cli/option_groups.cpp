@@ -29,12 +29,11 @@ void add_device_options(CLI::App& command, DeviceOptions& options) {
 void add_shader_option(CLI::App& command, DeviceOptions& options) {
   command
       .add_option("--shader-dir", options.shader_dir,
-                  "Folder of GLSL sources (a checkout's shaders/) to compile in place of the "
-                  "built-in shaders: compute, raster and ray tracing stages. \"serve\" compiles "
-                  "again when a file is saved and shows errors over the frame. Processors run "
-                  "shaders in place of host kernels then. Environments and lookup tables keep the "
-                  "shaders that they were made with; bindings, push constants and workgroup sizes "
-                  "cannot change; Embree runs no shaders")
+                  "Folder of GLSL sources (a checkout's shaders/) that replace all built-in shaders: "
+                  "compute, raster and ray tracing stages, and host kernels. \"serve\" compiles "
+                  "again when a file is saved; errors are shown over the frame and logged. "
+                  "Environments and lookup tables keep the shaders they were made with; bindings, "
+                  "push constants and workgroup sizes must stay; Embree runs no shaders")
       ->type_name("FOLDER")
       ->check(CLI::ExistingDirectory)
       ->group("Device");

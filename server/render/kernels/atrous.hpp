@@ -10,7 +10,7 @@ namespace heliograph::render::kernels {
 /// specular_signal.glsl.
 enum class Signal { visibility, specular };
 
-/// The images of one iteration as they lie in memory, in the shader's order.
+/// The mapped images of one iteration, in the shader's order.
 struct AtrousImages {
   gpu::HostView guide;        // rgba32f
   gpu::HostView depth_slope;  // rg32f

@@ -9,13 +9,13 @@
 
 namespace heliograph::render::kernels {
 
-/// What composition reads and writes, as it lies in memory.
+/// The mapped images that composition reads and writes.
 struct ComposeJob {
   const shared::FrameConstants& frame;
   std::span<const shared::Light> lights;  // punctual, the environment's sun among them
   gpu::HostView split_sum;                // rg32f, square
   int split_sum_size;
-  float max_roughness;  // below 0: no mirrored rays were traced
+  float max_roughness;  // below 0: no specular rays were traced
   int width;
   int height;
 
@@ -33,7 +33,7 @@ struct ComposeJob {
 /// environment.
 bool can_compose(const shared::FrameConstants& frame, float max_roughness);
 
-/// The picture from its signals on all processors: shaders/compose/compose.comp, or
+/// Composes the frame from its signals on all cores: shaders/compose/compose.comp, or
 /// compose_denoised.comp where there are denoised signals, in the widest vectors that the processor
 /// has.
 void compose(const ComposeJob& job);

@@ -5,14 +5,14 @@
 #include "render/resources/host_tables.hpp"
 #include "shaders/shared/frame_constants.h"
 
-/// The G-buffer from camera rays on all processors, in vectors: twins of
+/// The G-buffer from camera rays on all cores: host kernels of
 /// shaders/gbuffer/gbuffer_rays.comp and shaders/gbuffer/gbuffer_hits.comp.
 namespace heliograph::render::kernels {
 
 /// Writes every ray of the frame, tiles of 8 x 8 pixels one after the other.
 void camera_rays(const shared::FrameConstants& frame, shared::RayCount* count, shared::Ray* rays);
 
-/// The images of a G-buffer as they lie in memory.
+/// The mapped images of a G-buffer.
 struct GBufferImages {
   gpu::HostView normals;      // rgba32f
   gpu::HostView base_color;   // rgba8

@@ -5,7 +5,7 @@
 
 namespace heliograph::render::kernels {
 
-/// What the finished picture is made from, as it lies in memory.
+/// The mapped images that presentation reads and writes.
 struct PresentJob {
   const shared::FrameConstants& frame;
   float exposure;

@@ -6,7 +6,7 @@
 
 namespace heliograph::render::kernels {
 
-/// What reprojection reads and writes, as it lies in memory.
+/// The mapped images that reprojection reads and writes.
 struct ReprojectJob {
   const shared::FrameConstants& frame;
   shared::ReprojectConstants constants;

@@ -3,7 +3,7 @@
 #include "gpu/memory/image.hpp"
 #include "shaders/shared/ray.h"
 
-/// What moves signals about without changing them much: bound by memory, plain loops on all
+/// Copies and means of signals: bound by memory bandwidth, plain loops on all
 /// processors.
 namespace heliograph::render::kernels {
 
@@ -16,11 +16,11 @@ struct CombineJob {
 };
 void combine_visibility(const CombineJob& job);
 
-/// The running mean of a resting picture: shaders/post/accumulate.comp.
+/// The running mean of a static view: shaders/post/accumulate.comp.
 struct AccumulateJob {
   int width;
   int height;
-  float weight;  // of the sample; 1 starts anew
+  float weight;  // of the sample; 1 starts again
   gpu::HostView sample, previous;
   gpu::HostView mean;  // written
 };

@@ -6,7 +6,7 @@
 
 namespace heliograph::render::kernels {
 
-/// What the spatial estimate of variance reads and writes, as it lies in memory.
+/// The mapped images that the spatial estimate of variance reads and writes.
 struct SpatialVarianceJob {
   Signal kind;
   const shared::FrameConstants& frame;

@@ -17,7 +17,7 @@ struct SplitSum {
   int size;
 };
 
-/// Twin of shaders/reflections/specular_rays.comp and specular_rays_half.comp.
+/// Host kernel of shaders/reflections/specular_rays.comp and specular_rays_half.comp.
 struct SpecularRaysJob {
   const shared::FrameConstants& frame;
   SplitSum split_sum;
@@ -33,27 +33,27 @@ struct SpecularRaysJob {
 };
 void make_specular_rays(const SpecularRaysJob& job);
 
-/// Twin of shaders/reflections/specular_shade.comp, for scenes without area lights.
+/// Host kernel of shaders/reflections/specular_shade.comp, for scenes without area lights.
 struct ShadeHitsJob {
   const shared::FrameConstants& frame;
   SceneView scene;
   const Environment& environment;
   std::span<const shared::Light> lights;
   SplitSum split_sum;
-  bool lamps;             // otherwise only the environment lights what is hit
+  bool with_lights;       // otherwise only the environment lights what is hit
   int scale;              // pixels to a texel of `radiance`
   gpu::HostView surface;  // rgba8
   gpu::HostView motion;   // rgba32f
   RaySource rays;
   const shared::Hit* hits;
-  RaySink shadows;         // of lamps; begun and ended here
+  RaySink shadows;         // of punctual lights; begun and ended here
   gpu::HostView radiance;  // rgba32f
 };
 void shade_hits(const ShadeHitsJob& job);
 
-/// Twin of shaders/reflections/specular_resolve.comp: adds what shadow rays carry and nothing
-/// stopped.
-void resolve_lamps(const RaySource& shadows, const std::uint32_t* occluded, int scale,
-                   const gpu::HostView& radiance);
+/// Host kernel of shaders/reflections/specular_resolve.comp: adds what shadow rays carry and
+/// nothing stopped.
+void resolve_lights(const RaySource& shadows, const std::uint32_t* occluded, int scale,
+                    const gpu::HostView& radiance);
 
 }  // namespace heliograph::render::kernels

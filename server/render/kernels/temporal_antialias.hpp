@@ -5,10 +5,10 @@
 
 namespace heliograph::render::kernels {
 
-/// What temporal antialiasing reads and writes, as it lies in memory.
+/// The mapped images that temporal antialiasing reads and writes.
 struct AntialiasJob {
   const shared::FrameConstants& frame;
-  float blend;  // share of the new frame
+  float blend;  // weight of the new frame
   float clip;   // half width of the box in standard deviations
   bool anti_flicker;
   float exposure;

@@ -9,7 +9,7 @@
 
 namespace heliograph::render::kernels {
 
-/// What the generation of visibility rays reads and writes, as it lies in memory.
+/// The mapped images that the generation of visibility rays reads and writes.
 struct VisibilityRaysJob {
   const shared::FrameConstants& frame;
   int width;

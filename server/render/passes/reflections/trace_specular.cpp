@@ -126,8 +126,8 @@ void shade(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer, 
 }
 
 /// Adds the light of lamps that are in view from where the rays ended.
-void resolve_lamps(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
-                   const tracing::RayStream& shadows, const Target& target) {
+void resolve_lights(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
+                    const tracing::RayStream& shadows, const Target& target) {
   const auto occluded = plan.buffer(name + ".occluded", sizeof(std::uint32_t) * shadows.capacity,
                                     storage, gpu::Memory::device);
   in.tracer.trace_any(plan, name + ".shadows.trace", in.structure, shadows, occluded);
@@ -136,8 +136,9 @@ void resolve_lamps(gpu::FramePlan& plan, const FrameInputs& in, const std::strin
   };
   if (by_host(plan, in)) {
     bind(plan.host(name + ".resolve", [&plan, shadows, occluded, target] {
-      kernels::resolve_lamps(ray_source(plan, shadows), mapped<const std::uint32_t>(plan, occluded),
-                             target.scale, plan.get(target.radiance).host());
+      kernels::resolve_lights(ray_source(plan, shadows),
+                              mapped<const std::uint32_t>(plan, occluded), target.scale,
+                              plan.get(target.radiance).host());
     }));
     return;
   }
@@ -154,7 +155,7 @@ void trace_and_shade(gpu::FramePlan& plan, const FrameInputs& in, const std::str
   in.tracer.trace_closest(plan, name + ".trace", in.structure, rays, hits);
   const auto shadows = declare_rays(plan, name + ".shadows", rays.capacity);
   shade(plan, in, gbuffer, {name, rays, hits, shadows}, target);
-  resolve_lamps(plan, in, name, shadows, target);
+  resolve_lights(plan, in, name, shadows, target);
 }
 
 gpu::ImageRef upsample(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
@@ -195,7 +196,7 @@ void trace_mirrored(gpu::FramePlan& plan, const FrameInputs& in, const std::stri
 
 void add_unhidden_light(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
                         const tracing::RayStream& rays, gpu::ImageRef radiance) {
-  resolve_lamps(plan, in, name, rays, {radiance, {}, plan.extent(), 1});
+  resolve_lights(plan, in, name, rays, {radiance, {}, plan.extent(), 1});
 }
 
 }  // namespace heliograph::render
