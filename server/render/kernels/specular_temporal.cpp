@@ -113,7 +113,7 @@ class SpecularAccumulation {
     for (int i = 0; i < 4; ++i) {
       const int column = x + (i < 2 ? 2 * i - 1 : 0), row = y + (i < 2 ? 0 : 2 * i - 5);
       const VI at_x = hn::Iota(di_, column), at_y = hn::Set(di_, row);
-      const TexelGather<D> texels = bounds_.texels(at_x, at_y);
+      const TexelGather<D> texels = bounds_.gather(at_x, at_y);
       const auto own = hn::Eq(texels.word(job_.instance), instance);
       const Quad<V> texel = texels.four(job_.guide);
       const M valid = hn::And(hn::And(bounds_.contain(at_x, at_y), hn::RebindMask(d_, own)),

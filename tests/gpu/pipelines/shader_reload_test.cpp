@@ -156,14 +156,15 @@ TEST(ShaderCompiler, ListsIncludedFiles) {
   const auto files = compiler.compile(compiler.folder() / present).files;
   EXPECT_TRUE(files.contains(compiler.folder() / present));
   EXPECT_TRUE(files.contains(compiler.folder() / "lib/math/tone_map.glsl"));
-  EXPECT_TRUE(files.contains(compiler.folder() / "shared/types.h")) << "included by an included one";
+  EXPECT_TRUE(files.contains(compiler.folder() / "shared/types.h"))
+      << "included by an included one";
 }
 
 TEST_F(ShaderReloadTest, UnchangedSourcesRenderLikeTheEmbeddedShaders) {
   const auto from_sources = view_->render();
   EXPECT_EQ(view_->error(), "");
-  render::Engine engine({.device = {}, .validation = true, .cache_folder = {},
-                         .host_kernels = false});
+  render::Engine engine(
+      {.device = {}, .validation = true, .cache_folder = {}, .host_kernels = false});
   render::Renderer renderer(engine);
   SceneBuilder scene;
   scene.place(scene.add_quad({{{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}}},
