@@ -16,8 +16,8 @@
 #include "scene/camera.hpp"
 #include "scene/environment.hpp"
 #include "scene/import.hpp"
+#include "session/library/environment_source.hpp"
 #include "session/rendering/capture_content.hpp"
-#include "session/state/environment_choice.hpp"
 
 namespace heliograph::cli {
 namespace {
@@ -183,7 +183,7 @@ int run(const RenderOptions& options) {
     throw std::runtime_error(error);
   }
   render::Renderer renderer(engine);
-  const auto resources = engine.upload(std::move(imported), std::move(environment));
+  const auto resources = engine.upload_and_free_pixels(std::move(imported), std::move(environment));
   const std::shared_ptr<const scene::Scene>& scene = render::scene_of(*resources);
   renderer.set_scene(resources);
   renderer.set_size(options.width, options.height);

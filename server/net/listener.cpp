@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <boost/asio/strand.hpp>
 #include <chrono>
 #include <stdexcept>
 #include <utility>
@@ -14,12 +13,9 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-Listener::Listener(asio::io_context& io, std::string address, std::uint16_t port, Welcome welcome)
-    : io_(io),
-      address_(std::move(address)),
-      welcome_(std::move(welcome)),
-      acceptor_(io),
-      retry_(io) {
+Listener::Listener(asio::io_context& io, std::string address, std::uint16_t port,
+                   OnAccept on_accept)
+    : address_(std::move(address)), on_accept_(std::move(on_accept)), acceptor_(io), retry_(io) {
   try {
     tcp::resolver resolver(io);
     const auto found = resolver.resolve(address_, std::to_string(port), tcp::resolver::passive);
@@ -41,10 +37,10 @@ std::string Listener::url(const std::string& scheme) const {
 }
 
 void Listener::accept() {
-  acceptor_.async_accept(asio::make_strand(io_), [this](error_code error, tcp::socket socket) {
+  acceptor_.async_accept([this](error_code error, tcp::socket socket) {
     if (error == asio::error::operation_aborted || !acceptor_.is_open()) return;
-    if (!error) welcome_(std::move(socket));
-    // Out of descriptors: wait for some to come back instead of trying in a circle.
+    if (!error) on_accept_(std::move(socket));
+    // Out of file descriptors: retry later.
     if (error && error != asio::error::connection_aborted) {
       spdlog::warn("cannot accept a connection: {}", error.message());
       retry_.expires_after(std::chrono::milliseconds(100));

@@ -11,13 +11,14 @@
 
 namespace heliograph::net {
 
-/// One open port. Each connection gets a strand of its own.
+/// One open port. Its connections run on the one network thread, like everything in this folder.
 class Listener {
  public:
-  using Welcome = std::function<void(boost::asio::ip::tcp::socket)>;
+  using OnAccept = std::function<void(boost::asio::ip::tcp::socket)>;
 
   /// Opens the port; 0 takes a free one. @throws std::runtime_error
-  Listener(boost::asio::io_context& io, std::string address, std::uint16_t port, Welcome welcome);
+  Listener(boost::asio::io_context& io, std::string address, std::uint16_t port,
+           OnAccept on_accept);
 
   /// "scheme://address:port/"
   std::string url(const std::string& scheme) const;
@@ -25,9 +26,8 @@ class Listener {
   void close();
 
  private:
-  boost::asio::io_context& io_;
   const std::string address_;
-  const Welcome welcome_;
+  const OnAccept on_accept_;
   boost::asio::ip::tcp::acceptor acceptor_;
   boost::asio::steady_timer retry_;
 };

@@ -4,7 +4,7 @@
 
 namespace heliograph::session {
 
-/// Whom an entry of the log is about, as far as it is known. Client addresses and names never hold
+/// What a log entry is about, as far as it is known. Client addresses and names never hold
 /// secrets; tokens and whole request lines do and have no place in the log.
 struct LogSubject {
   std::string_view session;

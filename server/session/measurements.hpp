@@ -17,13 +17,13 @@ struct RenderTotals {
 
   stream::Histogram frames;  // seconds each
   stream::Histogram encodings;
-  stream::Histogram captures;  // from being asked for to the file
+  stream::Histogram captures;  // from the request to the file
   std::uint64_t failed_captures = 0;
   std::map<Pass, stream::Histogram> by_pass;
   std::vector<protocol::PassTiming> passes;  // of the latest frame
 };
 
-/// Counts what rendering, encoding and captures cost, for metrics. Thread safe.
+/// Totals of the time of rendering, encoding and captures, for metrics. Thread safe.
 class Measurements {
  public:
   void rendered(double seconds, std::vector<protocol::PassTiming> passes) {

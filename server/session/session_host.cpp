@@ -14,8 +14,8 @@ using protocol::Result;
 
 namespace {
 
-/// The error of a part under the name that the part has in the whole.
-protocol::Error under(const protocol::Error& part, std::string_view path, std::string name) {
+/// The error of a nested request, with the name of its member in the outer request.
+protocol::Error renamed(const protocol::Error& part, std::string_view path, std::string name) {
   if (part.path != path) return part;
   return protocol::error::make(part.code, std::move(name), part.reason, part.limit);
 }
@@ -57,7 +57,7 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
                               const protocol::CallContext& call) -> protocol::Result<void> {
     const auto session = sessions_.session_of(call);
     if (!session) return session.error();
-    (*session)->touch();
+    (*session)->mark_used();
     if (method.needs_control() && !(*session)->viewers().may_change(call.viewer)) {
       return no_control((*session)->viewers());
     }
@@ -68,12 +68,12 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
     spdlog::error("{} failed: {}", method, reason);
   });
   if (options_.limits.idle_timeout.count() > 0) {
-    idle_watch_ = std::thread([this] { watch_idle(); });
+    idle_thread_ = std::thread([this] { close_idle_sessions(); });
   }
 }
 
-void SessionHost::watch_idle() {
-  while (!stopping_) stop_watching_.wait_until(Clock::now() + sessions_.close_idle());
+void SessionHost::close_idle_sessions() {
+  while (!stopping_) stop_idle_thread_.wait_until(Clock::now() + sessions_.close_idle());
 }
 
 SessionHost::~SessionHost() {
@@ -82,8 +82,8 @@ SessionHost::~SessionHost() {
 
 void SessionHost::stop() {
   stopping_ = true;
-  stop_watching_.notify();
-  if (idle_watch_.joinable()) idle_watch_.join();
+  stop_idle_thread_.notify();
+  if (idle_thread_.joinable()) idle_thread_.join();
   loader_.stop();
   environments_.stop();
   render_loop_.stop();
@@ -95,29 +95,30 @@ void SessionHost::create_session(const protocol::SessionCreate& request, const s
   options.name = request.name.value_or("");
   std::shared_ptr<Session> model = sessions_.main();
   if (request.copy_of) {
-    const auto found = sessions_.find(*request.copy_of);
-    if (!found) return done(protocol::error::not_found("copy_of", found.error().reason));
-    model = *found;
+    const auto original = sessions_.find(*request.copy_of);
+    if (!original) return done(protocol::error::not_found("copy_of", original.error().reason));
+    model = *original;
     const protocol::SessionInfo info = model->info({});
     options.width = info.width;
     options.height = info.height;
   }
   options.width = request.width.value_or(options.width);
   options.height = request.height.value_or(options.height);
-  const auto made = sessions_.create(std::move(options));
-  if (!made) return done(made.error());
-  const std::shared_ptr<Session>& session = *made;
+  const auto created = sessions_.create(std::move(options));
+  if (!created) return done(created.error());
+  const std::shared_ptr<Session>& session = *created;
   session->set_buffers(model->buffers());
   if (request.copy_of) session->copy_from(*model);
   if (request.settings) {
     const auto patched = session->patch_settings(*request.settings, by);
-    if (!patched) return give_up(session, under(patched.error(), "patch", "settings"), done);
+    if (!patched)
+      return fail_creation(session, renamed(patched.error(), "patch", "settings"), done);
   }
   if (!request.scene) return done(session);
   load_scene(session, {.name = *request.scene}, by,
              [this, session, done](const Result<protocol::SceneInfo>& loaded) {
                if (loaded) return done(session);
-               give_up(session, under(loaded.error(), "name", "scene"), done);
+               fail_creation(session, renamed(loaded.error(), "name", "scene"), done);
              });
 }
 
@@ -128,10 +129,10 @@ Result<Resumed> SessionHost::resume(const std::string& viewer, const Origin& fro
   return resumed;
 }
 
-/// A session that cannot be as it was wanted ends before anybody has seen it.
-void SessionHost::give_up(const std::shared_ptr<Session>& session, const protocol::Error& why,
-                          const Created& done) {
-  // Somebody else may have closed it meanwhile, and another of its name may be there.
+/// A session that cannot be created as requested is closed before any client has used it.
+void SessionHost::fail_creation(const std::shared_ptr<Session>& session, const protocol::Error& why,
+                                const Created& done) {
+  // Another client may have closed it already, and created another of its name.
   if (!session->ended()) (void)sessions_.close(session->name(), why.message);
   done(why);
 }

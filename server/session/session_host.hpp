@@ -29,12 +29,12 @@ struct HostOptions {
   protocol::DispatchLimits dispatch;
   /// Largest scene that clients may send; 0: none.
   std::uint64_t max_upload_bytes = 0;
-  /// Pictures and histories of a session that nobody watches are let go after so long.
+  /// A session without viewers releases its renderer after so long.
   std::chrono::seconds release_after{120};
 };
 
 /// Everything of the server but its sockets: the sessions, what renders them and loads their
-/// scenes, and the dispatcher through which clients steer them.
+/// scenes, and the dispatcher of the clients' commands.
 class SessionHost {
  public:
   /// @throws std::runtime_error, scene::ImportError
@@ -51,34 +51,33 @@ class SessionHost {
   const SessionRegistry& sessions() const { return sessions_; }
   EnvironmentLibrary& environments() { return environments_; }
 
-  /// Makes a session as `request` wants it. `done` is called once, here or when its scene is
-  /// loaded; if that fails there is no such session.
+  /// Creates a session. `done` is called once, here or when its scene is loaded; if that fails the
+  /// session is closed.
   using Created = std::function<void(protocol::Result<std::shared_ptr<Session>>)>;
   void create_session(const protocol::SessionCreate& request, const std::string& by, Created done);
-  /// Finds a place for a viewer that was in a session of another run; see SessionRegistry::resume.
+  /// Finds a session for a viewer of an earlier server run; see SessionRegistry::resume.
   protocol::Result<Resumed> resume(const std::string& viewer, const Origin& from, bool read_only);
   void load_scene(std::shared_ptr<Session> session, const protocol::SceneLoad& request,
                   const std::string& by, SceneLoader::Completion done);
   protocol::SceneCancelled cancel_load(const Session& session) { return loader_.cancel(session); }
   CacheTotals scene_cache_totals() const { return loader_.cache_totals(); }
   void on_first_frame(std::function<void()> callback);
-  /// Whether a picture has been rendered: everything works.
+  /// Whether a frame has been rendered and the device works.
   bool ready() const { return render_loop_.has_rendered() && render_loop_.device_ready(); }
-  /// A sentence for people, while it is not.
+  /// Readable text, while it is not.
   std::string not_ready_reason() const {
-    return render_loop_.device_ready() ? "no picture has been rendered yet"
+    return render_loop_.device_ready() ? "no frame has been rendered yet"
                                        : "the device was lost and is being recovered";
   }
   std::uint64_t device_losses() const { return render_loop_.device_losses(); }
-  /// Ends all threads. Answers that are still due come as errors before this returns, so that it
-  /// must come before the end of whoever takes them.
+  /// Ends all threads. Pending requests fail before this returns, so their callers must outlive it.
   void stop();
   RenderTotals render_totals() const { return render_loop_.totals(); }
 
  private:
-  void watch_idle();
-  void give_up(const std::shared_ptr<Session>& session, const protocol::Error& why,
-               const Created& done);
+  void close_idle_sessions();
+  void fail_creation(const std::shared_ptr<Session>& session, const protocol::Error& why,
+                     const Created& done);
 
   render::Engine& engine_;
   const HostOptions options_;
@@ -88,9 +87,9 @@ class SessionHost {
   protocol::Dispatcher dispatcher_;
   SceneLoader loader_;
   EnvironmentLibrary environments_;
-  WakeEvent stop_watching_;
+  WakeEvent stop_idle_thread_;
   std::atomic<bool> stopping_ = false;
-  std::thread idle_watch_;
+  std::thread idle_thread_;
 };
 
 }  // namespace heliograph::session

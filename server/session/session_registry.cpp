@@ -32,9 +32,9 @@ SessionRegistry::SessionRegistry(const RegistryLimits& limits, SessionOptions ma
       close_(std::move(close)),
       pixels_(std::make_shared<PixelBudget>(limits.pixels)) {
   main.name = protocol::main_session;
-  const Result<std::shared_ptr<Session>> made = create(std::move(main));
-  if (!made) throw std::invalid_argument("the main session: " + made.error().message);
-  main_ = *made;
+  const Result<std::shared_ptr<Session>> created = create(std::move(main));
+  if (!created) throw std::invalid_argument("the main session: " + created.error().message);
+  main_ = *created;
 }
 
 Result<std::shared_ptr<Session>> SessionRegistry::create(SessionOptions options) {
@@ -43,7 +43,7 @@ Result<std::shared_ptr<Session>> SessionRegistry::create(SessionOptions options)
 }
 
 Result<std::shared_ptr<Session>> SessionRegistry::create_locked(SessionOptions options) {
-  if (options.name.empty()) options.name = free_name();
+  if (options.name.empty()) options.name = generated_name();
   if (!is_name(options.name)) {
     return error::invalid("name", "is not a valid name of a session",
                           "1 to 64 letters, digits, dots, hyphens and underscores");
@@ -69,16 +69,16 @@ Result<std::shared_ptr<Session>> SessionRegistry::create_locked(SessionOptions o
   return session;
 }
 
-Result<void> SessionRegistry::close(const std::string& name, const std::string& why) {
+Result<void> SessionRegistry::close(const std::string& name, const std::string& reason) {
   const std::lock_guard lock(mutex_);
   const Result<std::shared_ptr<Session>> found = find_locked(name);
   if (!found) return found.error();
-  if (*found == main_) return main_stays();
-  end(*found, why);
+  if (*found == main_) return main_always_exists();
+  end(*found, reason);
   return {};
 }
 
-protocol::Error SessionRegistry::main_stays() {
+protocol::Error SessionRegistry::main_always_exists() {
   return error::conflict("session", "the session main cannot be closed");
 }
 
@@ -96,24 +96,24 @@ Clock::duration SessionRegistry::close_idle() {
       next = std::min(next, left);
     }
   }
-  for (const auto& session : idle) end(session, "nobody needed the session");
+  for (const auto& session : idle) end(session, "the session was idle");
   return next;
 }
 
-void SessionRegistry::end(const std::shared_ptr<Session>& session, const std::string& why) {
+void SessionRegistry::end(const std::shared_ptr<Session>& session, const std::string& reason) {
   const std::string& name = session->name();
   sessions_.erase(name);
   origins_.erase(name);
-  const protocol::SessionClosed closed{.session = name, .reason = why};
+  const protocol::SessionClosed closed{.session = name, .reason = reason};
   session->viewers().send_all(
       protocol::make_notification<protocol::notifications::session_closed>(closed), {});
-  for (const std::string& viewer : session->viewers().disconnect_all(why)) {
+  for (const std::string& viewer : session->viewers().disconnect_all(reason)) {
     session_of_viewer_.erase(viewer);
   }
   ended_.sent += session->viewers().totals().sent;
   session->end();
   close_(*session);
-  log_info({.session = name}, "the session ended: " + why);
+  log_info({.session = name}, "the session ended: " + reason);
 }
 
 Result<std::shared_ptr<Session>> SessionRegistry::find(std::string_view name) const {
@@ -159,7 +159,7 @@ Result<std::string> SessionRegistry::enter(const std::string& session,
     return error::full("the server's maximum number of viewers is reached",
                        std::to_string(limits_.viewers) + " viewers");
   }
-  const std::string id = "v" + std::to_string(++viewers_so_far_);
+  const std::string id = "v" + std::to_string(++viewer_count_);
   if (const auto joined = (*found)->viewers().join(id, std::move(link), read_only); !joined) {
     return joined.error();
   }
@@ -195,15 +195,15 @@ Result<Resumed> SessionRegistry::resume(const std::string& viewer, const Origin&
                                   [&](const auto& entry) { return entry.second == from; });
   std::string name = known == origins_.end() ? from.session : known->first;
   if (!options) {
-    const auto watched = move_locked(viewer, name);
-    if (!watched) return watched.error();
-    return Resumed{.session = *watched};
+    const auto joined = move_locked(viewer, name);
+    if (!joined) return joined.error();
+    return Resumed{.session = *joined};
   }
-  if (known == origins_.end() && !is_free_for(viewer, name)) {
-    options->name = name_for(from);
-    const auto made = create_locked(*std::move(options));
-    if (!made) return made.error();
-    name = (*made)->name();
+  if (known == origins_.end() && !is_available(viewer, name)) {
+    options->name = resumed_name(from);
+    const auto created = create_locked(*std::move(options));
+    if (!created) return created.error();
+    name = (*created)->name();
   }
   const bool first = sessions_.at(name)->is_pristine(viewer);
   const auto moved = move_locked(viewer, name);
@@ -212,17 +212,17 @@ Result<Resumed> SessionRegistry::resume(const std::string& viewer, const Origin&
   return Resumed{.session = *moved, .first = first};
 }
 
-/// Whether there is a session of this name whose state is nobody's yet.
-bool SessionRegistry::is_free_for(const std::string& viewer, const std::string& name) const {
+/// Whether there is a pristine session of this name.
+bool SessionRegistry::is_available(const std::string& viewer, const std::string& name) const {
   const auto found = sessions_.find(name);
   return found != sessions_.end() && !origins_.contains(name) && found->second->is_pristine(viewer);
 }
 
-/// The name that the session had, or one that tells of it.
-std::string SessionRegistry::name_for(const Origin& from) {
+/// The name that the session had, or one derived from it.
+std::string SessionRegistry::resumed_name(const Origin& from) {
   if (!sessions_.contains(from.session)) return from.session;
   const std::string name = from.session.substr(0, 55) + "-" + from.instance.substr(0, 8);
-  return sessions_.contains(name) || !is_name(name) ? free_name() : name;
+  return sessions_.contains(name) || !is_name(name) ? generated_name() : name;
 }
 
 void SessionRegistry::leave(const std::string& viewer) {
@@ -263,10 +263,10 @@ ViewerTotals SessionRegistry::totals() const {
   return totals;
 }
 
-std::string SessionRegistry::free_name() {
+std::string SessionRegistry::generated_name() {
   std::string name;
   do {
-    name = "session-" + std::to_string(++names_so_far_);
+    name = "session-" + std::to_string(++name_count_);
   } while (sessions_.contains(name));
   return name;
 }

@@ -10,7 +10,7 @@ void WakeEvent::notify() {
     notified_ = true;
   }
   condition_.notify_one();
-  if (all_) all_->notify();
+  if (parent_) parent_->notify();
 }
 
 bool WakeEvent::is_notified() const {

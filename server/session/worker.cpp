@@ -17,14 +17,14 @@ void Worker::stop() {
   }
   condition_.notify_one();
   thread_.join();
-  waiting_.clear();
+  queue_.clear();
 }
 
 bool Worker::post(std::function<void()> task) {
   {
     const std::lock_guard lock(mutex_);
-    if (stopping_ || waiting_.size() >= capacity_) return false;
-    waiting_.push_back(std::move(task));
+    if (stopping_ || queue_.size() >= capacity_) return false;
+    queue_.push_back(std::move(task));
   }
   condition_.notify_one();
   return true;
@@ -32,7 +32,7 @@ bool Worker::post(std::function<void()> task) {
 
 bool Worker::has_room() const {
   const std::lock_guard lock(mutex_);
-  return waiting_.size() < capacity_;
+  return queue_.size() < capacity_;
 }
 
 void Worker::run() {
@@ -40,10 +40,10 @@ void Worker::run() {
     std::function<void()> task;
     {
       std::unique_lock lock(mutex_);
-      condition_.wait(lock, [&] { return stopping_ || !waiting_.empty(); });
+      condition_.wait(lock, [&] { return stopping_ || !queue_.empty(); });
       if (stopping_) return;
-      task = std::move(waiting_.front());
-      waiting_.pop_front();
+      task = std::move(queue_.front());
+      queue_.pop_front();
     }
     try {
       task();

@@ -10,19 +10,19 @@
 
 namespace heliograph::session {
 
-/// One thread that carries out tasks in order. An exception in a task is logged.
+/// One thread that runs tasks in order. An exception in a task is logged.
 class Worker {
  public:
-  /// At most `capacity` tasks wait.
+  /// At most `capacity` tasks are queued.
   Worker(std::string name, std::size_t capacity);
   ~Worker() { stop(); }
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  /// False if no more tasks can wait; then `task` was not taken.
+  /// False if the queue is full; then `task` was not taken.
   bool post(std::function<void()> task);
   bool has_room() const;
-  /// Waits for the running task; waiting ones are destroyed undone, later ones are not taken.
+  /// Waits for the running task; queued ones are destroyed without running, later ones refused.
   void stop();
 
  private:
@@ -32,7 +32,7 @@ class Worker {
   const std::size_t capacity_;
   mutable std::mutex mutex_;
   std::condition_variable condition_;
-  std::deque<std::function<void()>> waiting_;
+  std::deque<std::function<void()>> queue_;
   bool stopping_ = false;
   std::thread thread_;
 };

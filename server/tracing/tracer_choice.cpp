@@ -4,7 +4,7 @@ namespace heliograph::tracing {
 
 using protocol::TracerKind;
 
-std::vector<TracerKind> offered_tracers(const gpu::DeviceReport& device) {
+std::vector<TracerKind> supported_tracers(const gpu::DeviceReport& device) {
   std::vector<TracerKind> offered;
   if (device.type == VK_PHYSICAL_DEVICE_TYPE_CPU) {
     offered = {TracerKind::embree, TracerKind::software};
@@ -31,7 +31,7 @@ std::unique_ptr<RayTracer> make_tracer(TracerKind kind, const gpu::Device& devic
 }
 
 std::unique_ptr<RayTracer> make_tracer(const std::string& requested, const gpu::Device& device) {
-  if (requested == "auto") return make_tracer(offered_tracers(device.report()).front(), device);
+  if (requested == "auto") return make_tracer(supported_tracers(device.report()).front(), device);
   if (const auto kind = protocol::enum_value<TracerKind>(requested))
     return make_tracer(*kind, device);
   std::string names = "auto";

@@ -16,7 +16,7 @@ inline constexpr std::array all_tracers{
 /// The tracers that a device supports, the default first: "embree" on CPU devices, whose memory is
 /// mapped; "ray_query" where supported; otherwise "software", which is faster than the driver's
 /// pipeline on devices without ray tracing hardware. "ray_pipeline" is never the default.
-std::vector<protocol::TracerKind> offered_tracers(const gpu::DeviceReport& device);
+std::vector<protocol::TracerKind> supported_tracers(const gpu::DeviceReport& device);
 
 /// @throws gpu::GpuError when the device lacks what the tracer needs
 std::unique_ptr<RayTracer> make_tracer(protocol::TracerKind kind, const gpu::Device& device);

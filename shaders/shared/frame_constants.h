@@ -20,33 +20,33 @@ struct FrameConstants {
   mat4 previous_unjittered;  // the same, one frame ago
   mat4 view;                 // world -> view
   mat4 previous_view;
-  mat4 inverse_view;    // view -> world
-  vec4 unproject;       // view xy = (ndc * xy + zw) x view Z (perspective)
-  vec4 eye;             // world, metres
+  mat4 inverse_view;  // view -> world
+  vec4 unproject;     // view xy = (ndc * xy + zw) x view Z (perspective)
+  vec4 eye;           // world, metres
 
-  uvec2 extent;        // width and height, pixels
-  uint sample_index;   // frames since the history was reset: index into all random sequences
-  uint seed;           // of the random sequences
+  uvec2 extent;       // width and height, pixels
+  uint sample_index;  // frames since the history was reset: index into all random sequences
+  uint seed;          // of the random sequences
 
-  uint light_count;        // with the environment's sun, which is the last
-  uint flags;              // frame_*
-  uint prefiltered_levels; // mip levels of the prefiltered environment cube
-  uint history_invalid;    // 1: no history image may be read
+  uint light_count;         // with the environment's sun, which is the last
+  uint flags;               // frame_*
+  uint prefiltered_levels;  // mip levels of the prefiltered environment cube
+  uint history_invalid;     // 1: no history image may be read
 
   float environment_intensity;
   float environment_cos;  // of the environment's rotation about Y
   float environment_sin;
-  float ambient_radius;   // how far occluders count, metres
+  float ambient_radius;  // how far occluders count, metres
 
   float exposure_factor;
   uint tone_map_curve;             // protocol::ToneMapCurve
   float directional_light_radius;  // tangent of the angular radius of all, -1: each has its own
   float padding;
 
-  vec4 irradiance[9];    // spherical harmonics of the irradiance / pi, rgb
-  vec3 sun_direction;    // toward the environment's sun, world
-  float sun_radius;      // tangent of its angular radius, -1: there is none
-  vec4 sun_irradiance;   // rgb, on a surface facing it
+  vec4 irradiance[9];   // spherical harmonics of the irradiance / pi, rgb
+  vec3 sun_direction;   // toward the environment's sun, world
+  float sun_radius;     // tangent of its angular radius, -1: there is none
+  vec4 sun_irradiance;  // rgb, on a surface facing it
 };
 
 SHARED_END

@@ -49,7 +49,7 @@ FramePlayback::FramePlayback(session::SessionHost& host, std::vector<render::Fra
       broadcast_(host.sessions().main(), {.encoder = worker_,
                                           .jpeg = jpeg_,
                                           .measurements = measurements_,
-                                          .wakeup = wakeup_,
+                                          .wake = wakeup_,
                                           .tracer = host.engine().tracer()}),
       interval_(
           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / rate))) {
@@ -58,7 +58,8 @@ FramePlayback::FramePlayback(session::SessionHost& host, std::vector<render::Fra
     rendered->frame = std::move(frame);
     frames_.push_back(std::move(rendered));
   }
-  for (int i = 0; i < first_number; ++i) broadcast_.rendered(next_frame(), false);
+  for (int i = 0; i < first_number; ++i)
+    broadcast_.rendered(next_frame(), session::FramePurpose::interactive);
   thread_ = std::thread([this] { run(); });
 }
 
@@ -87,7 +88,7 @@ void FramePlayback::run() {
     next = std::max(next + interval_, Clock::now() - interval_);
     std::this_thread::sleep_until(next);
     if (!running_ || broadcast_.behind()) continue;
-    broadcast_.rendered(next_frame(), false);
+    broadcast_.rendered(next_frame(), session::FramePurpose::interactive);
     broadcast_.pump();
   }
 }

@@ -104,8 +104,8 @@ nlohmann::json load(render::Engine& engine, const std::filesystem::path& path,
   const std::uint64_t decoded = whole->bytes();
   const std::uint64_t import_peak = peak_bytes() - before;
   StageTimes stages;
-  const auto resources = engine.upload(std::move(whole), environment,
-                                       [&](std::string_view stage, float) { stages.enter(stage); });
+  const auto resources = engine.upload_and_free_pixels(
+      std::move(whole), environment, [&](std::string_view stage, float) { stages.enter(stage); });
   stages.leave();
   const std::shared_ptr<const scene::Scene>& scene = render::scene_of(*resources);
   const double upload = seconds_since(imported);

@@ -121,7 +121,7 @@ MISTAKES = (
             "gpu_tests", "TracersTest.UnsupportedTracerIsRejected"),
     Mistake("18", "history is counted in frames",
             "server/render/passes/denoise/denoise_constants.hpp",
-            "settings.history_seconds / in.seconds", "settings.history_seconds * 30.0f",
+            "settings.history_seconds / in.clock.seconds", "settings.history_seconds * 30.0f",
             "gpu_tests", "TemporalAccumulation.HistoryLengthIsInSecondsNotFrames"),
     Mistake("19", "motion vectors in 16 bits",
             "shaders/lib/scene/gbuffer_hits.glsl",

@@ -56,8 +56,8 @@ class Observer:
             self._revision = revision
 
 
-async def steer(viewer, state):
-    """Moves for a second, changes a setting, rests for half a second."""
+async def drive(viewer, state):
+    """Moves for a second, changes a setting, stays static for half a second."""
     while not state["ending"]:
         for _ in range(50):
             state["seq"] += 1
@@ -105,7 +105,7 @@ async def soak(server, seconds, report=print):
         await video.call("hello", {"client": "soak", "codecs": ["h264", "jpeg"]})
         observers = [Observer("driver", driver), Observer("jpeg", jpeg), Observer("video", video)]
         tasks = [asyncio.create_task(observer.run()) for observer in observers]
-        working = [asyncio.create_task(steer(driver, state)),
+        working = [asyncio.create_task(drive(driver, state)),
                    asyncio.create_task(make_and_close(server, state))]
         tasks += [*working, asyncio.create_task(come_and_go(server))]
         begin = time.monotonic()
@@ -144,7 +144,7 @@ async def check_end(jpeg, state, observers):
         await asyncio.sleep(0.1)
     faults = [fault for observer in observers for fault in observer.faults]
     if heard != state["patches"]:
-        faults.append(f"{state['patches']} patches, but {heard} were told")
+        faults.append(f"{state['patches']} patches, but {heard} notifications")
     return faults
 
 

@@ -120,7 +120,8 @@ def name_fault(code: str):
     match = MEMBER.fullmatch(code) or CALL.fullmatch(code)
     if not match or match.group(1).startswith("std::"):
         return None
-    unknown = [part for part in re.split(r"::~?", match.group(1)) if part not in words()]
+    unknown = [part for part in re.split(r"::~?", match.group(1))
+               if part not in words() and not PLACEHOLDER.fullmatch(part)]
     return f"`{code}`: nothing in the sources is called {unknown[0]}" if unknown else None
 
 

@@ -21,24 +21,24 @@ FrameRig::FrameRig(std::shared_ptr<const scene::Scene> scene, const scene::Camer
       frame_set_(pool_.allocate(parts_.programs.frame_layout.handle())),
       scene_set_(pool_.allocate(parts_.programs.scene_layout.handle())),
       inputs_{parts_.programs,
-              moving_.rest(),
+              moving_.resources(),
               moving_.tables(),
               *parts_.tracer,
               moving_.structure(),
               constants_,
               settings_,
-              samples_,
-              seconds_,
+              clock_,
               moving_,
               scene_motion_,
-              parts_.split_sum_table,
-              parts_.host_kernels},
+              parts_.split_sum_table},
       plan_(parts_.device, options.extent) {
-  render::write_frame_set(parts_, frame_set_, constants_buffer_, moving_.tables().lights,
-                          moving_.rest().environment->view(settings_.environment.separate_sun));
+  render::write_frame_set(
+      parts_, frame_set_, constants_buffer_, moving_.tables().lights,
+      moving_.resources().environment->view(settings_.environment.separate_sun));
+  plan_.use_host_kernels(parts_.host_kernels);
   plan_.share_set(render::frame_set, frame_set_);
-  render::write_scene_set(parts_.device, scene_set_, moving_.tables(), moving_.rest().texture_heap,
-                          moving_.rest().layers);
+  render::write_scene_set(parts_.device, scene_set_, moving_.tables(),
+                          moving_.resources().texture_heap, moving_.resources().layers);
   plan_.share_set(render::scene_set, scene_set_);
   set_view(camera);
 }

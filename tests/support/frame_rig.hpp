@@ -28,16 +28,16 @@ class FrameRig {
   VkDescriptorSet frame_set() const { return frame_set_; }
   VkDescriptorSet scene_set() const { return scene_set_; }
   const shared::FrameConstants& constants() const { return constants_; }
-  const render::SceneResources& scene() const { return moving_.rest(); }
+  const render::SceneResources& scene() const { return moving_.resources(); }
   render::MovingScene& moving() { return moving_; }
 
   /// Sets the camera of the next frame; the current one becomes the previous one.
   void set_view(const scene::Camera& camera, std::uint32_t sample = 0);
   void set_settings(const protocol::Settings& settings) { settings_ = settings; }
   /// Number of samples already accumulated.
-  void set_accumulated(std::uint32_t samples) { samples_ = samples; }
+  void set_accumulated(std::uint32_t samples) { clock_.samples = samples; }
   /// Time since the previous frame, in seconds.
-  void set_seconds(float seconds) { seconds_ = seconds; }
+  void set_seconds(float seconds) { clock_.seconds = seconds; }
   /// Motion of lights and geometry in the next frame.
   void set_scene_motion(const render::SceneMotion& motion) { scene_motion_ = motion; }
 
@@ -65,8 +65,7 @@ class FrameRig {
   RigOptions options_;
   protocol::Settings settings_;
   shared::FrameConstants constants_{};
-  std::uint32_t samples_ = 0;
-  float seconds_ = 1.0f / 60.0f;
+  render::FrameClock clock_;
   render::SceneMotion scene_motion_;
   bool has_view_ = false;
   bool compiled_ = false;

@@ -4,7 +4,7 @@
 
 namespace {
 
-/// Fails every test during which the validation layers had something to say.
+/// Fails every test during which the validation layers report a message.
 class ValidationWatch : public testing::EmptyTestEventListener {
  public:
   void OnTestEnd(const testing::TestInfo&) override {

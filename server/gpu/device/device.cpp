@@ -55,7 +55,7 @@ bool loss_is_wanted() {
 }  // namespace
 
 Device::Device(const Instance& instance, const DeviceOptions& options) {
-  const auto reports = survey_devices(instance, options.wanted);
+  const auto reports = survey_devices(instance, options.name_part);
   for (const auto& report : reports) {
     if (report.chosen) report_ = report;
   }
@@ -146,8 +146,8 @@ void Device::save_pipeline_cache() const {
 }
 
 std::uint32_t Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags needed,
-                                  VkMemoryPropertyFlags wanted) const {
-  for (const VkMemoryPropertyFlags flags : {needed | wanted, needed}) {
+                                  VkMemoryPropertyFlags preferred) const {
+  for (const VkMemoryPropertyFlags flags : {needed | preferred, needed}) {
     for (std::uint32_t i = 0; i < memory_.memoryTypeCount; ++i) {
       const bool fits = (memory_.memoryTypes[i].propertyFlags & flags) == flags;
       if ((allowed & (1u << i)) && fits) return i;
@@ -157,13 +157,13 @@ std::uint32_t Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags n
 }
 
 VkDeviceMemory Device::allocate(const VkMemoryRequirements& requirements,
-                                VkMemoryPropertyFlags needed, VkMemoryPropertyFlags wanted,
+                                VkMemoryPropertyFlags needed, VkMemoryPropertyFlags preferred,
                                 const std::string& name) const {
   VkMemoryAllocateFlagsInfo flags{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO};
   flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
   VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, &flags};
   info.allocationSize = requirements.size;
-  info.memoryTypeIndex = memory_type(requirements.memoryTypeBits, needed, wanted);
+  info.memoryTypeIndex = memory_type(requirements.memoryTypeBits, needed, preferred);
   VkDeviceMemory memory = VK_NULL_HANDLE;
   const std::string what = "allocate " + std::to_string(requirements.size) + " bytes for " + name;
   check(vkAllocateMemory(handle_, &info, nullptr, &memory), what.c_str());

@@ -12,7 +12,7 @@
 namespace heliograph::gpu {
 
 struct DeviceOptions {
-  std::string wanted;                  // part of the device's name, or empty
+  std::string name_part;               // part of the device's name, or empty
   std::filesystem::path cache_folder;  // where the pipeline cache is kept; empty: nowhere
   bool as_gpu = false;                 // a processor too has memory of its own: tests that path
 };
@@ -20,7 +20,7 @@ struct DeviceOptions {
 /// A logical device with one queue that does everything, and its pipeline cache.
 class Device {
  public:
-  /// @throws GpuError listing every device found and why it will not do
+  /// @throws GpuError listing every device and why it was not chosen
   Device(const Instance& instance, const DeviceOptions& options);
   ~Device();
   Device(const Device&) = delete;
@@ -38,11 +38,11 @@ class Device {
   /// The device is this machine's processor: its memory is ours, mapped, and host passes pay off.
   bool is_cpu() const { return report_.type == VK_PHYSICAL_DEVICE_TYPE_CPU; }
 
-  /// Index of a memory type among `allowed` with `needed`, preferring one that has `wanted` too.
+  /// Index of a memory type among `allowed` with `needed`, preferring one that has `preferred` too.
   std::uint32_t memory_type(std::uint32_t allowed, VkMemoryPropertyFlags needed,
-                            VkMemoryPropertyFlags wanted) const;
+                            VkMemoryPropertyFlags preferred) const;
   VkDeviceMemory allocate(const VkMemoryRequirements& requirements, VkMemoryPropertyFlags needed,
-                          VkMemoryPropertyFlags wanted, const std::string& name) const;
+                          VkMemoryPropertyFlags preferred, const std::string& name) const;
 
   /// Submits and waits until the device is done. Thread safe.
   void submit(VkCommandBuffer commands) const;

@@ -167,15 +167,16 @@ const char* type_name(VkPhysicalDeviceType type) {
   }
 }
 
-std::vector<DeviceReport> survey_devices(const Instance& instance, const std::string& wanted) {
+std::vector<DeviceReport> survey_devices(const Instance& instance, const std::string& name_part) {
   std::vector<DeviceReport> reports;
   for (const VkPhysicalDevice device : instance.devices()) reports.push_back(report_on(device));
   DeviceReport* best = nullptr;
   for (auto& report : reports) {
     if (!report.missing.empty()) {
       report.reason = "not usable: it lacks " + joined(report.missing);
-    } else if (!wanted.empty() && lower(report.name).find(lower(wanted)) == std::string::npos) {
-      report.reason = "its name does not contain \"" + wanted + "\"";
+    } else if (!name_part.empty() &&
+               lower(report.name).find(lower(name_part)) == std::string::npos) {
+      report.reason = "its name does not contain \"" + name_part + "\"";
     } else if (!best || rank(report.type) > rank(best->type)) {
       best = &report;
     }
@@ -183,7 +184,7 @@ std::vector<DeviceReport> survey_devices(const Instance& instance, const std::st
   for (auto& report : reports) {
     if (&report == best) {
       report.chosen = true;
-      report.reason = wanted.empty() ? "the best kind of device here" : "asked for by name";
+      report.reason = name_part.empty() ? "the best kind of device here" : "asked for by name";
     } else if (report.reason.empty()) {
       report.reason = rank(report.type) == rank(best->type)
                           ? "an equal one comes first"

@@ -9,7 +9,7 @@
 
 namespace heliograph::gpu {
 
-/// What was found of one physical device, and what became of it.
+/// Properties of one physical device, and whether it was chosen.
 struct DeviceReport {
   VkPhysicalDevice handle = VK_NULL_HANDLE;
   std::string name;
@@ -22,9 +22,9 @@ struct DeviceReport {
   std::string reason;  // why it was or was not chosen, one sentence
 };
 
-/// Looks at every device and chooses one: a name containing `wanted` (ignoring case), otherwise a
-/// discrete GPU before an integrated, a virtual one, a CPU. Reports come in the loader's order.
-std::vector<DeviceReport> survey_devices(const Instance& instance, const std::string& wanted);
+/// Looks at every device and chooses one: a name containing `name_part` (ignoring case), otherwise
+/// a discrete GPU before an integrated, a virtual one, a CPU. Reports come in the loader's order.
+std::vector<DeviceReport> survey_devices(const Instance& instance, const std::string& name_part);
 
 /// What one driver file (ICD manifest) brings.
 struct DriverReport {

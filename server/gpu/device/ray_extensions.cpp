@@ -43,19 +43,19 @@ RayExtensions find_ray_extensions(VkPhysicalDevice device) {
       .pipeline = has(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME) && pipeline.rayTracingPipeline};
 }
 
-RayFeatures::RayFeatures(const RayExtensions& wanted) {
-  if (!wanted.query && !wanted.pipeline) return;
+RayFeatures::RayFeatures(const RayExtensions& requested) {
+  if (!requested.query && !requested.pipeline) return;
   structure_.accelerationStructure = VK_TRUE;
   chain_ = &structure_;
   extensions_ = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
                  VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
-  if (wanted.query) {
+  if (requested.query) {
     query_.rayQuery = VK_TRUE;
     query_.pNext = chain_;
     chain_ = &query_;
     extensions_.push_back(VK_KHR_RAY_QUERY_EXTENSION_NAME);
   }
-  if (wanted.pipeline) {
+  if (requested.pipeline) {
     pipeline_.rayTracingPipeline = VK_TRUE;
     pipeline_.pNext = chain_;
     chain_ = &pipeline_;

@@ -6,7 +6,7 @@
 
 namespace heliograph::gpu {
 
-/// Which ray tracing extensions a device has, each whole: the extensions and features it rests on
+/// Which ray tracing extensions a device has, each whole: the extensions and features it depends on
 /// are there too.
 struct RayExtensions {
   bool query = false;     // VK_KHR_ray_query
@@ -16,10 +16,10 @@ struct RayExtensions {
 /// What `device` offers; it must know Vulkan 1.3.
 RayExtensions find_ray_extensions(VkPhysicalDevice device);
 
-/// What to ask for at the creation of a device so that it has the extensions of `wanted`.
+/// What to ask for at the creation of a device so that it has the extensions of `requested`.
 class RayFeatures {
  public:
-  explicit RayFeatures(const RayExtensions& wanted);
+  explicit RayFeatures(const RayExtensions& requested);
   RayFeatures(const RayFeatures&) = delete;
   RayFeatures& operator=(const RayFeatures&) = delete;
 

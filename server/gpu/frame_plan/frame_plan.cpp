@@ -47,31 +47,33 @@ std::uint32_t FramePlan::add(Resource resource) {
   return static_cast<std::uint32_t>(resources_.size() - 1);
 }
 
-ImageRef FramePlan::image(std::string name, VkFormat format, VkImageUsageFlags extra_usage,
+ImageRef FramePlan::image(std::string_view name, VkFormat format, VkImageUsageFlags extra_usage,
                           std::optional<VkExtent2D> extent) {
   const bool depth = is_depth(format);
-  ImageDesc desc{.name = name, .extent = extent.value_or(extent_), .format = format};
+  ImageDesc desc{
+      .name = std::string(name), .extent = extent.value_or(extent_), .format = format};
   desc.usage = extra_usage | VK_IMAGE_USAGE_SAMPLED_BIT |
                (depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_IMAGE_USAGE_STORAGE_BIT);
   desc.mapped = device_.is_cpu() && !depth;
-  Resource resource{.name = std::move(name)};
+  Resource resource{.name = std::string(name)};
   auto made = std::make_shared<const Image>(device_, std::move(desc));
   resource.images = {made.get(), made.get()};
   resource.owned_images = {made, made};
   return {add(std::move(resource))};
 }
 
-History FramePlan::history(std::string name, VkFormat format, VkImageUsageFlags extra_usage,
+History FramePlan::history(std::string_view name, VkFormat format, VkImageUsageFlags extra_usage,
                            std::optional<VkExtent2D> extent) {
-  ImageDesc desc{.name = name, .extent = extent.value_or(extent_), .format = format};
+  ImageDesc desc{
+      .name = std::string(name), .extent = extent.value_or(extent_), .format = format};
   desc.usage = extra_usage | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
   desc.mapped = device_.is_cpu();
   const auto even = std::make_shared<const Image>(device_, desc);
   const auto odd = std::make_shared<const Image>(device_, desc);
-  Resource current{.name = name};
+  Resource current{.name = std::string(name)};
   current.images = {even.get(), odd.get()};
   current.owned_images = {even, odd};
-  Resource previous{.name = name + ".previous"};
+  Resource previous{.name = std::string(name) + ".previous"};
   previous.images = {odd.get(), even.get()};
   const History made{{add(std::move(current))}, {add(std::move(previous))}};
   reset(made);
@@ -106,21 +108,31 @@ void FramePlan::share_set(std::uint32_t number, VkDescriptorSet set) {
   shared_sets_.emplace_back(number, set);
 }
 
+PassBuilder FramePlan::add(Pass pass) {
+  passes_.push_back(std::move(pass));
+  return {*this, passes_.size() - 1};
+}
+
 PassBuilder FramePlan::pass(std::string name, const ComputeProgram& program) {
   Pass pass;
   pass.name = std::move(name);
   pass.program = &program;
   pass.local_size = program.local_size();
-  passes_.push_back(std::move(pass));
-  return {*this, passes_.size() - 1};
+  return add(std::move(pass));
+}
+
+PassBuilder FramePlan::pass(std::string name, ProgramSource program) {
+  Pass pass;
+  pass.name = std::move(name);
+  pass.make_program = std::move(program);
+  return add(std::move(pass));
 }
 
 PassBuilder FramePlan::pass(std::string name, const RayProgram& program) {
   Pass pass;
   pass.name = std::move(name);
   pass.program = pass.rays = &program;
-  passes_.push_back(std::move(pass));
-  return {*this, passes_.size() - 1};
+  return add(std::move(pass));
 }
 
 PassBuilder FramePlan::raster(std::string name, const RasterProgram& program) {
@@ -128,25 +140,34 @@ PassBuilder FramePlan::raster(std::string name, const RasterProgram& program) {
   pass.name = std::move(name);
   pass.program = &program;
   pass.is_raster = true;
-  passes_.push_back(std::move(pass));
-  return {*this, passes_.size() - 1};
+  return add(std::move(pass));
 }
 
 PassBuilder FramePlan::host(std::string name, std::function<void()> run) {
   Pass pass;
   pass.name = std::move(name);
   pass.host = std::move(run);
-  passes_.push_back(std::move(pass));
-  return {*this, passes_.size() - 1};
+  return add(std::move(pass));
 }
 
 void FramePlan::compile() {
-  for (const Pass& pass : passes_) check_pass(pass);
+  for (Pass& pass : passes_) {
+    if (pass.is_host_only()) {
+      pass.program = nullptr;
+    } else if (pass.make_program) {
+      const ComputeProgram& program = pass.make_program();
+      pass.program = &program;
+      pass.local_size = program.local_size();
+    }
+    check_pass(pass);
+  }
   derive_barriers();
   list_views();
   make_descriptor_sets();
   std::uint32_t submits = 1;
-  for (const Pass& pass : passes_) submits += timed_by_clock() || !pass.program ? 1 : 0;
+  for (const Pass& pass : passes_) {
+    submits += timed_by_clock() || pass.is_host_only() ? 1 : 0;
+  }
   commands_.resize(submits);
   VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
   info.commandPool = command_pool_;
@@ -158,7 +179,7 @@ void FramePlan::compile() {
   queries.queryType = VK_QUERY_TYPE_TIMESTAMP;
   queries.queryCount = static_cast<std::uint32_t>(passes_.size() * 2 + 1);
   check(vkCreateQueryPool(device_.handle(), &queries, nullptr, &queries_), "create the timers");
-  for (const Pass& pass : passes_) timings_.push_back({pass.name, !pass.program, 0.0f});
+  for (const Pass& pass : passes_) timings_.push_back({pass.name, pass.is_host_only(), 0.0f});
   if (read_back_.index != ImageRef().index) readback_ = Readback(device_, latest(read_back_));
   compiled_ = true;
 }
@@ -212,8 +233,10 @@ void FramePlan::execute() {
       barrier |= !pass.program;
       continue;
     }
+    const bool on_host = pass.runs_on_host();
+    timings_[i].host = on_host;
     const auto start = Clock::now();
-    if (pass.program) {
+    if (!on_host) {
       const auto query = static_cast<std::uint32_t>(i * 2);
       if (std::exchange(barrier, false)) full_barrier(commands_[part]);
       record(pass, commands_[part], query);
@@ -225,18 +248,37 @@ void FramePlan::execute() {
       begin(commands_[++part]);
       recorded = false;
     }
-    if (pass.program) {
+    if (!on_host) {
       timings_[i].milliseconds = since(start);
       continue;
     }
     const auto begun = Clock::now();
-    pass.host();
+    if (pass.kernel) {
+      run_host_kernel(pass);
+    } else {
+      pass.host();
+    }
     timings_[i].milliseconds = since(begun);
   }
   if (readback_) readback_.record(commands_[part], get(read_back_));
   submit(commands_[part]);
   if (!timed_by_clock()) read_timers();
   parity_ ^= 1;
+}
+
+void FramePlan::run_host_kernel(const Pass& pass) const {
+  std::array<HostView, most_bindings> views{};
+  for (std::size_t i = 0; i < pass.listed.size(); ++i) {
+    const std::uint32_t index = pass.listed[i].resource;
+    if (index == ImageRef().index) continue;
+    const Resource& resource = resources_[index];
+    views[i] = resource.buffer ? HostView{resource.buffer->mapped(), resource.buffer->size()}
+                               : resource.images[parity_]->host();
+  }
+  std::array<std::byte, most_constants> constants;
+  if (pass.constants) pass.constants(constants.data());
+  pass.kernel(std::span(views).first(pass.listed.size()),
+              std::span(constants).first(pass.constants_size), extent_);
 }
 
 void FramePlan::begin(VkCommandBuffer commands) const {
@@ -246,7 +288,7 @@ void FramePlan::begin(VkCommandBuffer commands) const {
 }
 
 void FramePlan::submit(VkCommandBuffer commands) const {
-  // Mapped memory is read after this submit, by a host pass or by whoever takes the picture.
+  // Mapped memory is read after this submit, by a host pass or by the caller that takes the frame.
   VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
   barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
   barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
@@ -301,7 +343,7 @@ void FramePlan::bind(const Pass& pass, VkCommandBuffer commands) {
     vkCmdBindDescriptorSets(commands, point, layout, pass_set, 1, &pass.sets[parity_], 0, nullptr);
   }
   if (pass.constants) {
-    std::array<std::byte, 128> bytes;
+    std::array<std::byte, most_constants> bytes;
     pass.constants(bytes.data());
     vkCmdPushConstants(commands, layout, pass.program->stages(), 0,
                        static_cast<std::uint32_t>(pass.constants_size), bytes.data());
@@ -380,13 +422,37 @@ void FramePlan::reset(const History& history) {
   for (const Image* image : resources_[history.current.index].images) image->clear();
 }
 
-PassBuilder& PassBuilder::use_image(ImageRef image, bool reads, bool writes) {
-  plan_.passes_[pass_].bound.push_back({image.index, reads, writes});
+PassBuilder& PassBuilder::use(Use use) {
+  plan_.passes_[pass_].bound.push_back(use);
   return *this;
 }
 
-PassBuilder& PassBuilder::use_buffer(BufferRef buffer, bool reads, bool writes) {
-  plan_.passes_[pass_].bound.push_back({buffer.index, reads, writes});
+PassBuilder& PassBuilder::use_list(const char* tag, std::span<const Use> uses) {
+  FramePlan::Pass& pass = plan_.passes_[pass_];
+  pass.list = tag;
+  pass.listed.assign(uses.begin(), uses.end());
+  for (const Use& listed : uses) {
+    if (listed.resource != ImageRef().index) pass.bound.push_back(listed);
+  }
+  return *this;
+}
+
+PassBuilder& PassBuilder::set_host(const char* tag, std::size_t constants_size, HostRun run) {
+  if (!plan_.host_kernels_) return *this;
+  FramePlan::Pass& pass = plan_.passes_[pass_];
+  pass.kernel = std::move(run);
+  pass.kernel_list = tag;
+  pass.kernel_constants_size = constants_size;
+  return *this;
+}
+
+PassBuilder& PassBuilder::host_when(bool known) {
+  if (!known) plan_.passes_[pass_].kernel = nullptr;
+  return *this;
+}
+
+PassBuilder& PassBuilder::host_when(std::function<bool()> known) {
+  plan_.passes_[pass_].kernel_known = std::move(known);
   return *this;
 }
 
@@ -429,11 +495,6 @@ PassBuilder& PassBuilder::draw(std::function<void(VkCommandBuffer, VkPipelineLay
 
 PassBuilder& PassBuilder::when(std::function<bool()> condition) {
   plan_.passes_[pass_].condition = std::move(condition);
-  return *this;
-}
-
-PassBuilder& PassBuilder::describe(std::string text) {
-  plan_.passes_[pass_].description = std::move(text);
   return *this;
 }
 

@@ -1,29 +1,25 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
+#include "gpu/frame_plan/bindings.hpp"
 #include "gpu/memory/readback.hpp"
 #include "gpu/pipelines/ray_pipeline.hpp"
 #include "gpu/pipelines/shader.hpp"
 
 namespace heliograph::gpu {
 
-/// Handles of a plan's resources; cheap to copy, valid as long as the plan.
-struct ImageRef {
-  std::uint32_t index = ~0u;
-};
-struct BufferRef {
-  std::uint32_t index = ~0u;
-};
-
-/// A signal with memory: what this frame writes is what the next frame reads.
+/// A signal with a history: what this frame writes is what the next frame reads.
 struct History {
   ImageRef current;
   ImageRef previous;
@@ -43,25 +39,39 @@ struct PassTiming {
   float milliseconds = 0.0f;
 };
 
+/// Most resources that one pass binds, and most bytes of push constants.
+inline constexpr std::size_t most_bindings = 24;
+inline constexpr std::size_t most_constants = 128;
+
+/// A compute program that is made when a plan needs it: not where a host kernel does the work.
+using ProgramSource = std::function<const ComputeProgram&()>;
+
 class FramePlan;
 
-/// One pass under construction. Reads and writes bind, in the order given, to the shader's pass
-/// set in ascending binding order.
+/// One pass under construction. Its resources bind, in the order given, to the shader's pass set in
+/// ascending binding order.
 class PassBuilder {
  public:
-  PassBuilder& read(ImageRef image) { return use_image(image, true, false); }
-  PassBuilder& read(BufferRef buffer) { return use_buffer(buffer, true, false); }
-  PassBuilder& write(ImageRef image) { return use_image(image, false, true); }
-  PassBuilder& write(BufferRef buffer) { return use_buffer(buffer, false, true); }
-  PassBuilder& read_write(ImageRef image) { return use_image(image, true, true); }
-  PassBuilder& read_write(BufferRef buffer) { return use_buffer(buffer, true, true); }
+  PassBuilder& read(ImageRef image) { return use({image.index, Access::read}); }
+  PassBuilder& read(BufferRef buffer) { return use({buffer.index, Access::read}); }
+  PassBuilder& write(ImageRef image) { return use({image.index, Access::write}); }
+  PassBuilder& write(BufferRef buffer) { return use({buffer.index, Access::write}); }
+  PassBuilder& read_write(ImageRef image) { return use({image.index, Access::read_write}); }
+  PassBuilder& read_write(BufferRef buffer) { return use({buffer.index, Access::read_write}); }
 
-  /// Push constants: a value, or a function that returns it anew every frame.
+  /// All resources of the pass by name: `.bind<BlurBindings>({.guide = ..., .signal = ...})`.
+  template <template <class> class Bindings>
+  PassBuilder& bind(const Bindings<Declared>& bindings) {
+    static_assert(binding_count<Bindings> <= most_bindings);
+    return use_list(&bindings_tag<Bindings>, uses_of<Bindings>(bindings));
+  }
+
+  /// Push constants: a value, or a function that is called in every frame.
   template <typename Source>
   PassBuilder& constants(Source source) {
     if constexpr (std::is_invocable_v<Source>) {
       using Value = std::invoke_result_t<Source>;
-      static_assert(std::is_trivially_copyable_v<Value> && sizeof(Value) <= 128);
+      static_assert(std::is_trivially_copyable_v<Value> && sizeof(Value) <= most_constants);
       return set_constants(sizeof(Value), [source](std::byte* bytes) {
         const Value value = source();
         std::memcpy(bytes, &value, sizeof(Value));
@@ -85,15 +95,53 @@ class PassBuilder {
   PassBuilder& draw(std::function<void(VkCommandBuffer, VkPipelineLayout)> record);
   /// The pass is skipped in frames where this is false.
   PassBuilder& when(std::function<bool()> condition);
-  /// What a person reads about the pass's outputs in the list of views.
-  PassBuilder& describe(std::string text);
+
+  /// The same computation as the shader's by the host's processors, which a plan with host kernels
+  /// runs in its place. `kernel` is a function or a lambda that takes a `const HostPass<...>&` of
+  /// the list given to bind() and of the type given to constants().
+  template <class Kernel>
+  PassBuilder& host(Kernel kernel) {
+    return run_on_host(std::function(std::move(kernel)));
+  }
+  /// A kernel whose job holds `inputs` besides the pass. They outlive the plan.
+  template <class Job, class... Inputs>
+  PassBuilder& host(void (*kernel)(const Job&), const Inputs&... inputs) {
+    return host([kernel, &inputs...](const typename Job::Pass& pass) {
+      kernel({pass, inputs...});
+    });
+  }
+  /// Restricts host(): the shader runs where the kernel does not know the case, as decided
+  /// when the pass is declared or in every frame.
+  PassBuilder& host_when(bool known);
+  PassBuilder& host_when(std::function<bool()> known);
 
  private:
   friend class FramePlan;
+  /// Views of the list's resources, bytes of the constants, the plan's extent.
+  using HostRun =
+      std::function<void(std::span<const HostView>, std::span<const std::byte>, VkExtent2D)>;
+
   PassBuilder(FramePlan& plan, std::size_t pass) : plan_(plan), pass_(pass) {}
-  PassBuilder& use_image(ImageRef image, bool reads, bool writes);
-  PassBuilder& use_buffer(BufferRef buffer, bool reads, bool writes);
+  PassBuilder& use(Use use);
+  PassBuilder& use_list(const char* tag, std::span<const Use> uses);
   PassBuilder& set_constants(std::size_t size, std::function<void(std::byte*)> fill);
+  PassBuilder& set_host(const char* tag, std::size_t constants_size, HostRun run);
+
+  template <template <class> class Bindings, class Constants>
+  PassBuilder& run_on_host(std::function<void(const HostPass<Bindings, Constants>&)> kernel) {
+    constexpr std::size_t size = std::is_empty_v<Constants> ? 0 : sizeof(Constants);
+    return set_host(
+        &bindings_tag<Bindings>, size,
+        [kernel = std::move(kernel)](std::span<const HostView> views,
+                                     std::span<const std::byte> constants, VkExtent2D extent) {
+          HostViews<Bindings> all;
+          std::copy_n(views.begin(), all.size(), all.begin());
+          Constants value{};
+          std::memcpy(&value, constants.data(), size);
+          kernel({map_bindings<Bindings>(all), value, static_cast<int>(extent.width),
+                  static_cast<int>(extent.height)});
+        });
+  }
 
   FramePlan& plan_;
   std::size_t pass_;
@@ -113,11 +161,15 @@ class FramePlan {
   VkExtent2D extent() const { return extent_; }
   const Device& device() const { return device_; }
 
+  /// Whether passes declared from now on run their host kernels, where they have one. Only devices
+  /// that are processors do.
+  void use_host_kernels(bool use) { host_kernels_ = use && device_.is_cpu(); }
+
   /// An image of the plan's extent, or of its own; mapped on CPU devices.
-  ImageRef image(std::string name, VkFormat format, VkImageUsageFlags extra_usage = 0,
+  ImageRef image(std::string_view name, VkFormat format, VkImageUsageFlags extra_usage = 0,
                  std::optional<VkExtent2D> extent = std::nullopt);
-  /// Two images that change places after every frame; cleared to zero.
-  History history(std::string name, VkFormat format, VkImageUsageFlags extra_usage = 0,
+  /// Two images that swap after every frame; cleared to zero.
+  History history(std::string_view name, VkFormat format, VkImageUsageFlags extra_usage = 0,
                   std::optional<VkExtent2D> extent = std::nullopt);
   BufferRef buffer(std::string name, VkDeviceSize size, VkBufferUsageFlags usage, Memory memory);
   /// Resources owned elsewhere, which must outlive the plan.
@@ -129,8 +181,10 @@ class FramePlan {
   void share_set(std::uint32_t number, VkDescriptorSet set);
 
   PassBuilder pass(std::string name, const ComputeProgram& program);
+  PassBuilder pass(std::string name, ProgramSource program);
   PassBuilder pass(std::string name, const RayProgram& program);
   PassBuilder raster(std::string name, const RasterProgram& program);
+  /// A pass without a shader.
   PassBuilder host(std::string name, std::function<void()> run);
 
   /// The one image that comes back to the host with every frame, through read().
@@ -156,7 +210,6 @@ class FramePlan {
 
   struct View {
     std::string name;
-    std::string description;
     ImageRef image;
   };
   const std::vector<View>& views() const { return views_; }
@@ -172,6 +225,8 @@ class FramePlan {
   struct Pass;
 
   std::uint32_t add(Resource resource);
+  PassBuilder add(Pass pass);
+  void run_host_kernel(const Pass& pass) const;
   void check_pass(const Pass& pass) const;
   void derive_barriers();
   void make_descriptor_sets();
@@ -203,6 +258,7 @@ class FramePlan {
   std::vector<PassTiming> timings_;
   std::vector<View> views_;
   std::uint32_t parity_ = 0;
+  bool host_kernels_ = false;
   bool compiled_ = false;
 };
 

@@ -26,6 +26,13 @@ const char* type_text(VkDescriptorType type) {
   }
 }
 
+bool reads(const Use& use) {
+  return use.access != Access::write;
+}
+bool writes(const Use& use) {
+  return use.access != Access::read;
+}
+
 bool is_image(VkDescriptorType type) {
   return type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE ||
          type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
@@ -58,11 +65,13 @@ std::string mismatch(const ShaderBinding& binding, const Image* image, const std
 
 }  // namespace
 
-std::vector<FramePlan::Pass::Use> FramePlan::Pass::all_uses() const {
+std::vector<Use> FramePlan::Pass::all_uses() const {
   std::vector<Use> uses = bound;
-  for (const auto& color : colors) uses.push_back({color.resource, !color.clear, true});
-  if (depth) uses.push_back({depth->resource, false, true});
-  if (indirect) uses.push_back({indirect->first, true, false});
+  for (const auto& color : colors) {
+    uses.push_back({color.resource, color.clear ? Access::write : Access::read_write});
+  }
+  if (depth) uses.push_back({depth->resource, Access::write});
+  if (indirect) uses.push_back({indirect->first, Access::read});
   return uses;
 }
 
@@ -70,13 +79,20 @@ void FramePlan::check_pass(const Pass& pass) const {
   const auto fail = [&](const std::string& what) {
     throw GpuError("pass \"" + pass.name + "\": " + what);
   };
+  if (pass.kernel && pass.list != pass.kernel_list) {
+    fail("its host kernel takes another list of bindings than the pass was given");
+  }
+  if (pass.kernel && pass.kernel_constants_size != pass.constants_size) {
+    fail("its host kernel takes " + std::to_string(pass.kernel_constants_size) +
+         " bytes of constants, given " + std::to_string(pass.constants_size));
+  }
   if (!pass.program) return;
   const auto& bindings = pass.program->pass_bindings();
   for (std::size_t i = 0; i < std::min(bindings.size(), pass.bound.size()); ++i) {
     const auto& use = pass.bound[i];
     const Resource& resource = resources_[use.resource];
     const std::string wrong =
-        mismatch(bindings[i], resource.images[0], resource.name, use.reads, use.writes);
+        mismatch(bindings[i], resource.images[0], resource.name, reads(use), writes(use));
     if (wrong.empty()) continue;
     fail("binding " + std::to_string(bindings[i].binding) + " \"" + bindings[i].name + "\" " +
          wrong);
@@ -104,8 +120,8 @@ void FramePlan::derive_barriers() {
   std::set<std::uint32_t> written;
   for (Pass& pass : passes_) {
     const auto uses = pass.all_uses();
-    const bool hazard = std::any_of(uses.begin(), uses.end(), [&](const Pass::Use& use) {
-      return written.contains(use.resource) || (use.writes && read.contains(use.resource));
+    const bool hazard = std::any_of(uses.begin(), uses.end(), [&](const Use& use) {
+      return written.contains(use.resource) || (writes(use) && read.contains(use.resource));
     });
     // A submit lies before and after a host pass, which orders everything.
     if (hazard || !pass.program) {
@@ -115,8 +131,8 @@ void FramePlan::derive_barriers() {
     }
     if (!pass.program) continue;
     for (const auto& use : uses) {
-      if (use.reads) read.insert(use.resource);
-      if (use.writes) written.insert(use.resource);
+      if (reads(use)) read.insert(use.resource);
+      if (writes(use)) written.insert(use.resource);
     }
   }
 }
@@ -135,12 +151,10 @@ void FramePlan::list_views() {
     for (const auto& use : pass.all_uses()) {
       const Resource& resource = resources_[use.resource];
       const Image* image = resource.images[0];
-      if (!use.writes || !image || is_depth(image->desc().format)) continue;
+      if (!writes(use) || !image || is_depth(image->desc().format)) continue;
       if (image->desc().format == VK_FORMAT_R32G32B32A32_UINT) continue;  // packed: nothing to see
       if (resource.level || !listed.insert(use.resource).second) continue;
-      const std::string text =
-          pass.description.empty() ? "Written by the pass " + pass.name + "." : pass.description;
-      views_.push_back({resource.name, text, {use.resource}});
+      views_.push_back({resource.name, {use.resource}});
     }
   }
 }
@@ -154,7 +168,7 @@ std::vector<PassWork> FramePlan::work() const {
       if (const Image* image = resource.images[0]) {
         const auto& desc = image->desc();
         const std::uint64_t texels = std::uint64_t{desc.extent.width} * desc.extent.height;
-        work.image_bytes += texels * texel_bytes(desc.format) * (use.reads + use.writes);
+        work.image_bytes += texels * texel_bytes(desc.format) * (reads(use) + writes(use));
       } else if (work.entries == 0 && resource.name.ends_with(".ray_count")) {
         const auto count = download_buffer(device_, *resource.buffer, sizeof(std::uint32_t));
         std::uint32_t entries = 0;

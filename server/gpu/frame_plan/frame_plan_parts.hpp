@@ -18,23 +18,20 @@ struct FramePlan::Resource {
 };
 
 struct FramePlan::Pass {
-  struct Use {
-    std::uint32_t resource;
-    bool reads;
-    bool writes;
-  };
   struct Attachment {
     std::uint32_t resource;
     std::optional<std::array<float, 4>> clear;
   };
 
   std::string name;
-  std::string description;
+  ProgramSource make_program;        // when the plan is compiled, unless only the host runs
   const Program* program = nullptr;  // null: a host pass
   const RayProgram* rays = nullptr;  // `program`, where it is a ray tracing pipeline
   bool is_raster = false;
   VkExtent3D local_size{1, 1, 1};
   std::vector<Use> bound;  // in binding order
+  std::vector<Use> listed;       // the same as given to bind(), with those that are absent
+  const char* list = nullptr;    // which list that was
   std::vector<Attachment> colors;
   std::optional<Attachment> depth;
   std::optional<std::pair<std::uint32_t, VkDeviceSize>> indirect;
@@ -43,7 +40,11 @@ struct FramePlan::Pass {
   std::size_t constants_size = 0;
   std::function<void(std::byte*)> constants;
   std::function<void(VkCommandBuffer, VkPipelineLayout)> draw;
-  std::function<void()> host;
+  std::function<void()> host;  // of a pass without a shader
+  PassBuilder::HostRun kernel;
+  const char* kernel_list = nullptr;
+  std::size_t kernel_constants_size = 0;
+  std::function<bool()> kernel_known;  // empty: in every frame
   std::function<bool()> condition;
 
   bool barrier_before = false;
@@ -53,6 +54,9 @@ struct FramePlan::Pass {
     if (rays) return VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR;
     return is_raster ? VK_PIPELINE_BIND_POINT_GRAPHICS : VK_PIPELINE_BIND_POINT_COMPUTE;
   }
+  /// No frame runs a shader.
+  bool is_host_only() const { return host || (kernel && !kernel_known); }
+  bool runs_on_host() const { return host || (kernel && (!kernel_known || kernel_known())); }
   /// Everything the pass touches: bindings, attachments, indirect arguments.
   std::vector<Use> all_uses() const;
 };

@@ -22,9 +22,10 @@ Buffer::Buffer(const Device& device, std::string name, VkDeviceSize size, VkBuff
   constexpr VkMemoryPropertyFlags mapped =
       VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
   VkMemoryPropertyFlags needed = memory == Memory::device && !device.is_cpu() ? 0 : mapped;
-  VkMemoryPropertyFlags wanted = memory == Memory::readback ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT
-                                                            : VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
-  memory_ = device.allocate(requirements, needed, wanted, name_);
+  VkMemoryPropertyFlags preferred = memory == Memory::readback
+                                        ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT
+                                        : VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+  memory_ = device.allocate(requirements, needed, preferred, name_);
   check(vkBindBufferMemory(device.handle(), handle_, memory_, 0), "bind a buffer's memory");
   if (needed & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) {
     void* address = nullptr;

@@ -25,6 +25,7 @@ struct ImageDesc {
 struct HostView {
   std::byte* data = nullptr;
   std::size_t row_pitch = 0;
+  explicit operator bool() const { return data != nullptr; }
   template <typename Texel>
   Texel* row(std::uint32_t y) const {
     return reinterpret_cast<Texel*>(data + y * row_pitch);

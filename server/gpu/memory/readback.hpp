@@ -10,7 +10,7 @@
 namespace heliograph::gpu {
 
 /// Brings one layer of images of one size and format to the host, again and again through the same
-/// memory: making such memory anew costs more than the copy.
+/// memory: allocating such memory costs more than the copy.
 class Readback {
  public:
   Readback() = default;

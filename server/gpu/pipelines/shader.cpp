@@ -15,7 +15,7 @@ void check_shared(const std::string& program, const ShaderBinding& binding,
                             " binding " + std::to_string(binding.binding) + " \"" + binding.name +
                             "\" ";
   const auto layout = shared.find(binding.set);
-  if (layout == shared.end()) throw GpuError(where + "is in a set that nobody provides");
+  if (layout == shared.end()) throw GpuError(where + "is in a set that no caller provides");
   const auto* provided = layout->second->find(binding.binding);
   if (!provided) throw GpuError(where + "is not in the layout \"" + layout->second->name() + "\"");
   if (provided->type != binding.type) {
@@ -90,7 +90,7 @@ void Program::create_layout(std::span<const Reflection> stages, VkShaderStageFla
   pass_layout_ = make_pass_layout(device_, pass_bindings_);
   std::uint32_t count = pass_set + 1;
   for (const auto& [set, layout] : shared) count = std::max(count, set + 1);
-  // Sets that nobody provides get the pass's own layout: valid, and never bound.
+  // Sets that no caller provides get the pass's own layout: valid, and never bound.
   std::vector<VkDescriptorSetLayout> layouts(count, pass_layout_);
   for (const auto& [set, layout] : shared) layouts[set] = layout->handle();
   const VkPushConstantRange range{flags, 0, constants_size_};

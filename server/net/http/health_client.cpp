@@ -9,11 +9,11 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http.hpp>
-#include <boost/beast/ssl/ssl_stream.hpp>
+#include <memory>
 #include <optional>
 #include <string_view>
-#include <type_traits>
 
+#include "net/client_stream.hpp"
 #include "net/security/access_control.hpp"
 
 namespace heliograph::net {
@@ -58,18 +58,15 @@ std::optional<Address> parse_url(std::string_view url) {
   return address;
 }
 
-using Plain = beast::tcp_stream;
-using Secure = beast::ssl_stream<beast::tcp_stream>;
-
-/// One request over `Stream`, from the name's resolution to the answer's last byte.
-template <class Stream>
-class Question {
+/// One request, from the name's resolution to the response's last byte.
+class HealthRequest {
  public:
-  template <class... StreamOptions>
-  Question(asio::io_context& io, const Address& address, std::chrono::milliseconds patience,
-           StreamOptions&... options)
-      : stream_(io, options...) {
-    beast::get_lowest_layer(stream_).expires_after(patience);
+  /// `context`: null for plain HTTP
+  HealthRequest(asio::io_context& io, const Address& address, std::chrono::milliseconds timeout,
+                std::shared_ptr<asio::ssl::context> context)
+      : deadline_(std::chrono::steady_clock::now() + timeout),
+        connecting_(io),
+        context_(std::move(context)) {
     request_.method(http::verb::get);
     request_.target(address.target);
     request_.version(11);
@@ -77,8 +74,9 @@ class Question {
     request_.set(http::field::connection, "close");
     const auto found = asio::ip::tcp::resolver(io).resolve(address.host, address.port, error_);
     if (error_) return;
-    beast::get_lowest_layer(stream_).async_connect(
-        found, [this](error_code error, const auto&) { next(error, &Question::secure); });
+    connecting_.expires_at(deadline_);
+    connecting_.async_connect(
+        found, [this](error_code error, const auto&) { next(error, &HealthRequest::secure); });
     io.run();
   }
 
@@ -91,70 +89,77 @@ class Question {
   }
 
  private:
-  void next(error_code error, void (Question::*step)()) {
+  void next(error_code error, void (HealthRequest::*step)()) {
     error_ = error;
     if (!error) (this->*step)();
   }
 
   void secure() {
-    if constexpr (std::is_same_v<Stream, Secure>) {
-      stream_.async_handshake(asio::ssl::stream_base::client,
-                              [this](error_code error) { next(error, &Question::ask); });
-    } else {
-      ask();
-    }
+    stream_.emplace(connecting_.release_socket(), ConnectionLimits::Slot());
+    stream_->next_layer().expires_at(deadline_);
+    if (!context_) return send();
+    stream_->async_secure(
+        context_, asio::ssl::stream_base::client, {},
+        [this](error_code error, std::size_t) { next(error, &HealthRequest::send); });
   }
 
-  void ask() {
-    http::async_write(stream_, request_,
-                      [this](error_code error, std::size_t) { next(error, &Question::listen); });
+  void send() {
+    http::async_write(*stream_, request_, IoHandler([this](error_code error) {
+      next(error, &HealthRequest::receive);
+    }));
   }
 
-  void listen() {
-    http::async_read(stream_, buffer_, response_,
-                     [this](error_code error, std::size_t) { error_ = error; });
+  void receive() {
+    http::async_read(*stream_, buffer_, response_,
+                     IoHandler([this](error_code error) { error_ = error; }));
   }
 
-  Stream stream_;
+  const std::chrono::steady_clock::time_point deadline_;
+  beast::tcp_stream connecting_;
+  const std::shared_ptr<asio::ssl::context> context_;
+  std::optional<ClientStream> stream_;
   http::request<http::empty_body> request_;
   http::response<http::string_body> response_;
   beast::flat_buffer buffer_;
   error_code error_;
 };
 
-HealthAnswer ask_securely(const Address& address, const std::string& authorities,
-                          std::chrono::milliseconds patience) {
-  asio::ssl::context context(asio::ssl::context::tls_client);
-  error_code error;
-  // On the way to this very machine nobody can stand in between, and the certificate is made out
-  // to the name that others know.
+/// Throws boost::system::system_error if the certificates of `authorities` cannot be loaded.
+std::shared_ptr<asio::ssl::context> verifying_context(const Address& address,
+                                                      const std::string& authorities) {
+  auto context = std::make_shared<asio::ssl::context>(asio::ssl::context::tls_client);
+  // The certificate is made out to the server's public name, and nothing on the loopback interface
+  // can be intercepted by other machines.
   if (is_loopback(address.host) && authorities.empty()) {
-    context.set_verify_mode(asio::ssl::verify_none, error);
-  } else {
-    context.set_verify_mode(asio::ssl::verify_peer, error);
-    context.set_verify_callback(asio::ssl::host_name_verification(address.host), error);
-    if (authorities.empty()) {
-      context.set_default_verify_paths(error);
-    } else {
-      context.load_verify_file(authorities, error);
-    }
+    context->set_verify_mode(asio::ssl::verify_none);
+    return context;
   }
-  if (error) return {.healthy = false, .text = authorities + ": " + error.message()};
-  asio::io_context io;
-  return Question<Secure>(io, address, patience, context).answer();
+  context->set_verify_mode(asio::ssl::verify_peer);
+  context->set_verify_callback(asio::ssl::host_name_verification(address.host));
+  if (authorities.empty()) {
+    context->set_default_verify_paths();
+  } else {
+    context->load_verify_file(authorities);
+  }
+  return context;
 }
 
 }  // namespace
 
 HealthAnswer ask_health(const std::string& url, const std::string& authorities,
-                        std::chrono::milliseconds patience) {
+                        std::chrono::milliseconds timeout) {
   const std::optional<Address> address = parse_url(url);
   if (!address) {
     return {.healthy = false, .text = "the address must begin with http:// or https://"};
   }
-  if (address->secure) return ask_securely(*address, authorities, patience);
+  std::shared_ptr<asio::ssl::context> context;
+  try {
+    if (address->secure) context = verifying_context(*address, authorities);
+  } catch (const boost::system::system_error& failure) {
+    return {.healthy = false, .text = authorities + ": " + failure.code().message()};
+  }
   asio::io_context io;
-  return Question<Plain>(io, *address, patience).answer();
+  return HealthRequest(io, *address, timeout, std::move(context)).answer();
 }
 
 }  // namespace heliograph::net

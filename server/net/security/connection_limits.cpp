@@ -64,7 +64,7 @@ ConnectionLimits::ConnectionLimits(std::size_t in_all, std::size_t per_client,
                                    std::vector<AddressRange> unlimited)
     : in_all_(in_all), per_client_(per_client), unlimited_(std::move(unlimited)) {}
 
-std::optional<ConnectionLimits::Seat> ConnectionLimits::take(const std::string& address) {
+std::optional<ConnectionLimits::Slot> ConnectionLimits::take(const std::string& address) {
   const bool counted =
       std::none_of(unlimited_.begin(), unlimited_.end(),
                    [&](const AddressRange& range) { return range.contains(address); });
@@ -75,14 +75,14 @@ std::optional<ConnectionLimits::Seat> ConnectionLimits::take(const std::string& 
   if (counts_->in_all >= in_all_ || client_full) return std::nullopt;
   ++counts_->in_all;
   ++counts_->by_client[client];
-  Seat seat;
-  seat.address_ = address;
-  seat.counted_ = std::shared_ptr<void>(nullptr, [counts = counts_, client](void*) {
+  Slot slot;
+  slot.address_ = address;
+  slot.counted_ = std::shared_ptr<void>(nullptr, [counts = counts_, client](void*) {
     --counts->in_all;
     const auto entry = counts->by_client.find(client);
     if (--entry->second == 0) counts->by_client.erase(entry);
   });
-  return seat;
+  return slot;
 }
 
 }  // namespace heliograph::net

@@ -46,14 +46,14 @@ const std::shared_ptr<const scene::Scene>& scene_of(const SceneResources& resour
 /// Memory of the tables, images and the acceleration structure, not of the environment.
 std::uint64_t memory_bytes(const SceneResources& resources);
 
-/// Told as an upload proceeds: stage name and fraction of the whole, 0..1.
+/// Progress of an upload: stage name and fraction of the whole, 0..1.
 using UploadProgress = std::function<void(std::string_view stage, float fraction)>;
 
-/// One device with its programs, shared by every renderer. Where gpu::DeviceLost is thrown, by
-/// whatever works on the device, `recreate` makes another one.
+/// One device with its programs, shared by every renderer. After a gpu::DeviceLost from any use of
+/// the device, `recreate` makes another one.
 class Engine {
  public:
-  /// @throws gpu::GpuError with the reasons when no device will do
+  /// @throws gpu::GpuError with the reasons when no device can be used
   explicit Engine(const EngineOptions& options);
   ~Engine();
   Engine(const Engine&) = delete;
@@ -70,30 +70,31 @@ class Engine {
   std::string shader_error() const;
 
   /// Uploads, prefilters the environment and builds the acceleration structure.
-  /// May run on any thread, beside rendering. What `progress` throws ends it and comes out.
+  /// May run on any thread, beside rendering. What `progress` throws ends the upload and is passed
+  /// on.
   std::shared_ptr<const SceneResources> upload(std::shared_ptr<const scene::Scene> scene,
                                                const scene::Environment& environment,
                                                const UploadProgress& progress = {});
   std::shared_ptr<const SceneResources> upload(
       std::shared_ptr<const scene::Scene> scene,
       std::shared_ptr<const scene::Environment> environment, const UploadProgress& progress = {});
-  /// The same of a scene that is given away: its images that came from files let go of their pixels
-  /// as soon as these are on the device, so that they are never there twice.
-  std::shared_ptr<const SceneResources> upload(
+  /// The same of a scene that is given away: the pixels of its images that came from files are
+  /// freed as soon as they are on the device, so that memory never holds them twice.
+  std::shared_ptr<const SceneResources> upload_and_free_pixels(
       std::unique_ptr<scene::Scene> scene, std::shared_ptr<const scene::Environment> environment,
       const UploadProgress& progress = {});
 
-  /// Uploads and prefilters an environment, or finds it where it is in use already. May run on any
-  /// thread, beside rendering.
+  /// Uploads and prefilters an environment, or returns the one that is in use already. May run on
+  /// any thread, beside rendering.
   std::shared_ptr<const LitEnvironment> prefilter(scene::Environment environment);
 
-  /// Makes the device and its programs anew. There must be no renderer; what was uploaded before
-  /// may still be held but is of no use any more. @throws gpu::GpuError
+  /// Makes the device and its programs again. There must be no renderer; what was uploaded before
+  /// may still be referenced but must not be rendered. @throws gpu::GpuError
   void recreate();
-  /// Whether it lives on the present device.
+  /// Whether it is on the current device.
   bool owns(const SceneResources& resources) const;
   bool owns(const LitEnvironment& environment) const;
-  /// The same on the present device.
+  /// The same on the current device.
   std::shared_ptr<const SceneResources> renew(const SceneResources& lost);
   std::shared_ptr<const LitEnvironment> renew(const LitEnvironment& lost);
 
@@ -101,8 +102,8 @@ class Engine {
   Parts& parts() { return *parts_; }
 
  private:
-  std::shared_ptr<Parts> present() const;
-  std::shared_ptr<const SceneResources> upload(
+  std::shared_ptr<Parts> current() const;
+  std::shared_ptr<const SceneResources> upload_images(
       std::shared_ptr<const scene::Scene> scene,
       std::shared_ptr<const scene::Environment> environment, const UploadProgress& progress,
       const std::function<void(std::size_t image)>& image_done);

@@ -15,8 +15,8 @@ struct PassTime {
   float milliseconds;
 };
 
-/// What a pass of the last frame had to touch: bytes of the images that it reads and writes, and
-/// the rays of its stream (0: it works on none).
+/// The work of a pass in the last frame: bytes of the images that it reads and writes, and the rays
+/// of its stream (0: it has none).
 struct PassWork {
   std::string name;
   std::uint64_t image_bytes;
@@ -29,7 +29,7 @@ struct FloatImage {
   std::uint32_t height = 0;
   std::vector<float> rgba{};
   std::uint32_t channels = 4;  // the first so many of the four are the buffer's
-  bool counts = false;         // whole numbers from 0
+  bool integers = false;       // whole numbers from 0
 };
 
 /// The value of one buffer at one pixel.
@@ -39,7 +39,7 @@ struct BufferValue {
   std::string unit;  // empty: plain numbers, or channels of different kinds
 };
 
-/// What is seen at one point of the picture, in world space, metres.
+/// The surface at one point of the frame, in world space, metres.
 struct SurfacePoint {
   std::uint32_t instance;  // of the scene
   glm::vec3 position;
@@ -57,7 +57,7 @@ struct Frame {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::vector<std::uint8_t> rgba;  // sRGB, alpha 255, row 0 on top, tightly packed
-  std::uint32_t samples = 0;       // accumulated in this picture
+  std::uint32_t samples = 0;       // accumulated in this frame
   bool converged = false;          // another frame would show the same
   float milliseconds = 0.0f;       // whole frame, wall clock
   std::vector<PassTime> passes;

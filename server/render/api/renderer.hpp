@@ -15,7 +15,7 @@
 
 namespace heliograph::render {
 
-/// Draws one view of a scene: camera, settings, size and history of one session.
+/// Renders one view of a scene: camera, settings, size and history of one session.
 /// Not thread safe: one thread calls it.
 class Renderer {
  public:
@@ -26,32 +26,32 @@ class Renderer {
 
   /// Null is the empty scene, which every renderer starts with.
   void set_scene(std::shared_ptr<const SceneResources> scene);
-  /// Other lights, as at rest, and other values of materials than those of the scene's file, for
-  /// this renderer alone: as many as the scene has, of the same kinds, with the same textures and
-  /// alpha. set_scene brings back the file's. Lights that only move keep the histories.
+  /// Other lights, in the default pose, and other values of materials than those of the scene's
+  /// file, for this renderer alone: as many as the scene has, of the same kinds, with the same
+  /// textures and alpha. set_scene brings back the file's. Lights that only move keep the
+  /// histories.
   void set_lights(std::span<const shared::Light> lights);
   void set_materials(std::span<const shared::Material> materials);
   /// Another environment than the scene's own; null: its own again.
   void set_environment(std::shared_ptr<const LitEnvironment> environment);
   void set_size(std::uint32_t width, std::uint32_t height);
   void set_camera(const scene::Camera& camera);
-  /// Poses the scene by a clip of it, or as at rest when `clip` is empty, where set_scene leaves
-  /// it. Takes effect with the next frame. Motion restarts the resting picture, not the histories.
+  /// Poses the scene by a clip of it, or by its default pose when `clip` is empty, where set_scene
+  /// leaves it. Takes effect with the next frame. Motion restarts accumulation, not the histories.
   protocol::Result<void> set_pose(std::string_view clip, double seconds);
-  /// Forgets every history and starts the random sequences anew: what follows are the frames of a
-  /// fresh renderer.
-  void cut();
-  /// As if nothing had been drawn before: what follows is what another renderer in the same state
-  /// would draw, whatever this one drew.
-  void start_anew();
-  /// Time from frame to frame, which histories are measured by; 1/60 s until told otherwise.
+  /// Discards every history and restarts the random sequences: the next frames are those of a new
+  /// renderer.
+  void invalidate_history();
+  /// Discards all state that frames leave behind: the next frames are those of a new renderer.
+  void reset();
+  /// Time from frame to frame, which the length of histories is measured by; 1/60 s by default.
   void set_frame_seconds(float seconds);
-  /// Refused as check_buffer_name says. While they make no buffer to view, the picture is shown.
+  /// Refused as check_buffer_name says. Where the passes write no such buffer, the output is shown.
   protocol::Result<void> set_settings(const protocol::Settings& settings);
 
-  /// False once a resting picture has all its samples and nothing has changed since.
+  /// False once a static view has all its samples and nothing has changed since.
   bool needs_frame() const;
-  /// Draws the next frame; the empty scene is black.
+  /// Renders the next frame; the empty scene is black.
   Frame render();
 
   /// The work behind the last frame's pass times; slow, for measurements.
@@ -61,13 +61,13 @@ class Renderer {
   const std::vector<BufferInfo>& buffers() const;
   /// The buffer as of the last frame, raw values (linear radiance, metres, unit vectors ...).
   protocol::Result<FloatImage> capture(std::string_view buffer);
-  /// The same as a picture for people: the debug view of that buffer, as streamed.
+  /// The same as colours: the debug view of that buffer, as streamed.
   protocol::Result<Frame> capture_view(std::string_view buffer);
-  /// Every buffer of the last frame at one point of the picture: shares of its width and height
-  /// from the upper left corner, 0 to 1.
+  /// Every buffer of the last frame at one point: fractions of the width and height from the upper
+  /// left corner, 0 to 1.
   std::vector<BufferValue> inspect(glm::vec2 point) const;
-  /// The surface that the last frame shows there; nothing: the background. An error where the
-  /// frame keeps no surfaces: when it is all path traced.
+  /// The surface that the last frame shows there, or none for the background. An error where the
+  /// frame has no G-buffer: when it is all path traced.
   protocol::Result<std::optional<SurfacePoint>> pick(glm::vec2 point) const;
 
  private:

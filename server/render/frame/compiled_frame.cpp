@@ -1,23 +1,28 @@
 #include "render/frame/compiled_frame.hpp"
 
+#include <stdexcept>
+
+#include "render/frame/buffer_list.hpp"
 #include "render/frame/frame_set.hpp"
+#include "render/passes/post/present.hpp"
 #include "render/resources/moving_scene.hpp"
 #include "render/resources/scene_set.hpp"
-#include "render/views/view_table.hpp"
+#include "render/views/view_colors.hpp"
 
 namespace heliograph::render {
 
-Drawing::Drawing(const Engine::Parts& parts, const FrameInputs& in,
-                 const gpu::Buffer& constants_buffer, VkExtent2D extent)
+CompiledFrame::CompiledFrame(const Engine::Parts& parts, const FrameInputs& in,
+                             const gpu::Buffer& constants_buffer, VkExtent2D extent)
     : inputs(in), pool(parts.device, 2, 16), plan(parts.device, extent) {
+  plan.use_host_kernels(parts.host_kernels);
   share_sets(parts, constants_buffer);
   outputs = declare_frame(plan, inputs);
-  plan.read_back(outputs.picture);
+  plan.read_back(outputs.output);
   plan.compile();
   list_buffers();
 }
 
-void Drawing::share_sets(const Engine::Parts& parts, const gpu::Buffer& constants_buffer) {
+void CompiledFrame::share_sets(const Engine::Parts& parts, const gpu::Buffer& constants_buffer) {
   const VkDescriptorSet set = pool.allocate(parts.programs.frame_layout.handle());
   write_frame_set(parts, set, constants_buffer, inputs.tables.lights,
                   inputs.moving.environment().view(inputs.settings.environment.separate_sun));
@@ -28,23 +33,25 @@ void Drawing::share_sets(const Engine::Parts& parts, const gpu::Buffer& constant
   plan.share_set(scene_set, tables);
 }
 
-void Drawing::list_buffers() {
-  const auto list = [this](const std::string& view, const std::string& by_pass) {
-    const std::string_view known = description_of(view), colors = legend(colors_of(view));
-    std::string text = known.empty() ? by_pass : std::string(known);
+void CompiledFrame::list_buffers() {
+  const auto list = [this](std::string_view name) {
+    const View view = find_view(name);
+    if (!view) throw std::logic_error("no pass describes the buffer " + std::string(name));
+    std::string text(view.description());
+    const std::string_view colors = legend(view.colors());
     if (!colors.empty()) text.append(" ").append(colors);
-    buffers.push_back({view, text});
+    buffers.push_back({std::string(name), text});
   };
-  buffers.push_back({std::string(picture_name), "The finished picture."});
-  list(std::string(radiance_name), "What it shows before exposure and tone mapping: linear.");
-  for (const auto& view : plan.views()) {
-    if (view.name == picture_name) continue;
-    list(view.name, view.description);
-    for (const std::string& aspect : aspects_of(view.name)) list(aspect, {});
+  list(present_buffers.output.name);
+  list(present_buffers.radiance.name);
+  for (const auto& image : plan.views()) {
+    if (image.name == present_buffers.output.name) continue;
+    list(image.name);
+    for (const std::string& aspect : aspect_names(*find_view(image.name).buffer)) list(aspect);
   }
 }
 
-const gpu::Image* Drawing::find(std::string_view buffer) const {
+const gpu::Image* CompiledFrame::find(std::string_view buffer) const {
   for (const auto& view : plan.views()) {
     if (view.name == buffer) return &plan.latest(view.image);
   }

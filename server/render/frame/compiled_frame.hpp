@@ -10,15 +10,12 @@
 
 namespace heliograph::render {
 
-inline constexpr std::string_view picture_name = "output";
-inline constexpr std::string_view radiance_name = "output.radiance";
-
-/// A compiled frame with all that it holds on to: one scene at one size, made of the passes that
-/// the settings asked for when it was made.
-struct Drawing {
-  /// References in `inputs`, and `constants_buffer`, outlive the drawing.
-  Drawing(const Engine::Parts& parts, const FrameInputs& inputs,
-          const gpu::Buffer& constants_buffer, VkExtent2D extent);
+/// The plan of a frame with the resources that it keeps alive: one scene at one size, made of the
+/// passes that the settings asked for when it was made.
+struct CompiledFrame {
+  /// References in `inputs`, and `constants_buffer`, outlive this.
+  CompiledFrame(const Engine::Parts& parts, const FrameInputs& inputs,
+                const gpu::Buffer& constants_buffer, VkExtent2D extent);
 
   /// The image of that name as of the last frame, or null.
   const gpu::Image* find(std::string_view buffer) const;
@@ -27,7 +24,7 @@ struct Drawing {
   gpu::DescriptorPool pool;
   gpu::FramePlan plan;
   FrameOutputs outputs;
-  std::vector<BufferInfo> buffers;  // that a view or a capture may name, the picture first
+  std::vector<BufferInfo> buffers;  // that a view or a capture may name, the output first
 
  private:
   void share_sets(const Engine::Parts& parts, const gpu::Buffer& constants_buffer);

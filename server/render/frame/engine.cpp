@@ -24,7 +24,7 @@ protocol::DeviceType device_type(VkPhysicalDeviceType type) {
 /// "embree, software": the first is what the device gets unasked.
 std::string tracer_names(const gpu::DeviceReport& report) {
   std::string names;
-  for (const protocol::TracerKind kind : tracing::offered_tracers(report)) {
+  for (const protocol::TracerKind kind : tracing::supported_tracers(report)) {
     names += (names.empty() ? "" : ", ") + std::string(protocol::enum_name(kind));
   }
   return names;
@@ -69,7 +69,7 @@ Engine::Engine(const EngineOptions& options)
     : options_(options), parts_(std::make_shared<Parts>(options)) {}
 Engine::~Engine() = default;
 
-std::shared_ptr<Engine::Parts> Engine::present() const {
+std::shared_ptr<Engine::Parts> Engine::current() const {
   const std::lock_guard lock(mutex_);
   return parts_;
 }
@@ -82,10 +82,10 @@ void Engine::recreate() {
 }
 
 DeviceInfo Engine::device() const {
-  return present()->info;
+  return current()->info;
 }
 protocol::TracerKind Engine::tracer() const {
-  return present()->tracer->kind();
+  return current()->tracer->kind();
 }
 
 void Engine::on_shader_change(std::function<void(const ShaderReport&)> listener) {
@@ -100,11 +100,11 @@ std::string Engine::shader_error() const {
 }
 
 std::uint32_t Engine::max_image_size() const {
-  return std::min(present()->device.limits().maxImageDimension2D, 8192u);
+  return std::min(current()->device.limits().maxImageDimension2D, 8192u);
 }
 
 std::uint64_t Engine::validation_messages() const {
-  return present()->instance.validation_messages();
+  return current()->instance.validation_messages();
 }
 
 std::shared_ptr<const SceneResources> Engine::upload(std::shared_ptr<const scene::Scene> scene,
@@ -117,35 +117,36 @@ std::shared_ptr<const SceneResources> Engine::upload(std::shared_ptr<const scene
 std::shared_ptr<const SceneResources> Engine::upload(
     std::shared_ptr<const scene::Scene> scene,
     std::shared_ptr<const scene::Environment> environment, const UploadProgress& progress) {
-  return upload(std::move(scene), std::move(environment), progress, [](std::size_t) {});
+  return upload_images(std::move(scene), std::move(environment), progress, [](std::size_t) {});
 }
 
-std::shared_ptr<const SceneResources> Engine::upload(
+std::shared_ptr<const SceneResources> Engine::upload_and_free_pixels(
     std::unique_ptr<scene::Scene> scene, std::shared_ptr<const scene::Environment> environment,
     const UploadProgress& progress) {
   const std::shared_ptr<scene::Scene> own = std::move(scene);
-  return upload(own, std::move(environment), progress, [&images = own->images](std::size_t i) {
-    if (images[i].file) std::vector<std::uint8_t>().swap(images[i].pixels);
-  });
+  return upload_images(own, std::move(environment), progress,
+                       [&images = own->images](std::size_t i) {
+                         if (images[i].file) std::vector<std::uint8_t>().swap(images[i].pixels);
+                       });
 }
 
-std::shared_ptr<const SceneResources> Engine::upload(
+std::shared_ptr<const SceneResources> Engine::upload_images(
     std::shared_ptr<const scene::Scene> scene,
     std::shared_ptr<const scene::Environment> environment, const UploadProgress& progress,
     const std::function<void(std::size_t image)>& image_done) {
-  const auto tell = [&](std::string_view stage, float fraction) {
+  const auto report = [&](std::string_view stage, float fraction) {
     if (progress) progress(stage, fraction);
   };
-  tell("environment", 0.0f);
-  const std::shared_ptr<Parts> parts = present();
+  report("environment", 0.0f);
+  const std::shared_ptr<Parts> parts = current();
   auto around = parts->environments.get(std::move(environment));
   return with_device(parts, std::make_shared<const SceneResources>(
                                 parts->device, parts->programs, std::move(scene), std::move(around),
-                                *parts->tracer, tell, image_done));
+                                *parts->tracer, report, image_done));
 }
 
 std::shared_ptr<const LitEnvironment> Engine::renew(const LitEnvironment& lost) {
-  const std::shared_ptr<Parts> parts = present();
+  const std::shared_ptr<Parts> parts = current();
   return with_device(parts, parts->environments.get(lost.source()));
 }
 
@@ -158,7 +159,7 @@ bool Engine::owns(const SceneResources& resources) const {
 }
 
 bool Engine::owns(const LitEnvironment& environment) const {
-  return &environment.device() == &present()->device;
+  return &environment.device() == &current()->device;
 }
 
 const std::shared_ptr<const scene::Scene>& scene_of(const SceneResources& resources) {
@@ -170,7 +171,7 @@ std::uint64_t memory_bytes(const SceneResources& resources) {
 }
 
 std::shared_ptr<const LitEnvironment> Engine::prefilter(scene::Environment environment) {
-  const std::shared_ptr<Parts> parts = present();
+  const std::shared_ptr<Parts> parts = current();
   return with_device(
       parts,
       parts->environments.get(std::make_shared<const scene::Environment>(std::move(environment))));

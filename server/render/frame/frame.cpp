@@ -19,21 +19,22 @@ namespace {
 
 /// The signals without noise, as far as the settings denoise them.
 std::optional<DenoisedSignals> denoise(gpu::FramePlan& plan, const FrameInputs& in,
-                                       const GBuffer& gbuffer, const RawSignals& raw) {
+                                       const GBuffer& gbuffer, const NoisySignals& noisy) {
   const protocol::Settings& s = in.settings;
   const bool visibility = s.shadow_temporal.enabled || s.shadow_blur.enabled;
-  const bool specular = raw.specular && (s.specular_temporal.enabled || s.specular_blur.enabled);
+  const bool specular = noisy.specular && (s.specular_temporal.enabled || s.specular_blur.enabled);
   if (!visibility && !specular) return std::nullopt;
   const Guide guide = reproject(plan, in, gbuffer);
-  DenoisedSignals denoised{combine_visibility(plan, in, raw.shadows, raw.ambient), raw.specular};
+  DenoisedSignals denoised{combine_visibility(plan, in, noisy.shadows, noisy.ambient),
+                           noisy.specular};
   if (visibility) {
     denoised.visibility = denoise_visibility(plan, in, gbuffer, guide, denoised.visibility);
   }
-  if (specular) denoised.specular = denoise_specular(plan, in, gbuffer, guide, *raw.specular);
+  if (specular) denoised.specular = denoise_specular(plan, in, gbuffer, guide, *noisy.specular);
   return denoised;
 }
 
-/// Nothing but the path traced truth.
+/// The path traced ground truth alone.
 FrameOutputs declare_reference(gpu::FramePlan& plan, const FrameInputs& in) {
   const gpu::ImageRef sample = trace_reference(plan, in);
   const gpu::History accumulated = accumulate(plan, in, sample);
@@ -50,23 +51,22 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   const GBuffer gbuffer =
       traces_gbuffer(plan.device(), in) ? trace_gbuffer(plan, in) : rasterize_gbuffer(plan, in);
 
-  RawSignals raw{trace_shadows(plan, in, gbuffer), trace_ambient(plan, in, gbuffer), {}};
-  if (in.settings.specular.enabled) raw.specular = trace_specular(plan, in, gbuffer);
-  const auto denoised = denoise(plan, in, gbuffer, raw);
+  NoisySignals noisy{trace_shadows(plan, in, gbuffer), trace_ambient(plan, in, gbuffer), {}};
+  if (in.settings.specular.enabled) noisy.specular = trace_specular(plan, in, gbuffer);
+  const auto denoised = denoise(plan, in, gbuffer, noisy);
 
   const gpu::ImageRef background = draw_skybox(plan, in, gbuffer);
-  const Composed composed = compose(plan, in, gbuffer, raw, denoised, background);
-  const auto& [hdr, hdr_raw] = composed;
-  GBuffer seen = gbuffer;
-  seen.motion = blend_surfaces(plan, in, gbuffer, composed);
+  const Composed composed = compose(plan, in, gbuffer, noisy, denoised, background);
+  GBuffer visible = gbuffer;
+  visible.motion = blend_surfaces(plan, in, gbuffer, composed);
 
-  const bool truth = reference == protocol::ReferenceUse::when_static;
+  const bool traces_reference = reference == protocol::ReferenceUse::when_static;
   const gpu::History accumulated =
-      accumulate(plan, in, truth ? trace_reference(plan, in) : hdr_raw);
-  const Exposure exposure = expose(plan, in, hdr, accumulated.current);
-  const gpu::ImageRef resolved = temporal_antialias(plan, in, seen, exposure, hdr);
-  const gpu::ImageRef picture = present(plan, in, exposure, resolved, accumulated.current);
-  return {accumulated, exposure, resolved, picture};
+      accumulate(plan, in, traces_reference ? trace_reference(plan, in) : composed.noisy);
+  const Exposure exposure = expose(plan, in, composed.hdr, accumulated.current);
+  const gpu::ImageRef resolved = temporal_antialias(plan, in, visible, exposure, composed.hdr);
+  const gpu::ImageRef output = present(plan, in, exposure, resolved, accumulated.current);
+  return {accumulated, exposure, resolved, output};
 }
 
 }  // namespace heliograph::render

@@ -20,7 +20,7 @@ std::uint32_t flags(const protocol::Settings& settings, const scene::Camera& cam
          bit(camera.orthographic_height > 0.0f, shared::frame_orthographic);
 }
 
-/// Moves the picture by `offset` (in normalised device coordinates), perspective or not.
+/// Shifts the image by `offset` (in normalised device coordinates), perspective or not.
 glm::mat4 jittered(glm::mat4 projection, const glm::vec2& offset) {
   glm::mat4 shift(1.0f);
   shift[3][0] = offset.x;

@@ -13,7 +13,7 @@ class MovingScene;
 /// rest follow the R2 sequence (Roberts 2018).
 glm::vec2 sample_jitter(std::uint32_t sample);
 
-/// The frame's uniform block for `sample` of a resting view. The previous matrices are taken from
+/// The frame's uniform block for `sample` of a static view. The previous matrices are taken from
 /// `before`, which is this view's block of the frame before (or null for the first).
 shared::FrameConstants make_frame_constants(const scene::Camera& camera,
                                             const protocol::Settings& settings,

@@ -3,6 +3,9 @@
 #include <algorithm>
 
 #include "render/api/octahedral.hpp"
+#include "render/frame/buffer_list.hpp"
+#include "render/passes/gbuffer/gbuffer.hpp"
+#include "render/passes/post/present.hpp"
 #include "render/views/debug_view.hpp"
 
 namespace heliograph::render {
@@ -19,55 +22,55 @@ glm::vec4 texel(const gpu::Image& image, glm::uvec2 pixel) {
   return {value[0], value[1], value[2], value[3]};
 }
 
-/// The frame's own radiance turned into what the picture is made from; alpha is 1.
-void mix(FloatImage& own, const FloatImage& mean, float share_of_mean) {
+/// Blends the mean into the frame's own radiance, as present() does; alpha is 1.
+void mix(FloatImage& own, const FloatImage& mean, float mean_weight) {
   for (std::size_t i = 0; i < own.rgba.size(); ++i) {
-    float value = share_of_mean < 1.0f ? own.rgba[i] : 0.0f;
-    if (share_of_mean > 0.0f) value += (mean.rgba[i] - value) * share_of_mean;
+    float value = mean_weight < 1.0f ? own.rgba[i] : 0.0f;
+    if (mean_weight > 0.0f) value += (mean.rgba[i] - value) * mean_weight;
     own.rgba[i] = i % 4 == 3 ? 1.0f : std::max(value, 0.0f);
   }
 }
 
 }  // namespace
 
-FloatImage shown_radiance(const Drawing& drawing, float share_of_mean) {
-  FloatImage radiance = read_image(drawing.plan.latest(drawing.outputs.radiance));
-  mix(radiance, read_image(drawing.plan.latest(drawing.outputs.accumulated.current)),
-      share_of_mean);
+FloatImage shown_radiance(const CompiledFrame& compiled, float mean_weight) {
+  FloatImage radiance = read_image(compiled.plan.latest(compiled.outputs.radiance));
+  mix(radiance, read_image(compiled.plan.latest(compiled.outputs.accumulated.current)),
+      mean_weight);
   return radiance;
 }
 
-std::vector<BufferValue> inspect_buffers(const Drawing& drawing, const ViewContext& context,
-                                         float share_of_mean, glm::vec2 point) {
+std::vector<BufferValue> inspect_buffers(const CompiledFrame& compiled, const ViewContext& context,
+                                         float mean_weight, glm::vec2 point) {
   std::vector<BufferValue> values;
-  for (const BufferInfo& buffer : drawing.buffers) {
-    if (buffer.name == radiance_name) {
-      const gpu::Image& image = drawing.plan.latest(drawing.outputs.radiance);
-      const gpu::Image& mean = drawing.plan.latest(drawing.outputs.accumulated.current);
+  for (const BufferInfo& buffer : compiled.buffers) {
+    if (buffer.name == present_buffers.radiance.name) {
+      const gpu::Image& image = compiled.plan.latest(compiled.outputs.radiance);
+      const gpu::Image& mean = compiled.plan.latest(compiled.outputs.accumulated.current);
       const glm::uvec2 pixel = pixel_at(point, image.desc().extent);
       FloatImage value = read_texel(image, pixel.x, pixel.y);
-      mix(value, read_texel(mean, pixel.x, pixel.y), share_of_mean);
+      mix(value, read_texel(mean, pixel.x, pixel.y), mean_weight);
       values.push_back({buffer.name, std::move(value.rgba), {}});
       continue;
     }
-    const std::string_view source = source_of(buffer.name);
-    const gpu::Image* const image = drawing.find(source.empty() ? buffer.name : source);
+    const View view = find_view(buffer.name);
+    const gpu::Image* const image = compiled.find(view.buffer->name);
     if (!image) continue;
     const glm::uvec2 pixel = pixel_at(point, image->desc().extent);
     FloatImage value = read_texel(*image, pixel.x, pixel.y);
-    if (!source.empty()) value = extract(buffer.name, value, context, pixel);
+    value = extract(view, value, context, pixel);
     value.rgba.resize(value.channels);
-    values.push_back({buffer.name, std::move(value.rgba), std::string(unit_of(buffer.name))});
+    values.push_back({buffer.name, std::move(value.rgba), std::string(view.unit())});
   }
   return values;
 }
 
-protocol::Result<std::optional<SurfacePoint>> surface_at(const Drawing& drawing,
+protocol::Result<std::optional<SurfacePoint>> surface_at(const CompiledFrame& compiled,
                                                          const shared::FrameConstants& frame,
                                                          glm::vec2 point) {
-  const gpu::Image* const instances = drawing.find("gbuffer.instance");
-  const gpu::Image* const motion = drawing.find("gbuffer.motion");
-  const gpu::Image* const normals = drawing.find("gbuffer.normals");
+  const gpu::Image* const instances = compiled.find(gbuffer_buffers.instance.name);
+  const gpu::Image* const motion = compiled.find(gbuffer_buffers.motion.name);
+  const gpu::Image* const normals = compiled.find(gbuffer_buffers.normals.name);
   if (!instances || !motion || !normals) {
     return protocol::error::conflict(
         "reference.use", "is on: the path traced reference image has no surfaces to pick");

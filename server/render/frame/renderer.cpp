@@ -7,15 +7,17 @@
 #include <utility>
 
 #include "render/api/buffer_names.hpp"
+#include "render/frame/buffer_list.hpp"
 #include "render/frame/compiled_frame.hpp"
 #include "render/frame/frame_constants.hpp"
 #include "render/frame/probe.hpp"
 #include "render/passes/post/accumulate.hpp"
+#include "render/passes/post/present.hpp"
 #include "render/resources/moving_scene.hpp"
 #include "render/resources/scene_motion.hpp"
 #include "render/views/debug_view.hpp"
 #include "render/views/text_overlay.hpp"
-#include "render/views/view_table.hpp"
+#include "render/views/view_colors.hpp"
 
 namespace heliograph::render {
 namespace {
@@ -34,7 +36,7 @@ scene::Scene empty_scene() {
   return scene;
 }
 
-/// Whether lights differ in nothing but where they are and where they shine.
+/// Whether lights differ in position and direction alone.
 bool only_move(std::span<const shared::Light> before, std::span<const shared::Light> after) {
   return std::ranges::equal(before, after, [](const shared::Light& a, const shared::Light& b) {
     return a.color == b.color && a.radius == b.radius && a.range == b.range &&
@@ -52,18 +54,18 @@ struct Renderer::State {
         constants_buffer(engine.device, "frame constants", sizeof(shared::FrameConstants),
                          VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Memory::upload) {}
 
-  void redraw();
+  void rebuild_frame_plan();
   void change_settings(const protocol::Settings& changed);
   void use_newest_shaders();
-  Frame picture();
-  std::optional<FloatImage> read(std::string_view view) const;
-  std::uint32_t wanted_samples() const {
+  Frame output();
+  std::optional<FloatImage> read(std::string_view name) const;
+  std::uint32_t target_samples() const {
     return settings.accumulation.enabled
                ? static_cast<std::uint32_t>(settings.accumulation.max_samples)
                : 1u;
   }
-  void restart() {
-    samples = 0;
+  void restart_accumulation() {
+    clock.samples = 0;
     stale = true;
   }
 
@@ -72,10 +74,9 @@ struct Renderer::State {
   gpu::Buffer constants_buffer;
   shared::FrameConstants constants{};
   bool has_previous = false;
-  std::uint32_t sequence = 0;    // frames since the last cut: where random sequences stand
-  std::uint32_t samples = 0;     // in the accumulated picture
-  float seconds = 1.0f / 60.0f;  // since the frame before
-  float share_of_mean = 0.0f;    // in the picture as of the last frame
+  std::uint32_t sample_index = 0;  // frames since the history was invalidated
+  FrameClock clock;
+  float shown_mean_weight = 0.0f;  // in the last frame's output
   SceneMotion scene_motion;
   bool stale = true;                  // something changed since the last frame
   std::uint64_t shader_version = 0;   // of ShaderReload::version, as of the last frame
@@ -87,38 +88,28 @@ struct Renderer::State {
   protocol::Settings settings;
   VkExtent2D extent{640, 360};
 
-  std::unique_ptr<Drawing> drawing;
+  std::unique_ptr<CompiledFrame> compiled;
 };
 
-// The old drawing goes first: two of them may not fit into memory.
-void Renderer::State::redraw() {
-  drawing.reset();
-  const FrameInputs inputs{parts.programs,
-                           *scene,
-                           moving->tables(),
-                           *parts.tracer,
-                           moving->structure(),
-                           constants,
-                           settings,
-                           samples,
-                           seconds,
-                           *moving,
-                           scene_motion,
-                           parts.split_sum_table,
-                           parts.host_kernels};
-  drawing = std::make_unique<Drawing>(parts, inputs, constants_buffer, extent);
+// The old plan is freed first: two of them may not fit into memory.
+void Renderer::State::rebuild_frame_plan() {
+  compiled.reset();
+  const FrameInputs inputs{
+      parts.programs, *scene, moving->tables(), *parts.tracer, moving->structure(),  constants,
+      settings,       clock,  *moving,          scene_motion,  parts.split_sum_table};
+  compiled = std::make_unique<CompiledFrame>(parts, inputs, constants_buffer, extent);
   has_previous = false;
-  sequence = 0;
-  restart();
+  sample_index = 0;
+  restart_accumulation();
 }
 
 void Renderer::State::change_settings(const protocol::Settings& changed) {
   const auto scope = protocol::changed_scope(settings, changed);
   settings = changed;
-  if (includes(scope, protocol::ResetScope::structure)) redraw();
+  if (includes(scope, protocol::ResetScope::structure)) rebuild_frame_plan();
   stale = true;
   if (includes(scope, protocol::ResetScope::history)) has_previous = false;
-  if (includes(scope, protocol::ResetScope::accumulation)) restart();
+  if (includes(scope, protocol::ResetScope::accumulation)) restart_accumulation();
 }
 
 /// Other programs make other frames: histories of the old ones are invalid.
@@ -132,25 +123,24 @@ void Renderer::State::use_newest_shaders() {
   restart();
 }
 
-std::optional<FloatImage> Renderer::State::read(std::string_view view) const {
-  if (view == radiance_name) return shown_radiance(*drawing, share_of_mean);
-  const std::string_view source = source_of(view);
-  const gpu::Image* image = drawing->find(source.empty() ? view : source);
+std::optional<FloatImage> Renderer::State::read(std::string_view name) const {
+  if (name == present_buffers.radiance.name) return shown_radiance(*compiled, shown_mean_weight);
+  const View view = find_view(name);
+  const gpu::Image* const image = view ? compiled->find(view.buffer->name) : nullptr;
   if (!image) return std::nullopt;
-  if (source.empty()) return read_image(*image);
   return extract(view, read_image(*image),
-                 {constants, exposure_factor(drawing->plan, drawing->outputs.exposure)});
+                 {constants, exposure_factor(compiled->plan, compiled->outputs.exposure)});
 }
 
-Frame Renderer::State::picture() {
+Frame Renderer::State::output() {
   const std::string& shown = settings.view.buffer;
-  if (shown != picture_name) {
+  if (shown != present_buffers.output.name) {
     if (const auto values = read(shown)) return visualise(shown, *values);
   }
   Frame frame;
   frame.width = extent.width;
   frame.height = extent.height;
-  frame.rgba = drawing->plan.read();
+  frame.rgba = compiled->plan.read();
   return frame;
 }
 
@@ -163,74 +153,74 @@ Renderer::Renderer(Engine& engine)
 Renderer::~Renderer() = default;
 
 void Renderer::set_scene(std::shared_ptr<const SceneResources> scene) {
-  // The drawing refers to the old scene: it goes first.
-  state_->drawing.reset();
+  // The plan refers to the old scene: it is freed first.
+  state_->compiled.reset();
   state_->scene = scene ? std::move(scene) : state_->nothing;
   state_->moving.emplace(state_->parts.device, *state_->parts.tracer, state_->scene);
-  state_->redraw();
+  state_->rebuild_frame_plan();
 }
 
 void Renderer::set_lights(std::span<const shared::Light> lights) {
   const bool moves = only_move(state_->moving->lights(), lights);
   if (state_->moving->set_lights(lights)) {
-    state_->redraw();
+    state_->rebuild_frame_plan();
   } else {
     if (!moves) state_->has_previous = false;
-    state_->restart();
+    state_->restart_accumulation();
   }
 }
 
 void Renderer::set_materials(std::span<const shared::Material> materials) {
   if (state_->moving->set_materials(materials)) {
-    state_->redraw();
+    state_->rebuild_frame_plan();
   } else {
     state_->has_previous = false;
-    state_->restart();
+    state_->restart_accumulation();
   }
 }
 
 void Renderer::set_environment(std::shared_ptr<const LitEnvironment> environment) {
-  state_->drawing.reset();
+  state_->compiled.reset();
   state_->moving->set_environment(environment ? std::move(environment)
                                               : state_->scene->environment);
-  state_->redraw();
+  state_->rebuild_frame_plan();
 }
 
 void Renderer::set_size(std::uint32_t width, std::uint32_t height) {
   if (state_->extent.width == width && state_->extent.height == height) return;
   state_->extent = {width, height};
-  state_->redraw();
+  state_->rebuild_frame_plan();
 }
 
 void Renderer::set_camera(const scene::Camera& camera) {
   if (scene::same_view(state_->camera, camera)) return;
   state_->camera = camera;
-  state_->restart();
+  state_->restart_accumulation();
 }
 
 protocol::Result<void> Renderer::set_pose(std::string_view clip, double seconds) {
   const scene::Scene& scene = *state_->scene->scene;
-  const scene::Clip* const found = scene::find_clip(scene, clip);
-  if (!clip.empty() && !found) {
+  const scene::Clip* const known = scene::find_clip(scene, clip);
+  if (!clip.empty() && !known) {
     return protocol::error::not_found("clip",
                                       "the scene has no clip \"" + std::string(clip) + "\"");
   }
-  if (state_->moving->set_pose(found, seconds)) state_->restart();
+  if (state_->moving->set_pose(known, seconds)) state_->restart_accumulation();
   return {};
 }
 
-void Renderer::cut() {
+void Renderer::invalidate_history() {
   state_->has_previous = false;
-  state_->sequence = 0;
-  state_->restart();
+  state_->sample_index = 0;
+  state_->restart_accumulation();
 }
 
-void Renderer::start_anew() {
-  state_->redraw();
+void Renderer::reset() {
+  state_->rebuild_frame_plan();
 }
 
 void Renderer::set_frame_seconds(float seconds) {
-  state_->seconds = std::max(seconds, 0.0f);
+  state_->clock.seconds = std::max(seconds, 0.0f);
 }
 
 protocol::Result<void> Renderer::set_settings(const protocol::Settings& settings) {
@@ -244,11 +234,11 @@ protocol::Result<void> Renderer::set_settings(const protocol::Settings& settings
 bool Renderer::needs_frame() const {
   const auto& reload = state_->parts.shader_reload;
   if (reload && reload->version() != state_->shader_version) return true;
-  if (state_->stale || state_->samples < state_->wanted_samples()) return true;
+  if (state_->stale || state_->clock.samples < state_->target_samples()) return true;
   if (state_->moving->needs_advance()) return true;
-  // Exposure that no time passes for stays where it is.
-  const Drawing& drawing = *state_->drawing;
-  return state_->seconds > 0.0f && !is_settled(drawing.plan, drawing.outputs.exposure);
+  // Without time between frames exposure does not change.
+  const CompiledFrame& compiled = *state_->compiled;
+  return state_->clock.seconds > 0.0f && !is_settled(compiled.plan, compiled.outputs.exposure);
 }
 
 Frame Renderer::render() {
@@ -260,29 +250,30 @@ Frame Renderer::render() {
   // Without a frame before there is no motion since.
   if (!state.has_previous) moves |= state.moving->advance();
   const auto posed = std::chrono::steady_clock::now();
-  if (!state.settings.accumulation.enabled) state.samples = 0;
+  if (!state.settings.accumulation.enabled) state.clock.samples = 0;
   const shared::FrameConstants before = state.constants;
-  state.constants = make_frame_constants(state.camera, state.settings, *state.moving, state.extent,
-                                         state.sequence++, state.has_previous ? &before : nullptr);
+  state.constants =
+      make_frame_constants(state.camera, state.settings, *state.moving, state.extent,
+                           state.sample_index++, state.has_previous ? &before : nullptr);
   state.scene_motion =
       render::scene_motion(*state.moving, state.constants, state.has_previous ? &before : nullptr);
   state.has_previous = true;
   std::memcpy(state.constants_buffer.mapped(), &state.constants, sizeof state.constants);
-  state.drawing->plan.execute();
-  state.share_of_mean = mean_share(state.drawing->inputs);
-  ++state.samples;
+  state.compiled->plan.execute();
+  state.shown_mean_weight = mean_weight(state.compiled->inputs);
+  ++state.clock.samples;
 
-  Frame frame = state.picture();
+  Frame frame = state.output();
   if (state.parts.shader_reload) {
     draw_text(state.parts.shader_reload->error(), frame.rgba, frame.width, frame.height);
   }
-  frame.samples = state.samples;
+  frame.samples = state.clock.samples;
   frame.converged = !needs_frame();
   if (moves) {
     const std::chrono::duration<float, std::milli> posing = posed - start;
     frame.passes.push_back({"pose", protocol::PassKind::host, posing.count()});
   }
-  for (const auto& timing : state.drawing->plan.timings()) {
+  for (const auto& timing : state.compiled->plan.timings()) {
     if (timing.milliseconds < 0.0f) continue;
     const auto kind = timing.host ? protocol::PassKind::host : protocol::PassKind::device;
     frame.passes.push_back({timing.name, kind, timing.milliseconds});
@@ -294,14 +285,14 @@ Frame Renderer::render() {
 
 std::vector<PassWork> Renderer::work() const {
   std::vector<PassWork> all;
-  for (const auto& pass : state_->drawing->plan.work()) {
+  for (const auto& pass : state_->compiled->plan.work()) {
     all.push_back({pass.name, pass.image_bytes, pass.entries});
   }
   return all;
 }
 
 const std::vector<BufferInfo>& Renderer::buffers() const {
-  return state_->drawing->buffers;
+  return state_->compiled->buffers;
 }
 
 protocol::Result<FloatImage> Renderer::capture(std::string_view buffer) {
@@ -315,19 +306,19 @@ protocol::Result<Frame> Renderer::capture_view(std::string_view buffer) {
   auto values = capture(buffer);
   if (!values) return values.error();
   Frame frame = visualise(buffer, values.value());
-  frame.samples = state_->samples;
+  frame.samples = state_->clock.samples;
   return frame;
 }
 
 std::vector<BufferValue> Renderer::inspect(glm::vec2 point) const {
-  const Drawing& drawing = *state_->drawing;
+  const CompiledFrame& compiled = *state_->compiled;
   return inspect_buffers(
-      drawing, {state_->constants, exposure_factor(drawing.plan, drawing.outputs.exposure)},
-      state_->share_of_mean, point);
+      compiled, {state_->constants, exposure_factor(compiled.plan, compiled.outputs.exposure)},
+      state_->shown_mean_weight, point);
 }
 
 protocol::Result<std::optional<SurfacePoint>> Renderer::pick(glm::vec2 point) const {
-  return surface_at(*state_->drawing, state_->constants, point);
+  return surface_at(*state_->compiled, state_->constants, point);
 }
 
 }  // namespace heliograph::render

@@ -18,13 +18,12 @@
 #define HELIOGRAPH_ATROUS_JOB
 namespace heliograph::render::kernels {
 
-struct Job {
-  Signal signal;
-  shared::AtrousConstants constants;
-  const shared::FrameConstants& frame;
-  AtrousImages images;
-  int width;
-  int height;
+/// What a signal's four floats are: shaders/lib/denoise/visibility_signal.glsl and
+/// specular_signal.glsl.
+enum class Signal { visibility, specular };
+
+struct Job : AtrousJob {
+  Signal kind;
   float footprint;  // of a pixel at one metre, or at any in an orthographic view
   bool orthographic;
 };
@@ -69,8 +68,8 @@ class Row {
       : job_(job),
         c_(job.constants),
         y_(y),
-        pitch_(static_cast<int>(job.images.guide.row_pitch / sizeof(float))),
-        signal_pitch_(static_cast<int>(job.images.signal.row_pitch / sizeof(float))),
+        pitch_(static_cast<int>(job.guide.row_pitch / sizeof(float))),
+        signal_pitch_(static_cast<int>(job.signal.row_pitch / sizeof(float))),
         random_(hn::RebindToUnsigned<D>(), job.frame.sample_index,
                 48u + static_cast<unsigned>(c_.level), job.frame.seed),
         variance_x_(variance),
@@ -98,9 +97,9 @@ class Row {
 
   /// Sums down of the variance, weights 1 2 1, into the scratch rows; one pixel more on both ends.
   HWY_INLINE void add_variance_rows() {
-    const float* above = row(job_.images.signal, std::max(y_ - 1, 0));
-    const float* here = row(job_.images.signal, y_);
-    const float* below = row(job_.images.signal, std::min(y_ + 1, job_.height - 1));
+    const float* above = row(job_.signal, std::max(y_ - 1, 0));
+    const float* here = row(job_.signal, y_);
+    const float* below = row(job_.signal, std::min(y_ + 1, job_.height - 1));
     const int lanes = static_cast<int>(hn::Lanes(d_));
     for (int i = 0; i < job_.width; i += lanes) {
       const int x = std::min(i, job_.width - lanes);
@@ -136,7 +135,7 @@ class Row {
     c.normal = guide.normal;
     c.roughness = guide.roughness;
     c.view_z = guide.view_z;
-    hn::LoadInterleaved2(d_, row(job_.images.depth_slope, y_) + 2 * x, c.slope_x, c.slope_y);
+    hn::LoadInterleaved2(d_, row(job_.depth_slope, y_) + 2 * x, c.slope_x, c.slope_y);
     c.curve = job_.orthographic ? hn::Zero(d_) : hn::Div(set(1.0f), guide.view_z);
     c.flattened = hn::Sub(set(1.0f), hn::Mul(c.view_z, c.curve));
     c.footprint = set(0.5f * job_.footprint);
@@ -221,12 +220,12 @@ class Row {
   }
 
   HWY_INLINE void block(int x) {
-    const Texels value = load(row(job_.images.signal, y_) + 4 * x);
-    const Texels texel = load(row(job_.images.guide, y_) + 4 * x);
+    const Texels value = load(row(job_.signal, y_) + 4 * x);
+    const Texels texel = load(row(job_.guide, y_) + 4 * x);
     const Guide<V> guide = decode_guide(texel);
     const M active = hn::And(guide_is_surface(texel),
                              hn::Lt(set(static_cast<float>(c_.level)), levels(guide.roughness)));
-    float* out = const_cast<float*>(row(job_.images.filtered, y_)) + 4 * x;
+    float* out = const_cast<float*>(row(job_.filtered, y_)) + 4 * x;
     if (hn::AllFalse(d_, active)) {
       hn::StoreInterleaved4(value.x, value.y, value.z, value.w, d_, out);
       return;
@@ -272,9 +271,8 @@ class Row {
         if (i == 0 && j == 0) continue;
         const int at = 4 * (x + i * step);
         const auto dx = static_cast<float>(i * step), dy = static_cast<float>(j * step);
-        add_tap(c, load(row(job_.images.guide, y) + at), load(row(job_.images.signal, y) + at),
-                set(dx), set(dy), set(std::sqrt(dx * dx + dy * dy)), kernel(i) * kernel(j), active,
-                sums);
+        add_tap(c, load(row(job_.guide, y) + at), load(row(job_.signal, y) + at), set(dx), set(dy),
+                set(std::sqrt(dx * dx + dy * dy)), kernel(i) * kernel(j), active, sums);
       }
     }
   }
@@ -313,8 +311,8 @@ class Row {
     const VI texel = hn::ShiftLeft<2>(inside_x);
     const VI in_guide = hn::Add(hn::Mul(inside_y, hn::Set(di_, pitch_)), texel);
     const VI in_signal = hn::Add(hn::Mul(inside_y, hn::Set(di_, signal_pitch_)), texel);
-    add_tap(c, gather4(d_, row(job_.images.guide, 0), in_guide),
-            gather4(d_, row(job_.images.signal, 0), in_signal), dx, dy,
+    add_tap(c, gather4(d_, row(job_.guide, 0), in_guide),
+            gather4(d_, row(job_.signal, 0), in_signal), dx, dy,
             hn::Sqrt(hn::MulAdd(dx, dx, hn::Mul(dy, dy))), weight, requested, sums);
   }
 
@@ -340,7 +338,7 @@ template <class D>
 void filter_rows_of(const Job& job, int first, int last) {
   std::vector<float> scratch(2 * static_cast<std::size_t>(job.width + 2));
   for (int y = first; y < last; ++y) {
-    if (job.signal == Signal::visibility) {
+    if (job.kind == Signal::visibility) {
       Row<D, Signal::visibility>(job, y, scratch.data()).run();
     } else {
       Row<D, Signal::specular>(job, y, scratch.data()).run();
@@ -365,21 +363,26 @@ namespace heliograph::render::kernels {
 
 HWY_EXPORT(filter_rows);
 
-void atrous(Signal signal, const shared::AtrousConstants& constants,
-            const shared::FrameConstants& frame, const AtrousImages& images) {
+namespace {
+
+void filter(const AtrousJob& pass, Signal kind) {
+  const shared::FrameConstants& frame = pass.frame;
   const bool orthographic = (frame.flags & shared::frame_orthographic) != 0;
   const float footprint = 2.0f * std::abs(frame.unproject.y) / static_cast<float>(frame.extent.y);
-  const Job job{signal,
-                constants,
-                frame,
-                images,
-                static_cast<int>(frame.extent.x),
-                static_cast<int>(frame.extent.y),
-                footprint,
-                orthographic};
+  const Job job{pass, kind, footprint, orthographic};
   for_each_band(job.height, [&](int first, int last) {
     HWY_DYNAMIC_DISPATCH(filter_rows)(job, first, last);
   });
+}
+
+}  // namespace
+
+void visibility_atrous(const AtrousJob& job) {
+  filter(job, Signal::visibility);
+}
+
+void specular_atrous(const AtrousJob& job) {
+  filter(job, Signal::specular);
 }
 
 }  // namespace heliograph::render::kernels

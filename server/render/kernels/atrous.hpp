@@ -1,26 +1,23 @@
 #pragma once
 
-#include "gpu/memory/image.hpp"
+#include "render/kernels/frame_job.hpp"
 #include "shaders/shared/denoise.h"
-#include "shaders/shared/frame_constants.h"
 
 namespace heliograph::render::kernels {
 
-/// What a signal's four floats are: shaders/lib/denoise/visibility_signal.glsl and
-/// specular_signal.glsl.
-enum class Signal { visibility, specular };
-
-/// The mapped images of one iteration, in the shader's order.
-struct AtrousImages {
-  gpu::HostView guide;        // rgba32f
-  gpu::HostView depth_slope;  // rg32f
-  gpu::HostView signal;       // rgba32f
-  gpu::HostView filtered;     // rgba32f, another image than `signal`
+/// One iteration of the a-trous filter: shaders/lib/denoise/atrous.glsl.
+template <class Stage>
+struct AtrousBindings {
+  gpu::Read<Stage> guide;        // rgba32f
+  gpu::Read<Stage> depth_slope;  // rg32f
+  gpu::Read<Stage> signal;       // rgba32f
+  gpu::Write<Stage> filtered;    // rgba32f, another image than `signal`
 };
+using AtrousJob = FrameJob<AtrousBindings, shared::AtrousConstants>;
 
-/// One iteration of the a-trous filter on all processors: shaders/lib/denoise/atrous.glsl in the
-/// widest vectors that the processor has. The results agree up to rounding.
-void atrous(Signal signal, const shared::AtrousConstants& constants,
-            const shared::FrameConstants& frame, const AtrousImages& images);
+/// On all processors, in the widest vectors that they have. The results agree with the shaders' up
+/// to rounding.
+void visibility_atrous(const AtrousJob& job);
+void specular_atrous(const AtrousJob& job);
 
 }  // namespace heliograph::render::kernels

@@ -27,7 +27,7 @@ class Composition {
 
  public:
   HWY_INLINE explicit Composition(const ComposeJob& job)
-      : job_(job), split_sum_(job.split_sum, job.split_sum_size) {}
+      : job_(job), split_sum_(job.split_sum.texels, job.split_sum.size) {}
 
   HWY_INLINE void rows(int first, int last) const {
     const int lanes = static_cast<int>(hn::Lanes(d_));
@@ -63,16 +63,16 @@ class Composition {
       terms.own = select(seen, terms.own, color(job_.background, x, y));
     }
     const V shadow = load_one(job_.shadows, x, y), ambient = load_one(job_.ambient, x, y);
-    const bool reflects = job_.max_roughness >= 0.0f;
+    const bool reflects = job_.constants.max_roughness >= 0.0f;
     const Triple<V> raw = reflects ? color(job_.specular, x, y) : black();
-    if (!job_.denoised) {
+    if (!job_.denoised_visibility) {
       store(terms, shadow, ambient, raw, job_.hdr, x, y);
       return;
     }
-    const Quad<V> visibility = load(job_.denoised->visibility, x, y);
-    const Triple<V> specular = reflects ? color(job_.denoised->specular, x, y) : black();
+    const Quad<V> visibility = load(job_.denoised_visibility, x, y);
+    const Triple<V> specular = reflects ? color(job_.denoised_specular, x, y) : black();
     store(terms, visibility.x, visibility.y, specular, job_.hdr, x, y);
-    store(terms, shadow, ambient, raw, job_.denoised->hdr_raw, x, y);
+    store(terms, shadow, ambient, raw, job_.hdr_noisy, x, y);
   }
 
   HWY_INLINE void add_surface(const ViewedRow<D>& view, int x, int y, V view_z, M seen,
@@ -112,7 +112,8 @@ class Composition {
           select(lit, m.diffuse_albedo * irradiance(m.normal) * occlusion, terms.ambient);
     }
     // Roughness is stored in steps of 1 / 255: a little more than half of one is still the same.
-    const M traced = hn::And(lit, hn::Le(m.roughness, set(job_.max_roughness + 0.6f / 255.0f)));
+    const M traced =
+        hn::And(lit, hn::Le(m.roughness, set(job_.constants.max_roughness + 0.6f / 255.0f)));
     terms.specular = select(traced, m.specular_albedo, terms.specular);
   }
 

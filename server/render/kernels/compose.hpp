@@ -1,41 +1,34 @@
 #pragma once
 
-#include <optional>
 #include <span>
 
-#include "gpu/memory/image.hpp"
-#include "shaders/shared/frame_constants.h"
-#include "shaders/shared/scene.h"
+#include "render/kernels/frame_job.hpp"
 
 namespace heliograph::render::kernels {
 
-/// The mapped images that composition reads and writes.
-struct ComposeJob {
-  const shared::FrameConstants& frame;
-  std::span<const shared::Light> lights;  // punctual, the environment's sun among them
-  gpu::HostView split_sum;                // rg32f, square
-  int split_sum_size;
-  float max_roughness;  // below 0: no specular rays were traced
-  int width;
-  int height;
+/// shaders/compose/compose.comp, or compose_denoised.comp where there are denoised signals.
+template <class Stage>
+struct ComposeBindings {
+  gpu::Read<Stage> normals, base_color, surface, layers, motion, emissive, background;
+  gpu::Read<Stage> shadows, ambient, specular;  // noisy
+  gpu::OptionalRead<Stage> denoised_visibility, denoised_specular;
+  gpu::Write<Stage> hdr;
+  gpu::OptionalWrite<Stage> hdr_noisy;
+};
+struct ComposeConstants {
+  float max_roughness;  // below 0: no reflections were traced
+};
 
-  gpu::HostView normals, base_color, surface, motion, emissive, background;
-  gpu::HostView shadows, ambient, specular;  // raw
-  struct Denoised {
-    gpu::HostView visibility, specular;
-    gpu::HostView hdr_raw;  // written
-  };
-  std::optional<Denoised> denoised;
-  gpu::HostView hdr;  // written
+struct ComposeJob : FrameJob<ComposeBindings, ComposeConstants> {
+  std::span<const shared::Light> lights;  // punctual, the environment's sun among them
+  SplitSum split_sum;
 };
 
 /// Whether the kernel knows all that these settings ask of it: it does not look up the prefiltered
 /// environment.
 bool can_compose(const shared::FrameConstants& frame, float max_roughness);
 
-/// Composes the frame from its signals on all cores: shaders/compose/compose.comp, or
-/// compose_denoised.comp where there are denoised signals, in the widest vectors that the processor
-/// has.
+/// The frame from its signals on all processors, in the widest vectors that they have.
 void compose(const ComposeJob& job);
 
 }  // namespace heliograph::render::kernels

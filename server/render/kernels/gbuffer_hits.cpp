@@ -39,7 +39,7 @@ void make_camera_rays(const shared::FrameConstants& frame, int tile, int tiles_a
 /// The hits of one job, some at a time.
 class Shading {
  public:
-  explicit Shading(const GBufferJob& job)
+  explicit Shading(const GBufferHitsJob& job)
       : job_(job), frame_(job.frame), camera_(job.frame), cone_(camera_.cone()) {}
 
   /// @return how many rays go on, which lie at `passed`
@@ -55,7 +55,7 @@ class Shading {
     if (none(hit.met)) return 0;
     const Float width = hn::MulAdd(hit.t, number(cone_.y), number(cone_.x));
     const SurfaceLanes s = hit_surface<false>(job_.scene, hit, ray.direction, width);
-    const Mask passes = job_.last_round ? hn::Lt(one(), zero()) : goes_on(ray, hit, s);
+    const Mask passes = job_.constants.last_round ? hn::Lt(one(), zero()) : goes_on(ray, hit, s);
     store(pixel, hit, s, hn::AndNot(passes, hit.met));
     if (none(passes)) return 0;
     ray.t_min = hit.t + hn::Max(hit.t * number(1e-6f), number(1e-7f));
@@ -143,15 +143,14 @@ class Shading {
 
   HWY_INLINE void put(const AllTexels& texels, const PixelLanes& pixel, Mask requested) const {
     const TexelIndices at(pixel);
-    const GBufferImages& to = job_.images;
     for_each_lane(requested, [&](std::size_t lane) {
-      texels.normals.put(to.normals, lane, at);
-      texels.motion.put(to.motion, lane, at);
-      texels.depth_slope.put(to.depth_slope, lane, at);
-      texels.emissive.put(to.emissive, lane, at);
-      texels.base_color.put(to.base_color, lane, at);
-      texels.surface.put(to.surface, lane, at);
-      texels.instance.put(to.instance, lane, at);
+      texels.normals.put(job_.normals, lane, at);
+      texels.motion.put(job_.motion, lane, at);
+      texels.depth_slope.put(job_.depth_slope, lane, at);
+      texels.emissive.put(job_.emissive, lane, at);
+      texels.base_color.put(job_.base_color, lane, at);
+      texels.surface.put(job_.surface, lane, at);
+      texels.instance.put(job_.instance, lane, at);
     });
   }
 
@@ -193,13 +192,13 @@ class Shading {
     put(nothing, pixel, hn::And(missed, inside));
   }
 
-  const GBufferJob& job_;
+  const GBufferHitsJob& job_;
   const shared::FrameConstants& frame_;
   CameraLanes camera_;
   glm::vec2 cone_;
 };
 
-void shade_batch(const GBufferJob& job, int first, int last) {
+void shade_batch(const GBufferHitsJob& job, int first, int last) {
   const Shading shading(job);
   std::array<shared::Ray, ray_batch> passed;
   std::size_t used = 0;
@@ -218,21 +217,21 @@ namespace heliograph::render::kernels {
 HWY_EXPORT(make_camera_rays);
 HWY_EXPORT(shade_batch);
 
-void camera_rays(const shared::FrameConstants& frame, shared::RayCount* count, shared::Ray* rays) {
+void gbuffer_rays(const GBufferRaysJob& job) {
+  const shared::FrameConstants& frame = job.frame;
   const auto across = static_cast<int>((frame.extent.x + 7) / 8);
   const auto tiles = across * static_cast<int>((frame.extent.y + 7) / 8);
-  *count = {static_cast<std::uint32_t>(tiles) * 64, 0, 0, 1, 0, 0, 0, 0};
-  set_groups(*count);
+  *job.count = {static_cast<std::uint32_t>(tiles) * 64, 0, 0, 1, 0, 0, 0, 0};
+  set_groups(*job.count);
   for_each_range(tiles, 8, [&](int first, int last) {
     for (int tile = first; tile < last; ++tile) {
-      HWY_DYNAMIC_DISPATCH(make_camera_rays)(frame, tile, across, rays + 64 * tile);
+      HWY_DYNAMIC_DISPATCH(make_camera_rays)(frame, tile, across, job.rays + 64 * tile);
     }
   });
 }
 
-void shade_gbuffer(const GBufferJob& job) {
+void gbuffer_hits(const GBufferHitsJob& job) {
   const auto count = static_cast<int>(job.rays.count->count);
-  job.passed.begin();
   for_each_batch(count, [&](int first, int last) {
     HWY_DYNAMIC_DISPATCH(shade_batch)(job, first, last);
   });

@@ -1,39 +1,49 @@
 #pragma once
 
-#include "gpu/memory/image.hpp"
+#include "render/kernels/frame_job.hpp"
 #include "render/kernels/ray_sink.hpp"
 #include "render/resources/host_tables.hpp"
-#include "shaders/shared/frame_constants.h"
 
-/// The G-buffer from camera rays on all cores: host kernels of
-/// shaders/gbuffer/gbuffer_rays.comp and shaders/gbuffer/gbuffer_hits.comp.
+/// The G-buffer from camera rays on all processors, in vectors.
 namespace heliograph::render::kernels {
 
+/// shaders/gbuffer/gbuffer_rays.comp
+template <class Stage>
+struct GBufferRaysBindings {
+  gpu::WriteBuffer<Stage, shared::RayCount> count;
+  gpu::WriteBuffer<Stage, shared::Ray> rays;
+};
+using GBufferRaysJob = FrameJob<GBufferRaysBindings>;
+
 /// Writes every ray of the frame, tiles of 8 x 8 pixels one after the other.
-void camera_rays(const shared::FrameConstants& frame, shared::RayCount* count, shared::Ray* rays);
+void gbuffer_rays(const GBufferRaysJob& job);
 
-/// The mapped images of a G-buffer.
-struct GBufferImages {
-  gpu::HostView normals;      // rgba32f
-  gpu::HostView base_color;   // rgba8
-  gpu::HostView surface;      // rgba8
-  gpu::HostView motion;       // rgba32f
-  gpu::HostView emissive;     // rgba16f
-  gpu::HostView depth_slope;  // rg32f
-  gpu::HostView instance;     // r32ui
+/// shaders/gbuffer/gbuffer_hits.comp, or gbuffer_hits_layered.comp, which writes `layers`.
+template <class Stage>
+struct GBufferHitsBindings {
+  RaySource<Stage> rays;
+  gpu::ReadBuffer<Stage, shared::Hit> hits;
+  gpu::ReadBuffer<Stage, shared::Vertex> previous_vertices;
+  RaySink<Stage> passed;          // rays that go on
+  gpu::Write<Stage> normals;      // rgba32f
+  gpu::Write<Stage> base_color;   // rgba8
+  gpu::Write<Stage> surface;      // rgba8
+  gpu::Write<Stage> motion;       // rgba32f
+  gpu::Write<Stage> emissive;     // rgba16f
+  gpu::Write<Stage> depth_slope;  // rg32f
+  gpu::Write<Stage> instance;     // r32ui
+  gpu::OptionalWrite<Stage> layers;
+};
+struct GBufferHitsConstants {
+  std::uint32_t last_round;  // 1: nothing goes on
 };
 
-struct GBufferJob {
-  const shared::FrameConstants& frame;
+struct GBufferHitsJob : FrameJob<GBufferHitsBindings, GBufferHitsConstants> {
   SceneView scene;
-  bool deforms;     // meshes have vertices of the frame before
-  bool last_round;  // nothing goes on
-  RaySource rays;
-  const shared::Hit* hits;
-  RaySink passed;  // rays that go on; begun and ended here
-  GBufferImages images;
+  bool deforms;  // meshes have vertices of the frame before
 };
 
-void shade_gbuffer(const GBufferJob& job);
+/// For scenes whose materials the kernels know.
+void gbuffer_hits(const GBufferHitsJob& job);
 
 }  // namespace heliograph::render::kernels

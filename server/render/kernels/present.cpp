@@ -37,10 +37,10 @@ class Presentation {
   }
 
   HWY_INLINE Triple<V> radiance(int x, int y) const {
-    if (job_.mean_share >= 1.0f) return load(job_.accumulated, x, y);
+    if (job_.constants.mean_weight >= 1.0f) return load(job_.accumulated, x, y);
     const Triple<V> frame = load(job_.radiance, x, y);
-    if (job_.mean_share <= 0.0f) return frame;
-    return mix(frame, load(job_.accumulated, x, y), set(job_.mean_share));
+    if (job_.constants.mean_weight <= 0.0f) return frame;
+    return mix(frame, load(job_.accumulated, x, y), set(job_.constants.mean_weight));
   }
 
   HWY_INLINE Triple<V> tone_map(const Triple<V>& color) const {
@@ -62,7 +62,7 @@ class Presentation {
   }
 
   HWY_INLINE void block(int x, int y) const {
-    const V zero = hn::Zero(d_), factor = set(job_.exposure);
+    const V zero = hn::Zero(d_), factor = set(job_.exposure->factor);
     const Triple<V> color = radiance(x, y);
     const Triple<V> shown =
         tone_map({hn::Max(color.x, zero) * factor, hn::Max(color.y, zero) * factor,
@@ -77,7 +77,7 @@ class Presentation {
     const auto opaque = hn::Set(du, 0xff000000u);
     const auto packed =
         hn::Or(hn::Or(red, hn::ShiftLeft<8>(green)), hn::Or(hn::ShiftLeft<16>(blue), opaque));
-    hn::StoreU(packed, du, row_of<std::uint32_t>(job_.picture, y) + x);
+    hn::StoreU(packed, du, row_of<std::uint32_t>(job_.output, y) + x);
   }
 
   const D d_{};

@@ -1,23 +1,23 @@
 #pragma once
 
-#include "gpu/memory/image.hpp"
-#include "shaders/shared/frame_constants.h"
+#include "render/kernels/frame_job.hpp"
+#include "shaders/shared/exposure.h"
 
 namespace heliograph::render::kernels {
 
-/// The mapped images that presentation reads and writes.
-struct PresentJob {
-  const shared::FrameConstants& frame;
-  float exposure;
-  float mean_share;
-  int width;
-  int height;
-  gpu::HostView radiance, accumulated;
-  gpu::HostView picture;  // written, rgba8
+/// shaders/post/present.comp
+template <class Stage>
+struct PresentBindings {
+  gpu::Read<Stage> radiance, accumulated;  // rgba32f
+  gpu::ReadBuffer<Stage, shared::ExposureState> exposure;
+  gpu::Write<Stage> output;  // rgba8
 };
+struct PresentConstants {
+  float mean_weight;  // of the accumulated mean in the image that is shown, 0..1
+};
+using PresentJob = FrameJob<PresentBindings, PresentConstants>;
 
-/// Exposure, tone map and sRGB encoding on all processors: shaders/post/present.comp in the widest
-/// vectors that the processor has.
+/// Exposure, tone map and sRGB encoding on all processors, in the widest vectors that they have.
 void present(const PresentJob& job);
 
 }  // namespace heliograph::render::kernels

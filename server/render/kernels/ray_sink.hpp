@@ -5,6 +5,7 @@
 #include <cstring>
 #include <span>
 
+#include "gpu/frame_plan/bindings.hpp"
 #include "render/kernels/parallel.hpp"
 #include "shaders/shared/ray.h"
 
@@ -25,34 +26,42 @@ inline void set_groups(shared::RayCount& count) {
   count.groups_y = std::max((groups + shared::groups_per_row - 1) / shared::groups_per_row, 1u);
 }
 
-/// A stream of rays that kernels read.
+/// A stream of rays that a pass reads.
+template <class Stage>
 struct RaySource {
-  const shared::RayCount* count;
-  const shared::Ray* rays;
+  gpu::ReadBuffer<Stage, shared::RayCount> count;
+  gpu::ReadBuffer<Stage, shared::Ray> rays;
 };
 
-/// A stream that all threads append to; what shaders/lib/rays/ray_stream.glsl does.
-class RaySink {
- public:
-  /// `blending`: see shared::RayCount.
-  RaySink(shared::RayCount* count, shared::Ray* rays, std::uint32_t blending)
-      : count_(count), rays_(rays), blending_(blending) {}
+/// A stream that a pass appends to; what shaders/lib/rays/ray_stream.glsl does.
+template <class Stage>
+struct RaySink {
+  gpu::ReadWriteBuffer<Stage, shared::RayCount> count;
+  gpu::WriteBuffer<Stage, shared::Ray> rays;
 
-  /// Before the first ray.
-  void begin() const { *count_ = {0, 0, 1, 1, blending_, 0, 0, 0}; }
   /// Thread safe.
-  void append(std::span<const shared::Ray> rays) const {
-    const std::atomic_ref count(count_->count);
-    const std::uint32_t first = count.fetch_add(static_cast<std::uint32_t>(rays.size()));
-    std::memcpy(rays_ + first, rays.data(), rays.size_bytes());
+  void append(std::span<const shared::Ray> added) const {
+    const std::atomic_ref total(count->count);
+    const std::uint32_t first = total.fetch_add(static_cast<std::uint32_t>(added.size()));
+    std::memcpy(rays + first, added.data(), added.size_bytes());
   }
-  /// After the last.
-  void end() const { set_groups(*count_); }
-
- private:
-  shared::RayCount* count_;
-  shared::Ray* rays_;
-  std::uint32_t blending_;
+  /// After the last ray.
+  void end() const { set_groups(*count); }
 };
+
+/// shaders/rays/rays_begin.comp
+template <class Stage>
+struct RaysBeginBindings {
+  gpu::WriteBuffer<Stage, shared::RayCount> count;
+};
+struct RaysBeginConstants {
+  std::uint32_t by_coverage;  // 1: blended surfaces stop a fraction of the rays, 0: all
+};
+using RaysBeginJob = gpu::HostPass<RaysBeginBindings, RaysBeginConstants>;
+
+/// Empties a stream. `blending`: see shared::RayCount.
+inline void rays_begin(const RaysBeginJob& job, std::uint32_t blending) {
+  *job.count = {0, 0, 1, 1, blending, 0, 0, 0};
+}
 
 }  // namespace heliograph::render::kernels

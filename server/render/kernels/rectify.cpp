@@ -175,7 +175,7 @@ class Rectification {
   HWY_INLINE void hold(const Kernel& kernel, const WindowBoxes<D, channels>& boxes, int x, int y,
                        M requested) const {
     float* const signal = row_of<float>(job_.signal, y) + 4 * x;
-    float* const history = row_of<float>(job_.history, y) + 4 * x;
+    float* const history = row_of<float>(job_.history_length, y) + 4 * x;
     const Quad<V> value = load4(d_, signal), state = load4(d_, history);
     Quad<V> new_value, new_state;
     if (job_.constants.rectification == shared::rectification_gradient) {
@@ -200,7 +200,7 @@ class VisibilityRectification : public Rectification<D, VisibilityRectification<
   HWY_INLINE explicit VisibilityRectification(const RectifyJob& job) : Base(job) {}
 
   HWY_INLINE void load(int x, int y, V* values) const {
-    const Pair<V> fast = load2(d_, row_of<const float>(job_.fast, y) + 2 * x);
+    const Pair<V> fast = load2(d_, row_of<const float>(job_.fast_history, y) + 2 * x);
     values[0] = fast.x;
     values[1] = fast.y;
   }
@@ -247,7 +247,7 @@ class SpecularRectification : public Rectification<D, SpecularRectification<D>, 
   HWY_INLINE explicit SpecularRectification(const RectifyJob& job) : Base(job) {}
 
   HWY_INLINE void load(int x, int y, V* values) const {
-    const Quad<V> fast = load4(d_, row_of<const float>(job_.fast, y) + 4 * x);
+    const Quad<V> fast = load4(d_, row_of<const float>(job_.fast_history, y) + 4 * x);
     const Triple<V> color = to_ycocg({fast.x, fast.y, fast.z});
     values[0] = color.x;
     values[1] = color.y;
@@ -276,7 +276,7 @@ class SpecularRectification : public Rectification<D, SpecularRectification<D>, 
     const V bright = hn::Abs(to_ycocg({value.x, value.y, value.z}).x);
     const V frames = hn::Min(state.x, frames_under_motion(change / (bright + change + smallest)));
     const V weight_change = one / frames - one / state.x;
-    const Quad<V> sampled = load4(d_, row_of<const float>(job_.fast, y) + 4 * x);
+    const Quad<V> sampled = load4(d_, row_of<const float>(job_.fast_history, y) + 4 * x);
     const V moved = to_ycocg({sampled.x, sampled.y, sampled.z}).x * weight_change;
     new_value = {hn::MulAdd(sampled.x, weight_change, value.x),
                  hn::MulAdd(sampled.y, weight_change, value.y),
@@ -310,13 +310,13 @@ namespace heliograph::render::kernels {
 HWY_EXPORT(rectify_visibility_rows);
 HWY_EXPORT(rectify_specular_rows);
 
-void rectify_visibility(const RectifyJob& job) {
+void visibility_rectify(const RectifyJob& job) {
   for_each_band(job.height, [&](int first, int last) {
     HWY_DYNAMIC_DISPATCH(rectify_visibility_rows)(job, first, last);
   });
 }
 
-void rectify_specular(const RectifyJob& job) {
+void specular_rectify(const RectifyJob& job) {
   for_each_band(job.height, [&](int first, int last) {
     HWY_DYNAMIC_DISPATCH(rectify_specular_rows)(job, first, last);
   });

@@ -1,24 +1,20 @@
 #pragma once
 
-#include "gpu/memory/image.hpp"
+#include "render/kernels/frame_job.hpp"
 #include "shaders/shared/denoise.h"
-#include "shaders/shared/frame_constants.h"
 
 namespace heliograph::render::kernels {
 
-/// The mapped images that reprojection reads and writes.
-struct ReprojectJob {
-  const shared::FrameConstants& frame;
-  shared::ReprojectConstants constants;
-  int width;
-  int height;
-  gpu::HostView normals, surface, motion, depth_slope, instance;
-  gpu::HostView previous_normals, previous_motion, previous_instance;
-  gpu::HostView guide, reprojection;  // written
+/// shaders/denoise/reproject.comp
+template <class Stage>
+struct ReprojectBindings {
+  gpu::Read<Stage> normals, surface, motion, depth_slope, instance;
+  gpu::Read<Stage> previous_normals, previous_motion, previous_instance;
+  gpu::Write<Stage> guide, reprojection;
 };
+using ReprojectJob = FrameJob<ReprojectBindings, shared::ReprojectConstants>;
 
-/// Finds every surface in the frame before on all processors: shaders/denoise/reproject.comp in the
-/// widest vectors that the processor has.
+/// Finds every surface in the frame before on all processors, in the widest vectors that they have.
 void reproject(const ReprojectJob& job);
 
 }  // namespace heliograph::render::kernels

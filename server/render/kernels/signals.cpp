@@ -14,7 +14,7 @@ float sanitize(float value) {
 
 }  // namespace
 
-void combine_visibility(const CombineJob& job) {
+void visibility_combine(const CombineJob& job) {
   for_each_band(job.height, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
       const auto row = static_cast<std::uint32_t>(y);
@@ -37,23 +37,23 @@ void accumulate(const AccumulateJob& job) {
       const float* const sample = job.sample.row<const float>(row);
       const float* const previous = job.previous.row<const float>(row);
       float* const mean = job.mean.row<float>(row);
-      if (job.weight >= 1.0f) {
+      if (job.constants.weight >= 1.0f) {
         std::copy_n(sample, 4 * job.width, mean);
         continue;
       }
       for (int i = 0; i < 4 * job.width; ++i) {
-        mean[i] = previous[i] + (sample[i] - previous[i]) * job.weight;
+        mean[i] = previous[i] + (sample[i] - previous[i]) * job.constants.weight;
       }
     }
   });
 }
 
-void resolve_visibility(const ResolveJob& job) {
+void visibility_resolve(const VisibilityResolveJob& job) {
   constexpr int grain = 4096;
-  for_each_range(static_cast<int>(job.count.count), grain, [&](int first, int last) {
+  for_each_range(static_cast<int>(job.rays.count->count), grain, [&](int first, int last) {
     for (int i = first; i < last; ++i) {
       if (job.occluded[i] == 0) continue;
-      const std::uint32_t pixel = job.rays[i].pixel;
+      const std::uint32_t pixel = job.rays.rays[i].pixel;
       job.visibility.row<float>(pixel >> 16u)[pixel & 0xffffu] = 0.0f;
     }
   });

@@ -1,39 +1,41 @@
 #pragma once
 
-#include "gpu/memory/image.hpp"
-#include "shaders/shared/ray.h"
+#include "render/kernels/frame_job.hpp"
+#include "render/kernels/ray_sink.hpp"
 
-/// Copies and means of signals: bound by memory bandwidth, plain loops on all
-/// processors.
+/// Kernels that copy or average signals: bound by memory, plain loops on all processors.
 namespace heliograph::render::kernels {
 
 /// Shadow and ambient visibility side by side: shaders/denoise/visibility_combine.comp.
-struct CombineJob {
-  int width;
-  int height;
-  gpu::HostView shadows, ambient;  // r32f
-  gpu::HostView visibility;        // written, rgba32f
+template <class Stage>
+struct CombineBindings {
+  gpu::Read<Stage> shadows, ambient;  // r32f
+  gpu::Write<Stage> visibility;       // rgba32f
 };
-void combine_visibility(const CombineJob& job);
+using CombineJob = gpu::HostPass<CombineBindings>;
+void visibility_combine(const CombineJob& job);
 
 /// The running mean of a static view: shaders/post/accumulate.comp.
-struct AccumulateJob {
-  int width;
-  int height;
-  float weight;  // of the sample; 1 starts again
-  gpu::HostView sample, previous;
-  gpu::HostView mean;  // written
+template <class Stage>
+struct AccumulateBindings {
+  gpu::Read<Stage> sample, previous;  // rgba32f
+  gpu::Write<Stage> mean;
 };
+struct AccumulateConstants {
+  float weight;  // of the sample; 1 discards the mean
+};
+using AccumulateJob = gpu::HostPass<AccumulateBindings, AccumulateConstants>;
 void accumulate(const AccumulateJob& job);
 
-/// Brings the answers of a stream of visibility rays back:
+/// Scatters the results of a stream of visibility rays to their pixels:
 /// shaders/visibility/visibility_resolve.comp.
-struct ResolveJob {
-  const shared::RayCount& count;
-  const shared::Ray* rays;
-  const std::uint32_t* occluded;
-  gpu::HostView visibility;  // written where rays are occluded, r32f
+template <class Stage>
+struct VisibilityResolveBindings {
+  RaySource<Stage> rays;
+  gpu::ReadBuffer<Stage, std::uint32_t> occluded;
+  gpu::Write<Stage> visibility;  // r32f, where rays are occluded
 };
-void resolve_visibility(const ResolveJob& job);
+using VisibilityResolveJob = gpu::HostPass<VisibilityResolveBindings>;
+void visibility_resolve(const VisibilityResolveJob& job);
 
 }  // namespace heliograph::render::kernels

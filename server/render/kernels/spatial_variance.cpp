@@ -11,6 +11,17 @@
 #include "render/kernels/simd/history.hpp"
 #include "render/kernels/simd/view.hpp"
 
+#ifndef HELIOGRAPH_SPATIAL_VARIANCE_JOB
+#define HELIOGRAPH_SPATIAL_VARIANCE_JOB
+namespace heliograph::render::kernels {
+
+struct SignalJob : SpatialVarianceJob {
+  bool visibility;  // otherwise specular
+};
+
+}  // namespace heliograph::render::kernels
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
 
@@ -41,9 +52,9 @@ class SpatialVariance {
   };
 
  public:
-  HWY_INLINE explicit SpatialVariance(const SpatialVarianceJob& job)
+  HWY_INLINE explicit SpatialVariance(const SignalJob& job)
       : job_(job),
-        visibility_(job.kind == Signal::visibility),
+        visibility_(job.visibility),
         orthographic_((job.frame.flags & shared::frame_orthographic) != 0),
         bounds_(job.width, job.height) {}
 
@@ -65,7 +76,7 @@ class SpatialVariance {
 
   /// Pixels from `start` on; those before are done.
   HWY_INLINE void block(const ViewedRow<D>& view, int x, int y, int start) const {
-    const Quad<V> history = load(job_.history, x, y);
+    const Quad<V> history = load(job_.history_length, x, y);
     const V frames_x = history.x, frames_y = visibility_ ? history.y : history.x;
     const Quad<V> guide = load(job_.guide, x, y);
     const V enough = set(job_.constants.spatial_variance_frames);
@@ -180,13 +191,13 @@ class SpatialVariance {
   }
 
   const D d_{};
-  const SpatialVarianceJob& job_;
+  const SignalJob& job_;
   bool visibility_;
   bool orthographic_;
   Bounds<D> bounds_;
 };
 
-void spatial_variance_rows(const SpatialVarianceJob& job, int first, int last) {
+void spatial_variance_rows(const SignalJob& job, int first, int last) {
   run_rows<SpatialVariance>(job, job.width, first, last);
 }
 
@@ -198,10 +209,22 @@ namespace heliograph::render::kernels {
 
 HWY_EXPORT(spatial_variance_rows);
 
-void spatial_variance(const SpatialVarianceJob& job) {
+namespace {
+
+void estimate(const SignalJob& job) {
   for_each_band(job.height, [&](int first, int last) {
     HWY_DYNAMIC_DISPATCH(spatial_variance_rows)(job, first, last);
   });
+}
+
+}  // namespace
+
+void visibility_variance(const SpatialVarianceJob& job) {
+  estimate({job, true});
+}
+
+void specular_variance(const SpatialVarianceJob& job) {
+  estimate({job, false});
 }
 
 }  // namespace heliograph::render::kernels

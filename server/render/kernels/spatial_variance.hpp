@@ -1,24 +1,21 @@
 #pragma once
 
-#include "gpu/memory/image.hpp"
-#include "render/kernels/atrous.hpp"
+#include "render/kernels/frame_job.hpp"
 #include "shaders/shared/denoise.h"
 
 namespace heliograph::render::kernels {
 
-/// The mapped images that the spatial estimate of variance reads and writes.
-struct SpatialVarianceJob {
-  Signal kind;
-  const shared::FrameConstants& frame;
-  shared::TemporalConstants constants;
-  int width;
-  int height;
-  gpu::HostView guide, depth_slope, moments, history;
-  gpu::HostView signal;  // read and written
+/// shaders/lib/denoise/spatial_variance.glsl
+template <class Stage>
+struct SpatialVarianceBindings {
+  gpu::Read<Stage> guide, depth_slope, moments, history_length;
+  gpu::ReadWrite<Stage> signal;
 };
+using SpatialVarianceJob = FrameJob<SpatialVarianceBindings, shared::TemporalConstants>;
 
-/// Gives pixels with a short history the variance of their neighbours on all processors:
-/// shaders/lib/denoise/spatial_variance.glsl in the widest vectors that the processor has.
-void spatial_variance(const SpatialVarianceJob& job);
+/// Gives pixels with a short history the variance of their neighbours on all processors, in the
+/// widest vectors that they have.
+void visibility_variance(const SpatialVarianceJob& job);
+void specular_variance(const SpatialVarianceJob& job);
 
 }  // namespace heliograph::render::kernels

@@ -1,59 +1,68 @@
 #pragma once
 
-#include <optional>
 #include <span>
 
-#include "gpu/memory/image.hpp"
+#include "render/kernels/frame_job.hpp"
 #include "render/kernels/ray_sink.hpp"
 #include "render/resources/host_tables.hpp"
-#include "shaders/shared/frame_constants.h"
 
 /// Reflections on all processors, in vectors.
 namespace heliograph::render::kernels {
 
-/// The table of scales and biases of F0.
-struct SplitSum {
-  gpu::HostView texels;  // rg32f
-  int size;
+/// shaders/reflections/specular_rays.comp, or specular_rays_half.comp, which writes `directions`:
+/// one pixel of each 2 x 2 traces.
+template <class Stage>
+struct SpecularRaysBindings {
+  gpu::Read<Stage> normals;     // rgba32f
+  gpu::Read<Stage> base_color;  // rgba8
+  gpu::Read<Stage> surface;     // rgba8
+  gpu::Read<Stage> layers;
+  gpu::Read<Stage> motion;  // rgba32f
+  RaySink<Stage> rays;
+  gpu::Write<Stage> radiance;            // rgba32f; cleared
+  gpu::OptionalWrite<Stage> directions;  // rgba32f
 };
-
-/// Host kernel of shaders/reflections/specular_rays.comp and specular_rays_half.comp.
-struct SpecularRaysJob {
-  const shared::FrameConstants& frame;
-  SplitSum split_sum;
+struct SpecularRaysConstants {
   float max_roughness;
-  gpu::HostView normals;     // rgba32f
-  gpu::HostView base_color;  // rgba8
-  gpu::HostView surface;     // rgba8
-  gpu::HostView motion;      // rgba32f
-  RaySink rays;              // begun and ended here
-  gpu::HostView radiance;    // rgba32f; cleared
-  /// rgba32f, written where one pixel of each 2 x 2 traces.
-  std::optional<gpu::HostView> directions;
 };
-void make_specular_rays(const SpecularRaysJob& job);
+struct SpecularRaysJob : FrameJob<SpecularRaysBindings, SpecularRaysConstants> {
+  SplitSum split_sum;
+};
+void specular_rays(const SpecularRaysJob& job);
 
-/// Host kernel of shaders/reflections/specular_shade.comp, for scenes without area lights.
-struct ShadeHitsJob {
-  const shared::FrameConstants& frame;
+/// shaders/reflections/specular_shade.comp
+template <class Stage>
+struct SpecularShadeBindings {
+  gpu::Read<Stage> surface;  // rgba8
+  gpu::Read<Stage> motion;   // rgba32f
+  RaySource<Stage> rays;
+  gpu::ReadBuffer<Stage, shared::Hit> hits;
+  RaySink<Stage> shadows;      // toward lights
+  gpu::Write<Stage> radiance;  // rgba32f
+};
+struct SpecularShadeConstants {
+  std::uint32_t lights;  // 0: only the environment lights what is hit
+  std::int32_t scale;    // pixels to a texel of `radiance`
+};
+struct SpecularShadeJob : FrameJob<SpecularShadeBindings, SpecularShadeConstants> {
   SceneView scene;
   const Environment& environment;
   std::span<const shared::Light> lights;
   SplitSum split_sum;
-  bool with_lights;       // otherwise only the environment lights what is hit
-  int scale;              // pixels to a texel of `radiance`
-  gpu::HostView surface;  // rgba8
-  gpu::HostView motion;   // rgba32f
-  RaySource rays;
-  const shared::Hit* hits;
-  RaySink shadows;         // of punctual lights; begun and ended here
-  gpu::HostView radiance;  // rgba32f
 };
-void shade_hits(const ShadeHitsJob& job);
+void specular_shade(const SpecularShadeJob& job);
 
-/// Host kernel of shaders/reflections/specular_resolve.comp: adds what shadow rays carry and
-/// nothing stopped.
-void resolve_lights(const RaySource& shadows, const std::uint32_t* occluded, int scale,
-                    const gpu::HostView& radiance);
+/// shaders/reflections/specular_resolve.comp: adds the light of shadow rays that are not occluded.
+template <class Stage>
+struct SpecularResolveBindings {
+  RaySource<Stage> shadows;
+  gpu::ReadBuffer<Stage, std::uint32_t> occluded;
+  gpu::ReadWrite<Stage> radiance;  // rgba32f
+};
+struct SpecularResolveConstants {
+  std::int32_t scale;  // pixels to a texel of `radiance`
+};
+using SpecularResolveJob = gpu::HostPass<SpecularResolveBindings, SpecularResolveConstants>;
+void specular_resolve(const SpecularResolveJob& job);
 
 }  // namespace heliograph::render::kernels

@@ -65,7 +65,7 @@ class Generation {
       ray.user = numbers(1.0f);
     }
     // Roughness is stored in steps of 1 / 255: a little more than half of one is still the same.
-    const Mask smooth = hn::Le(m.roughness, number(job_.max_roughness + 0.6f / 255.0f));
+    const Mask smooth = hn::Le(m.roughness, number(job_.constants.max_roughness + 0.6f / 255.0f));
     ray.origin = offset_origin(camera_.world_position(pixel, view_z), m.geometric, view_z);
     ray.direction = s.direction;
     ray.t_min = zero();
@@ -101,8 +101,7 @@ class Generation {
                                  Mask requested) const {
     const Texels<4> texels(Float4{s.direction.x, s.direction.y, s.direction.z, s.density});
     const TexelIndices indices(cell);
-    for_each_lane(requested,
-                  [&](std::size_t lane) { texels.put(*job_.directions, lane, indices); });
+    for_each_lane(requested, [&](std::size_t lane) { texels.put(job_.directions, lane, indices); });
   }
 
   const SpecularRaysJob& job_;
@@ -121,7 +120,7 @@ void make_tile(const SpecularRaysJob& job, const Cells& cells, int tile_x, int t
     float* const row = job.radiance.row<float>(static_cast<std::uint32_t>(y));
     std::fill(row + 4 * left, row + 4 * right, 0.0f);
     if (!job.directions) continue;
-    float* const directions = job.directions->row<float>(static_cast<std::uint32_t>(y));
+    float* const directions = job.directions.row<float>(static_cast<std::uint32_t>(y));
     std::fill(directions + 4 * left, directions + 4 * right, 0.0f);
   }
   const Generation generation(job);
@@ -146,13 +145,12 @@ namespace heliograph::render::kernels {
 
 HWY_EXPORT(make_tile);
 
-void make_specular_rays(const SpecularRaysJob& job) {
+void specular_rays(const SpecularRaysJob& job) {
   const int scale = job.directions ? 2 : 1;
   const Cells cells{(static_cast<int>(job.frame.extent.x) + scale - 1) / scale,
                     (static_cast<int>(job.frame.extent.y) + scale - 1) / scale};
   const int across = (cells.width + tile_side - 1) / tile_side;
   const int tiles = across * ((cells.height + tile_side - 1) / tile_side);
-  job.rays.begin();
   for_each_range(tiles, 1, [&](int first, int last) {
     for (int tile = first; tile < last; ++tile) {
       HWY_DYNAMIC_DISPATCH(make_tile)(job, cells, tile % across, tile / across);

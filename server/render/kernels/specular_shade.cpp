@@ -17,14 +17,14 @@ namespace heliograph::render::kernels::HWY_NAMESPACE {
 /// The hits of one job, some at a time.
 class HitShading {
  public:
-  explicit HitShading(const ShadeHitsJob& job)
+  explicit HitShading(const SpecularShadeJob& job)
       : job_(job),
         frame_(job.frame),
         cone_(CameraLanes(job.frame).cone()),
         environment_(job.frame, job.environment),
         split_sum_(job.split_sum.texels, job.split_sum.size),
-        picks_(specular_numbers(job.frame, 5, job.scale)),
-        points_(specular_pairs(job.frame, 6, job.scale)) {}
+        picks_(specular_numbers(job.frame, 5, job.constants.scale)),
+        points_(specular_pairs(job.frame, 6, job.constants.scale)) {}
 
   /// @return how many shadow rays there are, which lie at `shadows`
   std::size_t block(int first, int last, shared::Ray* shadows) const {
@@ -33,9 +33,9 @@ class HitShading {
     const Mask requested = float_mask(hn::Lt(lane, integer(last)));
     const RayLanes ray = load_rays(job_.rays.rays, index);
     const PixelLanes pixel = unpack_pixel(ray.pixel);
-    const PixelLanes cell =
-        job_.scale == 1 ? pixel
-                        : PixelLanes{hn::ShiftRight<1>(pixel.x), hn::ShiftRight<1>(pixel.y)};
+    const PixelLanes cell = job_.constants.scale == 1 ? pixel
+                                                      : PixelLanes{hn::ShiftRight<1>(pixel.x),
+                                                                   hn::ShiftRight<1>(pixel.y)};
     const HitLanes hit = load_hits(job_.hits, index, requested);
     const Mask missed = hn::AndNot(hit.met, requested);
     Float3 light = numbers(0.0f);
@@ -52,7 +52,7 @@ class HitShading {
                                             s.geometric, -ray.direction, split_sum_);
       light = select(hit.met, steady_light(s, m), light);
       const Mask lit = hn::AndNot(s.has(shared::material_unlit), hit.met);
-      if (job_.with_lights && enabled(shared::frame_direct) && !none(lit)) {
+      if (job_.constants.lights && enabled(shared::frame_direct) && !none(lit)) {
         count = make_shadow_rays(ray, s, m, cell, lit, shadows);
       }
     }
@@ -170,7 +170,7 @@ class HitShading {
     for_each_lane(requested, [&](std::size_t lane) { texels.put(job_.radiance, lane, indices); });
   }
 
-  const ShadeHitsJob& job_;
+  const SpecularShadeJob& job_;
   const shared::FrameConstants& frame_;
   glm::vec2 cone_;
   EnvironmentLanes environment_;
@@ -179,7 +179,7 @@ class HitShading {
   RandomPairs<UnsignedTag> points_;
 };
 
-void shade_hits_batch(const ShadeHitsJob& job, int first, int last) {
+void shade_hits_batch(const SpecularShadeJob& job, int first, int last) {
   const HitShading shading(job);
   std::array<shared::Ray, ray_batch> shadows;
   std::size_t count = 0;
@@ -197,25 +197,24 @@ namespace heliograph::render::kernels {
 
 HWY_EXPORT(shade_hits_batch);
 
-void shade_hits(const ShadeHitsJob& job) {
-  job.shadows.begin();
+void specular_shade(const SpecularShadeJob& job) {
   for_each_batch(static_cast<int>(job.rays.count->count), [&](int first, int last) {
     HWY_DYNAMIC_DISPATCH(shade_hits_batch)(job, first, last);
   });
   job.shadows.end();
 }
 
-void resolve_lights(const RaySource& shadows, const std::uint32_t* occluded, int scale,
-                    const gpu::HostView& radiance) {
+void specular_resolve(const SpecularResolveJob& job) {
+  const auto scale = static_cast<std::uint32_t>(job.constants.scale);
   const auto carried = [](std::uint32_t bits) { return std::bit_cast<float>(bits); };
-  for_each_batch(static_cast<int>(shadows.count->count), [&](int first, int last) {
+  for_each_batch(static_cast<int>(job.shadows.count->count), [&](int first, int last) {
     for (int i = first; i < last; ++i) {
-      const shared::Ray& ray = shadows.rays[i];
+      const shared::Ray& ray = job.shadows.rays[i];
       const glm::vec3 light(carried(ray.user), carried(ray.padding0), carried(ray.padding1));
-      if (occluded[i] || !std::isfinite(light.x + light.y + light.z)) continue;
-      const std::uint32_t x = (ray.pixel & 0xffffu) / static_cast<std::uint32_t>(scale);
-      const std::uint32_t y = (ray.pixel >> 16u) / static_cast<std::uint32_t>(scale);
-      float* const texel = radiance.row<float>(y) + 4 * x;
+      if (job.occluded[i] || !std::isfinite(light.x + light.y + light.z)) continue;
+      const std::uint32_t x = (ray.pixel & 0xffffu) / scale;
+      const std::uint32_t y = (ray.pixel >> 16u) / scale;
+      float* const texel = job.radiance.row<float>(y) + 4 * x;
       for (int c = 0; c < 3; ++c) texel[c] += light[c];
     }
   });

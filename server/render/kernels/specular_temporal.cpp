@@ -64,7 +64,7 @@ class SpecularAccumulation {
     const int lanes = static_cast<int>(hn::Lanes(d_));
     for (int i = 0; i < job_.width; i += lanes) {
       const int x = std::min(i, job_.width - lanes);
-      const V distance = load(job_.raw, x, y).w;
+      const V distance = load(job_.noisy, x, y).w;
       const M known = hn::AndNot(is_bad(distance), hn::Gt(distance, hn::Zero(d_)));
       hn::StoreU(hn::IfThenElse(known, distance, set(no_hit)), d_, hits.row(0, y) + x);
     }
@@ -212,9 +212,9 @@ class SpecularAccumulation {
       const M valid = hn::Gt(weight, hn::Zero(d_));
       if (hn::AllFalse(d_, valid)) continue;
       const TexelGather<D> texels = bounds_.gather(taps.tap_x(i), taps.tap_y(i));
-      const Triple<V> signal = texels.first_three(job_.previous_signal);
-      const Quad<V> state = texels.four(job_.previous_history);
-      const Triple<V> fast = texels.first_three(job_.previous_fast);
+      const Triple<V> signal = texels.first_three(job_.previous_history);
+      const Quad<V> state = texels.four(job_.previous_history_length);
+      const Triple<V> fast = texels.first_three(job_.previous_fast_history);
       add_weighted<D>(valid, weight, signal.x, r.radiance.x);
       add_weighted<D>(valid, weight, signal.y, r.radiance.y);
       add_weighted<D>(valid, weight, signal.z, r.radiance.z);
@@ -230,7 +230,7 @@ class SpecularAccumulation {
     fetch_history_bicubic<D, 3>(
         bounds_, taps, taps.whole,
         [&](const TexelGather<D>& texels, V(&texel)[3]) HWY_ATTR {
-          const Triple<V> signal = texels.first_three(job_.previous_signal);
+          const Triple<V> signal = texels.first_three(job_.previous_history);
           texel[0] = signal.x;
           texel[1] = signal.y;
           texel[2] = signal.z;
@@ -309,13 +309,13 @@ class SpecularAccumulation {
     const M seen = guide_is_surface(guide);
     const Quad<V> nothing_seen{zero, zero, zero, zero};
     float* const signal = row_of<float>(job_.signal, y) + 4 * x;
-    float* const history = row_of<float>(job_.history, y) + 4 * x;
-    float* const fast = row_of<float>(job_.fast, y) + 4 * x;
+    float* const history = row_of<float>(job_.history_length, y) + 4 * x;
+    float* const fast = row_of<float>(job_.fast_history, y) + 4 * x;
     if (hn::AllFalse(d_, seen)) {
       for (float* out : {signal, history, fast}) store4(d_, nothing_seen, out);
       return;
     }
-    const Quad<V> sample = load(job_.raw, x, y);
+    const Quad<V> sample = load(job_.noisy, x, y);
     Triple<V> now{sample.x, sample.y, sample.z};
     now = select(is_bad(now), Triple<V>{zero, zero, zero}, now);
     const Surface s = decode_guide(guide);
@@ -359,7 +359,7 @@ namespace heliograph::render::kernels {
 
 HWY_EXPORT(accumulate_specular_rows);
 
-void accumulate_specular(const TemporalSpecularJob& job) {
+void specular_temporal(const TemporalSpecularJob& job) {
   for_each_band(job.height, [&](int first, int last) {
     HWY_DYNAMIC_DISPATCH(accumulate_specular_rows)(job, first, last);
   });

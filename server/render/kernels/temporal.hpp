@@ -1,52 +1,48 @@
 #pragma once
 
-#include "gpu/memory/image.hpp"
+#include "render/kernels/frame_job.hpp"
 #include "shaders/shared/denoise.h"
-#include "shaders/shared/frame_constants.h"
 
-/// Gathering signals over frames on all processors, in the widest vectors that the processor has.
+/// Accumulation of signals over frames on all processors, in the widest vectors that they have.
 namespace heliograph::render::kernels {
 
-struct TemporalVisibilityJob {
-  const shared::FrameConstants& frame;
-  shared::TemporalConstants constants;
-  int width;
-  int height;
-  gpu::HostView raw, guide, reprojection;
-  gpu::HostView previous_signal, previous_moments, previous_history, previous_fast;
-  gpu::HostView signal, moments, history, fast;  // written
+/// shaders/denoise/visibility_temporal.comp
+template <class Stage>
+struct TemporalVisibilityBindings {
+  gpu::Read<Stage> noisy, guide, reprojection;
+  gpu::Read<Stage> previous_history, previous_moments, previous_history_length;
+  gpu::Read<Stage> previous_fast_history;
+  gpu::Read<Stage> percentiles;  // not by the kernel
+  gpu::Write<Stage> signal, moments, history_length, fast_history;
 };
+using TemporalVisibilityJob = FrameJob<TemporalVisibilityBindings, shared::TemporalConstants>;
 
-struct TemporalSpecularJob {
-  const shared::FrameConstants& frame;
-  shared::TemporalConstants constants;
-  int width;
-  int height;
-  gpu::HostView raw, guide, instance, reprojection;
-  gpu::HostView previous_normals, previous_surface, previous_motion, previous_instance;
-  gpu::HostView previous_signal, previous_history, previous_fast;
-  gpu::HostView signal, history, fast;  // written
+/// shaders/denoise/specular_temporal.comp
+template <class Stage>
+struct TemporalSpecularBindings {
+  gpu::Read<Stage> noisy, guide, instance, reprojection;
+  gpu::Read<Stage> previous_normals, previous_surface, previous_motion, previous_instance;
+  gpu::Read<Stage> previous_history, previous_history_length, previous_fast_history;
+  gpu::Read<Stage> percentiles;  // not by the kernel
+  gpu::Write<Stage> signal, history_length, fast_history;
 };
+using TemporalSpecularJob = FrameJob<TemporalSpecularBindings, shared::TemporalConstants>;
 
-struct RectifyJob {
-  shared::TemporalConstants constants;
-  int width;
-  int height;
-  gpu::HostView guide, fast;
-  gpu::HostView signal, history;  // read and written
+/// shaders/denoise/visibility_rectify.comp and specular_rectify.comp
+template <class Stage>
+struct RectifyBindings {
+  gpu::Read<Stage> guide, fast_history;
+  gpu::ReadWrite<Stage> signal, history_length;
 };
+using RectifyJob = gpu::HostPass<RectifyBindings, shared::TemporalConstants>;
 
-/// Whether the kernels know the rectification that these constants ask for: those by windows and
-/// percentiles of the current frame are left to the shaders.
+/// Whether the kernels know this rectification: those by windows and percentiles of the current
+/// frame are left to the shaders.
 bool can_accumulate(std::uint32_t rectification);
 
-/// shaders/denoise/visibility_temporal.comp
-void accumulate_visibility(const TemporalVisibilityJob& job);
-/// shaders/denoise/specular_temporal.comp
-void accumulate_specular(const TemporalSpecularJob& job);
-/// shaders/denoise/visibility_rectify.comp
-void rectify_visibility(const RectifyJob& job);
-/// shaders/denoise/specular_rectify.comp
-void rectify_specular(const RectifyJob& job);
+void visibility_temporal(const TemporalVisibilityJob& job);
+void specular_temporal(const TemporalSpecularJob& job);
+void visibility_rectify(const RectifyJob& job);
+void specular_rectify(const RectifyJob& job);
 
 }  // namespace heliograph::render::kernels

@@ -74,7 +74,7 @@ class Antialiasing {
   }
 
   HWY_INLINE Triple<V> compressed(const Triple<V>& radiance) const {
-    const Triple<V> c = radiance * set(job_.exposure);
+    const Triple<V> c = radiance * set(job_.exposure->factor);
     const V quarter = set(0.25f), half = set(0.5f);
     const V luma = hn::MulAdd(c.x, quarter, hn::MulAdd(c.y, half, c.z * quarter));
     const V green = hn::MulSub(c.y, half, (c.x + c.z) * quarter);
@@ -86,7 +86,7 @@ class Antialiasing {
     const V zero = hn::Zero(d_);
     const Triple<V> shown = c * (set(1.0f) / hn::Max(set(1.0f) - c.x, set(1e-6f)));
     const V base = shown.x - shown.y;
-    const V factor = set(1.0f / job_.exposure);
+    const V factor = set(1.0f / job_.exposure->factor);
     return Triple<V>{hn::Max(base + shown.z, zero), hn::Max(shown.x + shown.y, zero),
                      hn::Max(base - shown.z, zero)} *
            factor;
@@ -178,7 +178,7 @@ class Antialiasing {
     }
     variance = variance * ninth;
     const Triple<V> deviation{hn::Sqrt(variance.x), hn::Sqrt(variance.y), hn::Sqrt(variance.z)};
-    const Triple<V> half_extent = deviation * set(job_.clip);
+    const Triple<V> half_extent = deviation * set(job_.constants.clip);
     return {mean - half_extent, mean + half_extent};
   }
 
@@ -201,8 +201,8 @@ class Antialiasing {
     const Box box = box_about(colors, x, y);
     const Triple<V> old =
         compressed(sample_history(clamped(u, 0.0f, 1.0f), clamped(v, 0.0f, 1.0f)));
-    V weight = set(job_.blend);
-    if (job_.anti_flicker) {
+    V weight = set(job_.constants.blend);
+    if (job_.constants.anti_flicker > 0.0f) {
       const V margin = hn::Min(hn::Abs(old.x - box.low.x), hn::Abs(box.high.x - old.x));
       const V span = hn::Max(margin + box.high.x - box.low.x, set(1e-6f));
       // Never none: a colour that was clamped to the box's face would stay there for ever.

@@ -1,25 +1,25 @@
 #pragma once
 
-#include "gpu/memory/image.hpp"
-#include "shaders/shared/frame_constants.h"
+#include "render/kernels/frame_job.hpp"
+#include "shaders/shared/exposure.h"
 
 namespace heliograph::render::kernels {
 
-/// The mapped images that temporal antialiasing reads and writes.
-struct AntialiasJob {
-  const shared::FrameConstants& frame;
-  float blend;  // weight of the new frame
-  float clip;   // half width of the box in standard deviations
-  bool anti_flicker;
-  float exposure;
-  int width;
-  int height;
-  gpu::HostView radiance, motion, history;
-  gpu::HostView resolved;  // written
+/// shaders/post/temporal_antialias.comp
+template <class Stage>
+struct AntialiasBindings {
+  gpu::Read<Stage> radiance, motion, history;  // rgba32f
+  gpu::ReadBuffer<Stage, shared::ExposureState> exposure;
+  gpu::Write<Stage> resolved;  // rgba32f
 };
+struct AntialiasConstants {
+  float blend;         // weight of the new frame
+  float clip;          // half width of the box in standard deviations
+  float anti_flicker;  // 1: on
+};
+using AntialiasJob = FrameJob<AntialiasBindings, AntialiasConstants>;
 
-/// Blends the frame with those before it on all processors: shaders/post/temporal_antialias.comp in
-/// the widest vectors that the processor has.
+/// Blends the frame with those before it on all processors, in the widest vectors that they have.
 void temporal_antialias(const AntialiasJob& job);
 
 }  // namespace heliograph::render::kernels

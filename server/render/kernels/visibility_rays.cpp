@@ -23,10 +23,11 @@ class VisibilityRays {
   using M = hn::Mask<D>;
 
  public:
-  HWY_INLINE void generate(const VisibilityRaysJob& job, int first, int last) const {
+  template <class Job>
+  HWY_INLINE void generate(const Job& job, int first, int last) const {
     const D d;
     const int lanes = static_cast<int>(hn::Lanes(d));
-    RayBatch batch(*job.count, job.rays,
+    RayBatch batch(*job.rays.count, job.rays.rays,
                    static_cast<std::size_t>(job.width) * static_cast<std::size_t>(last - first));
     for (int start = 0; start < job.width; start += lanes) {
       const int x = std::min(start, job.width - lanes);
@@ -58,15 +59,15 @@ class ShadowRays : public VisibilityRays<D, ShadowRays<D>> {
  public:
   HWY_INLINE explicit ShadowRays(const ShadowRaysJob& job)
       : job_(job),
-        split_sum_(job.split_sum, job.split_sum_size),
-        picks_(DU(), job.common.frame.sample_index, 1u, job.common.frame.seed),
-        points_(DU(), job.common.frame.sample_index, 2u, job.common.frame.seed) {}
+        split_sum_(job.split_sum.texels, job.split_sum.size),
+        picks_(DU(), job.frame.sample_index, 1u, job.frame.seed),
+        points_(DU(), job.frame.sample_index, 2u, job.frame.seed) {}
 
-  HWY_INLINE void rows(int first, int last) const { this->generate(job_.common, first, last); }
+  HWY_INLINE void rows(int first, int last) const { this->generate(job_, first, last); }
 
   HWY_INLINE void make(int x, int y, V view_z, M& requested, Triple<V>& origin,
                        Triple<V>& direction, V& t_max) const {
-    const ViewedRow<D> view(job_.common.frame, y);
+    const ViewedRow<D> view(job_.frame, y);
     const auto m = material(view, x, y);
     const Triple<V> position = view.world_position(x, view_z);
     const auto column = hn::Iota(DU(), static_cast<std::uint32_t>(x));
@@ -101,7 +102,7 @@ class ShadowRays : public VisibilityRays<D, ShadowRays<D>> {
 
  private:
   HWY_INLINE SurfaceMaterial<V> material(const ViewedRow<D>& view, int x, int y) const {
-    const Quad<V> encoded = load4(d_, row_of<const float>(job_.common.normals, y) + 4 * x);
+    const Quad<V> encoded = load4(d_, row_of<const float>(job_.normals, y) + 4 * x);
     const Quad<V> root = load_unorm8(d_, row_of<const std::uint32_t>(job_.base_color, y) + x);
     const Quad<V> packed = load_unorm8(d_, row_of<const std::uint32_t>(job_.surface, y) + x);
     const Triple<V> color{root.x * root.x, root.y * root.y, root.z * root.z};
@@ -145,7 +146,7 @@ class AmbientRays : public VisibilityRays<D, AmbientRays<D>> {
   using DU = hn::RebindToUnsigned<D>;
 
  public:
-  HWY_INLINE explicit AmbientRays(const VisibilityRaysJob& job)
+  HWY_INLINE explicit AmbientRays(const AmbientRaysJob& job)
       : job_(job), directions_(DU(), job.frame.sample_index, 3u, job.frame.seed) {}
 
   HWY_INLINE void rows(int first, int last) const { this->generate(job_, first, last); }
@@ -171,15 +172,15 @@ class AmbientRays : public VisibilityRays<D, AmbientRays<D>> {
 
  private:
   const D d_{};
-  const VisibilityRaysJob& job_;
+  const AmbientRaysJob& job_;
   RandomPairs<DU> directions_;
 };
 
 void shadow_ray_rows(const ShadowRaysJob& job, int first, int last) {
-  run_rows<ShadowRays>(job, job.common.width, first, last);
+  run_rows<ShadowRays>(job, job.width, first, last);
 }
 
-void ambient_ray_rows(const VisibilityRaysJob& job, int first, int last) {
+void ambient_ray_rows(const AmbientRaysJob& job, int first, int last) {
   run_rows<AmbientRays>(job, job.width, first, last);
 }
 
@@ -192,18 +193,18 @@ namespace heliograph::render::kernels {
 HWY_EXPORT(shadow_ray_rows);
 HWY_EXPORT(ambient_ray_rows);
 
-void shadow_rays(const ShadowRaysJob& job) {
-  for_each_band(job.common.height, [&](int first, int last) {
+void shadows_rays(const ShadowRaysJob& job) {
+  for_each_band(job.height, [&](int first, int last) {
     HWY_DYNAMIC_DISPATCH(shadow_ray_rows)(job, first, last);
   });
-  set_groups(*job.common.count);
+  job.rays.end();
 }
 
-void ambient_rays(const VisibilityRaysJob& job) {
+void ambient_rays(const AmbientRaysJob& job) {
   for_each_band(job.height, [&](int first, int last) {
     HWY_DYNAMIC_DISPATCH(ambient_ray_rows)(job, first, last);
   });
-  set_groups(*job.count);
+  job.rays.end();
 }
 
 }  // namespace heliograph::render::kernels

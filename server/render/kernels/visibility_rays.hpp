@@ -2,37 +2,36 @@
 
 #include <span>
 
-#include "gpu/memory/image.hpp"
-#include "shaders/shared/frame_constants.h"
-#include "shaders/shared/ray.h"
-#include "shaders/shared/scene.h"
+#include "render/kernels/frame_job.hpp"
+#include "render/kernels/ray_sink.hpp"
 
 namespace heliograph::render::kernels {
 
-/// The mapped images that the generation of visibility rays reads and writes.
-struct VisibilityRaysJob {
-  const shared::FrameConstants& frame;
-  int width;
-  int height;
-  gpu::HostView normals, motion;
-  shared::RayCount* count;  // of an emptied stream
-  shared::Ray* rays;
-  gpu::HostView visibility;  // written: 1 where the ray decides, 0 where there is none to trace
+/// shaders/visibility/shadows_rays.comp. The rays are those of the shader in another order.
+template <class Stage>
+struct ShadowRaysBindings {
+  gpu::Read<Stage> normals, motion, base_color, surface, layers;
+  RaySink<Stage> rays;
+  gpu::Write<Stage> visibility;  // r32f: 1 where the ray decides, 0 where there is none to trace
 };
-
-struct ShadowRaysJob {
-  VisibilityRaysJob common;
+struct ShadowRaysJob : FrameJob<ShadowRaysBindings> {
   std::span<const shared::Light> lights;  // punctual, the environment's sun among them
-  gpu::HostView base_color, surface;
-  gpu::HostView split_sum;  // rg32f, square
-  int split_sum_size;
+  SplitSum split_sum;
 };
 
-/// One ray per pixel toward one light on all processors: shaders/visibility/shadows_rays.comp in
-/// the widest vectors that the processor has. The stream holds the same rays in another order.
-void shadow_rays(const ShadowRaysJob& job);
+/// One ray per pixel toward one light, on all processors, in the widest vectors that they have.
+void shadows_rays(const ShadowRaysJob& job);
 
-/// One ray per pixel over the hemisphere: shaders/visibility/ambient_rays.comp.
-void ambient_rays(const VisibilityRaysJob& job);
+/// shaders/visibility/ambient_rays.comp
+template <class Stage>
+struct AmbientRaysBindings {
+  gpu::Read<Stage> normals, motion;
+  RaySink<Stage> rays;
+  gpu::Write<Stage> visibility;  // as above
+};
+using AmbientRaysJob = FrameJob<AmbientRaysBindings>;
+
+/// One ray per pixel over the hemisphere.
+void ambient_rays(const AmbientRaysJob& job);
 
 }  // namespace heliograph::render::kernels

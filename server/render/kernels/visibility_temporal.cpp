@@ -59,10 +59,10 @@ class VisibilityAccumulation {
       const M valid = hn::Gt(weight, zero);
       if (hn::AllFalse(d_, valid)) continue;
       const TexelGather<D> texels = bounds_.gather(taps.tap_x(i), taps.tap_y(i));
-      const Pair<V> signal = texels.first_two(job_.previous_signal);
+      const Pair<V> signal = texels.first_two(job_.previous_history);
       const Quad<V> moments = texels.four(job_.previous_moments);
-      const Pair<V> frames = texels.first_two(job_.previous_history);
-      const Pair<V> fast = texels.two(job_.previous_fast);
+      const Pair<V> frames = texels.first_two(job_.previous_history_length);
+      const Pair<V> fast = texels.two(job_.previous_fast_history);
       add_weighted<D>(valid, weight, signal.x, r.signal.x);
       add_weighted<D>(valid, weight, signal.y, r.signal.y);
       add_weighted<D>(valid, weight, moments.x, r.moments.x);
@@ -79,7 +79,7 @@ class VisibilityAccumulation {
     fetch_history_bicubic<D, 2>(
         bounds_, taps, taps.whole,
         [&](const TexelGather<D>& texels, V(&texel)[2]) HWY_ATTR {
-          const Pair<V> signal = texels.first_two(job_.previous_signal);
+          const Pair<V> signal = texels.first_two(job_.previous_history);
           texel[0] = signal.x;
           texel[1] = signal.y;
         },
@@ -106,7 +106,7 @@ class VisibilityAccumulation {
 
   HWY_INLINE void block(int x, int y) const {
     const V zero = hn::Zero(d_);
-    const Quad<V> now = load(job_.raw, x, y);
+    const Quad<V> now = load(job_.noisy, x, y);
     const M seen = guide_is_surface(load(job_.guide, x, y));
     const HistorySample old = fetch_history(x, y);
     const Channel shadow =
@@ -119,10 +119,10 @@ class VisibilityAccumulation {
         hn::IfThenElseZero(seen, shadow.variance), hn::IfThenElseZero(seen, ambient.variance)};
     store4(d_, signal, row_of<float>(job_.signal, y) + 4 * x);
     store(job_.moments, x, y, seen, {shadow.first, ambient.first, shadow.second, ambient.second});
-    store(job_.history, x, y, seen, {shadow.frames, ambient.frames, zero, zero});
+    store(job_.history_length, x, y, seen, {shadow.frames, ambient.frames, zero, zero});
     hn::StoreInterleaved2(hn::IfThenElseZero(seen, shadow.fast),
                           hn::IfThenElseZero(seen, ambient.fast), d_,
-                          row_of<float>(job_.fast, y) + 2 * x);
+                          row_of<float>(job_.fast_history, y) + 2 * x);
   }
 
   const D d_{};
@@ -149,7 +149,7 @@ bool can_accumulate(std::uint32_t rectification) {
          rectification == shared::rectification_gradient;
 }
 
-void accumulate_visibility(const TemporalVisibilityJob& job) {
+void visibility_temporal(const TemporalVisibilityJob& job) {
   for_each_band(job.height, [&](int first, int last) {
     HWY_DYNAMIC_DISPATCH(accumulate_visibility_rows)(job, first, last);
   });

@@ -44,11 +44,11 @@ Slot make_slot(const shared::TextureSlot& from, std::span<const shared::HeapText
 /// The texel of a cube beyond the rim of a face: the neighbour's nearest. `x` and `y` lie in
 /// [-1, size], at most one of them outside.
 glm::ivec3 texel_around(int face, int x, int y, int size) {
-  const auto place = [size](int i) {
+  const auto coordinate = [size](int i) {
     const float p = (static_cast<float>(i) + 0.5f) / static_cast<float>(size) * 2.0f - 1.0f;
     return std::clamp(p, -1.0f, 1.0f);  // a texel outside stands on the edge
   };
-  const float u = place(x), v = place(y);
+  const float u = coordinate(x), v = coordinate(y);
   // Vulkan's faces: which axis leads, and where u and v point.
   const std::array<glm::vec3, 6> directions{glm::vec3(1, -v, -u), {-1, -v, u}, {u, 1, v},
                                             {u, -1, -v},          {u, -v, 1},  {-u, -v, -1}};
@@ -61,9 +61,9 @@ glm::ivec3 texel_around(int face, int x, int y, int size) {
     }
   }
   const int target = 2 * axis + (d[axis] < 0.0f ? 1 : 0);
-  const std::array<glm::vec2, 6> places{glm::vec2(-d.z, -d.y), {d.z, -d.y}, {d.x, d.z},
-                                        {d.x, -d.z},           {d.x, -d.y}, {-d.x, -d.y}};
-  const glm::vec2 at = places[static_cast<std::size_t>(target)] * 0.5f + 0.5f;
+  const std::array<glm::vec2, 6> positions{glm::vec2(-d.z, -d.y), {d.z, -d.y}, {d.x, d.z},
+                                           {d.x, -d.z},           {d.x, -d.y}, {-d.x, -d.y}};
+  const glm::vec2 at = positions[static_cast<std::size_t>(target)] * 0.5f + 0.5f;
   const auto texel = [size](float p) {
     return std::clamp(static_cast<int>(p * static_cast<float>(size)), 0, size - 1);
   };

@@ -53,7 +53,7 @@ struct Material {
   std::array<std::uint32_t, 2> padding;
   Slot base_color_slot;
   Slot metallic_roughness_slot;
-  Slot occlusion_slot;  // after the one that it often shares its image with
+  Slot occlusion_slot;  // after the slot that often has the same image
   Slot normal_slot;
   Slot emissive_slot;
 };
@@ -86,14 +86,14 @@ struct SceneView {
 SceneView view_scene(const SceneResources& scene, const tracing::SceneTables& tables,
                      const MovingScene& moving);
 
-/// A picture of `width` x `height` entries of some floats each, row by row.
+/// A grid of `width` x `height` entries of some floats each, row by row.
 struct Table {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::vector<float> values;
 };
 
-/// What lights from afar.
+/// The environment map, for light from infinity.
 struct Environment {
   Table map;  // equirectangular; three floats an entry
   /// One level of the filtered cube: six faces of four floats a texel, each with a rim of its

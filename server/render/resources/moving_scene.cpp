@@ -181,26 +181,28 @@ void MovingScene::Moving::update_structure() {
 MovingScene::MovingScene(const gpu::Device& device, const tracing::RayTracer& tracer,
                          std::shared_ptr<const SceneResources> rest)
     : device_(device),
-      rest_(std::move(rest)),
-      environment_(rest_->environment),
-      pose_(scene::rest_pose(*rest_->scene)) {
-  for (const scene::Light& light : rest_->scene->lights) lights_at_rest_.push_back(light.device);
+      resources_(std::move(rest)),
+      environment_(resources_->environment),
+      pose_(scene::rest_pose(*resources_->scene)) {
+  for (const scene::Light& light : resources_->scene->lights)
+    lights_at_rest_.push_back(light.device);
   lights_ = lights_at_rest_;
   previous_lights_ = lights_;
-  if (!rest_->scene->clips.empty()) {
-    moving_ = std::make_unique<Moving>(device, *rest_);
+  if (!resources_->scene->clips.empty()) {
+    moving_ = std::make_unique<Moving>(device, *resources_);
     own_lights_ = make_light_table(device, lights_.size());
     write_lights(own_lights_, lights_);
   }
   bind_tables();
   if (!moving_) return;
-  moving_->structure = tracer.build_moving(rest_->rest_structure, *rest_->scene, *tables_);
+  moving_->structure =
+      tracer.build_moving(resources_->rest_structure, *resources_->scene, *tables_);
 }
 
 MovingScene::~MovingScene() = default;
 
 void MovingScene::bind_tables() {
-  const tracing::SceneBuffers& shared = rest_->rest_tables;
+  const tracing::SceneBuffers& shared = resources_->rest_tables;
   tables_.emplace(tracing::SceneTables{
       moving_ && moving_->vertex_table ? moving_->vertex_table : shared.vertices, shared.indices,
       shared.meshes, moving_ ? moving_->instance_table : shared.instances,
@@ -209,15 +211,15 @@ void MovingScene::bind_tables() {
 }
 
 const kernels::MaterialTable& MovingScene::host_materials() const {
-  return changed_materials_ ? changed_materials_->host : rest_->host_materials;
+  return changed_materials_ ? changed_materials_->host : resources_->host_materials;
 }
 
 const std::vector<VkDescriptorSet>& MovingScene::material_sets() const {
-  if (!changed_materials_) return rest_->material_sets().sets;
+  if (!changed_materials_) return resources_->material_sets().sets;
   auto& [table, count, host, sets] = *changed_materials_;
   if (!sets) {
     const auto* const now = reinterpret_cast<const shared::Material*>(table.mapped());
-    sets = rest_->make_material_sets({now, count}, gpu::Memory::upload);
+    sets = resources_->make_material_sets({now, count}, gpu::Memory::upload);
   }
   return sets->sets;
 }
@@ -234,7 +236,7 @@ bool MovingScene::set_lights(std::span<const shared::Light> lights) {
 
 bool MovingScene::set_materials(std::span<const shared::Material> materials) {
   kernels::MaterialTable host;
-  if (device_.is_cpu()) host = rest_->make_host_materials(materials);
+  if (device_.is_cpu()) host = resources_->make_host_materials(materials);
   if (changed_materials_) {
     std::memcpy(changed_materials_->table.mapped(), materials.data(), materials.size_bytes());
     if (changed_materials_->sets) changed_materials_->sets->write(materials);
@@ -254,16 +256,16 @@ void MovingScene::set_environment(std::shared_ptr<const LitEnvironment> environm
 
 const tracing::AccelerationStructure& MovingScene::structure() const {
   if (moving_) return *moving_->structure;
-  return *rest_->rest_structure;
+  return *resources_->rest_structure;
 }
 
 const std::vector<Draw>& MovingScene::draws() const {
-  return moving_ ? moving_->draws : rest_->draws;
+  return moving_ ? moving_->draws : resources_->draws;
 }
 
 const gpu::Buffer& MovingScene::previous_vertices() const {
   const bool deforms = moving_ && moving_->previous_table;
-  return deforms ? moving_->previous_table : rest_->rest_tables.vertices;
+  return deforms ? moving_->previous_table : resources_->rest_tables.vertices;
 }
 
 bool MovingScene::set_pose(const scene::Clip* clip, double seconds) {
@@ -280,16 +282,16 @@ bool MovingScene::needs_advance() const {
 
 bool MovingScene::advance() {
   previous_lights_ = lights_;
-  things_moved_ = false;
+  geometry_moved_ = false;
   if (!needs_advance()) return false;
   const scene::Pose before = pose_;
   if (moving_) move_things(before);
   const bool lights = move_lights(before);
-  return things_moved_ || lights;
+  return geometry_moved_ || lights;
 }
 
 void MovingScene::move_things(const scene::Pose& before) {
-  const scene::Scene& scene = *rest_->scene;
+  const scene::Scene& scene = *resources_->scene;
   if (moving_->pose_is_new) {
     if (moving_->clip) {
       scene::evaluate(scene, *moving_->clip, moving_->seconds, pose_);
@@ -304,11 +306,11 @@ void MovingScene::move_things(const scene::Pose& before) {
   moving_->update_structure();
   moving_->settled = moving_->placed.empty() &&
                      std::ranges::none_of(moving_->deforming, &Moving::Deforming::moved);
-  things_moved_ = instances || shapes;
+  geometry_moved_ = instances || shapes;
 }
 
 bool MovingScene::move_lights(const scene::Pose& before) {
-  const scene::Scene& scene = *rest_->scene;
+  const scene::Scene& scene = *resources_->scene;
   bool any = lights_are_new_;
   for (std::size_t i = 0; i < lights_.size(); ++i) {
     const auto node = scene.lights[i].node;

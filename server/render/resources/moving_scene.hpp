@@ -11,9 +11,9 @@
 
 namespace heliograph::render {
 
-/// A scene as one renderer sees it: the shared resources at rest, and over them what moves and what
-/// was changed. Several renderers may show one scene at different times and in different light.
-/// A scene without clips or changes costs nothing here.
+/// A scene as one renderer sees it: the shared resources in the default pose, and over them what
+/// moves and what was changed. Several renderers may show one scene at different times and in
+/// different light. A scene without clips or changes costs nothing here.
 ///
 /// What a pose changes, from one advance() to the next: matrices now and one frame ago in the table
 /// of instances, the vertices of meshes that deform (processor skinning, all cores), lights, the
@@ -25,7 +25,7 @@ class MovingScene {
               std::shared_ptr<const SceneResources> rest);
   ~MovingScene();
 
-  const SceneResources& rest() const { return *rest_; }
+  const SceneResources& resources() const { return *resources_; }
   /// Every table as it is now; see tracing::SceneTables for how to read them.
   const tracing::SceneTables& tables() const { return *tables_; }
   const tracing::AccelerationStructure& structure() const;
@@ -45,13 +45,13 @@ class MovingScene {
 
   /// Other lights than the scene's, of the same number and kinds, where no clip moves them; from
   /// the next advance() on. Never while a frame runs.
-  /// @return whether tables() changed: plans must be made anew
+  /// @return whether tables() changed: plans must be rebuilt
   bool set_lights(std::span<const shared::Light> lights);
   /// Other values for the scene's materials, with the same textures, alpha and flags, which rays
   /// and draws go by. Never while a frame runs.
-  /// @return whether tables() changed: plans must be made anew
+  /// @return whether tables() changed: plans must be rebuilt
   bool set_materials(std::span<const shared::Material> materials);
-  /// Another environment than the scene's own; plans must be made anew.
+  /// Another environment than the scene's own; plans must be rebuilt.
   void set_environment(std::shared_ptr<const LitEnvironment> environment);
 
   /// What the next advance() goes to: a clip of this scene at `seconds`, or rest when null.
@@ -65,7 +65,7 @@ class MovingScene {
   /// @return whether anything differs from the frame before
   bool advance();
   /// Whether any shape is elsewhere than one frame ago.
-  bool things_moved() const { return things_moved_; }
+  bool geometry_moved() const { return geometry_moved_; }
   /// Node -> world, as it is now.
   const scene::Pose& pose() const { return pose_; }
 
@@ -75,7 +75,7 @@ class MovingScene {
     gpu::Buffer table;  // shared::Material each, `count` of them
     std::size_t count;
     kernels::MaterialTable host;
-    std::optional<MaterialSets> sets = std::nullopt;  // once the rasteriser wanted them
+    std::optional<MaterialSets> sets = std::nullopt;  // once the rasteriser needs them
   };
 
   void bind_tables();
@@ -83,7 +83,7 @@ class MovingScene {
   bool move_lights(const scene::Pose& before);
 
   const gpu::Device& device_;
-  std::shared_ptr<const SceneResources> rest_;
+  std::shared_ptr<const SceneResources> resources_;
   std::shared_ptr<const LitEnvironment> environment_;
   std::unique_ptr<ChangedMaterials> changed_materials_;  // null: the scene's
   std::vector<shared::Light> lights_at_rest_;
@@ -92,7 +92,7 @@ class MovingScene {
   scene::Pose pose_;
   std::vector<shared::Light> lights_;
   std::vector<shared::Light> previous_lights_;
-  bool things_moved_ = false;
+  bool geometry_moved_ = false;
   std::unique_ptr<Moving> moving_;  // null for scenes without clips
   std::optional<tracing::SceneTables> tables_;
 };

@@ -32,9 +32,9 @@ float half_turn(const glm::vec3& before, const glm::vec3& now) {
 
 /// From the middle of the scene.
 float squared_distance(const shared::Light& light, const scene::Bounds& bounds) {
-  const glm::vec3 way = light.position - bounds.center();
+  const glm::vec3 direction = light.position - bounds.center();
   const float nearest = 0.1f * bounds.radius();
-  return std::max({glm::dot(way, way), nearest * nearest, 1e-12f});
+  return std::max({glm::dot(direction, direction), nearest * nearest, 1e-12f});
 }
 
 float irradiance(const shared::Light& light, const scene::Bounds& bounds) {
@@ -52,8 +52,8 @@ void add(Sum& sum, const shared::Light& now, const shared::Light& before,
     const float radius = forced_radius >= 0.0f ? forced_radius : now.radius;
     sum.add(strength, half_turn(before.direction, now.direction), radius);
   } else {
-    const float turned = now.radius * half_turn(before.direction, now.direction);
-    sum.add(strength, glm::distance(before.position, now.position) + turned, 2.0f * now.radius);
+    const float rotated = now.radius * half_turn(before.direction, now.direction);
+    sum.add(strength, glm::distance(before.position, now.position) + rotated, 2.0f * now.radius);
   }
 }
 
@@ -66,7 +66,7 @@ SceneMotion scene_motion(const MovingScene& scene, const shared::FrameConstants&
   const auto& lights = scene.lights();
   const auto& previous = scene.previous_lights();
   for (std::size_t i = 0; i < lights.size(); ++i) {
-    add(sum, lights[i], previous[i], scene.rest().scene->bounds, now.directional_light_radius);
+    add(sum, lights[i], previous[i], scene.resources().scene->bounds, now.directional_light_radius);
   }
   if (now.sun_radius >= 0.0f && before->sun_radius >= 0.0f) {
     sum.add(glm::dot(glm::vec3(now.sun_irradiance), luminance_weights),
@@ -74,8 +74,10 @@ SceneMotion scene_motion(const MovingScene& scene, const shared::FrameConstants&
   }
   const glm::vec2 facing(now.environment_cos, now.environment_sin);
   const glm::vec2 faced(before->environment_cos, before->environment_sin);
-  const float turn = std::atan2(facing.x * faced.y - facing.y * faced.x, glm::dot(facing, faced));
-  return {sum.light > 0.0f ? sum.moved / sum.light : 0.0f, std::abs(turn), scene.things_moved()};
+  const float rotation =
+      std::atan2(facing.x * faced.y - facing.y * faced.x, glm::dot(facing, faced));
+  return {sum.light > 0.0f ? sum.moved / sum.light : 0.0f, std::abs(rotation),
+          scene.geometry_moved()};
 }
 
 float frames_under_motion(float motion) {

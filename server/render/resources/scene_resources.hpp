@@ -42,7 +42,7 @@ struct MaterialSets {
   void write(std::span<const shared::Material> materials) const;
 };
 
-/// Told of every image whose pixels are not needed any more.
+/// Called for every image whose pixels are not needed any more.
 using ImageDone = std::function<void(std::size_t image)>;
 
 class SceneResources {

@@ -52,9 +52,9 @@ std::uint32_t flags(const scene::Image& image, const scene::Sampler& sampler) {
          bit(sampler.mip_filter == scene::Filter::nearest, shared::texture_levels_nearest);
 }
 
-void copy_texels(const HeapPlan::Place& place, std::span<const std::uint8_t> pixels,
+void copy_texels(const HeapPlan::Slot& slot, std::span<const std::uint8_t> pixels,
                  std::uint32_t* heap) {
-  std::memcpy(heap + place.first, &pixels[place.skipped * 4], place.kept * 4);
+  std::memcpy(heap + slot.first, &pixels[slot.skipped * 4], slot.kept * 4);
 }
 
 /// @throws gpu::GpuError when the images do not fit into `most_texels`
@@ -63,15 +63,15 @@ HeapPlan plan_heap(const scene::Scene& scene, std::uint64_t most_texels) {
   HeapPlan plan;
   for (const scene::Image& image : scene.images) {
     const std::uint32_t level = first_level(image, longest);
-    plan.places.push_back(
+    plan.slots.push_back(
         {texels(image, 0, level), texels(image, level, image.levels), plan.texels});
-    plan.texels += plan.places.back().kept;
+    plan.texels += plan.slots.back().kept;
   }
   for (const scene::Texture& texture : scene.textures) {
     const scene::Image& image = scene.images[texture.image];
     const std::uint32_t level = first_level(image, longest);
     shared::HeapTexture entry{};
-    entry.first_texel = static_cast<std::uint32_t>(plan.places[texture.image].first);
+    entry.first_texel = static_cast<std::uint32_t>(plan.slots[texture.image].first);
     entry.width = side(image.width, level);
     entry.height = side(image.height, level);
     entry.levels = texture.sampler.mipmapped ? image.levels - level : 1;
@@ -89,7 +89,7 @@ PackedTextures pack_textures(const scene::Scene& scene, std::uint64_t most_texel
   HeapPlan plan = plan_heap(scene, most_texels);
   PackedTextures packed{std::vector<std::uint32_t>(plan.texels), std::move(plan.textures)};
   for (std::size_t i = 0; i < scene.images.size(); ++i) {
-    copy_texels(plan.places[i], scene.images[i].pixels, packed.texels.data());
+    copy_texels(plan.slots[i], scene.images[i].pixels, packed.texels.data());
   }
   return packed;
 }
@@ -105,7 +105,7 @@ TextureHeapWriter::TextureHeapWriter(const gpu::Device& device, const scene::Sce
 }
 
 void TextureHeapWriter::add(std::size_t image, std::span<const std::uint8_t> pixels) {
-  copy_texels(plan_.places[image], pixels,
+  copy_texels(plan_.slots[image], pixels,
               texels_ ? reinterpret_cast<std::uint32_t*>(texels_.mapped()) : gathered_.data());
 }
 

@@ -20,12 +20,12 @@ struct TextureHeap {
 /// Where everything lies in a heap. Images keep their levels from the first whose larger side is at
 /// most 1024 texels; fewer where the device cannot address so many texels in one buffer.
 struct HeapPlan {
-  struct Place {            // of an image, texels
+  struct Slot {             // of an image, texels
     std::uint64_t skipped;  // levels of it that are left out
     std::uint64_t kept;
     std::uint64_t first;  // in the heap
   };
-  std::vector<Place> places;
+  std::vector<Slot> slots;
   std::vector<shared::HeapTexture> textures;
   std::uint64_t texels = 0;
 };

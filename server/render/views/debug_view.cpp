@@ -3,8 +3,6 @@
 #include <cstring>
 #include <glm/gtc/packing.hpp>
 
-#include "render/views/view_table.hpp"
-
 namespace heliograph::render {
 namespace {
 
@@ -50,7 +48,7 @@ std::uint32_t channels_of(VkFormat format) {
 
 FloatImage shape_of(VkFormat format, std::uint32_t width, std::uint32_t height) {
   FloatImage values{.width = width, .height = height, .channels = channels_of(format)};
-  values.counts = format == VK_FORMAT_R32_UINT;
+  values.integers = format == VK_FORMAT_R32_UINT;
   values.rgba.resize(std::size_t{width} * height * 4);
   return values;
 }
@@ -84,10 +82,6 @@ FloatImage read_image(const gpu::Image& image) {
     }
   }
   return values;
-}
-
-Frame visualise(std::string_view buffer, const FloatImage& values) {
-  return colorize(colors_of(buffer), values);
 }
 
 }  // namespace heliograph::render

@@ -38,11 +38,11 @@ glm::vec3 heat(float value) {
                                                                {0.678f, 0.863f, 0.188f},
                                                                {0.993f, 0.906f, 0.144f}}};
   if (std::isnan(value)) return glm::vec3(0.0f);
-  const float place = std::clamp(value, 0.0f, 1.0f) * (colors.size() - 1);
-  const std::size_t below = std::min(static_cast<std::size_t>(place), colors.size() - 2);
+  const float position = std::clamp(value, 0.0f, 1.0f) * (colors.size() - 1);
+  const std::size_t below = std::min(static_cast<std::size_t>(position), colors.size() - 2);
   const auto color = [](const std::array<float, 3>& c) { return glm::vec3(c[0], c[1], c[2]); };
   return glm::mix(color(colors[below]), color(colors[below + 1]),
-                  place - static_cast<float>(below));
+                  position - static_cast<float>(below));
 }
 
 glm::vec3 direction_color(const glm::vec3& direction) {
@@ -71,8 +71,8 @@ std::pair<float, float> range_of(const FloatImage& image,
     if (std::isfinite(value) && value > 0.0f) values.push_back(value);
   }
   if (values.empty()) return {1.0f, 1.0f};
-  const auto percentile = [&](double share) {
-    const auto at = values.begin() + static_cast<long>((values.size() - 1) * share);
+  const auto percentile = [&](double fraction) {
+    const auto at = values.begin() + static_cast<long>((values.size() - 1) * fraction);
     std::nth_element(values.begin(), at, values.end());
     return std::max(*at, 1e-9f);
   };
@@ -108,7 +108,7 @@ float deviation(Texel v) {
 Colorize colors_for(ViewColors colors, const FloatImage& image) {
   const auto x = [](Texel v) { return v[0]; };
   switch (colors) {
-    case ViewColors::picture:
+    case ViewColors::output:
     case ViewColors::channels:
       return [](Texel v) { return glm::vec3(v[0], v[1], v[2]); };
     case ViewColors::radiance:
@@ -130,7 +130,7 @@ Colorize colors_for(ViewColors colors, const FloatImage& image) {
       return difference_colors(image);
     case ViewColors::identity:
       return [](Texel v) { return id_color(v[0]); };
-    case ViewColors::share:
+    case ViewColors::fraction:
       return [](Texel v) { return heat(v[0]); };
     case ViewColors::heat:
       return relative_heat(image, x);
@@ -152,7 +152,7 @@ Colorize colors_for(ViewColors colors, const FloatImage& image) {
 
 std::string_view legend(ViewColors colors) {
   switch (colors) {
-    case ViewColors::picture:
+    case ViewColors::output:
       return "";
     case ViewColors::radiance:
       return "Shown through Reinhard's curve.";
@@ -168,7 +168,7 @@ std::string_view legend(ViewColors colors) {
       return "Red and green are right and down about grey, to the frame's own largest.";
     case ViewColors::identity:
       return "A colour for each, black where there is none.";
-    case ViewColors::share:
+    case ViewColors::fraction:
       return "Dark blue 0, yellow 1.";
     case ViewColors::heat:
     case ViewColors::deviation:

@@ -24,12 +24,11 @@ void capture(Session& session, const FrameCapture& request, const std::string& v
                        .samples = capture->samples,
                        .data = stream::base64_encode(capture->file)});
   };
-  const Result<void> accepted = session.request_capture({.buffer = request.buffer,
-                                                         .format = request.format,
-                                                         .samples = request.samples,
-                                                         .viewer = viewer,
-                                                         .done = answer,
-                                                         .seat = {}});
+  const Result<void> accepted = session.captures().request_capture({.buffer = request.buffer,
+                                                                    .format = request.format,
+                                                                    .samples = request.samples,
+                                                                    .viewer = viewer,
+                                                                    .done = answer});
   if (!accepted) done(accepted.error());
 }
 

@@ -3,8 +3,8 @@
 #include "protocol/json/jsonrpc.hpp"
 #include "session/session_host.hpp"
 
-// The methods of the protocol, a file per group. Each command is only what it does: shapes and
-// ranges of its parameters were checked before.
+// The methods of the protocol, one file per group. Shapes and ranges of parameters are checked
+// before a command is called.
 
 namespace heliograph::session {
 
@@ -21,7 +21,7 @@ void add_edit_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_probe_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 
 /// Adds a command that answers at once: `command(session, request, viewer)` gives a
-/// Result<Response>. The session is the one that the call belongs to.
+/// Result<Response>. The session is the one that the call is for.
 template <class Method, class Command>
 void add_command(protocol::Dispatcher& dispatcher, SessionHost& host, Command command) {
   dispatcher.add<Method>(

@@ -22,7 +22,7 @@ using protocol::Result;
 namespace {
 
 EnvironmentState describe_environment(SessionHost& host, const Session& session) {
-  EnvironmentState state = session.environment();
+  EnvironmentState state = session.scene().environment();
   for (const CatalogueEntry& entry : host.environments().list()) {
     state.environments.push_back({.name = entry.name, .bytes = entry.bytes});
   }
@@ -49,7 +49,7 @@ void set_environment(SessionHost& host, const std::shared_ptr<Session>& session,
   if (request.name.value) {
     host.environments().show(session, *request.name.value, by, finish);
   } else if (request.name.reset) {
-    finish(session->set_environment(std::nullopt, nullptr, by));
+    finish(session->scene().set_environment(std::nullopt, nullptr, by));
   } else {
     finish({});
   }
@@ -60,19 +60,20 @@ void set_environment(SessionHost& host, const std::shared_ptr<Session>& session,
 void add_edit_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
   add_command<methods::lights_list>(
       dispatcher, host,
-      [](Session& session, const Empty&, const std::string&) { return session.lights(); });
+      [](Session& session, const Empty&, const std::string&) { return session.scene().lights(); });
   add_command<methods::lights_patch>(
       dispatcher, host,
       [](Session& session, const LightsPatch& request, const std::string& viewer) {
-        return session.patch_light(request, viewer);
+        return session.scene().patch_light(request, viewer);
       });
-  add_command<methods::materials_list>(
-      dispatcher, host,
-      [](Session& session, const Empty&, const std::string&) { return session.materials(); });
+  add_command<methods::materials_list>(dispatcher, host,
+                                       [](Session& session, const Empty&, const std::string&) {
+                                         return session.scene().materials();
+                                       });
   add_command<methods::materials_patch>(
       dispatcher, host,
       [](Session& session, const MaterialsPatch& request, const std::string& viewer) {
-        return session.patch_material(request, viewer);
+        return session.scene().patch_material(request, viewer);
       });
   add_command<methods::environment_list>(
       dispatcher, host,

@@ -1,6 +1,6 @@
 #include "session/commands/commands.hpp"
 
-// Frames on request: lockstep, and the path traced truth.
+// Frames on request: lockstep, and the path traced reference.
 
 namespace heliograph::session {
 
@@ -19,28 +19,28 @@ void add_frame_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
                                               protocol::Completion<StepState> done) {
     const auto session = host.sessions().session_of(context);
     if (!session) return done(session.error());
-    const Result<void> accepted = (*session)->request_step(
+    const Result<void> accepted = (*session)->timeline().request_step(
         {.frames = request.frames, .dt = request.dt, .viewer = context.viewer, .done = done});
     if (!accepted) done(accepted.error());
   });
   add_command<methods::frame_run>(
       dispatcher, host,
       [](Session& session, const Empty&, const std::string& viewer) -> Result<StepState> {
-        return session.run_freely(viewer);
+        return session.timeline().leave_lockstep(viewer);
       });
   add_command<methods::reference_start>(
       dispatcher, host,
       [](Session& session, const ReferenceStart& request, const std::string& viewer) {
-        return session.start_reference(request, viewer);
+        return session.reference().start(request, viewer);
       });
   add_command<methods::reference_stop>(
       dispatcher, host, [](Session& session, const Empty&, const std::string& viewer) {
-        return session.stop_reference(viewer);
+        return session.reference().stop(viewer);
       });
   add_command<methods::reference_status>(
       dispatcher, host,
       [](Session& session, const Empty&, const std::string&) -> Result<ReferenceState> {
-        return session.reference();
+        return session.reference().state();
       });
 }
 

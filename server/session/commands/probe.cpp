@@ -4,7 +4,7 @@
 #include "session/commands/commands.hpp"
 #include "session/library/scene_description.hpp"
 
-// What lies under a point of the picture.
+// What is at a point of the image.
 
 namespace heliograph::session {
 
@@ -17,7 +17,7 @@ using protocol::Result;
 
 namespace {
 
-/// Name of what was placed: the nearest node with a name, else the mesh.
+/// Name of the instance: of its nearest node with a name, else of its mesh.
 std::string object_name(const scene::Scene& scene, const scene::Instance& instance) {
   std::optional<std::uint32_t> node = instance.node;
   for (; node; node = scene.nodes[*node].parent) {
@@ -46,8 +46,8 @@ Result<PickResult> pick(const render::Renderer& renderer, const scene::Scene& sc
 }
 
 Inspection inspect(const render::Renderer& renderer, const RenderState& state, glm::vec2 point) {
-  const auto pixel = [](float share, std::uint32_t size) {
-    return std::min(static_cast<std::uint32_t>(share * static_cast<float>(size)), size - 1);
+  const auto pixel = [](float fraction, std::uint32_t size) {
+    return std::min(static_cast<std::uint32_t>(fraction * static_cast<float>(size)), size - 1);
   };
   Inspection inspection{.column = pixel(point.x, state.width),
                         .row = pixel(point.y, state.height),
@@ -64,7 +64,7 @@ Inspection inspect(const render::Renderer& renderer, const RenderState& state, g
   return inspection;
 }
 
-/// Adds a method that reads something from the picture under a point.
+/// Adds a method that reads from the frame at a point.
 template <class Method, class Read>
 void add_probe(protocol::Dispatcher& dispatcher, SessionHost& host, Read read) {
   dispatcher.add<Method>([&host, read](const ImagePoint& request,
@@ -73,7 +73,7 @@ void add_probe(protocol::Dispatcher& dispatcher, SessionHost& host, Read read) {
     const auto session = host.sessions().session_of(context);
     if (!session) return done(session.error());
     const glm::vec2 point(request.x, request.y);
-    const Result<void> accepted = (*session)->request_probe(
+    const Result<void> accepted = (*session)->captures().request_probe(
         {.read = [read, point, done](
                      render::Renderer& renderer,
                      const RenderState& state) { done(read(renderer, state, point)); },

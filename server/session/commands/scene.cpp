@@ -18,7 +18,7 @@ Result<SceneListResult> list_scenes(const SessionHost& host, const Session& sess
   for (const CatalogueEntry& entry : host.catalogue().list()) {
     result.scenes.push_back({.name = entry.name, .bytes = entry.bytes});
   }
-  if (const auto info = session.scene_info()) result.current = info->name;
+  if (const auto info = session.scene().info()) result.current = info->name;
   return result;
 }
 
@@ -31,11 +31,11 @@ void add_scene_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
                                    });
   add_command<methods::scene_info>(
       dispatcher, host,
-      [](Session& session, const Empty&, const std::string&) { return session.scene_info(); });
+      [](Session& session, const Empty&, const std::string&) { return session.scene().info(); });
   add_command<methods::scene_unload>(
       dispatcher, host,
       [](Session& session, const Empty&, const std::string& viewer) -> Result<Empty> {
-        session.unload(viewer);
+        session.scene().unload(viewer);
         return Empty();
       });
   dispatcher.add<methods::scene_load>([&](const SceneLoad& request,

@@ -43,28 +43,28 @@ SessionList list_sessions(const SessionHost& host, const std::string& viewer) {
   return list;
 }
 
-/// Viewers end what they are in control of; an empty session, anybody.
+/// Viewers can close the session that they control; any client can close an empty one.
 Result<void> may_close(SessionHost& host, const SessionChoice& request, const std::string& viewer) {
   const auto session = host.sessions().find(request.session);
   if (!session) return session.error();
-  if (*session == host.sessions().main()) return SessionRegistry::main_stays();
+  if (*session == host.sessions().main()) return SessionRegistry::main_always_exists();
   const bool inside = host.sessions().session_of_viewer(viewer) == *session;
   const bool empty = (*session)->viewers().empty();
   if (!viewer.empty() && !empty && !inside) {
     return error::make(protocol::ErrorCode::forbidden, "session",
                        "other viewers are in this session");
   }
-  const ViewerSet& audience = (*session)->viewers();
-  if (inside && !audience.may_change(viewer)) return no_control(audience);
+  const ViewerSet& viewers = (*session)->viewers();
+  if (inside && !viewers.may_change(viewer)) return no_control(viewers);
   return {};
 }
 
-/// Answers first: who is inside is let go.
+/// Answers first, since the viewers of the session are disconnected.
 void close(SessionHost& host, const SessionChoice& request, const std::string& viewer,
            const Completion<Empty>& done) {
   if (const auto may = may_close(host, request, viewer); !may) return done(may.error());
   done(Empty());
-  // Whoever was faster has closed it.
+  // Another client may have closed it already.
   (void)host.sessions().close(request.session, "the session was closed");
 }
 

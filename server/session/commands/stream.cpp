@@ -22,7 +22,7 @@ namespace error = protocol::error;
 
 namespace {
 
-/// Made up once in a run: clients tell by it whether their session went on without them.
+/// Identifies this server run: clients compare it to learn whether their session still exists.
 const std::string& instance() {
   static const std::string id = [] {
     std::random_device random;
@@ -33,7 +33,7 @@ const std::string& instance() {
   return id;
 }
 
-/// The session that a caller who introduces itself wants to be in.
+/// The session that a hello requests.
 Result<std::shared_ptr<Session>> choose_session(SessionHost& host, const Hello& request,
                                                 const protocol::CallContext& call) {
   if (!request.session) return host.sessions().session_of(call);
@@ -41,31 +41,32 @@ Result<std::shared_ptr<Session>> choose_session(SessionHost& host, const Hello& 
   return host.sessions().move(call.viewer, *request.session);
 }
 
-struct Chosen {
+struct ChosenSession {
   std::shared_ptr<Session> session;
   std::optional<bool> restore_state;
 };
 
-/// Where who introduces itself is from now on. Who comes back from another run of the server finds
-/// those who were there too, or a place that is nobody else's; the main session if there is none.
-Result<Chosen> choose_place(SessionHost& host, const Hello& request,
-                            const protocol::CallContext& call) {
-  const bool comes_back = request.instance && *request.instance != instance() && request.session;
-  if (!comes_back || call.viewer.empty()) {
+/// The session of a caller from its hello on. A viewer of an earlier server run resumes in a
+/// session of its own or with the viewers that were there with it; in the main session if that
+/// fails.
+Result<ChosenSession> resume_session(SessionHost& host, const Hello& request,
+                                     const protocol::CallContext& call) {
+  const bool resumes = request.instance && *request.instance != instance() && request.session;
+  if (!resumes || call.viewer.empty()) {
     const auto session = choose_session(host, request, call);
     if (!session) return session.error();
-    return Chosen{.session = *session, .restore_state = {}};
+    return ChosenSession{.session = *session, .restore_state = {}};
   }
   const Origin from{.instance = *request.instance, .session = *request.session};
   const auto resumed = host.resume(call.viewer, from, call.view_only);
-  if (resumed) return Chosen{.session = resumed->session, .restore_state = resumed->first};
+  if (resumed) return ChosenSession{.session = resumed->session, .restore_state = resumed->first};
   const auto main = host.sessions().move(call.viewer, std::string(protocol::main_session));
   if (!main) return main.error();
-  return Chosen{.session = *main, .restore_state = {}};
+  return ChosenSession{.session = *main, .restore_state = {}};
 }
 
-HelloResult greeting(SessionHost& host, const Chosen& chosen, const protocol::CallContext& call,
-                     const stream::CodecChoice& choice) {
+HelloResult greeting(SessionHost& host, const ChosenSession& chosen,
+                     const protocol::CallContext& call, const stream::CodecChoice& choice) {
   const Session& session = *chosen.session;
   const render::DeviceInfo& device = host.engine().device();
   const SessionLimits& limits = session.limits();
@@ -99,7 +100,7 @@ Result<HelloResult> greet(SessionHost& host, const Hello& request,
   if (std::find(codecs.begin(), codecs.end(), "jpeg") == codecs.end()) {
     return error::invalid("codecs", "must include a codec of the server", "jpeg");
   }
-  const Result<Chosen> chosen = choose_place(host, request, call);
+  const Result<ChosenSession> chosen = resume_session(host, request, call);
   if (!chosen) return chosen.error();
   const std::shared_ptr<Session>& session = chosen->session;
   const stream::CodecChoice choice = stream::choose_codec(codecs);
@@ -122,7 +123,7 @@ void add_stream_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
                                                 protocol::Completion<StreamState> done) {
     const auto session = host.sessions().session_of(context);
     if (!session) return done(session.error());
-    done((*session)->configure_stream(request, context.viewer, !context.view_only));
+    done((*session)->configure_stream(request, context.viewer, context.view_only));
   });
   add_command<methods::stream_pause>(dispatcher, host,
                                      [](Session& session, const Empty&, const std::string& viewer) {

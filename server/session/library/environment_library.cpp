@@ -19,12 +19,14 @@ using protocol::Result;
 
 namespace {
 
-constexpr std::size_t waiting_environments = 8;
+constexpr std::size_t max_queued_environments = 8;
 
 }  // namespace
 
 EnvironmentLibrary::EnvironmentLibrary(render::Engine& engine, const SceneCatalogue& catalogue)
-    : engine_(engine), catalogue_(catalogue), loader_("environment loader", waiting_environments) {}
+    : engine_(engine),
+      catalogue_(catalogue),
+      loader_("environment loader", max_queued_environments) {}
 
 std::vector<CatalogueEntry> EnvironmentLibrary::list() const {
   return catalogue_.list_files({".hdr", ".exr"});
@@ -41,11 +43,11 @@ Result<CatalogueEntry> EnvironmentLibrary::find(const std::string& name) const {
                                     "is not in the catalogue" + protocol::suggestion(name, names));
 }
 
-Result<void> EnvironmentLibrary::put_around(Session& session, const CatalogueEntry& entry,
-                                            const std::string& by) {
+Result<void> EnvironmentLibrary::load_into(Session& session, const CatalogueEntry& entry,
+                                           const std::string& by) {
   try {
-    return session.set_environment(entry.name,
-                                   engine_.prefilter(scene::load_environment(entry.path)), by);
+    return session.scene().set_environment(
+        entry.name, engine_.prefilter(scene::load_environment(entry.path)), by);
   } catch (const scene::ImportError& failure) {
     return protocol::error::invalid("name", "cannot be loaded: " + std::string(failure.what()));
   } catch (const render::DeviceLost& failure) {
@@ -65,10 +67,10 @@ void EnvironmentLibrary::show(std::shared_ptr<Session> session, const std::strin
   Result<CatalogueEntry> entry = find(name);
   if (!entry) return done(entry.error());
   const bool taken = loader_.post([this, session = std::move(session), entry = *std::move(entry),
-                                   by, done] { done(put_around(*session, entry, by)); });
+                                   by, done] { done(load_into(*session, entry, by)); });
   if (!taken) {
-    done(protocol::error::full("too many environments are being loaded",
-                               std::to_string(waiting_environments)));
+    done(protocol::error::full("too many environment loads are pending",
+                               std::to_string(max_queued_environments)));
   }
 }
 

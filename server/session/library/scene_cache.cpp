@@ -15,11 +15,11 @@ bool unchanged(const std::vector<scene::SourceFile>& sources) {
   });
 }
 
-/// The same scene, through pointers that count as use of the whole.
-LoadedScene handed_out(const std::shared_ptr<const LoadedScene>& kept) {
-  LoadedScene scene = *kept;
-  scene.scene = {kept, kept->scene.get()};
-  scene.resources = {kept, kept->resources.get()};
+/// The same scene, through pointers that keep the whole entry in use.
+LoadedScene shared_copy(const std::shared_ptr<const LoadedScene>& entry) {
+  LoadedScene scene = *entry;
+  scene.scene = {entry, entry->scene.get()};
+  scene.resources = {entry, entry->resources.get()};
   return scene;
 }
 
@@ -34,7 +34,7 @@ std::optional<LoadedScene> SceneCache::find(const SceneKey& key) {
     return std::nullopt;
   }
   entries_.splice(entries_.end(), entries_, found);
-  return handed_out(found->scene);
+  return shared_copy(found->scene);
 }
 
 LoadedScene SceneCache::add(const SceneKey& key, LoadedScene scene,
@@ -45,7 +45,7 @@ LoadedScene SceneCache::add(const SceneKey& key, LoadedScene scene,
   totals_.bytes += bytes_of(scene);
   entries_.push_back(
       {key, std::make_shared<const LoadedScene>(std::move(scene)), std::move(sources)});
-  return handed_out(entries_.back().scene);
+  return shared_copy(entries_.back().scene);
 }
 
 void SceneCache::clear() {
@@ -65,7 +65,7 @@ void SceneCache::count_miss() {
 
 bool SceneCache::trim() {
   const std::lock_guard lock(mutex_);
-  for (auto entry = entries_.begin(); entry != entries_.end() && totals_.bytes > most_bytes_;) {
+  for (auto entry = entries_.begin(); entry != entries_.end() && totals_.bytes > max_bytes_;) {
     const auto next = std::next(entry);
     if (!entry->shown()) {
       drop(entry);
@@ -73,7 +73,7 @@ bool SceneCache::trim() {
     }
     entry = next;
   }
-  return totals_.bytes <= most_bytes_;
+  return totals_.bytes <= max_bytes_;
 }
 
 CacheTotals SceneCache::totals() const {

@@ -14,7 +14,7 @@
 
 namespace heliograph::session {
 
-/// What a load is for: two with the same key lead to the same picture.
+/// Identifies a load: the same key gives the same scene.
 struct SceneKey {
   std::filesystem::path file;
   scene::SceneChoice choice;
@@ -22,33 +22,33 @@ struct SceneKey {
   bool operator==(const SceneKey&) const = default;
 };
 
-/// Since the server started, but for what is kept now.
+/// Since the server started; `entries` and `bytes` at present.
 struct CacheTotals {
-  std::uint64_t hits = 0;    // requests that needed no load of their own
-  std::uint64_t misses = 0;  // loads that were begun
+  std::uint64_t hits = 0;    // requests without a load of their own
+  std::uint64_t misses = 0;  // loads that were started
   std::uint64_t evictions = 0;
   std::uint64_t entries = 0;
   std::uint64_t bytes = 0;
 };
 
-/// Scenes on the device, shared by every session that shows them and kept for the next that wants
-/// them: within a limit of memory the ones that nobody shows, longest unused out first. What is
-/// shown stays, whatever the limit. Thread safe.
+/// Least recently used cache of scenes on the device, shared by all sessions that show them. Within
+/// a memory limit it keeps scenes that no session shows; shown ones stay whatever the limit. Thread
+/// safe.
 class SceneCache {
  public:
-  explicit SceneCache(std::uint64_t most_bytes) : most_bytes_(most_bytes) {}
+  explicit SceneCache(std::uint64_t max_bytes) : max_bytes_(max_bytes) {}
 
-  /// The scene, if its files are still as they were read.
+  /// The scene, if its files have not changed.
   std::optional<LoadedScene> find(const SceneKey& key);
-  /// Keeps `scene`, read from `sources`, and gives what is to be shown of it: only so the cache
-  /// knows whether it still is.
+  /// Stores `scene`, loaded from `sources`, and gives the object to show, whose references tell the
+  /// cache that it is shown.
   LoadedScene add(const SceneKey& key, LoadedScene scene, std::vector<scene::SourceFile> sources);
-  /// Forgets everything, since the device it was on is gone.
+  /// Drops everything, since the device was lost.
   void clear();
   void count_hit();
   void count_miss();
 
-  /// Drops what nobody shows until the rest is within the limit. False while it is not.
+  /// Drops scenes that are not shown until the rest is within the limit. False if it is not.
   bool trim();
   CacheTotals totals() const;
 
@@ -62,9 +62,9 @@ class SceneCache {
 
   void drop(std::list<Entry>::iterator entry);
 
-  const std::uint64_t most_bytes_;
+  const std::uint64_t max_bytes_;
   mutable std::mutex mutex_;
-  std::list<Entry> entries_;  // longest unused first
+  std::list<Entry> entries_;  // least recently used first
   CacheTotals totals_;
 };
 

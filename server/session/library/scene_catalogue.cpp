@@ -13,9 +13,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A root that points at a whole disk must not keep the server busy for ever.
-constexpr int deepest_folder = 12;
-constexpr std::size_t most_files_visited = 100'000;
+// A root that is a whole disk must not block the server.
+constexpr int max_depth = 12;
+constexpr std::size_t max_files_visited = 100'000;
 
 bool is_inside(const fs::path& path, const fs::path& root) {
   return std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first == root.end();
@@ -47,8 +47,8 @@ std::vector<CatalogueEntry> files_below(const fs::path& root,
   fs::recursive_directory_iterator folder(root, fs::directory_options::skip_permission_denied,
                                           error);
   for (; !error && folder != fs::recursive_directory_iterator(); folder.increment(error)) {
-    if (++visited > most_files_visited) break;
-    if (folder.depth() >= deepest_folder) folder.disable_recursion_pending();
+    if (++visited > max_files_visited) break;
+    if (folder.depth() >= max_depth) folder.disable_recursion_pending();
     if (rank(folder->path()) == std::ssize(extensions)) continue;
     if (auto entry = entry_of(folder->path(), root)) found.push_back(*std::move(entry));
   }

@@ -17,8 +17,8 @@ struct CatalogueEntry {
 };
 
 /// The scenes that clients may load: every .glb and .gltf file below the root folders. Clients give
-/// names, never paths, and a name is only ever compared with what was found, so that no name leads
-/// out of the roots; neither do symbolic links.
+/// names, never paths, and a name is only compared with files that were found, so that neither
+/// names nor symbolic links can escape the roots.
 class SceneCatalogue {
  public:
   /// @throws std::runtime_error when a root is not a folder

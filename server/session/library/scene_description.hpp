@@ -7,7 +7,7 @@
 
 namespace heliograph::session {
 
-/// What clients are told about a scene that is called `name` in the catalogue.
+/// The description of a scene for clients.
 protocol::SceneInfo describe_scene(const LoadedScene& loaded);
 
 protocol::Vec3 to_protocol(const glm::vec3& vector);

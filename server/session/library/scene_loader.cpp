@@ -20,15 +20,15 @@ using protocol::Result;
 
 namespace {
 
-/// Reading a file is this much of the whole; the rest is upload and acceleration structure.
-constexpr float import_share = 0.7f;
-/// How much is done between two reports of one stage.
+/// Fraction of the import in the progress; the rest is upload and acceleration structure.
+constexpr float import_fraction = 0.7f;
+/// Progress between two reports of one stage.
 constexpr float report_step = 0.01f;
-/// How soon a cache that holds too much looks again whether all of it is still shown, and how long
-/// after a load its first pictures are drawn and what both have left behind can go.
+/// How often a cache over its limit checks whether all scenes are still shown; and how long after a
+/// load its temporary memory is returned, since the first frames leave some behind, too.
 constexpr std::chrono::seconds trim_interval{2};
-/// A scene may be what the device is lost to, so it is not tried for ever.
-constexpr int most_losses = 3;
+/// The scene may cause the loss of the device, so the number of tries is limited.
+constexpr int max_device_losses = 3;
 
 constexpr std::string_view progress_key = protocol::notifications::scene_progress::name;
 
@@ -38,7 +38,7 @@ std::string progress_text(const std::string& name, std::string_view stage, float
 }
 
 /// Thrown through the importer to end it.
-struct Abandoned {};
+struct LoadCancelled {};
 
 protocol::Error superseded() {
   return protocol::error::conflict("name", "was replaced by a later scene.load");
@@ -57,18 +57,18 @@ protocol::Error stopped() {
 }
 
 protocol::Error no_such(const scene::NoSuchChoice& failure, const scene::SceneChoice& choice) {
-  const std::string& wanted = failure.member() == "scene" ? choice.scene : choice.variant;
+  const std::string& requested = failure.member() == "scene" ? choice.scene : choice.variant;
   const std::vector<std::string_view> names(failure.names().begin(), failure.names().end());
   return protocol::error::not_found(failure.member(),
-                                    "is not in the file" + protocol::suggestion(wanted, names));
+                                    "is not in the file" + protocol::suggestion(requested, names));
 }
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Pictures and meshes on their way leave holes between what stays. The C library keeps them unless
-/// told: a third of the server's memory after a large scene.
+/// Decoded images and meshes of a load leave free memory between live allocations, which glibc
+/// keeps unless it is trimmed: a third of the server's memory after a large scene.
 void return_free_memory() {
 #ifdef __GLIBC__
   malloc_trim(0);
@@ -105,16 +105,15 @@ void SceneLoader::load(std::shared_ptr<Session> session, const protocol::SceneLo
   SceneKey key{.file = entry->path,
                .choice = {request.scene.value_or(""), request.variant.value_or("")},
                .environment = environments_.path_for(*entry).value_or("")};
-  std::vector<Waiter> displaced;
-  std::optional<LoadedScene> kept;
+  std::vector<Waiter> replaced;
+  std::optional<LoadedScene> cached;
   {
     const std::lock_guard lock(mutex_);
     if (stopping_) return done(stopped());
     std::shared_ptr<Job> job = find_job(key);
-    displaced =
-        remove_waiters([&](const Session& own) { return &own == session.get(); }, job.get());
-    if (!job) kept = cache_.find(key);
-    if (job || kept) {
+    replaced = remove_waiters([&](const Session& own) { return &own == session.get(); }, job.get());
+    if (!job) cached = cache_.find(key);
+    if (job || cached) {
       cache_.count_hit();
     } else {
       cache_.count_miss();
@@ -122,16 +121,16 @@ void SceneLoader::load(std::shared_ptr<Session> session, const protocol::SceneLo
       job->key = std::move(key);
       job->entry = *std::move(entry);
     }
-    if (kept) {
-      session->show(*kept, by);
-      session->viewers().send_all(progress_text(kept->name, "ready", 1.0f), progress_key);
+    if (cached) {
+      session->scene().show(*cached, by);
+      session->viewers().send_all(progress_text(cached->name, "ready", 1.0f), progress_key);
     } else {
       job->waiters.push_back({std::move(session), by, done});
     }
   }
   condition_.notify_one();
-  for (const Waiter& waiter : displaced) waiter.done(superseded());
-  if (kept) done(describe_scene(*kept));
+  for (const Waiter& waiter : replaced) waiter.done(superseded());
+  if (cached) done(describe_scene(*cached));
 }
 
 protocol::SceneCancelled SceneLoader::cancel(const Session& session) {
@@ -144,27 +143,27 @@ protocol::SceneCancelled SceneLoader::cancel(const Session& session) {
   return {.cancelled = !removed.empty()};
 }
 
-/// Takes away what waits for such sessions elsewhere than in `except`; a job that nobody waits for
-/// any more ends.
+/// Removes the waiters of such sessions from all jobs but `except`; a job without waiters is
+/// cancelled.
 std::vector<SceneLoader::Waiter> SceneLoader::remove_waiters(
-    const std::function<bool(const Session&)>& whose, const Job* except) {
+    const std::function<bool(const Session&)>& matches, const Job* except) {
   std::vector<Waiter> removed;
   for (const auto& job : jobs_) {
     if (job.get() == except) continue;
     const auto own =
         std::stable_partition(job->waiters.begin(), job->waiters.end(),
-                              [&](const Waiter& waiter) { return !whose(*waiter.session); });
+                              [&](const Waiter& waiter) { return !matches(*waiter.session); });
     removed.insert(removed.end(), std::make_move_iterator(own),
                    std::make_move_iterator(job->waiters.end()));
     job->waiters.erase(own, job->waiters.end());
-    job->abandoned = job->waiters.empty();
+    job->cancelled = job->waiters.empty();
   }
-  std::erase_if(jobs_, [](const auto& job) { return job->abandoned.load(); });
+  std::erase_if(jobs_, [](const auto& job) { return job->cancelled.load(); });
   return removed;
 }
 
 /// Called often, by the loading thread: sessions end without telling the loader.
-void SceneLoader::dismiss_ended() {
+void SceneLoader::fail_waiters_of_ended_sessions() {
   std::vector<Waiter> removed;
   {
     const std::lock_guard lock(mutex_);
@@ -180,22 +179,22 @@ std::shared_ptr<SceneLoader::Job> SceneLoader::find_job(const SceneKey& key) con
 
 void SceneLoader::run() {
   while (const std::shared_ptr<Job> job = next_job()) {
-    dismiss_ended();
-    if (!job->abandoned) carry_out(*job);
-    memory_is_loose_ = true;
+    fail_waiters_of_ended_sessions();
+    if (!job->cancelled) run_job(*job);
+    trim_pending_ = true;
   }
 }
 
-/// Waits for a job, tidying up meanwhile; null at the end.
+/// Waits for a job, and trims cache and memory while there is none; null on shutdown.
 std::shared_ptr<SceneLoader::Job> SceneLoader::next_job() {
   std::unique_lock lock(mutex_);
-  const auto called = [&] { return stopping_ || (device_ready_ && !jobs_.empty()); };
-  while (!called()) {
-    const bool cache_too_full = !cache_.trim();
-    if (!cache_too_full && !memory_is_loose_) {
+  const auto ready = [&] { return stopping_ || (device_ready_ && !jobs_.empty()); };
+  while (!ready()) {
+    const bool cache_over_limit = !cache_.trim();
+    if (!cache_over_limit && !trim_pending_) {
       condition_.wait(lock);
     } else if (condition_.wait_for(lock, trim_interval) == std::cv_status::timeout &&
-               std::exchange(memory_is_loose_, false)) {
+               std::exchange(trim_pending_, false)) {
       lock.unlock();
       return_free_memory();
       lock.lock();
@@ -204,17 +203,17 @@ std::shared_ptr<SceneLoader::Job> SceneLoader::next_job() {
   return stopping_ ? nullptr : jobs_.front();
 }
 
-void SceneLoader::carry_out(Job& job) {
+void SceneLoader::run_job(Job& job) {
   const Clock::time_point start = Clock::now();
   try {
-    const LoadedScene loaded = make(job);
+    const LoadedScene loaded = load_scene(job);
     log_info({.session = sessions_of(job)},
              fmt::format("{} loaded in {:.2f} s, {} triangles, {} MiB", job.entry.name,
                          seconds_since(start), loaded.scene->triangle_count(),
                          (loaded.host_bytes + loaded.device_bytes) >> 20));
     finish(job, loaded);
-  } catch (const Abandoned&) {
-    log_info({}, fmt::format("loading {} was ended after {:.2f} s", job.entry.name,
+  } catch (const LoadCancelled&) {
+    log_info({}, fmt::format("loading {} was cancelled after {:.2f} s", job.entry.name,
                              seconds_since(start)));
   } catch (const scene::NoSuchChoice& failure) {
     finish(job, no_such(failure, job.key.choice));
@@ -232,7 +231,7 @@ void SceneLoader::carry_out(Job& job) {
   }
 }
 
-/// The names of all who wait for it.
+/// The names of all sessions that wait for it.
 std::string SceneLoader::sessions_of(const Job& job) {
   const std::lock_guard lock(mutex_);
   std::string names;
@@ -242,14 +241,14 @@ std::string SceneLoader::sessions_of(const Job& job) {
   return names;
 }
 
-/// The job stays the first of all and is carried out again on the next device.
+/// The job stays the first one and runs again on the recovered device.
 void SceneLoader::report_device_loss(Job& job) {
   {
     const std::lock_guard lock(mutex_);
-    device_ready_ = false;  // before the loss is told: another device may be there at once
+    device_ready_ = false;  // before the report: the device may be recovered at once
   }
   if (on_device_loss_) on_device_loss_();
-  if (++job.losses == most_losses) {
+  if (++job.device_losses == max_device_losses) {
     finish(job,
            protocol::error::not_ready("the device was lost repeatedly while loading this scene"));
   }
@@ -264,9 +263,9 @@ void SceneLoader::take_new_device() {
   condition_.notify_one();
 }
 
-LoadedScene SceneLoader::make(Job& job) {
+LoadedScene SceneLoader::load_scene(Job& job) {
   const auto checkpoint = [&](std::string_view stage, float fraction) {
-    stop_if_abandoned(job);
+    throw_if_cancelled(job);
     report_progress(job, stage, fraction);
   };
   std::vector<scene::SourceFile> sources;
@@ -275,23 +274,25 @@ LoadedScene SceneLoader::make(Job& job) {
   const auto environment = environments_.environment_at(job.key.environment);
   auto imported = std::make_unique<scene::Scene>(scene::import_gltf(
       job.entry.path, options_.limits,
-      [&](std::string_view stage, float fraction) { checkpoint(stage, import_share * fraction); },
+      [&](std::string_view stage, float fraction) {
+        checkpoint(stage, import_fraction * fraction);
+      },
       nullptr, job.key.choice));
   sources.insert(sources.end(), imported->sources.begin(), imported->sources.end());
   LoadedScene loaded{.name = job.entry.name};
-  loaded.resources =
-      engine_.upload(std::move(imported), environment, [&](std::string_view stage, float fraction) {
-        checkpoint(stage, import_share + (1.0f - import_share) * fraction);
+  loaded.resources = engine_.upload_and_free_pixels(
+      std::move(imported), environment, [&](std::string_view stage, float fraction) {
+        checkpoint(stage, import_fraction + (1.0f - import_fraction) * fraction);
       });
   loaded.scene = render::scene_of(*loaded.resources);
-  stop_if_abandoned(job);
+  throw_if_cancelled(job);
   loaded.environment = job.key.environment.filename().string();
   loaded.host_bytes = loaded.scene->bytes();
   loaded.device_bytes = render::memory_bytes(*loaded.resources);
   return cache_.add(job.key, std::move(loaded), std::move(sources));
 }
 
-/// Shows the scene in every session that waits for it, and tells those who asked.
+/// Shows the scene in every session that waits for it, and answers the requests.
 void SceneLoader::finish(Job& job, const Result<LoadedScene>& outcome) {
   std::vector<Waiter> waiters;
   {
@@ -301,7 +302,7 @@ void SceneLoader::finish(Job& job, const Result<LoadedScene>& outcome) {
     if (outcome) {
       const std::string text = progress_text(job.entry.name, "ready", 1.0f);
       for (const Waiter& waiter : waiters) {
-        waiter.session->show(*outcome, waiter.by);
+        waiter.session->scene().show(*outcome, waiter.by);
         waiter.session->viewers().send_all(text, progress_key);
       }
     }
@@ -328,9 +329,9 @@ void SceneLoader::report_progress(Job& job, std::string_view stage, float fracti
   }
 }
 
-void SceneLoader::stop_if_abandoned(const Job& job) {
-  dismiss_ended();
-  if (stopping_ || job.abandoned) throw Abandoned();
+void SceneLoader::throw_if_cancelled(const Job& job) {
+  fail_waiters_of_ended_sessions();
+  if (stopping_ || job.cancelled) throw LoadCancelled();
 }
 
 }  // namespace heliograph::session

@@ -14,10 +14,10 @@
 
 #include "protocol/messages/messages.hpp"
 #include "scene/import.hpp"
+#include "session/library/environment_source.hpp"
 #include "session/library/scene_cache.hpp"
 #include "session/library/scene_catalogue.hpp"
-#include "session/state/environment_choice.hpp"
-#include "session/state/session.hpp"
+#include "session/session.hpp"
 
 namespace heliograph::render {
 class Engine;
@@ -31,10 +31,10 @@ struct LoaderOptions {
   std::uint64_t cache_bytes = 1ull << 30;  // see SceneCache
 };
 
-/// Loads scenes beside rendering, one after the other, and puts them into sessions when they are
-/// complete. On failure a session keeps what it has. A newer request of a session takes the place
-/// of its older one, also of one that is under way, and what a session waited for ends with it.
-/// Requests for the same thing share one load, and what was loaded stays in a cache. Thread safe.
+/// Loads scenes beside rendering, one after the other, and shows them in sessions when they are
+/// complete. On failure a session keeps its scene. A newer request of a session replaces its older
+/// one, even if that is being loaded; requests of a session that ends fail. Requests for the same
+/// scene share one load, and loaded scenes stay in a cache. Thread safe.
 class SceneLoader {
  public:
   using Completion = std::function<void(protocol::Result<protocol::SceneInfo>)>;
@@ -47,18 +47,18 @@ class SceneLoader {
   /// `done` is called once, here or on the loading thread, without locks.
   void load(std::shared_ptr<Session> session, const protocol::SceneLoad& request,
             const std::string& by, Completion done);
-  /// Ends what `session` waits for: whoever asked for it is told so, and the load itself ends soon
-  /// unless others wait for it too.
+  /// Cancels the request of `session`, which fails; the load itself stops soon unless other
+  /// sessions wait for it.
   protocol::SceneCancelled cancel(const Session& session);
 
-  /// Ends the thread and the load under way; all that wait are told.
+  /// Ends the thread and the running load; all requests fail.
   void stop();
 
-  /// Called on the loading thread when a load meets render::DeviceLost; `take_new_device` must
+  /// Called on the loading thread when a load throws render::DeviceLost; `take_new_device` must
   /// follow. Set before the first load.
   void on_device_loss(std::function<void()> callback) { on_device_loss_ = std::move(callback); }
-  /// There is another device: what is kept of the last one is of no use, and a load that met its
-  /// end begins anew.
+  /// The device was recreated: drops the cache of the lost one, and restarts a load that the loss
+  /// interrupted.
   void take_new_device();
 
   CacheTotals cache_totals() const { return cache_.totals(); }
@@ -73,25 +73,26 @@ class SceneLoader {
     SceneKey key;
     CatalogueEntry entry;
     std::vector<Waiter> waiters;  // guarded by mutex_
-    std::atomic<bool> abandoned = false;
-    std::string stage;  // of the newest report; this and the rest are the loading thread's
+    std::atomic<bool> cancelled = false;
+    std::string
+        stage;  // of the newest report; this and the rest are used by the loading thread only
     float fraction = 0.0f;
-    int losses = 0;  // of the device meanwhile
+    int device_losses = 0;  // during this load
   };
 
   void run();
   std::shared_ptr<Job> next_job();
-  void carry_out(Job& job);
+  void run_job(Job& job);
   std::string sessions_of(const Job& job);
-  LoadedScene make(Job& job);
+  LoadedScene load_scene(Job& job);
   void report_device_loss(Job& job);
   void finish(Job& job, const protocol::Result<LoadedScene>& outcome);
-  std::vector<Waiter> remove_waiters(const std::function<bool(const Session&)>& whose,
+  std::vector<Waiter> remove_waiters(const std::function<bool(const Session&)>& matches,
                                      const Job* except = nullptr);
-  void dismiss_ended();
+  void fail_waiters_of_ended_sessions();
   std::shared_ptr<Job> find_job(const SceneKey& key) const;
   void report_progress(Job& job, std::string_view stage, float fraction);
-  void stop_if_abandoned(const Job& job);
+  void throw_if_cancelled(const Job& job);
 
   render::Engine& engine_;
   const SceneCatalogue& catalogue_;
@@ -102,9 +103,9 @@ class SceneLoader {
 
   std::mutex mutex_;
   std::condition_variable condition_;
-  std::deque<std::shared_ptr<Job>> jobs_;  // the first may be under way
+  std::deque<std::shared_ptr<Job>> jobs_;  // the first may be running
   bool device_ready_ = true;               // guarded by mutex_
-  bool memory_is_loose_ = false;           // the loading thread's
+  bool trim_pending_ = false;              // used by the loading thread only
   std::atomic<bool> stopping_ = false;
   std::thread thread_;
 };

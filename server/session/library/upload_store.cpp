@@ -16,37 +16,38 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t longest_name = 64;
-constexpr std::size_t waiting_checks = 4;
+constexpr std::size_t max_name_length = 64;
+constexpr std::size_t max_queued_checks = 4;
 constexpr std::size_t glb_header_bytes = 12;
 
-bool is_acceptable(const std::string& name) {
+bool is_valid_name(const std::string& name) {
   const bool characters = std::all_of(name.begin(), name.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '_' || c == '-';
   });
-  return characters && !name.empty() && name.size() <= longest_name && name.front() != '-';
+  return characters && !name.empty() && name.size() <= max_name_length && name.front() != '-';
 }
 
 std::uint32_t little_endian(const unsigned char* bytes) {
   return bytes[0] | bytes[1] << 8 | bytes[2] << 16 | static_cast<std::uint32_t>(bytes[3]) << 24;
 }
 
-/// What is wrong with the first bytes of a binary glTF file (specification section 4.4), or
-/// nothing.
+/// The fault in the header of a binary glTF file (specification section 4.4.2), or nothing.
 std::string_view header_fault(const fs::path& file) {
   std::array<unsigned char, glb_header_bytes> header{};
   std::ifstream stream(file, std::ios::binary);
-  if (!stream.read(reinterpret_cast<char*>(header.data()), header.size())) return "is too short";
-  if (std::memcmp(header.data(), "glTF", 4) != 0) return "is no binary glTF (.glb)";
-  if (little_endian(&header[4]) != 2) return "is not of glTF 2";
-  if (little_endian(&header[8]) != fs::file_size(file)) return "has not the length it says";
+  if (!stream.read(reinterpret_cast<char*>(header.data()), header.size()))
+    return "is too short for a .glb file";
+  if (std::memcmp(header.data(), "glTF", 4) != 0) return "is not a binary glTF file (.glb)";
+  if (little_endian(&header[4]) != 2) return "is not glTF 2";
+  if (little_endian(&header[8]) != fs::file_size(file))
+    return "does not have the length that its header states";
   return {};
 }
 
 }  // namespace
 
 UploadStore::UploadStore(UploadOptions options)
-    : options_(std::move(options)), checker_("upload checker", waiting_checks) {
+    : options_(std::move(options)), checker_("upload checker", max_queued_checks) {
   try {
     fs::create_directories(options_.folder / "scenes");
     scenes_ = fs::canonical(options_.folder / "scenes");
@@ -61,7 +62,7 @@ UploadStore::UploadStore(UploadOptions options)
 
 protocol::Result<std::shared_ptr<UploadStore::Incoming>> UploadStore::begin(const std::string& name,
                                                                             std::uint64_t bytes) {
-  if (!is_acceptable(name)) {
+  if (!is_valid_name(name)) {
     return protocol::error::invalid("name", "is not a valid name of a scene",
                                     "1 to 64 letters, digits, _ and -");
   }
@@ -70,27 +71,27 @@ protocol::Result<std::shared_ptr<UploadStore::Incoming>> UploadStore::begin(cons
                                       std::to_string(options_.max_bytes) + " bytes");
   }
   const std::lock_guard lock(mutex_);
-  if (bytes_kept() + promised_bytes_ + bytes > options_.quota) {
+  if (bytes_kept() + reserved_bytes_ + bytes > options_.quota) {
     return protocol::error::full("the quota of uploaded scenes is used up",
                                  std::to_string(options_.quota) + " bytes");
   }
-  const fs::path folder = incoming_ / std::to_string(++uploads_so_far_);
+  const fs::path folder = incoming_ / std::to_string(++upload_count_);
   std::error_code error;
   fs::create_directory(folder, error);
   if (error) return protocol::error::internal();
-  promised_bytes_ += bytes;
+  reserved_bytes_ += bytes;
   return std::make_shared<Incoming>(*this, name, bytes, folder);
 }
 
 void UploadStore::finish(std::shared_ptr<Incoming> incoming,
                          std::function<void(protocol::Result<UploadedScene>)> done) {
-  // Its only owner, so that it is gone, and its room with it, before anybody hears of it.
+  // The task is its only owner, so that its reserved bytes are released before `done`.
   const bool taken = checker_.post([this, incoming = std::move(incoming), done]() mutable {
     protocol::Result<UploadedScene> result = accept(*incoming);
     incoming.reset();
     done(std::move(result));
   });
-  if (!taken) done(protocol::error::full("too many scenes are being checked"));
+  if (!taken) done(protocol::error::full("too many uploads are being checked"));
 }
 
 protocol::Result<UploadedScene> UploadStore::accept(Incoming& incoming) {
@@ -136,13 +137,13 @@ UploadStore::Incoming::~Incoming() {
   const std::lock_guard lock(store_.mutex_);
   std::error_code ignored;
   fs::remove_all(folder_, ignored);
-  store_.promised_bytes_ -= bytes_;
+  store_.reserved_bytes_ -= bytes_;
 }
 
 void UploadStore::Incoming::keep_in(const fs::path& folder) {
   const std::lock_guard lock(store_.mutex_);
   fs::rename(path(), folder / path().filename());
-  store_.promised_bytes_ -= std::exchange(bytes_, 0);
+  store_.reserved_bytes_ -= std::exchange(bytes_, 0);
 }
 
 }  // namespace heliograph::session

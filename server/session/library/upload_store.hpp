@@ -26,25 +26,25 @@ struct UploadedScene {
   std::uint64_t triangles = 0;
 };
 
-/// Scenes that clients send. One is checked by importing it whole, away from all others, and only
-/// then moved, in one step, to where the catalogue finds it. Thread safe.
+/// Scenes that clients upload. Each is checked by importing it in a folder of its own, and then
+/// moved atomically to where the catalogue finds it. Thread safe.
 class UploadStore {
  public:
-  /// Makes the folder with what it needs and clears what an earlier process left unfinished.
+  /// Creates the folders and removes unfinished uploads of an earlier process.
   /// @throws std::runtime_error when that fails
   explicit UploadStore(UploadOptions options);
 
-  /// Where accepted scenes are: a root for the catalogue.
+  /// Folder of accepted scenes: a root for the catalogue.
   const std::filesystem::path& scenes() const { return scenes_; }
   std::uint64_t max_bytes() const { return options_.max_bytes; }
 
-  /// A file that is being received. What it holds room for is given back at its end, and what was
-  /// not accepted is removed.
+  /// A file that is being received. The destructor releases its reserved bytes and removes the file
+  /// if it was not accepted.
   class Incoming;
-  /// Whether a scene of this name and size may come; its bytes go to `path()` then.
+  /// Starts an upload of this name and size; its bytes go to `path()`.
   protocol::Result<std::shared_ptr<Incoming>> begin(const std::string& name, std::uint64_t bytes);
-  /// Checks what was received, on a thread of its own, and puts it into place. When `done` is
-  /// called nothing of the upload is left but what was accepted.
+  /// Checks the received file on a thread of its own and moves it into place. When `done` is called
+  /// nothing of the upload is left but the accepted scene.
   void finish(std::shared_ptr<Incoming> incoming,
               std::function<void(protocol::Result<UploadedScene>)> done);
   /// Ends the thread; `done` is not called any more.
@@ -58,8 +58,8 @@ class UploadStore {
   std::filesystem::path scenes_;
   std::filesystem::path incoming_;
   std::mutex mutex_;
-  std::uint64_t promised_bytes_ = 0;  // to files that are being received
-  std::uint64_t uploads_so_far_ = 0;
+  std::uint64_t reserved_bytes_ = 0;  // for files that are being received
+  std::uint64_t upload_count_ = 0;
   Worker checker_;
 };
 
@@ -72,14 +72,14 @@ class UploadStore::Incoming {
 
   const std::string& name() const { return name_; }
   std::filesystem::path path() const { return folder_ / (name_ + ".glb"); }
-  /// Moves the file to where it stays; from then on it counts as kept, in the same moment no longer
-  /// as promised. @throws std::filesystem::filesystem_error
+  /// Moves the file to its final folder and releases its reserved bytes, atomically. @throws
+  /// std::filesystem::filesystem_error
   void keep_in(const std::filesystem::path& folder);
 
  private:
   UploadStore& store_;
   const std::string name_;
-  std::uint64_t bytes_;  // promised
+  std::uint64_t bytes_;  // reserved
   const std::filesystem::path folder_;
 };
 

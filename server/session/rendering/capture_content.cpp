@@ -19,20 +19,20 @@ using stream::ExrChannel;
 
 namespace {
 
-constexpr std::string_view picture_buffer = "output";
+constexpr std::string_view output_buffer = "output";
 constexpr std::string_view radiance_buffer = "output.radiance";
 constexpr int jpeg_quality = 90;
 
 using Texel = const float*;
 
-/// One channel out of values, `read` giving it for every pixel.
+/// One channel; `read` gives its value of a texel.
 template <class Read>
 ExrChannel channel(std::string name, const render::FloatImage& image, Read read) {
-  ExrChannel made{.name = std::move(name), .values = {}, .counts = image.counts};
-  made.values.reserve(image.rgba.size() / 4);
+  ExrChannel result{.name = std::move(name), .values = {}, .counts = image.integers};
+  result.values.reserve(image.rgba.size() / 4);
   for (std::size_t i = 0; i < image.rgba.size(); i += 4)
-    made.values.push_back(read(&image.rgba[i]));
-  return made;
+    result.values.push_back(read(&image.rgba[i]));
+  return result;
 }
 
 ExrChannel component(std::string name, const render::FloatImage& image, std::uint32_t index) {
@@ -53,7 +53,7 @@ void add_normals(std::vector<ExrChannel>& channels, const render::FloatImage& im
   constexpr std::array names{"normals.X", "normals.Y", "normals.Z"};
   for (int axis = 0; axis < 3; ++axis) {
     channels.push_back(channel(names[static_cast<std::size_t>(axis)], image, [axis](Texel texel) {
-      if (texel[0] > 1.5f) return 0.0f;  // nothing is there
+      if (texel[0] > 1.5f) return 0.0f;  // background
       return render::octahedral_decode({texel[0], texel[1]})[axis];
     }));
   }
@@ -77,7 +77,7 @@ void add_albedo(std::vector<ExrChannel>& channels, const render::FloatImage& ima
   }
 }
 
-/// The picture as radiance, with the G-buffer behind it where the frame has one.
+/// Radiance, with the G-buffer as layers where the frame has one.
 Result<std::vector<ExrChannel>> layers(render::Renderer& renderer) {
   const auto radiance = renderer.capture(radiance_buffer);
   if (!radiance) return radiance.error();
@@ -114,19 +114,19 @@ std::vector<std::uint8_t> npy(const render::FloatImage& image) {
   std::vector<std::uint32_t> counts;
   for (std::size_t i = 0; i < image.rgba.size(); ++i) {
     if (i % 4 >= image.channels) continue;
-    if (image.counts) {
+    if (image.integers) {
       counts.push_back(static_cast<std::uint32_t>(image.rgba[i]));
     } else {
       values.push_back(image.rgba[i]);
     }
   }
-  if (image.counts) {
+  if (image.integers) {
     return stream::encode_npy(stream::NpyElement::uint32, shape, std::as_bytes(std::span(counts)));
   }
   return stream::encode_npy(stream::NpyElement::float32, shape, std::as_bytes(std::span(values)));
 }
 
-std::vector<std::uint8_t> picture_file(const render::Frame& frame, ImageFormat format) {
+std::vector<std::uint8_t> image_file(const render::Frame& frame, ImageFormat format) {
   const stream::ImageView view{.width = frame.width, .height = frame.height, .rgba = frame.rgba};
   if (format == ImageFormat::npy) return npy(frame);
   if (format == ImageFormat::png) return stream::encode_png(view);
@@ -137,9 +137,9 @@ std::vector<std::uint8_t> picture_file(const render::Frame& frame, ImageFormat f
 
 Result<CaptureContent> read_content(render::Renderer& renderer, std::string_view buffer,
                                     ImageFormat format) {
-  const bool as_picture = format == ImageFormat::png || format == ImageFormat::jpeg ||
-                          (format == ImageFormat::npy && buffer == picture_buffer);
-  if (as_picture) {
+  const bool as_image = format == ImageFormat::png || format == ImageFormat::jpeg ||
+                        (format == ImageFormat::npy && buffer == output_buffer);
+  if (as_image) {
     auto frame = renderer.capture_view(buffer);
     if (!frame) return frame.error();
     return CaptureContent{frame->width, frame->height, *std::move(frame)};
@@ -147,7 +147,7 @@ Result<CaptureContent> read_content(render::Renderer& renderer, std::string_view
   auto values = renderer.capture(buffer);
   if (!values) return values.error();
   const std::uint32_t width = values->width, height = values->height;
-  if (format == ImageFormat::npy || buffer != picture_buffer) {
+  if (format == ImageFormat::npy || buffer != output_buffer) {
     return CaptureContent{width, height, *std::move(values)};
   }
   auto channels = layers(renderer);
@@ -157,7 +157,7 @@ Result<CaptureContent> read_content(render::Renderer& renderer, std::string_view
 
 std::vector<std::uint8_t> encode_content(const CaptureContent& content, ImageFormat format) {
   if (const auto* frame = std::get_if<render::Frame>(&content.values)) {
-    return picture_file(*frame, format);
+    return image_file(*frame, format);
   }
   if (const auto* image = std::get_if<render::FloatImage>(&content.values)) {
     if (format == ImageFormat::npy) return npy(*image);

@@ -7,8 +7,8 @@
 
 namespace heliograph::session {
 
-/// Brings what was on a lost device onto the present one. What several sessions share stays shared
-/// as long as they use the same renewal.
+/// Moves what was on a lost device to the present one. What several sessions share stays shared
+/// as long as they use the same migration.
 class DeviceMigration {
  public:
   explicit DeviceMigration(render::Engine& engine) : engine_(engine) {}
@@ -17,14 +17,14 @@ class DeviceMigration {
   template <class Object>
   std::shared_ptr<const Object> operator()(const std::shared_ptr<const Object>& object) {
     if (!object || engine_.owns(*object)) return object;
-    std::shared_ptr<const void>& renewed = renewed_[object.get()];
-    if (!renewed) renewed = engine_.renew(*object);
-    return std::static_pointer_cast<const Object>(renewed);
+    std::shared_ptr<const void>& migrated = migrated_[object.get()];
+    if (!migrated) migrated = engine_.renew(*object);
+    return std::static_pointer_cast<const Object>(migrated);
   }
 
  private:
   render::Engine& engine_;
-  std::map<const void*, std::shared_ptr<const void>> renewed_;
+  std::map<const void*, std::shared_ptr<const void>> migrated_;
 };
 
 }  // namespace heliograph::session

@@ -8,18 +8,18 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Longer pauses are not worth waiting for.
-constexpr milliseconds most_patience{40};
-/// How often it doubles for how many turns nobody waits for who was awaited in vain.
-constexpr int most_doublings = 6;
+/// The device does not wait for longer pauses.
+constexpr milliseconds max_wait{40};
+/// How often the number of turns doubles for which a view is skipped after unsuccessful waits.
+constexpr int max_doublings = 6;
 
 }  // namespace
 
-void FairShare::arrange(std::vector<Key>& keys) const {
+void FairShare::sort(std::vector<Key>& keys) const {
   std::stable_sort(keys.begin(), keys.end(), [&](Key a, Key b) {
     const Account first = account(a);
     const Account second = account(b);
-    // Among equals, whose last turn is longest ago.
+    // Among equals the one whose last turn is longest ago.
     return std::tie(first.next_start, first.turn) < std::tie(second.next_start, second.turn);
   });
 }
@@ -27,43 +27,44 @@ void FairShare::arrange(std::vector<Key>& keys) const {
 std::optional<Clock::time_point> FairShare::hold_back(Key key, Clock::time_point now) {
   const Account candidate = account(key);
   std::optional<Clock::time_point> until;
-  for (auto& [other, it] : accounts_) {
-    if (other == key || it.turn == 0 || it.given_up || turns_ < it.awaited_from_turn) continue;
-    const bool before = std::max(it.next_start, now_) < candidate.next_start;
-    if (!before || candidate.last_work <= patience(it)) continue;
-    const Clock::time_point deadline = it.ended + patience(it);
+  for (auto& [other, account] : accounts_) {
+    if (other == key || account.turn == 0 || account.skipped || turns_ < account.skipped_until_turn)
+      continue;
+    const bool before = std::max(account.next_start, virtual_now_) < candidate.next_start;
+    if (!before || candidate.last_work <= wait_timeout(account)) continue;
+    const Clock::time_point deadline = account.ended + wait_timeout(account);
     if (now < deadline) {
-      if (!it.awaited_since) it.awaited_since = now;
+      if (!account.awaited_since) account.awaited_since = now;
       until = until ? std::max(*until, deadline) : deadline;
-    } else if (it.awaited_since) {
-      give_up(it, now);
+    } else if (account.awaited_since) {
+      stop_waiting(account, now);
     }
   }
   return until;
 }
 
-void FairShare::give_up(Account& account, Clock::time_point now) const {
-  account.next_start = std::max(account.next_start, now_) + (now - *account.awaited_since);
+void FairShare::stop_waiting(Account& account, Clock::time_point now) const {
+  account.next_start = std::max(account.next_start, virtual_now_) + (now - *account.awaited_since);
   account.awaited_since.reset();
-  account.given_up = true;
-  account.waits_in_vain = std::min(account.waits_in_vain + 1, most_doublings);
-  account.awaited_from_turn = turns_ + (std::uint64_t{1} << account.waits_in_vain);
-  // Perhaps it only takes longer than it was given.
-  account.pause = std::min<Duration>(2 * account.pause, most_patience / 2);
+  account.skipped = true;
+  account.failed_waits = std::min(account.failed_waits + 1, max_doublings);
+  account.skipped_until_turn = turns_ + (std::uint64_t{1} << account.failed_waits);
+  // It may only need longer than the timeout.
+  account.pause = std::min<Duration>(2 * account.pause, max_wait / 2);
 }
 
 void FairShare::charge(Key key, Clock::time_point begin, Clock::time_point end) {
   Account paid = account(key);
-  now_ = std::max(now_, paid.next_start);
+  virtual_now_ = std::max(virtual_now_, paid.next_start);
   const Duration pause = begin - paid.ended;
   const bool undisturbed = paid.turn > 0 && paid.turn == turns_;
-  if (undisturbed && pause <= most_patience) paid.pause += (pause - paid.pause) / 4;
+  if (undisturbed && pause <= max_wait) paid.pause += (pause - paid.pause) / 4;
   if (paid.awaited_since) {
     paid.next_start += begin - *paid.awaited_since;
-    paid.waits_in_vain = 0;
+    paid.failed_waits = 0;
     paid.awaited_since.reset();
   }
-  paid.given_up = false;
+  paid.skipped = false;
   paid.last_work = end - begin;
   paid.next_start += paid.last_work;
   paid.turn = ++turns_;
@@ -72,14 +73,14 @@ void FairShare::charge(Key key, Clock::time_point begin, Clock::time_point end) 
 }
 
 FairShare::Account FairShare::account(Key key) const {
-  const auto found = accounts_.find(key);
-  Account account = found == accounts_.end() ? Account() : found->second;
-  account.next_start = std::max(account.next_start, now_);
+  const auto entry = accounts_.find(key);
+  Account account = entry == accounts_.end() ? Account() : entry->second;
+  account.next_start = std::max(account.next_start, virtual_now_);
   return account;
 }
 
-FairShare::Duration FairShare::patience(const Account& account) {
-  return std::clamp<Duration>(2 * account.pause, milliseconds(2), most_patience);
+FairShare::Duration FairShare::wait_timeout(const Account& account) {
+  return std::clamp<Duration>(2 * account.pause, milliseconds(2), max_wait);
 }
 
 }  // namespace heliograph::session

@@ -12,50 +12,50 @@ namespace heliograph::session {
 
 using stream::Clock;
 
-/// Divides the time of one device among those who want it, in equal parts, however different their
-/// pieces of work are: start-time fair queueing (Goyal, Vin and Cheng, SIGCOMM 1996, with equal
-/// weights). Everybody's account says when, in a time that passes as work is done, the next piece
-/// may start; the earliest is next. Who wanted nothing for a while starts now and has saved nothing
-/// up.
+/// Divides the time of one device between views in equal parts, however long their frames take:
+/// start-time fair queueing (Goyal, Vin and Cheng, SIGCOMM 1996, with equal weights). The account
+/// of each view has the virtual time at which its next frame may start; the earliest is next. A
+/// view that was idle starts at the present virtual time: idle time gives no credit.
 ///
-/// A piece is never interrupted. Somebody with short pieces, who needs a moment between them (its
-/// picture is encoded, its viewer answers), would wait for a long piece of another after each of
-/// its own. So the device waits that moment, at the expense of who it waits for, before it begins a
-/// long piece (anticipatory scheduling: Iyer and Druschel, SOSP 2001). Who was awaited in vain is
-/// given up until it has worked again, and ever more seldom awaited. Pure logic; not thread safe.
+/// A frame is never interrupted. A view with short frames that pauses between them (its frame is
+/// encoded, its viewer acknowledges) would wait for a long frame of another view after each of its
+/// own. So the device waits for it during that pause, at the expense of the view it waits for,
+/// before a long frame begins (anticipatory scheduling: Iyer and Druschel, SOSP 2001). After an
+/// unsuccessful wait the view is skipped until it has worked again, and then for a number of turns
+/// that doubles with each unsuccessful wait. Pure logic; not thread safe.
 class FairShare {
  public:
   using Key = const void*;
   using Duration = Clock::duration;
 
-  /// Puts those who may want to work into the order of their turns.
-  void arrange(std::vector<Key>& keys) const;
-  /// Until when `key`, which could begin a piece now, has to wait for one who is before it and will
-  /// be back in a moment.
+  /// Sorts views that may have work by their turn.
+  void sort(std::vector<Key>& keys) const;
+  /// Until when `key`, which could begin a frame now, has to wait for a view that is before it and
+  /// is expected back.
   std::optional<Clock::time_point> hold_back(Key key, Clock::time_point now);
-  /// `key` did a piece of work.
+  /// `key` used the device.
   void charge(Key key, Clock::time_point begin, Clock::time_point end);
-  void forget(Key key) { accounts_.erase(key); }
+  void remove(Key key) { accounts_.erase(key); }
 
  private:
   struct Account {
-    Duration next_start{0};
-    std::uint64_t turn = 0;  // of its last piece
+    Duration next_start{0};  // virtual time
+    std::uint64_t turn = 0;  // of its last work
     Duration last_work{0};
-    Duration pause{std::chrono::milliseconds(4)};    // between its pieces, smoothed
-    Clock::time_point ended{};                       // its last piece
-    std::optional<Clock::time_point> awaited_since;  // others have been held back for it
-    int waits_in_vain = 0;                           // since the last that was not
-    std::uint64_t awaited_from_turn = 0;
-    bool given_up = false;  // until its next piece
+    Duration pause{std::chrono::milliseconds(4)};    // between its frames, smoothed
+    Clock::time_point ended{};                       // its last work
+    std::optional<Clock::time_point> awaited_since;  // other views have been held back for it
+    int failed_waits = 0;                            // since the last successful one
+    std::uint64_t skipped_until_turn = 0;
+    bool skipped = false;  // until its next work
   };
 
   Account account(Key key) const;
-  void give_up(Account& account, Clock::time_point now) const;
-  static Duration patience(const Account& account);
+  void stop_waiting(Account& account, Clock::time_point now) const;
+  static Duration wait_timeout(const Account& account);
 
   std::unordered_map<Key, Account> accounts_;
-  Duration now_{0};  // start of the newest piece
+  Duration virtual_now_{0};  // start of the newest work
   std::uint64_t turns_ = 0;
 };
 

@@ -5,16 +5,16 @@
 
 namespace heliograph::session {
 
-protocol::Result<void> PixelBudget::exchange(std::uint64_t held, std::uint64_t wanted) {
+protocol::Result<void> PixelBudget::exchange(std::uint64_t held, std::uint64_t requested) {
   const std::lock_guard lock(mutex_);
   const std::uint64_t others = used_ - held;
-  // A picture may always become smaller, even where the rest is too much already.
-  if (wanted > held && others + wanted > limit_) {
+  // A session may always shrink, even where the others exceed the limit already.
+  if (requested > held && others + requested > limit_) {
     return protocol::error::full(
         "the frames of all sessions have too many pixels",
         std::to_string(limit_) + " pixels, " + std::to_string(others) + " used by other sessions");
   }
-  used_ = others + wanted;
+  used_ = others + requested;
   return {};
 }
 
@@ -23,8 +23,8 @@ std::uint64_t PixelBudget::used() const {
   return used_;
 }
 
-void PixelShare::give_back() {
-  // That is never refused.
+void PixelShare::release() {
+  // A release is never refused.
   if (budget_) (void)budget_->exchange(held_, 0);
   budget_.reset();
   held_ = 0;

@@ -9,13 +9,13 @@
 
 namespace heliograph::session {
 
-/// How many pixels the pictures of all sessions may have together. Thread safe.
+/// The number of pixels that the frames of all sessions may have together. Thread safe.
 class PixelBudget {
  public:
   explicit PixelBudget(std::uint64_t limit) : limit_(limit) {}
 
-  /// Takes `wanted` pixels in place of the `held` ones; ErrorCode::full if there are too few.
-  protocol::Result<void> exchange(std::uint64_t held, std::uint64_t wanted);
+  /// Takes `requested` pixels in place of the `held` ones; ErrorCode::full if there are too few.
+  protocol::Result<void> exchange(std::uint64_t held, std::uint64_t requested);
   std::uint64_t used() const;
   std::uint64_t limit() const { return limit_; }
 
@@ -25,7 +25,7 @@ class PixelBudget {
   std::uint64_t used_ = 0;
 };
 
-/// One session's part of a budget, given back at its end. Without a budget it takes any size.
+/// One session's part of a budget, released by the destructor. Without a budget any size fits.
 class PixelShare {
  public:
   PixelShare() = default;
@@ -33,11 +33,11 @@ class PixelShare {
   PixelShare(PixelShare&& other) noexcept
       : budget_(std::move(other.budget_)), held_(std::exchange(other.held_, 0)) {}
   PixelShare& operator=(PixelShare&&) = delete;
-  ~PixelShare() { give_back(); }
+  ~PixelShare() { release(); }
 
   protocol::Result<void> resize(std::uint64_t pixels);
-  /// Gives everything back; from now on there is no budget.
-  void give_back();
+  /// Releases all pixels; from now on there is no budget.
+  void release();
 
  private:
   std::shared_ptr<PixelBudget> budget_;

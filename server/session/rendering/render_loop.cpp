@@ -16,9 +16,9 @@
 namespace heliograph::session {
 namespace {
 
-// One picture may wait while another is being encoded: the renderer stays at most one ahead.
-constexpr std::size_t waiting_pictures = 1;
-constexpr std::size_t waiting_captures = 4;
+// One frame may wait while another is being encoded: the renderer stays at most one ahead.
+constexpr std::size_t max_queued_frames = 1;
+constexpr std::size_t max_queued_captures = 4;
 
 void log_shaders(const render::ShaderReport& report) {
   if (!report.error.empty()) {
@@ -35,19 +35,19 @@ void log_shaders(const render::ShaderReport& report) {
 RenderLoop::RenderLoop(render::Engine& engine, Clock::duration release_after)
     : engine_(engine),
       release_after_(release_after),
-      encoder_("encoder", waiting_pictures),
-      capture_writer_("capture writer", waiting_captures),
+      encoder_("encoder", max_queued_frames),
+      capture_writer_("capture writer", max_queued_captures),
       thread_([this] { run(); }) {
-  engine_.on_shader_change([wakeup = wakeup_](const render::ShaderReport& report) {
+  engine_.on_shader_change([wake = wake_](const render::ShaderReport& report) {
     log_shaders(report);
-    wakeup->notify();
+    wake->notify();
   });
 }
 
 void RenderLoop::stop() {
   if (stopping_.exchange(true)) return;
   engine_.on_shader_change({});
-  wakeup_->notify();
+  wake_->notify();
   thread_.join();
   encoder_.stop();
   capture_writer_.stop();
@@ -56,19 +56,19 @@ void RenderLoop::stop() {
 
 std::shared_ptr<Session> RenderLoop::open(SessionOptions options, PixelShare pixels) {
   auto view = std::make_shared<SessionView>(engine_, std::move(options), std::move(pixels),
-                                            ViewServices{.wakeup = *wakeup_,
+                                            ViewServices{.wake = *wake_,
                                                          .release_after = release_after_,
                                                          .encoder = encoder_,
                                                          .jpeg = jpeg_,
                                                          .capture_writer = capture_writer_,
                                                          .measurements = measurements_},
-                                            std::make_shared<WakeEvent>(wakeup_));
+                                            std::make_shared<WakeEvent>(wake_));
   std::shared_ptr<Session> session = view->session();
   if (open_views().empty()) {
     try {
       view->prepare();
     } catch (const render::DeviceLost&) {
-      view->release_renderer();  // it is made on the next device
+      view->release_renderer();  // it will be made on the next device
       report_device_loss();
     }
   }
@@ -76,21 +76,21 @@ std::shared_ptr<Session> RenderLoop::open(SessionOptions options, PixelShare pix
     const std::lock_guard lock(mutex_);
     views_.push_back(std::move(view));
   }
-  wakeup_->notify();
+  wake_->notify();
   return session;
 }
 
 void RenderLoop::close(const Session& session) {
   {
     const std::lock_guard lock(mutex_);
-    const auto found = std::find_if(views_.begin(), views_.end(), [&](const auto& view) {
+    const auto closed = std::find_if(views_.begin(), views_.end(), [&](const auto& view) {
       return view->session().get() == &session;
     });
-    if (found == views_.end()) return;
-    closed_.push_back(std::move(*found));
-    views_.erase(found);
+    if (closed == views_.end()) return;
+    closed_.push_back(std::move(*closed));
+    views_.erase(closed);
   }
-  wakeup_->notify();
+  wake_->notify();
 }
 
 void RenderLoop::on_first_frame(std::function<void()> callback) {
@@ -100,15 +100,14 @@ void RenderLoop::on_first_frame(std::function<void()> callback) {
 
 void RenderLoop::run() {
   while (!stopping_) {
-    dismiss_closed();
-    if (loss_reported_.exchange(false) && device_ready_) on_device_lost("beside rendering");
+    remove_closed();
+    if (loss_reported_.exchange(false) && device_ready_) on_device_lost("outside of rendering");
     const Views views = open_views();
     if (!device_ready_ && !recover_device(views)) continue;
     if (advance_next(views) || !device_ready_) continue;
-    const auto due = next_due(views);
-    wakeup_->wait_until(due && held_back_until_ ? std::min(due, held_back_until_)
-                        : due                   ? due
-                                                : held_back_until_);
+    auto due = next_due(views);
+    if (held_back_until_) due = due ? std::min(*due, *held_back_until_) : *held_back_until_;
+    wake_->wait_until(due);
   }
 }
 
@@ -117,7 +116,7 @@ RenderLoop::Views RenderLoop::open_views() {
   return views_;
 }
 
-void RenderLoop::dismiss_closed() {
+void RenderLoop::remove_closed() {
   Views closed;
   {
     const std::lock_guard lock(mutex_);
@@ -125,18 +124,18 @@ void RenderLoop::dismiss_closed() {
   }
   for (const auto& view : closed) {
     view->refuse_captures();
-    share_.forget(view.get());
+    fair_share_.remove(view.get());
   }
 }
 
-/// Does the small things of all sessions, so that none waits for another's frame with them, and
-/// then lets the first in order of turns draw that wants to.
+/// Does the short work of all sessions first, so that it does not wait for the frame of another
+/// session; then the first session in order of turns that has a frame due renders it.
 bool RenderLoop::advance_next(const Views& views) {
   std::vector<FairShare::Key> ready;
   for (const auto& view : views) {
     if (view->awake()) ready.push_back(view.get());
   }
-  share_.arrange(ready);
+  fair_share_.sort(ready);
   held_back_until_.reset();
   std::vector<SessionView*> drawing;
   for (const FairShare::Key key : ready) {
@@ -152,17 +151,17 @@ bool RenderLoop::advance_next(const Views& views) {
                      [&](SessionView* view) { return draw_in_turn(*view); });
 }
 
-/// False if it has to wait for another, or had nothing to draw after all.
+/// False if it has to wait for another session, or had nothing to draw after all.
 bool RenderLoop::draw_in_turn(SessionView& view) {
   if (stopping_ || !device_ready_) return false;
   const Clock::time_point start = Clock::now();
-  if (const auto until = share_.hold_back(&view, start)) {
+  if (const auto until = fair_share_.hold_back(&view, start)) {
     held_back_until_ = held_back_until_ ? std::min(*held_back_until_, *until) : *until;
     return false;
   }
   const SessionView::Work work = advance(view, true);
   if (!has_rendered_ && view.has_rendered()) report_first_frame();
-  if (work == SessionView::Work::drawing) share_.charge(&view, start, Clock::now());
+  if (work == SessionView::Work::drawing) fair_share_.charge(&view, start, Clock::now());
   return work != SessionView::Work::none;
 }
 
@@ -182,7 +181,7 @@ SessionView::Work RenderLoop::advance(SessionView& view, bool may_draw) {
 
 void RenderLoop::report_device_loss() {
   loss_reported_ = true;
-  wakeup_->notify();
+  wake_->notify();
 }
 
 void RenderLoop::on_new_device(std::function<void()> callback) {
@@ -197,23 +196,23 @@ void RenderLoop::on_device_lost(const std::string& why) {
   retry_at_ = Clock::now() + pause;
   const std::string when =
       pause == Clock::duration::zero()
-          ? "at once"
+          ? "immediately"
           : fmt::format("in {} s", std::chrono::duration_cast<std::chrono::seconds>(pause).count());
   spdlog::error("the device was lost; recovery {} ({})", when, why);
-  tell_viewers(false, "the device was lost; recovery " + when);
+  notify_viewers(false, "the device was lost; recovery " + when);
 }
 
-/// Makes the device anew once its time has come. Sessions keep everything but their histories.
+/// Recreates the device once the retry delay is over. Sessions keep everything but their histories.
 bool RenderLoop::recover_device(const Views& views) {
   if (Clock::now() < retry_at_) {
-    wakeup_->wait_until(retry_at_);
+    wake_->wait_until(retry_at_);
     return false;
   }
   try {
     for (const auto& view : views) view->release_renderer();
     engine_.recreate();
-    DeviceMigration renewal(engine_);
-    for (const auto& view : views) view->session()->renew(renewal);
+    DeviceMigration migration(engine_);
+    for (const auto& view : views) view->session()->migrate(migration);
   } catch (const std::exception& failure) {
     on_device_lost(failure.what());
     return false;
@@ -226,12 +225,12 @@ bool RenderLoop::recover_device(const Views& views) {
   if (callback) callback();
   retry_backoff_.recovered(Clock::now());
   device_ready_ = true;
-  spdlog::info("the device is back, {} sessions with it", views.size());
-  tell_viewers(true, "the device is back");
+  spdlog::info("the device is recovered, with {} sessions", views.size());
+  notify_viewers(true, "the device is recovered");
   return true;
 }
 
-void RenderLoop::tell_viewers(bool ready, const std::string& message) {
+void RenderLoop::notify_viewers(bool ready, const std::string& message) {
   const std::string text = protocol::make_notification<protocol::notifications::device_changed>(
       {.ready = ready, .message = message});
   for (const auto& view : open_views()) {

@@ -15,34 +15,34 @@
 
 namespace heliograph::session {
 
-/// The one thread that draws for all sessions of a device, in fair shares of its time, and the
-/// threads that encode beside it. It sleeps while nobody wants anything.
+/// The thread that renders all sessions of a device, in equal shares of its time, and the threads
+/// that encode beside it. It sleeps while there is nothing to do.
 class RenderLoop {
  public:
-  /// Sessions that nobody has watched for `release_after` give back the memory of their pictures.
+  /// Sessions without viewers for `release_after` release their renderer.
   RenderLoop(render::Engine& engine, Clock::duration release_after);
   ~RenderLoop() { stop(); }
   RenderLoop(const RenderLoop&) = delete;
   RenderLoop& operator=(const RenderLoop&) = delete;
 
-  /// Opens a session; it is drawn from now on. The first one is made ready at once and draws its
-  /// first picture unasked: it shows that everything works.
+  /// Opens a session; it is rendered from now on. The first one gets its renderer at once and
+  /// renders a frame without viewers, which shows that everything works.
   /// @throws std::invalid_argument when the renderer refuses the settings
   std::shared_ptr<Session> open(SessionOptions options, PixelShare pixels);
-  /// The session is drawn no more; captures that wait are refused.
+  /// The session is not rendered any more; its pending captures fail.
   void close(const Session& session);
 
-  /// Called once, on the render thread, when the first picture is there.
+  /// Called once, on the render thread, after the first frame.
   void on_first_frame(std::function<void()> callback);
   bool has_rendered() const { return has_rendered_; }
-  /// Another thread's work met render::DeviceLost.
+  /// Work on another thread caught render::DeviceLost.
   void report_device_loss();
-  /// False from the loss of the device until there is another one.
+  /// False from the loss of the device until it is recovered.
   bool device_ready() const { return device_ready_; }
   std::uint64_t device_losses() const { return device_losses_; }
-  /// Called on the render thread whenever there is another device.
+  /// Called on the render thread whenever the device was recreated.
   void on_new_device(std::function<void()> callback);
-  /// Ends the threads and everything that waits for them. No callback comes afterwards.
+  /// Ends the threads and everything that waits for them. No callback is called afterwards.
   void stop();
   RenderTotals totals() const { return measurements_.totals(); }
 
@@ -51,7 +51,7 @@ class RenderLoop {
 
   void run();
   Views open_views();
-  void dismiss_closed();
+  void remove_closed();
   bool advance_next(const Views& views);
   bool draw_in_turn(SessionView& view);
   SessionView::Work advance(SessionView& view, bool may_draw);
@@ -59,16 +59,16 @@ class RenderLoop {
   void report_first_frame();
   void on_device_lost(const std::string& why);
   bool recover_device(const Views& views);
-  void tell_viewers(bool ready, const std::string& message);
+  void notify_viewers(bool ready, const std::string& message);
 
   render::Engine& engine_;
   const Clock::duration release_after_;
-  FairShare share_;  // of the render thread
-  const std::shared_ptr<WakeEvent> wakeup_ = std::make_shared<WakeEvent>();
+  FairShare fair_share_;  // of the render thread
+  const std::shared_ptr<WakeEvent> wake_ = std::make_shared<WakeEvent>();
   Measurements measurements_;
-  std::mutex mutex_;  // guards views_, closed_ and the callbacks; never held while drawing
+  std::mutex mutex_;  // guards views_, closed_ and the callbacks; never held while rendering
   Views views_;
-  Views closed_;  // end on the render thread, which may be at work on them
+  Views closed_;  // removed by the render thread, which may be using them
   std::function<void()> on_first_frame_;
   std::function<void()> on_new_device_;
   std::atomic<bool> has_rendered_ = false;

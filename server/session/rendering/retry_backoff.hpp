@@ -6,18 +6,18 @@ namespace heliograph::session {
 
 using stream::Clock;
 
-/// How long to wait before a lost device is made anew: not at all at first, then longer each time
-/// as long as it does not last. Pure logic.
+/// The delay before a lost device is recreated: none at first, then doubled with each loss until
+/// the device is stable. Pure logic.
 class RetryBackoff {
  public:
-  /// The device was lost, or could not be made: the time to wait now.
+  /// The device was lost, or could not be recreated: gives the delay until the next try.
   Clock::duration after_loss(Clock::time_point now);
-  /// It was made anew; one that then lasts for a while is healthy.
+  /// It was recreated; it counts as stable after `stable_after`.
   void recovered(Clock::time_point now) { recovered_at_ = now; }
 
  private:
-  static constexpr std::chrono::seconds healthy_after{10};
-  static constexpr std::chrono::seconds longest{30};
+  static constexpr std::chrono::seconds stable_after{10};
+  static constexpr std::chrono::seconds max_delay{30};
 
   Clock::time_point recovered_at_{};
   int failures_ = 0;

@@ -13,20 +13,12 @@ namespace heliograph::session {
 
 using std::chrono::duration_cast;
 using std::chrono::microseconds;
-using std::chrono::milliseconds;
 
 namespace {
 
-/// Whole frames that take longer make a moving picture stutter.
-constexpr milliseconds stuttering_frame{66};
-/// Pixels of the smallest picture that is drawn smaller while moving.
-constexpr std::uint32_t smallest_to_shrink = 640 * 360;
-/// After the last change pictures are sent as they come for so long.
-constexpr milliseconds rest_before_refining{150};
-/// How long everything must rest before the final picture is sent.
-constexpr milliseconds rest_before_final{300};
-constexpr float longest_frame_seconds = 1.0f;
-constexpr std::chrono::seconds rest_after_failure{1};
+/// Histories are measured in seconds. After a pause the time since the last frame means nothing.
+constexpr float max_frame_seconds = 1.0f;
+constexpr std::chrono::seconds retry_delay{1};
 
 std::uint32_t microseconds_of(Clock::duration duration) {
   return static_cast<std::uint32_t>(duration_cast<microseconds>(duration).count());
@@ -35,14 +27,6 @@ std::uint32_t microseconds_of(Clock::duration duration) {
 std::vector<protocol::BufferInfo> buffer_infos(const std::vector<render::BufferInfo>& buffers) {
   std::vector<protocol::BufferInfo> result;
   for (const auto& [name, description] : buffers) result.push_back({name, description});
-  return result;
-}
-
-std::vector<protocol::PassTiming> pass_timings_of(const std::vector<render::PassTime>& passes) {
-  std::vector<protocol::PassTiming> result;
-  for (const render::PassTime& pass : passes) {
-    result.push_back({.name = pass.name, .kind = pass.kind, .ms = pass.milliseconds});
-  }
   return result;
 }
 
@@ -55,39 +39,40 @@ SceneEdits::Lights file_lights(const scene::Scene& scene) {
 }  // namespace
 
 SessionView::SessionView(render::Engine& engine, SessionOptions options, PixelShare pixels,
-                         ViewServices services, std::shared_ptr<WakeEvent> wakeup)
+                         ViewServices services, std::shared_ptr<WakeEvent> wake)
     : engine_(engine),
       services_(services),
-      wakeup_(std::move(wakeup)),
-      session_(std::make_shared<Session>(std::move(options), wakeup_, std::move(pixels),
+      wake_(std::move(wake)),
+      session_(std::make_shared<Session>(std::move(options), wake_, std::move(pixels),
                                          &services.measurements)),
       broadcast_(session_, {.encoder = services.encoder,
                             .jpeg = services.jpeg,
                             .measurements = services.measurements,
-                            .wakeup = wakeup_,
-                            .tracer = engine.tracer()}) {}
+                            .wake = wake_,
+                            .tracer = engine.tracer()}),
+      readers_(*session_, services.capture_writer, services.measurements, services.wake) {}
 
 SessionView::~SessionView() = default;
 
 void SessionView::prepare() {
-  draws_unasked_ = true;
+  first_frame_due_ = true;
   make_renderer();
-  tell_buffers();
+  publish_buffers();
 }
 
 bool SessionView::awake() const {
-  return renderer_ || wakeup_->is_notified() || needed();
+  return renderer_ || wake_->is_notified() || needed();
 }
 
-/// Whether the renderer must stay: for somebody, for what is to be drawn unwatched, or for the
-/// histories that the next step builds on.
+/// Whether the renderer must stay: for viewers, for what is rendered without them, or for the
+/// histories that the next step in lockstep builds on.
 bool SessionView::needed() const {
-  return draws_unasked_ || watched() || session_->renders_without_viewers();
+  return first_frame_due_ || watched() || session_->renders_without_viewers();
 }
 
-/// Whether somebody is there for pictures, or waits for one.
+/// Whether a viewer receives frames, or a capture or probe waits for one.
 bool SessionView::watched() const {
-  return !captures_.empty() || !probes_.empty() || session_->viewers().has_active_viewer();
+  return !readers_.empty() || session_->viewers().has_active_viewer();
 }
 
 void SessionView::make_renderer() {
@@ -99,11 +84,11 @@ void SessionView::make_renderer() {
 
 void SessionView::apply(const protocol::Settings& settings) {
   const auto accepted = renderer_->set_settings(settings);
-  // A session takes in no others, so nobody would ever hear of it.
+  // The session has checked them, so there is no caller to answer.
   if (!accepted) throw std::logic_error("settings of a session: " + accepted.error().message);
 }
 
-void SessionView::tell_buffers() {
+void SessionView::publish_buffers() {
   session_->set_buffers(buffer_infos(renderer_->buffers()));
 }
 
@@ -111,67 +96,93 @@ void SessionView::release_renderer() {
   if (!renderer_) return;
   renderer_.reset();
   newest_.reset();
-  stepped_ = false;
-  broadcast_.forget();
+  newest_stepped_ = false;
+  broadcast_.reset();
   state_ = {};
   session_->viewers().discard_latest();
   log_info({.session = session_->name()}, "images released");
 }
 
 SessionView::Work SessionView::advance(bool may_draw) {
-  if (Clock::now() < resting_until_) return Work::none;
-  wakeup_->take();
-  collect_captures();
+  if (Clock::now() < retry_at_) return Work::none;
+  wake_->take();
+  readers_.collect();
   session_->viewers().announce_due_frames();
   if (!renderer_) {
     if (!needed()) return Work::none;
     make_renderer();
   }
-  if (watched()) session_->touch();
+  if (watched()) session_->mark_used();
   if (needed()) {
     needed_at_ = Clock::now();
   } else if (Clock::now() >= needed_at_ + services_.release_after) {
     release_renderer();
     return Work::none;
   }
-  if (session_->in_lockstep()) return advance_step(may_draw);
-  stepped_ = false;
+  if (session_->timeline().in_lockstep()) return advance_step(may_draw);
+  newest_stepped_ = false;
   adopt_state();
   adopt_size();
-  settle_probes();
-  if (settle_captures()) return Work::small;
-  if (final_due()) broadcast_.finish();
+  readers_.answer_probes(readable_frame(false));
+  if (readers_.answer_captures(readable_frame(false))) return Work::small;
+  if (next_view_state(view_inputs()) == ViewState::final) broadcast_.send_final();
   if (broadcast_.pump()) return Work::small;
-  if (!frame_wanted()) return Work::none;
+  if (!frame_due()) return Work::none;
   if (!may_draw) return Work::held_back;
-  render_frame();
+  render_next_frame();
   return Work::drawing;
+}
+
+/// One requested frame, at full size whatever it takes; between steps the frame can be read by what
+/// was requested before the next one.
+SessionView::Work SessionView::advance_step(bool may_draw) {
+  if (!newest_stepped_) readers_.fail_before_first_step();
+  readers_.answer_probes(readable_frame(true));
+  if (readers_.answer_captures(readable_frame(true))) return Work::small;
+  const std::optional<Ticket> first_read = readers_.first_ticket();
+  if (!may_draw && session_->timeline().step_due(first_read)) {
+    return broadcast_.pump() ? Work::small : Work::held_back;
+  }
+  if (const std::optional<StepFrame> step = session_->timeline().begin_step(first_read)) {
+    adopt(step->state);
+    set_size({state_.width, state_.height});
+    render_frame(step->seconds);
+    newest_stepped_ = true;
+    broadcast_.pump();
+    session_->timeline().end_step(*step, newest_->frame.samples);
+    return Work::drawing;
+  }
+  return broadcast_.pump() ? Work::small : Work::none;
 }
 
 std::optional<Clock::time_point> SessionView::next_due() const {
   std::optional<Clock::time_point> due = session_->viewers().next_send();
-  if (session_->in_lockstep()) return due;
-  const auto also = [&](Clock::time_point time) { due = due ? std::min(*due, time) : time; };
-  if (newest_ && newest_->frame.converged && !broadcast_.finished() && !state_.animation.playing) {
-    const Clock::time_point rested = state_.changed_at + rest_before_final;
-    if (rested > Clock::now()) also(rested);
-  }
-  const Clock::time_point rests = moved_at_ + rest_before_final;
-  if (!draws_whole() && rests > Clock::now()) also(rests);
-  if (resting_until_ > Clock::now()) also(resting_until_);
-  if (renderer_) also(std::max(needed_at_ + services_.release_after, resting_until_));
+  if (session_->timeline().in_lockstep()) return due;
+  const auto consider = [&](Clock::time_point time) { due = due ? std::min(*due, time) : time; };
+  if (const auto transition = next_view_transition(view_inputs())) consider(*transition);
+  if (retry_at_ > Clock::now()) consider(retry_at_);
+  if (renderer_) consider(std::max(needed_at_ + services_.release_after, retry_at_));
   return due;
 }
 
 void SessionView::recover() {
-  // What of the state it had taken over nobody knows: another one takes all of it.
+  // What the renderer had taken over of the state is not known: another one takes all of it.
   release_renderer();
-  resting_until_ = Clock::now() + rest_after_failure;
-  for (PendingCapture& capture : captures_) capture.request.done(protocol::error::internal());
-  captures_.clear();
-  for (const PendingProbe& pending : probes_) pending.probe.fail(protocol::error::internal());
-  probes_.clear();
-  session_->fail_steps(protocol::error::internal());
+  retry_at_ = Clock::now() + retry_delay;
+  readers_.fail_all(protocol::error::internal());
+  session_->timeline().fail_steps(protocol::error::internal());
+}
+
+void SessionView::abandon_captures() {
+  readers_.drop_all();
+  session_->timeline().fail_steps(protocol::error::not_ready("the server is shutting down"));
+}
+
+void SessionView::refuse_captures() {
+  readers_.collect();
+  const protocol::Error ended = protocol::error::not_found("session", "the session has ended");
+  readers_.fail_all(ended);
+  session_->timeline().fail_steps(ended);
 }
 
 void SessionView::adopt_state() {
@@ -183,26 +194,28 @@ void SessionView::adopt(RenderState next) {
   const auto lost = [&](const auto& object) { return object && !engine_.owns(*object); };
   if (lost(state_.resources) || lost(state_.environment)) {
     // It was loaded just before the device was lost.
-    DeviceMigration renewal(engine_);
-    session_->renew(renewal);
+    DeviceMigration migration(engine_);
+    session_->migrate(migration);
     state_ = session_->render_state();
   }
   if (state_.resources != before.resources) renderer_->set_scene(state_.resources);
   adopt_edits(before);
   if (state_.reset_count != before.reset_count) {
-    renderer_->start_anew();
-    cut_ = true;
+    renderer_->reset();
+    discontinuous_ = true;
   }
   const bool same_scene = state_.resources == before.resources;
   const bool resized = state_.width != before.width || state_.height != before.height;
-  if (resized) whole_frame_ = {};
-  const bool jumped = state_.cuts != before.cuts;
-  if (jumped) renderer_->cut();
-  cut_ |= resized || !same_scene || jumped;
-  if (same_scene && !scene::same_view(state_.camera, before.camera)) moved_at_ = Clock::now();
+  if (resized) full_frame_time_ = {};
+  const bool jumped = state_.discontinuities != before.discontinuities;
+  if (jumped) renderer_->invalidate_history();
+  discontinuous_ |= resized || !same_scene || jumped;
+  if (same_scene && !scene::same_view(state_.camera, before.camera)) {
+    camera_moved_at_ = Clock::now();
+  }
   adopt_pose();
   apply(state_.settings);
-  tell_buffers();
+  publish_buffers();
 }
 
 /// What the session changed in the scene; a scene that is new to the renderer has no changes yet.
@@ -216,11 +229,11 @@ void SessionView::adopt_edits(const RenderState& before) {
   }
   if (state_.environment != (same_scene ? before.environment : nullptr)) {
     renderer_->set_environment(state_.environment);
-    cut_ = true;
+    discontinuous_ = true;
   }
 }
 
-/// Where the clip stands now, and the camera with it.
+/// The pose of the clip at this time, and the camera where the clip moves it.
 void SessionView::adopt_pose() {
   const double seconds = state_.animation.at(state_.now());
   if (const auto posed = renderer_->set_pose(state_.animation.clip, seconds); !posed) {
@@ -237,88 +250,105 @@ void SessionView::adopt_pose() {
   renderer_->set_camera(scene::camera_at(*state_.scene, state_.camera, pose));
 }
 
-bool SessionView::moving() const {
-  if (state_.animation.playing) return true;
-  return Clock::now() < moved_at_ + rest_before_final;
-}
-
-/// Nothing changes, and what is drawn is what stays. A change that came while a slow picture was
-/// drawn is still to be taken over.
-bool SessionView::resting() const {
-  return session_->version() == state_.version && !state_.animation.playing && draws_whole() &&
-         Clock::now() >= state_.changed_at + rest_before_refining;
-}
-
-/// Small while the camera moves and whole frames would stutter, whole again once it rests and for
-/// captures.
 void SessionView::adopt_size() {
-  const bool shrink = moving() && captures_.empty() && whole_frame_ > stuttering_frame &&
-                      state_.width * state_.height > smallest_to_shrink;
-  const float scale = shrink ? state_.settings.motion.scale : 1.0f;
-  const auto scaled = [&](std::uint32_t side) {
-    return std::max(1u, static_cast<std::uint32_t>(static_cast<float>(side) * scale + 0.5f));
-  };
-  drawn_width_ = scaled(state_.width);
-  drawn_height_ = scaled(state_.height);
-  renderer_->set_size(drawn_width_, drawn_height_);
+  set_size(draw_size({.now = Clock::now(),
+                      .camera_moved_at = camera_moved_at_,
+                      .animation_playing = state_.animation.playing,
+                      .full = {state_.width, state_.height},
+                      .full_frame_time = full_frame_time_,
+                      .motion_scale = state_.settings.motion.scale,
+                      .capture_pending = readers_.has_captures()}));
 }
 
-bool SessionView::draws_whole() const {
-  return drawn_width_ == state_.width && drawn_height_ == state_.height;
+void SessionView::set_size(DrawSize size) {
+  draw_size_ = size;
+  renderer_->set_size(size.width, size.height);
 }
 
-bool SessionView::frame_wanted() {
-  // A change and its opposite make no other picture, but who made them waits for one of that state.
-  const bool shown = !newest_ || newest_->header.state_rev == state_.rev;
-  if (shown && !renderer_->needs_frame() && !state_.animation.playing) return false;
-  const bool first = draws_unasked_ && state_.resources;
+bool SessionView::is_full_size() const {
+  return draw_size_ == DrawSize{state_.width, state_.height};
+}
+
+/// A change and its reverse leave the image as it is, but the viewer that made them waits for a
+/// frame of the newest revision.
+bool SessionView::needs_frame() const {
+  const bool outdated = newest_ && newest_->header.state_rev != state_.rev;
+  return renderer_ && (outdated || state_.animation.playing || renderer_->needs_frame());
+}
+
+ViewInputs SessionView::view_inputs() const {
+  return {.now = Clock::now(),
+          .camera_moved_at = camera_moved_at_,
+          .state_changed_at = state_.changed_at,
+          .newer_state = session_->version() != state_.version,
+          .animation_playing = state_.animation.playing,
+          .lockstep = state_.lockstep.has_value(),
+          .reduced_size = !is_full_size(),
+          .needs_frame = needs_frame(),
+          .has_frame = newest_ != nullptr,
+          .converged = newest_ && newest_->frame.converged,
+          .final_sent = broadcast_.final_sent()};
+}
+
+bool SessionView::frame_due() {
   const bool reference =
-      state_.keep_drawing && state_.settings.reference.use == protocol::ReferenceUse::always;
-  if (first || reference || !captures_.empty() || !probes_.empty()) return true;
-  // A resting picture gets better at full speed, since few of its samples are sent.
-  if (resting()) return session_->viewers().has_active_viewer();
-  return !broadcast_.behind() && session_->viewers().can_accept_frame();
+      state_.reference_started && state_.settings.reference.use == protocol::ReferenceUse::always;
+  const bool first = first_frame_due_ && state_.resources;
+  return should_draw(next_view_state(view_inputs()),
+                     {.needs_frame = needs_frame(),
+                      .requested = first || reference || !readers_.empty(),
+                      .active_viewer = session_->viewers().has_active_viewer(),
+                      .viewer_accepts = session_->viewers().can_accept_frame(),
+                      .encoder_behind = broadcast_.behind()});
 }
 
-bool SessionView::final_due() const {
-  return newest_ && draws_whole() && newest_->frame.converged && !broadcast_.finished() &&
-         !state_.animation.playing && !renderer_->needs_frame() &&
-         Clock::now() >= state_.changed_at + rest_before_final;
+ReadableFrame SessionView::readable_frame(bool lockstep) {
+  const bool shows_state =
+      newest_version_ == state_.version || (!state_.animation.playing && !renderer_->needs_frame());
+  return {.renderer = *renderer_,
+          .state = state_,
+          .newest = newest_.get(),
+          .lockstep = lockstep,
+          .shows_state = shows_state,
+          .full_size = is_full_size(),
+          .stepped = newest_stepped_,
+          .began = frame_began_at_};
 }
 
-/// Histories are counted in seconds. After a rest the time since the last picture means nothing.
-void SessionView::render_frame() {
-  const std::chrono::duration<float> since = Clock::now() - last_frame_;
-  stepped_ = false;
-  render_frame(std::min(since.count(), longest_frame_seconds));
+void SessionView::render_next_frame() {
+  const std::chrono::duration<float> since = Clock::now() - frame_began_at_;
+  newest_stepped_ = false;
+  render_frame(std::min(since.count(), max_frame_seconds));
 }
 
+/// `seconds`: that have passed since the last frame.
 void SessionView::render_frame(double seconds) {
   const Clock::time_point start = Clock::now();
-  session_->touch();
+  session_->mark_used();
   if (state_.animation.playing) adopt_pose();
   renderer_->set_frame_seconds(static_cast<float>(seconds));
-  last_frame_ = start;
+  frame_began_at_ = start;
   render::Frame frame = renderer_->render();
   const Clock::time_point end = Clock::now();
-  if (draws_whole()) whole_frame_ = end - start;
+  if (is_full_size()) full_frame_time_ = end - start;
   services_.measurements.rendered(std::chrono::duration<double>(end - start).count(),
-                                  pass_timings_of(frame.passes));
+                                  pass_timings(frame));
   newest_ = describe(std::move(frame), start, end);
-  draws_unasked_ = false;
+  first_frame_due_ = false;
   newest_version_ = state_.version;
-  session_->report_frame(newest_version_, newest_->frame.samples, newest_->frame.converged);
-  broadcast_.rendered(newest_, !state_.lockstep && resting());
+  session_->reference().report_frame(newest_version_, newest_->frame.samples,
+                                     newest_->frame.converged);
+  broadcast_.rendered(newest_, draw_policy(next_view_state(view_inputs())).purpose);
 }
 
 std::shared_ptr<RenderedFrame> SessionView::describe(render::Frame frame, Clock::time_point start,
                                                      Clock::time_point end) {
-  recent_frames_.push_back(end);
-  while (recent_frames_.front() < end - std::chrono::seconds(1)) recent_frames_.pop_front();
+  frame_times_.push_back(end);
+  while (frame_times_.front() < end - std::chrono::seconds(1)) frame_times_.pop_front();
 
-  auto picture = std::make_shared<RenderedFrame>();
-  protocol::FrameHeader& header = picture->header;
-  if (std::exchange(cut_, false)) ++cuts_;
+  auto rendered = std::make_shared<RenderedFrame>();
+  protocol::FrameHeader& header = rendered->header;
+  if (std::exchange(discontinuous_, false)) ++discontinuities_;
   header.render_id = ++render_count_;
   header.state_rev = state_.rev;
   header.full_width = static_cast<std::uint16_t>(state_.width);
@@ -327,11 +357,11 @@ std::shared_ptr<RenderedFrame> SessionView::describe(render::Frame frame, Clock:
       static_cast<std::uint64_t>(duration_cast<microseconds>(start.time_since_epoch()).count());
   header.render_us = microseconds_of(end - start);
   header.sample_count = frame.samples;
-  picture->frame = std::move(frame);
-  picture->inputs = state_.inputs;
-  picture->cuts = cuts_;
-  picture->fps = static_cast<double>(recent_frames_.size());
-  return picture;
+  rendered->frame = std::move(frame);
+  rendered->inputs = state_.inputs;
+  rendered->discontinuities = discontinuities_;
+  rendered->fps = static_cast<double>(frame_times_.size());
+  return rendered;
 }
 
 }  // namespace heliograph::session

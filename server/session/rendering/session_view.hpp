@@ -4,35 +4,36 @@
 #include <deque>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "render/api/renderer.hpp"
-#include "session/state/session.hpp"
+#include "session/rendering/frame_readers.hpp"
+#include "session/rendering/view_state.hpp"
+#include "session/session.hpp"
 #include "session/viewers/broadcast.hpp"
 
 namespace heliograph::session {
 
 /// What all views of one device share.
 struct ViewServices {
-  WakeEvent& wakeup;              // of the render thread
-  Clock::duration release_after;  // nobody has watched for so long: histories are let go
-  Worker& encoder;                // pictures for the stream
+  WakeEvent& wake;                // of the render thread
+  Clock::duration release_after;  // without viewers for so long, the renderer is released
+  Worker& encoder;                // of streamed frames
   stream::JpegEncoder& jpeg;      // used by `encoder` only
-  Worker& capture_writer;         // files, which take longer
+  Worker& capture_writer;         // of files, which take longer
   Measurements& measurements;
 };
 
-/// One session as the render thread sees it: takes over the session's state, draws while somebody
-/// wants frames, has them encoded, answers captures. Its renderer, with all images and histories,
-/// is made when the first picture is wanted and let go when nobody has watched for a while. Used by
-/// the render thread only, apart from construction and `prepare`.
+/// One session as the render thread sees it: takes over the session's state, renders what ViewState
+/// asks for, has frames encoded, answers captures and probes. The renderer, with all images and
+/// histories, is made when the first frame is needed and released when it has not been needed for a
+/// while. Used by the render thread only, apart from construction and `prepare`.
 class SessionView {
  public:
   SessionView(render::Engine& engine, SessionOptions options, PixelShare pixels,
-              ViewServices services, std::shared_ptr<WakeEvent> wakeup);
+              ViewServices services, std::shared_ptr<WakeEvent> wake);
   ~SessionView();
 
-  /// Makes the renderer before it is drawn with; the first picture then comes unasked.
+  /// Makes the renderer before the first frame, which is then rendered without viewers.
   /// @throws render::DeviceLost
   void prepare();
 
@@ -41,89 +42,67 @@ class SessionView {
 
   /// Whether there may be something to do.
   bool awake() const;
-  /// What came of `advance`: nothing to do, something small, a frame, or only a frame that had to
-  /// be left undone.
+  /// What `advance` did: nothing, something short, a frame, or no frame although one is due.
   enum class Work { none, small, drawing, held_back };
-  /// Does what is most pressing: at most one frame, and none unless it `may_draw`.
+  /// Does what is most urgent: at most one frame, and none unless it `may_draw`.
   Work advance(bool may_draw);
-  /// When there may be something to do without anybody's asking.
+  /// When there may be something to do without any event.
   std::optional<Clock::time_point> next_due() const;
-  /// Lets go of the renderer with all its images and histories.
+  /// Releases the renderer with all its images and histories.
   void release_renderer();
-  /// After an exception out of `advance`: fails what waits for pictures and rests for a while.
+  /// After an exception out of `advance`: everything pending fails, and rendering pauses.
   void recover();
-  /// Drops all captures unanswered.
+  /// Drops all captures and probes without an answer.
   void abandon_captures();
-  /// Answers all captures that the session has ended.
+  /// All captures, probes and steps fail, since the session has ended.
   void refuse_captures();
 
  private:
-  struct PendingCapture {
-    CaptureRequest request;
-    Clock::time_point requested;
-    Clock::time_point deadline;
-  };
-  struct PendingProbe {
-    Probe probe;
-    Clock::time_point requested;
-  };
-
   bool needed() const;
   bool watched() const;
   void make_renderer();
   void apply(const protocol::Settings& settings);
-  void tell_buffers();
+  void publish_buffers();
   void adopt_state();
   void adopt(RenderState next);
   void adopt_edits(const RenderState& before);
   void adopt_pose();
   void adopt_size();
-  bool moving() const;
-  bool resting() const;
-  bool draws_whole() const;
-  void collect_captures();
-  void drop_unwanted_captures();
-  bool settle_captures();
-  void settle_probes();
-  bool shows_state_since(Clock::time_point moment) const;
-  bool capture_ready(const PendingCapture& capture) const;
-  bool write_capture(CaptureRequest& request);
+  void set_size(DrawSize size);
+  bool is_full_size() const;
+  bool needs_frame() const;
+  ViewInputs view_inputs() const;
+  bool frame_due();
+  ReadableFrame readable_frame(bool lockstep);
   Work advance_step(bool may_draw);
-  void settle_unstepped();
-  std::optional<std::uint64_t> first_waiting() const;
-  bool its_turn_is_later(std::optional<std::uint64_t> place) const;
-  bool frame_wanted();
-  bool final_due() const;
-  void render_frame();
+  void render_next_frame();
   void render_frame(double seconds);
   std::shared_ptr<RenderedFrame> describe(render::Frame frame, Clock::time_point start,
                                           Clock::time_point end);
 
   render::Engine& engine_;
   ViewServices services_;
-  const std::shared_ptr<WakeEvent> wakeup_;  // of this session
+  const std::shared_ptr<WakeEvent> wake_;  // of this session
   std::shared_ptr<Session> session_;
   Broadcast broadcast_;
-  std::unique_ptr<render::Renderer> renderer_;  // null while nobody needs pictures
-  Clock::time_point needed_at_;                 // when somebody last did
-  bool draws_unasked_ = false;
+  FrameReaders readers_;
+  std::unique_ptr<render::Renderer> renderer_;  // null while no frames are needed
+  Clock::time_point needed_at_;                 // last time that it was needed
+  bool first_frame_due_ = false;                // rendered without viewers
 
   RenderState state_;
-  Clock::time_point moved_at_;     // when the camera last did
-  std::uint32_t drawn_width_ = 0;  // what the renderer draws now: smaller while moving
-  std::uint32_t drawn_height_ = 0;
-  Clock::duration whole_frame_{};  // time of the newest frame of full size
+  Clock::time_point camera_moved_at_;
+  DrawSize draw_size_;                 // of the renderer
+  Clock::duration full_frame_time_{};  // of the newest frame of full size; zero: not known
   std::shared_ptr<const RenderedFrame> newest_;
-  std::uint64_t newest_version_ = 0;
-  bool cut_ = true;  // the next picture has nothing in common with the last
-  std::uint64_t cuts_ = 0;
+  std::uint64_t newest_version_ = 0;  // of the state that it shows
+  bool newest_stepped_ = false;       // it was rendered in lockstep
+  bool discontinuous_ = true;         // the next frame does not continue the last one
+  std::uint64_t discontinuities_ = 0;
   std::uint32_t render_count_ = 0;
-  std::deque<Clock::time_point> recent_frames_;
-  Clock::time_point last_frame_{};  // when it began
-  std::vector<PendingCapture> captures_;
-  std::vector<PendingProbe> probes_;
-  Clock::time_point resting_until_;
-  bool stepped_ = false;  // the newest picture was drawn in lockstep
+  std::deque<Clock::time_point> frame_times_;  // ends of frames in the last second
+  Clock::time_point frame_began_at_{};         // the newest
+  Clock::time_point retry_at_;                 // after a failure
 };
 
 }  // namespace heliograph::session

@@ -5,13 +5,13 @@
 
 namespace heliograph::session {
 
-/// Where a session's clip stands, as long as nobody says otherwise.
+/// The position of a session's animation clip, as a function of time.
 struct AnimationClock {
   using Clock = std::chrono::steady_clock;
 
-  std::string clip;      // empty: the scene rests
-  double seconds = 0.0;  // at `since`
-  double rate = 1.0;
+  std::string clip;      // empty: no animation
+  double seconds = 0.0;  // position at `since`
+  double rate = 1.0;     // clip seconds per second
   bool playing = false;
   Clock::time_point since;
 

@@ -20,16 +20,16 @@ namespace error = protocol::error;
 
 namespace {
 
-/// "lamp", "lamp 2" ...; "light 3" where there is no name.
+/// "sun", "sun 2" ...; "light 3" where there is no name.
 class UniqueNames {
  public:
   explicit UniqueNames(std::string kind) : kind_(std::move(kind)) {}
 
-  std::string next(const std::string& wanted) {
+  std::string next(const std::string& requested) {
     const std::string number = std::to_string(++count_);
-    std::string name = wanted.empty() ? kind_ + " " + number : wanted;
+    std::string name = requested.empty() ? kind_ + " " + number : requested;
     for (int copy = 2; !taken_.insert(name).second; ++copy) {
-      name = (wanted.empty() ? kind_ : wanted) + " " + std::to_string(copy);
+      name = (requested.empty() ? kind_ : requested) + " " + std::to_string(copy);
     }
     return name;
   }
@@ -71,8 +71,8 @@ LightInfo describe(const scene::Light& light) {
   return info;
 }
 
-/// `light` pointed elsewhere, its width still across.
-void point(shared::Light& light, glm::vec3 direction) {
+/// Rotates `light` to another direction; its tangent stays orthogonal.
+void rotate(shared::Light& light, glm::vec3 direction) {
   light.direction = glm::normalize(direction);
   glm::vec3 tangent = light.tangent - light.direction * glm::dot(light.direction, light.tangent);
   if (glm::length(tangent) < 1e-3f) {
@@ -82,12 +82,12 @@ void point(shared::Light& light, glm::vec3 direction) {
   light.tangent = glm::normalize(tangent);
 }
 
-/// The device's form of what `info` says; what it says nothing of stays.
+/// The device's form of `info`; values that it does not have stay.
 shared::Light device_form(const LightInfo& info, shared::Light light) {
   light.color = info.enabled ? from_protocol(info.color) * info.intensity : glm::vec3(0.0f);
   if (info.position) light.position = from_protocol(*info.position);
   if (info.direction && from_protocol(*info.direction) != light.direction) {
-    point(light, from_protocol(*info.direction));
+    rotate(light, from_protocol(*info.direction));
   }
   if (info.range) light.range = *info.range;
   if (info.radius) light.radius = *info.radius;
@@ -116,47 +116,48 @@ std::vector<std::string> differences(const Info& now, const Info& initial) {
 }
 
 template <class T, class Member>
-void change(const protocol::Change<T>& wanted, Member& member, const Member& initial) {
-  if (wanted.reset) member = initial;
-  if (wanted.value) member = *wanted.value;
+void apply(const protocol::Change<T>& change, Member& member, const Member& initial) {
+  if (change.reset) member = initial;
+  if (change.value) member = *change.value;
 }
 
-/// A member that only some kinds of lights have.
+/// A member that only some types of lights have.
 template <class T>
-Result<void> change_own(const protocol::Change<T>& wanted, std::optional<T>& member,
-                        const std::optional<T>& initial, const LightInfo& light, const char* name) {
-  if (!wanted.value && !wanted.reset) return {};
+Result<void> apply_optional(const protocol::Change<T>& change, std::optional<T>& member,
+                            const std::optional<T>& initial, const LightInfo& light,
+                            const char* name) {
+  if (!change.value && !change.reset) return {};
   if (!initial) {
     return error::invalid(
         std::string("patch.") + name,
         "is not a member of " + std::string(protocol::enum_name(light.type)) + " lights");
   }
-  change(wanted, member, initial);
+  apply(change, member, initial);
   return {};
 }
 
-Result<void> change_shape(const protocol::LightPatch& patch, LightInfo& light,
-                          const LightInfo& initial) {
-  for (const Result<void>& changed :
-       {change_own(patch.position, light.position, initial.position, light, "position"),
-        change_own(patch.direction, light.direction, initial.direction, light, "direction"),
-        change_own(patch.range, light.range, initial.range, light, "range"),
-        change_own(patch.radius, light.radius, initial.radius, light, "radius"),
-        change_own(patch.angular_diameter, light.angular_diameter, initial.angular_diameter, light,
-                   "angular_diameter"),
-        change_own(patch.width, light.width, initial.width, light, "width"),
-        change_own(patch.height, light.height, initial.height, light, "height")}) {
-    if (!changed) return changed;
+Result<void> apply_shape(const protocol::LightPatch& patch, LightInfo& light,
+                         const LightInfo& initial) {
+  for (const Result<void>& applied :
+       {apply_optional(patch.position, light.position, initial.position, light, "position"),
+        apply_optional(patch.direction, light.direction, initial.direction, light, "direction"),
+        apply_optional(patch.range, light.range, initial.range, light, "range"),
+        apply_optional(patch.radius, light.radius, initial.radius, light, "radius"),
+        apply_optional(patch.angular_diameter, light.angular_diameter, initial.angular_diameter,
+                       light, "angular_diameter"),
+        apply_optional(patch.width, light.width, initial.width, light, "width"),
+        apply_optional(patch.height, light.height, initial.height, light, "height")}) {
+    if (!applied) return applied;
   }
   return {};
 }
 
 Result<LightInfo> patched(LightInfo light, const LightInfo& initial,
                           const protocol::LightPatch& patch) {
-  change(patch.enabled, light.enabled, initial.enabled);
-  change(patch.color, light.color, initial.color);
-  change(patch.intensity, light.intensity, initial.intensity);
-  if (const Result<void> changed = change_shape(patch, light, initial); !changed) {
+  apply(patch.enabled, light.enabled, initial.enabled);
+  apply(patch.color, light.color, initial.color);
+  apply(patch.intensity, light.intensity, initial.intensity);
+  if (const Result<void> changed = apply_shape(patch, light, initial); !changed) {
     return changed.error();
   }
   if (light.direction && glm::length(from_protocol(*light.direction)) < 1e-6f) {
@@ -168,7 +169,7 @@ Result<LightInfo> patched(LightInfo light, const LightInfo& initial,
   return light;
 }
 
-/// The index of what is called so, or the error that says what is.
+/// The index of the entry of this name, or an error with suggestions.
 template <class Info>
 Result<std::size_t> find(const std::vector<Info>& list, const std::string& name, const char* kind) {
   std::vector<std::string_view> names;
@@ -210,7 +211,7 @@ MaterialInfo describe(const shared::Material& material) {
   return info;
 }
 
-/// What the file says of its lights. Names are unique: a light without one gets its index.
+/// The lights of the file. Names are unique: a light without one gets its number.
 std::vector<LightInfo> describe_lights(const scene::Scene& scene) {
   UniqueNames names("light");
   std::vector<LightInfo> lights;
@@ -263,12 +264,12 @@ Result<MaterialInfo> SceneEdits::patch(const protocol::MaterialsPatch& request) 
   initial.name = materials_[*index].name;
   const protocol::MaterialPatch& patch = request.patch;
   MaterialInfo material = materials_[*index];
-  change(patch.base_color, material.base_color, initial.base_color);
-  change(patch.roughness, material.roughness, initial.roughness);
-  change(patch.metallic, material.metallic, initial.metallic);
-  change(patch.emissive, material.emissive, initial.emissive);
-  change(patch.normal_scale, material.normal_scale, initial.normal_scale);
-  change(patch.occlusion_strength, material.occlusion_strength, initial.occlusion_strength);
+  apply(patch.base_color, material.base_color, initial.base_color);
+  apply(patch.roughness, material.roughness, initial.roughness);
+  apply(patch.metallic, material.metallic, initial.metallic);
+  apply(patch.emissive, material.emissive, initial.emissive);
+  apply(patch.normal_scale, material.normal_scale, initial.normal_scale);
+  apply(patch.occlusion_strength, material.occlusion_strength, initial.occlusion_strength);
   if (material == materials_[*index]) return material;
   material.changed = differences(material, initial);
   materials_[*index] = material;

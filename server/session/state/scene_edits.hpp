@@ -10,8 +10,8 @@
 
 namespace heliograph::session {
 
-/// The lights and materials of a scene as one session has them: those of the file until they are
-/// patched. Only these small tables are copied; geometry and textures stay shared.
+/// The lights and materials of a scene with the changes of one session. Only these small tables are
+/// copied; geometry and textures stay shared.
 class SceneEdits {
  public:
   using Lights = std::vector<shared::Light>;
@@ -26,8 +26,8 @@ class SceneEdits {
   protocol::Result<protocol::LightInfo> patch(const protocol::LightsPatch& request);
   protocol::Result<protocol::MaterialInfo> patch(const protocol::MaterialsPatch& request);
 
-  /// In the order of the scene; null as long as nothing differs from the file. A patch makes a new
-  /// list: whoever holds an old one keeps it as it was.
+  /// In the order of the scene; null until a value differs from the file. A patch makes a new list:
+  /// references to the old one stay valid and unchanged.
   const std::shared_ptr<const Lights>& device_lights() const { return device_lights_; }
   const std::shared_ptr<const Materials>& device_materials() const { return device_materials_; }
 
@@ -39,7 +39,7 @@ class SceneEdits {
   std::shared_ptr<const Materials> device_materials_;
 };
 
-/// What the file says of its materials. Names are unique: a material without one gets its index.
+/// The materials of the file. Names are unique: a material without one gets its number.
 std::vector<protocol::MaterialInfo> describe_materials(const scene::Scene& scene);
 
 }  // namespace heliograph::session

@@ -10,43 +10,35 @@ using std::chrono::microseconds;
 
 namespace {
 
-std::vector<protocol::PassTiming> pass_timings(const std::vector<render::PassTime>& passes) {
-  std::vector<protocol::PassTiming> result;
-  for (const render::PassTime& pass : passes) {
-    result.push_back({.name = pass.name, .kind = pass.kind, .ms = pass.milliseconds});
-  }
-  return result;
-}
-
-protocol::StreamPhase phase_of(Purpose purpose) {
+protocol::StreamPhase phase_of(FramePurpose purpose) {
   switch (purpose) {
-    case Purpose::interactive:
+    case FramePurpose::interactive:
       return protocol::StreamPhase::interactive;
-    case Purpose::refining:
+    case FramePurpose::refining:
       return protocol::StreamPhase::refining;
-    case Purpose::final:
+    case FramePurpose::final:
       return protocol::StreamPhase::idle;
   }
   return protocol::StreamPhase::interactive;
 }
 
-protocol::StatsFrame stats_of(const RenderedFrame& picture, protocol::TracerKind tracer,
+protocol::StatsFrame stats_of(const RenderedFrame& frame, protocol::TracerKind tracer,
                               protocol::StreamPhase phase) {
-  return {.render_id = picture.header.render_id,
-          .fps = picture.fps,
-          .frame_ms = picture.frame.milliseconds,
-          .width = picture.frame.width,
-          .height = picture.frame.height,
-          .samples = picture.frame.samples,
+  return {.render_id = frame.header.render_id,
+          .fps = frame.fps,
+          .frame_ms = frame.frame.milliseconds,
+          .width = frame.frame.width,
+          .height = frame.frame.height,
+          .samples = frame.frame.samples,
           .tracer = tracer,
           .state = phase,
-          .passes = pass_timings(picture.frame.passes)};
+          .passes = pass_timings(frame.frame)};
 }
 
-/// The header of the picture with what the encoder says of its form.
-protocol::FrameHeader merged(const protocol::FrameHeader& picture,
+/// The header of the rendered frame with what the encoder adds.
+protocol::FrameHeader merged(const protocol::FrameHeader& rendered,
                              const protocol::FrameHeader& encoded) {
-  protocol::FrameHeader header = picture;
+  protocol::FrameHeader header = rendered;
   header.codec = encoded.codec;
   header.quality = encoded.quality;
   header.width = encoded.width;
@@ -57,14 +49,14 @@ protocol::FrameHeader merged(const protocol::FrameHeader& picture,
 
 }  // namespace
 
-/// One picture on its way through the encoder; carried out on its thread.
+/// One frame that is encoded, on the thread of the encoder.
 struct Broadcast::Encoding {
   std::shared_ptr<Session> session;
   BroadcastServices services;
   std::shared_ptr<stream::FrameEncoder> encoder;
   std::shared_ptr<std::atomic<int>> count;
-  std::shared_ptr<const RenderedFrame> picture;
-  Purpose purpose;
+  std::shared_ptr<const RenderedFrame> rendered;
+  FramePurpose purpose;
   std::uint64_t number;
 
   void run() {
@@ -72,7 +64,7 @@ struct Broadcast::Encoding {
     try {
       frames = encode();
     } catch (...) {
-      // Nobody must wait for it.
+      // Otherwise viewers would wait for this frame.
       finish({});
       throw;
     }
@@ -80,15 +72,15 @@ struct Broadcast::Encoding {
   }
 
   void finish(std::vector<stream::SharedFrame> frames) {
-    ViewerSet& audience = session->viewers();
-    audience.publish(number, purpose, std::move(frames));
-    audience.publish_stats(stats_of(*picture, services.tracer, phase_of(purpose)));
+    ViewerSet& viewers = session->viewers();
+    viewers.publish(number, purpose, std::move(frames));
+    viewers.publish_stats(stats_of(*rendered, services.tracer, phase_of(purpose)));
     --*count;
-    services.wakeup->notify();
+    services.wake->notify();
   }
 
   std::vector<stream::SharedFrame> encode() {
-    const stream::ImageView view = image_view(picture->frame);
+    const stream::ImageView view = image_view(rendered->frame);
     const EncodingPlan plan = session->viewers().plan(number, purpose, view.rgba.size() / 4);
     std::vector<stream::SharedFrame> frames;
     for (const stream::VariantRequest& request : plan.requests) {
@@ -106,10 +98,10 @@ struct Broadcast::Encoding {
     const Clock::time_point start = Clock::now();
     const std::shared_ptr<stream::EncodedFrame> frame = encode();
     frame->encoded_at = Clock::now();
-    frame->inputs = picture->inputs;
-    frame->cuts = picture->cuts;
-    frame->moving = purpose == Purpose::interactive;
-    frame->header = merged(picture->header, frame->header);
+    frame->inputs = rendered->inputs;
+    frame->cuts = rendered->discontinuities;
+    frame->moving = purpose == FramePurpose::interactive;
+    frame->header = merged(rendered->header, frame->header);
     const auto taken = frame->encoded_at - start;
     frame->header.encode_us =
         static_cast<std::uint32_t>(duration_cast<microseconds>(taken).count());
@@ -124,22 +116,22 @@ Broadcast::Broadcast(std::shared_ptr<Session> session, const BroadcastServices& 
       encoder_(std::make_shared<stream::FrameEncoder>(services.jpeg)),
       encoding_(std::make_shared<std::atomic<int>>(0)) {}
 
-void Broadcast::rendered(std::shared_ptr<const RenderedFrame> picture, bool resting) {
-  newest_ = std::move(picture);
+void Broadcast::rendered(std::shared_ptr<const RenderedFrame> frame, FramePurpose purpose) {
+  newest_ = std::move(frame);
   newer_than_due_ = true;
   const std::uint32_t samples = newest_->header.sample_count;
-  const bool anew = samples < due_samples_ || newest_->header.state_rev != due_rev_;
-  if (!resting) {
-    due(Purpose::interactive);
-  } else if (anew || samples >= 2 * due_samples_) {
-    due(Purpose::refining);
+  const bool other_state = samples < due_samples_ || newest_->header.state_rev != due_rev_;
+  if (purpose == FramePurpose::interactive) {
+    send_newest(FramePurpose::interactive);
+  } else if (other_state || samples >= 2 * due_samples_) {
+    send_newest(FramePurpose::refining);
   } else {
     session_->viewers().publish_stats(
         stats_of(*newest_, services_.tracer, protocol::StreamPhase::refining));
   }
 }
 
-void Broadcast::forget() {
+void Broadcast::reset() {
   newest_.reset();
   due_.reset();
   due_samples_ = 0;
@@ -147,11 +139,11 @@ void Broadcast::forget() {
   encoder_ = std::make_shared<stream::FrameEncoder>(services_.jpeg);
 }
 
-void Broadcast::finish() {
-  due(Purpose::final);
+void Broadcast::send_final() {
+  send_newest(FramePurpose::final);
 }
 
-void Broadcast::due(Purpose purpose) {
+void Broadcast::send_newest(FramePurpose purpose) {
   due_ = newest_;
   due_purpose_ = purpose;
   due_samples_ = newest_->header.sample_count;
@@ -170,7 +162,7 @@ bool Broadcast::pump() {
                            .services = services_,
                            .encoder = encoder_,
                            .count = encoding_,
-                           .picture = due_,
+                           .rendered = due_,
                            .purpose = due_purpose_,
                            .number = number_}]() mutable { encoding.run(); });
   if (!posted) --*encoding_;

@@ -36,7 +36,7 @@ Result<void> Control::apply(const SessionControl& request, const std::string& by
   return {};
 }
 
-void Control::left(const std::string& viewer) {
+void Control::on_viewer_left(const std::string& viewer) {
   if (holder_ == viewer) holder_.clear();
 }
 
@@ -44,10 +44,10 @@ Result<void> Control::set_mode(const SessionControl& request, const std::string&
                                const IsPresent& is_present) {
   const bool free = holder_.empty();
   if (!by.empty() && !may_change(by) && !free) {
-    return forbidden("only who has control can say who may have it");
+    return forbidden("only the viewer that has control can change its mode");
   }
-  const bool stays = mode_ == ControlMode::shared || holder_ == by;
-  if (*request.mode == mode_ && !request.viewer && stays) return {};
+  const bool keeps_control = mode_ == ControlMode::shared || holder_ == by;
+  if (*request.mode == mode_ && !request.viewer && keeps_control) return {};
   mode_ = *request.mode;
   holder_.clear();
   if (mode_ == ControlMode::shared) return {};
@@ -61,7 +61,7 @@ Result<void> Control::act(ControlAction action, const SessionControl& request,
   if (mode_ == ControlMode::shared) {
     return error::conflict("action", "all viewers have control; set mode to exclusive first");
   }
-  const bool settles = by.empty() || holder_ == by;
+  const bool may_assign = by.empty() || holder_ == by;
   switch (action) {
     case ControlAction::take:
       if (by.empty()) return error::not_ready("requires a WebSocket connection");
@@ -71,10 +71,10 @@ Result<void> Control::act(ControlAction action, const SessionControl& request,
       return hand_to(by, is_present);
     case ControlAction::give:
       if (!request.viewer) return error::invalid("viewer", "is required to give control");
-      if (!settles) return forbidden("only the viewer that has control can give it");
+      if (!may_assign) return forbidden("only the viewer that has control can give it");
       return hand_to(*request.viewer, is_present);
     case ControlAction::release:
-      if (!settles) return forbidden("only who has control can release it");
+      if (!may_assign) return forbidden("only the viewer that has control can release it");
       holder_.clear();
       return {};
   }

@@ -8,25 +8,25 @@
 
 namespace heliograph::session {
 
-/// Who may change a session: everyone in it, or one viewer. Callers without a stream, who are in no
-/// session, may unless a viewer has control; who they may hand it to or open it for is not limited,
-/// so that a program can always settle matters. Pure logic.
+/// Whether a caller may change a session: in shared mode every caller, in exclusive mode the viewer
+/// that holds control. Callers without a stream may as long as no viewer holds it; they may always
+/// give control to a viewer or change the mode while it is free. Pure logic.
 class Control {
  public:
-  /// Whether somebody of this id is in the session and may have control.
+  /// Whether the viewer is in the session and may have control.
   using IsPresent = std::function<bool(const std::string& viewer)>;
 
   protocol::ControlMode mode() const { return mode_; }
-  /// Whether one viewer is to have control and none has.
+  /// Whether control is exclusive and no viewer holds it.
   bool is_free() const { return mode_ == protocol::ControlMode::exclusive && holder_.empty(); }
   /// `viewer` is empty for callers without a stream.
   bool may_change(const std::string& viewer) const;
 
-  /// What `by` asks for; on an error nothing has changed.
+  /// Applies the request of `by`; on an error nothing changes.
   protocol::Result<void> apply(const protocol::SessionControl& request, const std::string& by,
                                const IsPresent& is_present);
-  /// A viewer who leaves takes nothing along: control is free for anybody to take.
-  void left(const std::string& viewer);
+  /// A viewer that leaves releases control: any other may take it.
+  void on_viewer_left(const std::string& viewer);
 
  private:
   protocol::Result<void> set_mode(const protocol::SessionControl& request, const std::string& by,
@@ -37,7 +37,7 @@ class Control {
   protocol::Result<void> hand_to(const std::string& viewer, const IsPresent& is_present);
 
   protocol::ControlMode mode_ = protocol::ControlMode::shared;
-  std::string holder_;  // in mode one; empty: nobody
+  std::string holder_;  // in exclusive mode; empty: no viewer
 };
 
 }  // namespace heliograph::session

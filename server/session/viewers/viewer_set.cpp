@@ -13,12 +13,12 @@ using std::chrono::microseconds;
 
 namespace {
 
-stream::OutgoingFrame address(const stream::ViewerPacer::Taken& taken, const std::string& viewer,
-                              bool cut) {
+stream::OutgoingFrame make_outgoing(const stream::ViewerPacer::Taken& taken,
+                                    const std::string& viewer, bool discontinuous) {
   protocol::FrameHeader header = taken.frame->header;
   header.frame_seq = taken.frame_seq;
   if (taken.first_after_drop) header.flags |= protocol::frame_flag::first_after_drop;
-  if (cut) header.flags |= protocol::frame_flag::discontinuity;
+  if (discontinuous) header.flags |= protocol::frame_flag::discontinuity;
   for (const stream::InputEcho& input : taken.frame->inputs) {
     if (input.viewer == viewer) header.input_seq_echo = input.seq;
   }
@@ -27,7 +27,7 @@ stream::OutgoingFrame address(const stream::ViewerPacer::Taken& taken, const std
   return {.header = protocol::encode_frame_header(header), .frame = taken.frame};
 }
 
-/// What the figures of a picture say about one viewer's stream.
+/// Adds the measurements of one viewer's stream.
 template <class Viewer>
 void complete(protocol::StatsFrame& stats, const Viewer& viewer) {
   stats.bytes = viewer.last_bytes;
@@ -60,40 +60,41 @@ Result<ViewerStream> ViewerSet::configure(const std::string& viewer,
   const std::lock_guard lock(mutex_);
   const Result<Viewer*> found = find(viewer);
   if (!found) return found.error();
-  Viewer& it = **found;
-  if (change.codec && *change.codec != protocol::StreamCodec::jpeg && !it.stream.decodes_video) {
+  Viewer& target = **found;
+  if (change.codec && *change.codec != protocol::StreamCodec::jpeg &&
+      !target.stream.decodes_video) {
     return protocol::error::invalid("codec", "is not one of the codecs of hello", "jpeg");
   }
-  if (change.codec) it.stream.codec = *change.codec;
-  if (change.still && it.stream.still != *change.still) {
-    it.stream.still = *change.still;
-    it.offered = 0;
-    if (it.pacer.frame_pending()) it.pacer.drop_pending();
+  if (change.codec) target.stream.codec = *change.codec;
+  if (change.still && target.stream.still != *change.still) {
+    target.stream.still = *change.still;
+    target.offered = 0;
+    if (target.pacer.frame_pending()) target.pacer.drop_pending();
   }
-  if (change.quality) it.stream.quality = static_cast<int>(*change.quality);
+  if (change.quality) target.stream.quality = static_cast<int>(*change.quality);
   if (change.max_fps) {
-    it.stream.max_fps = *change.max_fps;
-    it.pacer.set_max_rate(it.stream.max_fps);
+    target.stream.max_fps = *change.max_fps;
+    target.pacer.set_max_rate(target.stream.max_fps);
   }
   if (change.paused) {
-    const bool resumes = it.stream.paused && !*change.paused;
-    it.stream.paused = *change.paused;
-    it.pacer.set_paused(it.stream.paused, Clock::now());
-    if (resumes) it.offered = 0;
-    if (resumes && it.started) offer_latest(it);
+    const bool resumes = target.stream.paused && !*change.paused;
+    target.stream.paused = *change.paused;
+    target.pacer.set_paused(target.stream.paused, Clock::now());
+    if (resumes) target.offered = 0;
+    if (resumes && target.started) offer_latest(target);
   }
   on_capacity_.notify();
-  return it.stream;
+  return target.stream;
 }
 
 Result<void> ViewerSet::acknowledge(const std::string& viewer, const protocol::StreamAck& ack) {
   const std::lock_guard lock(mutex_);
   const Result<Viewer*> found = find(viewer);
   if (!found) return found.error();
-  Viewer& it = **found;
+  Viewer& target = **found;
   // Late and repeated acknowledgements are normal and say nothing new.
-  it.pacer.acknowledge(ack.frame_seq, microseconds(ack.present_us), Clock::now());
-  if (it.pacer.frame_pending()) announce(it);
+  target.pacer.acknowledge(ack.frame_seq, microseconds(ack.present_us), Clock::now());
+  if (target.pacer.frame_pending()) announce(target);
   on_capacity_.notify();
   return {};
 }
@@ -120,15 +121,16 @@ std::optional<stream::OutgoingFrame> ViewerSet::take(const std::string& viewer) 
   if (!found) return std::nullopt;
   const auto taken = (*found)->pacer.take(Clock::now());
   if (!taken) {
-    // A frame that waits only for its turn needs the render thread's clock.
+    // A frame that only its rate limit holds back needs the render thread's timer.
     if ((*found)->pacer.frame_pending()) on_capacity_.notify();
     return std::nullopt;
   }
   on_capacity_.notify();
-  // Frames that it did not get may have held the jump.
-  const bool jumped = std::exchange((*found)->cuts, taken->frame->cuts) != taken->frame->cuts;
-  const bool cut = std::exchange((*found)->discontinuous, false) || jumped;
-  return address(*taken, viewer, cut);
+  // The discontinuity may have been in a frame that the viewer did not get.
+  const std::uint64_t discontinuities = taken->frame->cuts;
+  const bool jumped = std::exchange((*found)->discontinuities, discontinuities) != discontinuities;
+  const bool discontinuous = std::exchange((*found)->discontinuous, false) || jumped;
+  return make_outgoing(*taken, viewer, discontinuous);
 }
 
 bool ViewerSet::empty() const {
@@ -161,9 +163,9 @@ std::optional<Clock::time_point> ViewerSet::next_send() const {
   const Clock::time_point now = Clock::now();
   std::optional<Clock::time_point> next;
   for (const auto& [id, viewer] : viewers_) {
-    const Clock::time_point turn = viewer.pacer.next_send();
-    if (!viewer.started || viewer.stream.paused || turn <= now) continue;
-    next = next ? std::min(*next, turn) : turn;
+    const Clock::time_point next_frame = viewer.pacer.next_send();
+    if (!viewer.started || viewer.stream.paused || next_frame <= now) continue;
+    next = next ? std::min(*next, next_frame) : next_frame;
   }
   return next;
 }
@@ -184,50 +186,51 @@ void ViewerSet::discard_latest() {
 bool ViewerSet::needs_frame(std::uint64_t number) const {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
-  return std::any_of(viewers_.begin(), viewers_.end(),
-                     [&](const auto& entry) { return needs_frame(entry.second, number, now); });
+  return std::any_of(viewers_.begin(), viewers_.end(), [&](const auto& entry) {
+    return viewer_needs_frame(entry.second, number, now);
+  });
 }
 
-EncodingPlan ViewerSet::plan(std::uint64_t number, Purpose purpose, std::uint64_t pixels) {
+EncodingPlan ViewerSet::plan(std::uint64_t number, FramePurpose purpose, std::uint64_t pixels) {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
   pixels_ = pixels;
   EncodingPlan plan;
-  std::vector<Viewer*> watching;
-  std::vector<stream::RequestedVariant> wishes;
+  std::vector<Viewer*> active;
+  std::vector<stream::RequestedVariant> requests;
   for (auto& [id, viewer] : viewers_) {
     if (!viewer.started || viewer.stream.paused) continue;
-    const bool ready = needs_frame(viewer, number, now);
+    const bool ready = viewer_needs_frame(viewer, number, now);
     if (ready) viewer.planned = number;
-    if (purpose == Purpose::final) {
+    if (purpose == FramePurpose::final) {
       plan.still_quality = std::max(plan.still_quality, viewer.stream.quality);
       const auto known = std::find(plan.stills.begin(), plan.stills.end(), viewer.stream.still);
       if (ready && known == plan.stills.end()) plan.stills.push_back(viewer.stream.still);
       continue;
     }
-    watching.push_back(&viewer);
-    wishes.push_back({.variant = wish(viewer, purpose),
-                      .ready = ready,
-                      .decoder = viewer.pacer.decoder(),
-                      .budget = viewer.pacer.link().budget()});
+    active.push_back(&viewer);
+    requests.push_back({.variant = requested_variant(viewer, purpose),
+                        .ready = ready,
+                        .decoder = viewer.pacer.decoder(),
+                        .budget = viewer.pacer.link().budget()});
   }
-  stream::VariantPlanner::Plan chosen = planner_.plan(wishes, now);
-  for (std::size_t i = 0; i < watching.size(); ++i) {
-    watching[i]->variant = chosen.assigned[i];
-    if (purpose == Purpose::interactive) watching[i]->moving = chosen.assigned[i];
+  stream::VariantPlanner::Plan chosen = planner_.plan(requests, now);
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    active[i]->variant = chosen.assigned[i];
+    if (purpose == FramePurpose::interactive) active[i]->moving = chosen.assigned[i];
   }
   plan.requests = std::move(chosen.requests);
   return plan;
 }
 
-void ViewerSet::publish(std::uint64_t number, Purpose purpose,
+void ViewerSet::publish(std::uint64_t number, FramePurpose purpose,
                         std::vector<stream::SharedFrame> frames) {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
   for (auto& [id, viewer] : viewers_) {
     if (!viewer.started || viewer.stream.paused || viewer.offered >= number) continue;
     const bool planned = viewer.planned == number;
-    const stream::SharedFrame frame = suited(viewer, purpose, frames);
+    const stream::SharedFrame frame = find_encoding(viewer, purpose, frames);
     if (frame) {
       offer(viewer, frame);
     } else if (planned || !viewer.pacer.has_room(now)) {
@@ -247,8 +250,8 @@ void ViewerSet::publish_stats(protocol::StatsFrame stats) {
   const Clock::time_point now = Clock::now();
   const bool finished = stats.state == protocol::StreamPhase::idle;
   for (auto& [id, viewer] : viewers_) {
-    const bool told = viewer.stats_interval.count() > 0 && viewer.last_bytes > 0;
-    if (!told || (now < viewer.next_stats && !finished)) continue;
+    const bool subscribed = viewer.stats_interval.count() > 0 && viewer.last_bytes > 0;
+    if (!subscribed || (now < viewer.next_stats && !finished)) continue;
     viewer.next_stats = now + viewer.stats_interval;
     complete(stats, viewer);
     const auto link = viewer.link.lock();
@@ -298,9 +301,9 @@ Result<ViewerSet::Viewer*> ViewerSet::find(const std::string& viewer) {
 
 void ViewerSet::offer_latest(Viewer& viewer) {
   if (latest_.empty() || viewer.stream.paused) return;
-  viewer.variant = wish(viewer, latest_purpose_);
-  const stream::SharedFrame frame = suited(viewer, latest_purpose_, latest_);
-  // Otherwise the newest picture is encoded once more, for this viewer.
+  viewer.variant = requested_variant(viewer, latest_purpose_);
+  const stream::SharedFrame frame = find_encoding(viewer, latest_purpose_, latest_);
+  // Otherwise the newest frame is encoded once more, for this viewer.
   if (!frame) return;
   offer(viewer, frame);
   viewer.offered = latest_number_;
@@ -313,27 +316,27 @@ void ViewerSet::offer(Viewer& viewer, const stream::SharedFrame& frame) {
   announce(viewer);
 }
 
-bool ViewerSet::needs_frame(const Viewer& viewer, std::uint64_t number,
-                            Clock::time_point now) const {
+bool ViewerSet::viewer_needs_frame(const Viewer& viewer, std::uint64_t number,
+                                   Clock::time_point now) const {
   return viewer.started && viewer.offered < number && viewer.pacer.has_room(now);
 }
 
-stream::EncodingVariant ViewerSet::wish(Viewer& viewer, Purpose purpose) const {
-  const stream::EncodingVariant wanted{.codec = viewer.stream.codec,
-                                       .quality = viewer.stream.quality};
-  // Pictures at rest are few and each is better than the last: a video gains nothing.
-  if (purpose != Purpose::interactive) return viewer.pacer.link().choose_refining(wanted);
-  return viewer.pacer.link().choose(wanted, pixels_);
+stream::EncodingVariant ViewerSet::requested_variant(Viewer& viewer, FramePurpose purpose) const {
+  const stream::EncodingVariant requested{.codec = viewer.stream.codec,
+                                          .quality = viewer.stream.quality};
+  // Frames of a static image are few and each is better than the last: a video gains nothing.
+  if (purpose != FramePurpose::interactive) return viewer.pacer.link().choose_refining(requested);
+  return viewer.pacer.link().choose(requested, pixels_);
 }
 
-stream::SharedFrame ViewerSet::suited(const Viewer& viewer, Purpose purpose,
-                                      const std::vector<stream::SharedFrame>& frames) {
+stream::SharedFrame ViewerSet::find_encoding(const Viewer& viewer, FramePurpose purpose,
+                                             const std::vector<stream::SharedFrame>& frames) {
   const auto find = [&](auto fits) -> stream::SharedFrame {
     const auto found = std::find_if(frames.begin(), frames.end(),
                                     [&](const stream::SharedFrame& frame) { return fits(*frame); });
     return found == frames.end() ? nullptr : *found;
   };
-  if (purpose == Purpose::final) {
+  if (purpose == FramePurpose::final) {
     const bool lossless = viewer.stream.still == protocol::StillFormat::png;
     return find([&](const stream::EncodedFrame& frame) {
       return (frame.header.codec == protocol::FrameCodec::png) == lossless;

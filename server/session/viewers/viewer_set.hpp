@@ -13,6 +13,7 @@
 #include "protocol/messages/messages.hpp"
 #include "protocol/result.hpp"
 #include "session/viewers/control.hpp"
+#include "session/viewers/frame_purpose.hpp"
 #include "session/viewers/viewer_link.hpp"
 #include "session/wake_event.hpp"
 #include "stream/pacing/variant_planner.hpp"
@@ -23,33 +24,30 @@ namespace heliograph::session {
 inline constexpr int default_quality = 80;
 inline constexpr double default_max_fps = 60.0;
 
-/// How one viewer wants its pictures.
+/// The stream that one viewer requested.
 struct ViewerStream {
   int quality = default_quality;
   double max_fps = default_max_fps;
   bool paused = false;
-  bool decodes_video = false;  // it said so in hello
+  bool decodes_video = false;  // agreed on in hello
   protocol::StreamCodec codec = protocol::StreamCodec::jpeg;
   protocol::StillFormat still = protocol::StillFormat::jpeg;
 };
 
-/// What a picture is sent for: to follow changes, to show how a resting one gets better, to stay.
-enum class Purpose { interactive, refining, final };
-
-/// The encodings of one picture.
+/// How to encode one frame.
 struct EncodingPlan {
   std::vector<stream::VariantRequest> requests;
   std::vector<protocol::StillFormat> stills;
-  int still_quality = 0;  // at least
+  int still_quality = 0;  // lower bound
 };
 
 struct ViewerTotals {
   std::size_t viewers = 0;
   std::size_t waiting = 0;    // frames that could not be sent yet
   std::size_t in_flight = 0;  // frames sent and not yet acknowledged
-  stream::PacerTotals sent;   // those who left included
+  stream::PacerTotals sent;   // viewers that left included
   std::chrono::microseconds mean_round_trip{0};
-  double goodput = 0.0;  // bytes a second that all viewers' connections take when busy
+  double goodput = 0.0;  // bytes per second of all viewers' connections when busy
 };
 
 /// The viewers of one session: what each may get next, and messages to them. Thread safe.
@@ -58,16 +56,16 @@ class ViewerSet {
   /// `on_capacity` is notified when a frame can be sent again.
   ViewerSet(std::size_t max_viewers, WakeEvent& on_capacity);
 
-  /// Adds a viewer. It is sent nothing before `start`. Who only watches never has control.
+  /// Adds a viewer. It is sent nothing before `start`. A read-only viewer never has control.
   protocol::Result<void> join(const std::string& viewer, std::weak_ptr<ViewerLink> link,
                               bool read_only = false);
   void leave(const std::string& viewer);
-  /// Lets a viewer go over to `there` with its stream as it is; if there is no room it stays.
-  protocol::Result<void> move_to(const std::string& viewer, ViewerSet& there);
-  /// Lets all viewers go, telling them why; gives their ids.
-  std::vector<std::string> disconnect_all(const std::string& why);
-  /// The viewer is ready for pictures; it gets the latest one there is. `codec` is the one it likes
-  /// best, and it decodes JPEG.
+  /// Moves a viewer to `other` with its stream as it is; if that is full it stays.
+  protocol::Result<void> move_to(const std::string& viewer, ViewerSet& other);
+  /// Disconnects all viewers with this reason; gives their ids.
+  std::vector<std::string> disconnect_all(const std::string& reason);
+  /// The viewer is ready for frames; it gets the latest one. `codec` is the one that it prefers; it
+  /// decodes JPEG, too.
   void start(const std::string& viewer, protocol::StreamCodec codec = protocol::StreamCodec::jpeg);
 
   void set_name(const std::string& viewer, std::string name);
@@ -76,44 +74,44 @@ class ViewerSet {
   protocol::Result<void> change_control(const protocol::SessionControl& request,
                                         const std::string& by);
   protocol::ControlMode control_mode() const;
-  /// Whether one viewer is to have control and none has.
+  /// Whether control is exclusive and no viewer holds it.
   bool control_is_free() const;
-  /// Who is here, in order of arrival, as told to `you`.
+  /// All viewers in order of arrival, as described to `you`.
   std::vector<protocol::ViewerInfo> participants(const std::string& you) const;
-  /// Tells everybody who is here, each about itself.
+  /// Notifies all viewers of the participants; each finds itself marked.
   void announce_participants(protocol::SessionInfo session);
 
   protocol::Result<ViewerStream> configure(const std::string& viewer,
                                            const protocol::StreamConfigure& change);
   protocol::Result<void> acknowledge(const std::string& viewer, const protocol::StreamAck& ack);
   protocol::Result<void> subscribe(const std::string& viewer, std::chrono::milliseconds interval);
-  /// Since when the oldest frame on its way to this viewer waits for its acknowledgement.
+  /// Since when the oldest frame in flight to this viewer waits for its acknowledgement.
   std::optional<Clock::time_point> unacknowledged_since(const std::string& viewer) const;
   /// The frame to send to this viewer now, if any.
   std::optional<stream::OutgoingFrame> take(const std::string& viewer);
 
   bool empty() const;
   bool has(const std::string& viewer) const;
-  /// Whether anybody but `viewer` is here who does not only watch and has said hello.
+  /// Whether there is another viewer than `viewer` that is not read-only and has said hello.
   bool has_other_participant(const std::string& viewer) const;
-  /// Whether somebody could be sent a frame that is rendered now.
+  /// Whether any viewer could be sent a frame that is rendered now.
   bool can_accept_frame() const;
-  /// Whether somebody receives pictures at all.
+  /// Whether any viewer is started and not paused.
   bool has_active_viewer() const;
-  /// Until when nobody may have another frame only because of its rate limit.
+  /// When the next viewer may be sent a frame again that only its rate limit holds back.
   std::optional<Clock::time_point> next_send() const;
-  /// Tells those whose turn has come about waiting frames.
+  /// Announces queued frames to viewers that may be sent them now.
   void announce_due_frames();
-  /// Newcomers get no picture until another is published.
+  /// New viewers get no frame until another is published.
   void discard_latest();
-  /// Whether somebody could be sent the picture of this number, and was not yet. Numbers grow.
+  /// Whether a viewer could be sent the frame of this number, and was not yet. Numbers increase.
   bool needs_frame(std::uint64_t number) const;
-  /// How to encode the picture of this number, which has so many pixels, for those who await it.
-  EncodingPlan plan(std::uint64_t number, Purpose purpose, std::uint64_t pixels);
-  /// Hands out the encodings of the picture that the last plan was for.
-  void publish(std::uint64_t number, Purpose purpose, std::vector<stream::SharedFrame> frames);
-  /// To subscribers whose turn it is; completes `stats` with what concerns each of them. A finished
-  /// picture is always told about.
+  /// How to encode the frame of this number, which has so many pixels, for viewers that need it.
+  EncodingPlan plan(std::uint64_t number, FramePurpose purpose, std::uint64_t pixels);
+  /// Distributes the encodings of the frame that the last plan was for.
+  void publish(std::uint64_t number, FramePurpose purpose, std::vector<stream::SharedFrame> frames);
+  /// Sends `stats`, completed for each viewer, to subscribers whose interval has passed; the stats
+  /// of a final frame to all subscribers.
   void publish_stats(protocol::StatsFrame stats);
 
   void send_all(std::string_view text, std::string_view key);
@@ -130,12 +128,12 @@ class ViewerSet {
     stream::ViewerPacer pacer;
     ViewerStream stream;
     bool started = false;
-    bool discontinuous = false;  // its next frame has nothing in common with the last
-    std::uint64_t cuts = 0;      // of the last frame that it took
-    std::uint64_t offered = 0;   // number of the newest picture that it was offered or cannot have
-    std::uint64_t planned = 0;   // number of the newest picture that was encoded for it
-    stream::EncodingVariant variant;  // of the pictures that it gets at present
-    stream::EncodingVariant moving;   // of those that it gets while something moves
+    bool discontinuous = false;         // its next frame does not continue the last one
+    std::uint64_t discontinuities = 0;  // of the last frame that it took
+    std::uint64_t offered = 0;  // number of the newest frame that it was offered or cannot have
+    std::uint64_t planned = 0;  // number of the newest frame that was encoded for it
+    stream::EncodingVariant variant;  // of the frames that it gets at present
+    stream::EncodingVariant moving;   // of those that it gets while the image changes
     std::uint64_t last_bytes = 0;     // of the newest frame that it was offered
     std::uint32_t last_encode_us = 0;
     std::chrono::milliseconds stats_interval{0};
@@ -147,14 +145,14 @@ class ViewerSet {
   protocol::Result<void> check_capacity() const;
   protocol::Result<void> accept(Viewers::node_type& viewer);
   bool may_change_locked(const std::string& viewer) const;
-  std::vector<protocol::ViewerInfo> participants_locked(const std::string& you) const;
+  std::vector<protocol::ViewerInfo> describe_participants(const std::string& you) const;
   protocol::Result<Viewer*> find(const std::string& viewer);
   void offer_latest(Viewer& viewer);
   static void offer(Viewer& viewer, const stream::SharedFrame& frame);
-  bool needs_frame(const Viewer& viewer, std::uint64_t number, Clock::time_point now) const;
-  stream::EncodingVariant wish(Viewer& viewer, Purpose purpose) const;
-  static stream::SharedFrame suited(const Viewer& viewer, Purpose purpose,
-                                    const std::vector<stream::SharedFrame>& frames);
+  bool viewer_needs_frame(const Viewer& viewer, std::uint64_t number, Clock::time_point now) const;
+  stream::EncodingVariant requested_variant(Viewer& viewer, FramePurpose purpose) const;
+  static stream::SharedFrame find_encoding(const Viewer& viewer, FramePurpose purpose,
+                                           const std::vector<stream::SharedFrame>& frames);
   static void announce(const Viewer& viewer);
 
   const std::size_t max_viewers_;
@@ -166,8 +164,8 @@ class ViewerSet {
   Control control_;
   std::vector<stream::SharedFrame> latest_;
   std::uint64_t latest_number_ = 0;
-  Purpose latest_purpose_ = Purpose::interactive;
-  std::uint64_t pixels_ = 0;  // of the newest picture
+  FramePurpose latest_purpose_ = FramePurpose::interactive;
+  std::uint64_t pixels_ = 0;  // of the newest frame
   stream::PacerTotals departed_;
 };
 

@@ -4,7 +4,7 @@
 #include "protocol/json/jsonrpc.hpp"
 #include "session/viewers/viewer_set.hpp"
 
-// Who is in a session: coming, going, and who has control.
+// Participants of a session and control.
 
 namespace heliograph::session {
 
@@ -28,46 +28,46 @@ Result<void> ViewerSet::check_capacity() const {
                                std::to_string(max_viewers_) + " viewers");
 }
 
-Result<void> ViewerSet::move_to(const std::string& viewer, ViewerSet& there) {
-  Viewers::node_type leaving;
+Result<void> ViewerSet::move_to(const std::string& viewer, ViewerSet& other) {
+  Viewers::node_type moved;
   Control control_before;
   {
     const std::lock_guard lock(mutex_);
-    leaving = viewers_.extract(viewer);
+    moved = viewers_.extract(viewer);
     control_before = control_;
-    control_.left(viewer);
+    control_.on_viewer_left(viewer);
   }
-  const Result<void> taken = there.accept(leaving);
-  if (taken) return {};
+  const Result<void> accepted = other.accept(moved);
+  if (accepted) return {};
   const std::lock_guard lock(mutex_);
-  viewers_.insert(std::move(leaving));
+  viewers_.insert(std::move(moved));
   control_ = control_before;
-  return taken;
+  return accepted;
 }
 
-/// Leaves `viewer` as it is when there is no room.
+/// Leaves `viewer` as it is when the session's maximum number of viewers is reached.
 Result<void> ViewerSet::accept(Viewers::node_type& viewer) {
   const std::lock_guard lock(mutex_);
   if (const Result<void> capacity = check_capacity(); !capacity) return capacity;
   if (viewer.empty()) return {};
-  Viewer& it = viewers_.insert(std::move(viewer)).position->second;
-  it.pacer.drop_pending();
-  it.discontinuous = true;
-  it.offered = 0;
-  it.planned = 0;
-  it.arrival = ++arrivals_;
-  if (it.started) offer_latest(it);
+  Viewer& accepted = viewers_.insert(std::move(viewer)).position->second;
+  accepted.pacer.drop_pending();
+  accepted.discontinuous = true;
+  accepted.offered = 0;
+  accepted.planned = 0;
+  accepted.arrival = ++arrivals_;
+  if (accepted.started) offer_latest(accepted);
   on_capacity_.notify();
   return {};
 }
 
-std::vector<std::string> ViewerSet::disconnect_all(const std::string& why) {
+std::vector<std::string> ViewerSet::disconnect_all(const std::string& reason) {
   const std::lock_guard lock(mutex_);
   std::vector<std::string> ids;
   for (const auto& [id, viewer] : viewers_) {
     ids.push_back(id);
     departed_ += viewer.pacer.totals();
-    if (const auto link = viewer.link.lock()) link->disconnect(why);
+    if (const auto link = viewer.link.lock()) link->disconnect(reason);
   }
   viewers_.clear();
   return ids;
@@ -79,7 +79,7 @@ void ViewerSet::leave(const std::string& viewer) {
   if (found == viewers_.end()) return;
   departed_ += found->second.pacer.totals();
   viewers_.erase(found);
-  control_.left(viewer);
+  control_.on_viewer_left(viewer);
 }
 
 bool ViewerSet::has_other_participant(const std::string& viewer) const {
@@ -126,28 +126,28 @@ bool ViewerSet::control_is_free() const {
 
 std::vector<protocol::ViewerInfo> ViewerSet::participants(const std::string& you) const {
   const std::lock_guard lock(mutex_);
-  return participants_locked(you);
+  return describe_participants(you);
 }
 
-std::vector<protocol::ViewerInfo> ViewerSet::participants_locked(const std::string& you) const {
+std::vector<protocol::ViewerInfo> ViewerSet::describe_participants(const std::string& you) const {
   std::map<std::uint64_t, protocol::ViewerInfo> by_arrival;
   for (const auto& [id, viewer] : viewers_) {
     by_arrival[viewer.arrival] = {
         .viewer = id, .name = viewer.name, .control = may_change_locked(id), .you = id == you};
   }
-  std::vector<protocol::ViewerInfo> people;
-  for (auto& [arrival, person] : by_arrival) people.push_back(std::move(person));
-  return people;
+  std::vector<protocol::ViewerInfo> participants;
+  for (auto& [arrival, info] : by_arrival) participants.push_back(std::move(info));
+  return participants;
 }
 
 void ViewerSet::announce_participants(protocol::SessionInfo session) {
   const std::lock_guard lock(mutex_);
   session.control = control_.mode();
   for (const auto& [id, viewer] : viewers_) {
-    // Who has not said hello yet may not expect messages.
+    // Before hello a client does not expect messages.
     const auto link = viewer.started ? viewer.link.lock() : nullptr;
     if (!link) continue;
-    session.viewers = participants_locked(id);
+    session.viewers = describe_participants(id);
     link->send(protocol::make_notification<protocol::notifications::session_changed>(session),
                "session.changed");
   }

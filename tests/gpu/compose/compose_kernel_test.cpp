@@ -10,7 +10,7 @@ namespace {
 struct View {
   VkExtent2D extent{77, 45};
   bool denoised = true;
-  bool mirrors = true;
+  bool reflections = true;
   bool orthographic = false;
   protocol::Settings settings;
 };
@@ -48,8 +48,8 @@ class KernelComparison {
               .settings = view.settings}) {
     RandomFrame random(rig_);
     const render::GBuffer gbuffer = random.gbuffer();
-    render::RawSignals raw{random.bits("shadow"), random.bits("ambient"), {}};
-    if (view.mirrors) raw.specular = random.four("specular", glm::vec4(0), glm::vec4(3));
+    render::NoisySignals raw{random.bits("shadow"), random.bits("ambient"), {}};
+    if (view.reflections) raw.specular = random.four("specular", glm::vec4(0), glm::vec4(3));
     std::optional<render::DenoisedSignals> denoised;
     if (view.denoised) {
       denoised = {random.four("visibility", glm::vec4(0), glm::vec4(1)), raw.specular};
@@ -65,9 +65,7 @@ class KernelComparison {
 
   FrameRig& rig() { return rig_; }
   ErrorStatistics hdr() { return compare(rig_.read(shader_.hdr), rig_.read(host_.hdr)); }
-  ErrorStatistics hdr_raw() {
-    return compare(rig_.read(shader_.hdr_raw), rig_.read(host_.hdr_raw));
-  }
+  ErrorStatistics hdr_noisy() { return compare(rig_.read(shader_.noisy), rig_.read(host_.noisy)); }
 
  private:
   FrameRig rig_;
@@ -84,7 +82,7 @@ class ComposeKernel : public testing::Test {
 void expect_same(const View& view, const std::string& which) {
   KernelComparison comparison(view);
   comparison.rig().run();
-  for (const ErrorStatistics& result : {comparison.hdr(), comparison.hdr_raw()}) {
+  for (const ErrorStatistics& result : {comparison.hdr(), comparison.hdr_noisy()}) {
     EXPECT_LT(result.mean, 2e-5) << which;
     EXPECT_LT(result.max, 5e-3) << which;
     EXPECT_GT(result.magnitude, 0.1) << "image is nearly black: " << which;
@@ -93,12 +91,13 @@ void expect_same(const View& view, const std::string& which) {
 
 TEST_F(ComposeKernel, MatchesShader) {
   for (const bool denoised : {true, false}) {
-    for (const bool mirrors : {true, false}) {
+    for (const bool reflections : {true, false}) {
       for (const bool orthographic : {true, false}) {
-        View view{.denoised = denoised, .mirrors = mirrors, .orthographic = orthographic};
-        view.settings.lighting.environment_specular = mirrors;
+        View view{.denoised = denoised, .reflections = reflections, .orthographic = orthographic};
+        view.settings.lighting.environment_specular = reflections;
         expect_same(view, std::string(denoised ? "denoised " : "raw ") +
-                              (mirrors ? "mirrors " : "") + (orthographic ? "orthographic" : ""));
+                              (reflections ? "reflections " : "") +
+                              (orthographic ? "orthographic" : ""));
       }
     }
   }

@@ -32,10 +32,10 @@ struct Inputs {
 };
 
 struct ComposedImages {
-  glm::vec3 hdr, hdr_raw;
+  glm::vec3 hdr, hdr_noisy;
 };
 
-/// What composition makes of a pixel in the middle, seen from (0, 0, 2) along -z.
+/// Composed radiance of the center pixel, seen from (0, 0, 2) along -z.
 ComposedImages compose_both(SceneBuilder& scene, const Inputs& in) {
   FrameRig rig(scene.build(), look({0, 0, 2}, {0, 0, 0}),
                {.extent = extent, .settings = in.settings});
@@ -47,7 +47,7 @@ ComposedImages compose_both(SceneBuilder& scene, const Inputs& in) {
     return rig.input(name, VK_FORMAT_R32G32B32A32_SFLOAT, std::vector(pixels, glm::vec4(value, 1)));
   };
   const auto background = colored("background", in.background);
-  render::RawSignals raw{flat("shadow", in.shadow), flat("ambient", in.ambient), {}};
+  render::NoisySignals raw{flat("shadow", in.shadow), flat("ambient", in.ambient), {}};
   if (in.specular) raw.specular = colored("specular", *in.specular);
   std::optional<render::DenoisedSignals> denoised;
   if (in.denoised) {
@@ -58,7 +58,7 @@ ComposedImages compose_both(SceneBuilder& scene, const Inputs& in) {
       render::compose(rig.plan(), rig.inputs(), gbuffer, raw, denoised, background);
   rig.run();
   return {glm::vec3(texel(rig.read(composed.hdr), 8, 8)),
-          glm::vec3(texel(rig.read(composed.hdr_raw), 8, 8))};
+          glm::vec3(texel(rig.read(composed.noisy), 8, 8))};
 }
 
 glm::vec3 compose(SceneBuilder& scene, const Inputs& in) {
@@ -77,14 +77,14 @@ TEST(Compose, SunOnDielectricPlaneIsAnalytic) {
     SceneBuilder scene;
     scene.add_sun({std::sin(angle), 0, -std::cos(angle)}, {4, 2, 1});
     Inputs in;
-    in.pixel.color = glm::vec3(0.25f);  // its root, one half, is off by half a code value
+    in.pixel.color = glm::vec3(0.25f);  // its root, 0.5, is not representable in 8 bits
     in.settings = only_direct();
     const double albedo = std::pow(128.0 / 255.0, 2.0);
     const double cosine = std::cos(angle);
     const double expected =
         4.0 * shade_light_reference(albedo, 0.0, 1.0, {0, 0, 1}, {std::sin(angle), 0, cosine});
     const glm::vec3 got = compose(scene, in);
-    // The pixel beside the middle sees the plane from almost straight ahead.
+    // The pixel next to the center sees the plane at almost normal incidence.
     EXPECT_NEAR(got.x, expected, 0.01 * expected) << degrees;
     EXPECT_NEAR(got.y, 0.5 * got.x, 1e-5);
     EXPECT_NEAR(got.x, 4.0 * cosine * albedo / std::numbers::pi, 0.12 * got.x) << "about Lambert";
@@ -133,14 +133,14 @@ TEST(Compose, TracedReflectionsReplacePrefilteredEnvironment) {
   in.pixel.color = glm::vec3(1.0f);
   in.specular = glm::vec3(3, 2, 1);
   const glm::vec3 metal = compose(scene, in);
-  EXPECT_NEAR(metal.x, 3.0f, 0.01f) << "a white metal gives back what it is given";
+  EXPECT_NEAR(metal.x, 3.0f, 0.01f) << "a white metal reflects the signal unchanged";
   EXPECT_NEAR(metal.z, 1.0f, 0.01f);
   in.ambient = 0.25f;
-  EXPECT_EQ(compose(scene, in), metal) << "rays know themselves what is hidden";
+  EXPECT_EQ(compose(scene, in), metal) << "ambient visibility must not scale traced reflections";
   in.settings.specular.max_roughness = 0.5f;
-  EXPECT_NEAR(compose(scene, in).x, 0.25f, 0.01f) << "rougher than rays are traced for";
+  EXPECT_NEAR(compose(scene, in).x, 0.25f, 0.01f) << "rougher than specular.max_roughness";
   in.pixel.roughness = 0.5f;
-  EXPECT_NEAR(compose(scene, in).x, 3.0f, 0.01f) << "not rougher";
+  EXPECT_NEAR(compose(scene, in).x, 3.0f, 0.01f) << "at specular.max_roughness";
   in.specular.reset();
   EXPECT_NEAR(compose(scene, in).x, 0.25f, 0.01f) << "the prefiltered environment";
 }
@@ -162,7 +162,7 @@ TEST(Compose, DenoisedSignalsMakeHdrAndNoisyOnesMakeSample) {
   in.denoised = Denoised{{0.5f, 0.75f, 0.0f}, glm::vec3(2.0f)};
   const ComposedImages both = compose_both(scene, in);
   EXPECT_EQ(both.hdr, filtered);
-  EXPECT_EQ(both.hdr_raw, raw);
+  EXPECT_EQ(both.hdr_noisy, raw);
   EXPECT_NE(raw, filtered);
 }
 

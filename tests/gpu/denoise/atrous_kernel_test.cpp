@@ -11,7 +11,7 @@
 namespace heliograph::test {
 namespace {
 
-using render::kernels::Signal;
+enum class Signal { visibility, specular };
 using Texels = std::vector<glm::vec4>;
 
 /// A guide with planes, edges, holes and various roughnesses, and a noisy signal.
@@ -58,22 +58,8 @@ class AtrousRig {
     signal_ = rig_.input("signal", four, field.signal);
     by_shader_ = rig_.plan().image("shader", four);
     by_host_ = rig_.plan().image("host", four);
-    const auto& programs = rig_.inputs().programs;
-    rig_.plan()
-        .pass("atrous", programs.compute(kind == Signal::visibility ? shaders::visibility_atrous
-                                                                    : shaders::specular_atrous))
-        .read(guide_)
-        .read(slope_)
-        .read(signal_)
-        .write(by_shader_)
-        .constants([this] { return constants_; })
-        .dispatch(extent);
-    rig_.plan()
-        .host("atrous.host", [this] { run_host(); })
-        .read(guide_)
-        .read(slope_)
-        .read(signal_)
-        .write(by_host_);
+    declare("atrous", by_shader_, false);
+    declare("atrous.host", by_host_, true);
     rig_.set_view(camera(orthographic), 5);
   }
 
@@ -122,10 +108,18 @@ class AtrousRig {
     if (orthographic) made.orthographic_height = 4.0f;
     return made;
   }
-  void run_host() {
-    const auto view = [&](gpu::ImageRef image) { return rig_.plan().get(image).host(); };
-    render::kernels::atrous(kind_, constants_, rig_.constants(),
-                            {view(guide_), view(slope_), view(signal_), view(by_host_)});
+  void declare(const std::string& name, gpu::ImageRef filtered, bool host) {
+    const bool visibility = kind_ == Signal::visibility;
+    const auto& shader = visibility ? shaders::visibility_atrous : shaders::specular_atrous;
+    rig_.plan().use_host_kernels(host);
+    rig_.plan()
+        .pass(name, rig_.inputs().program(shader))
+        .bind<render::kernels::AtrousBindings>(
+            {.guide = guide_, .depth_slope = slope_, .signal = signal_, .filtered = filtered})
+        .constants([this] { return constants_; })
+        .dispatch(rig_.plan().extent())
+        .host(visibility ? render::kernels::visibility_atrous : render::kernels::specular_atrous,
+              rig_.constants());
   }
 
   Signal kind_;

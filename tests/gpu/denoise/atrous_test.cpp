@@ -145,13 +145,16 @@ struct Filter {
       return made;
     };
     const auto& shader = specular ? shaders::specular_atrous : shaders::visibility_atrous;
-    const auto& program = rig.inputs().programs.compute(shader);
-    render::FrameInputs inputs = rig.inputs();
-    inputs.host_kernels = false;  // atrous_kernel_test.cpp compares the host kernel
-    const auto kind =
-        specular ? render::kernels::Signal::specular : render::kernels::Signal::visibility;
-    filtered = render::blur(rig.plan(), inputs, gbuffer, guide,
-                            {"test", program, iterations, kernel, constants, kind}, signal, {});
+    rig.plan().use_host_kernels(false);  // atrous_kernel_test.cpp compares the host kernel
+    filtered = render::blur(rig.plan(), rig.inputs(), gbuffer, guide,
+                            {.name = "test",
+                             .buffers = render::specular_atrous_buffers,
+                             .program = rig.inputs().program(shader),
+                             .kernel = render::kernels::specular_atrous,
+                             .iterations = iterations,
+                             .shape = kernel,
+                             .constants = constants},
+                            signal, {});
   }
   render::FloatImage run() {
     rig.run();

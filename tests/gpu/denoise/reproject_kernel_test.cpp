@@ -87,7 +87,7 @@ TEST_F(ReprojectKernel, MatchesShaderAtAnySize) {
 TEST_F(ReprojectKernel, IsFasterThanShader) {
   KernelComparison comparison({640, 360});
   comparison.rig().set_view(camera(false), 1);
-  expect_faster(comparison.rig(), {"denoise.reproject"}, 2.0);
+  expect_faster(comparison.rig(), {"reproject"}, 2.0);
 }
 
 }  // namespace

@@ -72,8 +72,9 @@ class KernelComparison {
   std::vector<ErrorStatistics> statistics() {
     std::vector<ErrorStatistics> all;
     for (const auto& signals : {visibility_, specular_}) {
-      for (const auto image : {&render::Integrated::signal, &render::Integrated::moments,
-                               &render::Integrated::history}) {
+      for (const auto image :
+           {&render::AccumulatedSignal::signal, &render::AccumulatedSignal::moments,
+            &render::AccumulatedSignal::history_length}) {
         all.push_back(compare(rig_.read(signals[0].*image), rig_.read(signals[1].*image)));
       }
     }
@@ -85,7 +86,7 @@ class KernelComparison {
   FrameRig rig_;
   RandomFrame random_;
   gpu::ImageRef raw_visibility_, raw_specular_;
-  std::vector<render::Integrated> visibility_, specular_;
+  std::vector<render::AccumulatedSignal> visibility_, specular_;
   std::uint32_t frames_ = 0;
 };
 
@@ -146,7 +147,7 @@ TEST_F(TemporalKernel, MatchesShadersForEverySetting) {
   view.settings.specular_temporal.rectification_scale = 0.5f;
   expect_same_over_frames(view, "other windows");
 
-  view = {.motion = {.things = true}};
+  view = {.motion = {.geometry_moved = true}};
   view.settings.shadow_temporal.rectification = view.settings.specular_temporal.rectification =
       protocol::Rectification::gradient;
   expect_same_over_frames(view, "gradients");

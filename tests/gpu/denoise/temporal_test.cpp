@@ -173,7 +173,7 @@ class TemporalAccumulation : public testing::Test {
     const render::GBuffer gbuffer = render::rasterize_gbuffer(rig_->plan(), rig_->inputs());
     const render::Guide guide = render::reproject(rig_->plan(), rig_->inputs(), gbuffer);
     raw_ = rig_->input("raw", VK_FORMAT_R32G32B32A32_SFLOAT, std::vector(pixels, glm::vec4(0.0f)));
-    integrated_ =
+    accumulated_ =
         specular
             ? render::accumulate_specular(rig_->plan(), rig_->inputs(), gbuffer, guide, raw_, false)
             : render::accumulate_visibility(rig_->plan(), rig_->inputs(), guide, raw_, false);
@@ -186,8 +186,8 @@ class TemporalAccumulation : public testing::Test {
     rig_->run();
   }
   void frame(const glm::vec4& value) { frame(std::vector(pixels, value)); }
-  glm::vec4 signal() { return texel(rig_->read(integrated_.signal), 20, 16); }
-  glm::vec4 history() { return texel(rig_->read(integrated_.history), 20, 16); }
+  glm::vec4 signal() { return texel(rig_->read(accumulated_.signal), 20, 16); }
+  glm::vec4 history_length() { return texel(rig_->read(accumulated_.history_length), 20, 16); }
 
   static protocol::Settings plain_settings() {
     protocol::Settings settings;
@@ -207,7 +207,7 @@ class TemporalAccumulation : public testing::Test {
   std::optional<PostAndWall> scene_;
   std::optional<FrameRig> rig_;
   gpu::ImageRef raw_;
-  render::Integrated integrated_;
+  render::AccumulatedSignal accumulated_;
   bool drawn_ = false;
 };
 
@@ -220,7 +220,7 @@ TEST_F(TemporalAccumulation, IsMeanWhileHistoryGrows) {
     frame(glm::vec4(value, 1.0f - value, 0, 0));
     EXPECT_NEAR(signal().x, sum / i, 1e-5) << i;
     EXPECT_NEAR(signal().y, 1.0 - sum / i, 1e-5) << i;
-    EXPECT_NEAR(history().x, i, 1e-3);
+    EXPECT_NEAR(history_length().x, i, 1e-3);
   }
 }
 
@@ -234,7 +234,7 @@ TEST_F(TemporalAccumulation, HistoryLengthIsInSecondsNotFrames) {
     rig_->set_seconds(1.0f / rate);
     const int half_a_second = static_cast<int>(0.5f * rate);
     for (int i = 0; i < 2 * half_a_second; ++i) frame(glm::vec4(0.0f));
-    EXPECT_NEAR(history().x, half_a_second, 0.1);
+    EXPECT_NEAR(history_length().x, half_a_second, 0.1);
     for (int i = 0; i < half_a_second; ++i) frame(glm::vec4(1.0f));
     EXPECT_NEAR(signal().x, 1.0 - std::exp(-1.0), 0.03) << "same elapsed time at any frame rate";
   }
@@ -246,7 +246,7 @@ TEST_F(TemporalAccumulation, MovingLightsShortenShadowHistoryNotAmbient) {
   rig_->set_scene_motion({.lights = 0.1f});
   for (int i = 0; i < 4; ++i) frame(glm::vec4(0.0f));
   const double frames = render::frames_under_motion(0.1f);
-  EXPECT_NEAR(history().x, frames, 1e-3);
+  EXPECT_NEAR(history_length().x, frames, 1e-3);
   EXPECT_NEAR(signal().x, std::pow(1.0 - 1.0 / frames, 4), 1e-3);
   EXPECT_NEAR(signal().y, std::pow(31.0 / 32.0, 4), 1e-3);
 }
@@ -257,7 +257,7 @@ TEST_F(TemporalAccumulation, RotatingEnvironmentShortensSpecularHistory) {
   rig_->set_scene_motion({.environment = glm::radians(10.0f)});
   frame(glm::vec4(0.0f));
   const float lobe = 4.0f * std::atan(1.0f);  // the wall is rough
-  EXPECT_NEAR(history().x, render::frames_under_motion(glm::radians(10.0f) / lobe), 1e-2);
+  EXPECT_NEAR(history_length().x, render::frames_under_motion(glm::radians(10.0f) / lobe), 1e-2);
 }
 
 TEST(SceneMotion, LightMotionIsRelativeToAngularSizeAndIntensity) {
@@ -300,7 +300,7 @@ TEST_F(TemporalAccumulation, HistoryLengthIsUnlimitedForStaticView) {
     rig_->set_accumulated(i);
     frame(glm::vec4(static_cast<float>(i % 2)));
   }
-  EXPECT_NEAR(history().x, 60.0f, 0.01f);
+  EXPECT_NEAR(history_length().x, 60.0f, 0.01f);
   EXPECT_NEAR(signal().x, 0.5f, 1e-4f);
 }
 
@@ -311,10 +311,10 @@ TEST_F(TemporalAccumulation, HdrStepConvergesWithoutStuckMoments) {
   start(settings, true);
   for (int i = 0; i < 120; ++i) frame(glm::vec4(5000, 5000, 5000, 1));
   EXPECT_NEAR(signal().x, 5000.0f, 1.0f);
-  EXPECT_NEAR(history().w, 5000.0f * 5000.0f, 1e4f) << "exceeds half float range";
+  EXPECT_NEAR(history_length().w, 5000.0f * 5000.0f, 1e4f) << "exceeds half float range";
   for (int i = 0; i < 1200; ++i) frame(glm::vec4(0.01f, 0.01f, 0.01f, 1));
   EXPECT_NEAR(signal().x, 0.01f + 5000.0 * std::pow(0.99, 1200), 0.02f);
-  EXPECT_NEAR(history().w, 1e-4f, 1e-4f);
+  EXPECT_NEAR(history_length().w, 1e-4f, 1e-4f);
 }
 
 TEST_F(TemporalAccumulation, NaNsAndInfinitiesBecomeBlack) {
@@ -325,7 +325,7 @@ TEST_F(TemporalAccumulation, NaNsAndInfinitiesBecomeBlack) {
   bad[16 * width + 21] = glm::vec4(std::numeric_limits<float>::infinity());
   frame(bad);
   for (int i = 0; i < 3; ++i) frame(glm::vec4(1.0f));
-  const render::FloatImage got = rig_->read(integrated_.signal);
+  const render::FloatImage got = rig_->read(accumulated_.signal);
   for (const float value : got.rgba) EXPECT_TRUE(std::isfinite(value));
   EXPECT_NEAR(signal().x, 0.8f, 1e-5f) << "counts as one black sample";
 }
@@ -341,7 +341,7 @@ TEST_F(TemporalAccumulation, RestartsWhereHistoryIsInvalid) {
   rig_->set_settings(off);
   frame(glm::vec4(0.25f));
   EXPECT_EQ(signal().x, 0.25f);
-  EXPECT_EQ(history().x, 1.0f);
+  EXPECT_EQ(history_length().x, 1.0f);
 }
 
 class Rectification : public TemporalAccumulation,
@@ -361,7 +361,7 @@ TEST_P(Rectification, SwitchedOffLightFadesFaster) {
     for_both(settings, [](auto& s) { s.rectification = GetParam(); });
     start(settings, specular);
     for (int i = 0; i < 40; ++i) frame(glm::vec4(1.0f));
-    rig_->set_scene_motion({.things = true});
+    rig_->set_scene_motion({.geometry_moved = true});
     for (int i = 0; i < 8; ++i) frame(glm::vec4(0.0f));
     EXPECT_LT(signal().x, 0.3f) << specular;  // without: (31/32)^8 = 0.78
   }
@@ -375,7 +375,7 @@ TEST_P(Rectification, UniformSignalIsUnchanged) {
     start(settings, specular);
     for (int i = 0; i < 12; ++i) frame(glm::vec4(0.5f));
     EXPECT_NEAR(signal().x, 0.5f, 1e-3f) << specular;
-    EXPECT_NEAR(history().x, 12.0f, 0.1f) << specular;
+    EXPECT_NEAR(history_length().x, 12.0f, 0.1f) << specular;
   }
 }
 

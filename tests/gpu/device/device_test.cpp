@@ -82,7 +82,7 @@ TEST(DeviceLoss, LeaksNoVulkanObjects) {
   const char* const wanted = std::getenv("HELIOGRAPH_TEST_DEVICE");
   const Instance instance(true);
   {
-    const Device device(instance, {.wanted = wanted ? wanted : "", .cache_folder = {}});
+    const Device device(instance, {.name_part = wanted ? wanted : "", .cache_folder = {}});
     const InjectedDeviceLoss loss;
     EXPECT_THROW(Image(device, {.name = "image", .extent = {8, 8}, .format = VK_FORMAT_R8_UNORM}),
                  DeviceLost);

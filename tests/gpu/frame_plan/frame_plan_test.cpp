@@ -13,6 +13,28 @@ namespace {
 
 constexpr VkFormat format = VK_FORMAT_R32_SFLOAT;
 
+/// Of add.comp.
+template <class Stage>
+struct AddBindings {
+  Read<Stage> from;
+  Write<Stage> to;
+};
+template <class Stage>
+struct OtherBindings {
+  Read<Stage> from;
+  Write<Stage> to;
+};
+using AddPass = HostPass<AddBindings, float>;
+
+void add_on_host(const AddPass& pass) {
+  for (int y = 0; y < pass.height; ++y) {
+    const auto row = static_cast<std::uint32_t>(y);
+    for (int x = 0; x < pass.width; ++x) {
+      pass.to.row<float>(row)[x] = pass.from.row<const float>(row)[x] + pass.constants;
+    }
+  }
+}
+
 class FramePlanTest : public testing::Test {
  protected:
   /// One pass `name`: to = from + amount.
@@ -184,18 +206,16 @@ TEST_F(FramePlanTest, RunsHostPassesOnMappedImagesBetweenDevicePasses) {
   for (const PassTiming& timing : plan_.timings()) EXPECT_GE(timing.milliseconds, 0.0f);
 }
 
-TEST_F(FramePlanTest, ListsEveryWrittenImageOnceWithItsDescription) {
+TEST_F(FramePlanTest, ListsEveryWrittenImageOnce) {
   const auto a = image("a"), b = image("b");
   const History history = plan_.history("history", format);
-  add("to b", a, b).describe("What b is.");
+  add("to b", a, b);
   add("to b again", a, b);
   add("to history", b, history.current);
   plan_.compile();
   ASSERT_EQ(plan_.views().size(), 2u);
   EXPECT_EQ(plan_.views()[0].name, "b");
-  EXPECT_EQ(plan_.views()[0].description, "What b is.");
   EXPECT_EQ(plan_.views()[1].name, "history");
-  EXPECT_NE(plan_.views()[1].description.find("to history"), std::string::npos);
 }
 
 TEST_F(FramePlanTest, ErrorNamesWrongFormat) {
@@ -248,6 +268,84 @@ TEST_F(FramePlanTest, RejectsExecuteBeforeAndDeclarationsAfterCompile) {
   EXPECT_THROW(plan_.execute(), GpuError);
   plan_.compile();
   EXPECT_THROW(plan_.image("late", format), GpuError);
+}
+
+TEST_F(FramePlanTest, BindingListFollowsTheShadersBindings) {
+  const auto a = image("a"), b = image("b");
+  plan_.pass("listed", program_)
+      .bind<AddBindings>({.from = a, .to = b})
+      .constants(2.0f)
+      .dispatch(plan_.extent());
+  plan_.compile();
+  plan_.execute();
+  EXPECT_EQ(value(b), 2.0f);
+}
+
+class HostKernels : public FramePlanTest {
+ protected:
+  void SetUp() override {
+    if (!device_.is_cpu()) GTEST_SKIP() << "host kernels run on CPU devices only";
+    plan_.use_host_kernels(true);
+  }
+  PassBuilder add_listed(const std::string& name, ImageRef from, ImageRef to) {
+    PassBuilder pass = plan_.pass(name, [this]() -> const ComputeProgram& {
+      ++programs_made_;
+      return program_;
+    });
+    pass.bind<AddBindings>({.from = from, .to = to}).constants(2.0f).dispatch(plan_.extent());
+    return pass;
+  }
+  int programs_made_ = 0;
+};
+
+TEST_F(HostKernels, ReplaceTheShaderWithoutMakingIt) {
+  const auto a = image("a"), b = image("b"), c = image("c");
+  add_listed("host", a, b).host(add_on_host);
+  plan_.use_host_kernels(false);
+  add_listed("shader", b, c).host(add_on_host);
+  plan_.compile();
+  plan_.execute();
+  EXPECT_EQ(value(c), 4.0f);
+  EXPECT_TRUE(plan_.timings()[0].host);
+  EXPECT_FALSE(plan_.timings()[1].host);
+  EXPECT_EQ(programs_made_, 1);
+}
+
+TEST_F(HostKernels, RunOnlyWhereTheyKnowTheCase) {
+  const auto a = image("a"), b = image("b"), c = image("c"), d = image("d");
+  bool known = true;
+  add_listed("unknown", a, b).host(add_on_host).host_when(false);
+  add_listed("by frame", b, c).host(add_on_host).host_when([&known] { return known; });
+  add("last", c, d);
+  plan_.compile();
+  for (int frame = 0; frame < 4; ++frame) {
+    known = frame % 2 == 0;
+    plan_.execute();
+    EXPECT_EQ(value(d), 5.0f);
+    EXPECT_FALSE(plan_.timings()[0].host);
+    EXPECT_EQ(plan_.timings()[1].host, known);
+    EXPECT_GE(plan_.timings()[1].milliseconds, 0.0f);
+  }
+}
+
+TEST_F(HostKernels, MustTakeTheListAndConstantsOfTheirPass) {
+  const auto a = image("a"), b = image("b");
+  plan_.pass("other list", program_)
+      .bind<OtherBindings>({.from = a, .to = b})
+      .constants(2.0f)
+      .dispatch(plan_.extent())
+      .host(add_on_host);
+  expect_complaint({"other list", "another list of bindings"});
+}
+
+TEST_F(HostKernels, MustTakeTheSizeOfTheConstants) {
+  const auto a = image("a"), b = image("b");
+  plan_.pass("other constants", program_)
+      .bind<AddBindings>({.from = a, .to = b})
+      .constants(2.0)
+      .dispatch(plan_.extent())
+      .host(add_on_host);
+  expect_complaint({"other constants", "takes 4 bytes", "given 8"});
 }
 
 }  // namespace

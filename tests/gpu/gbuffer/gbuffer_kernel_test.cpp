@@ -125,7 +125,7 @@ TEST_F(GBufferKernel, MatchesShadersAtAnySize) {
 TEST_F(GBufferKernel, IsFasterThanShaders) {
   const auto scene = textured_scene();
   KernelComparison comparison(scene, view_of(*scene, false), {640, 360});
-  expect_faster(comparison.rig(), {"gbuffer.rays", "gbuffer.shade", "gbuffer.2.shade"}, 2.0);
+  expect_faster(comparison.rig(), {"gbuffer.rays", "gbuffer.hits", "gbuffer.2.hits"}, 2.0);
 }
 
 }  // namespace

@@ -294,10 +294,10 @@ TEST(MovingScene, RenderersAnimateSharedSceneIndependently) {
 
 TEST(MovingScene, LightsFollowAnimatedNodes) {
   const auto scene = rigid_scene();
-  scene::Light light;
-  light.device.type = shared::light_point;
-  light.node = 0;
-  scene->lights.push_back(light);
+  scene::Light attached;
+  attached.device.type = shared::light_point;
+  attached.node = 0;
+  scene->lights.push_back(attached);
   scene::Channel rise;
   rise.times = {0, 1};
   rise.values = {0, 0, 0, 0, 4, 0};

@@ -23,11 +23,11 @@ class PresentTest : public testing::Test {
     const auto image = rig.input("radiance", VK_FORMAT_R32G32B32A32_SFLOAT,
                                  std::vector(extent.width * extent.height, glm::vec4(radiance, 1)));
     const auto exposure = render::expose(rig.plan(), rig.inputs(), image, image);
-    const auto image = render::present(rig.plan(), rig.inputs(), exposure, image, image);
+    const auto presented = render::present(rig.plan(), rig.inputs(), exposure, image, image);
     rig.run();
-    const render::FloatImage first = rig.read(image);
+    const render::FloatImage first = rig.read(presented);
     rig.run();
-    EXPECT_EQ(first.rgba, rig.read(image).rgba) << "dither must not change between frames";
+    EXPECT_EQ(first.rgba, rig.read(presented).rgba) << "dither must not change between frames";
     return first;
   }
   static glm::dvec3 mean(const render::FloatImage& image) {

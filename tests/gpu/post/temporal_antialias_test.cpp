@@ -87,15 +87,15 @@ TEST_F(TemporalAntialiasTest, ColumnsEnteringTheFrameHaveNoHistory) {
   frame(shade(0));
   move({-3, 0});  // the camera pans right: three columns enter at the right edge
   for (int i = 1; i < 8; ++i) {
-    const Texels image = paint(shade(i));
-    const render::FloatImage image = frame(image);
+    const Texels input = paint(shade(i));
+    const render::FloatImage image = frame(input);
     double inside = 0.0;
     for (std::uint32_t y = 0; y < height; ++y) {
       for (std::uint32_t x = width - 3; x < width; ++x) {
-        ASSERT_EQ(texel(image, x, y), image[y * width + x]) << x << " " << y << " frame " << i;
+        ASSERT_EQ(texel(image, x, y), input[y * width + x]) << x << " " << y << " frame " << i;
       }
       for (std::uint32_t x = 8; x < width - 8; ++x) {
-        inside = std::max<double>(inside, std::abs(texel(image, x, y).x - image[y * width + x].x));
+        inside = std::max<double>(inside, std::abs(texel(image, x, y).x - input[y * width + x].x));
       }
     }
     // The pattern moves by whole pixels, so that the history is exact where it is valid.
@@ -162,14 +162,14 @@ TEST_F(TemporalAntialiasTest, EdgeUsesMotionOfNearestSurface) {
     motion.push_back(near ? glm::vec4(-2.0f / width, 0, 0, 2) : glm::vec4(0, 0, 0, 9));
   }
   rig_.fill(gbuffer_.motion, motion);
-  const auto image = [](float x, float) { return x < 24 ? glm::vec3(2.0f) : glm::vec3(0.1f * x); };
-  frame(image);
-  const render::FloatImage image = frame(image);
+  const auto input = [](float x, float) { return x < 24 ? glm::vec3(2.0f) : glm::vec3(0.1f * x); };
+  frame(input);
+  const render::FloatImage image = frame(input);
   // Pixel 24 is far, beside the edge: with the near motion its history is column 22, darker as far
   // as the neighborhood box permits; with its own motion it would not change.
-  const float own = image(24.5f, 0).x;
+  const float own = input(24.5f, 0).x;
   EXPECT_LT(texel(image, 24, 10).x, own - 0.1f);
-  EXPECT_NEAR(texel(image, 30, 10).x, image(30.5f, 0).x, 0.02f);
+  EXPECT_NEAR(texel(image, 30, 10).x, input(30.5f, 0).x, 0.02f);
 }
 
 TEST_F(TemporalAntialiasTest, BicubicHistoryStaysPositiveAtHardEdges) {

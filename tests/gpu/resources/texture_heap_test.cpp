@@ -61,7 +61,7 @@ std::vector<glm::vec4> sampled(const scene::Image& from, const scene::Sampler& s
   const auto count = static_cast<std::uint32_t>(inputs.size());
   gpu::FramePlan plan(device(), {1, 1});
   const auto places =
-      plan.buffer("places", count * sizeof(glm::vec4), storage, gpu::Memory::upload);
+      plan.buffer("coordinates", count * sizeof(glm::vec4), storage, gpu::Memory::upload);
   const auto colors =
       plan.buffer("colors", count * sizeof(glm::vec4), storage, gpu::Memory::readback);
   plan.pass("sample", program)

@@ -97,10 +97,9 @@ gpu::ImageRef RandomFrame::bits(const std::string& name) {
   return rig_.input(name, VK_FORMAT_R32_SFLOAT, texels);
 }
 
-render::FrameInputs with_host_kernels(const FrameRig& rig, bool host) {
-  render::FrameInputs made = rig.inputs();
-  made.host_kernels = host;
-  return made;
+const render::FrameInputs& with_host_kernels(FrameRig& rig, bool host) {
+  rig.plan().use_host_kernels(host);
+  return rig.inputs();
 }
 
 ErrorStatistics compare(const render::FloatImage& expected, const render::FloatImage& actual) {

@@ -33,7 +33,7 @@ class RandomFrame {
 };
 
 /// The rig's inputs with host kernels on or off.
-render::FrameInputs with_host_kernels(const FrameRig& rig, bool host);
+const render::FrameInputs& with_host_kernels(FrameRig& rig, bool host);
 
 struct ErrorStatistics {
   double mean;       // of |expected - actual| / (1 + |expected|)

@@ -136,7 +136,7 @@ class TracedScene {
 
 inline gpu::DeviceOptions device_options() {
   const char* device = std::getenv("HELIOGRAPH_TEST_DEVICE");
-  return {.wanted = device ? device : "", .cache_folder = {}};
+  return {.name_part = device ? device : "", .cache_folder = {}};
 }
 
 /// The test device with every tracer that it supports.

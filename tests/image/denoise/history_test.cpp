@@ -61,7 +61,7 @@ TEST(History, StaticViewMapsPixelToItselfDespiteJitter) {
     rig.renderer.render();
     for (int i = 0; i < 4; ++i) {
       rig.renderer.render();
-      const render::FloatImage map = rig.capture("denoise.reprojection");
+      const render::FloatImage map = rig.capture("reproject.motion");
       for (std::uint32_t y = 0; y < map.height; ++y) {
         for (std::uint32_t x = 0; x < map.width; ++x) {
           const float* found = &map.rgba[(std::size_t{y} * map.width + x) * 4];
@@ -81,7 +81,7 @@ TEST(History, NormalsAreBitExactInHistory) {
   const render::FloatImage first = rig.capture("gbuffer.normals");
   rig.renderer.render();
   EXPECT_EQ(first.rgba, rig.capture("gbuffer.normals").rgba);
-  const render::FloatImage map = rig.capture("denoise.reprojection");
+  const render::FloatImage map = rig.capture("reproject.motion");
   for (std::size_t i = 3; i < map.rgba.size(); i += 4) ASSERT_EQ(map.rgba[i], 0.0f) << i / 4;
 }
 
@@ -105,8 +105,8 @@ TEST(History, DisoccludedColumnsHaveNoHistory) {
     const float step = columns / pixels_per_metre(54);
     float x = 0.0f;
     for (int i = 0; i < 6; ++i) rig.show(before_wall(x += step));
-    const render::FloatImage map = rig.capture("denoise.reprojection");
-    const render::FloatImage history = rig.capture("visibility.history");
+    const render::FloatImage map = rig.capture("reproject.motion");
+    const render::FloatImage history = rig.capture("visibility.history_length");
     for (std::uint32_t row = 0; row < map.height; ++row) {
       for (std::uint32_t column = 0; column < map.width; ++column) {
         const std::size_t at = (std::size_t{row} * map.width + column) * 4;
@@ -133,7 +133,7 @@ TEST(History, IsValidWhileCameraApproaches) {
   for (int i = 0; i < 6; ++i) {
     rig.show(before_wall(0.0f, wall_distance - 0.25f * static_cast<float>(i)));
   }
-  const render::FloatImage map = rig.capture("denoise.reprojection");
+  const render::FloatImage map = rig.capture("reproject.motion");
   for (std::size_t i = 3; i < map.rgba.size(); i += 4) ASSERT_EQ(map.rgba[i], 0.0f) << i / 4;
 }
 
@@ -157,7 +157,7 @@ TEST(History, LightingSwitchesResetHistory) {
     change(settings);
     rig.apply(settings);
     rig.renderer.render();
-    for (const char* signal : {"visibility.history", "specular.history"}) {
+    for (const char* signal : {"visibility.history_length", "specular.history_length"}) {
       const render::FloatImage history = rig.capture(signal);
       for (std::size_t i = 0; i < history.rgba.size(); i += 4) {
         ASSERT_LE(history.rgba[i], 1.0f) << signal << " after " << name;

@@ -86,7 +86,7 @@ TEST(Accumulation, CameraMoveResetsAccumulation) {
   moved.renderer.set_camera(look({-3, 1, 3}, {0, 0.5f, 0}));
   moved.accumulate(10);
   moved.renderer.set_camera(look({0.5f, 2, 4.5f}, {0, 0.5f, 0}));
-  moved.renderer.cut();
+  moved.renderer.invalidate_history();
   EXPECT_EQ(moved.accumulate(1).rgba, fresh.accumulate(1).rgba);
   moved.renderer.set_size(80, 45);
   moved.renderer.render();
@@ -127,7 +127,7 @@ TEST(Shadows, OnlyDarkenAndOnlyIfEnabled) {
   protocol::Settings settings;
   settings.shadows.enabled = false;
   rig.apply(settings);
-  rig.renderer.cut();  // same sample positions
+  rig.renderer.invalidate_history();  // same sample positions
   save_image("spheres_without_shadows", rig.accumulate(32));
   const render::FloatImage without = rig.capture("accumulated");
   EXPECT_LT(mean_luminance(with), 0.99 * mean_luminance(without));

@@ -2,6 +2,7 @@
 // after a device loss.
 #include <gtest/gtest.h>
 
+#include "render/api/renderer.hpp"
 #include "scenes/generator/scenes/paper_scenes.hpp"
 #include "tests/support/engine.hpp"
 #include "tests/support/generated_scene.hpp"
@@ -39,7 +40,7 @@ TEST_F(ReleasedImages, RenderSameImageAfterReleaseAndDeviceLoss) {
   const std::uint64_t decoded = scene->bytes();
   ASSERT_FALSE(scene->images.empty());
   const auto kept = engine().upload(std::make_shared<const scene::Scene>(*scene), white_);
-  const auto released = engine().upload(std::move(scene), white_);
+  const auto released = engine().upload_and_free_pixels(std::move(scene), white_);
   EXPECT_FALSE(render::scene_of(*kept)->images[0].pixels.empty());
   for (const scene::Image& image : render::scene_of(*released)->images) {
     EXPECT_TRUE(image.pixels.empty()) << image.name;

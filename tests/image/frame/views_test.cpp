@@ -68,8 +68,8 @@ TEST_F(Views, EveryBufferIsListedCapturedAndNotBlank) {
       differs |= view->rgba[i] != view->rgba[i % 4];
     }
     // A static scene has neither motion errors nor rectified shadows: these views are black.
-    const bool is_black =
-        buffer.name == "gbuffer.motion.error" || buffer.name == "visibility.history.moved";
+    const bool is_black = buffer.name == "gbuffer.motion.error" ||
+                          buffer.name == "visibility.history_length.rectified";
     EXPECT_EQ(differs, !is_black) << buffer.name;
   }
 }
@@ -155,8 +155,8 @@ TEST_F(Views, ShowKnownValuesInKnownColors) {
   EXPECT_EQ(shown("gbuffer.surface.metallic", x, y), (std::array{253, 231, 37})) << "1: yellow";
   EXPECT_EQ(shown("gbuffer.surface.metallic", x, height - 1), (std::array{68, 1, 84})) << "0";
   EXPECT_EQ(shown("gbuffer.normals", 20, height - 1), (std::array{128, 255, 128})) << "upward";
-  EXPECT_EQ(shown("gbuffer.normals", 20, 0), (std::array{0, 0, 0})) << "none";
-  EXPECT_EQ(shown("gbuffer.motion.view_z", 20, 0), (std::array{0, 0, 0})) << "none";
+  EXPECT_EQ(shown("gbuffer.normals", 20, 0), (std::array{0, 0, 0})) << "background";
+  EXPECT_EQ(shown("gbuffer.motion.view_z", 20, 0), (std::array{0, 0, 0})) << "background";
   const render::FloatImage depth = rig_.capture("gbuffer.motion.view_z");
   EXPECT_NEAR(rgb(depth, x, y).x, 4.0f, 0.7f) << "metres";
 }

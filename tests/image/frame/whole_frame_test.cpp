@@ -77,7 +77,7 @@ TEST(WholeFrame, IsScaleInvariant) {
       moving.renderer.set_camera(eye(size, i));
       frame = moving.renderer.render();
     }
-    return std::pair(frame, moving.capture("denoise.reprojection"));
+    return std::pair(frame, moving.capture("reproject.motion"));
   };
   const auto [expected, expected_map] = play(1.0f);
   for (const float size : {0.01f, 100.0f}) {
@@ -171,8 +171,8 @@ TEST(WholeFrame, NaNsNeitherSpreadNorPersist) {
   RendererRig rig(scene, make_environment(64, sky), camera(0), 96, 54);
   rig.apply(scaled_settings(1.0f));
   for (int i = 0; i < 4; ++i) rig.renderer.render();
-  for (const char* signal : {"visibility.denoised", "specular.denoised", "hdr", "hdr_raw",
-                             "antialiased", "accumulated"}) {
+  for (const char* signal : {"visibility.denoised", "specular.denoised", "hdr", "hdr.noisy",
+                             "temporal_antialias", "accumulated"}) {
     const render::FloatImage image = rig.capture(signal);
     for (const float value : image.rgba) ASSERT_TRUE(std::isfinite(value)) << signal;
   }

@@ -64,11 +64,11 @@ TEST(TemporalAntialias, JitteredStaticViewConvergesToGroundTruth) {
   Edges rig(camera);
   rig.accumulate(200);
   double resolved = 0.0, raw = 0.0, change = 0.0, raw_change = 0.0;
-  render::FloatImage before = rig.capture("antialiased"), raw_before = rig.capture("hdr");
+  render::FloatImage before = rig.capture("temporal_antialias"), raw_before = rig.capture("hdr");
   for (int i = 0; i < 16; ++i) {
     save_image("antialiased", rig.renderer.render());
     const render::FloatImage reference = rig.capture("accumulated");
-    const render::FloatImage now = rig.capture("antialiased"), sample = rig.capture("hdr");
+    const render::FloatImage now = rig.capture("temporal_antialias"), sample = rig.capture("hdr");
     resolved += mean_square(reference, now);
     raw += mean_square(reference, sample);
     change += mean_square(before, now);
@@ -88,9 +88,9 @@ TEST(TemporalAntialias, StaticViewWithoutJitterIsConstant) {
   settings.antialiasing.jitter = false;
   rig.apply(settings);
   rig.accumulate(30);
-  const render::FloatImage before = rig.capture("antialiased");
+  const render::FloatImage before = rig.capture("temporal_antialias");
   rig.renderer.render();
-  const double change = difference(before, rig.capture("antialiased")).maximum;
+  const double change = difference(before, rig.capture("temporal_antialias")).maximum;
   EXPECT_LT(change, 2e-3) << "history is offset from the frame";
 }
 
@@ -109,10 +109,11 @@ TEST(TemporalAntialias, MovingEdgesAreBetterThanOneSample) {
     Edges reference(look(eye, target));
     reference.accumulate(128);
     const render::FloatImage expected = reference.capture("accumulated");
-    const double resolved = mean_square(expected, moving.capture("antialiased"));
+    const double resolved = mean_square(expected, moving.capture("temporal_antialias"));
     const double raw = mean_square(expected, moving.capture("hdr"));
     EXPECT_LT(resolved, 0.75 * raw) << name << ": " << resolved << " " << raw;
-    save_image(std::string("antialias_") + name, *moving.renderer.capture_view("antialiased"));
+    save_image(std::string("antialias_") + name,
+               *moving.renderer.capture_view("temporal_antialias"));
   }
 }
 
@@ -168,14 +169,14 @@ TEST(AccumulationBlend, ZeroShowsMeanAndMotionShowsFrame) {
   rig.apply(settings);
   rig.accumulate(7);
   EXPECT_TRUE(shown_is("accumulated"));
-  EXPECT_FALSE(shown_is("antialiased"));
+  EXPECT_FALSE(shown_is("temporal_antialias"));
   settings.accumulation.blend_samples = 4;
   rig.apply(settings);
   for (int i = 0; i < 5; ++i) {
     rig.renderer.set_camera(look({0.05f * static_cast<float>(i), 0, 3}, {0, 0, 0}));
     rig.renderer.render();
   }
-  EXPECT_TRUE(shown_is("antialiased"));
+  EXPECT_TRUE(shown_is("temporal_antialias"));
   EXPECT_FALSE(shown_is("accumulated"));
 }
 

@@ -48,7 +48,7 @@ class RawSocket:
         self.socket.sendall(data)
 
     def upgrade(self, path="/ws", **headers):
-        """Asks for a WebSocket; gives the status and the text of the answer. Headers replace the
+        """Asks for a WebSocket; returns the status and the text of the answer. Headers replace the
         usual ones, None leaves one out."""
         fields = {"Host": f"{self.server.host}:{self.server.port}", "Upgrade": "websocket",
                   "Connection": "Upgrade", "Sec-WebSocket-Version": "13",

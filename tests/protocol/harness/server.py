@@ -117,7 +117,7 @@ class Server:
         return self.request("GET", path, headers=headers)
 
     def post_rpc(self, payload, session=None):
-        """Sends any JSON value, or bytes as they are; gives the status and the parsed answer."""
+        """Sends any JSON value, or bytes as they are; returns the status and the parsed answer."""
         path = "/rpc" + (f"?session={session}" if session else "")
         body = payload if isinstance(payload, bytes) else json.dumps(payload).encode()
         status, _, answer = self.request("POST", path, body,
@@ -149,13 +149,13 @@ class Server:
             time.sleep(0.05)
 
     def stop(self, number=signal.SIGTERM):
-        """Ends the server and gives its exit code."""
+        """Ends the server and returns its exit code."""
         if self.alive:
             self.process.send_signal(number)
         return self.wait()
 
     def wait(self):
-        """Waits for the server to end and gives its exit code; None if it has to be killed."""
+        """Waits for the server to end and returns its exit code; None if it has to be killed."""
         try:
             return self.process.wait(timeout=15)
         except subprocess.TimeoutExpired:

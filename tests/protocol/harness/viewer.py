@@ -39,7 +39,7 @@ class Frame:
 
 
 class Viewer:
-    """Use with `async with`. Acknowledges every frame unless told otherwise."""
+    """Use with `async with`. Acknowledges every frame by default."""
 
     def __init__(self, server, *, acknowledge=True, greet=True, session=None, name=None,
                  port=None):
@@ -75,7 +75,7 @@ class Viewer:
         await self._reader
 
     async def closed(self, timeout=15):
-        """Waits for the end of the connection; gives close code and reason."""
+        """Waits for the end of the connection; returns close code and reason."""
         await asyncio.wait_for(asyncio.shield(self._reader), timeout)
         return self.socket.close_code, self.socket.close_reason
 

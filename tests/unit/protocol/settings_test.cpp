@@ -151,7 +151,7 @@ INSTANTIATE_TEST_SUITE_P(
                             "must be a number"},
                     Refusal{"exposure.compensation=nan", "exposure.compensation", "finite"},
                     Refusal{"exposure.compensation=inf", "exposure.compensation", "finite"},
-                    Refusal{"accumulation.max_samples=2.5", "accumulation.max_samples", "whole"},
+                    Refusal{"accumulation.max_samples=2.5", "accumulation.max_samples", "integer"},
                     Refusal{"accumulation.max_samples=0", "accumulation.max_samples", "1 to 65536"},
                     Refusal{"sampling.seed=2147483648", "sampling.seed", "0 to 2147483647"},
                     Refusal{"shadows.enabled=maybe", "shadows.enabled", "true or false"},

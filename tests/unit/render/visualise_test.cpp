@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "render/views/debug_view.hpp"
+#include "render/frame/buffer_list.hpp"
 
 namespace heliograph::render {
 namespace {

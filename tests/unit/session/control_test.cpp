@@ -28,14 +28,14 @@ class ControlTest : public testing::Test {
   Control control_;
 };
 
-TEST_F(ControlTest, BelongsToEveryoneAtFirst) {
+TEST_F(ControlTest, AllViewersHaveItAtFirst) {
   EXPECT_EQ(holders(), "ab");
   EXPECT_TRUE(control_.may_change("")) << "a caller without a stream";
   EXPECT_EQ(ask("a", {.action = ControlAction::take}).error().code, ErrorCode::conflict);
   EXPECT_EQ(ask("a", {}).error().code, ErrorCode::invalid_params);
 }
 
-TEST_F(ControlTest, WhoAsksForOneBecomesIt) {
+TEST_F(ControlTest, TheViewerThatRequestsExclusiveControlGetsIt) {
   ASSERT_TRUE(ask("a", {.mode = ControlMode::exclusive}));
   EXPECT_EQ(holders(), "a");
   EXPECT_FALSE(control_.may_change(""));
@@ -50,7 +50,7 @@ TEST_F(ControlTest, WhoAsksForOneBecomesIt) {
   EXPECT_EQ(holders(), "ab");
 }
 
-TEST_F(ControlTest, IsGivenReleasedAndTaken) {
+TEST_F(ControlTest, CanBeGivenReleasedAndTaken) {
   ASSERT_TRUE(ask("a", {.mode = ControlMode::exclusive}));
   EXPECT_EQ(ask("a", {.action = ControlAction::give, .viewer = "c"}).error().code,
             ErrorCode::not_found);
@@ -63,19 +63,19 @@ TEST_F(ControlTest, IsGivenReleasedAndTaken) {
   EXPECT_EQ(holders(), "a");
 }
 
-TEST_F(ControlTest, IsFreeWhenItsHolderLeaves) {
+TEST_F(ControlTest, IsFreeAfterItsHolderLeaves) {
   ASSERT_TRUE(ask("a", {.mode = ControlMode::exclusive}));
-  control_.left("b");
+  control_.on_viewer_left("b");
   EXPECT_EQ(holders(), "a");
-  control_.left("a");
+  control_.on_viewer_left("a");
   EXPECT_EQ(holders(), "");
   ASSERT_TRUE(ask("b", {.action = ControlAction::take}));
   EXPECT_EQ(holders(), "b");
 }
 
-TEST_F(ControlTest, ProgramsSettleMatters) {
+TEST_F(ControlTest, CallersWithoutAStreamCanAssignIt) {
   ASSERT_TRUE(ask("", {.mode = ControlMode::exclusive}));
-  EXPECT_EQ(holders(), "") << "nobody, so that programs alone change it";
+  EXPECT_EQ(holders(), "") << "no viewer: only programs change the session";
   EXPECT_TRUE(control_.may_change(""));
   ASSERT_TRUE(ask("", {.mode = ControlMode::exclusive, .viewer = "a"}));
   ASSERT_TRUE(ask("", {.action = ControlAction::give, .viewer = "b"}));

@@ -41,7 +41,7 @@ class FairShareTest : public testing::Test {
   Worker* choose() {
     std::vector<FairShare::Key> keys;
     for (auto& [name, worker] : workers_) keys.push_back(&worker);
-    share_.arrange(keys);
+    share_.sort(keys);
     for (const FairShare::Key key : keys) {
       auto* worker = static_cast<Worker*>(const_cast<void*>(key));
       if (worker->ready <= time_ && !share_.hold_back(key, time_)) return worker;
@@ -65,7 +65,7 @@ class FairShareTest : public testing::Test {
   Clock::time_point time_{1h};
 };
 
-TEST_F(FairShareTest, TimeIsSharedNotPieces) {
+TEST_F(FairShareTest, DividesTimeNotFrames) {
   workers_["heavy"] = {.cost = 200ms};
   workers_["light"] = {.cost = 5ms};
   run_for(20s);
@@ -73,7 +73,7 @@ TEST_F(FairShareTest, TimeIsSharedNotPieces) {
   EXPECT_LE(workers_["light"].longest_wait, 200ms) << "more than one heavy piece in between";
 }
 
-TEST_F(FairShareTest, ShortPiecesAreAwaitedBeforeALongOne) {
+TEST_F(FairShareTest, WaitsForShortWorkBeforeLongWork) {
   workers_["heavy"] = {.cost = 200ms};
   workers_["light"] = {.cost = 5ms, .pause = 3ms};
   run_for(20s);
@@ -82,7 +82,7 @@ TEST_F(FairShareTest, ShortPiecesAreAwaitedBeforeALongOne) {
   EXPECT_NEAR(static_cast<double>(workers_["heavy"].worked.count()), 10000.0, 1000.0);
 }
 
-TEST_F(FairShareTest, WhoDrawsSixtyTimesASecondIsAwaitedToo) {
+TEST_F(FairShareTest, WaitsForAViewThatDrawsAtSixtyHertz) {
   workers_["heavy"] = {.cost = 100ms};
   workers_["light"] = {.cost = 5ms, .interval = 16ms};
   run_for(20s);
@@ -90,7 +90,7 @@ TEST_F(FairShareTest, WhoDrawsSixtyTimesASecondIsAwaitedToo) {
   EXPECT_GE(workers_["heavy"].worked, 9000ms);
 }
 
-TEST_F(FairShareTest, WhoComesBackLateAtTimesLosesLittle) {
+TEST_F(FairShareTest, OccasionalPausesCostLittle) {
   workers_["heavy"] = {.cost = 100ms};
   Worker& light = workers_["light"] = {.cost = 5ms, .interval = 16ms};
   for (int second = 0; second < 20; ++second) {
@@ -100,7 +100,7 @@ TEST_F(FairShareTest, WhoComesBackLateAtTimesLosesLittle) {
   EXPECT_GE(light.pieces, 300);
 }
 
-TEST_F(FairShareTest, WhoWentAwayIsNotAwaitedAgain) {
+TEST_F(FairShareTest, DoesNotWaitForAnIdleView) {
   workers_["heavy"] = {.cost = 100ms};
   Worker& light = workers_["light"] = {.cost = 5ms, .interval = 16ms};
   run_for(2s);
@@ -110,14 +110,14 @@ TEST_F(FairShareTest, WhoWentAwayIsNotAwaitedAgain) {
   EXPECT_GE(workers_["heavy"].worked - before, 9900ms);
 }
 
-TEST_F(FairShareTest, NobodyIsAwaitedInVain) {
+TEST_F(FairShareTest, BacksOffAfterUnsuccessfulWaits) {
   workers_["heavy"] = {.cost = 200ms};
-  workers_["seldom"] = {.cost = 5ms, .pause = 60ms};
+  workers_["rare"] = {.cost = 5ms, .pause = 60ms};
   run_for(20s);
   EXPECT_GE(workers_["heavy"].worked, 17500ms);
 }
 
-TEST_F(FairShareTest, ManyEqualsTakeTurns) {
+TEST_F(FairShareTest, EqualViewsAlternate) {
   for (const char* name : {"a", "b", "c", "d"}) workers_[name] = {.cost = 10ms};
   run_for(4s);
   for (const auto& [name, worker] : workers_) {
@@ -126,16 +126,16 @@ TEST_F(FairShareTest, ManyEqualsTakeTurns) {
   }
 }
 
-TEST_F(FairShareTest, WhoWantsLittleGetsItSoon) {
+TEST_F(FairShareTest, LightLoadHasLowLatency) {
   workers_["greedy"] = {.cost = 50ms};
   workers_["modest"] = {.cost = 10ms, .interval = 100ms};
   run_for(10s);
   EXPECT_GE(workers_["modest"].pieces, 90);
   EXPECT_LE(workers_["modest"].longest_wait, 50ms) << "one greedy piece";
-  EXPECT_GE(workers_["greedy"].worked, 8500ms) << "what nobody wants is left unused";
+  EXPECT_GE(workers_["greedy"].worked, 8500ms) << "time that is not needed stays unused";
 }
 
-TEST_F(FairShareTest, IdleTimeIsNotSavedUp) {
+TEST_F(FairShareTest, IdleTimeGivesNoCredit) {
   workers_["busy"] = {.cost = 10ms};
   workers_["back"] = {.cost = 10ms, .ready = time_ + 10s};
   run_for(10s);
@@ -145,7 +145,7 @@ TEST_F(FairShareTest, IdleTimeIsNotSavedUp) {
   EXPECT_NEAR(static_cast<double>(gained.count()), 500.0, 20.0) << "starved by a backlog";
 }
 
-TEST_F(FairShareTest, ANewcomerStartsWithTheOthers) {
+TEST_F(FairShareTest, NewViewsStartWithTheOthers) {
   workers_["first"] = {.cost = 10ms};
   run_for(10s);
   workers_["second"] = {.cost = 10ms};
@@ -154,14 +154,14 @@ TEST_F(FairShareTest, ANewcomerStartsWithTheOthers) {
   EXPECT_NEAR(static_cast<double>((workers_["first"].worked - before).count()), 500.0, 20.0);
 }
 
-TEST_F(FairShareTest, WhoIsForgottenOwesNothing) {
+TEST_F(FairShareTest, ARemovedViewHasNoDebt) {
   const int key = 0;
   const int other = 0;
   share_.charge(&key, time_, time_ + 10s);
-  share_.forget(&key);
+  share_.remove(&key);
   share_.charge(&other, time_ + 10s, time_ + 11s);
   std::vector<FairShare::Key> keys{&other, &key};
-  share_.arrange(keys);
+  share_.sort(keys);
   EXPECT_EQ(keys.front(), &key);
 }
 

@@ -12,7 +12,7 @@ SceneKey key(const char* file) {
 }
 
 LoadedScene scene_of(std::uint64_t bytes) {
-  return {.name = "thing",
+  return {.name = "box",
           .scene = std::make_shared<const scene::Scene>(),
           .resources = nullptr,
           .environment = {},
@@ -20,7 +20,7 @@ LoadedScene scene_of(std::uint64_t bytes) {
           .device_bytes = bytes - bytes / 4};
 }
 
-TEST(SceneCache, FindsWhatWasLoadedForTheSameThingOnly) {
+TEST(SceneCache, FindsTheSceneOfTheSameKeyOnly) {
   SceneCache cache(1000);
   const LoadedScene shown = cache.add(key("a"), scene_of(100), {});
   EXPECT_EQ(cache.find(key("a"))->scene, shown.scene);
@@ -33,7 +33,7 @@ TEST(SceneCache, FindsWhatWasLoadedForTheSameThingOnly) {
   EXPECT_FALSE(cache.find(other));
 }
 
-TEST(SceneCache, DropsWhatNobodyShowsLongestUnusedFirst) {
+TEST(SceneCache, EvictsTheLeastRecentlyUsedUnshownScene) {
   SceneCache cache(250);
   for (const char* name : {"a", "b", "c"}) cache.add(key(name), scene_of(100), {});
   ASSERT_TRUE(cache.find(key("a"))) << "used again";
@@ -47,7 +47,7 @@ TEST(SceneCache, DropsWhatNobodyShowsLongestUnusedFirst) {
   EXPECT_EQ(totals.bytes, 200u);
 }
 
-TEST(SceneCache, KeepsWhatIsShownWhateverTheLimit) {
+TEST(SceneCache, KeepsShownScenesBeyondTheLimit) {
   SceneCache cache(0);
   std::optional<LoadedScene> shown = cache.add(key("a"), scene_of(100), {});
   EXPECT_FALSE(cache.trim());
@@ -58,24 +58,24 @@ TEST(SceneCache, KeepsWhatIsShownWhateverTheLimit) {
   EXPECT_EQ(cache.totals().bytes, 0u);
 }
 
-TEST(SceneCache, APointerToAnyPartCountsAsShown) {
+TEST(SceneCache, APointerToAnyPartKeepsAScene) {
   SceneCache cache(0);
   const auto part = cache.add(key("a"), scene_of(100), {}).resources;
   EXPECT_FALSE(cache.trim()) << "a null pointer that shares in the entry";
 }
 
-TEST(SceneCache, ForgetsAFileThatChanged) {
+TEST(SceneCache, DropsASceneWhoseFileChanged) {
   const test::TemporaryFolder folder;
-  const auto file = folder.write("thing.glb", "first");
+  const auto file = folder.write("box.glb", "first");
   SceneCache cache(1000);
   cache.add(key("a"), scene_of(100), {scene::examine_file(file)});
   EXPECT_TRUE(cache.find(key("a")));
-  folder.write("thing.glb", "second");
+  folder.write("box.glb", "second");
   EXPECT_FALSE(cache.find(key("a")));
   EXPECT_EQ(cache.totals().bytes, 0u);
 }
 
-TEST(SceneCache, TheNewerOfTheSameThingTakesTheOlderOnesPlace) {
+TEST(SceneCache, ReplacesASceneOfTheSameKey) {
   SceneCache cache(1000);
   cache.add(key("a"), scene_of(100), {});
   const LoadedScene newer = cache.add(key("a"), scene_of(300), {});

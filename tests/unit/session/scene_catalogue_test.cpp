@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "session/state/environment_choice.hpp"
+#include "session/library/environment_source.hpp"
 #include "temporary_folder.hpp"
 
 namespace heliograph::session {
@@ -27,7 +27,7 @@ TEST(SceneCatalogue, ListsScenesOfAllFoldersByName) {
   EXPECT_EQ(catalogue.list().front().bytes, 5u);
 }
 
-TEST(SceneCatalogue, SeesFilesThatComeLater) {
+TEST(SceneCatalogue, FindsFilesThatAreAddedLater) {
   TemporaryFolder folder;
   const SceneCatalogue catalogue({folder.path()});
   EXPECT_TRUE(catalogue.list().empty());
@@ -35,7 +35,7 @@ TEST(SceneCatalogue, SeesFilesThatComeLater) {
   EXPECT_TRUE(catalogue.find("new"));
 }
 
-TEST(SceneCatalogue, TheEarlierRootAndTheBinaryFormWin) {
+TEST(SceneCatalogue, EarlierRootsAndGlbTakePrecedence) {
   TemporaryFolder first;
   TemporaryFolder second;
   first.write("a.gltf");
@@ -50,7 +50,7 @@ TEST(SceneCatalogue, TheEarlierRootAndTheBinaryFormWin) {
   EXPECT_TRUE(catalogue.find("a.glb"));
 }
 
-TEST(SceneCatalogue, NoNameLeadsOutOfTheRoots) {
+TEST(SceneCatalogue, NamesCannotEscapeTheRoots) {
   TemporaryFolder folder;
   const std::filesystem::path secret = folder.write("outside/secret.glb");
   folder.write("root/inside.glb");
@@ -64,7 +64,7 @@ TEST(SceneCatalogue, NoNameLeadsOutOfTheRoots) {
   EXPECT_EQ(catalogue.find("../outside/secret").error().code, protocol::ErrorCode::not_found);
 }
 
-TEST(SceneCatalogue, SymbolicLinksDoNotLeadOut) {
+TEST(SceneCatalogue, SymbolicLinksCannotEscapeTheRoots) {
   TemporaryFolder folder;
   folder.write("outside/secret.glb");
   folder.write("root/inside.glb");
@@ -76,7 +76,7 @@ TEST(SceneCatalogue, SymbolicLinksDoNotLeadOut) {
   EXPECT_EQ(names(catalogue), (std::vector<std::string>{"alias", "inside"}));
 }
 
-TEST(SceneCatalogue, AFolderWithASceneNameIsNotAScene) {
+TEST(SceneCatalogue, AFolderNamedLikeASceneIsNotListed) {
   TemporaryFolder folder;
   folder.write("folder.glb/real.glb");
   const SceneCatalogue catalogue({folder.path()});
@@ -91,14 +91,14 @@ TEST(SceneCatalogue, SuggestsTheNearestName) {
   EXPECT_NE(found.error().message.find("atrium"), std::string::npos) << found.error().message;
 }
 
-TEST(SceneCatalogue, RefusesARootThatIsNoFolder) {
+TEST(SceneCatalogue, RefusesARootThatIsNotAFolder) {
   TemporaryFolder folder;
   const auto file = folder.write("file.glb");
   EXPECT_THROW(SceneCatalogue({file}), std::runtime_error);
   EXPECT_THROW(SceneCatalogue({folder.path() / "missing"}), std::runtime_error);
 }
 
-TEST(EnvironmentBeside, PrefersTheScenesOwnThenItsFoldersThenTheRoots) {
+TEST(EnvironmentBeside, PrefersTheSceneFileThenItsFolderThenTheRoot) {
   TemporaryFolder folder;
   const auto scene = folder.write("models/chair.glb");
   EXPECT_EQ(environment_beside(scene, folder.path()), std::nullopt);
@@ -110,7 +110,7 @@ TEST(EnvironmentBeside, PrefersTheScenesOwnThenItsFoldersThenTheRoots) {
   EXPECT_EQ(environment_beside(scene, folder.path()), own);
 }
 
-TEST(EnvironmentSource, WithoutAFileTheLightIsTheSameFromEverywhere) {
+TEST(EnvironmentSource, IsConstantWithoutAFile) {
   TemporaryFolder folder;
   const auto scene = folder.write("chair.glb");
   EnvironmentSource source(std::nullopt);

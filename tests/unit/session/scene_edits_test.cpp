@@ -14,7 +14,7 @@ using protocol::Vec3;
 std::shared_ptr<const scene::Scene> a_scene() {
   auto scene = std::make_shared<scene::Scene>();
   scene::Light sun;
-  sun.name = "lamp";
+  sun.name = "sun";
   sun.device = {};
   sun.device.type = shared::light_directional;
   sun.device.direction = {0.0f, -1.0f, 0.0f};
@@ -42,15 +42,15 @@ std::shared_ptr<const scene::Scene> a_scene() {
   return scene;
 }
 
-TEST(SceneEdits, GivesEveryLightAndMaterialANameOfItsOwn) {
+TEST(SceneEdits, MakesNamesOfLightsAndMaterialsUnique) {
   const SceneEdits edits(a_scene());
-  EXPECT_EQ(edits.lights()[0].name, "lamp");
-  EXPECT_EQ(edits.lights()[1].name, "lamp 2");
+  EXPECT_EQ(edits.lights()[0].name, "sun");
+  EXPECT_EQ(edits.lights()[1].name, "sun 2");
   EXPECT_EQ(edits.lights()[2].name, "light 3");
   EXPECT_EQ(edits.materials()[1].name, "paint 2");
 }
 
-TEST(SceneEdits, TellsWhatALightIsInItsOwnTerms) {
+TEST(SceneEdits, DescribesALightByTheParametersOfItsType) {
   const SceneEdits edits(a_scene());
   const protocol::LightInfo& sun = edits.lights()[0];
   EXPECT_EQ(sun.type, LightType::directional);
@@ -65,48 +65,48 @@ TEST(SceneEdits, TellsWhatALightIsInItsOwnTerms) {
   EXPECT_EQ(edits.materials()[0].textures, std::vector<std::string>{"base_color"});
 }
 
-TEST(SceneEdits, CopiesNothingUntilSomethingDiffers) {
+TEST(SceneEdits, CopiesNothingUntilAValueDiffers) {
   SceneEdits edits(a_scene());
-  ASSERT_TRUE(edits.patch({.light = "lamp", .patch = {}}));
-  ASSERT_TRUE(edits.patch({.light = "lamp", .patch = {.intensity = {4.0f}}}));
+  ASSERT_TRUE(edits.patch({.light = "sun", .patch = {}}));
+  ASSERT_TRUE(edits.patch({.light = "sun", .patch = {.intensity = {4.0f}}}));
   EXPECT_FALSE(edits.device_lights());
   EXPECT_FALSE(edits.device_materials());
 }
 
-TEST(SceneEdits, APatchChangesOneLightAndKeepsTheOthersBitForBit) {
+TEST(SceneEdits, APatchChangesOneLightAndKeepsTheOthersBitExact) {
   const auto scene = a_scene();
   SceneEdits edits(scene);
   ASSERT_TRUE(
-      edits.patch({.light = "lamp", .patch = {.intensity = {8.0f}, .angular_diameter = {10.0f}}}));
+      edits.patch({.light = "sun", .patch = {.intensity = {8.0f}, .angular_diameter = {10.0f}}}));
   const auto first = edits.device_lights();
   ASSERT_TRUE(first);
   EXPECT_EQ((*first)[0].color, glm::vec3(8.0f, 4.0f, 2.0f));
   EXPECT_NEAR((*first)[0].radius, std::tan(glm::radians(5.0f)), 1e-6f);
   EXPECT_EQ((*first)[1].color, scene->lights[1].device.color);
-  ASSERT_TRUE(edits.patch({.light = "lamp", .patch = {.enabled = {false}}}));
+  ASSERT_TRUE(edits.patch({.light = "sun", .patch = {.enabled = {false}}}));
   EXPECT_EQ((*edits.device_lights())[0].color, glm::vec3(0.0f));
   EXPECT_EQ((*first)[0].color, glm::vec3(8.0f, 4.0f, 2.0f)) << "an older list was changed";
   EXPECT_FLOAT_EQ(edits.lights()[0].intensity, 8.0f) << "off is not dark";
 }
 
-TEST(SceneEdits, NullBringsBackTheFilesValue) {
+TEST(SceneEdits, NullRestoresTheFilesValue) {
   SceneEdits edits(a_scene());
-  ASSERT_TRUE(edits.patch({.light = "lamp", .patch = {.color = {Vec3{1, 1, 1}}}}));
+  ASSERT_TRUE(edits.patch({.light = "sun", .patch = {.color = {Vec3{1, 1, 1}}}}));
   protocol::LightPatch back;
   back.color.reset = true;
-  const auto light = edits.patch({.light = "lamp", .patch = back});
+  const auto light = edits.patch({.light = "sun", .patch = back});
   ASSERT_TRUE(light);
   EXPECT_EQ(light->color, (Vec3{1.0f, 0.5f, 0.25f}));
 }
 
-TEST(SceneEdits, TellsWhatDiffersFromTheFile) {
+TEST(SceneEdits, ListsMembersThatDifferFromTheFile) {
   SceneEdits edits(a_scene());
   EXPECT_TRUE(edits.lights()[0].changed.empty());
   ASSERT_TRUE(
-      edits.patch({.light = "lamp", .patch = {.enabled = {false}, .angular_diameter = {10.0f}}}));
+      edits.patch({.light = "sun", .patch = {.enabled = {false}, .angular_diameter = {10.0f}}}));
   EXPECT_EQ(edits.lights()[0].changed, (std::vector<std::string>{"enabled", "angular_diameter"}));
   EXPECT_TRUE(edits.lights()[1].changed.empty());
-  const auto half = edits.patch({.light = "lamp", .patch = {.enabled = {true}}});
+  const auto half = edits.patch({.light = "sun", .patch = {.enabled = {true}}});
   EXPECT_EQ(half->changed, std::vector<std::string>{"angular_diameter"});
   ASSERT_TRUE(edits.patch({.material = "paint 2", .patch = {.roughness = {0.9f}}}));
   EXPECT_EQ(edits.materials()[1].changed, std::vector<std::string>{"roughness"});
@@ -114,10 +114,10 @@ TEST(SceneEdits, TellsWhatDiffersFromTheFile) {
   EXPECT_TRUE(back->changed.empty());
 }
 
-TEST(SceneEdits, TurnedPanelsKeepTheirWidthAcross) {
+TEST(SceneEdits, RotatedAreaLightsKeepAnOrthogonalTangent) {
   SceneEdits edits(a_scene());
   for (const Vec3 direction : {Vec3{1, 0, 0}, Vec3{0, 0, 5}, Vec3{-1, 2, 3}}) {
-    ASSERT_TRUE(edits.patch({.light = "lamp 2", .patch = {.direction = {direction}}}));
+    ASSERT_TRUE(edits.patch({.light = "sun 2", .patch = {.direction = {direction}}}));
     const shared::Light& panel = (*edits.device_lights())[1];
     EXPECT_NEAR(glm::length(panel.direction), 1.0f, 1e-5f);
     EXPECT_NEAR(glm::length(panel.tangent), 1.0f, 1e-5f);
@@ -125,18 +125,18 @@ TEST(SceneEdits, TurnedPanelsKeepTheirWidthAcross) {
   }
 }
 
-TEST(SceneEdits, RefusesWhatALightHasNot) {
+TEST(SceneEdits, RefusesParametersThatALightTypeLacks) {
   SceneEdits edits(a_scene());
   const auto refused =
-      edits.patch({.light = "lamp", .patch = {.intensity = {1.0f}, .position = {Vec3{0, 0, 0}}}});
+      edits.patch({.light = "sun", .patch = {.intensity = {1.0f}, .position = {Vec3{0, 0, 0}}}});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().path, "patch.position");
   EXPECT_FLOAT_EQ(edits.lights()[0].intensity, 4.0f) << "half a patch was applied";
-  EXPECT_EQ(edits.patch({.light = "lamp 2", .patch = {.direction = {Vec3{0, 0, 0}}}}).error().path,
+  EXPECT_EQ(edits.patch({.light = "sun 2", .patch = {.direction = {Vec3{0, 0, 0}}}}).error().path,
             "patch.direction");
-  const auto unknown = edits.patch({.light = "lmap", .patch = {}});
+  const auto unknown = edits.patch({.light = "sum", .patch = {}});
   EXPECT_EQ(unknown.error().code, ErrorCode::not_found);
-  EXPECT_NE(unknown.error().message.find("lamp"), std::string::npos);
+  EXPECT_NE(unknown.error().message.find("sun"), std::string::npos);
 }
 
 TEST(SceneEdits, MaterialsKeepTheirAlphaAndTextures) {

@@ -7,13 +7,13 @@ namespace {
 
 using protocol::ErrorCode;
 
-class SilentLink : public ViewerLink {
+class TestLink : public ViewerLink {
  public:
   void frame_ready() override {}
   void send(std::string, std::string_view) override {}
-  void disconnect(std::string why) override { disconnected = std::move(why); }
+  void disconnect(std::string why) override { close_reason = std::move(why); }
 
-  std::string disconnected;
+  std::string close_reason;
 };
 
 class SessionRegistryTest : public testing::Test {
@@ -39,24 +39,24 @@ class SessionRegistryTest : public testing::Test {
     return [this](const Session& session) { closed_.push_back(session.name()); };
   }
   std::string enter(const std::string& session) {
-    links_.push_back(std::make_shared<SilentLink>());
+    links_.push_back(std::make_shared<TestLink>());
     const auto id = registry_.enter(session, links_.back());
     EXPECT_TRUE(id) << id.error().message;
     return id ? *id : std::string();
   }
 
   std::vector<std::string> closed_;
-  std::vector<std::shared_ptr<SilentLink>> links_;
+  std::vector<std::shared_ptr<TestLink>> links_;
   SessionRegistry registry_;
 };
 
-TEST_F(SessionRegistryTest, TheMainSessionIsThereForGood) {
+TEST_F(SessionRegistryTest, TheMainSessionCannotBeClosed) {
   EXPECT_EQ(registry_.main()->name(), "main");
   EXPECT_EQ(registry_.close("main", "").error().code, ErrorCode::conflict);
   EXPECT_TRUE(registry_.find("main"));
 }
 
-TEST_F(SessionRegistryTest, SessionsAreFoundByTheirNames) {
+TEST_F(SessionRegistryTest, FindsSessionsByName) {
   ASSERT_TRUE(registry_.create(named("review")));
   EXPECT_EQ((*registry_.find("review"))->name(), "review");
   const auto unknown = registry_.find("reviev");
@@ -69,28 +69,28 @@ TEST_F(SessionRegistryTest, SessionsAreFoundByTheirNames) {
   }
 }
 
-TEST_F(SessionRegistryTest, WhoLostASessionTakesTheOneOfItsNameOnlyWhileItIsUntouched) {
+TEST_F(SessionRegistryTest, AViewerResumesInAPristineSessionOfTheSameNameOrCreatesOne) {
   const std::string viewer = enter("main");
   const auto resumed = registry_.resume(viewer, {"before", "main"}, named({}));
   ASSERT_TRUE(resumed);
   EXPECT_EQ(resumed->session->name(), "main");
   EXPECT_TRUE(resumed->first);
 
-  const std::string stranger = enter("main");
-  const auto apart = registry_.resume(stranger, {"elsewhere", "main"}, named({}));
-  ASSERT_TRUE(apart) << apart.error().message;
-  EXPECT_EQ(apart->session->name(), "main-elsewher");
-  EXPECT_TRUE(apart->first);
+  const std::string other = enter("main");
+  const auto separate = registry_.resume(other, {"elsewhere", "main"}, named({}));
+  ASSERT_TRUE(separate) << separate.error().message;
+  EXPECT_EQ(separate->session->name(), "main-elsewher");
+  EXPECT_TRUE(separate->first);
 }
 
-TEST_F(SessionRegistryTest, WhatSomebodyChangedIsNotTakenByWhoLostASession) {
+TEST_F(SessionRegistryTest, AViewerDoesNotResumeInAModifiedSession) {
   registry_.main()->mark_modified();
   const auto resumed = registry_.resume(enter("main"), {"before", "main"}, named({}));
   ASSERT_TRUE(resumed) << resumed.error().message;
   EXPECT_EQ(resumed->session->name(), "main-before");
 }
 
-TEST_F(SessionRegistryTest, ThoseWhoWereTogetherMeetAgainAndOneBringsTheState) {
+TEST_F(SessionRegistryTest, ViewersOfOneLostSessionMeetAgainAndTheFirstRestoresIt) {
   const std::string first = enter("main");
   const std::string second = enter("main");
   const Origin from{"before", "review"};
@@ -105,21 +105,21 @@ TEST_F(SessionRegistryTest, ThoseWhoWereTogetherMeetAgainAndOneBringsTheState) {
   EXPECT_EQ(registry_.session_of_viewer(second), made->session);
 }
 
-TEST_F(SessionRegistryTest, WhoMayOnlyWatchMakesNoSession) {
-  const std::string watcher = enter("main");
+TEST_F(SessionRegistryTest, AReadOnlyViewerCreatesNoSession) {
+  const std::string viewer = enter("main");
   const std::size_t before = registry_.count();
-  EXPECT_EQ(registry_.resume(watcher, {"before", "review"}, {}).error().code, ErrorCode::not_found);
+  EXPECT_EQ(registry_.resume(viewer, {"before", "review"}, {}).error().code, ErrorCode::not_found);
   EXPECT_EQ(registry_.count(), before);
 }
 
-TEST_F(SessionRegistryTest, SessionsWithoutANameGetOne) {
+TEST_F(SessionRegistryTest, GeneratesNamesForUnnamedSessions) {
   ASSERT_TRUE(registry_.create(named("session-1")));
   const auto session = registry_.create(named(""));
   ASSERT_TRUE(session);
   EXPECT_EQ((*session)->name(), "session-2");
 }
 
-TEST_F(SessionRegistryTest, FullIsAnAnswerThatNamesTheLimit) {
+TEST_F(SessionRegistryTest, FullErrorsNameTheLimit) {
   ASSERT_TRUE(registry_.create(named("a")));
   const auto large = registry_.create(named("b", 80));
   EXPECT_EQ(large.error().code, ErrorCode::full);
@@ -132,7 +132,7 @@ TEST_F(SessionRegistryTest, FullIsAnAnswerThatNamesTheLimit) {
   EXPECT_TRUE(registry_.create(named("c")));
 }
 
-TEST_F(SessionRegistryTest, APictureGrowsOnlyWithinWhatOthersLeave) {
+TEST_F(SessionRegistryTest, AResizeIsLimitedByThePixelBudget) {
   const auto session = *registry_.create(named("a"));
   EXPECT_TRUE(session->configure_stream({.width = 80}, ""));
   EXPECT_EQ(session->configure_stream({.width = 81}, "").error().code, ErrorCode::full);
@@ -142,14 +142,14 @@ TEST_F(SessionRegistryTest, APictureGrowsOnlyWithinWhatOthersLeave) {
   EXPECT_TRUE(registry_.main()->configure_stream({.width = 60}, ""));
 }
 
-TEST_F(SessionRegistryTest, AnEndedSessionGivesItsPixelsBack) {
+TEST_F(SessionRegistryTest, AnEndedSessionReleasesItsPixels) {
   ASSERT_TRUE(registry_.create(named("a", 80)));
   ASSERT_TRUE(registry_.close("a", ""));
   EXPECT_EQ(registry_.pixels_used(), 200u);
   EXPECT_EQ(closed_, std::vector<std::string>{"a"});
 }
 
-TEST_F(SessionRegistryTest, CallsBelongToTheViewersSessionOrToTheOneTheyName) {
+TEST_F(SessionRegistryTest, CallsAreForTheViewersSessionOrTheNamedOne) {
   ASSERT_TRUE(registry_.create(named("a")));
   const std::string viewer = enter("a");
   EXPECT_EQ((*registry_.session_of({.viewer = viewer}))->name(), "a");
@@ -160,7 +160,7 @@ TEST_F(SessionRegistryTest, CallsBelongToTheViewersSessionOrToTheOneTheyName) {
             ErrorCode::not_found);
 }
 
-TEST_F(SessionRegistryTest, ViewersMoveAndKeepTheirStream) {
+TEST_F(SessionRegistryTest, AViewerThatMovesKeepsItsStream) {
   const auto there = *registry_.create(named("a"));
   const std::string viewer = enter("main");
   ASSERT_TRUE(registry_.main()->configure_stream({.quality = 33}, viewer));
@@ -172,7 +172,7 @@ TEST_F(SessionRegistryTest, ViewersMoveAndKeepTheirStream) {
   EXPECT_EQ(registry_.move("v99", "a").error().code, ErrorCode::not_ready);
 }
 
-TEST_F(SessionRegistryTest, WhoFindsNoRoomStaysWhereHeIs) {
+TEST_F(SessionRegistryTest, AViewerStaysWhereTheOtherSessionIsFull) {
   ASSERT_TRUE(registry_.create(named("a")));
   enter("a");
   enter("a");
@@ -180,14 +180,14 @@ TEST_F(SessionRegistryTest, WhoFindsNoRoomStaysWhereHeIs) {
   EXPECT_EQ(registry_.move(viewer, "a").error().code, ErrorCode::full);
   EXPECT_EQ(registry_.session_of_viewer(viewer), registry_.main());
   EXPECT_EQ(registry_.main()->viewers().totals().viewers, 1u);
-  EXPECT_EQ(registry_.enter("main", std::make_shared<SilentLink>()).error().limit, "3 viewers");
+  EXPECT_EQ(registry_.enter("main", std::make_shared<TestLink>()).error().limit, "3 viewers");
 }
 
-TEST_F(SessionRegistryTest, ViewersOfAnEndedSessionAreToldWhy) {
+TEST_F(SessionRegistryTest, ViewersOfAnEndedSessionReceiveTheReason) {
   ASSERT_TRUE(registry_.create(named("a")));
   const std::string viewer = enter("a");
   ASSERT_TRUE(registry_.close("a", "it was closed"));
-  EXPECT_EQ(links_.back()->disconnected, "it was closed");
+  EXPECT_EQ(links_.back()->close_reason, "it was closed");
   EXPECT_EQ(registry_.session_of_viewer(viewer), nullptr);
   EXPECT_EQ(registry_.session_of({.viewer = viewer}).error().code, ErrorCode::not_found);
   EXPECT_EQ(registry_.totals().viewers, 0u);

@@ -264,7 +264,7 @@ TEST_F(H264Test, AVideoRestartsWhenTheSizeChanges) {
   EXPECT_EQ(resized->header.width, 96);
   const auto tiny = encode(1, false);
   EXPECT_EQ(tiny->header.codec, protocol::FrameCodec::jpeg);
-  EXPECT_EQ(tiny->variant, VariantPlanner::jpeg_fallback(form));
+  EXPECT_EQ(tiny->variant, VariantPlanner::jpeg_fallback(variant));
 }
 
 TEST(ImageScaler, KeepsTheMeanAndTheEdges) {

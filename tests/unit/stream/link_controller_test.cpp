@@ -27,13 +27,13 @@ class LinkControllerTest : public testing::Test {
  protected:
   struct Sent {
     std::uint64_t bytes;
-    EncodingVariant form;
+    EncodingVariant variant;
     Clock::time_point at;
     Clock::time_point back;
   };
 
   /// Advances the time; returns the frames of the last second.
-  std::vector<Sent> run(const Link& link, seconds time, EncodingVariant wanted = {},
+  std::vector<Sent> run(const Link& link, seconds time, EncodingVariant requested = {},
                         microseconds interval = milliseconds(33)) {
     const Clock::time_point end = now_ + time;
     std::vector<Sent> last;
@@ -49,15 +49,15 @@ class LinkControllerTest : public testing::Test {
         in_flight_.pop_front();
       }
       if (in_flight_.size() < ack_window && now_ >= next_frame_) {
-        const EncodingVariant form = controller_.choose(wanted, pixels_);
-        double bytes = whole_bytes_ * relative_bytes(form);
-        if (form.codec == protocol::StreamCodec::h264) {
+        const EncodingVariant variant = controller_.choose(requested, pixels_);
+        double bytes = whole_bytes_ * relative_bytes(variant);
+        if (variant.codec == protocol::StreamCodec::h264) {
           bytes = std::min(0.2 * whole_bytes_, controller_.budget());
         }
         busy_until_ = std::max(busy_until_, now_) +
                       duration_cast<Clock::duration>(duration<double>(bytes / link.rate));
         in_flight_.push_back({.bytes = static_cast<std::uint64_t>(bytes),
-                              .variant = form,
+                              .variant = variant,
                               .at = now_,
                               .back = busy_until_ + link.way});
         next_frame_ = now_ + interval;

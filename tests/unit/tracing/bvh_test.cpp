@@ -45,7 +45,7 @@ shared::BvhTriangle triangle_at(const Bvh& bvh, std::size_t index) {
   return std::bit_cast<shared::BvhTriangle>(texels);
 }
 
-/// Walks every branch under `link`, checking that boxes hold what is below, and counts triangles.
+/// Visits all nodes under `link`, checks that boxes contain their subtree, and counts triangles.
 void check_mesh(const Bvh& bvh, std::uint32_t link, const Box& box, float slack,
                 std::map<std::uint32_t, int>& seen) {
   if (!is_leaf(link)) {
@@ -135,7 +135,7 @@ TEST_F(BvhTest, EmptySceneHasNoRoot) {
 TEST_F(BvhTest, OneTriangleInOneInstance) {
   Random random(3);
   scene::Scene scene;
-  place(scene, add_mesh(scene, soup(random, 1, 1.0f), plain_material()), glm::mat4(1.0f));
+  place(scene, add_mesh(scene, triangle_soup(random, 1, 1.0f), plain_material()), glm::mat4(1.0f));
   const Bvh bvh = build(scene);
   ASSERT_TRUE(is_leaf(bvh.root));
   const auto instances = instances_below(bvh, bvh.root);
@@ -161,7 +161,7 @@ TEST_F(BvhTest, ExcludesDegenerateInstances) {
 
 TEST_F(BvhTest, StaysShallowForThousandsOfEqualTriangles) {
   Random random(4);
-  scene::Mesh mesh = soup(random, 1, 1.0f);
+  scene::Mesh mesh = triangle_soup(random, 1, 1.0f);
   for (int i = 0; i < 5000; ++i) mesh.indices.insert(mesh.indices.end(), {0, 1, 2});
   scene::Scene scene;
   place(scene, add_mesh(scene, mesh, plain_material()), glm::mat4(1.0f));
@@ -184,7 +184,7 @@ TEST_F(BvhTest, DepthFitsStackForGeometricSeriesOfTriangles) {
 
 TEST_F(BvhTest, IgnoresNonFiniteTriangles) {
   Random random(5);
-  scene::Mesh mesh = soup(random, 8, 1.0f);
+  scene::Mesh mesh = triangle_soup(random, 8, 1.0f);
   mesh.vertices[4].position.x = std::numeric_limits<float>::quiet_NaN();
   mesh.vertices[7].position.y = std::numeric_limits<float>::infinity();
   scene::Scene scene;

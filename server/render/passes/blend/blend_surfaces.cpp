@@ -12,7 +12,7 @@ namespace {
 using formats::four_floats;
 using formats::storage;
 
-/// Grows by the pixels that a box may cover.
+/// Grows `region` by the pixels that a box may cover.
 void include(glm::uvec4& region, const scene::Bounds& bounds, const shared::FrameConstants& frame) {
   const glm::vec2 size(frame.extent);
   for (int corner = 0; corner < 8; ++corner) {
@@ -32,7 +32,7 @@ void include(glm::uvec4& region, const scene::Bounds& bounds, const shared::Fram
   }
 }
 
-/// The pixels that blended surfaces may cover: the first, and the one behind the last.
+/// The pixels that blended surfaces may cover: the first, and the one after the last.
 glm::uvec4 blended_region(const FrameInputs& in) {
   glm::uvec4 region(in.constants.extent, 0, 0);
   for (const Draw& draw : in.moving.draws()) {
@@ -49,11 +49,11 @@ class BlendedSurfaces {
         in_(in),
         gbuffer_(gbuffer),
         pixels_(plan.extent().width * plan.extent().height),
-        radiance_(plan.image("blended.radiance", four_floats)),
-        behind_(plan.image("blended.behind", four_floats)),
-        motion_(plan.image("blended.motion", four_floats)),
-        mirrored_(plan.image("blended.mirrored", four_floats)),
-        surface_(plan.image("blended.surface", VK_FORMAT_R8G8B8A8_UNORM)),
+        radiance_(plan.image(blended_buffers.radiance.name, four_floats)),
+        transmittance_(plan.image(blended_buffers.transmittance.name, four_floats)),
+        motion_(plan.image(blended_buffers.motion.name, four_floats)),
+        specular_(plan.image(blended_buffers.specular.name, four_floats)),
+        surface_(plan.image(blended_buffers.surface.name, VK_FORMAT_R8G8B8A8_UNORM)),
         hits_(plan.buffer("blended.hits", sizeof(shared::Hit) * pixels_, storage,
                           gpu::Memory::device)),
         lit_(declare_rays(plan, "blended.lit", pixels_)),
@@ -62,38 +62,37 @@ class BlendedSurfaces {
 
   gpu::ImageRef motion() const { return motion_; }
 
-  /// From front to back, what the surfaces send out by themselves and what shows behind them.
+  /// From front to back, the light that the surfaces emit and their transmittance.
   void find() {
     tracing::RayStream current = declare_rays(plan_, "blended", pixels_);
     tracing::RayStream next = declare_rays(plan_, "blended.next", pixels_);
     begin_rays(plan_, in_, "blended", current, Blending::stops);
     begin_rays(plan_, in_, "blended.lit", lit_, Blending::stops);
-    plan_.pass("blended.rays", in_.programs.compute(shaders::blended_rays))
+    plan_.pass("blended.rays", in_.program(shaders::blended_rays))
         .read(gbuffer_.motion)
         .read_write(current.count)
         .write(current.rays)
         .write(radiance_)
-        .write(behind_)
+        .write(transmittance_)
         .write(motion_)
         .write(surface_)
-        .write(mirrored_)
+        .write(specular_)
         .constants([in = in_] { return blended_region(in); })
-        .dispatch(plan_.extent())
-        .describe("Blended surfaces alone.");
+        .dispatch(plan_.extent());
     for (std::uint32_t round = 0; round < most_blended; ++round) {
       in_.tracer.trace_closest(plan_, "blended.trace", in_.structure, current, hits_);
       begin_rays(plan_, in_, "blended", next, Blending::stops);
-      lay_over(round, current, next);
+      add_surfaces(round, current, next);
       std::swap(current, next);
     }
   }
 
-  /// What arrives at the one that was chosen in each pixel.
+  /// The light on the surface that was chosen in each pixel.
   void light() {
     const auto shadows = declare_rays(plan_, "blended.shadows", pixels_);
     const auto ambient = declare_rays(plan_, "blended.ambient", pixels_);
-    const auto mirrors = declare_rays(plan_, "blended.mirrors", pixels_);
-    for (const auto* stream : {&shadows, &ambient, &mirrors}) {
+    const auto reflected = declare_rays(plan_, "blended.specular", pixels_);
+    for (const auto* stream : {&shadows, &ambient, &reflected}) {
       begin_rays(plan_, in_, "blended.light", *stream);
     }
     const bool traced = in_.settings.specular.enabled;
@@ -102,68 +101,70 @@ class BlendedSurfaces {
         .read(lit_.rays)
         .read(chosen_)
         .read(radiance_)
-        .read_write(behind_)
+        .read_write(transmittance_)
         .write(surface_)
         .read_write(shadows.count)
         .write(shadows.rays)
         .read_write(ambient.count)
         .write(ambient.rays)
-        .read_write(mirrors.count)
-        .write(mirrors.rays)
+        .read_write(reflected.count)
+        .write(reflected.rays)
         .constants(
             [&s = in_.settings.specular, traced] { return traced ? s.max_roughness : -1.0f; })
         .dispatch_indirect(lit_.count, ray_groups_offset);
-    add_unhidden_light(plan_, in_, "blended.shadows", shadows, radiance_);
-    add_unhidden_light(plan_, in_, "blended.ambient", ambient, radiance_);
-    if (traced)
-      trace_mirrored(plan_, in_, "blended.mirrors", mirrors, surface_, behind_, mirrored_);
+    add_unoccluded_light(plan_, in_, "blended.shadows", shadows, radiance_);
+    add_unoccluded_light(plan_, in_, "blended.ambient", ambient, radiance_);
+    if (traced) {
+      trace_reflections(plan_, in_, "blended.specular", reflected, surface_, transmittance_,
+                        specular_);
+    }
   }
 
-  void lay_over(gpu::ImageRef picture) {
-    plan_.pass("blended.over", in_.programs.compute(shaders::blended_over))
+  void compose_over(gpu::ImageRef frame) {
+    plan_.pass("blended.over", in_.program(shaders::blended_over))
         .read(radiance_)
-        .read(mirrored_)
-        .read(behind_)
-        .read_write(picture)
+        .read(specular_)
+        .read(transmittance_)
+        .read_write(frame)
         .dispatch(plan_.extent());
   }
 
  private:
   gpu::PassBuilder pass(const std::string& name, const gpu::ShaderBinary& shader) {
-    return plan_.pass(name, in_.programs.compute(shader, in_.scene.features));
+    return plan_.pass(name, in_.program(shader, in_.scene.features));
   }
 
-  void lay_over(std::uint32_t round, const tracing::RayStream& met,
-                const tracing::RayStream& next) {
+  void add_surfaces(std::uint32_t round, const tracing::RayStream& rays,
+                    const tracing::RayStream& next) {
     struct Constants {
       std::uint32_t round;
       std::uint32_t last_round;
     };
     pass("blended.surfaces", shaders::blended_surfaces)
-        .read(met.count)
-        .read(met.rays)
+        .read(rays.count)
+        .read(rays.rays)
         .read(hits_)
         .read(plan_.import(in_.moving.previous_vertices()))
         .read_write(next.count)
         .write(next.rays)
         .read_write(radiance_)
-        .read_write(behind_)
+        .read_write(transmittance_)
         .write(motion_)
         .write(chosen_)
         .read_write(lit_.count)
         .write(lit_.rays)
         .constants(Constants{round, round + 1 == most_blended})
-        .dispatch_indirect(met.count, ray_groups_offset);
+        .dispatch_indirect(rays.count, ray_groups_offset);
   }
 
   gpu::FramePlan& plan_;
   const FrameInputs& in_;
   const GBuffer& gbuffer_;
   std::uint32_t pixels_;
-  gpu::ImageRef radiance_;  // a: of all weights, the sum
-  gpu::ImageRef behind_;  // how much of what is behind shows; a: of the chosen, weight, then view Z
+  gpu::ImageRef radiance_;       // a: of all weights, the sum
+  gpu::ImageRef transmittance_;  // a: of the chosen surface, its weight, then view Z
   gpu::ImageRef motion_;
-  gpu::ImageRef mirrored_;
+  gpu::ImageRef specular_;
   gpu::ImageRef surface_;
   gpu::BufferRef hits_;
   tracing::RayStream lit_;  // the pixels that have a surface to light, each once
@@ -178,8 +179,8 @@ gpu::ImageRef blend_surfaces(gpu::FramePlan& plan, const FrameInputs& in, const 
   BlendedSurfaces blended(plan, in, gbuffer);
   blended.find();
   blended.light();
-  blended.lay_over(composed.hdr);
-  if (composed.hdr_raw.index != composed.hdr.index) blended.lay_over(composed.hdr_raw);
+  blended.compose_over(composed.hdr);
+  if (composed.noisy.index != composed.hdr.index) blended.compose_over(composed.noisy);
   return blended.motion();
 }
 

@@ -6,11 +6,18 @@
 
 namespace heliograph::render {
 
-/// What this frame's rays found.
-struct RawSignals {
+inline constexpr struct ComposeBuffers {
+  BufferDescription hdr{"hdr", ViewColors::radiance,
+                        "The frame's radiance, denoised, before antialiasing: linear."};
+  BufferDescription noisy{"hdr.noisy", ViewColors::radiance,
+                          "The frame's radiance from the noisy signals: linear."};
+} compose_buffers{};
+
+/// The signals of this frame's rays.
+struct NoisySignals {
   gpu::ImageRef shadows;                  // r32f
   gpu::ImageRef ambient;                  // r32f
-  std::optional<gpu::ImageRef> specular;  // rgba32f; without it the environment is mirrored
+  std::optional<gpu::ImageRef> specular;  // rgba32f; without it the environment is reflected
 };
 
 /// The same without noise; a signal that is not denoised stands here as it is.
@@ -22,13 +29,13 @@ struct DenoisedSignals {
 /// Linear radiance.
 struct Composed {
   gpu::ImageRef hdr;
-  gpu::ImageRef hdr_raw;  // from the raw signals; the same image where nothing is denoised
+  gpu::ImageRef noisy;  // from the noisy signals; the same image where nothing is denoised
 };
 
-/// Analytic direct light x traced visibility + mirrored light + image based light + emission over
-/// the background (paper section 3, stage 7).
+/// Analytic direct light x traced visibility + reflections + image based light + emission over the
+/// background (paper section 3, stage 7).
 Composed compose(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                 const RawSignals& raw, const std::optional<DenoisedSignals>& denoised,
+                 const NoisySignals& signals, const std::optional<DenoisedSignals>& denoised,
                  gpu::ImageRef background);
 
 }  // namespace heliograph::render

@@ -6,8 +6,8 @@
 namespace heliograph::render {
 
 gpu::ImageRef draw_skybox(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer) {
-  const auto background = plan.image("skybox", VK_FORMAT_R32G32B32A32_SFLOAT);
-  plan.pass("skybox", in.programs.compute(shaders::skybox))
+  const auto background = plan.image(skybox_buffers.radiance.name, VK_FORMAT_R32G32B32A32_SFLOAT);
+  plan.pass("skybox", in.program(shaders::skybox))
       .read(gbuffer.motion)
       .write(background)
       .dispatch(plan.extent());

@@ -4,6 +4,11 @@
 
 namespace heliograph::render {
 
+inline constexpr struct SkyboxBuffers {
+  BufferDescription radiance{"skybox", ViewColors::radiance,
+                             "Radiance of the environment behind the scene."};
+} skybox_buffers{};
+
 /// Linear radiance of the environment where no surface was drawn; elsewhere undefined.
 gpu::ImageRef draw_skybox(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer);
 

@@ -13,14 +13,48 @@ namespace heliograph::render {
 
 struct KernelShape;
 
+inline constexpr std::array visibility_denoised_aspects{
+    Aspect{"noise", ViewColors::deviation, 2, second_pair,
+           "Standard deviation that the blur leaves, of shadow or ambient visibility, the "
+           "larger; captured: both variances."}};
+inline constexpr std::array specular_denoised_aspects{
+    Aspect{"noise", ViewColors::deviation, 1, one_channel<3>,
+           "Standard deviation of the reflection's brightness that the blur leaves; captured: "
+           "variance."}};
+
+struct AtrousBuffers {
+  BufferDescription even, odd;  // between iterations
+  BufferDescription half;       // between the halves of a separable iteration
+  BufferDescription denoised;
+};
+inline constexpr AtrousBuffers visibility_atrous_buffers{
+    {"visibility.blur.even", ViewColors::channels, "Visibility after an iteration of the blur."},
+    {"visibility.blur.odd", ViewColors::channels, "Visibility after an iteration of the blur."},
+    {"visibility.blur.half", ViewColors::channels,
+     "Visibility after the first half of a separable iteration of the blur."},
+    {.name = "visibility.denoised",
+     .colors = ViewColors::channels,
+     .description = "Denoised shadow (red) and ambient (green) visibility; variances (zw).",
+     .aspects = visibility_denoised_aspects}};
+inline constexpr AtrousBuffers specular_atrous_buffers{
+    {"specular.blur.even", ViewColors::radiance, "Reflections after an iteration of the blur."},
+    {"specular.blur.odd", ViewColors::radiance, "Reflections after an iteration of the blur."},
+    {"specular.blur.half", ViewColors::radiance,
+     "Reflections after the first half of a separable iteration of the blur."},
+    {.name = "specular.denoised",
+     .colors = ViewColors::radiance,
+     .description = "Denoised reflections, demodulated; variance of their brightness (w).",
+     .aspects = specular_denoised_aspects}};
+
 /// A blur of one signal: how often, and what its passes read every frame.
-struct Blur {
-  std::string name;  // of the signal; begins the passes' names
-  const gpu::ComputeProgram& program;
+struct AtrousConfig {
+  std::string name;  // of the passes, before the number of the iteration
+  const AtrousBuffers& buffers;
+  gpu::ProgramSource program;
+  void (*kernel)(const kernels::AtrousJob&);
   int iterations;
-  protocol::BlurKernel kernel;
+  protocol::BlurKernel shape;
   std::function<shared::AtrousConstants(const KernelShape&)> constants;
-  kernels::Signal kind;
 };
 
 /// An image that the result of iteration `level` is written to, for the next frame.
@@ -30,10 +64,10 @@ struct Feedback {
 };
 
 /// The a-trous filter (Dammertz et al. 2010; paper sections 3.2 and 3.3): `iterations` passes, or
-/// twice as many halves, whose distance between taps doubles from one to the next. The result is
-/// the last iteration's.
+/// twice as many halves, whose distance between taps doubles from one to the next.
+/// @return the last iteration's result
 gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                   const Guide& guide, const Blur& blur, gpu::ImageRef signal,
+                   const Guide& guide, const AtrousConfig& config, gpu::ImageRef signal,
                    std::optional<Feedback> feedback);
 
 }  // namespace heliograph::render

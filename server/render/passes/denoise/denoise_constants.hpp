@@ -6,8 +6,6 @@
 #include "render/resources/scene_motion.hpp"
 #include "shaders/shared/denoise.h"
 
-// The same settings exist for either denoised signal, as two types with the same members.
-
 namespace heliograph::render {
 
 static_assert(static_cast<shared::uint>(protocol::Rectification::variance_clamp) ==
@@ -15,29 +13,31 @@ static_assert(static_cast<shared::uint>(protocol::Rectification::variance_clamp)
 static_assert(static_cast<shared::uint>(protocol::Rectification::gradient) ==
               shared::rectification_gradient);
 
-/// How much wider the box of rectification becomes while the picture rests: nothing changes any
-/// more, and holding a long history against noise would keep it from converging. The paper's boxes
-/// stay as they are.
-inline float rested_box(const FrameInputs& in, protocol::Rectification mode) {
+/// How much wider the box of rectification becomes while the view is static: nothing changes any
+/// more, and clamping a long history to noise would keep it from converging. The paper's boxes stay
+/// as they are.
+inline float static_box_scale(const FrameInputs& in, protocol::Rectification mode) {
   const bool widens =
       mode == protocol::Rectification::fast_history || mode == protocol::Rectification::percentile;
-  constexpr float settled = 8.0f;  // samples after which what moved has been forgotten
-  return widens ? std::max(1.0f, static_cast<float>(in.samples) / settled) : 1.0f;
+  constexpr float settled = 8.0f;  // samples after which the history holds no motion
+  return widens ? std::max(1.0f, static_cast<float>(in.clock.samples) / settled) : 1.0f;
 }
 
-/// What the passes of one signal's accumulation read, this frame. The memory is counted in
-/// seconds, so that it does not depend on the rate, and grows with the picture while that rests, so
+/// What the passes of one signal's accumulation read, this frame. The history's length is counted
+/// in seconds, so that it does not depend on the frame rate, and grows while the view is static, so
 /// that it converges.
 inline shared::TemporalConstants temporal_constants(const FrameInputs& in,
                                                     const protocol::TemporalSettings& settings) {
-  const auto rests = static_cast<float>(in.samples + 1);
-  const float by_time = in.seconds > 0.0f ? settings.history_seconds / in.seconds : 0.0f;
+  const auto static_frames = static_cast<float>(in.clock.samples + 1);
+  const float by_time =
+      in.clock.seconds > 0.0f ? settings.history_seconds / in.clock.seconds : 0.0f;
   shared::TemporalConstants constants{};
-  constants.frames = std::max({static_cast<float>(settings.history_frames), by_time, rests});
-  constants.moments_frames = std::max(static_cast<float>(settings.moments_frames), rests);
+  constants.frames =
+      std::max({static_cast<float>(settings.history_frames), by_time, static_frames});
+  constants.moments_frames = std::max(static_cast<float>(settings.moments_frames), static_frames);
   constants.rectification = static_cast<std::uint32_t>(settings.rectification);
   constants.radius = settings.rectification_radius;
-  constants.scale = settings.rectification_scale * rested_box(in, settings.rectification);
+  constants.scale = settings.rectification_scale * static_box_scale(in, settings.rectification);
   if (settings.rectification == protocol::Rectification::gradient) {
     // Of the mean: the neighbourhood's samples are independent of each other.
     constants.scale /= static_cast<float>(2 * settings.rectification_radius + 1);

@@ -11,14 +11,13 @@ namespace {
 
 using formats::four_floats;
 
-gpu::ImageRef compress(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef raw) {
-  const auto compressed = plan.image("specular.compressed", four_floats);
-  plan.pass("specular.compress", in.programs.compute(shaders::specular_compress))
-      .read(raw)
+gpu::ImageRef compress(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef noisy) {
+  const auto compressed = plan.image(denoise_specular_buffers.compressed.name, four_floats);
+  plan.pass("specular.compress", in.program(shaders::specular_compress))
+      .read(noisy)
       .write(compressed)
       .constants([&s = in.settings.reinhard] { return s.multiplier; })
-      .dispatch(plan.extent())
-      .describe("Reflections of this frame under Reinhard's curve.");
+      .dispatch(plan.extent());
   return compressed;
 }
 
@@ -28,52 +27,60 @@ gpu::ImageRef expand(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef 
     float paper_weight;
     std::uint32_t exact;
   };
-  const auto expanded = plan.image("specular.expanded", four_floats);
-  plan.pass("specular.expand", in.programs.compute(shaders::specular_expand))
+  const auto expanded = plan.image(denoise_specular_buffers.expanded.name, four_floats);
+  plan.pass("specular.expand", in.program(shaders::specular_expand))
       .read(compressed)
       .write(expanded)
       .constants([&s = in.settings.reinhard] {
         return Constants{s.multiplier, s.paper_weight, s.mode == protocol::Reinhard::exact};
       })
-      .dispatch(plan.extent())
-      .describe("Denoised reflections as radiance again.");
+      .dispatch(plan.extent());
   return expanded;
 }
 
-Blur specular_blur(const FrameInputs& in) {
+AtrousConfig specular_atrous_config(const FrameInputs& in) {
   const auto& settings = in.settings.specular_blur;
   const auto constants = [in, &settings](const KernelShape& shape) {
     shared::AtrousConstants made = atrous_constants(settings, shape);
     made.start_threshold = settings.adapt_start ? settings.roughness_threshold : 2.0f;
     if (settings.lobe_limit) made.flags |= shared::atrous_lobe_limit;
-    const bool quiet = in.settings.specular.hit_shading == protocol::HitShading::environment;
-    if (settings.iterations_by_roughness && quiet) made.flags |= shared::atrous_levels_by_roughness;
+    // Hits that only the environment lights have no noise of shadow rays.
+    const bool noise_free_hits =
+        in.settings.specular.hit_shading == protocol::HitShading::environment;
+    if (settings.iterations_by_roughness && noise_free_hits) {
+      made.flags |= shared::atrous_levels_by_roughness;
+    }
     return made;
   };
-  return {"specular",          in.programs.compute(shaders::specular_atrous),
-          settings.iterations, settings.kernel,
-          constants,           kernels::Signal::specular};
+  return {"specular.atrous",
+          specular_atrous_buffers,
+          in.program(shaders::specular_atrous),
+          kernels::specular_atrous,
+          settings.iterations,
+          settings.kernel,
+          constants};
 }
 
 }  // namespace
 
 gpu::ImageRef denoise_specular(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                               const Guide& guide, gpu::ImageRef raw) {
+                               const Guide& guide, gpu::ImageRef noisy) {
   const auto& blurring = in.settings.specular_blur;
   const bool feedback =
       blurring.enabled && blurring.feedback >= 0 && blurring.feedback < blurring.iterations;
-  const bool curved = in.settings.reinhard.mode != protocol::Reinhard::off;
+  const bool tone_compressed = in.settings.reinhard.mode != protocol::Reinhard::off;
 
-  gpu::ImageRef signal = curved ? compress(plan, in, raw) : raw;
-  const Integrated integrated = accumulate_specular(plan, in, gbuffer, guide, signal, feedback);
-  signal = integrated.signal;
+  gpu::ImageRef signal = tone_compressed ? compress(plan, in, noisy) : noisy;
+  const AccumulatedSignal accumulated =
+      accumulate_specular(plan, in, gbuffer, guide, signal, feedback);
+  signal = accumulated.signal;
   if (blurring.enabled) {
-    estimate_specular_variance(plan, in, gbuffer, guide, integrated);
-    signal = blur(plan, in, gbuffer, guide, specular_blur(in), integrated.signal,
-                  feedback ? std::optional(Feedback{blurring.feedback, integrated.remembered})
-                           : std::nullopt);
+    estimate_specular_variance(plan, in, gbuffer, guide, accumulated);
+    signal = blur(
+        plan, in, gbuffer, guide, specular_atrous_config(in), accumulated.signal,
+        feedback ? std::optional(Feedback{blurring.feedback, accumulated.history}) : std::nullopt);
   }
-  return curved ? expand(plan, in, signal) : signal;
+  return tone_compressed ? expand(plan, in, signal) : signal;
 }
 
 }  // namespace heliograph::render

@@ -30,55 +30,49 @@ float widest_light(const FrameInputs& in) {
   return widest;
 }
 
-Blur visibility_blur(const FrameInputs& in) {
+AtrousConfig visibility_atrous_config(const FrameInputs& in) {
   const auto& settings = in.settings.shadow_blur;
   const auto constants = [in, &settings](const KernelShape& shape) {
     shared::AtrousConstants made = atrous_constants(settings, shape);
-    const bool twice = settings.adapt_start && widest_light(in) > settings.angle_threshold;
-    made.start_threshold = twice ? -1.0f : 2.0f;
+    const bool double_step = settings.adapt_start && widest_light(in) > settings.angle_threshold;
+    made.start_threshold = double_step ? -1.0f : 2.0f;
     return made;
   };
-  return {"visibility",        in.programs.compute(shaders::visibility_atrous),
-          settings.iterations, settings.kernel,
-          constants,           kernels::Signal::visibility};
+  return {"visibility.atrous",
+          visibility_atrous_buffers,
+          in.program(shaders::visibility_atrous),
+          kernels::visibility_atrous,
+          settings.iterations,
+          settings.kernel,
+          constants};
 }
 
 }  // namespace
 
 gpu::ImageRef combine_visibility(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef shadows,
                                  gpu::ImageRef ambient) {
-  const auto raw = plan.image("visibility.raw", VK_FORMAT_R32G32B32A32_SFLOAT);
-  const auto declare = [&] {
-    if (!on_host(plan, in)) {
-      return plan.pass("visibility.combine", in.programs.compute(shaders::visibility_combine))
-          .dispatch(plan.extent());
-    }
-    return plan.host("visibility.combine", [&plan, shadows, ambient, raw] {
-      kernels::combine_visibility({.width = static_cast<int>(plan.extent().width),
-                                   .height = static_cast<int>(plan.extent().height),
-                                   .shadows = plan.get(shadows).host(),
-                                   .ambient = plan.get(ambient).host(),
-                                   .visibility = plan.get(raw).host()});
-    });
-  };
-  declare().read(shadows).read(ambient).write(raw).describe(
-      "Shadow (red) and ambient (green) visibility of this frame alone.");
-  return raw;
+  const auto noisy =
+      plan.image(denoise_visibility_buffers.noisy.name, VK_FORMAT_R32G32B32A32_SFLOAT);
+  plan.pass("visibility.combine", in.program(shaders::visibility_combine))
+      .bind<kernels::CombineBindings>({.shadows = shadows, .ambient = ambient, .visibility = noisy})
+      .dispatch(plan.extent())
+      .host(kernels::visibility_combine);
+  return noisy;
 }
 
 gpu::ImageRef denoise_visibility(gpu::FramePlan& plan, const FrameInputs& in,
-                                 const GBuffer& gbuffer, const Guide& guide, gpu::ImageRef raw) {
+                                 const GBuffer& gbuffer, const Guide& guide, gpu::ImageRef noisy) {
   const auto& blurring = in.settings.shadow_blur;
   const bool feedback =
       blurring.enabled && blurring.feedback >= 0 && blurring.feedback < blurring.iterations;
 
-  const Integrated integrated = accumulate_visibility(plan, in, guide, raw, feedback);
-  if (!blurring.enabled) return integrated.signal;
+  const AccumulatedSignal accumulated = accumulate_visibility(plan, in, guide, noisy, feedback);
+  if (!blurring.enabled) return accumulated.signal;
 
-  estimate_visibility_variance(plan, in, gbuffer, guide, integrated);
+  estimate_visibility_variance(plan, in, gbuffer, guide, accumulated);
   return blur(
-      plan, in, gbuffer, guide, visibility_blur(in), integrated.signal,
-      feedback ? std::optional(Feedback{blurring.feedback, integrated.remembered}) : std::nullopt);
+      plan, in, gbuffer, guide, visibility_atrous_config(in), accumulated.signal,
+      feedback ? std::optional(Feedback{blurring.feedback, accumulated.history}) : std::nullopt);
 }
 
 }  // namespace heliograph::render

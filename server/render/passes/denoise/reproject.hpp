@@ -1,18 +1,40 @@
 #pragma once
 
+#include <array>
+
 #include "render/passes/gbuffer/gbuffer.hpp"
+#include "render/views/aspects.hpp"
 
 namespace heliograph::render {
 
-/// What every denoised signal is guided by.
+struct FrameInputs;
+
+inline constexpr std::array reproject_motion_aspects{
+    Aspect{"offset", ViewColors::difference, 2, offset_to_position,
+           "From each pixel to where its surface was one frame ago, pixels.", "pixels"},
+    Aspect{"disoccluded", ViewColors::mark, 1, one_channel<3>,
+           "Surfaces that the frame before did not show: 1."}};
+
+inline constexpr struct ReprojectBuffers {
+  BufferDescription guide{"reproject.guide", ViewColors::direction,
+                          "Shading normal in world space times 1 + roughness; view Z, metres (w)."};
+  BufferDescription motion{
+      .name = "reproject.motion",
+      .colors = ViewColors::heat,
+      .description = "Where each surface was in the frame before: pixel (xy), bits of the valid "
+                     "neighbours (z), 1 where it was disoccluded (w).",
+      .aspects = reproject_motion_aspects};
+} reproject_buffers{};
+
+/// What guides the filters of all signals.
 struct Guide {
-  gpu::ImageRef surface;  // world shading normal x (1 + roughness), view Z; 0: background
-  gpu::ImageRef
-      reprojection;  // xy: pixel of the frame before, z: bits of its valid taps, w: 1: none
+  gpu::ImageRef surface;       // shaders/lib/denoise/guide.glsl
+  gpu::ImageRef reprojection;  // xy: position in the frame before, z: bits of its valid taps, w: 1
+                               // where the surface was disoccluded
 };
 
-/// Follows every surface to where it was one frame ago (SVGF, section 4.1). Tolerances are those of
-/// the shadows' accumulation.
+/// Finds every surface in the frame before (SVGF, section 4.1), within the tolerances of
+/// `reprojection`.
 Guide reproject(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer);
 
 }  // namespace heliograph::render

@@ -11,37 +11,24 @@ namespace {
 
 using formats::four_floats;
 
-/// The spread of brightness in every tile of 8x8 pixels of `raw`, for the rectification that needs
-/// it; otherwise any image, which nobody reads.
-gpu::ImageRef measure_percentiles(gpu::FramePlan& plan, const Guide& guide, gpu::ImageRef raw,
-                                  const std::string& signal, const gpu::ComputeProgram& program,
+/// The spread of brightness in every tile of 8x8 pixels of `noisy`, for the rectification that
+/// needs it; otherwise any image, which is bound and not read.
+gpu::ImageRef measure_percentiles(gpu::FramePlan& plan, const Guide& guide, gpu::ImageRef noisy,
+                                  const BufferDescription& buffer, gpu::ProgramSource program,
                                   protocol::Rectification rectification) {
   if (rectification != protocol::Rectification::percentile) return guide.reprojection;
   const VkExtent2D tiles{(plan.extent().width + 7) / 8, (plan.extent().height + 7) / 8};
-  const auto percentiles = plan.image(signal + ".percentiles", four_floats, 0, tiles);
-  plan.pass(signal + ".percentiles", program)
+  const auto percentiles = plan.image(buffer.name, four_floats, 0, tiles);
+  plan.pass(std::string(buffer.name), std::move(program))
       .read(guide.surface)
-      .read(raw)
+      .read(noisy)
       .write(percentiles)
-      .dispatch(plan.extent())
-      .describe("Tenth and ninetieth percentile of the brightness in every tile of 8x8 pixels.");
+      .dispatch(plan.extent());
   return percentiles;
 }
 
-/// The shader, or its twin where the device's memory is the host's and the twin knows the
-/// rectification. `run` takes what is the same for all kernels: constants and how to view an image.
-template <class Constants, class Run>
-gpu::PassBuilder declare_pass(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
-                              const gpu::ComputeProgram& program,
-                              protocol::Rectification rectification, const Constants& constants,
-                              const Run& run) {
-  const bool known = kernels::can_accumulate(static_cast<std::uint32_t>(rectification));
-  if (!on_host(plan, in) || !known) {
-    return plan.pass(name, program).constants(constants).dispatch(plan.extent());
-  }
-  return plan.host(name, [&plan, constants, run] {
-    run(constants(), [&plan](gpu::ImageRef image) { return plan.get(image).host(); });
-  });
+bool kernels_know(protocol::Rectification rectification) {
+  return kernels::can_accumulate(static_cast<std::uint32_t>(rectification));
 }
 
 /// Whether a pass of its own rectifies, after accumulation.
@@ -49,96 +36,69 @@ bool rectifies_after(protocol::Rectification mode) {
   return mode == protocol::Rectification::fast_history || mode == protocol::Rectification::gradient;
 }
 
-/// Holds the long history against the short one, or shortens it where the signal changes.
-gpu::PassBuilder rectify(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
-                         const gpu::ComputeProgram& program,
-                         void (*kernel)(const kernels::RectifyJob&), const Guide& guide,
-                         gpu::ImageRef fast, gpu::ImageRef signal, gpu::ImageRef history,
-                         const auto& constants) {
-  return declare_pass(plan, in, name, program, protocol::Rectification::fast_history, constants,
-                      [=, extent = plan.extent()](const auto& now, const auto& view) {
-                        kernel({.constants = now,
-                                .width = static_cast<int>(extent.width),
-                                .height = static_cast<int>(extent.height),
-                                .guide = view(guide.surface),
-                                .fast = view(fast),
-                                .signal = view(signal),
-                                .history = view(history)});
-                      })
-      .read(guide.surface)
-      .read(fast)
-      .read_write(signal)
-      .read_write(history);
-}
-
 }  // namespace
 
-Integrated accumulate_visibility(gpu::FramePlan& plan, const FrameInputs& in, const Guide& guide,
-                                 gpu::ImageRef raw, bool feedback) {
-  const gpu::History memory = plan.history("visibility.memory", four_floats);
-  const gpu::History moments = plan.history("visibility.moments", four_floats);
-  const gpu::History history = plan.history("visibility.history", four_floats);
-  const gpu::History fast = plan.history("visibility.fast", VK_FORMAT_R32G32_SFLOAT);
+AccumulatedSignal accumulate_visibility(gpu::FramePlan& plan, const FrameInputs& in,
+                                        const Guide& guide, gpu::ImageRef noisy, bool feedback) {
+  const auto& buffers = visibility_temporal_buffers;
+  const gpu::History history = plan.history(buffers.history.name, four_floats);
+  const gpu::History moments = plan.history(buffers.moments.name, four_floats);
+  const gpu::History history_length = plan.history(buffers.history_length.name, four_floats);
+  const gpu::History fast_history =
+      plan.history(buffers.fast_history.name, VK_FORMAT_R32G32_SFLOAT);
+  const gpu::ImageRef signal =
+      feedback ? plan.image(buffers.signal.name, four_floats) : history.current;
   const auto& settings = in.settings.shadow_temporal;
   const auto constants = [in, &settings] { return temporal_constants(in, settings); };
-  const gpu::ImageRef signal =
-      feedback ? plan.image("visibility.temporal", four_floats) : memory.current;
+  const gpu::ImageRef percentiles =
+      measure_percentiles(plan, guide, noisy, buffers.percentiles,
+                          in.program(shaders::visibility_percentiles), settings.rectification);
 
-  const gpu::ImageRef percentiles = measure_percentiles(
-      plan, guide, raw, "visibility", in.programs.compute(shaders::visibility_percentiles),
-      settings.rectification);
-  const auto run = [=, extent = plan.extent(), &frame = in.constants](const auto& now,
-                                                                      const auto& view) {
-    kernels::accumulate_visibility({.frame = frame,
-                                    .constants = now,
-                                    .width = static_cast<int>(extent.width),
-                                    .height = static_cast<int>(extent.height),
-                                    .raw = view(raw),
-                                    .guide = view(guide.surface),
-                                    .reprojection = view(guide.reprojection),
-                                    .previous_signal = view(memory.previous),
-                                    .previous_moments = view(moments.previous),
-                                    .previous_history = view(history.previous),
-                                    .previous_fast = view(fast.previous),
-                                    .signal = view(signal),
-                                    .moments = view(moments.current),
-                                    .history = view(history.current),
-                                    .fast = view(fast.current)});
-  };
-  declare_pass(plan, in, "visibility.temporal", in.programs.compute(shaders::visibility_temporal),
-               settings.rectification, constants, run)
-      .read(raw)
-      .read(guide.surface)
-      .read(guide.reprojection)
-      .read(memory.previous)
-      .read(moments.previous)
-      .read(history.previous)
-      .read(fast.previous)
-      .read(percentiles)
-      .write(signal)
-      .write(moments.current)
-      .write(history.current)
-      .write(fast.current)
-      .describe(
-          "Shadow (red) and ambient (green) visibility gathered over frames: mean and "
-          "variance, moments, frames remembered and how far the mean was moved, the last few "
-          "frames alone.");
+  plan.pass("visibility.temporal", in.program(shaders::visibility_temporal))
+      .bind<kernels::TemporalVisibilityBindings>(
+          {.noisy = noisy,
+           .guide = guide.surface,
+           .reprojection = guide.reprojection,
+           .previous_history = history.previous,
+           .previous_moments = moments.previous,
+           .previous_history_length = history_length.previous,
+           .previous_fast_history = fast_history.previous,
+           .percentiles = percentiles,
+           .signal = signal,
+           .moments = moments.current,
+           .history_length = history_length.current,
+           .fast_history = fast_history.current})
+      .constants(constants)
+      .dispatch(plan.extent())
+      .host(kernels::visibility_temporal, in.constants)
+      .host_when(kernels_know(settings.rectification));
   if (rectifies_after(settings.rectification)) {
-    rectify(plan, in, "visibility.rectify", in.programs.compute(shaders::visibility_rectify),
-            kernels::rectify_visibility, guide, fast.current, signal, history.current, constants)
-        // Visibility does not depend on the view: it changes only where something moves.
+    plan.pass("visibility.rectify", in.program(shaders::visibility_rectify))
+        .bind<kernels::RectifyBindings>({.guide = guide.surface,
+                                         .fast_history = fast_history.current,
+                                         .signal = signal,
+                                         .history_length = history_length.current})
+        .constants(constants)
+        .dispatch(plan.extent())
+        .host(kernels::visibility_rectify)
+        // Visibility does not depend on the view: it changes only where geometry or lights move.
         .when([&settings, &motion = in.scene_motion] {
-          return settings.rectification != protocol::Rectification::gradient || motion.things;
+          return settings.rectification != protocol::Rectification::gradient ||
+                 motion.geometry_moved;
         });
   }
-  return {signal, moments.current, history.current, memory.current};
+  return {signal, moments.current, history_length.current, history.current};
 }
 
-Integrated accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                               const Guide& guide, gpu::ImageRef raw, bool feedback) {
-  const gpu::History memory = plan.history("specular.memory", four_floats);
-  const gpu::History history = plan.history("specular.history", four_floats);
-  const gpu::History fast = plan.history("specular.fast", four_floats);
+AccumulatedSignal accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in,
+                                      const GBuffer& gbuffer, const Guide& guide,
+                                      gpu::ImageRef noisy, bool feedback) {
+  const auto& buffers = specular_temporal_buffers;
+  const gpu::History history = plan.history(buffers.history.name, four_floats);
+  const gpu::History history_length = plan.history(buffers.history_length.name, four_floats);
+  const gpu::History fast_history = plan.history(buffers.fast_history.name, four_floats);
+  const gpu::ImageRef signal =
+      feedback ? plan.image(buffers.signal.name, four_floats) : history.current;
   const auto& settings = in.settings.specular_temporal;
   const auto constants = [in, &settings] {
     shared::TemporalConstants made = temporal_constants(in, settings);
@@ -146,107 +106,78 @@ Integrated accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in, cons
     if (settings.curved_reflectors) made.flags |= shared::temporal_curved_reflectors;
     return made;
   };
-  const gpu::ImageRef signal =
-      feedback ? plan.image("specular.temporal", four_floats) : memory.current;
+  const gpu::ImageRef percentiles =
+      measure_percentiles(plan, guide, noisy, buffers.percentiles,
+                          in.program(shaders::specular_percentiles), settings.rectification);
 
-  const gpu::ImageRef percentiles = measure_percentiles(
-      plan, guide, raw, "specular", in.programs.compute(shaders::specular_percentiles),
-      settings.rectification);
-  const auto run = [=, extent = plan.extent(), &frame = in.constants](const auto& now,
-                                                                      const auto& view) {
-    kernels::accumulate_specular({.frame = frame,
-                                  .constants = now,
-                                  .width = static_cast<int>(extent.width),
-                                  .height = static_cast<int>(extent.height),
-                                  .raw = view(raw),
-                                  .guide = view(guide.surface),
-                                  .instance = view(gbuffer.instance),
-                                  .reprojection = view(guide.reprojection),
-                                  .previous_normals = view(gbuffer.previous_normals),
-                                  .previous_surface = view(gbuffer.previous_surface),
-                                  .previous_motion = view(gbuffer.previous_motion),
-                                  .previous_instance = view(gbuffer.previous_instance),
-                                  .previous_signal = view(memory.previous),
-                                  .previous_history = view(history.previous),
-                                  .previous_fast = view(fast.previous),
-                                  .signal = view(signal),
-                                  .history = view(history.current),
-                                  .fast = view(fast.current)});
-  };
-  declare_pass(plan, in, "specular.temporal", in.programs.compute(shaders::specular_temporal),
-               settings.rectification, constants, run)
-      .read(raw)
-      .read(guide.surface)
-      .read(gbuffer.instance)
-      .read(guide.reprojection)
-      .read(gbuffer.previous_normals)
-      .read(gbuffer.previous_surface)
-      .read(gbuffer.previous_motion)
-      .read(gbuffer.previous_instance)
-      .read(memory.previous)
-      .read(history.previous)
-      .read(fast.previous)
-      .read(percentiles)
-      .write(signal)
-      .write(history.current)
-      .write(fast.current)
-      .describe(
-          "Reflections gathered over frames: mean and variance; frames remembered, how far "
-          "the mean was moved, and moments; the last few frames alone.");
+  plan.pass("specular.temporal", in.program(shaders::specular_temporal))
+      .bind<kernels::TemporalSpecularBindings>({.noisy = noisy,
+                                                .guide = guide.surface,
+                                                .instance = gbuffer.instance,
+                                                .reprojection = guide.reprojection,
+                                                .previous_normals = gbuffer.previous_normals,
+                                                .previous_surface = gbuffer.previous_surface,
+                                                .previous_motion = gbuffer.previous_motion,
+                                                .previous_instance = gbuffer.previous_instance,
+                                                .previous_history = history.previous,
+                                                .previous_history_length = history_length.previous,
+                                                .previous_fast_history = fast_history.previous,
+                                                .percentiles = percentiles,
+                                                .signal = signal,
+                                                .history_length = history_length.current,
+                                                .fast_history = fast_history.current})
+      .constants(constants)
+      .dispatch(plan.extent())
+      .host(kernels::specular_temporal, in.constants)
+      .host_when(kernels_know(settings.rectification));
   if (rectifies_after(settings.rectification)) {
-    rectify(plan, in, "specular.rectify", in.programs.compute(shaders::specular_rectify),
-            kernels::rectify_specular, guide, fast.current, signal, history.current, constants)
-        .when([&settings, &samples = in.samples] {
-          return settings.rectification != protocol::Rectification::gradient || samples == 0;
+    plan.pass("specular.rectify", in.program(shaders::specular_rectify))
+        .bind<kernels::RectifyBindings>({.guide = guide.surface,
+                                         .fast_history = fast_history.current,
+                                         .signal = signal,
+                                         .history_length = history_length.current})
+        .constants(constants)
+        .dispatch(plan.extent())
+        .host(kernels::specular_rectify)
+        .when([&settings, &clock = in.clock] {
+          return settings.rectification != protocol::Rectification::gradient || clock.samples == 0;
         });
   }
-  return {signal, history.current, history.current, memory.current};
+  return {signal, history_length.current, history_length.current, history.current};
 }
 
 namespace {
 
-void estimate_variance(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                       const Guide& guide, const Integrated& integrated, const char* name,
-                       const gpu::ComputeProgram& program, kernels::Signal kind,
-                       const auto& settings) {
-  const auto constants = [in, &settings] { return temporal_constants(in, settings); };
-  const auto run = [=, extent = plan.extent(), &frame = in.constants](const auto& now,
-                                                                      const auto& view) {
-    kernels::spatial_variance({.kind = kind,
-                               .frame = frame,
-                               .constants = now,
-                               .width = static_cast<int>(extent.width),
-                               .height = static_cast<int>(extent.height),
-                               .guide = view(guide.surface),
-                               .depth_slope = view(gbuffer.depth_slope),
-                               .moments = view(integrated.moments),
-                               .history = view(integrated.history),
-                               .signal = view(integrated.signal)});
-  };
-  declare_pass(plan, in, name, program, protocol::Rectification::off, constants, run)
-      .read(guide.surface)
-      .read(gbuffer.depth_slope)
-      .read(integrated.moments)
-      .read(integrated.history)
-      .read_write(integrated.signal)
+gpu::PassBuilder variance_pass(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                               const Guide& guide, const AccumulatedSignal& accumulated,
+                               const char* name, gpu::ProgramSource program, const auto& settings) {
+  gpu::PassBuilder pass = plan.pass(name, std::move(program));
+  pass.bind<kernels::SpatialVarianceBindings>({.guide = guide.surface,
+                                               .depth_slope = gbuffer.depth_slope,
+                                               .moments = accumulated.moments,
+                                               .history_length = accumulated.history_length,
+                                               .signal = accumulated.signal})
+      .constants([in, &settings] { return temporal_constants(in, settings); })
+      .dispatch(plan.extent())
       .when([&settings] { return settings.spatial_variance_frames > 0; });
+  return pass;
 }
 
 }  // namespace
 
 void estimate_visibility_variance(gpu::FramePlan& plan, const FrameInputs& in,
                                   const GBuffer& gbuffer, const Guide& guide,
-                                  const Integrated& visibility) {
-  estimate_variance(plan, in, gbuffer, guide, visibility, "visibility.variance",
-                    in.programs.compute(shaders::visibility_variance), kernels::Signal::visibility,
-                    in.settings.shadow_temporal);
+                                  const AccumulatedSignal& visibility) {
+  variance_pass(plan, in, gbuffer, guide, visibility, "visibility.variance",
+                in.program(shaders::visibility_variance), in.settings.shadow_temporal)
+      .host(kernels::visibility_variance, in.constants);
 }
 
 void estimate_specular_variance(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                                const Guide& guide, const Integrated& specular) {
-  estimate_variance(plan, in, gbuffer, guide, specular, "specular.variance",
-                    in.programs.compute(shaders::specular_variance), kernels::Signal::specular,
-                    in.settings.specular_temporal);
+                                const Guide& guide, const AccumulatedSignal& specular) {
+  variance_pass(plan, in, gbuffer, guide, specular, "specular.variance",
+                in.program(shaders::specular_variance), in.settings.specular_temporal)
+      .host(kernels::specular_variance, in.constants);
 }
 
 }  // namespace heliograph::render

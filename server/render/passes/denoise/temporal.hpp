@@ -1,33 +1,99 @@
 #pragma once
 
+#include <array>
+
 #include "render/passes/denoise/reproject.hpp"
 
 namespace heliograph::render {
 
-/// A signal gathered over frames, in this frame.
-struct Integrated {
-  gpu::ImageRef signal;   // the mean and the variance of its noise
-  gpu::ImageRef moments;  // of single samples
-  gpu::ImageRef history;  // frames remembered, and how far rectification moved the mean
+inline constexpr std::array visibility_history_length_aspects{
+    Aspect{"rectified", ViewColors::heat, 2, second_pair,
+           "How far rectification moved the visibility history: shadow, ambient."}};
+inline constexpr std::array visibility_temporal_aspects{
+    Aspect{"noise", ViewColors::deviation, 2, second_pair,
+           "Standard deviation before the blur, of shadow or ambient visibility, the larger; "
+           "captured: both variances."}};
+inline constexpr std::array specular_history_length_aspects{
+    Aspect{"rectified", ViewColors::heat, 1, one_channel<1>,
+           "How far rectification moved the reflection's history."}};
+inline constexpr std::array specular_temporal_aspects{
+    Aspect{"noise", ViewColors::deviation, 1, one_channel<3>,
+           "Standard deviation of the reflection's brightness before the blur; captured: "
+           "variance."}};
+
+inline constexpr struct VisibilityTemporalBuffers {
+  BufferDescription percentiles{
+      "visibility.percentiles", ViewColors::channels,
+      "Tenth and ninetieth percentile of shadow and ambient visibility in every tile of 8x8 "
+      "pixels."};
+  BufferDescription history{"visibility.history", ViewColors::channels,
+                            "Accumulated shadow (red) and ambient (green) visibility, which the "
+                            "next frame goes on from; variances (zw)."};
+  BufferDescription moments{"visibility.moments", ViewColors::channels,
+                            "First and second moments of single samples: shadow (xz), ambient "
+                            "(yw)."};
+  BufferDescription history_length{
+      .name = "visibility.history_length",
+      .colors = ViewColors::heat,
+      .description = "Frames in the history: shadow, ambient; how far rectification moved it (zw).",
+      .aspects = visibility_history_length_aspects};
+  BufferDescription fast_history{"visibility.fast_history", ViewColors::channels,
+                                 "Shadow (red) and ambient (green) visibility of the last few "
+                                 "frames alone."};
+  BufferDescription signal{
+      .name = "visibility.temporal",
+      .colors = ViewColors::channels,
+      .description = "Accumulated shadow (red) and ambient (green) visibility; variances (zw).",
+      .aspects = visibility_temporal_aspects};
+} visibility_temporal_buffers{};
+
+inline constexpr struct SpecularTemporalBuffers {
+  BufferDescription percentiles{
+      "specular.percentiles", ViewColors::radiance,
+      "Tenth and ninetieth percentile of the reflections' brightness in every tile of 8x8 pixels."};
+  BufferDescription history{"specular.history", ViewColors::radiance,
+                            "Accumulated reflections, demodulated, which the next frame goes on "
+                            "from; variance of their brightness (w)."};
+  BufferDescription history_length{
+      .name = "specular.history_length",
+      .colors = ViewColors::heat,
+      .description = "Frames in the history; how far rectification moved it; first and second "
+                     "moments of the brightness (zw).",
+      .aspects = specular_history_length_aspects};
+  BufferDescription fast_history{"specular.fast_history", ViewColors::radiance,
+                                 "Reflections of the last few frames alone, demodulated."};
+  BufferDescription signal{
+      .name = "specular.temporal",
+      .colors = ViewColors::radiance,
+      .description = "Accumulated reflections, demodulated; variance of their brightness (w).",
+      .aspects = specular_temporal_aspects};
+} specular_temporal_buffers{};
+
+/// A signal accumulated over frames, in this frame.
+struct AccumulatedSignal {
+  gpu::ImageRef signal;          // the mean and the variance of its noise
+  gpu::ImageRef moments;         // of single samples
+  gpu::ImageRef history_length;  // frames, and how far rectification moved the mean
   /// What the next frame goes on from: a later pass must write it, unless it is `signal` itself.
-  gpu::ImageRef remembered;
+  gpu::ImageRef history;
 };
 
 /// Shadow and ambient visibility (x and y; variances z and w). With `feedback` a later pass writes
-/// what is remembered.
-Integrated accumulate_visibility(gpu::FramePlan& plan, const FrameInputs& in, const Guide& guide,
-                                 gpu::ImageRef raw, bool feedback);
+/// the history.
+AccumulatedSignal accumulate_visibility(gpu::FramePlan& plan, const FrameInputs& in,
+                                        const Guide& guide, gpu::ImageRef noisy, bool feedback);
 
 /// Demodulated reflections: rgb, and the variance of their luminance in w. The moments lie beside
-/// the frames remembered, z and w of `history`.
-Integrated accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                               const Guide& guide, gpu::ImageRef raw, bool feedback);
+/// the length of the history, z and w of `history_length`.
+AccumulatedSignal accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in,
+                                      const GBuffer& gbuffer, const Guide& guide,
+                                      gpu::ImageRef noisy, bool feedback);
 
 /// Gives pixels with a short history the variance of their neighbours (SVGF, section 4.2).
 void estimate_visibility_variance(gpu::FramePlan& plan, const FrameInputs& in,
                                   const GBuffer& gbuffer, const Guide& guide,
-                                  const Integrated& visibility);
+                                  const AccumulatedSignal& visibility);
 void estimate_specular_variance(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                                const Guide& guide, const Integrated& specular);
+                                const Guide& guide, const AccumulatedSignal& specular);
 
 }  // namespace heliograph::render

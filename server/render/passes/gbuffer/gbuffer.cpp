@@ -70,25 +70,27 @@ class DrawRecorder {
 
 GBuffer declare_gbuffer(gpu::FramePlan& plan, std::uint32_t features) {
   constexpr VkImageUsageFlags attachment = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
-  const auto signal = [&](const char* name, std::size_t index) {
-    return plan.image(name, gbuffer_formats[index], attachment);
+  const auto image = [&](const BufferDescription& buffer, std::size_t index) {
+    return plan.image(buffer.name, gbuffer_formats[index], attachment);
   };
-  const auto remembered = [&](const char* name, std::size_t index, gpu::ImageRef& previous) {
-    const gpu::History history = plan.history(name, gbuffer_formats[index], attachment);
-    previous = history.previous;
-    return history.current;
+  const auto history = [&](const BufferDescription& buffer, std::size_t index,
+                           gpu::ImageRef& previous) {
+    const gpu::History made = plan.history(buffer.name, gbuffer_formats[index], attachment);
+    previous = made.previous;
+    return made.current;
   };
+  const auto& buffers = gbuffer_buffers;
   GBuffer gbuffer;
-  gbuffer.normals = remembered("gbuffer.normals", 0, gbuffer.previous_normals);
-  gbuffer.base_color = signal("gbuffer.base_color", 1);
-  gbuffer.surface = remembered("gbuffer.surface", 2, gbuffer.previous_surface);
+  gbuffer.normals = history(buffers.normals, 0, gbuffer.previous_normals);
+  gbuffer.base_color = image(buffers.base_color, 1);
+  gbuffer.surface = history(buffers.surface, 2, gbuffer.previous_surface);
   const bool layered = (features & shared::scene_layers) != 0;
   gbuffer.layers = plan.image("gbuffer.layers", gbuffer_layers_format, attachment,
                               layered ? plan.extent() : VkExtent2D{1, 1});
-  gbuffer.motion = remembered("gbuffer.motion", 3, gbuffer.previous_motion);
-  gbuffer.emissive = signal("gbuffer.emissive", 4);
-  gbuffer.depth_slope = signal("gbuffer.depth_slope", 5);
-  gbuffer.instance = remembered("gbuffer.instance", 6, gbuffer.previous_instance);
+  gbuffer.motion = history(buffers.motion, 3, gbuffer.previous_motion);
+  gbuffer.emissive = image(buffers.emissive, 4);
+  gbuffer.depth_slope = image(buffers.depth_slope, 5);
+  gbuffer.instance = history(buffers.instance, 6, gbuffer.previous_instance);
   gbuffer.depth = plan.image("gbuffer.depth", VK_FORMAT_D32_SFLOAT);
   return gbuffer;
 }

@@ -15,20 +15,13 @@ namespace {
 using formats::storage;
 
 void camera_rays(gpu::FramePlan& plan, const FrameInputs& in, const tracing::RayStream& rays) {
-  const auto run_host = [&plan, &frame = in.constants, rays] {
-    kernels::camera_rays(frame, mapped<shared::RayCount>(plan, rays.count),
-                         mapped<shared::Ray>(plan, rays.rays));
-  };
-  const auto bind = [&](gpu::PassBuilder pass) { return pass.write(rays.count).write(rays.rays); };
-  if (by_host(plan, in)) {
-    bind(plan.host("gbuffer.rays", run_host));
-  } else {
-    bind(plan.pass("gbuffer.rays", in.programs.compute(shaders::gbuffer_rays)))
-        .dispatch(plan.extent());
-  }
+  plan.pass("gbuffer.rays", in.program(shaders::gbuffer_rays))
+      .bind<kernels::GBufferRaysBindings>({.count = rays.count, .rays = rays.rays})
+      .dispatch(plan.extent())
+      .host(kernels::gbuffer_rays, in.constants);
 }
 
-/// What one round has met.
+/// The hits of one round.
 struct Round {
   std::string name;
   bool last;
@@ -36,54 +29,37 @@ struct Round {
   gpu::BufferRef hits;
   gpu::BufferRef previous_vertices;
   tracing::RayStream passed;  // rays that go on
-  GBuffer gbuffer;
 };
 
-void shade_on_host(const gpu::FramePlan& plan, const FrameInputs& in, const Round& round) {
-  const auto view = [&plan](gpu::ImageRef image) { return plan.get(image).host(); };
-  const GBuffer& gbuffer = round.gbuffer;
-  kernels::shade_gbuffer({in.constants,
-                          kernels::view_scene(in.scene, in.tables, in.moving),
-                          (in.scene.features & shared::scene_deforms) != 0,
-                          round.last,
-                          ray_source(plan, round.rays),
-                          mapped<const shared::Hit>(plan, round.hits),
-                          ray_sink(plan, in, round.passed, Blending::stops),
-                          {view(gbuffer.normals), view(gbuffer.base_color), view(gbuffer.surface),
-                           view(gbuffer.motion), view(gbuffer.emissive), view(gbuffer.depth_slope),
-                           view(gbuffer.instance)}});
-}
-
-void shade(gpu::FramePlan& plan, const FrameInputs& in, const Round& round) {
-  const auto bind = [&](gpu::PassBuilder pass) {
-    return pass.read(round.rays.count)
-        .read(round.rays.rays)
-        .read(round.hits)
-        .read(round.previous_vertices)
-        .read_write(round.passed.count)
-        .write(round.passed.rays)
-        .write(round.gbuffer.normals)
-        .write(round.gbuffer.base_color)
-        .write(round.gbuffer.surface)
-        .write(round.gbuffer.motion)
-        .write(round.gbuffer.emissive)
-        .write(round.gbuffer.depth_slope)
-        .write(round.gbuffer.instance);
-  };
-  const bool layered = (in.scene.features & shared::scene_layers) != 0;
-  const std::string name = round.name + ".shade";
-  if (shades_on_host(plan, in)) {
-    bind(plan.host(name, [&plan, in, round] { shade_on_host(plan, in, round); }));
-    return;
-  }
+void store_hits(gpu::FramePlan& plan, const FrameInputs& in, const Round& round,
+                const GBuffer& gbuffer) {
+  const std::uint32_t features = in.scene.features;
+  const bool layered = (features & shared::scene_layers) != 0;
+  const auto& shader = layered ? shaders::gbuffer_hits_layered : shaders::gbuffer_hits;
   // Camera rays decide for themselves, by the filtered texel: as drawn triangles do.
   begin_rays(plan, in, round.name, round.passed, Blending::stops);
-  const auto& shader = layered ? shaders::gbuffer_hits_layered : shaders::gbuffer_hits;
-  gpu::PassBuilder pass = plan.pass(name, in.programs.compute(shader, in.scene.features));
-  bind(pass);
-  if (layered) pass.write(round.gbuffer.layers);
-  pass.constants(static_cast<std::uint32_t>(round.last))
-      .dispatch_indirect(round.rays.count, ray_groups_offset);
+  plan.pass(round.name + ".hits", in.program(shader, features))
+      .bind<kernels::GBufferHitsBindings>(
+          {.rays = ray_source(round.rays),
+           .hits = round.hits,
+           .previous_vertices = round.previous_vertices,
+           .passed = ray_sink(round.passed),
+           .normals = gbuffer.normals,
+           .base_color = gbuffer.base_color,
+           .surface = gbuffer.surface,
+           .motion = gbuffer.motion,
+           .emissive = gbuffer.emissive,
+           .depth_slope = gbuffer.depth_slope,
+           .instance = gbuffer.instance,
+           .layers = layered ? std::optional(gbuffer.layers) : std::nullopt})
+      .constants(kernels::GBufferHitsConstants{round.last})
+      .dispatch_indirect(round.rays.count, ray_groups_offset)
+      .host([in](const kernels::GBufferHitsJob::Pass& pass) {
+        kernels::gbuffer_hits({pass, in.constants,
+                               kernels::view_scene(in.scene, in.tables, in.moving),
+                               (in.scene.features & shared::scene_deforms) != 0});
+      })
+      .host_when(kernels::know_materials(features));
 }
 
 }  // namespace
@@ -116,7 +92,7 @@ GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
     const std::string name = round == 0 ? "gbuffer" : "gbuffer." + std::to_string(round + 1);
     in.tracer.trace_closest(plan, name + ".trace", in.structure, current, hits);
     const bool last = round == rounds - 1;
-    shade(plan, in, {name, last, current, hits, previous_vertices, next, gbuffer});
+    store_hits(plan, in, {name, last, current, hits, previous_vertices, next}, gbuffer);
     std::swap(current, next);
   }
   return gbuffer;

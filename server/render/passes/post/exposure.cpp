@@ -20,14 +20,14 @@ struct AdaptConstants {
 /// Fills the histogram.
 void meter(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef hdr, gpu::ImageRef mean,
            gpu::BufferRef histogram) {
-  plan.pass("exposure.begin", in.programs.compute(shaders::exposure_begin))
+  plan.pass("exposure.begin", in.program(shaders::exposure_begin))
       .write(histogram)
       .dispatch({shared::exposure_bins, 1});
-  plan.pass("exposure.meter", in.programs.compute(shaders::exposure_meter))
+  plan.pass("exposure.meter", in.program(shaders::exposure_meter))
       .read(hdr)
       .read(mean)
       .read_write(histogram)
-      .constants([in] { return mean_share(in); })
+      .constants([in] { return mean_weight(in); })
       .dispatch({(plan.extent().width + 1) / 2, (plan.extent().height + 1) / 2});
 }
 
@@ -52,12 +52,12 @@ Exposure expose(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef hdr,
                   gpu::Memory::device);
   const bool automatic = in.settings.exposure.mode == protocol::ExposureMode::automatic;
   if (automatic) meter(plan, in, hdr, mean, histogram);
-  plan.pass("exposure.adapt", in.programs.compute(shaders::exposure_adapt))
+  plan.pass("exposure.adapt", in.program(shaders::exposure_adapt))
       .read(histogram)
       .read_write(exposure.state)
       .write(exposure.report)
-      .constants([&seconds = in.seconds, &settings = in.settings.exposure, automatic] {
-        return AdaptConstants{seconds, settings.adaptation, automatic};
+      .constants([&clock = in.clock, &settings = in.settings.exposure, automatic] {
+        return AdaptConstants{clock.seconds, settings.adaptation, automatic};
       })
       .dispatch({1, 1});
   return exposure;

@@ -5,6 +5,12 @@
 
 namespace heliograph::render {
 
+inline constexpr struct TemporalAntialiasBuffers {
+  BufferDescription resolved{"temporal_antialias", ViewColors::radiance,
+                             "The frame blended with those before it (temporal antialiasing): "
+                             "linear radiance."};
+} temporal_antialias_buffers{};
+
 /// Blends each frame with those before along the motion of surfaces and of the background: linear
 /// radiance without jitter (paper section 3, stage 8; the temporal antialiasing of Falcor).
 /// `radiance` itself where `antialiasing.temporal` is off.

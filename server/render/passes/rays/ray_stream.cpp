@@ -21,16 +21,13 @@ std::uint32_t frame_blending(const FrameInputs& in) {
 
 void begin_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
                 const tracing::RayStream& rays, Blending blending) {
-  if (!on_host(plan, in)) {
-    plan.pass(name + ".begin", in.programs.compute(shaders::rays_begin, in.scene.features))
-        .write(rays.count)
-        .constants(static_cast<std::uint32_t>(blending == Blending::shares))
-        .dispatch({1, 1});
-    return;
-  }
-  plan.host(name + ".begin",
-            [&plan, in, rays, blending] { ray_sink(plan, in, rays, blending).begin(); })
-      .write(rays.count);
+  plan.pass(name + ".begin", in.program(shaders::rays_begin, in.scene.features))
+      .bind<kernels::RaysBeginBindings>({.count = rays.count})
+      .constants(kernels::RaysBeginConstants{blending == Blending::by_coverage})
+      .dispatch({1, 1})
+      .host([in](const kernels::RaysBeginJob& job) {
+        kernels::rays_begin(job, job.constants.by_coverage ? frame_blending(in) : 0u);
+      });
 }
 
 }  // namespace heliograph::render

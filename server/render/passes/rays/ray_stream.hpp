@@ -16,36 +16,23 @@ inline constexpr VkDeviceSize ray_groups_offset = offsetof(shared::RayCount, gro
 tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
                                 std::uint32_t capacity);
 
-/// How a stream's rays meet blended surfaces: stopped by all of them, or by their share.
-enum class Blending { stops, shares };
+/// How a stream's rays meet blended surfaces: all of them stop rays, or each its coverage's
+/// fraction.
+enum class Blending { stops, by_coverage };
 
 /// RayCount::blending of a frame's streams; the same in shaders/lib/denoise/frame_blending.glsl.
 std::uint32_t frame_blending(const FrameInputs& in);
 
 /// The pass `name`.begin, which empties the stream.
 void begin_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
-                const tracing::RayStream& rays, Blending blending = Blending::shares);
+                const tracing::RayStream& rays, Blending blending = Blending::by_coverage);
 
-/// Whether passes that have a kernel run it.
-inline bool by_host(const gpu::FramePlan& plan, const FrameInputs& in) {
-  return in.host_kernels && plan.device().is_cpu();
+/// A stream in the list of a pass's bindings.
+inline kernels::RaySource<gpu::Declared> ray_source(const tracing::RayStream& rays) {
+  return {rays.count, rays.rays};
 }
-
-/// A buffer as kernels on the host see it.
-template <typename Element>
-Element* mapped(const gpu::FramePlan& plan, gpu::BufferRef buffer) {
-  return reinterpret_cast<Element*>(plan.get(buffer).mapped());
-}
-inline kernels::RaySource ray_source(const gpu::FramePlan& plan, const tracing::RayStream& rays) {
-  return {mapped<const shared::RayCount>(plan, rays.count),
-          mapped<const shared::Ray>(plan, rays.rays)};
-}
-/// For one frame.
-inline kernels::RaySink ray_sink(const gpu::FramePlan& plan, const FrameInputs& in,
-                                 const tracing::RayStream& rays,
-                                 Blending blending = Blending::shares) {
-  return {mapped<shared::RayCount>(plan, rays.count), mapped<shared::Ray>(plan, rays.rays),
-          blending == Blending::shares ? frame_blending(in) : 0u};
+inline kernels::RaySink<gpu::Declared> ray_sink(const tracing::RayStream& rays) {
+  return {rays.count, rays.rays};
 }
 
 }  // namespace heliograph::render

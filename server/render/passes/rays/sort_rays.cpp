@@ -10,8 +10,8 @@ tracing::RayStream sort_rays(gpu::FramePlan& plan, const FrameInputs& in, const 
                              const tracing::RayStream& rays) {
   constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   constexpr VkDeviceSize groups = offsetof(shared::RayCount, groups_x);
-  const auto places = plan.buffer(name + ".sort.places", sizeof(std::uint32_t) * shared::ray_keys,
-                                  storage, gpu::Memory::device);
+  const auto offsets = plan.buffer(name + ".sort.offsets", sizeof(std::uint32_t) * shared::ray_keys,
+                                   storage, gpu::Memory::device);
   const tracing::RayStream sorted{
       rays.count,
       plan.buffer(name + ".sorted_rays", sizeof(shared::Ray) * rays.capacity, storage,
@@ -22,22 +22,22 @@ tracing::RayStream sort_rays(gpu::FramePlan& plan, const FrameInputs& in, const 
     const glm::vec3 size = glm::max(bounds.maximum - bounds.minimum, glm::vec3(1e-6f));
     return shared::RaySortConstants{glm::vec4(bounds.minimum, 0.0f), glm::vec4(1.0f / size, 0.0f)};
   };
-  plan.pass(name + ".sort.clear", in.programs.compute(shaders::rays_sort_clear))
-      .write(places)
+  plan.pass(name + ".sort.clear", in.program(shaders::rays_sort_clear))
+      .write(offsets)
       .dispatch({shared::ray_keys, 1});
-  plan.pass(name + ".sort.count", in.programs.compute(shaders::rays_sort_count))
+  plan.pass(name + ".sort.count", in.program(shaders::rays_sort_count))
       .read(rays.count)
       .read(rays.rays)
-      .read_write(places)
+      .read_write(offsets)
       .constants(constants)
       .dispatch_indirect(rays.count, groups);
-  plan.pass(name + ".sort.offsets", in.programs.compute(shaders::rays_sort_offsets))
-      .read_write(places)
+  plan.pass(name + ".sort.offsets", in.program(shaders::rays_sort_offsets))
+      .read_write(offsets)
       .dispatch({256, 1});
-  plan.pass(name + ".sort.move", in.programs.compute(shaders::rays_sort_move))
+  plan.pass(name + ".sort.move", in.program(shaders::rays_sort_move))
       .read(rays.count)
       .read(rays.rays)
-      .read_write(places)
+      .read_write(offsets)
       .write(sorted.rays)
       .constants(constants)
       .dispatch_indirect(rays.count, groups);

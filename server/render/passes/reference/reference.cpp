@@ -13,7 +13,7 @@ namespace {
 /// Whether this frame's sample is traced: not in the first frame after a change where the hybrid
 /// alone is shown.
 bool traces_reference(const FrameInputs& in) {
-  return in.settings.reference.use == protocol::ReferenceUse::always || in.samples > 0 ||
+  return in.settings.reference.use == protocol::ReferenceUse::always || in.clock.samples > 0 ||
          in.settings.accumulation.blend_samples == 0;
 }
 
@@ -22,8 +22,8 @@ using formats::storage;
 
 auto constants(const FrameInputs& in, std::uint32_t round, std::uint32_t limit) {
   return [&s = in.settings.specular, round, limit] {
-    const bool lamps = s.hit_shading == protocol::HitShading::traced;
-    return shared::ReferenceConstants{round, limit, lamps, s.enabled ? s.max_roughness : -1.0f};
+    const bool lights = s.hit_shading == protocol::HitShading::traced;
+    return shared::ReferenceConstants{round, limit, lights, s.enabled ? s.max_roughness : -1.0f};
   };
 }
 
@@ -34,7 +34,7 @@ class Wavefront {
       : plan_(plan),
         in_(in),
         pixels_(plan.extent().width * plan.extent().height),
-        radiance_(plan.image("reference", VK_FORMAT_R32G32B32A32_SFLOAT)),
+        radiance_(plan.image(reference_buffers.radiance.name, VK_FORMAT_R32G32B32A32_SFLOAT)),
         rays_(stream("reference.path")),
         shadows_(stream("reference.shadows")),
         paths_(buffer("reference.paths", sizeof(shared::ReferencePath))),
@@ -49,14 +49,13 @@ class Wavefront {
         .write(rays_.rays)
         .write(paths_)
         .write(radiance_)
-        .dispatch(plan_.extent())
-        .describe("One path traced sample of this frame: linear radiance.");
+        .dispatch(plan_.extent());
   }
 
-  /// The hybrid's paths: the surface in view, what it mirrors, and nothing beyond.
+  /// The hybrid's paths: the surface in view, one reflection, and nothing beyond.
   void same_paths() {
     const tracing::RayStream ambient = stream("reference.ambient");
-    const tracing::RayStream mirrored = stream("reference.mirrored");
+    const tracing::RayStream specular = stream("reference.specular");
     constexpr std::uint32_t rounds = 1 + passed_layers;
     for (std::uint32_t round = 0; round < rounds; ++round) {
       in_.tracer.trace_closest(plan_, "reference.trace", in_.structure, rays_, hits_);
@@ -68,17 +67,17 @@ class Wavefront {
           .write(shadows_.rays)
           .write(ambient.count)
           .write(ambient.rays)
-          .write(mirrored.count)
-          .write(mirrored.rays)
+          .write(specular.count)
+          .write(specular.rays)
           .read_write(radiance_)
           .constants(constants(in_, round, rounds))
           .dispatch(plan_.extent());
     }
     add(shadows_);
     add(ambient);
-    in_.tracer.trace_closest(plan_, "reference.trace", in_.structure, mirrored, hits_);
+    in_.tracer.trace_closest(plan_, "reference.trace", in_.structure, specular, hits_);
     pass("reference.shade", shaders::reference_shade)
-        .read(mirrored.rays)
+        .read(specular.rays)
         .read(hits_)
         .read(paths_)
         .write(shadows_.count)
@@ -112,7 +111,7 @@ class Wavefront {
 
  private:
   gpu::PassBuilder pass(const std::string& name, const gpu::ShaderBinary& shader) {
-    return plan_.pass(name, in_.programs.compute(shader, in_.scene.features)).when([in = in_] {
+    return plan_.pass(name, in_.program(shader, in_.scene.features)).when([in = in_] {
       return traces_reference(in);
     });
   }

@@ -1,14 +1,20 @@
 #pragma once
 
 #include "gpu/frame_plan/frame_plan.hpp"
+#include "render/views/buffer_description.hpp"
 
 namespace heliograph::render {
 
 struct FrameInputs;
 
-/// One sample per pixel of the truth, as settings.reference asks for it: the hybrid's own light
-/// paths or full global illumination, from the camera's ray on by nothing but traced rays. Its
-/// surfaces, lights, BRDF, camera and random numbers are the hybrid's; its code is not. Linear
+inline constexpr struct ReferenceBuffers {
+  BufferDescription radiance{"reference", ViewColors::radiance,
+                             "One sample of the path tracer: linear radiance."};
+} reference_buffers{};
+
+/// One sample per pixel of the ground truth, as settings.reference asks for it: the hybrid's own
+/// light paths or full global illumination, from the camera's ray on by nothing but traced rays.
+/// Its surfaces, lights, BRDF, camera and random numbers are the hybrid's; its code is not. Linear
 /// radiance; the mean over frames converges to the integral over the pixel.
 gpu::ImageRef trace_reference(gpu::FramePlan& plan, const FrameInputs& in);
 

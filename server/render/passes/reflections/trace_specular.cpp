@@ -25,53 +25,39 @@ struct Target {
 };
 
 Target make_target(gpu::FramePlan& plan, bool half) {
-  if (!half) return {plan.image("specular.radiance", four_floats), {}, plan.extent(), 1};
+  const auto& buffers = specular_buffers;
+  if (!half) return {plan.image(buffers.radiance.name, four_floats), {}, plan.extent(), 1};
   const VkExtent2D extent{(plan.extent().width + 1) / 2, (plan.extent().height + 1) / 2};
-  return {plan.image("specular.half.radiance", four_floats, 0, extent),
-          plan.image("specular.half.directions", four_floats, 0, extent), extent, 2};
-}
-
-kernels::SplitSum split_sum(const FrameInputs& in) {
-  const gpu::Image& table = in.split_sum_table;
-  return {table.host(), static_cast<int>(table.desc().extent.width)};
+  return {plan.image(buffers.half_radiance.name, four_floats, 0, extent),
+          plan.image(buffers.half_directions.name, four_floats, 0, extent), extent, 2};
 }
 
 tracing::RayStream generate_rays(gpu::FramePlan& plan, const FrameInputs& in,
                                  const GBuffer& gbuffer, const Target& target) {
+  const std::uint32_t features = in.scene.features;
   const auto rays = declare_rays(plan, "specular", target.extent.width * target.extent.height);
-  const auto bind = [&](gpu::PassBuilder pass) {
-    pass.read(gbuffer.normals)
-        .read(gbuffer.base_color)
-        .read(gbuffer.surface)
-        .read(gbuffer.layers)
-        .read(gbuffer.motion)
-        .read_write(rays.count)
-        .write(rays.rays)
-        .write(target.radiance);
-    return target.directions ? pass.write(*target.directions) : pass;
-  };
-  const auto run_host = [&plan, in, gbuffer, target, rays] {
-    const auto view = [&plan](gpu::ImageRef image) { return plan.get(image).host(); };
-    std::optional<gpu::HostView> directions;
-    if (target.directions) directions = view(*target.directions);
-    kernels::make_specular_rays({in.constants, split_sum(in), in.settings.specular.max_roughness,
-                                 view(gbuffer.normals), view(gbuffer.base_color),
-                                 view(gbuffer.surface), view(gbuffer.motion),
-                                 ray_sink(plan, in, rays), view(target.radiance), directions});
-  };
-  if (shades_on_host(plan, in)) {
-    bind(plan.host("specular.rays", run_host));
-  } else {
-    const auto& shader = target.directions ? shaders::specular_rays_half : shaders::specular_rays;
-    begin_rays(plan, in, "specular", rays);
-    bind(plan.pass("specular.rays", in.programs.compute(shader, in.scene.features)))
-        .constants([&s = in.settings.specular] { return s.max_roughness; })
-        .dispatch(target.extent);
-  }
+  const auto& shader = target.directions ? shaders::specular_rays_half : shaders::specular_rays;
+  begin_rays(plan, in, "specular", rays);
+  plan.pass("specular.rays", in.program(shader, features))
+      .bind<kernels::SpecularRaysBindings>({.normals = gbuffer.normals,
+                                            .base_color = gbuffer.base_color,
+                                            .surface = gbuffer.surface,
+                                            .layers = gbuffer.layers,
+                                            .motion = gbuffer.motion,
+                                            .rays = ray_sink(rays),
+                                            .radiance = target.radiance,
+                                            .directions = target.directions})
+      .constants(
+          [&s = in.settings.specular] { return kernels::SpecularRaysConstants{s.max_roughness}; })
+      .dispatch(target.extent)
+      .host([in](const kernels::SpecularRaysJob::Pass& pass) {
+        kernels::specular_rays({pass, in.constants, in.split_sum()});
+      })
+      .host_when(kernels::know_materials(features));
   return in.settings.specular.sort_rays ? sort_rays(plan, in, "specular", rays) : rays;
 }
 
-/// What the rays met, and the shadow rays of its lamps.
+/// What the rays hit, and the shadow rays from there.
 struct Hits {
   std::string name;
   tracing::RayStream rays;
@@ -79,75 +65,47 @@ struct Hits {
   tracing::RayStream shadows;
 };
 
-void shade_on_host(const gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                   const Hits& hits, const Target& target) {
-  const auto view = [&plan](gpu::ImageRef image) { return plan.get(image).host(); };
-  const auto lights = frame_lights(in.tables.lights, in.constants);
-  const bool separate_sun = in.settings.environment.separate_sun;
-  kernels::shade_hits({in.constants, kernels::view_scene(in.scene, in.tables, in.moving),
-                       *in.moving.environment().view(separate_sun).maps.host, lights, split_sum(in),
-                       in.settings.specular.hit_shading == protocol::HitShading::traced,
-                       target.scale, view(gbuffer.surface), view(gbuffer.motion),
-                       ray_source(plan, hits.rays), mapped<const shared::Hit>(plan, hits.hits),
-                       ray_sink(plan, in, hits.shadows), view(target.radiance)});
-}
-
-/// Shades what the rays met; makes the shadow rays of its lamps.
+/// Shades the hits; makes the shadow rays toward their lights.
 void shade(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer, const Hits& hits,
            const Target& target) {
-  struct Constants {
-    std::uint32_t lamps;
-    std::int32_t scale;
-  };
-  const auto bind = [&](gpu::PassBuilder pass) {
-    return pass.read(gbuffer.surface)
-        .read(gbuffer.motion)
-        .read(hits.rays.count)
-        .read(hits.rays.rays)
-        .read(hits.hits)
-        .read_write(hits.shadows.count)
-        .write(hits.shadows.rays)
-        .write(target.radiance);
-  };
-  // The kernel knows punctual lights alone.
-  if (shades_on_host(plan, in) && (in.scene.features & shared::scene_area_lights) == 0) {
-    bind(plan.host(hits.name + ".shade", [&plan, in, gbuffer, hits, target] {
-      shade_on_host(plan, in, gbuffer, hits, target);
-    }));
-    return;
-  }
+  const std::uint32_t features = in.scene.features;
   begin_rays(plan, in, hits.name + ".shadows", hits.shadows);
-  bind(plan.pass(hits.name + ".shade",
-                 in.programs.compute(shaders::specular_shade, in.scene.features)))
+  plan.pass(hits.name + ".shade", in.program(shaders::specular_shade, features))
+      .bind<kernels::SpecularShadeBindings>({.surface = gbuffer.surface,
+                                             .motion = gbuffer.motion,
+                                             .rays = ray_source(hits.rays),
+                                             .hits = hits.hits,
+                                             .shadows = ray_sink(hits.shadows),
+                                             .radiance = target.radiance})
       .constants([&s = in.settings.specular, scale = target.scale] {
-        return Constants{s.hit_shading == protocol::HitShading::traced, scale};
+        return kernels::SpecularShadeConstants{s.hit_shading == protocol::HitShading::traced,
+                                               scale};
       })
-      .dispatch_indirect(hits.rays.count, ray_groups_offset);
+      .dispatch_indirect(hits.rays.count, ray_groups_offset)
+      .host([in](const kernels::SpecularShadeJob::Pass& pass) {
+        const auto lights = frame_lights(in.tables.lights, in.constants);
+        const bool separate_sun = in.settings.environment.separate_sun;
+        kernels::specular_shade(
+            {pass, in.constants, kernels::view_scene(in.scene, in.tables, in.moving),
+             *in.moving.environment().view(separate_sun).maps.host, lights, in.split_sum()});
+      })
+      .host_when(kernels::know_materials(features) && kernels::know_lights(features));
 }
 
-/// Adds the light of lamps that are in view from where the rays ended.
+/// Adds the light of shadow rays that are not occluded.
 void resolve_lights(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
                     const tracing::RayStream& shadows, const Target& target) {
   const auto occluded = plan.buffer(name + ".occluded", sizeof(std::uint32_t) * shadows.capacity,
                                     storage, gpu::Memory::device);
   in.tracer.trace_any(plan, name + ".shadows.trace", in.structure, shadows, occluded);
-  const auto bind = [&](gpu::PassBuilder pass) {
-    return pass.read(shadows.count).read(shadows.rays).read(occluded).read_write(target.radiance);
-  };
-  if (by_host(plan, in)) {
-    bind(plan.host(name + ".resolve", [&plan, shadows, occluded, target] {
-      kernels::resolve_lights(ray_source(plan, shadows),
-                              mapped<const std::uint32_t>(plan, occluded), target.scale,
-                              plan.get(target.radiance).host());
-    }));
-    return;
-  }
-  bind(plan.pass(name + ".resolve", in.programs.compute(shaders::specular_resolve)))
-      .constants(target.scale)
-      .dispatch_indirect(shadows.count, ray_groups_offset);
+  plan.pass(name + ".resolve", in.program(shaders::specular_resolve))
+      .bind<kernels::SpecularResolveBindings>(
+          {.shadows = ray_source(shadows), .occluded = occluded, .radiance = target.radiance})
+      .constants(kernels::SpecularResolveConstants{target.scale})
+      .dispatch_indirect(shadows.count, ray_groups_offset)
+      .host(kernels::specular_resolve);
 }
 
-/// What the rays meet, lit.
 void trace_and_shade(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
                      const tracing::RayStream& rays, const GBuffer& gbuffer, const Target& target) {
   const auto hits = plan.buffer(name + ".hits", sizeof(shared::Hit) * rays.capacity, storage,
@@ -160,8 +118,8 @@ void trace_and_shade(gpu::FramePlan& plan, const FrameInputs& in, const std::str
 
 gpu::ImageRef upsample(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                        const Target& half) {
-  const auto radiance = plan.image("specular.radiance", four_floats);
-  plan.pass("specular.upsample", in.programs.compute(shaders::specular_upsample, in.scene.features))
+  const auto radiance = plan.image(specular_buffers.radiance.name, four_floats);
+  plan.pass("specular.upsample", in.program(shaders::specular_upsample, in.scene.features))
       .read(gbuffer.normals)
       .read(gbuffer.base_color)
       .read(gbuffer.surface)
@@ -171,8 +129,7 @@ gpu::ImageRef upsample(gpu::FramePlan& plan, const FrameInputs& in, const GBuffe
       .read(*half.directions)
       .write(radiance)
       .constants([&s = in.settings.specular] { return s.max_roughness; })
-      .dispatch(plan.extent())
-      .describe("Reflections of this frame, demodulated; w: how far their rays went, metres.");
+      .dispatch(plan.extent());
   return radiance;
 }
 
@@ -185,17 +142,17 @@ gpu::ImageRef trace_specular(gpu::FramePlan& plan, const FrameInputs& in, const 
   return target.directions ? upsample(plan, in, gbuffer, target) : target.radiance;
 }
 
-void trace_mirrored(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
-                    const tracing::RayStream& rays, gpu::ImageRef surface, gpu::ImageRef distance,
-                    gpu::ImageRef radiance) {
-  GBuffer mirrors;
-  mirrors.surface = surface;
-  mirrors.motion = distance;
-  trace_and_shade(plan, in, name, rays, mirrors, {radiance, {}, plan.extent(), 1});
+void trace_reflections(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
+                       const tracing::RayStream& rays, gpu::ImageRef surface,
+                       gpu::ImageRef distance, gpu::ImageRef radiance) {
+  GBuffer reflecting;
+  reflecting.surface = surface;
+  reflecting.motion = distance;
+  trace_and_shade(plan, in, name, rays, reflecting, {radiance, {}, plan.extent(), 1});
 }
 
-void add_unhidden_light(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
-                        const tracing::RayStream& rays, gpu::ImageRef radiance) {
+void add_unoccluded_light(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
+                          const tracing::RayStream& rays, gpu::ImageRef radiance) {
   resolve_lights(plan, in, name, rays, {radiance, {}, plan.extent(), 1});
 }
 

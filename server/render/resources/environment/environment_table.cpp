@@ -54,7 +54,7 @@ std::vector<EnvironmentCell> make_environment_table(const scene::Environment& en
     cells[i] = {1.0f, static_cast<std::uint32_t>(i),
                 static_cast<float>(weights[i] / total / solid_angle), 0.0f};
   }
-  // Every cell with less than its share is filled up by one with more.
+  // Alias method (Vose 1991): every cell below the mean is filled up by one above it.
   std::vector<std::size_t> poor, rich;
   for (std::size_t i = 0; i < weights.size(); ++i) {
     weights[i] *= static_cast<double>(weights.size()) / total;

@@ -19,7 +19,7 @@ struct EnvironmentCell {
 /// Draws directions in proportion to their luminance, all cells in one look-up (the alias method;
 /// Walker 1977, Vose 1991). Cells are as high as wide in angle, twice as many around as from pole
 /// to pole, row 0 up; never more of them than the map has texels, at most 512 x 256. Dark cells
-/// keep a small share, because texels are interpolated across cells.
+/// keep a small probability, because texels are interpolated across cells.
 std::vector<EnvironmentCell> make_environment_table(const scene::Environment& environment);
 
 }  // namespace heliograph::render

@@ -26,7 +26,7 @@ class LitEnvironment {
   const gpu::Device& device() const { return device_; }
   /// What it was made from.
   const std::shared_ptr<const scene::Environment>& source() const { return source_; }
-  /// Where there is a sun, the first call that wants it in the map filters that as well.
+  /// Where there is a sun, the first call that asks for it in the map filters that as well.
   EnvironmentView view(bool separate_sun) const;
 
  private:

@@ -13,7 +13,7 @@ namespace heliograph::scene {
 struct NodeLight {
   std::optional<std::uint32_t> punctual;  // index into the document's lights
   std::optional<Light> area;  // emits along the node's -Z; takes precedence over `punctual`
-  // Of a directional light, degrees: the sun's from Earth unless the node's extras say otherwise.
+  // Of a directional light, degrees; default: the sun seen from Earth.
   float angular_diameter = 0.53f;
   float radius = 0.0f;  // of a point or spot light, metres; 0: hard shadows
 

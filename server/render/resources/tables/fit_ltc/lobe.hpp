@@ -25,7 +25,7 @@ class SpecularLobe {
     return distribution * 0.5 / masked * light.z;
   }
 
-  /// A mirrored direction; its half vector is distributed like D cos. May lie below the horizon.
+  /// A reflected direction; its half vector is distributed like D cos. May lie below the horizon.
   glm::dvec3 sample(double u, double v) const {
     const double cosine = std::sqrt((1.0 - u) / (1.0 + (alpha_ * alpha_ - 1.0) * u));
     const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
@@ -69,7 +69,7 @@ class TransformedCosine {
                                                std::sqrt(1.0 - u)));
   }
 
-  /// Its share above the horizon: before the matrix, the cosine over the lune between two
+  /// Its fraction above the horizon: before the matrix, the cosine over the lune between two
   /// hemispheres.
   double share_above() const {
     const glm::dvec3 up(matrix_[0].z, matrix_[1].z, matrix_[2].z);

@@ -1,13 +1,18 @@
 // Fits linearly transformed cosines to the specular lobe of shaders/lib/lighting/brdf.glsl and
-// prints the table that server/render/resources/tables/ltc_table.cpp holds:
+// prints the table of server/render/resources/tables, or compares the committed one with the fit:
 //
-//   fit_ltc > server/render/resources/tables/ltc_table.cpp
+//   fit_ltc > server/render/resources/tables/ltc_table.inc
+//   fit_ltc --check
 //
 // Heitz, Dupuy, Hill and Neubelt, "Real-Time Polygonal-Light Shading with Linearly Transformed
 // Cosines" (2016). The result does not depend on the number of threads.
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <glm/gtc/packing.hpp>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -61,11 +66,11 @@ double difference(const SpecularLobe& lobe, double albedo, const TransformedCosi
   const double above = fit.share_above();
   const auto add = [&](const glm::dvec3& light) {
     if (light.z <= 0.0) return;
-    const double wanted = lobe(light) / albedo;
+    const double target = lobe(light) / albedo;
     const double whole = fit(light);
     const double density = whole + lobe.density(light);
-    const double apart = std::abs(wanted - whole / above);
-    if (density > 0.0) sum += apart * apart * apart / density;
+    const double difference_here = std::abs(target - whole / above);
+    if (density > 0.0) sum += difference_here * difference_here * difference_here / density;
   };
   for (int i = 0; i < strata * strata; ++i) {
     const double u = (i % strata + 0.5) / strata, v = (i / strata + 0.5) / strata;
@@ -111,26 +116,41 @@ std::vector<glm::vec4> fit_row(int row) {
 }
 
 void print(const std::vector<std::vector<glm::vec4>>& rows) {
-  std::printf(
-      "// Printed by shaders/fit_ltc; not edited by hand.\n"
-      "#include \"render/resources/tables/ltc_table.hpp\"\n\n"
-      "namespace heliograph::render {\n\n"
-      "const std::array<std::uint64_t, ltc_table_size * ltc_table_size> ltc_table{\n");
+  std::printf("// Printed by fit_ltc; not edited by hand.\n");
   int printed = 0;
   for (const auto& row : rows) {
     for (const glm::vec4& entry : row) {
-      std::printf("%s0x%llx,%s", printed % 5 == 0 ? "    " : " ",
-                  static_cast<unsigned long long>(glm::packHalf4x16(entry)),
-                  printed % 5 == 4 ? "\n" : "");
-      ++printed;
+      const bool ends_line = ++printed % 5 == 0 || printed == table_size * table_size;
+      std::printf("0x%llx,%s", static_cast<unsigned long long>(glm::packHalf4x16(entry)),
+                  ends_line ? "\n" : " ");
     }
   }
-  std::printf("};\n\n}  // namespace heliograph::render\n");
+}
+
+constexpr std::uint64_t committed[] = {
+#include "render/resources/tables/ltc_table.inc"
+};
+
+/// Whether the committed entries are those of `rows` but for rounding. Compilers round sums
+/// differently, and the search for the best fit stops elsewhere.
+bool check(const std::vector<std::vector<glm::vec4>>& rows) {
+  constexpr float tolerance = 0.02f;
+  float largest = 0.0f;
+  for (std::size_t i = 0; i < std::size(committed); ++i) {
+    const glm::vec4 entry = glm::unpackHalf4x16(committed[i]);
+    const glm::vec4 fitted = rows[i / table_size][i % table_size];
+    for (int c = 0; c < 4; ++c) {
+      largest = std::max(largest, std::abs(entry[c] - fitted[c]) / (1.0f + std::abs(fitted[c])));
+    }
+  }
+  std::printf("ltc_table.inc differs from the fit by at most %g, allowed are %g\n",
+              static_cast<double>(largest), static_cast<double>(tolerance));
+  return largest <= tolerance;
 }
 
 }  // namespace
 
-int main() {
+int main(int count, char** arguments) {
   std::vector<std::vector<glm::vec4>> rows(table_size);
   const unsigned workers = std::max(1u, std::thread::hardware_concurrency());
   std::vector<std::jthread> threads;
@@ -142,5 +162,6 @@ int main() {
     });
   }
   threads.clear();
+  if (count > 1 && std::string_view(arguments[1]) == "--check") return check(rows) ? 0 : 1;
   print(rows);
 }

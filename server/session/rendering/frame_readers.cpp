@@ -1,0 +1,164 @@
+#include "session/rendering/frame_readers.hpp"
+
+#include <chrono>
+#include <memory>
+#include <utility>
+
+#include "session/measurements.hpp"
+#include "session/rendering/capture_content.hpp"
+
+namespace heliograph::session {
+
+using protocol::Result;
+
+namespace {
+
+constexpr std::chrono::minutes capture_timeout{5};
+
+/// Whether the frame shows the state, as it was no earlier than `moment` where time passes in it.
+bool shows_state_since(const ReadableFrame& frame, Clock::time_point moment) {
+  if (!frame.newest) return false;
+  if (frame.lockstep) return frame.stepped;
+  return frame.shows_state && (!frame.state.animation.playing || frame.began >= moment);
+}
+
+}  // namespace
+
+FrameReaders::FrameReaders(Session& session, Worker& capture_writer, Measurements& measurements,
+                           WakeEvent& written)
+    : session_(session),
+      capture_writer_(capture_writer),
+      measurements_(measurements),
+      written_(written) {}
+
+void FrameReaders::collect() {
+  const Clock::time_point now = Clock::now();
+  for (CaptureRequest& request : session_.captures().take_captures()) {
+    request.done = [done = std::move(request.done), now,
+                    &measurements = measurements_](const Result<Capture>& result) {
+      if (result) {
+        measurements.captured(std::chrono::duration<double>(Clock::now() - now).count());
+      } else {
+        measurements.capture_failed();
+      }
+      done(result);
+    };
+    captures_.push_back(
+        {.request = std::move(request), .requested = now, .deadline = now + capture_timeout});
+  }
+  for (Probe& probe : session_.captures().take_probes()) {
+    probes_.push_back({.probe = std::move(probe), .requested = now});
+  }
+  fail_captures_of_departed();
+}
+
+/// A viewer in another session receives the error; one that has disconnected does not.
+void FrameReaders::fail_captures_of_departed() {
+  std::erase_if(captures_, [&](const PendingCapture& capture) {
+    const std::string& viewer = capture.request.viewer;
+    if (viewer.empty() || session_.viewers().has(viewer)) return false;
+    capture.request.done(
+        protocol::error::not_found("session", "the viewer has left the session of the capture"));
+    return true;
+  });
+}
+
+std::optional<Ticket> FrameReaders::first_ticket() const {
+  std::optional<Ticket> first;
+  for (const PendingCapture& capture : captures_) first = earliest(first, capture.request.ticket);
+  for (const PendingProbe& pending : probes_) first = earliest(first, pending.probe.ticket);
+  return first;
+}
+
+/// In lockstep, where frames are still to be rendered before it.
+bool FrameReaders::comes_after_steps(const ReadableFrame& frame,
+                                     std::optional<Ticket> ticket) const {
+  return frame.lockstep && session_.timeline().step_due(ticket);
+}
+
+void FrameReaders::answer_probes(const ReadableFrame& frame) {
+  std::erase_if(probes_, [&](const PendingProbe& pending) {
+    if (!shows_state_since(frame, pending.requested)) return false;
+    if (comes_after_steps(frame, pending.probe.ticket)) return false;
+    pending.probe.read(frame.renderer, frame.state);
+    return true;
+  });
+}
+
+bool FrameReaders::answer_captures(const ReadableFrame& frame) {
+  const Clock::time_point now = Clock::now();
+  std::vector<PendingCapture> pending;
+  for (PendingCapture& capture : captures_) {
+    if (is_ready(capture, frame) && write(capture.request, frame)) continue;
+    if (now < capture.deadline) {
+      pending.push_back(std::move(capture));
+    } else {
+      capture.request.done(
+          protocol::error::not_ready("the view did not stay static long enough for the capture"));
+    }
+  }
+  captures_.swap(pending);
+  return captures_.size() != pending.size();
+}
+
+bool FrameReaders::is_ready(const PendingCapture& capture, const ReadableFrame& frame) const {
+  const RenderState& state = frame.state;
+  if (frame.lockstep) return frame.stepped && !comes_after_steps(frame, capture.request.ticket);
+  if (!frame.full_size || !shows_state_since(frame, capture.requested)) return false;
+  const render::Frame& newest = frame.newest->frame;
+  if (newest.width != state.width || newest.height != state.height) return false;
+  if (state.animation.playing || !frame.renderer.needs_frame()) return true;
+  const std::optional<std::uint32_t>& samples = capture.request.samples;
+  return samples && newest.samples >= *samples;
+}
+
+/// False if too many files are being written already.
+bool FrameReaders::write(CaptureRequest& request, const ReadableFrame& frame) {
+  if (!capture_writer_.has_room()) return false;
+  auto content = read_content(frame.renderer, request.buffer, request.format);
+  if (!content) {
+    request.done(content.error());
+    return true;
+  }
+  capture_writer_.post([request = std::move(request), samples = frame.newest->frame.samples,
+                        content = std::make_shared<CaptureContent>(*std::move(content)),
+                        &written = written_] {
+    request.done(Capture{.width = content->width,
+                         .height = content->height,
+                         .samples = samples,
+                         .file = encode_content(*content, request.format)});
+    written.notify();
+  });
+  return true;
+}
+
+void FrameReaders::fail_before_first_step() {
+  const protocol::Error why =
+      protocol::error::not_ready("no frame was rendered since lockstep was entered");
+  std::erase_if(captures_, [&](const PendingCapture& capture) {
+    if (session_.timeline().step_due(capture.request.ticket)) return false;
+    capture.request.done(why);
+    return true;
+  });
+  std::erase_if(probes_, [&](const PendingProbe& pending) {
+    if (session_.timeline().step_due(pending.probe.ticket)) return false;
+    pending.probe.fail(why);
+    return true;
+  });
+}
+
+void FrameReaders::fail_all(const protocol::Error& why) {
+  for (const PendingCapture& capture : captures_) capture.request.done(why);
+  captures_.clear();
+  for (const PendingProbe& pending : probes_) pending.probe.fail(why);
+  probes_.clear();
+}
+
+void FrameReaders::drop_all() {
+  captures_.clear();
+  probes_.clear();
+  session_.captures().take_captures();
+  session_.captures().take_probes();
+}
+
+}  // namespace heliograph::session

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "protocol/messages/messages.hpp"
+#include "protocol/result.hpp"
+#include "session/rendering/pixel_budget.hpp"
+#include "session/session_camera.hpp"
+#include "session/session_captures.hpp"
+#include "session/session_reference.hpp"
+#include "session/session_scene.hpp"
+#include "session/session_timeline.hpp"
+#include "session/state/session_core.hpp"
+
+namespace heliograph::session {
+
+class DeviceMigration;
+
+/// The error for a caller that may not change the session of these viewers.
+protocol::Error no_control(const ViewerSet& viewers);
+
+/// The state that viewers share and control: scene, camera, settings, size of the frames. Commands
+/// take effect at once, whatever the renderer is doing; it takes the newest state for its next
+/// frame, so that nothing queues up. Thread safe; SessionCore has the rule for locking. `by` is the
+/// viewer that asks, empty for a caller without a stream.
+class Session {
+ public:
+  /// `wake` is notified when there is something to do; the size of the frames is taken from
+  /// `pixels`; `measurements`, which outlive the session, count refused captures.
+  Session(SessionOptions options, std::shared_ptr<WakeEvent> wake, PixelShare pixels = {},
+          Measurements* measurements = nullptr);
+
+  const std::string& name() const { return core_.options.name; }
+  const SessionLimits& limits() const { return core_.options.limits; }
+  std::uint32_t rev() const;
+  /// The session as `viewer` sees it.
+  protocol::SessionInfo info(const std::string& viewer) const;
+
+  // Commands, by what they change.
+  SessionScene& scene() { return scene_; }
+  const SessionScene& scene() const { return scene_; }
+  SessionCamera& camera() { return camera_; }
+  SessionTimeline& timeline() { return timeline_; }
+  const SessionTimeline& timeline() const { return timeline_; }
+  SessionCaptures& captures() { return captures_; }
+  SessionReference& reference() { return reference_; }
+  ViewerSet& viewers() { return core_.viewers; }
+
+  protocol::SettingsState settings() const;
+  protocol::Result<protocol::SettingsApplied> patch_settings(const protocol::RawJson& patch,
+                                                             const std::string& by);
+  /// The viewer's stream, and the size of the frames of all viewers: changing the size requires
+  /// control, and a caller that is not `read_only`.
+  protocol::Result<protocol::StreamState> configure_stream(const protocol::StreamConfigure& request,
+                                                           const std::string& by,
+                                                           bool read_only = false);
+  /// Notifies all viewers of the participants and of control.
+  void announce();
+  void leave(const std::string& viewer);
+  /// Moves a viewer to another session; it stays if that one is full.
+  protocol::Result<void> move_to(const std::string& viewer, Session& other);
+
+  /// Begins with the scene, camera, clip and settings of another session.
+  void copy_from(const Session& other);
+  /// The session is removed from the registry, though it may still be referenced.
+  void end();
+  bool ended() const { return ended_; }
+  /// A command is about to change what viewers share.
+  void mark_modified() { modified_ = true; }
+  /// Whether it is as it was made, all viewers have control, and no participant but `viewer` is in
+  /// it; read-only viewers and those without hello are none.
+  bool is_pristine(const std::string& viewer) const;
+  /// Restarts the idle time: a caller needs the session, or it renders.
+  void mark_used() { used_at_ = Clock::now(); }
+  /// For how long it has not been used; zero while it has viewers.
+  Clock::duration idle() const;
+
+  // For the render thread.
+
+  /// The buffers of the newest frame.
+  void set_buffers(std::vector<protocol::BufferInfo> buffers);
+  std::vector<protocol::BufferInfo> buffers() const;
+  std::uint64_t version() const;
+  RenderState render_state() const;
+  /// Whether frames are due without viewers: in lockstep, or of a reference.
+  bool renders_without_viewers() const;
+  /// Brings everything that is on a lost device to the present one.
+  void migrate(DeviceMigration& migration);
+
+ private:
+  protocol::SessionInfo info_locked() const;
+  protocol::Result<ViewerStream> configure_viewer(const protocol::StreamConfigure& request,
+                                                  const std::string& by);
+  void resize(std::uint32_t width, std::uint32_t height);
+  /// What belongs to a viewer that is gone.
+  void discard_requests_of(const std::string& viewer);
+
+  SessionCore core_;
+  PixelShare pixels_;                          // guarded by core_.mutex
+  std::vector<protocol::BufferInfo> buffers_;  // guarded by core_.mutex
+  std::atomic<Clock::time_point> used_at_ = Clock::now();
+  std::atomic<bool> ended_ = false;
+  std::atomic<bool> modified_ = false;
+  SessionScene scene_{core_};
+  SessionCamera camera_{core_};
+  SessionTimeline timeline_{core_};
+  SessionCaptures captures_{core_};
+  SessionReference reference_{core_};
+};
+
+}  // namespace heliograph::session

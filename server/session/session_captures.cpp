@@ -1,0 +1,56 @@
+#include "session/session_captures.hpp"
+
+#include <utility>
+
+#include "render/api/buffer_names.hpp"
+#include "session/measurements.hpp"
+
+namespace heliograph::session {
+
+using protocol::Result;
+
+Result<void> SessionCaptures::request_capture(CaptureRequest request) {
+  const Result<void> accepted = accept(std::move(request));
+  if (accepted) {
+    core_.wake->notify();
+  } else if (core_.measurements) {
+    core_.measurements->capture_failed();
+  }
+  return accepted;
+}
+
+Result<void> SessionCaptures::accept(CaptureRequest request) {
+  const std::lock_guard lock(core_.mutex);
+  if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded;
+  if (const auto known = render::check_buffer_name(request.buffer, "buffer"); !known) {
+    return known.error();
+  }
+  if (const auto capacity = core_.captures.check_capture_capacity(); !capacity) return capacity;
+  request.ticket = core_.timeline.next_ticket();
+  core_.captures.add(std::move(request));
+  return {};
+}
+
+Result<void> SessionCaptures::request_probe(Probe probe) {
+  {
+    const std::lock_guard lock(core_.mutex);
+    if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded;
+    if (const auto capacity = core_.captures.check_probe_capacity(); !capacity) return capacity;
+    probe.ticket = core_.timeline.next_ticket();
+    core_.captures.add(std::move(probe));
+  }
+  core_.wake->notify();
+  return {};
+}
+
+std::vector<CaptureRequest> SessionCaptures::take_captures() {
+  const std::lock_guard lock(core_.mutex);
+  return core_.captures.take_captures();
+}
+
+std::vector<Probe> SessionCaptures::take_probes() {
+  const std::lock_guard lock(core_.mutex);
+  return core_.captures.take_probes();
+}
+
+}  // namespace heliograph::session

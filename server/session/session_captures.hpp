@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "session/state/session_core.hpp"
+
+namespace heliograph::session {
+
+/// Captures and probes of a session, from commands to the render thread. Thread safe.
+class SessionCaptures {
+ public:
+  explicit SessionCaptures(SessionCore& core) : core_(core) {}
+
+  /// Refused at once without a scene, for an unknown buffer, and where too many are pending.
+  protocol::Result<void> request_capture(CaptureRequest request);
+  protocol::Result<void> request_probe(Probe probe);
+  /// Those requested since the last call.
+  std::vector<CaptureRequest> take_captures();
+  std::vector<Probe> take_probes();
+
+ private:
+  protocol::Result<void> accept(CaptureRequest request);
+
+  SessionCore& core_;
+};
+
+}  // namespace heliograph::session

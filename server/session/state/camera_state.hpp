@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocol/messages/messages.hpp"
+#include "protocol/result.hpp"
+#include "scene/scene.hpp"
+#include "stream/encoded_frame.hpp"
+
+namespace heliograph::session {
+
+/// The camera of a session, in world space. A refused request changes nothing. Not thread safe.
+class CameraState {
+ public:
+  /// Takes over the camera of another session; for this one it is a discontinuity.
+  void copy_from(const CameraState& other);
+  /// The first camera of a new scene, or one that shows all of it. `aspect`: width / height.
+  void reset(const scene::Scene& scene, float aspect);
+  /// The scene that the camera was named in is gone.
+  void clear_name() { name_.reset(); }
+
+  /// `by`: the viewer whose input this is.
+  protocol::Result<void> set(const protocol::CameraSet& request, const scene::Scene& scene,
+                             const std::string& by);
+  protocol::Result<void> orbit(const protocol::CameraOrbit& request, const std::string& by);
+  /// Shows the whole scene from the same direction.
+  void fit(const scene::Scene& scene, float aspect);
+  void remove_viewer(const std::string& viewer) { input_seqs_.erase(viewer); }
+
+  const scene::Camera& camera() const { return camera_; }
+  /// How often it jumped: histories of the image before do not apply.
+  std::uint64_t discontinuities() const { return discontinuities_; }
+  /// The newest input of each viewer.
+  std::vector<stream::InputEcho> inputs() const;
+  /// Whether this clip moves the camera: while it is one of the scene's own, as it was made.
+  bool follows(const scene::Scene& scene, const std::string& clip) const;
+  protocol::Camera message(std::uint32_t rev) const;
+
+ private:
+  void move(const scene::Camera& camera, std::optional<std::string> name);
+
+  scene::Camera camera_;
+  std::optional<std::string> name_;  // of the scene's camera that it is
+  std::uint64_t discontinuities_ = 0;
+  std::map<std::string, std::uint32_t> input_seqs_;  // by viewer
+};
+
+}  // namespace heliograph::session

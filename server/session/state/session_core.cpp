@@ -1,0 +1,81 @@
+#include "session/state/session_core.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "protocol/settings/settings_json.hpp"
+#include "render/api/buffer_names.hpp"
+
+namespace heliograph::session {
+
+using protocol::Result;
+
+SessionCore::SessionCore(SessionOptions session_options, std::shared_ptr<WakeEvent> wake_event,
+                         Measurements* session_measurements)
+    : options(std::move(session_options)),
+      wake(std::move(wake_event)),
+      measurements(session_measurements),
+      viewers(options.limits.max_viewers, *wake),
+      width(std::min(options.width, options.limits.max_width)),
+      height(std::min(options.height, options.limits.max_height)),
+      settings(options.settings),
+      timeline(options.limits.max_captures),
+      captures(options.limits.max_captures) {}
+
+void SessionCore::changed(bool new_revision) {
+  ++version;
+  ++changes;
+  if (new_revision) ++rev;
+  changed_at = Clock::now();
+  wake->notify();
+}
+
+RenderState SessionCore::snapshot() const {
+  const AnimationClock& clock = timeline.clock();
+  return {.version = version,
+          .rev = rev,
+          .changed_at = changed_at,
+          .resources = resources,
+          .scene = scene,
+          .lights = edits.device_lights(),
+          .materials = edits.device_materials(),
+          .environment = environment,
+          .camera = camera.camera(),
+          .discontinuities = camera.discontinuities(),
+          .camera_follows = scene && camera.follows(*scene, clock.clip),
+          .animation = clock,
+          .settings = settings,
+          .width = width,
+          .height = height,
+          .inputs = camera.inputs(),
+          .reset_count = timeline.reset_count(),
+          .lockstep = timeline.lockstep_time(),
+          .reference_started = reference.started()};
+}
+
+Result<void> SessionCore::require_scene() const {
+  if (scene) return {};
+  return protocol::error::not_ready("no scene is loaded");
+}
+
+Result<protocol::SettingsApplied> SessionCore::patch_settings(const protocol::RawJson& patch,
+                                                              const std::string& by) {
+  protocol::Settings patched = settings;
+  const Result<nlohmann::json> applied = protocol::apply_patch(patched, patch.value());
+  if (!applied) return applied.error();
+  if (const auto known = render::check_buffer_name(patched.view.buffer, "view.buffer"); !known) {
+    return known.error();
+  }
+  protocol::RawJson effective(*applied);
+  if (patched != settings) {
+    settings = std::move(patched);
+    reference.settings_changed(settings);
+    changed();
+    notify_others<protocol::notifications::settings_changed>(
+        by, {.rev = rev, .patch = effective, .by = by});
+  }
+  return protocol::SettingsApplied{.rev = rev, .applied = std::move(effective)};
+}
+
+}  // namespace heliograph::session

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "protocol/json/jsonrpc.hpp"
+#include "protocol/messages/messages.hpp"
+#include "protocol/result.hpp"
+#include "scene/scene.hpp"
+#include "session/state/camera_state.hpp"
+#include "session/state/capture_queue.hpp"
+#include "session/state/reference_mode.hpp"
+#include "session/state/render_state.hpp"
+#include "session/state/scene_edits.hpp"
+#include "session/state/session_options.hpp"
+#include "session/state/timeline.hpp"
+#include "session/viewers/viewer_set.hpp"
+#include "session/wake_event.hpp"
+
+namespace heliograph::session {
+
+class Measurements;
+
+/// The state of one session and the rules that all changes of it follow. Only Session and its
+/// command groups (SessionCamera ...) use it.
+///
+/// Locking: `mutex` guards every member below it; the parts do not lock. A command locks it once,
+/// for the whole of its change: check, apply to the part, `changed`, `notify_others`. Notifications
+/// are sent under the lock, so that no viewer receives the older of two states last. Callbacks of
+/// requests (`done`, `fail`) are called after it is released. Order of locks: `mutex`, then that of
+/// `viewers`. Whether a caller has control is checked before a command, by the dispatcher's gate;
+/// only the size of frames is checked here, since stream.configure is for all viewers.
+struct SessionCore {
+  SessionCore(SessionOptions session_options, std::shared_ptr<WakeEvent> wake_event,
+              Measurements* session_measurements);
+
+  /// The state was changed. `new_revision`: by a command, so that clients see another revision.
+  void changed(bool new_revision = true);
+  /// Everything that a frame depends on.
+  RenderState snapshot() const;
+  protocol::Result<void> require_scene() const;
+  protocol::Result<protocol::SettingsApplied> patch_settings(const protocol::RawJson& patch,
+                                                             const std::string& by);
+  /// width / height
+  float aspect() const { return static_cast<float>(width) / static_cast<float>(height); }
+
+  /// Sends a notification to all viewers but `by`, which made the change.
+  template <class Notification>
+  void notify_others(const std::string& by, const typename Notification::Params& params) {
+    viewers.send_others(by, protocol::make_notification<Notification>(params), {});
+  }
+  /// The same for a notification that holds a whole state: it replaces an older one that is queued.
+  template <class Notification>
+  void notify_others_latest(const std::string& by, const typename Notification::Params& params) {
+    viewers.send_others(by, protocol::make_notification<Notification>(params), Notification::name);
+  }
+
+  const SessionOptions options;
+  const std::shared_ptr<WakeEvent> wake;
+  Measurements* const measurements;
+  ViewerSet viewers;
+
+  mutable std::mutex mutex;
+  std::uint64_t version = 1;
+  std::uint32_t rev = 1;
+  std::uint64_t changes = 0;  // calls of `changed`
+  Clock::time_point changed_at = Clock::now();
+
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  protocol::Settings settings;
+  std::shared_ptr<const scene::Scene> scene;
+  std::shared_ptr<const render::SceneResources> resources;
+  protocol::SceneInfo scene_info;
+  SceneEdits edits;
+  std::optional<std::string> environment_name;  // with `environment`: null where the scene's own
+  std::shared_ptr<const render::LitEnvironment> environment;
+  CameraState camera;
+  Timeline timeline;
+  CaptureQueue captures;
+  ReferenceMode reference;
+};
+
+}  // namespace heliograph::session

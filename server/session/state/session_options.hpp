@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "protocol/settings/settings.hpp"
+
+namespace heliograph::session {
+
+struct SessionLimits {
+  std::uint32_t max_width = 3840;
+  std::uint32_t max_height = 2160;
+  std::size_t max_viewers = 32;
+  std::size_t max_captures = 32;  // unanswered; as many probes and as many steps beside them
+};
+
+struct SessionOptions {
+  std::string name = "main";
+  std::uint32_t width = 1280;
+  std::uint32_t height = 720;
+  protocol::Settings settings;
+  SessionLimits limits;
+};
+
+}  // namespace heliograph::session

@@ -1,0 +1,128 @@
+"""The device is lost: everything but histories survives."""
+
+import asyncio
+import os
+import shutil
+import tempfile
+import unittest
+
+from harness.gltf import document, grid, write_glb
+from harness.images import decode_jpeg, difference
+from harness.server import Server, ServerTestCase
+from harness.viewer import Viewer
+
+
+class DeviceLoss(ServerTestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.fault = os.path.join(cls.folder.name, "lose")
+        cls.scenes = os.path.join(cls.folder.name, "scenes")
+        shutil.copytree(os.environ["HELIOGRAPH_SCENES"], cls.scenes)
+        cls.server = Server(scenes=cls.scenes,
+                            environment={"HELIOGRAPH_TEST_DEVICE_LOSS": cls.fault})
+
+    @classmethod
+    def tearDownClass(cls):
+        super().tearDownClass()
+        cls.folder.cleanup()
+
+    def lose(self):
+        with open(self.fault, "w", encoding="ascii"):
+            pass
+
+    def ready(self):
+        return self.server.get("/health/ready")[0] == 200
+
+    def losses(self):
+        page = self.server.get("/metrics")[2].decode()
+        lines = [line for line in page.splitlines()
+                 if line.startswith("heliograph_device_losses_total")]
+        return float(lines[0].split()[1])
+
+    async def received(self, viewer, ready):
+        for _ in range(600):
+            if any(message["method"] == "device.changed" and message["params"]["ready"] == ready
+                   for message in viewer.notifications):
+                return
+            await asyncio.sleep(0.05)
+        self.fail(f"device.changed with ready {ready} did not come:\n" + self.server.log_text())
+
+    async def test_sessions_keep_their_state(self):
+        self.server.call("session.create", {"name": "other", "copy_of": "main"})
+        self.server.call("settings.patch", {"patch": {"exposure": {"compensation": 1}}},
+                         session="other")
+        async with Viewer(self.server) as here, Viewer(self.server, session="other") as there:
+            await here.call("camera.set", {"eye": [3, 2, 3]})
+            await there.call("camera.set", {"eye": [2, 2, 4]})
+            before = [decode_jpeg((await viewer.rest()).payload) for viewer in (here, there)]
+            state = [await viewer.call(method) for viewer in (here, there)
+                     for method in ("camera.get", "settings.get", "scene.info")]
+            count = self.losses()
+            self.lose()
+            await here.call("camera.set", {"eye": [4, 4, 4]})
+            await self.received(here, False)
+            await self.received(there, True)
+            await here.call("camera.set", {"eye": [3, 2, 3]})
+            await there.call("camera.set", {"eye": [2, 2, 4]})
+            after = [decode_jpeg((await viewer.rest()).payload) for viewer in (here, there)]
+            for one, other in zip(before, after):
+                self.assertLess(difference(one, other), 2)
+            again = [await viewer.call(method) for viewer in (here, there)
+                     for method in ("camera.get", "settings.get", "scene.info")]
+            for one, other in zip(state, again):
+                one.pop("rev", None), other.pop("rev", None)
+                self.assertEqual(one, other)
+        self.assertTrue(self.ready())
+        self.assertEqual(self.losses(), count + 1)
+        self.server.call("session.close", {"session": "other"})
+
+    async def test_a_loss_while_loading_is_reported_and_recovered(self):
+        shutil.copy(os.path.join(self.scenes, "mirror.glb"), os.path.join(self.scenes, "new.glb"))
+        self.lose()
+        # The caller gets the result of the second attempt.
+        self.assertEqual(self.server.call("scene.load", {"name": "new"})["name"], "new")
+        self.assertFalse(os.path.exists(self.fault))
+        self.server.wait_for(self.ready, "the recovery", timeout=60)
+        self.assertGreaterEqual(self.server.call("frame.capture", {"samples": 1})["samples"], 1)
+
+    async def test_repeated_losses_back_off_while_commands_work(self):
+        async with Viewer(self.server) as viewer:
+            await viewer.rest()
+            begin = self.losses()
+            step = 0
+            while self.losses() < begin + 3:
+                self.lose()
+                step += 1
+                await viewer.call("camera.set", {"eye": [3 + 0.01 * step, 2, 3]})
+                await asyncio.sleep(0.1)
+                self.assertLess(step, 300, self.server.log_text())
+            status, _, body = self.server.get("/health/ready")
+            self.assertEqual((status, b"lost" in body), (503, True))
+            if os.path.exists(self.fault):
+                os.remove(self.fault)
+            self.server.wait_for(self.ready, "the recovery", timeout=60)
+            await viewer.rest()
+        self.assertIn("recovery in ", self.server.log_text())
+
+
+class LossBeforeTheFirstFrame(unittest.TestCase):
+    def test_the_first_scene_is_loaded_again(self):
+        with tempfile.TemporaryDirectory() as folder:
+            content, binary = document(*grid(500))
+            write_glb(os.path.join(folder, "first.glb"), content, binary)
+            fault = os.path.join(folder, "lose")
+            with Server("--scene", "first", scenes=folder, early=True,
+                        environment={"HELIOGRAPH_TEST_DEVICE_LOSS": fault}) as server:
+                def load_lost_it():
+                    if "loading first: " in server.log_text():
+                        return True
+                    with open(fault, "w", encoding="ascii"):
+                        return False  # it may have been the renderer of the session instead
+                server.wait_for(load_lost_it, "the loss", timeout=60)
+                if os.path.exists(fault):
+                    os.remove(fault)
+                server.wait_for(lambda: server.get("/health/ready")[0] == 200, "the first frame",
+                                timeout=60)
+                self.assertEqual(server.call("scene.list")["current"], "first")
+                self.assertEqual(server.stop(), 0)

@@ -1,0 +1,172 @@
+#include "session/rendering/view_state.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace heliograph::session {
+namespace {
+
+using namespace std::chrono_literals;
+
+const Clock::time_point start{1h};
+
+/// A converged, static view at `after` its last change, whose final frame is not sent yet.
+ViewInputs static_view(std::chrono::milliseconds after) {
+  return {.now = start + after,
+          .camera_moved_at = start,
+          .state_changed_at = start,
+          .has_frame = true,
+          .converged = true};
+}
+
+TEST(ViewState, FollowsItsTableOfTransitions) {
+  struct Row {
+    std::string name;
+    ViewState expected;
+    ViewInputs in;
+  };
+  const auto with = [](std::chrono::milliseconds after, auto change) {
+    ViewInputs in = static_view(after);
+    change(in);
+    return in;
+  };
+  const auto unchanged = [](ViewInputs&) {};
+  const auto needs_frame = [](ViewInputs& in) { in.needs_frame = true; };
+  const auto sent = [](ViewInputs& in) { in.final_sent = true; };
+  const std::vector<Row> table{
+      {"just changed", ViewState::moving, with(0ms, needs_frame)},
+      {"just changed, nothing to draw", ViewState::moving, with(149ms, unchanged)},
+      {"static, samples missing", ViewState::refining, with(150ms, needs_frame)},
+      {"static for long, samples missing", ViewState::refining, with(1h, needs_frame)},
+      {"converged, not static for long enough", ViewState::refining, with(299ms, unchanged)},
+      {"converged and static", ViewState::final, with(300ms, unchanged)},
+      {"final frame sent", ViewState::idle, with(300ms, sent)},
+      {"final frame sent early", ViewState::idle, with(200ms, sent)},
+      {"an older final frame was sent", ViewState::refining,
+       with(300ms,
+            [](ViewInputs& in) {
+              in.final_sent = true;
+              in.needs_frame = true;
+            })},
+      {"no scene", ViewState::idle, with(1h, [](ViewInputs& in) { in.has_frame = false; })},
+      {"first frame", ViewState::refining,
+       with(1h,
+            [](ViewInputs& in) {
+              in.has_frame = false;
+              in.needs_frame = true;
+            })},
+      {"never converges", ViewState::idle, with(1h, [](ViewInputs& in) { in.converged = false; })},
+      {"a change is not taken over yet", ViewState::moving,
+       with(1h, [](ViewInputs& in) { in.newer_state = true; })},
+      {"a clip plays", ViewState::moving,
+       with(1h, [](ViewInputs& in) { in.animation_playing = true; })},
+      {"lockstep", ViewState::moving, with(1h, [](ViewInputs& in) { in.lockstep = true; })},
+      {"drawn at reduced size", ViewState::moving,
+       with(200ms, [](ViewInputs& in) { in.reduced_size = true; })},
+  };
+  for (const Row& row : table) EXPECT_EQ(next_view_state(row.in), row.expected) << row.name;
+}
+
+TEST(ViewState, WakesUpForTheFinalFrame) {
+  EXPECT_EQ(next_view_transition(static_view(100ms)), start + final_delay);
+  EXPECT_EQ(next_view_transition(static_view(300ms)), std::nullopt) << "the time has come";
+  ViewInputs in = static_view(100ms);
+  in.final_sent = true;
+  EXPECT_EQ(next_view_transition(in), std::nullopt);
+  in = static_view(100ms);
+  in.converged = false;
+  EXPECT_EQ(next_view_transition(in), std::nullopt);
+  in = static_view(100ms);
+  in.lockstep = true;
+  EXPECT_EQ(next_view_transition(in), std::nullopt) << "in lockstep only steps draw";
+}
+
+TEST(ViewState, WakesUpToReturnToFullSize) {
+  ViewInputs in = static_view(100ms);
+  in.converged = false;
+  in.reduced_size = true;
+  in.state_changed_at = start - 1h;
+  EXPECT_EQ(next_view_transition(in), start + final_delay);
+}
+
+TEST(DrawPolicy, ReducesTheSizeAndFollowsViewersOnlyWhileMoving) {
+  for (const ViewState state :
+       {ViewState::moving, ViewState::refining, ViewState::final, ViewState::idle}) {
+    const bool moving = state == ViewState::moving;
+    EXPECT_EQ(draw_policy(state).dynamic_resolution, moving);
+    EXPECT_EQ(draw_policy(state).pace == Pace::viewers, moving);
+    EXPECT_EQ(draw_policy(state).purpose == FramePurpose::interactive, moving);
+  }
+}
+
+TEST(ShouldDraw, OnlyWhereAFrameIsNeeded) {
+  const FrameDemand all{.requested = true, .active_viewer = true, .viewer_accepts = true};
+  EXPECT_FALSE(should_draw(ViewState::moving, all));
+  EXPECT_FALSE(should_draw(ViewState::refining, all));
+}
+
+TEST(ShouldDraw, RequestedFramesInAnyState) {
+  const FrameDemand requested{.needs_frame = true, .requested = true, .encoder_behind = true};
+  for (const ViewState state :
+       {ViewState::moving, ViewState::refining, ViewState::final, ViewState::idle}) {
+    EXPECT_TRUE(should_draw(state, requested));
+  }
+}
+
+TEST(ShouldDraw, AtThePaceOfViewersWhileMoving) {
+  FrameDemand demand{.needs_frame = true, .active_viewer = true};
+  EXPECT_FALSE(should_draw(ViewState::moving, demand)) << "no viewer accepts a frame";
+  demand.viewer_accepts = true;
+  EXPECT_TRUE(should_draw(ViewState::moving, demand));
+  demand.encoder_behind = true;
+  EXPECT_FALSE(should_draw(ViewState::moving, demand));
+}
+
+TEST(ShouldDraw, AtFullSpeedWhileRefiningForAnActiveViewer) {
+  FrameDemand demand{.needs_frame = true, .encoder_behind = true};
+  EXPECT_FALSE(should_draw(ViewState::refining, demand)) << "no viewer";
+  demand.active_viewer = true;
+  EXPECT_TRUE(should_draw(ViewState::refining, demand)) << "few of its frames are sent";
+}
+
+/// A slow image of 1280x720 whose camera moved 100 ms ago.
+ResolutionInputs moving_image() {
+  return {.now = start + 100ms,
+          .camera_moved_at = start,
+          .full = {1280, 720},
+          .full_frame_time = 100ms,
+          .motion_scale = 0.5f};
+}
+
+TEST(DrawSize, IsReducedWhileTheCameraMovesAndFramesAreSlow) {
+  ResolutionInputs in = moving_image();
+  EXPECT_EQ(draw_size(in), (DrawSize{640, 360}));
+  in.now = start + final_delay;
+  EXPECT_EQ(draw_size(in), in.full) << "the camera is static";
+  in.animation_playing = true;
+  EXPECT_EQ(draw_size(in), (DrawSize{640, 360}));
+}
+
+TEST(DrawSize, IsFullForFastFramesSmallImagesAndCaptures) {
+  ResolutionInputs fast = moving_image();
+  fast.full_frame_time = 66ms;
+  EXPECT_EQ(draw_size(fast), fast.full);
+  ResolutionInputs small = moving_image();
+  small.full = {640, 360};
+  EXPECT_EQ(draw_size(small), small.full);
+  ResolutionInputs captured = moving_image();
+  captured.capture_pending = true;
+  EXPECT_EQ(draw_size(captured), captured.full);
+}
+
+TEST(DrawSize, IsAtLeastOnePixel) {
+  ResolutionInputs in = moving_image();
+  in.full = {1'000'000, 1};
+  in.motion_scale = 0.25f;
+  EXPECT_EQ(draw_size(in), (DrawSize{250'000, 1}));
+}
+
+}  // namespace
+}  // namespace heliograph::session
