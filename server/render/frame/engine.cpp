@@ -95,7 +95,7 @@ void Engine::on_shader_change(std::function<void(const ShaderReport&)> listener)
 }
 
 std::string Engine::shader_error() const {
-  const std::shared_ptr<Parts> parts = present();
+  const std::shared_ptr<Parts> parts = current();
   return parts->shader_reload ? parts->shader_reload->error() : std::string();
 }
 

@@ -120,7 +120,7 @@ void Renderer::State::use_newest_shaders() {
   const std::uint64_t programs = parts.shader_reload->program_version();
   if (std::exchange(program_version, programs) == programs) return;
   has_previous = false;
-  restart();
+  restart_accumulation();
 }
 
 std::optional<FloatImage> Renderer::State::read(std::string_view name) const {

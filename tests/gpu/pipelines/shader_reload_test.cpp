@@ -80,7 +80,7 @@ class ReloadingRenderer {
 
   /// The first frame of an empty history, so that equal shaders make equal bytes.
   std::vector<std::uint8_t> render() {
-    renderer_.reset();
+    renderer_.invalidate_history();
     return renderer_.render().rgba;
   }
   bool needs_frame() const { return renderer_.needs_frame(); }
