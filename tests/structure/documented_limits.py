@@ -114,7 +114,7 @@ def operation():
     yield "nesting of JSON", plain(PROTOCOL, "DispatchLimits::max_depth") + " levels"
     yield "calls in a batch", plain(PROTOCOL, "DispatchLimits::max_batch")
     yield "messages per connection", rate("calls_per_second", "calls_at_once")
-    yield "messages over that limit", rate("refusals_per_second", "refusals_at_once")
+    yield "messages over that limit", rate("rejections_per_second", "rejections_at_once")
     yield "pings per connection", rate("pings_per_second", "pings_at_once")
     yield "unanswered captures per session", captures
     yield "unanswered probes (`scene.pick`, `frame.inspect`) per session", captures
@@ -158,7 +158,7 @@ def messages():
         plain(SESSION, "SessionLimits::max_captures") + " each"
     yield "frames without acknowledgement", f"{window}, up to {longest} on links with high latency"
     yield "time without acknowledgement", duration(NET, "ack_timeout")
-    yield "delay of the final frame after the last change", duration(SESSION, "rest_before_final", "ms")
+    yield "delay of the final frame after the last change", duration(SESSION, "final_delay", "ms")
     yield "quality of the final JPEG", plain(STREAM, "still_quality") + " or more"
     yield "interval of repeated frames of `stream.mjpg`", duration(NET, "repeat_interval")
     yield "interval between key frames for new viewers", \
