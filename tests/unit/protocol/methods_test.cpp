@@ -56,8 +56,7 @@ TEST(Methods, ExamplesMatchTheirSchemas) {
 }
 
 std::string readme() {
-  const auto folder = std::filesystem::path(__FILE__).parent_path();
-  std::ifstream file(folder / "../../../protocol/README.md");
+  std::ifstream file(std::filesystem::path(HELIOGRAPH_SOURCE_DIR) / "protocol/README.md");
   return {std::istreambuf_iterator<char>(file), {}};
 }
 

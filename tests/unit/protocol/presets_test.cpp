@@ -81,7 +81,7 @@ TEST(Presets, AreThePapersStepsAndTheBest) {
 }
 
 TEST(Presets, EmbedAllFilesOfTheFolder) {
-  const auto folder = std::filesystem::path(__FILE__).parent_path() / "../../../scenes/presets";
+  const auto folder = std::filesystem::path(HELIOGRAPH_SOURCE_DIR) / "scenes/presets";
   std::set<std::string> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     files.insert(entry.path().stem().string());
