@@ -17,6 +17,6 @@ void main() {
   vec3 over = imageLoad(radiance, pixel).rgb + imageLoad(mirrored, pixel).rgb;
   // One bad pixel must not spread through the history.
   if (any(isnan(over)) || any(isinf(over))) over = vec3(0.0);
-  vec4 picture = imageLoad(hdr, pixel);
-  imageStore(hdr, pixel, vec4(picture.rgb * seen + over, picture.a));
+  vec4 composed = imageLoad(hdr, pixel);
+  imageStore(hdr, pixel, vec4(composed.rgb * seen + over, composed.a));
 }

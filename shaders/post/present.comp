@@ -11,7 +11,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D radiance;
 layout(set = 1, binding = 1, rgba32f) readonly uniform image2D accumulated;
 layout(set = 1, binding = 2, std140) uniform ExposureBlock { ExposureState exposure; };
-layout(set = 1, binding = 3, rgba8) writeonly uniform image2D picture;
+layout(set = 1, binding = 3, rgba8) writeonly uniform image2D shown;
 layout(push_constant) uniform Constants { float mean_share; };
 
 vec3 tone_map(vec3 color) {
@@ -33,5 +33,5 @@ void main() {
   // The same noise in every frame, so that a converged frame does not change.
   vec2 noise = random_pair(uvec2(pixel), 0u, 5u, 0u);
   encoded += (noise.x - noise.y) / 255.0 * 0.5;
-  imageStore(picture, pixel, vec4(encoded, 1.0));
+  imageStore(shown, pixel, vec4(encoded, 1.0));
 }

@@ -100,7 +100,7 @@ void main() {
   vec4 center = imageLoad(hdr, pixel);
   vec2 uv = (vec2(pixel) + 0.5) / vec2(frame.extent);
   vec2 before = uv + nearest_motion(pixel);
-  // Nothing is known of what was not in the picture.
+  // What was outside the previous frame has no history.
   bool known = frame.history_invalid == 0u && all(greaterThanEqual(before, vec2(0.0))) &&
                all(lessThanEqual(before, vec2(1.0)));
   if (!known) {
@@ -127,7 +127,7 @@ void main() {
   float weight = blend;
   if (anti_flicker > 0.0) {
     float margin = min(abs(old.x - low.x), abs(high.x - old.x));
-    // Never none: a colour that was clamped to the box's face would stay there for ever.
+    // Above 0: a colour that was clamped to the face of the box would otherwise never change.
     weight *= max(margin / max(margin + high.x - low.x, 1e-6), 0.2);
   }
   vec3 blended = mix(clamp(old, low, high), compressed(center.rgb), clamp(weight, 0.0, 1.0));

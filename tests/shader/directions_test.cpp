@@ -42,7 +42,7 @@ std::vector<ShaderInput> as_inputs(const std::vector<glm::vec3>& vectors) {
 }
 
 /// Cigolle et al. 2014, listing for "oct", in double.
-glm::dvec2 octahedral_twin(const glm::dvec3& d) {
+glm::dvec2 octahedral_reference(const glm::dvec3& d) {
   const double size = std::abs(d.x) + std::abs(d.y) + std::abs(d.z);
   const glm::dvec2 p(d.x / size, d.y / size);
   if (d.z >= 0.0) return p;
@@ -54,7 +54,7 @@ TEST(Octahedral, MatchesTheCpuReferenceAndRoundTrips) {
   const auto given = directions(5000, 1);
   const auto got = call(octahedral, as_inputs(given));
   for (std::size_t i = 0; i < given.size(); ++i) {
-    const glm::dvec2 expected = octahedral_twin(given[i]);
+    const glm::dvec2 expected = octahedral_reference(given[i]);
     const glm::vec2 encoded(got[i].x);
     EXPECT_LE(glm::length(glm::dvec2(encoded) - expected), 1e-6) << i;
     EXPECT_LE(std::max(std::abs(encoded.x), std::abs(encoded.y)), 1.0f);

@@ -111,11 +111,11 @@ TEST_F(EnvironmentSampling, EstimateConvergesToTheEnvironmentsIrradiance) {
     sum += s.y.y / s.x.w / got.size();
   }
   // The environment's own texels: its window has edges.
-  const scene::Environment picture = make_environment(64, radiance_of);
+  const scene::Environment environment = make_environment(64, radiance_of);
   double expected = 0.0;
-  for (std::size_t i = 0; i < picture.radiance.size(); ++i) {
+  for (std::size_t i = 0; i < environment.radiance.size(); ++i) {
     const double top = static_cast<double>(i / 64) * pi / 32;
-    expected += picture.radiance[i].y * (std::cos(top) - std::cos(top + pi / 32)) * pi / 32;
+    expected += environment.radiance[i].y * (std::cos(top) - std::cos(top + pi / 32)) * pi / 32;
   }
   EXPECT_NEAR(sum / expected, 1.0, 0.02);
 }

@@ -14,9 +14,9 @@ constexpr double pi = std::numbers::pi;
 constexpr std::uint32_t reflection = 2;  // of frame_functions.comp
 
 /// A gradient with a bright patch of 30 degrees, where filters have most to do.
-glm::vec3 sky_with_lamp(const glm::vec3& d) {
-  const glm::vec3 lamp = glm::normalize(glm::vec3(0.4f, 0.5f, -0.7f));
-  const float bright = glm::smoothstep(std::cos(0.30f), std::cos(0.22f), glm::dot(d, lamp));
+glm::vec3 sky_with_bright_patch(const glm::vec3& d) {
+  const glm::vec3 patch = glm::normalize(glm::vec3(0.4f, 0.5f, -0.7f));
+  const float bright = glm::smoothstep(std::cos(0.30f), std::cos(0.22f), glm::dot(d, patch));
   return glm::vec3(0.5f + 0.3f * d.y, 0.4f, 0.4f - 0.2f * d.x) + 8.0f * bright;
 }
 
@@ -37,7 +37,7 @@ glm::dvec3 filtered(const glm::dvec3& n, double roughness) {
     const double h2 = 0.5 * (1.0 + cosine);  // squared cosine of the half vector
     const double d = h2 * (a2 - 1.0) + 1.0;
     const double weight = a2 / (d * d) * cosine * std::sin(theta);
-    sum += weight * glm::dvec3(sky_with_lamp(l));
+    sum += weight * glm::dvec3(sky_with_bright_patch(l));
     weights += weight;
   }
   return sum / weights;
@@ -45,7 +45,7 @@ glm::dvec3 filtered(const glm::dvec3& n, double roughness) {
 
 TEST(Prefilter, LevelsMatchTheCpuReferencesGgxLobes) {
   RigOptions options;
-  options.environment = make_environment(512, sky_with_lamp);
+  options.environment = make_environment(512, sky_with_bright_patch);
   const FrameRig rig(SceneBuilder().build(), look({0, 0, 3}, {0, 0, 0}), options);
   const float levels = static_cast<float>(rig.constants().prefiltered_levels);
   ASSERT_GE(levels, 4.0f);

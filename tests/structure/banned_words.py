@@ -11,7 +11,7 @@ from sources import ROOT, report, tracked
 LIST = pathlib.Path(__file__).with_name("banned_words.txt")
 SKIPPED = {".png", ".jpg", ".svg", ".hdr", ".inc", ".lock"}
 SKIPPED_NAMES = {"banned_words.txt", "package-lock.json", "LICENSE"}
-# snake_case and camelCase are words too: "frames_remembered", "mirrorsRemembered".
+# snake_case and camelCase are words too: "frames_kept", "framesKept".
 PARTS = re.compile(r"(?<=[a-z])(?=[A-Z])|_")
 
 

@@ -56,6 +56,7 @@ for path in headers:
         else:
             faults.append(f"{place}: nothing uses {name}")
     for name in sorted(set(MEMBER_FUNCTION.findall(texts[path])) - exported - CALLED_BY_NAME):
-        if not used_in[name] - {unit_of[path]} and inside[name] <= (2 if own else 1):
+        defined_apart = bool(re.search(rf"\b{name}\b", own))
+        if not used_in[name] - {unit_of[path]} and inside[name] <= 1 + defined_apart:
             faults.append(f"{place}: nothing uses {name}")
 sys.exit(report(headers, 150, faults, "everything that headers declare is used"))

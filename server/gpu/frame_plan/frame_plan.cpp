@@ -50,8 +50,7 @@ std::uint32_t FramePlan::add(Resource resource) {
 ImageRef FramePlan::image(std::string_view name, VkFormat format, VkImageUsageFlags extra_usage,
                           std::optional<VkExtent2D> extent) {
   const bool depth = is_depth(format);
-  ImageDesc desc{
-      .name = std::string(name), .extent = extent.value_or(extent_), .format = format};
+  ImageDesc desc{.name = std::string(name), .extent = extent.value_or(extent_), .format = format};
   desc.usage = extra_usage | VK_IMAGE_USAGE_SAMPLED_BIT |
                (depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_IMAGE_USAGE_STORAGE_BIT);
   desc.mapped = device_.is_cpu() && !depth;
@@ -64,8 +63,7 @@ ImageRef FramePlan::image(std::string_view name, VkFormat format, VkImageUsageFl
 
 History FramePlan::history(std::string_view name, VkFormat format, VkImageUsageFlags extra_usage,
                            std::optional<VkExtent2D> extent) {
-  ImageDesc desc{
-      .name = std::string(name), .extent = extent.value_or(extent_), .format = format};
+  ImageDesc desc{.name = std::string(name), .extent = extent.value_or(extent_), .format = format};
   desc.usage = extra_usage | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
   desc.mapped = device_.is_cpu();
   const auto even = std::make_shared<const Image>(device_, desc);

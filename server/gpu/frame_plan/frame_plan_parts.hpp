@@ -29,9 +29,9 @@ struct FramePlan::Pass {
   const RayProgram* rays = nullptr;  // `program`, where it is a ray tracing pipeline
   bool is_raster = false;
   VkExtent3D local_size{1, 1, 1};
-  std::vector<Use> bound;  // in binding order
-  std::vector<Use> listed;       // the same as given to bind(), with those that are absent
-  const char* list = nullptr;    // which list that was
+  std::vector<Use> bound;      // in binding order
+  std::vector<Use> listed;     // the same as given to bind(), with those that are absent
+  const char* list = nullptr;  // which list that was
   std::vector<Attachment> colors;
   std::optional<Attachment> depth;
   std::optional<std::pair<std::uint32_t, VkDeviceSize>> indirect;

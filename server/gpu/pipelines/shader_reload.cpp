@@ -1,6 +1,7 @@
 #include "gpu/pipelines/shader_reload.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <future>
 #include <set>
 #include <utility>

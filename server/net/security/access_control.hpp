@@ -81,7 +81,7 @@ class AccessControl {
 };
 
 /// Whether a page of another origin, this host's other ports included, asks for something that is
-/// not for it by way of an element that names no origin: a picture, a frame, a link. Browsers say
+/// not for it by way of an element that names no origin: an image, a frame, a link. Browsers say
 /// so to hosts that they trust: loopback and HTTPS.
 bool embedded_by_other_origin(const HttpRequest& request);
 

@@ -190,7 +190,7 @@ class ViewerConnection : public Connection,
     enqueue(std::move(answer), {});
   }
 
-  /// Lets go of somebody who does not heed the limits. From within the control callback too, where
+  /// Disconnects a client that exceeds its limits. From within the control callback too, where
   /// the close frame must wait until Beast is done with what it reads.
   void disconnect_rate_limited(const char* what) {
     if (closing_ || std::exchange(rate_limited_, true)) return;

@@ -39,6 +39,18 @@ std::vector<BufferDescription> joined(const Tables&... tables) {
   return all;
 }
 
+/// Every buffer that a pass may write, in the order of the frame; which of them a frame has follows
+/// from settings and scene.
+const std::vector<BufferDescription>& all_buffers() {
+  static const std::vector<BufferDescription> buffers =
+      joined(present_buffers, gbuffer_buffers, visibility_buffers, specular_buffers,
+             reproject_buffers, denoise_visibility_buffers, visibility_temporal_buffers,
+             visibility_atrous_buffers, denoise_specular_buffers, specular_temporal_buffers,
+             specular_atrous_buffers, skybox_buffers, compose_buffers, blended_buffers,
+             reference_buffers, accumulate_buffers, temporal_antialias_buffers);
+  return buffers;
+}
+
 std::vector<std::string> all_names() {
   std::vector<std::string> names;
   for (const BufferDescription& buffer : all_buffers()) {
@@ -49,16 +61,6 @@ std::vector<std::string> all_names() {
 }
 
 }  // namespace
-
-const std::vector<BufferDescription>& all_buffers() {
-  static const std::vector<BufferDescription> buffers =
-      joined(present_buffers, gbuffer_buffers, visibility_buffers, specular_buffers,
-             reproject_buffers, denoise_visibility_buffers, visibility_temporal_buffers,
-             visibility_atrous_buffers, denoise_specular_buffers, specular_temporal_buffers,
-             specular_atrous_buffers, skybox_buffers, compose_buffers, blended_buffers,
-             reference_buffers, accumulate_buffers, temporal_antialias_buffers);
-  return buffers;
-}
 
 View find_view(std::string_view name) {
   for (const BufferDescription& buffer : all_buffers()) {

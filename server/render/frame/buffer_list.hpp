@@ -10,10 +10,6 @@
 /// Views by name: buffers, which the passes describe, and their aspects.
 namespace heliograph::render {
 
-/// Every buffer that a pass may write, in the order of the frame; which of them a frame has follows
-/// from settings and scene.
-const std::vector<BufferDescription>& all_buffers();
-
 /// A buffer, or an aspect of one. Both null: there is no view of that name.
 struct View {
   const BufferDescription* buffer = nullptr;

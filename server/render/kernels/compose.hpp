@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "render/kernels/frame_job.hpp"
+#include "render/kernels/common/frame_job.hpp"
 
 namespace heliograph::render::kernels {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "render/kernels/frame_job.hpp"
-#include "render/kernels/ray_sink.hpp"
+#include "render/kernels/common/frame_job.hpp"
+#include "render/kernels/common/ray_sink.hpp"
 #include "render/resources/host_tables.hpp"
 
 /// The G-buffer from camera rays on all processors, in vectors.
@@ -24,14 +24,14 @@ struct GBufferHitsBindings {
   RaySource<Stage> rays;
   gpu::ReadBuffer<Stage, shared::Hit> hits;
   gpu::ReadBuffer<Stage, shared::Vertex> previous_vertices;
-  RaySink<Stage> passed;           // rays that go on
-  gpu::Write<Stage> normals;       // rgba32f
-  gpu::Write<Stage> base_color;    // rgba8
-  gpu::Write<Stage> surface;       // rgba8
-  gpu::Write<Stage> motion;        // rgba32f
-  gpu::Write<Stage> emissive;      // rgba16f
-  gpu::Write<Stage> depth_slope;   // rg32f
-  gpu::Write<Stage> instance;      // r32ui
+  RaySink<Stage> passed;          // rays that go on
+  gpu::Write<Stage> normals;      // rgba32f
+  gpu::Write<Stage> base_color;   // rgba8
+  gpu::Write<Stage> surface;      // rgba8
+  gpu::Write<Stage> motion;       // rgba32f
+  gpu::Write<Stage> emissive;     // rgba16f
+  gpu::Write<Stage> depth_slope;  // rg32f
+  gpu::Write<Stage> instance;     // r32ui
   gpu::OptionalWrite<Stage> layers;
 };
 struct GBufferHitsConstants {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/kernels/frame_job.hpp"
+#include "render/kernels/common/frame_job.hpp"
 #include "shaders/shared/exposure.h"
 
 namespace heliograph::render::kernels {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/kernels/frame_job.hpp"
+#include "render/kernels/common/frame_job.hpp"
 #include "shaders/shared/denoise.h"
 
 namespace heliograph::render::kernels {

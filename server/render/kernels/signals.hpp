@@ -1,7 +1,7 @@
 #pragma once
 
-#include "render/kernels/frame_job.hpp"
-#include "render/kernels/ray_sink.hpp"
+#include "render/kernels/common/frame_job.hpp"
+#include "render/kernels/common/ray_sink.hpp"
 
 /// Kernels that copy or average signals: bound by memory, plain loops on all processors.
 namespace heliograph::render::kernels {

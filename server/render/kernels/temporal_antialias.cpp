@@ -205,7 +205,7 @@ class Antialiasing {
     if (job_.constants.anti_flicker > 0.0f) {
       const V margin = hn::Min(hn::Abs(old.x - box.low.x), hn::Abs(box.high.x - old.x));
       const V span = hn::Max(margin + box.high.x - box.low.x, set(1e-6f));
-      // Never none: a colour that was clamped to the box's face would stay there for ever.
+      // Above 0: a colour that was clamped to the face of the box would otherwise never change.
       weight = weight * hn::Max(margin / span, set(0.2f));
     }
     const Triple<V> held{hn::Min(hn::Max(old.x, box.low.x), box.high.x),

@@ -1,6 +1,6 @@
 #include "render/kernels/visibility_rays.hpp"
 
-#include "render/kernels/ray_sink.hpp"
+#include "render/kernels/common/ray_sink.hpp"
 #include "render/kernels/simd/rows.hpp"
 
 #undef HWY_TARGET_INCLUDE

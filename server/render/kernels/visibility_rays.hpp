@@ -2,8 +2,8 @@
 
 #include <span>
 
-#include "render/kernels/frame_job.hpp"
-#include "render/kernels/ray_sink.hpp"
+#include "render/kernels/common/frame_job.hpp"
+#include "render/kernels/common/ray_sink.hpp"
 
 namespace heliograph::render::kernels {
 

@@ -4,7 +4,7 @@
 
 #include "gpu/frame_plan/frame_plan.hpp"
 #include "protocol/settings/settings.hpp"
-#include "render/kernels/frame_job.hpp"
+#include "render/kernels/common/frame_job.hpp"
 #include "render/resources/programs.hpp"
 #include "render/resources/scene_resources.hpp"
 #include "shaders/shared/frame_constants.h"
@@ -40,8 +40,7 @@ struct FrameInputs {
 
   /// The compute program of an embedded shader, made for a scene with these features (all of them
   /// where the shader does not ask) when the plan needs it.
-  gpu::ProgramSource program(const gpu::ShaderBinary& shader,
-                             std::uint32_t features = ~0u) const {
+  gpu::ProgramSource program(const gpu::ShaderBinary& shader, std::uint32_t features = ~0u) const {
     return [&all = programs, &shader, features]() -> const gpu::ComputeProgram& {
       return all.compute(shader, features);
     };

@@ -10,8 +10,8 @@ namespace heliograph::render {
 /// What the colours mean, one sentence.
 std::string_view legend(ViewColors colors);
 
-/// Largest values are 98th percentiles, lest one outlier dim everything. NaNs are
-/// black.
+/// Largest values are 98th percentiles, so that one outlier does not dim the image.
+/// NaNs are black.
 Frame colorize(ViewColors colors, const FloatImage& values);
 
 }  // namespace heliograph::render

@@ -58,7 +58,7 @@ int levels(float roughness) {
 }
 
 /// Pixels from tap to tap: twice as many on surfaces rougher than the threshold, with a band
-/// between, lest textured roughness shows the border.
+/// between, so that textured roughness does not show the border.
 int step_at(float roughness) {
   float twice = smoothstep(constants.start_threshold - 0.05, constants.start_threshold + 0.05,
                            roughness);

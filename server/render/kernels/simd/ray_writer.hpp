@@ -9,7 +9,7 @@
 #include <array>
 #include <cstring>
 
-#include "render/kernels/ray_sink.hpp"
+#include "render/kernels/common/ray_sink.hpp"
 #include "render/kernels/simd/lanes.hpp"
 #include "shaders/shared/frame_constants.h"
 

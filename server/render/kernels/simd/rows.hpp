@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "render/kernels/parallel.hpp"
+#include "render/kernels/common/parallel.hpp"
 
 // The baseline, AVX2 and AVX-512: what lies between is hardly ever met.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)

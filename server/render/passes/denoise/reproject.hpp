@@ -21,8 +21,9 @@ inline constexpr struct ReprojectBuffers {
   BufferDescription motion{
       .name = "reproject.motion",
       .colors = ViewColors::heat,
-      .description = "Where each surface was in the frame before: pixel (xy), bits of the valid "
-                     "neighbours (z), 1 where it was disoccluded (w).",
+      .description =
+          "Where each surface was in the frame before: pixel (xy), bits of the valid "
+          "neighbours (z), 1 where it was disoccluded (w).",
       .aspects = reproject_motion_aspects};
 } reproject_buffers{};
 

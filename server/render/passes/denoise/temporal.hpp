@@ -57,8 +57,9 @@ inline constexpr struct SpecularTemporalBuffers {
   BufferDescription history_length{
       .name = "specular.history_length",
       .colors = ViewColors::heat,
-      .description = "Frames in the history; how far rectification moved it; first and second "
-                     "moments of the brightness (zw).",
+      .description =
+          "Frames in the history; how far rectification moved it; first and second "
+          "moments of the brightness (zw).",
       .aspects = specular_history_length_aspects};
   BufferDescription fast_history{"specular.fast_history", ViewColors::radiance,
                                  "Reflections of the last few frames alone, demodulated."};

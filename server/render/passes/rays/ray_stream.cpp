@@ -4,6 +4,15 @@
 #include "shaders/shared/ray_mask.h"
 
 namespace heliograph::render {
+namespace {
+
+/// RayCount::blending of a frame's streams; the same in shaders/lib/denoise/frame_blending.glsl.
+std::uint32_t frame_blending(const FrameInputs& in) {
+  if ((in.scene.features & shared::scene_blends) == 0) return 0;
+  return shared::mixed_bits(in.constants.sample_index ^ shared::mixed_bits(in.constants.seed)) | 1u;
+}
+
+}  // namespace
 
 tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
                                 std::uint32_t capacity) {
@@ -12,11 +21,6 @@ tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
                       storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, gpu::Memory::device),
           plan.buffer(name + ".rays", sizeof(shared::Ray) * capacity, storage, gpu::Memory::device),
           capacity};
-}
-
-std::uint32_t frame_blending(const FrameInputs& in) {
-  if ((in.scene.features & shared::scene_blends) == 0) return 0;
-  return shared::mixed_bits(in.constants.sample_index ^ shared::mixed_bits(in.constants.seed)) | 1u;
 }
 
 void begin_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,

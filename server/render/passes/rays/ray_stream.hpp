@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string>
 
-#include "render/kernels/ray_sink.hpp"
+#include "render/kernels/common/ray_sink.hpp"
 #include "render/passes/frame_inputs.hpp"
 #include "shaders/shared/ray.h"
 
@@ -19,9 +19,6 @@ tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
 /// How a stream's rays meet blended surfaces: all of them stop rays, or each its coverage's
 /// fraction.
 enum class Blending { stops, by_coverage };
-
-/// RayCount::blending of a frame's streams; the same in shaders/lib/denoise/frame_blending.glsl.
-std::uint32_t frame_blending(const FrameInputs& in);
 
 /// The pass `name`.begin, which empties the stream.
 void begin_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,

@@ -1,4 +1,4 @@
-#include "render/kernels/parallel.hpp"
+#include "render/kernels/common/parallel.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

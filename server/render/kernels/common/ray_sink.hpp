@@ -6,7 +6,7 @@
 #include <span>
 
 #include "gpu/frame_plan/bindings.hpp"
-#include "render/kernels/parallel.hpp"
+#include "render/kernels/common/parallel.hpp"
 #include "shaders/shared/ray.h"
 
 namespace heliograph::render::kernels {
