@@ -155,7 +155,7 @@ class TheListFollows(Sessions, ServerTestCase):
     def test_a_capture_immediately_after_the_patch(self):
         self.own("at-once")
         self.capture("at-once")
-        for use, buffer in (("always", "reference"), ("never", "gbuffer.normals")):
+        for use, buffer in (("always", "reference"), ("off", "gbuffer.normals")):
             self.patch("at-once", {"reference": {"use": use}})
             self.capture("at-once", buffer)
 

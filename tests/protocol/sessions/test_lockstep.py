@@ -263,7 +263,7 @@ class Reference(ServerTestCase):
         self.assertEqual((state["shown"], state["samples"], state["finished"]), (False, 0, False))
         after = self.server.call("settings.get")["settings"]
         self.assertEqual(after["accumulation"], before["accumulation"])
-        self.assertEqual(after["reference"]["use"], "never")
+        self.assertEqual(after["reference"]["use"], "off")
 
     def test_stop_restores_the_settings_changed_by_start(self):
         def settings(session="main"):
@@ -275,7 +275,7 @@ class Reference(ServerTestCase):
         self.server.call("reference.stop", session="copy")
         self.assertEqual(settings("copy"), before)
         self.server.call("session.close", {"session": "copy"})
-        self.server.call("settings.patch", {"patch": {"reference": {"use": "never"},
+        self.server.call("settings.patch", {"patch": {"reference": {"use": "off"},
                                                       "accumulation": {"max_samples": 32}}})
         between = settings()
         self.server.call("reference.start", {"samples": 2})
@@ -287,7 +287,7 @@ class Reference(ServerTestCase):
             server.call("reference.start", {"samples": 2})
             server.wait_for(lambda: server.call("reference.status")["finished"], "the end")
             self.assertNotIn("images released", server.log_text())
-            server.call("settings.patch", {"patch": {"reference": {"use": "never"}}})
+            server.call("settings.patch", {"patch": {"reference": {"use": "off"}}})
             server.wait_for(lambda: "images released" in server.log_text(), "the release")
 
     def test_invalid_parameters_are_refused(self):
