@@ -30,7 +30,8 @@ render::EngineOptions engine_options(const DeviceOptions& options) {
   return {.device = options.device,
           .tracer = options.tracer,
           .validation = std::getenv("HELIOGRAPH_VALIDATION") != nullptr,
-          .cache_folder = cache_folder()};
+          .cache_folder = cache_folder(),
+          .shader_folder = options.shader_dir};
 }
 
 protocol::Settings parse_settings(const SettingsOptions& options) {

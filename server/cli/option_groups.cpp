@@ -26,6 +26,20 @@ void add_device_options(CLI::App& command, DeviceOptions& options) {
       ->group("Device");
 }
 
+void add_shader_option(CLI::App& command, DeviceOptions& options) {
+  command
+      .add_option(
+          "--shader-dir", options.shader_dir,
+          "Folder of GLSL sources (a checkout's shaders/) that replace all built-in shaders: "
+          "compute, raster and ray tracing stages, and host kernels. \"serve\" compiles "
+          "again when a file is saved; errors are shown over the frame and logged. "
+          "Environments and lookup tables keep the shaders they were made with; bindings, "
+          "push constants and workgroup sizes must stay; Embree runs no shaders")
+      ->type_name("FOLDER")
+      ->check(CLI::ExistingDirectory)
+      ->group("Device");
+}
+
 void add_settings_options(CLI::App& command, SettingsOptions& options) {
   std::vector<std::string> presets;
   for (const protocol::Preset& preset : protocol::presets()) presets.emplace_back(preset.name);

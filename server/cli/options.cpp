@@ -96,6 +96,7 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options) {
                    "measure for --timings [16]")
       ->check(CLI::Range(1, 100000));
   add_device_options(*command, options.device);
+  add_shader_option(*command, options.device);
   command->footer(render_examples);
   return command;
 }

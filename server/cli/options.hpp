@@ -19,6 +19,7 @@ struct LogOptions {
 struct DeviceOptions {
   std::string device;
   std::string tracer = "auto";
+  std::string shader_dir;  // empty: the embedded shaders
 };
 
 struct SettingsOptions {

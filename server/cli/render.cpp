@@ -179,6 +179,9 @@ int run(const RenderOptions& options) {
   const scene::Camera camera = choose_camera(*imported, options);
 
   render::Engine engine(engine_options(options.device));
+  if (const std::string error = engine.shader_error(); !error.empty()) {
+    throw std::runtime_error(error);
+  }
   render::Renderer renderer(engine);
   const auto resources = engine.upload_and_free_pixels(std::move(imported), std::move(environment));
   const std::shared_ptr<const scene::Scene>& scene = render::scene_of(*resources);

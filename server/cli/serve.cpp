@@ -108,7 +108,7 @@ net::ServerOptions server_options(const ServeOptions& options) {
                      .metrics = options.metrics_listen.empty()},
           .tls_certificate = options.tls_certificate,
           .tls_key = options.tls_key,
-          .measuring = endpoint(options.metrics_listen),
+          .metrics = endpoint(options.metrics_listen),
           .max_connections = options.max_connections,
           .max_connections_per_client = options.max_connections_per_client,
           .drain_notice = milliseconds(options.drain_notice),

@@ -202,6 +202,7 @@ CLI::App* add_serve(CLI::App& app, ServeOptions& options) {
   add_size_options(*command, options.width, options.height, "640x360 on a CPU, else 1280x720");
   add_settings_options(*command, options.settings);
   add_device_options(*command, options.device);
+  add_shader_option(*command, options.device);
   add_limit_options(*command, options.limits);
   add_log_options(*command, options.log);
   command

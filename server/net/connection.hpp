@@ -28,23 +28,23 @@ namespace beast = boost::beast;
 constexpr std::chrono::seconds handshake_timeout{10};
 constexpr std::chrono::seconds idle_timeout{30};
 constexpr std::chrono::seconds closing_timeout{2};
-// Bytes a second; who takes less than that of a large answer is let go.
-constexpr double slowest_reader = 8 * 1024;
-// Of all connections together: answers that wait to be read. Small ones always find room.
-constexpr std::size_t most_outgoing_bytes = 1u << 30;
+// A client that reads a large response more slowly is disconnected.
+constexpr double min_bytes_per_second = 8 * 1024;
+// Unread responses of all connections together. Small ones are always accepted.
+constexpr std::size_t max_outgoing_bytes = 1u << 30;
 constexpr std::size_t small_answer = 64u << 10;
-constexpr std::size_t largest_request_head = 8 * 1024;
+constexpr std::size_t max_request_head_bytes = 8 * 1024;
 constexpr int send_buffer_bytes = 256 * 1024;
 constexpr int unsent_bytes = 64 * 1024;
 constexpr double calls_per_second = 500.0;
 constexpr double calls_at_once = 1000.0;
-// Who goes on after this many refusals is let go.
-constexpr double refusals_per_second = 50.0;
-constexpr double refusals_at_once = 1000.0;
+// A client that exceeds this rate of rejected calls is disconnected.
+constexpr double rejections_per_second = 50.0;
+constexpr double rejections_at_once = 1000.0;
 constexpr double pings_per_second = 50.0;
 constexpr double pings_at_once = 200.0;
 
-/// What one connection holds of the memory of answers, given back at its end.
+/// One connection's part of the memory of unread responses, released when it ends.
 class OutgoingBytes {
  public:
   explicit OutgoingBytes(std::size_t& in_all) : in_all_(in_all) {}
@@ -53,7 +53,7 @@ class OutgoingBytes {
   OutgoingBytes& operator=(const OutgoingBytes&) = delete;
 
   bool has_room(std::size_t more) const {
-    return more <= small_answer || in_all_ + more <= most_outgoing_bytes;
+    return more <= small_answer || in_all_ + more <= max_outgoing_bytes;
   }
   void hold(std::size_t bytes) { in_all_ += bytes - std::exchange(held_, bytes); }
 
@@ -66,26 +66,26 @@ class OutgoingBytes {
 class Connection {
  public:
   virtual ~Connection() = default;
-  /// Ends politely and soon.
+  /// Closes in order, within closing_timeout.
   virtual void shut_down() = 0;
 };
 
-/// Where a connection came in: the port for everybody, or the one for measuring tools.
-enum class Door { main, measuring };
+/// The port that a connection was accepted on: the main one, or the one for metrics and health.
+enum class ListenerKind { main, metrics };
 
-/// One server's surroundings. All connections live on its one network thread.
+/// What all connections of a server share. Used on its one network thread only.
 struct ServerContext {
   session::SessionHost& host;
   const AccessControl& access;
   Router& router;
   Traffic& traffic;
-  session::UploadStore* uploads;                // null: nothing can be uploaded
+  session::UploadStore* uploads;                // null: uploads are disabled
   std::unique_ptr<TlsCertificate> certificate;  // null: no TLS
-  std::function<void()> on_last_left;           // called while ending, when nobody is left
+  std::function<void()> on_last_closed;         // called while ending, when no connection is open
   std::set<Connection*> connections;
   std::size_t outgoing_bytes = 0;  // see OutgoingBytes
-  bool draining = false;           // nobody new is let in
-  bool ending = false;             // everybody is asked to leave
+  bool draining = false;           // no new viewers are accepted
+  bool ending = false;             // all connections are being closed
 
   void enter(Connection& connection) {
     connections.insert(&connection);
@@ -94,21 +94,21 @@ struct ServerContext {
   void leave(Connection& connection) {
     connections.erase(&connection);
     traffic.connections = connections.size();
-    if (ending && connections.empty()) on_last_left();
+    if (ending && connections.empty()) on_last_closed();
   }
 };
 
-/// Reads requests from a fresh connection and answers them, or hands it to a viewer.
-void start_http_connection(ServerContext& context, ClientStream stream, Door door);
+/// Reads requests from a new connection and responds to them, or upgrades it to a viewer's.
+void start_http_connection(ServerContext& context, ClientStream stream, ListenerKind kind);
 
-/// Answers a request that may be answered with a session's pictures without an end, as
-/// multipart/x-mixed-replace. `headers` are those of every answer.
-void start_picture_stream(ServerContext& context, ClientStream stream, const HttpRequest& request,
-                          const std::string& session, const protocol::StreamConfigure& wishes);
-/// How the query of such a request wants the pictures.
-protocol::Result<protocol::StreamConfigure> picture_stream_wishes(const HttpRequest& request);
+/// Responds with an endless stream of a session's frames, as multipart/x-mixed-replace. The request
+/// was admitted.
+void start_mjpeg_stream(ServerContext& context, ClientStream stream, const HttpRequest& request,
+                        const std::string& session, const protocol::StreamConfigure& options);
+/// The quality and frame rate that the query of such a request asks for.
+protocol::Result<protocol::StreamConfigure> mjpeg_stream_options(const HttpRequest& request);
 
-/// Carries on a connection whose client has asked for the viewers' WebSocket and may have it.
+/// Upgrades a connection whose client was admitted to the viewers' WebSocket.
 void start_viewer_connection(ServerContext& context, ClientStream stream,
                              const HttpRequest& request, Role role);
 

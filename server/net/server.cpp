@@ -16,7 +16,7 @@
 
 #include "net/connection.hpp"
 #include "net/listener.hpp"
-#include "net/websocket/reader_progress.hpp"
+#include "net/tcp_progress.hpp"
 #include "session/event_log.hpp"
 
 namespace heliograph::net {
@@ -26,8 +26,8 @@ using boost::system::error_code;
 
 namespace {
 
-// Those who measure are few, and must not be kept out by the many at the other door.
-constexpr std::size_t most_measuring = 32;
+// Apart from the main port's limit, so that viewers cannot keep monitoring out.
+constexpr std::size_t max_metrics_connections = 32;
 
 std::vector<AddressRange> address_ranges(const std::vector<std::string>& texts) {
   return {texts.begin(), texts.end()};
@@ -48,50 +48,52 @@ struct Server::State {
         router(host, access, traffic, options.router),
         limits(options.max_connections, options.max_connections_per_client,
                address_ranges(options.access.trusted_proxies)),
-        measuring_limits(most_measuring, most_measuring, {}),
+        metrics_limits(max_metrics_connections, max_metrics_connections, {}),
         context{.host = host,
                 .access = access,
                 .router = router,
                 .traffic = traffic,
                 .uploads = uploads,
                 .certificate = certificate(options),
-                .on_last_left = [this] { io.stop(); },
+                .on_last_closed = [this] { io.stop(); },
                 .connections = {}},
-        door(io, options.access.bind_address, options.port,
-             [this](tcp::socket socket) { welcome(std::move(socket), limits, Door::main); }) {
-    if (options.measuring) {
-      measuring_door.emplace(io, options.measuring->address, options.measuring->port,
-                             [this](tcp::socket socket) {
-                               welcome(std::move(socket), measuring_limits, Door::measuring);
-                             });
+        listener(io, options.access.bind_address, options.port, [this](tcp::socket socket) {
+          accept_client(std::move(socket), limits, ListenerKind::main);
+        }) {
+    if (options.metrics) {
+      metrics_listener.emplace(
+          io, options.metrics->address, options.metrics->port, [this](tcp::socket socket) {
+            accept_client(std::move(socket), metrics_limits, ListenerKind::metrics);
+          });
     }
     stop_signals.add(SIGINT);
     stop_signals.add(SIGTERM);
     if (context.certificate) reload_signal.add(SIGHUP);
   }
 
-  void welcome(tcp::socket socket, ConnectionLimits& room, Door by) {
+  void accept_client(tcp::socket socket, ConnectionLimits& limits_of_listener, ListenerKind kind) {
     error_code gone;
     const tcp::endpoint peer = socket.remote_endpoint(gone);
     if (gone) return;
-    auto slot = room.take(peer.address().to_string());
+    auto slot = limits_of_listener.take(peer.address().to_string());
     if (!slot) {
       ++traffic.connections_refused;
-      // One line for each would let who floods fill the disk too.
+      // A line for each would let a flood of connections fill the disk.
       if (refusals.allow(RateLimit::Clock::now())) {
-        session::log_warning({.client = peer.address().to_string()},
-                             fmt::format("a connection was refused: {} are open", room.open()));
+        session::log_warning(
+            {.client = peer.address().to_string()},
+            fmt::format("connection rejected: {} are open", limits_of_listener.open()));
       }
       return;
     }
     error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
-    // Small, so that a finished write means the picture is nearly there.
+    // Small, so that a completed write means that most of the frame has arrived.
     socket.set_option(asio::socket_base::send_buffer_size(send_buffer_bytes), ignored);
     setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &unsent_bytes,
                sizeof unsent_bytes);
-    notice_absence(socket.native_handle());
-    start_http_connection(context, ClientStream(std::move(socket), *std::move(slot)), by);
+    enable_keepalive(socket.native_handle());
+    start_http_connection(context, ClientStream(std::move(socket), *std::move(slot)), kind);
   }
 
   void wait_for_signals() {
@@ -111,15 +113,16 @@ struct Server::State {
       if (error) return;
       try {
         context.certificate->reload();
-        spdlog::info("the certificate was read anew");
+        spdlog::info("the certificate was reloaded");
       } catch (const std::runtime_error& failure) {
-        spdlog::error("the old certificate stays: {}", failure.what());
+        spdlog::error("the certificate was not reloaded, the old one stays in use: {}",
+                      failure.what());
       }
       wait_for_reload();
     });
   }
 
-  /// From now on nobody new is let in; after the notice, everybody is asked to leave.
+  /// Stops accepting viewers; after the drain notice, closes all connections.
   void drain() {
     if (std::exchange(context.draining, true)) return;
     router.drain();
@@ -129,15 +132,16 @@ struct Server::State {
 
   void end() {
     context.ending = true;
-    door.close();
-    if (measuring_door) measuring_door->close();
+    listener.close();
+    if (metrics_listener) metrics_listener->close();
     if (context.connections.empty()) return io.stop();
-    // Ending a connection takes it out of the set.
+    // Closing a connection removes it from the set.
     const std::set<Connection*> open = context.connections;
     for (Connection* connection : open) connection->shut_down();
     deadline.expires_after(options.drain_deadline);
     deadline.async_wait([this](error_code) {
-      spdlog::warn("{} connections did not end in time", context.connections.size());
+      spdlog::warn("{} connections were not closed within the drain deadline",
+                   context.connections.size());
       io.stop();
     });
   }
@@ -147,11 +151,11 @@ struct Server::State {
   Traffic traffic;
   Router router;
   ConnectionLimits limits;
-  ConnectionLimits measuring_limits;
+  ConnectionLimits metrics_limits;
   ServerContext context;  // outlives the connections that `io` still holds
   asio::io_context io{1};
-  Listener door;
-  std::optional<Listener> measuring_door;
+  Listener listener;
+  std::optional<Listener> metrics_listener;
   RateLimit refusals{1.0, 5.0, RateLimit::Clock::now()};
   asio::steady_timer deadline{io};
   asio::signal_set stop_signals{io};
@@ -165,18 +169,18 @@ Server::Server(session::SessionHost& host, const ServerOptions& options,
 Server::~Server() = default;
 
 std::string Server::url() const {
-  return state_->door.url(state_->context.certificate ? "https" : "http");
+  return state_->listener.url(state_->context.certificate ? "https" : "http");
 }
 
 std::optional<std::string> Server::metrics_url() const {
-  if (!state_->measuring_door) return std::nullopt;
-  return state_->measuring_door->url("http") + "metrics";
+  if (!state_->metrics_listener) return std::nullopt;
+  return state_->metrics_listener->url("http") + "metrics";
 }
 
 void Server::run() {
   state_->wait_for_signals();
-  state_->door.accept();
-  if (state_->measuring_door) state_->measuring_door->accept();
+  state_->listener.accept();
+  if (state_->metrics_listener) state_->metrics_listener->accept();
   state_->io.run();
 }
 

@@ -18,22 +18,22 @@ namespace heliograph::net {
 
 struct Endpoint {
   std::string address;
-  std::uint16_t port = 0;  // 0: any free one
+  std::uint16_t port = 0;  // 0: any free port
 };
 
 struct ServerOptions {
-  std::uint16_t port = 8080;  // 0: any free one
+  std::uint16_t port = 8080;  // 0: any free port
   AccessOptions access;
   RouterOptions router;
   std::filesystem::path tls_certificate;  // PEM; empty: plain HTTP
   std::filesystem::path tls_key;
-  std::optional<Endpoint> measuring;  // another port, for metrics and health only
+  std::optional<Endpoint> metrics;  // another port, for metrics and health only
   std::size_t max_connections = 256;
   std::size_t max_connections_per_client = 64;
-  /// How long the server says that it is not ready before it asks viewers to leave, so that load
-  /// balancers have noticed by then.
+  /// How long the server reports that it is not ready before it closes connections, so that load
+  /// balancers notice first.
   std::chrono::milliseconds drain_notice{0};
-  /// How long answers that are under way and viewers that leave may take after that.
+  /// How long responses in progress and closing handshakes may take after that.
   std::chrono::milliseconds drain_deadline{5000};
 };
 
@@ -49,10 +49,10 @@ class Server {
 
   /// "http://127.0.0.1:8080/"
   std::string url() const;
-  /// Where metrics are, if they have a port of their own: "http://127.0.0.1:9464/metrics"
+  /// URL of the metrics if they have a port of their own: "http://127.0.0.1:9464/metrics"
   std::optional<std::string> metrics_url() const;
-  /// Serves until `stop`, SIGINT or SIGTERM; then lets nobody new in and tells every viewer to come
-  /// back later. A second signal ends the process at once. SIGHUP reads the certificate anew.
+  /// Serves until `stop`, SIGINT or SIGTERM; then rejects new viewers and tells connected ones to
+  /// reconnect later. A second signal ends the process at once. SIGHUP reloads the certificate.
   void run();
   /// Ends `run` soon. Any thread.
   void stop();

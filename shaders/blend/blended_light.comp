@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
-// The rays that light the chosen blended surface of each pixel, as all others are lit: toward a light,
-// into the hemisphere, along its mirrored lobe. Each carries what it brings.
+// The rays that light the chosen blended surface of each pixel, as all others are lit: toward a
+// light, into the hemisphere, along its specular lobe. Each carries what it brings.
 #include "lib/scene/hit_material.glsl"
 #include "lib/lighting/light_choice.glsl"
 #include "lib/rays/ray_index.glsl"
@@ -41,11 +41,11 @@ Ray ray_along(HitSurface s, float view_z, vec3 direction, float t_max) {
   return Ray(offset_origin(s.position, s.geometric, view_z), 0.0, direction, t_max, 0u, 0u, 0u, 0u);
 }
 
-/// All light of all lamps times the share that is not hidden, as one ray at a time finds it.
-Ray shadow_ray(HitSurface s, SurfaceMaterial m, float view_z, vec3 share, ivec2 pixel,
-               out bool found) {
+/// Light of all lights times visibility, estimated with one ray to a randomly chosen light.
+Ray shadow_ray(HitSurface s, SurfaceMaterial m, float view_z, vec3 throughput, ivec2 pixel,
+               out bool valid) {
   Ray ray;
-  found = false;
+  valid = false;
   if (!enabled(frame_direct)) return ray;
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < frame.light_count; ++i) {
@@ -54,53 +54,55 @@ Ray shadow_ray(HitSurface s, SurfaceMaterial m, float view_z, vec3 share, ivec2 
   float pick = random_number(uvec2(pixel), frame.sample_index, 40u, frame.seed);
   LightChoice choice = choose_light(m, s.position, pick);
   if (choice.total <= 0.0) return ray;
-  ray = light_ray(light_number(choice.number), m, s.position, view_z, pair(pixel, 41u), pick, found);
+  ray = light_ray(light_number(choice.number), m, s.position, view_z, pair(pixel, 41u), pick,
+                  valid);
   if (!enabled(frame_shadows)) {
-    found = true;
+    valid = true;
     ray.t_max = 0.0;
   }
-  return carrying(ray, pixel, share * sum);
+  return carrying(ray, pixel, throughput * sum);
 }
 
 /// `light` comes along it.
 Ray ambient_ray(HitSurface s, SurfaceMaterial m, float view_z, vec3 light, ivec2 pixel,
-                out bool found) {
+                out bool valid) {
   vec3 direction = sample_cosine(m.normal, pair(pixel, 42u));
   Ray ray = ray_along(s, view_z, direction, frame.ambient_radius);
   bool open = !enabled(frame_ambient_occlusion);
   if (open) ray.t_max = 0.0;
-  found = (open || dot(direction, m.geometric) > 0.0) && light != vec3(0.0);
+  valid = (open || dot(direction, m.geometric) > 0.0) && light != vec3(0.0);
   return carrying(ray, pixel, light);
 }
 
 void main() {
   uint index = ray_index();
   bool lit = false, open = false, mirrors = false;
-  Ray shadow, ambient, mirror;
+  Ray shadow, ambient, specular;
   if (index < lit_count.count) {
     Ray view = lit_rays[index];
     ivec2 pixel = ivec2(view.pixel & 0xffffu, view.pixel >> 16u);
     Hit hit = chosen[uint(pixel.y) * frame.extent.x + uint(pixel.x)];
     vec4 seen = imageLoad(behind, pixel);
-    vec3 share = uintBitsToFloat(uvec3(hit.padding0, hit.padding1, hit.padding2)) *
+    vec3 throughput = uintBitsToFloat(uvec3(hit.padding0, hit.padding1, hit.padding2)) *
                  (imageLoad(radiance, pixel).a / seen.a);
     HitSurface s = hit_surface(hit, view.direction, cone_width(camera_cone(), hit.t));
     SurfaceMaterial m = material_of(s, view.direction);
     float view_z = -(frame.view * vec4(s.position, 1.0)).z;
-    shadow = shadow_ray(s, m, view_z, share, pixel, lit);
+    shadow = shadow_ray(s, m, view_z, throughput, pixel, lit);
     vec3 around = enabled(frame_environment_diffuse) ? environment_diffuse(m) : vec3(0.0);
-    if (mirrors_rays(mirror_roughness(m), max_roughness)) {
+    if (traces_specular(specular_roughness(m), max_roughness)) {
       SpecularSample drawn = sample_specular(m, pair(pixel, 43u));
       mirrors = any(greaterThan(drawn.weight, vec3(0.0)));
-      mirror = carrying(ray_along(s, view_z, drawn.direction, 1e30), pixel, share * drawn.weight);
+      specular = carrying(ray_along(s, view_z, drawn.direction, 1e30), pixel,
+                          throughput * drawn.weight);
     } else if (enabled(frame_environment_specular)) {
       around += environment_specular(m);
     }
-    ambient = ambient_ray(s, m, view_z, share * around * s.occlusion, pixel, open);
+    ambient = ambient_ray(s, m, view_z, throughput * around * s.occlusion, pixel, open);
     imageStore(behind, pixel, vec4(seen.rgb, view_z));
-    imageStore(surface, pixel, vec4(mirror_roughness(m), s.metallic, 0.0, 0.0));
+    imageStore(surface, pixel, vec4(specular_roughness(m), s.metallic, 0.0, 0.0));
   }
   APPEND_RAY_TO(shadow_count, shadow_rays, lit, shadow)
   APPEND_RAY_TO(ambient_count, ambient_rays, open, ambient)
-  APPEND_RAY_TO(mirror_count, mirror_rays, mirrors, mirror)
+  APPEND_RAY_TO(mirror_count, mirror_rays, mirrors, specular)
 }

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
-// Lays blended surfaces over the composed picture.
+// Blends surfaces over the composed frame.
 #include "lib/frame.glsl"
 
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D radiance;

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
 // Rays that look for blended surfaces between the camera and what the G-buffer holds, and the
-// images that gather them.
+// images that accumulate them.
 #include "lib/rays/camera_ray.glsl"
 #include "lib/rays/ray_stream.glsl"
 
@@ -19,7 +19,7 @@ layout(push_constant) uniform Constants { uvec4 region; };  // of pixels: first,
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   bool inside = !outside_frame(pixel);
-  bool wanted = inside && all(greaterThanEqual(pixel, ivec2(region.xy))) &&
+  bool requested = inside && all(greaterThanEqual(pixel, ivec2(region.xy))) &&
                 all(lessThan(pixel, ivec2(region.zw)));
   Ray ray;
   if (inside) {
@@ -34,5 +34,5 @@ void main() {
     // Not the surface itself, whose depth has been rounded.
     if (moved.w > 0.0) ray.t_max = min(ray.t_max, moved.w * stretch * (1.0 - 1e-5));
   }
-  APPEND_RAY(wanted, ray)
+  APPEND_RAY(requested, ray)
 }

@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
-// One blended surface more of each ray, from front to back: what it sends out by itself, and how much
-// of what is behind still shows. One surface of each pixel is chosen for the rays that light it, in
-// proportion to the light it would send to the eye if nothing were in the way.
+// One blended surface more of each ray, from front to back: what it sends out by itself, and how
+// much of what is behind still shows. One surface of each pixel is chosen for the rays that light
+// it, in proportion to the light it would send to the eye if nothing occluded it.
 #include "lib/scene/hit_material.glsl"
 #include "lib/lighting/lights.glsl"
 #include "lib/math/random.glsl"
@@ -31,7 +31,7 @@ layout(push_constant) uniform Constants {
 
 const float least_seen = 1.0 / 512.0;  // of what is behind: less changes nothing
 
-/// As if nothing were in the way.
+/// As if nothing occluded it.
 vec3 open_light(HitSurface s, SurfaceMaterial m) {
   vec3 sum = vec3(0.0);
   for (uint i = 0u; enabled(frame_direct) && i < frame.light_count; ++i) {
@@ -42,18 +42,18 @@ vec3 open_light(HitSurface s, SurfaceMaterial m) {
   return sum;
 }
 
-/// `share` of the surface's light reaches the eye. The chosen hit carries it.
-void choose(ivec2 pixel, Hit hit, HitSurface s, SurfaceMaterial m, vec3 share, inout float total,
-            inout float weight) {
-  // Never nothing: mirrors may show what shines where the environment does not.
-  float own = luminance(share * open_light(s, m)) + 1e-3 * luminance(share);
+/// `throughput` of the surface's light reaches the eye. The chosen hit carries it.
+void choose(ivec2 pixel, Hit hit, HitSurface s, SurfaceMaterial m, vec3 throughput,
+            inout float total, inout float weight) {
+  // Never 0: reflections may show what emits where the environment does not.
+  float own = luminance(throughput * open_light(s, m)) + 1e-3 * luminance(throughput);
   if (!(own > 0.0)) return;
   total += own;
   if (random_number(uvec2(pixel), frame.sample_index, 44u + round, frame.seed) * total >= own) return;
   weight = own;
-  hit.padding0 = floatBitsToUint(share.r);
-  hit.padding1 = floatBitsToUint(share.g);
-  hit.padding2 = floatBitsToUint(share.b);
+  hit.padding0 = floatBitsToUint(throughput.r);
+  hit.padding1 = floatBitsToUint(throughput.g);
+  hit.padding2 = floatBitsToUint(throughput.b);
   chosen[uint(pixel.y) * frame.extent.x + uint(pixel.x)] = hit;
 }
 
@@ -61,10 +61,10 @@ void choose(ivec2 pixel, Hit hit, HitSurface s, SurfaceMaterial m, vec3 share, i
 bool lay_over(ivec2 pixel, Hit hit, HitSurface s, SurfaceMaterial m, out bool first) {
   vec4 light = imageLoad(radiance, pixel);
   vec4 seen = imageLoad(behind, pixel);
-  vec3 share = seen.rgb * s.alpha;
-  light.rgb += share * own_light(s);
+  vec3 throughput = seen.rgb * s.alpha;
+  light.rgb += throughput * own_light(s);
   first = light.a == 0.0;
-  if (!is_unlit(s)) choose(pixel, hit, s, m, share, light.a, seen.a);
+  if (!is_unlit(s)) choose(pixel, hit, s, m, throughput, light.a, seen.a);
   first = first && light.a > 0.0;
   bool most_seen = luminance(seen.rgb) >= 0.5;
   seen.rgb *= seen_behind(s, m);

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
-// The picture from denoised signals, and the same from this frame's as they were traced.
+// Composes the frame from denoised signals, and the same from this frame's noisy ones.
 #include "lib/lighting/composition.glsl"
 
 layout(set = 1, binding = 10, rgba32f) readonly uniform image2D denoised_visibility;
@@ -12,7 +12,7 @@ layout(set = 1, binding = 13, rgba32f) writeonly uniform image2D hdr_raw;
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (outside_frame(pixel)) return;
-  Shares shares = pixel_shares(pixel);
+  Composition shares = pixel_composition(pixel);
   vec2 visibility = imageLoad(denoised_visibility, pixel).xy;
   vec3 mirrored = max_roughness < 0.0 ? vec3(0.0) : imageLoad(denoised_specular, pixel).rgb;
   imageStore(hdr, pixel, composed(shares, visibility, mirrored));

@@ -9,7 +9,7 @@ layout(set = 1, binding = 1, rgba32f) writeonly uniform image2D background;
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (outside_frame(pixel)) return;
-  // Nothing, where a surface is: a new image holds whatever was in its memory before.
+  // 0 where a surface is: the memory of a new image is undefined.
   bool covered = imageLoad(motion, pixel).w > 0.0;
   vec3 radiance = vec3(0.0);
   if (!covered && enabled(frame_environment_visible)) {

@@ -52,8 +52,8 @@ float normal_change(ivec2 pixel, vec3 normal) {
 bool is_same(ivec2 pixel, Expected expected) {
   if (!inside(pixel, ivec2(frame.extent))) return false;
   if (imageLoad(previous_instance, pixel).r != expected.instance) return false;
-  float found = imageLoad(previous_motion, pixel).w;
-  if (!same_depth(expected.view_z, found, expected.slope, expected.footprint,
+  float previous_z = imageLoad(previous_motion, pixel).w;
+  if (!same_depth(expected.view_z, previous_z, expected.slope, expected.footprint,
                   constants.depth_tolerance)) {
     return false;
   }
@@ -73,17 +73,17 @@ vec4 find(vec2 position, Expected expected) {
   // The nearest of the 3x3 pixels about it that shows the surface, as an exact position.
   ivec2 center = ivec2(floor(position));
   float nearest = 1e9;
-  vec4 found = vec4(position, 0.0, 1.0);
+  vec4 result = vec4(position, 0.0, 1.0);
   for (int i = 0; i < 9; ++i) {
     ivec2 pixel = center + ivec2(i % 3, i / 3) - 1;
     vec2 middle = vec2(pixel) + 0.5;
-    float far = distance(middle, position);
-    if (far < nearest && is_same(pixel, expected)) {
-      nearest = far;
-      found = vec4(middle, 1.0, 0.0);
+    float separation = distance(middle, position);
+    if (separation < nearest && is_same(pixel, expected)) {
+      nearest = separation;
+      result = vec4(middle, 1.0, 0.0);
     }
   }
-  return found;
+  return result;
 }
 
 void main() {
@@ -99,7 +99,7 @@ void main() {
   float roughness = imageLoad(surface, pixel).r;
   imageStore(guide, pixel, encode_guide(Guide(normal, roughness, moved.w)));
 
-  vec4 found = vec4(vec2(pixel) + 0.5, 0.0, 1.0);
+  vec4 result = vec4(vec2(pixel) + 0.5, 0.0, 1.0);
   if (frame.history_invalid == 0u) {
     Expected expected;
     expected.normal = normal;
@@ -108,7 +108,7 @@ void main() {
     expected.slope = imageLoad(depth_slope, pixel).xy;
     expected.footprint = pixel_footprint(expected.view_z);
     expected.instance = imageLoad(instance, pixel).r;
-    found = find(vec2(pixel) + 0.5 + moved.xy * vec2(frame.extent), expected);
+    result = find(vec2(pixel) + 0.5 + moved.xy * vec2(frame.extent), expected);
   }
-  imageStore(reprojection, pixel, found);
+  imageStore(reprojection, pixel, result);
 }

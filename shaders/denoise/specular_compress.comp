@@ -14,5 +14,5 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (outside_frame(pixel)) return;
   vec4 given = imageLoad(radiance, pixel);
-  imageStore(compressed, pixel, vec4(reinhard(scrub(given.rgb), multiplier), given.w));
+  imageStore(compressed, pixel, vec4(reinhard(sanitize(given.rgb), multiplier), given.w));
 }

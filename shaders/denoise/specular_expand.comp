@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
-// The way back from Reinhard's curve: its inverse, or the paper's own (section 3.4).
+// The inverse of Reinhard's curve, or the paper's own (section 3.4).
 #include "lib/frame.glsl"
 #include "lib/denoise/reinhard.glsl"
 

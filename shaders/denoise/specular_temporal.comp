@@ -1,8 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
-// Gathers reflections over frames. What a mirror shows moves like the point behind it, what a rough
-// surface shows like the surface: both places in the frame before are candidates.
+// Temporal accumulation of reflections. A smooth reflector's image moves with the virtual position
+// behind it (virtual motion), a rough one's with the surface (surface motion): the history at
+// either position is a candidate.
 #include "lib/frame.glsl"
 #include "lib/denoise/guide.glsl"
 #include "lib/denoise/moments.glsl"
@@ -32,7 +33,7 @@ layout(push_constant) uniform Constants { TemporalConstants constants; };
 
 const float fast_frames = 6.0;
 
-struct Remembered {
+struct HistorySample {
   vec3 radiance;
   float frames;  // 0: nothing
   vec2 moments;
@@ -49,15 +50,15 @@ struct Surface {
 float luminance(vec3 color) { return dot(color, vec3(0.2126, 0.7152, 0.0722)); }
 
 vec4 sample_at(ivec2 pixel) {
-  vec4 found = imageLoad(raw, pixel);
-  return vec4(scrub(found.rgb), scrub(found.w));
+  vec4 texel = imageLoad(raw, pixel);
+  return vec4(sanitize(texel.rgb), sanitize(texel.w));
 }
 
-Remembered nothing() { return Remembered(vec3(0.0), 0.0, vec2(0.0), vec3(0.0)); }
+HistorySample no_history() { return HistorySample(vec3(0.0), 0.0, vec2(0.0), vec3(0.0)); }
 
-/// The remembered signal between pixels, without the blur of bilinear weights. Held to the four
-/// nearest pixels: a cubic overshoots at edges, and farther pixels may show other surfaces.
-vec3 recall_sharply(HistoryTaps taps) {
+/// The history between pixels, without the blur of bilinear weights. Clamped to the four nearest
+/// pixels: a cubic overshoots at edges, and farther pixels may show other surfaces.
+vec3 fetch_history_bicubic(HistoryTaps taps) {
   vec4 across = cubic_weights(taps.fraction.x);
   vec4 down = cubic_weights(taps.fraction.y);
   vec3 sum = vec3(0.0), low = vec3(1e30), high = vec3(-1e30);
@@ -76,22 +77,22 @@ vec3 recall_sharply(HistoryTaps taps) {
   return clamp(sum, low, high);
 }
 
-Remembered recall(HistoryTaps taps) {
-  Remembered found = nothing();
+HistorySample fetch_history(HistoryTaps taps) {
+  HistorySample history = no_history();
   for (int i = 0; i < 4; ++i) {
     float weight = taps.weights[i];
     if (weight <= 0.0) continue;
     ivec2 tap = taps.base + tap_offset(i);
     vec4 state = imageLoad(previous_history, tap);
-    found.radiance += weight * imageLoad(previous_signal, tap).rgb;
-    found.frames += weight * state.x;
-    found.moments += weight * state.zw;
-    found.fast += weight * imageLoad(previous_fast, tap).rgb;
+    history.radiance += weight * imageLoad(previous_signal, tap).rgb;
+    history.frames += weight * state.x;
+    history.moments += weight * state.zw;
+    history.fast += weight * imageLoad(previous_fast, tap).rgb;
   }
   if (taps.whole && (constants.flags & temporal_bicubic) != 0u) {
-    found.radiance = recall_sharply(taps);
+    history.radiance = fetch_history_bicubic(taps);
   }
-  return found;
+  return history;
 }
 
 /// The shortest of the neighbours' hit distances on the same kind of surface: one sample's own is
@@ -102,82 +103,80 @@ float hit_distance(ivec2 pixel) {
     for (int x = -1; x <= 1; ++x) {
       ivec2 tap = pixel + ivec2(x, y);
       if (!inside(tap, ivec2(frame.extent))) continue;
-      float found = sample_at(tap).w;
-      if (found > 0.0) nearest = min(nearest, found);
+      float hit = sample_at(tap).w;
+      if (hit > 0.0) nearest = min(nearest, hit);
     }
   }
   return nearest < 1e9 ? nearest : 0.0;
 }
 
-/// How a mirror bends: how fast its normal turns along the surface (1 / metres, positive where it
-/// bulges), and how far from pixel to pixel. Means over the neighbours to the left, right, above and
-/// below on the same thing.
-struct Bend {
+/// Curvature of a reflector: change of its normal along the surface (1 / metres, positive for
+/// convex), and from pixel to pixel (radians). Means over the four neighbours of the same instance.
+struct Curvature {
   float curvature;
-  float turn;
+  float normal_change;
 };
 
-Bend bend(Surface s, vec3 position) {
-  if ((constants.flags & temporal_curved_reflectors) == 0u) return Bend(0.0, 0.0);
+Curvature local_curvature(Surface s, vec3 position) {
+  if ((constants.flags & temporal_curved_reflectors) == 0u) return Curvature(0.0, 0.0);
   uint own = imageLoad(instance, s.pixel).r;
   vec2 sum = vec2(0.0);
   float count = 0.0;
   for (int i = 0; i < 4; ++i) {
     ivec2 beside = s.pixel + (i < 2 ? ivec2(2 * i - 1, 0) : ivec2(0, 2 * i - 5));
     if (!inside(beside, ivec2(frame.extent)) || imageLoad(instance, beside).r != own) continue;
-    Guide found = decode_guide(imageLoad(guide, beside));
-    vec3 step = world_position(beside, found.view_z) - position;
-    vec3 turn = found.normal - s.normal;
-    sum += vec2(dot(turn, step) / max(dot(step, step), 1e-20), length(turn));
+    Guide neighbour = decode_guide(imageLoad(guide, beside));
+    vec3 step = world_position(beside, neighbour.view_z) - position;
+    vec3 normal_change = neighbour.normal - s.normal;
+    sum += vec2(dot(normal_change, step) / max(dot(step, step), 1e-20), length(normal_change));
     count += 1.0;
   }
-  return count > 0.0 ? Bend(sum.x / count, sum.y / count) : Bend(0.0, 0.0);
+  return count > 0.0 ? Curvature(sum.x / count, sum.y / count) : Curvature(0.0, 0.0);
 }
 
-/// From where a point behind a pixel is seen to where it was seen in the frame before, in pixels.
+/// Screen motion of a world position from this frame to the frame before, in pixels.
 vec2 motion_of(vec3 point) {
-  // Both without jitter, and through the same arithmetic: a resting view gives exactly zero.
+  // Both without jitter, and through the same arithmetic: a static view gives exactly zero.
   return (projected(frame.previous_unjittered, point) - projected(frame.unjittered, point)) *
          vec2(frame.extent);
 }
 
-/// From this frame's pixel to where the virtual point was in the frame before, in pixels. A bent
-/// mirror seen from the side has two: its focus lies nearer within the plane of incidence than
-/// across it (Coddington's equations), and each moves its share of the picture.
-vec2 virtual_motion(Surface s, vec3 position, Bend bend) {
+/// Motion of the reflection's virtual position from this frame to the frame before, in pixels. A
+/// curved reflector at oblique incidence has two: its focus within the plane of incidence is nearer
+/// than across it (Coddington's equations), and each determines the motion along its own axis.
+vec2 virtual_motion(Surface s, vec3 position, float curvature) {
   vec3 eye = to_eye(s.pixel);
-  float far = hit_distance(s.pixel), share = lobe_share(s.roughness);
-  float cosine = clamp(dot(s.normal, eye), 0.2, 1.0);
+  float far = hit_distance(s.pixel), dominant_factor = specular_dominant_factor(s.roughness);
+  float cosine = clamp(dot(s.normal, eye), reflector_min_cosine, 1.0);
   vec2 within =
-      motion_of(position - eye * (share * mirrored_distance(far, bend.curvature / cosine)));
-  if (bend.curvature == 0.0) return within;
+      motion_of(position - eye * (dominant_factor * virtual_distance(far, curvature / cosine)));
+  if (curvature == 0.0) return within;
   vec2 across =
-      motion_of(position - eye * (share * mirrored_distance(far, bend.curvature * cosine)));
+      motion_of(position - eye * (dominant_factor * virtual_distance(far, curvature * cosine)));
   vec2 plane = (mat3(frame.view) * s.normal).xy * sign(frame.unproject.xy);
   plane /= max(length(plane), 1e-6);
   return across + plane * dot(within - across, plane);
 }
 
-/// Whether the frame before shows the same mirror there: the surface is compared, not the depth of
-/// what is behind it. Where the normal turns from pixel to pixel, so may that of a neighbour.
-bool same_mirror(ivec2 pixel, Surface s, float turn) {
+/// Whether `pixel` of the frame before shows the same reflector: the surface is compared, not the
+/// depth of what it reflects.
+bool shows_reflector(ivec2 pixel, Surface s, float normal_change) {
   if (!inside(pixel, ivec2(frame.extent))) return false;
   if (imageLoad(previous_instance, pixel).r != imageLoad(instance, s.pixel).r) return false;
-  float found_z = imageLoad(previous_motion, pixel).w;
-  if (found_z <= 0.0) return false;
+  float previous_z = imageLoad(previous_motion, pixel).w;
+  if (previous_z <= 0.0) return false;
   vec3 normal = octahedral_decode(imageLoad(previous_normals, pixel).xy);
-  float allowed = min(mix(0.9995, 0.95, s.roughness), 1.0 - 2.0 * turn * turn);
   float roughness = imageLoad(previous_surface, pixel).r;
-  return dot(normal, s.normal) > allowed && abs(roughness - s.roughness) < 0.05 + 0.25 * s.roughness;
+  return same_reflector(dot(normal, s.normal), s.roughness, roughness, normal_change);
 }
 
-HistoryTaps virtual_taps(Surface s, vec2 motion, float turn) {
+HistoryTaps virtual_taps(Surface s, vec2 motion, float normal_change) {
   vec2 position = vec2(s.pixel) + 0.5 + motion;
   HistoryTaps taps = bilinear_taps(position);
   uint mask = 0u;
   for (int i = 0; i < 4; ++i) {
     if (taps.weights[i] <= 0.0) continue;
-    if (same_mirror(taps.base + tap_offset(i), s, turn)) mask |= 1u << uint(i);
+    if (shows_reflector(taps.base + tap_offset(i), s, normal_change)) mask |= 1u << uint(i);
   }
   return valid_taps(taps, mask);
 }
@@ -194,7 +193,8 @@ Window window_about(ivec2 pixel) {
   return window;
 }
 
-/// The old radiance as far as the current neighbourhood allows (paper section 3.1), in YCoCg.
+/// The history's radiance clamped or clipped to the current neighbourhood (paper section 3.1), in
+/// YCoCg.
 vec3 rectify(ivec2 pixel, vec3 old) {
   uint mode = constants.rectification;
   if (mode < rectification_color_clamp || mode > rectification_variance_clip) return old;
@@ -203,36 +203,36 @@ vec3 rectify(ivec2 pixel, vec3 old) {
   return from_ycocg(clips(mode) ? clip_to(box, color) : clamp_to(box, color));
 }
 
-/// Both candidates as one memory.
-Remembered remembered(Surface s) {
-  if ((constants.flags & temporal_holds) == 0u) return nothing();
+/// The history of the better candidate.
+HistorySample reprojected_history(Surface s) {
+  if ((constants.flags & temporal_history_valid) == 0u) return no_history();
   vec4 map = imageLoad(reprojection, s.pixel);
   HistoryTaps own = valid_taps(bilinear_taps(map.xy), uint(map.z));
-  if ((constants.flags & temporal_virtual_motion) == 0u) return recall(own);
+  if ((constants.flags & temporal_virtual_motion) == 0u) return fetch_history(own);
   vec3 position = world_position(s.pixel, s.view_z);
-  Bend bend = bend(s, position);
-  vec2 motion = virtual_motion(s, position, bend);
-  HistoryTaps mirrored = virtual_taps(s, motion, bend.turn);
+  Curvature curvature = local_curvature(s, position);
+  vec2 motion = virtual_motion(s, position, curvature.curvature);
+  HistoryTaps reflected = virtual_taps(s, motion, curvature.normal_change);
   vec2 own_motion = map.xy - (vec2(s.pixel) + 0.5);
-  float apart = distance(own_motion, motion);
+  float separation = distance(own_motion, motion);
   float lobe = lobe_pixels(s.roughness);
-  if (any_tap(mirrored) && (apart > worth_parting(lobe) || !any_tap(own))) {
-    Remembered found = recall(mirrored);
-    found.frames = min(found.frames, mirror_memory(lobe));
-    return found;
+  if (any_tap(reflected) && (separation > virtual_motion_threshold(lobe) || !any_tap(own))) {
+    HistorySample history = fetch_history(reflected);
+    history.frames = min(history.frames, max_virtual_history(lobe));
+    return history;
   }
-  // The surface's own history shows another part of the reflection, the sharper the mirror and the
-  // further the two places are apart.
-  Remembered found = recall(own);
-  found.frames *= surface_trust(s.roughness, apart);
-  return found;
+  // The history at the surface's position shows another part of the reflection, the more so the
+  // smoother the reflector and the larger the separation.
+  HistorySample history = fetch_history(own);
+  history.frames *= surface_history_weight(s.roughness, separation);
+  return history;
 }
 
-/// In frames. Of a reflection only a part comes straight from lights: where they move it may be
-/// remembered four times as long as shadows (measured). A turning environment moves all of it, the
-/// faster the narrower the lobe that gathers it.
-float longest_memory(float roughness) {
-  float longest = min(constants.frames, 4.0 * constants.light_frames);
+/// Maximum history length, in frames. Only part of a reflection is lit directly by lights: where
+/// they move its history may be longer than that of shadows. A rotating environment moves all of
+/// it, the faster the narrower the lobe.
+float max_history_frames(float roughness) {
+  float longest = min(constants.frames, specular_light_history_scale * constants.light_frames);
   if (constants.environment_turn <= 0.0) return longest;
   float lobe = 4.0 * atan(roughness * roughness);  // from edge to edge, radians
   float motion = constants.environment_turn / max(lobe, 1e-4);
@@ -252,23 +252,23 @@ void main() {
   }
   Guide g = decode_guide(guided);
   Surface s = Surface(pixel, g.normal, g.roughness, g.view_z);
-  Remembered old = remembered(s);
+  HistorySample old = reprojected_history(s);
   vec3 rectified = rectify(pixel, old.radiance);
   float moved = old.frames > 0.0 ? abs(luminance(rectified) - luminance(old.radiance)) : 0.0;
 
   if (constants.rectification == rectification_percentile) {
     vec2 tile = percentiles_at(pixel).xy;
     now *= firefly_scale(luminance(now), tile.x, tile.y);
-    moved = outdated_share(vec2(luminance(old.radiance)), tile.xx, tile.yy, constants.scale,
+    moved = outdated_fraction(vec2(luminance(old.radiance)), tile.xx, tile.yy, constants.scale,
                            vec2(0.1 * tile.y + 1e-4)).x;
     old.frames *= 1.0 - moved;
   }
 
-  float frames = min(old.frames + 1.0, longest_memory(s.roughness));
+  float frames = min(old.frames + 1.0, max_history_frames(s.roughness));
   vec3 radiance = mix(rectified, now, 1.0 / frames);
-  float share = 1.0 / min(frames, constants.moments_frames);
+  float weight = 1.0 / min(frames, constants.moments_frames);
   float bright = luminance(now);
-  vec2 moments = mix(old.moments, vec2(bright, bright * bright), share);
+  vec2 moments = mix(old.moments, vec2(bright, bright * bright), weight);
   float variance = sample_variance(moments.xx, moments.yy,
                                    vec2(min(frames, constants.moments_frames))).x;
   if ((constants.flags & temporal_mean_variance) != 0u) variance /= frames;

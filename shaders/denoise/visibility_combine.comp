@@ -12,6 +12,6 @@ layout(set = 1, binding = 2, rgba32f) writeonly uniform image2D visibility;
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (outside_frame(pixel)) return;
-  imageStore(visibility, pixel, vec4(scrub(imageLoad(shadow_visibility, pixel).r),
-                                     scrub(imageLoad(ambient_visibility, pixel).r), 0.0, 0.0));
+  imageStore(visibility, pixel, vec4(sanitize(imageLoad(shadow_visibility, pixel).r),
+                                     sanitize(imageLoad(ambient_visibility, pixel).r), 0.0, 0.0));
 }

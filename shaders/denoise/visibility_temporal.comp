@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
-// Gathers visibility over frames (Schied et al. 2017, section 4.2), shadow and ambient together.
+// Temporal accumulation of visibility (Schied et al. 2017, section 4.2), shadow and ambient
+// together.
 #include "lib/frame.glsl"
 #include "lib/denoise/guide.glsl"
 #include "lib/denoise/moments.glsl"
@@ -26,16 +27,16 @@ layout(push_constant) uniform Constants { TemporalConstants constants; };
 
 const float fast_frames = 6.0;
 
-struct Remembered {
+struct HistorySample {
   vec2 signal;
   vec4 moments;
   vec2 frames;  // 0: nothing
   vec2 fast;
 };
 
-/// The remembered signal between pixels, without the blur of bilinear weights. Held to the four
-/// nearest pixels: a cubic overshoots at edges, and farther pixels may show other surfaces.
-vec2 recall_sharply(HistoryTaps taps) {
+/// The history between pixels, without the blur of bilinear weights. Clamped to the four nearest
+/// pixels: a cubic overshoots at edges, and farther pixels may show other surfaces.
+vec2 fetch_history_bicubic(HistoryTaps taps) {
   vec4 across = cubic_weights(taps.fraction.x);
   vec4 down = cubic_weights(taps.fraction.y);
   vec2 sum = vec2(0.0), low = vec2(1e30), high = vec2(-1e30);
@@ -54,26 +55,28 @@ vec2 recall_sharply(HistoryTaps taps) {
   return clamp(sum, low, high);
 }
 
-Remembered recall(ivec2 pixel) {
-  Remembered found = Remembered(vec2(0.0), vec4(0.0), vec2(0.0), vec2(0.0));
-  if ((constants.flags & temporal_holds) == 0u) return found;
+HistorySample fetch_history(ivec2 pixel) {
+  HistorySample history = HistorySample(vec2(0.0), vec4(0.0), vec2(0.0), vec2(0.0));
+  if ((constants.flags & temporal_history_valid) == 0u) return history;
   vec4 map = imageLoad(reprojection, pixel);
   HistoryTaps taps = valid_taps(bilinear_taps(map.xy), uint(map.z));
   for (int i = 0; i < 4; ++i) {
     float weight = taps.weights[i];
     if (weight <= 0.0) continue;
     ivec2 tap = taps.base + tap_offset(i);
-    found.signal += weight * imageLoad(previous_signal, tap).xy;
-    found.moments += weight * imageLoad(previous_moments, tap);
-    found.frames += weight * imageLoad(previous_history, tap).xy;
-    found.fast += weight * imageLoad(previous_fast, tap).xy;
+    history.signal += weight * imageLoad(previous_signal, tap).xy;
+    history.moments += weight * imageLoad(previous_moments, tap);
+    history.frames += weight * imageLoad(previous_history, tap).xy;
+    history.fast += weight * imageLoad(previous_fast, tap).xy;
   }
-  if (taps.whole && (constants.flags & temporal_bicubic) != 0u) found.signal = recall_sharply(taps);
-  return found;
+  if (taps.whole && (constants.flags & temporal_bicubic) != 0u) {
+    history.signal = fetch_history_bicubic(taps);
+  }
+  return history;
 }
 
-/// What the neighbours of the current frame say an old value may be (paper section 3.1); each
-/// signal is a scalar of its own, for which clipping is clamping.
+/// The history clamped to the current neighbourhood (paper section 3.1); each signal is a scalar of
+/// its own, for which clipping is clamping.
 vec2 rectify(ivec2 pixel, vec2 old) {
   bool by_window = constants.rectification >= rectification_color_clamp &&
                    constants.rectification <= rectification_variance_clip;
@@ -101,23 +104,23 @@ void main() {
     imageStore(fast, pixel, vec4(0.0));
     return;
   }
-  Remembered old = recall(pixel);
+  HistorySample old = fetch_history(pixel);
   vec2 rectified = rectify(pixel, old.signal);
   vec2 moved = mix(vec2(0.0), abs(rectified - old.signal), greaterThan(old.frames, vec2(0.0)));
 
   if (constants.rectification == rectification_percentile) {
     vec4 tile = percentiles_at(pixel);
-    moved = outdated_share(old.signal, tile.xz, tile.yw, constants.scale, vec2(0.25));
+    moved = outdated_fraction(old.signal, tile.xz, tile.yw, constants.scale, vec2(0.25));
     old.frames *= 1.0 - moved;
   }
 
-  // Where lights go, shadows age, and what is hidden nearby does not.
+  // Moving lights shorten the history of shadows, not that of ambient visibility.
   vec2 longest = vec2(min(constants.frames, constants.light_frames), constants.frames);
   vec2 frames = min(old.frames + 1.0, longest);
   vec2 value = mix(rectified, now, 1.0 / frames);
-  vec2 share = sample_share(frames, constants.moments_frames);
-  vec2 first = mix(old.moments.xy, now, share);
-  vec2 second = mix(old.moments.zw, now * now, share);
+  vec2 weight = sample_weight(frames, constants.moments_frames);
+  vec2 first = mix(old.moments.xy, now, weight);
+  vec2 second = mix(old.moments.zw, now * now, weight);
   vec2 variance = sample_variance(first, second, min(frames, vec2(constants.moments_frames)));
   if ((constants.flags & temporal_mean_variance) != 0u) variance /= frames;
 
@@ -125,7 +128,7 @@ void main() {
   imageStore(moments, pixel, vec4(first, second));
   imageStore(history, pixel, vec4(frames, moved));
   vec2 change = mix(vec2(0.0), now - old.signal, greaterThan(old.frames, vec2(0.0)));
-  vec2 recent = mix(old.fast, now, sample_share(frames, fast_frames));
+  vec2 recent = mix(old.fast, now, sample_weight(frames, fast_frames));
   bool gradient = constants.rectification == rectification_gradient;
   imageStore(fast, pixel, vec4(gradient ? change : recent, 0.0, 0.0));
 }

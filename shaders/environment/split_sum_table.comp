@@ -22,8 +22,8 @@ void main() {
     vec3 normal = sample_visible_normal(view, alpha, u);
     vec3 light = reflect(-view, normal);
     float m = 1.0 - dot(view, normal);
-    float grazing = m * m * m * m * m;
-    sum += visible_normal_weight(view, light, alpha) * vec2(1.0 - grazing, grazing);
+    float f90_minus_f0 = m * m * m * m * m;
+    sum += visible_normal_weight(view, light, alpha) * vec2(1.0 - f90_minus_f0, f90_minus_f0);
   }
   imageStore(table, texel, vec4(sum / float(samples), 0.0, 0.0));
 }

@@ -23,11 +23,12 @@ layout(push_constant) uniform Constants { DrawConstants draw; };
 
 vec3 transform(vec4 rows[3], vec4 v) { return vec3(dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)); }
 
-/// -1 where the instance's matrix mirrors. Not a condition: see lib/scene/gbuffer_surface.glsl.
+/// -1 where the instance's matrix changes the handedness. Not a condition: see
+/// lib/scene/gbuffer_surface.glsl.
 float orientation() { return 1.0 - 2.0 * float(min(draw.flags & instance_flipped, 1u)); }
 
 /// Cofactors of the upper 3x3 times n: the inverse transpose's direction without dividing, turned
-/// outward again where the matrix mirrors.
+/// outward again where the matrix changes the handedness.
 vec3 transform_normal(vec4 rows[3], vec3 n) {
   vec3 cofactors = vec3(dot(cross(rows[1].xyz, rows[2].xyz), n),
                         dot(cross(rows[2].xyz, rows[0].xyz), n),

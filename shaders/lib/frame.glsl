@@ -49,7 +49,8 @@ float pixel_footprint(float view_z) {
 }
 
 /// How many pixels wide the lobe of a smooth surface shows what is far away: 2 alpha about the
-/// mirrored direction. In orthographic views, where that depends on the distance, more than matters.
+/// reflected direction. In orthographic views, where that depends on the distance, more than
+/// matters.
 float lobe_pixels(float roughness) {
   return enabled(frame_orthographic) ? 1e6 : 2.0 * roughness * roughness / pixel_footprint(1.0);
 }

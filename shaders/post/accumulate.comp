@@ -1,13 +1,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
-// The running mean of a resting picture: mean' = mean + (sample - mean) / N.
+// The running mean of a static view: mean' = mean + (sample - mean) / N.
 #include "lib/frame.glsl"
 
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D hdr;
 layout(set = 1, binding = 1, rgba32f) readonly uniform image2D previous;
 layout(set = 1, binding = 2, rgba32f) writeonly uniform image2D accumulated;
-layout(push_constant) uniform Constants { float weight; };  // 1 / N; 1 starts anew
+layout(push_constant) uniform Constants { float weight; };  // 1 / N; 1 starts again
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8) in;
-// Manual exposure, or the way of an eye toward the exposure that brings the picture's mean (of the
+// Manual exposure, or adaptation toward the exposure that brings the frame's mean (of the
 // logarithm, without the darkest and the brightest twentieth) to middle grey.
 #include "lib/frame.glsl"
 #include "shared/exposure.h"

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 16, local_size_y = 16) in;
-// Histogram of log2 luminance over every second row and column of the picture as it will be shown.
+// Histogram of log2 luminance over every second row and column of the frame as it will be shown.
 // Whole numbers only: the order of addition does not show.
 #include "lib/frame.glsl"
 #include "lib/lighting/lights.glsl"

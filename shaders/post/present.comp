@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
-// The frame and the mean of its samples in their shares; exposure, tone map and sRGB encoding with a
+// Blends the frame with the mean of its samples; exposure, tone map and sRGB encoding with a
 // triangular dither of one code value against bands.
 #include "lib/frame.glsl"
 #include "lib/math/random.glsl"
@@ -30,7 +30,7 @@ void main() {
   if (mean_share > 0.0) color = mix(color, imageLoad(accumulated, pixel).rgb, mean_share);
   color = max(color, 0.0) * exposure.factor;
   vec3 encoded = srgb_encode(tone_map(color));
-  // The same noise in every frame, so that a finished picture stands still.
+  // The same noise in every frame, so that a converged frame does not change.
   vec2 noise = random_pair(uvec2(pixel), 0u, 5u, 0u);
   encoded += (noise.x - noise.y) / 255.0 * 0.5;
   imageStore(picture, pixel, vec4(encoded, 1.0));

@@ -1,9 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
-// Temporal antialiasing as in Falcor: the history along the motion of surfaces, kept within mean and
-// deviation of the 3x3 neighbours in YCgCo (Salvi 2016), read by Catmull-Rom's filter so that it does
-// not blur with every frame, blended with less of the new frame where it lies close to the faces of that box.
+// Temporal antialiasing as in Falcor: the history along the motion of surfaces, kept within mean
+// and deviation of the 3x3 neighbours in YCgCo (Salvi 2016), read by Catmull-Rom's filter so that
+// it does not blur with every frame, blended with less of the new frame where it lies close to the
+// faces of that box.
 #include "lib/frame.glsl"
 #include "shared/exposure.h"
 
@@ -13,7 +14,7 @@ layout(set = 1, binding = 2) uniform sampler2D history;
 layout(set = 1, binding = 3, std140) uniform ExposureBlock { ExposureState exposure; };
 layout(set = 1, binding = 4, rgba32f) writeonly uniform image2D resolved;
 layout(push_constant) uniform Constants {
-  float blend;         // share of the new frame
+  float blend;         // weight of the new frame
   float clip;          // half width of the box in standard deviations
   float anti_flicker;  // 1: on
 };
@@ -28,8 +29,8 @@ vec3 rgb_from_ycgco(vec3 c) {
   return vec3(base + c.z, c.x + c.y, base - c.z);
 }
 
-/// Bright colours weigh less, by their luma as shown, so that one firefly does not outweigh all that
-/// surrounds it (Karis 2014): everything is compared and blended after this.
+/// Bright colours weigh less, by their luma as shown, so that one firefly does not outweigh all
+/// that surrounds it (Karis 2014): everything is compared and blended after this.
 vec3 compressed(vec3 radiance) {
   vec3 c = ycgco_from_rgb(radiance * exposure.factor);
   return c / (1.0 + c.x);
@@ -40,13 +41,13 @@ vec3 expanded(vec3 c) {
   return max(rgb_from_ycgco(shown), 0.0) / exposure.factor;
 }
 
-/// Of the background, which moves as the camera turns; to the previous frame, in uv.
+/// Motion of the background under the camera's rotation; to the previous frame, in uv.
 vec2 background_motion(ivec2 pixel) {
   if (enabled(frame_orthographic)) return vec2(0.0);
   vec4 direction = vec4(-to_eye(pixel), 0.0);
   vec4 before = frame.previous_unjittered * direction;
   vec4 now = frame.unjittered * direction;
-  // What lay behind the eye was nowhere in the picture.
+  // Directions behind the camera have no position in the frame.
   if (before.w <= 0.0) return vec2(2.0);
   return (before.xy / before.w - now.xy / now.w) * 0.5;
 }
@@ -55,16 +56,16 @@ vec2 background_motion(ivec2 pixel) {
 vec2 nearest_motion(ivec2 pixel) {
   ivec2 last = ivec2(frame.extent) - 1;
   ivec2 nearest = pixel;
-  vec4 found = vec4(0.0);
+  vec4 closest = vec4(0.0);
   for (int y = -1; y <= 1; ++y) {
     for (int x = -1; x <= 1; ++x) {
       ivec2 at = clamp(pixel + ivec2(x, y), ivec2(0), last);
       vec4 candidate = imageLoad(motion, at);
-      if (candidate.w <= 0.0 || (found.w > 0.0 && candidate.w >= found.w)) continue;
-      found = candidate;
+      if (candidate.w <= 0.0 || (closest.w > 0.0 && candidate.w >= closest.w)) continue;
+      closest = candidate;
     }
   }
-  return found.w > 0.0 ? found.xy : background_motion(pixel);
+  return closest.w > 0.0 ? closest.xy : background_motion(pixel);
 }
 
 /// Catmull-Rom's 16 texels as 9 bilinear fetches; may overshoot.
@@ -118,17 +119,17 @@ void main() {
   // About the mean, not as a difference of squares: compressed highlights hardly differ.
   vec3 variance = vec3(0.0);
   for (int i = 0; i < 9; ++i) variance += (nearby[i] - mean) * (nearby[i] - mean) / 9.0;
-  vec3 reach = clip * sqrt(variance);
-  vec3 low = mean - reach;
-  vec3 high = mean + reach;
+  vec3 half_extent = clip * sqrt(variance);
+  vec3 low = mean - half_extent;
+  vec3 high = mean + half_extent;
 
   vec3 old = compressed(sample_history(before));
-  float share = blend;
+  float weight = blend;
   if (anti_flicker > 0.0) {
     float margin = min(abs(old.x - low.x), abs(high.x - old.x));
     // Never none: a colour that was clamped to the box's face would stay there for ever.
-    share *= max(margin / max(margin + high.x - low.x, 1e-6), 0.2);
+    weight *= max(margin / max(margin + high.x - low.x, 1e-6), 0.2);
   }
-  vec3 blended = mix(clamp(old, low, high), compressed(center.rgb), clamp(share, 0.0, 1.0));
+  vec3 blended = mix(clamp(old, low, high), compressed(center.rgb), clamp(weight, 0.0, 1.0));
   imageStore(resolved, pixel, vec4(expanded(blended), center.a));
 }

@@ -7,10 +7,10 @@ layout(local_size_x = 64) in;
 
 layout(set = 1, binding = 0, std430) readonly buffer Count { RayCount ray_count; };
 layout(set = 1, binding = 1, std430) readonly buffer Rays { Ray rays[]; };
-layout(set = 1, binding = 2, std430) buffer Places { uint places[]; };
+layout(set = 1, binding = 2, std430) buffer Offsets { uint offsets[]; };
 
 void main() {
   uint index = ray_index();
   if (index >= ray_count.count) return;
-  atomicAdd(places[ray_key(rays[index].origin, rays[index].direction)], 1u);
+  atomicAdd(offsets[ray_key(rays[index].origin, rays[index].direction)], 1u);
 }

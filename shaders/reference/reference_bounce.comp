@@ -21,17 +21,17 @@ const float least_roughness = 0.1;  // whose lobe is wide enough to be met by ch
 
 vec3 environment_at_miss(ReferencePath path, vec3 direction) {
   if (path.bounces == 0u) return background(direction);
-  uint lobe = (path.flags & path_mirrored) != 0u ? frame_environment_specular
+  uint lobe = (path.flags & path_specular) != 0u ? frame_environment_specular
                                                  : frame_environment_diffuse;
   if (!enabled(lobe)) return vec3(0.0);
   // Two ways lead here, each weighed by how likely it is (Veach and Guibas 1995).
   float other = path.density > 0.0 ? environment_density(direction) : 0.0;
-  float share = other > 0.0 ? path.density / (path.density + other) : 1.0;
-  return environment_radiance(direction) * share;
+  float mis_weight = other > 0.0 ? path.density / (path.density + other) : 1.0;
+  return environment_radiance(direction) * mis_weight;
 }
 
 /// How likely scatter() takes the specular lobe.
-float specular_share(SurfaceMaterial m) {
+float specular_lobe_probability(SurfaceMaterial m) {
   float specular = luminance(m.specular_albedo);
   return specular / max(specular + luminance(wide_albedo(m)), 1e-6);
 }
@@ -80,20 +80,20 @@ Ray sky_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pixel) {
                                              path_pair(pixel, constants.round, 7u));
   vec3 l = sky.direction;
   if (dot(l, m.geometric) <= 0.0) return no_ray();
-  float share = specular_share(m);
+  float specular_probability = specular_lobe_probability(m);
   vec3 sent = vec3(0.0);
   float cosine = dot(l, m.normal);
   if (cosine > 0.0 && enabled(frame_environment_diffuse)) {
-    float density = (1.0 - share) * cosine / pi;
+    float density = (1.0 - specular_probability) * cosine / pi;
     sent += wide_light(m, l) / (sky.density + density);
   }
   if (m.roughness >= least_roughness && enabled(frame_environment_specular)) {
     SpecularValue value = specular_value(m, l, false);
-    sent += value.reflected / (sky.density + share * value.density);
+    sent += value.reflected / (sky.density + specular_probability * value.density);
   }
   if (has_coat(m) && m.coat_roughness >= least_roughness && enabled(frame_environment_specular)) {
     SpecularValue value = specular_value(m, l, true);
-    sent += value.reflected / (sky.density + share * value.density);
+    sent += value.reflected / (sky.density + specular_probability * value.density);
   }
   if (sent == vec3(0.0)) return no_ray();
   Ray ray = ray_from(position, m.geometric, l, 1e30);
@@ -101,7 +101,7 @@ Ray sky_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pixel) {
   return ray;
 }
 
-Ray lamp_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pixel) {
+Ray light_shadow_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pixel) {
   if (!enabled(frame_direct)) return no_ray();
   float pick = path_number(pixel, constants.round, 1u);
   LightChoice choice = choose_light(m, position, pick);
@@ -109,7 +109,7 @@ Ray lamp_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pixel) {
   Light light = light_number(choice.number);
   LightSample s = sample_light(light, position, path_pair(pixel, constants.round, 2u));
   if (dot(s.ray_direction, m.geometric) <= 0.0) return no_ray();
-  // Geometry may lie where an area light does and show it: it must not be in its own way.
+  // Geometry may lie where an area light does and show it: it must not occlude itself.
   Ray ray = ray_from(position, m.geometric, s.ray_direction, s.distance * 0.999);
   vec3 light_sent = light.type >= light_rectangle ? s.irradiance * shade_light(m, s.direction)
                                                   : light_contribution(light, m, position);
@@ -122,23 +122,23 @@ Ray lamp_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pixel) {
 bool scatter(inout ReferencePath path, SurfaceMaterial m, RayCone cone, float t, ivec2 pixel,
              out vec3 direction) {
   direction = m.normal;
-  float share = specular_share(m);
+  float specular_probability = specular_lobe_probability(m);
   vec2 u = path_pair(pixel, constants.round, 4u);
   RayCone next;
-  if (path_number(pixel, constants.round, 3u) < share) {
+  if (path_number(pixel, constants.round, 3u) < specular_probability) {
     SpecularSample drawn = sample_specular(m, u);
     direction = drawn.direction;
-    path.throughput *= drawn.weight / share;
-    path.flags = path_mirrored;
-    path.density = drawn.roughness >= least_roughness ? share * drawn.density : 0.0;
-    next = mirrored_cone(cone, t, drawn.roughness);
+    path.throughput *= drawn.weight / specular_probability;
+    path.flags = path_specular;
+    path.density = drawn.roughness >= least_roughness ? specular_probability * drawn.density : 0.0;
+    next = reflected_cone(cone, t, drawn.roughness);
   } else {
     direction = sample_cosine(m.normal, u);
     bool open = dot(direction, m.geometric) > 0.0;
-    path.throughput *= open ? wide_weight(m, direction) / (1.0 - share) : vec3(0.0);
+    path.throughput *= open ? wide_weight(m, direction) / (1.0 - specular_probability) : vec3(0.0);
     path.flags = 0u;
-    path.density = (1.0 - share) * max(dot(direction, m.normal), 0.0) / pi;
-    next = mirrored_cone(cone, t, 1.0);
+    path.density = (1.0 - specular_probability) * max(dot(direction, m.normal), 0.0) / pi;
+    next = reflected_cone(cone, t, 1.0);
   }
   path.cone_width = next.width;
   path.cone_spread = next.spread;
@@ -179,7 +179,7 @@ void main() {
         arrived = path.throughput;
         radiance = own_light(s);
         if (!is_unlit(s)) {
-          shadow = lamp_ray(m, s.position, arrived, pixel);
+          shadow = light_shadow_ray(m, s.position, arrived, pixel);
           if (path.bounces < constants.limit) {
             sky = sky_ray(m, s.position, arrived, pixel);
             vec3 direction;

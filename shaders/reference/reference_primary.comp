@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
 // What the camera's ray met, lit along the hybrid's own paths: emission at once; a light, the
-// environment's diffuse light and a mirrored ray as far as their rays will find.
+// environment's diffuse light and a specular ray, as far as these are not occluded.
 #include "lib/rays/reference_path.glsl"
 #include "lib/rays/specular_pixels.glsl"
 
@@ -27,11 +27,11 @@ Ray shadow_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pixel) {
   float pick = path_number(pixel, constants.round, 1u);
   LightChoice choice = choose_light(m, position, pick);
   if (choice.total <= 0.0) return no_ray();
-  bool found = false;
+  bool valid = false;
   Ray ray = light_ray(light_number(choice.number), m, position, 0.0,
-                      path_pair(pixel, constants.round, 2u), pick, found);
-  if (!found && enabled(frame_shadows)) return no_ray();
-  // All light of all lamps times the share that is not hidden, as one ray at a time finds it.
+                      path_pair(pixel, constants.round, 2u), pick, valid);
+  if (!valid && enabled(frame_shadows)) return no_ray();
+  // Light of all lights times visibility, estimated with one ray to a randomly chosen light.
   carry(ray, throughput * sum);
   if (!enabled(frame_shadows)) ray.t_max = 0.0;
   return ray;
@@ -55,7 +55,7 @@ void main() {
   Ray ray = rays[index];
   if (!is_wanted(ray)) return;
   rays[index] = no_ray();
-  Ray shadow = no_ray(), ambient = no_ray(), mirror = no_ray();
+  Ray shadow = no_ray(), ambient = no_ray(), specular = no_ray();
   Hit hit = hits[index];
   vec3 radiance = vec3(0.0);
   ReferencePath path = paths[index];
@@ -76,14 +76,14 @@ void main() {
     if (!is_unlit(s)) {
       shadow = shadow_ray(m, s.position, path.throughput, pixel);
       vec3 open = enabled(frame_environment_diffuse) ? environment_diffuse(m) : vec3(0.0);
-      if (mirrors_rays(mirror_roughness(m), constants.max_roughness)) {
+      if (traces_specular(specular_roughness(m), constants.max_roughness)) {
         SpecularSample drawn = sample_specular(m, path_pair(pixel, constants.round, 4u));
         if (any(greaterThan(drawn.weight, vec3(0.0)))) {
-          mirror = ray_from(s.position, s.geometric, drawn.direction, 1e30);
+          specular = ray_from(s.position, s.geometric, drawn.direction, 1e30);
         }
-        RayCone mirrored = mirrored_cone(cone, hit.t, mirror_roughness(m));
-        paths[index] = ReferencePath(path.throughput * drawn.weight, 1u, mirrored.width, mirrored.spread,
-                                     path_mirrored, 0.0);
+        RayCone cone_behind = reflected_cone(cone, hit.t, specular_roughness(m));
+        paths[index] = ReferencePath(path.throughput * drawn.weight, 1u, cone_behind.width,
+                                     cone_behind.spread, path_specular, 0.0);
       } else if (enabled(frame_environment_specular)) {
         open += environment_specular(m);
       }
@@ -92,6 +92,6 @@ void main() {
   }
   shadow_rays[index] = shadow;
   ambient_rays[index] = ambient;
-  mirror_rays[index] = mirror;
+  mirror_rays[index] = specular;
   imageStore(reference, pixel, vec4(radiance, 1.0));
 }

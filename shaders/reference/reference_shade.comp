@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
-// What the mirrored ray met, lit as the hybrid lights it: emission, the environment as if nothing
+// What the specular ray hit, lit as the hybrid lights it: emission, the environment as if nothing
 // hid it, and one light as far as its shadow ray will find.
 #include "lib/rays/reference_path.glsl"
 
@@ -13,15 +13,15 @@ layout(set = 1, binding = 4, std430) writeonly buffer ShadowRays { Ray shadow_ra
 layout(set = 1, binding = 5, rgba32f) uniform image2D reference;
 layout(push_constant) uniform Constants { ReferenceConstants constants; };
 
-Ray lamp_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pixel) {
-  if (constants.lamps == 0u || !enabled(frame_direct)) return no_ray();
+Ray light_shadow_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pixel) {
+  if (constants.with_lights == 0u || !enabled(frame_direct)) return no_ray();
   float pick = path_number(pixel, constants.round, 1u);
   LightChoice choice = choose_light(m, position, pick);
   if (choice.total <= 0.0) return no_ray();
   Light light = light_number(choice.number);
-  bool found = false;
-  Ray ray = light_ray(light, m, position, 0.0, path_pair(pixel, constants.round, 2u), pick, found);
-  if (!found) return no_ray();
+  bool valid = false;
+  Ray ray = light_ray(light, m, position, 0.0, path_pair(pixel, constants.round, 2u), pick, valid);
+  if (!valid) return no_ray();
   carry(ray, throughput * light_contribution(light, m, position) * (choice.total / choice.weight));
   if (!enabled(frame_shadows)) ray.t_max = 0.0;
   return ray;
@@ -49,7 +49,7 @@ void main() {
         SurfaceMaterial m = material_of(s, ray.direction);
         if (enabled(frame_environment_diffuse)) radiance += environment_diffuse(m);
         if (enabled(frame_environment_specular)) radiance += environment_specular(m);
-        shadow = lamp_ray(m, s.position, path.throughput, pixel);
+        shadow = light_shadow_ray(m, s.position, path.throughput, pixel);
       }
     }
     vec3 sum = imageLoad(reference, pixel).rgb + path.throughput * radiance;

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
-// Adds the light of lamps that shadow rays from specular hits have found in view.
+// Adds the light of punctual lights whose shadow rays from specular hits are not occluded.
 #include "lib/denoise/moments.glsl"
 #include "lib/rays/ray_index.glsl"
 
@@ -17,5 +17,5 @@ void main() {
   Ray ray = rays[index];
   ivec2 cell = ivec2(ray.pixel & 0xffffu, ray.pixel >> 16u) / scale;
   vec3 light = uintBitsToFloat(uvec3(ray.user, ray.padding0, ray.padding1));
-  imageStore(radiance, cell, imageLoad(radiance, cell) + vec4(scrub(light), 0.0));
+  imageStore(radiance, cell, imageLoad(radiance, cell) + vec4(sanitize(light), 0.0));
 }

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
 // Light that comes back along specular rays: from what they met, or from the environment. Light of
-// lamps at the hit waits for a shadow ray of its own.
+// lights at the hit waits for a shadow ray of its own.
 #define TEXTURE_ONE_LEVEL
 #include "lib/scene/hit_material.glsl"
 #include "lib/lighting/light_choice.glsl"
@@ -20,7 +20,7 @@ layout(set = 1, binding = 5, std430) buffer Count { RayCount ray_count; };
 layout(set = 1, binding = 6, std430) writeonly buffer Rays { Ray rays[]; };
 layout(set = 1, binding = 7, rgba32f) writeonly uniform image2D radiance;
 layout(push_constant) uniform Constants {
-  uint lamps;  // 0: only the environment lights what is hit
+  uint with_lights;  // 0: only the environment lights what is hit
   int scale;
 };
 
@@ -39,29 +39,29 @@ vec3 steady_light(HitSurface s, SurfaceMaterial m) {
   return light;
 }
 
-/// One light with its shadow ray, which carries what arrives when nothing is in its way.
-Ray lamp_ray(SurfaceMaterial m, vec3 position, vec3 weight, ivec2 pixel, out bool found) {
+/// One light with its shadow ray, which carries the light that arrives unless it is occluded.
+Ray light_shadow_ray(SurfaceMaterial m, vec3 position, vec3 weight, ivec2 pixel, out bool valid) {
   ivec2 cell = pixel / scale;
   float pick = specular_number(cell, 5u, scale);
   LightChoice choice = choose_light(m, position, pick);
-  found = false;
+  valid = false;
   Ray ray;
   if (choice.total <= 0.0) return ray;
   Light light = light_number(choice.number);
-  ray = light_ray(light, m, position, 0.0, specular_pair(cell, 6u, scale), pick, found);
+  ray = light_ray(light, m, position, 0.0, specular_pair(cell, 6u, scale), pick, valid);
   vec3 carried = light_contribution(light, m, position) * (choice.total / choice.weight) * weight;
   ray.pixel = uint(pixel.x) | uint(pixel.y) << 16u;
   ray.user = floatBitsToUint(carried.r);
   ray.padding0 = floatBitsToUint(carried.g);
   ray.padding1 = floatBitsToUint(carried.b);
-  // Without shadows every lamp is in view: an empty interval meets nothing.
+  // Without shadows every light is visible: an empty interval hits nothing.
   if (!enabled(frame_shadows)) ray.t_max = 0.0;
   return ray;
 }
 
 void main() {
   uint index = ray_index();
-  bool wanted = false;
+  bool requested = false;
   Ray shadow;
   if (index < specular_count.count) {
     Ray ray = specular_rays[index];
@@ -74,17 +74,17 @@ void main() {
       if (enabled(frame_environment_specular)) light = environment_radiance(ray.direction);
     } else {
       travelled = min(hit.t, distance_of_misses);
-      RayCone cone = mirrored_cone(camera_cone(), imageLoad(motion, pixel).w,
+      RayCone cone = reflected_cone(camera_cone(), imageLoad(motion, pixel).w,
                                    imageLoad(surface, pixel).x);
       HitSurface s = hit_surface(hit, ray.direction, cone_width(cone, hit.t));
       SurfaceMaterial m = material_of(s, ray.direction);
       if (scene_has(scene_blends)) weight *= stopped_weight(s);
       light = steady_light(s, m);
-      if (lamps != 0u && enabled(frame_direct) && (s.flags & material_unlit) == 0u) {
-        shadow = lamp_ray(m, s.position, weight, pixel, wanted);
+      if (with_lights != 0u && enabled(frame_direct) && (s.flags & material_unlit) == 0u) {
+        shadow = light_shadow_ray(m, s.position, weight, pixel, requested);
       }
     }
-    imageStore(radiance, pixel / scale, vec4(scrub(light * weight), travelled));
+    imageStore(radiance, pixel / scale, vec4(sanitize(light * weight), travelled));
   }
-  APPEND_RAY(wanted, shadow)
+  APPEND_RAY(requested, shadow)
 }

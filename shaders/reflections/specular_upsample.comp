@@ -20,7 +20,7 @@ layout(push_constant) uniform Constants { float max_roughness; };
 
 #include "lib/scene/gbuffer_material.glsl"
 
-const float smooth_roughness = 0.15;  // below, lobes are too narrow to be anybody else's
+const float smooth_roughness = 0.15;  // below, lobes are too narrow for neighbours
 
 /// BRDF x cos of the pixel's lobe without Fresnel's term, over the density of the cell's.
 float lobe_ratio(SurfaceMaterial m, vec4 direction) {
@@ -40,10 +40,10 @@ float likeness(SurfaceMaterial m, vec3 position, float view_z, ivec2 pixel, ivec
   if (other_z <= 0.0) return 0.0;
   vec3 normal = octahedral_decode(imageLoad(normals, other).xy);
   float off_plane = abs(dot(m.geometric, world_position(other, other_z) - position));
-  float roughness = imageLoad(surface, other).x - mirror_roughness(m);
-  vec2 apart = vec2(other - pixel);
+  float roughness = imageLoad(surface, other).x - specular_roughness(m);
+  vec2 offset = vec2(other - pixel);
   return pow(max(dot(normal, m.normal), 0.0), 64.0) * exp(-off_plane / (0.01 * view_z)) *
-         exp(-64.0 * roughness * roughness) * exp(-0.25 * dot(apart, apart));
+         exp(-64.0 * roughness * roughness) * exp(-0.25 * dot(offset, offset));
 }
 
 vec4 gathered(SurfaceMaterial m, ivec2 pixel, float view_z) {
@@ -63,11 +63,11 @@ vec4 gathered(SurfaceMaterial m, ivec2 pixel, float view_z) {
     sum += weight * seen;
     total += weight;
   }
-  // Nobody around is like this pixel: the prefiltered environment has to do.
+  // No neighbour is similar to this pixel: the prefiltered environment is used.
   if (total < 1e-4) {
-    vec3 mirrored = reflect(-m.eye, m.normal);
+    vec3 reflected = reflect(-m.eye, m.normal);
     vec3 light = enabled(frame_environment_specular)
-                     ? environment_reflection(mirrored, mirror_roughness(m)) : vec3(0.0);
+                     ? environment_reflection(reflected, specular_roughness(m)) : vec3(0.0);
     return vec4(light, 1e4);
   }
   return sum / total;
@@ -80,7 +80,7 @@ void main() {
   vec4 result = vec4(0.0);
   if (view_z > 0.0 && !is_unlit(pixel)) {
     SurfaceMaterial m = material_at(pixel);
-    if (mirrors_rays(mirror_roughness(m), max_roughness)) result = gathered(m, pixel, view_z);
+    if (traces_specular(specular_roughness(m), max_roughness)) result = gathered(m, pixel, view_z);
   }
   imageStore(radiance, pixel, result);
 }

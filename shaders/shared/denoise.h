@@ -19,23 +19,64 @@ SHARED_CONSTANT uint rectification_fast_history = 5u;
 SHARED_CONSTANT uint rectification_percentile = 6u;
 SHARED_CONSTANT uint rectification_gradient = 7u;
 
-SHARED_CONSTANT uint temporal_holds = 1u;          // there is a history
+SHARED_CONSTANT uint temporal_history_valid = 1u;  // the frame before has a history
 SHARED_CONSTANT uint temporal_mean_variance = 2u;  // variance of the mean, not of one sample
 SHARED_CONSTANT uint temporal_virtual_motion = 4u;
-SHARED_CONSTANT uint temporal_curved_reflectors = 8u;  // their virtual points, too
-SHARED_CONSTANT uint temporal_bicubic = 16u;           // reads the remembered signal sharply
+SHARED_CONSTANT uint temporal_curved_reflectors = 8u;  // virtual motion follows their curvature
+SHARED_CONSTANT uint temporal_bicubic = 16u;           // fetches the history with a cubic
 
 struct TemporalConstants {
-  float frames;          // longest memory
-  float moments_frames;  // longest memory of the moments
+  float frames;          // maximum history length
+  float moments_frames;  // maximum history length of the moments
   uint rectification;
   int radius;                     // of the rectification's window, pixels
   float scale;                    // of its box, standard deviations
   float spatial_variance_frames;  // shorter histories take their variance from neighbours
   uint flags;                     // temporal_*
-  float light_frames;             // longest memory of what comes from lights that move
+  float light_frames;             // maximum history length of what moving lights light
   float environment_turn;         // since the frame before, radians, where that is followed
 };
+
+// Constants of the temporal filters that were fitted by measurement. The tests named here pin them.
+
+// frames_under_motion: the error of a mean over n frames of noise s and lag m n is least for n
+// proportional to m^(-2/3); the factor was fitted to moving lights with the blur behind it.
+// Moments.HistoryLengthUnderMotion.
+SHARED_CONSTANT float motion_history_factor = 0.63f;
+SHARED_CONSTANT float motion_history_exponent = -2.0f / 3.0f;
+// specular_temporal, max_history_frames: only part of a reflection is lit directly by moving
+// lights, so its history may be this much longer than that of shadows.
+SHARED_CONSTANT float specular_light_history_scale = 4.0f;
+
+// virtual_motion_threshold: half of the drift that noisy hit distances cause, per pixel of the
+// lobe's width. VirtualMotion.ThresholdGrowsWithTheLobe.
+SHARED_CONSTANT float virtual_threshold_per_pixel = 1.0f / 64.0f;
+SHARED_CONSTANT float virtual_threshold_max = 0.5f;  // pixels
+// max_virtual_history: frames per pixel of the lobe's width beyond the least width that needs a
+// history at all. VirtualMotion.HistoryGrowsWithTheLobe.
+SHARED_CONSTANT float virtual_history_per_pixel = 8.0f;
+SHARED_CONSTANT float virtual_history_min_lobe = 0.25f;  // pixels
+// surface_history_weight: pixels of separation over which the weight falls to 1/e, on a mirror and
+// per alpha (roughness squared). VirtualMotion.SurfaceHistoryFallsWithTheSeparation.
+SHARED_CONSTANT float surface_history_falloff_smooth = 0.25f;
+SHARED_CONSTANT float surface_history_falloff_per_alpha = 64.0f;
+// same_reflector: least cosine between the normals of a mirror and of a rough surface, and the
+// allowed difference in roughness. VirtualMotion.ReflectorIsComparedByNormalAndRoughness.
+SHARED_CONSTANT float reflector_cosine_smooth = 0.9995f;  // 1.8 degrees
+SHARED_CONSTANT float reflector_cosine_rough = 0.95f;     // 18 degrees
+SHARED_CONSTANT float reflector_roughness_tolerance = 0.05f;
+SHARED_CONSTANT float reflector_roughness_tolerance_relative = 0.25f;
+// virtual_motion: least cosine of incidence; Coddington's focus within the plane of incidence runs
+// away toward grazing angles.
+SHARED_CONSTANT float reflector_min_cosine = 0.2f;
+// virtual_distance: bounds the magnification of hollow mirrors, whose image lies before them beyond
+// the focus. VirtualDistance.FollowsTheMirrorEquation.
+SHARED_CONSTANT float virtual_distance_min_divisor = 0.25f;
+// valid_taps: least sum of bilinear weights that is renormalised. Taps tests.
+SHARED_CONSTANT float min_tap_weight_sum = 0.01f;
+
+// outdated_fraction: part of a history that one frame may drop (Alber 2025).
+SHARED_CONSTANT float max_outdated_fraction = 0.95f;
 
 SHARED_CONSTANT uint atrous_variance_prefilter = 1u;
 SHARED_CONSTANT uint atrous_keep_variance = 2u;  // this half passes the variance on unfiltered

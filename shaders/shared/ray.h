@@ -38,7 +38,7 @@ struct RayCount {
   uint groups_y;
   uint groups_z;
   uint blending;  // 0: blended surfaces stop every ray; else a number of this frame, with which
-                  // they stop a random share of them, as large as what they cover
+                  // they stop a random fraction of them, equal to their coverage
   uint padding0;
   uint padding1;
   uint padding2;

@@ -4,7 +4,7 @@
 #include "types.h"
 SHARED_BEGIN
 
-SHARED_CONSTANT uint path_mirrored = 1u;  // the ray left by the specular lobe, not the diffuse one
+SHARED_CONSTANT uint path_specular = 1u;  // the ray left by the specular lobe, not the diffuse one
 
 struct ReferencePath {
   vec3 throughput;
@@ -12,15 +12,15 @@ struct ReferencePath {
   float cone_width;   // metres, where the ray begins
   float cone_spread;  // metres per metre
   uint flags;         // path_*
-  float density;      // of the ray's direction, per steradian; 0: no other way leads there
+  float density;      // of the ray's direction, per steradian; 0: no other technique samples it
 };
 
 // What a pass is told.
 struct ReferenceConstants {
   uint round;           // of shading, from 0
   uint limit;           // rounds of the primary surface; bounces of a whole path
-  uint lamps;           // 1: lamps light what specular rays hit
-  float max_roughness;  // rougher surfaces mirror the prefiltered environment; below 0: all do
+  uint with_lights;     // 1: lights shade what specular rays hit
+  float max_roughness;  // rougher surfaces reflect the prefiltered environment; below 0: all do
 };
 
 SHARED_END

@@ -47,7 +47,7 @@ struct MaterialLayer {
   vec3 absorption;  // of light that passes: exponents, after the whole thickness
   float transmission;
   float dielectric;  // reflectance by the index of refraction, head on
-  float coat;        // share of the surface that lies under a clear coat
+  float coat;        // fraction of the surface that lies under a clear coat
   float coat_roughness;
   float coat_normal_scale;
   TextureSlot specular_texture;        // a
@@ -77,7 +77,7 @@ struct Material {
   uint alpha_mask_size;  // width | height << 16
   uint alpha_mask_wrap;  // wrap_s | wrap_t << 8, values of Wrap
   uint layer;            // its MaterialLayer's number
-  float passing;  // share of rays that go on where it covers, because light passes through it
+  float passing;         // fraction of rays that pass where it covers, because light does
   uint padding0;
   TextureSlot base_color_texture;
   TextureSlot metallic_roughness_texture;
@@ -103,7 +103,7 @@ struct Instance {
   mat4 previous_world;  // the same, one rendered frame ago
   mat4 normal_matrix;   // inverse transpose of world's upper 3x3
   uint mesh;
-  uint flags;            // instance_flipped where world mirrors (negative determinant)
+  uint flags;  // instance_flipped where world changes the handedness (negative determinant)
   uint previous_vertex;  // its mesh's first vertex among those of the frame before, + 1; 0: the
                          // mesh keeps its shape
   uint padding0;
@@ -141,7 +141,7 @@ SHARED_CONSTANT uint light_disk = 4u;
 struct Light {
   vec3 position;  // of the middle
   uint type;
-  vec3 direction;     // the way light travels, unit length; an area light shines on this side
+  vec3 direction;     // in which light travels, unit length; an area light shines on this side
   float range;        // metres; 0: unlimited
   vec3 color;         // linear colour x intensity: irradiance (directional), radiant intensity
                       // (point, spot) or radiance (area)

@@ -4,10 +4,10 @@
 
 #include "shared/ray.h"
 
-layout(location = 0) rayPayloadInEXT Hit found;
+layout(location = 0) rayPayloadInEXT Hit payload;
 hitAttributeEXT vec2 barycentric;
 
 void main() {
-  found = Hit(gl_HitTEXT, uint(gl_InstanceID), uint(gl_PrimitiveID), barycentric.x,
+  payload = Hit(gl_HitTEXT, uint(gl_InstanceID), uint(gl_PrimitiveID), barycentric.x,
               barycentric.y, 0u, 0u, 0u);
 }

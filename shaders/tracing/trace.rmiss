@@ -4,6 +4,6 @@
 
 #include "shared/ray.h"
 
-layout(location = 0) rayPayloadInEXT Hit found;
+layout(location = 0) rayPayloadInEXT Hit payload;
 
-void main() { found.instance = hit_none; }
+void main() { payload.instance = hit_none; }

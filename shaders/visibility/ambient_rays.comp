@@ -16,7 +16,7 @@ layout(set = 1, binding = 4, r32f) writeonly uniform image2D visibility;
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  bool wanted = false;
+  bool requested = false;
   Ray ray;
   float view_z = outside_frame(pixel) ? 0.0 : imageLoad(motion, pixel).w;
   if (view_z > 0.0) {
@@ -32,9 +32,10 @@ void main() {
     ray.user = 0u;
     ray.padding0 = 0u;
     ray.padding1 = 0u;
-    wanted = dot(ray.direction, geometric) > 0.0;
+    requested = dot(ray.direction, geometric) > 0.0;
   }
   // Directions below the surface are hidden by it.
-  if (!outside_frame(pixel)) imageStore(visibility, pixel, vec4(wanted || view_z <= 0.0 ? 1.0 : 0.0));
-  APPEND_RAY(wanted, ray)
+  bool visible = requested || view_z <= 0.0;
+  if (!outside_frame(pixel)) imageStore(visibility, pixel, vec4(visible ? 1.0 : 0.0));
+  APPEND_RAY(requested, ray)
 }

@@ -21,7 +21,7 @@ layout(set = 1, binding = 7, r32f) writeonly uniform image2D visibility;
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  bool wanted = false;
+  bool requested = false;
   Ray ray;
   float view_z = outside_frame(pixel) ? 0.0 : imageLoad(motion, pixel).w;
   if (view_z > 0.0) {
@@ -31,10 +31,10 @@ void main() {
     LightChoice choice = choose_light(m, position, pick);
     if (choice.total > 0.0) {
       vec2 u = random_pair(uvec2(pixel), frame.sample_index, 2u, frame.seed);
-      ray = light_ray(light_number(choice.number), m, position, view_z, u, pick, wanted);
+      ray = light_ray(light_number(choice.number), m, position, view_z, u, pick, requested);
       ray.pixel = uint(pixel.x) | uint(pixel.y) << 16u;
     }
   }
-  if (!outside_frame(pixel)) imageStore(visibility, pixel, vec4(wanted ? 1.0 : 0.0));
-  APPEND_RAY(wanted, ray)
+  if (!outside_frame(pixel)) imageStore(visibility, pixel, vec4(requested ? 1.0 : 0.0));
+  APPEND_RAY(requested, ray)
 }

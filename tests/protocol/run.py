@@ -1,6 +1,7 @@
-"""Runs every test_*.py beside this file. Ends with 77, which test drivers read as "skipped", where
+"""Runs every test_*.py in the folders beside this file. Ends with 77, which test drivers read as "skipped", where
 something is missing. Names on the command line choose tests: run.py test_stream"""
 
+import glob
 import os
 import sys
 import unittest
@@ -14,7 +15,8 @@ def skip(reason):
 
 
 def main():
-    sys.path.insert(0, HERE)
+    files = sorted(glob.glob(os.path.join(HERE, "*", "test_*.py")))
+    sys.path[:0] = [HERE, *sorted({os.path.dirname(file) for file in files})]
     for variable in ("HELIOGRAPH_BINARY", "HELIOGRAPH_SCENES"):
         if not os.environ.get(variable):
             skip(f"{variable} is not set")
@@ -24,8 +26,8 @@ def main():
     except ImportError as missing:
         skip(f"python3-{missing.name} is not installed")
     loader = unittest.defaultTestLoader
-    names = sys.argv[1:]
-    suite = loader.loadTestsFromNames(names) if names else loader.discover(HERE)
+    everything = [os.path.splitext(os.path.basename(file))[0] for file in files]
+    suite = loader.loadTestsFromNames(sys.argv[1:] or everything)
     result = unittest.TextTestRunner(verbosity=2).run(suite)
     sys.exit(0 if result.wasSuccessful() else 1)
 

@@ -72,7 +72,7 @@ glm::vec4 eye_at(float degrees, float roughness, float azimuth = 0.0f) {
           roughness};
 }
 
-TEST(AreaLights, ASkyOfLightFillsBothLobes) {
+TEST(AreaLights, LightOverTheWholeHemisphereFillsBothLobes) {
   std::vector<ShaderInput> inputs;
   for (const float roughness : {0.03f, 0.1f, 0.3f, 0.6f, 1.0f}) {
     for (const float degrees : {0.0f, 20.0f, 45.0f, 70.0f, 85.0f}) {
@@ -87,7 +87,7 @@ TEST(AreaLights, ASkyOfLightFillsBothLobes) {
   }
 }
 
-TEST(AreaLights, NothingShinesBackward) {
+TEST(AreaLights, EmitToTheFrontOnly) {
   AreaLight light = ceiling(1.0f, 1.0f, 1.0f);
   light.direction = {0, 0, 1};
   const auto got = call(shares, {light.input(eye_at(30, 0.5f))});
@@ -108,7 +108,7 @@ TEST(AreaLights, DiffuseLightIsTheFormFactor) {
   EXPECT_NEAR(got[1].x.x, radius * radius / (radius * radius + height * height), 2e-4);
 }
 
-/// Shares by integrating over the light's area.
+/// Fractions by integrating over the light's area.
 glm::dvec2 integrated(const AreaLight& light, const glm::vec4& eye) {
   const ltc::SpecularLobe lobe(glm::dvec3(eye), std::pow(double(eye.w), 2.0));
   double albedo = 0.0;
@@ -129,7 +129,7 @@ glm::dvec2 integrated(const AreaLight& light, const glm::vec4& eye) {
   return {sum.x, sum.y / albedo};
 }
 
-TEST(AreaLights, BothLobesAreAsIntegratedWhereverTheLightLies) {
+TEST(AreaLights, BothLobesMatchNumericalIntegrationForAnyPlacement) {
   RandomInputs random(5);
   std::vector<AreaLight> lights;
   std::vector<ShaderInput> inputs;

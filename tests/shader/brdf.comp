@@ -8,7 +8,8 @@ ShaderOutput evaluate(uint which, ShaderInput given) {
   switch (which) {
     case 0: return ShaderOutput(vec4(ggx_distribution(given.a.x, given.a.y)), vec4(0.0));
     case 1: return ShaderOutput(vec4(smith_visibility(given.a.x, given.a.y, given.a.z)), vec4(0.0));
-    case 2: return ShaderOutput(vec4(fresnel_schlick(given.a.xyz, given.a.w), 0.0), vec4(0.0));
+    case 2: return ShaderOutput(vec4(mix(given.a.xyz, vec3(1.0), schlick_weight(given.a.w)), 0.0),
+                                vec4(0.0));
     case 3: {
       // a: colour, metallic; b: view, roughness; c: light; d: split sum; the normal is +z.
       vec3 n = vec3(0.0, 0.0, 1.0);

@@ -71,7 +71,7 @@ glm::vec4 split_sum(double n_dot_v, double roughness) {
   return {glm::vec2(split_sum_reference(n_dot_v, roughness)), 0.0f, 0.0f};
 }
 
-TEST(ShadeLight, AgreesWithItsDefinition) {
+TEST(ShadeLight, MatchesTheReferenceImplementation) {
   RandomInputs random(4);
   std::vector<ShaderInput> inputs;
   for (int i = 0; i < 60; ++i) {
@@ -114,7 +114,7 @@ TEST(ShadeLight, IsReciprocalButForMultipleScattering) {
 }
 
 /// Light that a white surface sends to a viewer under a sky of radiance 1: an integral over half
-/// the hemisphere, in steps that shrink toward the plane of the mirrored view, where lobes are
+/// the hemisphere, in steps that shrink toward the plane of the reflected view, where lobes are
 /// thin.
 double albedo(float metallic, float roughness, float view_cosine) {
   constexpr int rings = 192, sectors = 192;
@@ -139,7 +139,7 @@ double albedo(float metallic, float roughness, float view_cosine) {
   return sum;
 }
 
-TEST(ShadeLight, WhiteGivesBackWhatArrives) {
+TEST(ShadeLight, WhiteFurnaceConservesEnergy) {
   for (const float metallic : {0.0f, 0.5f, 1.0f}) {
     for (const float roughness : {0.3f, 0.5f, 0.75f, 1.0f}) {
       for (const float view_cosine : {1.0f, 0.7f, 0.3f, 0.1f}) {
@@ -150,7 +150,7 @@ TEST(ShadeLight, WhiteGivesBackWhatArrives) {
   }
 }
 
-TEST(ShadeLight, IsDarkFromBelowTheHorizon) {
+TEST(ShadeLight, IsZeroBelowTheHorizon) {
   const auto got = call(shading, {{.a = glm::vec4(1, 1, 1, 0),
                                    .b = glm::vec4(0, 0, 1, 0.5f),
                                    .c = glm::vec4(0.6f, 0, -0.8f, 0),

@@ -12,7 +12,7 @@ vec4 weight(float exponent) { return vec4(exp(exponent)); }
 ShaderOutput evaluate(uint which, ShaderInput given) {
   switch (which) {
     case 0: {
-      // a: z, slope, curve; b: found z, offset, footprint; c: sigma.
+      // a: z, slope, curve; b: neighbour's z, offset, footprint; c: sigma.
       float away = plane_distance(given.a.x, given.a.yz, given.a.w, given.b.x, given.b.yz);
       float allowance = depth_allowance(given.a.yz, given.b.yz, given.b.w);
       return ShaderOutput(weight(depth_exponent(away, allowance, given.c.x)), vec4(away));
@@ -56,8 +56,16 @@ ShaderOutput evaluate(uint which, ShaderInput given) {
     case 13: return ShaderOutput(vec4(shortened_history(given.a.xy, given.b.xy, given.c.xy), 0.0, 0.0),
                                  vec4(0.0));
     case 14: return ShaderOutput(cubic_weights(given.a.x),
-                                 vec4(mirrored_distance(given.a.x, given.a.y), 0.0, 0.0, 0.0));
-    default: return ShaderOutput(vec4(lobe_share(given.a.x), surface_trust(given.a.y, given.a.z),
-                                      scrub(given.b.x), 0.0), vec4(scrub(given.b.xyz), 0.0));
+                                 vec4(virtual_distance(given.a.x, given.a.y), 0.0, 0.0, 0.0));
+    case 15: return ShaderOutput(vec4(virtual_motion_threshold(given.a.x),
+                                      max_virtual_history(given.a.x),
+                                      surface_history_weight(given.a.y, given.a.z),
+                                      frames_under_motion(given.a.w)),
+                                 vec4(outdated_fraction(given.b.xx, given.b.yy, given.b.zz, given.b.w,
+                                                        vec2(0.0)).x));
+    case 16: return ShaderOutput(vec4(same_reflector(given.a.x, given.a.y, given.a.z, given.a.w)),
+                                 vec4(0.0));
+    default: return ShaderOutput(vec4(specular_dominant_factor(given.a.x), 0.0,
+                                      sanitize(given.b.x), 0.0), vec4(sanitize(given.b.xyz), 0.0));
   }
 }

@@ -26,6 +26,8 @@ enum Function : std::uint32_t {
   variance,
   shortened,
   sharp,
+  fitted,
+  reflector,
   others
 };
 
@@ -56,7 +58,7 @@ TEST(DepthWeight, IsOneOnThePlaneAndFallsWithTheDistanceFromIt) {
   EXPECT_LT(got[50].x.x, 0.01f) << "an edge stops the filter";
 }
 
-TEST(DepthWeight, IsOneAnywhereOnAPlaneInPerspective) {
+TEST(DepthWeight, IsOneOnAnyPlaneInPerspective) {
   // z = 1 / (a + b x + c y)
   const double a = 0.1, b = 0.0007, c = -0.0011;
   std::vector<ShaderInput> inputs;
@@ -128,13 +130,13 @@ TEST(RoughnessWeight, IsOneForEqualsAndFalls) {
   EXPECT_LT(got[2].x.x, 1e-3f);
 }
 
-TEST(HistoryTaps, OfARestingPixelAreThatPixelExactly) {
+TEST(HistoryTaps, OfAStaticPixelAreThatPixelExactly) {
   const auto got = call(taps, {{.a = {17.5f, 4.5f, 0, 0}, .b = glm::vec4(15.0f)}});
   EXPECT_EQ(got[0].x, glm::vec4(1, 0, 0, 0));
   EXPECT_EQ(glm::vec2(got[0].y), glm::vec2(17, 4));
 }
 
-TEST(HistoryTaps, AreBilinearAndShareWhatInvalidOnesLose) {
+TEST(HistoryTaps, AreBilinearAndRenormaliseOverValidTaps) {
   const glm::vec4 where(10.75f, 3.0f, 0, 0);  // a quarter right of 10.5, half below 2.5
   const auto got = call(taps, {{.a = where, .b = glm::vec4(15.0f)},
                                {.a = where, .b = glm::vec4(5.0f)},
@@ -147,7 +149,7 @@ TEST(HistoryTaps, AreBilinearAndShareWhatInvalidOnesLose) {
   EXPECT_EQ(got[3].x, glm::vec4(0.0f)) << "a thousandth of a tap is no history";
 }
 
-TEST(SameDepth, TestsAgainstTheSlopeAtAnyScale) {
+TEST(SameDepth, ToleranceFollowsTheSlopeAtAnyScale) {
   for (const float scale : {0.01f, 1.0f, 100.0f}) {
     const auto ask = [&](float expected, float found, float slope) {
       return ShaderInput{.a = glm::vec4(expected, found, slope, 0.0f) * scale,
@@ -163,7 +165,7 @@ TEST(SameDepth, TestsAgainstTheSlopeAtAnyScale) {
   }
 }
 
-TEST(SameNormal, NeverTakesABackFace) {
+TEST(SameNormal, RejectsBackFaces) {
   const glm::vec4 up(0, 0, 1, 0);
   const auto with = [&](const glm::vec3& found, float change, float tolerance) {
     return ShaderInput{.a = {up.x, up.y, up.z, change}, .b = glm::vec4(found, tolerance)};
@@ -181,7 +183,7 @@ TEST(SameNormal, NeverTakesABackFace) {
   EXPECT_EQ(got[4].x.x, 0.0f);
 }
 
-TEST(Reinhard, ComesBackExactlyByItsInverseButNotByThePapers) {
+TEST(Reinhard, RoundTripIsExactWithItsInverseAndNotWithThePapers) {
   RandomInputs random(3);
   std::vector<ShaderInput> inputs;
   for (int i = 0; i < 1000; ++i) {
@@ -201,7 +203,7 @@ TEST(Reinhard, ComesBackExactlyByItsInverseButNotByThePapers) {
   EXPECT_GT(off, 0.3) << "the paper's way back shifts brightness";
 }
 
-TEST(Boxes, ClampEveryChannelOrClipTowardTheMiddle) {
+TEST(RectificationBoxes, ClampEachChannelOrClipTowardTheCenter) {
   const auto got = call(boxes, {{.a = {-1, -1, -1, 0}, .b = {1, 1, 1, 0}, .c = {0.5f, -0.5f, 0, 0}},
                                 {.a = {-1, -1, -1, 0}, .b = {1, 1, 1, 0}, .c = {4, 2, 0, 0}},
                                 {.a = {2, 2, 2, 0}, .b = {2, 2, 2, 0}, .c = {4, 2, 0, 0}}});
@@ -212,7 +214,7 @@ TEST(Boxes, ClampEveryChannelOrClipTowardTheMiddle) {
   EXPECT_LE(glm::distance(glm::vec3(got[2].y), glm::vec3(2.0f)), 1e-5f) << "an empty box";
 }
 
-TEST(Boxes, OfVarianceReachAsManyDeviationsAsAsked) {
+TEST(RectificationBoxes, VarianceBoxIsMeanPlusMinusScaledDeviation) {
   const auto got =
       call(variance_box,
            {{.a = {0, 1, 5, 0}, .b = {3, 1, 5, 0}, .c = {6, 1, 5, 0}, .d = glm::vec4(2.0f)}});
@@ -224,7 +226,7 @@ TEST(Boxes, OfVarianceReachAsManyDeviationsAsAsked) {
   EXPECT_NEAR(got[0].y.z, 5.0f, 5e-3);
 }
 
-TEST(Ycocg, ComesBack) {
+TEST(Ycocg, RoundTripIsExact) {
   RandomInputs random(4);
   std::vector<ShaderInput> inputs{{.a = glm::vec4(0.7f)}};
   for (int i = 0; i < 200; ++i) {
@@ -237,7 +239,7 @@ TEST(Ycocg, ComesBack) {
   }
 }
 
-TEST(Moments, GiveTheVarianceWithoutBias) {
+TEST(Moments, SampleVarianceIsUnbiased) {
   // 0 and 1 once each: mean 1/2, mean square 1/2, variance 1/2 with one degree of freedom.
   const auto got = call(variance, {{.a = {0.5f, 3.0f, 0.5f, 9.0f}, .b = {2, 10, 0, 0}},
                                    {.a = {1.0f, 1.0f, 0.9f, 1.0f}, .b = {1, 1, 0, 0}}});
@@ -246,7 +248,7 @@ TEST(Moments, GiveTheVarianceWithoutBias) {
   EXPECT_EQ(got[1].x.x, 0.0f) << "never negative";
 }
 
-TEST(ShortenedHistory, KeepsAllOfAnUnmovedValueAndLosesTheRest) {
+TEST(ShortenedHistory, IsUnchangedForUnmovedValuesAndOneFrameForFarOnes) {
   const auto got =
       call(shortened, {{.a = {32, 32, 0, 0}, .b = {0, 0.1f, 0, 0}, .c = glm::vec4(0.1f)},
                        {.a = {32, 1, 0, 0}, .b = {100, 100, 0, 0}, .c = glm::vec4(0.01f)}});
@@ -256,7 +258,7 @@ TEST(ShortenedHistory, KeepsAllOfAnUnmovedValueAndLosesTheRest) {
   EXPECT_EQ(got[1].x.y, 1.0f);
 }
 
-TEST(VirtualPoint, LiesBehindAMirrorAndOnARoughSurface) {
+TEST(VirtualMotion, DominantFactorIsOneForMirrorsAndZeroForRoughSurfaces) {
   std::vector<ShaderInput> inputs;
   for (int i = 0; i <= 20; ++i) inputs.push_back({.a = {0.05f * i, 0, 0, 0}});
   const auto got = call(others, inputs);
@@ -265,7 +267,67 @@ TEST(VirtualPoint, LiesBehindAMirrorAndOnARoughSurface) {
   for (int i = 1; i <= 20; ++i) EXPECT_LE(got[i].x.x, got[i - 1].x.x + 0.02f);
 }
 
-TEST(CubicWeights, ReadPixelsThemselvesAndStraightAndBentLinesExactly) {
+TEST(VirtualMotion, ThresholdGrowsWithTheLobe) {
+  const auto threshold = [](float pixels) {
+    return call(fitted, {{.a = {pixels, 0, 0, 1}}})[0].x.x;
+  };
+  EXPECT_EQ(threshold(0.0f), 1.0f / 64.0f);
+  EXPECT_EQ(threshold(15.0f), 0.25f);
+  EXPECT_EQ(threshold(200.0f), 0.5f) << "pixels: half of what noisy hit distances cause";
+}
+
+TEST(VirtualMotion, HistoryGrowsWithTheLobe) {
+  const auto frames = [](float pixels) { return call(fitted, {{.a = {pixels, 0, 0, 1}}})[0].x.y; };
+  EXPECT_EQ(frames(0.0f), 0.0f);
+  EXPECT_EQ(frames(0.25f), 0.0f) << "narrower lobes need no history";
+  EXPECT_EQ(frames(1.25f), 8.0f);
+  EXPECT_EQ(frames(4.25f), 32.0f);
+}
+
+TEST(VirtualMotion, SurfaceHistoryFallsWithTheSeparation) {
+  const auto weight = [](float roughness, float pixels) {
+    return call(fitted, {{.a = {0, roughness, pixels, 1}}})[0].x.z;
+  };
+  EXPECT_EQ(weight(0.5f, 0.0f), 1.0f);
+  EXPECT_NEAR(weight(0.0f, 0.25f), std::exp(-1.0f), 1e-5) << "a quarter of a pixel on a mirror";
+  EXPECT_NEAR(weight(0.5f, 16.25f), std::exp(-1.0f), 1e-5);
+}
+
+TEST(VirtualMotion, ReflectorIsComparedByNormalAndRoughness) {
+  // a: cosine between the normals, roughness now, roughness before, change of normals in radians.
+  const auto same = [](float cosine, float roughness, float previous, float change = 0.0f) {
+    return call(reflector, {{.a = {cosine, roughness, previous, change}}})[0].x.x != 0.0f;
+  };
+  EXPECT_TRUE(same(0.9996f, 0.0f, 0.0f));
+  EXPECT_FALSE(same(0.9994f, 0.0f, 0.0f));
+  EXPECT_TRUE(same(0.951f, 1.0f, 1.0f));
+  EXPECT_FALSE(same(0.949f, 1.0f, 1.0f));
+  EXPECT_TRUE(same(0.985f, 0.0f, 0.0f, 0.1f)) << "on a curved reflector neighbours differ by 0.1";
+  EXPECT_FALSE(same(0.975f, 0.0f, 0.0f, 0.1f));
+  EXPECT_TRUE(same(1.0f, 0.0f, 0.049f));
+  EXPECT_FALSE(same(1.0f, 0.0f, 0.051f));
+  EXPECT_TRUE(same(1.0f, 0.4f, 0.54f));
+  EXPECT_FALSE(same(1.0f, 0.4f, 0.56f));
+}
+
+TEST(Moments, HistoryLengthUnderMotion) {
+  const auto frames = [](float motion) { return call(fitted, {{.a = {0, 0, 0, motion}}})[0].x.w; };
+  EXPECT_EQ(frames(1.0f), 1.0f) << "a signal that moves by its own width has no history";
+  EXPECT_NEAR(frames(0.125f), 1.0f + 0.63f * 3.0f, 1e-4);
+  EXPECT_NEAR(frames(0.001f), 1.0f + 0.63f * 99.0f, 1e-2);
+}
+
+TEST(OutdatedFraction, IsBoundedAndZeroWithinThePercentiles) {
+  // b: brightness, low, high, scale.
+  const auto outdated = [](float old, float scale) {
+    return call(fitted, {{.a = {0, 0, 0, 1}, .b = {old, 1, 2, scale}}})[0].y.x;
+  };
+  EXPECT_EQ(outdated(1.5f, 1.0f), 0.0f);
+  EXPECT_NEAR(outdated(3.0f, 2.0f), 0.475f, 1e-5) << "half of the way";
+  EXPECT_NEAR(outdated(100.0f, 2.0f), 0.95f, 1e-6);
+}
+
+TEST(CubicWeights, ReproducePixelsLinesAndParabolas) {
   for (const float f : {0.0f, 0.25f, 0.5f, 0.9f}) {
     const glm::vec4 w = call(sharp, {{.a = {f, 0, 0, 0}}})[0].x;
     EXPECT_NEAR(w.x + w.y + w.z + w.w, 1.0f, 1e-6);
@@ -275,7 +337,7 @@ TEST(CubicWeights, ReadPixelsThemselvesAndStraightAndBentLinesExactly) {
   EXPECT_EQ(call(sharp, {{.a = glm::vec4(0.0f)}})[0].x, glm::vec4(0, 1, 0, 0));
 }
 
-TEST(MirroredDistance, FollowsTheMirrorEquation) {
+TEST(VirtualDistance, FollowsTheMirrorEquation) {
   // a: distance, curvature.
   const auto far = [](float distance, float curvature) {
     return call(sharp, {{.a = {distance, curvature, 0, 0}}})[0].y.x;
@@ -287,7 +349,7 @@ TEST(MirroredDistance, FollowsTheMirrorEquation) {
   EXPECT_EQ(far(2.0f, -3.0f), 8.0f) << "but never without bounds";
 }
 
-TEST(Scrub, LeavesOnlyNumbers) {
+TEST(Sanitize, ReplacesNanAndInfinityByZero) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float inf = std::numeric_limits<float>::infinity();
   const auto got =

@@ -50,7 +50,7 @@ glm::dvec2 octahedral_twin(const glm::dvec3& d) {
           (1.0 - std::abs(p.x)) * (p.y >= 0.0 ? 1.0 : -1.0)};
 }
 
-TEST(Octahedral, EncodesLikeItsTwinAndComesBack) {
+TEST(Octahedral, MatchesTheCpuReferenceAndRoundTrips) {
   const auto given = directions(5000, 1);
   const auto got = call(octahedral, as_inputs(given));
   for (std::size_t i = 0; i < given.size(); ++i) {
@@ -89,7 +89,7 @@ bool meets(const glm::vec3& origin, const glm::vec3& direction, const std::array
 
 class OffsetOrigin : public testing::TestWithParam<float> {};
 
-TEST_P(OffsetOrigin, LeavesTheTriangleBehindAndStaysNearIt) {
+TEST_P(OffsetOrigin, AvoidsSelfIntersectionAndStaysNear) {
   const float scale = GetParam();
   RandomInputs random(3);
   struct Case {
@@ -134,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(Scales, OffsetOrigin,
 
 // A public renderer scales both random numbers to trim the lobe and so leaves out a fifth of the
 // circle: the azimuth is tested too.
-TEST(SampleCosine, FillsTheHemisphereInProportionToTheCosine) {
+TEST(SampleCosine, DirectionsFollowTheCosineDensity) {
   RandomInputs random(4);
   for (const glm::vec3& normal : directions(16, 5)) {
     std::vector<ShaderInput> inputs;

@@ -45,7 +45,7 @@ class EnvironmentSampling : public testing::Test {
   std::unique_ptr<FrameRig> rig_;
 };
 
-TEST_F(EnvironmentSampling, TheDensityIntegratesToOneAndFollowsTheRotatedPicture) {
+TEST_F(EnvironmentSampling, DensityIntegratesToOneAndFollowsTheRotatedEnvironment) {
   std::vector<ShaderInput> inputs;
   std::vector<double> solid_angles;
   constexpr int rows = 256;
@@ -102,7 +102,7 @@ TEST_F(EnvironmentSampling, DirectionsFollowTheDensity) {
   EXPECT_GT(freedom, 200.0);
 }
 
-TEST_F(EnvironmentSampling, SamplesAverageToTheLightOfTheSky) {
+TEST_F(EnvironmentSampling, EstimateConvergesToTheEnvironmentsIrradiance) {
   const auto got = draw(100000);
   double sum = 0.0;
   for (const ShaderOutput& s : got) {
@@ -110,7 +110,7 @@ TEST_F(EnvironmentSampling, SamplesAverageToTheLightOfTheSky) {
     ASSERT_NEAR(glm::length(glm::vec3(s.x)), 1.0f, 1e-3f);
     sum += s.y.y / s.x.w / got.size();
   }
-  // The picture's own texels: its window has edges.
+  // The environment's own texels: its window has edges.
   const scene::Environment picture = make_environment(64, radiance_of);
   double expected = 0.0;
   for (std::size_t i = 0; i < picture.radiance.size(); ++i) {

@@ -14,7 +14,7 @@ namespace {
 
 enum Function : std::uint32_t { irradiance, radiance, reflection, light, material, position };
 
-/// A sky without symmetry: turned or mirrored it is another one.
+/// A sky without symmetry: rotated or reflected it is another one.
 glm::vec3 smooth_sky(const glm::vec3& d) {
   return {1.0f + 0.5f * d.x + 0.2f * d.y * d.z, 0.8f + 0.4f * d.z - 0.3f * d.x * d.y,
           0.6f + 0.3f * d.y + 0.2f * d.x * d.z};
@@ -61,7 +61,7 @@ class Environment : public testing::TestWithParam<float> {
   std::vector<glm::vec3> directions_ = random_directions();
 };
 
-TEST_P(Environment, RadianceTurnsWithTheSetting) {
+TEST_P(Environment, RadianceRotatesWithTheSetting) {
   const auto got = call(radiance, 0.0f);
   for (std::size_t i = 0; i < got.size(); ++i) {
     // What shines from d without rotation shines from the turned d with it.
@@ -70,7 +70,7 @@ TEST_P(Environment, RadianceTurnsWithTheSetting) {
   }
 }
 
-TEST_P(Environment, IrradianceIsTheHostsPolynomialTurned) {
+TEST_P(Environment, IrradianceMatchesTheHostsRotatedPolynomial) {
   const auto coefficients = render::project_irradiance(options(0.0f).environment);
   const auto got = call(irradiance, 0.0f);
   for (std::size_t i = 0; i < got.size(); ++i) {
@@ -80,7 +80,7 @@ TEST_P(Environment, IrradianceIsTheHostsPolynomialTurned) {
   }
 }
 
-TEST_P(Environment, AMirrorReflectsTheEnvironmentItself) {
+TEST_P(Environment, PerfectMirrorReflectsTheUnfilteredEnvironment) {
   const auto got = call(reflection, 0.0f);
   for (std::size_t i = 0; i < got.size(); ++i) {
     const glm::vec3 expected = 1.5f * smooth_sky(turned(directions_[i], -GetParam()));
@@ -153,7 +153,8 @@ TEST(Lights, FollowKhrLightsPunctual) {
   EXPECT_GT(lit_by_spot, 100);
 }
 
-/// A pixel's world position projects back to the jittered pixel: the inverse of the raster's way.
+/// A pixel's world position projects back to the jittered pixel: the inverse of the rasteriser's
+/// projection.
 void expect_round_trip(const scene::Camera& camera, std::uint32_t sample) {
   RigOptions options;
   options.extent = {64, 36};
@@ -187,7 +188,7 @@ TEST(WorldPosition, IsTheInverseOfProjection) {
   expect_round_trip(camera, 7);
 }
 
-TEST(WorldPosition, IsTheInverseOfAnOrthographicProjection) {
+TEST(WorldPosition, IsTheInverseOfOrthographicProjection) {
   scene::Camera camera = look({1, 2, 5}, {0.5f, 0.3f, -1});
   camera.orthographic_height = 4.0f;
   camera.far_plane = 100.0f;
@@ -195,7 +196,7 @@ TEST(WorldPosition, IsTheInverseOfAnOrthographicProjection) {
   expect_round_trip(camera, 7);
 }
 
-TEST(Material, SpecularAndDiffuseAlbedoOfWhiteMakeOne) {
+TEST(Material, AlbedosOfWhiteSumToOne) {
   const FrameRig rig(SceneBuilder().build(), look({0, 0, 3}, {0, 0, 0}));
   std::vector<ShaderInput> inputs;
   for (const float metallic : {0.0f, 0.5f, 1.0f}) {
@@ -209,7 +210,7 @@ TEST(Material, SpecularAndDiffuseAlbedoOfWhiteMakeOne) {
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     EXPECT_NEAR(got[i].x.x + got[i].y.x, 1.0f, 1e-5f) << i;
     if (inputs[i].a.x > 0.0f) continue;
-    // The dielectric's own share against the integral: the table is interpolated.
+    // The dielectric's own part against the integral: the table is interpolated.
     const glm::dvec2 split = split_sum_reference(inputs[i].a.z, inputs[i].a.y);
     const double regained = 1.0 / (split.x + split.y) - 1.0;
     const double expected = (0.04 * split.x + split.y) * (1.0 + 0.04 * regained);

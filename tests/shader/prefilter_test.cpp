@@ -21,7 +21,7 @@ glm::vec3 sky_with_lamp(const glm::vec3& d) {
 }
 
 /// The first sum of the split sum (Karis 2013) in double precision: N = V, light weighted by the
-/// density of mirrored GGX half vectors and n.l.
+/// density of reflected GGX half vectors and n.l.
 glm::dvec3 filtered(const glm::dvec3& n, double roughness) {
   const double a2 = std::pow(roughness, 4.0);
   constexpr int rows = 200;
@@ -43,7 +43,7 @@ glm::dvec3 filtered(const glm::dvec3& n, double roughness) {
   return sum / weights;
 }
 
-TEST(Prefilter, LevelsAreTheGgxLobesOfTheTwin) {
+TEST(Prefilter, LevelsMatchTheCpuReferencesGgxLobes) {
   RigOptions options;
   options.environment = make_environment(512, sky_with_lamp);
   const FrameRig rig(SceneBuilder().build(), look({0, 0, 3}, {0, 0, 0}), options);

@@ -81,7 +81,7 @@ std::vector<ShaderOutput> pixel_samples(const glm::uvec2& pixel, std::uint32_t c
 
 // A net: however a square of area 1 / 2^n is cut as a power of two by a power of two, each cell
 // holds one of 2^n samples.
-TEST(Random, OnePixelsSamplesAreANetInEveryCut) {
+TEST(Random, SamplesOfAPixelAreAZeroTwoNetInEveryPrefix) {
   for (const glm::uvec2 pixel : {glm::uvec2(0, 0), {1, 0}, {639, 359}, {1917, 1078}}) {
     for (const std::uint32_t dimension : {1u, 2u, 40u}) {
       const auto all = pixel_samples(pixel, 512, dimension);
@@ -108,7 +108,7 @@ TEST(Random, OnePixelsSamplesAreANetInEveryCut) {
 }
 
 // The same over pixels: every square of the quadtree holds a net in every sample.
-TEST(Random, SquaresOfPixelsHoldANetInEverySample) {
+TEST(Random, PixelBlocksHoldANetInEverySample) {
   for (const std::uint32_t sample : {0u, 1u, 13u, 100000u}) {
     std::vector<ShaderInput> inputs;
     for (std::uint32_t i = 0; i < 64; ++i) inputs.push_back(input({8 + i % 8, 64 + i / 8, sample}));
@@ -153,7 +153,7 @@ TEST(Random, DimensionsSeedsAndDistantPixelsAreIndependent) {
 }
 
 // Dimensions with the same order of samples would lie on a few lines of their common square.
-TEST(Random, DimensionsOfOnePixelFillTheirCommonSquare) {
+TEST(Random, PairsOfDimensionsOfAPixelAreStratified) {
   const auto one = pixel_samples({5, 9}, 1024, 1), other = pixel_samples({5, 9}, 1024, 2);
   std::vector<int> counts(8 * 8);
   for (std::size_t i = 0; i < one.size(); ++i) {
@@ -164,7 +164,7 @@ TEST(Random, DimensionsOfOnePixelFillTheirCommonSquare) {
 
 constexpr int side = 128;
 
-/// Root mean square of what is left of a picture's error after a Gaussian blur, sigma 1 pixel.
+/// Root mean square of what is left of an image's error after a Gaussian blur, sigma 1 pixel.
 double blurred_error(const std::vector<double>& error) {
   constexpr int reach = 3;
   double kernel[2 * reach + 1], total = 0.0, sum = 0.0;
@@ -209,14 +209,14 @@ Errors disk_errors(std::uint32_t samples, std::uint32_t first) {
   return {blurred_error(ours), blurred_error(white)};
 }
 
-TEST(Random, ErrorsOfOneSampleAreOfHighFrequency) {
+TEST(Random, OneSampleErrorIsBlueNoise) {
   for (const std::uint32_t sample : {0u, 7u, 1234u}) {
     const Errors errors = disk_errors(1, sample);
     EXPECT_LT(errors.sequence, 0.75 * errors.white) << sample;
   }
 }
 
-TEST(Random, ErrorsFallLikeOneOverTheSamples) {
+TEST(Random, ErrorConvergesWithOneOverTheSampleCount) {
   const double few = disk_errors(4, 0).sequence, many = disk_errors(64, 0).sequence;
   EXPECT_LT(many, few / 7.0) << "independent numbers would gain a factor of 4";
   EXPECT_LT(many, disk_errors(64, 0).white / 3.0);

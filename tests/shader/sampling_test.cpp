@@ -72,8 +72,8 @@ int cell_of(const glm::vec3& light) {
   return std::min(static_cast<int>(height * rings), rings - 1) * sectors + sector;
 }
 
-/// Share of all samples that should fall into each cell of the sphere of directions: the integral
-/// of the density that the shader states, by the midpoint rule.
+/// Fraction of all samples that should fall into each cell of the sphere of directions: the
+/// integral of the density that the shader states, by the midpoint rule.
 std::vector<double> cell_shares(const glm::vec3& view, float alpha) {
   constexpr int fine = 24;
   std::vector<ShaderInput> inputs;
@@ -116,7 +116,7 @@ TEST(VisibleNormals, DirectionsFollowTheDensityAllAround) {
   }
 }
 
-TEST(VisibleNormals, EveryPartOfTheCircleIsReached) {
+TEST(VisibleNormals, SamplesCoverAllAzimuths) {
   std::vector<int> sectors_hit(36);
   for (const ShaderOutput& output : random_samples(view_at(0.0f), 0.5f, 50'000)) {
     ++sectors_hit[std::min(
@@ -125,7 +125,7 @@ TEST(VisibleNormals, EveryPartOfTheCircleIsReached) {
   EXPECT_LT(chi_square_deviation(sectors_hit), 4.0);
 }
 
-TEST(VisibleNormals, NoRoughnessIsAMirror) {
+TEST(VisibleNormals, ZeroRoughnessIsAPerfectMirror) {
   for (const float degrees : {0.0f, 30.0f, 89.0f, 89.99f}) {
     for (const ShaderOutput& output : grid_samples(view_at(degrees), 0.0f, 16)) {
       // Exact but for the last bits, which devices may round as they like.
@@ -137,7 +137,7 @@ TEST(VisibleNormals, NoRoughnessIsAMirror) {
   }
 }
 
-TEST(VisibleNormals, DirectionsBelowTheHorizonCountNothing) {
+TEST(VisibleNormals, DirectionsBelowTheHorizonHaveZeroWeight) {
   int below = 0;
   for (const float degrees : {60.0f, 85.0f, 89.9f}) {
     for (const ShaderOutput& output : grid_samples(view_at(degrees), 1.0f, 64)) {
@@ -152,7 +152,7 @@ TEST(VisibleNormals, DirectionsBelowTheHorizonCountNothing) {
   EXPECT_GT(below, 100);
 }
 
-TEST(VisibleNormals, WeightIsMaskingFromBothSidesOverOne) {
+TEST(VisibleNormals, WeightIsG2OverG1) {
   RandomInputs random(7);
   std::vector<ShaderInput> inputs;
   for (int i = 0; i < 2000; ++i) {
@@ -182,7 +182,7 @@ glm::vec2 split_sum(float n_dot_v, float roughness) {
   return glm::vec2(texel(table, index(n_dot_v, table.width), index(roughness, table.height)));
 }
 
-TEST(VisibleNormals, MeanWeightIsTheSplitSum) {
+TEST(VisibleNormals, MeanWeightEqualsTheSplitSum) {
   constexpr float table_size = 128.0f;
   for (const float row : {12.5f, 40.5f, 80.5f, 127.5f}) {
     for (const float column : {20.5f, 64.5f, 120.5f}) {

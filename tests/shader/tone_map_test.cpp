@@ -23,7 +23,7 @@ std::vector<glm::vec3> call(Function function, const std::vector<glm::vec3>& col
 
 class ToneMap : public testing::TestWithParam<Function> {};
 
-TEST_P(ToneMap, BrighterGreyStaysBrighterAndGrey) {
+TEST_P(ToneMap, IsMonotonicAndKeepsGreyNeutral) {
   std::vector<glm::vec3> greys;
   for (int i = 0; i <= 2000; ++i) {
     greys.emplace_back(static_cast<float>(std::pow(10.0, -4.0 + 7.0 * i / 2000.0)));
@@ -40,7 +40,7 @@ TEST_P(ToneMap, BrighterGreyStaysBrighterAndGrey) {
   }
 }
 
-TEST_P(ToneMap, BlackStaysBlackAndAHugeLightIsWhite) {
+TEST_P(ToneMap, MapsBlackToBlackAndHugeValuesToWhite) {
   const auto got = call(GetParam(), {glm::vec3(0.0f), glm::vec3(1e4f)});
   EXPECT_LE(glm::length(got[0]), 2e-3f);
   EXPECT_GE(std::min({got[1].x, got[1].y, got[1].z}), 0.97f);
@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(Curves, ToneMap, testing::Values(neutral, aces, agx), c
 
 // Khronos PBR Neutral 1.0: below the shoulder a colour only loses its Fresnel offset, 0.04 at
 // most.
-TEST(NeutralToneMap, OnlyShiftsColoursBelowTheShoulder) {
+TEST(NeutralToneMap, OffsetsColorsBelowTheShoulderOnly) {
   RandomInputs random(1);
   std::vector<glm::vec3> colors;
   for (int i = 0; i < 3000; ++i) {
@@ -71,7 +71,7 @@ TEST(NeutralToneMap, OnlyShiftsColoursBelowTheShoulder) {
   }
 }
 
-TEST(NeutralToneMap, KeepsBrightColoursInTheCubeAndDesaturatesThem) {
+TEST(NeutralToneMap, KeepsBrightColorsInGamutAndDesaturatesThem) {
   RandomInputs random(2);
   std::vector<glm::vec3> colors;
   for (int i = 0; i < 3000; ++i) {

@@ -49,9 +49,6 @@ def evaluate(expression: str):
 def constant(folder: str, name: str):
     """Value and unit of a constant or a member's default below `folder`: "a_constant" or
     "Struct::member". The unit is that of a std::chrono type, or None."""
-    if "|" in name:
-        present = [one for one in name.split("|") if any(one in text for text in sources(folder))]
-        name = present[0] if present else name
     *owner, member = name.split("::")
     declared = re.compile(rf"\b(?:std::chrono::)?(\w+)\s+{member}\s*(?:=\s*|\{{)([^;{{}}]+?)\}}?;")
     found = set()
@@ -109,36 +106,36 @@ def operation():
     """Rows of server/README.md: what, limit."""
     captures = plain(SESSION, "SessionLimits::max_captures")
     messages = "messages queued for a viewer"
-    stalled = duration(NET, "stall_timeout|longest_stall")
+    stalled = duration(NET, "stall_timeout")
     forgiven = 1 / constant(NET, "forgiven_per_second")[0]
-    yield "request head", size(NET, "max_request_head_bytes|largest_request_head")
+    yield "request head", size(NET, "max_request_head_bytes")
     yield "first request, TLS handshake, WebSocket upgrade", duration(NET, "handshake_timeout")
     yield "message or request body", size(PROTOCOL, "DispatchLimits::max_message_bytes")
     yield "nesting of JSON", plain(PROTOCOL, "DispatchLimits::max_depth") + " levels"
     yield "calls in a batch", plain(PROTOCOL, "DispatchLimits::max_batch")
     yield "messages per connection", rate("calls_per_second", "calls_at_once")
-    yield "messages over that limit", rate("rejections_per_second|refusals_per_second", "rejections_at_once|refusals_at_once")
+    yield "messages over that limit", rate("rejections_per_second", "rejections_at_once")
     yield "pings per connection", rate("pings_per_second", "pings_at_once")
     yield "unanswered captures per session", captures
     yield "unanswered probes (`scene.pick`, `frame.inspect`) per session", captures
     yield "unanswered steps per session", captures
-    yield f"{messages} that reads nothing for {stalled}", plain(NET, "unchecked_pending_messages|patient_messages")
-    yield messages, plain(NET, "max_pending_messages|most_messages")
-    yield "bytes of answers queued for a viewer", size(NET, "max_pending_bytes|most_waiting_bytes")
-    yield "bytes of answers queued for all connections", size(NET, "max_outgoing_bytes|most_outgoing_bytes")
-    yield "frame without acknowledgement", duration(NET, "ack_timeout|longest_without_acknowledgement")
+    yield f"{messages} that reads nothing for {stalled}", plain(NET, "unchecked_pending_messages")
+    yield messages, plain(NET, "max_pending_messages")
+    yield "bytes of answers queued for a viewer", size(NET, "max_pending_bytes")
+    yield "bytes of answers queued for all connections", size(NET, "max_outgoing_bytes")
+    yield "frame without acknowledgement", duration(NET, "ack_timeout")
     yield "HTTP answer without progress", duration(NET, "idle_timeout")
-    yield "MJPEG frame without progress", duration(NET, "write_timeout|longest_write")
-    yield "rate of a long answer, on average", size(NET, "min_bytes_per_second|slowest_reader") + "/s"
+    yield "MJPEG frame without progress", duration(NET, "write_timeout")
+    yield "rate of a long answer, on average", size(NET, "min_bytes_per_second") + "/s"
     yield "silence on a connection, pings unanswered", duration(NET, "idle_timeout")
-    yield "duration of an upload", duration(NET, "max_upload_duration|longest_upload")
+    yield "duration of an upload", duration(NET, "max_upload_duration")
     yield "wrong tokens from an address", \
         f"{plain(NET, 'most_failures')}, then 1 per {forgiven:g} s"
     yield "length of a token", \
         f"{plain(NET, 'shortest_token')} to {plain(NET, 'longest_token')} characters"
     yield "connections", option("max_connections")
     yield "connections per address", option("max_connections_per_client")
-    yield "connections to `--metrics-listen`", plain(NET, "max_metrics_connections|most_measuring")
+    yield "connections to `--metrics-listen`", plain(NET, "max_metrics_connections")
     yield "viewers per session", option("max_viewers")
     yield "viewers of all sessions", option("max_all_viewers")
     yield "sessions", option("max_sessions")
@@ -160,10 +157,10 @@ def messages():
     yield "unanswered captures, probes and steps per session (`limits.max_pending` in `hello`)", \
         plain(SESSION, "SessionLimits::max_captures") + " each"
     yield "frames without acknowledgement", f"{window}, up to {longest} on links with high latency"
-    yield "time without acknowledgement", duration(NET, "ack_timeout|longest_without_acknowledgement")
+    yield "time without acknowledgement", duration(NET, "ack_timeout")
     yield "delay of the final frame after the last change", duration(SESSION, "final_delay", "ms")
     yield "quality of the final JPEG", plain(STREAM, "still_quality") + " or more"
-    yield "interval of repeated frames of `stream.mjpg`", duration(NET, "repeat_interval|longest_silence")
+    yield "interval of repeated frames of `stream.mjpg`", duration(NET, "repeat_interval")
     yield "interval between key frames for new viewers", \
         duration(STREAM, "VariantPlanner::min_key_interval")
 

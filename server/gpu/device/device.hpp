@@ -7,6 +7,7 @@
 
 #include "gpu/device/device_choice.hpp"
 #include "gpu/device/instance.hpp"
+#include "gpu/pipelines/program_registry.hpp"
 
 namespace heliograph::gpu {
 
@@ -32,6 +33,7 @@ class Device {
   std::uint32_t queue_family() const { return queue_family_; }
   VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
   bool labels() const { return labels_; }
+  ProgramRegistry& programs() const { return programs_; }
 
   /// The device is this machine's processor: its memory is ours, mapped, and host passes pay off.
   bool is_cpu() const { return report_.type == VK_PHYSICAL_DEVICE_TYPE_CPU; }
@@ -68,6 +70,7 @@ class Device {
   std::filesystem::path cache_file_;
   bool labels_ = false;
   mutable std::mutex queue_mutex_;
+  mutable ProgramRegistry programs_;
 };
 
 /// A full memory barrier between everything before and everything after.

@@ -39,22 +39,26 @@ VkRayTracingShaderGroupCreateInfoKHR group(VkRayTracingShaderGroupTypeKHR type,
 }  // namespace
 
 RayProgram::RayProgram(const Device& device, const RayStages& stages, const SharedLayouts& shared)
-    : Program(device, std::string(stages.generation.name)) {
-  const std::array reflections{reflect(stages.generation), reflect(stages.miss),
-                               reflect(stages.closest_hit), reflect(stages.any_hit)};
+    : Program(device, {stages.generation, stages.miss, stages.closest_hit, stages.any_hit},
+              stages.generation.name) {
+  const ProgramRegistry::Lock lock = device.programs().lock();
+  const auto binaries = current_stages();
+  const std::array reflections{reflect(binaries[0]), reflect(binaries[1]), reflect(binaries[2]),
+                               reflect(binaries[3])};
   create_layout(reflections,
                 VK_SHADER_STAGE_RAYGEN_BIT_KHR | VK_SHADER_STAGE_MISS_BIT_KHR |
                     VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR | VK_SHADER_STAGE_ANY_HIT_BIT_KHR,
                 shared);
-  create_pipeline(stages);
+  pipeline_ = make_pipeline(binaries);
   write_table();
+  registered_.enter(device.programs(), *this);
 }
 
-void RayProgram::create_pipeline(const RayStages& stages) {
-  const ShaderModule generation(device_, stages.generation);
-  const ShaderModule miss(device_, stages.miss);
-  const ShaderModule closest_hit(device_, stages.closest_hit);
-  const ShaderModule any_hit(device_, stages.any_hit);
+VkPipeline RayProgram::make_pipeline(std::span<const ShaderBinary> stages) const {
+  const ShaderModule generation(device_, stages[0]);
+  const ShaderModule miss(device_, stages[1]);
+  const ShaderModule closest_hit(device_, stages[2]);
+  const ShaderModule any_hit(device_, stages[3]);
   const std::array infos{generation.stage(VK_SHADER_STAGE_RAYGEN_BIT_KHR),
                          miss.stage(VK_SHADER_STAGE_MISS_BIT_KHR),
                          closest_hit.stage(VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR),
@@ -71,10 +75,17 @@ void RayProgram::create_pipeline(const RayStages& stages) {
   info.pGroups = groups.data();
   info.maxPipelineRayRecursionDepth = 1;
   info.layout = layout();
+  VkPipeline pipeline = VK_NULL_HANDLE;
   check(vkCreateRayTracingPipelinesKHR(device_.handle(), VK_NULL_HANDLE, device_.pipeline_cache(),
-                                       1, &info, nullptr, &pipeline_),
+                                       1, &info, nullptr, &pipeline),
         ("create the pipeline " + name()).c_str());
-  device_.name(VK_OBJECT_TYPE_PIPELINE, pipeline_, name());
+  device_.name(VK_OBJECT_TYPE_PIPELINE, pipeline, name());
+  return pipeline;
+}
+
+void RayProgram::use_newest() {
+  Program::use_newest();
+  write_table();
 }
 
 void RayProgram::write_table() {

@@ -23,14 +23,17 @@ class RayProgram : public Program {
   /// Records `count` invocations of the generation stage, in one row. The pipeline is bound.
   void launch(VkCommandBuffer commands, std::uint32_t count) const;
 
+  VkPipeline make_pipeline(std::span<const ShaderBinary> stages) const final;
+  void use_newest() override;
+
  private:
-  void create_pipeline(const RayStages& stages);
   void write_table();
 
   Buffer table_;
   VkStridedDeviceAddressRegionKHR generation_{};
   VkStridedDeviceAddressRegionKHR miss_{};
   VkStridedDeviceAddressRegionKHR hit_{};
+  RegisteredProgram registered_;
 };
 
 }  // namespace heliograph::gpu

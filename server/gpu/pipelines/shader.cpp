@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "gpu/pipelines/shader_module.hpp"
 
@@ -41,6 +42,8 @@ VkDescriptorSetLayout make_pass_layout(const Device& device,
 }  // namespace
 
 Program::~Program() {
+  for (const VkPipeline retired : retired_) vkDestroyPipeline(device_.handle(), retired, nullptr);
+  vkDestroyPipeline(device_.handle(), prepared_, nullptr);
   vkDestroyPipeline(device_.handle(), pipeline_, nullptr);
   vkDestroyPipelineLayout(device_.handle(), layout_, nullptr);
   vkDestroyDescriptorSetLayout(device_.handle(), pass_layout_, nullptr);
@@ -48,6 +51,23 @@ Program::~Program() {
 
 bool Program::uses_set(std::uint32_t set) const {
   return std::find(sets_.begin(), sets_.end(), set) != sets_.end();
+}
+
+std::vector<ShaderBinary> Program::current_stages() const {
+  std::vector<ShaderBinary> stages;
+  for (const ShaderBinary& stage : embedded_stages_) {
+    stages.push_back(device_.programs().current(stage));
+  }
+  return stages;
+}
+
+void Program::prepare(VkPipeline pipeline) {
+  vkDestroyPipeline(device_.handle(), std::exchange(prepared_, pipeline), nullptr);
+}
+
+void Program::use_newest() {
+  if (!prepared_) return;
+  retired_.push_back(pipeline_.exchange(std::exchange(prepared_, VK_NULL_HANDLE)));
 }
 
 void Program::create_layout(std::span<const Reflection> stages, VkShaderStageFlags flags,
@@ -86,44 +106,60 @@ void Program::create_layout(std::span<const Reflection> stages, VkShaderStageFla
 ComputeProgram::ComputeProgram(const Device& device, const ShaderBinary& shader,
                                const SharedLayouts& shared,
                                std::optional<std::uint32_t> specialization)
-    : Program(device, std::string(shader.name)) {
-  const Reflection reflection = reflect(shader);
+    : Program(device, {shader}, shader.name), specialization_(specialization) {
+  const ProgramRegistry::Lock lock = device.programs().lock();
+  const auto stages = current_stages();
+  const Reflection reflection = reflect(stages[0]);
   local_size_ = reflection.local_size;
   create_layout({&reflection, 1}, VK_SHADER_STAGE_COMPUTE_BIT, shared);
-  const ShaderModule module(device, shader);
+  pipeline_ = make_pipeline(stages);
+  registered_.enter(device.programs(), *this);
+}
+
+VkPipeline ComputeProgram::make_pipeline(std::span<const ShaderBinary> stages) const {
+  const ShaderModule module(device_, stages[0]);
   VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
   info.stage = module.stage(VK_SHADER_STAGE_COMPUTE_BIT);
   const VkSpecializationMapEntry entry{0, 0, sizeof(std::uint32_t)};
   VkSpecializationInfo constants{1, &entry, sizeof(std::uint32_t), nullptr};
-  if (specialization) {
-    constants.pData = &*specialization;
+  if (specialization_) {
+    constants.pData = &*specialization_;
     info.stage.pSpecializationInfo = &constants;
   }
   info.layout = layout();
-  check(vkCreateComputePipelines(device.handle(), device.pipeline_cache(), 1, &info, nullptr,
-                                 &pipeline_),
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  check(vkCreateComputePipelines(device_.handle(), device_.pipeline_cache(), 1, &info, nullptr,
+                                 &pipeline),
         ("create the pipeline " + name()).c_str());
-  device.name(VK_OBJECT_TYPE_PIPELINE, pipeline_, name());
+  device_.name(VK_OBJECT_TYPE_PIPELINE, pipeline, name());
+  return pipeline;
 }
 
 RasterProgram::RasterProgram(const Device& device, const ShaderBinary& vertex,
                              const ShaderBinary& fragment, const RasterState& state,
                              const SharedLayouts& shared)
-    : Program(device, std::string(fragment.name)) {
-  const std::array reflections{reflect(vertex), reflect(fragment)};
+    : Program(device, {vertex, fragment}, fragment.name), state_(state) {
+  const ProgramRegistry::Lock lock = device.programs().lock();
+  const auto stages = current_stages();
+  const std::array reflections{reflect(stages[0]), reflect(stages[1])};
   create_layout(reflections, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, shared);
-  const ShaderModule vertex_module(device, vertex);
-  const ShaderModule fragment_module(device, fragment);
+  pipeline_ = make_pipeline(stages);
+  registered_.enter(device.programs(), *this);
+}
+
+VkPipeline RasterProgram::make_pipeline(std::span<const ShaderBinary> binaries) const {
+  const ShaderModule vertex_module(device_, binaries[0]);
+  const ShaderModule fragment_module(device_, binaries[1]);
   const std::array stages{vertex_module.stage(VK_SHADER_STAGE_VERTEX_BIT),
                           fragment_module.stage(VK_SHADER_STAGE_FRAGMENT_BIT)};
 
   VkPipelineVertexInputStateCreateInfo input{
       VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
-  input.vertexBindingDescriptionCount = static_cast<std::uint32_t>(state.vertex_bindings.size());
-  input.pVertexBindingDescriptions = state.vertex_bindings.data();
+  input.vertexBindingDescriptionCount = static_cast<std::uint32_t>(state_.vertex_bindings.size());
+  input.pVertexBindingDescriptions = state_.vertex_bindings.data();
   input.vertexAttributeDescriptionCount =
-      static_cast<std::uint32_t>(state.vertex_attributes.size());
-  input.pVertexAttributeDescriptions = state.vertex_attributes.data();
+      static_cast<std::uint32_t>(state_.vertex_attributes.size());
+  input.pVertexAttributeDescriptions = state_.vertex_attributes.data();
   VkPipelineInputAssemblyStateCreateInfo assembly{
       VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO};
   assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
@@ -137,12 +173,12 @@ RasterProgram::RasterProgram(const Device& device, const ShaderBinary& vertex,
   samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
   VkPipelineDepthStencilStateCreateInfo depth{
       VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO};
-  depth.depthTestEnable = depth.depthWriteEnable = state.depth_format != VK_FORMAT_UNDEFINED;
+  depth.depthTestEnable = depth.depthWriteEnable = state_.depth_format != VK_FORMAT_UNDEFINED;
   depth.depthCompareOp = VK_COMPARE_OP_GREATER_OR_EQUAL;
   VkPipelineColorBlendAttachmentState opaque{};
   opaque.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
                           VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
-  const std::vector attachments(state.color_formats.size(), opaque);
+  const std::vector attachments(state_.color_formats.size(), opaque);
   VkPipelineColorBlendStateCreateInfo blend{
       VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
   blend.attachmentCount = static_cast<std::uint32_t>(attachments.size());
@@ -154,9 +190,9 @@ RasterProgram::RasterProgram(const Device& device, const ShaderBinary& vertex,
   dynamic.dynamicStateCount = 4;
   dynamic.pDynamicStates = dynamic_states;
   VkPipelineRenderingCreateInfo rendering{VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO};
-  rendering.colorAttachmentCount = static_cast<std::uint32_t>(state.color_formats.size());
-  rendering.pColorAttachmentFormats = state.color_formats.data();
-  rendering.depthAttachmentFormat = state.depth_format;
+  rendering.colorAttachmentCount = static_cast<std::uint32_t>(state_.color_formats.size());
+  rendering.pColorAttachmentFormats = state_.color_formats.data();
+  rendering.depthAttachmentFormat = state_.depth_format;
 
   VkGraphicsPipelineCreateInfo info{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO, &rendering};
   info.stageCount = 2;
@@ -170,10 +206,12 @@ RasterProgram::RasterProgram(const Device& device, const ShaderBinary& vertex,
   info.pColorBlendState = &blend;
   info.pDynamicState = &dynamic;
   info.layout = layout();
-  check(vkCreateGraphicsPipelines(device.handle(), device.pipeline_cache(), 1, &info, nullptr,
-                                  &pipeline_),
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  check(vkCreateGraphicsPipelines(device_.handle(), device_.pipeline_cache(), 1, &info, nullptr,
+                                  &pipeline),
         ("create the pipeline " + name()).c_str());
-  device.name(VK_OBJECT_TYPE_PIPELINE, pipeline_, name());
+  device_.name(VK_OBJECT_TYPE_PIPELINE, pipeline, name());
+  return pipeline;
 }
 
 }  // namespace heliograph::gpu

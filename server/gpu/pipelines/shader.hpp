@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -10,14 +11,10 @@
 
 #include "gpu/device/device.hpp"
 #include "gpu/memory/descriptors.hpp"
+#include "gpu/pipelines/program_registry.hpp"
+#include "gpu/pipelines/shader_binary.hpp"
 
 namespace heliograph::gpu {
-
-/// SPIR-V words of one shader stage and the name of its source file.
-struct ShaderBinary {
-  std::string_view name;
-  std::span<const std::uint32_t> words;
-};
 
 /// One resource a shader declares.
 struct ShaderBinding {
@@ -46,12 +43,12 @@ using SharedLayouts = std::map<std::uint32_t, const DescriptorLayout*>;
 /// The set that a frame plan fills from a pass's declared reads and writes.
 inline constexpr std::uint32_t pass_set = 1;
 
-/// What compute and raster programs have in common: layout, reflection, pipeline.
+/// What compute, raster and ray programs have in common: layout, reflection, pipeline.
 class Program {
  public:
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
-  ~Program();
+  virtual ~Program();
 
   const std::string& name() const { return name_; }
   VkPipeline pipeline() const { return pipeline_; }
@@ -63,16 +60,33 @@ class Program {
   VkShaderStageFlags stages() const { return stages_; }
   bool uses_set(std::uint32_t set) const;
 
+  // For ShaderReload, which holds the lock of the device's program registry.
+  /// As the program was built, in the order of make_pipeline.
+  const std::vector<ShaderBinary>& embedded_stages() const { return embedded_stages_; }
+  /// A pipeline of other code with the same layout, which the caller owns. @throws GpuError
+  virtual VkPipeline make_pipeline(std::span<const ShaderBinary> stages) const = 0;
+  /// Keeps a pipeline for use_newest; an earlier one that was not used is destroyed.
+  void prepare(VkPipeline pipeline);
+  /// Goes over to the prepared pipeline, if any. The one before stays until the program ends, since
+  /// another thread may be recording it.
+  virtual void use_newest();
+
  protected:
-  Program(const Device& device, std::string name) : device_(device), name_(std::move(name)) {}
+  Program(const Device& device, std::vector<ShaderBinary> stages, std::string_view name)
+      : device_(device), name_(name), embedded_stages_(std::move(stages)) {}
+  /// The code of all stages as it is now. The registry's lock is held.
+  std::vector<ShaderBinary> current_stages() const;
   void create_layout(std::span<const Reflection> stages, VkShaderStageFlags flags,
                      const SharedLayouts& shared);
 
   const Device& device_;
   std::string name_;
-  VkPipeline pipeline_ = VK_NULL_HANDLE;
+  std::atomic<VkPipeline> pipeline_ = VK_NULL_HANDLE;
 
  private:
+  std::vector<ShaderBinary> embedded_stages_;
+  VkPipeline prepared_ = VK_NULL_HANDLE;
+  std::vector<VkPipeline> retired_;
   VkPipelineLayout layout_ = VK_NULL_HANDLE;
   VkDescriptorSetLayout pass_layout_ = VK_NULL_HANDLE;
   VkShaderStageFlags stages_ = 0;
@@ -88,9 +102,12 @@ class ComputeProgram : public Program {
   ComputeProgram(const Device& device, const ShaderBinary& shader, const SharedLayouts& shared = {},
                  std::optional<std::uint32_t> specialization = std::nullopt);
   VkExtent3D local_size() const { return local_size_; }
+  VkPipeline make_pipeline(std::span<const ShaderBinary> stages) const final;
 
  private:
   VkExtent3D local_size_{};
+  std::optional<std::uint32_t> specialization_;
+  RegisteredProgram registered_;
 };
 
 struct RasterState {
@@ -105,6 +122,11 @@ class RasterProgram : public Program {
  public:
   RasterProgram(const Device& device, const ShaderBinary& vertex, const ShaderBinary& fragment,
                 const RasterState& state, const SharedLayouts& shared = {});
+  VkPipeline make_pipeline(std::span<const ShaderBinary> stages) const final;
+
+ private:
+  RasterState state_;
+  RegisteredProgram registered_;
 };
 
 }  // namespace heliograph::gpu

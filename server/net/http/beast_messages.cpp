@@ -13,7 +13,7 @@ std::string to_string(const View& view) {
   return std::string(view.data(), view.size());
 }
 
-/// Answers of these kinds have no body and tell no length, RFC 9110 section 8.6.
+/// Responses with these statuses have no body and no length, RFC 9110 section 8.6.
 bool is_bare(int status) {
   return status == 204 || status == 304;
 }
@@ -41,11 +41,10 @@ HttpRequest to_request(BeastRequest&& message, const ClientStream& stream) {
   return request;
 }
 
-void set_usual_headers(http::fields& message, const ServerContext& context,
-                       const Headers& sharing) {
+void set_usual_headers(http::fields& message, const ServerContext& context, const Headers& cors) {
   for (const auto& [name, value] : context.router.headers()) message.set(name, value);
   message.set(http::field::cache_control, "no-store");
-  for (const auto& [name, value] : sharing) message.set(name, value);
+  for (const auto& [name, value] : cors) message.set(name, value);
 }
 
 BeastResponse to_message(ServerContext& context, HttpResponse answer, const Framing& framing) {
@@ -53,7 +52,7 @@ BeastResponse to_message(ServerContext& context, HttpResponse answer, const Fram
   BeastResponse message;
   message.version(11);
   message.result(static_cast<unsigned>(answer.status));
-  set_usual_headers(message, context, framing.sharing);
+  set_usual_headers(message, context, framing.cors);
   if (!answer.content_type.empty()) message.set(http::field::content_type, answer.content_type);
   for (const auto& [name, value] : answer.headers) message.set(name, value);
   message.keep_alive(framing.keep_alive);

@@ -6,8 +6,8 @@
 #include "net/connection.hpp"
 #include "net/http/http_message.hpp"
 
-// Between what the routes need and what Beast reads and writes. For the sources of this folder
-// only: it brings Boost.
+// Converts between the routes' messages and Beast's. For the sources of this folder only: it brings
+// Boost.
 
 namespace heliograph::net {
 
@@ -16,19 +16,19 @@ using BeastResponse = beast::http::response<beast::http::string_body>;
 
 HttpRequest to_request(BeastRequest&& message, const ClientStream& stream);
 
-/// What one answer differs in besides what it says.
+/// Properties of one response apart from its content.
 struct Framing {
   bool keep_alive = false;
-  bool head_only = false;  // HEAD: the head that GET would get, with its length, and no body
-  /// For pages of other sites that may read the answer.
-  Headers sharing;
+  bool head_only = false;  // HEAD: the header of GET, with its length, and no body
+  /// CORS headers for pages of allowed origins.
+  Headers cors;
 };
 
-/// What every answer carries, and what lets pages of other sites read it.
+/// Sets the headers of every response, and those for pages of allowed origins.
 void set_usual_headers(beast::http::fields& message, const ServerContext& context,
-                       const Headers& sharing);
+                       const Headers& cors);
 
-/// The answer as it is written, with the headers that all have. Counts it.
+/// The response as it is written, with the headers of every response. Counts it.
 BeastResponse to_message(ServerContext& context, HttpResponse answer, const Framing& framing);
 
 }  // namespace heliograph::net

@@ -19,7 +19,7 @@ namespace {
 namespace http = beast::http;
 using boost::system::error_code;
 
-/// Why an upgrade that may otherwise pass cannot become a viewer.
+/// The error response to a request for an upgrade that no viewer can come from; nothing if valid.
 std::optional<HttpResponse> upgrade_refusal(const HttpRequest& request,
                                             const session::SessionRegistry& sessions) {
   if (request.path != "/ws") return text_response(404, "The WebSocket is at /ws.");
@@ -40,7 +40,7 @@ std::optional<HttpResponse> upgrade_refusal(const HttpRequest& request,
 }
 
 /// "/api/v1/sessions/main/stream.mjpg" -> main
-std::optional<std::string> picture_stream_address(const HttpRequest& request) {
+std::optional<std::string> mjpeg_stream_session(const HttpRequest& request) {
   constexpr std::string_view before = "/api/v1/sessions/";
   constexpr std::string_view after = "/stream.mjpg";
   const std::string_view path = request.path;
@@ -51,7 +51,7 @@ std::optional<std::string> picture_stream_address(const HttpRequest& request) {
   return std::string(path.substr(before.size(), path.size() - around));
 }
 
-constexpr std::chrono::minutes longest_upload{10};
+constexpr std::chrono::minutes max_upload_duration{10};
 constexpr std::size_t discarded_at_once = 16 * 1024;
 
 HttpResponse upload_response(const session::UploadedScene& scene) {
@@ -65,9 +65,9 @@ HttpResponse upload_response(const session::UploadedScene& scene) {
 
 class HttpConnection : public Connection, public std::enable_shared_from_this<HttpConnection> {
  public:
-  HttpConnection(ServerContext& context, ClientStream stream, Door door)
+  HttpConnection(ServerContext& context, ClientStream stream, ListenerKind kind)
       : context_(context),
-        door_(door),
+        listener_kind_(kind),
         stream_(std::move(stream)),
         calls_(calls_per_second, calls_at_once, RateLimit::Clock::now()) {
     context_.enter(*this);
@@ -75,7 +75,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   ~HttpConnection() override { context_.leave(*this); }
 
   void start() {
-    if (!context_.certificate || door_ == Door::measuring) return read();
+    if (!context_.certificate || listener_kind_ == ListenerKind::metrics) return read();
     stream_.next_layer().expires_after(handshake_timeout);
     detect_tls(stream_, buffer_, [self = shared_from_this()](error_code error, bool tls) {
       if (error) return;
@@ -84,9 +84,9 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   }
 
   void shut_down() override {
-    leaving_ = true;
+    shutting_down_ = true;
     if (answering_) return;
-    // A read is under way, which ends by this.
+    // Ends the pending read.
     error_code ignored;
     stream_.next_layer().socket().shutdown(asio::ip::tcp::socket::shutdown_both, ignored);
   }
@@ -105,9 +105,9 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   void read() {
     framing_ = {};
     parser_.emplace();
-    parser_->header_limit(largest_request_head);
+    parser_->header_limit(max_request_head_bytes);
     parser_->body_limit(context_.uploads ? context_.uploads->max_bytes() : largest_body());
-    // The first request must come soon; later ones may take their time.
+    // The first request has a short timeout, later ones of a kept-alive connection a longer one.
     stream_.next_layer().expires_after(std::exchange(first_, false) ? handshake_timeout
                                                                     : idle_timeout);
     http::async_read_header(
@@ -120,38 +120,39 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   void received_header(error_code error) {
     framing_.head_only = parser_->get().method() == http::verb::head;
     if (error) return received(error);
-    if (context_.uploads && door_ == Door::main && parser_->get().method() == http::verb::put) {
+    if (context_.uploads && listener_kind_ == ListenerKind::main &&
+        parser_->get().method() == http::verb::put) {
       return begin_upload();
     }
     if (parser_->content_length().value_or(0) > largest_body()) {
       return received(http::error::body_limit);
     }
     parser_->body_limit(largest_body());
-    invite(parser_->get(), [self = shared_from_this()] {
+    send_continue(parser_->get(), [self = shared_from_this()] {
       http::async_read(self->stream_, self->buffer_, *self->parser_,
                        IoHandler([self](error_code failed) { self->received(failed); }));
     });
   }
 
-  /// Tells a client that asks so before it sends its body that it may, RFC 9110 section 10.1.1.
+  /// Sends 100 Continue if the client waits for it before its body, RFC 9110 section 10.1.1.
   template <class Header>
-  void invite(const Header& header, std::function<void()> next) {
+  void send_continue(const Header& header, std::function<void()> next) {
     const bool asks =
         header.version() >= 11 && beast::iequals(header[http::field::expect], "100-continue");
     if (!asks) return next();
-    constexpr std::string_view invitation = "HTTP/1.1 100 Continue\r\n\r\n";
-    write_all(stream_, WriteBuffers(asio::buffer(invitation)),
+    constexpr std::string_view interim_response = "HTTP/1.1 100 Continue\r\n\r\n";
+    write_all(stream_, WriteBuffers(asio::buffer(interim_response)),
               [next = std::move(next)](error_code error) {
                 if (!error) next();
               });
   }
 
-  /// Lets the body go to a file, if it may.
+  /// Receives the body into a file, if the request is valid.
   void begin_upload() {
     framing_.keep_alive = false;
     answering_ = true;
     const HttpRequest request = to_request(BeastRequest(parser_->get()), stream_);
-    framing_.sharing = context_.access.sharing_headers(request);
+    framing_.cors = context_.access.cors_headers(request);
     const auto size = parser_->content_length();
     if (auto refused = upload_refusal(request, size)) return send(*std::move(refused));
     auto begun = context_.uploads->begin(std::string(uploaded_name(request.path)), *size);
@@ -164,8 +165,8 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
       upload_.reset();
       return send(error_response(protocol::error::internal()));
     }
-    upload_deadline_ = std::chrono::steady_clock::now() + longest_upload;
-    invite(upload_parser_->get(), [self = shared_from_this()] { self->receive_upload(); });
+    upload_deadline_ = std::chrono::steady_clock::now() + max_upload_duration;
+    send_continue(upload_parser_->get(), [self = shared_from_this()] { self->receive_upload(); });
   }
 
   std::optional<HttpResponse> upload_refusal(const HttpRequest& request,
@@ -174,14 +175,14 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     Admission admission = context_.access.admit(request);
     if (admission.refusal) return *std::move(admission.refusal);
     if (admission.role != Role::control) {
-      return text_response(403, "This token lets watch but not upload.");
+      return text_response(403, "This token is read-only and cannot upload.");
     }
-    if (context_.draining) return come_back_later("The server is shutting down.");
+    if (context_.draining) return retry_later("The server is shutting down.");
     if (uploaded_name(request.path).empty()) {
       return text_response(404, "Scenes go to /api/v1/scenes/NAME.");
     }
-    if (!length) return text_response(411, "An upload must say its length.");
-    if (*length == 0) return text_response(400, "There is nothing in this upload.");
+    if (!length) return text_response(411, "An upload needs a Content-Length.");
+    if (*length == 0) return text_response(400, "The upload is empty.");
     return context_.router.name_conflict(uploaded_name(request.path));
   }
 
@@ -220,24 +221,26 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
       framing_.keep_alive = false;
       return send(text_response(400, "This is not an HTTP request."));
     }
-    // Timed out or gone: nobody is left to answer.
+    // Timed out or disconnected: no response can be sent.
   }
 
   void answer() {
     const bool upgrade = beast::websocket::is_upgrade(parser_->get());
-    framing_.keep_alive = parser_->keep_alive() && !upgrade && !leaving_ && !context_.draining;
+    framing_.keep_alive =
+        parser_->keep_alive() && !upgrade && !shutting_down_ && !context_.draining;
     answering_ = true;
     const HttpRequest request = to_request(parser_->release(), stream_);
-    if (door_ == Door::measuring) return send(context_.router.answer_measurer(request));
-    framing_.sharing = context_.access.sharing_headers(request);
+    if (listener_kind_ == ListenerKind::metrics)
+      return send(context_.router.answer_metrics_listener(request));
+    framing_.cors = context_.access.cors_headers(request);
     if (context_.certificate && !request.secure) return send(to_https(request));
     if (upgrade) return become_viewer(request);
     if (!calls_.allow(RateLimit::Clock::now())) {
       return send(text_response(429, "Too many requests on this connection."));
     }
     if (auto allowed = context_.access.preflight(request)) return send(*std::move(allowed));
-    if (const auto session = picture_stream_address(request); session && request.method == "GET") {
-      return stream_pictures(request, *session);
+    if (const auto session = mjpeg_stream_session(request); session && request.method == "GET") {
+      return start_mjpeg(request, *session);
     }
     stream_.next_layer().expires_never();
     context_.router.handle(request, [self = shared_from_this()](HttpResponse response) {
@@ -247,14 +250,14 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     });
   }
 
-  /// What somebody gets who speaks plain HTTP where TLS is spoken.
+  /// The response to plain HTTP on a port that expects TLS.
   HttpResponse to_https(const HttpRequest& request) {
     framing_.keep_alive = false;
     if (auto refusal = context_.access.admit(request, false).refusal) return *std::move(refusal);
     HttpResponse response = text_response(400, "This port speaks HTTPS.");
     if (request.method != "GET" && request.method != "HEAD") return response;
     response.status = 308;
-    // Without the query: a token in it has been read by others by now.
+    // Without the query: a token in it was sent in the clear.
     response.headers.emplace_back("Location",
                                   "https://" + std::string(request.header("host")) + request.path);
     return response;
@@ -263,7 +266,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   void become_viewer(const HttpRequest& request) {
     Admission admission = context_.access.admit(request);
     if (admission.refusal) return send(*std::move(admission.refusal));
-    if (context_.draining) return send(come_back_later("The server is shutting down."));
+    if (context_.draining) return send(retry_later("The server is shutting down."));
     if (auto refused = upgrade_refusal(request, context_.host.sessions())) {
       return send(*std::move(refused));
     }
@@ -272,27 +275,27 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     start_viewer_connection(context_, std::move(stream_), request, admission.role);
   }
 
-  void stream_pictures(const HttpRequest& request, const std::string& session) {
+  void start_mjpeg(const HttpRequest& request, const std::string& session) {
     framing_.keep_alive = false;
     Admission admission = context_.access.admit(request);
     if (admission.refusal) return send(*std::move(admission.refusal));
-    if (context_.draining) return send(come_back_later("The server is shutting down."));
+    if (context_.draining) return send(retry_later("The server is shutting down."));
     const auto found = context_.host.sessions().find(session);
     if (!found) return send(text_response(404, found.error().message));
-    const auto wishes = picture_stream_wishes(request);
-    if (!wishes) return send(error_response(wishes.error()));
+    const auto options = mjpeg_stream_options(request);
+    if (!options) return send(error_response(options.error()));
     stream_.next_layer().expires_never();
-    start_picture_stream(context_, std::move(stream_), request, session, *wishes);
+    start_mjpeg_stream(context_, std::move(stream_), request, session, *options);
   }
 
   void send(HttpResponse answer) {
     if (!outgoing_.has_room(answer.body.size())) {
-      answer = come_back_later("Too much waits to be read by others.");
+      answer = retry_later("Too many responses wait to be read by other clients.");
     }
     response_ = to_message(context_, std::move(answer), framing_);
     outgoing_.hold(response_.body().size());
     serializer_.emplace(response_);
-    const PaceKeeper keeper({.patience = idle_timeout, .bytes_per_second = slowest_reader},
+    const PaceKeeper keeper({.timeout = idle_timeout, .bytes_per_second = min_bytes_per_second},
                             PaceKeeper::Clock::now());
     write_paced(stream_, *serializer_, keeper,
                 [self = shared_from_this()](error_code error) { self->sent(error); });
@@ -304,7 +307,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     response_ = {};
     outgoing_.hold(0);
     if (error) return;
-    if (!framing_.keep_alive || leaving_) return close();
+    if (!framing_.keep_alive || shutting_down_) return close();
     read();
   }
 
@@ -319,8 +322,8 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
                    [self = shared_from_this()](error_code) { self->stream_.next_layer().close(); });
   }
 
-  /// Reads on for a while: closing on what nobody has read resets the connection, and the answer
-  /// with it.
+  /// Discards input until the client closes: closing a socket with unread input resets the
+  /// connection, and the client may lose the response.
   void discard() {
     buffer_.clear();
     stream_.async_read_some(buffer_.prepare(discarded_at_once),
@@ -331,7 +334,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   }
 
   ServerContext& context_;
-  const Door door_;
+  const ListenerKind listener_kind_;
   ClientStream stream_;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
@@ -345,13 +348,13 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   RateLimit calls_;
   bool first_ = true;
   bool answering_ = false;
-  bool leaving_ = false;
+  bool shutting_down_ = false;
 };
 
 }  // namespace
 
-void start_http_connection(ServerContext& context, ClientStream stream, Door door) {
-  std::make_shared<HttpConnection>(context, std::move(stream), door)->start();
+void start_http_connection(ServerContext& context, ClientStream stream, ListenerKind kind) {
+  std::make_shared<HttpConnection>(context, std::move(stream), kind)->start();
 }
 
 }  // namespace heliograph::net

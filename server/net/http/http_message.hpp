@@ -36,7 +36,7 @@ struct HttpResponse {
   Headers headers;
 };
 
-/// One line of plain text for people.
+/// One line of plain text.
 HttpResponse text_response(int status, std::string_view text);
 HttpResponse json_response(std::string body);
 
@@ -46,13 +46,13 @@ std::map<std::string, std::string> parse_query(std::string_view query);
 /// A name or value as it stands in a query string: all but unreserved characters percent encoded.
 std::string encode_query(std::string_view text);
 
-/// A parameter of the query that is a whole number within limits; nothing where it is left out.
+/// A parameter of the query that is an integer within limits; nothing if it is absent.
 protocol::Result<std::optional<std::uint32_t>> number_parameter(const HttpRequest& request,
                                                                 const std::string& name,
                                                                 std::uint32_t least,
                                                                 std::uint32_t most);
 
-/// Host names, header names and origins are compared so.
+/// In lower case: host names, header names and origins are compared so.
 std::string lower(std::string_view text);
 
 /// The session that a request is about: ?enter=NAME, else ?session=NAME, else the main one. With

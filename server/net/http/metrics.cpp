@@ -111,7 +111,7 @@ void add_process(Page& page, const MetricsInput& input) {
                {"tracer", protocol::enum_name(input.host.engine().tracer())}},
               1);
   page.gauge("heliograph_uptime_seconds", "Time since the server started.", uptime.count());
-  page.gauge("heliograph_ready", "1 if the server takes new work.",
+  page.gauge("heliograph_ready", "1 if the server accepts new viewers.",
              input.host.ready() && !input.draining ? 1 : 0);
   page.gauge("heliograph_draining", "1 while the server shuts down.", input.draining ? 1 : 0);
   page.gauge("heliograph_resident_memory_bytes", "Memory in use.", resident_bytes());
@@ -140,10 +140,10 @@ void add_streams(Page& page, const session::SessionHost& host) {
   page.gauge("heliograph_sessions_limit", "Most sessions.", number(sessions.limits().sessions));
   page.counter("heliograph_sessions_opened_total", "Sessions opened since the start.",
                number(sessions.opened()));
-  page.gauge("heliograph_session_pixels", "Pixels of the pictures of all sessions.",
+  page.gauge("heliograph_session_pixels", "Pixels of the frames of all sessions.",
              number(sessions.pixels_used()));
   page.gauge("heliograph_session_pixels_limit", "Most of them.", number(sessions.limits().pixels));
-  page.counter("heliograph_device_losses_total", "How often the graphics device was lost.",
+  page.counter("heliograph_device_losses_total", "Losses of the graphics device.",
                number(host.device_losses()));
   page.counter("heliograph_frames_sent_total", "Frames sent to viewers.",
                number(totals.sent.frames));
@@ -173,7 +173,7 @@ void add_streams(Page& page, const session::SessionHost& host) {
 void add_rendering(Page& page, const session::SessionHost& host) {
   const session::RenderTotals render = host.render_totals();
   page.histogram("heliograph_render_seconds", "Rendering, each frame.", render.frames);
-  page.histogram("heliograph_encode_seconds", "Encoding, each picture.", render.encodings);
+  page.histogram("heliograph_encode_seconds", "Encoding, each frame.", render.encodings);
   page.histogram("heliograph_capture_seconds", "From asking for a capture to its file.",
                  render.captures);
   page.counter("heliograph_captures_failed_total",
@@ -207,7 +207,7 @@ void add_scenes(Page& page, const session::SessionHost& host) {
 void add_traffic(Page& page, const Traffic& traffic) {
   const auto number = [](auto value) { return static_cast<double>(value); };
   page.gauge("heliograph_connections", "Open connections.", number(traffic.connections));
-  page.counter("heliograph_connections_refused_total", "Connections for which there was no room.",
+  page.counter("heliograph_connections_refused_total", "Connections rejected by a limit.",
                number(traffic.connections_refused));
   page.describe("heliograph_http_responses_total", "HTTP responses by status.", "counter");
   for (const auto& [status, count] : traffic.responses) {
@@ -217,9 +217,10 @@ void add_traffic(Page& page, const Traffic& traffic) {
   page.counter("heliograph_viewer_messages_total", "JSON-RPC messages of viewers.",
                number(traffic.calls));
   page.counter("heliograph_viewer_messages_refused_total",
-               "Messages of viewers that came too fast.", number(traffic.calls_refused));
+               "Messages of viewers rejected by the rate limit.", number(traffic.calls_refused));
   page.counter("heliograph_slow_viewers_disconnected_total",
-               "Viewers that did not read what they were sent.", number(traffic.viewers_let_go));
+               "Viewers that did not read what they were sent.",
+               number(traffic.slow_viewers_disconnected));
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ std::string query_without(const HttpRequest& request, std::string_view name) {
 }
 
 HttpResponse method_not_allowed(std::string allowed) {
-  return with_header(text_response(405, "This address takes " + allowed + " only."), "Allow",
+  return with_header(text_response(405, "This address accepts only " + allowed + "."), "Allow",
                      allowed);
 }
 
@@ -55,29 +55,28 @@ HttpResponse schema() {
   return json_response(document.dump());
 }
 
-struct PictureKind {
+struct ImageKind {
   std::string_view extension;
   protocol::ImageFormat format;
   std::string_view content_type;
 };
 
-constexpr std::array picture_kinds{
-    PictureKind{"png", protocol::ImageFormat::png, "image/png"},
-    PictureKind{"jpg", protocol::ImageFormat::jpeg, "image/jpeg"},
-    PictureKind{"npy", protocol::ImageFormat::npy, "application/x-npy"},
-    PictureKind{"exr", protocol::ImageFormat::exr, "image/x-exr"},
+constexpr std::array image_kinds{
+    ImageKind{"png", protocol::ImageFormat::png, "image/png"},
+    ImageKind{"jpg", protocol::ImageFormat::jpeg, "image/jpeg"},
+    ImageKind{"npy", protocol::ImageFormat::npy, "application/x-npy"},
+    ImageKind{"exr", protocol::ImageFormat::exr, "image/x-exr"},
 };
 
-const PictureKind* picture_kind(std::string_view extension) {
-  for (const PictureKind& kind : picture_kinds) {
+const ImageKind* image_kind(std::string_view extension) {
+  for (const ImageKind& kind : image_kinds) {
     if (kind.extension == extension) return &kind;
   }
   return nullptr;
 }
 
 /// "main/frame.jpg" -> main, jpg
-std::optional<std::pair<std::string_view, std::string_view>> picture_address(
-    std::string_view path) {
+std::optional<std::pair<std::string_view, std::string_view>> image_address(std::string_view path) {
   if (!path.starts_with(sessions_prefix)) return std::nullopt;
   path.remove_prefix(sessions_prefix.size());
   constexpr std::string_view file = "/frame.";
@@ -140,7 +139,7 @@ std::string_view uploaded_name(std::string_view path) {
   return path.starts_with(prefix) ? path.substr(prefix.size()) : std::string_view();
 }
 
-HttpResponse come_back_later(std::string_view why) {
+HttpResponse retry_later(std::string_view why) {
   return with_header(text_response(503, why), "Retry-After", "1");
 }
 
@@ -160,12 +159,12 @@ void Router::handle(const HttpRequest& request, Reply reply) const {
       token ? access_.admit_by(*token, request) : access_.admit(request, !health_check);
   if (admission.refusal) return reply(*std::move(admission.refusal));
   if (token) {
-    HttpResponse redirect = text_response(303, "Go on without the token.");
+    HttpResponse redirect = text_response(303, "Continue without the token in the address.");
     redirect.headers = {{"Location", "/" + query_without(request, "token")},
                         {"Set-Cookie", access_.token_cookie(*token, request)}};
     return reply(std::move(redirect));
   }
-  if (draining_ && !health_check) return reply(come_back_later("The server is shutting down."));
+  if (draining_ && !health_check) return reply(retry_later("The server is shutting down."));
   if (request.path == "/rpc") {
     if (request.method != "POST") return reply(method_not_allowed("POST"));
     return call(request, admission.role, std::move(reply));
@@ -176,8 +175,8 @@ void Router::handle(const HttpRequest& request, Reply reply) const {
   if (request.method != "GET" && request.method != "HEAD") {
     return reply(method_not_allowed("GET"));
   }
-  if (const auto address = picture_address(request.path)) {
-    return picture(request, address->first, address->second, std::move(reply));
+  if (const auto address = image_address(request.path)) {
+    return image(request, address->first, address->second, std::move(reply));
   }
   reply(answer_get(request));
 }
@@ -188,14 +187,14 @@ std::optional<HttpResponse> Router::name_conflict(std::string_view scene) const 
   return text_response(409, "Another scene has this name.");
 }
 
-HttpResponse Router::answer_measurer(const HttpRequest& request) const {
+HttpResponse Router::answer_metrics_listener(const HttpRequest& request) const {
   if (request.method != "GET" && request.method != "HEAD") return method_not_allowed("GET");
-  if (request.headers.contains("origin") || embedded_elsewhere(request)) {
-    return text_response(403, "Pages have no business here.");
+  if (request.headers.contains("origin") || embedded_by_other_origin(request)) {
+    return text_response(403, "Web pages may not use this port.");
   }
   if (auto state = health(request)) return *std::move(state);
   if (request.path == "/metrics") return metrics();
-  return text_response(404, "There are /metrics, /health/live and /health/ready here.");
+  return text_response(404, "This port serves /metrics, /health/live and /health/ready.");
 }
 
 HttpResponse Router::answer_get(const HttpRequest& request) const {
@@ -203,18 +202,18 @@ HttpResponse Router::answer_get(const HttpRequest& request) const {
   if (request.path == "/metrics" && options_.metrics) return metrics();
   if (request.path == "/api/v1/schema") return schema();
   if (request.path == "/ws") {
-    return with_header(text_response(426, "This address speaks WebSocket."), "Upgrade",
+    return with_header(text_response(426, "This address requires a WebSocket upgrade."), "Upgrade",
                        "websocket");
   }
   if (auto file = asset(request)) return *std::move(file);
-  return text_response(404, "There is nothing at this address.");
+  return text_response(404, "Not found.");
 }
 
 std::optional<HttpResponse> Router::health(const HttpRequest& request) const {
   if (request.path == "/health/live") return text_response(200, "live");
   if (request.path != "/health/ready") return std::nullopt;
-  if (draining_) return come_back_later("shutting down");
-  if (!host_.ready()) return come_back_later(host_.not_ready_reason());
+  if (draining_) return retry_later("shutting down");
+  if (!host_.ready()) return retry_later(host_.not_ready_reason());
   return text_response(200, "ready");
 }
 
@@ -233,13 +232,13 @@ void Router::call(const HttpRequest& request, Role role, Reply reply) const {
   });
 }
 
-void Router::picture(const HttpRequest& request, std::string_view session,
-                     std::string_view extension, Reply reply) const {
+void Router::image(const HttpRequest& request, std::string_view session, std::string_view extension,
+                   Reply reply) const {
   const auto found = host_.sessions().find(session);
   if (!found) return reply(error_response(found.error()));
-  const PictureKind* const kind = picture_kind(extension);
+  const ImageKind* const kind = image_kind(extension);
   if (!kind) {
-    return reply(text_response(404, "Pictures are frame.jpg, frame.png, frame.exr and frame.npy."));
+    return reply(text_response(404, "Images are frame.jpg, frame.png, frame.exr and frame.npy."));
   }
   session::CaptureRequest capture;
   capture.format = kind->format;

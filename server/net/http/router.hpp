@@ -19,10 +19,10 @@ namespace heliograph::net {
 struct RouterOptions {
   std::vector<std::string> frame_ancestors;  // origins whose pages may embed ours, or 'self'
   bool metrics = true;                       // at /metrics
-  std::filesystem::path uploads;             // where uploaded scenes are; empty: there are none
+  std::filesystem::path uploads;  // folder of uploaded scenes; empty: uploads are disabled
 };
 
-/// Answers everything over HTTP but the WebSocket: the web client, JSON-RPC, single pictures, the
+/// Handles everything over HTTP but the WebSocket: the web client, JSON-RPC, single images, the
 /// schema, health and metrics.
 class Router {
  public:
@@ -33,13 +33,13 @@ class Router {
 
   /// Calls `reply` once, here or on another thread.
   void handle(const HttpRequest& request, Reply reply) const;
-  /// Why a scene of this name cannot be uploaded: one that was not is called so.
+  /// 409 if a scene that was not uploaded has this name.
   std::optional<HttpResponse> name_conflict(std::string_view scene) const;
-  /// What the door for measuring tools answers: metrics and health, to everybody.
-  HttpResponse answer_measurer(const HttpRequest& request) const;
-  /// Every response's protection against misuse of the page: content security policy and the like.
+  /// The response on the metrics port: metrics and health, without a token.
+  HttpResponse answer_metrics_listener(const HttpRequest& request) const;
+  /// Security headers of every response: content security policy and the like.
   const Headers& headers() const { return headers_; }
-  /// From now on the server is not ready for new work.
+  /// Reports from now on that the server is not ready.
   void drain() { draining_ = true; }
 
  private:
@@ -47,8 +47,8 @@ class Router {
   std::optional<HttpResponse> health(const HttpRequest& request) const;
   HttpResponse metrics() const;
   void call(const HttpRequest& request, Role role, Reply reply) const;
-  void picture(const HttpRequest& request, std::string_view session, std::string_view extension,
-               Reply reply) const;
+  void image(const HttpRequest& request, std::string_view session, std::string_view extension,
+             Reply reply) const;
 
   session::SessionHost& host_;
   const AccessControl& access_;
@@ -63,6 +63,6 @@ class Router {
 std::string_view uploaded_name(std::string_view path);
 HttpResponse error_response(const protocol::Error& error);
 /// The response while the server shuts down: come back in a while.
-HttpResponse come_back_later(std::string_view why);
+HttpResponse retry_later(std::string_view why);
 
 }  // namespace heliograph::net

@@ -58,27 +58,28 @@ std::string_view without_port_of_address(std::string_view text) {
 
 /// Every token that the request shows, wherever it does.
 std::vector<std::string> tokens_shown(const HttpRequest& request) {
-  std::vector<std::string> shown;
+  std::vector<std::string> presented;
   const std::string_view authorization = request.header("authorization");
-  if (authorization.starts_with(bearer)) shown.emplace_back(authorization.substr(bearer.size()));
+  if (authorization.starts_with(bearer))
+    presented.emplace_back(authorization.substr(bearer.size()));
   for (const std::string_view cookie : header_elements(request.header("cookie"), ';')) {
     const std::size_t equals = std::min(cookie.find('='), cookie.size());
     if (cookie.substr(0, equals) != cookie_name) continue;
-    shown.emplace_back(cookie.substr(std::min(equals + 1, cookie.size())));
+    presented.emplace_back(cookie.substr(std::min(equals + 1, cookie.size())));
   }
   for (const std::string_view protocol :
        header_elements(request.header("sec-websocket-protocol"))) {
     if (!protocol.starts_with(token_protocol)) continue;
     const auto token = stream::base64url_decode(protocol.substr(token_protocol.size()));
-    shown.push_back(token.value_or(std::string()));
+    presented.push_back(token.value_or(std::string()));
   }
-  if (shown.size() > most_tokens_shown) shown.resize(most_tokens_shown);
-  return shown;
+  if (presented.size() > most_tokens_shown) presented.resize(most_tokens_shown);
+  return presented;
 }
 
 }  // namespace
 
-bool embedded_elsewhere(const HttpRequest& request) {
+bool embedded_by_other_origin(const HttpRequest& request) {
   const std::string_view site = request.header("sec-fetch-site");
   if (site != "cross-site" && site != "same-site") return false;
   // With an origin the allow-list decides. A bearer token is never sent but by who has it; a cookie
@@ -102,7 +103,7 @@ AccessControl::AccessControl(AccessOptions options)
     : options_(std::move(options)), tokens_(options_.tokens) {
   if (tokens_.empty() && !options_.insecure && !is_loopback(options_.bind_address)) {
     throw std::invalid_argument("other machines reach " + options_.bind_address +
-                                ": give a --token, or --insecure if everybody may watch");
+                                ": pass --token, or --insecure to allow access without one");
   }
   host_names_ = {"localhost", lower(options_.bind_address)};
   if (!is_loopback(options_.bind_address)) host_names_.push_back(machine_name());
@@ -123,15 +124,15 @@ AccessControl::AccessControl(AccessOptions options)
 }
 
 Admission AccessControl::admit(const HttpRequest& request, bool needs_token) const {
-  if (auto refused = wrong_place(request)) return {.refusal = std::move(refused)};
+  if (auto refused = check_origin(request)) return {.refusal = std::move(refused)};
   if (tokens_.empty()) return {.refusal = std::nullopt, .role = Role::control};
   if (!needs_token) return {};
-  return judge(tokens_shown(request), request);
+  return check_tokens(tokens_shown(request), request);
 }
 
 Admission AccessControl::admit_by(const std::string& token, const HttpRequest& request) const {
-  if (auto refused = wrong_place(request)) return {.refusal = std::move(refused)};
-  return judge({token}, request);
+  if (auto refused = check_origin(request)) return {.refusal = std::move(refused)};
+  return check_tokens({token}, request);
 }
 
 std::string AccessControl::token_cookie(const std::string& token,
@@ -149,7 +150,7 @@ std::optional<HttpResponse> AccessControl::preflight(const HttpRequest& request)
   const bool asks =
       request.method == "OPTIONS" && request.headers.contains("access-control-request-method");
   if (!asks || !origin_listed(request.header("origin"))) return std::nullopt;
-  if (auto refused = wrong_place(request)) return refused;
+  if (auto refused = check_origin(request)) return refused;
   HttpResponse response{.status = 204, .content_type = {}, .body = {}, .headers = {}};
   response.headers = {
       {"Access-Control-Allow-Methods", "GET, HEAD, POST, PUT"},
@@ -163,7 +164,7 @@ std::optional<HttpResponse> AccessControl::preflight(const HttpRequest& request)
   return response;
 }
 
-Headers AccessControl::sharing_headers(const HttpRequest& request) const {
+Headers AccessControl::cors_headers(const HttpRequest& request) const {
   if (options_.allowed_origins.empty()) return {};
   if (!origin_listed(request.header("origin"))) return {{"Vary", "Origin"}};
   return {
@@ -193,41 +194,39 @@ bool AccessControl::is_secure(const HttpRequest& request) const {
   return is_proxy(request.peer) && !schemes.empty() && schemes.back() == "https";
 }
 
-std::optional<HttpResponse> AccessControl::wrong_place(const HttpRequest& request) const {
+std::optional<HttpResponse> AccessControl::check_origin(const HttpRequest& request) const {
   const std::string_view host = request.header("host");
   if (!host_allowed(host)) {
-    return text_response(403,
-                         "This server does not go by the name of the Host header; see "
-                         "--allow-host.");
+    return text_response(403, "The Host header is not a name of this server; see --allow-host.");
   }
   const bool from_page = request.headers.contains("origin");
   if (from_page && !origin_allowed(request.header("origin"), host, request.secure)) {
     return text_response(403, "Pages of this origin may not use the server; see --allow-origin.");
   }
-  if (embedded_elsewhere(request)) {
+  if (embedded_by_other_origin(request)) {
     return text_response(403, "Pages of other origins may not embed this; see --allow-origin.");
   }
   return std::nullopt;
 }
 
-Admission AccessControl::judge(const std::vector<std::string>& shown,
-                               const HttpRequest& request) const {
+Admission AccessControl::check_tokens(const std::vector<std::string>& presented,
+                                      const HttpRequest& request) const {
   const std::string client = client_key(client_of(request));
   const auto now = FailureLimit::Clock::now();
-  if (!shown.empty()) {
+  if (!presented.empty()) {
     if (const auto wait = failures_.wait_of(client, now); wait.count() > 0) {
-      HttpResponse response = text_response(429, "Too many wrong tokens came from this address.");
+      HttpResponse response = text_response(429, "Too many wrong tokens from this address.");
       response.headers.emplace_back("Retry-After", std::to_string(wait.count()));
       return {.refusal = std::move(response)};
     }
   }
-  for (const std::string& candidate : shown) {
+  for (const std::string& candidate : presented) {
     if (const auto role = tokens_.role_of(candidate)) return {.refusal = {}, .role = *role};
   }
-  if (!shown.empty()) failures_.failed(client, now);
+  if (!presented.empty()) failures_.failed(client, now);
   HttpResponse response = text_response(401,
-                                        "This server asks for a token: open /?token=..., or send "
-                                        "it as \"Authorization: Bearer\".");
+                                        "A token is required: open /?token=..., or send "
+                                        "\"Authorization: Bearer TOKEN\".");
   response.headers.emplace_back("WWW-Authenticate", "Bearer");
   return {.refusal = std::move(response)};
 }

@@ -14,7 +14,7 @@ namespace heliograph::net {
 
 struct AccessOptions {
   std::string bind_address = "127.0.0.1";
-  std::vector<Token> tokens;  // none: nobody is asked
+  std::vector<Token> tokens;  // empty: no token is needed
   bool insecure = false;
   std::vector<std::string> allowed_origins;  // "https://example.org:8443"
   std::vector<std::string> allowed_hosts;    // names of the server, without port
@@ -22,21 +22,21 @@ struct AccessOptions {
   bool embedded = false;                     // in pages of other sites
 };
 
-/// What comes of a request's looks.
+/// Whether a request is admitted.
 struct Admission {
-  std::optional<HttpResponse> refusal;  // the response to send; nothing if it may pass
+  std::optional<HttpResponse> refusal;  // the response to send; nothing if it is admitted
   Role role = Role::view;
 };
 
-/// Who may talk to the server, and what as.
+/// Decides which requests are admitted, and with which role.
 ///
 /// Host: a page of another site that makes its name resolve to us (DNS rebinding) sends that name;
 /// it must be an address, this machine's name or one that is allowed.
 /// Origin: browsers send it with every WebSocket and every cross-site request. It must be the very
 /// host and port that the request went to, or on the allow-list; compared whole, never by prefix.
-/// Sec-Fetch-Site: what pages merely embed (pictures, frames) comes without Origin but with this.
-/// From other sites, and from other ports of the same host, only what leads to the viewer's page
-/// passes. Token: see TokenSet. A client that shows wrong ones is soon not listened to for a while.
+/// Sec-Fetch-Site: what pages embed (images, iframes) comes without Origin but with this header.
+/// From other sites, and from other ports of the same host, only navigation to the web client is
+/// admitted. Token: see TokenSet. A client that sends wrong tokens is rejected for a while.
 class AccessControl {
  public:
   /// @throws std::invalid_argument for a token that does not fit into headers, an origin that is
@@ -50,14 +50,14 @@ class AccessControl {
   /// The same for a token out of a page's address, which is traded for a cookie.
   Admission admit_by(const std::string& token, const HttpRequest& request) const;
 
-  /// The Set-Cookie header of a browser that has shown the token.
+  /// The Set-Cookie header of a browser that has presented the token.
   std::string token_cookie(const std::string& token, const HttpRequest& request) const;
 
-  /// The answer to a page of another origin that asks whether it may ask (CORS preflight); nothing
-  /// if the request is no such question or the origin is not on the allow-list.
+  /// The response to a CORS preflight request; nothing if the request is none or the origin is not
+  /// on the allow-list.
   std::optional<HttpResponse> preflight(const HttpRequest& request) const;
-  /// Headers by which the browser lets a page on the allow-list read the answer.
-  Headers sharing_headers(const HttpRequest& request) const;
+  /// CORS headers that let a page on the allow-list read the response.
+  Headers cors_headers(const HttpRequest& request) const;
 
   /// The address that the request comes from, as told by proxies that are trusted.
   std::string client_of(const HttpRequest& request) const;
@@ -65,12 +65,13 @@ class AccessControl {
   bool is_secure(const HttpRequest& request) const;
 
  private:
-  std::optional<HttpResponse> wrong_place(const HttpRequest& request) const;
+  std::optional<HttpResponse> check_origin(const HttpRequest& request) const;
   bool host_allowed(std::string_view host) const;
   bool origin_allowed(std::string_view origin, std::string_view host, bool secure) const;
   bool origin_listed(std::string_view origin) const;
   bool is_proxy(std::string_view address) const;
-  Admission judge(const std::vector<std::string>& shown, const HttpRequest& request) const;
+  Admission check_tokens(const std::vector<std::string>& presented,
+                         const HttpRequest& request) const;
 
   const AccessOptions options_;
   const TokenSet tokens_;
@@ -79,10 +80,10 @@ class AccessControl {
   mutable FailureLimit failures_;
 };
 
-/// Whether a page of another origin, this host's other ports included, asks for something that is
-/// not for it by way of an element that names no origin: a picture, a frame, a link. Browsers say
-/// so to hosts that they trust: loopback and HTTPS.
-bool embedded_elsewhere(const HttpRequest& request);
+/// Whether a page of another origin, other ports of this host included, requests what it may not
+/// embed through an element that sends no Origin: an image, an iframe, a link. Browsers say so to
+/// hosts that they trust: loopback and HTTPS.
+bool embedded_by_other_origin(const HttpRequest& request);
 
 bool is_loopback(std::string_view address);
 /// Whether `text` is "http://" or "https://" and a host, with or without port, and nothing else.

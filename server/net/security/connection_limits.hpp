@@ -22,17 +22,17 @@ class AddressRange {
   unsigned bits_;
 };
 
-/// Whom limits count as one: the address itself, or the 64 bit network of an IPv6 address, of which
-/// one customer has as many as wanted.
+/// What limits count as one client: the address itself, or the 64 bit network of an IPv6 address,
+/// of which one customer can use every address.
 std::string client_key(std::string_view address);
 
 /// How many connections may be open at one time, in all and from one client. Used by one thread.
 class ConnectionLimits {
  public:
-  /// `unlimited` clients, which are proxies, share only the total.
+  /// `unlimited` clients, which are proxies, count only in the total.
   ConnectionLimits(std::size_t in_all, std::size_t per_client, std::vector<AddressRange> unlimited);
 
-  /// The right to be connected, given back at its end.
+  /// The right to be connected, released by its destructor.
   class Slot {
    public:
     const std::string& address() const { return address_; }
@@ -42,7 +42,7 @@ class ConnectionLimits {
     std::string address_;
     std::shared_ptr<void> counted_;
   };
-  /// Nothing where there is no room.
+  /// Nothing if a limit is reached.
   std::optional<Slot> take(const std::string& address);
 
   std::size_t open() const { return counts_->in_all; }

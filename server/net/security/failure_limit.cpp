@@ -30,7 +30,7 @@ void FailureLimit::failed(const std::string& client, Clock::time_point now) {
   record.at = now;
 }
 
-/// Keeps the memory bounded whoever knocks: first those who are forgiven go, then anybody.
+/// Bounds the number of entries: expired ones are removed first, then any.
 void FailureLimit::forget_old(Clock::time_point now) {
   if (records_.size() < most_records) return;
   std::erase_if(records_, [&](const auto& entry) { return faded(entry.second, now) < 1.0; });

@@ -10,13 +10,13 @@
 
 namespace heliograph::net {
 
-/// Remembers which clients fail too often to be listened to, so that guessing leads nowhere.
+/// Rejects clients that fail too often, so that tokens cannot be guessed.
 /// Thread safe.
 class FailureLimit {
  public:
   using Clock = RateLimit::Clock;
 
-  /// How long `client` is not listened to; zero if it is.
+  /// How long `client` is rejected; zero if it is not.
   std::chrono::seconds wait_of(const std::string& client, Clock::time_point now);
   void failed(const std::string& client, Clock::time_point now);
 

@@ -5,7 +5,7 @@
 
 namespace heliograph::net {
 
-/// What the control group of this process may use; absent where it is not limited or not told.
+/// Limits of this process's control group; absent if it is not limited or cannot be read.
 struct ResourceLimits {
   std::optional<double> memory_bytes;
   std::optional<double> processors;  // shares of one processor's time

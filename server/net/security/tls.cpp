@@ -22,11 +22,11 @@ std::shared_ptr<ssl::context> read(const TlsFiles& files) {
   auto context = std::make_shared<ssl::context>(ssl::context::tls_server);
   context->set_options(ssl::context::default_workarounds | ssl::context::single_dh_use);
   SSL_CTX_set_min_proto_version(context->native_handle(), TLS1_2_VERSION);
-  // Of TLS 1.2 only what is as good as 1.3: forward secret and authenticated.
+  // Of TLS 1.2 only ciphers with forward secrecy and authentication, as in 1.3.
   SSL_CTX_set_cipher_list(context->native_handle(), "ECDHE+AESGCM:ECDHE+CHACHA20");
-  // Without it a client could have us sign for ever on one connection.
+  // Renegotiation would let a client make the server sign without limit on one connection.
   SSL_CTX_set_options(context->native_handle(), SSL_OP_NO_RENEGOTIATION);
-  // Keys that ask for a passphrase would stop a server at a prompt that nobody sees.
+  // A key with a passphrase would stop the server at a prompt.
   context->set_password_callback(
       [](std::size_t, ssl::context::password_purpose) { return std::string(); });
   error_code error;

@@ -20,8 +20,8 @@ class TlsCertificate {
   explicit TlsCertificate(TlsFiles files);
 
   std::shared_ptr<boost::asio::ssl::context> context() const { return context_; }
-  /// Reads the files anew, for the connections to come. @throws like the constructor; then the old
-  /// certificate stays.
+  /// Reads the files again, for new connections. @throws like the constructor; then the old
+  /// certificate stays in use.
   void reload();
 
  private:

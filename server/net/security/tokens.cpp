@@ -65,10 +65,11 @@ TokenSet::TokenSet(const std::vector<Token>& tokens) {
 }
 
 std::optional<Role> TokenSet::role_of(std::string_view candidate) const {
-  const Digest shown = digest_of(candidate);
+  const Digest presented = digest_of(candidate);
   std::optional<Role> role;
   for (const Entry& entry : tokens_) {
-    if (CRYPTO_memcmp(shown.data(), entry.digest.data(), shown.size()) == 0) role = entry.role;
+    if (CRYPTO_memcmp(presented.data(), entry.digest.data(), presented.size()) == 0)
+      role = entry.role;
   }
   return role;
 }

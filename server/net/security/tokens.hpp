@@ -9,7 +9,7 @@
 
 namespace heliograph::net {
 
-/// What a client may do: only watch, or steer as well.
+/// What a client may do: only view, or control as well.
 enum class Role { view, control };
 
 struct Token {

@@ -12,14 +12,14 @@
 
 namespace heliograph::net {
 
-/// How slowly a reader may take what it is sent.
+/// How slowly a client may read.
 struct Pace {
-  std::chrono::milliseconds patience;  // without a single byte being taken
-  double bytes_per_second;             // in the long run, once `patience` has passed
+  std::chrono::milliseconds timeout;  // without a single byte being read
+  double bytes_per_second;            // in the long run, once `timeout` has passed
 };
 
-/// When a write is given up: a large answer may take as long as it needs, as long as its reader
-/// goes on taking it, but nobody holds one for ever by taking a byte now and then.
+/// The deadline of a write: a large response may take long while its client keeps reading, but
+/// reading single bytes does not extend it without limit.
 class PaceKeeper {
  public:
   using Clock = std::chrono::steady_clock;
@@ -27,11 +27,11 @@ class PaceKeeper {
   PaceKeeper(Pace pace, Clock::time_point begin) : pace_(pace), begin_(begin) {}
 
   void took(std::size_t bytes) { taken_ += static_cast<double>(bytes); }
-  /// When more must have been taken.
+  /// When more must have been read.
   Clock::time_point deadline(Clock::time_point now) const {
     const std::chrono::duration<double> owed(taken_ / pace_.bytes_per_second);
     const auto whole = std::chrono::duration_cast<Clock::duration>(owed);
-    return std::min(now + pace_.patience, begin_ + pace_.patience + whole);
+    return std::min(now + pace_.timeout, begin_ + pace_.timeout + whole);
   }
 
  private:

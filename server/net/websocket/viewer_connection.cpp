@@ -13,9 +13,9 @@
 
 #include "net/connection.hpp"
 #include "net/security/rate_limit.hpp"
-#include "net/websocket/presence.hpp"
-#include "net/websocket/reader_progress.hpp"
-#include "net/websocket/refused_calls.hpp"
+#include "net/tcp_progress.hpp"
+#include "net/websocket/liveness.hpp"
+#include "net/websocket/rejected_calls.hpp"
 #include "protocol/messages/messages.hpp"
 #include "session/event_log.hpp"
 #include "session/viewers/viewer_link.hpp"
@@ -27,19 +27,19 @@ namespace http = beast::http;
 namespace websocket = beast::websocket;
 using boost::system::error_code;
 
-// What may wait behind the message that is being written: more is only for who goes on taking it.
-constexpr std::size_t patient_messages = 256;
-constexpr std::size_t most_messages = 4096;
-// An answer that would not fit behind what waits is replaced by an error. Large enough for a
-// captured picture of the largest size.
-constexpr std::size_t most_waiting_bytes = 256u << 20;
-constexpr std::chrono::seconds longest_stall{2};
-constexpr std::chrono::seconds watch_interval{5};
+// Messages queued behind the one being written. Above the first limit the client must keep reading.
+constexpr std::size_t unchecked_pending_messages = 256;
+constexpr std::size_t max_pending_messages = 4096;
+// A response that would exceed this is replaced by an error. Large enough for a captured image of
+// the largest size.
+constexpr std::size_t max_pending_bytes = 256u << 20;
+constexpr std::chrono::seconds stall_timeout{2};
+constexpr std::chrono::seconds liveness_interval{5};
 
 constexpr std::uint16_t session_ended = 4003;
 constexpr std::uint16_t slow_consumer = 4004;
 constexpr int reconnect_after_ms = 1000;
-constexpr std::chrono::seconds longest_without_acknowledgement{10};
+constexpr std::chrono::seconds ack_timeout{10};
 
 class ViewerConnection : public Connection,
                          public session::ViewerLink,
@@ -51,11 +51,11 @@ class ViewerConnection : public Connection,
         view_only_(role == Role::view),
         socket_(std::move(stream)),
         close_deadline_(socket_.get_executor()),
-        patience_(socket_.get_executor()),
-        watch_(socket_.get_executor()),
-        stall_(socket_.get_executor()),
+        ack_timer_(socket_.get_executor()),
+        liveness_timer_(socket_.get_executor()),
+        stall_timer_(socket_.get_executor()),
         calls_(calls_per_second, calls_at_once, RateLimit::Clock::now()),
-        refusals_(refusals_per_second, refusals_at_once, RateLimit::Clock::now()),
+        rejections_(rejections_per_second, rejections_at_once, RateLimit::Clock::now()),
         pings_(pings_per_second, pings_at_once, RateLimit::Clock::now()) {
     context_.enter(*this);
   }
@@ -64,7 +64,7 @@ class ViewerConnection : public Connection,
   void accept(const HttpRequest& request) {
     websocket::stream_base::timeout timeouts{};
     timeouts.handshake_timeout = handshake_timeout;
-    // Beast would give up a peer that is busy reading a long message; see watch.
+    // Beast would disconnect a peer that is busy reading a long message; see check_liveness.
     timeouts.idle_timeout = websocket::stream_base::none();
     timeouts.keep_alive_pings = false;
     socket_.set_option(timeouts);
@@ -72,12 +72,12 @@ class ViewerConnection : public Connection,
       response.set(http::field::sec_websocket_protocol, std::string(protocol::protocol_name));
     }));
     socket_.read_message_max(context_.host.dispatch_limits().max_message_bytes);
-    // One WebSocket frame per picture, written from where it lies.
+    // One WebSocket frame per encoded frame, written without a copy.
     socket_.auto_fragment(false);
     socket_.control_callback([this](websocket::frame_type kind, beast::string_view) {
-      presence_.heard(Presence::Clock::now());
+      liveness_.received(Liveness::Clock::now());
       if (kind == websocket::frame_type::ping && !pings_.allow(RateLimit::Clock::now())) {
-        flooded("too many pings");
+        disconnect_rate_limited("too many pings");
       }
     });
     client_ = context_.access.client_of(request);
@@ -112,7 +112,7 @@ class ViewerConnection : public Connection,
 
   void disconnect(std::string why) override {
     run_later(socket_.get_executor(), [self = shared_from_this(), why = std::move(why)] {
-      self->farewell_ = why;
+      self->session_end_reason_ = why;
       self->write_next();
     });
   }
@@ -131,10 +131,10 @@ class ViewerConnection : public Connection,
     }
     viewer_ = *joined;
     session::log_info({.session = session_, .viewer = viewer_, .client = client_},
-                      view_only_ ? "a viewer connected, to watch only" : "a viewer connected");
+                      view_only_ ? "a viewer connected, read-only" : "a viewer connected");
     if (context_.ending) shut_down();
-    presence_.heard(Presence::Clock::now());
-    watch();
+    liveness_.received(Liveness::Clock::now());
+    check_liveness();
     read();
   }
 
@@ -146,7 +146,7 @@ class ViewerConnection : public Connection,
 
   void received(error_code error) {
     if (error) return ended(error);
-    presence_.heard(Presence::Clock::now());
+    liveness_.received(Liveness::Clock::now());
     const bool text = socket_.got_text();
     std::string message = beast::buffers_to_string(incoming_.data());
     incoming_.consume(incoming_.size());
@@ -160,9 +160,9 @@ class ViewerConnection : public Connection,
       call(std::move(message));
     } else {
       ++context_.traffic.calls_refused;
-      std::string refusal = refuse_calls(message, too_many_messages());
+      std::string refusal = reject_calls(message, too_many_messages());
       if (!refusal.empty()) enqueue(std::move(refusal), {});
-      if (!refusals_.allow(RateLimit::Clock::now())) flooded("too many messages");
+      if (!rejections_.allow(RateLimit::Clock::now())) disconnect_rate_limited("too many messages");
     }
     read();
   }
@@ -184,16 +184,16 @@ class ViewerConnection : public Connection,
   }
 
   void enqueue_large(std::string answer, std::string_view message) {
-    if (waiting_bytes_ + answer.size() > most_waiting_bytes || !outgoing_.has_room(answer.size())) {
-      answer = refuse_calls(message, answer_too_large("256 MiB"));
+    if (pending_bytes_ + answer.size() > max_pending_bytes || !outgoing_.has_room(answer.size())) {
+      answer = reject_calls(message, answer_too_large("256 MiB"));
     }
     enqueue(std::move(answer), {});
   }
 
-  /// Lets go of somebody who does not heed the limits. From within the control callback too, where
-  /// the close frame must wait until Beast is done with what it reads.
-  void flooded(const char* what) {
-    if (closing_ || std::exchange(flooded_, true)) return;
+  /// Disconnects a client that exceeds a rate limit. Also called from within the control callback,
+  /// where the close frame must wait until Beast has finished reading.
+  void disconnect_rate_limited(const char* what) {
+    if (closing_ || std::exchange(rate_limited_, true)) return;
     session::log_warning({.viewer = viewer_, .client = client_}, what);
     run_later(socket_.get_executor(), [self = shared_from_this(), what] {
       self->close(websocket::close_code::policy_error, what);
@@ -202,56 +202,59 @@ class ViewerConnection : public Connection,
 
   void enqueue(std::string text, std::string key) {
     if (closing_) return;
-    const auto same = std::find_if(waiting_.begin(), waiting_.end(), [&](const Message& message) {
+    const auto same = std::find_if(pending_.begin(), pending_.end(), [&](const Message& message) {
       return !key.empty() && message.key == key;
     });
-    if (same != waiting_.end()) {
-      waiting_bytes_ += text.size();
-      waiting_bytes_ -= same->text.size();
+    if (same != pending_.end()) {
+      pending_bytes_ += text.size();
+      pending_bytes_ -= same->text.size();
       same->text = std::move(text);
       return;
     }
-    waiting_bytes_ += text.size();
-    waiting_.push_back({.text = std::move(text), .key = std::move(key)});
-    if (waiting_.size() > most_messages) return let_go_slow();
-    if (waiting_.size() > patient_messages) expect_progress();
-    outgoing_.hold(waiting_bytes_ + text_in_flight_.size());
+    pending_bytes_ += text.size();
+    pending_.push_back({.text = std::move(text), .key = std::move(key)});
+    if (pending_.size() > max_pending_messages) return disconnect_slow_consumer();
+    if (pending_.size() > unchecked_pending_messages) check_progress();
+    outgoing_.hold(pending_bytes_ + text_in_flight_.size());
     write_next();
   }
 
-  /// Lets a viewer go that lets messages pile up while it takes none of what is being sent.
-  void expect_progress() {
+  /// Disconnects a viewer whose queue is long and whose system acknowledges no bytes.
+  void check_progress() {
     if (std::exchange(stall_runs_, true)) return;
-    stall_.expires_after(longest_stall);
-    on_expiry(stall_, [self = shared_from_this(), before = taken()](error_code error) {
-      self->stall_runs_ = false;
-      if (error || self->closing_ || self->waiting_.size() <= patient_messages) return;
-      if (self->taken() == before) return self->let_go_slow();
-      self->expect_progress();
-    });
+    stall_timer_.expires_after(stall_timeout);
+    on_expiry(stall_timer_,
+              [self = shared_from_this(), before = acknowledged_bytes()](error_code error) {
+                self->stall_runs_ = false;
+                if (error || self->closing_ || self->pending_.size() <= unchecked_pending_messages)
+                  return;
+                if (self->acknowledged_bytes() == before) return self->disconnect_slow_consumer();
+                self->check_progress();
+              });
   }
 
-  void let_go_slow() {
-    waiting_.clear();
-    ++context_.traffic.viewers_let_go;
+  void disconnect_slow_consumer() {
+    pending_.clear();
+    ++context_.traffic.slow_viewers_disconnected;
     close(slow_consumer, "messages are not being read");
   }
 
-  /// Bytes that the viewer's system has taken so far.
-  std::uint64_t taken() {
-    return bytes_taken(beast::get_lowest_layer(socket_).socket().native_handle());
+  /// Bytes that the viewer's system has acknowledged so far.
+  std::uint64_t acknowledged_bytes() {
+    return bytes_acknowledged(beast::get_lowest_layer(socket_).socket().native_handle());
   }
 
-  /// Looks now and then whether the viewer is still there.
-  void watch() {
-    watch_.expires_after(watch_interval);
-    on_expiry(watch_, [self = shared_from_this()](error_code error) {
+  /// Checks periodically whether the viewer is still connected.
+  void check_liveness() {
+    liveness_timer_.expires_after(liveness_interval);
+    on_expiry(liveness_timer_, [self = shared_from_this()](error_code error) {
       if (error || self->closing_) return;
       const std::uint64_t write = self->writing_ ? self->writes_ : 0;
-      const auto verdict = self->presence_.look(Presence::Clock::now(), write, self->taken());
-      if (verdict == Presence::Verdict::gone) return self->ended(beast::error::timeout);
-      if (verdict == Presence::Verdict::silent && !self->pinging_) self->ping();
-      self->watch();
+      const auto verdict =
+          self->liveness_.check(Liveness::Clock::now(), write, self->acknowledged_bytes());
+      if (verdict == Liveness::Verdict::lost) return self->ended(beast::error::timeout);
+      if (verdict == Liveness::Verdict::silent && !self->pinging_) self->ping();
+      self->check_liveness();
     });
   }
 
@@ -269,16 +272,16 @@ class ViewerConnection : public Connection,
 
   void write_next() {
     if (writing_ || closing_ || viewer_.empty()) return;
-    if (!waiting_.empty()) {
+    if (!pending_.empty()) {
       writing_ = true;
       ++writes_;
-      text_in_flight_ = std::move(waiting_.front().text);
-      waiting_.pop_front();
-      waiting_bytes_ -= text_in_flight_.size();
+      text_in_flight_ = std::move(pending_.front().text);
+      pending_.pop_front();
+      pending_bytes_ -= text_in_flight_.size();
       socket_.text(true);
       return write(asio::buffer(text_in_flight_), {});
     }
-    if (farewell_) return close(session_ended, *farewell_);
+    if (session_end_reason_) return close(session_ended, *session_end_reason_);
     const auto session = context_.host.sessions().session_of_viewer(viewer_);
     if (!session) return;
     frame_in_flight_ = session->viewers().take(viewer_);
@@ -287,23 +290,23 @@ class ViewerConnection : public Connection,
     ++writes_;
     socket_.binary(true);
     write(asio::buffer(frame_in_flight_->header), asio::buffer(frame_in_flight_->frame->payload));
-    if (!std::exchange(patience_runs_, true)) {
-      expect_acknowledgement(std::chrono::steady_clock::now());
+    if (!std::exchange(ack_timeout_runs_, true)) {
+      check_acknowledgement(std::chrono::steady_clock::now());
     }
   }
 
-  /// Lets a viewer go that takes frames but does not acknowledge them.
-  void expect_acknowledgement(std::chrono::steady_clock::time_point since) {
-    patience_.expires_at(since + longest_without_acknowledgement);
-    on_expiry(patience_, [self = shared_from_this()](error_code error) {
+  /// Disconnects a viewer that reads frames but does not acknowledge them.
+  void check_acknowledgement(std::chrono::steady_clock::time_point since) {
+    ack_timer_.expires_at(since + ack_timeout);
+    on_expiry(ack_timer_, [self = shared_from_this()](error_code error) {
       if (error || self->closing_ || self->viewer_.empty()) return;
       const auto session = self->context_.host.sessions().session_of_viewer(self->viewer_);
       const auto waits =
           session ? session->viewers().unacknowledged_since(self->viewer_) : std::nullopt;
-      self->patience_runs_ = waits.has_value();
+      self->ack_timeout_runs_ = waits.has_value();
       if (!waits) return;
-      if (std::chrono::steady_clock::now() < *waits + longest_without_acknowledgement) {
-        return self->expect_acknowledgement(*waits);
+      if (std::chrono::steady_clock::now() < *waits + ack_timeout) {
+        return self->check_acknowledgement(*waits);
       }
       self->close(slow_consumer, "frames are not being acknowledged");
     });
@@ -312,7 +315,7 @@ class ViewerConnection : public Connection,
   void written(error_code error) {
     writing_ = false;
     text_in_flight_ = {};
-    outgoing_.hold(waiting_bytes_);
+    outgoing_.hold(pending_bytes_);
     frame_in_flight_.reset();
     if (!error) write_next();
   }
@@ -325,7 +328,7 @@ class ViewerConnection : public Connection,
     socket_.async_close(close_reason, IoHandler([self = shared_from_this()](error_code error) {
                           self->ended(error);
                         }));
-    // A peer that does not answer, or a write that never ends, must not keep the socket open.
+    // A peer that does not answer, or a write that never completes, must not keep the socket open.
     close_deadline_.expires_after(closing_timeout);
     on_expiry(close_deadline_, [self = shared_from_this()](error_code error) {
       if (!error) self->ended(error);
@@ -335,14 +338,14 @@ class ViewerConnection : public Connection,
   void ended(error_code error) {
     closing_ = true;
     close_deadline_.cancel();
-    patience_.cancel();
-    watch_.cancel();
-    stall_.cancel();
-    waiting_.clear();
+    ack_timer_.cancel();
+    liveness_timer_.cancel();
+    stall_timer_.cancel();
+    pending_.clear();
     error_code ignored;
     beast::get_lowest_layer(socket_).socket().close(ignored);
     if (viewer_.empty()) return;
-    // It may have joined another since it came.
+    // It may have joined another session since.
     const auto session = context_.host.sessions().session_of_viewer(viewer_);
     context_.host.sessions().leave(viewer_);
     session::log_info(
@@ -352,32 +355,32 @@ class ViewerConnection : public Connection,
   }
 
   ServerContext& context_;
-  const std::string session_;  // where it came in
+  const std::string session_;  // that the request named
   const bool view_only_;
   websocket::stream<ClientStream> socket_;
   http::request<http::empty_body> handshake_;
   asio::steady_timer close_deadline_;
-  asio::steady_timer patience_;  // runs while a frame is on its way
-  bool patience_runs_ = false;
-  asio::steady_timer watch_;
-  asio::steady_timer stall_;  // runs while too much waits
+  asio::steady_timer ack_timer_;  // runs while a frame is in flight
+  bool ack_timeout_runs_ = false;
+  asio::steady_timer liveness_timer_;
+  asio::steady_timer stall_timer_;  // runs while too many messages are pending
   bool stall_runs_ = false;
-  Presence presence_{idle_timeout, slowest_reader, watch_interval, Presence::Clock::now()};
+  Liveness liveness_{idle_timeout, min_bytes_per_second, liveness_interval, Liveness::Clock::now()};
   std::uint64_t writes_ = 0;  // messages and frames so far
   bool pinging_ = false;
   RateLimit calls_;
-  RateLimit refusals_;
+  RateLimit rejections_;
   RateLimit pings_;
-  bool flooded_ = false;
+  bool rate_limited_ = false;
   std::string client_;  // address
   beast::flat_buffer incoming_;
   std::string viewer_;
-  std::deque<Message> waiting_;
-  std::size_t waiting_bytes_ = 0;
+  std::deque<Message> pending_;
+  std::size_t pending_bytes_ = 0;
   OutgoingBytes outgoing_{context_.outgoing_bytes};
   std::string text_in_flight_;
   std::optional<stream::OutgoingFrame> frame_in_flight_;
-  std::optional<std::string> farewell_;  // why to close once everything is sent
+  std::optional<std::string> session_end_reason_;  // set: close with it once everything is sent
   bool writing_ = false;
   bool closing_ = false;
   std::atomic<bool> announced_ = false;

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "gpu/pipelines/shader_report.hpp"
 #include "protocol/messages/kinds.hpp"
 #include "scene/environment.hpp"
 #include "scene/scene.hpp"
@@ -16,13 +17,18 @@
 namespace heliograph::render {
 
 struct EngineOptions {
-  std::string device;                  // part of a device's name, or empty: the best there is
-  std::string tracer = "auto";         // auto, or a protocol::TracerKind
-  bool validation = false;             // Vulkan validation layers on, every message an error
-  std::filesystem::path cache_folder;  // pipeline cache; empty: none
-  bool host_kernels = true;            // on devices that are processors, where a pass has one
-  bool as_gpu = false;                 // treat a processor as a GPU, for tests of that path
+  std::string device;                   // part of a device's name, or empty: the best there is
+  std::string tracer = "auto";          // auto, or a protocol::TracerKind
+  bool validation = false;              // Vulkan validation layers on, every message an error
+  std::filesystem::path cache_folder;   // pipeline cache; empty: none
+  bool host_kernels = true;             // on devices that are processors, where a pass has one
+  bool as_gpu = false;                  // treat a processor as a GPU, for tests of that path
+  std::filesystem::path shader_folder;  // GLSL compiled at run time; empty: the embedded shaders.
+                                        // Host kernels, which are not made of them, are off then.
 };
+
+/// What came of shader files that had changed.
+using gpu::ShaderReport;
 
 struct DeviceInfo {
   std::string name;
@@ -57,6 +63,11 @@ class Engine {
   protocol::TracerKind tracer() const;
   std::uint32_t max_image_size() const;  // pixels, either side
   std::uint64_t validation_messages() const;
+  /// Called on a thread of its own whenever files of the shader folder have changed, and at once
+  /// where they do not compile now.
+  void on_shader_change(std::function<void(const ShaderReport&)> listener);
+  /// Why the shader folder's newest files are not in use, a line per error; empty: they are.
+  std::string shader_error() const;
 
   /// Uploads, prefilters the environment and builds the acceleration structure.
   /// May run on any thread, beside rendering. What `progress` throws ends the upload and is passed
@@ -98,7 +109,8 @@ class Engine {
       const std::function<void(std::size_t image)>& image_done);
 
   const EngineOptions options_;
-  mutable std::mutex mutex_;  // guards parts_
+  mutable std::mutex mutex_;  // guards what follows
+  std::function<void(const ShaderReport&)> shader_listener_;
   std::shared_ptr<Parts> parts_;
 };
 

@@ -1,5 +1,6 @@
 #include "render/frame/engine_parts.hpp"
 #include "render/resources/scene_resources.hpp"
+#include "shaders/embedded.hpp"
 #include "tracing/tracer_choice.hpp"
 
 namespace heliograph::render {
@@ -41,11 +42,18 @@ std::shared_ptr<const Made> with_device(std::shared_ptr<Engine::Parts> parts,
   return {std::make_shared<const Both>(Both{std::move(parts), std::move(made)}), it};
 }
 
+std::unique_ptr<gpu::ShaderReload> make_shader_reload(const gpu::Device& device,
+                                                      const std::filesystem::path& folder) {
+  if (folder.empty()) return nullptr;
+  return std::make_unique<gpu::ShaderReload>(device, folder, shaders::all);
+}
+
 }  // namespace
 
 Engine::Parts::Parts(const EngineOptions& options)
     : instance(options.validation),
       device(instance, {options.device, options.cache_folder, options.as_gpu}),
+      shader_reload(make_shader_reload(device, options.shader_folder)),
       programs(device),
       environments(device, programs),
       tracer(tracing::make_tracer(options.tracer, device)),
@@ -55,7 +63,7 @@ Engine::Parts::Parts(const EngineOptions& options)
       around(make_environment_sampler(device, true)),
       clamped(make_environment_sampler(device, false)),
       info{device.report().name, device.report().driver, device_type(device.report().type)},
-      host_kernels(options.host_kernels) {}
+      host_kernels(options.host_kernels && !shader_reload) {}
 
 Engine::Engine(const EngineOptions& options)
     : options_(options), parts_(std::make_shared<Parts>(options)) {}
@@ -69,6 +77,7 @@ std::shared_ptr<Engine::Parts> Engine::current() const {
 void Engine::recreate() {
   auto made = std::make_shared<Parts>(options_);
   const std::lock_guard lock(mutex_);
+  if (made->shader_reload) made->shader_reload->listen(shader_listener_);
   parts_.swap(made);
 }
 
@@ -77,6 +86,17 @@ DeviceInfo Engine::device() const {
 }
 protocol::TracerKind Engine::tracer() const {
   return current()->tracer->kind();
+}
+
+void Engine::on_shader_change(std::function<void(const ShaderReport&)> listener) {
+  const std::lock_guard lock(mutex_);
+  shader_listener_ = std::move(listener);
+  if (parts_->shader_reload) parts_->shader_reload->listen(shader_listener_);
+}
+
+std::string Engine::shader_error() const {
+  const std::shared_ptr<Parts> parts = current();
+  return parts->shader_reload ? parts->shader_reload->error() : std::string();
 }
 
 std::uint32_t Engine::max_image_size() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gpu/device/device.hpp"
+#include "gpu/pipelines/shader_reload.hpp"
 #include "render/api/engine.hpp"
 #include "render/resources/environment/lit_environment.hpp"
 #include "render/resources/programs.hpp"
@@ -15,6 +16,7 @@ struct Engine::Parts {
 
   gpu::Instance instance;
   gpu::Device device;
+  std::unique_ptr<gpu::ShaderReload> shader_reload;  // null without a folder of shaders
   Programs programs;
   EnvironmentCache environments;
   std::unique_ptr<tracing::RayTracer> tracer;

@@ -16,6 +16,7 @@
 #include "render/resources/moving_scene.hpp"
 #include "render/resources/scene_motion.hpp"
 #include "render/views/debug_view.hpp"
+#include "render/views/text_overlay.hpp"
 #include "render/views/view_colors.hpp"
 
 namespace heliograph::render {
@@ -55,6 +56,7 @@ struct Renderer::State {
 
   void rebuild_frame_plan();
   void change_settings(const protocol::Settings& changed);
+  void use_newest_shaders();
   Frame output();
   std::optional<FloatImage> read(std::string_view name) const;
   std::uint32_t target_samples() const {
@@ -76,7 +78,9 @@ struct Renderer::State {
   FrameClock clock;
   float shown_mean_weight = 0.0f;  // in the last frame's output
   SceneMotion scene_motion;
-  bool stale = true;  // something changed since the last frame
+  bool stale = true;                  // something changed since the last frame
+  std::uint64_t shader_version = 0;   // of ShaderReload::version, as of the last frame
+  std::uint64_t program_version = 0;  // of ShaderReload::program_version, likewise
 
   std::shared_ptr<const SceneResources> scene;
   std::optional<MovingScene> moving;  // the scene in this renderer's pose
@@ -106,6 +110,17 @@ void Renderer::State::change_settings(const protocol::Settings& changed) {
   stale = true;
   if (includes(scope, protocol::ResetScope::history)) has_previous = false;
   if (includes(scope, protocol::ResetScope::accumulation)) restart_accumulation();
+}
+
+/// Other programs make other frames: histories of the old ones are invalid.
+void Renderer::State::use_newest_shaders() {
+  if (!parts.shader_reload) return;
+  shader_version = parts.shader_reload->version();
+  parts.shader_reload->apply();
+  const std::uint64_t programs = parts.shader_reload->program_version();
+  if (std::exchange(program_version, programs) == programs) return;
+  has_previous = false;
+  restart_accumulation();
 }
 
 std::optional<FloatImage> Renderer::State::read(std::string_view name) const {
@@ -217,6 +232,8 @@ protocol::Result<void> Renderer::set_settings(const protocol::Settings& settings
 }
 
 bool Renderer::needs_frame() const {
+  const auto& reload = state_->parts.shader_reload;
+  if (reload && reload->version() != state_->shader_version) return true;
   if (state_->stale || state_->clock.samples < state_->target_samples()) return true;
   if (state_->moving->needs_advance()) return true;
   // Without time between frames exposure does not change.
@@ -227,6 +244,7 @@ bool Renderer::needs_frame() const {
 Frame Renderer::render() {
   State& state = *state_;
   const auto start = std::chrono::steady_clock::now();
+  state.use_newest_shaders();
   state.stale = false;
   bool moves = state.moving->advance();
   // Without a frame before there is no motion since.
@@ -246,6 +264,9 @@ Frame Renderer::render() {
   ++state.clock.samples;
 
   Frame frame = state.output();
+  if (state.parts.shader_reload) {
+    draw_text(state.parts.shader_reload->error(), frame.rgba, frame.width, frame.height);
+  }
   frame.samples = state.clock.samples;
   frame.converged = !needs_frame();
   if (moves) {

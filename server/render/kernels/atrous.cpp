@@ -55,7 +55,7 @@ class Row {
     V flattened;  // 1 - Z * curve
     V footprint;  // half of a pixel's
     V bright_x, bright_y;
-    V reach_x, reach_y;  // 1 / what a difference of brightness may be
+    V inv_sigma_x, inv_sigma_y;  // 1 / what a difference of brightness may be
     V roughness_reach;
   };
   struct Sums {
@@ -124,7 +124,7 @@ class Row {
   }
 
   /// 1 / (sigma x standard deviation + smallest difference)
-  HWY_INLINE V reach(V variance) const {
+  HWY_INLINE V inv_sigma(V variance) const {
     const V noise = hn::Sqrt(hn::Max(variance, hn::Zero(d_)));
     const float smallest = visibility ? 1e-3f : 1e-4f;
     return hn::Div(set(1.0f), hn::MulAdd(set(c_.luminance_sigma), noise, set(smallest)));
@@ -144,17 +144,17 @@ class Row {
     c.bright_y = value.y;
     const bool smooth = has(shared::atrous_variance_prefilter);
     if constexpr (visibility) {
-      c.reach_x = reach(smooth ? smooth_variance(variance_x_, x) : value.z);
-      c.reach_y = reach(smooth ? smooth_variance(variance_y_, x) : value.w);
+      c.inv_sigma_x = inv_sigma(smooth ? smooth_variance(variance_x_, x) : value.z);
+      c.inv_sigma_y = inv_sigma(smooth ? smooth_variance(variance_y_, x) : value.w);
     } else {
-      c.reach_x = reach(smooth ? smooth_variance(variance_x_, x) : value.w);
+      c.inv_sigma_x = inv_sigma(smooth ? smooth_variance(variance_x_, x) : value.w);
       c.roughness_reach = hn::Div(set(1.0f), hn::MulAdd(set(0.2f), c.roughness, set(0.02f)));
     }
     return c;
   }
 
   HWY_INLINE void add_tap(const Center& c, const Texels& guide, const Texels& value, V offset_x,
-                          V offset_y, V distance, float weight, M wanted, Sums& sums) const {
+                          V offset_y, V distance, float weight, M requested, Sums& sums) const {
     const V rise = hn::MulAdd(c.slope_x, offset_x, hn::Mul(c.slope_y, offset_y));
     const V straight = hn::NegMulAdd(rise, c.curve, set(1.0f));
     const V off_plane =
@@ -164,10 +164,10 @@ class Row {
         hn::Div(hn::Neg(off_plane), hn::Max(hn::Mul(set(c_.depth_sigma), allowed), set(1e-30f)));
     const V cosine = clamped(guide_cosine(c.normal, guide), 1e-6f, 1.0f);
     exponent = hn::MulAdd(set(c_.normal_power), hn::Log(d_, cosine), exponent);
-    const M counts = hn::And(wanted, guide_is_surface(guide));
+    const M valid = hn::And(requested, guide_is_surface(guide));
     if constexpr (visibility) {
-      const V wx = tap_weight(exponent, c.bright_x, value.x, c.reach_x, weight, counts);
-      const V wy = tap_weight(exponent, c.bright_y, value.y, c.reach_y, weight, counts);
+      const V wx = tap_weight(exponent, c.bright_x, value.x, c.inv_sigma_x, weight, valid);
+      const V wy = tap_weight(exponent, c.bright_y, value.y, c.inv_sigma_y, weight, valid);
       sums.value.x = hn::MulAdd(wx, value.x, sums.value.x);
       sums.value.y = hn::MulAdd(wy, value.y, sums.value.y);
       sums.value.z = hn::MulAdd(hn::Mul(wx, wx), value.z, sums.value.z);
@@ -177,7 +177,8 @@ class Row {
     } else {
       const V rougher = hn::Abs(hn::Sub(guide_roughness(guide), c.roughness));
       exponent = hn::NegMulAdd(rougher, c.roughness_reach, exponent);
-      const V w = tap_weight(exponent, c.bright_x, brightness_x(value), c.reach_x, weight, counts);
+      const V w =
+          tap_weight(exponent, c.bright_x, brightness_x(value), c.inv_sigma_x, weight, valid);
       sums.value.x = hn::MulAdd(w, value.x, sums.value.x);
       sums.value.y = hn::MulAdd(w, value.y, sums.value.y);
       sums.value.z = hn::MulAdd(w, value.z, sums.value.z);
@@ -186,11 +187,11 @@ class Row {
     }
   }
 
-  HWY_INLINE V tap_weight(V exponent, V here, V there, V reach, float weight, M counts) const {
-    const V e = hn::NegMulAdd(hn::Abs(hn::Sub(here, there)), reach, exponent);
+  HWY_INLINE V tap_weight(V exponent, V here, V there, V inv_sigma, float weight, M valid) const {
+    const V e = hn::NegMulAdd(hn::Abs(hn::Sub(here, there)), inv_sigma, exponent);
     // Below e^-80 a weight is nothing; the exponential stays in its range.
     const V positive = hn::Mul(hn::Exp(d_, hn::Max(e, set(-80.0f))), set(weight));
-    return hn::IfThenElseZero(counts, positive);
+    return hn::IfThenElseZero(valid, positive);
   }
 
   HWY_INLINE V levels(V roughness) const {
@@ -248,12 +249,12 @@ class Row {
                           hn::IfThenElse(active, result.w, value.w), d_, out);
   }
 
-  /// Where all lanes take the same steps inside the picture, texels lie side by side.
+  /// Where all lanes take the same steps inside the frame, texels are contiguous.
   HWY_INLINE void add_taps(int x, M active, V step, const Center& c, Sums& sums) {
     const float least = hn::GetLane(hn::MinOfLanes(d_, hn::IfThenElse(active, step, set(1e9f))));
     const float most = hn::GetLane(hn::MaxOfLanes(d_, hn::IfThenElseZero(active, step)));
-    const int reach = c_.columns * static_cast<int>(most);
-    const bool inside = x >= reach && x + static_cast<int>(hn::Lanes(d_)) + reach <= job_.width;
+    const int radius = c_.columns * static_cast<int>(most);
+    const bool inside = x >= radius && x + static_cast<int>(hn::Lanes(d_)) + radius <= job_.width;
     const bool jittered = has(shared::atrous_jitter) && most > 4.0f;
     if (least == most && inside && !jittered) {
       add_straight_taps(x, static_cast<int>(most), active, c, sums);
@@ -270,9 +271,8 @@ class Row {
         if (i == 0 && j == 0) continue;
         const int at = 4 * (x + i * step);
         const auto dx = static_cast<float>(i * step), dy = static_cast<float>(j * step);
-        add_tap(c, load(row(job_.guide, y) + at), load(row(job_.signal, y) + at),
-                set(dx), set(dy), set(std::sqrt(dx * dx + dy * dy)), kernel(i) * kernel(j), active,
-                sums);
+        add_tap(c, load(row(job_.guide, y) + at), load(row(job_.signal, y) + at), set(dx), set(dy),
+                set(std::sqrt(dx * dx + dy * dy)), kernel(i) * kernel(j), active, sums);
       }
     }
   }
@@ -306,14 +306,14 @@ class Row {
     const VI inside_x = hn::Min(hn::Max(x, zero), hn::Set(di_, job_.width - 1));
     const VI inside_y = hn::Min(hn::Max(y, zero), hn::Set(di_, job_.height - 1));
     const M inside = hn::RebindMask(d_, hn::And(hn::Eq(x, inside_x), hn::Eq(y, inside_y)));
-    const M wanted = hn::And(active, inside);
-    if (hn::AllFalse(d_, wanted)) return;
+    const M requested = hn::And(active, inside);
+    if (hn::AllFalse(d_, requested)) return;
     const VI texel = hn::ShiftLeft<2>(inside_x);
     const VI in_guide = hn::Add(hn::Mul(inside_y, hn::Set(di_, pitch_)), texel);
     const VI in_signal = hn::Add(hn::Mul(inside_y, hn::Set(di_, signal_pitch_)), texel);
     add_tap(c, gather4(d_, row(job_.guide, 0), in_guide),
             gather4(d_, row(job_.signal, 0), in_signal), dx, dy,
-            hn::Sqrt(hn::MulAdd(dx, dx, hn::Mul(dy, dy))), weight, wanted, sums);
+            hn::Sqrt(hn::MulAdd(dx, dx, hn::Mul(dy, dy))), weight, requested, sums);
   }
 
   /// Of the B3 spline (1, 4, 6, 4, 1) / 16, against its middle.

@@ -18,11 +18,11 @@ class Composition {
   using M = hn::Mask<D>;
 
   /// What each signal of a pixel is multiplied by, and what needs none.
-  struct Shares {
+  struct Terms {
     Triple<V> own;
     Triple<V> direct;
     Triple<V> ambient;
-    Triple<V> mirror;
+    Triple<V> specular;
   };
 
  public:
@@ -57,26 +57,26 @@ class Composition {
   HWY_INLINE void block(const ViewedRow<D>& view, int x, int y) const {
     const V view_z = load(job_.motion, x, y).w;
     const M seen = hn::Gt(view_z, hn::Zero(d_));
-    Shares shares{black(), black(), black(), black()};
-    if (!hn::AllFalse(d_, seen)) add_surface(view, x, y, view_z, seen, shares);
+    Terms terms{black(), black(), black(), black()};
+    if (!hn::AllFalse(d_, seen)) add_surface(view, x, y, view_z, seen, terms);
     if (!hn::AllTrue(d_, seen)) {
-      shares.own = select(seen, shares.own, color(job_.background, x, y));
+      terms.own = select(seen, terms.own, color(job_.background, x, y));
     }
     const V shadow = load_one(job_.shadows, x, y), ambient = load_one(job_.ambient, x, y);
-    const bool mirrors = job_.constants.max_roughness >= 0.0f;
-    const Triple<V> raw = mirrors ? color(job_.specular, x, y) : black();
+    const bool reflects = job_.constants.max_roughness >= 0.0f;
+    const Triple<V> raw = reflects ? color(job_.specular, x, y) : black();
     if (!job_.denoised_visibility) {
-      store(shares, shadow, ambient, raw, job_.hdr, x, y);
+      store(terms, shadow, ambient, raw, job_.hdr, x, y);
       return;
     }
     const Quad<V> visibility = load(job_.denoised_visibility, x, y);
-    const Triple<V> mirrored = mirrors ? color(job_.denoised_specular, x, y) : black();
-    store(shares, visibility.x, visibility.y, mirrored, job_.hdr, x, y);
-    store(shares, shadow, ambient, raw, job_.hdr_noisy, x, y);
+    const Triple<V> specular = reflects ? color(job_.denoised_specular, x, y) : black();
+    store(terms, visibility.x, visibility.y, specular, job_.hdr, x, y);
+    store(terms, shadow, ambient, raw, job_.hdr_noisy, x, y);
   }
 
   HWY_INLINE void add_surface(const ViewedRow<D>& view, int x, int y, V view_z, M seen,
-                              Shares& shares) const {
+                              Terms& terms) const {
     const Quad<V> root = load_unorm8(d_, row_of<const std::uint32_t>(job_.base_color, y) + x);
     const Quad<V> packed = load_unorm8(d_, row_of<const std::uint32_t>(job_.surface, y) + x);
     const Triple<V> base_color{root.x * root.x, root.y * root.y, root.z * root.z};
@@ -87,33 +87,34 @@ class Composition {
       const SurfaceMaterial<V> m =
           make_material(d_, base_color, packed.y, packed.x, octahedral_decode(encoded.x, encoded.y),
                         octahedral_decode(encoded.z, encoded.w), view.to_eye(x), split_sum_);
-      add_lit(view, x, view_z, lit, m, root.w, shares);
+      add_lit(view, x, view_z, lit, m, root.w, terms);
     }
-    shares.own = select(unlit, base_color, shares.own);
+    terms.own = select(unlit, base_color, terms.own);
     if (enabled(shared::frame_emissive)) {
       const auto* emissive = row_of<const std::uint32_t>(job_.emissive, y) + 2 * x;
-      shares.own = select(seen, shares.own + load_half3(d_, emissive), shares.own);
+      terms.own = select(seen, terms.own + load_half3(d_, emissive), terms.own);
     }
   }
 
   HWY_INLINE void add_lit(const ViewedRow<D>& view, int x, V view_z, M lit,
-                          const SurfaceMaterial<V>& m, V occlusion, Shares& shares) const {
+                          const SurfaceMaterial<V>& m, V occlusion, Terms& terms) const {
     if (enabled(shared::frame_direct)) {
       const Triple<V> position = view.world_position(x, view_z);
       for (const shared::Light& light : job_.lights) {
         Triple<V> radiance;
         if (light_contribution(d_, light, m, position, lit, radiance)) {
-          shares.direct = shares.direct + radiance;
+          terms.direct = terms.direct + radiance;
         }
       }
     }
     if (enabled(shared::frame_environment_diffuse)) {
-      shares.ambient =
-          select(lit, m.diffuse_albedo * irradiance(m.normal) * occlusion, shares.ambient);
+      terms.ambient =
+          select(lit, m.diffuse_albedo * irradiance(m.normal) * occlusion, terms.ambient);
     }
     // Roughness is stored in steps of 1 / 255: a little more than half of one is still the same.
-    const M traced = hn::And(lit, hn::Le(m.roughness, set(job_.constants.max_roughness + 0.6f / 255.0f)));
-    shares.mirror = select(traced, m.specular_albedo, shares.mirror);
+    const M traced =
+        hn::And(lit, hn::Le(m.roughness, set(job_.constants.max_roughness + 0.6f / 255.0f)));
+    terms.specular = select(traced, m.specular_albedo, terms.specular);
   }
 
   /// environment_irradiance() of shaders/lib/lighting/environment.glsl
@@ -133,13 +134,13 @@ class Composition {
            set(job_.frame.environment_intensity);
   }
 
-  HWY_INLINE void store(const Shares& shares, V shadow, V ambient, const Triple<V>& mirrored,
+  HWY_INLINE void store(const Terms& terms, V shadow, V ambient, const Triple<V>& specular,
                         const gpu::HostView& to, int x, int y) const {
     const V one = set(1.0f);
     const V lit = enabled(shared::frame_shadows) ? shadow : one;
     const V open = enabled(shared::frame_ambient_occlusion) ? ambient : one;
     Triple<V> radiance =
-        shares.own + shares.direct * lit + shares.ambient * open + shares.mirror * mirrored;
+        terms.own + terms.direct * lit + terms.ambient * open + terms.specular * specular;
     // One bad pixel must not spread through the history.
     radiance = select(is_bad(radiance), black(), radiance);
     store4(d_, {radiance.x, radiance.y, radiance.z, one}, row_of<float>(to, y) + 4 * x);

@@ -46,11 +46,11 @@ class Shading {
   std::size_t block(int first, int last, shared::Ray* passed) const {
     const Integer lane = hn::Iota(integer_tag, first);
     const Integer index = hn::Min(lane, integer(last - 1));
-    const Mask wanted = float_mask(hn::Lt(lane, integer(last)));
+    const Mask requested = float_mask(hn::Lt(lane, integer(last)));
     RayLanes ray = load_rays(job_.rays.rays, index);
     const PixelLanes pixel = unpack_pixel(ray.pixel);
-    const HitLanes hit = load_hits(job_.hits, index, wanted);
-    const Mask missed = hn::AndNot(hit.met, wanted);
+    const HitLanes hit = load_hits(job_.hits, index, requested);
+    const Mask missed = hn::AndNot(hit.met, requested);
     if (!none(missed)) store_nothing(pixel, missed);
     if (none(hit.met)) return 0;
     const Float width = hn::MulAdd(hit.t, number(cone_.y), number(cone_.x));
@@ -66,10 +66,10 @@ class Shading {
   HWY_INLINE Mask goes_on(const RayLanes& ray, const HitLanes& hit, const SurfaceLanes& s) const {
     const Mask back = hn::Gt(dot(s.front, ray.direction), zero());
     Mask passes = hn::AndNot(s.has(shared::material_double_sided), back);
-    // Tracers ask the nearest texel; the picture shows the filtered one, as drawn triangles do.
+    // Tracers test the nearest texel; the frame shows the filtered one, as rasterised triangles do.
     const Mask masked = s.has(shared::material_alpha_mask);
     passes = hn::Or(passes, hn::And(masked, hn::Lt(s.alpha, s.alpha_cutoff)));
-    // Of blended surfaces only what hides all behind it: the rest is drawn over the picture.
+    // Of blended surfaces only the opaque part: the rest is blended over the frame.
     const Mask blends = s.has(shared::material_alpha_blend);
     passes = hn::Or(passes, hn::And(blends, hn::Lt(s.alpha, number(shared::least_solid))));
     return hn::And(passes, hit.met);
@@ -122,14 +122,14 @@ class Shading {
     const Records instance(job_.scene.instances, hit.instance, sizeof(shared::Instance) / 4);
     const MatrixLanes before(instance, HELIOGRAPH_WORD(shared::Instance, previous_world));
     const Float3 previous = before.point(previous_local(instance, hit, s));
-    const auto place = [](const glm::mat4& m, const Float3& at) {
+    const auto project = [](const glm::mat4& m, const Float3& at) {
       const Float by = transform_row(m, 3, at);
       return Float2{transform_row(m, 0, at) / by, transform_row(m, 1, at) / by};
     };
-    const Float2 now = place(frame_.unjittered, s.position);
-    const Float2 then = place(frame_.previous_unjittered, previous);
+    const Float2 now = project(frame_.unjittered, s.position);
+    const Float2 then = project(frame_.previous_unjittered, previous);
     const Float z_before = hn::Neg(transform_row(frame_.previous_view, 2, previous));
-    // Equal places leave nothing: no product stands where the compiler might fuse it with this.
+    // Equal positions give exactly 0: no product is here that the compiler could fuse with this.
     return {(then.x - now.x) * number(0.5f), (then.y - now.y) * number(0.5f), z_before - view_z,
             view_z};
   }
@@ -141,9 +141,9 @@ class Shading {
     Texels<1> base_color, surface, instance;
   };
 
-  HWY_INLINE void put(const AllTexels& texels, const PixelLanes& pixel, Mask wanted) const {
-    const Places at(pixel);
-    for_each_lane(wanted, [&](std::size_t lane) {
+  HWY_INLINE void put(const AllTexels& texels, const PixelLanes& pixel, Mask requested) const {
+    const TexelIndices at(pixel);
+    for_each_lane(requested, [&](std::size_t lane) {
       texels.normals.put(job_.normals, lane, at);
       texels.motion.put(job_.motion, lane, at);
       texels.depth_slope.put(job_.depth_slope, lane, at);
@@ -155,8 +155,8 @@ class Shading {
   }
 
   HWY_INLINE void store(const PixelLanes& pixel, const HitLanes& hit, const SurfaceLanes& s,
-                        Mask wanted) const {
-    if (none(wanted)) return;
+                        Mask requested) const {
+    if (none(requested)) return;
     const Float view_z = hn::Neg(transform_row(frame_.view, 2, s.position));
     const Float2 shading = octahedral_encode(s.normal), flat = octahedral_encode(s.geometric);
     const auto half = [](Float low, Float high) {
@@ -173,7 +173,7 @@ class Shading {
         Texels<1>(as_float(pack_unorm8(color))),
         Texels<1>(as_float(pack_unorm8({s.roughness, s.metallic, unlit, zero()}))),
         Texels<1>(as_float(hn::Add(hit.instance, integer(1))))};
-    put(out, pixel, wanted);
+    put(out, pixel, requested);
   }
 
   HWY_INLINE void store_nothing(const PixelLanes& pixel, Mask missed) const {

@@ -67,7 +67,7 @@ class Presentation {
     const Triple<V> shown =
         tone_map({hn::Max(color.x, zero) * factor, hn::Max(color.y, zero) * factor,
                   hn::Max(color.z, zero) * factor});
-    // The same noise in every frame, so that a finished picture stands still.
+    // The same noise in every frame, so that a converged frame does not change.
     V a, b;
     const DU du;
     dither_.at(hn::Iota(du, static_cast<std::uint32_t>(x)), static_cast<std::uint32_t>(y), a, b);

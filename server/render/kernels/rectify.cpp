@@ -74,15 +74,15 @@ class WindowBoxes {
 
   HWY_INLINE Box box(int x) const {
     const V one = hn::Set(d_, 1.0f), zero = hn::Zero(d_);
-    const V share = one / hn::Max(across(count_row, x), one);
+    const V inv_count = one / hn::Max(across(count_row, x), one);
     const V scale = hn::Set(d_, job_.constants.scale);
     Box made;
     for (int c = 0; c < channels; ++c) {
-      const V mean = across(c, x) * share;
-      const V spread = hn::NegMulAdd(mean, mean, across(channels + c, x) * share);
-      const V reach = scale * hn::Sqrt(hn::Max(spread, zero));
-      made.low[c] = mean - reach;
-      made.high[c] = mean + reach;
+      const V mean = across(c, x) * inv_count;
+      const V spread = hn::NegMulAdd(mean, mean, across(channels + c, x) * inv_count);
+      const V half_extent = scale * hn::Sqrt(hn::Max(spread, zero));
+      made.low[c] = mean - half_extent;
+      made.high[c] = mean + half_extent;
     }
     return made;
   }
@@ -109,11 +109,11 @@ HWY_INLINE V held_between(V value, V low, V high) {
 
 /// shortened_history() of shaders/lib/denoise/rectification.glsl
 template <class V>
-HWY_INLINE V shortened_history(V frames, V moved, V reach) {
+HWY_INLINE V shortened_history(V frames, V moved, V half_extent) {
   const hn::DFromV<V> d;
   const V one = hn::Set(d, 1.0f);
-  const V share = moved / hn::Max(moved + reach, hn::Set(d, 1e-6f));
-  return hn::Max(frames * (one - share), hn::Min(frames, one));
+  const V moved_fraction = moved / hn::Max(moved + half_extent, hn::Set(d, 1e-6f));
+  return hn::Max(frames * (one - moved_fraction), hn::Min(frames, one));
 }
 
 /// Of a neighbourhood whose mean change lies between `low` and `high`, what is beyond doubt
@@ -127,8 +127,9 @@ template <class V>
 HWY_INLINE V frames_under_motion(V motion) {
   const hn::DFromV<V> d;
   const V logarithm = hn::Log(d, clamped(motion, 1e-6f, 1.0f));
-  const V power = hn::Exp(d, hn::Set(d, -2.0f / 3.0f) * logarithm);
-  return hn::MulAdd(hn::Set(d, 0.63f), power - hn::Set(d, 1.0f), hn::Set(d, 1.0f));
+  const V power = hn::Exp(d, hn::Set(d, shared::motion_history_exponent) * logarithm);
+  return hn::MulAdd(hn::Set(d, shared::motion_history_factor), power - hn::Set(d, 1.0f),
+                    hn::Set(d, 1.0f));
 }
 
 /// What both signals have in common: Kernel::load() gives what the boxes are made of, and
@@ -153,8 +154,8 @@ class Rectification {
       for (int start = 0; start < job_.width; start += lanes) {
         const int x = std::min(start, job_.width - lanes);
         const V view_z = load4(d_, row_of<const float>(job_.guide, y) + 4 * x).w;
-        const M wanted = hn::And(hn::Gt(view_z, hn::Zero(d_)), from_column(d_, x, start));
-        if (!hn::AllFalse(d_, wanted)) hold(kernel, boxes, x, y, wanted);
+        const M requested = hn::And(hn::Gt(view_z, hn::Zero(d_)), from_column(d_, x, start));
+        if (!hn::AllFalse(d_, requested)) hold(kernel, boxes, x, y, requested);
       }
     }
   }
@@ -172,7 +173,7 @@ class Rectification {
 
  private:
   HWY_INLINE void hold(const Kernel& kernel, const WindowBoxes<D, channels>& boxes, int x, int y,
-                       M wanted) const {
+                       M requested) const {
     float* const signal = row_of<float>(job_.signal, y) + 4 * x;
     float* const history = row_of<float>(job_.history_length, y) + 4 * x;
     const Quad<V> value = load4(d_, signal), state = load4(d_, history);
@@ -182,8 +183,8 @@ class Rectification {
     } else {
       kernel.hold(boxes.box(x), value, state, new_value, new_state);
     }
-    store4(d_, select(wanted, new_value, value), signal);
-    store4(d_, select(wanted, new_state, state), history);
+    store4(d_, select(requested, new_value, value), signal);
+    store4(d_, select(requested, new_state, state), history);
   }
 };
 
@@ -260,8 +261,8 @@ class SpecularRectification : public Rectification<D, SpecularRectification<D>, 
                          held_between(color.y, box.low[1], box.high[1]),
                          held_between(color.z, box.low[2], box.high[2])};
     const V moved = hn::Abs(held.x - color.x);
-    const V reach = hn::Set(d_, 0.5f) * (box.high[0] - box.low[0]);
-    const V frames = shortened_history(state.x, moved, reach);
+    const V half_extent = hn::Set(d_, 0.5f) * (box.high[0] - box.low[0]);
+    const V frames = shortened_history(state.x, moved, half_extent);
     const V rest = held.x - held.z;
     new_value = {rest + held.y, held.x + held.z, rest - held.y,
                  value.w * this->growth(state.x, frames)};
@@ -274,11 +275,13 @@ class SpecularRectification : public Rectification<D, SpecularRectification<D>, 
     const V change = certain_change(box.low[0], box.high[0]);
     const V bright = hn::Abs(to_ycocg({value.x, value.y, value.z}).x);
     const V frames = hn::Min(state.x, frames_under_motion(change / (bright + change + smallest)));
-    const V share = one / frames - one / state.x;
+    const V weight_change = one / frames - one / state.x;
     const Quad<V> sampled = load4(d_, row_of<const float>(job_.fast_history, y) + 4 * x);
-    const V moved = to_ycocg({sampled.x, sampled.y, sampled.z}).x * share;
-    new_value = {hn::MulAdd(sampled.x, share, value.x), hn::MulAdd(sampled.y, share, value.y),
-                 hn::MulAdd(sampled.z, share, value.z), value.w * this->growth(state.x, frames)};
+    const V moved = to_ycocg({sampled.x, sampled.y, sampled.z}).x * weight_change;
+    new_value = {hn::MulAdd(sampled.x, weight_change, value.x),
+                 hn::MulAdd(sampled.y, weight_change, value.y),
+                 hn::MulAdd(sampled.z, weight_change, value.z),
+                 value.w * this->growth(state.x, frames)};
     new_state = {frames, hn::Abs(moved), state.z, state.w};
   }
 

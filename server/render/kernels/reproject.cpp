@@ -27,7 +27,7 @@ class Reprojection {
     V depth_allowance;
     VI instance;
   };
-  struct Found {
+  struct Match {
     V x, y;
     V taps;     // bits of those that are valid, as a number
     V nowhere;  // 1 where there is none
@@ -53,13 +53,13 @@ class Reprojection {
   HWY_INLINE V set(float value) const { return hn::Set(d_, value); }
 
   /// Beyond the border the neighbour on the other side stands in.
-  static int mirrored(int i, int size) {
+  static int reflected_index(int i, int size) {
     const int inside = i < 0 ? 1 : i >= size ? size - 2 : i;
     return std::clamp(inside, 0, size - 1);
   }
 
   HWY_INLINE void decode_normals(const BandScratch& normals, int y) const {
-    const float* const from = row_of<const float>(job_.normals, mirrored(y, job_.height));
+    const float* const from = row_of<const float>(job_.normals, reflected_index(y, job_.height));
     const int lanes = static_cast<int>(hn::Lanes(d_));
     for (int i = 0; i < job_.width; i += lanes) {
       const int x = std::min(i, job_.width - lanes);
@@ -71,8 +71,8 @@ class Reprojection {
     }
     for (int channel = 0; channel < 3; ++channel) {
       float* const row = normals.row(channel, y);
-      row[-1] = row[mirrored(-1, job_.width)];
-      row[job_.width] = row[mirrored(job_.width, job_.width)];
+      row[-1] = row[reflected_index(-1, job_.width)];
+      row[job_.width] = row[reflected_index(job_.width, job_.width)];
     }
   }
 
@@ -89,42 +89,42 @@ class Reprojection {
     return hn::Max(hn::Min(to(-1, 0), to(1, 0)), hn::Min(to(0, -1), to(0, 1)));
   }
 
-  HWY_INLINE M is_same(VI x, VI y, M wanted, const Expected& expected) const {
-    const M asked = hn::And(wanted, bounds_.contain(x, y));
-    if (hn::AllFalse(d_, asked)) return asked;
-    const Spot<D> spot = bounds_.spot(x, y);
-    const auto instance = hn::Eq(spot.word(job_.previous_instance), expected.instance);
-    M same = hn::And(asked, hn::RebindMask(d_, instance));
-    const V found = spot.last_of_four(job_.previous_motion);
-    same = hn::And(same, hn::Gt(found, hn::Zero(d_)));
-    same = hn::And(same, hn::Le(hn::Abs(found - expected.view_z), expected.depth_allowance));
+  HWY_INLINE M is_same(VI x, VI y, M requested, const Expected& expected) const {
+    const M candidates = hn::And(requested, bounds_.contain(x, y));
+    if (hn::AllFalse(d_, candidates)) return candidates;
+    const TexelGather<D> texels = bounds_.gather(x, y);
+    const auto instance = hn::Eq(texels.word(job_.previous_instance), expected.instance);
+    M same = hn::And(candidates, hn::RebindMask(d_, instance));
+    const V previous_z = texels.last_of_four(job_.previous_motion);
+    same = hn::And(same, hn::Gt(previous_z, hn::Zero(d_)));
+    same = hn::And(same, hn::Le(hn::Abs(previous_z - expected.view_z), expected.depth_allowance));
     if (hn::AllFalse(d_, same)) return same;
-    const Pair<V> encoded = spot.first_two(job_.previous_normals);
+    const Pair<V> encoded = texels.first_two(job_.previous_normals);
     const Triple<V> normal = octahedral_decode(encoded.x, encoded.y);
     same = hn::And(same, hn::Le(distance(expected.normal, normal), expected.normal_allowance));
     return hn::And(same, hn::Gt(dot(expected.normal, normal), hn::Zero(d_)));
   }
 
-  HWY_INLINE Found find(V x, V y, M wanted, const Expected& expected) const {
+  HWY_INLINE Match find(V x, V y, M requested, const Expected& expected) const {
     HistoryTaps<D> taps(x, y);
     const V zero = hn::Zero(d_);
     V bits = zero;
     for (int i = 0; i < 4; ++i) {
-      const M weighs = hn::And(wanted, hn::Gt(taps.weights[i], zero));
+      const M weighs = hn::And(requested, hn::Gt(taps.weights[i], zero));
       const M same = is_same(taps.tap_x(i), taps.tap_y(i), weighs, expected);
       bits = bits + hn::IfThenElseZero(same, set(static_cast<float>(1 << i)));
       taps.weights[i] = hn::IfThenElseZero(same, taps.weights[i]);
     }
     const V sum = taps.weights[0] + taps.weights[1] + taps.weights[2] + taps.weights[3];
     const M known = hn::Ge(sum, set(0.01f));
-    Found found{x, y, hn::IfThenElseZero(known, bits), hn::IfThenZeroElse(known, set(1.0f))};
-    const M missing = hn::AndNot(known, wanted);
-    if (!hn::AllFalse(d_, missing)) find_nearest(x, y, missing, expected, found);
-    return found;
+    Match result{x, y, hn::IfThenElseZero(known, bits), hn::IfThenZeroElse(known, set(1.0f))};
+    const M missing = hn::AndNot(known, requested);
+    if (!hn::AllFalse(d_, missing)) find_nearest(x, y, missing, expected, result);
+    return result;
   }
 
   /// The nearest of the 3x3 pixels about the position that shows the surface, as an exact position.
-  HWY_INLINE void find_nearest(V x, V y, M missing, const Expected& expected, Found& found) const {
+  HWY_INLINE void find_nearest(V x, V y, M missing, const Expected& expected, Match& result) const {
     V nearest = set(1e9f);
     for (int i = 0; i < 9; ++i) {
       const V column = clamped(hn::Floor(x) + set(static_cast<float>(i % 3 - 1)), -1e6f, 1e6f);
@@ -135,10 +135,10 @@ class Reprojection {
       const M nearer = hn::And(missing, hn::Lt(far, nearest));
       const M same = is_same(hn::ConvertTo(di_, column), hn::ConvertTo(di_, row), nearer, expected);
       nearest = hn::IfThenElse(same, far, nearest);
-      found.x = hn::IfThenElse(same, middle_x, found.x);
-      found.y = hn::IfThenElse(same, middle_y, found.y);
-      found.taps = hn::IfThenElse(same, set(1.0f), found.taps);
-      found.nowhere = hn::IfThenZeroElse(same, found.nowhere);
+      result.x = hn::IfThenElse(same, middle_x, result.x);
+      result.y = hn::IfThenElse(same, middle_y, result.y);
+      result.taps = hn::IfThenElse(same, set(1.0f), result.taps);
+      result.nowhere = hn::IfThenZeroElse(same, result.nowhere);
     }
   }
 
@@ -148,7 +148,7 @@ class Reprojection {
     const M seen = hn::Gt(moved.w, zero);
     const V here_x = hn::Iota(d_, static_cast<float>(x)) + half;
     const V here_y = set(static_cast<float>(y) + 0.5f);
-    Found found{here_x, here_y, zero, hn::IfThenElseZero(seen, one)};
+    Match result{here_x, here_y, zero, hn::IfThenElseZero(seen, one)};
     Quad<V> guide{zero, zero, zero, zero};
     if (!hn::AllFalse(d_, seen)) {
       const Triple<V> normal = normal_at(normals, x, y);
@@ -161,14 +161,14 @@ class Reprojection {
         const Expected expected = expect(normals, view, x, y, moved, normal);
         const V was_x = hn::MulAdd(moved.x, set(static_cast<float>(job_.width)), here_x);
         const V was_y = hn::MulAdd(moved.y, set(static_cast<float>(job_.height)), here_y);
-        const Found moved_to = find(was_x, was_y, seen, expected);
-        found = {hn::IfThenElse(seen, moved_to.x, here_x), hn::IfThenElse(seen, moved_to.y, here_y),
-                 hn::IfThenElseZero(seen, moved_to.taps),
-                 hn::IfThenElseZero(seen, moved_to.nowhere)};
+        const Match moved_to = find(was_x, was_y, seen, expected);
+        result = {hn::IfThenElse(seen, moved_to.x, here_x),
+                  hn::IfThenElse(seen, moved_to.y, here_y), hn::IfThenElseZero(seen, moved_to.taps),
+                  hn::IfThenElseZero(seen, moved_to.nowhere)};
       }
     }
     store4(d_, guide, row_of<float>(job_.guide, y) + 4 * x);
-    store4(d_, {found.x, found.y, found.taps, found.nowhere},
+    store4(d_, {result.x, result.y, result.taps, result.nowhere},
            row_of<float>(job_.reprojection, y) + 4 * x);
   }
 

@@ -8,7 +8,7 @@ namespace heliograph::render::kernels {
 namespace {
 
 /// Numbers that are none must not spread through filters and histories.
-float scrub(float value) {
+float sanitize(float value) {
   return std::isfinite(value) ? value : 0.0f;
 }
 
@@ -22,8 +22,8 @@ void visibility_combine(const CombineJob& job) {
       const float* const ambient = job.ambient.row<const float>(row);
       float* to = job.visibility.row<float>(row);
       for (int x = 0; x < job.width; ++x, to += 4) {
-        to[0] = scrub(shadows[x]);
-        to[1] = scrub(ambient[x]);
+        to[0] = sanitize(shadows[x]);
+        to[1] = sanitize(ambient[x]);
         to[2] = to[3] = 0.0f;
       }
     }

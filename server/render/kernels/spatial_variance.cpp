@@ -80,11 +80,11 @@ class SpatialVariance {
     const V frames_x = history.x, frames_y = visibility_ ? history.y : history.x;
     const Quad<V> guide = load(job_.guide, x, y);
     const V enough = set(job_.constants.spatial_variance_frames);
-    M wanted = hn::And(guide_is_surface(guide), hn::Lt(hn::Min(frames_x, frames_y), enough));
-    wanted = hn::And(wanted, from_column(d_, x, start));
-    if (hn::AllFalse(d_, wanted)) return;
+    M requested = hn::And(guide_is_surface(guide), hn::Lt(hn::Min(frames_x, frames_y), enough));
+    requested = hn::And(requested, from_column(d_, x, start));
+    if (hn::AllFalse(d_, requested)) return;
     const Sums sums = gathered(center(view, guide, x, y), x, y);
-    wanted = hn::And(wanted, hn::Gt(sums.total, hn::Zero(d_)));
+    requested = hn::And(requested, hn::Gt(sums.total, hn::Zero(d_)));
     const V one = set(1.0f);
     const V alone = clamped(
         (set(enough_neighbours) - sums.total) * set(1.0f / (enough_neighbours - 2.0f)), 0.0f, 1.0f);
@@ -100,10 +100,12 @@ class SpatialVariance {
     } else {
       changed.w = hn::Max(variance(mean.z, mean.w, frames_x), value.w);
     }
-    store4(d_, select(wanted, changed, value), signal);
+    store4(d_, select(requested, changed, value), signal);
   }
 
-  HWY_INLINE V mixed(V from, V to, V share) const { return hn::MulAdd(to - from, share, from); }
+  HWY_INLINE V mixed(V from, V to, V fraction) const {
+    return hn::MulAdd(to - from, fraction, from);
+  }
   HWY_INLINE Quad<V> mixed(const Sums& sums, V alone) const {
     const V strict = set(1.0f) / sums.total;
     const V loose = set(1.0f) / hn::Max(sums.loose_total, set(1e-6f));
@@ -147,8 +149,8 @@ class SpatialVariance {
                   from_column(d_, x, x), sums);
         } else {
           const auto column = hn::Iota(DI(), x + dx), row = hn::Set(DI(), y + dy);
-          const Spot<D> spot = bounds_.spot(column, row);
-          add_tap(c, dx, dy, spot.four(job_.guide), spot.four(job_.moments),
+          const TexelGather<D> texels = bounds_.gather(column, row);
+          add_tap(c, dx, dy, texels.four(job_.guide), texels.four(job_.moments),
                   bounds_.contain(column, row), sums);
         }
       }
@@ -159,7 +161,7 @@ class SpatialVariance {
   /// Weights of shaders/lib/denoise/edge_stopping.glsl
   HWY_INLINE void add_tap(const Center& c, int dx, int dy, const Quad<V>& guide,
                           const Quad<V>& moments, M inside, Sums& sums) const {
-    const M counts = hn::And(inside, guide_is_surface(guide));
+    const M valid = hn::And(inside, guide_is_surface(guide));
     const float away = std::sqrt(static_cast<float>(dx * dx + dy * dy));
     const V rise =
         hn::MulAdd(c.slope.x, set(static_cast<float>(dx)), c.slope.y * set(static_cast<float>(dy)));
@@ -172,11 +174,12 @@ class SpatialVariance {
     const V exponent = hn::MulAdd(set(128.0f), hn::Log(d_, clamped(cosine, 1e-6f, 1.0f)),
                                   hn::Neg(off_plane / hn::Max(allowed, set(1e-30f))));
     // Below e^-80 a weight is nothing; the exponential stays in its range.
-    const V weight = hn::IfThenElseZero(counts, hn::Exp(d_, hn::Max(exponent, set(-80.0f))));
+    const V weight = hn::IfThenElseZero(valid, hn::Exp(d_, hn::Max(exponent, set(-80.0f))));
     add(weight, moments, sums.moments, sums.total);
-    const V apart = hn::Abs(guide.w - c.view_z) / (set(nearby_depth) * c.view_z);
-    const V loose = hn::Exp(d_, hn::Max(hn::Neg(apart), set(-80.0f))) * hn::Max(cosine, zero);
-    add(hn::IfThenElseZero(counts, loose), moments, sums.loose_moments, sums.loose_total);
+    const V depth_difference = hn::Abs(guide.w - c.view_z) / (set(nearby_depth) * c.view_z);
+    const V loose =
+        hn::Exp(d_, hn::Max(hn::Neg(depth_difference), set(-80.0f))) * hn::Max(cosine, zero);
+    add(hn::IfThenElseZero(valid, loose), moments, sums.loose_moments, sums.loose_total);
   }
 
   static HWY_INLINE void add(V weight, const Quad<V>& moments, Quad<V>& sum, V& total) {

@@ -36,16 +36,16 @@ class Generation {
   /// @return how many rays there are, which lie at `made`
   HWY_INLINE std::size_t block(const PixelLanes& cell, Mask inside, shared::Ray* made) const {
     const PixelLanes pixel = traced_pixel(cell);
-    const Integer motion = place(job_.motion, pixel, 4);
+    const Integer motion = texel_index(job_.motion, pixel, 4);
     const Float view_z = gather(job_.motion.row<const float>(0), hn::Add(motion, integer(3)));
     const Float4 packed = unorm8(job_.surface, pixel);
-    Mask wanted = hn::And(inside, hn::Gt(view_z, zero()));
-    wanted = hn::And(wanted, hn::Le(packed.z, number(0.5f)));  // not unlit
-    if (none(wanted)) return 0;
+    Mask requested = hn::And(inside, hn::Gt(view_z, zero()));
+    requested = hn::And(requested, hn::Le(packed.z, number(0.5f)));  // not unlit
+    if (none(requested)) return 0;
 
     const Float4 color = unorm8(job_.base_color, pixel);
     const Float4 encoded =
-        gather4(tag, job_.normals.row<const float>(0), place(job_.normals, pixel, 4));
+        gather4(tag, job_.normals.row<const float>(0), texel_index(job_.normals, pixel, 4));
     const MaterialLanes m =
         make_material(tag, Float3{color.x * color.x, color.y * color.y, color.z * color.z},
                       packed.y, packed.x, octahedral_decode(encoded.x, encoded.y),
@@ -58,49 +58,50 @@ class Generation {
     ray.user = {s.weight.x / at_least(albedo.x, 1e-3f), s.weight.y / at_least(albedo.y, 1e-3f),
                 s.weight.z / at_least(albedo.z, 1e-3f)};
     const auto positive = [](Float v) { return hn::Gt(v, zero()); };
-    const Mask counts =
+    const Mask valid =
         hn::Or(positive(ray.user.x), hn::Or(positive(ray.user.y), positive(ray.user.z)));
     if (job_.directions) {
-      put_directions(cell, s, wanted);
+      put_directions(cell, s, requested);
       ray.user = numbers(1.0f);
     }
     // Roughness is stored in steps of 1 / 255: a little more than half of one is still the same.
-    const Mask mirrors = hn::Le(m.roughness, number(job_.constants.max_roughness + 0.6f / 255.0f));
+    const Mask smooth = hn::Le(m.roughness, number(job_.constants.max_roughness + 0.6f / 255.0f));
     ray.origin = offset_origin(camera_.world_position(pixel, view_z), m.geometric, view_z);
     ray.direction = s.direction;
     ray.t_min = zero();
     ray.t_max = number(1e30f);
     ray.pixel = pack_pixel(pixel);
-    return store_rays(ray, hn::And(wanted, hn::And(mirrors, counts)), made);
+    return store_rays(ray, hn::And(requested, hn::And(smooth, valid)), made);
   }
 
  private:
   /// Word of a pixel in an image of `words` words a texel.
-  static HWY_INLINE Integer place(const gpu::HostView& image, const PixelLanes& p, int words) {
+  static HWY_INLINE Integer texel_index(const gpu::HostView& image, const PixelLanes& p,
+                                        int words) {
     const auto pitch = static_cast<int>(image.row_pitch / sizeof(float));
     return hn::Add(hn::Mul(p.y, integer(pitch)), hn::Mul(p.x, integer(words)));
   }
   static HWY_INLINE Float4 unorm8(const gpu::HostView& image, const PixelLanes& p) {
-    return unpack_unorm8(gather(image.data, place(image, p, 1)));
+    return unpack_unorm8(gather(image.data, texel_index(image, p, 1)));
   }
 
-  /// The pixel that traces for a cell: of 2 x 2 all take turns.
+  /// The pixel that traces for a cell: of 2 x 2 another in every frame.
   HWY_INLINE PixelLanes traced_pixel(const PixelLanes& cell) const {
     if (scale_ == 1) return cell;
-    const std::uint32_t turn = frame_.sample_index & 3u;
+    const std::uint32_t phase = frame_.sample_index & 3u;
     const auto within = [&](Integer c, std::uint32_t step, std::uint32_t size) {
       const Integer at = hn::Add(hn::Add(c, c), integer(static_cast<int>(step)));
       return hn::Min(at, integer(static_cast<int>(size) - 1));
     };
-    return {within(cell.x, (turn ^ (turn >> 1u)) & 1u, frame_.extent.x),
-            within(cell.y, turn & 1u, frame_.extent.y)};
+    return {within(cell.x, (phase ^ (phase >> 1u)) & 1u, frame_.extent.x),
+            within(cell.y, phase & 1u, frame_.extent.y)};
   }
 
   HWY_INLINE void put_directions(const PixelLanes& cell, const SpecularSample& s,
-                                 Mask wanted) const {
+                                 Mask requested) const {
     const Texels<4> texels(Float4{s.direction.x, s.direction.y, s.direction.z, s.density});
-    const Places places(cell);
-    for_each_lane(wanted, [&](std::size_t lane) { texels.put(job_.directions, lane, places); });
+    const TexelIndices indices(cell);
+    for_each_lane(requested, [&](std::size_t lane) { texels.put(job_.directions, lane, indices); });
   }
 
   const SpecularRaysJob& job_;
@@ -119,8 +120,8 @@ void make_tile(const SpecularRaysJob& job, const Cells& cells, int tile_x, int t
     float* const row = job.radiance.row<float>(static_cast<std::uint32_t>(y));
     std::fill(row + 4 * left, row + 4 * right, 0.0f);
     if (!job.directions) continue;
-    float* const taken = job.directions.row<float>(static_cast<std::uint32_t>(y));
-    std::fill(taken + 4 * left, taken + 4 * right, 0.0f);
+    float* const directions = job.directions.row<float>(static_cast<std::uint32_t>(y));
+    std::fill(directions + 4 * left, directions + 4 * right, 0.0f);
   }
   const Generation generation(job);
   std::array<shared::Ray, tile_side * tile_side> made;

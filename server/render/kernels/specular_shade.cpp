@@ -30,14 +30,14 @@ class HitShading {
   std::size_t block(int first, int last, shared::Ray* shadows) const {
     const Integer lane = hn::Iota(integer_tag, first);
     const Integer index = hn::Min(lane, integer(last - 1));
-    const Mask wanted = float_mask(hn::Lt(lane, integer(last)));
+    const Mask requested = float_mask(hn::Lt(lane, integer(last)));
     const RayLanes ray = load_rays(job_.rays.rays, index);
     const PixelLanes pixel = unpack_pixel(ray.pixel);
-    const PixelLanes cell =
-        job_.constants.scale == 1 ? pixel
-                        : PixelLanes{hn::ShiftRight<1>(pixel.x), hn::ShiftRight<1>(pixel.y)};
-    const HitLanes hit = load_hits(job_.hits, index, wanted);
-    const Mask missed = hn::AndNot(hit.met, wanted);
+    const PixelLanes cell = job_.constants.scale == 1 ? pixel
+                                                      : PixelLanes{hn::ShiftRight<1>(pixel.x),
+                                                                   hn::ShiftRight<1>(pixel.y)};
+    const HitLanes hit = load_hits(job_.hits, index, requested);
+    const Mask missed = hn::AndNot(hit.met, requested);
     Float3 light = numbers(0.0f);
     Float travelled = number(distance_of_misses);
     if (!none(missed) && enabled(shared::frame_environment_specular)) {
@@ -56,7 +56,7 @@ class HitShading {
         count = make_shadow_rays(ray, s, m, cell, lit, shadows);
       }
     }
-    store(cell, scrubbed(light * ray.user), travelled, wanted);
+    store(cell, scrubbed(light * ray.user), travelled, requested);
     return count;
   }
 
@@ -65,7 +65,7 @@ class HitShading {
 
   bool enabled(std::uint32_t flag) const { return (frame_.flags & flag) != 0; }
 
-  /// Widths of the cones of the camera behind mirrors of the pixels' roughness.
+  /// Widths of the camera's ray cones after reflection at the pixels' roughness.
   HWY_INLINE Float footprint(const PixelLanes& p, const HitLanes& hit) const {
     const auto pitch = [](const gpu::HostView& image) {
       return integer(static_cast<int>(image.row_pitch / sizeof(float)));
@@ -86,9 +86,9 @@ class HitShading {
       light = m.diffuse_albedo * environment_.irradiance(m.normal);
     }
     if (enabled(shared::frame_environment_specular)) {
-      const Float3 mirrored = reflect(-m.eye, m.normal);
+      const Float3 reflected = reflect(-m.eye, m.normal);
       light =
-          multiply_add(m.specular_albedo, environment_.reflection(mirrored, m.roughness), light);
+          multiply_add(m.specular_albedo, environment_.reflection(reflected, m.roughness), light);
     }
     light = select(s.has(shared::material_unlit), s.base_color, light);
     return enabled(shared::frame_emissive) ? light + s.emissive : light;
@@ -104,12 +104,12 @@ class HitShading {
     Float spread;  // tangent of its radius as seen from the hit
   };
 
-  HWY_INLINE Choice choose_light(const MaterialLanes& m, const Float3& position, Mask wanted,
+  HWY_INLINE Choice choose_light(const MaterialLanes& m, const Float3& position, Mask requested,
                                  Float pick) const {
     Choice choice{zero(), one(), numbers(0.0f), numbers(glm::vec3(0.0f, 1.0f, 0.0f)),
                   one(),  zero()};
     for (const shared::Light& light : job_.lights) {
-      const Mask near = reached(tag, light, position, wanted);
+      const Mask near = reached(tag, light, position, requested);
       if (none(near)) continue;
       const LightSample<Float> s = light_at(tag, light, position);
       const Mask faces = hn::And(near, hn::Gt(dot(m.geometric, s.direction), zero()));
@@ -118,17 +118,17 @@ class HitShading {
       const Float weight = hn::IfThenElseZero(faces, luminance(sent));
       const Mask shines = hn::Gt(weight, zero());
       choice.total = select(shines, choice.total + weight, choice.total);
-      const Float share = weight / select(shines, choice.total, one());
-      const Mask taken = hn::And(shines, hn::Lt(pick, share));
-      const Float rest = (pick - share) / (one() - share);
-      pick = select(taken, pick / share, select(shines, rest, pick));
-      choice.weight = select(taken, weight, choice.weight);
-      choice.contribution = select(taken, sent, choice.contribution);
-      choice.direction = select(taken, s.direction, choice.direction);
-      choice.distance = select(taken, s.distance, choice.distance);
+      const Float probability = weight / select(shines, choice.total, one());
+      const Mask chosen = hn::And(shines, hn::Lt(pick, probability));
+      const Float remaining = (pick - probability) / (one() - probability);
+      pick = select(chosen, pick / probability, select(shines, remaining, pick));
+      choice.weight = select(chosen, weight, choice.weight);
+      choice.contribution = select(chosen, sent, choice.contribution);
+      choice.direction = select(chosen, s.direction, choice.direction);
+      choice.distance = select(chosen, s.distance, choice.distance);
       const bool far = light.type == shared::light_directional;
       const Float radius = number(light.radius);
-      choice.spread = select(taken, far ? radius : radius / s.distance, choice.spread);
+      choice.spread = select(chosen, far ? radius : radius / s.distance, choice.spread);
     }
     return choice;
   }
@@ -138,8 +138,8 @@ class HitShading {
                                           shared::Ray* shadows) const {
     const Unsigned x = as_unsigned(cell.x), y = as_unsigned(cell.y);
     const Choice light = choose_light(m, s.position, lit, picks_.at(x, y));
-    const Mask found = hn::Gt(light.total, zero());
-    if (none(found)) return 0;
+    const Mask valid = hn::Gt(light.total, zero());
+    if (none(valid)) return 0;
     // A point of the light's disk.
     Float2 u;
     points_.at(x, y, u.x, u.y);
@@ -154,20 +154,20 @@ class HitShading {
     const Mask above = hn::Gt(dot(shadow.direction, m.geometric), zero());
     shadow.origin = offset_origin(s.position, m.geometric, zero());
     shadow.t_min = zero();
-    // Without shadows every lamp is in view: an empty interval meets nothing.
+    // Without shadows every light is visible: an empty interval hits nothing.
     shadow.t_max = enabled(shared::frame_shadows) ? light.distance * number(0.999f) : zero();
     shadow.pixel = ray.pixel;
     shadow.user = light.contribution * (light.total / light.weight) * ray.user;
-    return store_rays(shadow, hn::And(found, above), shadows);
+    return store_rays(shadow, hn::And(valid, above), shadows);
   }
 
   static HWY_INLINE Float3 scrubbed(const Float3& v) { return select(is_bad(v), numbers(0.0f), v); }
 
   HWY_INLINE void store(const PixelLanes& cell, const Float3& light, Float travelled,
-                        Mask wanted) const {
+                        Mask requested) const {
     const Texels<4> texels(Float4{light.x, light.y, light.z, travelled});
-    const Places places(cell);
-    for_each_lane(wanted, [&](std::size_t lane) { texels.put(job_.radiance, lane, places); });
+    const TexelIndices indices(cell);
+    for_each_lane(requested, [&](std::size_t lane) { texels.put(job_.radiance, lane, indices); });
   }
 
   const SpecularShadeJob& job_;

@@ -22,7 +22,7 @@ class SpecularAccumulation {
 
   static constexpr float no_hit = 1e9f;
 
-  struct Remembered {
+  struct HistorySample {
     Triple<V> radiance;
     V frames;  // 0: nothing
     Pair<V> moments;
@@ -80,7 +80,7 @@ class SpecularAccumulation {
     return hn::IfThenElseZero(hn::Lt(nearest, set(no_hit)), nearest);
   }
 
-  HWY_INLINE V lobe_share(V roughness) const {
+  HWY_INLINE V specular_dominant_factor(V roughness) const {
     const V smooth_part = set(1.0f) - roughness;
     return clamped(smooth_part * (hn::Sqrt(smooth_part) + roughness), 0.0f, 1.0f);
   }
@@ -93,40 +93,42 @@ class SpecularAccumulation {
     return {clip.x * half, clip.y * half};
   }
 
-  HWY_INLINE V mirrored_distance(V distance, V curvature) const {
-    return distance / hn::Max(hn::MulAdd(set(2.0f) * curvature, distance, set(1.0f)), set(0.25f));
+  HWY_INLINE V virtual_distance(V distance, V curvature) const {
+    return distance / hn::Max(hn::MulAdd(set(2.0f) * curvature, distance, set(1.0f)),
+                              set(shared::virtual_distance_min_divisor));
   }
 
-  /// How a mirror bends: along the surface, positive where it bulges, and from pixel to pixel.
-  struct Bend {
+  /// Change of a reflector's normal along the surface, positive for convex, and from pixel to
+  /// pixel.
+  struct Curvature {
     V curvature;
-    V turn;
+    V normal_change;
   };
 
-  HWY_INLINE Bend bend(const Views& views, int x, int y, VI instance, const Surface& s,
-                       const Triple<V>& position) const {
+  HWY_INLINE Curvature local_curvature(const Views& views, int x, int y, VI instance,
+                                       const Surface& s, const Triple<V>& position) const {
     const V zero = hn::Zero(d_);
     if ((c_.flags & shared::temporal_curved_reflectors) == 0) return {zero, zero};
-    V curvature = zero, turns = zero, count = zero;
+    V curvature = zero, normal_changes = zero, count = zero;
     for (int i = 0; i < 4; ++i) {
       const int column = x + (i < 2 ? 2 * i - 1 : 0), row = y + (i < 2 ? 0 : 2 * i - 5);
       const VI at_x = hn::Iota(di_, column), at_y = hn::Set(di_, row);
-      const Spot<D> spot = bounds_.spot(at_x, at_y);
-      const auto own = hn::Eq(spot.word(job_.instance), instance);
-      const Quad<V> texel = spot.four(job_.guide);
-      const M counts = hn::And(hn::And(bounds_.contain(at_x, at_y), hn::RebindMask(d_, own)),
-                               guide_is_surface(texel));
-      const Guide<V> found = decode_guide(texel);
+      const TexelGather<D> texels = bounds_.gather(at_x, at_y);
+      const auto own = hn::Eq(texels.word(job_.instance), instance);
+      const Quad<V> texel = texels.four(job_.guide);
+      const M valid = hn::And(hn::And(bounds_.contain(at_x, at_y), hn::RebindMask(d_, own)),
+                              guide_is_surface(texel));
+      const Guide<V> neighbour = decode_guide(texel);
       const auto& view = row < y ? views.above : row > y ? views.below : views.here;
-      const Triple<V> step = view.world_position(column, found.view_z) - position;
-      const Triple<V> turn = found.normal - s.normal;
-      const V along = dot(turn, step) / hn::Max(dot(step, step), set(1e-20f));
-      curvature = curvature + hn::IfThenElseZero(counts, along);
-      turns = turns + hn::IfThenElseZero(counts, length(turn));
-      count = count + hn::IfThenElseZero(counts, set(1.0f));
+      const Triple<V> step = view.world_position(column, neighbour.view_z) - position;
+      const Triple<V> normal_change = neighbour.normal - s.normal;
+      const V along = dot(normal_change, step) / hn::Max(dot(step, step), set(1e-20f));
+      curvature = curvature + hn::IfThenElseZero(valid, along);
+      normal_changes = normal_changes + hn::IfThenElseZero(valid, length(normal_change));
+      count = count + hn::IfThenElseZero(valid, set(1.0f));
     }
-    const V share = set(1.0f) / hn::Max(count, set(1.0f));
-    return {curvature * share, turns * share};
+    const V inv_count = set(1.0f) / hn::Max(count, set(1.0f));
+    return {curvature * inv_count, normal_changes * inv_count};
   }
 
   HWY_INLINE Pair<V> motion_of(const Triple<V>& point) const {
@@ -136,132 +138,141 @@ class SpecularAccumulation {
             (before.y - now.y) * set(static_cast<float>(job_.height))};
   }
 
-  /// From this frame's pixels to where the virtual points were in the frame before, in pixels.
+  /// Motion of the virtual positions from this frame to the frame before, in pixels.
   HWY_INLINE Pair<V> virtual_motion(const Views& views, const BandScratch& hits, int x, int y,
                                     const Surface& s, const Triple<V>& position,
                                     V curvature) const {
     const Triple<V> eye = views.here.to_eye(x);
-    const V far = hit_distance(hits, x, y), share = lobe_share(s.roughness);
-    const V cosine = clamped(dot(s.normal, eye), 0.2f, 1.0f);
-    const auto behind = [&](V bend) HWY_ATTR {
-      return motion_of(position - eye * (share * mirrored_distance(far, bend)));
+    const V far = hit_distance(hits, x, y), dominant_factor = specular_dominant_factor(s.roughness);
+    const V cosine = clamped(dot(s.normal, eye), shared::reflector_min_cosine, 1.0f);
+    const auto behind = [&](V along_curvature) HWY_ATTR {
+      return motion_of(position - eye * (dominant_factor * virtual_distance(far, along_curvature)));
     };
     const Pair<V> within = behind(curvature / cosine);
     if (hn::AllTrue(d_, hn::Eq(curvature, hn::Zero(d_)))) return within;
     const Pair<V> across = behind(curvature * cosine);
     const glm::mat4& m = job_.frame.view;
-    const auto turned = [&](int row, float way) HWY_ATTR {
+    const auto turned = [&](int row, float sign) HWY_ATTR {
       const V along =
           hn::MulAdd(set(m[0][row]), s.normal.x,
                      hn::MulAdd(set(m[1][row]), s.normal.y, set(m[2][row]) * s.normal.z));
-      return way < 0.0f ? hn::Neg(along) : along;
+      return sign < 0.0f ? hn::Neg(along) : along;
     };
     const V px = turned(0, job_.frame.unproject.x), py = turned(1, job_.frame.unproject.y);
-    const V square = hn::Max(hn::MulAdd(px, px, py * py), set(1e-12f));
-    const V apart = hn::MulAdd(within.x - across.x, px, (within.y - across.y) * py) / square;
-    return {hn::MulAdd(px, apart, across.x), hn::MulAdd(py, apart, across.y)};
+    const V length_sq = hn::Max(hn::MulAdd(px, px, py * py), set(1e-12f));
+    const V along = hn::MulAdd(within.x - across.x, px, (within.y - across.y) * py) / length_sq;
+    return {hn::MulAdd(px, along, across.x), hn::MulAdd(py, along, across.y)};
   }
 
-  /// Whether the frame before shows the same mirror there.
-  HWY_INLINE M same_mirror(VI x, VI y, M wanted, VI instance, const Surface& s, V turn) const {
-    const M asked = hn::And(wanted, bounds_.contain(x, y));
-    if (hn::AllFalse(d_, asked)) return asked;
-    const Spot<D> spot = bounds_.spot(x, y);
-    const auto shown = hn::Eq(spot.word(job_.previous_instance), instance);
-    M same = hn::And(asked, hn::RebindMask(d_, shown));
-    same = hn::And(same, hn::Gt(spot.last_of_four(job_.previous_motion), hn::Zero(d_)));
-    const Pair<V> encoded = spot.first_two(job_.previous_normals);
+  /// Whether the frame before shows the same reflector there.
+  HWY_INLINE M same_reflector(VI x, VI y, M requested, VI instance, const Surface& s,
+                              V normal_change) const {
+    const M candidates = hn::And(requested, bounds_.contain(x, y));
+    if (hn::AllFalse(d_, candidates)) return candidates;
+    const TexelGather<D> texels = bounds_.gather(x, y);
+    const auto shown = hn::Eq(texels.word(job_.previous_instance), instance);
+    M same = hn::And(candidates, hn::RebindMask(d_, shown));
+    same = hn::And(same, hn::Gt(texels.last_of_four(job_.previous_motion), hn::Zero(d_)));
+    const Pair<V> encoded = texels.first_two(job_.previous_normals);
     const V cosine = dot(octahedral_decode(encoded.x, encoded.y), s.normal);
-    const V bent = hn::NegMulAdd(set(2.0f) * turn, turn, set(1.0f));
-    const V allowed = hn::Min(mix(set(0.9995f), set(0.95f), s.roughness), bent);
+    const V by_curvature = hn::NegMulAdd(set(2.0f) * normal_change, normal_change, set(1.0f));
+    const V allowed = hn::Min(
+        mix(set(shared::reflector_cosine_smooth), set(shared::reflector_cosine_rough), s.roughness),
+        by_curvature);
     same = hn::And(same, hn::Gt(cosine, allowed));
-    const auto texel = hn::BitCast(hn::RebindToUnsigned<D>(), spot.word(job_.previous_surface));
+    const auto texel = hn::BitCast(hn::RebindToUnsigned<D>(), texels.word(job_.previous_surface));
     const V off = hn::Abs(unorm8<0>(d_, texel) - s.roughness);
-    return hn::And(same, hn::Lt(off, hn::MulAdd(set(0.25f), s.roughness, set(0.05f))));
+    return hn::And(
+        same, hn::Lt(off, hn::MulAdd(set(shared::reflector_roughness_tolerance_relative),
+                                     s.roughness, set(shared::reflector_roughness_tolerance))));
   }
 
   HWY_INLINE HistoryTaps<D> virtual_taps(V x, V y, M seen, VI instance, const Surface& s,
-                                         V turn) const {
+                                         V normal_change) const {
     HistoryTaps<D> taps(x, y);
     for (int i = 0; i < 4; ++i) {
       const M weighs = hn::And(seen, hn::Gt(taps.weights[i], hn::Zero(d_)));
-      const M same = same_mirror(taps.tap_x(i), taps.tap_y(i), weighs, instance, s, turn);
+      const M same =
+          same_reflector(taps.tap_x(i), taps.tap_y(i), weighs, instance, s, normal_change);
       taps.keep(i, same);
     }
     taps.normalise();
     return taps;
   }
 
-  HWY_INLINE Remembered nothing() const {
+  HWY_INLINE HistorySample no_history() const {
     const V zero = hn::Zero(d_);
     return {{zero, zero, zero}, zero, {zero, zero}, {zero, zero, zero}};
   }
 
-  HWY_INLINE Remembered recall(const HistoryTaps<D>& taps) const {
-    Remembered r = nothing();
+  HWY_INLINE HistorySample fetch_history(const HistoryTaps<D>& taps) const {
+    HistorySample r = no_history();
     for (int i = 0; i < 4; ++i) {
       const V weight = taps.weights[i];
-      const M counts = hn::Gt(weight, hn::Zero(d_));
-      if (hn::AllFalse(d_, counts)) continue;
-      const Spot<D> spot = bounds_.spot(taps.tap_x(i), taps.tap_y(i));
-      const Triple<V> signal = spot.first_three(job_.previous_history);
-      const Quad<V> state = spot.four(job_.previous_history_length);
-      const Triple<V> fast = spot.first_three(job_.previous_fast_history);
-      add_share<D>(counts, weight, signal.x, r.radiance.x);
-      add_share<D>(counts, weight, signal.y, r.radiance.y);
-      add_share<D>(counts, weight, signal.z, r.radiance.z);
-      add_share<D>(counts, weight, state.x, r.frames);
-      add_share<D>(counts, weight, state.z, r.moments.x);
-      add_share<D>(counts, weight, state.w, r.moments.y);
-      add_share<D>(counts, weight, fast.x, r.fast.x);
-      add_share<D>(counts, weight, fast.y, r.fast.y);
-      add_share<D>(counts, weight, fast.z, r.fast.z);
+      const M valid = hn::Gt(weight, hn::Zero(d_));
+      if (hn::AllFalse(d_, valid)) continue;
+      const TexelGather<D> texels = bounds_.gather(taps.tap_x(i), taps.tap_y(i));
+      const Triple<V> signal = texels.first_three(job_.previous_history);
+      const Quad<V> state = texels.four(job_.previous_history_length);
+      const Triple<V> fast = texels.first_three(job_.previous_fast_history);
+      add_weighted<D>(valid, weight, signal.x, r.radiance.x);
+      add_weighted<D>(valid, weight, signal.y, r.radiance.y);
+      add_weighted<D>(valid, weight, signal.z, r.radiance.z);
+      add_weighted<D>(valid, weight, state.x, r.frames);
+      add_weighted<D>(valid, weight, state.z, r.moments.x);
+      add_weighted<D>(valid, weight, state.w, r.moments.y);
+      add_weighted<D>(valid, weight, fast.x, r.fast.x);
+      add_weighted<D>(valid, weight, fast.y, r.fast.y);
+      add_weighted<D>(valid, weight, fast.z, r.fast.z);
     }
     if ((c_.flags & shared::temporal_bicubic) == 0) return r;
     V values[3] = {r.radiance.x, r.radiance.y, r.radiance.z};
-    recall_sharply<D, 3>(
+    fetch_history_bicubic<D, 3>(
         bounds_, taps, taps.whole,
-        [&](const Spot<D>& spot, V(&found)[3]) HWY_ATTR {
-          const Triple<V> signal = spot.first_three(job_.previous_history);
-          found[0] = signal.x;
-          found[1] = signal.y;
-          found[2] = signal.z;
+        [&](const TexelGather<D>& texels, V(&texel)[3]) HWY_ATTR {
+          const Triple<V> signal = texels.first_three(job_.previous_history);
+          texel[0] = signal.x;
+          texel[1] = signal.y;
+          texel[2] = signal.z;
         },
         values);
     r.radiance = {values[0], values[1], values[2]};
     return r;
   }
 
-  /// Both candidates as one memory.
-  HWY_INLINE Remembered remembered(const BandScratch& hits, const Views& views, int x, int y,
-                                   M seen, const Surface& s) const {
-    if ((c_.flags & shared::temporal_holds) == 0) return nothing();
+  /// The history of the better candidate.
+  HWY_INLINE HistorySample reprojected_history(const BandScratch& hits, const Views& views, int x,
+                                               int y, M seen, const Surface& s) const {
+    if ((c_.flags & shared::temporal_history_valid) == 0) return no_history();
     const Quad<V> map = load(job_.reprojection, x, y);
-    const HistoryTaps<D> own = remembered_taps<D>(map);
-    if ((c_.flags & shared::temporal_virtual_motion) == 0) return recall(own);
+    const HistoryTaps<D> own = history_taps<D>(map);
+    if ((c_.flags & shared::temporal_virtual_motion) == 0) return fetch_history(own);
     const VI instance = hn::LoadU(di_, row_of<const int>(job_.instance, y) + x);
     const Triple<V> position = views.here.world_position(x, s.view_z);
-    const Bend bent = bend(views, x, y, instance, s, position);
-    const Pair<V> motion = virtual_motion(views, hits, x, y, s, position, bent.curvature);
+    const Curvature curvature = local_curvature(views, x, y, instance, s, position);
+    const Pair<V> motion = virtual_motion(views, hits, x, y, s, position, curvature.curvature);
     const V here_x = hn::Iota(d_, static_cast<float>(x) + 0.5f);
     const V here_y = set(static_cast<float>(y) + 0.5f);
-    const HistoryTaps<D> mirrored =
-        virtual_taps(here_x + motion.x, here_y + motion.y, seen, instance, s, bent.turn);
-    const V apart_x = map.x - here_x - motion.x, apart_y = map.y - here_y - motion.y;
-    const V apart = hn::Sqrt(hn::MulAdd(apart_x, apart_x, apart_y * apart_y));
+    const HistoryTaps<D> reflected = virtual_taps(here_x + motion.x, here_y + motion.y, seen,
+                                                  instance, s, curvature.normal_change);
+    const V separation_x = map.x - here_x - motion.x, separation_y = map.y - here_y - motion.y;
+    const V separation =
+        hn::Sqrt(hn::MulAdd(separation_x, separation_x, separation_y * separation_y));
     const V lobe = views.here.lobe_pixels(s.roughness);
-    const V worth = hn::Min((lobe + set(1.0f)) * set(1.0f / 64.0f), set(0.5f));
-    const M elsewhere = hn::Or(hn::Gt(apart, worth), hn::Not(own.any()));
-    const M by_mirror = hn::And(mirrored.any(), elsewhere);
-    Remembered found = recall(chosen(by_mirror, mirrored, own));
-    // The surface's own history shows another part of the reflection, the sharper the mirror and
-    // the further the two places are apart.
-    const V reach = hn::MulAdd(set(64.0f) * s.roughness, s.roughness, set(0.25f));
-    const V trust = hn::Exp(d_, hn::Max(hn::Neg(apart / reach), set(-80.0f)));
-    const V beyond = hn::Max(lobe - set(0.25f), hn::Zero(d_));
-    const V kept = hn::Min(found.frames, set(8.0f) * beyond);
-    found.frames = hn::IfThenElse(by_mirror, kept, found.frames * trust);
-    return found;
+    const V threshold = hn::Min((lobe + set(1.0f)) * set(shared::virtual_threshold_per_pixel),
+                                set(shared::virtual_threshold_max));
+    const M elsewhere = hn::Or(hn::Gt(separation, threshold), hn::Not(own.any()));
+    const M by_reflection = hn::And(reflected.any(), elsewhere);
+    HistorySample history = fetch_history(chosen(by_reflection, reflected, own));
+    // The history at the surface's position shows another part of the reflection, the more so the
+    // smoother the reflector and the larger the separation.
+    const V falloff = hn::MulAdd(set(shared::surface_history_falloff_per_alpha) * s.roughness,
+                                 s.roughness, set(shared::surface_history_falloff_smooth));
+    const V trust = hn::Exp(d_, hn::Max(hn::Neg(separation / falloff), set(-80.0f)));
+    const V narrow_lobe = hn::Max(lobe - set(shared::virtual_history_min_lobe), hn::Zero(d_));
+    const V kept = hn::Min(history.frames, set(shared::virtual_history_per_pixel) * narrow_lobe);
+    history.frames = hn::IfThenElse(by_reflection, kept, history.frames * trust);
+    return history;
   }
 
   HWY_INLINE HistoryTaps<D> chosen(M first, const HistoryTaps<D>& a,
@@ -280,14 +291,16 @@ class SpecularAccumulation {
   }
 
   /// In frames; frames_under_motion() of shaders/lib/denoise/moments.glsl for the environment.
-  HWY_INLINE V longest_memory(V roughness) const {
-    const V longest = set(std::min(c_.frames, 4.0f * c_.light_frames));
+  HWY_INLINE V max_history_frames(V roughness) const {
+    const V longest =
+        set(std::min(c_.frames, shared::specular_light_history_scale * c_.light_frames));
     if (c_.environment_turn <= 0.0f) return longest;
     const V lobe = set(4.0f) * hn::Atan(d_, roughness * roughness);
     const V motion = set(c_.environment_turn) / hn::Max(lobe, set(1e-4f));
     const V logarithm = hn::Log(d_, clamped(motion, 1e-6f, 1.0f));
-    const V power = hn::Exp(d_, set(-2.0f / 3.0f) * logarithm);
-    return hn::Min(longest, hn::MulAdd(set(0.63f), power - set(1.0f), set(1.0f)));
+    const V power = hn::Exp(d_, set(shared::motion_history_exponent) * logarithm);
+    return hn::Min(longest,
+                   hn::MulAdd(set(shared::motion_history_factor), power - set(1.0f), set(1.0f)));
   }
 
   HWY_INLINE void block(const BandScratch& hits, const Views& views, int x, int y) const {
@@ -306,9 +319,9 @@ class SpecularAccumulation {
     Triple<V> now{sample.x, sample.y, sample.z};
     now = select(is_bad(now), Triple<V>{zero, zero, zero}, now);
     const Surface s = decode_guide(guide);
-    const Remembered old = remembered(hits, views, x, y, seen, s);
+    const HistorySample old = reprojected_history(hits, views, x, y, seen, s);
 
-    const V frames = hn::Min(old.frames + one, longest_memory(s.roughness));
+    const V frames = hn::Min(old.frames + one, max_history_frames(s.roughness));
     const Triple<V> radiance = mix(old.radiance, now, one / frames);
     const V known = hn::Min(frames, set(c_.moments_frames));
     const V bright = luminance(now);

@@ -92,14 +92,14 @@ class Antialiasing {
            factor;
   }
 
-  /// Of the background, which moves as the camera turns; to the previous frame, in uv.
+  /// Motion of the background under the camera's rotation; to the previous frame, in uv.
   HWY_INLINE Pair<V> background_motion(const ViewedRow<D>& view, int x) const {
     if (job_.frame.flags & shared::frame_orthographic) return {hn::Zero(d_), hn::Zero(d_)};
     const Triple<V> eye = view.to_eye(x);
     const Triple<V> before = directed(job_.frame.previous_unjittered, eye);
     const Triple<V> now = directed(job_.frame.unjittered, eye);
     const V half = set(0.5f);
-    // What lay behind the eye was nowhere in the picture.
+    // Directions behind the camera have no position in the frame.
     const M ahead = hn::Gt(before.z, hn::Zero(d_));
     return {hn::IfThenElse(ahead, (before.x / before.z - now.x / now.z) * half, set(2.0f)),
             hn::IfThenElse(ahead, (before.y / before.z - now.y / now.z) * half, set(2.0f))};
@@ -116,17 +116,17 @@ class Antialiasing {
   /// Motion of the nearest surface of 3x3 pixels: an edge moves with what lies in front.
   HWY_INLINE Pair<V> nearest_motion(const BandScratch& motion, const ViewedRow<D>& view, int x,
                                     int y) const {
-    Triple<V> found{hn::Zero(d_), hn::Zero(d_), set(far_away)};
+    Triple<V> nearest{hn::Zero(d_), hn::Zero(d_), set(far_away)};
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
         const Triple<V> candidate = load(motion, x + dx, y + dy);
-        found = select(hn::Lt(candidate.z, found.z), candidate, found);
+        nearest = select(hn::Lt(candidate.z, nearest.z), candidate, nearest);
       }
     }
-    const M seen = hn::Lt(found.z, set(far_away));
-    if (hn::AllTrue(d_, seen)) return {found.x, found.y};
+    const M seen = hn::Lt(nearest.z, set(far_away));
+    if (hn::AllTrue(d_, seen)) return {nearest.x, nearest.y};
     const Pair<V> behind = background_motion(view, x);
-    return {hn::IfThenElse(seen, found.x, behind.x), hn::IfThenElse(seen, found.y, behind.y)};
+    return {hn::IfThenElse(seen, nearest.x, behind.x), hn::IfThenElse(seen, nearest.y, behind.y)};
   }
 
   struct Weights {
@@ -155,8 +155,9 @@ class Antialiasing {
     for (int j = 0; j < 4; ++j) {
       Triple<V> line{zero, zero, zero};
       for (int i = 0; i < 4; ++i) {
-        const Spot<D> spot = bounds_.spot(column + hn::Set(di_, i - 1), row + hn::Set(di_, j - 1));
-        line = line + spot.first_three(job_.history) * across.w[i];
+        const TexelGather<D> texels =
+            bounds_.gather(column + hn::Set(di_, i - 1), row + hn::Set(di_, j - 1));
+        line = line + texels.first_three(job_.history) * across.w[i];
       }
       sum = sum + line * down.w[j];
     }
@@ -177,8 +178,8 @@ class Antialiasing {
     }
     variance = variance * ninth;
     const Triple<V> deviation{hn::Sqrt(variance.x), hn::Sqrt(variance.y), hn::Sqrt(variance.z)};
-    const Triple<V> reach = deviation * set(job_.constants.clip);
-    return {mean - reach, mean + reach};
+    const Triple<V> half_extent = deviation * set(job_.constants.clip);
+    return {mean - half_extent, mean + half_extent};
   }
 
   HWY_INLINE void block(const BandScratch& colors, const BandScratch& motion,
@@ -190,7 +191,7 @@ class Antialiasing {
     const V u =
         hn::Iota(d_, static_cast<float>(x) + 0.5f) / set(static_cast<float>(job_.width)) + moved.x;
     const V v = set((static_cast<float>(y) + 0.5f) / static_cast<float>(job_.height)) + moved.y;
-    // Nothing is known of what was not in the picture.
+    // There is no history outside the frame.
     M known =
         hn::And(hn::And(hn::Ge(u, zero), hn::Le(u, one)), hn::And(hn::Ge(v, zero), hn::Le(v, one)));
     if (job_.frame.history_invalid != 0 || hn::AllFalse(d_, known)) {
@@ -200,17 +201,17 @@ class Antialiasing {
     const Box box = box_about(colors, x, y);
     const Triple<V> old =
         compressed(sample_history(clamped(u, 0.0f, 1.0f), clamped(v, 0.0f, 1.0f)));
-    V share = set(job_.constants.blend);
+    V weight = set(job_.constants.blend);
     if (job_.constants.anti_flicker > 0.0f) {
       const V margin = hn::Min(hn::Abs(old.x - box.low.x), hn::Abs(box.high.x - old.x));
       const V span = hn::Max(margin + box.high.x - box.low.x, set(1e-6f));
       // Never none: a colour that was clamped to the box's face would stay there for ever.
-      share = share * hn::Max(margin / span, set(0.2f));
+      weight = weight * hn::Max(margin / span, set(0.2f));
     }
     const Triple<V> held{hn::Min(hn::Max(old.x, box.low.x), box.high.x),
                          hn::Min(hn::Max(old.y, box.low.y), box.high.y),
                          hn::Min(hn::Max(old.z, box.low.z), box.high.z)};
-    const Triple<V> blended = mix(held, load(colors, x, y), clamped(share, 0.0f, 1.0f));
+    const Triple<V> blended = mix(held, load(colors, x, y), clamped(weight, 0.0f, 1.0f));
     const Triple<V> result = expanded(blended);
     store4(d_, select(known, Quad<V>{result.x, result.y, result.z, center.w}, center), out);
   }

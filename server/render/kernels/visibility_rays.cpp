@@ -15,8 +15,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
 
-/// What both kinds of rays have in common: how they walk the picture and leave rays behind.
-/// Neighbours in the stream are neighbours in the picture across and down.
+/// What both kinds of rays have in common: how they traverse the frame and append rays.
+/// Neighbours in the stream are neighbours in the frame across and down.
 template <class D, class Maker>
 class VisibilityRays {
   using V = hn::Vec<D>;
@@ -34,14 +34,15 @@ class VisibilityRays {
       for (int y = first; y < last; ++y) {
         const V view_z = load4(d, row_of<const float>(job.motion, y) + 4 * x).w;
         const M seen = hn::Gt(view_z, hn::Zero(d));
-        M wanted = seen;
+        M requested = seen;
         if (!hn::AllFalse(d, seen)) {
           Triple<V> origin, direction;
           V t_max;
-          static_cast<const Maker*>(this)->make(x, y, view_z, wanted, origin, direction, t_max);
-          batch.add(d, origin, direction, t_max, x, y, hn::And(wanted, from_column(d, x, start)));
+          static_cast<const Maker*>(this)->make(x, y, view_z, requested, origin, direction, t_max);
+          batch.add(d, origin, direction, t_max, x, y,
+                    hn::And(requested, from_column(d, x, start)));
         }
-        const V open = static_cast<const Maker*>(this)->untraced(seen, wanted);
+        const V open = static_cast<const Maker*>(this)->untraced(seen, requested);
         hn::StoreU(open, d, row_of<float>(job.visibility, y) + x);
       }
     }
@@ -64,8 +65,8 @@ class ShadowRays : public VisibilityRays<D, ShadowRays<D>> {
 
   HWY_INLINE void rows(int first, int last) const { this->generate(job_, first, last); }
 
-  HWY_INLINE void make(int x, int y, V view_z, M& wanted, Triple<V>& origin, Triple<V>& direction,
-                       V& t_max) const {
+  HWY_INLINE void make(int x, int y, V view_z, M& requested, Triple<V>& origin,
+                       Triple<V>& direction, V& t_max) const {
     const ViewedRow<D> view(job_.frame, y);
     const auto m = material(view, x, y);
     const Triple<V> position = view.world_position(x, view_z);
@@ -77,25 +78,27 @@ class ShadowRays : public VisibilityRays<D, ShadowRays<D>> {
     direction = {total, total, total};
     for (const shared::Light& light : job_.lights) {
       Triple<V> radiance;
-      if (!light_contribution(d_, light, m, position, wanted, radiance)) continue;
-      const M taken = take(luminance(radiance), total, pick);
-      if (hn::AllFalse(d_, taken)) continue;
+      if (!light_contribution(d_, light, m, position, requested, radiance)) continue;
+      const M chosen = take(luminance(radiance), total, pick);
+      if (hn::AllFalse(d_, chosen)) continue;
       const LightSample<V> s = light_at(d_, light, position);
-      direction = select(taken, s.direction, direction);
-      t_max = hn::IfThenElse(taken, s.distance, t_max);
+      direction = select(chosen, s.direction, direction);
+      t_max = hn::IfThenElse(chosen, s.distance, t_max);
       const bool endless = light.type == shared::light_directional;
       const V radius = hn::Set(d_, light.radius);
-      spread = hn::IfThenElse(taken, endless ? radius : radius / s.distance, spread);
+      spread = hn::IfThenElse(chosen, endless ? radius : radius / s.distance, spread);
     }
-    wanted = hn::And(wanted, hn::Gt(total, hn::Zero(d_)));
+    requested = hn::And(requested, hn::Gt(total, hn::Zero(d_)));
     direction = toward_disk(direction, spread, column, row);
-    wanted = hn::And(wanted, hn::Gt(dot(direction, m.geometric), hn::Zero(d_)));
+    requested = hn::And(requested, hn::Gt(dot(direction, m.geometric), hn::Zero(d_)));
     origin = offset_origin(position, m.geometric, view_z);
-    // Geometry may lie where a light does and show it: it must not be in its own way.
+    // Geometry may lie where a light does and show it: it must not occlude itself.
     t_max = t_max * hn::Set(d_, 0.999f);
   }
 
-  HWY_INLINE V untraced(M, M wanted) const { return hn::IfThenElseZero(wanted, hn::Set(d_, 1.0f)); }
+  HWY_INLINE V untraced(M, M requested) const {
+    return hn::IfThenElseZero(requested, hn::Set(d_, 1.0f));
+  }
 
  private:
   HWY_INLINE SurfaceMaterial<V> material(const ViewedRow<D>& view, int x, int y) const {
@@ -110,13 +113,13 @@ class ShadowRays : public VisibilityRays<D, ShadowRays<D>> {
   /// takes() of shaders/lib/lighting/light_choice.glsl
   HWY_INLINE M take(V weight, V& total, V& pick) const {
     const V one = hn::Set(d_, 1.0f);
-    const M counts = hn::Gt(weight, hn::Zero(d_));
-    total = total + hn::IfThenElseZero(counts, weight);
-    const V share = weight / total;
-    const M taken = hn::And(counts, hn::Lt(pick, share));
-    const V left = hn::IfThenElse(counts, (pick - share) / (one - share), pick);
-    pick = hn::IfThenElse(taken, pick / share, left);
-    return taken;
+    const M valid = hn::Gt(weight, hn::Zero(d_));
+    total = total + hn::IfThenElseZero(valid, weight);
+    const V probability = weight / total;
+    const M chosen = hn::And(valid, hn::Lt(pick, probability));
+    const V left = hn::IfThenElse(valid, (pick - probability) / (one - probability), pick);
+    pick = hn::IfThenElse(chosen, pick / probability, left);
+    return chosen;
   }
 
   template <class VU>
@@ -148,8 +151,8 @@ class AmbientRays : public VisibilityRays<D, AmbientRays<D>> {
 
   HWY_INLINE void rows(int first, int last) const { this->generate(job_, first, last); }
 
-  HWY_INLINE void make(int x, int y, V view_z, M& wanted, Triple<V>& origin, Triple<V>& direction,
-                       V& t_max) const {
+  HWY_INLINE void make(int x, int y, V view_z, M& requested, Triple<V>& origin,
+                       Triple<V>& direction, V& t_max) const {
     const Quad<V> encoded = load4(d_, row_of<const float>(job_.normals, y) + 4 * x);
     const Triple<V> geometric = octahedral_decode(encoded.z, encoded.w);
     V u, v;
@@ -159,12 +162,12 @@ class AmbientRays : public VisibilityRays<D, AmbientRays<D>> {
     const ViewedRow<D> view(job_.frame, y);
     origin = offset_origin(view.world_position(x, view_z), geometric, view_z);
     t_max = hn::Set(d_, job_.frame.ambient_radius);
-    wanted = hn::And(wanted, hn::Gt(dot(direction, geometric), hn::Zero(d_)));
+    requested = hn::And(requested, hn::Gt(dot(direction, geometric), hn::Zero(d_)));
   }
 
   /// Directions below the surface are hidden by it.
-  HWY_INLINE V untraced(M seen, M wanted) const {
-    return hn::IfThenElseZero(hn::Or(wanted, hn::Not(seen)), hn::Set(d_, 1.0f));
+  HWY_INLINE V untraced(M seen, M requested) const {
+    return hn::IfThenElseZero(hn::Or(requested, hn::Not(seen)), hn::Set(d_, 1.0f));
   }
 
  private:

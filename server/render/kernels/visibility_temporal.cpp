@@ -16,7 +16,7 @@ class VisibilityAccumulation {
   using V = hn::Vec<D>;
   using M = hn::Mask<D>;
 
-  struct Remembered {
+  struct HistorySample {
     Pair<V> signal;
     Quad<V> moments;
     Pair<V> frames;  // 0: nothing
@@ -49,58 +49,58 @@ class VisibilityAccumulation {
            row_of<float>(image, y) + 4 * x);
   }
 
-  HWY_INLINE Remembered recall(int x, int y) const {
+  HWY_INLINE HistorySample fetch_history(int x, int y) const {
     const V zero = hn::Zero(d_);
-    Remembered r{{zero, zero}, {zero, zero, zero, zero}, {zero, zero}, {zero, zero}};
-    if ((c_.flags & shared::temporal_holds) == 0) return r;
-    const HistoryTaps<D> taps = remembered_taps<D>(load(job_.reprojection, x, y));
+    HistorySample r{{zero, zero}, {zero, zero, zero, zero}, {zero, zero}, {zero, zero}};
+    if ((c_.flags & shared::temporal_history_valid) == 0) return r;
+    const HistoryTaps<D> taps = history_taps<D>(load(job_.reprojection, x, y));
     for (int i = 0; i < 4; ++i) {
       const V weight = taps.weights[i];
-      const M counts = hn::Gt(weight, zero);
-      if (hn::AllFalse(d_, counts)) continue;
-      const Spot<D> spot = bounds_.spot(taps.tap_x(i), taps.tap_y(i));
-      const Pair<V> signal = spot.first_two(job_.previous_history);
-      const Quad<V> moments = spot.four(job_.previous_moments);
-      const Pair<V> frames = spot.first_two(job_.previous_history_length);
-      const Pair<V> fast = spot.two(job_.previous_fast_history);
-      add_share<D>(counts, weight, signal.x, r.signal.x);
-      add_share<D>(counts, weight, signal.y, r.signal.y);
-      add_share<D>(counts, weight, moments.x, r.moments.x);
-      add_share<D>(counts, weight, moments.y, r.moments.y);
-      add_share<D>(counts, weight, moments.z, r.moments.z);
-      add_share<D>(counts, weight, moments.w, r.moments.w);
-      add_share<D>(counts, weight, frames.x, r.frames.x);
-      add_share<D>(counts, weight, frames.y, r.frames.y);
-      add_share<D>(counts, weight, fast.x, r.fast.x);
-      add_share<D>(counts, weight, fast.y, r.fast.y);
+      const M valid = hn::Gt(weight, zero);
+      if (hn::AllFalse(d_, valid)) continue;
+      const TexelGather<D> texels = bounds_.gather(taps.tap_x(i), taps.tap_y(i));
+      const Pair<V> signal = texels.first_two(job_.previous_history);
+      const Quad<V> moments = texels.four(job_.previous_moments);
+      const Pair<V> frames = texels.first_two(job_.previous_history_length);
+      const Pair<V> fast = texels.two(job_.previous_fast_history);
+      add_weighted<D>(valid, weight, signal.x, r.signal.x);
+      add_weighted<D>(valid, weight, signal.y, r.signal.y);
+      add_weighted<D>(valid, weight, moments.x, r.moments.x);
+      add_weighted<D>(valid, weight, moments.y, r.moments.y);
+      add_weighted<D>(valid, weight, moments.z, r.moments.z);
+      add_weighted<D>(valid, weight, moments.w, r.moments.w);
+      add_weighted<D>(valid, weight, frames.x, r.frames.x);
+      add_weighted<D>(valid, weight, frames.y, r.frames.y);
+      add_weighted<D>(valid, weight, fast.x, r.fast.x);
+      add_weighted<D>(valid, weight, fast.y, r.fast.y);
     }
     if ((c_.flags & shared::temporal_bicubic) == 0) return r;
     V values[2] = {r.signal.x, r.signal.y};
-    recall_sharply<D, 2>(
+    fetch_history_bicubic<D, 2>(
         bounds_, taps, taps.whole,
-        [&](const Spot<D>& spot, V(&found)[2]) HWY_ATTR {
-          const Pair<V> signal = spot.first_two(job_.previous_history);
-          found[0] = signal.x;
-          found[1] = signal.y;
+        [&](const TexelGather<D>& texels, V(&texel)[2]) HWY_ATTR {
+          const Pair<V> signal = texels.first_two(job_.previous_history);
+          texel[0] = signal.x;
+          texel[1] = signal.y;
         },
         values);
     r.signal = {values[0], values[1]};
     return r;
   }
 
-  HWY_INLINE Channel accumulate(V now, V old, V first, V second, V remembered, V fast,
+  HWY_INLINE Channel accumulate(V now, V old, V first, V second, V reprojected_history, V fast,
                                 float longest) const {
     Channel c;
-    c.frames = hn::Min(remembered + set(1.0f), set(longest));
-    c.value = mix(old, now, sample_share(c.frames, longest));
-    const V share = sample_share(c.frames, c_.moments_frames);
-    c.first = mix(first, now, share);
-    c.second = mix(second, now * now, share);
+    c.frames = hn::Min(reprojected_history + set(1.0f), set(longest));
+    c.value = mix(old, now, sample_weight(c.frames, longest));
+    const V weight = sample_weight(c.frames, c_.moments_frames);
+    c.first = mix(first, now, weight);
+    c.second = mix(second, now * now, weight);
     c.variance = sample_variance(c.first, c.second, hn::Min(c.frames, set(c_.moments_frames)));
     if (c_.flags & shared::temporal_mean_variance) c.variance = c.variance / c.frames;
     c.fast = c_.rectification == shared::rectification_gradient
-                 ? hn::IfThenElseZero(hn::Gt(remembered, hn::Zero(d_)), now - old)
-                 : mix(fast, now, sample_share(c.frames, fast_frames));
+                 ? hn::IfThenElseZero(hn::Gt(reprojected_history, hn::Zero(d_)), now - old)
+                 : mix(fast, now, sample_weight(c.frames, fast_frames));
     return c;
   }
 
@@ -108,7 +108,7 @@ class VisibilityAccumulation {
     const V zero = hn::Zero(d_);
     const Quad<V> now = load(job_.noisy, x, y);
     const M seen = guide_is_surface(load(job_.guide, x, y));
-    const Remembered old = recall(x, y);
+    const HistorySample old = fetch_history(x, y);
     const Channel shadow =
         accumulate(now.x, old.signal.x, old.moments.x, old.moments.z, old.frames.x, old.fast.x,
                    std::min(c_.frames, c_.light_frames));

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "render/resources/moving_scene.hpp"
+#include "shaders/shared/denoise.h"
 
 namespace heliograph::render {
 namespace {
@@ -81,7 +82,8 @@ SceneMotion scene_motion(const MovingScene& scene, const shared::FrameConstants&
 
 float frames_under_motion(float motion) {
   if (motion <= 0.0f) return std::numeric_limits<float>::max();
-  return 1.0f + 0.63f * (std::pow(std::min(motion, 1.0f), -2.0f / 3.0f) - 1.0f);
+  return 1.0f + shared::motion_history_factor *
+                    (std::pow(std::min(motion, 1.0f), shared::motion_history_exponent) - 1.0f);
 }
 
 }  // namespace heliograph::render

@@ -20,6 +20,16 @@ namespace {
 constexpr std::size_t max_queued_frames = 1;
 constexpr std::size_t max_queued_captures = 4;
 
+void log_shaders(const render::ShaderReport& report) {
+  if (!report.error.empty()) {
+    spdlog::error("shaders do not compile, the last good ones stay in use:\n{}", report.error);
+  } else {
+    spdlog::info(
+        "shaders compiled, changed: {}",
+        report.reloaded.empty() ? "none" : fmt::format("{}", fmt::join(report.reloaded, ", ")));
+  }
+}
+
 }  // namespace
 
 RenderLoop::RenderLoop(render::Engine& engine, Clock::duration release_after)
@@ -27,10 +37,16 @@ RenderLoop::RenderLoop(render::Engine& engine, Clock::duration release_after)
       release_after_(release_after),
       encoder_("encoder", max_queued_frames),
       capture_writer_("capture writer", max_queued_captures),
-      thread_([this] { run(); }) {}
+      thread_([this] { run(); }) {
+  engine_.on_shader_change([wake = wake_](const render::ShaderReport& report) {
+    log_shaders(report);
+    wake->notify();
+  });
+}
 
 void RenderLoop::stop() {
   if (stopping_.exchange(true)) return;
+  engine_.on_shader_change({});
   wake_->notify();
   thread_.join();
   encoder_.stop();

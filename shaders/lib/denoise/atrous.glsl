@@ -45,8 +45,8 @@ vec2 smooth_variance(ivec2 pixel) {
   return sum;
 }
 
-/// How often a pixel is filtered: not beyond the width of the lobe, and less often where reflections
-/// bring no noise of their own (paper 3.5).
+/// How often a pixel is filtered: not beyond the width of the lobe, and less often where
+/// reflections bring no noise of their own (paper 3.5).
 int levels(float roughness) {
   int most = 16;
   if (has(atrous_lobe_limit)) {
@@ -65,12 +65,12 @@ int step_at(float roughness) {
   return int(round(float(1 << constants.level) * (1.0 + twice)));
 }
 
-/// Moves the taps of large steps by up to a quarter step, another way in every pixel and frame.
+/// Jitters the taps of large steps by up to a quarter step, differently in every pixel and frame.
 ivec2 jitter(ivec2 pixel, int step) {
   if (!has(atrous_jitter) || step <= 4) return ivec2(0);
-  vec2 share = random_pair(uvec2(pixel), frame.sample_index, 48u + uint(constants.level),
+  vec2 u = random_pair(uvec2(pixel), frame.sample_index, 48u + uint(constants.level),
                            frame.seed);
-  return ivec2(round((share - 0.5) * 0.5 * float(step)));
+  return ivec2(round((u - 0.5) * 0.5 * float(step)));
 }
 
 vec2 tap_exponent(Center c, Guide q, vec4 value, vec2 offset) {

@@ -4,13 +4,13 @@
 #ifndef HELIOGRAPH_EDGE_STOPPING_GLSL
 #define HELIOGRAPH_EDGE_STOPPING_GLSL
 
-/// Distance of a neighbour's view Z `found`, `offset` pixels away, from the plane through the
+/// Distance of a neighbour's view Z `neighbour_z`, `offset` pixels away, from the plane through the
 /// pixel at view Z `z` whose Z changes by `slope` per pixel; metres at the pixel. In perspective
-/// 1/Z is linear across the picture, so that planes stay exact at any step; `curve` is 1/z there
+/// 1/Z is linear across the frame, so that planes stay exact at any step; `curve` is 1/z there
 /// and 0 in orthographic views.
-float plane_distance(float z, vec2 slope, float curve, float found, vec2 offset) {
+float plane_distance(float z, vec2 slope, float curve, float neighbour_z, vec2 offset) {
   float rise = dot(slope, offset);
-  return abs(found * (1.0 - rise * curve) - z - rise * (1.0 - z * curve));
+  return abs(neighbour_z * (1.0 - rise * curve) - z - rise * (1.0 - z * curve));
 }
 
 /// What a surface may rise per pixel: its own slope, and what is seen as half a slope of one face
@@ -28,12 +28,12 @@ float normal_exponent(float cosine, float power) {
   return power * log(clamp(cosine, 1e-6, 1.0));
 }
 
-/// `noise` is the standard deviation of the brightness, `smallest` a difference nobody sees.
+/// `noise` is the standard deviation of the brightness, `smallest` an invisible difference.
 vec2 luminance_exponent(vec2 p, vec2 q, vec2 noise, float sigma, float smallest) {
   return -abs(p - q) / (sigma * noise + smallest);
 }
 
-/// Lobes of different widths mirror different things.
+/// Lobes of different widths reflect different parts of the scene.
 float roughness_exponent(float p, float q) { return -abs(p - q) / (0.02 + 0.2 * p); }
 
 #endif

@@ -14,18 +14,18 @@ shared vec4 result;
 
 const float nothing = 3e38;
 
-/// Whether value `j` comes before value `i` in order; equals by place.
+/// Whether value `j` comes before value `i` in order; equal values by index.
 uint before(float a, float b, uint i, uint j) { return b < a || (b == a && j < i) ? 1u : 0u; }
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   uint mine = gl_LocalInvocationIndex;
-  bool counts = !outside_frame(pixel) && !guide_is_background(imageLoad(guide, pixel));
+  bool valid = !outside_frame(pixel) && !guide_is_background(imageLoad(guide, pixel));
   vec2 value = vec2(nothing);
-  if (counts) {
-    vec4 found = imageLoad(raw, pixel);
-    bool bad = any(isnan(found)) || any(isinf(found));
-    value = bad ? vec2(0.0) : brightness(found);
+  if (valid) {
+    vec4 texel = imageLoad(raw, pixel);
+    bool bad = any(isnan(texel)) || any(isinf(texel));
+    value = bad ? vec2(0.0) : brightness(texel);
   }
   values[mine] = value;
   if (mine == 0u) result = vec4(0.0);
@@ -39,7 +39,7 @@ void main() {
   }
   uint low = (max(known, 1u) - 1u) / 10u;
   uint high = max(known, 1u) - 1u - low;
-  if (counts) {
+  if (valid) {
     if (rank.x == low) result.x = value.x;
     if (rank.x == high) result.y = value.x;
     if (rank.y == low) result.z = value.y;

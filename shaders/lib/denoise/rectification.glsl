@@ -1,4 +1,5 @@
-// Making old colours agree with what the current frame shows nearby (paper section 3.1).
+// Rectification: the history is clamped or clipped to the current neighbourhood (paper section
+// 3.1).
 #ifndef HELIOGRAPH_RECTIFICATION_GLSL
 #define HELIOGRAPH_RECTIFICATION_GLSL
 #include "shared/denoise.h"
@@ -8,7 +9,7 @@ struct Box {
   vec3 high;
 };
 
-/// What a window of the current frame holds, gathered colour by colour.
+/// Statistics of a window of the current frame.
 struct Window {
   Box range;
   vec3 sum;
@@ -32,8 +33,8 @@ void add(inout Window window, vec3 color) {
 Box variance_box(Window window, float scale) {
   vec3 mean = window.sum / max(window.count, 1.0);
   vec3 variance = max(window.squares / max(window.count, 1.0) - mean * mean, vec3(0.0));
-  vec3 reach = scale * sqrt(variance);
-  return Box(mean - reach, mean + reach);
+  vec3 half_extent = scale * sqrt(variance);
+  return Box(mean - half_extent, mean + half_extent);
 }
 
 Box rectification_box(Window window, uint mode, float scale) {
@@ -44,50 +45,43 @@ Box rectification_box(Window window, uint mode, float scale) {
 
 vec3 clamp_to(Box box, vec3 color) { return clamp(color, box.low, box.high); }
 
-/// The point where the way from the box's middle to `color` leaves the box, or `color` inside it.
+/// The point where the line from the box's centre to `color` leaves the box, or `color` inside it.
 vec3 clip_to(Box box, vec3 color) {
   vec3 middle = 0.5 * (box.low + box.high);
-  vec3 reach = max(0.5 * (box.high - box.low), vec3(1e-7));
-  vec3 way = color - middle;
-  vec3 overshoot = abs(way / reach);
+  vec3 half_extent = max(0.5 * (box.high - box.low), vec3(1e-7));
+  vec3 offset = color - middle;
+  vec3 overshoot = abs(offset / half_extent);
   float largest = max(overshoot.x, max(overshoot.y, overshoot.z));
-  return largest > 1.0 ? middle + way / largest : color;
+  return largest > 1.0 ? middle + offset / largest : color;
 }
 
 bool clips(uint mode) {
   return mode == rectification_color_clip || mode == rectification_variance_clip;
 }
 
-/// How far `color` was moved, 0..1, against the box's own size.
-float moved_share(Box box, vec3 color, vec3 moved) {
-  vec3 reach = 0.5 * (box.high - box.low);
-  vec3 way = abs(color - moved);
-  vec3 share = way / max(way + reach, vec3(1e-6));
-  return max(share.x, max(share.y, share.z));
-}
-
-/// Share of a history to drop whose brightness lies outside the percentiles `low` and `high` of
-/// the current frame nearby, 0..0.95: all of that where it is further out than `scale` times their
-/// spread and `smallest` (Alber 2025).
-vec2 outdated_share(vec2 old, vec2 low, vec2 high, float scale, vec2 smallest) {
+/// Fraction of a history to drop whose brightness lies outside the percentiles `low` and `high` of
+/// the current neighbourhood, 0..max_outdated_fraction: all of that where it is further out than
+/// `scale` times their spread and `smallest` (Alber 2025).
+vec2 outdated_fraction(vec2 old, vec2 low, vec2 high, float scale, vec2 smallest) {
   vec2 outside = max(max(old - high, low - old), vec2(0.0));
-  return 0.95 * clamp(outside / (scale * (high - low) + smallest), vec2(0.0), vec2(1.0));
+  return max_outdated_fraction *
+         clamp(outside / (scale * (high - low) + smallest), vec2(0.0), vec2(1.0));
 }
 
-/// Factor that brings a sample brighter than its neighbours by far down to what they allow.
+/// Factor that scales a sample far brighter than its neighbours (a firefly) down to their range.
 float firefly_scale(float bright, float low, float high) {
   float most = high + 8.0 * (high - low) + 0.1 * high + 1e-3;
   return bright > most ? most / bright : 1.0;
 }
 
-/// Frames that remain of a history whose value was `moved` by a box of half width `reach`: all
-/// where it was not, ever fewer as it was moved by more than the box.
-vec2 shortened_history(vec2 frames, vec2 moved, vec2 reach) {
-  vec2 share = moved / max(moved + reach, vec2(1e-6));
-  return max(frames * (1.0 - share), min(frames, vec2(1.0)));
+/// History length after a value was `moved` by a box of half width `half_extent`: unchanged where
+/// it was not moved, the shorter the further it was moved relative to the box.
+vec2 shortened_history(vec2 frames, vec2 moved, vec2 half_extent) {
+  vec2 moved_fraction = moved / max(moved + half_extent, vec2(1e-6));
+  return max(frames * (1.0 - moved_fraction), min(frames, vec2(1.0)));
 }
 
-/// How far a neighbourhood has changed for certain: what the box of its mean change is away from 0.
+/// Significant change of a neighbourhood: the distance of the box of its mean change from 0.
 vec3 certain_change(Box box) { return max(max(box.low, -box.high), vec3(0.0)); }
 
 vec3 to_ycocg(vec3 c) {

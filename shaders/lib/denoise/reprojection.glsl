@@ -1,13 +1,15 @@
-// Where a surface was one frame ago, and whether what is remembered there is still it.
+// Reprojection: bilinear and cubic taps of the history, tests for disocclusion, and the virtual
+// motion of reflections.
 #ifndef HELIOGRAPH_REPROJECTION_GLSL
 #define HELIOGRAPH_REPROJECTION_GLSL
+#include "shared/denoise.h"
 
 /// Four neighbouring pixels of the previous frame, weights adding up to 1, or all 0.
 struct HistoryTaps {
   ivec2 base;
   vec4 weights;   // of base, base + (1,0), base + (0,1), base + (1,1)
   vec2 fraction;  // of the way from base to base + (1,1)
-  bool whole;     // no pixel that counts is missing
+  bool whole;     // no pixel with a weight is invalid
 };
 
 ivec2 tap_offset(int tap) { return ivec2(tap & 1, tap >> 1); }
@@ -25,8 +27,8 @@ HistoryTaps bilinear_taps(vec2 position) {
   return taps;
 }
 
-/// Keeps the taps whose bit is set and makes their weights add up to 1; all 0 where what is left
-/// is less than one hundredth.
+/// Keeps the taps whose bit is set and renormalises their weights; all 0 where their sum is less
+/// than min_tap_weight_sum.
 HistoryTaps valid_taps(HistoryTaps taps, uint mask) {
   for (int i = 0; i < 4; ++i) {
     if ((mask & (1u << uint(i))) != 0u) continue;
@@ -34,13 +36,13 @@ HistoryTaps valid_taps(HistoryTaps taps, uint mask) {
     taps.weights[i] = 0.0;
   }
   float sum = taps.weights.x + taps.weights.y + taps.weights.z + taps.weights.w;
-  taps.weights = sum >= 0.01 ? taps.weights / sum : vec4(0.0);
+  taps.weights = sum >= min_tap_weight_sum ? taps.weights / sum : vec4(0.0);
   return taps;
 }
 
-/// Weights of four pixels in a row for a point `f` of the way from the second to the third: the
-/// cubic of Catmull and Rom. What is remembered is read anew in every frame; read with the bilinear
-/// weights it would be blurred a little each time.
+/// Catmull-Rom weights of four pixels in a row for a point at fraction `f` between the second and
+/// the third. The history is resampled in every frame; bilinear weights would blur it a little each
+/// time.
 vec4 cubic_weights(float f) {
   return vec4(f * (-0.5 + f * (1.0 - 0.5 * f)), 1.0 + f * f * (1.5 * f - 2.5),
               f * (0.5 + f * (2.0 - 1.5 * f)), f * f * (0.5 * f - 0.5));
@@ -53,52 +55,69 @@ bool inside(ivec2 pixel, ivec2 size) {
   return all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size));
 }
 
-/// Whether a remembered view Z is the expected one, within `tolerance` times what Z changes from
-/// pixel to pixel. Free of scale: every length is the scene's own.
-bool same_depth(float expected, float found, vec2 slope, float footprint, float tolerance) {
+/// Whether the view Z of the frame before is the expected one, within `tolerance` times the change
+/// of Z from pixel to pixel. Scale invariant: every length is relative to the scene.
+bool same_depth(float expected, float previous_z, vec2 slope, float footprint, float tolerance) {
   float change = abs(slope.x) + abs(slope.y) + 0.5 * footprint;
-  return found > 0.0 && abs(found - expected) <= tolerance * change;
+  return previous_z > 0.0 && abs(previous_z - expected) <= tolerance * change;
 }
 
-/// Whether a remembered normal is this one, within `tolerance` times what normals change here from
-/// pixel to pixel (or half a degree, where they do not).
-bool same_normal(vec3 normal, vec3 found, float change, float tolerance) {
-  return distance(normal, found) <= tolerance * (change + 0.01) && dot(normal, found) > 0.0;
+/// Whether the normal of the frame before is this one, within `tolerance` times the change of
+/// normals from pixel to pixel (plus half a degree, for flat surfaces).
+bool same_normal(vec3 normal, vec3 previous, float change, float tolerance) {
+  return distance(normal, previous) <= tolerance * (change + 0.01) && dot(normal, previous) > 0.0;
 }
 
-/// Where a world position is seen, in widths and heights of the picture from its middle.
+/// Projects a world position, in widths and heights of the frame from its centre.
 vec2 projected(mat4 view_projection, vec3 position) {
   vec4 clip = view_projection * vec4(position, 1.0);
   return clip.xy / clip.w * 0.5;
 }
 
-/// How far toward the hit the reflection's virtual point lies: all the way in a mirror, at the
-/// surface where the lobe is wide (dominant direction of GGX, Lagarde and de Rousiers 2014).
-float lobe_share(float roughness) {
+/// How far toward the hit the virtual position of a reflection lies: 1 in a mirror, 0 (at the
+/// surface) where the lobe is wide (dominant direction of GGX, Lagarde and de Rousiers 2014).
+float specular_dominant_factor(float roughness) {
   float smooth_part = 1.0 - roughness;
   return clamp(smooth_part * (sqrt(smooth_part) + roughness), 0.0, 1.0);
 }
 
-/// How far behind a mirror with the curvature `curvature` (1 / radius, positive where it bulges)
-/// what is `distance` before it appears: the mirror equation, near the axis. Hollow mirrors show
-/// what is beyond their focus before them, which no single place behind them stands for.
-float mirrored_distance(float distance, float curvature) {
-  return distance / max(1.0 + 2.0 * curvature * distance, 0.25);
+/// Distance behind a reflector of the curvature `curvature` (1 / radius, positive for convex) of
+/// the virtual image of a point `distance` in front of it: the mirror equation, paraxial. Concave
+/// reflectors show what is beyond their focus in front of them, which no position behind them
+/// represents.
+float virtual_distance(float distance, float curvature) {
+  return distance / max(1.0 + 2.0 * curvature * distance, virtual_distance_min_divisor);
 }
 
-/// From how many pixels between the two places on the virtual point is followed, not the surface:
-/// what a long memory drifts by may be half of the lobe, `pixels` wide, and no more than noisy hit
-/// distances move the virtual point by.
-float worth_parting(float pixels) { return min((1.0 + pixels) / 64.0, 0.5); }
+/// Separation of the two candidate positions, in pixels, from which the virtual motion is used and
+/// not the surface motion: a long history may drift by half of the lobe, `pixels` wide, and no more
+/// than noisy hit distances move the virtual position.
+float virtual_motion_threshold(float pixels) {
+  return min((1.0 + pixels) * virtual_threshold_per_pixel, virtual_threshold_max);
+}
 
-/// How many frames of a moving reflection are worth remembering under a lobe `pixels` wide: a narrow
-/// one brings little noise, and shows every pixel that its virtual point is off.
-float mirror_memory(float pixels) { return 8.0 * max(pixels - 0.25, 0.0); }
+/// Maximum history length, in frames, of a moving reflection under a lobe `pixels` wide: a narrow
+/// lobe has little noise, and shows every pixel of error in its virtual position.
+float max_virtual_history(float pixels) {
+  return virtual_history_per_pixel * max(pixels - virtual_history_min_lobe, 0.0);
+}
 
-/// Share of a surface's own history that still shows its reflection, where the reflection's
-/// virtual point lies `apart` pixels beside it: a wide lobe averages over many pixels anyway.
-float surface_trust(float roughness, float apart) {
-  return exp(-apart / (0.25 + 64.0 * roughness * roughness));
+/// Weight of the history at the surface's own position, where the virtual position lies
+/// `separation` pixels beside it: a wide lobe averages over many pixels anyway.
+float surface_history_weight(float roughness, float separation) {
+  return exp(-separation / (surface_history_falloff_smooth +
+                            surface_history_falloff_per_alpha * roughness * roughness));
+}
+
+/// Whether the frame before shows the same reflector, by the cosine between the normals and by the
+/// roughnesses. `normal_change` is the change of normals from pixel to pixel, radians: neighbours
+/// on a curved reflector may differ by as much.
+bool same_reflector(float cosine, float roughness, float previous_roughness, float normal_change) {
+  float least = min(mix(reflector_cosine_smooth, reflector_cosine_rough, roughness),
+                    1.0 - 2.0 * normal_change * normal_change);
+  return cosine > least &&
+         abs(previous_roughness - roughness) <
+             reflector_roughness_tolerance + reflector_roughness_tolerance_relative * roughness;
 }
 
 #endif

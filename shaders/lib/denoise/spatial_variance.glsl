@@ -1,8 +1,8 @@
-// A history too short to tell its variance takes that of its neighbours on the same surface
-// (Schied et al. 2017, section 4.2), raised while it is short. A pixel that has no such neighbours,
-// as along the rim of a column, would show its single rays as they are, for no filter reaches it: it
+// A history too short to tell its variance takes that of its neighbours on the same surface (Schied
+// et al. 2017, section 4.2), raised while it is short. A pixel that has no such neighbours, as
+// along the rim of a column, would show its single rays as they are, for no filter reaches it: it
 // takes its mean, too, from what lies about as far away, while its history is short. What a signal
-// and its memory are comes from the shader that includes this.
+// and its history are comes from the shader that includes this.
 #include "lib/denoise/edge_stopping.glsl"
 #include "lib/denoise/guide.glsl"
 #include "lib/frame.glsl"

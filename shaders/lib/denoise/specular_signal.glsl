@@ -9,9 +9,9 @@ vec2 brightness(vec4 signal) { return vec2(dot(signal.rgb, vec3(0.2126, 0.7152, 
 vec2 variance_of(vec4 signal) { return signal.ww; }
 vec4 with_variance(vec4 signal, vec2 variance) { return vec4(signal.rgb, variance.x); }
 /// Moments know of no colours.
-vec4 with_mean(vec4 signal, vec2 mean, vec2 share) { return signal; }
+vec4 with_mean(vec4 signal, vec2 mean, vec2 fraction) { return signal; }
 
-/// Of its memory: frames remembered, and moments of single samples' luminance.
+/// Its history: history length in frames, and moments of single samples' luminance.
 vec2 frames_of(vec4 history) { return history.xx; }
 vec2 first_moment(vec4 moments) { return moments.zz; }
 vec2 second_moment(vec4 moments) { return moments.ww; }

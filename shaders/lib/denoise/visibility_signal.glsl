@@ -7,11 +7,11 @@ const float smallest_difference = 1e-3;
 vec2 brightness(vec4 signal) { return signal.xy; }
 vec2 variance_of(vec4 signal) { return signal.zw; }
 vec4 with_variance(vec4 signal, vec2 variance) { return vec4(signal.xy, variance); }
-vec4 with_mean(vec4 signal, vec2 mean, vec2 share) {
-  return vec4(mix(signal.xy, mean, share), signal.zw);
+vec4 with_mean(vec4 signal, vec2 mean, vec2 fraction) {
+  return vec4(mix(signal.xy, mean, fraction), signal.zw);
 }
 
-/// Of its memory: frames remembered, and moments of single samples.
+/// Its history: history length in frames, and moments of single samples.
 vec2 frames_of(vec4 history) { return history.xy; }
 vec2 first_moment(vec4 moments) { return moments.xy; }
 vec2 second_moment(vec4 moments) { return moments.zw; }

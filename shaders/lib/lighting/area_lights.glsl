@@ -14,7 +14,7 @@ struct AreaSample {
 
 vec3 area_bitangent(Light light) { return cross(light.direction, light.tangent); }
 
-/// Shares of the diffuse (x) and the specular (y) lobe that the light covers, unshadowed.
+/// Fractions of the diffuse (x) and the specular (y) lobe that the light covers, unshadowed.
 vec2 area_light_shares(Light light, vec3 normal, vec3 eye, float n_dot_v, float roughness,
                        vec3 position) {
   vec3 middle = light.position - position;

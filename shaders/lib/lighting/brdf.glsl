@@ -1,12 +1,12 @@
-// The metallic-roughness BRDF of glTF 2.0 (appendix B): GGX with height-correlated Smith masking and
-// Schlick's Fresnel above Lambert. Two things differ from the specification, so that a white surface
-// gives back all light, whatever its roughness and metalness: what microfacets reflect more than
-// once comes back with the specular lobe (Fdez-Aguera 2019, Turquin 2019), and the diffuse lobe gets
-// what the specular lobe as a whole leaves, not what one microfacet leaves.
-// Perceptual roughness; alpha = roughness^2.
-// A clear coat (KHR_materials_clearcoat) is one more lobe of the same kind, white and without metal;
-// sheen (KHR_materials_sheen) the lobe of Estevez and Kulla 2017 with the visibility of Neubelt and
-// Pettineo 2013. Each leaves to what lies under it what it does not give back itself.
+// The metallic-roughness BRDF of glTF 2.0 (appendix B): GGX with height-correlated Smith masking
+// and Schlick's Fresnel above Lambert. It differs from the specification in two points, so that a
+// white surface gives back all light, whatever its roughness and metalness: what microfacets
+// reflect more than once comes back with the specular lobe (Fdez-Aguera 2019, Turquin 2019), and
+// the diffuse lobe gets what the specular lobe as a whole leaves, not what one microfacet leaves.
+// Perceptual roughness; alpha = roughness^2. A clear coat (KHR_materials_clearcoat) is one more
+// lobe of the same kind, white and without metal; sheen (KHR_materials_sheen) the lobe of Estevez
+// and Kulla 2017 with the visibility of Neubelt and Pettineo 2013. Each leaves to what lies under
+// it what it does not give back itself.
 #ifndef HELIOGRAPH_BRDF_GLSL
 #define HELIOGRAPH_BRDF_GLSL
 #include "lib/math/geometry.glsl"
@@ -16,14 +16,14 @@ const float dielectric_f0 = 0.04;  // index of refraction 1.5
 
 /// What extensions make of a point of a surface.
 struct SurfaceLayer {
-  vec3 facing;    // reflectance of the dielectric, F0
-  float grazing;  // and its F90
+  vec3 f0;    // reflectance of the dielectric at normal incidence
+  float f90;  // at grazing incidence
   vec3 coat_normal;
-  float coat;  // share of the surface that lies under a clear coat
+  float coat;  // fraction of the surface that lies under a clear coat
   float coat_roughness;
   vec3 sheen;
   float sheen_roughness;
-  float transmission;  // share of what enters the dielectric that is not scattered back
+  float transmission;  // fraction of what enters the dielectric that is not scattered back
   vec3 transmitted;    // and what comes out of it behind, where the base colour is white
 };
 
@@ -34,27 +34,21 @@ struct SurfaceMaterial {
   vec3 eye;        // toward the eye, unit length
   float n_dot_v;   // > 0
   float roughness;
-  // What a microfacet reflects: facing + grazing x (1 - v.h)^5, multiple scattering included.
-  vec3 facing;
-  vec3 grazing;
-  vec3 specular_albedo;  // share of white light from everywhere that the specular lobes give back
+  // Fresnel reflectance: f0 + f90_minus_f0 x (1 - v.h)^5, multiple scattering included.
+  vec3 f0;
+  vec3 f90_minus_f0;
+  vec3 specular_albedo;  // albedo of the specular lobes under uniform white light
   vec3 diffuse_albedo;   // and the diffuse lobe
   vec3 transmitted;      // and what passes straight through
   vec3 coat_normal;
   float coat_n_dot_v;
   float coat_roughness;
-  vec2 coat;          // like facing and grazing
+  vec2 coat;          // f0 and f90 - f0
   float coat_albedo;  // its part of specular_albedo; 0: there is no coat
   vec3 sheen;         // factor on the lobe; 0: there is none
   float sheen_roughness;
   vec3 sheen_albedo;
 };
-
-vec3 fresnel_schlick(vec3 f0, float cosine) {
-  float m = clamp(1.0 - cosine, 0.0, 1.0);
-  float m2 = m * m;
-  return f0 + (1.0 - f0) * (m2 * m2 * m);
-}
 
 float ggx_distribution(float n_dot_h, float alpha) {
   float a2 = alpha * alpha;
@@ -91,17 +85,17 @@ SurfaceMaterial make_material(vec3 base_color, float metallic, float roughness, 
   m.eye = eye;
   m.n_dot_v = material_n_dot_v(normal, eye);
   m.roughness = roughness;
-  // 1 + F0 x regained: the multiple scattering of Turquin 2019, exact for F0 = 1.
-  float regained = 1.0 / max(split.x + split.y, 1e-3) - 1.0;
-  vec3 dielectric_scale = 1.0 + layer.facing * regained;
-  vec3 dielectric_share = (1.0 - metallic) * dielectric_scale;
-  vec3 metal_share = metallic * (1.0 + base_color * regained);
-  m.facing = dielectric_share * layer.facing + metal_share * base_color;
-  m.grazing = dielectric_share * (layer.grazing - layer.facing) + metal_share * (1.0 - base_color);
-  m.specular_albedo = m.facing * (split.x + split.y) + m.grazing * split.y;
-  vec3 dielectric_albedo = (layer.facing * split.x + layer.grazing * split.y) * dielectric_scale;
-  float taken = max(dielectric_albedo.r, max(dielectric_albedo.g, dielectric_albedo.b));
-  float entering = (1.0 - metallic) * (1.0 - min(taken, 1.0));
+  // 1 + F0 x energy_compensation: the multiple scattering of Turquin 2019, exact for F0 = 1.
+  float energy_compensation = 1.0 / max(split.x + split.y, 1e-3) - 1.0;
+  vec3 dielectric_scale = 1.0 + layer.f0 * energy_compensation;
+  vec3 dielectric = (1.0 - metallic) * dielectric_scale;
+  vec3 metal = metallic * (1.0 + base_color * energy_compensation);
+  m.f0 = dielectric * layer.f0 + metal * base_color;
+  m.f90_minus_f0 = dielectric * (layer.f90 - layer.f0) + metal * (1.0 - base_color);
+  m.specular_albedo = m.f0 * (split.x + split.y) + m.f90_minus_f0 * split.y;
+  vec3 dielectric_albedo = (layer.f0 * split.x + layer.f90 * split.y) * dielectric_scale;
+  float max_albedo = max(dielectric_albedo.r, max(dielectric_albedo.g, dielectric_albedo.b));
+  float entering = (1.0 - metallic) * (1.0 - min(max_albedo, 1.0));
   m.diffuse_albedo = entering * (1.0 - layer.transmission) * base_color;
   m.transmitted = entering * layer.transmitted * base_color;
   m.coat_normal = normal;
@@ -116,8 +110,8 @@ SurfaceMaterial make_material(vec3 base_color, float metallic, float roughness, 
 
 /// Dims all that lies under another lobe.
 void cover(inout SurfaceMaterial m, float under) {
-  m.facing *= under;
-  m.grazing *= under;
+  m.f0 *= under;
+  m.f90_minus_f0 *= under;
   m.specular_albedo *= under;
   m.diffuse_albedo *= under;
   m.transmitted *= under;
@@ -137,8 +131,8 @@ void add_sheen(inout SurfaceMaterial m, SurfaceLayer layer, float albedo) {
 
 /// Lays the coat over the material. `split` is looked up at the coat's roughness and its own n.v.
 void add_coat(inout SurfaceMaterial m, SurfaceLayer layer, vec2 split) {
-  float regained = 1.0 / max(split.x + split.y, 1e-3) - 1.0;
-  float scale = layer.coat * (1.0 + dielectric_f0 * regained);
+  float energy_compensation = 1.0 / max(split.x + split.y, 1e-3) - 1.0;
+  float scale = layer.coat * (1.0 + dielectric_f0 * energy_compensation);
   m.coat_normal = layer.coat_normal;
   m.coat_n_dot_v = material_n_dot_v(layer.coat_normal, m.eye);
   m.coat_roughness = layer.coat_roughness;
@@ -156,8 +150,8 @@ vec3 wide_albedo(SurfaceMaterial m) {
   return has_sheen(m) ? m.diffuse_albedo + m.sheen_albedo : m.diffuse_albedo;
 }
 
-/// Of the lobe that mirrors the sharper image.
-float mirror_roughness(SurfaceMaterial m) {
+/// Of the narrower specular lobe.
+float specular_roughness(SurfaceMaterial m) {
   return has_coat(m) ? min(m.coat_roughness, m.roughness) : m.roughness;
 }
 
@@ -173,7 +167,7 @@ float schlick_weight(float v_dot_h) {
 
 /// What a microfacet under the coat reflects of light that meets it at this cosine.
 vec3 microfacet_reflectance(SurfaceMaterial m, float v_dot_h) {
-  return m.facing + m.grazing * schlick_weight(v_dot_h);
+  return m.f0 + m.f90_minus_f0 * schlick_weight(v_dot_h);
 }
 
 /// What one of the coat reflects.
@@ -181,8 +175,8 @@ float coat_reflectance(SurfaceMaterial m, float v_dot_h) {
   return m.coat.x + m.coat.y * schlick_weight(v_dot_h);
 }
 
-/// D V n.l of one lobe. Smooth surfaces keep a narrow lobe: a point light in a perfect mirror is a
-/// pole.
+/// D V n.l of one lobe. The roughness is bounded below: a punctual light in a perfect mirror is a
+/// singularity.
 float specular_lobe(float n_dot_h, float n_dot_l, float n_dot_v, float roughness) {
   float alpha = max(roughness * roughness, 2e-3);
   return ggx_distribution(n_dot_h, alpha) * smith_visibility(n_dot_l, n_dot_v, alpha) * n_dot_l;

@@ -1,4 +1,4 @@
-// Deferred composition: analytic light x traced visibility, mirrored light, image based light,
+// Deferred composition: analytic light x traced visibility, specular light, image based light,
 // emission. The image that a pass binds after these is its own affair.
 #ifndef HELIOGRAPH_COMPOSITION_GLSL
 #define HELIOGRAPH_COMPOSITION_GLSL
@@ -22,11 +22,11 @@ layout(push_constant) uniform Constants { float max_roughness; };  // below 0: n
 #include "lib/rays/specular_pixels.glsl"
 
 /// What each signal of a pixel is multiplied by, and what needs none.
-struct Shares {
+struct Composition {
   vec3 own;      // emission, background
   vec3 direct;   // of the shadow ratio
   vec3 ambient;  // of the ambient visibility
-  vec3 mirror;   // of the specular signal
+  vec3 specular;   // of the specular signal
 };
 
 vec3 direct_light(SurfaceMaterial m, vec3 position) {
@@ -37,52 +37,52 @@ vec3 direct_light(SurfaceMaterial m, vec3 position) {
   return sum;
 }
 
-Shares lit_shares(ivec2 pixel, float view_z) {
+Composition lit_composition(ivec2 pixel, float view_z) {
   SurfaceMaterial m = material_at(pixel);
-  Shares shares = Shares(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
-  if (enabled(frame_direct)) shares.direct = direct_light(m, world_position(pixel, view_z));
-  if (enabled(frame_environment_diffuse)) shares.ambient = environment_diffuse(m);
-  if (mirrors_rays(mirror_roughness(m), max_roughness)) {
-    shares.mirror = specular_demodulator(m);
+  Composition terms = Composition(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+  if (enabled(frame_direct)) terms.direct = direct_light(m, world_position(pixel, view_z));
+  if (enabled(frame_environment_diffuse)) terms.ambient = environment_diffuse(m);
+  if (traces_specular(specular_roughness(m), max_roughness)) {
+    terms.specular = specular_demodulator(m);
   } else if (enabled(frame_environment_specular)) {
-    shares.ambient += environment_specular(m);
+    terms.ambient += environment_specular(m);
   }
-  shares.ambient *= imageLoad(base_color, pixel).a;  // the occlusion texture
-  return shares;
+  terms.ambient *= imageLoad(base_color, pixel).a;  // the occlusion texture
+  return terms;
 }
 
-Shares pixel_shares(ivec2 pixel) {
+Composition pixel_composition(ivec2 pixel) {
   float view_z = imageLoad(motion, pixel).w;
   if (view_z <= 0.0) {
     vec3 behind = imageLoad(background, pixel).rgb;
-    return Shares(behind, vec3(0.0), vec3(0.0), vec3(0.0));
+    return Composition(behind, vec3(0.0), vec3(0.0), vec3(0.0));
   }
-  Shares shares;
+  Composition terms;
   if (is_unlit(pixel)) {
     vec3 root = imageLoad(base_color, pixel).rgb;
-    shares = Shares(root * root, vec3(0.0), vec3(0.0), vec3(0.0));
+    terms = Composition(root * root, vec3(0.0), vec3(0.0), vec3(0.0));
   } else {
-    shares = lit_shares(pixel, view_z);
+    terms = lit_composition(pixel, view_z);
   }
-  if (enabled(frame_emissive)) shares.own += imageLoad(emissive, pixel).rgb;
-  return shares;
+  if (enabled(frame_emissive)) terms.own += imageLoad(emissive, pixel).rgb;
+  return terms;
 }
 
-/// The picture's radiance from its signals. One bad pixel must not spread through the history.
-vec4 composed(Shares shares, vec2 visibility, vec3 mirrored) {
+/// The frame's radiance from its signals. NaN must not spread through the history.
+vec4 composed(Composition terms, vec2 visibility, vec3 specular) {
   float lit = enabled(frame_shadows) ? visibility.x : 1.0;
   float open = enabled(frame_ambient_occlusion) ? visibility.y : 1.0;
-  vec3 radiance = shares.own + shares.direct * lit + shares.ambient * open +
-                  shares.mirror * mirrored;
+  vec3 radiance = terms.own + terms.direct * lit + terms.ambient * open +
+                  terms.specular * specular;
   if (any(isnan(radiance)) || any(isinf(radiance))) radiance = vec3(0.0);
   return vec4(radiance, 1.0);
 }
 
-vec4 composed_of_raw_signals(Shares shares, ivec2 pixel) {
+vec4 composed_of_raw_signals(Composition terms, ivec2 pixel) {
   vec2 visibility =
       vec2(imageLoad(shadow_visibility, pixel).r, imageLoad(ambient_visibility, pixel).r);
-  vec3 mirrored = max_roughness < 0.0 ? vec3(0.0) : imageLoad(specular_radiance, pixel).rgb;
-  return composed(shares, visibility, mirrored);
+  vec3 specular = max_roughness < 0.0 ? vec3(0.0) : imageLoad(specular_radiance, pixel).rgb;
+  return composed(terms, visibility, specular);
 }
 
 #endif

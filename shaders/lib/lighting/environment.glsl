@@ -30,7 +30,7 @@ vec3 environment_radiance(vec3 world) {
   return textureLod(environment_map, uv, 0.0).rgb * frame.environment_intensity;
 }
 
-/// GGX-prefiltered radiance about the mirror direction `world`.
+/// GGX-prefiltered radiance about the reflected direction `world`.
 vec3 environment_reflection(vec3 world, float roughness) {
   float level = roughness * float(frame.prefiltered_levels - 1u);
   return textureLod(prefiltered_environment, environment_direction(world), level).rgb *
@@ -72,10 +72,10 @@ vec3 environment_diffuse(SurfaceMaterial m) {
   return wide_albedo(m) * environment_irradiance(m.normal);
 }
 
-/// The environment's mirrored light by the split sum (Karis 2013), as if nothing hid it.
+/// The environment's specular light by the split sum (Karis 2013), without occlusion.
 vec3 environment_specular(SurfaceMaterial m) {
-  vec3 mirrored = reflect(-m.eye, m.normal);
-  vec3 light = under_coat_albedo(m) * environment_reflection(mirrored, m.roughness);
+  vec3 reflected = reflect(-m.eye, m.normal);
+  vec3 light = under_coat_albedo(m) * environment_reflection(reflected, m.roughness);
   if (has_coat(m)) {
     light += m.coat_albedo *
              environment_reflection(reflect(-m.eye, m.coat_normal), m.coat_roughness);

@@ -6,14 +6,14 @@
 
 const uint area_candidates = 4u;
 
-/// Takes one of several: `pick` decides with the new one's share of the total and stays uniform.
+/// Reservoir sampling: `pick` decides by the candidate's fraction of the total and stays uniform.
 bool takes(float weight, inout float total, inout float pick) {
   if (!(weight > 0.0)) return false;
   total += weight;
-  float share = weight / total;
-  bool taken = pick < share;
-  pick = taken ? pick / share : (pick - share) / (1.0 - share);
-  return taken;
+  float probability = weight / total;
+  bool chosen = pick < probability;
+  pick = chosen ? pick / probability : (pick - probability) / (1.0 - probability);
+  return chosen;
 }
 
 struct LightChoice {
@@ -38,7 +38,7 @@ LightChoice choose_light(SurfaceMaterial m, vec3 position, inout float pick) {
 /// of a few (resampling; Talbot et al. 2005), so that visibility stays 0 or 1 and what is lit
 /// everywhere stays free of noise.
 LightSample sample_lit_point(Light light, SurfaceMaterial m, vec3 position, vec2 u, float pick,
-                             out bool found) {
+                             out bool valid) {
   LightSample chosen;
   float total = 0.0;
   for (uint i = 0u; i < area_candidates; ++i) {
@@ -49,27 +49,27 @@ LightSample sample_lit_point(Light light, SurfaceMaterial m, vec3 position, vec2
     float weight = cosine > 0.0 ? luminance(s.irradiance * shade_light(m, s.direction)) : 0.0;
     if (takes(weight, total, pick)) chosen = s;
   }
-  found = total > 0.0;
+  valid = total > 0.0;
   return chosen;
 }
 
-/// The ray that asks whether the light is in view; `found` is false where it would start into the
+/// The shadow ray to the light; `valid` is false where it would start into the
 /// surface or where no point of the light is seen. `view_distance` is what offset_origin wants.
 Ray light_ray(Light light, SurfaceMaterial m, vec3 position, float view_distance, vec2 u,
-              float pick, out bool found) {
+              float pick, out bool valid) {
   LightSample s;
   if (has_area(light)) {
-    s = sample_lit_point(light, m, position, u, pick, found);
+    s = sample_lit_point(light, m, position, u, pick, valid);
   } else {
     s = sample_light(light, position, u);
     // The light's disk may reach below the horizon, where nothing of it is seen.
-    found = dot(s.ray_direction, m.geometric) > 0.0;
+    valid = dot(s.ray_direction, m.geometric) > 0.0;
   }
   Ray ray;
   ray.origin = offset_origin(position, m.geometric, view_distance);
   ray.t_min = 0.0;
   ray.direction = s.ray_direction;
-  // Geometry may lie where an area light does and show it: it must not be in its own way.
+  // Geometry may lie where an area light does and show it: it must not occlude itself.
   ray.t_max = s.distance * 0.999;
   ray.pixel = ray.user = ray.padding0 = ray.padding1 = 0u;
   return ray;

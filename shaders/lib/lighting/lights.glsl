@@ -135,13 +135,13 @@ LightSample sample_light(Light light, vec3 position, vec2 u) {
 /// radiance. Areas by linearly transformed cosines.
 vec3 light_contribution(Light light, SurfaceMaterial m, vec3 position) {
   if (has_area(light)) {
-    vec2 share = area_light_shares(light, m.normal, m.eye, m.n_dot_v, m.roughness, position);
-    vec3 shares = wide_albedo(m) * share.x + under_coat_albedo(m) * share.y;
+    vec2 fractions = area_light_shares(light, m.normal, m.eye, m.n_dot_v, m.roughness, position);
+    vec3 energy = wide_albedo(m) * fractions.x + under_coat_albedo(m) * fractions.y;
     if (has_coat(m)) {
-      shares += m.coat_albedo * area_light_shares(light, m.coat_normal, m.eye, m.coat_n_dot_v,
+      energy += m.coat_albedo * area_light_shares(light, m.coat_normal, m.eye, m.coat_n_dot_v,
                                                   m.coat_roughness, position).y;
     }
-    return light.color * shares;
+    return light.color * energy;
   }
   LightSample s = light_at(light, position);
   if (dot(m.geometric, s.direction) <= 0.0) return vec3(0.0);

@@ -40,9 +40,9 @@ void add_edge(inout Contour contour, vec3 from, vec3 to) {
   contour.sum += edge_integral(normalize(from), normalize(to));
 }
 
-/// Share of the clamped cosine about +z that the polygon covers.
+/// Fraction of the clamped cosine about +z that the polygon covers.
 float covered_cosine(Contour contour) {
-  // A convex polygon crosses the horizon twice at most: the way along it closes the outline.
+  // A convex polygon crosses the horizon twice at most: the edge along it closes the outline.
   if (contour.cut) contour.sum += edge_integral(contour.leaves, contour.returns);
   return clamp(abs(contour.sum) / (2.0 * pi), 0.0, 1.0);
 }
@@ -55,8 +55,9 @@ mat3 ltc_inverse(sampler2D table, float n_dot_v, float roughness) {
   return mat3(vec3(entry.x, 0.0, entry.y), vec3(0.0, 1.0, 0.0), vec3(entry.z, 0.0, entry.w));
 }
 
-/// Share of the lobe above the horizon, where it is cut off and made as bright again as it was whole:
-/// the cosine over the lune between the hemisphere and the horizon's, moved back by the matrix.
+/// Fraction of the lobe above the horizon, where it is cut off and made as bright again as it was
+/// whole: the cosine over the lune between the hemisphere and the horizon's, moved back by the
+/// matrix.
 float ltc_share_above(mat3 inverse_lobe) {
   vec2 up = vec2(-inverse_lobe[0].z, inverse_lobe[0].x);
   return 0.5 + 0.5 * up.y / length(up);

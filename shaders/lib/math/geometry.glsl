@@ -15,7 +15,7 @@ void orthonormal_basis(vec3 n, out vec3 tangent, out vec3 bitangent) {
 /// A ray origin off the surface at `position`, on the side `normal` points to, by what rounding
 /// may have moved the position: seen from `distance` away it was rebuilt from a depth (measured:
 /// below 2^-15 of the distance, with triangles a kilometre long), placed far from the origin of
-/// the world it loses the last places of its coordinates.
+/// the world it loses the last digits of its coordinates.
 vec3 offset_origin(vec3 position, vec3 normal, float distance) {
   vec3 size = abs(position);
   float largest = max(size.x, max(size.y, size.z));

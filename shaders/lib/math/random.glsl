@@ -54,8 +54,8 @@ uint quadtree_order(uvec2 pixel) {
   return v.x | (v.y << 1u);
 }
 
-/// The places of a pixel and a sample in the two sequences of a dimension.
-uvec2 sequence_places(uvec2 pixel, uint sample_index, uvec3 keys) {
+/// The indices of a pixel and a sample in the two sequences of a dimension.
+uvec2 sequence_indices(uvec2 pixel, uint sample_index, uvec3 keys) {
   return uvec2(shuffle(quadtree_order(pixel), keys.x), shuffle(sample_index, keys.y));
 }
 
@@ -65,19 +65,19 @@ float unit_interval(uint digits) { return float(bitfieldReverse(digits) >> 8u) *
 vec2 random_pair(uvec2 pixel, uint sample_index, uint dimension, uint seed) {
   uvec3 keys = pcg3d(uvec3(dimension, seed, 0u));
   uvec3 more = pcg3d(uvec3(dimension, seed, 1u));
-  uvec2 place = sequence_places(pixel, sample_index, keys);
-  uint first = scramble_upward(place.x, keys.z) ^ scramble_upward(place.y, more.x);
-  uint second = scramble_upward(sobol_second(place.x), more.y) ^
-                scramble_upward(sobol_second(place.y), more.z);
+  uvec2 indices = sequence_indices(pixel, sample_index, keys);
+  uint first = scramble_upward(indices.x, keys.z) ^ scramble_upward(indices.y, more.x);
+  uint second = scramble_upward(sobol_second(indices.x), more.y) ^
+                scramble_upward(sobol_second(indices.y), more.z);
   return vec2(unit_interval(first), unit_interval(second));
 }
 
 /// One number, independent of the pairs of every dimension.
 float random_number(uvec2 pixel, uint sample_index, uint dimension, uint seed) {
   uvec3 keys = pcg3d(uvec3(dimension, seed, 2u));
-  uvec2 place = sequence_places(pixel, sample_index, keys);
-  return unit_interval(scramble_upward(place.x, keys.z) ^
-                       scramble_upward(place.y, keys.x ^ keys.y));
+  uvec2 indices = sequence_indices(pixel, sample_index, keys);
+  return unit_interval(scramble_upward(indices.x, keys.z) ^
+                       scramble_upward(indices.y, keys.x ^ keys.y));
 }
 
 #endif

@@ -22,7 +22,7 @@ float smith_masking(float cosine, float alpha) {
   return 2.0 * cosine / (cosine + sqrt(cosine * cosine * (1.0 - a2) + a2));
 }
 
-/// Density per solid angle of the mirrored direction `light` when its normal came from
+/// Density per solid angle of the reflected direction `light` when its normal came from
 /// sample_visible_normal: G1(v) D(h) / (4 n.v).
 float visible_normal_pdf(vec3 view, vec3 light, float alpha) {
   vec3 half_vector = normalize(view + light);
@@ -45,15 +45,15 @@ float visible_normal_weight(vec3 view, vec3 light, float alpha) {
 /// taken out before it is filtered and put back by composition.
 vec3 specular_demodulator(SurfaceMaterial m) { return max(m.specular_albedo, vec3(1e-3)); }
 
-/// The lobe's normal, or as close to it as the mirror direction stays above the triangle (Keller
-/// et al. 2017, appendix A.3): rims of coarse meshes and steep texels of normal maps mirror what
+/// The lobe's normal, or as close to it as keeps the reflected direction above the triangle (Keller
+/// et al. 2017, appendix A.3): rims of coarse meshes and steep texels of normal maps reflect what
 /// lies along the surface, instead of nothing.
 vec3 reflecting_normal(SurfaceMaterial m, vec3 normal) {
-  vec3 mirrored = reflect(-m.eye, normal);
+  vec3 reflected = reflect(-m.eye, normal);
   const float least = 0.01;
-  float above = dot(mirrored, m.geometric);
+  float above = dot(reflected, m.geometric);
   if (above >= least || dot(m.eye, m.geometric) <= 0.0) return normal;
-  vec3 lifted = normalize(mirrored + m.geometric * (least - above));
+  vec3 lifted = normalize(reflected + m.geometric * (least - above));
   return normalize(m.eye + lifted);
 }
 
@@ -63,7 +63,7 @@ vec3 reflecting_normal(SurfaceMaterial m, vec3 normal) {
 struct SpecularSample {
   vec3 direction;
   vec3 weight;
-  float density;    // the pdf of the lobe drawn x its share, per solid angle; finite for mirrors too
+  float density;    // pdf of the sampled lobe x its probability, per solid angle; finite for mirrors
   float roughness;  // of the lobe
 };
 
@@ -75,13 +75,13 @@ float coat_share(SurfaceMaterial m) {
 SpecularSample sample_specular(SurfaceMaterial m, vec2 u) {
   SpecularSample s;
   s.roughness = m.roughness;
-  float share = 1.0;
+  float lobe_probability = 1.0;
   bool coated = false;
   if (has_coat(m)) {
     float of_coat = clamp(coat_share(m), 0.05, 0.95);
     coated = u.x < of_coat;
-    share = coated ? of_coat : 1.0 - of_coat;
-    u.x = coated ? u.x / of_coat : (u.x - of_coat) / share;
+    lobe_probability = coated ? of_coat : 1.0 - of_coat;
+    u.x = coated ? u.x / of_coat : (u.x - of_coat) / lobe_probability;
     if (coated) s.roughness = m.coat_roughness;
   }
   vec3 normal = reflecting_normal(m, coated ? m.coat_normal : m.normal);
@@ -96,8 +96,9 @@ SpecularSample sample_specular(SurfaceMaterial m, vec2 u) {
   s.direction = normalize(tangent * light.x + bitangent * light.y + normal * light.z);
   bool open = dot(s.direction, m.geometric) > 0.0;
   vec3 reflectance = coated ? vec3(coat_reflectance(m, v_dot_h)) : microfacet_reflectance(m, v_dot_h);
-  s.weight = open ? reflectance * (visible_normal_weight(view, light, alpha) / share) : vec3(0.0);
-  s.density = share * visible_normal_pdf(view, light, max(alpha, 1e-4));
+  s.weight = open ? reflectance * (visible_normal_weight(view, light, alpha) / lobe_probability)
+                  : vec3(0.0);
+  s.density = lobe_probability * visible_normal_pdf(view, light, max(alpha, 1e-4));
   return s;
 }
 

@@ -47,10 +47,10 @@ vec2 box_interval(vec2 x, vec2 y, vec2 z, Line line, vec2 range) {
 
 uint blending = 0u;  // of the ray
 
-// The mask's alpha, of 255, at barycentric (u, v) of the triangle at `place`.
-uint mask_alpha(uvec4 texels, uvec4 lookup, uint place, float u, float v) {
+// The mask's alpha, of 255, at barycentric (u, v) of the triangle at `slot`.
+uint mask_alpha(uvec4 texels, uvec4 lookup, uint slot, float u, float v) {
   if (texels.y == 0u) return 255u;
-  const int first_uv = int(lookup.z + 2u * (place - lookup.w));
+  const int first_uv = int(lookup.z + 2u * (slot - lookup.w));
   const vec4 corners01 = texelFetch(triangles, first_uv);
   const vec2 corner2 = texelFetch(triangles, first_uv + 1).xy;
   const vec2 uv = (1.0 - u - v) * corners01.xy + u * corners01.zw + v * corner2;
@@ -59,17 +59,18 @@ uint mask_alpha(uvec4 texels, uvec4 lookup, uint place, float u, float v) {
   return bitfieldExtract(word, int(8u * (offset & 3u)), 8);
 }
 
-// Whether the mask lets a ray through barycentric tuv.yz of the triangle at `place` end there.
-bool mask_stops(uint mask, uint place, vec3 tuv, uint instance, uint triangle) {
+// Whether the mask lets a ray through barycentric tuv.yz of the triangle at `slot` end there.
+bool mask_stops(uint mask, uint slot, vec3 tuv, uint instance, uint triangle) {
   const uvec4 texels = record_bits(mask, 0u) & bvh_number_mask;
   const uvec4 lookup = record_bits(mask, 1u) & bvh_number_mask;
-  const uint alpha = mask_alpha(texels, lookup, place, tuv.y, tuv.z);
+  const uint alpha = mask_alpha(texels, lookup, slot, tuv.y, tuv.z);
   return alpha_stops(alpha, texels.w, blending, instance, triangle);
 }
 
 // On which side of the edge from a to b, both seen from the line's origin, the line passes: in
-// proportion to the volume between them. The same edge the other way round gives exactly the opposite, so that no
-// line slips through between two triangles (Davidovic, Engelhardt, Georgiev and Slusallek, GI 2012).
+// proportion to the volume between them. The same edge reversed gives exactly the opposite sign, so
+// that no line slips through between two triangles (Davidovic, Engelhardt, Georgiev and Slusallek,
+// GI 2012).
 float side_of_edge(vec3 a, vec3 b, vec3 direction) {
   const vec3 along = b - a, sum = a + b;
   precise const float x = fma(along.y, sum.z, -(along.z * sum.y));
@@ -80,8 +81,8 @@ float side_of_edge(vec3 a, vec3 b, vec3 direction) {
 }
 
 // Both faces: (t, u, v) where the plane is met, and whether inside.
-bool triangle_hit(uint place, Line line, vec2 range, out vec3 tuv, out uint triangle) {
-  const int texel = int(place * bvh_texels_per_triangle);
+bool triangle_hit(uint slot, Line line, vec2 range, out vec3 tuv, out uint triangle) {
+  const int texel = int(slot * bvh_texels_per_triangle);
   const vec4 first = texelFetch(triangles, texel);
   triangle = floatBitsToUint(first.w) & bvh_number_mask;
   const vec3 corner0 = first.xyz;
@@ -135,23 +136,23 @@ uint descend(uint link, Line line, vec2 range) {
 // Tests a leaf's triangles up to the first that may be masked away. What remains of the leaf comes
 // back as a link: looking up masks between triangles would cost every lane, masked or not.
 uint test_leaf(uint link, Line line, float t_min, uvec4 placed, inout Hit hit) {
-  uint place = link & bvh_leaf_first_mask;
-  const uint end = place + ((link >> bvh_leaf_count_shift) & bvh_leaf_count_mask) + 1u;
+  uint slot = link & bvh_leaf_first_mask;
+  const uint end = slot + ((link >> bvh_leaf_count_shift) & bvh_leaf_count_mask) + 1u;
   const bool masked = placed.z != bvh_no_link;
-  bool found = false;
+  bool has_hit = false;
   vec3 tuv = vec3(0.0);
   uint triangle = 0u;
-  for (; place < end && !(found && (ANY_HIT || masked)); ++place) {
+  for (; slot < end && !(has_hit && (ANY_HIT || masked)); ++slot) {
     vec3 candidate;
     uint number;
-    const vec2 range = vec2(t_min, found ? tuv.x : hit.t);
-    if (!triangle_hit(place, line, range, candidate, number)) continue;
-    found = true;
+    const vec2 range = vec2(t_min, has_hit ? tuv.x : hit.t);
+    if (!triangle_hit(slot, line, range, candidate, number)) continue;
+    has_hit = true;
     tuv = candidate;
     triangle = number;
   }
   const uint instance = placed.y & bvh_number_mask;
-  if (found && (!masked || mask_stops(placed.z & bvh_number_mask, place - 1u, tuv, instance,
+  if (has_hit && (!masked || mask_stops(placed.z & bvh_number_mask, slot - 1u, tuv, instance,
                                       triangle))) {
     hit.t = tuv.x;
     hit.u = tuv.y;
@@ -159,8 +160,8 @@ uint test_leaf(uint link, Line line, float t_min, uvec4 placed, inout Hit hit) {
     hit.instance = instance;
     hit.triangle = triangle;
   }
-  if (place == end) return pop();
-  return bvh_leaf_bit | bvh_number_tag | (end - place - 1u) << bvh_leaf_count_shift | place;
+  if (slot == end) return pop();
+  return bvh_leaf_bit | bvh_number_tag | (end - slot - 1u) << bvh_leaf_count_shift | slot;
 }
 
 Line into_mesh(uint record, Line world) {

@@ -1,4 +1,4 @@
-// The rays that a camera sees along: what the rasteriser projects, the other way round.
+// The rays that a camera sees along: the inverse of the rasteriser's projection.
 #ifndef HELIOGRAPH_CAMERA_RAY_GLSL
 #define HELIOGRAPH_CAMERA_RAY_GLSL
 #include "lib/frame.glsl"

@@ -1,4 +1,4 @@
-// What rays are sorted by: the octant of the direction, then the origin's place in an 8x8x8 grid of
+// The sort key of rays: the octant of the direction, then the origin's cell in an 8x8x8 grid of
 // the scene in Morton order.
 #ifndef HELIOGRAPH_RAY_KEY_GLSL
 #define HELIOGRAPH_RAY_KEY_GLSL
@@ -12,8 +12,8 @@ uint every_third(uint v) { return (v & 1u) | (v & 2u) << 2u | (v & 4u) << 4u; }
 uint ray_key(vec3 origin, vec3 direction) {
   uvec3 forward = uvec3(greaterThanEqual(direction, vec3(0.0)));
   uint octant = forward.x | forward.y << 1u | forward.z << 2u;
-  vec3 place = clamp((origin - scene.corner.xyz) * scene.scale.xyz, 0.0, 0.999);
-  uvec3 cell = uvec3(place * 8.0);
+  vec3 grid_position = clamp((origin - scene.corner.xyz) * scene.scale.xyz, 0.0, 0.999);
+  uvec3 cell = uvec3(grid_position * 8.0);
   return octant << 9u | every_third(cell.x) | every_third(cell.y) << 1u | every_third(cell.z) << 2u;
 }
 

@@ -7,14 +7,14 @@
 shared uint group_rays;
 shared uint group_base;
 
-#define APPEND_RAY(wanted, ray) APPEND_RAY_TO(ray_count, rays, wanted, ray)
+#define APPEND_RAY(requested, ray) APPEND_RAY_TO(ray_count, rays, requested, ray)
 
 /// For passes with several streams.
-#define APPEND_RAY_TO(ray_count, rays, wanted, ray)                                 \
+#define APPEND_RAY_TO(ray_count, rays, requested, ray)                                 \
   {                                                                                 \
     if (gl_LocalInvocationIndex == 0u) group_rays = 0u;                             \
     barrier();                                                                      \
-    uint slot = (wanted) ? atomicAdd(group_rays, 1u) : 0u;                          \
+    uint slot = (requested) ? atomicAdd(group_rays, 1u) : 0u;                          \
     barrier();                                                                      \
     if (gl_LocalInvocationIndex == 0u && group_rays > 0u) {                         \
       group_base = atomicAdd(ray_count.count, group_rays);                          \
@@ -23,7 +23,7 @@ shared uint group_base;
       atomicMax(ray_count.groups_y, (groups + groups_per_row - 1u) / groups_per_row); \
     }                                                                               \
     barrier();                                                                      \
-    if (wanted) rays[group_base + slot] = (ray);                                    \
+    if (requested) rays[group_base + slot] = (ray);                                    \
   }
 
 #endif

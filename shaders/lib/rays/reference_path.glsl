@@ -1,5 +1,5 @@
 // What the passes of the reference path tracer share. Streams are dense: the ray of a pixel stands
-// at the pixel's place, and a ray that is not wanted has an empty interval, so that no pass ever
+// at the pixel's index, and a ray that is not requested has an empty interval, so that no pass ever
 // writes another pixel's radiance.
 #ifndef HELIOGRAPH_REFERENCE_PATH_GLSL
 #define HELIOGRAPH_REFERENCE_PATH_GLSL
@@ -26,7 +26,7 @@ Ray ray_from(vec3 position, vec3 normal, vec3 direction, float t_max) {
   return Ray(offset_origin(position, normal, 0.0), 0.0, direction, t_max, 0u, 0u, 0u, 0u);
 }
 
-/// The ray tells what its light is worth where nothing is in its way.
+/// The ray carries the radiance of the light, added where it is not occluded.
 void carry(inout Ray ray, vec3 radiance) {
   uvec3 bits = floatBitsToUint(radiance);
   ray.user = bits.r;
@@ -53,9 +53,9 @@ bool passes_through(HitSurface s, SurfaceMaterial m, ivec2 pixel, uint round,
                     inout vec3 throughput) {
   if (!scene_has(scene_blends) || !is_blended(s)) return false;
   vec3 behind = seen_behind(s, m);
-  float share = dot(behind, vec3(1.0 / 3.0));
-  bool passes = path_number(pixel, round, 0u) < share;
-  throughput *= passes ? behind / share : vec3(s.alpha / (1.0 - share));
+  float pass_probability = dot(behind, vec3(1.0 / 3.0));
+  bool passes = path_number(pixel, round, 0u) < pass_probability;
+  throughput *= passes ? behind / pass_probability : vec3(s.alpha / (1.0 - pass_probability));
   return passes;
 }
 

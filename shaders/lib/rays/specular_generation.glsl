@@ -1,4 +1,4 @@
-// One mirrored ray per pixel, or per 2x2, from the visible normals of the surface's roughness.
+// One specular ray per pixel, or per 2x2, from the visible normals of the surface's roughness.
 // HALF_RESOLUTION: rays carry no weight; the direction that each cell took is kept, so that the
 // pixels of the cell can weigh what it saw by their own lobes.
 #ifndef HELIOGRAPH_SPECULAR_GENERATION_GLSL
@@ -31,7 +31,7 @@ void main() {
   bool inside = all(lessThan(cell, imageSize(radiance)));
   ivec2 pixel = inside ? traced_pixel(cell, scale) : ivec2(0);
   float view_z = inside ? imageLoad(motion, pixel).w : 0.0;
-  bool wanted = false;
+  bool requested = false;
   Ray ray;
 #ifdef HALF_RESOLUTION
   vec4 taken = vec4(0.0);
@@ -44,7 +44,8 @@ void main() {
     taken = vec4(s.direction, s.density);
     if (weight != vec3(0.0)) weight = vec3(1.0);
 #endif
-    wanted = mirrors_rays(mirror_roughness(m), max_roughness) && any(greaterThan(weight, vec3(0.0)));
+    requested = traces_specular(specular_roughness(m), max_roughness) &&
+                any(greaterThan(weight, vec3(0.0)));
     ray.origin = offset_origin(world_position(pixel, view_z), m.geometric, view_z);
     ray.t_min = 0.0;
     ray.direction = s.direction;
@@ -58,7 +59,7 @@ void main() {
 #ifdef HALF_RESOLUTION
   if (inside) imageStore(directions, cell, taken);
 #endif
-  APPEND_RAY(wanted, ray)
+  APPEND_RAY(requested, ray)
 }
 
 #endif

@@ -1,11 +1,11 @@
-// Which surfaces a camera's ray ends on, whoever follows it: the G-buffer from rays and the
-// reference path tracer see the same ones as drawn triangles.
+// Which surfaces a camera's ray ends on, in every pass that traces it: the G-buffer from rays and
+// the reference path tracer see the same ones as drawn triangles.
 #ifndef HELIOGRAPH_COVERAGE_GLSL
 #define HELIOGRAPH_COVERAGE_GLSL
 #include "lib/scene/hit_surface.glsl"
 
 /// Whether the camera sees nothing there: the back of a face that is not drawn, or a hole. Tracers
-/// ask the nearest texel of a mask; the picture shows the filtered one.
+/// test the nearest texel of a mask; the frame shows the filtered one.
 bool is_open(HitSurface s, vec3 direction) {
   if (dot(s.front, direction) > 0.0 && (s.flags & material_double_sided) == 0u) return true;
   return (s.flags & material_alpha_mask) != 0u && s.alpha < s.alpha_cutoff;

@@ -45,8 +45,8 @@ layout(set = 2, binding = 14) uniform sampler2D thickness_map;
 layout(set = 2, binding = 15, std140) uniform LayerBlock { MaterialLayer layer; };
 #endif
 
-// No condition here hangs on constants and uniforms alone: lavapipe would make a new shader of every
-// value they take, draw by draw, and keep them all.
+// No condition here hangs on constants and uniforms alone: lavapipe would make a new shader of
+// every value they take, draw by draw, and keep them all.
 float flag(uint flags, uint bit) { return float(min(flags & bit, 1u)); }
 
 vec2 slot_uv(TextureSlot slot) {
@@ -54,7 +54,8 @@ vec2 slot_uv(TextureSlot slot) {
   return vec2(dot(slot.transform_row0.xyz, uv), dot(slot.transform_row1.xyz, uv));
 }
 
-/// A normal map's texel about the front face's `normal`; a back face reverses the result as a whole.
+/// A normal map's texel about the front face's `normal`; a back face reverses the result as a
+/// whole.
 vec3 mapped_normal(vec3 normal, vec3 texel, float scale, uint map) {
   texel = texel * 2.0 - 1.0;
   // Without a map the normal stays: a whole number divides to 1 only by itself.
@@ -67,10 +68,10 @@ vec3 mapped_normal(vec3 normal, vec3 texel, float scale, uint map) {
   return normalize(tangent * texel.x + bitangent * texel.y + normal * texel.z);
 }
 
-/// View Z where the ray through the pixel's middle meets the plane of the triangle. Rasterisers snap
-/// corners to a grid, and corners of large triangles lie far outside of the picture: what is
-/// interpolated is a point of the triangle, but up to half a pixel beside the one that is looked at,
-/// and a point rebuilt from its depth would lie above or below the surface.
+/// View Z where the ray through the pixel's middle meets the plane of the triangle. Rasterisers
+/// snap corners to a grid, and corners of large triangles lie far outside of the frame: what is
+/// interpolated is a point of the triangle, but up to half a pixel beside the one that is looked
+/// at, and a point rebuilt from its depth would lie above or below the surface.
 float exact_view_z(vec3 geometric) {
   vec2 ndc = gl_FragCoord.xy / vec2(frame.extent) * 2.0 - 1.0;
   vec2 slope = ndc * frame.unproject.xy + frame.unproject.zw;
@@ -80,9 +81,9 @@ float exact_view_z(vec3 geometric) {
   vec3 normal = mat3(frame.view) * geometric;
   vec3 beside = (frame.view * vec4(world_point, 1.0)).xyz - passed;
   float along = dot(normal, through);
-  float apart = dot(normal, beside) / (abs(along) < 1e-4 ? 1e-4 : along);
+  float depth_offset = dot(normal, beside) / (abs(along) < 1e-4 ? 1e-4 : along);
   float most = 4.0 * (abs(dFdx(view_depths.x)) + abs(dFdy(view_depths.x)));  // a few pixels away
-  return view_depths.x + clamp(apart, -most, most);
+  return view_depths.x + clamp(depth_offset, -most, most);
 }
 
 #ifdef GBUFFER_LAYERED
@@ -115,7 +116,7 @@ void main() {
             (1.0 - extended.transmission);
 #endif
 #ifndef GBUFFER_OPAQUE
-  // Of blended surfaces only what hides all behind it: the rest is drawn over the composed picture.
+  // Of blended surfaces only the opaque part: the rest is blended over the composed frame.
   bool hole = color.a < mix(material.alpha_cutoff, least_solid,
                             flag(material.flags, material_alpha_blend));
 #endif

@@ -7,8 +7,8 @@
 #include "lib/scene/texture_heap.glsl"
 #include "shared/ray.h"
 
-/// The footprint of a ray, which grows with its length t: width + spread x t, metres (Akenine-Möller
-/// et al. 2021).
+/// The footprint of a ray, which grows with its length t: width + spread x t, metres
+/// (Akenine-Möller et al. 2021).
 struct RayCone {
   float width;
   float spread;
@@ -22,8 +22,8 @@ RayCone camera_cone() {
 
 float cone_width(RayCone cone, float t) { return cone.width + cone.spread * t; }
 
-/// The cone behind a mirror of this roughness: the wider the lobe, the less detail it shows.
-RayCone mirrored_cone(RayCone cone, float t, float roughness) {
+/// The ray cone after reflection at this roughness: the wider the lobe, the less detail it shows.
+RayCone reflected_cone(RayCone cone, float t, float roughness) {
   return RayCone(cone_width(cone, t), cone.spread + 0.5 * roughness * roughness);
 }
 
@@ -41,14 +41,14 @@ struct HitSurface {
   float occlusion;
   vec3 emissive;  // linear radiance
   uint flags;     // material_*
-  float passing;  // share of the rays that tracers let go on where it covers
+  float passing;  // fraction of rays that tracers let pass where it covers
   SurfaceLayer layer;
 };
 
 /// A triangle of an instance, corner by corner.
 struct HitTriangle {
   mat3x4 world;  // rows: mesh -> world
-  float mirrored;  // -1 where the matrix mirrors, or 1
+  float handedness;  // -1 where the matrix changes the handedness, or 1
   Vertex a, b, c;
   vec3 weights;
   uint material;
@@ -58,7 +58,7 @@ HitTriangle load_triangle(Hit hit) {
   HitTriangle t;
   mat4 world = instances[hit.instance].world;
   t.world = mat3x4(transpose(world));
-  t.mirrored = (instances[hit.instance].flags & instance_flipped) != 0u ? -1.0 : 1.0;
+  t.handedness = (instances[hit.instance].flags & instance_flipped) != 0u ? -1.0 : 1.0;
   Mesh mesh = meshes[instances[hit.instance].mesh];
   uint first = mesh.first_index + 3u * hit.triangle;
   t.a = vertices[mesh.first_vertex + indices[first]];
@@ -78,14 +78,14 @@ vec3 triangle_position(HitTriangle t) {
 vec3 transform_normal(HitTriangle t, vec3 n) {
   vec3 x = t.world[0].xyz, y = t.world[1].xyz, z = t.world[2].xyz;
   vec3 cofactors = vec3(dot(cross(y, z), n), dot(cross(z, x), n), dot(cross(x, y), n));
-  return normalize(cofactors * t.mirrored);
+  return normalize(cofactors * t.handedness);
 }
 
 vec3 transform_direction(HitTriangle t, vec3 v) { return vec4(v, 0.0) * t.world; }
 
-/// Where a texture is read: both uv sets, their areas (twice that of the triangle's image), and half
-/// the logarithm of the footprint's share of the triangle.
-struct TexturePlace {
+/// Where a texture is read: both uv sets, their areas (twice that of the triangle's image), and
+/// half the logarithm of the footprint's fraction of the triangle.
+struct TextureLookup {
   vec4 uv;
   vec2 area;
   float footprint;
@@ -96,32 +96,32 @@ float twice_area(vec2 a, vec2 b, vec2 c) {
   return abs(p.x * q.y - p.y * q.x);
 }
 
-TexturePlace texture_place(HitTriangle t, float twice_world_area, float width, float cosine) {
-  TexturePlace place;
-  place.uv = vec4(t.a.uv0, t.a.uv1) * t.weights.x + vec4(t.b.uv0, t.b.uv1) * t.weights.y +
+TextureLookup texture_lookup(HitTriangle t, float twice_world_area, float width, float cosine) {
+  TextureLookup lookup;
+  lookup.uv = vec4(t.a.uv0, t.a.uv1) * t.weights.x + vec4(t.b.uv0, t.b.uv1) * t.weights.y +
              vec4(t.c.uv0, t.c.uv1) * t.weights.z;
-  place.area = vec2(twice_area(t.a.uv0, t.b.uv0, t.c.uv0), twice_area(t.a.uv1, t.b.uv1, t.c.uv1));
-  place.footprint = log2(max(width, 1e-20) / max(cosine, 1e-2)) -
+  lookup.area = vec2(twice_area(t.a.uv0, t.b.uv0, t.c.uv0), twice_area(t.a.uv1, t.b.uv1, t.c.uv1));
+  lookup.footprint = log2(max(width, 1e-20) / max(cosine, 1e-2)) -
                     0.5 * log2(max(twice_world_area, 1e-30));
-  return place;
+  return lookup;
 }
 
 /// The slot's texel; white where it has no texture.
-vec4 slot_texel(TextureSlot slot, TexturePlace place) {
+vec4 slot_texel(TextureSlot slot, TextureLookup lookup) {
   if (slot.texture == no_texture) return vec4(1.0);
   vec2 x = slot.transform_row0.xy, y = slot.transform_row1.xy;
-  vec3 uv = vec3(slot.uv_set == 0u ? place.uv.xy : place.uv.zw, 1.0);
-  float area = (slot.uv_set == 0u ? place.area.x : place.area.y) * abs(x.x * y.y - x.y * y.x) *
+  vec3 uv = vec3(slot.uv_set == 0u ? lookup.uv.xy : lookup.uv.zw, 1.0);
+  float area = (slot.uv_set == 0u ? lookup.area.x : lookup.area.y) * abs(x.x * y.y - x.y * y.x) *
                float(textures[slot.texture].width) * float(textures[slot.texture].height);
-  float lod = 0.5 * log2(max(area, 1e-30)) + place.footprint;
+  float lod = 0.5 * log2(max(area, 1e-30)) + lookup.footprint;
   return sample_texture(slot.texture, vec2(dot(slot.transform_row0.xyz, uv),
                                            dot(slot.transform_row1.xyz, uv)), lod);
 }
 
 /// A normal map about the front face's `normal`.
-vec3 mapped_normal(HitTriangle t, TextureSlot map, float scale, TexturePlace place, vec3 normal) {
+vec3 mapped_normal(HitTriangle t, TextureSlot map, float scale, TextureLookup lookup, vec3 normal) {
   if (map.texture == no_texture) return normal;
-  vec3 texel = slot_texel(map, place).xyz * 2.0 - 1.0;
+  vec3 texel = slot_texel(map, lookup).xyz * 2.0 - 1.0;
   texel.xy *= scale;
   vec3 tangent = transform_direction(t, t.a.tangent.xyz) * t.weights.x +
                  transform_direction(t, t.b.tangent.xyz) * t.weights.y +
@@ -130,7 +130,7 @@ vec3 mapped_normal(HitTriangle t, TextureSlot map, float scale, TexturePlace pla
   float size = dot(tangent, tangent);
   if (size < 1e-12) return normal;
   tangent *= inversesqrt(size);
-  vec3 bitangent = cross(normal, tangent) * (t.a.tangent.w * t.mirrored);
+  vec3 bitangent = cross(normal, tangent) * (t.a.tangent.w * t.handedness);
   return normalize(tangent * texel.x + bitangent * texel.y + normal * texel.z);
 }
 
@@ -139,40 +139,40 @@ vec4 vertex_color(Vertex v) {
 }
 
 /// What extensions add at the front face's `normal`.
-SurfaceLayer evaluate_layer(HitTriangle t, TexturePlace place, vec3 normal) {
+SurfaceLayer evaluate_layer(HitTriangle t, TextureLookup lookup, vec3 normal) {
   uint number = materials[t.material].layer;
   if (number == 0u) return plain_layer();
   MaterialLayer from = layers[number];
   LayerTexels texels;
-  texels.specular = slot_texel(from.specular_texture, place).a;
-  texels.specular_color = slot_texel(from.specular_color_texture, place).rgb;
-  texels.coat = slot_texel(from.coat_texture, place).r;
-  texels.coat_roughness = slot_texel(from.coat_roughness_texture, place).g;
-  texels.sheen = slot_texel(from.sheen_color_texture, place).rgb;
-  texels.sheen_roughness = slot_texel(from.sheen_roughness_texture, place).a;
-  texels.transmission = slot_texel(from.transmission_texture, place).r;
-  texels.thickness = slot_texel(from.thickness_texture, place).g;
+  texels.specular = slot_texel(from.specular_texture, lookup).a;
+  texels.specular_color = slot_texel(from.specular_color_texture, lookup).rgb;
+  texels.coat = slot_texel(from.coat_texture, lookup).r;
+  texels.coat_roughness = slot_texel(from.coat_roughness_texture, lookup).g;
+  texels.sheen = slot_texel(from.sheen_color_texture, lookup).rgb;
+  texels.sheen_roughness = slot_texel(from.sheen_roughness_texture, lookup).a;
+  texels.transmission = slot_texel(from.transmission_texture, lookup).r;
+  texels.thickness = slot_texel(from.thickness_texture, lookup).g;
   return surface_layer(from, texels,
-                       mapped_normal(t, from.coat_normal_texture, from.coat_normal_scale, place,
+                       mapped_normal(t, from.coat_normal_texture, from.coat_normal_scale, lookup,
                                      normal));
 }
 
-void evaluate_material(inout HitSurface s, HitTriangle t, TexturePlace place) {
+void evaluate_material(inout HitSurface s, HitTriangle t, TextureLookup lookup) {
   uint m = t.material;
   vec4 tint = vertex_color(t.a) * t.weights.x + vertex_color(t.b) * t.weights.y +
               vertex_color(t.c) * t.weights.z;
   vec4 color = materials[m].base_color * tint *
-               slot_texel(materials[m].base_color_texture, place);
+               slot_texel(materials[m].base_color_texture, lookup);
   s.base_color = clamp(color.rgb, 0.0, 1.0);
   s.alpha = color.a;
   s.alpha_cutoff = materials[m].alpha_cutoff;
-  vec4 packed_surface = slot_texel(materials[m].metallic_roughness_texture, place);
+  vec4 packed_surface = slot_texel(materials[m].metallic_roughness_texture, lookup);
   s.metallic = clamp(materials[m].metallic * packed_surface.b, 0.0, 1.0);
   s.roughness = clamp(materials[m].roughness * packed_surface.g, 0.0, 1.0);
-  s.occlusion = mix(1.0, slot_texel(materials[m].occlusion_texture, place).r,
+  s.occlusion = mix(1.0, slot_texel(materials[m].occlusion_texture, lookup).r,
                     materials[m].occlusion_strength);
   s.emissive = materials[m].emissive;
-  if (s.emissive != vec3(0.0)) s.emissive *= slot_texel(materials[m].emissive_texture, place).rgb;
+  if (s.emissive != vec3(0.0)) s.emissive *= slot_texel(materials[m].emissive_texture, lookup).rgb;
   s.flags = materials[m].flags;
   if ((s.flags & material_whole_alpha) != 0u) s.alpha = 1.0;
   s.passing = scene_has(scene_layers) ? materials[m].passing : 0.0;
@@ -188,7 +188,7 @@ HitSurface hit_surface(Hit hit, vec3 direction, float width) {
                                  transform_normal(t, t.b.normal) * t.weights.y +
                                  transform_normal(t, t.c.normal) * t.weights.z);
   vec3 across = cross(transform_direction(t, t.b.position - t.a.position),
-                      transform_direction(t, t.c.position - t.a.position)) * t.mirrored;
+                      transform_direction(t, t.c.position - t.a.position)) * t.handedness;
   float twice_world_area = length(across);
   vec3 front = twice_world_area > 0.0 ? across / twice_world_area : vertex_normal;
   s.front = front;
@@ -196,13 +196,13 @@ HitSurface hit_surface(Hit hit, vec3 direction, float width) {
   float side = cosine <= 0.0 ? 1.0 : -1.0;
   // Like the G-buffer: where winding and normals disagree, the normals say which side this is.
   s.geometric = front * (dot(front, vertex_normal) < 0.0 ? -side : side);
-  TexturePlace place = texture_place(t, twice_world_area, width, abs(cosine));
+  TextureLookup lookup = texture_lookup(t, twice_world_area, width, abs(cosine));
   s.normal = mapped_normal(t, materials[t.material].normal_texture,
-                           materials[t.material].normal_scale, place, vertex_normal) * side;
-  evaluate_material(s, t, place);
+                           materials[t.material].normal_scale, lookup, vertex_normal) * side;
+  evaluate_material(s, t, lookup);
   s.layer = plain_layer();
   if (scene_has(scene_layers)) {
-    s.layer = evaluate_layer(t, place, vertex_normal);
+    s.layer = evaluate_layer(t, lookup, vertex_normal);
     s.layer.coat_normal *= side;
   }
   return s;

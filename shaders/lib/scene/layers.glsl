@@ -18,8 +18,8 @@ struct LayerTexels {
 
 SurfaceLayer surface_layer(MaterialLayer from, LayerTexels texels, vec3 coat_normal) {
   SurfaceLayer layer;
-  layer.grazing = from.specular * texels.specular;
-  layer.facing = layer.grazing * min(from.dielectric * from.specular_color * texels.specular_color,
+  layer.f90 = from.specular * texels.specular;
+  layer.f0 = layer.f90 * min(from.dielectric * from.specular_color * texels.specular_color,
                                      vec3(1.0));
   layer.coat_normal = coat_normal;
   layer.coat = from.coat * texels.coat;
@@ -31,26 +31,26 @@ SurfaceLayer surface_layer(MaterialLayer from, LayerTexels texels, vec3 coat_nor
   return layer;
 }
 
-/// Of a pixel that lets no light through. The base layer's roughness goes with it: the G-buffer's own
-/// is that of the smoother lobe.
+/// Of a pixel that lets no light through. The base layer's roughness goes with it: the G-buffer's
+/// own is that of the smoother lobe.
 uvec4 pack_layer(SurfaceLayer layer, float roughness) {
-  uvec3 facing = uvec3(sqrt(clamp(layer.facing, 0.0, 1.0)) * 1023.0 + 0.5);
-  return uvec4(facing.r | facing.g << 10u | facing.b << 20u,
+  uvec3 f0 = uvec3(sqrt(clamp(layer.f0, 0.0, 1.0)) * 1023.0 + 0.5);
+  return uvec4(f0.r | f0.g << 10u | f0.b << 20u,
                packSnorm2x16(octahedral_encode(layer.coat_normal)),
-               packUnorm4x8(vec4(layer.coat, layer.coat_roughness, roughness, layer.grazing)),
+               packUnorm4x8(vec4(layer.coat, layer.coat_roughness, roughness, layer.f90)),
                packUnorm4x8(vec4(sqrt(layer.sheen), layer.sheen_roughness)));
 }
 
 SurfaceLayer unpack_layer(uvec4 bits, out float roughness) {
-  vec3 facing = vec3(uvec3(bits.x, bits.x >> 10u, bits.x >> 20u) & 1023u) / 1023.0;
+  vec3 f0 = vec3(uvec3(bits.x, bits.x >> 10u, bits.x >> 20u) & 1023u) / 1023.0;
   vec4 coat = unpackUnorm4x8(bits.z);
   vec4 sheen = unpackUnorm4x8(bits.w);
   roughness = coat.z;
-  return SurfaceLayer(facing * facing, coat.w, octahedral_decode(unpackSnorm2x16(bits.y)), coat.x,
+  return SurfaceLayer(f0 * f0, coat.w, octahedral_decode(unpackSnorm2x16(bits.y)), coat.x,
                       coat.y, sheen.rgb * sheen.rgb, sheen.a, 0.0, vec3(0.0));
 }
 
-/// Of the lobe that mirrors the sharper image.
+/// Of the narrower specular lobe.
 float smoother_roughness(SurfaceLayer layer, float roughness) {
   return layer.coat > 0.0 ? min(roughness, layer.coat_roughness) : roughness;
 }

@@ -19,23 +19,24 @@ vec3 srgb_decode(vec3 e) {
   return e * (0.0457505 + e * (0.4940478 + e * (0.6158348 - 0.1561215 * e)));
 }
 
-vec4 heap_texel(HeapTexture t, uint place) {
-  vec4 color = unpackUnorm4x8(texelFetch(texture_heap, int(place)).x);
+vec4 heap_texel(HeapTexture t, uint index) {
+  vec4 color = unpackUnorm4x8(texelFetch(texture_heap, int(index)).x);
   return vec4(mix(color.rgb, srgb_decode(color.rgb), float(t.flags & texture_srgb)), color.a);
 }
 
-/// One level, whose texels begin at `first`. There is one way through: lavapipe runs every branch.
+/// One level, whose texels begin at `first`. Without branches: lavapipe runs all of them.
 vec4 sample_level(HeapTexture t, uint first, ivec2 size, vec2 uv, bool nearest) {
   vec2 at = uv * vec2(size) - (nearest ? 0.0 : 0.5);
   vec2 corner = floor(at);
-  vec2 share = nearest ? vec2(0.0) : at - corner;
+  vec2 fraction = nearest ? vec2(0.0) : at - corner;
   ivec2 low = ivec2(corner);
   uint left = uint(wrapped_texel(low.x, size.x, t.wrap_s));
   uint right = uint(wrapped_texel(low.x + 1, size.x, t.wrap_s));
   uint top = first + uint(wrapped_texel(low.y, size.y, t.wrap_t) * size.x);
   uint bottom = first + uint(wrapped_texel(low.y + 1, size.y, t.wrap_t) * size.x);
-  return mix(mix(heap_texel(t, top + left), heap_texel(t, top + right), share.x),
-             mix(heap_texel(t, bottom + left), heap_texel(t, bottom + right), share.x), share.y);
+  return mix(mix(heap_texel(t, top + left), heap_texel(t, top + right), fraction.x),
+             mix(heap_texel(t, bottom + left), heap_texel(t, bottom + right), fraction.x),
+             fraction.y);
 }
 
 /// The texture at `uv`. `lod` counts from the largest level that the heap keeps. Where
@@ -43,7 +44,7 @@ vec4 sample_level(HeapTexture t, uint first, ivec2 size, vec2 uv, bool nearest) 
 vec4 sample_texture(uint index, vec2 uv, float lod) {
   HeapTexture t = textures[index];
   bool nearest = (t.flags & (lod <= 0.0 ? texture_magnify_nearest : texture_minify_nearest)) != 0u;
-  // Whole turns first, so that large coordinates keep their fraction.
+  // Whole repetitions first, so that large coordinates keep their fraction.
   if (t.wrap_s != wrap_clamp) uv.x -= 2.0 * floor(0.5 * uv.x);
   if (t.wrap_t != wrap_clamp) uv.y -= 2.0 * floor(0.5 * uv.y);
   uv = clamp(uv, -4.0, 4.0);

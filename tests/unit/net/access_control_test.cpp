@@ -18,7 +18,7 @@ int status(const AccessControl& access, std::map<std::string, std::string> heade
   return admission.refusal ? admission.refusal->status : 200;
 }
 
-TEST(AccessControl, OtherAddressesThanLoopbackNeedATokenOrConsent) {
+TEST(AccessControl, NonLoopbackAddressesNeedATokenOrInsecure) {
   for (const char* address : {"0.0.0.0", "::", "192.168.1.5", "example.org", "127.evil.example"}) {
     EXPECT_THROW(AccessControl({.bind_address = address}), std::invalid_argument) << address;
     EXPECT_NO_THROW(AccessControl({.bind_address = address, .insecure = true}));
@@ -29,7 +29,7 @@ TEST(AccessControl, OtherAddressesThanLoopbackNeedATokenOrConsent) {
   }
 }
 
-TEST(AccessControl, TokensMustBeLongEnoughAndFitIntoHeaders) {
+TEST(AccessControl, TokensMustBeLongEnoughAndValidInHeaders) {
   for (const char* token :
        {"short", "has space 123", "semicolon;123", "new\nline12", "quote\"123"}) {
     EXPECT_THROW(TokenSet({{token}}), std::invalid_argument) << token;
@@ -43,7 +43,7 @@ TEST(AccessControl, AllowedOriginsMustBeOrigins) {
   }
 }
 
-TEST(AccessControl, AnyAddressIsAHostNameWhereAnyInterfaceIsBound) {
+TEST(AccessControl, AnyAddressIsAHostNameIfAllInterfacesAreBound) {
   const AccessControl access({.bind_address = "0.0.0.0", .insecure = true});
   EXPECT_EQ(status(access, {{"host", "10.1.2.3:8080"}}), 200);
   EXPECT_EQ(status(access, {{"host", "[fe80::1]:8080"}}), 200);
@@ -54,7 +54,7 @@ TEST(AccessControl, AnyAddressIsAHostNameWhereAnyInterfaceIsBound) {
 }
 
 // What <img src> on a page of another origin sends: no Origin, but this.
-TEST(AccessControl, WhatOtherOriginsEmbedIsRefused) {
+TEST(AccessControl, ResourcesEmbeddedByOtherOriginsAreRejected) {
   const AccessControl access({.allowed_origins = {"https://good.example"}});
   const auto get = [&](std::string path, std::map<std::string, std::string> headers) {
     HttpRequest asked = request(std::move(headers));
@@ -84,7 +84,7 @@ TEST(AccessControl, WhatOtherOriginsEmbedIsRefused) {
   }
 }
 
-TEST(AccessControl, ATokenIsItsOwnersRightButACookieIsNot) {
+TEST(AccessControl, BearerTokenOverridesTheEmbeddingCheckButACookieDoesNot) {
   const AccessControl access({.tokens = {{"correct-horse", Role::control}}});
   const std::map<std::string, std::string> elsewhere{{"host", "localhost"},
                                                      {"sec-fetch-site", "same-site"}};
@@ -101,7 +101,7 @@ TEST(AccessControl, ATokenIsItsOwnersRightButACookieIsNot) {
 }
 
 // Browsers show no token when they ask beforehand.
-TEST(AccessControl, AllowedOriginsMayAskBeforehandWithoutToken) {
+TEST(AccessControl, PreflightOfAllowedOriginsNeedsNoToken) {
   const AccessControl access(
       {.tokens = {{"correct-horse", Role::control}}, .allowed_origins = {"https://good.example"}});
   HttpRequest asked = request({{"host", "localhost"},
@@ -139,7 +139,7 @@ TEST(AccessControl, GivesTheRoleOfTheToken) {
   EXPECT_EQ(AccessControl({}).admit(request({{"host", "localhost"}})).role, Role::control);
 }
 
-TEST(AccessControl, StopsListeningToWhoGuesses) {
+TEST(AccessControl, RejectsClientsThatGuessTokens) {
   const AccessControl access({.tokens = {{"correct-horse"}}});
   const auto guess = [&](const std::string& peer, const std::string& token) {
     HttpRequest asked = request({{"host", "h"}, {"authorization", "Bearer " + token}});
@@ -157,7 +157,7 @@ TEST(AccessControl, StopsListeningToWhoGuesses) {
   EXPECT_EQ(access.admit(silent).refusal->status, 401) << "showing none is no guess";
 }
 
-TEST(AccessControl, OneRequestIsOneGuess) {
+TEST(AccessControl, AllTokensOfARequestCountAsOneGuess) {
   const AccessControl access({.tokens = {{"correct-horse"}}});
   std::string cookies;
   for (int i = 0; i < 100; ++i) cookies += "heliograph_token=guess" + std::to_string(i) + "; ";
@@ -165,7 +165,7 @@ TEST(AccessControl, OneRequestIsOneGuess) {
   EXPECT_EQ(status(access, {{"host", "h"}, {"cookie", cookies}}), 401);
 }
 
-TEST(AccessControl, BelievesOnlyTrustedProxies) {
+TEST(AccessControl, UsesForwardedHeadersOfTrustedProxiesOnly) {
   const AccessControl access({.trusted_proxies = {"10.0.0.0/8", "::1"}});
   const auto client = [&](const std::string& peer, const std::string& chain) {
     HttpRequest asked = request({{"x-forwarded-for", chain}, {"x-forwarded-proto", "https"}});
@@ -181,7 +181,7 @@ TEST(AccessControl, BelievesOnlyTrustedProxies) {
   EXPECT_THROW(AccessControl({.trusted_proxies = {"proxy"}}), std::invalid_argument);
 }
 
-TEST(AccessControl, CookiesFollowTheConnection) {
+TEST(AccessControl, CookieAttributesFollowTheConnection) {
   const AccessControl access({.tokens = {{"correct-horse"}}});
   HttpRequest asked = request({{"host", "h"}});
   EXPECT_EQ(access.token_cookie("t", asked),
@@ -191,7 +191,7 @@ TEST(AccessControl, CookiesFollowTheConnection) {
             "heliograph_token=t; Path=/; HttpOnly; Secure; SameSite=Strict");
 }
 
-TEST(AccessControl, PlainPagesOfTheSameHostAreForeignToTls) {
+TEST(AccessControl, PlainHttpPagesOfTheSameHostAreCrossOriginForTls) {
   const AccessControl access({});
   HttpRequest asked = request({{"host", "localhost:1"}, {"origin", "http://localhost:1"}});
   EXPECT_FALSE(access.admit(asked).refusal);
@@ -210,7 +210,7 @@ TEST(AddressRange, ContainsByBits) {
   EXPECT_TRUE(AddressRange("0.0.0.0/0").contains("8.8.8.8"));
 }
 
-TEST(ConnectionLimits, CountInAllAndByClient) {
+TEST(ConnectionLimits, CountInTotalAndPerClient) {
   ConnectionLimits limits(4, 2, {AddressRange("10.0.0.0/8")});
   auto first = limits.take("1.1.1.1");
   auto second = limits.take("1.1.1.1");
@@ -225,7 +225,7 @@ TEST(ConnectionLimits, CountInAllAndByClient) {
   EXPECT_EQ(limits.open(), 3u);
 }
 
-TEST(ConnectionLimits, OneNetworkOfIpv6IsOneClient) {
+TEST(ConnectionLimits, Ipv6NetworkCountsAsOneClient) {
   EXPECT_EQ(client_key("2001:db8:1:2::3"), client_key("2001:db8:1:2:ffff::"));
   EXPECT_NE(client_key("2001:db8:1:2::3"), client_key("2001:db8:1:3::3"));
   EXPECT_NE(client_key("10.0.0.1"), client_key("10.0.0.2"));

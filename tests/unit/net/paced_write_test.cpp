@@ -24,8 +24,8 @@ struct Reading {
   std::chrono::milliseconds pause;
 };
 
-/// What came of writing `size` bytes to somebody who reads so, over real sockets with small
-/// buffers.
+/// The result of writing `size` bytes to a client with this reading rate, over real sockets with
+/// small buffers.
 struct Outcome {
   boost::system::error_code error;
   std::size_t received = 0;
@@ -71,24 +71,24 @@ Outcome write_to(const Reading& reading, std::size_t size, Pace pace) {
   return outcome;
 }
 
-TEST(PacedWrite, MayLastManyTimesLongerThanAnyPieceOfIt) {
+TEST(PacedWrite, MayTakeLongerThanTheTimeoutOfOnePiece) {
   const Outcome outcome = write_to({.bytes_at_once = 8192, .pause = 15ms}, 600'000,
-                                   {.patience = 400ms, .bytes_per_second = 1000.0});
+                                   {.timeout = 400ms, .bytes_per_second = 1000.0});
   EXPECT_FALSE(outcome.error) << outcome.error.message();
   EXPECT_GT(outcome.received, 600'000u);
   EXPECT_GT(outcome.seconds, 600ms);
 }
 
-TEST(PacedWrite, EndsWhereNothingIsTaken) {
+TEST(PacedWrite, EndsIfNothingIsRead) {
   const Outcome outcome = write_to({.bytes_at_once = 8192, .pause = 900ms}, 4'000'000,
-                                   {.patience = 300ms, .bytes_per_second = 1000.0});
+                                   {.timeout = 300ms, .bytes_per_second = 1000.0});
   EXPECT_EQ(outcome.error, boost::beast::error::timeout);
   EXPECT_LT(outcome.received, 4'000'000u);
 }
 
-TEST(PacedWrite, EndsWhereTooLittleIsTaken) {
+TEST(PacedWrite, EndsIfTooLittleIsRead) {
   const Outcome outcome = write_to({.bytes_at_once = 2048, .pause = 20ms}, 4'000'000,
-                                   {.patience = 500ms, .bytes_per_second = 1e6});
+                                   {.timeout = 500ms, .bytes_per_second = 1e6});
   EXPECT_EQ(outcome.error, boost::beast::error::timeout);
   EXPECT_LT(outcome.received, 4'000'000u);
 }

@@ -29,14 +29,14 @@ class ResourceLimitsTest : public testing::Test {
   fs::path folder_;
 };
 
-TEST_F(ResourceLimitsTest, OfTheSecondVersion) {
+TEST_F(ResourceLimitsTest, ReadsCgroupsVersion2) {
   write("memory.max", "1073741824");
   write("cpu.max", "150000 100000");
   EXPECT_EQ(limits().memory_bytes, 1073741824.0);
   EXPECT_EQ(limits().processors, 1.5);
 }
 
-TEST_F(ResourceLimitsTest, OfTheFirstVersion) {
+TEST_F(ResourceLimitsTest, ReadsCgroupsVersion1) {
   write("memory/memory.limit_in_bytes", "536870912");
   write("cpu/cpu.cfs_quota_us", "50000");
   write("cpu/cpu.cfs_period_us", "100000");
@@ -44,7 +44,7 @@ TEST_F(ResourceLimitsTest, OfTheFirstVersion) {
   EXPECT_EQ(limits().processors, 0.5);
 }
 
-TEST_F(ResourceLimitsTest, AreAbsentWhereNothingIsLimited) {
+TEST_F(ResourceLimitsTest, AreAbsentWithoutLimits) {
   write("memory.max", "max");
   write("cpu.max", "max 100000");
   EXPECT_FALSE(limits().memory_bytes);
@@ -56,12 +56,12 @@ TEST_F(ResourceLimitsTest, AreAbsentWhereNothingIsLimited) {
   EXPECT_FALSE(limits().processors);
 }
 
-TEST_F(ResourceLimitsTest, AreAbsentWhereNobodyTells) {
+TEST_F(ResourceLimitsTest, AreAbsentIfUnreadable) {
   EXPECT_FALSE(limits().memory_bytes);
   EXPECT_FALSE(limits().processors);
 }
 
-TEST(UsefulThreads, AreThoseThatTheQuotaLastsFor) {
+TEST(UsefulThreads, FollowTheQuota) {
   EXPECT_EQ(useful_threads({}, 64), 64u);
   EXPECT_EQ(useful_threads({.processors = 2.0}, 64), 2u);
   EXPECT_EQ(useful_threads({.processors = 1.5}, 64), 2u);

@@ -26,10 +26,9 @@ class EnvironmentLanes {
     const Float3 d = own_direction(world);
     const Table& map = environment_.map;
     const auto width = static_cast<int>(map.width), height = static_cast<int>(map.height);
-    const Float turn = angle_of(d.x, d.z) * number(0.5f * std::numbers::inv_pi_v<float>);
+    const Float u = angle_of(d.x, d.z) * number(0.5f * std::numbers::inv_pi_v<float>);
     const Float from_top = hn::Acos(tag, clamped(d.y, -1.0f, 1.0f));
-    const Float x =
-        hn::MulSub(turn + number(0.5f), number(static_cast<float>(width)), number(0.5f));
+    const Float x = hn::MulSub(u + number(0.5f), number(static_cast<float>(width)), number(0.5f));
     const Float y = hn::MulSub(from_top * number(std::numbers::inv_pi_v<float>),
                                number(static_cast<float>(height)), number(0.5f));
     const Float corner_x = hn::Floor(x), corner_y = hn::Floor(y);
@@ -45,8 +44,8 @@ class EnvironmentLanes {
     const Integer left = around(column), right = around(hn::Add(column, integer(1)));
     const Integer top = hn::Mul(inside(row), integer(width));
     const Integer bottom = hn::Mul(inside(hn::Add(row, integer(1))), integer(width));
-    const auto texel = [&map](Integer line, Integer place) {
-      return gather3(tag, map.values.data(), hn::Mul(hn::Add(line, place), integer(3)));
+    const auto texel = [&map](Integer line, Integer index) {
+      return gather3(tag, map.values.data(), hn::Mul(hn::Add(line, index), integer(3)));
     };
     const Float across = x - corner_x, down = y - corner_y;
     return mix(mix(texel(top, left), texel(top, right), across),
@@ -54,15 +53,15 @@ class EnvironmentLanes {
            number(frame_.environment_intensity);
   }
 
-  /// GGX-prefiltered radiance about the mirror direction `world`.
+  /// GGX-prefiltered radiance about the reflected direction `world`.
   HWY_INLINE Float3 reflection(const Float3& world, Float roughness) const {
     const Face face = face_of(own_direction(world));
     const int last = static_cast<int>(environment_.levels.size()) - 1;
     const Float level = roughness * number(static_cast<float>(last));
     const Integer finer = hn::Min(truncated(level), integer(last));
     const Integer coarser = hn::Min(hn::Add(finer, integer(1)), integer(last));
-    const Float share = level - to_float(finer);
-    return mix(cube_texel(face, finer), cube_texel(face, coarser), share) *
+    const Float fraction = level - to_float(finer);
+    return mix(cube_texel(face, finer), cube_texel(face, coarser), fraction) *
            number(frame_.environment_intensity);
   }
 
@@ -123,8 +122,8 @@ class EnvironmentLanes {
     const Integer line = hn::Add(hn::Mul(face.number, pitch), row);
     const Integer corner = hn::Add(first, hn::ShiftLeft<2>(hn::Add(hn::Mul(line, pitch), column)));
     const Integer down = hn::ShiftLeft<2>(pitch);
-    const auto texel = [this](Integer place) {
-      return gather3(tag, environment_.cube.data(), place);
+    const auto texel = [this](Integer index) {
+      return gather3(tag, environment_.cube.data(), index);
     };
     const Float across = x - to_float(column);
     const Float3 top = mix(texel(corner), texel(hn::Add(corner, integer(4))), across);

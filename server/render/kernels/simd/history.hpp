@@ -8,20 +8,22 @@
 #endif
 
 #include "render/kernels/simd/pixels.hpp"
+#include "shaders/shared/denoise.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
 
-/// One pixel per lane, inside the picture. Neighbours mostly move together: where they lie side by
+/// One pixel per lane, inside the frame. Neighbours mostly move together: where they lie side by
 /// side they are loaded, otherwise gathered.
 template <class D>
-class Spot {
+class TexelGather {
   using V = hn::Vec<D>;
   using DI = hn::RebindToSigned<D>;
   using VI = hn::Vec<DI>;
 
  public:
-  HWY_INLINE Spot(VI x, VI y) : x_(x), y_(y), first_x_(hn::GetLane(x)), first_y_(hn::GetLane(y)) {
+  HWY_INLINE TexelGather(VI x, VI y)
+      : x_(x), y_(y), first_x_(hn::GetLane(x)), first_y_(hn::GetLane(y)) {
     const auto beside =
         hn::And(hn::Eq(x, hn::Iota(di_, first_x_)), hn::Eq(y, hn::Set(di_, first_y_)));
     together_ = hn::AllTrue(di_, beside);
@@ -80,7 +82,7 @@ class Spot {
   bool together_;
 };
 
-/// The size of a picture, and which pixels are in it.
+/// The size of a frame, and which pixels are inside.
 template <class D>
 class Bounds {
   using DI = hn::RebindToSigned<D>;
@@ -90,16 +92,16 @@ class Bounds {
   Bounds(int width, int height) : width_(width), height_(height) {}
 
   /// The nearest pixel inside.
-  HWY_INLINE Spot<D> spot(VI x, VI y) const {
-    return Spot<D>(inside(x, width_), inside(y, height_));
+  HWY_INLINE TexelGather<D> gather(VI x, VI y) const {
+    return TexelGather<D>(clamped(x, width_), clamped(y, height_));
   }
   HWY_INLINE hn::Mask<D> contain(VI x, VI y) const {
     return hn::RebindMask(D(),
-                          hn::And(hn::Eq(x, inside(x, width_)), hn::Eq(y, inside(y, height_))));
+                          hn::And(hn::Eq(x, clamped(x, width_)), hn::Eq(y, clamped(y, height_))));
   }
 
  private:
-  static HWY_INLINE VI inside(VI v, int size) {
+  static HWY_INLINE VI clamped(VI v, int size) {
     const DI di;
     return hn::Min(hn::Max(v, hn::Zero(di)), hn::Set(di, size - 1));
   }
@@ -118,8 +120,8 @@ struct HistoryTaps {
 
   VI x, y;
   V weights[4];              // of (x, y), right of it, below it, below and right
-  V fraction_x, fraction_y;  // of the way from (x, y) to the last of them
-  hn::Mask<D> whole;         // no pixel that counts is missing
+  V fraction_x, fraction_y;  // from (x, y) to the last of them
+  hn::Mask<D> whole;         // no pixel with a weight is invalid
 
   HWY_INLINE HistoryTaps(V position_x, V position_y) {
     const D d;
@@ -150,11 +152,11 @@ struct HistoryTaps {
     whole = hn::AndNot(missing, whole);
     weights[tap] = hn::IfThenElseZero(valid, weights[tap]);
   }
-  /// Makes the weights that are left add up to 1; all 0 where that is less than one hundredth.
+  /// Renormalises the weights; all 0 where their sum is less than min_tap_weight_sum.
   HWY_INLINE void normalise() {
     const D d;
     const V sum = weights[0] + weights[1] + weights[2] + weights[3];
-    const auto enough = hn::Ge(sum, hn::Set(d, 0.01f));
+    const auto enough = hn::Ge(sum, hn::Set(d, shared::min_tap_weight_sum));
     const V scale = hn::IfThenElseZero(enough, hn::Set(d, 1.0f) / sum);
     for (V& weight : weights) weight = weight * scale;
   }
@@ -164,8 +166,8 @@ struct HistoryTaps {
   }
 };
 
-/// Weights of four pixels in a row for a point `f` of the way from the second to the third: the
-/// cubic of Catmull and Rom.
+/// Catmull-Rom weights of four pixels in a row for a point at fraction `f` between the second and
+/// the third.
 template <class V>
 HWY_INLINE void cubic_weights(V f, V (&weights)[4]) {
   const hn::DFromV<V> d;
@@ -177,11 +179,12 @@ HWY_INLINE void cubic_weights(V f, V (&weights)[4]) {
   weights[3] = f * f * (half * f - half);
 }
 
-/// recall_sharply() of the shaders: `read` gives the channels of a Spot; where `wanted`, the values
-/// become the cubic's, held to the four nearest pixels.
+/// fetch_history_bicubic() of the shaders: `read` gives the channels of a TexelGather; where
+/// `requested`, the values become the cubic's, clamped to the four nearest pixels.
 template <class D, int channels, class Read, class V = hn::Vec<D>>
-HWY_INLINE void recall_sharply(const Bounds<D>& bounds, const HistoryTaps<D>& taps,
-                               hn::Mask<D> wanted, const Read& read, V (&values)[channels]) {
+HWY_INLINE void fetch_history_bicubic(const Bounds<D>& bounds, const HistoryTaps<D>& taps,
+                                      hn::Mask<D> requested, const Read& read,
+                                      V (&values)[channels]) {
   const D d;
   const hn::RebindToSigned<D> di;
   V across[4], down[4], sum[channels], low[channels], high[channels];
@@ -195,20 +198,20 @@ HWY_INLINE void recall_sharply(const Bounds<D>& bounds, const HistoryTaps<D>& ta
   for (int i = 0; i < 16; ++i) {
     const int x = i % 4, y = i / 4;
     const V weight = across[x] * down[y];
-    const auto counts = hn::And(wanted, hn::Ne(weight, hn::Zero(d)));
-    if (hn::AllFalse(d, counts)) continue;
-    V found[channels];
-    read(bounds.spot(taps.x + hn::Set(di, x - 1), taps.y + hn::Set(di, y - 1)), found);
+    const auto valid = hn::And(requested, hn::Ne(weight, hn::Zero(d)));
+    if (hn::AllFalse(d, valid)) continue;
+    V texel[channels];
+    read(bounds.gather(taps.x + hn::Set(di, x - 1), taps.y + hn::Set(di, y - 1)), texel);
     const bool nearest = x % 3 != 0 && y % 3 != 0;
     for (int c = 0; c < channels; ++c) {
-      sum[c] = sum[c] + hn::IfThenElseZero(counts, weight * found[c]);
+      sum[c] = sum[c] + hn::IfThenElseZero(valid, weight * texel[c]);
       if (!nearest) continue;
-      low[c] = hn::IfThenElse(counts, hn::Min(low[c], found[c]), low[c]);
-      high[c] = hn::IfThenElse(counts, hn::Max(high[c], found[c]), high[c]);
+      low[c] = hn::IfThenElse(valid, hn::Min(low[c], texel[c]), low[c]);
+      high[c] = hn::IfThenElse(valid, hn::Max(high[c], texel[c]), high[c]);
     }
   }
   for (int c = 0; c < channels; ++c) {
-    values[c] = hn::IfThenElse(wanted, hn::Min(hn::Max(sum[c], low[c]), high[c]), values[c]);
+    values[c] = hn::IfThenElse(requested, hn::Min(hn::Max(sum[c], low[c]), high[c]), values[c]);
   }
 }
 

@@ -222,8 +222,8 @@ HWY_INLINE Unsigned half_bits(Float v) {
 HWY_INLINE Float angle_of(Float x, Float y) {
   const Float wide = hn::Abs(x), high = hn::Abs(y);
   const Mask steep = hn::Gt(high, wide);
-  const Float share = hn::Div(hn::Min(wide, high), at_least(hn::Max(wide, high), 1e-37f));
-  Float angle = hn::Atan(tag, share);
+  const Float ratio = hn::Div(hn::Min(wide, high), at_least(hn::Max(wide, high), 1e-37f));
+  Float angle = hn::Atan(tag, ratio);
   angle = select(steep, hn::Sub(number(1.57079633f), angle), angle);
   angle = select(hn::Lt(x, zero()), hn::Sub(number(3.14159265f), angle), angle);
   return hn::CopySign(angle, y);

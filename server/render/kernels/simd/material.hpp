@@ -25,8 +25,8 @@ struct SurfaceMaterial {
   Triple<V> eye;
   V n_dot_v;
   V roughness;
-  Triple<V> facing;
-  Triple<V> grazing;
+  Triple<V> f0;
+  Triple<V> f90_minus_f0;
   Triple<V> specular_albedo;
   Triple<V> diffuse_albedo;
 };
@@ -59,8 +59,8 @@ class SquareTable {
   }
 
  private:
-  HWY_INLINE VI inside(V place, int step) const {
-    const VI index = hn::ConvertTo(di_, place) + hn::Set(di_, step);
+  HWY_INLINE VI inside(V position, int step) const {
+    const VI index = hn::ConvertTo(di_, position) + hn::Set(di_, step);
     return hn::Min(hn::Max(index, hn::Zero(di_)), hn::Set(di_, size_ - 1));
   }
   HWY_INLINE V blend(const float* channel, VI i00, VI i10, VI i01, VI i11, V fx, V fy) const {
@@ -82,7 +82,7 @@ HWY_INLINE SurfaceMaterial<V> make_material(D d, const Triple<V>& base_color, V 
                                             const Triple<V>& geometric, const Triple<V>& eye,
                                             const SquareTable<D>& split_sum) {
   const V one = hn::Set(d, 1.0f);
-  const V f0 = hn::Set(d, dielectric_f0);
+  const V plain_f0 = hn::Set(d, dielectric_f0);
   SurfaceMaterial<V> m;
   m.normal = normal;
   m.geometric = geometric;
@@ -91,20 +91,20 @@ HWY_INLINE SurfaceMaterial<V> make_material(D d, const Triple<V>& base_color, V 
   m.roughness = roughness;
   const Pair<V> split = split_sum.at(m.n_dot_v, roughness);
   const V whole = split.x + split.y;
-  const V regained = one / hn::Max(whole, hn::Set(d, 1e-3f)) - one;
-  const V dielectric_scale = hn::MulAdd(f0, regained, one);
-  const V dielectric_share = (one - metallic) * dielectric_scale;
-  const V albedo = hn::MulAdd(f0, split.x, split.y) * dielectric_scale;
+  const V energy_compensation = one / hn::Max(whole, hn::Set(d, 1e-3f)) - one;
+  const V dielectric_scale = hn::MulAdd(plain_f0, energy_compensation, one);
+  const V dielectric = (one - metallic) * dielectric_scale;
+  const V albedo = hn::MulAdd(plain_f0, split.x, split.y) * dielectric_scale;
   const V diffuse = (one - metallic) * (one - hn::Min(albedo, one));
-  const auto channel = [&](V color, V& facing, V& grazing, V& specular) HWY_ATTR {
-    const V metal = metallic * hn::MulAdd(color, regained, one);
-    facing = hn::MulAdd(dielectric_share, f0, metal * color);
-    grazing = hn::MulAdd(dielectric_share, one - f0, metal * (one - color));
-    specular = hn::MulAdd(facing, whole, grazing * split.y);
+  const auto channel = [&](V color, V& f0, V& f90_minus_f0, V& specular) HWY_ATTR {
+    const V metal = metallic * hn::MulAdd(color, energy_compensation, one);
+    f0 = hn::MulAdd(dielectric, plain_f0, metal * color);
+    f90_minus_f0 = hn::MulAdd(dielectric, one - plain_f0, metal * (one - color));
+    specular = hn::MulAdd(f0, whole, f90_minus_f0 * split.y);
   };
-  channel(base_color.x, m.facing.x, m.grazing.x, m.specular_albedo.x);
-  channel(base_color.y, m.facing.y, m.grazing.y, m.specular_albedo.y);
-  channel(base_color.z, m.facing.z, m.grazing.z, m.specular_albedo.z);
+  channel(base_color.x, m.f0.x, m.f90_minus_f0.x, m.specular_albedo.x);
+  channel(base_color.y, m.f0.y, m.f90_minus_f0.y, m.specular_albedo.y);
+  channel(base_color.z, m.f0.z, m.f90_minus_f0.z, m.specular_albedo.z);
   m.diffuse_albedo = base_color * diffuse;
   return m;
 }
@@ -129,12 +129,12 @@ HWY_INLINE Triple<V> shade_light(D d, const SurfaceMaterial<V>& m, const Triple<
   const V x2 = x * x;
   const V schlick = x2 * x2 * x;
   const V spread = n_dot_l * hn::Set(d, 1.0f / pi);
-  const auto channel = [&](V facing, V grazing, V diffuse) HWY_ATTR {
-    return hn::MulAdd(hn::MulAdd(grazing, schlick, facing), lobe, diffuse * spread);
+  const auto channel = [&](V f0, V f90_minus_f0, V diffuse) HWY_ATTR {
+    return hn::MulAdd(hn::MulAdd(f90_minus_f0, schlick, f0), lobe, diffuse * spread);
   };
-  return {channel(m.facing.x, m.grazing.x, m.diffuse_albedo.x),
-          channel(m.facing.y, m.grazing.y, m.diffuse_albedo.y),
-          channel(m.facing.z, m.grazing.z, m.diffuse_albedo.z)};
+  return {channel(m.f0.x, m.f90_minus_f0.x, m.diffuse_albedo.x),
+          channel(m.f0.y, m.f90_minus_f0.y, m.diffuse_albedo.y),
+          channel(m.f0.z, m.f90_minus_f0.z, m.diffuse_albedo.z)};
 }
 
 /// A punctual light's middle, as surfaces see it.
@@ -174,19 +174,19 @@ HWY_INLINE LightSample<V> light_at(D d, const shared::Light& light, const Triple
 /// Lanes that any of the light may reach, of those that `wanted` names.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE hn::Mask<D> reached(D d, const shared::Light& light, const Triple<V>& position,
-                               hn::Mask<D> wanted) {
-  if (light.type == shared::light_directional || light.range <= 0.0f) return wanted;
+                               hn::Mask<D> requested) {
+  if (light.type == shared::light_directional || light.range <= 0.0f) return requested;
   const Triple<V> to_light = splat(d, light.position) - position;
-  return hn::And(wanted, hn::Lt(dot(to_light, to_light), hn::Set(d, light.range * light.range)));
+  return hn::And(requested, hn::Lt(dot(to_light, to_light), hn::Set(d, light.range * light.range)));
 }
 
 /// Light that surfaces send to the eye from this punctual light, unshadowed: radiance, 0 in lanes
 /// that are not `wanted`. @return whether there is any
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE bool light_contribution(D d, const shared::Light& light, const SurfaceMaterial<V>& m,
-                                   const Triple<V>& position, hn::Mask<D> wanted,
+                                   const Triple<V>& position, hn::Mask<D> requested,
                                    Triple<V>& radiance) {
-  const auto near = reached(d, light, position, wanted);
+  const auto near = reached(d, light, position, requested);
   if (hn::AllFalse(d, near)) return false;
   const LightSample<V> s = light_at(d, light, position);
   const V zero = hn::Zero(d);

@@ -14,9 +14,9 @@ namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 inline constexpr float fast_frames = 6.0f;  // of the short history
 
-/// Share of a new sample in a mean over `frames` remembered ones, itself included.
+/// Weight of a new sample in a mean over a history of `frames`, itself included.
 template <class V>
-HWY_INLINE V sample_share(V frames, float longest) {
+HWY_INLINE V sample_weight(V frames, float longest) {
   return hn::Set(hn::DFromV<V>(), 1.0f) / clamped(frames, 1.0f, longest);
 }
 
@@ -29,9 +29,9 @@ HWY_INLINE V sample_variance(V first, V second, V frames) {
   return spread * known / (known - hn::Set(d, 1.0f));
 }
 
-/// The pixels of the frame before that denoise.reproject found for those from `x` on.
+/// The pixels of the frame before that the pass reproject gives for those from `x` on.
 template <class D>
-HWY_INLINE HistoryTaps<D> remembered_taps(const Quad<hn::Vec<D>>& map) {
+HWY_INLINE HistoryTaps<D> history_taps(const Quad<hn::Vec<D>>& map) {
   const D d;
   const hn::RebindToSigned<D> di;
   HistoryTaps<D> taps(map.x, map.y);
@@ -45,10 +45,10 @@ HWY_INLINE HistoryTaps<D> remembered_taps(const Quad<hn::Vec<D>>& map) {
   return taps;
 }
 
-/// Adds the part of a value that a tap has a share in; a value without a share may be anything.
+/// Adds a tap's value times its weight; where the weight is not valid the value may be anything.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE void add_share(hn::Mask<D> counts, V weight, V value, V& sum) {
-  sum = sum + hn::IfThenElseZero(counts, weight * value);
+HWY_INLINE void add_weighted(hn::Mask<D> valid, V weight, V value, V& sum) {
+  sum = sum + hn::IfThenElseZero(valid, weight * value);
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE

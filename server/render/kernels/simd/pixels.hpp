@@ -87,12 +87,12 @@ HWY_INLINE V clamped(V v, float low, float high) {
 }
 
 template <class V>
-HWY_INLINE V mix(V a, V b, V share) {
-  return hn::MulAdd(b - a, share, a);
+HWY_INLINE V mix(V a, V b, V fraction) {
+  return hn::MulAdd(b - a, fraction, a);
 }
 template <class V>
-HWY_INLINE Triple<V> mix(const Triple<V>& a, const Triple<V>& b, V share) {
-  return {mix(a.x, b.x, share), mix(a.y, b.y, share), mix(a.z, b.z, share)};
+HWY_INLINE Triple<V> mix(const Triple<V>& a, const Triple<V>& b, V fraction) {
+  return {mix(a.x, b.x, fraction), mix(a.y, b.y, fraction), mix(a.z, b.z, fraction)};
 }
 
 template <class V>

@@ -38,7 +38,7 @@ class RandomDigits {
     return v;
   }
   HWY_INLINE V times(V v, std::uint32_t factor) const { return hn::Mul(v, hn::Set(du_, factor)); }
-  /// Every second run of bits changes its place with the next.
+  /// Swaps every second run of bits with the next.
   template <int bits>
   HWY_INLINE V swap(V v, std::uint32_t mask) const {
     const V m = hn::Set(du_, mask);
@@ -89,7 +89,7 @@ class RandomDigits {
     return hn::Mul(hn::ConvertTo(df, whole), hn::Set(df, 0x1p-24f));
   }
 
-  /// A pixel's place in the quadtree.
+  /// A pixel's index in the quadtree.
   HWY_INLINE V order(V x, V y) const { return hn::Or(spread(x), hn::ShiftLeft<1>(spread(y))); }
 
   DU du_;
@@ -107,16 +107,16 @@ class RandomPairs : RandomDigits<DU> {
       : Base(du),
         keys_(Base::pcg3d({dimension, seed, 0})),
         more_(Base::pcg3d({dimension, seed, 1})) {
-    const V place = this->shuffle(hn::Set(du, sample), keys_.y);
-    first_ = this->scramble_upward(place, more_.x);
-    second_ = this->scramble_upward(this->sobol_second(place), more_.z);
+    const V index = this->shuffle(hn::Set(du, sample), keys_.y);
+    first_ = this->scramble_upward(index, more_.x);
+    second_ = this->scramble_upward(this->sobol_second(index), more_.z);
   }
 
   /// Both numbers in [0, 1).
   HWY_INLINE void at(V x, V y, F& a, F& b) const {
-    const V place = this->shuffle(this->order(x, y), keys_.x);
-    a = this->unit_interval(hn::Xor(this->scramble_upward(place, keys_.z), first_));
-    const V second = this->scramble_upward(this->sobol_second(place), more_.y);
+    const V index = this->shuffle(this->order(x, y), keys_.x);
+    a = this->unit_interval(hn::Xor(this->scramble_upward(index, keys_.z), first_));
+    const V second = this->scramble_upward(this->sobol_second(index), more_.y);
     b = this->unit_interval(hn::Xor(second, second_));
   }
   /// Of pixels in one row.
@@ -139,13 +139,13 @@ class RandomNumbers : RandomDigits<DU> {
  public:
   HWY_INLINE RandomNumbers(DU du, std::uint32_t sample, std::uint32_t dimension, std::uint32_t seed)
       : Base(du), keys_(Base::pcg3d({dimension, seed, 2})) {
-    const V place = this->shuffle(hn::Set(du, sample), keys_.y);
-    of_sample_ = this->scramble_upward(place, keys_.x ^ keys_.y);
+    const V index = this->shuffle(hn::Set(du, sample), keys_.y);
+    of_sample_ = this->scramble_upward(index, keys_.x ^ keys_.y);
   }
 
   HWY_INLINE F at(V x, V y) const {
-    const V place = this->shuffle(this->order(x, y), keys_.x);
-    return this->unit_interval(hn::Xor(this->scramble_upward(place, keys_.z), of_sample_));
+    const V index = this->shuffle(this->order(x, y), keys_.x);
+    return this->unit_interval(hn::Xor(this->scramble_upward(index, keys_.z), of_sample_));
   }
 
  private:

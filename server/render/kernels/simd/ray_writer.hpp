@@ -45,13 +45,13 @@ HWY_INLINE RayLanes load_rays(const shared::Ray* rays, Integer index) {
 }
 
 /// Writes the rays of the lanes in `wanted`, one after the other. @return how many
-HWY_INLINE std::size_t store_rays(const RayLanes& r, Mask wanted, shared::Ray* to) {
+HWY_INLINE std::size_t store_rays(const RayLanes& r, Mask requested, shared::Ray* to) {
   constexpr std::size_t most = 4 * hn::MaxLanes(Tag());
   HWY_ALIGN std::array<float, most> first, second, third;
   hn::StoreInterleaved4(r.origin.x, r.origin.y, r.origin.z, r.t_min, tag, first.data());
   hn::StoreInterleaved4(r.direction.x, r.direction.y, r.direction.z, r.t_max, tag, second.data());
   hn::StoreInterleaved4(as_float(r.pixel), r.user.x, r.user.y, r.user.z, tag, third.data());
-  std::uint64_t lanes = mask_bits(wanted);
+  std::uint64_t lanes = mask_bits(requested);
   std::size_t count = 0;
   for (; lanes; lanes &= lanes - 1) {
     const auto lane = static_cast<std::size_t>(__builtin_ctzll(lanes));
@@ -65,16 +65,16 @@ HWY_INLINE std::size_t store_rays(const RayLanes& r, Mask wanted, shared::Ray* t
 
 /// Calls `work(lane)` for every lane in `wanted`.
 template <class Work>
-HWY_INLINE void for_each_lane(Mask wanted, const Work& work) {
-  for (std::uint64_t lanes = mask_bits(wanted); lanes; lanes &= lanes - 1) {
+HWY_INLINE void for_each_lane(Mask requested, const Work& work) {
+  for (std::uint64_t lanes = mask_bits(requested); lanes; lanes &= lanes - 1) {
     work(static_cast<std::size_t>(__builtin_ctzll(lanes)));
   }
 }
 
 /// Pixels lane by lane.
-struct Places {
+struct TexelIndices {
   HWY_ALIGN std::array<int, hn::MaxLanes(Tag())> x, y;
-  HWY_INLINE explicit Places(const PixelLanes& p) {
+  HWY_INLINE explicit TexelIndices(const PixelLanes& p) {
     hn::Store(p.x, integer_tag, x.data());
     hn::Store(p.y, integer_tag, y.data());
   }
@@ -91,7 +91,7 @@ struct Texels {
   HWY_INLINE explicit Texels(const Float4& v) {
     hn::StoreInterleaved4(v.x, v.y, v.z, v.w, tag, values.data());
   }
-  HWY_INLINE void put(const gpu::HostView& image, std::size_t lane, const Places& at) const {
+  HWY_INLINE void put(const gpu::HostView& image, std::size_t lane, const TexelIndices& at) const {
     float* const row = image.row<float>(static_cast<std::uint32_t>(at.y[lane]));
     std::memcpy(row + words * at.x[lane], values.data() + words * lane, words * sizeof(float));
   }

@@ -68,13 +68,13 @@ class RayBatch {
   /// Those of the lanes in `wanted`, from pixels from (x, y) on; t begins at 0.
   template <class D, class V = hn::Vec<D>>
   HWY_INLINE void add(D d, const Triple<V>& origin, const Triple<V>& direction, V t_max, int x,
-                      int y, hn::Mask<D> wanted) {
+                      int y, hn::Mask<D> requested) {
     constexpr std::size_t most = 4 * hn::MaxLanes(D());
     HWY_ALIGN float from[most], toward[most];
     hn::StoreInterleaved4(origin.x, origin.y, origin.z, hn::Zero(d), d, from);
     hn::StoreInterleaved4(direction.x, direction.y, direction.z, t_max, d, toward);
     std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, wanted, bits);
+    hn::StoreMaskBits(d, requested, bits);
     std::uint64_t lanes = 0;
     std::memcpy(&lanes, bits, sizeof lanes);
     for (; lanes; lanes &= lanes - 1) {

@@ -24,11 +24,11 @@ inline void for_each_band(int height, RangeWork work) {
 /// Channels of a band of rows, each by itself, with `reach` more rows and columns on every side.
 class BandScratch {
  public:
-  BandScratch(int channels, int width, int first, int last, int reach)
+  BandScratch(int channels, int width, int first, int last, int half_extent)
       : width_(width),
-        reach_(reach),
-        first_(first - reach),
-        rows_(last - first + 2 * reach),
+        reach_(half_extent),
+        first_(first - half_extent),
+        rows_(last - first + 2 * half_extent),
         values_(std::make_unique_for_overwrite<float[]>(
             static_cast<std::size_t>(channels * rows_ * pitch()))) {}
 

@@ -22,34 +22,34 @@ namespace heliograph::render::kernels::HWY_NAMESPACE {
 using MaterialLanes = SurfaceMaterial<Float>;
 
 /// Where traced pixels stand in a sequence of random numbers.
-struct SequencePlace {
+struct SequencePosition {
   std::uint32_t sample;
   std::uint32_t dimension;
 };
-inline SequencePlace sequence_place(const shared::FrameConstants& frame, std::uint32_t dimension,
-                                    int scale) {
+inline SequencePosition sequence_position(const shared::FrameConstants& frame,
+                                          std::uint32_t dimension, int scale) {
   if (scale == 1) return {frame.sample_index, dimension};
   return {frame.sample_index >> 2u, 16u + 4u * dimension + (frame.sample_index & 3u)};
 }
 inline RandomPairs<UnsignedTag> specular_pairs(const shared::FrameConstants& frame,
                                                std::uint32_t dimension, int scale) {
-  const SequencePlace place = sequence_place(frame, dimension, scale);
-  return {unsigned_tag, place.sample, place.dimension, frame.seed};
+  const SequencePosition position = sequence_position(frame, dimension, scale);
+  return {unsigned_tag, position.sample, position.dimension, frame.seed};
 }
 inline RandomNumbers<UnsignedTag> specular_numbers(const shared::FrameConstants& frame,
                                                    std::uint32_t dimension, int scale) {
-  const SequencePlace place = sequence_place(frame, dimension, scale);
-  return {unsigned_tag, place.sample, place.dimension, frame.seed};
+  const SequencePosition position = sequence_position(frame, dimension, scale);
+  return {unsigned_tag, position.sample, position.dimension, frame.seed};
 }
 
-/// The shading normal, or as close to it as the mirror direction stays above the triangle.
+/// The shading normal, or as close to it as keeps the reflected direction above the triangle.
 HWY_INLINE Float3 reflecting_normal(const MaterialLanes& m) {
-  const Float3 mirrored = reflect(-m.eye, m.normal);
+  const Float3 reflected = reflect(-m.eye, m.normal);
   const Float least = number(0.01f);
-  const Float above = dot(mirrored, m.geometric);
+  const Float above = dot(reflected, m.geometric);
   const Mask stays = hn::Or(hn::Ge(above, least), hn::Le(dot(m.eye, m.geometric), zero()));
   if (all(stays)) return m.normal;
-  const Float3 lifted = normalized(multiply_add(m.geometric, least - above, mirrored));
+  const Float3 lifted = normalized(multiply_add(m.geometric, least - above, reflected));
   return select(stays, m.normal, normalized(m.eye + lifted));
 }
 
@@ -74,7 +74,7 @@ HWY_INLINE Float visible_normal_weight(const Float3& view, const Float3& light, 
   return hn::IfThenElseZero(hn::Gt(light.z, zero()), weight);
 }
 
-/// Density per solid angle of the mirrored direction `light`.
+/// Density per solid angle of the reflected direction `light`.
 HWY_INLINE Float visible_normal_pdf(const Float3& view, const Float3& light, Float alpha) {
   const Float3 half_vector = normalized(view + light);
   const Float a2 = alpha * alpha;
@@ -109,7 +109,7 @@ HWY_INLINE SpecularSample sample_specular(const MaterialLanes& m, const Float2& 
   const Mask open = hn::Gt(dot(s.direction, m.geometric), zero());
   const Float x = clamped(one() - v_dot_h, 0.0f, 1.0f);
   const Float x2 = x * x;
-  const Float3 reflectance = multiply_add(m.grazing, x2 * x2 * x, m.facing);
+  const Float3 reflectance = multiply_add(m.f90_minus_f0, x2 * x2 * x, m.f0);
   s.weight = keep(open, reflectance * visible_normal_weight(view, light, alpha));
   s.density = visible_normal_pdf(view, light, at_least(alpha, 1e-4f));
   return s;

@@ -33,7 +33,7 @@ struct HitLanes {
 };
 
 /// `index` counts hits; lanes without `wanted` count as misses.
-HWY_INLINE HitLanes load_hits(const shared::Hit* hits, Integer index, Mask wanted) {
+HWY_INLINE HitLanes load_hits(const shared::Hit* hits, Integer index, Mask requested) {
   const Integer word = hn::Mul(index, integer(sizeof(shared::Hit) / 4));
   const auto at = [&](std::size_t offset) {
     return hn::Add(word, integer(static_cast<int>(offset / 4)));
@@ -41,7 +41,7 @@ HWY_INLINE HitLanes load_hits(const shared::Hit* hits, Integer index, Mask wante
   HitLanes h;
   h.instance = gather(hits, at(offsetof(shared::Hit, instance)));
   const auto none_met = integer(static_cast<int>(shared::hit_none));
-  h.met = hn::AndNot(float_mask(hn::Eq(h.instance, none_met)), wanted);
+  h.met = hn::AndNot(float_mask(hn::Eq(h.instance, none_met)), requested);
   if (none(h.met)) return h;
   h.t = as_float(gather(hits, at(offsetof(shared::Hit, t))));
   h.u = as_float(gather(hits, at(offsetof(shared::Hit, u))));
@@ -67,8 +67,8 @@ struct SurfaceLanes {
   Float alpha, alpha_cutoff, metallic, roughness, occlusion;
   Integer flags;  // material_*
   Mask has(std::uint32_t flag) const {
-    const Integer wanted = integer(static_cast<int>(flag));
-    return float_mask(hn::Eq(hn::And(flags, wanted), wanted));
+    const Integer requested = integer(static_cast<int>(flag));
+    return float_mask(hn::Eq(hn::And(flags, requested), requested));
   }
 };
 
@@ -94,10 +94,10 @@ class TriangleLanes {
  public:
   HWY_INLINE TriangleLanes(const shared::Vertex* vertices, const std::uint32_t* indices,
                            Integer first_index, Integer first_vertex, const HitLanes& hit,
-                           Mask wanted)
-      : a_(corner(vertices, indices, first_index, first_vertex, 0, wanted)),
-        b_(corner(vertices, indices, first_index, first_vertex, 1, wanted)),
-        c_(corner(vertices, indices, first_index, first_vertex, 2, wanted)),
+                           Mask requested)
+      : a_(corner(vertices, indices, first_index, first_vertex, 0, requested)),
+        b_(corner(vertices, indices, first_index, first_vertex, 1, requested)),
+        c_(corner(vertices, indices, first_index, first_vertex, 2, requested)),
         weight_a_(hn::Sub(hn::Sub(one(), hit.u), hit.v)),
         weight_b_(hit.u),
         weight_c_(hit.v) {}
@@ -118,9 +118,9 @@ class TriangleLanes {
  private:
   static HWY_INLINE Records corner(const shared::Vertex* vertices, const std::uint32_t* indices,
                                    Integer first_index, Integer first_vertex, int number,
-                                   Mask wanted) {
+                                   Mask requested) {
     const Integer index = hn::IfThenElseZero(
-        integer_mask(wanted), gather(indices, hn::Add(first_index, integer(number))));
+        integer_mask(requested), gather(indices, hn::Add(first_index, integer(number))));
     return Records(vertices, hn::Add(first_vertex, index), sizeof(shared::Vertex) / 4);
   }
   Records a_, b_, c_;
@@ -128,12 +128,13 @@ class TriangleLanes {
 };
 
 /// Where textures are read: both uv sets, and the level of detail of an image of one texel.
-struct PlaceLanes {
+struct LookupLanes {
   Float2 first, second;
   Float first_lod, second_lod;
 };
 
-/// One uv set. `footprint` is log2 of the squared share of the triangle that the ray covers.
+/// One uv set. `footprint` is log2 of the squared fraction of the triangle that the ray's cone
+/// covers.
 HWY_INLINE void read_uv(const TriangleLanes& t, int word, Float footprint, Float2& uv, Float& lod) {
   const Float ax = t.a().real(word), ay = t.a().real(word + 1);
   const Float bx = t.b().real(word), by = t.b().real(word + 1);
@@ -147,7 +148,7 @@ HWY_INLINE void read_uv(const TriangleLanes& t, int word, Float footprint, Float
 /// The slot of each lane's material that begins at `word`; white where there is no texture.
 template <bool one_level>
 HWY_INLINE Float4 slot_texel(const SceneView& scene, const Records& material, int word,
-                             const PlaceLanes& place, std::uint32_t unless = 0) {
+                             const LookupLanes& lookup, std::uint32_t unless = 0) {
   const auto whole = [&](int member) { return material.whole(word + member); };
   TextureLanes t;
   t.flags = whole(HELIOGRAPH_WORD(Slot, flags));
@@ -162,15 +163,15 @@ HWY_INLINE Float4 slot_texel(const SceneView& scene, const Records& material, in
   t.wrap_t = whole(HELIOGRAPH_WORD(Slot, wrap_t));
   t.first_level = whole(HELIOGRAPH_WORD(Slot, first_level));
   const Mask first = float_mask(hn::Eq(whole(HELIOGRAPH_WORD(Slot, uv_set)), integer(0)));
-  const Float x = select(first, place.first.x, place.second.x);
-  const Float y = select(first, place.first.y, place.second.y);
+  const Float x = select(first, lookup.first.x, lookup.second.x);
+  const Float y = select(first, lookup.first.y, lookup.second.y);
   const auto row = [&](int at) {
     return hn::MulAdd(material.real(word + at), x,
                       hn::MulAdd(material.real(word + at + 1), y, material.real(word + at + 2)));
   };
   const Float2 uv{row(HELIOGRAPH_WORD(Slot, row0)), row(HELIOGRAPH_WORD(Slot, row1))};
   const Float lod = hn::Add(material.real(word + HELIOGRAPH_WORD(Slot, lod)),
-                            select(first, place.first_lod, place.second_lod));
+                            select(first, lookup.first_lod, lookup.second_lod));
   const Float4 texel = sample_texture<one_level>(scene, t, uv, lod);
   if (all(t.used)) return texel;
   return {select(t.used, texel.x, white.x), select(t.used, texel.y, white.y),
@@ -180,14 +181,14 @@ HWY_INLINE Float4 slot_texel(const SceneView& scene, const Records& material, in
 /// The normal map about the front face's `normal`.
 template <bool one_level>
 HWY_INLINE Float3 mapped_normal(const SceneView& scene, const TriangleLanes& triangle,
-                                const MatrixLanes& world, Float mirrored, const Records& material,
-                                const PlaceLanes& place, const Float3& normal) {
+                                const MatrixLanes& world, Float handedness, const Records& material,
+                                const LookupLanes& lookup, const Float3& normal) {
   constexpr int slot = HELIOGRAPH_WORD(Material, normal_slot);
   const Integer used = hn::And(material.whole(slot + HELIOGRAPH_WORD(Slot, flags)),
                                integer(static_cast<int>(slot_used)));
   Mask mapped = float_mask(hn::Ne(used, integer(0)));
   if (none(mapped)) return normal;
-  const Float4 texel = slot_texel<one_level>(scene, material, slot, place);
+  const Float4 texel = slot_texel<one_level>(scene, material, slot, lookup);
   const Float scale = material.real(HELIOGRAPH_WORD(Material, normal_scale));
   const Float2 slope{hn::Mul(hn::MulSub(texel.x, number(2.0f), one()), scale),
                      hn::Mul(hn::MulSub(texel.y, number(2.0f), one()), scale)};
@@ -198,7 +199,8 @@ HWY_INLINE Float3 mapped_normal(const SceneView& scene, const TriangleLanes& tri
   const Float size = dot(tangent, tangent);
   mapped = hn::And(mapped, hn::Ge(size, number(1e-12f)));
   tangent = tangent * hn::Div(one(), hn::Sqrt(at_least(size, 1e-30f)));
-  const Float3 bitangent = cross(normal, tangent) * hn::Mul(triangle.a().real(word + 3), mirrored);
+  const Float3 bitangent =
+      cross(normal, tangent) * hn::Mul(triangle.a().real(word + 3), handedness);
   const Float3 turned =
       normalized(multiply_add(tangent, slope.x, multiply_add(bitangent, slope.y, normal * height)));
   return select(mapped, turned, normal);
@@ -219,13 +221,13 @@ HWY_INLINE Float4 vertex_color(const Records& vertex) {
 
 template <bool one_level>
 HWY_INLINE void evaluate_material(const SceneView& scene, const TriangleLanes& triangle,
-                                  const Records& material, const PlaceLanes& place,
+                                  const Records& material, const LookupLanes& lookup,
                                   SurfaceLanes& s) {
   const auto factor = [&](int word) { return material.real(word); };
   const Float4 a = vertex_color(triangle.a()), b = vertex_color(triangle.b());
   const Float4 c = vertex_color(triangle.c());
   Float4 color =
-      slot_texel<one_level>(scene, material, HELIOGRAPH_WORD(Material, base_color_slot), place);
+      slot_texel<one_level>(scene, material, HELIOGRAPH_WORD(Material, base_color_slot), lookup);
   constexpr int base = HELIOGRAPH_WORD(Material, base_color);
   color.x = hn::Mul(hn::Mul(color.x, factor(base)), triangle.between(a.x, b.x, c.x));
   color.y = hn::Mul(hn::Mul(color.y, factor(base + 1)), triangle.between(a.y, b.y, c.y));
@@ -235,40 +237,41 @@ HWY_INLINE void evaluate_material(const SceneView& scene, const TriangleLanes& t
   s.alpha_cutoff = factor(HELIOGRAPH_WORD(Material, alpha_cutoff));
 
   const Float4 packed = slot_texel<one_level>(
-      scene, material, HELIOGRAPH_WORD(Material, metallic_roughness_slot), place);
+      scene, material, HELIOGRAPH_WORD(Material, metallic_roughness_slot), lookup);
   s.metallic = clamped(hn::Mul(factor(HELIOGRAPH_WORD(Material, metallic)), packed.z), 0.0f, 1.0f);
   s.roughness =
       clamped(hn::Mul(factor(HELIOGRAPH_WORD(Material, roughness)), packed.y), 0.0f, 1.0f);
   constexpr int occlusion_slot = HELIOGRAPH_WORD(Material, occlusion_slot);
-  Float occlusion = slot_texel<one_level>(scene, material, occlusion_slot, place, slot_repeats).x;
+  Float occlusion = slot_texel<one_level>(scene, material, occlusion_slot, lookup, slot_repeats).x;
   const Integer repeats = hn::And(material.whole(occlusion_slot + HELIOGRAPH_WORD(Slot, flags)),
                                   integer(static_cast<int>(slot_repeats)));
   occlusion = select(float_mask(hn::Ne(repeats, integer(0))), packed.x, occlusion);
   s.occlusion = mix(one(), occlusion, factor(HELIOGRAPH_WORD(Material, occlusion_strength)));
   const Float4 glow =
-      slot_texel<one_level>(scene, material, HELIOGRAPH_WORD(Material, emissive_slot), place);
+      slot_texel<one_level>(scene, material, HELIOGRAPH_WORD(Material, emissive_slot), lookup);
   s.emissive =
       material.triple(HELIOGRAPH_WORD(Material, emissive)) * Float3{glow.x, glow.y, glow.z};
   s.flags = material.whole(HELIOGRAPH_WORD(Material, flags));
 }
 
-HWY_INLINE PlaceLanes texture_place(const TriangleLanes& triangle, const Records& material,
-                                    Float twice_world_area, Float width, Float cosine) {
-  PlaceLanes place;
-  place.first = place.second = {zero(), zero()};
-  place.first_lod = place.second_lod = zero();
+HWY_INLINE LookupLanes texture_lookup(const TriangleLanes& triangle, const Records& material,
+                                      Float twice_world_area, Float width, Float cosine) {
+  LookupLanes lookup;
+  lookup.first = lookup.second = {zero(), zero()};
+  lookup.first_lod = lookup.second_lod = zero();
   const Integer uses = material.whole(HELIOGRAPH_WORD(Material, uses));
-  if (hn::AllTrue(integer_tag, hn::Eq(uses, integer(0)))) return place;
+  if (hn::AllTrue(integer_tag, hn::Eq(uses, integer(0)))) return lookup;
   const Float across = hn::Div(at_least(width, 1e-20f), at_least(cosine, 1e-2f));
   const Float footprint = hn::NegMulAdd(
       number(0.5f), hn::Log2(tag, at_least(twice_world_area, 1e-30f)), hn::Log2(tag, across));
-  read_uv(triangle, HELIOGRAPH_WORD(shared::Vertex, uv0), footprint, place.first, place.first_lod);
+  read_uv(triangle, HELIOGRAPH_WORD(shared::Vertex, uv0), footprint, lookup.first,
+          lookup.first_lod);
   const Integer second = integer(static_cast<int>(uses_second_uv));
   if (!hn::AllFalse(integer_tag, hn::Eq(hn::And(uses, second), second))) {
-    read_uv(triangle, HELIOGRAPH_WORD(shared::Vertex, uv1), footprint, place.second,
-            place.second_lod);
+    read_uv(triangle, HELIOGRAPH_WORD(shared::Vertex, uv1), footprint, lookup.second,
+            lookup.second_lod);
   }
-  return place;
+  return lookup;
 }
 
 /// `hit` of rays along `direction` whose footprints at the hits are `width` metres.
@@ -288,7 +291,7 @@ HWY_INLINE SurfaceLanes hit_surface(const SceneView& scene, const HitLanes& hit,
                                hit.met);
   const Integer flipped = hn::And(instance.whole(HELIOGRAPH_WORD(shared::Instance, flags)),
                                   integer(static_cast<int>(shared::instance_flipped)));
-  const Float mirrored = select(float_mask(hn::Ne(flipped, integer(0))), number(-1.0f), one());
+  const Float handedness = select(float_mask(hn::Ne(flipped, integer(0))), number(-1.0f), one());
 
   SurfaceLanes s;
   constexpr int position = HELIOGRAPH_WORD(shared::Vertex, position);
@@ -297,15 +300,16 @@ HWY_INLINE SurfaceLanes hit_surface(const SceneView& scene, const HitLanes& hit,
   s.local = triangle.between(a, b, c);
   s.position = world.point(s.local);
   // Cofactors of the matrix, as in gbuffer.vert.
-  const Float3 by_x = cross(world.y, world.z) * mirrored, by_y = cross(world.z, world.x) * mirrored;
-  const Float3 by_z = cross(world.x, world.y) * mirrored;
+  const Float3 by_x = cross(world.y, world.z) * handedness,
+               by_y = cross(world.z, world.x) * handedness;
+  const Float3 by_z = cross(world.x, world.y) * handedness;
   const auto turned = [&](const Records& vertex) {
     const Float3 n = vertex.triple(HELIOGRAPH_WORD(shared::Vertex, normal));
     return normalized(multiply_add(by_x, n.x, multiply_add(by_y, n.y, by_z * n.z)));
   };
   const Float3 vertex_normal = normalized(
       triangle.between(turned(triangle.a()), turned(triangle.b()), turned(triangle.c())));
-  const Float3 across = cross(world.direction(b - a), world.direction(c - a)) * mirrored;
+  const Float3 across = cross(world.direction(b - a), world.direction(c - a)) * handedness;
   const Float area = hn::Sqrt(dot(across, across));
   const Mask flat = hn::Le(area, zero());
   s.front = select(flat, vertex_normal, across * hn::Div(one(), select(flat, one(), area)));
@@ -314,11 +318,11 @@ HWY_INLINE SurfaceLanes hit_surface(const SceneView& scene, const HitLanes& hit,
   // Like the G-buffer: where winding and normals disagree, the normals say which side this is.
   const Mask opposed = hn::Lt(dot(s.front, vertex_normal), zero());
   s.geometric = s.front * select(opposed, hn::Neg(side), side);
-  const PlaceLanes place = texture_place(triangle, material, area, width, hn::Abs(cosine));
-  s.normal =
-      mapped_normal<one_level>(scene, triangle, world, mirrored, material, place, vertex_normal) *
-      side;
-  evaluate_material<one_level>(scene, triangle, material, place, s);
+  const LookupLanes lookup = texture_lookup(triangle, material, area, width, hn::Abs(cosine));
+  s.normal = mapped_normal<one_level>(scene, triangle, world, handedness, material, lookup,
+                                      vertex_normal) *
+             side;
+  evaluate_material<one_level>(scene, triangle, material, lookup, s);
   return s;
 }
 

@@ -19,23 +19,23 @@ HWY_INLINE Float srgb_decode(Float e) {
   return hn::Mul(e, hn::MulAdd(e, hn::MulAdd(e, cubic, number(0.4940478f)), number(0.0457505f)));
 }
 
-/// Where one axis of an image is read: the texels on both sides and the second one's share.
+/// Where one axis of an image is read: the texels on both sides and the second one's weight.
 struct Neighbours {
   Integer low, high;
-  Float share;
+  Float fraction;
 };
 
 /// Folds a coordinate into the image first: wrapping then concerns the outermost texels alone.
 HWY_INLINE Neighbours neighbours(Float coordinate, Integer size, Integer wrap, Mask nearest) {
   const Mask repeats = float_mask(hn::Eq(wrap, integer(shared::wrap_repeat)));
   Float at = clamped(coordinate, 0.0f, 1.0f);
-  const Float turn = hn::Sub(coordinate, hn::Floor(coordinate));
-  at = select(repeats, turn, at);
-  const Mask mirrors = float_mask(hn::Eq(wrap, integer(shared::wrap_mirror)));
-  if (!none(mirrors)) {
+  const Float repeated = hn::Sub(coordinate, hn::Floor(coordinate));
+  at = select(repeats, repeated, at);
+  const Mask mirrored = float_mask(hn::Eq(wrap, integer(shared::wrap_mirror)));
+  if (!none(mirrored)) {
     const Float half = hn::Mul(number(0.5f), coordinate);
     const Float there_and_back = hn::Mul(number(2.0f), hn::Sub(half, hn::Floor(half)));
-    at = select(mirrors, hn::Min(there_and_back, hn::Sub(number(2.0f), there_and_back)), at);
+    at = select(mirrored, hn::Min(there_and_back, hn::Sub(number(2.0f), there_and_back)), at);
   }
   const Float middle = hn::IfThenElse(nearest, zero(), number(0.5f));
   at = hn::Sub(hn::Mul(at, to_float(size)), middle);
@@ -53,8 +53,8 @@ HWY_INLINE Neighbours neighbours(Float coordinate, Integer size, Integer wrap, M
 }
 
 /// One texel, decoded.
-HWY_INLINE Float4 heap_texel(const std::uint32_t* texels, Integer place, Mask srgb) {
-  const Integer packed = gather(texels, place);
+HWY_INLINE Float4 heap_texel(const std::uint32_t* texels, Integer index, Mask srgb) {
+  const Integer packed = gather(texels, index);
   Float4 color = unpack_unorm8(packed);
   if (!none(srgb)) {
     color.x = select(srgb, srgb_decode(color.x), color.x);
@@ -64,8 +64,9 @@ HWY_INLINE Float4 heap_texel(const std::uint32_t* texels, Integer place, Mask sr
   return color;
 }
 
-HWY_INLINE Float4 mix(const Float4& a, const Float4& b, Float share) {
-  return {mix(a.x, b.x, share), mix(a.y, b.y, share), mix(a.z, b.z, share), mix(a.w, b.w, share)};
+HWY_INLINE Float4 mix(const Float4& a, const Float4& b, Float fraction) {
+  return {mix(a.x, b.x, fraction), mix(a.y, b.y, fraction), mix(a.z, b.z, fraction),
+          mix(a.w, b.w, fraction)};
 }
 
 /// What a slot's lanes read.
@@ -87,8 +88,8 @@ HWY_INLINE Float4 sample_level(const SceneView& scene, const TextureLanes& t, In
   const auto texel = [&](Integer row, Integer column) {
     return heap_texel(scene.texels, hn::Add(row, column), srgb);
   };
-  return mix(mix(texel(top, s.low), texel(top, s.high), s.share),
-             mix(texel(bottom, s.low), texel(bottom, s.high), s.share), r.share);
+  return mix(mix(texel(top, s.low), texel(top, s.high), s.fraction),
+             mix(texel(bottom, s.low), texel(bottom, s.high), s.fraction), r.fraction);
 }
 
 /// `lod` counts from the largest level. Where `one_level`, only the nearest is read.
@@ -96,8 +97,8 @@ template <bool one_level>
 HWY_INLINE Float4 sample_texture(const SceneView& scene, const TextureLanes& t, const Float2& uv,
                                  Float lod) {
   const auto flag = [&](std::uint32_t bit) {
-    const Integer wanted = integer(static_cast<int>(bit));
-    return float_mask(hn::Eq(hn::And(t.flags, wanted), wanted));
+    const Integer requested = integer(static_cast<int>(bit));
+    return float_mask(hn::Eq(hn::And(t.flags, requested), requested));
   };
   const Mask srgb = flag(shared::texture_srgb);
   const Mask magnified = hn::Le(lod, zero());
@@ -113,11 +114,11 @@ HWY_INLINE Float4 sample_texture(const SceneView& scene, const TextureLanes& t, 
   }
   const Float finer = hn::Floor(lod);
   const Integer level = truncated(finer);
-  const Float share = hn::Sub(lod, finer);
+  const Float fraction = hn::Sub(lod, finer);
   const Float4 near = sample_level(scene, t, level, uv, nearest, srgb);
-  if (all(hn::Eq(share, zero()))) return near;
+  if (all(hn::Eq(fraction, zero()))) return near;
   const Integer coarser = hn::Min(hn::Add(level, integer(1)), hn::Sub(t.levels, integer(1)));
-  return mix(near, sample_level(scene, t, coarser, uv, nearest, srgb), share);
+  return mix(near, sample_level(scene, t, coarser, uv, nearest, srgb), fraction);
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE

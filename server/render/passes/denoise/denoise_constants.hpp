@@ -8,6 +8,11 @@
 
 namespace heliograph::render {
 
+static_assert(static_cast<shared::uint>(protocol::Rectification::variance_clamp) ==
+              shared::rectification_variance_clamp);
+static_assert(static_cast<shared::uint>(protocol::Rectification::gradient) ==
+              shared::rectification_gradient);
+
 /// How much wider the box of rectification becomes while the view is static: nothing changes any
 /// more, and clamping a long history to noise would keep it from converging. The paper's boxes stay
 /// as they are.
@@ -45,7 +50,7 @@ inline shared::TemporalConstants temporal_constants(const FrameInputs& in,
   }
   constants.spatial_variance_frames = static_cast<float>(settings.spatial_variance_frames);
   const bool holds = settings.enabled && in.constants.history_invalid == 0;
-  constants.flags = (holds ? shared::temporal_holds : 0u) |
+  constants.flags = (holds ? shared::temporal_history_valid : 0u) |
                     (settings.mean_variance ? shared::temporal_mean_variance : 0u) |
                     (settings.bicubic ? shared::temporal_bicubic : 0u);
   return constants;

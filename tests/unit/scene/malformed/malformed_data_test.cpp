@@ -260,7 +260,7 @@ TEST_F(MalformedData, InvalidJoints) {
   const auto offset = damaged.json["bufferViews"][view]["byteOffset"].get<std::size_t>();
   for (const std::uint8_t joint : {2, 3, 200, 255}) {
     damaged.binary[offset] = joint;
-    expect_refused("joint " + std::to_string(joint), damaged, "nodes[3].mesh: names joint");
+    expect_refused("joint " + std::to_string(joint), damaged, "nodes[3].mesh: joint");
   }
 }
 

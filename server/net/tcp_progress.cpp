@@ -1,4 +1,4 @@
-#include "net/websocket/reader_progress.hpp"
+#include "net/tcp_progress.hpp"
 
 // The kernel's own header, which contradicts that of the C library: its tcp_info is the whole one.
 #include <linux/sockios.h>
@@ -9,19 +9,19 @@
 
 namespace heliograph::net {
 
-std::uint64_t bytes_taken(int socket) {
+std::uint64_t bytes_acknowledged(int socket) {
   tcp_info info{};
   socklen_t size = sizeof info;
   if (getsockopt(socket, IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return 0;
   return info.tcpi_bytes_acked;
 }
 
-std::size_t bytes_not_taken(int socket) {
+std::size_t bytes_unacknowledged(int socket) {
   int bytes = 0;
   return ioctl(socket, SIOCOUTQ, &bytes) == 0 ? static_cast<std::size_t>(bytes) : 0;
 }
 
-void notice_absence(int socket) {
+void enable_keepalive(int socket) {
   const auto set = [socket](int level, int name, int value) {
     setsockopt(socket, level, name, &value, sizeof value);
   };

@@ -9,7 +9,7 @@ import unittest
 from harness.server import ServerTestCase
 from test_interop import NODE_CLIENT
 
-ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
+ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", ".."))
 LIBRARY = os.path.join(ROOT, "protocol", "typescript")
 TOKEN = "a-token_of.the~library"
 

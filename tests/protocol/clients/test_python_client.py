@@ -18,7 +18,7 @@ from harness.images import decode_jpeg, decode_png
 from harness.server import Server, ServerTestCase
 from test_lockstep import make_scenes
 
-PROTOCOL = os.path.normpath(os.path.join(os.path.dirname(__file__), "..", "..", "protocol"))
+PROTOCOL = os.path.normpath(os.path.join(os.path.dirname(__file__), "..", "..", "..", "protocol"))
 LIBRARY = os.path.join(PROTOCOL, "python")
 sys.path.insert(0, LIBRARY)
 

@@ -10,7 +10,7 @@
 
 #include "net/connection.hpp"
 #include "net/http/beast_messages.hpp"
-#include "net/websocket/reader_progress.hpp"
+#include "net/tcp_progress.hpp"
 #include "protocol/messages/messages.hpp"
 #include "session/event_log.hpp"
 #include "session/viewers/viewer_link.hpp"
@@ -21,43 +21,43 @@ namespace {
 namespace http = beast::http;
 using boost::system::error_code;
 
-// A client that takes no data for so long is let go.
-constexpr std::chrono::seconds longest_write{15};
-// The picture is sent again where nothing changes for so long: proxies cut off what is silent for
-// longer, often 60 s or 30 s.
-constexpr std::chrono::seconds longest_silence{20};
+// A client that acknowledges no data for this long is disconnected.
+constexpr std::chrono::seconds write_timeout{15};
+// The frame is repeated if nothing changes for this long: proxies close connections that are idle
+// for longer, often 60 s or 30 s.
+constexpr std::chrono::seconds repeat_interval{20};
 
-// Browsers show a part only when the header of the next one arrives, so that header goes out with
-// each picture, and cannot tell the next picture's length.
+// Browsers show a part only when the header of the next one arrives, so that header follows each
+// frame, and cannot contain the length of the next one.
 constexpr std::string_view first_part = "--frame\r\nContent-Type: image/jpeg\r\n\r\n";
 constexpr std::string_view next_part = "\r\n--frame\r\nContent-Type: image/jpeg\r\n\r\n";
 constexpr std::string_view last_part = "\r\n--frame--\r\n";
 
-/// A viewer that only takes pictures. What has been written counts as acknowledged: the small send
-/// buffer of its socket is all that lies between, and there is no queue.
-class PictureStream : public Connection,
-                      public session::ViewerLink,
-                      public std::enable_shared_from_this<PictureStream> {
+/// A viewer that only receives JPEG frames. A written frame counts as acknowledged: only the small
+/// send buffer of its socket lies between, and there is no queue.
+class MjpegStream : public Connection,
+                    public session::ViewerLink,
+                    public std::enable_shared_from_this<MjpegStream> {
  public:
-  PictureStream(ServerContext& context, ClientStream stream)
+  MjpegStream(ServerContext& context, ClientStream stream)
       : context_(context),
         stream_(std::move(stream)),
-        watch_(stream_.get_executor()),
-        rest_(stream_.get_executor()) {
+        progress_timer_(stream_.get_executor()),
+        repeat_timer_(stream_.get_executor()) {
     context_.enter(*this);
   }
-  ~PictureStream() override { context_.leave(*this); }
+  ~MjpegStream() override { context_.leave(*this); }
 
   void start(const HttpRequest& request, const std::string& session,
-             const protocol::StreamConfigure& wishes) {
+             const protocol::StreamConfigure& options) {
     const auto joined = context_.host.sessions().enter(session, weak_from_this(), true);
-    const auto sharing = context_.access.sharing_headers(request);
-    if (!joined) return refuse(joined.error().message, sharing);
+    const auto cors = context_.access.cors_headers(request);
+    if (!joined) return refuse(joined.error().message, cors);
     viewer_ = *joined;
     ++context_.traffic.responses[200];
     headers_.version(11);
     headers_.result(http::status::ok);
-    set_usual_headers(headers_, context_, sharing);
+    set_usual_headers(headers_, context_, cors);
     headers_.set("X-Accel-Buffering", "no");
     headers_.keep_alive(false);
     session_ = session;
@@ -65,17 +65,17 @@ class PictureStream : public Connection,
     session::log_info({.session = session_, .viewer = viewer_, .client = client_},
                       "a viewer streams images over HTTP");
     headers_.set(http::field::content_type, "multipart/x-mixed-replace; boundary=frame");
-    configure(wishes);
+    configure(options);
     writing_ = true;
     serializer_.emplace(headers_);
-    read();  // before there is a time limit: what waits for the client's end must not run into it
-    stream_.next_layer().expires_after(longest_write);
+    read();  // before a timeout is set: the read that waits for the client's end has none
+    stream_.next_layer().expires_after(write_timeout);
     http::async_write_header(stream_, *serializer_,
                              IoHandler([self = shared_from_this()](error_code error) {
                                if (error || self->viewer_.empty()) return self->ended();
                                self->write(first_part);
                              }));
-    watch();
+    check_progress();
   }
 
   void shut_down() override { finish(); }
@@ -95,36 +95,36 @@ class PictureStream : public Connection,
   }
 
  private:
-  /// There is no room: the usual answer, and the end.
-  void refuse(std::string_view why, const Headers& sharing) {
+  /// The session has no room for the viewer: sends 503 and closes.
+  void refuse(std::string_view why, const Headers& cors) {
     ending_ = true;
-    headers_ = to_message(context_, come_back_later(why), {.sharing = sharing});
-    stream_.next_layer().expires_after(longest_write);
+    headers_ = to_message(context_, retry_later(why), {.cors = cors});
+    stream_.next_layer().expires_after(write_timeout);
     serializer_.emplace(headers_);
     http::async_write(stream_, *serializer_,
                       IoHandler([self = shared_from_this()](error_code) { self->ended(); }));
   }
 
-  void configure(const protocol::StreamConfigure& wishes) {
+  void configure(const protocol::StreamConfigure& options) {
     const auto session = context_.host.sessions().session_of_viewer(viewer_);
     if (!session) return;
-    if (session->viewers().configure(viewer_, wishes)) session->viewers().start(viewer_);
+    if (session->viewers().configure(viewer_, options)) session->viewers().start(viewer_);
   }
 
-  /// Who vanished leaves pictures in the socket that nobody takes; they fit there, and block
-  /// nothing.
-  void watch() {
-    watch_.expires_after(longest_write);
-    on_expiry(watch_, [self = shared_from_this()](error_code error) {
+  /// Disconnects a client that vanished. Writes do not block then, because frames of a static view
+  /// fit into the send buffer.
+  void check_progress() {
+    progress_timer_.expires_after(write_timeout);
+    on_expiry(progress_timer_, [self = shared_from_this()](error_code error) {
       if (error || self->viewer_.empty()) return;
       const int socket = self->stream_.next_layer().socket().native_handle();
-      const std::uint64_t before = std::exchange(self->taken_, bytes_taken(socket));
-      if (self->taken_ == before && bytes_not_taken(socket) > 0) return self->ended();
-      self->watch();
+      const std::uint64_t before = std::exchange(self->acknowledged_, bytes_acknowledged(socket));
+      if (self->acknowledged_ == before && bytes_unacknowledged(socket) > 0) return self->ended();
+      self->check_progress();
     });
   }
 
-  /// The client has nothing to say; its end is noticed here.
+  /// The client sends nothing; the end of its connection completes this.
   void read() {
     stream_.async_read_some(asio::buffer(incoming_),
                             [self = shared_from_this()](error_code error, std::size_t) {
@@ -135,27 +135,27 @@ class PictureStream : public Connection,
 
   void write(std::string_view text) {
     writing_ = true;
-    stream_.next_layer().expires_after(longest_write);
+    stream_.next_layer().expires_after(write_timeout);
     write_all(stream_, WriteBuffers(asio::buffer(text.data(), text.size())),
               [self = shared_from_this()](error_code error) { self->written(error); });
   }
 
   void write_next() {
     if (writing_ || viewer_.empty()) return;
-    if (ending_) return write(std::exchange(farewell_, {}));
+    if (ending_) return write(std::exchange(end_part_, {}));
     const auto session = context_.host.sessions().session_of_viewer(viewer_);
     if (!session) return;
     frame_ = session->viewers().take(viewer_);
     if (!frame_) return;
-    shown_ = frame_->frame;
-    write_picture();
+    last_frame_ = frame_->frame;
+    write_frame();
   }
 
-  void write_picture() {
+  void write_frame() {
     writing_ = true;
-    rest_.cancel();
-    stream_.next_layer().expires_after(longest_write);
-    const std::array<asio::const_buffer, 2> parts{asio::buffer(shown_->payload),
+    repeat_timer_.cancel();
+    stream_.next_layer().expires_after(write_timeout);
+    const std::array<asio::const_buffer, 2> parts{asio::buffer(last_frame_->payload),
                                                   asio::buffer(next_part)};
     write_all(stream_, WriteBuffers(parts),
               [self = shared_from_this()](error_code error) { self->written(error); });
@@ -164,16 +164,16 @@ class PictureStream : public Connection,
   void written(error_code error) {
     writing_ = false;
     stream_.next_layer().expires_never();
-    if (error || (ending_ && farewell_.empty())) return ended();
+    if (error || (ending_ && end_part_.empty())) return ended();
     if (const auto sent = std::exchange(frame_, std::nullopt)) acknowledge(*sent);
     write_next();
-    if (!writing_ && shown_ && !viewer_.empty()) repeat_after_silence();
+    if (!writing_ && last_frame_ && !viewer_.empty()) repeat_after_silence();
   }
 
   void repeat_after_silence() {
-    rest_.expires_after(longest_silence);
-    on_expiry(rest_, [self = shared_from_this()](error_code error) {
-      if (!error && !self->writing_ && !self->viewer_.empty()) self->write_picture();
+    repeat_timer_.expires_after(repeat_interval);
+    on_expiry(repeat_timer_, [self = shared_from_this()](error_code error) {
+      if (!error && !self->writing_ && !self->viewer_.empty()) self->write_frame();
     });
   }
 
@@ -185,7 +185,7 @@ class PictureStream : public Connection,
     if (!known) finish();
   }
 
-  /// Ends after the picture that is being written.
+  /// Ends after the frame that is being written.
   void finish() {
     if (std::exchange(ending_, true)) return;
     write_next();
@@ -193,8 +193,8 @@ class PictureStream : public Connection,
 
   void ended() {
     ending_ = true;
-    rest_.cancel();
-    watch_.cancel();
+    repeat_timer_.cancel();
+    progress_timer_.cancel();
     stream_.next_layer().close();
     if (viewer_.empty()) return;
     context_.host.sessions().leave(viewer_);
@@ -206,16 +206,16 @@ class PictureStream : public Connection,
   ClientStream stream_;
   BeastResponse headers_;  // or the whole response, if the stream is rejected
   std::optional<http::response_serializer<http::string_body>> serializer_;
-  asio::steady_timer watch_;
-  std::uint64_t taken_ = 0;  // bytes, when it was looked last
+  asio::steady_timer progress_timer_;
+  std::uint64_t acknowledged_ = 0;  // bytes, at the last check
   std::array<char, 512> incoming_{};
   std::string session_;
   std::string viewer_;
   std::string client_;  // address
   std::optional<stream::OutgoingFrame> frame_;
-  stream::SharedFrame shown_;  // sent last
-  asio::steady_timer rest_;    // runs while nothing is sent
-  std::string_view farewell_ = last_part;
+  stream::SharedFrame last_frame_;   // sent last
+  asio::steady_timer repeat_timer_;  // runs while nothing is sent
+  std::string_view end_part_ = last_part;
   bool writing_ = false;
   bool ending_ = false;
   std::atomic<bool> announced_ = false;
@@ -223,22 +223,22 @@ class PictureStream : public Connection,
 
 }  // namespace
 
-protocol::Result<protocol::StreamConfigure> picture_stream_wishes(const HttpRequest& request) {
+protocol::Result<protocol::StreamConfigure> mjpeg_stream_options(const HttpRequest& request) {
   const auto quality =
       number_parameter(request, "quality", protocol::min_quality, protocol::max_quality);
   if (!quality) return quality.error();
   const auto rate =
       number_parameter(request, "max_fps", 1, static_cast<std::uint32_t>(protocol::max_frame_rate));
   if (!rate) return rate.error();
-  protocol::StreamConfigure wishes;
-  wishes.quality = *quality;
-  wishes.max_fps = *rate;
-  return wishes;
+  protocol::StreamConfigure options;
+  options.quality = *quality;
+  options.max_fps = *rate;
+  return options;
 }
 
-void start_picture_stream(ServerContext& context, ClientStream stream, const HttpRequest& request,
-                          const std::string& session, const protocol::StreamConfigure& wishes) {
-  std::make_shared<PictureStream>(context, std::move(stream))->start(request, session, wishes);
+void start_mjpeg_stream(ServerContext& context, ClientStream stream, const HttpRequest& request,
+                        const std::string& session, const protocol::StreamConfigure& options) {
+  std::make_shared<MjpegStream>(context, std::move(stream))->start(request, session, options);
 }
 
 }  // namespace heliograph::net

@@ -168,7 +168,7 @@ class Scenes(ServerTestCase):
             await viewer.call("scene.load", {"name": "furnace"})
 
     async def test_closing_a_session_cancels_its_load(self):
-        ended = self.server.log_text().count("loading slow was ended")
+        ended = self.server.log_text().count("loading slow was cancelled")
         self.server.call("session.create", {"name": "passing"})
         async with Viewer(self.server, session="passing") as viewer:
             load = asyncio.create_task(asyncio.to_thread(
@@ -179,7 +179,7 @@ class Scenes(ServerTestCase):
             self.assert_error(await load, -32004, path="session")
             self.assertLess(time.monotonic() - begun, 5)
         self.server.wait_for(
-            lambda: self.server.log_text().count("loading slow was ended") > ended, "its end")
+            lambda: self.server.log_text().count("loading slow was cancelled") > ended, "its end")
 
     async def test_concurrent_loads_of_a_scene_are_shared(self):
         before = self.cache()

@@ -10,7 +10,7 @@ import unittest
 
 from harness.server import ServerTestCase
 
-NODE_CLIENT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "interop")
+NODE_CLIENT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "interop")
 
 
 def call(number, method):

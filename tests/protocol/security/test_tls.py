@@ -184,7 +184,7 @@ class Reload(unittest.IsolatedAsyncioTestCase):
                         file.write("nonsense")
                     second = serial()
                     server.process.send_signal(1)
-                    server.wait_for(lambda: "the old certificate stays" in server.log_text(),
+                    server.wait_for(lambda: "the certificate was not reloaded" in server.log_text(),
                                     "the refusal")
                     self.assertEqual(serial(), second)
                     await viewer.call("camera.get")
@@ -196,7 +196,7 @@ class WrongOptions(unittest.TestCase):
             certificate, key = make_certificate(folder)
             _, other = make_certificate(folder, "other")
             for arguments, saying in (
-                    (("--tls-certificate", certificate), "go together"),
+                    (("--tls-certificate", certificate), "must be specified together"),
                     (("--tls-certificate", certificate, "--tls-key", other), "other.key cannot be used: key values"),
                     (("--tls-certificate", key, "--tls-key", key), "server.key"),
                     (("--tls-key", key), "tls-certificate")):

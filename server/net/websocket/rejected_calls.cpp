@@ -1,4 +1,4 @@
-#include "net/websocket/refused_calls.hpp"
+#include "net/websocket/rejected_calls.hpp"
 
 #include <cstddef>
 #include <nlohmann/json.hpp>
@@ -14,7 +14,7 @@ using nlohmann::json;
 
 constexpr std::size_t most_ids = protocol::DispatchLimits().max_batch;
 
-/// Listens to a message's parser for the ids of its calls.
+/// Collects the ids of a message's calls while it is parsed.
 class IdReader : public nlohmann::json_sax<json> {
  public:
   std::vector<json> ids;
@@ -46,7 +46,7 @@ class IdReader : public nlohmann::json_sax<json> {
     return false;
   }
 
-  /// Of a message that was read to its end: nobody waits for what becomes of it.
+  /// Whether a message that was parsed to its end is a notification.
   bool notifies() const { return is_call_ && !wants_answer_; }
 
  private:
@@ -59,7 +59,7 @@ class IdReader : public nlohmann::json_sax<json> {
     --depth_;
     return true;
   }
-  /// False ends the reading.
+  /// False ends the parsing.
   bool value(json id) {
     if (!std::exchange(of_id_, false)) return true;
     ids.push_back(std::move(id));
@@ -74,7 +74,7 @@ class IdReader : public nlohmann::json_sax<json> {
 
 }  // namespace
 
-std::string refuse_calls(std::string_view message, const protocol::Error& error) {
+std::string reject_calls(std::string_view message, const protocol::Error& error) {
   IdReader reader;
   const bool whole = json::sax_parse(message.begin(), message.end(), &reader);
   if (whole && reader.notifies()) return {};

@@ -1,5 +1,5 @@
-// The random numbers of host kernels are those of the shaders, to the bit: a picture must not
-// depend on who made its rays.
+// The random numbers of host kernels are those of the shaders, to the bit: a frame must not
+// depend on whether a shader or a kernel generated its rays.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ glm::vec2 halves(std::uint32_t number) {
   return {static_cast<float>(number >> 16), static_cast<float>(number & 0xffffu)};
 }
 
-/// What the vector kernels make of a place: a pair, and a single number.
+/// What the vector kernels generate: a pair, and a single number.
 glm::vec3 host_numbers(const Place& place) {
   const hn::ScalableTag<std::uint32_t> du;
   const hn::RebindToFloat<decltype(du)> df;
@@ -35,7 +35,7 @@ glm::vec3 host_numbers(const Place& place) {
   return {hn::GetLane(first), hn::GetLane(second), hn::GetLane(single)};
 }
 
-TEST(RandomHost, NumbersAreThoseOfTheShadersToTheBit) {
+TEST(RandomKernel, MatchesTheShaderBitForBit) {
   RandomInputs random(7);
   std::vector<Place> places{{0, 0, 0, 0, 0}, {65535, 65535, ~0u, 300, 4095}};
   while (places.size() < 5000) {
