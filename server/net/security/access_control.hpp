@@ -80,9 +80,9 @@ class AccessControl {
   mutable FailureLimit failures_;
 };
 
-/// Whether a page of another origin, this host's other ports included, asks for something that is
-/// not for it by way of an element that names no origin: an image, a frame, a link. Browsers say
-/// so to hosts that they trust: loopback and HTTPS.
+/// Whether a page of another origin, other ports of this host included, requests what it may not
+/// embed through an element that sends no Origin: an image, an iframe, a link. Browsers say so to
+/// hosts that they trust: loopback and HTTPS.
 bool embedded_by_other_origin(const HttpRequest& request);
 
 bool is_loopback(std::string_view address);

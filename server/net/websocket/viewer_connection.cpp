@@ -190,8 +190,8 @@ class ViewerConnection : public Connection,
     enqueue(std::move(answer), {});
   }
 
-  /// Disconnects a client that exceeds its limits. From within the control callback too, where
-  /// the close frame must wait until Beast is done with what it reads.
+  /// Disconnects a client that exceeds a rate limit. Also called from within the control callback,
+  /// where the close frame must wait until Beast has finished reading.
   void disconnect_rate_limited(const char* what) {
     if (closing_ || std::exchange(rate_limited_, true)) return;
     session::log_warning({.viewer = viewer_, .client = client_}, what);
