@@ -8,6 +8,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <nlohmann/json.hpp>
 
+#include "protocol/settings/presets.hpp"
 #include "protocol/settings/settings.hpp"
 #include "protocol/settings/settings_json.hpp"
 #include "render/api/renderer.hpp"
@@ -24,7 +25,7 @@ struct Options {
   std::vector<std::filesystem::path> scenes;
   std::vector<std::string> sizes{"640x360"};
   std::vector<std::string> settings;
-  std::vector<std::filesystem::path> presets;
+  std::string preset;
   std::filesystem::path environment;
   std::filesystem::path output;
   std::string device;
@@ -49,12 +50,11 @@ protocol::Settings parse_settings(const Options& options) {
   protocol::Settings settings;
   // Measured frames never converge.
   settings.accumulation.max_samples = 65536;
-  for (const auto& path : options.presets) {
-    std::ifstream file(path);
-    const auto tree = nlohmann::json::parse(file, nullptr, false);
-    if (!file || tree.is_discarded()) throw std::runtime_error("cannot read " + path.string());
-    const auto applied = protocol::apply_patch(settings, tree);
-    if (!applied) throw std::runtime_error(path.string() + ": " + applied.error().message);
+  if (!options.preset.empty()) {
+    const auto preset = protocol::find_preset(options.preset);
+    if (!preset) throw std::runtime_error(preset.error().message);
+    const auto applied = protocol::apply_patch(settings, preset->settings.value());
+    if (!applied) throw std::runtime_error(applied.error().message);
   }
   for (const std::string& assignment : options.settings) {
     const auto applied = protocol::set_by_path(settings, assignment);
@@ -241,7 +241,7 @@ int main(int argc, char** argv) {
   app.add_option("--frames", options.frames, "measured frames")->check(CLI::PositiveNumber);
   app.add_option("--warm-up", options.warm_up, "frames before them")->check(CLI::NonNegativeNumber);
   app.add_option("--set", options.settings, "path=value, as `heliograph render` takes it");
-  app.add_option("--preset", options.presets, "JSON files of settings, applied in order");
+  app.add_option("--preset", options.preset, "a preset, as `heliograph render` takes it");
   app.add_option("--environment", options.environment, "the sky; otherwise white");
   app.add_option("--device", options.device, "part of the device's name");
   app.add_option("--tracer", options.tracer, "as `heliograph serve` takes it");
