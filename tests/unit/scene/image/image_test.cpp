@@ -137,7 +137,7 @@ TEST(Mipmaps, OddSizesWeightPixelsEqually) {
 
 TEST(Images, AreReadFromFilesBesideScene) {
   GltfBuilder builder = everything();
-  builder.json["images"][0] = {{"uri", "my%20picture.png"}};
+  builder.json["images"][0] = {{"uri", "my%20image.png"}};
   builder.json["buffers"][0]["uri"] = "data.bin";
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder.path() / "textures");
