@@ -33,7 +33,7 @@ class Mishaps(ServerTestCase):
             self.server.call("camera.orbit", {"yaw": 5})
             # Comes after the notification, by the same way.
             self.server.wait_for(lambda: view.scene.list() and logged.output, "the refusal")
-        self.assertIn("call from elsewhere", logged.output[0])
+        self.assertIn("call from another thread", logged.output[0])
 
     async def test_an_error_without_id_fails_all_pending_calls(self):
         async with await heliograph.connect_async(self.server.url) as view:
