@@ -62,6 +62,9 @@ class ShaderReload(ServerTestCase):
 
     async def test_error_is_shown_and_logged_and_nothing_stops(self):
         async with Viewer(self.server) as viewer:
+            # Large enough that the text covers little of it.
+            await viewer.call("stream.configure", {"width": 640, "height": 360})
+            await viewer.frame_where(lambda frame: frame.header["width"] == 640)
             before = decode_jpeg((await viewer.rest()).payload)
             self.save(OUTPUT, "vec5(encoded, 1.0)")
             with_text = await self.frame_unlike(viewer, before)
