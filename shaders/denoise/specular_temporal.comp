@@ -65,7 +65,7 @@ vec3 fetch_history_bicubic(HistoryTaps taps) {
   for (int y = 0; y < 4; ++y) {
     for (int x = 0; x < 4; ++x) {
       float weight = across[x] * down[y];
-      if (weight == 0.0) continue;
+      if (weight == 0.0 || is_cubic_corner(x, y)) continue;
       ivec2 tap = clamp(taps.base + ivec2(x, y) - 1, ivec2(0), ivec2(frame.extent) - 1);
       vec3 value = imageLoad(previous_signal, tap).rgb;
       sum += weight * value;
@@ -74,11 +74,13 @@ vec3 fetch_history_bicubic(HistoryTaps taps) {
       high = max(high, value);
     }
   }
-  return clamp(sum, low, high);
+  return clamp(sum * cubic_scale(across, down), low, high);
 }
 
 HistorySample fetch_history(HistoryTaps taps) {
   HistorySample history = no_history();
+  // The gradient compares with the long history alone.
+  bool gradient = constants.rectification == rectification_gradient;
   for (int i = 0; i < 4; ++i) {
     float weight = taps.weights[i];
     if (weight <= 0.0) continue;
@@ -87,7 +89,7 @@ HistorySample fetch_history(HistoryTaps taps) {
     history.radiance += weight * imageLoad(previous_signal, tap).rgb;
     history.frames += weight * state.x;
     history.moments += weight * state.zw;
-    history.fast += weight * imageLoad(previous_fast, tap).rgb;
+    if (!gradient) history.fast += weight * imageLoad(previous_fast, tap).rgb;
   }
   if (taps.whole && (constants.flags & temporal_bicubic) != 0u) {
     history.radiance = fetch_history_bicubic(taps);

@@ -43,7 +43,7 @@ vec2 fetch_history_bicubic(HistoryTaps taps) {
   for (int y = 0; y < 4; ++y) {
     for (int x = 0; x < 4; ++x) {
       float weight = across[x] * down[y];
-      if (weight == 0.0) continue;
+      if (weight == 0.0 || is_cubic_corner(x, y)) continue;
       ivec2 tap = clamp(taps.base + ivec2(x, y) - 1, ivec2(0), ivec2(frame.extent) - 1);
       vec2 value = imageLoad(previous_signal, tap).xy;
       sum += weight * value;
@@ -52,7 +52,7 @@ vec2 fetch_history_bicubic(HistoryTaps taps) {
       high = max(high, value);
     }
   }
-  return clamp(sum, low, high);
+  return clamp(sum * cubic_scale(across, down), low, high);
 }
 
 HistorySample fetch_history(ivec2 pixel) {
@@ -60,6 +60,8 @@ HistorySample fetch_history(ivec2 pixel) {
   if ((constants.flags & temporal_history_valid) == 0u) return history;
   vec4 map = imageLoad(reprojection, pixel);
   HistoryTaps taps = valid_taps(bilinear_taps(map.xy), uint(map.z));
+  // The gradient compares with the long history alone.
+  bool gradient = constants.rectification == rectification_gradient;
   for (int i = 0; i < 4; ++i) {
     float weight = taps.weights[i];
     if (weight <= 0.0) continue;
@@ -67,7 +69,7 @@ HistorySample fetch_history(ivec2 pixel) {
     history.signal += weight * imageLoad(previous_signal, tap).xy;
     history.moments += weight * imageLoad(previous_moments, tap);
     history.frames += weight * imageLoad(previous_history, tap).xy;
-    history.fast += weight * imageLoad(previous_fast, tap).xy;
+    if (!gradient) history.fast += weight * imageLoad(previous_fast, tap).xy;
   }
   if (taps.whole && (constants.flags & temporal_bicubic) != 0u) {
     history.signal = fetch_history_bicubic(taps);

@@ -359,6 +359,18 @@ TEST(CubicWeights, ReproducePixelsLinesAndParabolas) {
   EXPECT_EQ(call(sharp, {{.a = glm::vec4(0.0f)}})[0].x, glm::vec4(0, 1, 0, 0));
 }
 
+TEST(CubicWeights, AddUpToOneWithoutTheCorners) {
+  for (const float f : {0.0f, 0.25f, 0.5f, 0.9f}) {
+    for (const float g : {0.0f, 0.4f, 0.5f}) {
+      const auto got = call(sharp, {{.a = {f, g, 0, 0}}, {.a = {g, 0, 0, 0}}});
+      const glm::vec4 x = got[0].x, y = got[1].x;
+      const float corners = (x.x + x.w) * (y.x + y.w), scale = got[0].y.y;
+      EXPECT_LE(std::abs(corners), 1.0f / 64.0f + 1e-6f);
+      EXPECT_NEAR((1.0f - corners) * scale, 1.0f, 1e-6);
+    }
+  }
+}
+
 TEST(VirtualDistance, FollowsTheMirrorEquation) {
   // a: distance, curvature.
   const auto far = [](float distance, float curvature) {

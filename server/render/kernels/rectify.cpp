@@ -53,6 +53,11 @@ class WindowBoxes {
     }
   }
 
+  /// Lanes with a surface, of a row that was filled.
+  HWY_INLINE M seen(int x, int y) const {
+    return hn::Gt(hn::LoadU(d_, values_.row(channels, y) + x), hn::Zero(d_));
+  }
+
   /// Prepares the boxes of row `y`.
   HWY_INLINE void sum_columns(int y) const {
     const int lanes = static_cast<int>(hn::Lanes(d_));
@@ -153,8 +158,7 @@ class Rectification {
       boxes.sum_columns(y);
       for (int start = 0; start < job_.width; start += lanes) {
         const int x = std::min(start, job_.width - lanes);
-        const V view_z = load4(d_, row_of<const float>(job_.guide, y) + 4 * x).w;
-        const M requested = hn::And(hn::Gt(view_z, hn::Zero(d_)), from_column(d_, x, start));
+        const M requested = hn::And(boxes.seen(x, y), from_column(d_, x, start));
         if (!hn::AllFalse(d_, requested)) hold(kernel, boxes, x, y, requested);
       }
     }

@@ -32,22 +32,6 @@ HWY_INLINE V edge_weight(M valid, V exponent) {
   return hn::IfThenElseZero(valid, hn::BitCast(d, hn::ShiftLeft<9>(fixed_point)));
 }
 
-/// 1 / v, to 24 bits.
-template <class V>
-HWY_INLINE V reciprocal(V v) {
-  const V guess = hn::ApproximateReciprocal(v);
-  return hn::Mul(guess, hn::NegMulAdd(v, guess, hn::Set(hn::DFromV<V>(), 2.0f)));
-}
-
-/// 1 / sqrt(v), to 23 bits.
-template <class V>
-HWY_INLINE V reciprocal_sqrt(V v) {
-  const hn::DFromV<V> d;
-  const V guess = hn::ApproximateReciprocalSqrt(v);
-  const V half = hn::Mul(hn::Mul(v, hn::Set(d, 0.5f)), guess);
-  return hn::Mul(guess, hn::NegMulAdd(half, guess, hn::Set(d, 1.5f)));
-}
-
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -37,12 +37,6 @@ HWY_INLINE Triple<V> scaled_normal(const Quad<V>& texel) {
   return {texel.x, texel.y, texel.z};
 }
 
-/// Cosine between `normal` and the guide's; cheaper than decode_guide().
-template <class V>
-HWY_INLINE V guide_cosine(const Triple<V>& normal, const Quad<V>& texel) {
-  return dot(normal, scaled_normal(texel)) / length(scaled_normal(texel));
-}
-
 /// Also of the background, where the normal is zero.
 template <class V>
 HWY_INLINE Guide<V> decode_guide(const Quad<V>& texel) {

@@ -30,6 +30,22 @@ struct Quad {
   V x, y, z, w;
 };
 
+/// 1 / v, to 24 bits.
+template <class V>
+HWY_INLINE V reciprocal(V v) {
+  const V guess = hn::ApproximateReciprocal(v);
+  return hn::Mul(guess, hn::NegMulAdd(v, guess, hn::Set(hn::DFromV<V>(), 2.0f)));
+}
+
+/// 1 / sqrt(v), to 23 bits.
+template <class V>
+HWY_INLINE V reciprocal_sqrt(V v) {
+  const hn::DFromV<V> d;
+  const V guess = hn::ApproximateReciprocalSqrt(v);
+  const V half = hn::Mul(hn::Mul(v, hn::Set(d, 0.5f)), guess);
+  return hn::Mul(guess, hn::NegMulAdd(half, guess, hn::Set(d, 1.5f)));
+}
+
 template <class V>
 HWY_INLINE Triple<V> operator+(const Triple<V>& a, const Triple<V>& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
@@ -59,8 +75,9 @@ HWY_INLINE Triple<V> normalized(const Triple<V>& a) {
   return a * (hn::Set(hn::DFromV<V>(), 1.0f) / length(a));
 }
 template <class V>
-HWY_INLINE V distance(const Triple<V>& a, const Triple<V>& b) {
-  return length(a - b);
+HWY_INLINE V squared_distance(const Triple<V>& a, const Triple<V>& b) {
+  const Triple<V> apart = a - b;
+  return dot(apart, apart);
 }
 
 /// `a` where `mask`, otherwise `b`.
@@ -108,7 +125,8 @@ HWY_INLINE Triple<V> octahedral_decode(V x, V y) {
   const hn::DFromV<V> d;
   const V z = hn::Set(d, 1.0f) - hn::Abs(x) - hn::Abs(y);
   const V below = hn::Max(hn::Neg(z), hn::Zero(d));
-  return normalized(Triple<V>{x - hn::CopySignToAbs(below, x), y - hn::CopySignToAbs(below, y), z});
+  const Triple<V> n{x - hn::CopySignToAbs(below, x), y - hn::CopySignToAbs(below, y), z};
+  return n * reciprocal_sqrt(dot(n, n));
 }
 
 /// Numbers that are none: NaN and infinities of either sign.

@@ -30,8 +30,8 @@ class SignalRows {
 
   /// `margin`: columns beside the area that are read; they show no surface. `reach`: rows above and
   /// below a row that are read with it, at least 1.
-  HWY_INLINE SignalRows(const gpu::HostView& guide, const gpu::HostView& signal, int frame_width,
-                        int frame_height, const Area& area, int margin, int reach)
+  SignalRows(const gpu::HostView& guide, const gpu::HostView& signal, int frame_width,
+             int frame_height, const Area& area, int margin, int reach)
       : guide_(guide),
         signal_(signal),
         width_(frame_width),
@@ -42,8 +42,9 @@ class SignalRows {
         ring_(planes, area.width(), margin, 2 * reach + 1),
         sums_(variances, area.width(), 1, 1) {}
 
-  /// Makes row `y` and those within the reach available. To be called for each row in order.
+  /// Makes row `y` and those within the reach available, not before those of a smaller `y`.
   HWY_INLINE void advance(int y) {
+    next_ = std::max(next_, y - reach_);
     for (; next_ <= std::min(y + reach_, height_ - 1); ++next_) fill(next_);
   }
 
