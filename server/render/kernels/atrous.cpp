@@ -205,13 +205,16 @@ class Row {
       most = hn::Add(power, set(1.0f));
     }
     if (!has(shared::atrous_levels_by_roughness)) return most;
-    const V rough = hn::IfThenElse(hn::Le(roughness, set(0.05f)), set(1.0f), set(16.0f));
-    return hn::Min(most, hn::IfThenElse(hn::Le(roughness, set(0.002f)), hn::Zero(d_), rough));
+    const V rough = hn::IfThenElse(hn::Le(roughness, set(shared::atrous_blurred_once_roughness)),
+                                   set(1.0f), set(16.0f));
+    const M unblurred = hn::Le(roughness, set(shared::atrous_unblurred_roughness));
+    return hn::Min(most, hn::IfThenElse(unblurred, hn::Zero(d_), rough));
   }
 
   /// Pixels from tap to tap.
   HWY_INLINE V steps(V roughness) const {
-    const float low = c_.start_threshold - 0.05f, high = c_.start_threshold + 0.05f;
+    const float low = c_.start_threshold - shared::atrous_step_half_band;
+    const float high = c_.start_threshold + shared::atrous_step_half_band;
     const V t = hn::Min(
         hn::Max(hn::Mul(hn::Sub(roughness, set(low)), set(1.0f / (high - low))), hn::Zero(d_)),
         set(1.0f));

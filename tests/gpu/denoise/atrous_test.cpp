@@ -305,7 +305,37 @@ void expect_levels(std::uint32_t flag, const std::array<float, 3>& roughness) {
 }
 
 TEST(AtrousLevels, FollowRoughnessForNoiseFreeHits) {
-  expect_levels(shared::atrous_levels_by_roughness, {0.0f, 0.04f, 0.6f});
+  expect_levels(shared::atrous_levels_by_roughness, {0.0015f, 0.049f, 0.051f});
+}
+
+TEST(AtrousLevels, StepGrowsWithinABandOfRoughness) {
+  const float threshold = 0.5f;
+  Input in(9);
+  const auto third = [](std::size_t i) { return std::min<std::size_t>(i % width / 12, 2); };
+  for (std::size_t i = 0; i < pixels; ++i) {
+    in.guide[i] = glm::vec4(0, 0, 1.0f + threshold + 0.051f * (third(i) - 1.0f), 5.0f);
+    in.slope[i] = glm::vec2(0.0f);
+  }
+  const auto filtered = [&](float start) {
+    shared::AtrousConstants constants = plain();
+    constants.start_threshold = start;
+    return Filter(in, constants, true, 2).run();
+  };
+  const render::FloatImage band = filtered(threshold), small = filtered(2.0f),
+                           large = filtered(-1.0f);
+  std::array<bool, 2> differs{};
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const float value = band.rgba[4 * i];
+    if (third(i) == 0) {
+      EXPECT_EQ(value, small.rgba[4 * i]);
+    } else if (third(i) == 2) {
+      EXPECT_EQ(value, large.rgba[4 * i]);
+    } else {
+      differs[0] |= value != small.rgba[4 * i];
+      differs[1] |= value != large.rgba[4 * i];
+    }
+  }
+  EXPECT_TRUE(differs[0] && differs[1]) << "half way between";
 }
 
 // Lobes of less than a pixel, of one to two pixels, and wider than the filter's footprint.
