@@ -128,7 +128,7 @@ class AtrousReference {
   double footprint_;
 };
 
-/// A rig whose blur has `iterations` levels of `constants`.
+/// A rig whose blur has `iterations` levels from that of `constants`.
 struct Filter {
   Filter(const Input& in, const shared::AtrousConstants& given, bool specular, int iterations = 1,
          protocol::BlurKernel kernel = protocol::BlurKernel::full)
@@ -139,7 +139,7 @@ struct Filter {
     gbuffer.depth_slope = rig.input("slope", VK_FORMAT_R32G32_SFLOAT, in.slope);
     const auto constants = [given](const render::KernelShape& shape) {
       shared::AtrousConstants made = given;
-      made.level = shape.level;
+      made.level = given.level + shape.level;
       made.columns = shape.columns;
       made.rows = shape.rows;
       return made;
@@ -319,7 +319,8 @@ TEST(AtrousLevels, StepGrowsWithinABandOfRoughness) {
   const auto filtered = [&](float start) {
     shared::AtrousConstants constants = plain();
     constants.start_threshold = start;
-    return Filter(in, constants, true, 2).run();
+    constants.level = 1;  // steps of 2, 3 in the middle of the band, and 4
+    return Filter(in, constants, true).run();
   };
   const render::FloatImage band = filtered(threshold), small = filtered(2.0f),
                            large = filtered(-1.0f);

@@ -8,7 +8,7 @@
 namespace heliograph::test {
 namespace {
 
-constexpr std::uint32_t width = 160, height = 90;
+constexpr std::uint32_t accumulation_width = 160, accumulation_height = 90;
 
 /// SpheresRig on a ground under a soft sun and a grey sky, with noise of every kind.
 std::shared_ptr<const scene::Scene> spheres() {
@@ -26,7 +26,8 @@ std::shared_ptr<const scene::Scene> spheres() {
 
 RendererRig make(const std::string& tracer = "auto") {
   return RendererRig(spheres(), scene::constant_environment(glm::vec3(0.5f, 0.6f, 0.8f)),
-                     look({0.5f, 2, 4.5f}, {0, 0.5f, 0}), width, height, tracer);
+                     look({0.5f, 2, 4.5f}, {0, 0.5f, 0}), accumulation_width, accumulation_height,
+                     tracer);
 }
 
 TEST(Accumulation, ErrorDecreasesWithSampleCount) {
@@ -63,7 +64,7 @@ TEST(Accumulation, StopsWhenConvergedAndResumesOnChange) {
   EXPECT_FALSE(rig.renderer.needs_frame());
   rig.renderer.set_camera(look({0.5f, 2, 4.5f}, {0, 0.5f, 0}));
   rig.apply(settings);
-  rig.renderer.set_size(width, height);
+  rig.renderer.set_size(accumulation_width, accumulation_height);
   EXPECT_FALSE(rig.renderer.needs_frame()) << "nothing changed";
 
   settings.exposure.compensation = 1.0f;
@@ -90,7 +91,7 @@ TEST(Accumulation, CameraMoveResetsAccumulation) {
   EXPECT_EQ(moved.accumulate(1).rgba, fresh.accumulate(1).rgba);
   moved.renderer.set_size(80, 45);
   moved.renderer.render();
-  moved.renderer.set_size(width, height);
+  moved.renderer.set_size(accumulation_width, accumulation_height);
   EXPECT_EQ(moved.accumulate(3).rgba, fresh.accumulate(3).rgba);
 }
 
