@@ -216,7 +216,7 @@ bool FramePlan::timed_by_clock() const {
   return device_.is_cpu();
 }
 
-void FramePlan::execute() {
+bool FramePlan::execute(const std::function<bool()>& canceled) {
   if (!compiled_) throw GpuError("a frame plan runs only after compile()");
   vkResetQueryPool(device_.handle(), queries_, 0, static_cast<std::uint32_t>(passes_.size() * 2));
   std::size_t part = 0;
@@ -226,6 +226,10 @@ void FramePlan::execute() {
   for (std::size_t i = 0; i < passes_.size(); ++i) {
     const Pass& pass = passes_[i];
     timings_[i].milliseconds = -1.0f;  // not run
+    if (canceled && timed_by_clock() && canceled()) {
+      submit(commands_[part]);
+      return false;
+    }
     barrier |= pass.barrier_before;
     if (pass.condition && !pass.condition()) {
       barrier |= !pass.program;
@@ -262,6 +266,7 @@ void FramePlan::execute() {
   submit(commands_[part]);
   if (!timed_by_clock()) read_timers();
   parity_ ^= 1;
+  return true;
 }
 
 void FramePlan::run_host_kernel(const Pass& pass) const {

@@ -194,8 +194,10 @@ class FramePlan {
   /// pass. @throws GpuError naming pass, binding and what is wrong
   void compile();
 
-  /// Runs all passes, waits for them, reads the timers and swaps the histories.
-  void execute();
+  /// Runs all passes, waits for them, reads the timers and swaps the histories. `canceled` is asked
+  /// before each pass on CPU devices; where it returns true, the result is false, the remaining
+  /// passes do not run and histories do not swap. Images have no defined content then.
+  bool execute(const std::function<bool()>& canceled = {});
   /// The frame that just ran, as read_back() asked for it: level 0, rows tightly packed.
   std::vector<std::uint8_t> read() const;
   const std::vector<PassTiming>& timings() const { return timings_; }

@@ -145,6 +145,23 @@ TEST_F(FramePlanTest, HistoriesSwapEveryFrameAndReset) {
   EXPECT_EQ(value(history.current), 1.0f);
 }
 
+TEST_F(FramePlanTest, CanceledFrameDoesNotSwapHistories) {
+  if (!device_.is_cpu()) GTEST_SKIP() << "frames are canceled on CPU devices only";
+  const auto a = image("a"), b = image("b");
+  const History history = plan_.history("count", format);
+  add("count", history.previous, history.current);
+  add("behind", a, b);
+  plan_.compile();
+  EXPECT_TRUE(plan_.execute());
+  for (const int passes : {0, 1}) {
+    int asked = 0;
+    EXPECT_FALSE(plan_.execute([&] { return asked++ == passes; }));
+    EXPECT_EQ(asked, passes + 1) << "no pass runs after the one that was refused";
+  }
+  EXPECT_TRUE(plan_.execute([] { return false; }));
+  EXPECT_EQ(value(history.current), 2.0f);
+}
+
 TEST_F(FramePlanTest, ReadsBackRequestedImageEveryFrame) {
   const History history = plan_.history("count", format);
   add("count", history.previous, history.current);
