@@ -191,6 +191,51 @@ TEST_F(FramePlanTest, SkipsPassesWhoseConditionIsFalse) {
   EXPECT_GE(plan_.timings()[0].milliseconds, 0.0f);
 }
 
+TEST_F(FramePlanTest, OnlyWhenSkipsAllPassesDeclaredWithin) {
+  const auto a = image("a"), b = image("b"), c = image("c"), d = image("d");
+  bool outer = false, own = true;
+  plan_.only_when([&] { return outer; },
+                  [&] {
+                    add("first", a, b, 2.0f);
+                    add("second", a, c, 3.0f).when([&] { return own; });
+                  });
+  add("always", a, d, 4.0f);
+  plan_.compile();
+  plan_.execute();
+  EXPECT_EQ(value(b), 0.0f);
+  EXPECT_EQ(value(c), 0.0f);
+  EXPECT_EQ(value(d), 4.0f);
+  outer = true;
+  own = false;
+  plan_.execute();
+  EXPECT_EQ(value(b), 2.0f);
+  EXPECT_EQ(value(c), 0.0f) << "its own condition counts too";
+  own = true;
+  plan_.execute();
+  EXPECT_EQ(value(c), 3.0f);
+}
+
+TEST_F(FramePlanTest, HostPassesAloneSubmitNothing) {
+  int runs = 0;
+  plan_.host("first", [&] { ++runs; });
+  plan_.host("second", [&] { ++runs; });
+  plan_.compile();
+  plan_.execute();
+  EXPECT_EQ(runs, 2);
+  EXPECT_EQ(plan_.submits(), 0u);
+}
+
+TEST_F(FramePlanTest, SubmitsOnlyWhereTheHostWaits) {
+  if (device_.is_cpu()) GTEST_SKIP() << "passes are timed one by one on CPU devices";
+  const auto a = image("a"), b = image("b"), c = image("c");
+  add("first", a, b);
+  add("second", b, c);
+  plan_.host("host", [] {});
+  plan_.compile();
+  plan_.execute();
+  EXPECT_EQ(plan_.submits(), 1u);
+}
+
 TEST_F(FramePlanTest, RunsHostPassesOnMappedImagesBetweenDevicePasses) {
   if (!device_.is_cpu()) GTEST_SKIP() << "images are mapped on CPU devices only";
   const auto a = image("a"), b = image("b"), c = image("c");
