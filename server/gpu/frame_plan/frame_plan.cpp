@@ -238,10 +238,8 @@ bool FramePlan::execute(const std::function<bool()>& canceled) {
   for (std::size_t i = 0; i < passes_.size(); ++i) {
     const Pass& pass = passes_[i];
     timings_[i].milliseconds = -1.0f;  // not run
-    if (canceled && timed_by_clock() && canceled()) {
-      submit(commands_[part]);
-      return false;
-    }
+    // Where passes are timed by the clock, nothing is recorded that was not submitted.
+    if (canceled && timed_by_clock() && canceled()) return false;
     barrier |= pass.barrier_before;
     if (pass.condition && !pass.condition()) {
       barrier |= !pass.program;
