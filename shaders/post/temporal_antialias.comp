@@ -19,6 +19,10 @@ layout(push_constant) uniform Constants {
   float anti_flicker;  // 1: on
 };
 
+// Least part of `blend` that anti-flicker leaves: a colour that was clamped to the face of the box
+// would otherwise never change.
+const float min_anti_flicker = 0.2;
+
 vec3 ycgco_from_rgb(vec3 c) {
   return vec3(dot(c, vec3(0.25, 0.5, 0.25)), dot(c, vec3(-0.25, 0.5, -0.25)),
               dot(c, vec3(0.5, 0.0, -0.5)));
@@ -127,8 +131,7 @@ void main() {
   float weight = blend;
   if (anti_flicker > 0.0) {
     float margin = min(abs(old.x - low.x), abs(high.x - old.x));
-    // Above 0: a colour that was clamped to the face of the box would otherwise never change.
-    weight *= max(margin / max(margin + high.x - low.x, 1e-6), 0.2);
+    weight *= max(margin / max(margin + high.x - low.x, 1e-6), min_anti_flicker);
   }
   vec3 blended = mix(clamp(old, low, high), compressed(center.rgb), clamp(weight, 0.0, 1.0));
   imageStore(resolved, pixel, vec4(expanded(blended), center.a));

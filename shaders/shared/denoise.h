@@ -46,6 +46,7 @@ SHARED_CONSTANT float motion_history_factor = 0.63f;
 SHARED_CONSTANT float motion_history_exponent = -2.0f / 3.0f;
 // specular_temporal, max_history_frames: only part of a reflection is lit directly by moving
 // lights, so its history may be this much longer than that of shadows.
+// TemporalAccumulation.MovingLightsShortenSpecularHistoryLess.
 SHARED_CONSTANT float specular_light_history_scale = 4.0f;
 
 // virtual_motion_threshold: half of the drift that noisy hit distances cause, per pixel of the
@@ -67,16 +68,25 @@ SHARED_CONSTANT float reflector_cosine_rough = 0.95f;     // 18 degrees
 SHARED_CONSTANT float reflector_roughness_tolerance = 0.05f;
 SHARED_CONSTANT float reflector_roughness_tolerance_relative = 0.25f;
 // virtual_motion: least cosine of incidence; Coddington's focus within the plane of incidence runs
-// away toward grazing angles.
+// away toward grazing angles. Chosen on curved reflectors seen at grazing angles.
 SHARED_CONSTANT float reflector_min_cosine = 0.2f;
 // virtual_distance: bounds the magnification of hollow mirrors, whose image lies before them beyond
 // the focus. VirtualDistance.FollowsTheMirrorEquation.
 SHARED_CONSTANT float virtual_distance_min_divisor = 0.25f;
-// valid_taps: least sum of bilinear weights that is renormalised. Taps tests.
+// valid_taps: least sum of bilinear weights that is renormalised.
+// HistoryTaps.AreBilinearAndRenormaliseOverValidTaps.
 SHARED_CONSTANT float min_tap_weight_sum = 0.01f;
 
 // outdated_fraction: part of a history that one frame may drop (Alber 2025).
 SHARED_CONSTANT float max_outdated_fraction = 0.95f;
+
+// Surfaces up to the first roughness reflect without noise of their own, up to the second with very
+// little: they are blurred never and once. AtrousLevels.FollowRoughnessForNoiseFreeHits.
+SHARED_CONSTANT float atrous_unblurred_roughness = 0.002f;
+SHARED_CONSTANT float atrous_blurred_once_roughness = 0.05f;
+// step_at: half of the band of roughness in which the step grows to twice its size.
+// AtrousLevels.StepGrowsWithinABandOfRoughness.
+SHARED_CONSTANT float atrous_step_half_band = 0.05f;
 
 SHARED_CONSTANT uint atrous_variance_prefilter = 1u;
 SHARED_CONSTANT uint atrous_keep_variance = 2u;  // this half passes the variance on unfiltered

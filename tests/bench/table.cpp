@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "tests/bench/embree_rate.hpp"
+
 namespace heliograph::bench {
 namespace {
 
@@ -20,6 +22,7 @@ void Table::add(const render::Frame& frame) {
   height_ = frame.height;
   frames_.push_back(frame.milliseconds);
   for (const render::PassTime& pass : frame.passes) {
+    if (pass.name.ends_with(RecordingTracer::pass_suffix)) continue;
     auto& times = times_[pass.name];
     if (times.empty()) order_.push_back({pass.name, pass.kind});
     times.push_back(pass.milliseconds);

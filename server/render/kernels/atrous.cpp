@@ -210,13 +210,16 @@ class AtrousArea {
       most = hn::ConvertTo(d_, hn::ShiftRight<23>(bits)) - set(126.0f);
     }
     if (!has(shared::atrous_levels_by_roughness)) return most;
-    const V some = hn::IfThenElse(hn::Le(rough, set(0.05f)), set(1.0f), set(16.0f));
-    return hn::Min(most, hn::IfThenElse(hn::Le(rough, set(0.002f)), hn::Zero(d_), some));
+    const V some = hn::IfThenElse(hn::Le(rough, set(shared::atrous_blurred_once_roughness)),
+                                  set(1.0f), set(16.0f));
+    const M unblurred = hn::Le(rough, set(shared::atrous_unblurred_roughness));
+    return hn::Min(most, hn::IfThenElse(unblurred, hn::Zero(d_), some));
   }
 
   /// Pixels from tap to tap.
   HWY_INLINE V steps(V rough) const {
-    const float low = c_.start_threshold - 0.05f, high = c_.start_threshold + 0.05f;
+    const float low = c_.start_threshold - shared::atrous_step_half_band;
+    const float high = c_.start_threshold + shared::atrous_step_half_band;
     const V t = clamped((rough - set(low)) * set(1.0f / (high - low)), 0.0f, 1.0f);
     const V twice = t * t * hn::NegMulAdd(set(2.0f), t, set(3.0f));
     return hn::Round(set(static_cast<float>(1 << c_.level)) * (set(1.0f) + twice));

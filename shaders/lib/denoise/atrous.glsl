@@ -54,14 +54,15 @@ int levels(float roughness) {
     most = pixels < 1.0 ? 0 : 1 + int(log2(pixels));
   }
   if (!has(atrous_levels_by_roughness)) return most;
-  return min(most, roughness <= 0.002 ? 0 : roughness <= 0.05 ? 1 : 16);
+  if (roughness <= atrous_unblurred_roughness) return 0;
+  return roughness <= atrous_blurred_once_roughness ? min(most, 1) : most;
 }
 
 /// Pixels from tap to tap: twice as many on surfaces rougher than the threshold, with a band
 /// between, so that textured roughness does not show the border.
 int step_at(float roughness) {
-  float twice = smoothstep(constants.start_threshold - 0.05, constants.start_threshold + 0.05,
-                           roughness);
+  float twice = smoothstep(constants.start_threshold - atrous_step_half_band,
+                           constants.start_threshold + atrous_step_half_band, roughness);
   return int(round(float(1 << constants.level) * (1.0 + twice)));
 }
 

@@ -147,7 +147,7 @@ class AtrousReference {
   bool cheap_;
 };
 
-/// A rig whose blur has `iterations` levels of `constants`.
+/// A rig whose blur has `iterations` levels from that of `constants`.
 struct Filter {
   Filter(const Input& in, const shared::AtrousConstants& given, bool specular, int iterations = 1,
          protocol::BlurKernel kernel = protocol::BlurKernel::full)
@@ -158,7 +158,7 @@ struct Filter {
     gbuffer.depth_slope = rig.input("slope", VK_FORMAT_R32G32_SFLOAT, in.slope);
     const auto constants = [given](const render::KernelShape& shape) {
       shared::AtrousConstants made = given;
-      made.level = shape.level;
+      made.level = given.level + shape.level;
       made.columns = shape.columns;
       made.rows = shape.rows;
       return made;
@@ -332,7 +332,38 @@ void expect_levels(std::uint32_t flag, const std::array<float, 3>& roughness) {
 }
 
 TEST(AtrousLevels, FollowRoughnessForNoiseFreeHits) {
-  expect_levels(shared::atrous_levels_by_roughness, {0.0f, 0.04f, 0.6f});
+  expect_levels(shared::atrous_levels_by_roughness, {0.0015f, 0.049f, 0.051f});
+}
+
+TEST(AtrousLevels, StepGrowsWithinABandOfRoughness) {
+  const float threshold = 0.5f;
+  Input in(9);
+  const auto third = [](std::size_t i) { return std::min<std::size_t>(i % width / 12, 2); };
+  for (std::size_t i = 0; i < pixels; ++i) {
+    in.guide[i] = glm::vec4(0, 0, 1.0f + threshold + 0.051f * (third(i) - 1.0f), 5.0f);
+    in.slope[i] = glm::vec2(0.0f);
+  }
+  const auto filtered = [&](float start) {
+    shared::AtrousConstants constants = plain();
+    constants.start_threshold = start;
+    constants.level = 1;  // steps of 2, 3 in the middle of the band, and 4
+    return Filter(in, constants, true).run();
+  };
+  const render::FloatImage band = filtered(threshold), small = filtered(2.0f),
+                           large = filtered(-1.0f);
+  std::array<bool, 2> differs{};
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const float value = band.rgba[4 * i];
+    if (third(i) == 0) {
+      EXPECT_EQ(value, small.rgba[4 * i]);
+    } else if (third(i) == 2) {
+      EXPECT_EQ(value, large.rgba[4 * i]);
+    } else {
+      differs[0] |= value != small.rgba[4 * i];
+      differs[1] |= value != large.rgba[4 * i];
+    }
+  }
+  EXPECT_TRUE(differs[0] && differs[1]) << "half way between";
 }
 
 // Lobes of less than a pixel, of one to two pixels, and wider than the filter's footprint.

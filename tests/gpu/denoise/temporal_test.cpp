@@ -251,6 +251,14 @@ TEST_F(TemporalAccumulation, MovingLightsShortenShadowHistoryNotAmbient) {
   EXPECT_NEAR(signal().y, std::pow(31.0 / 32.0, 4), 1e-3);
 }
 
+TEST_F(TemporalAccumulation, MovingLightsShortenSpecularHistoryLess) {
+  start(plain_settings(), true);
+  for (int i = 0; i < 40; ++i) frame(glm::vec4(1.0f));
+  rig_->set_scene_motion({.lights = 0.1f});
+  frame(glm::vec4(0.0f));
+  EXPECT_NEAR(history_length().x, 4.0f * render::frames_under_motion(0.1f), 1e-3);
+}
+
 TEST_F(TemporalAccumulation, RotatingEnvironmentShortensSpecularHistory) {
   start(plain_settings(), true);
   for (int i = 0; i < 40; ++i) frame(glm::vec4(1.0f));

@@ -83,8 +83,9 @@ GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
   const auto hits =
       plan.buffer("gbuffer.hits", sizeof(shared::Hit) * capacity, storage, gpu::Memory::device);
   const auto previous_vertices = plan.import(in.moving.previous_vertices());
-  tracing::RayStream current = declare_rays(plan, "gbuffer", capacity);
-  tracing::RayStream next = declare_rays(plan, "gbuffer.passed", capacity);
+  tracing::RayStream current = declare_rays(plan, "gbuffer", capacity, tracing::RayKind::camera);
+  tracing::RayStream next =
+      declare_rays(plan, "gbuffer.passed", capacity, tracing::RayKind::camera);
 
   camera_rays(plan, in, current);
   const int rounds = (in.scene.features & shared::scene_blends) != 0 ? 2 + most_blended : 4;

@@ -35,7 +35,8 @@ Target make_target(gpu::FramePlan& plan, bool half) {
 tracing::RayStream generate_rays(gpu::FramePlan& plan, const FrameInputs& in,
                                  const GBuffer& gbuffer, const Target& target) {
   const std::uint32_t features = in.scene.features;
-  const auto rays = declare_rays(plan, "specular", target.extent.width * target.extent.height);
+  const auto rays = declare_rays(plan, "specular", target.extent.width * target.extent.height,
+                                 tracing::RayKind::reflection);
   const auto& shader = target.directions ? shaders::specular_rays_half : shaders::specular_rays;
   begin_rays(plan, in, "specular", rays);
   plan.pass("specular.rays", in.program(shader, features))
@@ -111,7 +112,8 @@ void trace_and_shade(gpu::FramePlan& plan, const FrameInputs& in, const std::str
   const auto hits = plan.buffer(name + ".hits", sizeof(shared::Hit) * rays.capacity, storage,
                                 gpu::Memory::device);
   in.tracer.trace_closest(plan, name + ".trace", in.structure, rays, hits);
-  const auto shadows = declare_rays(plan, name + ".shadows", rays.capacity);
+  const auto shadows =
+      declare_rays(plan, name + ".shadows", rays.capacity, tracing::RayKind::hit_shadow);
   shade(plan, in, gbuffer, {name, rays, hits, shadows}, target);
   resolve_lights(plan, in, name, shadows, target);
 }

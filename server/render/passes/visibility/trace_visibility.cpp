@@ -13,11 +13,11 @@ namespace {
 class VisibilityTrace {
  public:
   VisibilityTrace(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
-                  const BufferDescription& buffer)
+                  tracing::RayKind kind, const BufferDescription& buffer)
       : plan_(plan),
         in_(in),
         name_(name),
-        rays_(declare_rays(plan, name, plan.extent().width * plan.extent().height)),
+        rays_(declare_rays(plan, name, plan.extent().width * plan.extent().height, kind)),
         visibility_(plan.image(buffer.name, VK_FORMAT_R32_SFLOAT)) {
     begin_rays(plan, in, name, rays_);
   }
@@ -59,7 +59,7 @@ class VisibilityTrace {
 
 gpu::ImageRef trace_shadows(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer) {
   const std::uint32_t features = in.scene.features;
-  VisibilityTrace trace(plan, in, "shadows", visibility_buffers.shadows);
+  VisibilityTrace trace(plan, in, "shadows", tracing::RayKind::shadow, visibility_buffers.shadows);
   trace.generate(in.program(shaders::shadows_rays, features), shared::frame_shadows)
       .bind<kernels::ShadowRaysBindings>({.normals = gbuffer.normals,
                                           .motion = gbuffer.motion,
@@ -77,7 +77,7 @@ gpu::ImageRef trace_shadows(gpu::FramePlan& plan, const FrameInputs& in, const G
 }
 
 gpu::ImageRef trace_ambient(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer) {
-  VisibilityTrace trace(plan, in, "ambient", visibility_buffers.ambient);
+  VisibilityTrace trace(plan, in, "ambient", tracing::RayKind::ambient, visibility_buffers.ambient);
   trace.generate(in.program(shaders::ambient_rays), shared::frame_ambient_occlusion)
       .bind<kernels::AmbientRaysBindings>({.normals = gbuffer.normals,
                                            .motion = gbuffer.motion,

@@ -1,9 +1,9 @@
-#include "render/kernels/temporal_antialias.hpp"
+#include "render/kernels/post/temporal_antialias.hpp"
 
 #include "render/kernels/simd/rows.hpp"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "render/kernels/temporal_antialias.cpp"
+#define HWY_TARGET_INCLUDE "render/kernels/post/temporal_antialias.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "render/kernels/simd/history.hpp"
@@ -11,6 +11,8 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
+
+constexpr float min_anti_flicker = 0.2f;  // as in temporal_antialias.comp
 
 template <class D>
 class Antialiasing {
@@ -205,8 +207,7 @@ class Antialiasing {
     if (job_.constants.anti_flicker > 0.0f) {
       const V margin = hn::Min(hn::Abs(old.x - box.low.x), hn::Abs(box.high.x - old.x));
       const V span = hn::Max(margin + box.high.x - box.low.x, set(1e-6f));
-      // Above 0: a colour that was clamped to the face of the box would otherwise never change.
-      weight = weight * hn::Max(margin / span, set(0.2f));
+      weight = weight * hn::Max(margin / span, set(min_anti_flicker));
     }
     const Triple<V> held{hn::Min(hn::Max(old.x, box.low.x), box.high.x),
                          hn::Min(hn::Max(old.y, box.low.y), box.high.y),
