@@ -166,6 +166,7 @@ class FramePlan {
   /// Whether passes declared from now on run their host kernels, where they have one. Only devices
   /// that are processors do.
   void use_host_kernels(bool use) { host_kernels_ = use && device_.is_cpu(); }
+  bool uses_host_kernels() const { return host_kernels_; }
 
   /// An image of the plan's extent, or of its own; mapped on CPU devices.
   ImageRef image(std::string_view name, VkFormat format, VkImageUsageFlags extra_usage = 0,
@@ -186,7 +187,7 @@ class FramePlan {
   PassBuilder pass(std::string name, ProgramSource program);
   PassBuilder pass(std::string name, const RayProgram& program);
   PassBuilder raster(std::string name, const RasterProgram& program);
-  /// A pass without a shader.
+  /// A pass without a shader. One that is given host() besides runs that instead of `run`.
   PassBuilder host(std::string name, std::function<void()> run);
 
   /// Passes that `declare` adds are skipped in frames where `condition` is false, besides what

@@ -5,7 +5,7 @@
 #include "render/passes/compose/skybox.hpp"
 #include "render/passes/denoise/denoise_specular.hpp"
 #include "render/passes/denoise/denoise_visibility.hpp"
-#include "render/passes/gbuffer/gbuffer.hpp"
+#include "render/passes/gbuffer/draw_gbuffer.hpp"
 #include "render/passes/gbuffer/trace_gbuffer.hpp"
 #include "render/passes/post/accumulate.hpp"
 #include "render/passes/post/present.hpp"
@@ -16,6 +16,12 @@
 
 namespace heliograph::render {
 namespace {
+
+/// By the method that suits the device, unless the settings name one.
+GBuffer find_surfaces(gpu::FramePlan& plan, const FrameInputs& in) {
+  if (draws_gbuffer_on_host(plan, in)) return draw_gbuffer(plan, in);
+  return traces_gbuffer(plan.device(), in) ? trace_gbuffer(plan, in) : rasterize_gbuffer(plan, in);
+}
 
 /// The signals without noise, as far as the settings denoise them.
 std::optional<DenoisedSignals> denoise(gpu::FramePlan& plan, const FrameInputs& in,
@@ -55,8 +61,7 @@ FrameOutputs declare_reference(gpu::FramePlan& plan, const FrameInputs& in) {
 FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   const protocol::ReferenceUse reference = in.settings.reference.use;
   if (reference == protocol::ReferenceUse::always) return declare_reference(plan, in);
-  const GBuffer gbuffer =
-      traces_gbuffer(plan.device(), in) ? trace_gbuffer(plan, in) : rasterize_gbuffer(plan, in);
+  const GBuffer gbuffer = find_surfaces(plan, in);
 
   NoisySignals noisy{trace_shadows(plan, in, gbuffer), trace_ambient(plan, in, gbuffer), {}};
   if (in.settings.specular.enabled) noisy.specular = trace_specular(plan, in, gbuffer);

@@ -116,9 +116,7 @@ HWY_NOINLINE inline void read_vertex(const Records& from, VertexLanes& v) {
 class TriangleLanes {
  public:
   HWY_INLINE TriangleLanes(const shared::Vertex* vertices, const std::uint32_t* indices,
-                           Integer first_index, Integer first_vertex, const HitLanes& hit,
-                           Mask requested)
-      : weight_a_(hn::Sub(hn::Sub(one(), hit.u), hit.v)), weight_b_(hit.u), weight_c_(hit.v) {
+                           Integer first_index, Integer first_vertex, Mask requested) {
     for (int i = 0; i < 3; ++i) {
       const Integer index = hn::IfThenElseZero(integer_mask(requested),
                                                gather(indices, hn::Add(first_index, integer(i))));
@@ -127,6 +125,12 @@ class TriangleLanes {
     }
   }
 
+  /// The point that between() is about.
+  HWY_INLINE void set_point(Float u, Float v) {
+    weight_a_ = hn::Sub(hn::Sub(one(), u), v);
+    weight_b_ = u;
+    weight_c_ = v;
+  }
   HWY_INLINE Float between(Float a, Float b, Float c) const {
     return hn::MulAdd(a, weight_a_, hn::MulAdd(b, weight_b_, hn::Mul(c, weight_c_)));
   }
@@ -294,26 +298,48 @@ HWY_INLINE LookupLanes texture_lookup(const TriangleLanes& triangle, const Recor
   return lookup;
 }
 
-/// `hit` of rays along `direction` whose footprints at the hits are `width` metres.
-template <bool one_level>
-HWY_INLINE SurfaceLanes hit_surface(const SceneView& scene, const HitLanes& hit,
-                                    const Float3& direction, Float width) {
-  const Records instance(scene.instances, hit.instance, sizeof(shared::Instance) / 4);
-  const MatrixLanes world(instance, HELIOGRAPH_WORD(shared::Instance, world));
-  static_assert(offsetof(shared::Instance, flags) == offsetof(shared::Instance, mesh) + 4);
-  const Float4 attributes = instance.four(HELIOGRAPH_WORD(shared::Instance, mesh));
-  static_assert(offsetof(shared::Mesh, first_vertex) == 8 &&
-                offsetof(shared::Mesh, material) == 12);
-  const Float4 mesh =
-      Records(scene.meshes, as_integer(attributes.x), sizeof(shared::Mesh) / 4).four(0);
-  const Records material(scene.materials, as_integer(mesh.w), sizeof(Material) / 4);
-  const Integer first_index = hn::Add(as_integer(mesh.x), hn::Mul(hit.triangle, integer(3)));
-  const TriangleLanes triangle(scene.vertices, scene.indices, first_index, as_integer(mesh.z), hit,
-                               hit.met);
-  const Integer flipped =
-      hn::And(as_integer(attributes.y), integer(static_cast<int>(shared::instance_flipped)));
-  const Float handedness = select(float_mask(hn::Ne(flipped, integer(0))), number(-1.0f), one());
+/// What the tables hold of the triangles in `hit`.
+struct HitRecords {
+  Records instance;
+  MatrixLanes world;
+  Float handedness;
+  Float4 mesh;
+  Records material;
+  TriangleLanes triangle;
 
+  HWY_INLINE HitRecords(const SceneView& scene, const HitLanes& hit)
+      : instance(scene.instances, hit.instance, sizeof(shared::Instance) / 4),
+        world(instance, HELIOGRAPH_WORD(shared::Instance, world)),
+        handedness(one()),
+        mesh(mesh_of(scene, instance, handedness)),
+        material(scene.materials, as_integer(mesh.w), sizeof(Material) / 4),
+        triangle(scene.vertices, scene.indices,
+                 hn::Add(as_integer(mesh.x), hn::Mul(hit.triangle, integer(3))), as_integer(mesh.z),
+                 hit.met) {}
+
+ private:
+  static HWY_INLINE Float4 mesh_of(const SceneView& scene, const Records& instance,
+                                   Float& handedness) {
+    static_assert(offsetof(shared::Instance, flags) == offsetof(shared::Instance, mesh) + 4);
+    const Float4 attributes = instance.four(HELIOGRAPH_WORD(shared::Instance, mesh));
+    const Integer flipped =
+        hn::And(as_integer(attributes.y), integer(static_cast<int>(shared::instance_flipped)));
+    handedness = select(float_mask(hn::Ne(flipped, integer(0))), number(-1.0f), one());
+    static_assert(offsetof(shared::Mesh, first_vertex) == 8 &&
+                  offsetof(shared::Mesh, material) == 12);
+    return Records(scene.meshes, as_integer(attributes.x), sizeof(shared::Mesh) / 4).four(0);
+  }
+};
+
+/// Where a point of `records.triangle` that set_point() names is met by rays along `direction`,
+/// whose footprints there are `width` metres.
+template <bool one_level>
+HWY_INLINE SurfaceLanes surface_at(const SceneView& scene, const HitRecords& records,
+                                   const Float3& direction, Float width) {
+  const TriangleLanes& triangle = records.triangle;
+  const MatrixLanes& world = records.world;
+  const Float handedness = records.handedness;
+  const Records& material = records.material;
   SurfaceLanes s;
   const Float3 &a = triangle.a().position, &b = triangle.b().position;
   const Float3& c = triangle.c().position;
@@ -344,6 +370,15 @@ HWY_INLINE SurfaceLanes hit_surface(const SceneView& scene, const HitLanes& hit,
   s.normal = mapped_normal(slots, triangle, world, handedness, material, vertex_normal) * side;
   evaluate_material(slots, base, triangle, material, s);
   return s;
+}
+
+/// `hit` of rays along `direction` whose footprints at the hits are `width` metres.
+template <bool one_level>
+HWY_INLINE SurfaceLanes hit_surface(const SceneView& scene, const HitLanes& hit,
+                                    const Float3& direction, Float width) {
+  HitRecords records(scene, hit);
+  records.triangle.set_point(hit.u, hit.v);
+  return surface_at<one_level>(scene, records, direction, width);
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE
