@@ -65,6 +65,7 @@ ShaderOutput evaluate(uint which, ShaderInput given) {
                                                         vec2(0.0)).x));
     case 16: return ShaderOutput(vec4(same_reflector(given.a.x, given.a.y, given.a.z, given.a.w)),
                                  vec4(0.0));
+    case 17: return ShaderOutput(vec4(edge_weight(given.a.xy), 0.0, 0.0), vec4(0.0));
     default: return ShaderOutput(vec4(specular_dominant_factor(given.a.x), 0.0,
                                       sanitize(given.b.x), 0.0), vec4(sanitize(given.b.xyz), 0.0));
   }

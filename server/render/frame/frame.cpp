@@ -24,13 +24,20 @@ std::optional<DenoisedSignals> denoise(gpu::FramePlan& plan, const FrameInputs& 
   const bool visibility = s.shadow_temporal.enabled || s.shadow_blur.enabled;
   const bool specular = noisy.specular && (s.specular_temporal.enabled || s.specular_blur.enabled);
   if (!visibility && !specular) return std::nullopt;
-  const Guide guide = reproject(plan, in, gbuffer);
-  DenoisedSignals denoised{combine_visibility(plan, in, noisy.shadows, noisy.ambient),
-                           noisy.specular};
-  if (visibility) {
-    denoised.visibility = denoise_visibility(plan, in, gbuffer, guide, denoised.visibility);
-  }
-  if (specular) denoised.specular = denoise_specular(plan, in, gbuffer, guide, *noisy.specular);
+  // Visibility that is not traced is not read either.
+  const auto traced = [&frame = in.constants] {
+    return (frame.flags & (shared::frame_shadows | shared::frame_ambient_occlusion)) != 0;
+  };
+  std::optional<Guide> guide;
+  plan.only_when([traced, specular] { return specular || traced(); },
+                 [&] { guide = reproject(plan, in, gbuffer); });
+  DenoisedSignals denoised{{}, noisy.specular};
+  plan.only_when(traced, [&] {
+    denoised.visibility = combine_visibility(plan, in, noisy.shadows, noisy.ambient);
+    if (!visibility) return;
+    denoised.visibility = denoise_visibility(plan, in, gbuffer, *guide, denoised.visibility);
+  });
+  if (specular) denoised.specular = denoise_specular(plan, in, gbuffer, *guide, *noisy.specular);
   return denoised;
 }
 

@@ -242,6 +242,10 @@ bool Renderer::needs_frame() const {
 }
 
 Frame Renderer::render() {
+  return *render({});
+}
+
+std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
   State& state = *state_;
   const auto start = std::chrono::steady_clock::now();
   state.use_newest_shaders();
@@ -252,6 +256,7 @@ Frame Renderer::render() {
   const auto posed = std::chrono::steady_clock::now();
   if (!state.settings.accumulation.enabled) state.clock.samples = 0;
   const shared::FrameConstants before = state.constants;
+  const bool had_previous = state.has_previous;
   state.constants =
       make_frame_constants(state.camera, state.settings, *state.moving, state.extent,
                            state.sample_index++, state.has_previous ? &before : nullptr);
@@ -259,7 +264,13 @@ Frame Renderer::render() {
       render::scene_motion(*state.moving, state.constants, state.has_previous ? &before : nullptr);
   state.has_previous = true;
   std::memcpy(state.constants_buffer.mapped(), &state.constants, sizeof state.constants);
-  state.compiled->plan.execute();
+  if (!state.compiled->plan.execute(canceled)) {
+    state.constants = before;
+    state.has_previous = had_previous;
+    --state.sample_index;
+    state.stale = true;
+    return std::nullopt;
+  }
   state.shown_mean_weight = mean_weight(state.compiled->inputs);
   ++state.clock.samples;
 

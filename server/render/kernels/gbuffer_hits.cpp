@@ -44,12 +44,10 @@ class Shading {
 
   /// @return how many rays go on, which lie at `passed`
   std::size_t block(int first, int last, shared::Ray* passed) const {
-    const Integer lane = hn::Iota(integer_tag, first);
-    const Integer index = hn::Min(lane, integer(last - 1));
-    const Mask requested = float_mask(hn::Lt(lane, integer(last)));
-    RayLanes ray = load_rays(job_.rays.rays, index);
+    const Mask requested = float_mask(hn::Lt(hn::Iota(integer_tag, first), integer(last)));
+    RayLanes ray = load_rays(job_.rays.rays, first, last);
     const PixelLanes pixel = unpack_pixel(ray.pixel);
-    const HitLanes hit = load_hits(job_.hits, index, requested);
+    const HitLanes hit = load_hits(job_.hits, first, last);
     const Mask missed = hn::AndNot(hit.met, requested);
     if (!none(missed)) store_nothing(pixel, missed);
     if (none(hit.met)) return 0;
@@ -115,7 +113,7 @@ class Shading {
     const Integer first_vertex = hn::Sub(hn::Max(base, integer(1)), integer(1));
     const TriangleLanes before(job_.scene.previous_vertices, job_.scene.indices, first_index,
                                first_vertex, hit, moved);
-    return select(moved, before.between(HELIOGRAPH_WORD(shared::Vertex, position)), s.local);
+    return select(moved, before.position(), s.local);
   }
 
   HWY_INLINE Float4 motion(const HitLanes& hit, const SurfaceLanes& s, Float view_z) const {
@@ -143,14 +141,14 @@ class Shading {
 
   HWY_INLINE void put(const AllTexels& texels, const PixelLanes& pixel, Mask requested) const {
     const TexelIndices at(pixel);
-    for_each_lane(requested, [&](std::size_t lane) {
-      texels.normals.put(job_.normals, lane, at);
-      texels.motion.put(job_.motion, lane, at);
-      texels.depth_slope.put(job_.depth_slope, lane, at);
-      texels.emissive.put(job_.emissive, lane, at);
-      texels.base_color.put(job_.base_color, lane, at);
-      texels.surface.put(job_.surface, lane, at);
-      texels.instance.put(job_.instance, lane, at);
+    for_each_run(requested, pixel, [&](std::size_t lane, std::size_t count) {
+      texels.normals.put(job_.normals, lane, count, at);
+      texels.motion.put(job_.motion, lane, count, at);
+      texels.depth_slope.put(job_.depth_slope, lane, count, at);
+      texels.emissive.put(job_.emissive, lane, count, at);
+      texels.base_color.put(job_.base_color, lane, count, at);
+      texels.surface.put(job_.surface, lane, count, at);
+      texels.instance.put(job_.instance, lane, count, at);
     });
   }
 

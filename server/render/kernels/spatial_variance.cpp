@@ -171,7 +171,7 @@ class SpatialVariance {
     const V allowed = hn::MulAdd(c.footprint, set(away), hn::Abs(rise));
     const V zero = hn::Zero(d_);
     const V cosine = guide_cosine(c.normal, guide);
-    const V exponent = hn::MulAdd(set(128.0f), hn::Log(d_, clamped(cosine, 1e-6f, 1.0f)),
+    const V exponent = hn::MulAdd(set(128.0f), cosine - set(1.0f),
                                   hn::Neg(off_plane / hn::Max(allowed, set(1e-30f))));
     // Below e^-80 a weight is nothing; the exponential stays in its range.
     const V weight = hn::IfThenElseZero(valid, hn::Exp(d_, hn::Max(exponent, set(-80.0f))));

@@ -13,12 +13,8 @@ namespace {
 
 using protocol::PrimaryVisibility;
 
-protocol::Settings undenoised(PrimaryVisibility source) {
-  protocol::Settings settings;
-  settings.shadow_temporal.enabled = settings.shadow_blur.enabled = false;
-  settings.specular_temporal.enabled = settings.specular_blur.enabled = false;
-  settings.antialiasing.temporal = false;
-  settings.accumulation.max_samples = 4096;
+protocol::Settings undenoised_from(PrimaryVisibility source) {
+  protocol::Settings settings = undenoised();
   settings.gbuffer.source = source;
   return settings;
 }
@@ -41,7 +37,7 @@ class BlendOver : public testing::TestWithParam<PrimaryVisibility> {
                                  const char* name) {
     RendererRig rig(scene, scene::constant_environment(glm::vec3(0.5f)),
                     look({0, 0, 4}, {0, 0, 0}, 20.0f), 48, 48);
-    rig.apply(undenoised(GetParam()));
+    rig.apply(undenoised_from(GetParam()));
     save_image(name, rig.accumulate(1));
     return rig.capture("hdr");
   }
@@ -87,7 +83,7 @@ TEST_P(BlendOver, GBufferHoldsOpaqueSurfacesOnly) {
   builder.place(pane).place(opaque);
   RendererRig rig(builder.build(), scene::constant_environment(glm::vec3(0.0f)),
                   look({0, 0, 4}, {0, 0, 0}, 20.0f), 32, 32);
-  rig.apply(undenoised(GetParam()));
+  rig.apply(undenoised_from(GetParam()));
   rig.accumulate(1);
   const render::FloatImage instance = rig.capture("gbuffer.instance");
   const render::FloatImage motion = rig.capture("gbuffer.motion");
@@ -121,7 +117,7 @@ TEST_P(BlendOver, MotionVectorIsOfMostOpaqueLayer) {
   builder.place(builder.add_quad(wall(-4, 8), surface(glm::vec3(0.4f))));
   RendererRig rig(builder.build(), scene::constant_environment(glm::vec3(0.5f)),
                   look({0, 0, 4}, {0, 0, 0}, 20.0f), 32, 32);
-  rig.apply(undenoised(GetParam()));
+  rig.apply(undenoised_from(GetParam()));
   rig.accumulate(1);
   rig.renderer.set_camera(look({0.1f, 0, 4}, {0.1f, 0, 0}, 20.0f));
   rig.renderer.render();
@@ -155,7 +151,7 @@ double error_in_motion(PrimaryVisibility source, float alpha) {
   const auto rig = [&] {
     return RendererRig(scene, scene::constant_environment(glm::vec3(0.5f)), camera(-12), 64, 64);
   };
-  protocol::Settings settings = undenoised(source);
+  protocol::Settings settings = undenoised_from(source);
   RendererRig moving = rig(), reference = rig();
   settings.antialiasing.jitter = settings.antialiasing.temporal = true;
   moving.apply(settings);
@@ -203,28 +199,16 @@ std::shared_ptr<const scene::Scene> room_with_panes() {
   return builder.build();
 }
 
-glm::dvec3 mean_color(RendererRig& rig, const protocol::Settings& settings, const std::string& name,
-                      std::uint32_t samples = 96) {
-  rig.apply(settings);
-  save_image(name, rig.accumulate(samples));
-  const render::FloatImage radiance = rig.capture("accumulated");
-  glm::dvec3 sum(0.0);
-  for (std::size_t i = 0; i < radiance.rgba.size(); i += 4) {
-    for (int c = 0; c < 3; ++c) sum[c] += radiance.rgba[i + static_cast<std::size_t>(c)];
-  }
-  return sum / (static_cast<double>(radiance.rgba.size()) / 4.0);
-}
-
 TEST_P(BlendOver, ConvergesToPathTracerAlongSamePaths) {
   const auto sky = [](const glm::vec3& d) {
     return glm::vec3(0.5f, 0.6f, 0.8f) + glm::vec3(0.3f, 0.2f, 0.1f) * d.y + 0.2f * d.x;
   };
   RendererRig rig(room_with_panes(), make_environment(128, sky),
                   look({0, 1.6f, 4.5f}, {0, 0.7f, 0}), 96, 54);
-  protocol::Settings reference = undenoised(GetParam());
+  protocol::Settings reference = undenoised_from(GetParam());
   reference.reference.use = protocol::ReferenceUse::always;
   reference.reference.scope = protocol::ReferenceScope::same_paths;
-  const glm::dvec3 got = mean_color(rig, undenoised(GetParam()), "blend_over_hybrid");
+  const glm::dvec3 got = mean_color(rig, undenoised_from(GetParam()), "blend_over_hybrid");
   const glm::dvec3 expected = mean_color(rig, reference, "blend_over_reference");
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[c] / expected[c], 1.0, 0.01) << "channel " << c;
 }
@@ -236,7 +220,7 @@ TEST(BlendedAsset, TransparentGlassesMatchReference) {
   const auto scene = std::make_shared<const scene::Scene>(scene::import_gltf(*file));
   RendererRig rig(scene, scene::constant_environment(glm::vec3(0.6f)),
                   scene::fit_camera(scene->bounds, 30.0f, 1.0f), 160, 160);
-  protocol::Settings hybrid = undenoised(PrimaryVisibility::automatic), reference = hybrid;
+  protocol::Settings hybrid = undenoised_from(PrimaryVisibility::automatic), reference = hybrid;
   reference.reference.use = protocol::ReferenceUse::always;
   reference.reference.scope = protocol::ReferenceScope::same_paths;
   const glm::dvec3 got = mean_color(rig, hybrid, "flight_helmet", 12);

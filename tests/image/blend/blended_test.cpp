@@ -10,15 +10,6 @@
 namespace heliograph::test {
 namespace {
 
-protocol::Settings undenoised() {
-  protocol::Settings settings;
-  settings.shadow_temporal.enabled = settings.shadow_blur.enabled = false;
-  settings.specular_temporal.enabled = settings.specular_blur.enabled = false;
-  settings.antialiasing.temporal = false;
-  settings.accumulation.max_samples = 4096;
-  return settings;
-}
-
 protocol::Settings path_traced(protocol::ReferenceScope scope) {
   protocol::Settings settings = undenoised();
   settings.reference.use = protocol::ReferenceUse::always;

@@ -8,7 +8,7 @@
 namespace heliograph::test {
 namespace {
 
-constexpr std::uint32_t width = 160, height = 90;
+constexpr std::uint32_t accumulation_width = 160, accumulation_height = 90;
 
 /// SpheresRig on a ground under a soft sun and a grey sky, with noise of every kind.
 std::shared_ptr<const scene::Scene> spheres() {
@@ -26,7 +26,8 @@ std::shared_ptr<const scene::Scene> spheres() {
 
 RendererRig make(const std::string& tracer = "auto") {
   return RendererRig(spheres(), scene::constant_environment(glm::vec3(0.5f, 0.6f, 0.8f)),
-                     look({0.5f, 2, 4.5f}, {0, 0.5f, 0}), width, height, tracer);
+                     look({0.5f, 2, 4.5f}, {0, 0.5f, 0}), accumulation_width, accumulation_height,
+                     tracer);
 }
 
 TEST(Accumulation, ErrorDecreasesWithSampleCount) {
@@ -63,7 +64,7 @@ TEST(Accumulation, StopsWhenConvergedAndResumesOnChange) {
   EXPECT_FALSE(rig.renderer.needs_frame());
   rig.renderer.set_camera(look({0.5f, 2, 4.5f}, {0, 0.5f, 0}));
   rig.apply(settings);
-  rig.renderer.set_size(width, height);
+  rig.renderer.set_size(accumulation_width, accumulation_height);
   EXPECT_FALSE(rig.renderer.needs_frame()) << "nothing changed";
 
   settings.exposure.compensation = 1.0f;
@@ -90,7 +91,7 @@ TEST(Accumulation, CameraMoveResetsAccumulation) {
   EXPECT_EQ(moved.accumulate(1).rgba, fresh.accumulate(1).rgba);
   moved.renderer.set_size(80, 45);
   moved.renderer.render();
-  moved.renderer.set_size(width, height);
+  moved.renderer.set_size(accumulation_width, accumulation_height);
   EXPECT_EQ(moved.accumulate(3).rgba, fresh.accumulate(3).rgba);
 }
 
@@ -106,6 +107,26 @@ TEST(Determinism, SeedDeterminesEveryByte) {
     const render::Frame frame = a.accumulate(6);
     EXPECT_EQ(frame.rgba, b.accumulate(6).rgba) << tracer;
     EXPECT_NE(frame.rgba, other.accumulate(6).rgba) << tracer;
+  }
+}
+
+TEST(CanceledFrame, LeavesTheNextFramesAsTheyWouldHaveBeen) {
+  if (!device().is_cpu()) GTEST_SKIP() << "frames are canceled on CPU devices only";
+  RendererRig whole = make(), interrupted = make();
+  for (int frame = 0; frame < 4; ++frame) {
+    const auto turn = [&](RendererRig& rig) {
+      rig.renderer.set_camera(
+          look({0.5f + 0.05f * static_cast<float>(frame), 2, 4.5f}, {0, 0.5f, 0}));
+    };
+    turn(whole);
+    for (const int passes : {0, 3, 25}) {
+      int asked = 0;
+      EXPECT_FALSE(interrupted.renderer.render([&] { return asked++ == passes; }));
+    }
+    turn(interrupted);
+    EXPECT_TRUE(interrupted.renderer.needs_frame());
+    const render::Frame expected = whole.renderer.render();
+    EXPECT_EQ(interrupted.renderer.render().rgba, expected.rgba) << "frame " << frame;
   }
 }
 

@@ -13,7 +13,7 @@
 namespace heliograph::test {
 namespace {
 
-constexpr std::uint32_t width = 160, height = 90;
+constexpr std::uint32_t views_width = 160, views_height = 90;
 
 /// A scene with every kind of buffer content; the camera moves before the last frame.
 class Views : public testing::Test {
@@ -42,12 +42,12 @@ class Views : public testing::Test {
   }
   std::array<int, 3> shown(const char* view, std::uint32_t x, std::uint32_t y) {
     const render::Frame frame = *rig_.renderer.capture_view(view);
-    const std::uint8_t* texel = &frame.rgba[(std::size_t{y} * width + x) * 4];
+    const std::uint8_t* texel = &frame.rgba[(std::size_t{y} * views_width + x) * 4];
     return {texel[0], texel[1], texel[2]};
   }
 
   RendererRig rig_{spheres(), scene::constant_environment(glm::vec3(0.5f, 0.6f, 0.8f)),
-                   camera(0.0f), width, height};
+                   camera(0.0f), views_width, views_height};
 };
 
 TEST_F(Views, EveryBufferIsListedCapturedAndNotBlank) {
@@ -59,7 +59,7 @@ TEST_F(Views, EveryBufferIsListedCapturedAndNotBlank) {
         << buffer.name << " has no description of its own";
     const auto values = rig_.renderer.capture(buffer.name);
     ASSERT_TRUE(values) << buffer.name;
-    EXPECT_EQ(values->rgba.size(), std::size_t{4} * width * height) << buffer.name;
+    EXPECT_EQ(values->rgba.size(), std::size_t{4} * views_width * views_height) << buffer.name;
     const auto view = rig_.renderer.capture_view(buffer.name);
     ASSERT_TRUE(view) << buffer.name;
     save_image("buffer_" + buffer.name, *view);
@@ -153,8 +153,9 @@ TEST_F(Views, ShowKnownValuesInKnownColors) {
   // Near the center of the metal sphere; the bottom row is ground, the top row sky.
   const std::uint32_t x = 96, y = 56;
   EXPECT_EQ(shown("gbuffer.surface.metallic", x, y), (std::array{253, 231, 37})) << "1: yellow";
-  EXPECT_EQ(shown("gbuffer.surface.metallic", x, height - 1), (std::array{68, 1, 84})) << "0";
-  EXPECT_EQ(shown("gbuffer.normals", 20, height - 1), (std::array{128, 255, 128})) << "upward";
+  EXPECT_EQ(shown("gbuffer.surface.metallic", x, views_height - 1), (std::array{68, 1, 84})) << "0";
+  EXPECT_EQ(shown("gbuffer.normals", 20, views_height - 1), (std::array{128, 255, 128}))
+      << "upward";
   EXPECT_EQ(shown("gbuffer.normals", 20, 0), (std::array{0, 0, 0})) << "background";
   EXPECT_EQ(shown("gbuffer.motion.view_z", 20, 0), (std::array{0, 0, 0})) << "background";
   const render::FloatImage depth = rig_.capture("gbuffer.motion.view_z");
@@ -192,7 +193,7 @@ TEST_F(Views, MotionOfStaticSceneHasNoError) {
   const render::FloatImage error = rig_.capture("gbuffer.motion.error");
   float fastest = 0.0f, largest = 0.0f;
   for (std::size_t i = 0; i < error.rgba.size(); i += 4) {
-    fastest = std::max(fastest, std::abs(motion.rgba[i]) * width);
+    fastest = std::max(fastest, std::abs(motion.rgba[i]) * views_width);
     largest = std::max(largest, error.rgba[i]);
   }
   EXPECT_GT(fastest, 0.5f) << "pixels";

@@ -12,7 +12,7 @@
 namespace heliograph::test {
 namespace {
 
-glm::vec3 sky(const glm::vec3& d) {
+glm::vec3 frame_sky(const glm::vec3& d) {
   return glm::vec3(0.5f, 0.6f, 0.8f) + glm::vec3(0.3f, 0.2f, 0.1f) * d.y + 0.2f * d.x;
 }
 
@@ -46,7 +46,7 @@ scene::Camera eye(float size, int frame) {
 struct ScaledRig : RendererRig {
   explicit ScaledRig(float size, const protocol::Settings& settings, std::uint32_t width = 96,
                      std::uint32_t height = 54, const std::string& tracer = "auto")
-      : RendererRig(still_life(size), make_environment(64, sky), eye(size, 0), width, height,
+      : RendererRig(still_life(size), make_environment(64, frame_sky), eye(size, 0), width, height,
                     tracer) {
     apply(settings);
   }
@@ -168,7 +168,7 @@ TEST(WholeFrame, NaNsNeitherSpreadNorPersist) {
   builder.add_sun({-0.6f, -1, -0.4f}, glm::vec3(2.5f), 8.0f);
   const auto scene = builder.build();
   const auto camera = [](float x) { return look({x, 1.5f, 4}, {x, 0.4f, 0}); };
-  RendererRig rig(scene, make_environment(64, sky), camera(0), 96, 54);
+  RendererRig rig(scene, make_environment(64, frame_sky), camera(0), 96, 54);
   rig.apply(scaled_settings(1.0f));
   for (int i = 0; i < 4; ++i) rig.renderer.render();
   for (const char* signal : {"visibility.denoised", "specular.denoised", "hdr", "hdr.noisy",
@@ -182,7 +182,7 @@ TEST(WholeFrame, NaNsNeitherSpreadNorPersist) {
     rig.renderer.set_camera(camera(0.75f * static_cast<float>(i)));
     rig.renderer.render();
   }
-  RendererRig fresh(scene, make_environment(64, sky), camera(6.0f), 96, 54);
+  RendererRig fresh(scene, make_environment(64, frame_sky), camera(6.0f), 96, 54);
   fresh.apply(scaled_settings(1.0f));
   render::Frame expected, actual;
   for (int i = 0; i < 24; ++i) {
@@ -198,7 +198,7 @@ TEST(WholeFrame, NaNsNeitherSpreadNorPersist) {
 TEST(WholeFrame, FollowsHdrStepUpAndDown) {
   protocol::Settings dark = scaled_settings(1.0f), bright = dark;
   bright.environment.intensity = 100.0f;
-  const auto world = make_environment(64, [](const glm::vec3& d) { return 100.0f * sky(d); });
+  const auto world = make_environment(64, [](const glm::vec3& d) { return 100.0f * frame_sky(d); });
   const auto mean = [](RendererRig& rig) { return mean_luminance(rig.capture("hdr")); };
   const auto settle = [](RendererRig& rig, const protocol::Settings& settings, int frames) {
     rig.apply(settings);

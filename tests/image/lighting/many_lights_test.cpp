@@ -7,7 +7,7 @@
 namespace heliograph::test {
 namespace {
 
-constexpr std::uint32_t width = 64, height = 48;
+constexpr std::uint32_t lights_width = 64, lights_height = 48;
 
 /// A ground with spheres, for lights with a range of 2 m.
 std::shared_ptr<scene::Scene> courtyard() {
@@ -43,7 +43,7 @@ std::vector<scene::Light> many_lights(int count) {
 
 render::FloatImage render_hdr(const std::shared_ptr<scene::Scene>& scene, const char* name) {
   RendererRig rig(scene, scene::constant_environment(glm::vec3(0.0f)), look({0, 9, 12}, {0, 0, 0}),
-                  width, height);
+                  lights_width, lights_height);
   protocol::Settings settings;
   settings.shadows.enabled = false;
   settings.antialiasing.jitter = false;
@@ -73,7 +73,7 @@ TEST(ManyLights, TwoThousandLightsEqualSumOfBatches) {
   for (std::size_t i = 0; i < sum.size(); ++i) {
     if (i % 4 == 3) continue;
     ASSERT_NEAR(together.rgba[i], sum[i], 1e-3 * sum[i] + 1e-4) << i / 4;
-    brightness += sum[i] / (3 * width * height);
+    brightness += sum[i] / (3 * lights_width * lights_height);
   }
   EXPECT_GT(brightness, 0.05);
 }

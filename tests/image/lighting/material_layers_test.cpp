@@ -17,15 +17,6 @@ glm::mat4 at(float x, float y, float z) {
   return glm::translate(glm::mat4(1.0f), glm::vec3(x, y, z));
 }
 
-protocol::Settings undenoised() {
-  protocol::Settings settings;
-  settings.shadow_temporal.enabled = settings.shadow_blur.enabled = false;
-  settings.specular_temporal.enabled = settings.specular_blur.enabled = false;
-  settings.antialiasing.temporal = false;
-  settings.accumulation.max_samples = 4096;
-  return settings;
-}
-
 MaterialLayers coat(float amount, float roughness) {
   MaterialLayers layers;
   layers.clearcoat = amount;
@@ -159,28 +150,16 @@ std::shared_ptr<const scene::Scene> workshop() {
   return builder.build();
 }
 
-glm::vec3 sky(const glm::vec3& d) {
+glm::vec3 layers_sky(const glm::vec3& d) {
   return glm::vec3(0.5f, 0.6f, 0.8f) + glm::vec3(0.3f, 0.2f, 0.1f) * d.y + 0.2f * d.x;
-}
-
-glm::dvec3 mean_color(RendererRig& rig, const protocol::Settings& settings, const std::string& name,
-                      std::uint32_t samples = 96) {
-  rig.apply(settings);
-  save_image(name, rig.accumulate(samples));
-  const render::FloatImage radiance = rig.capture("accumulated");
-  glm::dvec3 sum(0.0);
-  for (std::size_t i = 0; i < radiance.rgba.size(); i += 4) {
-    for (int c = 0; c < 3; ++c) sum[c] += radiance.rgba[i + static_cast<std::size_t>(c)];
-  }
-  EXPECT_TRUE(std::isfinite(sum.x + sum.y + sum.z));
-  return sum / (static_cast<double>(radiance.rgba.size()) / 4.0);
 }
 
 class Layers : public testing::TestWithParam<protocol::PrimaryVisibility> {};
 
 // For primary visibility by rasterization and by rays.
 TEST_P(Layers, HybridConvergesToPathTracerAlongSamePaths) {
-  RendererRig rig(workshop(), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 96, 54);
+  RendererRig rig(workshop(), make_environment(128, layers_sky), look({0, 2, 6}, {0, 0.7f, 0}), 96,
+                  54);
   protocol::Settings hybrid = undenoised();
   hybrid.gbuffer.source = GetParam();
   protocol::Settings reference = undenoised();
@@ -196,7 +175,8 @@ INSTANTIATE_TEST_SUITE_P(Sources, Layers,
                                          protocol::PrimaryVisibility::raster));
 
 TEST(LayersInReference, GlobalIlluminationIsSlightlyBrighter) {
-  RendererRig rig(workshop(), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 96, 54);
+  RendererRig rig(workshop(), make_environment(128, layers_sky), look({0, 2, 6}, {0, 0.7f, 0}), 96,
+                  54);
   protocol::Settings settings = undenoised();
   settings.reference.use = protocol::ReferenceUse::always;
   settings.reference.scope = protocol::ReferenceScope::same_paths;
@@ -269,7 +249,7 @@ class LayerTextures : public testing::TestWithParam<protocol::PrimaryVisibility>
 TEST_P(LayerTextures, HybridMatchesReference) {
   scene::Camera camera = look({0, 0, 3}, {0, 0, 0});
   camera.orthographic_height = 2.0f;
-  RendererRig rig(textured_wall(), make_environment(128, sky), camera, 96, 48);
+  RendererRig rig(textured_wall(), make_environment(128, layers_sky), camera, 96, 48);
   protocol::Settings hybrid = undenoised();
   hybrid.gbuffer.source = GetParam();
   protocol::Settings reference = undenoised();
@@ -307,7 +287,7 @@ TEST(SpecularChart, TexturesMatchFactors) {
                 layer.specular_color_texture.texture != shared::no_texture;
   }
   EXPECT_GE(textured, 2u);
-  RendererRig rig(scene, make_environment(128, sky),
+  RendererRig rig(scene, make_environment(128, layers_sky),
                   scene::fit_camera(scene->bounds, 40.0f, 4.0f / 3.0f), 160, 120);
   protocol::Settings reference = undenoised();
   reference.reference.use = protocol::ReferenceUse::always;

@@ -5,14 +5,14 @@
 namespace heliograph::test {
 namespace {
 
-constexpr std::uint32_t width = 64, height = 40;
+constexpr std::uint32_t exposure_width = 64, exposure_height = 40;
 
 /// A ground under uniform light of adjustable intensity, with automatic exposure.
 class ExposureRig : public RendererRig {
  public:
   ExposureRig()
       : RendererRig(ground(), scene::constant_environment(glm::vec3(0.3f)),
-                    look({0, 1, 3}, {0, 0, 0}), width, height) {
+                    look({0, 1, 3}, {0, 0, 0}), exposure_width, exposure_height) {
     settings.exposure.mode = protocol::ExposureMode::automatic;
     settings.exposure.adaptation = 0.5f;
     settings.accumulation.max_samples = 4;

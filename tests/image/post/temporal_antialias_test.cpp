@@ -8,7 +8,7 @@
 namespace heliograph::test {
 namespace {
 
-constexpr std::uint32_t width = 96, height = 64;
+constexpr std::uint32_t antialias_width = 96, antialias_height = 64;
 
 /// Thin bars of many slopes and a sphere's outline in front of a bright sky, without noise.
 std::shared_ptr<const scene::Scene> edges() {
@@ -40,7 +40,7 @@ protocol::Settings without_noise() {
 class Edges : public RendererRig {
  public:
   explicit Edges(const scene::Camera& camera)
-      : RendererRig(edges(), make_environment(64, sky), camera, width, height) {
+      : RendererRig(edges(), make_environment(64, sky), camera, antialias_width, antialias_height) {
     apply(without_noise());
   }
 
@@ -125,7 +125,7 @@ TEST(AccumulationBlend, StaticViewConverges) {
   builder.place(builder.add_sphere(0.6f, surface({0.8f, 0.3f, 0.2f}, 0.5f)));
   builder.add_sun({-0.5f, -1, -0.3f}, glm::vec3(2.0f), 6.0f);
   RendererRig rig(builder.build(), scene::constant_environment(glm::vec3(0.4f)),
-                  look({0, 0.6f, 3}, {0, 0, 0}), width, height);
+                  look({0, 0.6f, 3}, {0, 0, 0}), antialias_width, antialias_height);
   protocol::Settings settings;
   settings.accumulation.max_samples = 512;
   settings.accumulation.blend_samples = 16;

@@ -14,15 +14,6 @@ using protocol::ReferenceScope;
 using protocol::ReferenceUse;
 
 /// The hybrid without denoising: the mean over all samples.
-protocol::Settings undenoised() {
-  protocol::Settings settings;
-  settings.shadow_temporal.enabled = settings.shadow_blur.enabled = false;
-  settings.specular_temporal.enabled = settings.specular_blur.enabled = false;
-  settings.antialiasing.temporal = false;
-  settings.accumulation.max_samples = 4096;
-  return settings;
-}
-
 protocol::Settings traced(ReferenceScope scope) {
   protocol::Settings settings = undenoised();
   settings.reference.use = ReferenceUse::always;
@@ -46,12 +37,12 @@ double mean_luminance(RendererRig& rig, const protocol::Settings& settings, std:
   return sum / (static_cast<double>(radiance.rgba.size()) / 4.0);
 }
 
-glm::vec3 sky(const glm::vec3& d) {
+glm::vec3 reference_sky(const glm::vec3& d) {
   return glm::vec3(0.5f, 0.6f, 0.8f) + glm::vec3(0.3f, 0.2f, 0.1f) * d.y + 0.2f * d.x;
 }
 
 /// Metal and dielectric spheres of one roughness on a floor, with shadows and interreflections.
-std::shared_ptr<const scene::Scene> still_life(float roughness) {
+std::shared_ptr<const scene::Scene> reference_scene(float roughness) {
   SceneBuilder builder;
   const auto floor = builder.add_quad({{{-6, 0, 4}, {6, 0, 4}, {6, 0, -6}, {-6, 0, -6}}},
                                       surface({0.6f, 0.5f, 0.4f}, roughness, 0.0f));
@@ -81,8 +72,8 @@ class SamePaths : public testing::TestWithParam<Case> {};
 
 TEST_P(SamePaths, HybridConvergesToReference) {
   const auto [roughness, angle] = GetParam();
-  RendererRig rig(still_life(roughness), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}),
-                  96, 54);
+  RendererRig rig(reference_scene(roughness), make_environment(128, reference_sky),
+                  look({0, 2, 6}, {0, 0.7f, 0}), 96, 54);
   protocol::Settings hybrid = undenoised();
   protocol::Settings reference = traced(ReferenceScope::same_paths);
   hybrid.shadows.angular_diameter_override = reference.shadows.angular_diameter_override = angle;
@@ -102,8 +93,8 @@ INSTANTIATE_TEST_SUITE_P(Angle, SamePaths,
 
 // Every lighting switch removes the same light from hybrid and reference.
 TEST(SamePaths, LightingSwitchesMatchHybrid) {
-  RendererRig rig(still_life(0.3f), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 96,
-                  54);
+  RendererRig rig(reference_scene(0.3f), make_environment(128, reference_sky),
+                  look({0, 2, 6}, {0, 0.7f, 0}), 96, 54);
   using Change = void (*)(protocol::Settings&);
   const std::vector<Change> changes{
       [](protocol::Settings& s) { s.lighting.direct = false; },
@@ -132,7 +123,7 @@ TEST_P(PaperScenes, HybridConvergesToReference) {
   if (!file) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS is not set";
   const auto scene = std::make_shared<const scene::Scene>(scene::import_gltf(*file));
   ASSERT_FALSE(scene->cameras.empty());
-  RendererRig rig(scene, make_environment(128, sky), scene->cameras.at(0), 160, 90);
+  RendererRig rig(scene, make_environment(128, reference_sky), scene->cameras.at(0), 160, 90);
   const double got = mean_luminance(rig, undenoised(), 32, std::string(GetParam()) + "_hybrid");
   const double expected = mean_luminance(rig, traced(ReferenceScope::same_paths), 32,
                                          std::string(GetParam()) + "_reference");
@@ -246,16 +237,16 @@ TEST(FullReference, IncludesInterreflections) {
 TEST(FullReference, TracersAgree) {
   std::vector<double> mean;
   for (const std::string& tracer : supported_tracers()) {
-    RendererRig rig(still_life(0.3f), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 48,
-                    27, tracer);
+    RendererRig rig(reference_scene(0.3f), make_environment(128, reference_sky),
+                    look({0, 2, 6}, {0, 0.7f, 0}), 48, 27, tracer);
     mean.push_back(mean_luminance(rig, traced(ReferenceScope::full), 8, "traced_by_" + tracer));
   }
   for (const double other : mean) EXPECT_NEAR(other / mean[0], 1.0, 1e-3);
 }
 
 TEST(ReferenceWhenStatic, StaticCameraConvergesToReference) {
-  RendererRig rig(still_life(0.4f), make_environment(128, sky), look({0, 2, 6}, {0, 0.7f, 0}), 64,
-                  36);
+  RendererRig rig(reference_scene(0.4f), make_environment(128, reference_sky),
+                  look({0, 2, 6}, {0, 0.7f, 0}), 64, 36);
   const double expected = mean_luminance(rig, traced(ReferenceScope::full), 64, "static_full");
   protocol::Settings settings = traced(ReferenceScope::full);
   settings.reference.use = ReferenceUse::when_static;

@@ -12,7 +12,7 @@
 namespace heliograph::test {
 namespace {
 
-constexpr std::uint32_t width = 240, height = 180;
+constexpr std::uint32_t mirror_width = 240, mirror_height = 180;
 constexpr glm::dvec3 center(0.0, 0.45, 0.0);
 constexpr double radius = 0.45;
 
@@ -35,9 +35,10 @@ glm::dvec3 view_ray(const scene::Camera& camera, std::uint32_t x, std::uint32_t 
   const glm::dvec3 forward = glm::normalize(glm::dvec3(camera.target - camera.eye));
   const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(camera.up)));
   const glm::dvec3 up = glm::cross(right, forward);
-  return glm::normalize(forward +
-                        right * (slope * width / height * ((x + 0.5) / width * 2.0 - 1.0)) -
-                        up * (slope * ((y + 0.5) / height * 2.0 - 1.0)));
+  return glm::normalize(
+      forward +
+      right * (slope * mirror_width / mirror_height * ((x + 0.5) / mirror_width * 2.0 - 1.0)) -
+      up * (slope * ((y + 0.5) / mirror_height * 2.0 - 1.0)));
 }
 
 struct Errors {
@@ -51,7 +52,7 @@ Errors reflection_errors(const scene::Environment& sky, float rotation, bool tra
   const auto scene =
       std::make_shared<const scene::Scene>(import_generated(scenes::make_mirror(), 16));
   const scene::Camera camera = scene->cameras.at(0);
-  RendererRig rig(scene, sky, camera, width, height);
+  RendererRig rig(scene, sky, camera, mirror_width, mirror_height);
   protocol::Settings settings;
   settings.ambient.occlusion = false;
   settings.antialiasing.jitter = settings.antialiasing.temporal = false;
@@ -64,8 +65,8 @@ Errors reflection_errors(const scene::Environment& sky, float rotation, bool tra
   const render::FloatImage hdr = rig.capture("hdr");
   const double angle = glm::radians(-static_cast<double>(rotation));
   std::vector<double> errors;
-  for (std::uint32_t y = 0; y < height; ++y) {
-    for (std::uint32_t x = 0; x < width; ++x) {
+  for (std::uint32_t y = 0; y < mirror_height; ++y) {
+    for (std::uint32_t x = 0; x < mirror_width; ++x) {
       const glm::dvec3 ray = view_ray(camera, x, y);
       const glm::dvec3 to_eye = glm::dvec3(camera.eye) - center;
       const double b = glm::dot(to_eye, ray), c = glm::dot(to_eye, to_eye) - radius * radius;
@@ -127,14 +128,14 @@ INSTANTIATE_TEST_SUITE_P(Methods, Mirror, testing::Bool(), method_name);
 TEST(Background, ShowsEnvironmentBehindEveryPixel) {
   const scene::Environment sky = make_environment(512, colored_sky);
   const scene::Camera camera = look({0, 0, 0}, {1, 0.3f, 0.8f}, 60.0f);
-  RendererRig rig(SceneBuilder().build(), sky, camera, width, height);
+  RendererRig rig(SceneBuilder().build(), sky, camera, mirror_width, mirror_height);
   protocol::Settings settings;
   settings.antialiasing.jitter = false;
   rig.apply(settings);
   save_image("background", rig.accumulate(1));
   const render::FloatImage hdr = rig.capture("hdr");
-  for (std::uint32_t y = 0; y < height; y += 3) {
-    for (std::uint32_t x = 0; x < width; x += 3) {
+  for (std::uint32_t y = 0; y < mirror_height; y += 3) {
+    for (std::uint32_t x = 0; x < mirror_width; x += 3) {
       const glm::dvec3 expected = sample_environment(sky, view_ray(camera, x, y));
       ASSERT_LE(glm::distance(glm::dvec3(rgb(hdr, x, y)), expected), 0.01 * glm::length(expected));
     }

@@ -10,7 +10,7 @@ namespace heliograph::test {
 namespace {
 
 /// Noisy reflections: denoising, antialiasing and occlusion are off.
-protocol::Settings undenoised() {
+protocol::Settings undenoised_reflections() {
   protocol::Settings settings;
   settings.shadow_temporal.enabled = settings.shadow_blur.enabled = false;
   settings.specular_temporal.enabled = settings.specular_blur.enabled = false;
@@ -52,7 +52,7 @@ TEST(SpecularRays, MeanIsOneInFurnace) {
   for (const float metallic : {0.0f, 1.0f}) {
     RendererRig rig(row_of_spheres(metallic), scene::constant_environment(glm::vec3(1.0f)),
                     look({0, 0, 6}, {0, 0, 0}, 24.0f), 160, 40);
-    protocol::Settings settings = undenoised();
+    protocol::Settings settings = undenoised_reflections();
     settings.lighting.direct = false;
     rig.apply(settings);
     const auto mean = mean_signal(rig, "specular.radiance", 64);
@@ -73,7 +73,7 @@ TEST(SpecularRays, MeanIsOneInFurnace) {
 TEST(SpecularRays, FurnaceImageIsWhite) {
   RendererRig rig(row_of_spheres(0.5f), scene::constant_environment(glm::vec3(1.0f)),
                   look({0, 0, 6}, {0, 0, 0}, 24.0f), 160, 40);
-  protocol::Settings settings = undenoised();
+  protocol::Settings settings = undenoised_reflections();
   settings.lighting.direct = false;
   settings.accumulation.max_samples = 64;
   rig.apply(settings);
@@ -91,7 +91,7 @@ TEST(SpecularRays, ConvergeToPrefilteredEnvironmentAtNormalIncidence) {
     builder.place(builder.add_sphere(1.0f, surface(glm::vec3(1.0f), roughness, 1.0f)));
     RendererRig rig(builder.build(), make_environment(128, gradient_sky),
                     look({0, 0, 6}, {0, 0, 0}, 20.0f), 64, 64);
-    protocol::Settings settings = undenoised();
+    protocol::Settings settings = undenoised_reflections();
     rig.apply(settings);
     const auto traced = mean_signal(rig, "hdr", 128);
     settings.specular.enabled = false;
@@ -126,7 +126,7 @@ TEST(SpecularRays, MirrorShowsEmissiveWallUnchanged) {
   MirrorAndWall scene(wall);
   RendererRig rig(scene.builder.build(), scene::constant_environment(glm::vec3(0.0f)), scene.camera,
                   64, 64);
-  rig.apply(undenoised());
+  rig.apply(undenoised_reflections());
   rig.accumulate(1);
   const glm::vec3 middle = rgb(rig.capture("hdr"), 32, 32);
   EXPECT_NEAR(middle.x, 3.0f, 0.01f);
@@ -148,7 +148,7 @@ TEST(SpecularRays, DirectLightReachesReflectedSurfaceUnlessOccluded) {
     }
     RendererRig rig(scene.builder.build(), scene::constant_environment(glm::vec3(0.0f)),
                     scene.camera, 32, 32);
-    protocol::Settings settings = undenoised();
+    protocol::Settings settings = undenoised_reflections();
     settings.specular.hit_shading = shading;
     settings.shadows.enabled = shadows;
     rig.apply(settings);
@@ -179,7 +179,7 @@ TEST(SpecularRays, RoughAndUnlitSurfacesTraceNoRays) {
   MirrorAndWall scene(wall, 0.5f);
   RendererRig rig(scene.builder.build(), scene::constant_environment(glm::vec3(1.0f)), scene.camera,
                   32, 32);
-  protocol::Settings settings = undenoised();
+  protocol::Settings settings = undenoised_reflections();
   settings.specular.max_roughness = 0.5f;
   rig.apply(settings);
   EXPECT_GT(traced_pixels(rig), 100);
@@ -212,9 +212,9 @@ scene::Camera floor_camera(float size) {
   return camera;
 }
 
-struct ScaledRig : RendererRig {
-  ScaledRig(float size, const protocol::Settings& settings, std::uint32_t width = 96,
-            std::uint32_t height = 64, const std::string& tracer = "auto")
+struct FloorRig : RendererRig {
+  FloorRig(float size, const protocol::Settings& settings, std::uint32_t width = 96,
+           std::uint32_t height = 64, const std::string& tracer = "auto")
       : RendererRig(spheres_on_floor(size, 0.2f), make_environment(128, gradient_sky),
                     floor_camera(size), width, height, tracer) {
     apply(settings);
@@ -230,10 +230,10 @@ double mean_of(const render::FloatImage& image) {
 }
 
 TEST(SpecularRays, ImageIsScaleInvariant) {
-  ScaledRig usual(1.0f, undenoised());
+  FloorRig usual(1.0f, undenoised_reflections());
   const render::Frame expected = usual.accumulate(16);
   for (const float size : {0.01f, 100.0f}) {
-    ScaledRig scaled(size, undenoised());
+    FloorRig scaled(size, undenoised_reflections());
     const std::string name = size < 1.0f ? "specular_small_scene" : "specular_large_scene";
     expect_similar(name, expected, scaled.accumulate(16), 0.35, 0.99);
   }
@@ -255,11 +255,11 @@ std::pair<int, double> differing(RendererRig& one, RendererRig& other, const cha
 // neighboring lanes: radiance may differ in the last bit, the output image must not.
 TEST(SpecularRays, SortedRaysGiveSameImage) {
   for (const std::string& tracer : supported_tracers()) {
-    protocol::Settings settings = undenoised();
-    ScaledRig plain(1.0f, settings, 96, 64, tracer);
+    protocol::Settings settings = undenoised_reflections();
+    FloorRig plain(1.0f, settings, 96, 64, tracer);
     const render::Frame expected = plain.accumulate(3);
     settings.specular.sort_rays = true;
-    ScaledRig sorted(1.0f, settings, 96, 64, tracer);
+    FloorRig sorted(1.0f, settings, 96, 64, tracer);
     const render::Frame actual = sorted.accumulate(3);
     EXPECT_EQ(expected.rgba, actual.rgba) << tracer;
     const auto [count, most] = differing(plain, sorted, "specular.radiance");
@@ -269,7 +269,8 @@ TEST(SpecularRays, SortedRaysGiveSameImage) {
 }
 
 TEST(SpecularRays, TracersAgreeOnTheMean) {
-  ScaledRig one(1.0f, undenoised()), other(1.0f, undenoised(), 96, 64, "software");
+  FloorRig one(1.0f, undenoised_reflections()),
+      other(1.0f, undenoised_reflections(), 96, 64, "software");
   one.accumulate(8);
   other.accumulate(8);
   EXPECT_NEAR(mean_of(one.capture("accumulated")) / mean_of(other.capture("accumulated")), 1.0,
@@ -277,11 +278,11 @@ TEST(SpecularRays, TracersAgreeOnTheMean) {
 }
 
 TEST(SpecularRays, HalfResolutionMatchesFullResolutionMean) {
-  protocol::Settings settings = undenoised();
-  ScaledRig whole(1.0f, settings);
+  protocol::Settings settings = undenoised_reflections();
+  FloorRig whole(1.0f, settings);
   const render::Frame expected = whole.accumulate(64);
   settings.specular.half_resolution = true;
-  ScaledRig half(1.0f, settings);
+  FloorRig half(1.0f, settings);
   const render::Frame actual = half.accumulate(64);
   save_image("specular_half", actual);
   expect_similar("specular_half_resolution", expected, actual, 2.0, 0.97);
@@ -292,7 +293,7 @@ TEST(SpecularRays, HalfResolutionMatchesFullResolutionMean) {
 TEST(SpecularRays, HalfResolutionFurnaceIsWhite) {
   RendererRig rig(row_of_spheres(1.0f), scene::constant_environment(glm::vec3(1.0f)),
                   look({0, 0, 6}, {0, 0, 0}, 24.0f), 161, 41);
-  protocol::Settings settings = undenoised();
+  protocol::Settings settings = undenoised_reflections();
   settings.lighting.direct = false;
   settings.specular.half_resolution = true;
   rig.apply(settings);
@@ -308,10 +309,10 @@ class OddSizes : public testing::TestWithParam<std::pair<int, int>> {};
 TEST_P(OddSizes, AllPixelsAreFinite) {
   const auto [width, height] = GetParam();
   for (const bool half : {false, true}) {
-    protocol::Settings settings = undenoised();
+    protocol::Settings settings = undenoised_reflections();
     settings.specular.half_resolution = half;
     settings.specular.sort_rays = true;
-    ScaledRig rig(1.0f, settings, width, height);
+    FloorRig rig(1.0f, settings, width, height);
     rig.accumulate(1);
     const render::FloatImage hdr = rig.capture("hdr");
     ASSERT_EQ(hdr.rgba.size(), std::size_t(width) * height * 4);
@@ -333,7 +334,7 @@ TEST(SpecularRays, NaNSampleBecomesBlack) {
   scene::Environment sky = make_environment(32, gradient_sky);
   sky.radiance[100] = glm::vec3(nan);
   RendererRig rig(scene.builder.build(), sky, scene.camera, 32, 32);
-  rig.apply(undenoised());
+  rig.apply(undenoised_reflections());
   rig.accumulate(2);
   for (const char* buffer : {"specular.radiance", "hdr", "accumulated"}) {
     const render::FloatImage image = rig.capture(buffer);

@@ -1,5 +1,10 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
 #include "scene/camera.hpp"
 #include "tests/support/engine.hpp"
 #include "tests/support/image_comparison.hpp"
@@ -35,6 +40,30 @@ class RendererRig {
 
   render::Renderer renderer;
 };
+
+/// Settings without denoising and antialiasing over time.
+inline protocol::Settings undenoised() {
+  protocol::Settings settings;
+  settings.shadow_temporal.enabled = settings.shadow_blur.enabled = false;
+  settings.specular_temporal.enabled = settings.specular_blur.enabled = false;
+  settings.antialiasing.temporal = false;
+  settings.accumulation.max_samples = 4096;
+  return settings;
+}
+
+/// Mean radiance of the image after `samples` samples, which is saved under `name`.
+inline glm::dvec3 mean_color(RendererRig& rig, const protocol::Settings& settings,
+                             const std::string& name, std::uint32_t samples = 96) {
+  rig.apply(settings);
+  save_image(name, rig.accumulate(samples));
+  const render::FloatImage radiance = rig.capture("accumulated");
+  glm::dvec3 sum(0.0);
+  for (std::size_t i = 0; i < radiance.rgba.size(); i += 4) {
+    for (int c = 0; c < 3; ++c) sum[c] += radiance.rgba[i + static_cast<std::size_t>(c)];
+  }
+  EXPECT_TRUE(std::isfinite(sum.x + sum.y + sum.z));
+  return sum / (static_cast<double>(radiance.rgba.size()) / 4.0);
+}
 
 inline glm::vec3 rgb(const render::FloatImage& image, std::uint32_t x, std::uint32_t y) {
   const float* values = &image.rgba[(std::size_t{y} * image.width + x) * 4];

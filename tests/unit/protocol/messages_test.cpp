@@ -61,7 +61,7 @@ struct Everything {
   bool operator==(const Everything&) const = default;
 };
 
-json example() {
+json message_example() {
   return json::parse(R"({
     "flag": true, "small": -7, "whole": 4294967295, "large": 9007199254740991, "single": 0.1,
     "number": 0.25, "text": "abc", "colour": "default",
@@ -70,7 +70,7 @@ json example() {
 }
 
 TEST(Messages, EveryKindOfMemberSurvivesTheRoundTrip) {
-  const Result<Everything> read = decode<Everything>(RawJson(example()));
+  const Result<Everything> read = decode<Everything>(RawJson(message_example()));
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_TRUE(read->flag);
   EXPECT_EQ(read->whole, 4294967295u);
@@ -79,20 +79,20 @@ TEST(Messages, EveryKindOfMemberSurvivesTheRoundTrip) {
   EXPECT_EQ(read->list[1].count, 5);
   EXPECT_EQ(read->list[0].position, (Vec3{1, 2, 3}));
   EXPECT_EQ(read->maybe, std::nullopt);
-  EXPECT_EQ(encode(*read).value(), example());
+  EXPECT_EQ(encode(*read).value(), message_example());
 }
 
 TEST(Messages, UnknownMembersAreIgnored) {
-  json with_more = example();
+  json with_more = message_example();
   with_more["future"] = {{"any", "thing"}};
   with_more["list"][0]["future"] = 1;
   const Result<Everything> read = decode<Everything>(RawJson(with_more));
   ASSERT_TRUE(read);
-  EXPECT_EQ(encode(*read).value(), example());
+  EXPECT_EQ(encode(*read).value(), message_example());
 }
 
 TEST(Messages, AbsentOrNullMembersKeepTheirDefault) {
-  json without = example();
+  json without = message_example();
   without.erase("names");
   EXPECT_EQ(decode<Everything>(RawJson(without))->names, std::vector<std::string>{"first"});
   without["names"] = nullptr;
@@ -119,7 +119,7 @@ void PrintTo(const BadMember& bad, std::ostream* out) {
 class MessageRefuses : public testing::TestWithParam<BadMember> {};
 
 TEST_P(MessageRefuses, NamesPathReasonAndLimit) {
-  json message = example();
+  json message = message_example();
   message[json::json_pointer(GetParam().pointer)] = json::parse(GetParam().value);
   const Result<Everything> read = decode<Everything>(RawJson(message));
   ASSERT_FALSE(read);
@@ -164,7 +164,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadMember{"/names", "[\"a\", 1]", "names[1]", "must be a string", ""}));
 
 TEST(MessageRefuses, AMissingMember) {
-  json message = example();
+  json message = message_example();
   message.erase("tree");
   const Result<Everything> read = decode<Everything>(RawJson(message));
   ASSERT_FALSE(read);
@@ -181,7 +181,7 @@ TEST(MessageRefuses, ValuesOtherThanObjects) {
 }
 
 TEST(MessageRefuses, NumbersThatAreNotFinite) {
-  json message = example();
+  json message = message_example();
   message["number"] = std::nan("");
   const Result<Everything> read = decode<Everything>(RawJson(message));
   ASSERT_FALSE(read);

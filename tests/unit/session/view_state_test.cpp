@@ -10,13 +10,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-const Clock::time_point start{1h};
+const Clock::time_point view_start{1h};
 
 /// A converged, static view at `after` its last change, whose final frame is not sent yet.
 ViewInputs static_view(std::chrono::milliseconds after) {
-  return {.now = start + after,
-          .camera_moved_at = start,
-          .state_changed_at = start,
+  return {.now = view_start + after,
+          .camera_moved_at = view_start,
+          .state_changed_at = view_start,
           .has_frame = true,
           .converged = true};
 }
@@ -70,7 +70,7 @@ TEST(ViewState, FollowsItsTableOfTransitions) {
 }
 
 TEST(ViewState, WakesUpForTheFinalFrame) {
-  EXPECT_EQ(next_view_transition(static_view(100ms)), start + final_delay);
+  EXPECT_EQ(next_view_transition(static_view(100ms)), view_start + final_delay);
   EXPECT_EQ(next_view_transition(static_view(300ms)), std::nullopt) << "the time has come";
   ViewInputs in = static_view(100ms);
   in.final_sent = true;
@@ -87,8 +87,8 @@ TEST(ViewState, WakesUpToReturnToFullSize) {
   ViewInputs in = static_view(100ms);
   in.converged = false;
   in.reduced_size = true;
-  in.state_changed_at = start - 1h;
-  EXPECT_EQ(next_view_transition(in), start + final_delay);
+  in.state_changed_at = view_start - 1h;
+  EXPECT_EQ(next_view_transition(in), view_start + final_delay);
 }
 
 TEST(DrawPolicy, ReducesTheSizeAndFollowsViewersOnlyWhileMoving) {
@@ -133,8 +133,8 @@ TEST(ShouldDraw, AtFullSpeedWhileRefiningForAnActiveViewer) {
 
 /// A slow image of 1280x720 whose camera moved 100 ms ago.
 ResolutionInputs moving_image() {
-  return {.now = start + 100ms,
-          .camera_moved_at = start,
+  return {.now = view_start + 100ms,
+          .camera_moved_at = view_start,
           .full = {1280, 720},
           .full_frame_time = 100ms,
           .motion_scale = 0.5f};
@@ -143,7 +143,7 @@ ResolutionInputs moving_image() {
 TEST(DrawSize, IsReducedWhileTheCameraMovesAndFramesAreSlow) {
   ResolutionInputs in = moving_image();
   EXPECT_EQ(draw_size(in), (DrawSize{640, 360}));
-  in.now = start + final_delay;
+  in.now = view_start + final_delay;
   EXPECT_EQ(draw_size(in), in.full) << "the camera is static";
   in.animation_playing = true;
   EXPECT_EQ(draw_size(in), (DrawSize{640, 360}));

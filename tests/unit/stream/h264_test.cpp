@@ -19,19 +19,19 @@ namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-struct Pixels {
+struct VideoPixels {
   std::uint32_t width;
   std::uint32_t height;
   std::vector<std::uint8_t> rgba;
 
-  Pixels(std::uint32_t w, std::uint32_t h) : width(w), height(h), rgba(4ull * w * h, 255) {}
+  VideoPixels(std::uint32_t w, std::uint32_t h) : width(w), height(h), rgba(4ull * w * h, 255) {}
   ImageView view() const { return {.width = width, .height = height, .rgba = rgba}; }
   std::uint8_t* at(std::uint32_t x, std::uint32_t y) { return &rgba[4ull * (y * width + x)]; }
 };
 
 /// Smooth colours that move to the left by two pixels a frame.
-Pixels moving_image(std::uint32_t width, std::uint32_t height, int frame) {
-  Pixels image(width, height);
+VideoPixels moving_image(std::uint32_t width, std::uint32_t height, int frame) {
+  VideoPixels image(width, height);
   for (std::uint32_t y = 0; y < height; ++y) {
     for (std::uint32_t x = 0; x < width; ++x) {
       const double u = (static_cast<double>(x) + 2.0 * frame) * 0.05;
@@ -92,7 +92,7 @@ std::array<double, 3> rgb_at(const AVFrame& frame, std::uint32_t x, std::uint32_
 }
 
 /// In decibels.
-double signal_to_noise(const AVFrame& frame, const Pixels& truth) {
+double signal_to_noise(const AVFrame& frame, const VideoPixels& truth) {
   double sum = 0.0;
   for (int y = 0; y < frame.height; ++y) {
     for (int x = 0; x < frame.width; ++x) {
@@ -137,7 +137,7 @@ TEST_F(H264Test, EncodesEveryFrameWithoutDelay) {
   H264Encoder encoder(320, 180);
   Decoder decoder;
   for (int i = 0; i < 12; ++i) {
-    const Pixels image = moving_image(320, 180, i);
+    const VideoPixels image = moving_image(320, 180, i);
     const auto unit =
         encoder.encode(image.view(), {.quality = 85, .max_bytes_per_frame = unlimited}, i == 0);
     EXPECT_EQ(unit.key, i == 0);
@@ -150,7 +150,7 @@ TEST_F(H264Test, EncodesEveryFrameWithoutDelay) {
 TEST_F(H264Test, SignalsItsColourSpace) {
   H264Encoder encoder(64, 64);
   Decoder decoder;
-  Pixels image(64, 64);
+  VideoPixels image(64, 64);
   constexpr std::array<std::array<std::uint8_t, 3>, 8> colours{{{255, 0, 0},
                                                                 {0, 255, 0},
                                                                 {0, 0, 255},
@@ -185,7 +185,7 @@ TEST_F(H264Test, KeyFramesComeOnRequestWithTheirParameters) {
   H264Encoder encoder(160, 96);
   for (int i = 0; i < 8; ++i) {
     // A scene change in the middle must not cause a key frame.
-    const Pixels image = moving_image(160, 96, i < 5 ? i : 1000 + 37 * i);
+    const VideoPixels image = moving_image(160, 96, i < 5 ? i : 1000 + 37 * i);
     const bool asked = i == 0 || i == 3;
     const auto unit =
         encoder.encode(image.view(), {.quality = 80, .max_bytes_per_frame = unlimited}, asked);
@@ -202,7 +202,7 @@ TEST_F(H264Test, AViewerCanStartAtALaterKeyFrame) {
   H264Encoder encoder(160, 96);
   Decoder late;
   for (int i = 0; i < 6; ++i) {
-    const Pixels image = moving_image(160, 96, i);
+    const VideoPixels image = moving_image(160, 96, i);
     const auto unit =
         encoder.encode(image.view(), {.quality = 85, .max_bytes_per_frame = unlimited}, i % 3 == 0);
     if (i < 3) continue;
@@ -219,7 +219,7 @@ TEST_F(H264Test, KeepsTheRateAndFollowsItsChanges) {
     double sum = 0.0;
     constexpr int frames = 40;
     for (int i = 0; i < frames; ++i) {
-      Pixels noise(320, 180);
+      VideoPixels noise(320, 180);
       for (std::uint8_t& value : noise.rgba) value = static_cast<std::uint8_t>(random());
       sum += static_cast<double>(
           encoder.encode(noise.view(), {.quality = 80, .max_bytes_per_frame = limit}, i == 0)
@@ -239,7 +239,7 @@ TEST_F(H264Test, CropsAnOddLastColumnAndRow) {
   EXPECT_EQ(encoder.width(), 160u);
   EXPECT_EQ(encoder.height(), 96u);
   Decoder decoder;
-  const Pixels image = moving_image(161, 97, 0);
+  const VideoPixels image = moving_image(161, 97, 0);
   const auto unit =
       encoder.encode(image.view(), {.quality = 85, .max_bytes_per_frame = unlimited}, true);
   const AVFrame* const decoded = decoder.decode(unit.bytes);
@@ -268,7 +268,7 @@ TEST_F(H264Test, AVideoRestartsWhenTheSizeChanges) {
 }
 
 TEST(ImageScaler, KeepsTheMeanAndTheEdges) {
-  Pixels image(40, 24);
+  VideoPixels image(40, 24);
   for (std::uint32_t y = 0; y < 24; ++y) {
     for (std::uint32_t x = 20; x < 40; ++x) image.at(x, y)[0] = 0;
   }
