@@ -153,37 +153,39 @@ void occluded_packets(const EmbreeTarget& target, const RayBatch& batch, std::ui
 // closest-hit queries are packets, unless they are coherent: then they take half the time. In
 // scenes of instances coherent streams may not return at all, for rays along an axis.
 
-RTCRay to_embree(const shared::Ray& ray, std::uint32_t blending, bool robust) {
-  const Interval interval = interval_between(ray.t_min, ray.t_max, robust);
-  RTCRay result{};
-  result.org_x = ray.origin.x;
-  result.org_y = ray.origin.y;
-  result.org_z = ray.origin.z;
-  result.tnear = interval.from;
-  result.dir_x = ray.direction.x;
-  result.dir_y = ray.direction.y;
-  result.dir_z = ray.direction.z;
-  result.tfar = interval.to;
-  result.mask = ~0u;
-  result.id = ray_blending(ray, blending);
-  return result;
+// Written in place: a copy would wait for the stores of single floats.
+void write_ray(RTCRay& to, const shared::Ray& from, std::uint32_t blending, bool robust) {
+  const Interval interval = interval_between(from.t_min, from.t_max, robust);
+  to.org_x = from.origin.x;
+  to.org_y = from.origin.y;
+  to.org_z = from.origin.z;
+  to.tnear = interval.from;
+  to.dir_x = from.direction.x;
+  to.dir_y = from.direction.y;
+  to.dir_z = from.direction.z;
+  to.time = 0.0f;
+  to.tfar = interval.to;
+  to.mask = ~0u;
+  to.id = ray_blending(from, blending);
+  to.flags = 0;
 }
 
-/// Of flat scenes only.
+/// Of flat scenes only. Writes misses, too.
 void intersect_coherent_stream(const EmbreeTarget& target, const RayBatch& batch,
                                shared::Hit* hits) {
   std::array<RTCRayHit, embree_batch> rays;
   const auto count = static_cast<unsigned>(batch.rays.size());
   for (std::size_t i = 0; i < count; ++i) {
-    rays[i].ray = to_embree(batch.rays[i], batch.blending, target.robust);
+    write_ray(rays[i].ray, batch.rays[i], batch.blending, target.robust);
     rays[i].hit.geomID = rays[i].hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   }
   RTCIntersectContext context = make_context(true);
   rtcIntersect1M(target.scene, &context, rays.data(), count, sizeof(RTCRayHit));
   for (std::size_t i = 0; i < count; ++i) {
     const auto& [ray, hit] = rays[i];
-    if (hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
-    hits[i] = make_hit(ray.tfar, hit.instID[0], hit.geomID, hit.primID, hit.u, hit.v);
+    hits[i] = hit.geomID == RTC_INVALID_GEOMETRY_ID
+                  ? miss(batch.rays[i])
+                  : make_hit(ray.tfar, hit.instID[0], hit.geomID, hit.primID, hit.u, hit.v);
   }
 }
 
@@ -191,7 +193,7 @@ void occluded_stream(const EmbreeTarget& target, const RayBatch& batch, std::uin
   std::array<RTCRay, embree_batch> rays;
   const auto count = static_cast<unsigned>(batch.rays.size());
   for (std::size_t i = 0; i < count; ++i) {
-    rays[i] = to_embree(batch.rays[i], batch.blending, target.robust);
+    write_ray(rays[i], batch.rays[i], batch.blending, target.robust);
   }
   RTCIntersectContext context = make_context(false);
   rtcOccluded1M(target.scene, &context, rays.data(), count, sizeof(RTCRay));
@@ -204,6 +206,7 @@ void occluded_stream(const EmbreeTarget& target, const RayBatch& batch, std::uin
 
 void intersect_coherent_stream(const EmbreeTarget& target, const RayBatch& batch,
                                shared::Hit* hits) {
+  std::ranges::transform(batch.rays, hits, miss);
   intersect_packets(target, batch, hits);
 }
 
@@ -216,11 +219,11 @@ void occluded_stream(const EmbreeTarget& target, const RayBatch& batch, std::uin
 }  // namespace
 
 void intersect_batch(const EmbreeScenes& scenes, const RayBatch& batch, shared::Hit* hits) {
-  std::ranges::transform(batch.rays, hits, miss);
   if (scenes.flat.scene && batch.coherent) {
     intersect_coherent_stream(scenes.flat, batch, hits);
-  } else if (scenes.flat.scene) {
-    intersect_packets(scenes.flat, batch, hits);
+  } else {
+    std::ranges::transform(batch.rays, hits, miss);
+    if (scenes.flat.scene) intersect_packets(scenes.flat, batch, hits);
   }
   if (scenes.instanced.scene) intersect_packets(scenes.instanced, batch, hits);
 }

@@ -13,8 +13,10 @@
 namespace heliograph::tracing {
 namespace {
 
-/// Spatial splits take 1.5 microseconds per triangle: beyond this, longer than they are worth at
-/// load.
+/// The fast copy has spatial splits between these. Rays then take 2 to 10 % less time in scenes of
+/// 190,000 to 345,000 triangles; in smaller ones anything from 5 % less to 8 % more. Beyond the
+/// limit building takes longer than it is worth at load: 1.5 microseconds per triangle.
+constexpr std::size_t least_split_triangles = 100'000;
 constexpr std::size_t most_split_triangles = 1'000'000;
 
 /// The flat instances that rays can hit, as triangles in world space.
@@ -98,7 +100,8 @@ EmbreeScene::EmbreeScene(RTCDevice device, const scene::Scene& scene,
   const FlatGeometries geometries(device, scene, meshes_, flat);
   flat_ = geometries.build(layout.build);
   if (layout.fast_copy && geometries.triangles() <= layout.most_bytes / flat_triangle_bytes) {
-    const bool split = geometries.triangles() <= most_split_triangles;
+    const bool split = geometries.triangles() >= least_split_triangles &&
+                       geometries.triangles() <= most_split_triangles;
     fast_ = geometries.build(
         {.robust = false, .quality = split ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM});
   }
