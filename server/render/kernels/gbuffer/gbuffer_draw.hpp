@@ -2,7 +2,7 @@
 
 #include "render/kernels/common/frame_job.hpp"
 #include "render/kernels/common/ray_sink.hpp"
-#include "render/kernels/gbuffer/screen_triangles.hpp"
+#include "render/kernels/gbuffer/gbuffer_triangles.hpp"
 #include "render/resources/host_tables.hpp"
 
 namespace heliograph::render::kernels {

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "render/kernels/gbuffer/screen_triangles.hpp"
+#include "render/kernels/gbuffer/gbuffer_triangles.hpp"
 #include "render/kernels/simd/lanes.hpp"
 #include "shaders/shared/ray.h"
 

@@ -1,4 +1,4 @@
-#include "render/kernels/gbuffer/screen_triangles.hpp"
+#include "render/kernels/gbuffer/gbuffer_triangles.hpp"
 
 #include <array>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "render/kernels/simd/rows.hpp"
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "render/kernels/gbuffer/screen_triangles.cpp"
+#define HWY_TARGET_INCLUDE "render/kernels/gbuffer/gbuffer_triangles.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "render/kernels/simd/lanes.hpp"
