@@ -64,7 +64,8 @@ class SpecularAccumulation {
     const int lanes = static_cast<int>(hn::Lanes(d_));
     for (int i = 0; i < job_.width; i += lanes) {
       const int x = std::min(i, job_.width - lanes);
-      const V distance = load(job_.noisy, x, y).w;
+      // Where no sample was taken it is that of the frame before, negated.
+      const V distance = hn::Abs(load(job_.noisy, x, y).w);
       const M known = hn::AndNot(is_bad(distance), hn::Gt(distance, hn::Zero(d_)));
       hn::StoreU(hn::IfThenElse(known, distance, set(no_hit)), d_, hits.row(0, y) + x);
     }
@@ -321,23 +322,28 @@ class SpecularAccumulation {
     const Surface s = decode_guide(guide);
     const HistorySample old = reprojected_history(hits, views, x, y, seen, s);
 
-    const V frames = hn::Min(old.frames + one, max_history_frames(s.roughness));
-    const Triple<V> radiance = mix(old.radiance, now, one / frames);
-    const V known = hn::Min(frames, set(c_.moments_frames));
+    // The history counts what was sampled: without a sample it stays as it is.
+    const M left_out = hn::Lt(sample.w, zero);
+    const V sampled = hn::IfThenZeroElse(left_out, one);
+    const V frames = hn::Min(old.frames + sampled, max_history_frames(s.roughness));
+    const V counted = hn::Max(frames, one);
+    const Triple<V> radiance = mix(old.radiance, now, sampled / counted);
+    const V known = hn::Min(counted, set(c_.moments_frames));
     const V bright = luminance(now);
-    const V first = mix(old.moments.x, bright, one / known);
-    const V second = mix(old.moments.y, bright * bright, one / known);
+    const V first = mix(old.moments.x, bright, sampled / known);
+    const V second = mix(old.moments.y, bright * bright, sampled / known);
     V variance = sample_variance(first, second, known);
-    if (c_.flags & shared::temporal_mean_variance) variance = variance / frames;
-    Triple<V> recent = mix(old.fast, now, one / hn::Min(frames, set(fast_frames)));
+    if (c_.flags & shared::temporal_mean_variance) variance = variance / counted;
+    Triple<V> recent = mix(old.fast, now, sampled / hn::Min(counted, set(fast_frames)));
     if (c_.rectification == shared::rectification_gradient) {
-      recent = select(hn::Gt(old.frames, zero), now - old.radiance, Triple<V>{zero, zero, zero});
+      const M changed = hn::AndNot(left_out, hn::Gt(old.frames, zero));
+      recent = select(changed, now - old.radiance, Triple<V>{zero, zero, zero});
     }
 
     store4(d_, select(seen, Quad<V>{radiance.x, radiance.y, radiance.z, variance}, nothing_seen),
            signal);
     store4(d_, select(seen, Quad<V>{frames, zero, first, second}, nothing_seen), history);
-    store4(d_, select(seen, Quad<V>{recent.x, recent.y, recent.z, zero}, nothing_seen), fast);
+    store4(d_, select(seen, Quad<V>{recent.x, recent.y, recent.z, sample.w}, nothing_seen), fast);
   }
 
   const D d_{};
