@@ -118,19 +118,22 @@ void main() {
 
   // Moving lights shorten the history of shadows, not that of ambient visibility.
   vec2 longest = vec2(min(constants.frames, constants.light_frames), constants.frames);
-  vec2 frames = min(old.frames + 1.0, longest);
-  vec2 value = mix(rectified, now, 1.0 / frames);
-  vec2 weight = sample_weight(frames, constants.moments_frames);
+  // The history counts what was sampled: without a sample it stays as it is.
+  vec2 sampled = vec2(greaterThanEqual(now, vec2(0.0)));
+  vec2 frames = min(old.frames + sampled, longest);
+  vec2 value = mix(rectified, now, sampled / max(frames, vec2(1.0)));
+  vec2 weight = sampled * sample_weight(frames, constants.moments_frames);
   vec2 first = mix(old.moments.xy, now, weight);
   vec2 second = mix(old.moments.zw, now * now, weight);
   vec2 variance = sample_variance(first, second, min(frames, vec2(constants.moments_frames)));
-  if ((constants.flags & temporal_mean_variance) != 0u) variance /= frames;
+  if ((constants.flags & temporal_mean_variance) != 0u) variance /= max(frames, vec2(1.0));
 
   imageStore(signal, pixel, vec4(value, variance));
   imageStore(moments, pixel, vec4(first, second));
   imageStore(history, pixel, vec4(frames, moved));
   vec2 change = mix(vec2(0.0), now - old.signal, greaterThan(old.frames, vec2(0.0)));
-  vec2 recent = mix(old.fast, now, sample_weight(frames, fast_frames));
+  change = mix(vec2(change_unknown), change, sampled);
+  vec2 recent = mix(old.fast, now, sampled * sample_weight(frames, fast_frames));
   bool gradient = constants.rectification == rectification_gradient;
   imageStore(fast, pixel, vec4(gradient ? change : recent, 0.0, 0.0));
 }

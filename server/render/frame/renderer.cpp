@@ -260,8 +260,14 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
   state.constants =
       make_frame_constants(state.camera, state.settings, *state.moving, state.extent,
                            state.sample_index++, state.has_previous ? &before : nullptr);
+  const std::uint32_t still = state.scene_motion.still_frames;
   state.scene_motion =
       render::scene_motion(*state.moving, state.constants, state.has_previous ? &before : nullptr);
+  if (state.scene_motion.any()) {
+    state.scene_motion.still_frames = 0;
+  } else if (state.has_previous && still < ~0u) {
+    state.scene_motion.still_frames = still + 1;
+  }
   state.has_previous = true;
   std::memcpy(state.constants_buffer.mapped(), &state.constants, sizeof state.constants);
   if (!state.compiled->plan.execute(canceled)) {

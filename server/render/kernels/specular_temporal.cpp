@@ -89,8 +89,10 @@ class SpecularAccumulation {
       const Triple<V> now{sample.x, sample.y, sample.z};
       const V zero = hn::Zero(d_);
       store3(radiance, select(is_bad(now), Triple<V>{zero, zero, zero}, now));
-      const M known = hn::AndNot(is_bad(sample.w), hn::Gt(sample.w, zero));
-      store(hit, hn::IfThenElse(known, sample.w, set(no_hit)));
+      // Where no sample was taken the distance is that of the frame before, negated.
+      const V distance = hn::Abs(sample.w);
+      const M known = hn::AndNot(is_bad(distance), hn::Gt(distance, zero));
+      store(hit, hn::IfThenElse(known, distance, set(no_hit)));
     }
     float* const hits = row + hit * ring.pitch();
     hits[-1] = hits[job_.width] = no_hit;
@@ -327,22 +329,28 @@ class SpecularAccumulation {
     const Triple<V> now = three_planes(ring, y, radiance, x);
     const HistorySample old = reprojected_history(ring, view, x, y, seen, s);
 
-    const V frames = hn::Min(old.frames + one, max_history_frames(s.roughness));
-    const Triple<V> mean = mix(old.radiance, now, one / frames);
-    const V known = hn::Min(frames, set(c_.moments_frames));
+    // The history counts what was sampled: without a sample it stays as it is.
+    const V distance = load(job_.noisy, x, y).w;
+    const M left_out = hn::Lt(distance, zero);
+    const V sampled = hn::IfThenZeroElse(left_out, one);
+    const V frames = hn::Min(old.frames + sampled, max_history_frames(s.roughness));
+    const V counted = hn::Max(frames, one);
+    const Triple<V> mean = mix(old.radiance, now, sampled / counted);
+    const V known = hn::Min(counted, set(c_.moments_frames));
     const V bright = luminance(now);
-    const V first = mix(old.moments.x, bright, one / known);
-    const V second = mix(old.moments.y, bright * bright, one / known);
+    const V first = mix(old.moments.x, bright, sampled / known);
+    const V second = mix(old.moments.y, bright * bright, sampled / known);
     V variance = sample_variance(first, second, known);
-    if (c_.flags & shared::temporal_mean_variance) variance = variance / frames;
-    Triple<V> recent = mix(old.fast, now, one / hn::Min(frames, set(fast_frames)));
+    if (c_.flags & shared::temporal_mean_variance) variance = variance / counted;
+    Triple<V> recent = mix(old.fast, now, sampled / hn::Min(counted, set(fast_frames)));
     if (c_.rectification == shared::rectification_gradient) {
-      recent = select(hn::Gt(old.frames, zero), now - old.radiance, Triple<V>{zero, zero, zero});
+      const M changed = hn::AndNot(left_out, hn::Gt(old.frames, zero));
+      recent = select(changed, now - old.radiance, Triple<V>{zero, zero, zero});
     }
 
     store4(d_, select(seen, Quad<V>{mean.x, mean.y, mean.z, variance}, nothing_seen), signal);
     store4(d_, select(seen, Quad<V>{frames, zero, first, second}, nothing_seen), history);
-    store4(d_, select(seen, Quad<V>{recent.x, recent.y, recent.z, zero}, nothing_seen), fast);
+    store4(d_, select(seen, Quad<V>{recent.x, recent.y, recent.z, distance}, nothing_seen), fast);
   }
 
   const D d_{};

@@ -82,17 +82,26 @@ class VisibilityAccumulation {
 
   HWY_INLINE Channel accumulate(V now, V old, V first, V second, V reprojected_history, V fast,
                                 float longest) const {
+    // The history counts what was sampled: without a sample it stays as it is.
+    const M sampled = hn::Ge(now, hn::Zero(d_));
+    const V one = set(1.0f);
     Channel c;
-    c.frames = hn::Min(reprojected_history + set(1.0f), set(longest));
-    c.value = mix(old, now, sample_weight(c.frames, longest));
-    const V weight = sample_weight(c.frames, c_.moments_frames);
+    c.frames = hn::Min(reprojected_history + hn::IfThenElseZero(sampled, one), set(longest));
+    const auto weight_in = [&](float most) HWY_ATTR {
+      return hn::IfThenElseZero(sampled, sample_weight(c.frames, most));
+    };
+    c.value = mix(old, now, weight_in(longest));
+    const V weight = weight_in(c_.moments_frames);
     c.first = mix(first, now, weight);
     c.second = mix(second, now * now, weight);
     c.variance = sample_variance(c.first, c.second, hn::Min(c.frames, set(c_.moments_frames)));
-    if (c_.flags & shared::temporal_mean_variance) c.variance = c.variance / c.frames;
-    c.fast = c_.rectification == shared::rectification_gradient
-                 ? hn::IfThenElseZero(hn::Gt(reprojected_history, hn::Zero(d_)), now - old)
-                 : mix(fast, now, sample_weight(c.frames, fast_frames));
+    if (c_.flags & shared::temporal_mean_variance) c.variance = c.variance / hn::Max(c.frames, one);
+    if (c_.rectification == shared::rectification_gradient) {
+      const V change = hn::IfThenElseZero(hn::Gt(reprojected_history, hn::Zero(d_)), now - old);
+      c.fast = hn::IfThenElse(sampled, change, set(shared::change_unknown));
+    } else {
+      c.fast = mix(fast, now, weight_in(fast_frames));
+    }
     return c;
   }
 
