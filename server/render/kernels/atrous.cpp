@@ -317,18 +317,14 @@ HWY_EXPORT(filter_area);
 
 namespace {
 
-/// Bands of rows for taps across. Taps down read many rows: columns of these, wide enough for the
-/// memory's pages, narrow enough for the cache, in parts that are long against the taps' reach.
+/// Bands of rows for taps across. Taps down read many rows, which stay in the cache if they are
+/// narrow; short columns touch few enough pages for the translation of addresses.
 Areas divided(const Job& job) {
-  constexpr int band = 12, strip = 256, narrow_strip = 64, block = 64;
-  if (job.constants.rows == 0) return {1, (job.height + band - 1) / band};
-  if (job.constants.columns > 0) return {1, (job.height + block - 1) / block};
-  const int requested = 2 * processors(), reach = 4 << job.constants.level;
-  const int most_rows = std::max(job.height / (2 * reach + 2), 1);
-  const int widest = (job.width + strip - 1) / strip;
-  const int columns = std::clamp((requested + most_rows - 1) / most_rows, widest,
-                                 std::max(widest, job.width / narrow_strip));
-  return {columns, std::min((requested + columns - 1) / columns, most_rows)};
+  constexpr int band = 12, strip = 64, segment = 120, block = 64;
+  const auto parts = [](int size, int part) { return (size + part - 1) / part; };
+  if (job.constants.rows == 0) return {1, parts(job.height, band)};
+  if (job.constants.columns > 0) return {1, parts(job.height, block)};
+  return {std::max(job.width / strip, 1), parts(job.height, segment)};
 }
 
 void filter(const AtrousJob& pass, bool visibility) {

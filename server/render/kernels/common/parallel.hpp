@@ -22,7 +22,4 @@ class RangeWork {
 /// Not a template: the headers of TBB take longer to compile than most kernels.
 void for_each_range(int count, int grain, RangeWork work);
 
-/// How many of them there are.
-int processors();
-
 }  // namespace heliograph::render::kernels

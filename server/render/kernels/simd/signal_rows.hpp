@@ -9,6 +9,7 @@
 
 #include <algorithm>
 
+#include "hwy/cache_control.h"
 #include "render/kernels/common/area.hpp"
 #include "render/kernels/common/row_ring.hpp"
 #include "render/kernels/simd/edge_stopping.hpp"
@@ -45,7 +46,10 @@ class SignalRows {
   /// Makes row `y` and those within the reach available, not before those of a smaller `y`.
   HWY_INLINE void advance(int y) {
     next_ = std::max(next_, y - reach_);
-    for (; next_ <= std::min(y + reach_, height_ - 1); ++next_) fill(next_);
+    for (; next_ <= std::min(y + reach_, height_ - 1); ++next_) {
+      if (area_.width() < width_) prefetch(std::min(next_ + 2, height_ - 1));
+      fill(next_);
+    }
   }
 
   /// The first plane of row `y` at the area's first column.
@@ -80,6 +84,15 @@ class SignalRows {
 
  private:
   static constexpr int planes = visibility ? brightness : brightness + 1;
+
+  /// Of a part of a row the processor does not expect the next row.
+  HWY_INLINE void prefetch(int y) const {
+    constexpr int line = 4;  // texels
+    for (int x = area_.left; x < area_.right; x += line) {
+      hwy::Prefetch(row_of<const float>(guide_, y) + 4 * x);
+      hwy::Prefetch(row_of<const float>(signal_, y) + 4 * x);
+    }
+  }
 
   HWY_INLINE void fill(int y) const {
     const int lanes = static_cast<int>(hn::Lanes(d_));
