@@ -62,8 +62,8 @@ class TileShading {
     used_ += store_rays(ray, passes, passed_.data() + used_);
   }
 
-  /// Where the rays meet the planes of their triangles, kept within them (Möller and Trumbore
-  /// 1997): a sample on an edge may lie beside the triangle by a fraction of a pixel.
+  /// Where the rays meet the planes of their triangles (Möller and Trumbore 1997), kept within
+  /// them: a sample on an edge may lie beside the triangle by a fraction of a pixel.
   static HWY_INLINE void meet(HitRecords& records, const RayLanes& ray, HitLanes& hit) {
     const TriangleLanes& t = records.triangle;
     const Float3 a = records.world.point(t.a().position);
@@ -73,14 +73,20 @@ class TileShading {
     const Float determinant = dot(ab, p);
     const Mask edge_on = hn::Eq(determinant, zero());
     const Float scale = hn::IfThenZeroElse(edge_on, one() / select(edge_on, one(), determinant));
-    const Float3 from_a = ray.origin - a;
-    const Float3 q = cross(from_a, ab);
-    const Float u = clamped(dot(from_a, p) * scale, 0.0f, 1.0f);
-    const Float v = hn::Min(clamped(dot(ray.direction, q) * scale, 0.0f, 1.0f), one() - u);
-    hit.u = hn::IfThenElseZero(hit.met, u);
-    hit.v = hn::IfThenElseZero(hit.met, v);
-    const Float3 at = multiply_add(ab, hit.u, multiply_add(ac, hit.v, a));
-    hit.t = select(hit.met, dot(at - ray.origin, ray.direction), one());
+    hit.u = hit.v = hit.t = zero();
+    // Twice: long, thin triangles lose half of the digits, which the distance that is left between
+    // point and ray tells.
+    Float3 at = a;
+    for (int i = 0; i < 2; ++i) {
+      const Float3 off = multiply_add(ray.direction, hit.t, ray.origin) - at;
+      const Float u = hit.u + dot(off, p) * scale;
+      const Float v = hit.v + dot(ray.direction, cross(off, ab)) * scale;
+      hit.u = hn::IfThenElseZero(hit.met, clamped(u, 0.0f, 1.0f));
+      hit.v = hn::IfThenElseZero(hit.met, hn::Min(clamped(v, 0.0f, 1.0f), one() - hit.u));
+      at = multiply_add(ab, hit.u, multiply_add(ac, hit.v, a));
+      hit.t = dot(at - ray.origin, ray.direction);
+    }
+    hit.t = select(hit.met, hit.t, one());
     records.triangle.set_point(hit.u, hit.v);
   }
 
