@@ -37,11 +37,22 @@ struct SceneTables {
   const gpu::Buffer& alpha_heap;
 };
 
+/// What rays are for. A tracer may choose by it how it traces them, never what they hit.
+enum class RayKind {
+  camera,      // through neighbouring pixels one after the other, nearly parallel
+  shadow,      // from surfaces in view to lights
+  ambient,     // short ones from surfaces in view
+  reflection,  // from surfaces in view
+  hit_shadow,  // from what reflections hit to lights
+  path,        // of the reference path tracer
+};
+
 /// A stream of rays in device buffers: `count` holds a shared::RayCount, `rays` shared::Ray.
 struct RayStream {
   gpu::BufferRef count;
   gpu::BufferRef rays;
   std::uint32_t capacity = 0;
+  RayKind kind = RayKind::path;
 };
 
 /// A tracer's acceleration structure of one scene. Immutable, shared by all plans that trace it,
@@ -89,10 +100,11 @@ class RayTracer {
   /// Thread safe.
   virtual std::shared_ptr<const AccelerationStructure> build(const scene::Scene& scene,
                                                              const SceneBuffers& buffers) const = 0;
-  /// A structure for one renderer, in the pose of `scene` until updated. Instances may move; meshes
-  /// keep their triangles, and those in `scene.deformations` may change their vertices. Only for
-  /// scenes with clips. `rest`: the result of build(); `tables`: the renderer's, outlive the
-  /// structure. Keeps no reference to `scene`. Thread safe.
+  /// A structure for one renderer, in the pose of `scene` until updated. Instances at
+  /// scene::movable_nodes() may move; meshes keep their triangles, and those in
+  /// `scene.deformations` may change their vertices. Only for scenes with clips. `rest`: the result
+  /// of build() for the same scene; `tables`: the renderer's, outlive the structure. Keeps no
+  /// reference to `scene`. Thread safe.
   virtual std::unique_ptr<MovingStructure> build_moving(
       std::shared_ptr<const AccelerationStructure> rest, const scene::Scene& scene,
       const SceneTables& tables) const = 0;

@@ -13,7 +13,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "lib/denoise/reprojection.glsl"
 
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D guide;
-layout(set = 1, binding = 1, rgba32f) readonly uniform image2D fast;  // or the change
+layout(set = 1, binding = 1, rgba32f) readonly uniform image2D fast;  // or the change; w < 0: no sample
 layout(set = 1, binding = 2, rgba32f) uniform image2D signal;
 layout(set = 1, binding = 3, rgba32f) uniform image2D history;
 layout(push_constant) uniform Constants { TemporalConstants constants; };
@@ -21,27 +21,34 @@ layout(push_constant) uniform Constants { TemporalConstants constants; };
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (outside_frame(pixel) || guide_is_background(imageLoad(guide, pixel))) return;
+  bool gradient = constants.rectification == rectification_gradient;
   Window window = empty_window();
+  float surfaces = 0.0;
   for (int y = -constants.radius; y <= constants.radius; ++y) {
     for (int x = -constants.radius; x <= constants.radius; ++x) {
       ivec2 tap = pixel + ivec2(x, y);
       if (!inside(tap, ivec2(frame.extent)) || guide_is_background(imageLoad(guide, tap))) continue;
-      add(window, to_ycocg(imageLoad(fast, tap).rgb));
+      surfaces += 1.0;
+      vec4 recent = imageLoad(fast, tap);
+      if (gradient && recent.w < 0.0) continue;
+      add(window, to_ycocg(recent.rgb));
     }
   }
   vec4 state = imageLoad(history, pixel);
   vec4 value = imageLoad(signal, pixel);
-  Box box = variance_box(window, constants.scale);
+  Box box = gradient ? mean_box(window, surfaces, constants.scale,
+                                min_sampled_fraction_specular)
+                     : variance_box(window, constants.scale);
   vec3 color = to_ycocg(value.rgb);
   vec3 held = clamp_to(box, color);
   float moved = abs(held.x - color.x);
   float frames = shortened_history(state.xx, vec2(moved), vec2(0.5 * (box.high.x - box.low.x))).x;
-  if (constants.rectification == rectification_gradient) {
+  if (gradient) {
     float change = certain_change(box).x;
     frames = min(state.x, frames_under_motion(change / (abs(color.x) + change + 1e-4)));
     vec3 sampled = to_ycocg(imageLoad(fast, pixel).rgb);
     // As if the new sample had come to so short a history.
-    held = color + sampled * (1.0 / frames - 1.0 / state.x);
+    held = color + sampled * (1.0 / frames - 1.0 / max(state.x, 1.0));
     moved = abs(held.x - color.x);
   }
   // The variance of the mean grows as the history shrinks.

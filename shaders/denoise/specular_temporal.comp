@@ -25,8 +25,8 @@ layout(set = 1, binding = 10, rgba32f) readonly uniform image2D previous_fast;
 layout(set = 1, binding = 11, rgba32f) readonly uniform image2D percentiles;  // of tiles, or anything
 layout(set = 1, binding = 12, rgba32f) writeonly uniform image2D signal;   // radiance, variance
 layout(set = 1, binding = 13, rgba32f) writeonly uniform image2D history;  // frames, moved, moments
-layout(set = 1, binding = 14, rgba32f) writeonly uniform image2D fast;     // the last few frames,
-                                                                          // or the change
+layout(set = 1, binding = 14, rgba32f) writeonly uniform image2D fast;  // the last few frames or
+                                                           // the change; the raw distance
 layout(push_constant) uniform Constants { TemporalConstants constants; };
 
 #include "lib/denoise/percentile_tiles.glsl"
@@ -65,7 +65,7 @@ vec3 fetch_history_bicubic(HistoryTaps taps) {
   for (int y = 0; y < 4; ++y) {
     for (int x = 0; x < 4; ++x) {
       float weight = across[x] * down[y];
-      if (weight == 0.0) continue;
+      if (weight == 0.0 || is_cubic_corner(x, y)) continue;
       ivec2 tap = clamp(taps.base + ivec2(x, y) - 1, ivec2(0), ivec2(frame.extent) - 1);
       vec3 value = imageLoad(previous_signal, tap).rgb;
       sum += weight * value;
@@ -74,11 +74,13 @@ vec3 fetch_history_bicubic(HistoryTaps taps) {
       high = max(high, value);
     }
   }
-  return clamp(sum, low, high);
+  return clamp(sum * cubic_scale(across, down), low, high);
 }
 
 HistorySample fetch_history(HistoryTaps taps) {
   HistorySample history = no_history();
+  // The gradient compares with the long history alone.
+  bool gradient = constants.rectification == rectification_gradient;
   for (int i = 0; i < 4; ++i) {
     float weight = taps.weights[i];
     if (weight <= 0.0) continue;
@@ -87,7 +89,7 @@ HistorySample fetch_history(HistoryTaps taps) {
     history.radiance += weight * imageLoad(previous_signal, tap).rgb;
     history.frames += weight * state.x;
     history.moments += weight * state.zw;
-    history.fast += weight * imageLoad(previous_fast, tap).rgb;
+    if (!gradient) history.fast += weight * imageLoad(previous_fast, tap).rgb;
   }
   if (taps.whole && (constants.flags & temporal_bicubic) != 0u) {
     history.radiance = fetch_history_bicubic(taps);
@@ -96,14 +98,15 @@ HistorySample fetch_history(HistoryTaps taps) {
 }
 
 /// The shortest of the neighbours' hit distances on the same kind of surface: one sample's own is
-/// as noisy as its radiance, and a reflection sharpens toward what touches it.
+/// as noisy as its radiance, and a reflection sharpens toward what touches it. Where no sample was
+/// taken the distance of the frame before stands, negated.
 float hit_distance(ivec2 pixel) {
   float nearest = 1e9;
   for (int y = -1; y <= 1; ++y) {
     for (int x = -1; x <= 1; ++x) {
       ivec2 tap = pixel + ivec2(x, y);
       if (!inside(tap, ivec2(frame.extent))) continue;
-      float hit = sample_at(tap).w;
+      float hit = abs(sample_at(tap).w);
       if (hit > 0.0) nearest = min(nearest, hit);
     }
   }
@@ -243,7 +246,10 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (outside_frame(pixel)) return;
   vec4 guided = imageLoad(guide, pixel);
-  vec3 now = sample_at(pixel).rgb;
+  vec4 raw_sample = sample_at(pixel);
+  vec3 now = raw_sample.rgb;
+  // The history counts what was sampled: without a sample it stays as it is.
+  float sampled = raw_sample.w < 0.0 ? 0.0 : 1.0;
   if (guide_is_background(guided)) {
     imageStore(signal, pixel, vec4(0.0));
     imageStore(history, pixel, vec4(0.0));
@@ -264,19 +270,19 @@ void main() {
     old.frames *= 1.0 - moved;
   }
 
-  float frames = min(old.frames + 1.0, max_history_frames(s.roughness));
-  vec3 radiance = mix(rectified, now, 1.0 / frames);
-  float weight = 1.0 / min(frames, constants.moments_frames);
+  float frames = min(old.frames + sampled, max_history_frames(s.roughness));
+  vec3 radiance = mix(rectified, now, sampled / max(frames, 1.0));
+  float weight = sampled / clamp(frames, 1.0, constants.moments_frames);
   float bright = luminance(now);
   vec2 moments = mix(old.moments, vec2(bright, bright * bright), weight);
   float variance = sample_variance(moments.xx, moments.yy,
                                    vec2(min(frames, constants.moments_frames))).x;
-  if ((constants.flags & temporal_mean_variance) != 0u) variance /= frames;
+  if ((constants.flags & temporal_mean_variance) != 0u) variance /= max(frames, 1.0);
 
   imageStore(signal, pixel, vec4(radiance, variance));
   imageStore(history, pixel, vec4(frames, moved, moments));
-  vec3 change = old.frames > 0.0 ? now - old.radiance : vec3(0.0);
-  vec3 recent = mix(old.fast, now, 1.0 / min(frames, fast_frames));
+  vec3 change = old.frames > 0.0 ? sampled * (now - old.radiance) : vec3(0.0);
+  vec3 recent = mix(old.fast, now, sampled / clamp(frames, 1.0, fast_frames));
   bool gradient = constants.rectification == rectification_gradient;
-  imageStore(fast, pixel, vec4(gradient ? change : recent, 0.0));
+  imageStore(fast, pixel, vec4(gradient ? change : recent, raw_sample.w));
 }

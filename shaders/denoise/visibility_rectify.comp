@@ -18,27 +18,38 @@ layout(set = 1, binding = 2, rgba32f) uniform image2D signal;
 layout(set = 1, binding = 3, rgba32f) uniform image2D history;
 layout(push_constant) uniform Constants { TemporalConstants constants; };
 
+/// 0 where no sample was taken.
+vec2 known_change(vec2 change) { return mix(change, vec2(0.0), equal(change, vec2(change_unknown))); }
+
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (outside_frame(pixel) || guide_is_background(imageLoad(guide, pixel))) return;
   Window window = empty_window();
+  float surfaces = 0.0;
   for (int y = -constants.radius; y <= constants.radius; ++y) {
     for (int x = -constants.radius; x <= constants.radius; ++x) {
       ivec2 tap = pixel + ivec2(x, y);
       if (!inside(tap, ivec2(frame.extent)) || guide_is_background(imageLoad(guide, tap))) continue;
-      add(window, vec3(imageLoad(fast, tap).xy, 0.0));
+      surfaces += 1.0;
+      vec2 recent = imageLoad(fast, tap).xy;
+      if (recent.x == change_unknown && recent.y == change_unknown) continue;
+      add(window, vec3(known_change(recent), 0.0));
     }
   }
   vec4 state = imageLoad(history, pixel);
-  Box box = variance_box(window, constants.scale);
+  bool gradient = constants.rectification == rectification_gradient;
+  Box box = gradient ? mean_box(window, surfaces, constants.scale,
+                                min_sampled_fraction)
+                     : variance_box(window, constants.scale);
   vec4 value = imageLoad(signal, pixel);
   vec2 held = clamp_to(box, vec3(value.xy, 0.0)).xy;
   vec2 shortened = shortened_history(state.xy, abs(held - value.xy), 0.5 * (box.high - box.low).xy);
-  if (constants.rectification == rectification_gradient) {
+  if (gradient) {
     vec2 change = certain_change(box).xy;
     shortened = min(state.xy, vec2(frames_under_motion(change.x), frames_under_motion(change.y)));
     // As if the new sample had come to so short a history.
-    held = value.xy + imageLoad(fast, pixel).xy * (1.0 / shortened - 1.0 / state.xy);
+    vec2 change_here = known_change(imageLoad(fast, pixel).xy);
+    held = value.xy + change_here * (1.0 / shortened - 1.0 / max(state.xy, vec2(1.0)));
   }
   vec2 moved = abs(held - value.xy);
   // The variance of the mean grows as the history shrinks.

@@ -43,7 +43,7 @@ vec2 fetch_history_bicubic(HistoryTaps taps) {
   for (int y = 0; y < 4; ++y) {
     for (int x = 0; x < 4; ++x) {
       float weight = across[x] * down[y];
-      if (weight == 0.0) continue;
+      if (weight == 0.0 || is_cubic_corner(x, y)) continue;
       ivec2 tap = clamp(taps.base + ivec2(x, y) - 1, ivec2(0), ivec2(frame.extent) - 1);
       vec2 value = imageLoad(previous_signal, tap).xy;
       sum += weight * value;
@@ -52,7 +52,7 @@ vec2 fetch_history_bicubic(HistoryTaps taps) {
       high = max(high, value);
     }
   }
-  return clamp(sum, low, high);
+  return clamp(sum * cubic_scale(across, down), low, high);
 }
 
 HistorySample fetch_history(ivec2 pixel) {
@@ -60,6 +60,8 @@ HistorySample fetch_history(ivec2 pixel) {
   if ((constants.flags & temporal_history_valid) == 0u) return history;
   vec4 map = imageLoad(reprojection, pixel);
   HistoryTaps taps = valid_taps(bilinear_taps(map.xy), uint(map.z));
+  // The gradient compares with the long history alone.
+  bool gradient = constants.rectification == rectification_gradient;
   for (int i = 0; i < 4; ++i) {
     float weight = taps.weights[i];
     if (weight <= 0.0) continue;
@@ -67,7 +69,7 @@ HistorySample fetch_history(ivec2 pixel) {
     history.signal += weight * imageLoad(previous_signal, tap).xy;
     history.moments += weight * imageLoad(previous_moments, tap);
     history.frames += weight * imageLoad(previous_history, tap).xy;
-    history.fast += weight * imageLoad(previous_fast, tap).xy;
+    if (!gradient) history.fast += weight * imageLoad(previous_fast, tap).xy;
   }
   if (taps.whole && (constants.flags & temporal_bicubic) != 0u) {
     history.signal = fetch_history_bicubic(taps);
@@ -116,19 +118,22 @@ void main() {
 
   // Moving lights shorten the history of shadows, not that of ambient visibility.
   vec2 longest = vec2(min(constants.frames, constants.light_frames), constants.frames);
-  vec2 frames = min(old.frames + 1.0, longest);
-  vec2 value = mix(rectified, now, 1.0 / frames);
-  vec2 weight = sample_weight(frames, constants.moments_frames);
+  // The history counts what was sampled: without a sample it stays as it is.
+  vec2 sampled = vec2(greaterThanEqual(now, vec2(0.0)));
+  vec2 frames = min(old.frames + sampled, longest);
+  vec2 value = mix(rectified, now, sampled / max(frames, vec2(1.0)));
+  vec2 weight = sampled * sample_weight(frames, constants.moments_frames);
   vec2 first = mix(old.moments.xy, now, weight);
   vec2 second = mix(old.moments.zw, now * now, weight);
   vec2 variance = sample_variance(first, second, min(frames, vec2(constants.moments_frames)));
-  if ((constants.flags & temporal_mean_variance) != 0u) variance /= frames;
+  if ((constants.flags & temporal_mean_variance) != 0u) variance /= max(frames, vec2(1.0));
 
   imageStore(signal, pixel, vec4(value, variance));
   imageStore(moments, pixel, vec4(first, second));
   imageStore(history, pixel, vec4(frames, moved));
   vec2 change = mix(vec2(0.0), now - old.signal, greaterThan(old.frames, vec2(0.0)));
-  vec2 recent = mix(old.fast, now, sample_weight(frames, fast_frames));
+  change = mix(vec2(change_unknown), change, sampled);
+  vec2 recent = mix(old.fast, now, sampled * sample_weight(frames, fast_frames));
   bool gradient = constants.rectification == rectification_gradient;
   imageStore(fast, pixel, vec4(gradient ? change : recent, 0.0, 0.0));
 }

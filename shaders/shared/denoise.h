@@ -19,6 +19,9 @@ SHARED_CONSTANT uint rectification_fast_history = 5u;
 SHARED_CONSTANT uint rectification_percentile = 6u;
 SHARED_CONSTANT uint rectification_gradient = 7u;
 
+// What a visibility's change is where no sample was taken: it lies in -1..1 otherwise.
+SHARED_CONSTANT float change_unknown = 2.0f;
+
 SHARED_CONSTANT uint temporal_history_valid = 1u;  // the frame before has a history
 SHARED_CONSTANT uint temporal_mean_variance = 2u;  // variance of the mean, not of one sample
 SHARED_CONSTANT uint temporal_virtual_motion = 4u;
@@ -76,6 +79,11 @@ SHARED_CONSTANT float virtual_distance_min_divisor = 0.25f;
 // valid_taps: least sum of bilinear weights that is renormalised.
 // HistoryTaps.AreBilinearAndRenormaliseOverValidTaps.
 SHARED_CONSTANT float min_tap_weight_sum = 0.01f;
+
+// mean_box: fewer pixels of a window do not tell its spread. Half of them are sampled where
+// something moves; reflections have rare bright samples, which half of the pixels may miss.
+SHARED_CONSTANT float min_sampled_fraction = 0.4f;
+SHARED_CONSTANT float min_sampled_fraction_specular = 0.8f;
 
 // outdated_fraction: part of a history that one frame may drop (Alber 2025).
 SHARED_CONSTANT float max_outdated_fraction = 0.95f;

@@ -6,20 +6,25 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "lib/math/octahedral.glsl"
 #include "lib/math/random.glsl"
 #include "lib/rays/ray_stream.glsl"
+#include "lib/rays/sampling_plan.glsl"
 #include "lib/math/geometry.glsl"
 
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D normals;
 layout(set = 1, binding = 1, rgba32f) readonly uniform image2D motion;
 layout(set = 1, binding = 2, std430) buffer Count { RayCount ray_count; };
 layout(set = 1, binding = 3, std430) writeonly buffer Rays { Ray rays[]; };
-layout(set = 1, binding = 4, r32f) writeonly uniform image2D visibility;
+layout(set = 1, binding = 4, r32ui) readonly uniform uimage2D planned;  // or anything
+layout(set = 1, binding = 5, r32f) writeonly uniform image2D visibility;
+layout(push_constant) uniform Constants { uint by_plan; };
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   bool requested = false;
   Ray ray;
   float view_z = outside_frame(pixel) ? 0.0 : imageLoad(motion, pixel).w;
-  if (view_z > 0.0) {
+  bool left_out = view_z > 0.0 && by_plan != 0u &&
+                  (imageLoad(planned, pixel).r & plan_ambient) == 0u;
+  if (view_z > 0.0 && !left_out) {
     vec4 encoded = imageLoad(normals, pixel);
     vec3 shading = octahedral_decode(encoded.xy);
     vec3 geometric = octahedral_decode(encoded.zw);
@@ -35,7 +40,7 @@ void main() {
     requested = dot(ray.direction, geometric) > 0.0;
   }
   // Directions below the surface are hidden by it.
-  bool visible = requested || view_z <= 0.0;
-  if (!outside_frame(pixel)) imageStore(visibility, pixel, vec4(visible ? 1.0 : 0.0));
+  float visible = left_out ? no_sample : requested || view_z <= 0.0 ? 1.0 : 0.0;
+  if (!outside_frame(pixel)) imageStore(visibility, pixel, vec4(visible));
   APPEND_RAY(requested, ray)
 }

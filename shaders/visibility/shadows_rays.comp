@@ -7,6 +7,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "lib/lighting/light_choice.glsl"
 #include "lib/math/random.glsl"
 #include "lib/rays/ray_stream.glsl"
+#include "lib/rays/sampling_plan.glsl"
 
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D normals;
 layout(set = 1, binding = 1, rgba32f) readonly uniform image2D motion;
@@ -15,7 +16,9 @@ layout(set = 1, binding = 3, rgba8) readonly uniform image2D surface;
 layout(set = 1, binding = 4, rgba32ui) readonly uniform uimage2D surface_layers;
 layout(set = 1, binding = 5, std430) buffer Count { RayCount ray_count; };
 layout(set = 1, binding = 6, std430) writeonly buffer Rays { Ray rays[]; };
-layout(set = 1, binding = 7, r32f) writeonly uniform image2D visibility;
+layout(set = 1, binding = 7, r32ui) readonly uniform uimage2D planned;  // or anything
+layout(set = 1, binding = 8, r32f) writeonly uniform image2D visibility;
+layout(push_constant) uniform Constants { uint by_plan; };
 
 #include "lib/scene/gbuffer_material.glsl"
 
@@ -24,7 +27,9 @@ void main() {
   bool requested = false;
   Ray ray;
   float view_z = outside_frame(pixel) ? 0.0 : imageLoad(motion, pixel).w;
-  if (view_z > 0.0) {
+  bool left_out = view_z > 0.0 && by_plan != 0u &&
+                  (imageLoad(planned, pixel).r & plan_shadows) == 0u;
+  if (view_z > 0.0 && !left_out) {
     SurfaceMaterial m = material_at(pixel);
     vec3 position = world_position(pixel, view_z);
     float pick = random_number(uvec2(pixel), frame.sample_index, 1u, frame.seed);
@@ -35,6 +40,7 @@ void main() {
       ray.pixel = uint(pixel.x) | uint(pixel.y) << 16u;
     }
   }
-  if (!outside_frame(pixel)) imageStore(visibility, pixel, vec4(requested ? 1.0 : 0.0));
+  float visible = left_out ? no_sample : requested ? 1.0 : 0.0;
+  if (!outside_frame(pixel)) imageStore(visibility, pixel, vec4(visible));
   APPEND_RAY(requested, ray)
 }

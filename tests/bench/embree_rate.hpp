@@ -4,25 +4,36 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
+#include "shaders/shared/ray.h"
 #include "tracing/ray_tracer.hpp"
 
 namespace heliograph::bench {
 
-/// A tracer that records the ray streams it traces, so that other tracers can be timed on them.
+/// A tracer that also keeps the rays of a frame, so that other tracers can be timed on them.
 class RecordingTracer : public tracing::RayTracer {
  public:
+  /// Ends the names of the passes that keep rays, beside those of the tracer.
+  static constexpr std::string_view pass_suffix = ".recording";
+
   struct Stream {
-    const gpu::FramePlan* plan;
-    tracing::RayStream rays;
-    bool any;
+    std::vector<shared::Ray> rays;
+    bool any = false;
   };
 
   explicit RecordingTracer(std::unique_ptr<tracing::RayTracer> tracer)
       : tracer_(std::move(tracer)) {}
 
-  /// The stream of the pass `name` in the last declared plan, unless later passes overwrite its
-  /// memory.
+  /// Whether frames keep their rays from now on, which takes time.
+  void set_recording(bool recording) {
+    recording_ = recording;
+    if (recording) streams_.clear();
+  }
+  /// The rays that the pass `name` traced in the last recorded frame; the first ones, if it traced
+  /// several streams. Null without any.
   const Stream* find(const std::string& name) const;
 
   protocol::TracerKind kind() const override { return tracer_->kind(); }
@@ -39,23 +50,32 @@ class RecordingTracer : public tracing::RayTracer {
                  gpu::BufferRef occluded) const override;
 
  private:
+  void record(gpu::FramePlan& plan, const std::string& name, const tracing::RayStream& rays,
+              bool any) const;
+
   std::unique_ptr<tracing::RayTracer> tracer_;
+  bool recording_ = false;
   mutable std::map<std::string, Stream> streams_;
 };
 
 /// Embree alone on rays in its own layout, without use of the results: the upper bound for a
-/// tracer.
+/// tracer. Every way to build a scene and to trace a stream is tried: instances or triangles in
+/// world space, robust or fast, medium or high quality, coherent or not, rays per call.
 class EmbreeAlone {
  public:
+  struct Fastest {
+    double milliseconds;  // median of several runs on all cores
+    std::string way;      // such as "flat, fast, high quality, coherent, 1024 rays"
+  };
+
   /// `scene` in its default pose; outlives this object.
   explicit EmbreeAlone(const scene::Scene& scene);
   ~EmbreeAlone();
   EmbreeAlone(const EmbreeAlone&) = delete;
   EmbreeAlone& operator=(const EmbreeAlone&) = delete;
 
-  /// Milliseconds for the stream's current rays, median of several runs on all cores; nullopt where
-  /// its memory is not mapped.
-  std::optional<double> milliseconds(const RecordingTracer::Stream& stream) const;
+  /// Nullopt for a stream without rays.
+  std::optional<Fastest> fastest(const RecordingTracer::Stream& stream) const;
 
  private:
   struct State;

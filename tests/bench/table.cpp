@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "tests/bench/embree_rate.hpp"
+
 namespace heliograph::bench {
 namespace {
 
@@ -20,6 +22,7 @@ void Table::add(const render::Frame& frame) {
   height_ = frame.height;
   frames_.push_back(frame.milliseconds);
   for (const render::PassTime& pass : frame.passes) {
+    if (pass.name.ends_with(RecordingTracer::pass_suffix)) continue;
     auto& times = times_[pass.name];
     if (times.empty()) order_.push_back({pass.name, pass.kind});
     times.push_back(pass.milliseconds);
@@ -65,8 +68,8 @@ nlohmann::json Table::summary(const std::vector<render::PassWork>& work,
 }
 
 void print(const nlohmann::json& summary) {
-  std::printf("%-34s %-6s %9s %9s %9s %9s %7s %8s %8s\n", "pass", "kind", "ms", "ns/pixel",
-              "Mray/s", "MB", "x copy", "x Embree", "shader x");
+  std::printf("%-34s %-6s %9s %9s %9s %9s %7s %8s %7s %8s\n", "pass", "kind", "ms", "ns/pixel",
+              "Mray/s", "MB", "x copy", "x Embree", "x loop", "shader x");
   for (const auto& pass : summary.at("passes")) {
     const auto number = [&](const char* key, double scale, int digits) {
       if (!pass.contains(key)) return std::string("-");
@@ -74,13 +77,14 @@ void print(const nlohmann::json& summary) {
       std::snprintf(text, sizeof text, "%.*f", digits, pass.at(key).get<double>() * scale);
       return std::string(text);
     };
-    std::printf("%-34s %-6s %9s %9s %9s %9s %7s %8s %8s\n",
+    std::printf("%-34s %-6s %9s %9s %9s %9s %7s %8s %7s %8s\n",
                 pass.at("name").get_ref<const std::string&>().c_str(),
                 pass.at("kind").get_ref<const std::string&>().c_str(), number("ms", 1, 3).c_str(),
                 number("ns_per_pixel", 1, 2).c_str(),
                 number("million_rays_per_second", 1, 1).c_str(),
                 number("image_bytes", 1e-6, 1).c_str(), number("times_copy", 1, 1).c_str(),
-                number("times_embree", 1, 2).c_str(), number("shader_times", 1, 1).c_str());
+                number("times_embree", 1, 2).c_str(), number("times_bare_loop", 1, 2).c_str(),
+                number("shader_times", 1, 1).c_str());
   }
   std::printf("sum of passes %.3f ms; frame %.3f ms (%.3f to %.3f) = %.1f frames/s\n",
               summary.at("passes_ms").get<double>(), summary.at("frame_ms").get<double>(),

@@ -139,7 +139,7 @@ MISTAKES = (
             "vec3 clip_now = (frame.unjittered", "vec3 clip_now = (frame.view_projection",
             "image_tests", "History.StaticViewMapsPixelToItselfDespiteJitter"),
     Mistake("21", "neighbors beyond the image are read",
-            "server/render/kernels/atrous.cpp",
-            "std::min(y_ + 1, job_.height - 1)", "y_ + 1",
+            "server/render/kernels/simd/signal_rows.hpp",
+            "std::min(y + 1, height_ - 1)", "y + 1",
             "gpu_tests", "*AtrousKernel.MatchesShader/*", host_kernels=True),
 )

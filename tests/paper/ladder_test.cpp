@@ -30,7 +30,7 @@ class Ladder : public testing::TestWithParam<std::tuple<SceneCase, Movement>> {
     std::map<std::string, Quality> result;
     std::vector<Measurement> rows;
     for (const Technique& technique : techniques()) {
-      const Quality quality = compare(stage.play(technique.settings(), shot), ground_truth);
+      const Quality quality = compare(stage.play(technique.settings(), shot).frames, ground_truth);
       rows.push_back(
           {scene_case.scene, swept, scene_case.value, shot.movement, technique.name, quality});
       result[technique.name] = quality;

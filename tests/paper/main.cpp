@@ -5,8 +5,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenes/generator/scenes/paper_scenes.hpp"
@@ -17,18 +20,49 @@
 namespace heliograph::paper {
 namespace {
 
+/// Frames of one size as they are in memory, one after the other.
+void write_frames(const std::filesystem::path& path, const std::vector<render::Frame>& frames) {
+  std::filesystem::create_directories(path.parent_path());
+  std::ofstream file(path, std::ios::binary);
+  for (const render::Frame& frame : frames) {
+    file.write(reinterpret_cast<const char*>(frame.rgba.data()),
+               static_cast<std::streamsize>(frame.rgba.size()));
+  }
+  file.close();
+  if (!file) throw std::runtime_error("cannot write " + path.string());
+}
+
+std::vector<render::Frame> read_frames(const std::filesystem::path& path,
+                                       const StageOptions& stage) {
+  std::ifstream file(path, std::ios::binary);
+  std::vector<render::Frame> frames;
+  const std::size_t bytes = std::size_t{stage.width} * stage.height * 4;
+  const std::size_t count = std::filesystem::file_size(path) / bytes;
+  for (std::size_t i = 0; i < count; ++i) {
+    render::Frame& frame = frames.emplace_back();
+    frame.width = stage.width;
+    frame.height = stage.height;
+    frame.rgba.resize(bytes);
+    file.read(reinterpret_cast<char*>(frame.rgba.data()), static_cast<std::streamsize>(bytes));
+  }
+  if (!file) throw std::runtime_error("cannot read " + path.string());
+  return frames;
+}
+
 struct Options {
   std::vector<std::string> scenes;
   std::vector<std::string> presets;
   std::vector<std::string> movements{"static", "moving_camera", "moving_objects_light"};
   std::vector<float> values;
   std::vector<std::string> settings;  // path=value, on top of every preset
+  std::vector<std::string> variants;  // name:path=value,path=value, on top of those of `best`
   std::string size = "320x180";
   int frames = 60;
   int samples = 512;
   int texture_size = 256;
   float frame_rate = 60.0f;
   std::string ground_truth = "reference";
+  std::string ground_truth_folder;
   std::string output;
   std::string device;
   std::string tracer = "auto";
@@ -45,11 +79,43 @@ struct Options {
   }
   protocol::Settings of(const std::string& preset) const {
     protocol::Settings all = find_technique(preset).settings();
-    for (const std::string& assignment : settings) {
-      const auto accepted = protocol::set_by_path(all, assignment);
-      if (!accepted) throw std::invalid_argument(accepted.error().message);
+    for (const std::string& assignment : settings) assign(all, assignment);
+    return all;
+  }
+  /// The presets and the variants, by name.
+  std::vector<std::pair<std::string, protocol::Settings>> rows() const {
+    std::vector<std::pair<std::string, protocol::Settings>> all;
+    for (const std::string& preset : presets) all.emplace_back(preset, of(preset));
+    for (const std::string& variant : variants) {
+      const std::size_t colon = variant.find(':');
+      if (colon == std::string::npos) {
+        throw std::invalid_argument("--variant " + variant + " must look like NAME:PATH=VALUE");
+      }
+      protocol::Settings changed = of("best");
+      std::istringstream assignments(variant.substr(colon + 1));
+      for (std::string one; std::getline(assignments, one, ',');) assign(changed, one);
+      all.emplace_back(variant.substr(0, colon), changed);
     }
     return all;
+  }
+  /// Ground truth of a shot, from the folder of those that earlier runs have left.
+  std::vector<render::Frame> truth(const Stage& stage, const std::string& name,
+                                   const Shot& shot) const {
+    const GroundTruth source =
+        ground_truth == "reference" ? GroundTruth::reference : GroundTruth::accumulated;
+    if (ground_truth_folder.empty()) return stage.ground_truth(source, shot, samples);
+    std::ostringstream file;
+    file << name << size << '_' << frames << '_' << frame_rate << '_' << samples << '_'
+         << texture_size << '_' << ground_truth << ".rgba";
+    const auto path = std::filesystem::path(ground_truth_folder) / file.str();
+    if (std::filesystem::exists(path)) return read_frames(path, this->stage());
+    auto made = stage.ground_truth(source, shot, samples);
+    write_frames(path, made);
+    return made;
+  }
+  static void assign(protocol::Settings& all, const std::string& assignment) {
+    const auto accepted = protocol::set_by_path(all, assignment);
+    if (!accepted) throw std::invalid_argument(accepted.error().message);
   }
   Shot shot(const std::string& movement) const {
     return {
@@ -65,8 +131,6 @@ std::vector<float> values_for(const Options& options, Swept swept) {
 
 void measure_quality(render::Engine& engine, const Options& options,
                      std::vector<Measurement>& measurements) {
-  const GroundTruth source =
-      options.ground_truth == "reference" ? GroundTruth::reference : GroundTruth::accumulated;
   for (const std::string& scene : options.scenes) {
     const Swept swept = swept_in(scene);
     const std::size_t first = measurements.size();
@@ -74,19 +138,18 @@ void measure_quality(render::Engine& engine, const Options& options,
       const Stage stage(engine, scene, sweep_to(swept, value), options.stage());
       for (const std::string& movement : options.movements) {
         const Shot shot = options.shot(movement);
-        const auto ground_truth = stage.ground_truth(source, shot, options.samples);
         const std::string taken =
             scene + "_" + std::to_string(int(100.0f * value)) + "_" + movement + "_";
+        const auto ground_truth = options.truth(stage, taken, shot);
         test::save_image(taken + "ground_truth", ground_truth.back());
-        for (const std::string& preset : options.presets) {
-          const auto frames = stage.play(options.of(preset), shot);
-          test::save_image(taken + preset, frames.back());
-          measurements.push_back(
-              {scene, swept, value, shot.movement, preset, compare(frames, ground_truth)});
-          const Quality& quality = measurements.back().quality;
-          std::fprintf(stderr, "%s %g %s %s: ssim %.4f flicker %.2f luminance %.3f\n",
-                       scene.c_str(), double(value), movement.c_str(), preset.c_str(), quality.ssim,
-                       quality.flicker, quality.luminance_ratio);
+        for (const auto& [row, settings] : options.rows()) {
+          const Played played = stage.play(settings, shot);
+          test::save_image(taken + row, played.frames.back());
+          const Quality quality = compare(played.frames, ground_truth);
+          measurements.push_back({scene, swept, value, shot.movement, row, quality});
+          std::fprintf(stderr, "%s %g %s %s: ssim %.4f flicker %.2f luminance %.3f rays %.3f\n",
+                       scene.c_str(), double(value), movement.c_str(), row.c_str(), quality.ssim,
+                       quality.flicker, quality.luminance_ratio, played.rays_per_pixel);
         }
       }
     }
@@ -151,6 +214,10 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--set", options.settings, "A setting on top of every preset")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
+  app.add_option("--variant", options.variants,
+                 "A further row: the preset best with these settings on top")
+      ->type_name("NAME:PATH=VALUE,PATH=VALUE")
+      ->allow_extra_args(false);
   app.add_option("--size", options.size, "Frame size")->capture_default_str();
   app.add_option("--frames", options.frames, "Frames of each run")
       ->check(CLI::Range(3, 100000))
@@ -168,6 +235,8 @@ void add_options(CLI::App& app, Options& options) {
                  "The path tracer, or the hybrid's own samples averaged")
       ->check(CLI::IsMember({"reference", "accumulated"}))
       ->capture_default_str();
+  app.add_option("--ground-truth-folder", options.ground_truth_folder,
+                 "Folder that keeps ground truth from run to run: rendered once for each case");
   app.add_option("--output", options.output,
                  "Folder for CSV, JSON and the last frame of every run");
   app.add_option("--device", options.device, "Part of the Vulkan device's name");

@@ -61,10 +61,21 @@ void Stage::show_moment(render::Renderer& renderer, const Shot& shot, int frame)
   if (!posed) throw std::runtime_error(posed.error().message);
 }
 
-std::vector<render::Frame> Stage::play(const protocol::Settings& settings, const Shot& shot) const {
-  std::vector<render::Frame> frames = time(settings, shot);
-  frames.erase(frames.begin(), frames.end() - shot.compared);
-  return frames;
+Played Stage::play(const protocol::Settings& settings, const Shot& shot) const {
+  const auto renderer = start(settings, shot);
+  const double pixels = double(options_.width) * double(options_.height);
+  Played played;
+  for (int i = 0; i < shot.frames; ++i) {
+    show_moment(*renderer, shot, i);
+    render::Frame frame = renderer->render();
+    if (i < shot.frames - shot.compared) continue;
+    played.frames.push_back(std::move(frame));
+    for (const render::PassWork& pass : renderer->work()) {
+      if (pass.name.starts_with("gbuffer") || !pass.name.ends_with(".trace")) continue;
+      played.rays_per_pixel += double(pass.rays) / (pixels * shot.compared);
+    }
+  }
+  return played;
 }
 
 std::vector<render::Frame> Stage::time(const protocol::Settings& settings, const Shot& shot) const {
@@ -73,8 +84,7 @@ std::vector<render::Frame> Stage::time(const protocol::Settings& settings, const
   for (int i = 0; i < shot.frames; ++i) {
     show_moment(*renderer, shot, i);
     frames.push_back(renderer->render());
-    // Only the last frames are compared.
-    if (i < shot.frames - shot.compared) frames.back().rgba.clear();
+    frames.back().rgba.clear();
   }
   return frames;
 }

@@ -27,6 +27,12 @@ struct Shot {
   float frame_seconds = 1.0f / 60.0f;
 };
 
+/// What a technique makes of a shot.
+struct Played {
+  std::vector<render::Frame> frames;  // the last `compared`
+  double rays_per_pixel = 0.0;        // in those frames, on average, without camera rays
+};
+
 /// Source of ground truth.
 enum class GroundTruth {
   reference,    // the path tracer along the hybrid's own light paths
@@ -41,8 +47,8 @@ class Stage {
   Stage(render::Engine& engine, const std::string& scene, const scenes::Sweep& sweep,
         const StageOptions& options);
 
-  /// Renders the whole shot and returns its last `compared` frames.
-  std::vector<render::Frame> play(const protocol::Settings& settings, const Shot& shot) const;
+  /// Renders the whole shot.
+  Played play(const protocol::Settings& settings, const Shot& shot) const;
 
   /// Ground truth of those frames, `samples` per pixel.
   std::vector<render::Frame> ground_truth(GroundTruth source, const Shot& shot, int samples) const;

@@ -56,7 +56,9 @@ ShaderOutput evaluate(uint which, ShaderInput given) {
     case 13: return ShaderOutput(vec4(shortened_history(given.a.xy, given.b.xy, given.c.xy), 0.0, 0.0),
                                  vec4(0.0));
     case 14: return ShaderOutput(cubic_weights(given.a.x),
-                                 vec4(virtual_distance(given.a.x, given.a.y), 0.0, 0.0, 0.0));
+                                 vec4(virtual_distance(given.a.x, given.a.y),
+                                      cubic_scale(cubic_weights(given.a.x), cubic_weights(given.a.y)),
+                                      0.0, 0.0));
     case 15: return ShaderOutput(vec4(virtual_motion_threshold(given.a.x),
                                       max_virtual_history(given.a.x),
                                       surface_history_weight(given.a.y, given.a.z),
@@ -65,6 +67,7 @@ ShaderOutput evaluate(uint which, ShaderInput given) {
                                                         vec2(0.0)).x));
     case 16: return ShaderOutput(vec4(same_reflector(given.a.x, given.a.y, given.a.z, given.a.w)),
                                  vec4(0.0));
+    case 17: return ShaderOutput(vec4(edge_weight(given.a.xy), 0.0, 0.0), vec4(0.0));
     default: return ShaderOutput(vec4(specular_dominant_factor(given.a.x), 0.0,
                                       sanitize(given.b.x), 0.0), vec4(sanitize(given.b.xyz), 0.0));
   }

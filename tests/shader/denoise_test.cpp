@@ -28,6 +28,7 @@ enum Function : std::uint32_t {
   sharp,
   fitted,
   reflector,
+  edge,
   others
 };
 
@@ -92,14 +93,35 @@ TEST(DepthWeight, DoesNotDependOnTheScaleOfTheScene) {
   }
 }
 
-TEST(NormalWeight, IsThePowerOfTheCosine) {
+TEST(EdgeWeight, IsTheExponentialUpToSixPercent) {
   std::vector<ShaderInput> inputs;
-  for (int i = 0; i <= 100; ++i) inputs.push_back({.a = {1.0f - 0.02f * i, 128.0f, 0, 0}});
-  const auto got = call(normal, inputs);
-  EXPECT_EQ(got[0].x.x, 1.0f);
+  for (int i = 0; i <= 2000; ++i) inputs.push_back({.a = {-0.04f * i, -std::log(2.0f) * i, 0, 0}});
+  const auto got = call(edge, inputs);
+  EXPECT_EQ(got[0].x.x, 1.0f) << "equal pixels";
   for (std::size_t i = 1; i < got.size(); ++i) {
-    EXPECT_LE(got[i].x.x, got[i - 1].x.x);
-    EXPECT_NEAR(got[i].x.x, std::pow(std::max(inputs[i].a.x, 0.0f), 128.0f), 1e-5);
+    const double exact = std::exp(double(inputs[i].a.x)), half = std::exp(double(inputs[i].a.y));
+    EXPECT_LT(got[i].x.x, got[i - 1].x.x);
+    EXPECT_GE(got[i].x.x, exact * (1.0 - 2e-5));
+    EXPECT_LE(got[i].x.x, exact * 1.0615);
+    if (i >= 100) continue;
+    EXPECT_NEAR(got[i].x.y, half, half * 2e-5) << "powers of two are exact";
+  }
+  const float nothing = -std::numeric_limits<float>::infinity();
+  EXPECT_EQ(call(edge, {{.a = {-90.0f, nothing, 0, 0}}})[0].x, glm::vec4(0.0f));
+}
+
+TEST(NormalWeight, IsThePowerOfTheCosineToFirstOrder) {
+  for (const float power : {8.0f, 128.0f, 1024.0f}) {
+    std::vector<ShaderInput> inputs;
+    for (int i = 0; i <= 1000; ++i) inputs.push_back({.a = {1.0f - 0.002f * i, power, 0, 0}});
+    const auto got = call(normal, inputs);
+    EXPECT_EQ(got[0].x.x, 1.0f);
+    for (std::size_t i = 1; i < got.size(); ++i) {
+      EXPECT_LE(got[i].x.x, got[i - 1].x.x);
+      // The next order is exp(-x) x^2 / (2 power) of x = power (1 - cosine), at most at x = 2.
+      const double cosine = std::max(double(inputs[i].a.x), 0.0);
+      EXPECT_NEAR(got[i].x.x, std::pow(cosine, double(power)), 0.3 / power) << cosine;
+    }
   }
 }
 
@@ -335,6 +357,18 @@ TEST(CubicWeights, ReproducePixelsLinesAndParabolas) {
     EXPECT_NEAR(w.x + w.z + 4.0f * w.w, f * f, 1e-6) << "a parabola";
   }
   EXPECT_EQ(call(sharp, {{.a = glm::vec4(0.0f)}})[0].x, glm::vec4(0, 1, 0, 0));
+}
+
+TEST(CubicWeights, AddUpToOneWithoutTheCorners) {
+  for (const float f : {0.0f, 0.25f, 0.5f, 0.9f}) {
+    for (const float g : {0.0f, 0.4f, 0.5f}) {
+      const auto got = call(sharp, {{.a = {f, g, 0, 0}}, {.a = {g, 0, 0, 0}}});
+      const glm::vec4 x = got[0].x, y = got[1].x;
+      const float corners = (x.x + x.w) * (y.x + y.w), scale = got[0].y.y;
+      EXPECT_LE(std::abs(corners), 1.0f / 64.0f + 1e-6f);
+      EXPECT_NEAR((1.0f - corners) * scale, 1.0f, 1e-6);
+    }
+  }
 }
 
 TEST(VirtualDistance, FollowsTheMirrorEquation) {

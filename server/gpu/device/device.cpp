@@ -170,6 +170,10 @@ VkDeviceMemory Device::allocate(const VkMemoryRequirements& requirements,
   return memory;
 }
 
+void Device::check_presence() const {
+  check(loss_is_wanted() ? VK_ERROR_DEVICE_LOST : VK_SUCCESS, "reach the device");
+}
+
 void Device::submit(VkCommandBuffer commands) const {
   VkCommandBufferSubmitInfo buffer{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};
   buffer.commandBuffer = commands;

@@ -44,6 +44,9 @@ class Device {
   VkDeviceMemory allocate(const VkMemoryRequirements& requirements, VkMemoryPropertyFlags needed,
                           VkMemoryPropertyFlags preferred, const std::string& name) const;
 
+  /// For frames that may submit nothing: finds a device that tests have lost. Thread safe.
+  /// @throws DeviceLost
+  void check_presence() const;
   /// Submits and waits until the device is done. Thread safe.
   void submit(VkCommandBuffer commands) const;
   /// Records into a fresh command buffer, submits it and waits: for set-up work. Thread safe.

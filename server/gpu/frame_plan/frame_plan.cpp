@@ -141,6 +141,16 @@ PassBuilder FramePlan::raster(std::string name, const RasterProgram& program) {
   return add(std::move(pass));
 }
 
+void FramePlan::only_when(const std::function<bool()>& condition,
+                          const std::function<void()>& declare) {
+  const std::size_t first = passes_.size();
+  declare();
+  for (std::size_t i = first; i < passes_.size(); ++i) {
+    std::function<bool()>& own = passes_[i].condition;
+    own = [condition, own] { return condition() && (!own || own()); };
+  }
+}
+
 PassBuilder FramePlan::host(std::string name, std::function<void()> run) {
   Pass pass;
   pass.name = std::move(name);
@@ -216,16 +226,20 @@ bool FramePlan::timed_by_clock() const {
   return device_.is_cpu();
 }
 
-void FramePlan::execute() {
+bool FramePlan::execute(const std::function<bool()>& canceled) {
   if (!compiled_) throw GpuError("a frame plan runs only after compile()");
-  vkResetQueryPool(device_.handle(), queries_, 0, static_cast<std::uint32_t>(passes_.size() * 2));
-  std::size_t part = 0;
-  bool recorded = false;
+  device_.check_presence();
+  if (!timed_by_clock()) {
+    vkResetQueryPool(device_.handle(), queries_, 0, static_cast<std::uint32_t>(passes_.size() * 2));
+  }
+  submits_ = 0;
+  recording_ = false;
   bool barrier = false;  // of passes left out: those behind them rely on it
-  begin(commands_[0]);
   for (std::size_t i = 0; i < passes_.size(); ++i) {
     const Pass& pass = passes_[i];
     timings_[i].milliseconds = -1.0f;  // not run
+    // Where passes are timed by the clock, nothing is recorded that was not submitted.
+    if (canceled && timed_by_clock() && canceled()) return false;
     barrier |= pass.barrier_before;
     if (pass.condition && !pass.condition()) {
       barrier |= !pass.program;
@@ -235,17 +249,11 @@ void FramePlan::execute() {
     timings_[i].host = on_host;
     const auto start = Clock::now();
     if (!on_host) {
-      const auto query = static_cast<std::uint32_t>(i * 2);
-      if (std::exchange(barrier, false)) full_barrier(commands_[part]);
-      record(pass, commands_[part], query);
-      recorded = true;
+      if (std::exchange(barrier, false)) full_barrier(recorder());
+      record(pass, recorder(), static_cast<std::uint32_t>(i * 2));
       if (!timed_by_clock()) continue;
     }
-    if (recorded) {
-      submit(commands_[part]);
-      begin(commands_[++part]);
-      recorded = false;
-    }
+    flush();
     if (!on_host) {
       timings_[i].milliseconds = since(start);
       continue;
@@ -258,10 +266,11 @@ void FramePlan::execute() {
     }
     timings_[i].milliseconds = since(begun);
   }
-  if (readback_) readback_.record(commands_[part], get(read_back_));
-  submit(commands_[part]);
+  if (readback_.copies()) readback_.record(recorder(), get(read_back_));
+  flush();
   if (!timed_by_clock()) read_timers();
   parity_ ^= 1;
+  return true;
 }
 
 void FramePlan::run_host_kernel(const Pass& pass) const {
@@ -279,13 +288,18 @@ void FramePlan::run_host_kernel(const Pass& pass) const {
               std::span(constants).first(pass.constants_size), extent_);
 }
 
-void FramePlan::begin(VkCommandBuffer commands) const {
+VkCommandBuffer FramePlan::recorder() {
+  const VkCommandBuffer commands = commands_[submits_];
+  if (std::exchange(recording_, true)) return commands;
   VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
   info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   check(vkBeginCommandBuffer(commands, &info), "begin the frame's commands");
+  return commands;
 }
 
-void FramePlan::submit(VkCommandBuffer commands) const {
+void FramePlan::flush() {
+  if (!std::exchange(recording_, false)) return;
+  const VkCommandBuffer commands = commands_[submits_++];
   // Mapped memory is read after this submit, by a host pass or by the caller that takes the frame.
   VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
   barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;

@@ -149,8 +149,10 @@ class PassBuilder {
 
 /// An ordered list of passes with what each reads and writes, from which barriers, timestamps,
 /// labels, descriptor sets, the list of views and the history swap follow. Passes run in the order
-/// declared. Images stay in GENERAL. A host pass runs on the processor between two submits, after
-/// everything before it is done; on a CPU device it sees images and buffers through their mapping.
+/// declared. Images stay in GENERAL. A host pass runs on the processor after everything before it
+/// is done; on a CPU device it sees images and buffers through their mapping. Work goes to the
+/// device when a host pass or the caller waits for it: a frame of host passes alone submits
+/// nothing.
 class FramePlan {
  public:
   FramePlan(const Device& device, VkExtent2D extent);
@@ -164,6 +166,7 @@ class FramePlan {
   /// Whether passes declared from now on run their host kernels, where they have one. Only devices
   /// that are processors do.
   void use_host_kernels(bool use) { host_kernels_ = use && device_.is_cpu(); }
+  bool uses_host_kernels() const { return host_kernels_; }
 
   /// An image of the plan's extent, or of its own; mapped on CPU devices.
   ImageRef image(std::string_view name, VkFormat format, VkImageUsageFlags extra_usage = 0,
@@ -184,8 +187,12 @@ class FramePlan {
   PassBuilder pass(std::string name, ProgramSource program);
   PassBuilder pass(std::string name, const RayProgram& program);
   PassBuilder raster(std::string name, const RasterProgram& program);
-  /// A pass without a shader.
+  /// A pass without a shader. One that is given host() besides runs that instead of `run`.
   PassBuilder host(std::string name, std::function<void()> run);
+
+  /// Passes that `declare` adds are skipped in frames where `condition` is false, besides what
+  /// their own when() says.
+  void only_when(const std::function<bool()>& condition, const std::function<void()>& declare);
 
   /// The one image that comes back to the host with every frame, through read().
   void read_back(ImageRef image) { read_back_ = image; }
@@ -194,8 +201,10 @@ class FramePlan {
   /// pass. @throws GpuError naming pass, binding and what is wrong
   void compile();
 
-  /// Runs all passes, waits for them, reads the timers and swaps the histories.
-  void execute();
+  /// Runs all passes, waits for them, reads the timers and swaps the histories. `canceled` is asked
+  /// before each pass on CPU devices; where it returns true, the result is false, the remaining
+  /// passes do not run and histories do not swap. Images have no defined content then.
+  bool execute(const std::function<bool()>& canceled = {});
   /// The frame that just ran, as read_back() asked for it: level 0, rows tightly packed.
   std::vector<std::uint8_t> read() const;
   const std::vector<PassTiming>& timings() const { return timings_; }
@@ -218,6 +227,9 @@ class FramePlan {
 
   /// Names of passes in front of which a barrier stands, in order: what the tests look at.
   std::vector<std::string> barriers() const;
+  /// How often the frame that just ran submitted work to the device: not at all where every pass
+  /// ran on the host.
+  std::size_t submits() const { return submits_; }
 
  private:
   friend class PassBuilder;
@@ -237,8 +249,10 @@ class FramePlan {
   /// Whether every pass is a submit of its own, timed from outside: drivers for processors write
   /// timestamps while they record, as soon as anything was ever drawn.
   bool timed_by_clock() const;
-  void begin(VkCommandBuffer commands) const;
-  void submit(VkCommandBuffer commands) const;
+  /// The command buffer of what comes next, begun with its first command.
+  VkCommandBuffer recorder();
+  /// Runs what was recorded since the last submit, if anything, and waits.
+  void flush();
   void read_timers();
   const Image& physical(std::uint32_t index, std::uint32_t parity) const;
   VkImageView physical_view(std::uint32_t index, std::uint32_t parity) const;
@@ -253,7 +267,9 @@ class FramePlan {
   ImageRef read_back_;
   Readback readback_;
   VkCommandPool command_pool_ = VK_NULL_HANDLE;
-  std::vector<VkCommandBuffer> commands_;
+  std::vector<VkCommandBuffer> commands_;  // one for each submit of a frame
+  std::size_t submits_ = 0;                // of this frame so far
+  bool recording_ = false;                 // into the next
   VkQueryPool queries_ = VK_NULL_HANDLE;
   std::vector<PassTiming> timings_;
   std::vector<View> views_;

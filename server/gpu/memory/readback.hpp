@@ -19,6 +19,8 @@ class Readback {
 
   explicit operator bool() const { return size_ > 0; }
   std::size_t size() const { return size_; }  // bytes, tightly packed
+  /// Whether the device has to copy: layers of mapped images are read where they lie.
+  bool copies() const { return static_cast<bool>(staging_); }
 
   /// Records the copy of level 0 of `layer`, behind all commands before it. Nothing to do for layer
   /// 0 of mapped images.

@@ -20,6 +20,7 @@
 #include "render/passes/post/temporal_antialias.hpp"
 #include "render/passes/reference/reference.hpp"
 #include "render/passes/reflections/trace_specular.hpp"
+#include "render/passes/sampling/plan_samples.hpp"
 #include "render/passes/visibility/trace_visibility.hpp"
 #include "render/views/view_colors.hpp"
 
@@ -43,11 +44,11 @@ std::vector<BufferDescription> joined(const Tables&... tables) {
 /// from settings and scene.
 const std::vector<BufferDescription>& all_buffers() {
   static const std::vector<BufferDescription> buffers =
-      joined(present_buffers, gbuffer_buffers, visibility_buffers, specular_buffers,
-             reproject_buffers, denoise_visibility_buffers, visibility_temporal_buffers,
-             visibility_atrous_buffers, denoise_specular_buffers, specular_temporal_buffers,
-             specular_atrous_buffers, skybox_buffers, compose_buffers, blended_buffers,
-             reference_buffers, accumulate_buffers, temporal_antialias_buffers);
+      joined(present_buffers, gbuffer_buffers, reproject_buffers, sampling_plan_buffers,
+             visibility_buffers, specular_buffers, denoise_visibility_buffers,
+             visibility_temporal_buffers, visibility_atrous_buffers, denoise_specular_buffers,
+             specular_temporal_buffers, specular_atrous_buffers, skybox_buffers, compose_buffers,
+             blended_buffers, reference_buffers, accumulate_buffers, temporal_antialias_buffers);
   return buffers;
 }
 

@@ -5,32 +5,67 @@
 #include "render/passes/compose/skybox.hpp"
 #include "render/passes/denoise/denoise_specular.hpp"
 #include "render/passes/denoise/denoise_visibility.hpp"
-#include "render/passes/gbuffer/gbuffer.hpp"
+#include "render/passes/gbuffer/draw_gbuffer.hpp"
 #include "render/passes/gbuffer/trace_gbuffer.hpp"
 #include "render/passes/post/accumulate.hpp"
 #include "render/passes/post/present.hpp"
 #include "render/passes/post/temporal_antialias.hpp"
 #include "render/passes/reference/reference.hpp"
 #include "render/passes/reflections/trace_specular.hpp"
+#include "render/passes/sampling/plan_samples.hpp"
 #include "render/passes/visibility/trace_visibility.hpp"
 
 namespace heliograph::render {
 namespace {
 
-/// The signals without noise, as far as the settings denoise them.
-std::optional<DenoisedSignals> denoise(gpu::FramePlan& plan, const FrameInputs& in,
-                                       const GBuffer& gbuffer, const NoisySignals& noisy) {
-  const protocol::Settings& s = in.settings;
-  const bool visibility = s.shadow_temporal.enabled || s.shadow_blur.enabled;
-  const bool specular = noisy.specular && (s.specular_temporal.enabled || s.specular_blur.enabled);
-  if (!visibility && !specular) return std::nullopt;
+/// By the method that suits the device, unless the settings name one.
+GBuffer find_surfaces(gpu::FramePlan& plan, const FrameInputs& in) {
+  if (draws_gbuffer_on_host(plan, in)) return draw_gbuffer(plan, in);
+  return traces_gbuffer(plan.device(), in) ? trace_gbuffer(plan, in) : rasterize_gbuffer(plan, in);
+}
+
+/// Where surfaces were in the frame before, and which of them are sampled in this one.
+struct Reprojected {
+  Guide guide;
+  SampleHistories histories;
+  gpu::ImageRef planned;
+};
+
+bool denoises_visibility(const protocol::Settings& s) {
+  return s.shadow_temporal.enabled || s.shadow_blur.enabled;
+}
+bool denoises_specular(const protocol::Settings& s) {
+  return s.specular.enabled && (s.specular_temporal.enabled || s.specular_blur.enabled);
+}
+
+Reprojected reproject_and_plan(gpu::FramePlan& plan, const FrameInputs& in,
+                               const GBuffer& gbuffer) {
   const Guide guide = reproject(plan, in, gbuffer);
-  DenoisedSignals denoised{combine_visibility(plan, in, noisy.shadows, noisy.ambient),
-                           noisy.specular};
-  if (visibility) {
-    denoised.visibility = denoise_visibility(plan, in, gbuffer, guide, denoised.visibility);
+  const SampleHistories histories = declare_sample_histories(plan);
+  const PreviousSamples previous{histories.visibility_length.previous,
+                                 histories.specular_length.previous,
+                                 histories.specular_fast.previous, histories.visibility.previous};
+  return {guide, histories, plan_samples(plan, in, gbuffer, guide, previous)};
+}
+
+/// The signals without noise, as far as the settings denoise them.
+DenoisedSignals denoise(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                        const Reprojected& from, const NoisySignals& noisy) {
+  // Visibility that is not traced is not read either.
+  const auto traced = [&frame = in.constants] {
+    return (frame.flags & (shared::frame_shadows | shared::frame_ambient_occlusion)) != 0;
+  };
+  DenoisedSignals denoised{{}, noisy.specular};
+  plan.only_when(traced, [&] {
+    denoised.visibility = combine_visibility(plan, in, noisy.shadows, noisy.ambient);
+    if (!denoises_visibility(in.settings)) return;
+    denoised.visibility =
+        denoise_visibility(plan, in, gbuffer, from.guide, from.histories, denoised.visibility);
+  });
+  if (denoises_specular(in.settings)) {
+    denoised.specular =
+        denoise_specular(plan, in, gbuffer, from.guide, from.histories, *noisy.specular);
   }
-  if (specular) denoised.specular = denoise_specular(plan, in, gbuffer, guide, *noisy.specular);
   return denoised;
 }
 
@@ -48,12 +83,19 @@ FrameOutputs declare_reference(gpu::FramePlan& plan, const FrameInputs& in) {
 FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   const protocol::ReferenceUse reference = in.settings.reference.use;
   if (reference == protocol::ReferenceUse::always) return declare_reference(plan, in);
-  const GBuffer gbuffer =
-      traces_gbuffer(plan.device(), in) ? trace_gbuffer(plan, in) : rasterize_gbuffer(plan, in);
+  const GBuffer gbuffer = find_surfaces(plan, in);
 
-  NoisySignals noisy{trace_shadows(plan, in, gbuffer), trace_ambient(plan, in, gbuffer), {}};
-  if (in.settings.specular.enabled) noisy.specular = trace_specular(plan, in, gbuffer);
-  const auto denoised = denoise(plan, in, gbuffer, noisy);
+  std::optional<Reprojected> from;
+  std::optional<gpu::ImageRef> planned;
+  if (denoises_visibility(in.settings) || denoises_specular(in.settings)) {
+    from = reproject_and_plan(plan, in, gbuffer);
+    planned = from->planned;
+  }
+  NoisySignals noisy{
+      trace_shadows(plan, in, gbuffer, planned), trace_ambient(plan, in, gbuffer, planned), {}};
+  if (in.settings.specular.enabled) noisy.specular = trace_specular(plan, in, gbuffer, planned);
+  std::optional<DenoisedSignals> denoised;
+  if (from) denoised = denoise(plan, in, gbuffer, *from, noisy);
 
   const gpu::ImageRef background = draw_skybox(plan, in, gbuffer);
   const Composed composed = compose(plan, in, gbuffer, noisy, denoised, background);

@@ -242,6 +242,10 @@ bool Renderer::needs_frame() const {
 }
 
 Frame Renderer::render() {
+  return *render({});
+}
+
+std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
   State& state = *state_;
   const auto start = std::chrono::steady_clock::now();
   state.use_newest_shaders();
@@ -252,14 +256,27 @@ Frame Renderer::render() {
   const auto posed = std::chrono::steady_clock::now();
   if (!state.settings.accumulation.enabled) state.clock.samples = 0;
   const shared::FrameConstants before = state.constants;
+  const bool had_previous = state.has_previous;
   state.constants =
       make_frame_constants(state.camera, state.settings, *state.moving, state.extent,
                            state.sample_index++, state.has_previous ? &before : nullptr);
+  const std::uint32_t still = state.scene_motion.still_frames;
   state.scene_motion =
       render::scene_motion(*state.moving, state.constants, state.has_previous ? &before : nullptr);
+  if (state.scene_motion.any()) {
+    state.scene_motion.still_frames = 0;
+  } else if (state.has_previous && still < ~0u) {
+    state.scene_motion.still_frames = still + 1;
+  }
   state.has_previous = true;
   std::memcpy(state.constants_buffer.mapped(), &state.constants, sizeof state.constants);
-  state.compiled->plan.execute();
+  if (!state.compiled->plan.execute(canceled)) {
+    state.constants = before;
+    state.has_previous = had_previous;
+    --state.sample_index;
+    state.stale = true;
+    return std::nullopt;
+  }
   state.shown_mean_weight = mean_weight(state.compiled->inputs);
   ++state.clock.samples;
 

@@ -1,29 +1,24 @@
 #include "render/kernels/atrous.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <vector>
 
+#include "render/kernels/common/area.hpp"
 #include "render/kernels/simd/rows.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/kernels/atrous.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
-#include "hwy/contrib/math/math-inl.h"
-#include "render/kernels/simd/guide.hpp"
-#include "render/kernels/simd/random.hpp"
+#include "render/kernels/simd/atrous_taps.hpp"
+#include "render/kernels/simd/edge_stopping.hpp"
+#include "render/kernels/simd/signal_rows.hpp"
 
 #ifndef HELIOGRAPH_ATROUS_JOB
 #define HELIOGRAPH_ATROUS_JOB
 namespace heliograph::render::kernels {
 
-/// What a signal's four floats are: shaders/lib/denoise/visibility_signal.glsl and
-/// specular_signal.glsl.
-enum class Signal { visibility, specular };
-
 struct Job : AtrousJob {
-  Signal kind;
+  bool visibility;  // otherwise specular
   float footprint;  // of a pixel at one metre, or at any in an orthographic view
   bool orthographic;
 };
@@ -36,325 +31,279 @@ namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// One row of one iteration; lanes are pixels side by side.
-template <class D, Signal kind>
-class Row {
+/// One iteration over an area; lanes are pixels side by side. `straight`: all taps lie on one axis.
+template <class D, bool visibility, bool straight>
+class AtrousArea {
   using V = hn::Vec<D>;
   using DI = hn::RebindToSigned<D>;
-  using VI = hn::Vec<DI>;
   using M = hn::Mask<D>;
-  static constexpr bool visibility = kind == Signal::visibility;
+  using Rows = SignalRows<D, visibility>;
 
-  using Texels = Quad<V>;
+  /// Of the plane through a pixel: what a neighbour's Z is multiplied with, and what is expected of
+  /// the product. Their difference is the exponent.
+  struct Expected {
+    V scale;
+    V product;
+  };
+  /// All exponents count octaves.
   struct Center {
-    Triple<V> normal;
+    Triple<V> normal;  // times the power
     V roughness;
-    V view_z;
-    V slope_x, slope_y;
-    V curve;      // 1 / Z, 0 in orthographic views
-    V flattened;  // 1 - Z * curve
-    V footprint;  // half of a pixel's
-    V bright_x, bright_y;
-    V inv_sigma_x, inv_sigma_y;  // 1 / what a difference of brightness may be
     V roughness_reach;
+    V view_z;
+    Pair<V> slope;
+    V curve;                                 // 1 / Z, 0 in orthographic views
+    V flattened;                             // 1 - Z * curve
+    V footprint;                             // half of a pixel's
+    V inv_allowed;                           // 1 / what the plane may be missed by, per pixel
+    V curve_scale, depth_scale, flat_scale;  // that times slope * curve, Z, slope * flattened
+    V bright[2];
+    V inv_sigma[2];  // 1 / what a difference of brightness may be
   };
   struct Sums {
-    Texels value;
-    V total_x, total_y;
+    Quad<V> value;
+    V total[2];
   };
 
  public:
-  HWY_INLINE Row(const Job& job, int y, float* variance)
+  HWY_INLINE AtrousArea(const Job& job, const Area& area)
       : job_(job),
         c_(job.constants),
-        y_(y),
-        pitch_(static_cast<int>(job.guide.row_pitch / sizeof(float))),
-        signal_pitch_(static_cast<int>(job.signal.row_pitch / sizeof(float))),
-        random_(hn::RebindToUnsigned<D>(), job.frame.sample_index,
-                48u + static_cast<unsigned>(c_.level), job.frame.seed),
-        variance_x_(variance),
-        variance_y_(variance + job.width + 2) {}
+        area_(area),
+        least_step_(static_cast<int>(hn::GetLane(steps(hn::Zero(d_))))),
+        most_step_(static_cast<int>(hn::GetLane(steps(set(1.0f))))),
+        rows_(job.guide, job.signal, job.width, job.height, area,
+              c_.columns > 0 ? reach(most_step_) : 1, c_.rows > 0 ? reach(most_step_) : 1),
+        taps_(c_, job.frame, job.height, least_step_, most_step_) {}
 
   HWY_INLINE void run() {
-    if (has(shared::atrous_variance_prefilter)) add_variance_rows();
     const int lanes = static_cast<int>(hn::Lanes(d_));
-    for (int x = 0; x < job_.width; x += lanes) block(std::min(x, job_.width - lanes));
+    for (int y = area_.top; y < area_.bottom; ++y) {
+      rows_.advance(y);
+      if (has(shared::atrous_variance_prefilter)) rows_.add_variance_rows(y);
+      for (int x = area_.left; x < area_.right; x += lanes) {
+        block(std::min(x, area_.right - lanes), y);
+      }
+    }
   }
 
  private:
+  /// Of the taps, jitter included, in pixels.
+  static int reach(int step) { return 2 * step + step / 4 + 1; }
+
   bool has(std::uint32_t flag) const { return (c_.flags & flag) != 0; }
   HWY_INLINE V set(float value) const { return hn::Set(d_, value); }
+  HWY_INLINE V load(const float* texels, int plane) const { return rows_.load(texels, plane); }
 
-  HWY_INLINE Texels load(const float* from) const { return load4(d_, from); }
-  const float* row(const gpu::HostView& image, int y) const {
-    return row_of<const float>(image, y);
+  HWY_INLINE V variance_at(const float* texels, int column, int i) const {
+    if (has(shared::atrous_variance_prefilter)) return rows_.smooth_variance(column, i);
+    return load(texels, Rows::variance + i);
   }
 
-  HWY_INLINE V brightness_x(const Texels& t) const {
-    if constexpr (visibility) return t.x;
-    return luminance(Triple<V>{t.x, t.y, t.z});
-  }
-
-  /// Sums down of the variance, weights 1 2 1, into the scratch rows; one pixel more on both ends.
-  HWY_INLINE void add_variance_rows() {
-    const float* above = row(job_.signal, std::max(y_ - 1, 0));
-    const float* here = row(job_.signal, y_);
-    const float* below = row(job_.signal, std::min(y_ + 1, job_.height - 1));
-    const int lanes = static_cast<int>(hn::Lanes(d_));
-    for (int i = 0; i < job_.width; i += lanes) {
-      const int x = std::min(i, job_.width - lanes);
-      const Texels a = load(above + 4 * x), b = load(here + 4 * x), c = load(below + 4 * x);
-      if constexpr (visibility) {
-        hn::StoreU(hn::Add(hn::Add(a.z, c.z), hn::Add(b.z, b.z)), d_, variance_x_ + x + 1);
-        hn::StoreU(hn::Add(hn::Add(a.w, c.w), hn::Add(b.w, b.w)), d_, variance_y_ + x + 1);
-      } else {
-        hn::StoreU(hn::Add(hn::Add(a.w, c.w), hn::Add(b.w, b.w)), d_, variance_x_ + x + 1);
-      }
-    }
-    for (float* sums : {variance_x_, variance_y_}) {
-      sums[0] = sums[1];
-      sums[job_.width + 1] = sums[job_.width];
-    }
-  }
-
-  HWY_INLINE V smooth_variance(const float* sums, int x) const {
-    const V left = hn::LoadU(d_, sums + x), middle = hn::LoadU(d_, sums + x + 1);
-    const V right = hn::LoadU(d_, sums + x + 2);
-    return hn::Mul(hn::Add(hn::Add(left, right), hn::Add(middle, middle)), set(1.0f / 16.0f));
-  }
-
-  /// 1 / (sigma x standard deviation + smallest difference)
-  HWY_INLINE V inv_sigma(V variance) const {
-    const V noise = hn::Sqrt(hn::Max(variance, hn::Zero(d_)));
+  /// 1 / (sigma x standard deviation + smallest difference), in octaves.
+  HWY_INLINE V inv_sigma(V of) const {
+    const V safe = hn::Max(of, set(1e-30f));
+    const V noise = safe * hn::ApproximateReciprocalSqrt(safe);
     const float smallest = visibility ? 1e-3f : 1e-4f;
-    return hn::Div(set(1.0f), hn::MulAdd(set(c_.luminance_sigma), noise, set(smallest)));
+    const V allowed = hn::MulAdd(set(c_.luminance_sigma / octaves), noise, set(smallest / octaves));
+    return hn::ApproximateReciprocal(allowed);
   }
 
-  HWY_INLINE Center center(int x, const Guide<V>& guide, const Texels& value) const {
+  HWY_INLINE Center center(const float* texels, int x, int y) const {
     Center c;
-    c.normal = guide.normal;
-    c.roughness = guide.roughness;
-    c.view_z = guide.view_z;
-    hn::LoadInterleaved2(d_, row(job_.depth_slope, y_) + 2 * x, c.slope_x, c.slope_y);
-    c.curve = job_.orthographic ? hn::Zero(d_) : hn::Div(set(1.0f), guide.view_z);
-    c.flattened = hn::Sub(set(1.0f), hn::Mul(c.view_z, c.curve));
+    const V power = set(c_.normal_power * octaves);
+    c.normal = Triple<V>{load(texels, Rows::normal_x), load(texels, Rows::normal_y),
+                         load(texels, Rows::normal_z)} *
+               power;
+    c.roughness = load(texels, Rows::roughness);
+    c.view_z = load(texels, Rows::view_z);
+    c.slope = load2(d_, row_of<const float>(job_.depth_slope, y) + 2 * x);
+    c.curve = job_.orthographic ? hn::Zero(d_) : reciprocal(c.view_z);
+    c.flattened = job_.orthographic ? set(1.0f) : hn::Zero(d_);
     c.footprint = set(0.5f * job_.footprint);
-    if (!job_.orthographic) c.footprint = hn::Mul(c.footprint, guide.view_z);
-    c.bright_x = brightness_x(value);
-    c.bright_y = value.y;
-    const bool smooth = has(shared::atrous_variance_prefilter);
+    if (!job_.orthographic) c.footprint = c.footprint * c.view_z;
+    if constexpr (straight) {
+      const V slope = c_.columns > 0 ? c.slope.x : c.slope.y;
+      const float sigma = c_.depth_sigma / octaves;
+      c.inv_allowed = hn::ApproximateReciprocal(
+          hn::Max(set(sigma) * (hn::Abs(slope) + c.footprint), set(1e-30f)));
+      c.depth_scale = c.view_z * c.inv_allowed;
+      const V steepness = slope * c.inv_allowed;
+      c.curve_scale = steepness * c.curve;
+      c.flat_scale = steepness * c.flattened;
+    }
     if constexpr (visibility) {
-      c.inv_sigma_x = inv_sigma(smooth ? smooth_variance(variance_x_, x) : value.z);
-      c.inv_sigma_y = inv_sigma(smooth ? smooth_variance(variance_y_, x) : value.w);
+      c.bright[0] = load(texels, Rows::channels);
+      c.bright[1] = load(texels, Rows::channels + 1);
     } else {
-      c.inv_sigma_x = inv_sigma(smooth ? smooth_variance(variance_x_, x) : value.w);
-      c.roughness_reach = hn::Div(set(1.0f), hn::MulAdd(set(0.2f), c.roughness, set(0.02f)));
+      c.bright[0] = load(texels, Rows::brightness);
+      c.roughness_reach = hn::ApproximateReciprocal(
+          hn::MulAdd(set(0.2f / octaves), c.roughness, set(0.02f / octaves)));
+    }
+    for (int i = 0; i < Rows::variances; ++i) {
+      c.inv_sigma[i] = inv_sigma(variance_at(texels, x - area_.left, i));
     }
     return c;
   }
 
-  HWY_INLINE void add_tap(const Center& c, const Texels& guide, const Texels& value, V offset_x,
-                          V offset_y, V distance, float weight, M requested, Sums& sums) const {
-    const V rise = hn::MulAdd(c.slope_x, offset_x, hn::Mul(c.slope_y, offset_y));
-    const V straight = hn::NegMulAdd(rise, c.curve, set(1.0f));
-    const V off_plane =
-        hn::Abs(hn::NegMulAdd(rise, c.flattened, hn::Sub(hn::Mul(guide.w, straight), c.view_z)));
-    const V allowed = hn::MulAdd(c.footprint, distance, hn::Abs(rise));
-    V exponent =
-        hn::Div(hn::Neg(off_plane), hn::Max(hn::Mul(set(c_.depth_sigma), allowed), set(1e-30f)));
-    const V cosine = clamped(guide_cosine(c.normal, guide), 1e-6f, 1.0f);
-    exponent = hn::MulAdd(set(c_.normal_power), hn::Log(d_, cosine), exponent);
-    const M valid = hn::And(requested, guide_is_surface(guide));
-    if constexpr (visibility) {
-      const V wx = tap_weight(exponent, c.bright_x, value.x, c.inv_sigma_x, weight, valid);
-      const V wy = tap_weight(exponent, c.bright_y, value.y, c.inv_sigma_y, weight, valid);
-      sums.value.x = hn::MulAdd(wx, value.x, sums.value.x);
-      sums.value.y = hn::MulAdd(wy, value.y, sums.value.y);
-      sums.value.z = hn::MulAdd(hn::Mul(wx, wx), value.z, sums.value.z);
-      sums.value.w = hn::MulAdd(hn::Mul(wy, wy), value.w, sums.value.w);
-      sums.total_x = hn::Add(sums.total_x, wx);
-      sums.total_y = hn::Add(sums.total_y, wy);
+  /// plane_distance() / depth_allowance() of the shaders, taken apart.
+  HWY_INLINE Expected expected(const Center& c, const AtrousTap& tap) const {
+    if constexpr (straight) {
+      const V inv_distance = set(tap.inv_distance), side = set(tap.side);
+      const V scale = hn::NegMulAdd(side, c.curve_scale, c.inv_allowed * inv_distance);
+      const V product = c.depth_scale * inv_distance;
+      return {scale, job_.orthographic ? hn::MulAdd(side, c.flat_scale, product) : product};
     } else {
-      const V rougher = hn::Abs(hn::Sub(guide_roughness(guide), c.roughness));
-      exponent = hn::NegMulAdd(rougher, c.roughness_reach, exponent);
-      const V w =
-          tap_weight(exponent, c.bright_x, brightness_x(value), c.inv_sigma_x, weight, valid);
-      sums.value.x = hn::MulAdd(w, value.x, sums.value.x);
-      sums.value.y = hn::MulAdd(w, value.y, sums.value.y);
-      sums.value.z = hn::MulAdd(w, value.z, sums.value.z);
-      sums.value.w = hn::MulAdd(hn::Mul(w, w), value.w, sums.value.w);
-      sums.total_x = hn::Add(sums.total_x, w);
+      const V rise = hn::MulAdd(c.slope.x, set(tap.dx), c.slope.y * set(tap.dy));
+      const V allowed = hn::MulAdd(c.footprint, set(1.0f / tap.inv_distance), hn::Abs(rise));
+      const V inv_allowed =
+          hn::ApproximateReciprocal(hn::Max(set(c_.depth_sigma / octaves) * allowed, set(1e-30f)));
+      return {inv_allowed * hn::NegMulAdd(rise, c.curve, set(1.0f)),
+              inv_allowed * hn::MulAdd(rise, c.flattened, c.view_z)};
     }
   }
 
-  HWY_INLINE V tap_weight(V exponent, V here, V there, V inv_sigma, float weight, M valid) const {
-    const V e = hn::NegMulAdd(hn::Abs(hn::Sub(here, there)), inv_sigma, exponent);
-    // Below e^-80 a weight is nothing; the exponential stays in its range.
-    const V positive = hn::Mul(hn::Exp(d_, hn::Max(e, set(-80.0f))), set(weight));
-    return hn::IfThenElseZero(valid, positive);
+  HWY_INLINE void add_tap(const Center& c, const AtrousTap& tap, int column, M requested,
+                          Sums& sums) const {
+    const float* const texels = tap.texels + column;
+    const V z = load(texels, Rows::view_z);
+    const M valid = hn::And(requested, hn::Gt(z, hn::Zero(d_)));
+    V exponent = hn::MulAdd(c.normal.x, load(texels, Rows::normal_x),
+                            set(tap.exponent + weight_one - c_.normal_power * octaves));
+    exponent = hn::MulAdd(c.normal.y, load(texels, Rows::normal_y), exponent);
+    exponent = hn::MulAdd(c.normal.z, load(texels, Rows::normal_z), exponent);
+    const Expected plane = expected(c, tap);
+    exponent = exponent - hn::Abs(hn::MulSub(z, plane.scale, plane.product));
+    const V x = load(texels, Rows::channels), y = load(texels, Rows::channels + 1);
+    const V v = load(texels, Rows::channels + 2), w = load(texels, Rows::channels + 3);
+    if constexpr (visibility) {
+      const V of_x = weight(valid, exponent, c, x, 0), of_y = weight(valid, exponent, c, y, 1);
+      sums.value.x = hn::MulAdd(of_x, x, sums.value.x);
+      sums.value.y = hn::MulAdd(of_y, y, sums.value.y);
+      sums.value.z = hn::MulAdd(of_x * of_x, v, sums.value.z);
+      sums.value.w = hn::MulAdd(of_y * of_y, w, sums.value.w);
+      sums.total[0] = sums.total[0] + of_x;
+      sums.total[1] = sums.total[1] + of_y;
+    } else {
+      const V rougher = hn::Abs(load(texels, Rows::roughness) - c.roughness);
+      exponent = hn::NegMulAdd(rougher, c.roughness_reach, exponent);
+      const V all = weight(valid, exponent, c, load(texels, Rows::brightness), 0);
+      sums.value.x = hn::MulAdd(all, x, sums.value.x);
+      sums.value.y = hn::MulAdd(all, y, sums.value.y);
+      sums.value.z = hn::MulAdd(all, v, sums.value.z);
+      sums.value.w = hn::MulAdd(all * all, w, sums.value.w);
+      sums.total[0] = sums.total[0] + all;
+    }
   }
 
-  HWY_INLINE V levels(V roughness) const {
+  HWY_INLINE V weight(M valid, V exponent, const Center& c, V bright, int i) const {
+    const V apart = hn::Abs(bright - c.bright[i]);
+    return edge_weight(valid, hn::NegMulAdd(apart, c.inv_sigma[i], exponent));
+  }
+
+  HWY_INLINE V levels(V rough) const {
     V most = set(16.0f);
     if (has(shared::atrous_lobe_limit) && !job_.orthographic) {
-      const V pixels = hn::Mul(hn::Mul(roughness, roughness), set(2.0f / job_.footprint));
+      const V pixels = rough * rough * set(2.0f / job_.footprint);
       // The whole part of the logarithm is the exponent; below 1 it is negative.
-      const V power = hn::ConvertTo(
-          d_, hn::Sub(hn::ShiftRight<23>(hn::BitCast(di_, hn::Max(pixels, set(0.5f)))),
-                      hn::Set(di_, 127)));
-      most = hn::Add(power, set(1.0f));
+      const auto bits = hn::BitCast(DI(), hn::Max(pixels, set(0.5f)));
+      most = hn::ConvertTo(d_, hn::ShiftRight<23>(bits)) - set(126.0f);
     }
     if (!has(shared::atrous_levels_by_roughness)) return most;
-    const V rough = hn::IfThenElse(hn::Le(roughness, set(shared::atrous_blurred_once_roughness)),
-                                   set(1.0f), set(16.0f));
-    const M unblurred = hn::Le(roughness, set(shared::atrous_unblurred_roughness));
-    return hn::Min(most, hn::IfThenElse(unblurred, hn::Zero(d_), rough));
+    const V some = hn::IfThenElse(hn::Le(rough, set(shared::atrous_blurred_once_roughness)),
+                                  set(1.0f), set(16.0f));
+    const M unblurred = hn::Le(rough, set(shared::atrous_unblurred_roughness));
+    return hn::Min(most, hn::IfThenElse(unblurred, hn::Zero(d_), some));
   }
 
   /// Pixels from tap to tap.
-  HWY_INLINE V steps(V roughness) const {
+  HWY_INLINE V steps(V rough) const {
     const float low = c_.start_threshold - shared::atrous_step_half_band;
     const float high = c_.start_threshold + shared::atrous_step_half_band;
-    const V t = hn::Min(
-        hn::Max(hn::Mul(hn::Sub(roughness, set(low)), set(1.0f / (high - low))), hn::Zero(d_)),
-        set(1.0f));
-    const V twice = hn::Mul(hn::Mul(t, t), hn::NegMulAdd(set(2.0f), t, set(3.0f)));
-    return hn::Round(hn::Mul(set(static_cast<float>(1 << c_.level)), hn::Add(set(1.0f), twice)));
+    const V t = clamped((rough - set(low)) * set(1.0f / (high - low)), 0.0f, 1.0f);
+    const V twice = t * t * hn::NegMulAdd(set(2.0f), t, set(3.0f));
+    return hn::Round(set(static_cast<float>(1 << c_.level)) * (set(1.0f) + twice));
   }
 
-  HWY_INLINE void block(int x) {
-    const Texels value = load(row(job_.signal, y_) + 4 * x);
-    const Texels texel = load(row(job_.guide, y_) + 4 * x);
-    const Guide<V> guide = decode_guide(texel);
-    const M active = hn::And(guide_is_surface(texel),
-                             hn::Lt(set(static_cast<float>(c_.level)), levels(guide.roughness)));
-    float* out = const_cast<float*>(row(job_.filtered, y_)) + 4 * x;
+  HWY_INLINE void block(int x, int y) {
+    const int column = x - area_.left;
+    const float* const texels = rows_.row(y) + column;
+    const V rough = load(texels, Rows::roughness);
+    const Quad<V> value{load(texels, Rows::channels), load(texels, Rows::channels + 1),
+                        load(texels, Rows::channels + 2), load(texels, Rows::channels + 3)};
+    const M active = hn::And(hn::Gt(load(texels, Rows::view_z), hn::Zero(d_)),
+                             hn::Lt(set(static_cast<float>(c_.level)), levels(rough)));
+    float* const out = row_of<float>(job_.filtered, y) + 4 * x;
     if (hn::AllFalse(d_, active)) {
-      hn::StoreInterleaved4(value.x, value.y, value.z, value.w, d_, out);
+      store4(d_, value, out);
       return;
     }
-    const Center c = center(x, guide, value);
-    Sums sums{value, set(1.0f), set(1.0f)};
-    add_taps(x, active, steps(guide.roughness), c, sums);
-
-    const V by_x = hn::Div(set(1.0f), sums.total_x);
-    const V by_y = visibility ? hn::Div(set(1.0f), sums.total_y) : by_x;
-    Texels result{hn::Mul(sums.value.x, by_x), hn::Mul(sums.value.y, by_y),
-                  hn::Mul(sums.value.z, by_x), hn::Mul(sums.value.w, hn::Mul(by_y, by_y))};
-    if constexpr (visibility) result.z = hn::Mul(result.z, by_x);
-    if (has(shared::atrous_keep_variance)) {
-      if constexpr (visibility) result.z = value.z;
-      result.w = value.w;
-    }
-    hn::StoreInterleaved4(hn::IfThenElse(active, result.x, value.x),
-                          hn::IfThenElse(active, result.y, value.y),
-                          hn::IfThenElse(active, result.z, value.z),
-                          hn::IfThenElse(active, result.w, value.w), d_, out);
-  }
-
-  /// Where all lanes take the same steps inside the frame, texels are contiguous.
-  HWY_INLINE void add_taps(int x, M active, V step, const Center& c, Sums& sums) {
-    const float least = hn::GetLane(hn::MinOfLanes(d_, hn::IfThenElse(active, step, set(1e9f))));
-    const float most = hn::GetLane(hn::MaxOfLanes(d_, hn::IfThenElseZero(active, step)));
-    const int radius = c_.columns * static_cast<int>(most);
-    const bool inside = x >= radius && x + static_cast<int>(hn::Lanes(d_)) + radius <= job_.width;
-    const bool jittered = has(shared::atrous_jitter) && most > 4.0f;
-    if (least == most && inside && !jittered) {
-      add_straight_taps(x, static_cast<int>(most), active, c, sums);
+    const Center c = center(texels, x, y);
+    Sums sums{value, {set(1.0f), set(1.0f)}};
+    if (least_step_ == most_step_) {
+      add_taps(c, most_step_, column, y, active, sums);
     } else {
-      add_scattered_taps(x, step, active, c, sums);
+      add_taps_of_steps(c, hn::Min(steps(rough), set(static_cast<float>(most_step_))), column, y,
+                        active, sums);
     }
+    store4(d_, select(active, result(sums, value), value), out);
   }
 
-  HWY_INLINE void add_straight_taps(int x, int step, M active, const Center& c, Sums& sums) const {
-    for (int j = -c_.rows; j <= c_.rows; ++j) {
-      const int y = y_ + j * step;
-      if (y < 0 || y >= job_.height) continue;
-      for (int i = -c_.columns; i <= c_.columns; ++i) {
-        if (i == 0 && j == 0) continue;
-        const int at = 4 * (x + i * step);
-        const auto dx = static_cast<float>(i * step), dy = static_cast<float>(j * step);
-        add_tap(c, load(row(job_.guide, y) + at), load(row(job_.signal, y) + at), set(dx), set(dy),
-                set(std::sqrt(dx * dx + dy * dy)), kernel(i) * kernel(j), active, sums);
-      }
+  HWY_INLINE Quad<V> result(const Sums& sums, const Quad<V>& value) const {
+    const V by_x = reciprocal(sums.total[0]);
+    const V by_y = visibility ? reciprocal(sums.total[1]) : by_x;
+    Quad<V> filtered{sums.value.x * by_x, sums.value.y * by_y, sums.value.z * by_x,
+                     sums.value.w * (by_y * by_y)};
+    if constexpr (visibility) filtered.z = filtered.z * by_x;
+    if (has(shared::atrous_keep_variance)) {
+      if constexpr (visibility) filtered.z = value.z;
+      filtered.w = value.w;
     }
+    return filtered;
   }
 
-  HWY_INLINE void add_scattered_taps(int x, V step, M active, const Center& c, Sums& sums) const {
-    const VI column = hn::Iota(di_, x);
-    V shift_x = hn::Zero(d_), shift_y = hn::Zero(d_);
-    if (has(shared::atrous_jitter)) {
-      const hn::RebindToUnsigned<D> du;
-      random_.at(hn::BitCast(du, column), static_cast<std::uint32_t>(y_), shift_x, shift_y);
-      const M large = hn::Gt(step, set(4.0f));
-      const V span = hn::IfThenElseZero(large, hn::Mul(set(0.5f), step));
-      shift_x = hn::Round(hn::Mul(hn::Sub(shift_x, set(0.5f)), span));
-      shift_y = hn::Round(hn::Mul(hn::Sub(shift_y, set(0.5f)), span));
-    }
-    for (int j = -c_.rows; j <= c_.rows; ++j) {
-      for (int i = -c_.columns; i <= c_.columns; ++i) {
-        if (i == 0 && j == 0) continue;
-        const V dx = hn::MulAdd(set(static_cast<float>(i)), step, shift_x);
-        const V dy = hn::MulAdd(set(static_cast<float>(j)), step, shift_y);
-        add_scattered_tap(column, dx, dy, kernel(i) * kernel(j), active, c, sums);
-      }
-    }
+  HWY_INLINE void add_taps(const Center& c, int step, int column, int y, M requested, Sums& sums) {
+    const auto row = [this](int at) { return rows_.row(at); };
+    for (const AtrousTap& tap : taps_.at(step, y, row)) add_tap(c, tap, column, requested, sums);
   }
 
-  HWY_INLINE void add_scattered_tap(VI column, V dx, V dy, float weight, M active, const Center& c,
-                                    Sums& sums) const {
-    const VI zero = hn::Zero(di_);
-    const VI x = hn::Add(column, hn::ConvertTo(di_, dx));
-    const VI y = hn::Add(hn::Set(di_, y_), hn::ConvertTo(di_, dy));
-    const VI inside_x = hn::Min(hn::Max(x, zero), hn::Set(di_, job_.width - 1));
-    const VI inside_y = hn::Min(hn::Max(y, zero), hn::Set(di_, job_.height - 1));
-    const M inside = hn::RebindMask(d_, hn::And(hn::Eq(x, inside_x), hn::Eq(y, inside_y)));
-    const M requested = hn::And(active, inside);
-    if (hn::AllFalse(d_, requested)) return;
-    const VI texel = hn::ShiftLeft<2>(inside_x);
-    const VI in_guide = hn::Add(hn::Mul(inside_y, hn::Set(di_, pitch_)), texel);
-    const VI in_signal = hn::Add(hn::Mul(inside_y, hn::Set(di_, signal_pitch_)), texel);
-    add_tap(c, gather4(d_, row(job_.guide, 0), in_guide),
-            gather4(d_, row(job_.signal, 0), in_signal), dx, dy,
-            hn::Sqrt(hn::MulAdd(dx, dx, hn::Mul(dy, dy))), weight, requested, sums);
-  }
-
-  /// Of the B3 spline (1, 4, 6, 4, 1) / 16, against its middle.
-  static float kernel(int i) {
-    const int distance = std::abs(i);
-    return distance == 0 ? 1.0f : distance == 1 ? 2.0f / 3.0f : 1.0f / 6.0f;
+  /// Pixels of each step by themselves.
+  HWY_INLINE void add_taps_of_steps(const Center& c, V step, int column, int y, M active,
+                                    Sums& sums) {
+    for (M left = active; !hn::AllFalse(d_, left);) {
+      const float next = hn::GetLane(hn::MinOfLanes(d_, hn::IfThenElse(left, step, set(1e9f))));
+      const M same = hn::And(left, hn::Eq(step, set(next)));
+      add_taps(c, static_cast<int>(next), column, y, same, sums);
+      left = hn::AndNot(same, left);
+    }
   }
 
   const D d_{};
-  const DI di_{};
   const Job& job_;
   const shared::AtrousConstants& c_;
-  int y_;
-  int pitch_;
-  int signal_pitch_;
-  RandomPairs<hn::RebindToUnsigned<D>> random_;
-  float* variance_x_;
-  float* variance_y_;
+  Area area_;
+  int least_step_, most_step_;
+  Rows rows_;
+  AtrousTapRows taps_;
 };
 
-template <class D>
-void filter_rows_of(const Job& job, int first, int last) {
-  std::vector<float> scratch(2 * static_cast<std::size_t>(job.width + 2));
-  for (int y = first; y < last; ++y) {
-    if (job.kind == Signal::visibility) {
-      Row<D, Signal::visibility>(job, y, scratch.data()).run();
-    } else {
-      Row<D, Signal::specular>(job, y, scratch.data()).run();
-    }
+template <class D, bool visibility>
+void filter_area_of(const Job& job, const Area& area) {
+  if (job.constants.columns == 0 || job.constants.rows == 0) {
+    AtrousArea<D, visibility, true>(job, area).run();
+  } else {
+    AtrousArea<D, visibility, false>(job, area).run();
   }
 }
 
-void filter_rows(const Job& job, int first, int last) {
+void filter_area(const Job& job, const Area& area) {
   using Wide = hn::ScalableTag<float>;
-  if (static_cast<std::size_t>(job.width) >= hn::Lanes(Wide())) {
-    filter_rows_of<Wide>(job, first, last);
+  using Single = hn::FixedTag<float, 1>;
+  const bool wide = job.width >= static_cast<int>(hn::Lanes(Wide()));
+  if (job.visibility) {
+    wide ? filter_area_of<Wide, true>(job, area) : filter_area_of<Single, true>(job, area);
   } else {
-    filter_rows_of<hn::FixedTag<float, 1>>(job, first, last);
+    wide ? filter_area_of<Wide, false>(job, area) : filter_area_of<Single, false>(job, area);
   }
 }
 
@@ -364,28 +313,39 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace heliograph::render::kernels {
 
-HWY_EXPORT(filter_rows);
+HWY_EXPORT(filter_area);
 
 namespace {
 
-void filter(const AtrousJob& pass, Signal kind) {
+/// Bands of rows for taps across. Taps down read many rows, which stay in the cache if they are
+/// narrow; short columns touch few enough pages for the translation of addresses.
+Areas divided(const Job& job) {
+  constexpr int band = 12, strip = 64, segment = 120, block = 64;
+  const auto parts = [](int size, int part) { return (size + part - 1) / part; };
+  if (job.constants.rows == 0) return {1, parts(job.height, band)};
+  if (job.constants.columns > 0) return {1, parts(job.height, block)};
+  return {std::max(job.width / strip, 1), parts(job.height, segment)};
+}
+
+void filter(const AtrousJob& pass, bool visibility) {
   const shared::FrameConstants& frame = pass.frame;
   const bool orthographic = (frame.flags & shared::frame_orthographic) != 0;
   const float footprint = 2.0f * std::abs(frame.unproject.y) / static_cast<float>(frame.extent.y);
-  const Job job{pass, kind, footprint, orthographic};
-  for_each_band(job.height, [&](int first, int last) {
-    HWY_DYNAMIC_DISPATCH(filter_rows)(job, first, last);
+  const Job job{pass, visibility, footprint, orthographic};
+  const Areas areas = divided(job);
+  for_each_range(areas.count(), 1, [&](int first, int) {
+    HWY_DYNAMIC_DISPATCH(filter_area)(job, areas.at(first, job.width, job.height));
   });
 }
 
 }  // namespace
 
 void visibility_atrous(const AtrousJob& job) {
-  filter(job, Signal::visibility);
+  filter(job, true);
 }
 
 void specular_atrous(const AtrousJob& job) {
-  filter(job, Signal::specular);
+  filter(job, false);
 }
 
 }  // namespace heliograph::render::kernels

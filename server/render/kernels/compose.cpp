@@ -1,11 +1,14 @@
 #include "render/kernels/compose.hpp"
 
+#include <type_traits>
+
 #include "render/kernels/simd/rows.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/kernels/compose.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/simd/environment.hpp"
 #include "render/kernels/simd/material.hpp"
 #include "render/kernels/simd/view.hpp"
 
@@ -27,7 +30,9 @@ class Composition {
 
  public:
   HWY_INLINE explicit Composition(const ComposeJob& job)
-      : job_(job), split_sum_(job.split_sum.texels, job.split_sum.size) {}
+      : job_(job),
+        split_sum_(job.split_sum.texels, job.split_sum.size),
+        environment_(job.frame, job.environment) {}
 
   HWY_INLINE void rows(int first, int last) const {
     const int lanes = static_cast<int>(hn::Lanes(d_));
@@ -115,6 +120,28 @@ class Composition {
     const M traced =
         hn::And(lit, hn::Le(m.roughness, set(job_.constants.max_roughness + 0.6f / 255.0f)));
     terms.specular = select(traced, m.specular_albedo, terms.specular);
+    const M looked_up = hn::AndNot(traced, lit);
+    if (enabled(shared::frame_environment_specular) && !hn::AllFalse(d_, looked_up)) {
+      const Triple<V> light = m.specular_albedo * reflection(m) * occlusion;
+      terms.ambient = select(looked_up, terms.ambient + light, terms.ambient);
+    }
+  }
+
+  /// environment_reflection() of shaders/lib/lighting/environment.glsl
+  HWY_INLINE Triple<V> reflection(const SurfaceMaterial<V>& m) const {
+    const V twice = dot(m.normal, m.eye) * set(2.0f);
+    const Triple<V> toward{hn::MulSub(m.normal.x, twice, m.eye.x),
+                           hn::MulSub(m.normal.y, twice, m.eye.y),
+                           hn::MulSub(m.normal.z, twice, m.eye.z)};
+    if constexpr (std::is_same_v<D, Tag>) {
+      return environment_.reflection(toward, m.roughness);
+    } else {
+      // One pixel: in all lanes.
+      const auto lanes = [](V value) HWY_ATTR { return number(hn::GetLane(value)); };
+      const Float3 found = environment_.reflection(
+          {lanes(toward.x), lanes(toward.y), lanes(toward.z)}, lanes(m.roughness));
+      return {set(hn::GetLane(found.x)), set(hn::GetLane(found.y)), set(hn::GetLane(found.z))};
+    }
   }
 
   /// environment_irradiance() of shaders/lib/lighting/environment.glsl
@@ -149,6 +176,7 @@ class Composition {
   const D d_{};
   const ComposeJob& job_;
   SquareTable<D> split_sum_;
+  EnvironmentLanes environment_;
 };
 
 void compose_rows(const ComposeJob& job, int first, int last) {
@@ -162,10 +190,6 @@ HWY_AFTER_NAMESPACE();
 namespace heliograph::render::kernels {
 
 HWY_EXPORT(compose_rows);
-
-bool can_compose(const shared::FrameConstants& frame, float max_roughness) {
-  return max_roughness >= 1.0f || (frame.flags & shared::frame_environment_specular) == 0;
-}
 
 void compose(const ComposeJob& job) {
   for_each_band(job.height, [&](int first, int last) {

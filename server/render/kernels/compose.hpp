@@ -3,6 +3,7 @@
 #include <span>
 
 #include "render/kernels/common/frame_job.hpp"
+#include "render/resources/host_tables.hpp"
 
 namespace heliograph::render::kernels {
 
@@ -22,11 +23,8 @@ struct ComposeConstants {
 struct ComposeJob : FrameJob<ComposeBindings, ComposeConstants> {
   std::span<const shared::Light> lights;  // punctual, the environment's sun among them
   SplitSum split_sum;
+  const Environment& environment;
 };
-
-/// Whether the kernel knows all that these settings ask of it: it does not look up the prefiltered
-/// environment.
-bool can_compose(const shared::FrameConstants& frame, float max_roughness);
 
 /// The frame from its signals on all processors, in the widest vectors that they have.
 void compose(const ComposeJob& job);

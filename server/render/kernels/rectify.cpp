@@ -19,6 +19,9 @@ class WindowBoxes {
   using M = hn::Mask<D>;
 
   static constexpr int count_row = 2 * channels;  // after values and their squares
+  static constexpr int surfaces_row = count_row + 1;
+  static constexpr float least_sampled =
+      channels == 2 ? shared::min_sampled_fraction : shared::min_sampled_fraction_specular;
 
  public:
   struct Box {
@@ -29,28 +32,36 @@ class WindowBoxes {
   HWY_INLINE WindowBoxes(const RectifyJob& job, int first, int last)
       : job_(job),
         radius_(job.constants.radius),
-        values_(channels + 1, job.width, first, last, radius_),
-        sums_(2 * channels + 1, job.width, 0, 1, radius_) {}
+        values_(channels + 2, job.width, first, last, radius_),
+        sums_(2 * channels + 2, job.width, 0, 1, radius_) {}
 
-  /// Takes one row of values, `load(x, y, values)`, and counts those of surfaces.
+  /// Takes one row of values and counts those of surfaces that were sampled: `load(x, y, values)`
+  /// gives the values and in which pixels they are known.
   template <class Load>
   HWY_INLINE void fill(int y, const Load& load) const {
     const int lanes = static_cast<int>(hn::Lanes(d_));
     if (y < 0 || y >= job_.height) {
-      for (int c = 0; c <= channels; ++c) std::fill_n(values_.row(c, y), job_.width, 0.0f);
+      for (int c = 0; c < channels + 2; ++c) std::fill_n(values_.row(c, y), job_.width, 0.0f);
       return;
     }
     for (int i = 0; i < job_.width; i += lanes) {
       const int x = std::min(i, job_.width - lanes);
       const V view_z = load4(d_, row_of<const float>(job_.guide, y) + 4 * x).w;
-      const M seen = hn::Gt(view_z, hn::Zero(d_));
       V values[channels];
-      load(x, y, values);
+      const M surface = hn::Gt(view_z, hn::Zero(d_));
+      const M seen = hn::And(surface, load(x, y, values));
       for (int c = 0; c < channels; ++c) {
         hn::StoreU(hn::IfThenElseZero(seen, values[c]), d_, values_.row(c, y) + x);
       }
-      hn::StoreU(hn::IfThenElseZero(seen, hn::Set(d_, 1.0f)), d_, values_.row(channels, y) + x);
+      const V one = hn::Set(d_, 1.0f);
+      hn::StoreU(hn::IfThenElseZero(seen, one), d_, values_.row(channels, y) + x);
+      hn::StoreU(hn::IfThenElseZero(surface, one), d_, values_.row(channels + 1, y) + x);
     }
+  }
+
+  /// Lanes with a surface, of a row that was filled.
+  HWY_INLINE M seen(int x, int y) const {
+    return hn::Gt(hn::LoadU(d_, values_.row(channels, y) + x), hn::Zero(d_));
   }
 
   /// Prepares the boxes of row `y`.
@@ -58,29 +69,37 @@ class WindowBoxes {
     const int lanes = static_cast<int>(hn::Lanes(d_));
     for (int i = 0; i < job_.width; i += lanes) {
       const int x = std::min(i, job_.width - lanes);
-      for (int c = 0; c <= channels; ++c) {
+      for (int c = 0; c < channels + 2; ++c) {
         V sum = hn::Zero(d_), squares = sum;
         for (int row = y - radius_; row <= y + radius_; ++row) {
           const V value = hn::LoadU(d_, values_.row(c, row) + x);
           sum = sum + value;
           if (c < channels) squares = hn::MulAdd(value, value, squares);
         }
-        hn::StoreU(sum, d_, sums_.row(c < channels ? c : count_row, 0) + x);
+        hn::StoreU(sum, d_, sums_.row(c < channels ? c : channels + c, 0) + x);
         if (c < channels) hn::StoreU(squares, d_, sums_.row(channels + c, 0) + x);
       }
     }
-    for (int c = 0; c <= count_row; ++c) sums_.fill_beyond(c, 0, 0.0f);
+    for (int c = 0; c <= surfaces_row; ++c) sums_.fill_beyond(c, 0, 0.0f);
   }
 
   HWY_INLINE Box box(int x) const {
     const V one = hn::Set(d_, 1.0f), zero = hn::Zero(d_);
-    const V inv_count = one / hn::Max(across(count_row, x), one);
-    const V scale = hn::Set(d_, job_.constants.scale);
+    const V count = across(count_row, x);
+    const V inv_count = one / hn::Max(count, one);
+    V scale = hn::Set(d_, job_.constants.scale), least = zero;
+    if (job_.constants.rectification == shared::rectification_gradient) {
+      // mean_box() of shaders/lib/denoise/rectification.glsl
+      const V surfaces = across(surfaces_row, x);
+      scale = scale * hn::Sqrt(surfaces * inv_count);
+      const V enough = hn::Set(d_, least_sampled) * surfaces;
+      least = hn::IfThenElseZero(hn::Lt(count, enough), hn::Set(d_, 1e30f));
+    }
     Box made;
     for (int c = 0; c < channels; ++c) {
       const V mean = across(c, x) * inv_count;
       const V spread = hn::NegMulAdd(mean, mean, across(channels + c, x) * inv_count);
-      const V half_extent = scale * hn::Sqrt(hn::Max(spread, zero));
+      const V half_extent = hn::MulAdd(scale, hn::Sqrt(hn::Max(spread, zero)), least);
       made.low[c] = mean - half_extent;
       made.high[c] = mean + half_extent;
     }
@@ -146,15 +165,15 @@ class Rectification {
     const auto& kernel = static_cast<const Kernel&>(*this);
     const WindowBoxes<D, channels> boxes(job_, first, last);
     const int radius = job_.constants.radius;
-    const auto load = [&kernel](int x, int y, V* values) HWY_ATTR { kernel.load(x, y, values); };
+    const auto load = [&kernel](int x, int y, V* values)
+                          HWY_ATTR { return kernel.load(x, y, values); };
     for (int y = first - radius; y < last + radius; ++y) boxes.fill(y, load);
     const int lanes = static_cast<int>(hn::Lanes(d_));
     for (int y = first; y < last; ++y) {
       boxes.sum_columns(y);
       for (int start = 0; start < job_.width; start += lanes) {
         const int x = std::min(start, job_.width - lanes);
-        const V view_z = load4(d_, row_of<const float>(job_.guide, y) + 4 * x).w;
-        const M requested = hn::And(hn::Gt(view_z, hn::Zero(d_)), from_column(d_, x, start));
+        const M requested = hn::And(boxes.seen(x, y), from_column(d_, x, start));
         if (!hn::AllFalse(d_, requested)) hold(kernel, boxes, x, y, requested);
       }
     }
@@ -194,15 +213,19 @@ class VisibilityRectification : public Rectification<D, VisibilityRectification<
   using Base::d_;
   using Base::job_;
   using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
   using Box = typename WindowBoxes<D, 2>::Box;
 
  public:
   HWY_INLINE explicit VisibilityRectification(const RectifyJob& job) : Base(job) {}
 
-  HWY_INLINE void load(int x, int y, V* values) const {
+  HWY_INLINE M load(int x, int y, V* values) const {
     const Pair<V> fast = load2(d_, row_of<const float>(job_.fast_history, y) + 2 * x);
-    values[0] = fast.x;
-    values[1] = fast.y;
+    const V unknown = hn::Set(d_, shared::change_unknown);
+    const M no_shadow = hn::Eq(fast.x, unknown), no_ambient = hn::Eq(fast.y, unknown);
+    values[0] = hn::IfThenZeroElse(no_shadow, fast.x);
+    values[1] = hn::IfThenZeroElse(no_ambient, fast.y);
+    return hn::Not(hn::And(no_shadow, no_ambient));
   }
 
   HWY_INLINE void hold(const Box& box, const Quad<V>& value, const Quad<V>& state,
@@ -227,8 +250,8 @@ class VisibilityRectification : public Rectification<D, VisibilityRectification<
         hn::Min(state.x, frames_under_motion(certain_change(box.low[0], box.high[0])));
     const V frames_y =
         hn::Min(state.y, frames_under_motion(certain_change(box.low[1], box.high[1])));
-    const V moved_x = changes[0] * (one / frames_x - one / state.x);
-    const V moved_y = changes[1] * (one / frames_y - one / state.y);
+    const V moved_x = changes[0] * (one / frames_x - one / hn::Max(state.x, one));
+    const V moved_y = changes[1] * (one / frames_y - one / hn::Max(state.y, one));
     new_value = {value.x + moved_x, value.y + moved_y, value.z * this->growth(state.x, frames_x),
                  value.w * this->growth(state.y, frames_y)};
     new_state = {frames_x, frames_y, hn::Abs(moved_x), hn::Abs(moved_y)};
@@ -241,17 +264,22 @@ class SpecularRectification : public Rectification<D, SpecularRectification<D>, 
   using Base::d_;
   using Base::job_;
   using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
   using Box = typename WindowBoxes<D, 3>::Box;
 
  public:
   HWY_INLINE explicit SpecularRectification(const RectifyJob& job) : Base(job) {}
 
-  HWY_INLINE void load(int x, int y, V* values) const {
+  HWY_INLINE M load(int x, int y, V* values) const {
     const Quad<V> fast = load4(d_, row_of<const float>(job_.fast_history, y) + 4 * x);
     const Triple<V> color = to_ycocg({fast.x, fast.y, fast.z});
     values[0] = color.x;
     values[1] = color.y;
     values[2] = color.z;
+    // Of changes those with a distance below 0 are of no sample.
+    const bool changes = job_.constants.rectification == shared::rectification_gradient;
+    const V zero = hn::Zero(d_);
+    return hn::Ge(changes ? fast.w : zero, zero);
   }
 
   HWY_INLINE void hold(const Box& box, const Quad<V>& value, const Quad<V>& state,
@@ -275,7 +303,7 @@ class SpecularRectification : public Rectification<D, SpecularRectification<D>, 
     const V change = certain_change(box.low[0], box.high[0]);
     const V bright = hn::Abs(to_ycocg({value.x, value.y, value.z}).x);
     const V frames = hn::Min(state.x, frames_under_motion(change / (bright + change + smallest)));
-    const V weight_change = one / frames - one / state.x;
+    const V weight_change = one / frames - one / hn::Max(state.x, one);
     const Quad<V> sampled = load4(d_, row_of<const float>(job_.fast_history, y) + 4 * x);
     const V moved = to_ycocg({sampled.x, sampled.y, sampled.z}).x * weight_change;
     new_value = {hn::MulAdd(sampled.x, weight_change, value.x),

@@ -84,9 +84,10 @@ class Reprojection {
   /// How normals change toward the more similar neighbour of each axis.
   HWY_INLINE V normal_change(const BandScratch& normals, int x, int y,
                              const Triple<V>& normal) const {
-    const auto to = [&](int dx, int dy)
-                        HWY_ATTR { return distance(normal, normal_at(normals, x + dx, y + dy)); };
-    return hn::Max(hn::Min(to(-1, 0), to(1, 0)), hn::Min(to(0, -1), to(0, 1)));
+    const auto to = [&](int dx, int dy) HWY_ATTR {
+      return squared_distance(normal, normal_at(normals, x + dx, y + dy));
+    };
+    return hn::Sqrt(hn::Max(hn::Min(to(-1, 0), to(1, 0)), hn::Min(to(0, -1), to(0, 1))));
   }
 
   HWY_INLINE M is_same(VI x, VI y, M requested, const Expected& expected) const {
@@ -101,7 +102,8 @@ class Reprojection {
     if (hn::AllFalse(d_, same)) return same;
     const Pair<V> encoded = texels.first_two(job_.previous_normals);
     const Triple<V> normal = octahedral_decode(encoded.x, encoded.y);
-    same = hn::And(same, hn::Le(distance(expected.normal, normal), expected.normal_allowance));
+    const V allowed = expected.normal_allowance * expected.normal_allowance;
+    same = hn::And(same, hn::Le(squared_distance(expected.normal, normal), allowed));
     return hn::And(same, hn::Gt(dot(expected.normal, normal), hn::Zero(d_)));
   }
 

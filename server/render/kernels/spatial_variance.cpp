@@ -1,14 +1,15 @@
 #include "render/kernels/spatial_variance.hpp"
 
+#include <cmath>
+#include <optional>
+
 #include "render/kernels/simd/rows.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/kernels/spatial_variance.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
-#include "hwy/contrib/math/math-inl.h"
-#include "render/kernels/simd/guide.hpp"
-#include "render/kernels/simd/history.hpp"
+#include "render/kernels/simd/signal_rows.hpp"
 #include "render/kernels/simd/view.hpp"
 
 #ifndef HELIOGRAPH_SPATIAL_VARIANCE_JOB
@@ -29,13 +30,14 @@ template <class D>
 class SpatialVariance {
   using V = hn::Vec<D>;
   using M = hn::Mask<D>;
-  using DI = hn::RebindToSigned<D>;
+  using Rows = SignalRows<D, true>;
 
   static constexpr int radius = 3;
   // Of shaders/lib/denoise/spatial_variance.glsl
   static constexpr float enough_neighbours = 8.0f;
   static constexpr float nearby_depth = 0.02f;
 
+  /// All exponents count octaves.
   struct Center {
     Triple<V> normal;
     V view_z;
@@ -43,27 +45,38 @@ class SpatialVariance {
     V curve;      // 1 / Z, 0 in orthographic views
     V flattened;  // 1 - Z * curve
     V footprint;  // half of a pixel's
+    V inv_nearby;
   };
   struct Sums {
     Quad<V> moments;
     V total;
-    Quad<V> loose_moments;  // of neighbours of other planes, too
-    V loose_total;
   };
 
  public:
   HWY_INLINE explicit SpatialVariance(const SignalJob& job)
       : job_(job),
         visibility_(job.visibility),
-        orthographic_((job.frame.flags & shared::frame_orthographic) != 0),
-        bounds_(job.width, job.height) {}
+        orthographic_((job.frame.flags & shared::frame_orthographic) != 0) {}
 
   HWY_INLINE void rows(int first, int last) const {
     const int lanes = static_cast<int>(hn::Lanes(d_));
+    std::optional<Rows> rows;  // most have long histories
     for (int y = first; y < last; ++y) {
       const ViewedRow<D> view(job_.frame, y);
-      for (int x = 0; x < job_.width; x += lanes) {
-        block(view, std::min(x, job_.width - lanes), y, x);
+      for (int start = 0; start < job_.width; start += lanes) {
+        const int x = std::min(start, job_.width - lanes);
+        const Quad<V> history = load(job_.history_length, x, y);
+        const Pair<V> frames{history.x, visibility_ ? history.y : history.x};
+        const M brief =
+            hn::Lt(hn::Min(frames.x, frames.y), set(job_.constants.spatial_variance_frames));
+        const M requested = hn::And(brief, from_column(d_, x, start));
+        if (hn::AllFalse(d_, requested)) continue;
+        if (!rows) {
+          rows.emplace(job_.guide, job_.moments, job_.width, job_.height,
+                       Area{0, job_.width, first, last}, radius, radius);
+        }
+        rows->advance(y);
+        block(*rows, view, x, y, requested, frames);
       }
     }
   }
@@ -74,31 +87,32 @@ class SpatialVariance {
     return load4(d_, row_of<const float>(image, y) + 4 * x);
   }
 
-  /// Pixels from `start` on; those before are done.
-  HWY_INLINE void block(const ViewedRow<D>& view, int x, int y, int start) const {
-    const Quad<V> history = load(job_.history_length, x, y);
-    const V frames_x = history.x, frames_y = visibility_ ? history.y : history.x;
-    const Quad<V> guide = load(job_.guide, x, y);
-    const V enough = set(job_.constants.spatial_variance_frames);
-    M requested = hn::And(guide_is_surface(guide), hn::Lt(hn::Min(frames_x, frames_y), enough));
-    requested = hn::And(requested, from_column(d_, x, start));
+  HWY_INLINE void block(const Rows& rows, const ViewedRow<D>& view, int x, int y, M requested,
+                        const Pair<V>& frames) const {
+    const Center c = center(rows, view, x, y);
+    requested = hn::And(requested, hn::Gt(c.view_z, hn::Zero(d_)));
     if (hn::AllFalse(d_, requested)) return;
-    const Sums sums = gathered(center(view, guide, x, y), x, y);
+    const Sums sums = gathered<false>(rows, c, x, y);
     requested = hn::And(requested, hn::Gt(sums.total, hn::Zero(d_)));
     const V one = set(1.0f);
     const V alone = clamped(
         (set(enough_neighbours) - sums.total) * set(1.0f / (enough_neighbours - 2.0f)), 0.0f, 1.0f);
-    const Quad<V> mean = mixed(sums, alone);
+    const V strict = one / sums.total;
+    Quad<V> mean{sums.moments.x * strict, sums.moments.y * strict, sums.moments.z * strict,
+                 sums.moments.w * strict};
+    if (!hn::AllFalse(d_, hn::And(requested, hn::Gt(alone, hn::Zero(d_))))) {
+      mean = mixed(mean, gathered<true>(rows, c, x, y), alone);
+    }
     float* const signal = row_of<float>(job_.signal, y) + 4 * x;
     const Quad<V> value = load4(d_, signal);
     Quad<V> changed = value;
     if (visibility_) {
-      changed.z = hn::Max(variance(mean.x, mean.z, frames_x), value.z);
-      changed.w = hn::Max(variance(mean.y, mean.w, frames_y), value.w);
-      changed.x = mixed(value.x, mean.x, alone / hn::Max(frames_x, one));
-      changed.y = mixed(value.y, mean.y, alone / hn::Max(frames_y, one));
+      changed.z = hn::Max(variance(mean.x, mean.z, frames.x), value.z);
+      changed.w = hn::Max(variance(mean.y, mean.w, frames.y), value.w);
+      changed.x = mixed(value.x, mean.x, alone / hn::Max(frames.x, one));
+      changed.y = mixed(value.y, mean.y, alone / hn::Max(frames.y, one));
     } else {
-      changed.w = hn::Max(variance(mean.z, mean.w, frames_x), value.w);
+      changed.w = hn::Max(variance(mean.z, mean.w, frames.x), value.w);
     }
     store4(d_, select(requested, changed, value), signal);
   }
@@ -106,14 +120,10 @@ class SpatialVariance {
   HWY_INLINE V mixed(V from, V to, V fraction) const {
     return hn::MulAdd(to - from, fraction, from);
   }
-  HWY_INLINE Quad<V> mixed(const Sums& sums, V alone) const {
-    const V strict = set(1.0f) / sums.total;
-    const V loose = set(1.0f) / hn::Max(sums.loose_total, set(1e-6f));
-    const auto mean = [&](V of_plane, V of_all) {
-      return mixed(of_plane * strict, of_all * loose, alone);
-    };
-    return {mean(sums.moments.x, sums.loose_moments.x), mean(sums.moments.y, sums.loose_moments.y),
-            mean(sums.moments.z, sums.loose_moments.z), mean(sums.moments.w, sums.loose_moments.w)};
+  HWY_INLINE Quad<V> mixed(const Quad<V>& mean, const Sums& loose, V alone) const {
+    const V by = set(1.0f) / hn::Max(loose.total, set(1e-6f));
+    return {mixed(mean.x, loose.moments.x * by, alone), mixed(mean.y, loose.moments.y * by, alone),
+            mixed(mean.z, loose.moments.z * by, alone), mixed(mean.w, loose.moments.w * by, alone)};
   }
 
   HWY_INLINE V variance(V first, V second, V frames) const {
@@ -124,77 +134,71 @@ class SpatialVariance {
     return of_mean ? spread / known : spread;
   }
 
-  HWY_INLINE Center center(const ViewedRow<D>& view, const Quad<V>& guide, int x, int y) const {
+  HWY_INLINE Center center(const Rows& rows, const ViewedRow<D>& view, int x, int y) const {
+    const float* const texels = rows.row(y) + x;
     Center c;
-    c.normal = decode_guide(guide).normal;
-    c.view_z = guide.w;
+    c.normal = {rows.load(texels, Rows::normal_x), rows.load(texels, Rows::normal_y),
+                rows.load(texels, Rows::normal_z)};
+    c.view_z = rows.load(texels, Rows::view_z);
     c.slope = load2(d_, row_of<const float>(job_.depth_slope, y) + 2 * x);
-    c.curve = orthographic_ ? hn::Zero(d_) : set(1.0f) / hn::Max(guide.w, set(1e-20f));
-    c.flattened = hn::NegMulAdd(c.view_z, c.curve, set(1.0f));
-    c.footprint = set(0.5f) * view.footprint(guide.w);
+    c.curve = orthographic_ ? hn::Zero(d_) : set(1.0f) / hn::Max(c.view_z, set(1e-20f));
+    c.flattened = orthographic_ ? set(1.0f) : hn::Zero(d_);
+    c.footprint = set(0.5f) * view.footprint(c.view_z);
+    c.inv_nearby = set(octaves) / hn::Max(set(nearby_depth) * c.view_z, set(1e-30f));
     return c;
   }
 
-  HWY_INLINE Sums gathered(const Center& c, int x, int y) const {
+  /// `loose`: of neighbours of other planes, too.
+  template <bool loose>
+  HWY_INLINE Sums gathered(const Rows& rows, const Center& c, int x, int y) const {
     const V zero = hn::Zero(d_);
-    const Quad<V> none{zero, zero, zero, zero};
-    Sums sums{none, zero, none, zero};
-    const int lanes = static_cast<int>(hn::Lanes(d_));
-    const bool inside = x >= radius && x + lanes + radius <= job_.width;
+    Sums sums{{zero, zero, zero, zero}, zero};
     for (int dy = -radius; dy <= radius; ++dy) {
       if (y + dy < 0 || y + dy >= job_.height) continue;
       for (int dx = -radius; dx <= radius; ++dx) {
-        if (inside) {
-          add_tap(c, dx, dy, load(job_.guide, x + dx, y + dy), load(job_.moments, x + dx, y + dy),
-                  from_column(d_, x, x), sums);
-        } else {
-          const auto column = hn::Iota(DI(), x + dx), row = hn::Set(DI(), y + dy);
-          const TexelGather<D> texels = bounds_.gather(column, row);
-          add_tap(c, dx, dy, texels.four(job_.guide), texels.four(job_.moments),
-                  bounds_.contain(column, row), sums);
-        }
+        add_tap<loose>(rows, c, rows.row(y + dy) + x + dx, dx, dy, sums);
       }
     }
     return sums;
   }
 
   /// Weights of shaders/lib/denoise/edge_stopping.glsl
-  HWY_INLINE void add_tap(const Center& c, int dx, int dy, const Quad<V>& guide,
-                          const Quad<V>& moments, M inside, Sums& sums) const {
-    const M valid = hn::And(inside, guide_is_surface(guide));
-    const float away = std::sqrt(static_cast<float>(dx * dx + dy * dy));
-    const V rise =
-        hn::MulAdd(c.slope.x, set(static_cast<float>(dx)), c.slope.y * set(static_cast<float>(dy)));
-    const V straight = hn::NegMulAdd(rise, c.curve, set(1.0f));
-    const V off_plane =
-        hn::Abs(hn::NegMulAdd(rise, c.flattened, hn::MulSub(guide.w, straight, c.view_z)));
-    const V allowed = hn::MulAdd(c.footprint, set(away), hn::Abs(rise));
-    const V zero = hn::Zero(d_);
-    const V cosine = guide_cosine(c.normal, guide);
-    const V exponent = hn::MulAdd(set(128.0f), hn::Log(d_, clamped(cosine, 1e-6f, 1.0f)),
-                                  hn::Neg(off_plane / hn::Max(allowed, set(1e-30f))));
-    // Below e^-80 a weight is nothing; the exponential stays in its range.
-    const V weight = hn::IfThenElseZero(valid, hn::Exp(d_, hn::Max(exponent, set(-80.0f))));
-    add(weight, moments, sums.moments, sums.total);
-    const V depth_difference = hn::Abs(guide.w - c.view_z) / (set(nearby_depth) * c.view_z);
-    const V loose =
-        hn::Exp(d_, hn::Max(hn::Neg(depth_difference), set(-80.0f))) * hn::Max(cosine, zero);
-    add(hn::IfThenElseZero(valid, loose), moments, sums.loose_moments, sums.loose_total);
-  }
-
-  static HWY_INLINE void add(V weight, const Quad<V>& moments, Quad<V>& sum, V& total) {
-    sum.x = hn::MulAdd(weight, moments.x, sum.x);
-    sum.y = hn::MulAdd(weight, moments.y, sum.y);
-    sum.z = hn::MulAdd(weight, moments.z, sum.z);
-    sum.w = hn::MulAdd(weight, moments.w, sum.w);
-    total = total + weight;
+  template <bool loose>
+  HWY_INLINE void add_tap(const Rows& rows, const Center& c, const float* texels, int dx, int dy,
+                          Sums& sums) const {
+    const auto plane = [&](int index) HWY_ATTR { return rows.load(texels, index); };
+    const V z = plane(Rows::view_z);
+    const M valid = hn::Gt(z, hn::Zero(d_));
+    const V cosine = dot(
+        c.normal, Triple<V>{plane(Rows::normal_x), plane(Rows::normal_y), plane(Rows::normal_z)});
+    V weight;
+    if constexpr (loose) {
+      const V exponent = hn::NegMulAdd(hn::Abs(z - c.view_z), c.inv_nearby, set(weight_one));
+      weight = edge_weight(valid, exponent) * hn::Max(cosine, hn::Zero(d_));
+    } else {
+      const auto x = static_cast<float>(dx), y = static_cast<float>(dy);
+      const V rise = hn::MulAdd(c.slope.x, set(x), c.slope.y * set(y));
+      const V straight = hn::NegMulAdd(rise, c.curve, set(1.0f));
+      const V off_plane =
+          hn::Abs(hn::NegMulAdd(rise, c.flattened, hn::MulSub(z, straight, c.view_z)));
+      const V allowed = hn::MulAdd(c.footprint, set(std::sqrt(x * x + y * y)), hn::Abs(rise));
+      const V inv_allowed =
+          hn::ApproximateReciprocal(hn::Max(allowed * set(1.0f / octaves), set(1e-30f)));
+      const V of_normal =
+          hn::MulAdd(set(128.0f * octaves), cosine, set(weight_one - 128.0f * octaves));
+      weight = edge_weight(valid, hn::NegMulAdd(off_plane, inv_allowed, of_normal));
+    }
+    sums.moments.x = hn::MulAdd(weight, plane(Rows::channels), sums.moments.x);
+    sums.moments.y = hn::MulAdd(weight, plane(Rows::channels + 1), sums.moments.y);
+    sums.moments.z = hn::MulAdd(weight, plane(Rows::channels + 2), sums.moments.z);
+    sums.moments.w = hn::MulAdd(weight, plane(Rows::channels + 3), sums.moments.w);
+    sums.total = sums.total + weight;
   }
 
   const D d_{};
   const SignalJob& job_;
   bool visibility_;
   bool orthographic_;
-  Bounds<D> bounds_;
 };
 
 void spatial_variance_rows(const SignalJob& job, int first, int last) {

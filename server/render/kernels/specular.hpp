@@ -19,11 +19,13 @@ struct SpecularRaysBindings {
   gpu::Read<Stage> layers;
   gpu::Read<Stage> motion;  // rgba32f
   RaySink<Stage> rays;
-  gpu::Write<Stage> radiance;            // rgba32f; cleared
+  gpu::Read<Stage> planned;              // r32ui, shaders/shared/sampling.h, or anything
+  gpu::Write<Stage> radiance;            // rgba32f; cleared; w < 0 where the plan leaves it out
   gpu::OptionalWrite<Stage> directions;  // rgba32f
 };
 struct SpecularRaysConstants {
   float max_roughness;
+  std::uint32_t by_plan;  // 0: every pixel is sampled
 };
 struct SpecularRaysJob : FrameJob<SpecularRaysBindings, SpecularRaysConstants> {
   SplitSum split_sum;

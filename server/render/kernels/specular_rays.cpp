@@ -1,24 +1,13 @@
+#include "render/kernels/common/tile.hpp"
 #include "render/kernels/simd/rows.hpp"
 #include "render/kernels/specular.hpp"
+#include "shaders/shared/sampling.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/kernels/specular_rays.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "render/kernels/simd/specular_lobe.hpp"
-
-#ifndef HELIOGRAPH_SPECULAR_TILE
-#define HELIOGRAPH_SPECULAR_TILE
-namespace heliograph::render::kernels {
-
-/// Cells whose rays lie together in the stream: neighbours see the same part of the scene.
-inline constexpr int tile_side = 16;
-
-struct Cells {
-  int width, height;
-};
-
-}  // namespace heliograph::render::kernels
-#endif
+#include "render/kernels/simd/tiles.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
@@ -33,19 +22,41 @@ class Generation {
         scale_(job.directions ? 2 : 1),
         random_(specular_pairs(job.frame, 4, scale_)) {}
 
+  /// Clears the cells; lists those whose rays are to be made.
+  HWY_INLINE void clear(const PixelLanes& cell, Mask inside, PixelList& traced) const {
+    const PixelLanes pixel = traced_pixel(cell);
+    const Mask seen = hn::Gt(gathered_last(job_.motion, pixel), zero());
+    Mask sampled = seen;
+    Float4 radiance{zero(), zero(), zero(), zero()};
+    if (job_.constants.by_plan != 0) {
+      const Integer word = gather(job_.planned.data, texel_index(job_.planned, pixel, 1));
+      const Integer bit = hn::And(word, integer(static_cast<int>(shared::plan_specular)));
+      sampled = hn::And(seen, float_mask(hn::Ne(bit, integer(0))));
+      // A negative distance: no sample, and how far it was in the frame before.
+      const Float before = as_float(hn::ShiftLeft<16>(word));
+      const Float away = hn::Min(hn::Neg(before), number(-1e-6f));
+      radiance.w = hn::IfThenElseZero(hn::AndNot(sampled, seen), away);
+    }
+    const TexelIndices indices(cell);
+    const Texels<4> cleared(radiance);
+    for_each_lane(inside, [&](std::size_t lane) { cleared.put(job_.radiance, lane, indices); });
+    if (job_.directions) {
+      const Texels<4> nowhere(Float4{zero(), zero(), zero(), zero()});
+      for_each_lane(inside, [&](std::size_t lane) { nowhere.put(job_.directions, lane, indices); });
+    }
+    traced.add(cell, hn::And(inside, sampled));
+  }
+
   /// @return how many rays there are, which lie at `made`
   HWY_INLINE std::size_t block(const PixelLanes& cell, Mask inside, shared::Ray* made) const {
     const PixelLanes pixel = traced_pixel(cell);
-    const Integer motion = texel_index(job_.motion, pixel, 4);
-    const Float view_z = gather(job_.motion.row<const float>(0), hn::Add(motion, integer(3)));
-    const Float4 packed = unorm8(job_.surface, pixel);
-    Mask requested = hn::And(inside, hn::Gt(view_z, zero()));
-    requested = hn::And(requested, hn::Le(packed.z, number(0.5f)));  // not unlit
+    const Float view_z = gathered_last(job_.motion, pixel);
+    const Float4 packed = gathered_unorm8(job_.surface, pixel);
+    const Mask requested = hn::And(inside, hn::Le(packed.z, number(0.5f)));  // not unlit
     if (none(requested)) return 0;
 
-    const Float4 color = unorm8(job_.base_color, pixel);
-    const Float4 encoded =
-        gather4(tag, job_.normals.row<const float>(0), texel_index(job_.normals, pixel, 4));
+    const Float4 color = gathered_unorm8(job_.base_color, pixel);
+    const Float4 encoded = gathered4(job_.normals, pixel);
     const MaterialLanes m =
         make_material(tag, Float3{color.x * color.x, color.y * color.y, color.z * color.z},
                       packed.y, packed.x, octahedral_decode(encoded.x, encoded.y),
@@ -75,16 +86,6 @@ class Generation {
   }
 
  private:
-  /// Word of a pixel in an image of `words` words a texel.
-  static HWY_INLINE Integer texel_index(const gpu::HostView& image, const PixelLanes& p,
-                                        int words) {
-    const auto pitch = static_cast<int>(image.row_pitch / sizeof(float));
-    return hn::Add(hn::Mul(p.y, integer(pitch)), hn::Mul(p.x, integer(words)));
-  }
-  static HWY_INLINE Float4 unorm8(const gpu::HostView& image, const PixelLanes& p) {
-    return unpack_unorm8(gather(image.data, texel_index(image, p, 1)));
-  }
-
   /// The pixel that traces for a cell: of 2 x 2 another in every frame.
   HWY_INLINE PixelLanes traced_pixel(const PixelLanes& cell) const {
     if (scale_ == 1) return cell;
@@ -112,27 +113,17 @@ class Generation {
   RandomPairs<UnsignedTag> random_;
 };
 
-void make_tile(const SpecularRaysJob& job, const Cells& cells, int tile_x, int tile_y) {
-  const int left = tile_x * tile_side, top = tile_y * tile_side;
-  const int right = std::min(left + tile_side, cells.width);
-  const int bottom = std::min(top + tile_side, cells.height);
-  for (int y = top; y < bottom; ++y) {
-    float* const row = job.radiance.row<float>(static_cast<std::uint32_t>(y));
-    std::fill(row + 4 * left, row + 4 * right, 0.0f);
-    if (!job.directions) continue;
-    float* const directions = job.directions.row<float>(static_cast<std::uint32_t>(y));
-    std::fill(directions + 4 * left, directions + 4 * right, 0.0f);
-  }
+void make_tile(const SpecularRaysJob& job, const Tile& tile) {
   const Generation generation(job);
+  PixelList traced;
+  for_each_pixel(
+      tile, [&](const PixelLanes& cells, Mask inside) { generation.clear(cells, inside, traced); });
   std::array<shared::Ray, tile_side * tile_side> made;
   std::size_t count = 0;
-  for (int i = 0; i < tile_side * tile_side; i += static_cast<int>(hn::Lanes(tag))) {
-    const Integer index = hn::Iota(integer_tag, i);
-    const Integer x = hn::Add(integer(left), hn::And(index, integer(tile_side - 1)));
-    const Integer y = hn::Add(integer(top), hn::ShiftRight<4>(index));
-    const PixelLanes cell{hn::Min(x, integer(right - 1)), hn::Min(y, integer(bottom - 1))};
-    const Mask inside = float_mask(hn::And(hn::Eq(x, cell.x), hn::Eq(y, cell.y)));
-    if (!none(inside)) count += generation.block(cell, inside, made.data() + count);
+  for (int i = 0; i < traced.size(); i += static_cast<int>(hn::Lanes(tag))) {
+    Mask valid;
+    const PixelLanes cells = traced.from(i, valid);
+    count += generation.block(cells, valid, made.data() + count);
   }
   if (count) job.rays.append({made.data(), count});
 }
@@ -147,14 +138,11 @@ HWY_EXPORT(make_tile);
 
 void specular_rays(const SpecularRaysJob& job) {
   const int scale = job.directions ? 2 : 1;
-  const Cells cells{(static_cast<int>(job.frame.extent.x) + scale - 1) / scale,
-                    (static_cast<int>(job.frame.extent.y) + scale - 1) / scale};
-  const int across = (cells.width + tile_side - 1) / tile_side;
-  const int tiles = across * ((cells.height + tile_side - 1) / tile_side);
-  for_each_range(tiles, 1, [&](int first, int last) {
-    for (int tile = first; tile < last; ++tile) {
-      HWY_DYNAMIC_DISPATCH(make_tile)(job, cells, tile % across, tile / across);
-    }
+  const auto cells = [scale](std::uint32_t size) {
+    return (static_cast<int>(size) + scale - 1) / scale;
+  };
+  for_each_tile(cells(job.frame.extent.x), cells(job.frame.extent.y), [&](const Tile& tile) {
+    HWY_DYNAMIC_DISPATCH(make_tile)(job, tile);
   });
   job.rays.end();
 }

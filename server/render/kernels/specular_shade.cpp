@@ -28,15 +28,13 @@ class HitShading {
 
   /// @return how many shadow rays there are, which lie at `shadows`
   std::size_t block(int first, int last, shared::Ray* shadows) const {
-    const Integer lane = hn::Iota(integer_tag, first);
-    const Integer index = hn::Min(lane, integer(last - 1));
-    const Mask requested = float_mask(hn::Lt(lane, integer(last)));
-    const RayLanes ray = load_rays(job_.rays.rays, index);
+    const Mask requested = float_mask(hn::Lt(hn::Iota(integer_tag, first), integer(last)));
+    const RayLanes ray = load_rays(job_.rays.rays, first, last);
     const PixelLanes pixel = unpack_pixel(ray.pixel);
     const PixelLanes cell = job_.constants.scale == 1 ? pixel
                                                       : PixelLanes{hn::ShiftRight<1>(pixel.x),
                                                                    hn::ShiftRight<1>(pixel.y)};
-    const HitLanes hit = load_hits(job_.hits, index, requested);
+    const HitLanes hit = load_hits(job_.hits, first, last);
     const Mask missed = hn::AndNot(hit.met, requested);
     Float3 light = numbers(0.0f);
     Float travelled = number(distance_of_misses);

@@ -1,3 +1,4 @@
+#include "render/kernels/common/row_ring.hpp"
 #include "render/kernels/simd/rows.hpp"
 #include "render/kernels/temporal.hpp"
 
@@ -6,6 +7,7 @@
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "hwy/contrib/math/math-inl.h"
+#include "render/kernels/simd/edge_stopping.hpp"
 #include "render/kernels/simd/guide.hpp"
 #include "render/kernels/simd/moments.hpp"
 #include "render/kernels/simd/view.hpp"
@@ -21,15 +23,14 @@ class SpecularAccumulation {
   using VI = hn::Vec<DI>;
 
   static constexpr float no_hit = 1e9f;
+  /// Of a row and its neighbours: unit normal and position in the world, instance as bits.
+  enum Plane { normal, position = 3, radiance = 6, roughness = 9, view_z, instance, hit, planes };
 
   struct HistorySample {
     Triple<V> radiance;
     V frames;  // 0: nothing
     Pair<V> moments;
     Triple<V> fast;
-  };
-  struct Views {
-    ViewedRow<D> above, here, below;
   };
   using Surface = Guide<V>;
 
@@ -38,13 +39,14 @@ class SpecularAccumulation {
       : job_(job), c_(job.constants), bounds_(job.width, job.height) {}
 
   HWY_INLINE void rows(int first, int last) const {
-    const BandScratch hits(1, job_.width, first, last, 1);
-    for (int y = first - 1; y <= last; ++y) fill_hits(hits, y);
+    const RowRing ring(planes, job_.width, 1, 3);
+    int next = std::max(first - 1, 0);
     const int lanes = static_cast<int>(hn::Lanes(d_));
     for (int y = first; y < last; ++y) {
-      const Views views{{job_.frame, y - 1}, {job_.frame, y}, {job_.frame, y + 1}};
+      for (; next <= std::min(y + 1, job_.height - 1); ++next) fill(ring, next);
+      const ViewedRow<D> view(job_.frame, y);
       for (int x = 0; x < job_.width; x += lanes) {
-        block(hits, views, std::min(x, job_.width - lanes), y);
+        block(ring, view, std::min(x, job_.width - lanes), y);
       }
     }
   }
@@ -55,27 +57,52 @@ class SpecularAccumulation {
     return load4(d_, row_of<const float>(image, y) + 4 * x);
   }
 
-  /// Hit distances of a row, `no_hit` where there is none to be known.
-  HWY_INLINE void fill_hits(const BandScratch& hits, int y) const {
-    if (y < 0 || y >= job_.height) {
-      std::fill_n(hits.row(0, y) - 1, job_.width + 2, no_hit);
-      return;
-    }
+  HWY_INLINE V plane(const RowRing& ring, int y, int index, int x) const {
+    return hn::LoadU(d_, ring.row(y) + index * ring.pitch() + x);
+  }
+  HWY_INLINE Triple<V> three_planes(const RowRing& ring, int y, int first, int x) const {
+    return {plane(ring, y, first, x), plane(ring, y, first + 1, x), plane(ring, y, first + 2, x)};
+  }
+
+  /// Takes a row apart; `no_hit` where the hit distance is not to be known.
+  HWY_INLINE void fill(const RowRing& ring, int y) const {
+    const ViewedRow<D> view(job_.frame, y);
+    float* const row = ring.row(y);
     const int lanes = static_cast<int>(hn::Lanes(d_));
     for (int i = 0; i < job_.width; i += lanes) {
       const int x = std::min(i, job_.width - lanes);
-      const V distance = load(job_.noisy, x, y).w;
-      const M known = hn::AndNot(is_bad(distance), hn::Gt(distance, hn::Zero(d_)));
-      hn::StoreU(hn::IfThenElse(known, distance, set(no_hit)), d_, hits.row(0, y) + x);
+      const auto store = [&](int index, V v)
+                             HWY_ATTR { hn::StoreU(v, d_, row + index * ring.pitch() + x); };
+      const auto store3 = [&](int index, const Triple<V>& v) HWY_ATTR {
+        store(index, v.x);
+        store(index + 1, v.y);
+        store(index + 2, v.z);
+      };
+      const Surface s = decode_guide(load(job_.guide, x, y));
+      store3(normal, s.normal);
+      store3(position, view.world_position(x, s.view_z));
+      store(roughness, s.roughness);
+      store(view_z, s.view_z);
+      const VI id = hn::LoadU(di_, row_of<const int>(job_.instance, y) + x);
+      store(instance, hn::BitCast(d_, id));
+      const Quad<V> sample = load(job_.noisy, x, y);
+      const Triple<V> now{sample.x, sample.y, sample.z};
+      const V zero = hn::Zero(d_);
+      store3(radiance, select(is_bad(now), Triple<V>{zero, zero, zero}, now));
+      // Where no sample was taken the distance is that of the frame before, negated.
+      const V distance = hn::Abs(sample.w);
+      const M known = hn::AndNot(is_bad(distance), hn::Gt(distance, zero));
+      store(hit, hn::IfThenElse(known, distance, set(no_hit)));
     }
-    hits.fill_beyond(0, y, no_hit);
+    float* const hits = row + hit * ring.pitch();
+    hits[-1] = hits[job_.width] = no_hit;
   }
 
   /// The shortest of the neighbours' hit distances.
-  HWY_INLINE V hit_distance(const BandScratch& hits, int x, int y) const {
+  HWY_INLINE V hit_distance(const RowRing& ring, int x, int y) const {
     V nearest = set(no_hit);
-    for (int i = 0; i < 9; ++i) {
-      nearest = hn::Min(nearest, hn::LoadU(d_, hits.row(0, y + i / 3 - 1) + x + i % 3 - 1));
+    for (int row = std::max(y - 1, 0); row <= std::min(y + 1, job_.height - 1); ++row) {
+      for (int i = -1; i <= 1; ++i) nearest = hn::Min(nearest, plane(ring, row, hit, x + i));
     }
     return hn::IfThenElseZero(hn::Lt(nearest, set(no_hit)), nearest);
   }
@@ -105,24 +132,21 @@ class SpecularAccumulation {
     V normal_change;
   };
 
-  HWY_INLINE Curvature local_curvature(const Views& views, int x, int y, VI instance,
-                                       const Surface& s, const Triple<V>& position) const {
+  HWY_INLINE Curvature local_curvature(const RowRing& ring, int x, int y, const Surface& s,
+                                       const Triple<V>& here) const {
     const V zero = hn::Zero(d_);
     if ((c_.flags & shared::temporal_curved_reflectors) == 0) return {zero, zero};
+    const VI own = hn::BitCast(di_, plane(ring, y, instance, x));
     V curvature = zero, normal_changes = zero, count = zero;
     for (int i = 0; i < 4; ++i) {
       const int column = x + (i < 2 ? 2 * i - 1 : 0), row = y + (i < 2 ? 0 : 2 * i - 5);
-      const VI at_x = hn::Iota(di_, column), at_y = hn::Set(di_, row);
-      const TexelGather<D> texels = bounds_.gather(at_x, at_y);
-      const auto own = hn::Eq(texels.word(job_.instance), instance);
-      const Quad<V> texel = texels.four(job_.guide);
-      const M valid = hn::And(hn::And(bounds_.contain(at_x, at_y), hn::RebindMask(d_, own)),
-                              guide_is_surface(texel));
-      const Guide<V> neighbour = decode_guide(texel);
-      const auto& view = row < y ? views.above : row > y ? views.below : views.here;
-      const Triple<V> step = view.world_position(column, neighbour.view_z) - position;
-      const Triple<V> normal_change = neighbour.normal - s.normal;
-      const V along = dot(normal_change, step) / hn::Max(dot(step, step), set(1e-20f));
+      if (row < 0 || row >= job_.height) continue;
+      const VI there = hn::BitCast(di_, plane(ring, row, instance, column));
+      const M same = hn::RebindMask(d_, hn::Eq(there, own));
+      const M valid = hn::And(same, hn::Gt(plane(ring, row, view_z, column), zero));
+      const Triple<V> step = three_planes(ring, row, position, column) - here;
+      const Triple<V> normal_change = three_planes(ring, row, normal, column) - s.normal;
+      const V along = dot(normal_change, step) * reciprocal(hn::Max(dot(step, step), set(1e-20f)));
       curvature = curvature + hn::IfThenElseZero(valid, along);
       normal_changes = normal_changes + hn::IfThenElseZero(valid, length(normal_change));
       count = count + hn::IfThenElseZero(valid, set(1.0f));
@@ -139,14 +163,13 @@ class SpecularAccumulation {
   }
 
   /// Motion of the virtual positions from this frame to the frame before, in pixels.
-  HWY_INLINE Pair<V> virtual_motion(const Views& views, const BandScratch& hits, int x, int y,
-                                    const Surface& s, const Triple<V>& position,
-                                    V curvature) const {
-    const Triple<V> eye = views.here.to_eye(x);
-    const V far = hit_distance(hits, x, y), dominant_factor = specular_dominant_factor(s.roughness);
+  HWY_INLINE Pair<V> virtual_motion(const RowRing& ring, const ViewedRow<D>& view, int x, int y,
+                                    const Surface& s, const Triple<V>& here, V curvature) const {
+    const Triple<V> eye = view.to_eye(x);
+    const V far = hit_distance(ring, x, y), dominant_factor = specular_dominant_factor(s.roughness);
     const V cosine = clamped(dot(s.normal, eye), shared::reflector_min_cosine, 1.0f);
     const auto behind = [&](V along_curvature) HWY_ATTR {
-      return motion_of(position - eye * (dominant_factor * virtual_distance(far, along_curvature)));
+      return motion_of(here - eye * (dominant_factor * virtual_distance(far, along_curvature)));
     };
     const Pair<V> within = behind(curvature / cosine);
     if (hn::AllTrue(d_, hn::Eq(curvature, hn::Zero(d_)))) return within;
@@ -165,12 +188,12 @@ class SpecularAccumulation {
   }
 
   /// Whether the frame before shows the same reflector there.
-  HWY_INLINE M same_reflector(VI x, VI y, M requested, VI instance, const Surface& s,
+  HWY_INLINE M same_reflector(VI x, VI y, M requested, VI own, const Surface& s,
                               V normal_change) const {
     const M candidates = hn::And(requested, bounds_.contain(x, y));
     if (hn::AllFalse(d_, candidates)) return candidates;
     const TexelGather<D> texels = bounds_.gather(x, y);
-    const auto shown = hn::Eq(texels.word(job_.previous_instance), instance);
+    const auto shown = hn::Eq(texels.word(job_.previous_instance), own);
     M same = hn::And(candidates, hn::RebindMask(d_, shown));
     same = hn::And(same, hn::Gt(texels.last_of_four(job_.previous_motion), hn::Zero(d_)));
     const Pair<V> encoded = texels.first_two(job_.previous_normals);
@@ -187,13 +210,12 @@ class SpecularAccumulation {
                                      s.roughness, set(shared::reflector_roughness_tolerance))));
   }
 
-  HWY_INLINE HistoryTaps<D> virtual_taps(V x, V y, M seen, VI instance, const Surface& s,
+  HWY_INLINE HistoryTaps<D> virtual_taps(V x, V y, M requested, VI own, const Surface& s,
                                          V normal_change) const {
     HistoryTaps<D> taps(x, y);
     for (int i = 0; i < 4; ++i) {
-      const M weighs = hn::And(seen, hn::Gt(taps.weights[i], hn::Zero(d_)));
-      const M same =
-          same_reflector(taps.tap_x(i), taps.tap_y(i), weighs, instance, s, normal_change);
+      const M weighs = hn::And(requested, hn::Gt(taps.weights[i], hn::Zero(d_)));
+      const M same = same_reflector(taps.tap_x(i), taps.tap_y(i), weighs, own, s, normal_change);
       taps.keep(i, same);
     }
     taps.normalise();
@@ -206,69 +228,57 @@ class SpecularAccumulation {
   }
 
   HWY_INLINE HistorySample fetch_history(const HistoryTaps<D>& taps) const {
+    const HistoryReader<D> reader(taps, job_.width, job_.height);
+    const bool bicubic = (c_.flags & shared::temporal_bicubic) != 0;
+    const Quad<V> signal =
+        bicubic ? reader.bicubic(job_.previous_history) : reader.bilinear(job_.previous_history);
+    const Quad<V> state = reader.bilinear(job_.previous_history_length);
     HistorySample r = no_history();
-    for (int i = 0; i < 4; ++i) {
-      const V weight = taps.weights[i];
-      const M valid = hn::Gt(weight, hn::Zero(d_));
-      if (hn::AllFalse(d_, valid)) continue;
-      const TexelGather<D> texels = bounds_.gather(taps.tap_x(i), taps.tap_y(i));
-      const Triple<V> signal = texels.first_three(job_.previous_history);
-      const Quad<V> state = texels.four(job_.previous_history_length);
-      const Triple<V> fast = texels.first_three(job_.previous_fast_history);
-      add_weighted<D>(valid, weight, signal.x, r.radiance.x);
-      add_weighted<D>(valid, weight, signal.y, r.radiance.y);
-      add_weighted<D>(valid, weight, signal.z, r.radiance.z);
-      add_weighted<D>(valid, weight, state.x, r.frames);
-      add_weighted<D>(valid, weight, state.z, r.moments.x);
-      add_weighted<D>(valid, weight, state.w, r.moments.y);
-      add_weighted<D>(valid, weight, fast.x, r.fast.x);
-      add_weighted<D>(valid, weight, fast.y, r.fast.y);
-      add_weighted<D>(valid, weight, fast.z, r.fast.z);
+    r.radiance = {signal.x, signal.y, signal.z};
+    r.frames = state.x;
+    r.moments = {state.z, state.w};
+    // The gradient compares with the long history alone.
+    if (c_.rectification != shared::rectification_gradient) {
+      const Quad<V> fast = reader.bilinear(job_.previous_fast_history);
+      r.fast = {fast.x, fast.y, fast.z};
     }
-    if ((c_.flags & shared::temporal_bicubic) == 0) return r;
-    V values[3] = {r.radiance.x, r.radiance.y, r.radiance.z};
-    fetch_history_bicubic<D, 3>(
-        bounds_, taps, taps.whole,
-        [&](const TexelGather<D>& texels, V(&texel)[3]) HWY_ATTR {
-          const Triple<V> signal = texels.first_three(job_.previous_history);
-          texel[0] = signal.x;
-          texel[1] = signal.y;
-          texel[2] = signal.z;
-        },
-        values);
-    r.radiance = {values[0], values[1], values[2]};
     return r;
   }
 
   /// The history of the better candidate.
-  HWY_INLINE HistorySample reprojected_history(const BandScratch& hits, const Views& views, int x,
+  HWY_INLINE HistorySample reprojected_history(const RowRing& ring, const ViewedRow<D>& view, int x,
                                                int y, M seen, const Surface& s) const {
     if ((c_.flags & shared::temporal_history_valid) == 0) return no_history();
     const Quad<V> map = load(job_.reprojection, x, y);
     const HistoryTaps<D> own = history_taps<D>(map);
     if ((c_.flags & shared::temporal_virtual_motion) == 0) return fetch_history(own);
-    const VI instance = hn::LoadU(di_, row_of<const int>(job_.instance, y) + x);
-    const Triple<V> position = views.here.world_position(x, s.view_z);
-    const Curvature curvature = local_curvature(views, x, y, instance, s, position);
-    const Pair<V> motion = virtual_motion(views, hits, x, y, s, position, curvature.curvature);
+    const Triple<V> here = three_planes(ring, y, position, x);
+    const Curvature curvature = local_curvature(ring, x, y, s, here);
+    const Pair<V> motion = virtual_motion(ring, view, x, y, s, here, curvature.curvature);
     const V here_x = hn::Iota(d_, static_cast<float>(x) + 0.5f);
     const V here_y = set(static_cast<float>(y) + 0.5f);
-    const HistoryTaps<D> reflected = virtual_taps(here_x + motion.x, here_y + motion.y, seen,
-                                                  instance, s, curvature.normal_change);
     const V separation_x = map.x - here_x - motion.x, separation_y = map.y - here_y - motion.y;
     const V separation =
         hn::Sqrt(hn::MulAdd(separation_x, separation_x, separation_y * separation_y));
-    const V lobe = views.here.lobe_pixels(s.roughness);
+    const V lobe = view.lobe_pixels(s.roughness);
     const V threshold = hn::Min((lobe + set(1.0f)) * set(shared::virtual_threshold_per_pixel),
                                 set(shared::virtual_threshold_max));
-    const M elsewhere = hn::Or(hn::Gt(separation, threshold), hn::Not(own.any()));
-    const M by_reflection = hn::And(reflected.any(), elsewhere);
-    HistorySample history = fetch_history(chosen(by_reflection, reflected, own));
+    const M elsewhere = hn::And(seen, hn::Or(hn::Gt(separation, threshold), hn::Not(own.any())));
     // The history at the surface's position shows another part of the reflection, the more so the
     // smoother the reflector and the larger the separation.
     const V falloff = hn::MulAdd(set(shared::surface_history_falloff_per_alpha) * s.roughness,
                                  s.roughness, set(shared::surface_history_falloff_smooth));
     const V trust = hn::Exp(d_, hn::Max(hn::Neg(separation / falloff), set(-80.0f)));
+    if (hn::AllFalse(d_, elsewhere)) {
+      HistorySample history = fetch_history(own);
+      history.frames = history.frames * trust;
+      return history;
+    }
+    const VI id = hn::BitCast(di_, plane(ring, y, instance, x));
+    const HistoryTaps<D> reflected = virtual_taps(here_x + motion.x, here_y + motion.y, elsewhere,
+                                                  id, s, curvature.normal_change);
+    const M by_reflection = hn::And(reflected.any(), elsewhere);
+    HistorySample history = fetch_history(chosen(by_reflection, reflected, own));
     const V narrow_lobe = hn::Max(lobe - set(shared::virtual_history_min_lobe), hn::Zero(d_));
     const V kept = hn::Min(history.frames, set(shared::virtual_history_per_pixel) * narrow_lobe);
     history.frames = hn::IfThenElse(by_reflection, kept, history.frames * trust);
@@ -303,10 +313,11 @@ class SpecularAccumulation {
                    hn::MulAdd(set(shared::motion_history_factor), power - set(1.0f), set(1.0f)));
   }
 
-  HWY_INLINE void block(const BandScratch& hits, const Views& views, int x, int y) const {
+  HWY_INLINE void block(const RowRing& ring, const ViewedRow<D>& view, int x, int y) const {
     const V zero = hn::Zero(d_), one = set(1.0f);
-    const Quad<V> guide = load(job_.guide, x, y);
-    const M seen = guide_is_surface(guide);
+    const Surface s{three_planes(ring, y, normal, x), plane(ring, y, roughness, x),
+                    plane(ring, y, view_z, x)};
+    const M seen = hn::Gt(s.view_z, zero);
     const Quad<V> nothing_seen{zero, zero, zero, zero};
     float* const signal = row_of<float>(job_.signal, y) + 4 * x;
     float* const history = row_of<float>(job_.history_length, y) + 4 * x;
@@ -315,29 +326,31 @@ class SpecularAccumulation {
       for (float* out : {signal, history, fast}) store4(d_, nothing_seen, out);
       return;
     }
-    const Quad<V> sample = load(job_.noisy, x, y);
-    Triple<V> now{sample.x, sample.y, sample.z};
-    now = select(is_bad(now), Triple<V>{zero, zero, zero}, now);
-    const Surface s = decode_guide(guide);
-    const HistorySample old = reprojected_history(hits, views, x, y, seen, s);
+    const Triple<V> now = three_planes(ring, y, radiance, x);
+    const HistorySample old = reprojected_history(ring, view, x, y, seen, s);
 
-    const V frames = hn::Min(old.frames + one, max_history_frames(s.roughness));
-    const Triple<V> radiance = mix(old.radiance, now, one / frames);
-    const V known = hn::Min(frames, set(c_.moments_frames));
+    // The history counts what was sampled: without a sample it stays as it is.
+    const V distance = load(job_.noisy, x, y).w;
+    const M left_out = hn::Lt(distance, zero);
+    const V sampled = hn::IfThenZeroElse(left_out, one);
+    const V frames = hn::Min(old.frames + sampled, max_history_frames(s.roughness));
+    const V counted = hn::Max(frames, one);
+    const Triple<V> mean = mix(old.radiance, now, sampled / counted);
+    const V known = hn::Min(counted, set(c_.moments_frames));
     const V bright = luminance(now);
-    const V first = mix(old.moments.x, bright, one / known);
-    const V second = mix(old.moments.y, bright * bright, one / known);
+    const V first = mix(old.moments.x, bright, sampled / known);
+    const V second = mix(old.moments.y, bright * bright, sampled / known);
     V variance = sample_variance(first, second, known);
-    if (c_.flags & shared::temporal_mean_variance) variance = variance / frames;
-    Triple<V> recent = mix(old.fast, now, one / hn::Min(frames, set(fast_frames)));
+    if (c_.flags & shared::temporal_mean_variance) variance = variance / counted;
+    Triple<V> recent = mix(old.fast, now, sampled / hn::Min(counted, set(fast_frames)));
     if (c_.rectification == shared::rectification_gradient) {
-      recent = select(hn::Gt(old.frames, zero), now - old.radiance, Triple<V>{zero, zero, zero});
+      const M changed = hn::AndNot(left_out, hn::Gt(old.frames, zero));
+      recent = select(changed, now - old.radiance, Triple<V>{zero, zero, zero});
     }
 
-    store4(d_, select(seen, Quad<V>{radiance.x, radiance.y, radiance.z, variance}, nothing_seen),
-           signal);
+    store4(d_, select(seen, Quad<V>{mean.x, mean.y, mean.z, variance}, nothing_seen), signal);
     store4(d_, select(seen, Quad<V>{frames, zero, first, second}, nothing_seen), history);
-    store4(d_, select(seen, Quad<V>{recent.x, recent.y, recent.z, zero}, nothing_seen), fast);
+    store4(d_, select(seen, Quad<V>{recent.x, recent.y, recent.z, distance}, nothing_seen), fast);
   }
 
   const D d_{};

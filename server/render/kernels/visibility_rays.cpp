@@ -1,7 +1,8 @@
 #include "render/kernels/visibility_rays.hpp"
 
-#include "render/kernels/common/ray_sink.hpp"
+#include "render/kernels/common/tile.hpp"
 #include "render/kernels/simd/rows.hpp"
+#include "shaders/shared/sampling.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/kernels/visibility_rays.cpp"
@@ -10,178 +11,162 @@
 #include "render/kernels/simd/material.hpp"
 #include "render/kernels/simd/random.hpp"
 #include "render/kernels/simd/rays.hpp"
-#include "render/kernels/simd/view.hpp"
+#include "render/kernels/simd/tiles.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
 
-/// What both kinds of rays have in common: how they traverse the frame and append rays.
-/// Neighbours in the stream are neighbours in the frame across and down.
-template <class D, class Maker>
+/// What both kinds of rays have in common: which pixels of a tile trace, and what the others hold.
+template <class Maker, class Job>
 class VisibilityRays {
-  using V = hn::Vec<D>;
-  using M = hn::Mask<D>;
-
  public:
-  template <class Job>
-  HWY_INLINE void generate(const Job& job, int first, int last) const {
-    const D d;
-    const int lanes = static_cast<int>(hn::Lanes(d));
-    RayBatch batch(*job.rays.count, job.rays.rays,
-                   static_cast<std::size_t>(job.width) * static_cast<std::size_t>(last - first));
-    for (int start = 0; start < job.width; start += lanes) {
-      const int x = std::min(start, job.width - lanes);
-      for (int y = first; y < last; ++y) {
-        const V view_z = load4(d, row_of<const float>(job.motion, y) + 4 * x).w;
-        const M seen = hn::Gt(view_z, hn::Zero(d));
-        M requested = seen;
-        if (!hn::AllFalse(d, seen)) {
-          Triple<V> origin, direction;
-          V t_max;
-          static_cast<const Maker*>(this)->make(x, y, view_z, requested, origin, direction, t_max);
-          batch.add(d, origin, direction, t_max, x, y,
-                    hn::And(requested, from_column(d, x, start)));
-        }
-        const V open = static_cast<const Maker*>(this)->untraced(seen, requested);
-        hn::StoreU(open, d, row_of<float>(job.visibility, y) + x);
-      }
+  /// `bit`: of the plan's words.
+  HWY_INLINE VisibilityRays(const Job& job, std::uint32_t bit)
+      : job_(job), camera_(job.frame), bit_(static_cast<int>(bit)) {}
+
+  /// `unseen`: visibility where there is no surface.
+  HWY_INLINE void generate(const Tile& tile, float unseen) const {
+    PixelList traced;
+    for_each_pixel(tile, [&](const PixelLanes& pixels, Mask inside) {
+      const Mask seen = hn::Gt(gathered_last(job_.motion, pixels), zero());
+      const Mask sampled = is_sampled(pixels);
+      traced.add(pixels, hn::And(inside, hn::And(seen, sampled)));
+      const Float without_ray = hn::IfThenZeroElse(sampled, number(-1.0f));
+      put_values(job_.visibility, pixels, inside, select(seen, without_ray, number(unseen)));
+    });
+    std::array<shared::Ray, tile_side * tile_side> made;
+    std::size_t count = 0;
+    for (int i = 0; i < traced.size(); i += static_cast<int>(hn::Lanes(tag))) {
+      Mask requested;
+      const PixelLanes pixels = traced.from(i, requested);
+      RayLanes ray;
+      ray.t_min = zero();
+      ray.pixel = pack_pixel(pixels);
+      ray.user = numbers(0.0f);
+      static_cast<const Maker*>(this)->make(pixels, ray, requested);
+      put_values(job_.visibility, pixels, requested, one());
+      count += store_rays(ray, requested, made.data() + count);
     }
-    batch.flush();
+    if (count) job_.rays.append({made.data(), count});
+  }
+
+ protected:
+  const Job& job_;
+  CameraLanes camera_;
+
+ private:
+  int bit_;
+
+  HWY_INLINE Mask is_sampled(const PixelLanes& pixels) const {
+    if (job_.constants.by_plan == 0) return hn::Eq(zero(), zero());
+    const Integer word = gather(job_.planned.data, texel_index(job_.planned, pixels, 1));
+    const Integer bit = hn::And(word, integer(bit_));
+    return float_mask(hn::Ne(bit, integer(0)));
   }
 };
 
-template <class D>
-class ShadowRays : public VisibilityRays<D, ShadowRays<D>> {
-  using V = hn::Vec<D>;
-  using M = hn::Mask<D>;
-  using DU = hn::RebindToUnsigned<D>;
-
+class ShadowRays : public VisibilityRays<ShadowRays, ShadowRaysJob> {
  public:
   HWY_INLINE explicit ShadowRays(const ShadowRaysJob& job)
-      : job_(job),
+      : VisibilityRays(job, shared::plan_shadows),
         split_sum_(job.split_sum.texels, job.split_sum.size),
-        picks_(DU(), job.frame.sample_index, 1u, job.frame.seed),
-        points_(DU(), job.frame.sample_index, 2u, job.frame.seed) {}
+        picks_(unsigned_tag, job.frame.sample_index, 1u, job.frame.seed),
+        points_(unsigned_tag, job.frame.sample_index, 2u, job.frame.seed) {}
 
-  HWY_INLINE void rows(int first, int last) const { this->generate(job_, first, last); }
-
-  HWY_INLINE void make(int x, int y, V view_z, M& requested, Triple<V>& origin,
-                       Triple<V>& direction, V& t_max) const {
-    const ViewedRow<D> view(job_.frame, y);
-    const auto m = material(view, x, y);
-    const Triple<V> position = view.world_position(x, view_z);
-    const auto column = hn::Iota(DU(), static_cast<std::uint32_t>(x));
-    const auto row = hn::Set(DU(), static_cast<std::uint32_t>(y));
-    V pick = picks_.at(column, row);
-    V total = hn::Zero(d_), spread = total;
-    t_max = total;
-    direction = {total, total, total};
+  HWY_INLINE void make(const PixelLanes& pixels, RayLanes& ray, Mask& requested) const {
+    const Float view_z = gathered_last(job_.motion, pixels);
+    const auto m = material(pixels);
+    const Float3 position = camera_.world_position(pixels, view_z);
+    Float pick = picks_.at(as_unsigned(pixels.x), as_unsigned(pixels.y));
+    Float total = zero(), spread = total;
+    ray.t_max = total;
+    ray.direction = numbers(0.0f);
     for (const shared::Light& light : job_.lights) {
-      Triple<V> radiance;
-      if (!light_contribution(d_, light, m, position, requested, radiance)) continue;
-      const M chosen = take(luminance(radiance), total, pick);
-      if (hn::AllFalse(d_, chosen)) continue;
-      const LightSample<V> s = light_at(d_, light, position);
-      direction = select(chosen, s.direction, direction);
-      t_max = hn::IfThenElse(chosen, s.distance, t_max);
+      Float3 radiance;
+      if (!light_contribution(tag, light, m, position, requested, radiance)) continue;
+      const Mask chosen = take(luminance(radiance), total, pick);
+      if (none(chosen)) continue;
+      const LightSample<Float> s = light_at(tag, light, position);
+      ray.direction = select(chosen, s.direction, ray.direction);
+      ray.t_max = select(chosen, s.distance, ray.t_max);
       const bool endless = light.type == shared::light_directional;
-      const V radius = hn::Set(d_, light.radius);
-      spread = hn::IfThenElse(chosen, endless ? radius : radius / s.distance, spread);
+      const Float radius = number(light.radius);
+      spread = select(chosen, endless ? radius : radius / s.distance, spread);
     }
-    requested = hn::And(requested, hn::Gt(total, hn::Zero(d_)));
-    direction = toward_disk(direction, spread, column, row);
-    requested = hn::And(requested, hn::Gt(dot(direction, m.geometric), hn::Zero(d_)));
-    origin = offset_origin(position, m.geometric, view_z);
+    requested = hn::And(requested, hn::Gt(total, zero()));
+    ray.direction = toward_disk(ray.direction, spread, pixels);
+    requested = hn::And(requested, hn::Gt(dot(ray.direction, m.geometric), zero()));
+    ray.origin = offset_origin(position, m.geometric, view_z);
     // Geometry may lie where a light does and show it: it must not occlude itself.
-    t_max = t_max * hn::Set(d_, 0.999f);
-  }
-
-  HWY_INLINE V untraced(M, M requested) const {
-    return hn::IfThenElseZero(requested, hn::Set(d_, 1.0f));
+    ray.t_max = ray.t_max * number(0.999f);
   }
 
  private:
-  HWY_INLINE SurfaceMaterial<V> material(const ViewedRow<D>& view, int x, int y) const {
-    const Quad<V> encoded = load4(d_, row_of<const float>(job_.normals, y) + 4 * x);
-    const Quad<V> root = load_unorm8(d_, row_of<const std::uint32_t>(job_.base_color, y) + x);
-    const Quad<V> packed = load_unorm8(d_, row_of<const std::uint32_t>(job_.surface, y) + x);
-    const Triple<V> color{root.x * root.x, root.y * root.y, root.z * root.z};
-    return make_material(d_, color, packed.y, packed.x, octahedral_decode(encoded.x, encoded.y),
-                         octahedral_decode(encoded.z, encoded.w), view.to_eye(x), split_sum_);
+  HWY_INLINE SurfaceMaterial<Float> material(const PixelLanes& pixels) const {
+    const Float4 encoded = gathered4(job_.normals, pixels);
+    const Float4 root = gathered_unorm8(job_.base_color, pixels);
+    const Float4 packed = gathered_unorm8(job_.surface, pixels);
+    const Float3 color{root.x * root.x, root.y * root.y, root.z * root.z};
+    return make_material(tag, color, packed.y, packed.x, octahedral_decode(encoded.x, encoded.y),
+                         octahedral_decode(encoded.z, encoded.w), camera_.to_eye(pixels),
+                         split_sum_);
   }
 
   /// takes() of shaders/lib/lighting/light_choice.glsl
-  HWY_INLINE M take(V weight, V& total, V& pick) const {
-    const V one = hn::Set(d_, 1.0f);
-    const M valid = hn::Gt(weight, hn::Zero(d_));
+  HWY_INLINE Mask take(Float weight, Float& total, Float& pick) const {
+    const Mask valid = hn::Gt(weight, zero());
     total = total + hn::IfThenElseZero(valid, weight);
-    const V probability = weight / total;
-    const M chosen = hn::And(valid, hn::Lt(pick, probability));
-    const V left = hn::IfThenElse(valid, (pick - probability) / (one - probability), pick);
-    pick = hn::IfThenElse(chosen, pick / probability, left);
+    const Float probability = weight / total;
+    const Mask chosen = hn::And(valid, hn::Lt(pick, probability));
+    const Float left = select(valid, (pick - probability) / (one() - probability), pick);
+    pick = select(chosen, pick / probability, left);
     return chosen;
   }
 
-  template <class VU>
-  HWY_INLINE Triple<V> toward_disk(const Triple<V>& direction, V spread, VU column, VU row) const {
-    V u, v;
-    points_.at(column, row, u, v);
-    Triple<V> tangent, bitangent;
+  HWY_INLINE Float3 toward_disk(const Float3& direction, Float spread,
+                                const PixelLanes& pixels) const {
+    Float u, v;
+    points_.at(as_unsigned(pixels.x), as_unsigned(pixels.y), u, v);
+    Float3 tangent, bitangent;
     orthonormal_basis(direction, tangent, bitangent);
-    const Pair<V> disk = sample_disk(u, v);
+    const Float2 disk = sample_disk(u, v);
     return normalized(direction + tangent * (disk.x * spread) + bitangent * (disk.y * spread));
   }
 
-  const D d_{};
-  const ShadowRaysJob& job_;
-  SquareTable<D> split_sum_;
-  RandomNumbers<DU> picks_;
-  RandomPairs<DU> points_;
+  SquareTable<Tag> split_sum_;
+  RandomNumbers<UnsignedTag> picks_;
+  RandomPairs<UnsignedTag> points_;
 };
 
-template <class D>
-class AmbientRays : public VisibilityRays<D, AmbientRays<D>> {
-  using V = hn::Vec<D>;
-  using M = hn::Mask<D>;
-  using DU = hn::RebindToUnsigned<D>;
-
+class AmbientRays : public VisibilityRays<AmbientRays, AmbientRaysJob> {
  public:
   HWY_INLINE explicit AmbientRays(const AmbientRaysJob& job)
-      : job_(job), directions_(DU(), job.frame.sample_index, 3u, job.frame.seed) {}
-
-  HWY_INLINE void rows(int first, int last) const { this->generate(job_, first, last); }
-
-  HWY_INLINE void make(int x, int y, V view_z, M& requested, Triple<V>& origin,
-                       Triple<V>& direction, V& t_max) const {
-    const Quad<V> encoded = load4(d_, row_of<const float>(job_.normals, y) + 4 * x);
-    const Triple<V> geometric = octahedral_decode(encoded.z, encoded.w);
-    V u, v;
-    directions_.at(hn::Iota(DU(), static_cast<std::uint32_t>(x)),
-                   hn::Set(DU(), static_cast<std::uint32_t>(y)), u, v);
-    direction = sample_cosine(octahedral_decode(encoded.x, encoded.y), u, v);
-    const ViewedRow<D> view(job_.frame, y);
-    origin = offset_origin(view.world_position(x, view_z), geometric, view_z);
-    t_max = hn::Set(d_, job_.frame.ambient_radius);
-    requested = hn::And(requested, hn::Gt(dot(direction, geometric), hn::Zero(d_)));
-  }
+      : VisibilityRays(job, shared::plan_ambient),
+        directions_(unsigned_tag, job.frame.sample_index, 3u, job.frame.seed) {}
 
   /// Directions below the surface are hidden by it.
-  HWY_INLINE V untraced(M seen, M requested) const {
-    return hn::IfThenElseZero(hn::Or(requested, hn::Not(seen)), hn::Set(d_, 1.0f));
+  HWY_INLINE void make(const PixelLanes& pixels, RayLanes& ray, Mask& requested) const {
+    const Float view_z = gathered_last(job_.motion, pixels);
+    const Float4 encoded = gathered4(job_.normals, pixels);
+    const Float3 geometric = octahedral_decode(encoded.z, encoded.w);
+    Float u, v;
+    directions_.at(as_unsigned(pixels.x), as_unsigned(pixels.y), u, v);
+    ray.direction = sample_cosine(octahedral_decode(encoded.x, encoded.y), u, v);
+    ray.origin = offset_origin(camera_.world_position(pixels, view_z), geometric, view_z);
+    ray.t_max = number(job_.frame.ambient_radius);
+    requested = hn::And(requested, hn::Gt(dot(ray.direction, geometric), zero()));
   }
 
  private:
-  const D d_{};
-  const AmbientRaysJob& job_;
-  RandomPairs<DU> directions_;
+  RandomPairs<UnsignedTag> directions_;
 };
 
-void shadow_ray_rows(const ShadowRaysJob& job, int first, int last) {
-  run_rows<ShadowRays>(job, job.width, first, last);
+void shadow_ray_tile(const ShadowRaysJob& job, const Tile& tile) {
+  ShadowRays(job).generate(tile, 0.0f);
 }
 
-void ambient_ray_rows(const AmbientRaysJob& job, int first, int last) {
-  run_rows<AmbientRays>(job, job.width, first, last);
+void ambient_ray_tile(const AmbientRaysJob& job, const Tile& tile) {
+  AmbientRays(job).generate(tile, 1.0f);
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE
@@ -190,19 +175,19 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace heliograph::render::kernels {
 
-HWY_EXPORT(shadow_ray_rows);
-HWY_EXPORT(ambient_ray_rows);
+HWY_EXPORT(shadow_ray_tile);
+HWY_EXPORT(ambient_ray_tile);
 
 void shadows_rays(const ShadowRaysJob& job) {
-  for_each_band(job.height, [&](int first, int last) {
-    HWY_DYNAMIC_DISPATCH(shadow_ray_rows)(job, first, last);
+  for_each_tile(job.width, job.height, [&](const Tile& tile) {
+    HWY_DYNAMIC_DISPATCH(shadow_ray_tile)(job, tile);
   });
   job.rays.end();
 }
 
 void ambient_rays(const AmbientRaysJob& job) {
-  for_each_band(job.height, [&](int first, int last) {
-    HWY_DYNAMIC_DISPATCH(ambient_ray_rows)(job, first, last);
+  for_each_tile(job.width, job.height, [&](const Tile& tile) {
+    HWY_DYNAMIC_DISPATCH(ambient_ray_tile)(job, tile);
   });
   job.rays.end();
 }

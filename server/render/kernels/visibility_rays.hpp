@@ -12,9 +12,14 @@ template <class Stage>
 struct ShadowRaysBindings {
   gpu::Read<Stage> normals, motion, base_color, surface, layers;
   RaySink<Stage> rays;
-  gpu::Write<Stage> visibility;  // r32f: 1 where the ray decides, 0 where there is none to trace
+  gpu::Read<Stage> planned;  // r32ui, shaders/shared/sampling.h, or anything
+  /// r32f: 1 where the ray decides, 0 where there is none to trace, -1 where the plan leaves it out
+  gpu::Write<Stage> visibility;
 };
-struct ShadowRaysJob : FrameJob<ShadowRaysBindings> {
+struct VisibilityRaysConstants {
+  std::uint32_t by_plan;  // 0: every pixel is sampled
+};
+struct ShadowRaysJob : FrameJob<ShadowRaysBindings, VisibilityRaysConstants> {
   std::span<const shared::Light> lights;  // punctual, the environment's sun among them
   SplitSum split_sum;
 };
@@ -27,9 +32,10 @@ template <class Stage>
 struct AmbientRaysBindings {
   gpu::Read<Stage> normals, motion;
   RaySink<Stage> rays;
+  gpu::Read<Stage> planned;      // as above
   gpu::Write<Stage> visibility;  // as above
 };
-using AmbientRaysJob = FrameJob<AmbientRaysBindings>;
+using AmbientRaysJob = FrameJob<AmbientRaysBindings, VisibilityRaysConstants>;
 
 /// One ray per pixel over the hemisphere.
 void ambient_rays(const AmbientRaysJob& job);

@@ -54,53 +54,54 @@ class VisibilityAccumulation {
     HistorySample r{{zero, zero}, {zero, zero, zero, zero}, {zero, zero}, {zero, zero}};
     if ((c_.flags & shared::temporal_history_valid) == 0) return r;
     const HistoryTaps<D> taps = history_taps<D>(load(job_.reprojection, x, y));
-    for (int i = 0; i < 4; ++i) {
-      const V weight = taps.weights[i];
-      const M valid = hn::Gt(weight, zero);
-      if (hn::AllFalse(d_, valid)) continue;
-      const TexelGather<D> texels = bounds_.gather(taps.tap_x(i), taps.tap_y(i));
-      const Pair<V> signal = texels.first_two(job_.previous_history);
-      const Quad<V> moments = texels.four(job_.previous_moments);
-      const Pair<V> frames = texels.first_two(job_.previous_history_length);
-      const Pair<V> fast = texels.two(job_.previous_fast_history);
-      add_weighted<D>(valid, weight, signal.x, r.signal.x);
-      add_weighted<D>(valid, weight, signal.y, r.signal.y);
-      add_weighted<D>(valid, weight, moments.x, r.moments.x);
-      add_weighted<D>(valid, weight, moments.y, r.moments.y);
-      add_weighted<D>(valid, weight, moments.z, r.moments.z);
-      add_weighted<D>(valid, weight, moments.w, r.moments.w);
-      add_weighted<D>(valid, weight, frames.x, r.frames.x);
-      add_weighted<D>(valid, weight, frames.y, r.frames.y);
-      add_weighted<D>(valid, weight, fast.x, r.fast.x);
-      add_weighted<D>(valid, weight, fast.y, r.fast.y);
-    }
-    if ((c_.flags & shared::temporal_bicubic) == 0) return r;
-    V values[2] = {r.signal.x, r.signal.y};
-    fetch_history_bicubic<D, 2>(
-        bounds_, taps, taps.whole,
-        [&](const TexelGather<D>& texels, V(&texel)[2]) HWY_ATTR {
-          const Pair<V> signal = texels.first_two(job_.previous_history);
-          texel[0] = signal.x;
-          texel[1] = signal.y;
-        },
-        values);
-    r.signal = {values[0], values[1]};
+    const HistoryReader<D> reader(taps, job_.width, job_.height);
+    const bool bicubic = (c_.flags & shared::temporal_bicubic) != 0;
+    const Quad<V> signal =
+        bicubic ? reader.bicubic(job_.previous_history) : reader.bilinear(job_.previous_history);
+    const Quad<V> frames = reader.bilinear(job_.previous_history_length);
+    r.signal = {signal.x, signal.y};
+    r.moments = reader.bilinear(job_.previous_moments);
+    r.frames = {frames.x, frames.y};
+    // The gradient compares with the long history alone.
+    if (c_.rectification != shared::rectification_gradient) r.fast = fetch_fast_history(taps);
     return r;
+  }
+
+  HWY_INLINE Pair<V> fetch_fast_history(const HistoryTaps<D>& taps) const {
+    Pair<V> sum{hn::Zero(d_), hn::Zero(d_)};
+    for (int i = 0; i < 4; ++i) {
+      const M valid = hn::Gt(taps.weights[i], hn::Zero(d_));
+      if (hn::AllFalse(d_, valid)) continue;
+      const Pair<V> fast =
+          bounds_.gather(taps.tap_x(i), taps.tap_y(i)).two(job_.previous_fast_history);
+      add_weighted<D>(valid, taps.weights[i], fast.x, sum.x);
+      add_weighted<D>(valid, taps.weights[i], fast.y, sum.y);
+    }
+    return sum;
   }
 
   HWY_INLINE Channel accumulate(V now, V old, V first, V second, V reprojected_history, V fast,
                                 float longest) const {
+    // The history counts what was sampled: without a sample it stays as it is.
+    const M sampled = hn::Ge(now, hn::Zero(d_));
+    const V one = set(1.0f);
     Channel c;
-    c.frames = hn::Min(reprojected_history + set(1.0f), set(longest));
-    c.value = mix(old, now, sample_weight(c.frames, longest));
-    const V weight = sample_weight(c.frames, c_.moments_frames);
+    c.frames = hn::Min(reprojected_history + hn::IfThenElseZero(sampled, one), set(longest));
+    const auto weight_in = [&](float most) HWY_ATTR {
+      return hn::IfThenElseZero(sampled, sample_weight(c.frames, most));
+    };
+    c.value = mix(old, now, weight_in(longest));
+    const V weight = weight_in(c_.moments_frames);
     c.first = mix(first, now, weight);
     c.second = mix(second, now * now, weight);
     c.variance = sample_variance(c.first, c.second, hn::Min(c.frames, set(c_.moments_frames)));
-    if (c_.flags & shared::temporal_mean_variance) c.variance = c.variance / c.frames;
-    c.fast = c_.rectification == shared::rectification_gradient
-                 ? hn::IfThenElseZero(hn::Gt(reprojected_history, hn::Zero(d_)), now - old)
-                 : mix(fast, now, sample_weight(c.frames, fast_frames));
+    if (c_.flags & shared::temporal_mean_variance) c.variance = c.variance / hn::Max(c.frames, one);
+    if (c_.rectification == shared::rectification_gradient) {
+      const V change = hn::IfThenElseZero(hn::Gt(reprojected_history, hn::Zero(d_)), now - old);
+      c.fast = hn::IfThenElse(sampled, change, set(shared::change_unknown));
+    } else {
+      c.fast = mix(fast, now, weight_in(fast_frames));
+    }
     return c;
   }
 

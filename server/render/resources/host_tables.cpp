@@ -41,6 +41,14 @@ Slot make_slot(const shared::TextureSlot& from, std::span<const shared::HeapText
   return slot;
 }
 
+/// Whether two used slots are read at the same texels of images of the same size.
+bool same_place(const Slot& a, const Slot& b) {
+  const auto filter = [](const Slot& slot) { return slot.flags & ~shared::texture_srgb; };
+  return a.row0 == b.row0 && a.row1 == b.row1 && a.uv_set == b.uv_set && a.width == b.width &&
+         a.height == b.height && a.levels == b.levels && a.wrap_s == b.wrap_s &&
+         a.wrap_t == b.wrap_t && filter(a) == filter(b);
+}
+
 /// The texel of a cube beyond the rim of a face: the neighbour's nearest. `x` and `y` lie in
 /// [-1, size], at most one of them outside.
 glm::ivec3 texel_around(int face, int x, int y, int size) {
@@ -143,6 +151,11 @@ MaterialTable make_material_table(std::span<const shared::Material> materials,
     to.normal_slot = slot(from.normal_texture);
     const bool shines = from.emissive != glm::vec3(0.0f);
     to.emissive_slot = slot(shines ? from.emissive_texture : no_slot);
+    for (Slot* const other :
+         {&to.metallic_roughness_slot, &to.occlusion_slot, &to.normal_slot, &to.emissive_slot}) {
+      const bool both = (to.base_color_slot.flags & other->flags & slot_used) != 0;
+      if (both && same_place(to.base_color_slot, *other)) other->flags |= slot_shares_place;
+    }
     if (same_texels(from.occlusion_texture, from.metallic_roughness_texture)) {
       to.occlusion_slot.flags |= slot_repeats;
     }
@@ -163,6 +176,12 @@ SceneView view_scene(const SceneResources& scene, const tracing::SceneTables& ta
           made.levels.data(),
           reinterpret_cast<const std::uint32_t*>(mapped(scene.texture_heap.texels)),
           reinterpret_cast<const shared::Vertex*>(mapped(moving.previous_vertices()))};
+}
+
+RadianceMap view_map(const scene::Environment& environment) {
+  static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+  return {&environment.radiance.front().x, static_cast<int>(environment.width),
+          static_cast<int>(environment.height)};
 }
 
 Environment copy_environment(const scene::Environment& map, const gpu::Image& prefiltered) {

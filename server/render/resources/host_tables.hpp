@@ -39,6 +39,8 @@ struct Slot {
 inline constexpr std::uint32_t slot_used = 1u << 16;
 /// Reads the same texels as the slot in front of it.
 inline constexpr std::uint32_t slot_repeats = 1u << 17;
+/// Is read at the texels at which the base color slot is, of an image of the same size.
+inline constexpr std::uint32_t slot_shares_place = 1u << 18;
 
 struct Material {
   glm::vec4 base_color;
@@ -93,9 +95,19 @@ struct Table {
   std::vector<float> values;
 };
 
+/// An equirectangular map of radiance: three floats a texel, row 0 up.
+struct RadianceMap {
+  const float* texels;
+  int width;
+  int height;
+};
+
 /// The environment map, for light from infinity.
 struct Environment {
   Table map;  // equirectangular; three floats an entry
+  RadianceMap radiance() const {
+    return {map.values.data(), static_cast<int>(map.width), static_cast<int>(map.height)};
+  }
   /// One level of the filtered cube: six faces of four floats a texel, each with a rim of its
   /// neighbours' texels, so that filtering across edges needs no other face.
   struct Level {
@@ -105,6 +117,9 @@ struct Environment {
   std::vector<Level> levels;
   std::vector<float> cube;
 };
+
+/// The environment as it was read, which the result refers to.
+RadianceMap view_map(const scene::Environment& environment);
 
 Environment copy_environment(const scene::Environment& map, const gpu::Image& prefiltered);
 

@@ -14,6 +14,10 @@ struct SceneMotion {
   float lights = 0.0f;
   float environment = 0.0f;     // rotation, radians
   bool geometry_moved = false;  // whether any instance moved or any mesh deformed
+  /// Frames since any of these last was not as in the frame before; 0: they are not now.
+  std::uint32_t still_frames = ~0u;
+
+  bool any() const { return lights > 0.0f || environment > 0.0f || geometry_moved; }
 };
 
 /// `before` is null in the first frame.

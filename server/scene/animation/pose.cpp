@@ -108,6 +108,20 @@ Camera camera_at(const Scene& scene, const Camera& camera, const Pose& pose) {
   return place_camera(camera, camera.name, pose.worlds[*camera.node], scene.bounds);
 }
 
+std::vector<bool> movable_nodes(const Scene& scene) {
+  std::vector<bool> movable(scene.nodes.size());
+  for (const Clip& clip : scene.clips) {
+    for (const Channel& channel : clip.channels) {
+      if (channel.property != Property::weights) movable[channel.node] = true;
+    }
+  }
+  for (std::size_t i = 0; i < movable.size(); ++i) {
+    const auto parent = scene.nodes[i].parent;
+    if (parent && movable[*parent]) movable[i] = true;
+  }
+  return movable;
+}
+
 bool carries(const Scene& scene, const Clip& clip, const Camera& camera) {
   for (auto node = camera.node; node; node = scene.nodes[*node].parent) {
     for (const Channel& channel : clip.channels) {

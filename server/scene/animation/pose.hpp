@@ -26,6 +26,9 @@ void evaluate(const Scene& scene, const Clip& clip, double seconds, Pose& pose);
 /// A camera of the scene in `pose`: clips move cameras with their nodes.
 Camera camera_at(const Scene& scene, const Camera& camera, const Pose& pose);
 
+/// By node: whether some clip may change its world matrix. All others stay as the file has them.
+std::vector<bool> movable_nodes(const Scene& scene);
+
 /// Whether a clip moves a camera of the scene.
 bool carries(const Scene& scene, const Clip& clip, const Camera& camera);
 

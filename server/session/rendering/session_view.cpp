@@ -327,8 +327,16 @@ void SessionView::render_frame(double seconds) {
   session_->mark_used();
   if (state_.animation.playing) adopt_pose();
   renderer_->set_frame_seconds(static_cast<float>(seconds));
-  frame_began_at_ = start;
-  render::Frame frame = renderer_->render();
+  const Clock::time_point before = std::exchange(frame_began_at_, start);
+  // A viewer that moves the camera does not wait for a sample of the view that it leaves.
+  const bool refining = next_view_state(view_inputs()) == ViewState::refining;
+  std::optional<render::Frame> finished =
+      renderer_->render([&] { return refining && session_->version() != state_.version; });
+  if (!finished) {
+    frame_began_at_ = before;
+    return;
+  }
+  render::Frame& frame = *finished;
   const Clock::time_point end = Clock::now();
   if (is_full_size()) full_frame_time_ = end - start;
   services_.measurements.rendered(std::chrono::duration<double>(end - start).count(),

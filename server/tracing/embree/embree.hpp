@@ -15,6 +15,7 @@ struct EmbreeRelease {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
   void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
   void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+  void operator()(RTCBuffer buffer) const { rtcReleaseBuffer(buffer); }
   void operator()(RTCBVH bvh) const { rtcReleaseBVH(bvh); }
 };
 

@@ -5,20 +5,25 @@
 #include <span>
 
 #include "shaders/shared/ray.h"
-#include "tracing/embree/embree.hpp"
+#include "tracing/embree/embree_scene.hpp"
 
 namespace heliograph::tracing {
 
 /// Rays per call of Embree; a multiple of its packet sizes.
-inline constexpr std::size_t embree_batch = 256;
+inline constexpr std::size_t embree_batch = 1024;
 
-/// Closest hits of at most `embree_batch` rays in a scene of instances. `blending`: seed of their
-/// stream.
-void intersect_batch(RTCScene scene, std::span<const shared::Ray> rays, std::uint32_t blending,
-                     shared::Hit* hits);
+/// A part of a ray stream. `blending`: seed of the stream. `coherent`: neighbouring rays have
+/// nearly the same origin and direction, which changes speed only.
+struct RayBatch {
+  std::span<const shared::Ray> rays;  // at most `embree_batch`
+  std::uint32_t blending = 0;
+  bool coherent = false;
+};
 
-/// 1 for every ray with a hit, else 0.
-void occluded_batch(RTCScene scene, std::span<const shared::Ray> rays, std::uint32_t blending,
-                    std::uint32_t* occluded);
+/// Writes the closest hit of every ray.
+void intersect_batch(const EmbreeScenes& scenes, const RayBatch& batch, shared::Hit* hits);
+
+/// Writes 1 for every ray with a hit, else 0.
+void occluded_batch(const EmbreeScenes& scenes, const RayBatch& batch, std::uint32_t* occluded);
 
 }  // namespace heliograph::tracing

@@ -6,55 +6,55 @@
 #include <vector>
 
 #include "scene/scene.hpp"
-#include "tracing/bvh/alpha_mask.hpp"
 #include "tracing/embree/embree.hpp"
+#include "tracing/embree/embree_mesh.hpp"
 #include "tracing/ray_tracer.hpp"
 
 namespace heliograph::tracing {
 
-/// One mesh as an Embree scene, for any number of instances.
-class EmbreeMesh {
- public:
-  enum class Use { rigid, deforming };
-
-  /// `alpha_heap` is the scene's and must stay alive.
-  EmbreeMesh(RTCDevice device, const scene::Mesh& mesh, const shared::Material& material,
-             std::span<const std::uint8_t> alpha_heap, Use use);
-
-  /// Null for meshes without triangles.
-  RTCScene handle() const { return scene_.get(); }
-  /// Refits a deforming mesh to its moved vertices.
-  void refit(std::span<const shared::Vertex> vertices);
-
- private:
-  struct Mask {
-    AlphaMask mask;
-    std::span<const std::uint8_t> heap;
-  };
-
-  static void let_through(const RTCFilterFunctionNArguments* arguments);
-
-  std::unique_ptr<const Mask> mask_;  // null for opaque meshes
-  EmbreeHandle<RTCGeometry> geometry_;
-  EmbreeHandle<RTCScene> scene_;
-  glm::vec3* positions_ = nullptr;  // owned by the geometry
+/// How a scene is handed to Embree.
+struct EmbreeLayout {
+  bool flat = true;  // false: every instance is an instance of Embree's, too
+  /// What copies of triangles may take (flat_instances()), and again what a fast copy may: a
+  /// quarter of the default scene cache each.
+  std::uint64_t most_bytes = std::uint64_t{256} << 20;
+  EmbreeBuild build = {};
+  /// Builds the flat triangles a second time, not robust, for EmbreeScene::scenes(): rays find them
+  /// in 75 to 90 % of the time.
+  bool fast_copy = true;
 };
 
-/// All meshes of a scene. @throws std::runtime_error when Embree fails
-std::vector<std::shared_ptr<EmbreeMesh>> make_embree_meshes(
-    RTCDevice device, const scene::Scene& scene, std::span<const std::uint8_t> alpha_heap);
+/// A scene of Embree's, null where there is nothing.
+struct EmbreeTarget {
+  RTCScene scene = nullptr;
+  bool robust = true;
+};
 
-/// Instances of meshes; geometry ids are indices of the scene's instances.
+/// What rays traverse, one after the other.
+struct EmbreeScenes {
+  EmbreeTarget flat;       // triangles; geometry ids are indices of the scene's instances
+  EmbreeTarget instanced;  // instances, whose ids are these indices
+};
+
+/// A scene as Embree traces it: what stays in its place as triangles in world space, all else as
+/// instances of meshes.
 class EmbreeScene {
  public:
-  /// In the pose of `scene`; keeps no reference to it. @throws std::runtime_error
-  EmbreeScene(RTCDevice device, const scene::Scene& scene,
-              std::vector<std::shared_ptr<EmbreeMesh>> meshes);
+  /// In the pose of `scene`; keeps no reference to it. `alpha_heap` is the scene's and must stay
+  /// alive. @throws std::runtime_error
+  EmbreeScene(RTCDevice device, const scene::Scene& scene, std::span<const std::uint8_t> alpha_heap,
+              const EmbreeLayout& layout);
+  /// One that may move; shares with `rest`, of the same scene, all that stays as it is.
+  /// @throws std::runtime_error
+  EmbreeScene(RTCDevice device, const scene::Scene& scene, const EmbreeScene& rest);
 
-  RTCScene handle() const { return top_.get(); }
-  const std::vector<std::shared_ptr<EmbreeMesh>>& meshes() const { return meshes_; }
+  /// For rays of one kind: the fast copy, unless they are the camera's or a path's. In it, of rays
+  /// in random directions about one in five million passes between two triangles of a fine mesh,
+  /// and a few per cent of those that a regular grid of pixels sends exactly along edges.
+  EmbreeScenes scenes(RayKind kind) const;
 
-  /// The changes below take effect with commit().
+  /// Of instances below nodes that a clip animates. The changes take effect with commit().
+  /// @throws std::invalid_argument for other instances
   void place(std::size_t instance, const glm::mat4& world);
   void refit(std::span<const Movement::Mesh> deformed);
   void commit();
@@ -62,12 +62,19 @@ class EmbreeScene {
  private:
   struct Placed {
     std::uint32_t mesh;
-    EmbreeHandle<RTCGeometry> geometry;  // null for meshes without triangles
+    bool flat;
+    EmbreeHandle<RTCGeometry> instance;  // null for flat instances and empty meshes
   };
 
+  void place_instances(const scene::Scene& scene);
+
   RTCDevice device_;
-  std::vector<std::shared_ptr<EmbreeMesh>> meshes_;
-  std::vector<Placed> placed_;  // by instance
+  EmbreeLayout layout_;
+  std::vector<std::shared_ptr<const EmbreeMesh>> meshes_;
+  std::vector<std::shared_ptr<EmbreeMeshScene>> mesh_scenes_;  // null unless instanced
+  std::vector<Placed> placed_;                                 // by instance
+  std::shared_ptr<RTCSceneTy> flat_;
+  std::shared_ptr<RTCSceneTy> fast_;  // null: flat_ is for all kinds
   EmbreeHandle<RTCScene> top_;
 };
 

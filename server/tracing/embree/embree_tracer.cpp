@@ -1,4 +1,5 @@
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
@@ -6,7 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include "shaders/shared/ray.h"
 #include "tracing/embree/embree.hpp"
@@ -19,9 +20,7 @@ namespace {
 
 class EmbreeStructure : public virtual AccelerationStructure {
  public:
-  EmbreeStructure(RTCDevice device, const scene::Scene& scene,
-                  std::vector<std::shared_ptr<EmbreeMesh>> meshes)
-      : scene_(device, scene, std::move(meshes)) {}
+  explicit EmbreeStructure(EmbreeScene scene) : scene_(std::move(scene)) {}
 
   const EmbreeScene& scene() const { return scene_; }
   std::uint64_t bytes() const override { return bytes_; }
@@ -56,7 +55,15 @@ Element* mapped(const gpu::FramePlan& plan, gpu::BufferRef buffer) {
   return reinterpret_cast<Element*>(plan.get(buffer).mapped());
 }
 
-/// Calls `trace(rays, blending, results)` for every batch of the stream, on all cores.
+/// Rays per call of Embree: as many as it takes, unless cores would wait for the last batches.
+std::size_t batch_size(std::size_t count) {
+  constexpr std::size_t batches_per_core = 4, least = 256;
+  const auto cores = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  const std::size_t share = count / (batches_per_core * cores) / least * least;
+  return std::clamp(share, least, embree_batch);
+}
+
+/// Calls `trace(batch, results)` for every batch of the stream, on all cores.
 template <typename Result, typename Trace>
 void trace_batches(const gpu::FramePlan& plan, const RayStream& stream, gpu::BufferRef results,
                    const Trace& trace) {
@@ -64,10 +71,13 @@ void trace_batches(const gpu::FramePlan& plan, const RayStream& stream, gpu::Buf
   const std::size_t count = std::min(header.count, stream.capacity);
   const std::span rays(mapped<const shared::Ray>(plan, stream.rays), count);
   auto* const output = mapped<Result>(plan, results);
-  const std::size_t batches = (count + embree_batch - 1) / embree_batch;
+  const std::size_t size = batch_size(count);
+  const std::size_t batches = (count + size - 1) / size;
   tbb::parallel_for(std::size_t(0), batches, [&](std::size_t batch) {
-    const std::size_t first = batch * embree_batch;
-    trace(rays.subspan(first, std::min(embree_batch, count - first)), header.blending,
+    const std::size_t first = batch * size;
+    trace(RayBatch{.rays = rays.subspan(first, std::min(size, count - first)),
+                   .blending = header.blending,
+                   .coherent = stream.kind == RayKind::camera},
           output + first);
   });
 }
@@ -87,34 +97,29 @@ class EmbreeTracer : public RayTracer {
                                                      const SceneBuffers& buffers) const override {
     const std::int64_t before = bytes_;
     auto structure = std::make_shared<EmbreeStructure>(
-        embree_.get(), scene,
-        make_embree_meshes(embree_.get(), scene, mapped_bytes(buffers.alpha_heap)));
+        EmbreeScene(embree_.get(), scene, mapped_bytes(buffers.alpha_heap), {}));
     structure->set_bytes(bytes_ - before);
     return structure;
   }
 
-  // Shares the rigid meshes, which own what they need.
   std::unique_ptr<MovingStructure> build_moving(std::shared_ptr<const AccelerationStructure> rest,
                                                 const scene::Scene& scene,
-                                                const SceneTables& tables) const override {
-    auto meshes = dynamic_cast<const EmbreeStructure&>(*rest).scene().meshes();
-    for (const scene::Deformation& deformation : scene.deformations) {
-      const scene::Mesh& mesh = scene.meshes[deformation.mesh];
-      meshes[deformation.mesh] =
-          std::make_shared<EmbreeMesh>(embree_.get(), mesh, scene.materials[mesh.material],
-                                       mapped_bytes(tables.alpha_heap), EmbreeMesh::Use::deforming);
-    }
-    return std::make_unique<MovingEmbreeStructure>(embree_.get(), scene, std::move(meshes));
+                                                const SceneTables&) const override {
+    return std::make_unique<MovingEmbreeStructure>(
+        EmbreeScene(embree_.get(), scene, dynamic_cast<const EmbreeStructure&>(*rest).scene()));
   }
 
   void trace_closest(gpu::FramePlan& plan, const std::string& name,
                      const AccelerationStructure& structure, const RayStream& rays,
                      gpu::BufferRef hits) const override {
-    const RTCScene scene = dynamic_cast<const EmbreeStructure&>(structure).scene().handle();
+    const EmbreeScenes scenes =
+        dynamic_cast<const EmbreeStructure&>(structure).scene().scenes(rays.kind);
     plan.host(name,
-              [&plan, scene, rays, hits] {
-                trace_batches<shared::Hit>(
-                    plan, rays, hits, [scene](auto... batch) { intersect_batch(scene, batch...); });
+              [&plan, scenes, rays, hits] {
+                trace_batches<shared::Hit>(plan, rays, hits,
+                                           [&](const RayBatch& batch, shared::Hit* results) {
+                                             intersect_batch(scenes, batch, results);
+                                           });
               })
         .read(rays.count)
         .read(rays.rays)
@@ -124,12 +129,14 @@ class EmbreeTracer : public RayTracer {
   void trace_any(gpu::FramePlan& plan, const std::string& name,
                  const AccelerationStructure& structure, const RayStream& rays,
                  gpu::BufferRef occluded) const override {
-    const RTCScene scene = dynamic_cast<const EmbreeStructure&>(structure).scene().handle();
+    const EmbreeScenes scenes =
+        dynamic_cast<const EmbreeStructure&>(structure).scene().scenes(rays.kind);
     plan.host(name,
-              [&plan, scene, rays, occluded] {
-                trace_batches<std::uint32_t>(plan, rays, occluded, [scene](auto... batch) {
-                  occluded_batch(scene, batch...);
-                });
+              [&plan, scenes, rays, occluded] {
+                trace_batches<std::uint32_t>(plan, rays, occluded,
+                                             [&](const RayBatch& batch, std::uint32_t* results) {
+                                               occluded_batch(scenes, batch, results);
+                                             });
               })
         .read(rays.count)
         .read(rays.rays)

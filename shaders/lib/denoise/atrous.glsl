@@ -14,8 +14,8 @@ layout(set = 1, binding = 2, rgba32f) readonly uniform image2D signal;
 layout(set = 1, binding = 3, rgba32f) writeonly uniform image2D filtered;
 layout(push_constant) uniform Constants { AtrousConstants constants; };
 
-/// Of the B3 spline (1, 4, 6, 4, 1) / 16, against its middle.
-const float kernel[3] = float[3](1.0, 2.0 / 3.0, 1.0 / 6.0);
+/// Of the B3 spline (1, 4, 6, 4, 1) / 16 against its middle: logarithms of 1, 2/3 and 1/6.
+const float kernel_exponent[3] = float[3](0.0, -0.40546511, -1.79175947);
 
 bool has(uint flag) { return (constants.flags & flag) != 0u; }
 
@@ -66,12 +66,14 @@ int step_at(float roughness) {
   return int(round(float(1 << constants.level) * (1.0 + twice)));
 }
 
-/// Jitters the taps of large steps by up to a quarter step, differently in every pixel and frame.
+/// Jitters the taps of large steps by up to a quarter step along the kernel, differently in every
+/// row and frame. Whole rows move together, so that neighbours read neighbours.
 ivec2 jitter(ivec2 pixel, int step) {
   if (!has(atrous_jitter) || step <= 4) return ivec2(0);
-  vec2 u = random_pair(uvec2(pixel), frame.sample_index, 48u + uint(constants.level),
-                           frame.seed);
-  return ivec2(round((u - 0.5) * 0.5 * float(step)));
+  vec2 u = random_pair(uvec2(0, pixel.y), frame.sample_index, 48u + uint(constants.level),
+                       frame.seed);
+  ivec2 axes = min(ivec2(constants.columns, constants.rows), ivec2(1));
+  return axes * ivec2(round((u - 0.5) * 0.5 * float(step)));
 }
 
 vec2 tap_exponent(Center c, Guide q, vec4 value, vec2 offset) {
@@ -117,8 +119,8 @@ void main() {
       vec4 guide_q = imageLoad(guide, tap);
       if (guide_is_background(guide_q)) continue;
       vec4 value_q = imageLoad(signal, tap);
-      vec2 weight = kernel[abs(x)] * kernel[abs(y)] *
-                    exp(tap_exponent(c, decode_guide(guide_q), value_q, vec2(tap - pixel)));
+      vec2 weight = edge_weight(kernel_exponent[abs(x)] + kernel_exponent[abs(y)] +
+                                tap_exponent(c, decode_guide(guide_q), value_q, vec2(tap - pixel)));
       sum += spread(weight) * value_q;
       total += weight;
     }

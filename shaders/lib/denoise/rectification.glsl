@@ -81,6 +81,14 @@ vec2 shortened_history(vec2 frames, vec2 moved, vec2 half_extent) {
   return max(frames * (1.0 - moved_fraction), min(frames, vec2(1.0)));
 }
 
+/// Within which bounds the mean change of a window that shows so many `surfaces` lies. It is the
+/// less certain the fewer of them were sampled: `scale` is that of all. Where it is less than the
+/// fraction `least`, nothing is known.
+Box mean_box(Window window, float surfaces, float scale, float least) {
+  if (window.count < least * surfaces) return Box(vec3(-1e30), vec3(1e30));
+  return variance_box(window, scale * sqrt(surfaces / max(window.count, 1.0)));
+}
+
 /// Significant change of a neighbourhood: the distance of the box of its mean change from 0.
 vec3 certain_change(Box box) { return max(max(box.low, -box.high), vec3(0.0)); }
 

@@ -48,6 +48,13 @@ vec4 cubic_weights(float f) {
               f * (0.5 + f * (2.0 - 1.5 * f)), f * f * (0.5 * f - 0.5));
 }
 
+/// The corners of the 4x4 pixels weigh at most 1/64 together, of either sign: the cubic does without
+/// them, and cubic_scale() makes the weights of the others add up to 1.
+bool is_cubic_corner(int x, int y) { return x % 3 == 0 && y % 3 == 0; }
+float cubic_scale(vec4 across, vec4 down) {
+  return 1.0 / (1.0 - (across.x + across.w) * (down.x + down.w));
+}
+
 bool any_tap(HistoryTaps taps) { return any(greaterThan(taps.weights, vec4(0.0))); }
 
 /// Whether `pixel` of the previous frame exists.

@@ -46,13 +46,14 @@ void main() {
       vec4 moments_there = imageLoad(moments, tap);
       float cosine = dot(here.normal, there.normal);
       float off_plane = plane_distance(here.view_z, slope, curve, there.view_z, offset);
-      float weight = exp(depth_exponent(off_plane, depth_allowance(slope, offset, footprint), 1.0) +
-                         normal_exponent(cosine, 128.0));
+      float weight =
+          edge_weight(depth_exponent(off_plane, depth_allowance(slope, offset, footprint), 1.0) +
+                      normal_exponent(cosine, 128.0));
       sum += weight * moments_there;
       total += weight;
       float apart = abs(there.view_z - here.view_z);
       float loose_weight =
-          exp(depth_exponent(apart, here.view_z, nearby_depth)) * max(cosine, 0.0);
+          edge_weight(depth_exponent(apart, here.view_z, nearby_depth)) * max(cosine, 0.0);
       loose_sum += loose_weight * moments_there;
       loose_total += loose_weight;
     }

@@ -6,6 +6,7 @@
 #include "lib/frame.glsl"
 #include "lib/rays/ray_stream.glsl"
 #include "lib/math/sampling.glsl"
+#include "lib/rays/sampling_plan.glsl"
 #include "lib/rays/specular_pixels.glsl"
 
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D normals;
@@ -15,14 +16,18 @@ layout(set = 1, binding = 3, rgba32ui) readonly uniform uimage2D surface_layers;
 layout(set = 1, binding = 4, rgba32f) readonly uniform image2D motion;
 layout(set = 1, binding = 5, std430) buffer Count { RayCount ray_count; };
 layout(set = 1, binding = 6, std430) writeonly buffer Rays { Ray rays[]; };
-layout(set = 1, binding = 7, rgba32f) writeonly uniform image2D radiance;
+layout(set = 1, binding = 7, r32ui) readonly uniform uimage2D planned;  // or anything
+layout(set = 1, binding = 8, rgba32f) writeonly uniform image2D radiance;
 #ifdef HALF_RESOLUTION
-layout(set = 1, binding = 8, rgba32f) writeonly uniform image2D directions;
+layout(set = 1, binding = 9, rgba32f) writeonly uniform image2D directions;
 const int scale = 2;
 #else
 const int scale = 1;
 #endif
-layout(push_constant) uniform Constants { float max_roughness; };
+layout(push_constant) uniform Constants {
+  float max_roughness;
+  uint by_plan;
+};
 
 #include "lib/scene/gbuffer_material.glsl"
 
@@ -36,7 +41,9 @@ void main() {
 #ifdef HALF_RESOLUTION
   vec4 taken = vec4(0.0);
 #endif
-  if (view_z > 0.0 && !is_unlit(pixel)) {
+  uint word = by_plan != 0u ? imageLoad(planned, pixel).r : plan_specular;
+  bool left_out = view_z > 0.0 && (word & plan_specular) == 0u;
+  if (view_z > 0.0 && !left_out && !is_unlit(pixel)) {
     SurfaceMaterial m = material_at(pixel);
     SpecularSample s = sample_specular(m, specular_pair(cell, 4u, scale));
     vec3 weight = s.weight / specular_demodulator(m);
@@ -55,7 +62,9 @@ void main() {
     ray.padding0 = floatBitsToUint(weight.g);
     ray.padding1 = floatBitsToUint(weight.b);
   }
-  if (inside) imageStore(radiance, cell, vec4(0.0));
+  // A negative distance: no sample, and how far it was in the frame before.
+  float away = left_out ? min(-distance_before(word), -1e-6) : 0.0;
+  if (inside) imageStore(radiance, cell, vec4(vec3(0.0), away));
 #ifdef HALF_RESOLUTION
   if (inside) imageStore(directions, cell, taken);
 #endif

@@ -181,6 +181,17 @@ TEST_P(AtrousKernel, MatchesShaderAtAnySize) {
   }
 }
 
+TEST_P(AtrousKernel, MatchesShaderWhereThreadsShareAFrame) {
+  AtrousRig rig({600, 150}, GetParam());
+  for (const auto& [columns, rows] : {std::pair(2, 2), {2, 0}, {0, 2}}) {
+    for (const int level : {0, 3}) {
+      const auto result = rig.compare(constants(level, columns, rows, 5u, 0.2f));
+      EXPECT_LT(result.mean, 1e-4) << columns << "," << rows << " level " << level;
+      EXPECT_LT(result.max, 5e-3) << columns << "," << rows << " level " << level;
+    }
+  }
+}
+
 TEST_P(AtrousKernel, IsFasterThanShader) {
   AtrousRig rig({640, 360}, GetParam());
   const std::string kind = GetParam() == Signal::visibility ? "visibility" : "specular";

@@ -38,9 +38,11 @@ class KernelComparison {
     for (const bool host : {false, true}) {
       const auto in = with_host_kernels(rig_, host);
       auto& plan = rig_.plan();
-      visibility_.push_back(render::accumulate_visibility(plan, in, guide, raw_visibility_, false));
+      const auto histories = render::declare_sample_histories(plan);
+      visibility_.push_back(
+          render::accumulate_visibility(plan, in, guide, histories, raw_visibility_, false));
       specular_.push_back(
-          render::accumulate_specular(plan, in, gbuffer, guide, raw_specular_, false));
+          render::accumulate_specular(plan, in, gbuffer, guide, histories, raw_specular_, false));
       render::estimate_visibility_variance(plan, in, gbuffer, guide, visibility_.back());
       render::estimate_specular_variance(plan, in, gbuffer, guide, specular_.back());
     }

@@ -173,10 +173,12 @@ class TemporalAccumulation : public testing::Test {
     const render::GBuffer gbuffer = render::rasterize_gbuffer(rig_->plan(), rig_->inputs());
     const render::Guide guide = render::reproject(rig_->plan(), rig_->inputs(), gbuffer);
     raw_ = rig_->input("raw", VK_FORMAT_R32G32B32A32_SFLOAT, std::vector(pixels, glm::vec4(0.0f)));
-    accumulated_ =
-        specular
-            ? render::accumulate_specular(rig_->plan(), rig_->inputs(), gbuffer, guide, raw_, false)
-            : render::accumulate_visibility(rig_->plan(), rig_->inputs(), guide, raw_, false);
+    auto& plan = rig_->plan();
+    const auto histories = render::declare_sample_histories(plan);
+    accumulated_ = specular ? render::accumulate_specular(plan, rig_->inputs(), gbuffer, guide,
+                                                          histories, raw_, false)
+                            : render::accumulate_visibility(plan, rig_->inputs(), guide, histories,
+                                                            raw_, false);
   }
   /// One frame of a static view with signal `values`.
   void frame(const std::vector<glm::vec4>& values) {

@@ -145,6 +145,23 @@ TEST_F(FramePlanTest, HistoriesSwapEveryFrameAndReset) {
   EXPECT_EQ(value(history.current), 1.0f);
 }
 
+TEST_F(FramePlanTest, CanceledFrameDoesNotSwapHistories) {
+  if (!device_.is_cpu()) GTEST_SKIP() << "frames are canceled on CPU devices only";
+  const auto a = image("a"), b = image("b");
+  const History history = plan_.history("count", format);
+  add("count", history.previous, history.current);
+  add("behind", a, b);
+  plan_.compile();
+  EXPECT_TRUE(plan_.execute());
+  for (const int passes : {0, 1}) {
+    int asked = 0;
+    EXPECT_FALSE(plan_.execute([&] { return asked++ == passes; }));
+    EXPECT_EQ(asked, passes + 1) << "no pass runs after the one that was refused";
+  }
+  EXPECT_TRUE(plan_.execute([] { return false; }));
+  EXPECT_EQ(value(history.current), 2.0f);
+}
+
 TEST_F(FramePlanTest, ReadsBackRequestedImageEveryFrame) {
   const History history = plan_.history("count", format);
   add("count", history.previous, history.current);
@@ -172,6 +189,51 @@ TEST_F(FramePlanTest, SkipsPassesWhoseConditionIsFalse) {
   plan_.execute();
   EXPECT_EQ(value(b), 7.0f);
   EXPECT_GE(plan_.timings()[0].milliseconds, 0.0f);
+}
+
+TEST_F(FramePlanTest, OnlyWhenSkipsAllPassesDeclaredWithin) {
+  const auto a = image("a"), b = image("b"), c = image("c"), d = image("d");
+  bool outer = false, own = true;
+  plan_.only_when([&] { return outer; },
+                  [&] {
+                    add("first", a, b, 2.0f);
+                    add("second", a, c, 3.0f).when([&] { return own; });
+                  });
+  add("always", a, d, 4.0f);
+  plan_.compile();
+  plan_.execute();
+  EXPECT_EQ(value(b), 0.0f);
+  EXPECT_EQ(value(c), 0.0f);
+  EXPECT_EQ(value(d), 4.0f);
+  outer = true;
+  own = false;
+  plan_.execute();
+  EXPECT_EQ(value(b), 2.0f);
+  EXPECT_EQ(value(c), 0.0f) << "its own condition counts too";
+  own = true;
+  plan_.execute();
+  EXPECT_EQ(value(c), 3.0f);
+}
+
+TEST_F(FramePlanTest, HostPassesAloneSubmitNothing) {
+  int runs = 0;
+  plan_.host("first", [&] { ++runs; });
+  plan_.host("second", [&] { ++runs; });
+  plan_.compile();
+  plan_.execute();
+  EXPECT_EQ(runs, 2);
+  EXPECT_EQ(plan_.submits(), 0u);
+}
+
+TEST_F(FramePlanTest, SubmitsOnlyWhereTheHostWaits) {
+  if (device_.is_cpu()) GTEST_SKIP() << "passes are timed one by one on CPU devices";
+  const auto a = image("a"), b = image("b"), c = image("c");
+  add("first", a, b);
+  add("second", b, c);
+  plan_.host("host", [] {});
+  plan_.compile();
+  plan_.execute();
+  EXPECT_EQ(plan_.submits(), 1u);
 }
 
 TEST_F(FramePlanTest, RunsHostPassesOnMappedImagesBetweenDevicePasses) {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "render/kernels/gbuffer_hits.hpp"
+#include "render/kernels/gbuffer/gbuffer_hits.hpp"
 #include "render/passes/gbuffer/trace_gbuffer.hpp"
 #include "scene/import.hpp"
 #include "tests/gpu/support/kernel_comparison.hpp"
@@ -9,37 +9,6 @@
 
 namespace heliograph::test {
 namespace {
-
-/// Every kind of surface that rays may pass through, in front of a wall.
-std::shared_ptr<const scene::Scene> transparent_scene() {
-  SceneBuilder builder;
-  const std::array<glm::vec3, 4> corners{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}};
-  shared::Material masked = surface({0.9f, 0.4f, 0.2f}), blended = masked, bright = masked;
-  std::vector<std::uint8_t> holes;
-  for (int i = 0; i < 64; ++i) {
-    const std::uint8_t alpha = i * 5 % 7 < 4 ? 230 : 40;
-    holes.insert(holes.end(), {200, 100, static_cast<std::uint8_t>(4 * i), alpha});
-  }
-  masked.base_color_texture.texture = builder.add_texture(8, 8, true, holes);
-  masked.flags = shared::material_alpha_mask | shared::material_double_sided;
-  masked.alpha_cutoff = 0.5f;
-  blended.base_color.w = 0.4f;
-  blended.flags = shared::material_alpha_blend;
-  bright.flags = shared::material_unlit;
-  const auto at = [](const glm::vec3& to) {
-    glm::mat4 world(1.0f);
-    world[3] = glm::vec4(to, 1.0f);
-    return world;
-  };
-  builder.place(builder.add_quad(corners, masked), at({-0.8f, 0, 1}));
-  const auto pane = builder.add_quad(corners, blended);
-  builder.place(pane, at({0.5f, 0.2f, 0.5f})).place(pane, at({0.8f, -0.3f, 0.7f}));
-  glm::mat4 away = at({0, 0.5f, 0.8f});
-  away[0][0] = away[2][2] = -1.0f;
-  builder.place(pane, away);  // back face
-  builder.place(builder.add_quad(corners, bright), at({0.2f, 0.1f, -0.5f}));
-  return builder.build();
-}
 
 std::shared_ptr<const scene::Scene> helmet() {
   const auto file = asset("gltf/DamagedHelmet.glb");

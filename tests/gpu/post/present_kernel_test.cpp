@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "render/kernels/present.hpp"
+#include "render/kernels/post/present.hpp"
 #include "render/passes/post/present.hpp"
 #include "tests/gpu/support/kernel_comparison.hpp"
 

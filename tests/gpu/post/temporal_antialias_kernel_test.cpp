@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "render/kernels/temporal_antialias.hpp"
+#include "render/kernels/post/temporal_antialias.hpp"
 #include "render/passes/post/temporal_antialias.hpp"
 #include "tests/gpu/support/kernel_comparison.hpp"
 

@@ -10,4 +10,7 @@ namespace heliograph::test {
 /// seen from behind.
 std::shared_ptr<const scene::Scene> textured_scene();
 
+/// Every kind of surface that rays may pass through, in front of a wall.
+std::shared_ptr<const scene::Scene> transparent_scene();
+
 }  // namespace heliograph::test

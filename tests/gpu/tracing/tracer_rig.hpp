@@ -30,12 +30,13 @@ struct TraceResults {
 class Tracing {
  public:
   Tracing(const gpu::Device& device, const RayTracer& tracer,
-          const AccelerationStructure& structure, std::size_t capacity)
+          const AccelerationStructure& structure, std::size_t capacity,
+          RayKind kind = RayKind::path)
       : plan_(device, {1, 1}),
         stream_{plan_.buffer("count", sizeof(shared::RayCount),
                              storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, gpu::Memory::upload),
                 plan_.buffer("rays", capacity * sizeof(shared::Ray), storage, gpu::Memory::upload),
-                static_cast<std::uint32_t>(capacity)},
+                static_cast<std::uint32_t>(capacity), kind},
         hits_(plan_.buffer("hits", capacity * sizeof(shared::Hit), storage, gpu::Memory::readback)),
         occluded_(plan_.buffer("occluded", capacity * sizeof(std::uint32_t), storage,
                                gpu::Memory::readback)) {
@@ -112,12 +113,12 @@ class TracedScene {
     return tracing(rays.size()).run(rays, count, blending);
   }
 
-  TraceResults trace(std::span<const shared::Ray> rays) const {
-    return trace(rays, static_cast<std::uint32_t>(rays.size()));
+  TraceResults trace(std::span<const shared::Ray> rays, RayKind kind = RayKind::path) const {
+    return tracing(rays.size(), kind).run(rays);
   }
 
-  Tracing tracing(std::size_t capacity) const {
-    return Tracing(device_, tracer_, *structure_, capacity);
+  Tracing tracing(std::size_t capacity, RayKind kind = RayKind::path) const {
+    return Tracing(device_, tracer_, *structure_, capacity, kind);
   }
 
   std::unique_ptr<MovingStructure> moving(const scene::Scene& scene) const {

@@ -196,7 +196,8 @@ TEST(EffectivePipeline, MatchesRequestedTracerAndPasses) {
           }
         }
         EXPECT_EQ(passes("gbuffer.trace") > 0, source == protocol::PrimaryVisibility::rays);
-        EXPECT_EQ(passes("gbuffer") > 0, source == protocol::PrimaryVisibility::raster);
+        EXPECT_EQ(passes("gbuffer") + passes("gbuffer.draw") > 0,
+                  source == protocol::PrimaryVisibility::raster);
         EXPECT_EQ(passes("visibility.temporal") > 0, denoised);
         EXPECT_EQ(passes("specular.temporal") > 0, denoised);
       }

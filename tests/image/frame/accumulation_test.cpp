@@ -110,6 +110,26 @@ TEST(Determinism, SeedDeterminesEveryByte) {
   }
 }
 
+TEST(CanceledFrame, LeavesTheNextFramesAsTheyWouldHaveBeen) {
+  if (!device().is_cpu()) GTEST_SKIP() << "frames are canceled on CPU devices only";
+  RendererRig whole = make(), interrupted = make();
+  for (int frame = 0; frame < 4; ++frame) {
+    const auto turn = [&](RendererRig& rig) {
+      rig.renderer.set_camera(
+          look({0.5f + 0.05f * static_cast<float>(frame), 2, 4.5f}, {0, 0.5f, 0}));
+    };
+    turn(whole);
+    for (const int passes : {0, 3, 25}) {
+      int asked = 0;
+      EXPECT_FALSE(interrupted.renderer.render([&] { return asked++ == passes; }));
+    }
+    turn(interrupted);
+    EXPECT_TRUE(interrupted.renderer.needs_frame());
+    const render::Frame expected = whole.renderer.render();
+    EXPECT_EQ(interrupted.renderer.render().rgba, expected.rgba) << "frame " << frame;
+  }
+}
+
 TEST(Tracers, ProduceNearlyEqualImages) {
   const render::Frame expected = make().accumulate(16);
   for (const std::string& name : supported_tracers()) {

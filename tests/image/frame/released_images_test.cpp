@@ -17,9 +17,10 @@ class ReleasedImages : public testing::Test {
     return import_generated(recipe.make_document(recipe.make_sky(64, 32)), 64);
   }
 
-  static std::vector<std::uint8_t> render_once(std::shared_ptr<const render::SceneResources> scene,
+  static std::vector<std::uint8_t> render_once(render::Engine& engine,
+                                               std::shared_ptr<const render::SceneResources> scene,
                                                protocol::PrimaryVisibility source) {
-    render::Renderer renderer(engine());
+    render::Renderer renderer(engine);
     protocol::Settings settings;
     settings.gbuffer.source = source;
     settings.antialiasing.temporal = false;
@@ -31,6 +32,8 @@ class ReleasedImages : public testing::Test {
     return renderer.render().rgba;
   }
 
+  // Host kernels draw without the textures of the rasteriser.
+  render::Engine shaders_{{.validation = true, .host_kernels = false}};
   const std::shared_ptr<const scene::Environment> white_ =
       std::make_shared<const scene::Environment>(scene::constant_environment(glm::vec3(1.0f)));
 };
@@ -39,31 +42,37 @@ TEST_F(ReleasedImages, RenderSameImageAfterReleaseAndDeviceLoss) {
   auto scene = std::make_unique<scene::Scene>(textured());
   const std::uint64_t decoded = scene->bytes();
   ASSERT_FALSE(scene->images.empty());
-  const auto kept = engine().upload(std::make_shared<const scene::Scene>(*scene), white_);
-  const auto released = engine().upload_and_free_pixels(std::move(scene), white_);
+  const auto kept = shaders_.upload(std::make_shared<const scene::Scene>(*scene), white_);
+  const auto released = shaders_.upload_and_free_pixels(std::move(scene), white_);
   EXPECT_FALSE(render::scene_of(*kept)->images[0].pixels.empty());
   for (const scene::Image& image : render::scene_of(*released)->images) {
     EXPECT_TRUE(image.pixels.empty()) << image.name;
   }
   EXPECT_LT(render::scene_of(*released)->bytes(), decoded);
-  const auto renewed = engine().renew(*released);
+  const auto renewed = shaders_.renew(*released);
   for (const auto source :
        {protocol::PrimaryVisibility::rays, protocol::PrimaryVisibility::raster}) {
-    const auto expected = render_once(kept, source);
-    EXPECT_EQ(render_once(released, source), expected);
-    EXPECT_EQ(render_once(renewed, source), expected);
+    const auto expected = render_once(shaders_, kept, source);
+    EXPECT_EQ(render_once(shaders_, released, source), expected);
+    EXPECT_EQ(render_once(shaders_, renewed, source), expected);
   }
 }
 
-// Raster textures take as much memory as the texture heap: tracing alone does not need them.
+// Raster textures take as much memory as the texture heap: tracing alone does not need them, nor
+// does drawing on the host.
 TEST_F(ReleasedImages, CpuDevicesUploadRasterTexturesOnFirstUse) {
   if (!device().is_cpu()) GTEST_SKIP() << "other devices upload them with the scene";
-  const auto scene = engine().upload(std::make_unique<scene::Scene>(textured()), white_);
+  const auto scene = shaders_.upload(std::make_unique<scene::Scene>(textured()), white_);
   const std::uint64_t before = render::memory_bytes(*scene);
-  render_once(scene, protocol::PrimaryVisibility::rays);
+  render_once(shaders_, scene, protocol::PrimaryVisibility::rays);
   EXPECT_EQ(render::memory_bytes(*scene), before);
-  render_once(scene, protocol::PrimaryVisibility::raster);
+  render_once(shaders_, scene, protocol::PrimaryVisibility::raster);
   EXPECT_GT(render::memory_bytes(*scene), before);
+
+  const auto drawn = engine().upload(std::make_unique<scene::Scene>(textured()), white_);
+  const std::uint64_t without = render::memory_bytes(*drawn);
+  render_once(engine(), drawn, protocol::PrimaryVisibility::raster);
+  EXPECT_EQ(render::memory_bytes(*drawn), without);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@ import asyncio
 import base64
 import functools
 import http.client
+import itertools
 import math
 import os
 import shutil
@@ -34,14 +35,6 @@ class VideoViewer(Viewer):
         await super().__aenter__()
         self.hello = await self.call("hello", {"client": "video tests", "codecs": self.codecs})
         return self
-
-    async def frames_until_video(self, count):
-        """All frames up to so many H.264 frames."""
-        frames = []
-        while count > 0:
-            frames.append(await self.next_frame())
-            count -= frames[-1].header["codec"] == H264
-        return frames
 
     async def video_frames(self, count):
         """So many H.264 frames, others skipped."""
@@ -136,7 +129,7 @@ class Video(ServerTestCase):
     @needs_video
     async def test_new_viewers_do_not_force_key_frames_at_once(self, viewer):
         async with viewer.moving():
-            frames = await viewer.frames_until_video(3)
+            frames = await viewer.video_frames(3)
             for _ in range(2):
                 async with VideoViewer(self.server) as newcomer:
                     first = await newcomer.next_frame()
@@ -145,20 +138,16 @@ class Video(ServerTestCase):
                     self.assertTrue(joined[0].header["flags"] & FLAG_KEY)
                     for frame in joined[1:]:
                         self.assertFalse(frame.header["flags"] & FLAG_KEY)
-            frames += await viewer.frames_until_video(1)
+            frames += await viewer.video_frames(1)
             while not viewer.frames.empty():
                 frames.append(viewer.frames.get_nowait())
-        keys, lost = [], False
-        for header in [frame.header for frame in frames]:
-            lost = lost or bool(header["flags"] & FLAG_FIRST_AFTER_DROP)
-            if header["codec"] != H264 or not header["flags"] & FLAG_KEY:
-                continue
-            # A viewer that lost a frame itself gets a key frame without delay.
-            if keys and not lost:
-                self.assertGreater(encoded_us(header) - encoded_us(keys[-1]), 1.9e6)
-            keys.append(header)
-            lost = False
+        keys = [frame.header for frame in frames
+                if frame.header["codec"] == H264 and frame.header["flags"] & FLAG_KEY]
         self.assertGreaterEqual(len(keys), 2, "newcomers join the same video")
+        for previous, key in itertools.pairwise(keys):
+            # A viewer that lost a frame itself gets a key frame without delay.
+            if not key["flags"] & FLAG_FIRST_AFTER_DROP:
+                self.assertGreater(encoded_us(key) - encoded_us(previous), 1.9e6)
 
     @needs_video
     async def test_a_change_of_size_starts_a_new_video(self, viewer):

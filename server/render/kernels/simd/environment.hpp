@@ -16,6 +16,44 @@
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
 
+/// World direction -> direction in the environment's own frame.
+HWY_INLINE Float3 environment_direction(const shared::FrameConstants& frame, const Float3& world) {
+  const Float c = number(frame.environment_cos), s = number(frame.environment_sin);
+  return {hn::MulSub(c, world.x, s * world.z), world.y, hn::MulAdd(s, world.x, c * world.z)};
+}
+
+/// `map` toward `world`, filtered; repeats around the equator.
+HWY_INLINE Float3 radiance_from(const RadianceMap& map, const shared::FrameConstants& frame,
+                                const Float3& world) {
+  const Float3 d = environment_direction(frame, world);
+  const int width = map.width, height = map.height;
+  const Float u = angle_of(d.x, d.z) * number(0.5f * std::numbers::inv_pi_v<float>);
+  const Float from_top = hn::Acos(tag, clamped(d.y, -1.0f, 1.0f));
+  const Float x = hn::MulSub(u + number(0.5f), number(static_cast<float>(width)), number(0.5f));
+  const Float y = hn::MulSub(from_top * number(std::numbers::inv_pi_v<float>),
+                             number(static_cast<float>(height)), number(0.5f));
+  const Float corner_x = hn::Floor(x), corner_y = hn::Floor(y);
+  const auto around = [width](Integer column) {
+    const Mask before = float_mask(hn::Lt(column, integer(0)));
+    const Mask behind = float_mask(hn::Gt(column, integer(width - 1)));
+    return select(before, integer(width - 1), select(behind, integer(0), column));
+  };
+  const auto inside = [height](Integer row) {
+    return hn::Min(hn::Max(row, integer(0)), integer(height - 1));
+  };
+  const Integer column = truncated(corner_x), row = truncated(corner_y);
+  const Integer left = around(column), right = around(hn::Add(column, integer(1)));
+  const Integer top = hn::Mul(inside(row), integer(width));
+  const Integer bottom = hn::Mul(inside(hn::Add(row, integer(1))), integer(width));
+  const auto texel = [&map](Integer line, Integer index) {
+    return gather3(tag, map.texels, hn::Mul(hn::Add(line, index), integer(3)));
+  };
+  const Float across = x - corner_x, down = y - corner_y;
+  return mix(mix(texel(top, left), texel(top, right), across),
+             mix(texel(bottom, left), texel(bottom, right), across), down) *
+         number(frame.environment_intensity);
+}
+
 class EnvironmentLanes {
  public:
   EnvironmentLanes(const shared::FrameConstants& frame, const Environment& environment)
@@ -23,34 +61,7 @@ class EnvironmentLanes {
 
   /// What lights the scene.
   HWY_INLINE Float3 radiance(const Float3& world) const {
-    const Float3 d = own_direction(world);
-    const Table& map = environment_.map;
-    const auto width = static_cast<int>(map.width), height = static_cast<int>(map.height);
-    const Float u = angle_of(d.x, d.z) * number(0.5f * std::numbers::inv_pi_v<float>);
-    const Float from_top = hn::Acos(tag, clamped(d.y, -1.0f, 1.0f));
-    const Float x = hn::MulSub(u + number(0.5f), number(static_cast<float>(width)), number(0.5f));
-    const Float y = hn::MulSub(from_top * number(std::numbers::inv_pi_v<float>),
-                               number(static_cast<float>(height)), number(0.5f));
-    const Float corner_x = hn::Floor(x), corner_y = hn::Floor(y);
-    const auto around = [width](Integer column) {
-      const Mask before = float_mask(hn::Lt(column, integer(0)));
-      const Mask behind = float_mask(hn::Gt(column, integer(width - 1)));
-      return select(before, integer(width - 1), select(behind, integer(0), column));
-    };
-    const auto inside = [height](Integer row) {
-      return hn::Min(hn::Max(row, integer(0)), integer(height - 1));
-    };
-    const Integer column = truncated(corner_x), row = truncated(corner_y);
-    const Integer left = around(column), right = around(hn::Add(column, integer(1)));
-    const Integer top = hn::Mul(inside(row), integer(width));
-    const Integer bottom = hn::Mul(inside(hn::Add(row, integer(1))), integer(width));
-    const auto texel = [&map](Integer line, Integer index) {
-      return gather3(tag, map.values.data(), hn::Mul(hn::Add(line, index), integer(3)));
-    };
-    const Float across = x - corner_x, down = y - corner_y;
-    return mix(mix(texel(top, left), texel(top, right), across),
-               mix(texel(bottom, left), texel(bottom, right), across), down) *
-           number(frame_.environment_intensity);
+    return radiance_from(environment_.radiance(), frame_, world);
   }
 
   /// GGX-prefiltered radiance about the reflected direction `world`.
@@ -83,10 +94,8 @@ class EnvironmentLanes {
   }
 
  private:
-  /// World direction -> direction in the environment's own frame.
   HWY_INLINE Float3 own_direction(const Float3& world) const {
-    const Float c = number(frame_.environment_cos), s = number(frame_.environment_sin);
-    return {hn::MulSub(c, world.x, s * world.z), world.y, hn::MulAdd(s, world.x, c * world.z)};
+    return environment_direction(frame_, world);
   }
 
   struct Face {
@@ -123,7 +132,10 @@ class EnvironmentLanes {
     const Integer corner = hn::Add(first, hn::ShiftLeft<2>(hn::Add(hn::Mul(line, pitch), column)));
     const Integer down = hn::ShiftLeft<2>(pitch);
     const auto texel = [this](Integer index) {
-      return gather3(tag, environment_.cube.data(), index);
+      const LaneIndices<Tag> at(index);
+      const float* const cube = environment_.cube.data();
+      const Float4 t = four_words(tag, [&](std::size_t lane) { return cube + at.of[lane]; });
+      return Float3{t.x, t.y, t.z};
     };
     const Float across = x - to_float(column);
     const Float3 top = mix(texel(corner), texel(hn::Add(corner, integer(4))), across);

@@ -37,18 +37,6 @@ HWY_INLINE Triple<V> scaled_normal(const Quad<V>& texel) {
   return {texel.x, texel.y, texel.z};
 }
 
-/// Cosine between `normal` and the guide's; cheaper than decode_guide().
-template <class V>
-HWY_INLINE V guide_cosine(const Triple<V>& normal, const Quad<V>& texel) {
-  return dot(normal, scaled_normal(texel)) / length(scaled_normal(texel));
-}
-
-/// Of surfaces; without the normal.
-template <class V>
-HWY_INLINE V guide_roughness(const Quad<V>& texel) {
-  return length(scaled_normal(texel)) - hn::Set(hn::DFromV<V>(), 1.0f);
-}
-
 /// Also of the background, where the normal is zero.
 template <class V>
 HWY_INLINE Guide<V> decode_guide(const Quad<V>& texel) {

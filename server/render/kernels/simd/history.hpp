@@ -179,41 +179,148 @@ HWY_INLINE void cubic_weights(V f, V (&weights)[4]) {
   weights[3] = f * f * (half * f - half);
 }
 
-/// fetch_history_bicubic() of the shaders: `read` gives the channels of a TexelGather; where
-/// `requested`, the values become the cubic's, clamped to the four nearest pixels.
-template <class D, int channels, class Read, class V = hn::Vec<D>>
-HWY_INLINE void fetch_history_bicubic(const Bounds<D>& bounds, const HistoryTaps<D>& taps,
-                                      hn::Mask<D> requested, const Read& read,
-                                      V (&values)[channels]) {
-  const D d;
-  const hn::RebindToSigned<D> di;
-  V across[4], down[4], sum[channels], low[channels], high[channels];
-  cubic_weights(taps.fraction_x, across);
-  cubic_weights(taps.fraction_y, down);
-  for (int c = 0; c < channels; ++c) {
-    sum[c] = hn::Zero(d);
-    low[c] = hn::Set(d, 1e30f);
-    high[c] = hn::Set(d, -1e30f);
+/// Four channels of one pixel.
+class Texel {
+  using Tag = hn::CappedTag<float, 4>;
+  using V = hn::Vec<Tag>;
+  static constexpr int lanes = static_cast<int>(hn::MaxLanes(Tag()));
+  static constexpr int parts = 4 / lanes;
+
+ public:
+  static HWY_INLINE Texel load(const float* from) {
+    Texel t;
+    for (int i = 0; i < parts; ++i) t.part_[i] = hn::LoadU(Tag(), from + i * lanes);
+    return t;
   }
-  for (int i = 0; i < 16; ++i) {
-    const int x = i % 4, y = i / 4;
-    const V weight = across[x] * down[y];
-    const auto valid = hn::And(requested, hn::Ne(weight, hn::Zero(d)));
-    if (hn::AllFalse(d, valid)) continue;
-    V texel[channels];
-    read(bounds.gather(taps.x + hn::Set(di, x - 1), taps.y + hn::Set(di, y - 1)), texel);
-    const bool nearest = x % 3 != 0 && y % 3 != 0;
-    for (int c = 0; c < channels; ++c) {
-      sum[c] = sum[c] + hn::IfThenElseZero(valid, weight * texel[c]);
-      if (!nearest) continue;
-      low[c] = hn::IfThenElse(valid, hn::Min(low[c], texel[c]), low[c]);
-      high[c] = hn::IfThenElse(valid, hn::Max(high[c], texel[c]), high[c]);
+  HWY_INLINE void store(float* to) const {
+    for (int i = 0; i < parts; ++i) hn::StoreU(part_[i], Tag(), to + i * lanes);
+  }
+  HWY_INLINE Texel times(float weight) const {
+    return each(*this, [weight](V a, V) HWY_ATTR { return hn::Mul(a, hn::Set(Tag(), weight)); });
+  }
+  /// this + t * weight
+  HWY_INLINE Texel plus(const Texel& t, float weight) const {
+    return each(t,
+                [weight](V a, V b) HWY_ATTR { return hn::MulAdd(b, hn::Set(Tag(), weight), a); });
+  }
+  HWY_INLINE Texel lesser(const Texel& t) const {
+    return each(t, [](V a, V b) HWY_ATTR { return hn::Min(a, b); });
+  }
+  HWY_INLINE Texel greater(const Texel& t) const {
+    return each(t, [](V a, V b) HWY_ATTR { return hn::Max(a, b); });
+  }
+
+ private:
+  template <class Operation>
+  HWY_INLINE Texel each(const Texel& t, const Operation& operation) const {
+    Texel result;
+    for (int i = 0; i < parts; ++i) result.part_[i] = operation(part_[i], t.part_[i]);
+    return result;
+  }
+
+  V part_[parts];
+};
+
+/// Reads rgba32f images of the frame before. Pixels move by different amounts, so that vectors of
+/// pixels would have to gather each channel of each tap: here a vector holds the channels, and
+/// pixels take turns. Images must be finite, for taps without a weight are read, too.
+template <class D>
+class HistoryReader {
+  using V = hn::Vec<D>;
+  using DI = hn::RebindToSigned<D>;
+  using VI = hn::Vec<DI>;
+  static constexpr int most_lanes = static_cast<int>(hn::MaxLanes(D()));
+
+ public:
+  HWY_INLINE HistoryReader(const HistoryTaps<D>& taps, int width, int height)
+      : lanes_(static_cast<int>(hn::Lanes(d_))) {
+    const V zero = hn::Zero(d_);
+    // A position on a pixel's centre concerns no other column or row.
+    place(taps.x, hn::Gt(taps.fraction_x, zero), width, columns_);
+    place(taps.y, hn::Gt(taps.fraction_y, zero), height, rows_);
+    for (int i = 0; i < 4; ++i) hn::StoreU(taps.weights[i], d_, bilinear_[i]);
+    hn::StoreU(hn::IfThenElseZero(taps.whole, hn::Set(d_, 1.0f)), d_, whole_);
+    V across[4], down[4];
+    cubic_weights(taps.fraction_x, across);
+    cubic_weights(taps.fraction_y, down);
+    // Without the corners, whose weights are next to nothing.
+    const V one = hn::Set(d_, 1.0f);
+    const V scale = one / hn::NegMulAdd(across[0] + across[3], down[0] + down[3], one);
+    for (int i = 0; i < 4; ++i) {
+      hn::StoreU(across[i], d_, across_[i]);
+      hn::StoreU(down[i] * scale, d_, down_[i]);
+    }
+    const bool same_row = hn::AllTrue(di_, hn::Eq(taps.y, hn::Set(di_, hn::GetLane(taps.y))));
+    const bool in_order = hn::AllTrue(di_, hn::Eq(taps.x, hn::Iota(di_, hn::GetLane(taps.x))));
+    static_ = same_row && in_order && hn::AllTrue(d_, hn::Eq(taps.weights[0], one));
+  }
+
+  /// The mean of the taps.
+  HWY_INLINE Quad<V> bilinear(const gpu::HostView& image) const {
+    if (static_) return load4(d_, texel(image, 0, 1, 1));
+    return read([&](int lane) HWY_ATTR { return mean(image, lane); });
+  }
+  /// fetch_history_bicubic() of the shaders where all taps are valid, the mean elsewhere.
+  HWY_INLINE Quad<V> bicubic(const gpu::HostView& image) const {
+    if (static_) return load4(d_, texel(image, 0, 1, 1));
+    return read([&](int lane) HWY_ATTR {
+      return whole_[lane] != 0.0f ? cubic(image, lane) : mean(image, lane);
+    });
+  }
+
+ private:
+  HWY_INLINE void place(VI first, hn::Mask<D> between, int size, int (&to)[4][most_lanes]) const {
+    const VI next = hn::IfThenElse(hn::RebindMask(di_, between), hn::Set(di_, 1), hn::Zero(di_));
+    const VI steps[] = {hn::Set(di_, -1), hn::Zero(di_), next, hn::Set(di_, 2)};
+    for (int i = 0; i < 4; ++i) {
+      const VI at = hn::Min(hn::Max(first + steps[i], hn::Zero(di_)), hn::Set(di_, size - 1));
+      hn::StoreU(at, di_, to[i]);
     }
   }
-  for (int c = 0; c < channels; ++c) {
-    values[c] = hn::IfThenElse(requested, hn::Min(hn::Max(sum[c], low[c]), high[c]), values[c]);
+  HWY_INLINE const float* texel(const gpu::HostView& image, int lane, int i, int j) const {
+    return row_of<const float>(image, rows_[j][lane]) + 4 * columns_[i][lane];
   }
-}
+
+  template <class Value>
+  HWY_INLINE Quad<V> read(const Value& value) const {
+    HWY_ALIGN float texels[4 * most_lanes];
+    for (int lane = 0; lane < lanes_; ++lane) value(lane).store(texels + 4 * lane);
+    return load4(d_, texels);
+  }
+
+  HWY_INLINE Texel mean(const gpu::HostView& image, int lane) const {
+    Texel sum = Texel::load(texel(image, lane, 1, 1)).times(bilinear_[0][lane]);
+    sum = sum.plus(Texel::load(texel(image, lane, 2, 1)), bilinear_[1][lane]);
+    sum = sum.plus(Texel::load(texel(image, lane, 1, 2)), bilinear_[2][lane]);
+    return sum.plus(Texel::load(texel(image, lane, 2, 2)), bilinear_[3][lane]);
+  }
+
+  HWY_INLINE Texel cubic(const gpu::HostView& image, int lane) const {
+    const auto at = [&](int i, int j) HWY_ATTR { return Texel::load(texel(image, lane, i, j)); };
+    const float x0 = across_[0][lane], x1 = across_[1][lane];
+    const float x2 = across_[2][lane], x3 = across_[3][lane];
+    const Texel a = at(1, 1), b = at(2, 1), c = at(1, 2), d = at(2, 2);
+    const Texel above = at(1, 0).times(x1).plus(at(2, 0), x2);
+    const Texel upper = at(0, 1).times(x0).plus(a, x1).plus(b, x2).plus(at(3, 1), x3);
+    const Texel lower = at(0, 2).times(x0).plus(c, x1).plus(d, x2).plus(at(3, 2), x3);
+    const Texel below = at(1, 3).times(x1).plus(at(2, 3), x2);
+    const Texel sum = above.times(down_[0][lane])
+                          .plus(upper, down_[1][lane])
+                          .plus(lower, down_[2][lane])
+                          .plus(below, down_[3][lane]);
+    const Texel low = a.lesser(b).lesser(c.lesser(d)), high = a.greater(b).greater(c.greater(d));
+    return sum.greater(low).lesser(high);
+  }
+
+  const D d_{};
+  const DI di_{};
+  int lanes_;
+  bool static_;
+  // Of each pixel; columns and rows from the one before the first tap.
+  HWY_ALIGN int columns_[4][most_lanes], rows_[4][most_lanes];
+  HWY_ALIGN float bilinear_[4][most_lanes], across_[4][most_lanes], down_[4][most_lanes];
+  HWY_ALIGN float whole_[most_lanes];
+};
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

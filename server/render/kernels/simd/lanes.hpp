@@ -167,24 +167,41 @@ class Records {
  public:
   /// `stride` in words.
   HWY_INLINE Records(const void* table, Integer index, int stride)
-      : words_(static_cast<const float*>(table)),
-        offset_(hn::Mul(index, integer(stride))),
-        shared_(words_ + hn::GetLane(offset_)),
-        same_(hn::AllTrue(integer_tag, hn::Eq(offset_, integer(hn::GetLane(offset_))))) {}
+      : words_(static_cast<const float*>(table)) {
+    const Integer offset = hn::Mul(index, integer(stride));
+    shared_ = words_ + hn::GetLane(offset);
+    same_ = hn::AllTrue(integer_tag, hn::Eq(offset, integer(hn::GetLane(offset))));
+    if (!same_) offset_ = LaneIndices<Tag>(offset);
+  }
 
   HWY_INLINE Float real(int word) const {
-    if (!same_) return hn::GatherIndex(tag, words_ + word, offset_);
+    if (!same_) {
+      return hn::GatherIndex(tag, words_ + word, hn::Load(integer_tag, offset_.of.data()));
+    }
+    return shared(word);
+  }
+  HWY_INLINE Integer whole(int word) const { return as_integer(real(word)); }
+  /// Words `word` to `word` + 3.
+  HWY_INLINE Float4 four(int word) const {
+    if (same_) return {shared(word), shared(word + 1), shared(word + 2), shared(word + 3)};
+    return four_words(tag, [&](std::size_t lane) { return words_ + word + offset_.of[lane]; });
+  }
+  /// Three words; a fourth of the record follows them.
+  HWY_INLINE Float3 triple(int word) const {
+    const Float4 words = four(word);
+    return {words.x, words.y, words.z};
+  }
+
+ private:
+  HWY_INLINE Float shared(int word) const {
     float value;
     std::memcpy(&value, shared_ + word, sizeof value);
     return number(value);
   }
-  HWY_INLINE Integer whole(int word) const { return as_integer(real(word)); }
-  HWY_INLINE Float3 triple(int word) const { return {real(word), real(word + 1), real(word + 2)}; }
 
- private:
   const float* words_;
-  Integer offset_;
   const float* shared_;
+  LaneIndices<Tag> offset_;  // where lanes differ
   bool same_;
 };
 

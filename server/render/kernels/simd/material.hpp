@@ -52,10 +52,9 @@ class SquareTable {
     const VI left = inside(x0, 0), right = inside(x0, 1);
     const VI above = hn::Mul(inside(y0, 0), hn::Set(di_, pitch_));
     const VI below = hn::Mul(inside(y0, 1), hn::Set(di_, pitch_));
-    const VI i00 = above + hn::ShiftLeft<1>(left), i10 = above + hn::ShiftLeft<1>(right);
-    const VI i01 = below + hn::ShiftLeft<1>(left), i11 = below + hn::ShiftLeft<1>(right);
-    return {blend(texels_, i00, i10, i01, i11, fx, fy),
-            blend(texels_ + 1, i00, i10, i01, i11, fx, fy)};
+    const Quad<V> top = two_texels(above, left, right), bottom = two_texels(below, left, right);
+    return {mix(mix(top.x, top.z, fx), mix(bottom.x, bottom.z, fx), fy),
+            mix(mix(top.y, top.w, fx), mix(bottom.y, bottom.w, fx), fy)};
   }
 
  private:
@@ -63,10 +62,11 @@ class SquareTable {
     const VI index = hn::ConvertTo(di_, position) + hn::Set(di_, step);
     return hn::Min(hn::Max(index, hn::Zero(di_)), hn::Set(di_, size_ - 1));
   }
-  HWY_INLINE V blend(const float* channel, VI i00, VI i10, VI i01, VI i11, V fx, V fy) const {
-    const V above = mix(hn::GatherIndex(d_, channel, i00), hn::GatherIndex(d_, channel, i10), fx);
-    const V below = mix(hn::GatherIndex(d_, channel, i01), hn::GatherIndex(d_, channel, i11), fx);
-    return mix(above, below, fy);
+  HWY_INLINE Quad<V> two_texels(VI row, VI left, VI right) const {
+    const LaneIndices<D> first(row + hn::ShiftLeft<1>(left)), second(row + hn::ShiftLeft<1>(right));
+    return two_and_two_words(
+        d_, [&](std::size_t lane) { return texels_ + first.of[lane]; },
+        [&](std::size_t lane) { return texels_ + second.of[lane]; });
   }
 
   const D d_{};

@@ -7,6 +7,8 @@
 #define HELIOGRAPH_KERNELS_PIXELS_HPP
 #endif
 
+#include <array>
+#include <cstddef>
 #include <glm/glm.hpp>
 
 #include "gpu/memory/image.hpp"
@@ -29,6 +31,22 @@ template <class V>
 struct Quad {
   V x, y, z, w;
 };
+
+/// 1 / v, to 24 bits.
+template <class V>
+HWY_INLINE V reciprocal(V v) {
+  const V guess = hn::ApproximateReciprocal(v);
+  return hn::Mul(guess, hn::NegMulAdd(v, guess, hn::Set(hn::DFromV<V>(), 2.0f)));
+}
+
+/// 1 / sqrt(v), to 23 bits.
+template <class V>
+HWY_INLINE V reciprocal_sqrt(V v) {
+  const hn::DFromV<V> d;
+  const V guess = hn::ApproximateReciprocalSqrt(v);
+  const V half = hn::Mul(hn::Mul(v, hn::Set(d, 0.5f)), guess);
+  return hn::Mul(guess, hn::NegMulAdd(half, guess, hn::Set(d, 1.5f)));
+}
 
 template <class V>
 HWY_INLINE Triple<V> operator+(const Triple<V>& a, const Triple<V>& b) {
@@ -59,8 +77,9 @@ HWY_INLINE Triple<V> normalized(const Triple<V>& a) {
   return a * (hn::Set(hn::DFromV<V>(), 1.0f) / length(a));
 }
 template <class V>
-HWY_INLINE V distance(const Triple<V>& a, const Triple<V>& b) {
-  return length(a - b);
+HWY_INLINE V squared_distance(const Triple<V>& a, const Triple<V>& b) {
+  const Triple<V> apart = a - b;
+  return dot(apart, apart);
 }
 
 /// `a` where `mask`, otherwise `b`.
@@ -108,7 +127,8 @@ HWY_INLINE Triple<V> octahedral_decode(V x, V y) {
   const hn::DFromV<V> d;
   const V z = hn::Set(d, 1.0f) - hn::Abs(x) - hn::Abs(y);
   const V below = hn::Max(hn::Neg(z), hn::Zero(d));
-  return normalized(Triple<V>{x - hn::CopySignToAbs(below, x), y - hn::CopySignToAbs(below, y), z});
+  const Triple<V> n{x - hn::CopySignToAbs(below, x), y - hn::CopySignToAbs(below, y), z};
+  return n * reciprocal_sqrt(dot(n, n));
 }
 
 /// Numbers that are none: NaN and infinities of either sign.
@@ -156,6 +176,77 @@ template <class D, class V = hn::Vec<D>, class VI = hn::Vec<hn::RebindToSigned<D
 HWY_INLINE Triple<V> gather3(D d, const float* image, VI index) {
   return {hn::GatherIndex(d, image, index), hn::GatherIndex(d, image + 1, index),
           hn::GatherIndex(d, image + 2, index)};
+}
+
+/// An integer for every lane, in memory.
+template <class D>
+struct LaneIndices {
+  using DI = hn::RebindToSigned<D>;
+  HWY_ALIGN std::array<int, hn::MaxLanes(D())> of;
+  LaneIndices() = default;
+  HWY_INLINE explicit LaneIndices(hn::Vec<DI> index) { hn::Store(index, DI(), of.data()); }
+};
+
+#if HWY_TARGET != HWY_SCALAR
+/// Vectors of 128 bits side by side: those of every fourth lane from `first` on.
+template <class D, class Load>
+HWY_INLINE hn::Vec<D> every_fourth(D d, const Load& load, std::size_t first) {
+  if constexpr (hn::MaxLanes(D()) <= 4) {
+    return load(first);
+  } else {
+    const hn::Half<D> half;
+    return hn::Combine(d, every_fourth(half, load, first + hn::MaxLanes(half)),
+                       every_fourth(half, load, first));
+  }
+}
+
+/// The first to fourth numbers of the vectors that `load(lane)` gives.
+template <class D, class Load, class V = hn::Vec<D>>
+HWY_INLINE Quad<V> transposed(D d, const Load& load) {
+  const V a = every_fourth(d, load, 0), b = every_fourth(d, load, 1);
+  const V c = every_fourth(d, load, 2), e = every_fourth(d, load, 3);
+  const hn::Repartition<std::uint64_t, D> pairs;
+  const auto low_ab = hn::BitCast(pairs, hn::InterleaveLower(d, a, b));
+  const auto low_ce = hn::BitCast(pairs, hn::InterleaveLower(d, c, e));
+  const auto high_ab = hn::BitCast(pairs, hn::InterleaveUpper(d, a, b));
+  const auto high_ce = hn::BitCast(pairs, hn::InterleaveUpper(d, c, e));
+  return {hn::BitCast(d, hn::InterleaveLower(pairs, low_ab, low_ce)),
+          hn::BitCast(d, hn::InterleaveUpper(pairs, low_ab, low_ce)),
+          hn::BitCast(d, hn::InterleaveLower(pairs, high_ab, high_ce)),
+          hn::BitCast(d, hn::InterleaveUpper(pairs, high_ab, high_ce))};
+}
+#endif
+
+/// Four words for every lane: `front(lane)` points at the first two, `back(lane)` at the others.
+/// Much faster than gathers, which take a load and more for every word of every lane.
+template <class D, class Front, class Back, class V = hn::Vec<D>>
+HWY_INLINE Quad<V> two_and_two_words(D d, const Front& front, const Back& back) {
+#if HWY_TARGET != HWY_SCALAR
+  if constexpr (hn::MaxLanes(D()) >= 4) {
+    const auto load = [&](std::size_t lane) HWY_ATTR {
+      const hn::Full64<float> pair;
+      return hn::Combine(hn::Full128<float>(), hn::LoadU(pair, back(lane)),
+                         hn::LoadU(pair, front(lane)));
+    };
+    return transposed(d, load);
+  }
+#endif
+  return {hn::Set(d, front(0)[0]), hn::Set(d, front(0)[1]), hn::Set(d, back(0)[0]),
+          hn::Set(d, back(0)[1])};
+}
+
+/// Four words for every lane, which lie at `from(lane)`.
+template <class D, class From, class V = hn::Vec<D>>
+HWY_INLINE Quad<V> four_words(D d, const From& from) {
+#if HWY_TARGET != HWY_SCALAR
+  if constexpr (hn::MaxLanes(D()) >= 4) {
+    const auto load = [&](std::size_t lane)
+                          HWY_ATTR { return hn::LoadU(hn::Full128<float>(), from(lane)); };
+    return transposed(d, load);
+  }
+#endif
+  return {hn::Set(d, from(0)[0]), hn::Set(d, from(0)[1]), hn::Set(d, from(0)[2]),
+          hn::Set(d, from(0)[3])};
 }
 
 /// Channel `shift` / 8 of rgba8 texels, 0..1.

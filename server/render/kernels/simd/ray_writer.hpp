@@ -35,13 +35,21 @@ HWY_INLINE PixelLanes unpack_pixel(Integer packed) {
   return {hn::And(packed, integer(0xffff)), as_integer(hn::ShiftRight<16>(bits))};
 }
 
-HWY_INLINE RayLanes load_rays(const shared::Ray* rays, Integer index) {
-  const Integer word = hn::Mul(index, integer(sizeof(shared::Ray) / 4));
-  const auto at = [&](int offset) {
-    return as_float(gather(rays, hn::Add(word, integer(offset))));
-  };
-  return {{at(0), at(1), at(2)}, {at(4), at(5), at(6)},  at(3), at(7),
-          as_integer(at(8)),     {at(9), at(10), at(11)}};
+/// Words `word` to `word` + 3 of the records from `first` on; lanes from `last` on have the last.
+template <class Record>
+HWY_INLINE Float4 records_in_order(const Record* records, int word, int first, int last) {
+  return four_words(tag, [=](std::size_t lane) {
+    const int index = std::min(first + static_cast<int>(lane), last - 1);
+    return reinterpret_cast<const float*>(records + index) + word;
+  });
+}
+
+/// The rays from `first` on; lanes from `last` on have the last.
+HWY_INLINE RayLanes load_rays(const shared::Ray* rays, int first, int last) {
+  const Float4 a = records_in_order(rays, 0, first, last);
+  const Float4 b = records_in_order(rays, 4, first, last);
+  const Float4 c = records_in_order(rays, 8, first, last);
+  return {{a.x, a.y, a.z}, {b.x, b.y, b.z}, a.w, b.w, as_integer(c.x), {c.y, c.z, c.w}};
 }
 
 /// Writes the rays of the lanes in `wanted`, one after the other. @return how many
@@ -80,6 +88,37 @@ struct TexelIndices {
   }
 };
 
+/// Neighbours in rows of tiles of 8 x 8.
+inline constexpr std::size_t tile_run = std::min<std::size_t>(hn::MaxLanes(Tag()), 8);
+
+/// Calls `work(lane, count)` for all lanes in `requested`, for whole runs of pixels side by side at
+/// once.
+template <class Work>
+HWY_INLINE void for_each_run(Mask requested, const PixelLanes& p, const Work& work) {
+  constexpr std::uint64_t whole_run = (1ull << tile_run) - 1;
+  const Integer before = hn::And(hn::Iota(integer_tag, 0), integer(static_cast<int>(tile_run) - 1));
+  const Integer first = hn::Sub(p.x, before);
+  HWY_ALIGN std::array<int, hn::MaxLanes(Tag())> starts, rows;
+  hn::Store(first, integer_tag, starts.data());
+  hn::Store(p.y, integer_tag, rows.data());
+  std::uint64_t beside = 0;
+  for (std::size_t run = 0; run < hn::MaxLanes(Tag()); run += tile_run) {
+    const Integer x = integer(starts[run]), y = integer(rows[run]);
+    const Mask same = float_mask(hn::And(hn::Eq(first, x), hn::Eq(p.y, y)));
+    beside |= mask_bits(same) & whole_run << run;
+  }
+  std::uint64_t lanes = mask_bits(requested);
+  for (std::size_t run = 0; run < hn::MaxLanes(Tag()); run += tile_run) {
+    const std::uint64_t all = whole_run << run;
+    if ((lanes & beside & all) != all) continue;
+    work(run, tile_run);
+    lanes &= ~all;
+  }
+  for (; lanes; lanes &= lanes - 1) {
+    work(static_cast<std::size_t>(__builtin_ctzll(lanes)), std::size_t{1});
+  }
+}
+
 /// Texels of `words` words lane by lane, on their way into an image.
 template <int words>
 struct Texels {
@@ -92,8 +131,18 @@ struct Texels {
     hn::StoreInterleaved4(v.x, v.y, v.z, v.w, tag, values.data());
   }
   HWY_INLINE void put(const gpu::HostView& image, std::size_t lane, const TexelIndices& at) const {
+    put(image, lane, 1, at);
+  }
+  /// Of `count` lanes, pixels side by side: 1 or tile_run.
+  HWY_INLINE void put(const gpu::HostView& image, std::size_t lane, std::size_t count,
+                      const TexelIndices& at) const {
     float* const row = image.row<float>(static_cast<std::uint32_t>(at.y[lane]));
-    std::memcpy(row + words * at.x[lane], values.data() + words * lane, words * sizeof(float));
+    const float* const from = values.data() + words * lane;
+    if (count == tile_run) {
+      std::memcpy(row + words * at.x[lane], from, tile_run * words * sizeof(float));
+    } else {
+      std::memcpy(row + words * at.x[lane], from, words * sizeof(float));
+    }
   }
 };
 

@@ -7,14 +7,10 @@
 #define HELIOGRAPH_KERNELS_RAYS_HPP
 #endif
 
-#include <atomic>
-#include <cstring>
 #include <numbers>
-#include <vector>
 
 #include "hwy/contrib/math/math-inl.h"
 #include "render/kernels/simd/pixels.hpp"
-#include "shaders/shared/ray.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
@@ -58,50 +54,6 @@ HWY_INLINE Triple<V> offset_origin(const Triple<V>& position, const Triple<V>& n
   return position +
          normal * hn::Max(distance * hn::Set(d, 0x1p-15f), largest * hn::Set(d, 0x1p-20f));
 }
-
-/// Rays that one thread has made and not yet given to the stream that all threads fill.
-class RayBatch {
- public:
-  RayBatch(shared::RayCount& count, shared::Ray* rays, std::size_t most)
-      : count_(count), rays_(rays), made_(most) {}
-
-  /// Those of the lanes in `wanted`, from pixels from (x, y) on; t begins at 0.
-  template <class D, class V = hn::Vec<D>>
-  HWY_INLINE void add(D d, const Triple<V>& origin, const Triple<V>& direction, V t_max, int x,
-                      int y, hn::Mask<D> requested) {
-    constexpr std::size_t most = 4 * hn::MaxLanes(D());
-    HWY_ALIGN float from[most], toward[most];
-    hn::StoreInterleaved4(origin.x, origin.y, origin.z, hn::Zero(d), d, from);
-    hn::StoreInterleaved4(direction.x, direction.y, direction.z, t_max, d, toward);
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, requested, bits);
-    std::uint64_t lanes = 0;
-    std::memcpy(&lanes, bits, sizeof lanes);
-    for (; lanes; lanes &= lanes - 1) {
-      const auto lane = static_cast<std::uint32_t>(__builtin_ctzll(lanes));
-      shared::Ray& ray = made_[used_++];
-      std::memcpy(&ray.origin, from + 4 * lane, 16);
-      std::memcpy(&ray.direction, toward + 4 * lane, 16);
-      ray.pixel = (static_cast<std::uint32_t>(x) + lane) | static_cast<std::uint32_t>(y) << 16u;
-      ray.user = ray.padding0 = ray.padding1 = 0u;
-    }
-  }
-
-  /// Appends them to the stream.
-  void flush() {
-    if (used_ == 0) return;
-    const auto added = static_cast<std::uint32_t>(used_);
-    const std::uint32_t base = std::atomic_ref(count_.count).fetch_add(added);
-    std::memcpy(rays_ + base, made_.data(), used_ * sizeof(shared::Ray));
-    used_ = 0;
-  }
-
- private:
-  shared::RayCount& count_;
-  shared::Ray* rays_;
-  std::vector<shared::Ray> made_;
-  std::size_t used_ = 0;
-};
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -32,24 +32,23 @@ struct HitLanes {
   Integer instance, triangle;  // of lanes that met nothing: another lane's
 };
 
-/// `index` counts hits; lanes without `wanted` count as misses.
-HWY_INLINE HitLanes load_hits(const shared::Hit* hits, Integer index, Mask requested) {
-  const Integer word = hn::Mul(index, integer(sizeof(shared::Hit) / 4));
-  const auto at = [&](std::size_t offset) {
-    return hn::Add(word, integer(static_cast<int>(offset / 4)));
-  };
+/// The hits from `first` on; lanes from `last` on count as misses.
+HWY_INLINE HitLanes load_hits(const shared::Hit* hits, int first, int last) {
+  static_assert(offsetof(shared::Hit, u) == 12 && offsetof(shared::Hit, v) == 16);
+  const Float4 front = records_in_order(hits, 0, first, last);
   HitLanes h;
-  h.instance = gather(hits, at(offsetof(shared::Hit, instance)));
+  h.instance = as_integer(front.y);
   const auto none_met = integer(static_cast<int>(shared::hit_none));
+  const Mask requested = float_mask(hn::Lt(hn::Iota(integer_tag, first), integer(last)));
   h.met = hn::AndNot(float_mask(hn::Eq(h.instance, none_met)), requested);
   if (none(h.met)) return h;
-  h.t = as_float(gather(hits, at(offsetof(shared::Hit, t))));
-  h.u = as_float(gather(hits, at(offsetof(shared::Hit, u))));
-  h.v = as_float(gather(hits, at(offsetof(shared::Hit, v))));
-  h.triangle = gather(hits, at(offsetof(shared::Hit, triangle)));
-  const auto first = static_cast<std::size_t>(hn::FindFirstTrue(tag, h.met));
-  h.instance = select(h.met, h.instance, integer(hn::ExtractLane(h.instance, first)));
-  h.triangle = select(h.met, h.triangle, integer(hn::ExtractLane(h.triangle, first)));
+  h.t = front.x;
+  h.u = front.w;
+  h.v = records_in_order(hits, 4, first, last).x;
+  h.triangle = as_integer(front.z);
+  const auto one_met = static_cast<std::size_t>(hn::FindFirstTrue(tag, h.met));
+  h.instance = select(h.met, h.instance, integer(hn::ExtractLane(h.instance, one_met)));
+  h.triangle = select(h.met, h.triangle, integer(hn::ExtractLane(h.triangle, one_met)));
   h.t = select(h.met, h.t, one());
   h.u = hn::IfThenElseZero(h.met, h.u);
   h.v = hn::IfThenElseZero(h.met, h.v);
@@ -88,42 +87,63 @@ struct MatrixLanes {
   }
 };
 
-/// The corners of each lane's triangle and their weights. Lanes that are not `wanted` have the
+/// A vertex of every lane.
+struct VertexLanes {
+  Float3 position, normal;
+  Float4 color, tangent, uv;  // both sets of uv
+};
+
+HWY_NOINLINE inline void read_vertex(const Records& from, VertexLanes& v) {
+  static_assert(offsetof(shared::Vertex, normal) == 16 && offsetof(shared::Vertex, tangent) == 32 &&
+                offsetof(shared::Vertex, uv0) == 48 && offsetof(shared::Vertex, uv1) == 56);
+  const Float4 front = from.four(0), middle = from.four(4);
+  v.position = {front.x, front.y, front.z};
+  v.normal = {middle.x, middle.y, middle.z};
+  v.tangent = from.four(8);
+  v.uv = from.four(12);
+  const auto pair = [](Float packed, Float& low, Float& high) HWY_ATTR {
+    const Integer bits = as_integer(packed);
+    const Float scale = number(1.0f / 65535.0f);
+    low = hn::Mul(to_float(hn::And(bits, integer(0xffff))), scale);
+    high = hn::Mul(to_float(as_integer(hn::ShiftRight<16>(as_unsigned(bits)))), scale);
+  };
+  pair(front.w, v.color.x, v.color.y);
+  pair(middle.w, v.color.z, v.color.w);
+}
+
+/// The corners of each lane's triangle and their weights. Lanes that are not `requested` have the
 /// first vertex three times.
 class TriangleLanes {
  public:
   HWY_INLINE TriangleLanes(const shared::Vertex* vertices, const std::uint32_t* indices,
-                           Integer first_index, Integer first_vertex, const HitLanes& hit,
-                           Mask requested)
-      : a_(corner(vertices, indices, first_index, first_vertex, 0, requested)),
-        b_(corner(vertices, indices, first_index, first_vertex, 1, requested)),
-        c_(corner(vertices, indices, first_index, first_vertex, 2, requested)),
-        weight_a_(hn::Sub(hn::Sub(one(), hit.u), hit.v)),
-        weight_b_(hit.u),
-        weight_c_(hit.v) {}
+                           Integer first_index, Integer first_vertex, Mask requested) {
+    for (int i = 0; i < 3; ++i) {
+      const Integer index = hn::IfThenElseZero(integer_mask(requested),
+                                               gather(indices, hn::Add(first_index, integer(i))));
+      const Records vertex(vertices, hn::Add(first_vertex, index), sizeof(shared::Vertex) / 4);
+      read_vertex(vertex, corners_[static_cast<std::size_t>(i)]);
+    }
+  }
 
+  /// The point that between() is about.
+  HWY_INLINE void set_point(Float u, Float v) {
+    weight_a_ = hn::Sub(hn::Sub(one(), u), v);
+    weight_b_ = u;
+    weight_c_ = v;
+  }
   HWY_INLINE Float between(Float a, Float b, Float c) const {
     return hn::MulAdd(a, weight_a_, hn::MulAdd(b, weight_b_, hn::Mul(c, weight_c_)));
   }
   HWY_INLINE Float3 between(const Float3& a, const Float3& b, const Float3& c) const {
     return multiply_add(a, weight_a_, multiply_add(b, weight_b_, c * weight_c_));
   }
-  HWY_INLINE Float3 between(int word) const {
-    return between(a_.triple(word), b_.triple(word), c_.triple(word));
-  }
-  HWY_INLINE const Records& a() const { return a_; }
-  HWY_INLINE const Records& b() const { return b_; }
-  HWY_INLINE const Records& c() const { return c_; }
+  HWY_INLINE Float3 position() const { return between(a().position, b().position, c().position); }
+  HWY_INLINE const VertexLanes& a() const { return corners_[0]; }
+  HWY_INLINE const VertexLanes& b() const { return corners_[1]; }
+  HWY_INLINE const VertexLanes& c() const { return corners_[2]; }
 
  private:
-  static HWY_INLINE Records corner(const shared::Vertex* vertices, const std::uint32_t* indices,
-                                   Integer first_index, Integer first_vertex, int number,
-                                   Mask requested) {
-    const Integer index = hn::IfThenElseZero(
-        integer_mask(requested), gather(indices, hn::Add(first_index, integer(number))));
-    return Records(vertices, hn::Add(first_vertex, index), sizeof(shared::Vertex) / 4);
-  }
-  Records a_, b_, c_;
+  std::array<VertexLanes, 3> corners_;
   Float weight_a_, weight_b_, weight_c_;
 };
 
@@ -133,124 +153,128 @@ struct LookupLanes {
   Float first_lod, second_lod;
 };
 
-/// One uv set. `footprint` is log2 of the squared fraction of the triangle that the ray's cone
-/// covers.
-HWY_INLINE void read_uv(const TriangleLanes& t, int word, Float footprint, Float2& uv, Float& lod) {
-  const Float ax = t.a().real(word), ay = t.a().real(word + 1);
-  const Float bx = t.b().real(word), by = t.b().real(word + 1);
-  const Float cx = t.c().real(word), cy = t.c().real(word + 1);
-  uv = {t.between(ax, bx, cx), t.between(ay, by, cy)};
-  const Float area = hn::Abs(
-      hn::MulSub(hn::Sub(bx, ax), hn::Sub(cy, ay), hn::Mul(hn::Sub(by, ay), hn::Sub(cx, ax))));
+/// One uv set of the corners. `footprint` is log2 of the squared fraction of the triangle that the
+/// ray's cone covers.
+HWY_INLINE void read_uv(const TriangleLanes& t, const Float2& a, const Float2& b, const Float2& c,
+                        Float footprint, Float2& uv, Float& lod) {
+  uv = {t.between(a.x, b.x, c.x), t.between(a.y, b.y, c.y)};
+  const Float area = hn::Abs(hn::MulSub(hn::Sub(b.x, a.x), hn::Sub(c.y, a.y),
+                                        hn::Mul(hn::Sub(b.y, a.y), hn::Sub(c.x, a.x))));
   lod = hn::MulAdd(hn::Log2(tag, at_least(area, 1e-30f)), number(0.5f), footprint);
 }
 
-/// The slot of each lane's material that begins at `word`; white where there is no texture.
+/// The textures of each lane's material. Most materials' textures are read at one place.
 template <bool one_level>
-HWY_INLINE Float4 slot_texel(const SceneView& scene, const Records& material, int word,
-                             const LookupLanes& lookup, std::uint32_t unless = 0) {
-  const auto whole = [&](int member) { return material.whole(word + member); };
-  TextureLanes t;
-  t.flags = whole(HELIOGRAPH_WORD(Slot, flags));
-  t.used = float_mask(hn::Eq(hn::And(t.flags, integer(static_cast<int>(slot_used | unless))),
-                             integer(static_cast<int>(slot_used))));
-  const Float4 white{one(), one(), one(), one()};
-  if (none(t.used)) return white;
-  t.width = whole(HELIOGRAPH_WORD(Slot, width));
-  t.height = whole(HELIOGRAPH_WORD(Slot, height));
-  t.levels = whole(HELIOGRAPH_WORD(Slot, levels));
-  t.wrap_s = whole(HELIOGRAPH_WORD(Slot, wrap_s));
-  t.wrap_t = whole(HELIOGRAPH_WORD(Slot, wrap_t));
-  t.first_level = whole(HELIOGRAPH_WORD(Slot, first_level));
-  const Mask first = float_mask(hn::Eq(whole(HELIOGRAPH_WORD(Slot, uv_set)), integer(0)));
-  const Float x = select(first, lookup.first.x, lookup.second.x);
-  const Float y = select(first, lookup.first.y, lookup.second.y);
-  const auto row = [&](int at) {
-    return hn::MulAdd(material.real(word + at), x,
-                      hn::MulAdd(material.real(word + at + 1), y, material.real(word + at + 2)));
-  };
-  const Float2 uv{row(HELIOGRAPH_WORD(Slot, row0)), row(HELIOGRAPH_WORD(Slot, row1))};
-  const Float lod = hn::Add(material.real(word + HELIOGRAPH_WORD(Slot, lod)),
-                            select(first, lookup.first_lod, lookup.second_lod));
-  const Float4 texel = sample_texture<one_level>(scene, t, uv, lod);
-  if (all(t.used)) return texel;
-  return {select(t.used, texel.x, white.x), select(t.used, texel.y, white.y),
-          select(t.used, texel.z, white.z), select(t.used, texel.w, white.w)};
-}
+class SlotReader {
+ public:
+  HWY_INLINE SlotReader(const SceneView& scene, const Records& material, const LookupLanes& lookup)
+      : scene_(scene), material_(material), lookup_(lookup) {}
+
+  /// The slot that begins at `word` of the materials; white where there is no texture, or where the
+  /// slot has the flag `unless`.
+  HWY_NOINLINE Float4 texel(int word, std::uint32_t unless = 0) {
+    static_assert(offsetof(Slot, flags) == 32 && offsetof(Slot, wrap_s) == 48);
+    const Float4 size = material_.four(word + HELIOGRAPH_WORD(Slot, flags));
+    const TextureLanes flags{.flags = as_integer(size.x)};
+    Mask used = flags.has(slot_used);
+    if (unless) used = hn::AndNot(flags.has(unless), used);
+    Float4 color{one(), one(), one(), one()};
+    if (none(used)) return color;
+    const Float4 wrap = material_.four(word + HELIOGRAPH_WORD(Slot, wrap_s));
+    const TexturePlace& at = place(word, size, wrap, used);
+    Float4 found;
+    read_texture(scene_, at, as_integer(wrap.z), used, flags.has(shared::texture_srgb), found);
+    return {select(used, found.x, color.x), select(used, found.y, color.y),
+            select(used, found.z, color.z), select(used, found.w, color.w)};
+  }
+
+ private:
+  HWY_INLINE const TexturePlace& place(int word, const Float4& size, const Float4& wrap,
+                                       Mask used) {
+    const Mask shares = TextureLanes{.flags = as_integer(size.x)}.has(slot_shares_place);
+    if (placed_ && none(hn::AndNot(shares, used))) return shared_;
+    static_assert(offsetof(Slot, row1) == 12 && offsetof(Slot, lod) == 24);
+    const Float4 front = material_.four(word), back = material_.four(word + 4);
+    const Mask first = float_mask(hn::Eq(as_integer(back.w), integer(0)));
+    const Float x = select(first, lookup_.first.x, lookup_.second.x);
+    const Float y = select(first, lookup_.first.y, lookup_.second.y);
+    const Float2 uv{hn::MulAdd(front.x, x, hn::MulAdd(front.y, y, front.z)),
+                    hn::MulAdd(front.w, x, hn::MulAdd(back.x, y, back.y))};
+    const Float lod = hn::Add(back.z, select(first, lookup_.first_lod, lookup_.second_lod));
+    const TextureLanes t{as_integer(size.y), as_integer(size.z), as_integer(wrap.x),
+                         as_integer(wrap.y), as_integer(size.x), as_integer(size.w)};
+    const bool base = word == HELIOGRAPH_WORD(Material, base_color_slot);
+    TexturePlace& to = base ? shared_ : own_;
+    place_texture<one_level>(t, uv, lod, to);
+    placed_ |= base;
+    return to;
+  }
+
+  const SceneView& scene_;
+  const Records& material_;
+  const LookupLanes& lookup_;
+  TexturePlace shared_;  // of base colors
+  TexturePlace own_;
+  bool placed_ = false;
+};
 
 /// The normal map about the front face's `normal`.
 template <bool one_level>
-HWY_INLINE Float3 mapped_normal(const SceneView& scene, const TriangleLanes& triangle,
+HWY_INLINE Float3 mapped_normal(SlotReader<one_level>& slots, const TriangleLanes& triangle,
                                 const MatrixLanes& world, Float handedness, const Records& material,
-                                const LookupLanes& lookup, const Float3& normal) {
+                                const Float3& normal) {
   constexpr int slot = HELIOGRAPH_WORD(Material, normal_slot);
   const Integer used = hn::And(material.whole(slot + HELIOGRAPH_WORD(Slot, flags)),
                                integer(static_cast<int>(slot_used)));
   Mask mapped = float_mask(hn::Ne(used, integer(0)));
   if (none(mapped)) return normal;
-  const Float4 texel = slot_texel<one_level>(scene, material, slot, lookup);
+  const Float4 texel = slots.texel(slot);
   const Float scale = material.real(HELIOGRAPH_WORD(Material, normal_scale));
   const Float2 slope{hn::Mul(hn::MulSub(texel.x, number(2.0f), one()), scale),
                      hn::Mul(hn::MulSub(texel.y, number(2.0f), one()), scale)};
   const Float height = hn::MulSub(texel.z, number(2.0f), one());
-  constexpr int word = HELIOGRAPH_WORD(shared::Vertex, tangent);
-  Float3 tangent = world.direction(triangle.between(word));
+  const Float4 &a = triangle.a().tangent, &b = triangle.b().tangent, &c = triangle.c().tangent;
+  Float3 tangent =
+      world.direction(triangle.between({a.x, a.y, a.z}, {b.x, b.y, b.z}, {c.x, c.y, c.z}));
   tangent = tangent - normal * dot(normal, tangent);
   const Float size = dot(tangent, tangent);
   mapped = hn::And(mapped, hn::Ge(size, number(1e-12f)));
   tangent = tangent * hn::Div(one(), hn::Sqrt(at_least(size, 1e-30f)));
-  const Float3 bitangent =
-      cross(normal, tangent) * hn::Mul(triangle.a().real(word + 3), handedness);
+  const Float3 bitangent = cross(normal, tangent) * hn::Mul(a.w, handedness);
   const Float3 turned =
       normalized(multiply_add(tangent, slope.x, multiply_add(bitangent, slope.y, normal * height)));
   return select(mapped, turned, normal);
 }
 
-HWY_INLINE Float4 vertex_color(const Records& vertex) {
-  const auto pair = [&](int word, Float& low, Float& high) {
-    const Integer packed = vertex.whole(word);
-    const Float scale = number(1.0f / 65535.0f);
-    low = hn::Mul(to_float(hn::And(packed, integer(0xffff))), scale);
-    high = hn::Mul(to_float(as_integer(hn::ShiftRight<16>(as_unsigned(packed)))), scale);
-  };
-  Float4 color;
-  pair(HELIOGRAPH_WORD(shared::Vertex, color_rg), color.x, color.y);
-  pair(HELIOGRAPH_WORD(shared::Vertex, color_ba), color.z, color.w);
-  return color;
-}
-
 template <bool one_level>
-HWY_INLINE void evaluate_material(const SceneView& scene, const TriangleLanes& triangle,
-                                  const Records& material, const LookupLanes& lookup,
+HWY_INLINE void evaluate_material(SlotReader<one_level>& slots, const Float4& base,
+                                  const TriangleLanes& triangle, const Records& material,
                                   SurfaceLanes& s) {
-  const auto factor = [&](int word) { return material.real(word); };
-  const Float4 a = vertex_color(triangle.a()), b = vertex_color(triangle.b());
-  const Float4 c = vertex_color(triangle.c());
-  Float4 color =
-      slot_texel<one_level>(scene, material, HELIOGRAPH_WORD(Material, base_color_slot), lookup);
-  constexpr int base = HELIOGRAPH_WORD(Material, base_color);
-  color.x = hn::Mul(hn::Mul(color.x, factor(base)), triangle.between(a.x, b.x, c.x));
-  color.y = hn::Mul(hn::Mul(color.y, factor(base + 1)), triangle.between(a.y, b.y, c.y));
-  color.z = hn::Mul(hn::Mul(color.z, factor(base + 2)), triangle.between(a.z, b.z, c.z));
-  s.alpha = hn::Mul(hn::Mul(color.w, factor(base + 3)), triangle.between(a.w, b.w, c.w));
-  s.base_color = clamped(Float3{color.x, color.y, color.z}, 0.0f, 1.0f);
-  s.alpha_cutoff = factor(HELIOGRAPH_WORD(Material, alpha_cutoff));
+  const Float4 &a = triangle.a().color, &b = triangle.b().color, &c = triangle.c().color;
+  const Float4 factor = material.four(HELIOGRAPH_WORD(Material, base_color));
+  const Float3 color{hn::Mul(hn::Mul(base.x, factor.x), triangle.between(a.x, b.x, c.x)),
+                     hn::Mul(hn::Mul(base.y, factor.y), triangle.between(a.y, b.y, c.y)),
+                     hn::Mul(hn::Mul(base.z, factor.z), triangle.between(a.z, b.z, c.z))};
+  s.alpha = hn::Mul(hn::Mul(base.w, factor.w), triangle.between(a.w, b.w, c.w));
+  s.base_color = clamped(color, 0.0f, 1.0f);
 
-  const Float4 packed = slot_texel<one_level>(
-      scene, material, HELIOGRAPH_WORD(Material, metallic_roughness_slot), lookup);
-  s.metallic = clamped(hn::Mul(factor(HELIOGRAPH_WORD(Material, metallic)), packed.z), 0.0f, 1.0f);
-  s.roughness =
-      clamped(hn::Mul(factor(HELIOGRAPH_WORD(Material, roughness)), packed.y), 0.0f, 1.0f);
+  const Float4 packed = slots.texel(HELIOGRAPH_WORD(Material, metallic_roughness_slot));
+  static_assert(offsetof(Material, roughness) == offsetof(Material, metallic) + 4 &&
+                offsetof(Material, occlusion_strength) == offsetof(Material, metallic) + 12);
+  const Float4 factors = material.four(HELIOGRAPH_WORD(Material, metallic));
+  s.metallic = clamped(hn::Mul(factors.x, packed.z), 0.0f, 1.0f);
+  s.roughness = clamped(hn::Mul(factors.y, packed.y), 0.0f, 1.0f);
   constexpr int occlusion_slot = HELIOGRAPH_WORD(Material, occlusion_slot);
-  Float occlusion = slot_texel<one_level>(scene, material, occlusion_slot, lookup, slot_repeats).x;
+  Float occlusion = slots.texel(occlusion_slot, slot_repeats).x;
   const Integer repeats = hn::And(material.whole(occlusion_slot + HELIOGRAPH_WORD(Slot, flags)),
                                   integer(static_cast<int>(slot_repeats)));
   occlusion = select(float_mask(hn::Ne(repeats, integer(0))), packed.x, occlusion);
-  s.occlusion = mix(one(), occlusion, factor(HELIOGRAPH_WORD(Material, occlusion_strength)));
-  const Float4 glow =
-      slot_texel<one_level>(scene, material, HELIOGRAPH_WORD(Material, emissive_slot), lookup);
-  s.emissive =
-      material.triple(HELIOGRAPH_WORD(Material, emissive)) * Float3{glow.x, glow.y, glow.z};
+  s.occlusion = mix(one(), occlusion, factors.w);
+  const Float4 glow = slots.texel(HELIOGRAPH_WORD(Material, emissive_slot));
+  static_assert(offsetof(Material, alpha_cutoff) == offsetof(Material, emissive) + 12);
+  const Float4 emissive = material.four(HELIOGRAPH_WORD(Material, emissive));
+  s.emissive = Float3{emissive.x, emissive.y, emissive.z} * Float3{glow.x, glow.y, glow.z};
+  s.alpha_cutoff = emissive.w;
   s.flags = material.whole(HELIOGRAPH_WORD(Material, flags));
 }
 
@@ -264,47 +288,69 @@ HWY_INLINE LookupLanes texture_lookup(const TriangleLanes& triangle, const Recor
   const Float across = hn::Div(at_least(width, 1e-20f), at_least(cosine, 1e-2f));
   const Float footprint = hn::NegMulAdd(
       number(0.5f), hn::Log2(tag, at_least(twice_world_area, 1e-30f)), hn::Log2(tag, across));
-  read_uv(triangle, HELIOGRAPH_WORD(shared::Vertex, uv0), footprint, lookup.first,
-          lookup.first_lod);
+  const Float4 &a = triangle.a().uv, &b = triangle.b().uv, &c = triangle.c().uv;
+  read_uv(triangle, {a.x, a.y}, {b.x, b.y}, {c.x, c.y}, footprint, lookup.first, lookup.first_lod);
   const Integer second = integer(static_cast<int>(uses_second_uv));
   if (!hn::AllFalse(integer_tag, hn::Eq(hn::And(uses, second), second))) {
-    read_uv(triangle, HELIOGRAPH_WORD(shared::Vertex, uv1), footprint, lookup.second,
+    read_uv(triangle, {a.z, a.w}, {b.z, b.w}, {c.z, c.w}, footprint, lookup.second,
             lookup.second_lod);
   }
   return lookup;
 }
 
-/// `hit` of rays along `direction` whose footprints at the hits are `width` metres.
-template <bool one_level>
-HWY_INLINE SurfaceLanes hit_surface(const SceneView& scene, const HitLanes& hit,
-                                    const Float3& direction, Float width) {
-  const Records instance(scene.instances, hit.instance, sizeof(shared::Instance) / 4);
-  const MatrixLanes world(instance, HELIOGRAPH_WORD(shared::Instance, world));
-  const Records mesh(scene.meshes, instance.whole(HELIOGRAPH_WORD(shared::Instance, mesh)),
-                     sizeof(shared::Mesh) / 4);
-  const Records material(scene.materials, mesh.whole(HELIOGRAPH_WORD(shared::Mesh, material)),
-                         sizeof(Material) / 4);
-  const Integer first_index = hn::Add(mesh.whole(HELIOGRAPH_WORD(shared::Mesh, first_index)),
-                                      hn::Mul(hit.triangle, integer(3)));
-  const TriangleLanes triangle(scene.vertices, scene.indices, first_index,
-                               mesh.whole(HELIOGRAPH_WORD(shared::Mesh, first_vertex)), hit,
-                               hit.met);
-  const Integer flipped = hn::And(instance.whole(HELIOGRAPH_WORD(shared::Instance, flags)),
-                                  integer(static_cast<int>(shared::instance_flipped)));
-  const Float handedness = select(float_mask(hn::Ne(flipped, integer(0))), number(-1.0f), one());
+/// What the tables hold of the triangles in `hit`.
+struct HitRecords {
+  Records instance;
+  MatrixLanes world;
+  Float handedness;
+  Float4 mesh;
+  Records material;
+  TriangleLanes triangle;
 
+  HWY_INLINE HitRecords(const SceneView& scene, const HitLanes& hit)
+      : instance(scene.instances, hit.instance, sizeof(shared::Instance) / 4),
+        world(instance, HELIOGRAPH_WORD(shared::Instance, world)),
+        handedness(one()),
+        mesh(mesh_of(scene, instance, handedness)),
+        material(scene.materials, as_integer(mesh.w), sizeof(Material) / 4),
+        triangle(scene.vertices, scene.indices,
+                 hn::Add(as_integer(mesh.x), hn::Mul(hit.triangle, integer(3))), as_integer(mesh.z),
+                 hit.met) {}
+
+ private:
+  static HWY_INLINE Float4 mesh_of(const SceneView& scene, const Records& instance,
+                                   Float& handedness) {
+    static_assert(offsetof(shared::Instance, flags) == offsetof(shared::Instance, mesh) + 4);
+    const Float4 attributes = instance.four(HELIOGRAPH_WORD(shared::Instance, mesh));
+    const Integer flipped =
+        hn::And(as_integer(attributes.y), integer(static_cast<int>(shared::instance_flipped)));
+    handedness = select(float_mask(hn::Ne(flipped, integer(0))), number(-1.0f), one());
+    static_assert(offsetof(shared::Mesh, first_vertex) == 8 &&
+                  offsetof(shared::Mesh, material) == 12);
+    return Records(scene.meshes, as_integer(attributes.x), sizeof(shared::Mesh) / 4).four(0);
+  }
+};
+
+/// Where a point of `records.triangle` that set_point() names is met by rays along `direction`,
+/// whose footprints there are `width` metres.
+template <bool one_level>
+HWY_INLINE SurfaceLanes surface_at(const SceneView& scene, const HitRecords& records,
+                                   const Float3& direction, Float width) {
+  const TriangleLanes& triangle = records.triangle;
+  const MatrixLanes& world = records.world;
+  const Float handedness = records.handedness;
+  const Records& material = records.material;
   SurfaceLanes s;
-  constexpr int position = HELIOGRAPH_WORD(shared::Vertex, position);
-  const Float3 a = triangle.a().triple(position), b = triangle.b().triple(position);
-  const Float3 c = triangle.c().triple(position);
-  s.local = triangle.between(a, b, c);
+  const Float3 &a = triangle.a().position, &b = triangle.b().position;
+  const Float3& c = triangle.c().position;
+  s.local = triangle.position();
   s.position = world.point(s.local);
   // Cofactors of the matrix, as in gbuffer.vert.
   const Float3 by_x = cross(world.y, world.z) * handedness,
                by_y = cross(world.z, world.x) * handedness;
   const Float3 by_z = cross(world.x, world.y) * handedness;
-  const auto turned = [&](const Records& vertex) {
-    const Float3 n = vertex.triple(HELIOGRAPH_WORD(shared::Vertex, normal));
+  const auto turned = [&](const VertexLanes& vertex) {
+    const Float3& n = vertex.normal;
     return normalized(multiply_add(by_x, n.x, multiply_add(by_y, n.y, by_z * n.z)));
   };
   const Float3 vertex_normal = normalized(
@@ -319,11 +365,20 @@ HWY_INLINE SurfaceLanes hit_surface(const SceneView& scene, const HitLanes& hit,
   const Mask opposed = hn::Lt(dot(s.front, vertex_normal), zero());
   s.geometric = s.front * select(opposed, hn::Neg(side), side);
   const LookupLanes lookup = texture_lookup(triangle, material, area, width, hn::Abs(cosine));
-  s.normal = mapped_normal<one_level>(scene, triangle, world, handedness, material, lookup,
-                                      vertex_normal) *
-             side;
-  evaluate_material<one_level>(scene, triangle, material, lookup, s);
+  SlotReader<one_level> slots(scene, material, lookup);
+  const Float4 base = slots.texel(HELIOGRAPH_WORD(Material, base_color_slot));
+  s.normal = mapped_normal(slots, triangle, world, handedness, material, vertex_normal) * side;
+  evaluate_material(slots, base, triangle, material, s);
   return s;
+}
+
+/// `hit` of rays along `direction` whose footprints at the hits are `width` metres.
+template <bool one_level>
+HWY_INLINE SurfaceLanes hit_surface(const SceneView& scene, const HitLanes& hit,
+                                    const Float3& direction, Float width) {
+  HitRecords records(scene, hit);
+  records.triangle.set_point(hit.u, hit.v);
+  return surface_at<one_level>(scene, records, direction, width);
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE

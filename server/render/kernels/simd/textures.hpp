@@ -52,9 +52,8 @@ HWY_INLINE Neighbours neighbours(Float coordinate, Integer size, Integer wrap, M
           hn::IfThenElse(nearest, zero(), hn::Sub(at, corner))};
 }
 
-/// One texel, decoded.
-HWY_INLINE Float4 heap_texel(const std::uint32_t* texels, Integer index, Mask srgb) {
-  const Integer packed = gather(texels, index);
+/// A texel, decoded.
+HWY_INLINE Float4 decoded(Integer packed, Mask srgb) {
   Float4 color = unpack_unorm8(packed);
   if (!none(srgb)) {
     color.x = select(srgb, srgb_decode(color.x), color.x);
@@ -71,54 +70,104 @@ HWY_INLINE Float4 mix(const Float4& a, const Float4& b, Float fraction) {
 
 /// What a slot's lanes read.
 struct TextureLanes {
-  Integer width, height, wrap_s, wrap_t, flags, levels, first_level;
-  Mask used;  // the others read the heap's first texel
+  Integer width, height, wrap_s, wrap_t, flags, levels;
+  HWY_INLINE Mask has(std::uint32_t flag) const {
+    const Integer requested = integer(static_cast<int>(flag));
+    return float_mask(hn::Eq(hn::And(flags, requested), requested));
+  }
 };
 
-HWY_INLINE Float4 sample_level(const SceneView& scene, const TextureLanes& t, Integer level,
-                               const Float2& uv, Mask nearest, Mask srgb) {
-  const Integer width = hn::Max(hn::Shr(t.width, level), integer(1));
-  const Integer height = hn::Max(hn::Shr(t.height, level), integer(1));
-  const Integer first =
-      hn::IfThenElseZero(integer_mask(t.used), gather(scene.levels, hn::Add(t.first_level, level)));
-  const Neighbours s = neighbours(uv.x, width, t.wrap_s, nearest);
-  const Neighbours r = neighbours(uv.y, height, t.wrap_t, nearest);
-  const Integer top = hn::Add(first, hn::Mul(r.low, width));
-  const Integer bottom = hn::Add(first, hn::Mul(r.high, width));
-  const auto texel = [&](Integer row, Integer column) {
-    return heap_texel(scene.texels, hn::Add(row, column), srgb);
+/// Where a texture is read: four texels, counted from the first of their level, of one level or
+/// two.
+struct TexturePlace {
+  struct Level {
+    Integer level;
+    Integer top_left, top_right, bottom_left, bottom_right;
+    Float across, down;  // weights of right and bottom
   };
-  return mix(mix(texel(top, s.low), texel(top, s.high), s.fraction),
-             mix(texel(bottom, s.low), texel(bottom, s.high), s.fraction), r.fraction);
-}
+  std::array<Level, 2> levels;
+  int level_count;
+  Float fraction;  // weight of the second level
+};
 
-/// `lod` counts from the largest level. Where `one_level`, only the nearest is read.
+/// `lod` counts from the largest level. Where `one_level`, only the nearest is read. Not inlined,
+/// like all that surfaces call for each of their textures: the processor runs more slowly through
+/// code that does not fit into its first cache.
 template <bool one_level>
-HWY_INLINE Float4 sample_texture(const SceneView& scene, const TextureLanes& t, const Float2& uv,
-                                 Float lod) {
-  const auto flag = [&](std::uint32_t bit) {
-    const Integer requested = integer(static_cast<int>(bit));
-    return float_mask(hn::Eq(hn::And(t.flags, requested), requested));
-  };
-  const Mask srgb = flag(shared::texture_srgb);
+HWY_NOINLINE void place_texture(const TextureLanes& t, const Float2& uv, Float lod,
+                                TexturePlace& place) {
   const Mask magnified = hn::Le(lod, zero());
-  Mask nearest = hn::Or(hn::And(magnified, flag(shared::texture_magnify_nearest)),
-                        hn::AndNot(magnified, flag(shared::texture_minify_nearest)));
+  const Mask nearest = hn::Or(hn::And(magnified, t.has(shared::texture_magnify_nearest)),
+                              hn::AndNot(magnified, t.has(shared::texture_minify_nearest)));
   const Float last = to_float(hn::Sub(t.levels, integer(1)));
   lod = hn::Min(hn::Max(lod, zero()), last);
   const Float half = number(0.5f);
   const Float whole = hn::Max(hn::Sub(hn::Ceil(hn::Add(lod, half)), one()), zero());
-  lod = select(flag(shared::texture_levels_nearest), whole, lod);
-  if constexpr (one_level) {
-    return sample_level(scene, t, truncated(hn::Add(lod, half)), uv, nearest, srgb);
+  lod = select(t.has(shared::texture_levels_nearest), whole, lod);
+  const Float finer = one_level ? hn::Add(lod, half) : hn::Floor(lod);
+  place.fraction = one_level ? zero() : hn::Sub(lod, finer);
+  place.level_count = all(hn::Eq(place.fraction, zero())) ? 1 : 2;
+  for (int i = 0; i < place.level_count; ++i) {
+    TexturePlace::Level& to = place.levels[static_cast<std::size_t>(i)];
+    to.level = hn::Add(truncated(finer), integer(i));
+    if (i > 0) to.level = hn::Min(to.level, hn::Sub(t.levels, integer(1)));
+    const Integer width = hn::Max(hn::Shr(t.width, to.level), integer(1));
+    const Integer height = hn::Max(hn::Shr(t.height, to.level), integer(1));
+    const Neighbours s = neighbours(uv.x, width, t.wrap_s, nearest);
+    const Neighbours r = neighbours(uv.y, height, t.wrap_t, nearest);
+    const Integer top = hn::Mul(r.low, width), bottom = hn::Mul(r.high, width);
+    to.top_left = hn::Add(top, s.low);
+    to.top_right = hn::Add(top, s.high);
+    to.bottom_left = hn::Add(bottom, s.low);
+    to.bottom_right = hn::Add(bottom, s.high);
+    to.across = s.fraction;
+    to.down = r.fraction;
   }
-  const Float finer = hn::Floor(lod);
-  const Integer level = truncated(finer);
-  const Float fraction = hn::Sub(lod, finer);
-  const Float4 near = sample_level(scene, t, level, uv, nearest, srgb);
-  if (all(hn::Eq(fraction, zero()))) return near;
-  const Integer coarser = hn::Min(hn::Add(level, integer(1)), hn::Sub(t.levels, integer(1)));
-  return mix(near, sample_level(scene, t, coarser, uv, nearest, srgb), fraction);
+}
+
+/// Four texels, packed. Two of a row lie side by side unless the image ends between them. Lanes
+/// that are not `used` may get any texels.
+struct FootprintLanes {
+  Integer top_left, top_right, bottom_left, bottom_right;
+
+  HWY_INLINE FootprintLanes(const std::uint32_t* texels, Integer first,
+                            const TexturePlace::Level& at, hn::Mask<IntegerTag> used) {
+    const auto apart = hn::And(used, hn::Ne(at.top_right, hn::Add(at.top_left, integer(1))));
+    const auto index = [&](Integer texel)
+                           HWY_ATTR { return hn::IfThenElseZero(used, hn::Add(first, texel)); };
+    if (!hn::AllFalse(integer_tag, apart)) {
+      top_left = gather(texels, index(at.top_left));
+      top_right = gather(texels, index(at.top_right));
+      bottom_left = gather(texels, index(at.bottom_left));
+      bottom_right = gather(texels, index(at.bottom_right));
+      return;
+    }
+    const LaneIndices<Tag> above(index(at.top_left)), below(index(at.bottom_left));
+    const auto* const words = reinterpret_cast<const float*>(texels);
+    const Float4 found = two_and_two_words(
+        tag, [&](std::size_t lane) { return words + above.of[lane]; },
+        [&](std::size_t lane) { return words + below.of[lane]; });
+    top_left = as_integer(found.x);
+    top_right = as_integer(found.y);
+    bottom_left = as_integer(found.z);
+    bottom_right = as_integer(found.w);
+  }
+};
+
+/// The texture whose levels begin at `first_level` of SceneView::levels; lanes that are not `used`
+/// read the heap's first texels.
+HWY_NOINLINE inline void read_texture(const SceneView& scene, const TexturePlace& place,
+                                      Integer first_level, Mask used, Mask srgb, Float4& color) {
+  const auto lanes = integer_mask(used);
+  for (int i = 0; i < place.level_count; ++i) {
+    const TexturePlace::Level& at = place.levels[static_cast<std::size_t>(i)];
+    const Integer level = hn::IfThenElseZero(lanes, hn::Add(first_level, at.level));
+    const FootprintLanes f(scene.texels, gather(scene.levels, level), at, lanes);
+    const Float4 found =
+        mix(mix(decoded(f.top_left, srgb), decoded(f.top_right, srgb), at.across),
+            mix(decoded(f.bottom_left, srgb), decoded(f.bottom_right, srgb), at.across), at.down);
+    color = i == 0 ? found : mix(color, found, place.fraction);
+  }
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE

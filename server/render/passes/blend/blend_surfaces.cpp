@@ -56,7 +56,7 @@ class BlendedSurfaces {
         surface_(plan.image(blended_buffers.surface.name, VK_FORMAT_R8G8B8A8_UNORM)),
         hits_(plan.buffer("blended.hits", sizeof(shared::Hit) * pixels_, storage,
                           gpu::Memory::device)),
-        lit_(declare_rays(plan, "blended.lit", pixels_)),
+        lit_(declare_rays(plan, "blended.lit", pixels_, tracing::RayKind::camera)),
         chosen_(plan.buffer("blended.chosen", sizeof(shared::Hit) * pixels_, storage,
                             gpu::Memory::device)) {}
 
@@ -64,8 +64,9 @@ class BlendedSurfaces {
 
   /// From front to back, the light that the surfaces emit and their transmittance.
   void find() {
-    tracing::RayStream current = declare_rays(plan_, "blended", pixels_);
-    tracing::RayStream next = declare_rays(plan_, "blended.next", pixels_);
+    tracing::RayStream current = declare_rays(plan_, "blended", pixels_, tracing::RayKind::camera);
+    tracing::RayStream next =
+        declare_rays(plan_, "blended.next", pixels_, tracing::RayKind::camera);
     begin_rays(plan_, in_, "blended", current, Blending::stops);
     begin_rays(plan_, in_, "blended.lit", lit_, Blending::stops);
     plan_.pass("blended.rays", in_.program(shaders::blended_rays))
@@ -89,9 +90,10 @@ class BlendedSurfaces {
 
   /// The light on the surface that was chosen in each pixel.
   void light() {
-    const auto shadows = declare_rays(plan_, "blended.shadows", pixels_);
-    const auto ambient = declare_rays(plan_, "blended.ambient", pixels_);
-    const auto reflected = declare_rays(plan_, "blended.specular", pixels_);
+    const auto shadows = declare_rays(plan_, "blended.shadows", pixels_, tracing::RayKind::shadow);
+    const auto ambient = declare_rays(plan_, "blended.ambient", pixels_, tracing::RayKind::ambient);
+    const auto reflected =
+        declare_rays(plan_, "blended.specular", pixels_, tracing::RayKind::reflection);
     for (const auto* stream : {&shadows, &ambient, &reflected}) {
       begin_rays(plan_, in_, "blended.light", *stream);
     }

@@ -3,6 +3,7 @@
 #include "render/kernels/compose.hpp"
 #include "render/passes/frame_inputs.hpp"
 #include "render/resources/light_table.hpp"
+#include "render/resources/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
@@ -24,9 +25,6 @@ Composed compose(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbu
     denoised_specular = denoised->specular.value_or(specular);
     noisy = composed.noisy;
   }
-  const auto constants = [&s = in.settings.specular, reflects] {
-    return kernels::ComposeConstants{reflects ? s.max_roughness : -1.0f};
-  };
   const auto& shader = denoised ? shaders::compose_denoised : shaders::compose;
   plan.pass("compose", in.program(shader, features))
       .bind<kernels::ComposeBindings>({.normals = gbuffer.normals,
@@ -43,14 +41,16 @@ Composed compose(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbu
                                        .denoised_specular = denoised_specular,
                                        .hdr = composed.hdr,
                                        .hdr_noisy = noisy})
-      .constants(constants)
+      .constants([&s = in.settings.specular, reflects] {
+        return kernels::ComposeConstants{reflects ? s.max_roughness : -1.0f};
+      })
       .dispatch(plan.extent())
       .host([in](const kernels::ComposeJob::Pass& pass) {
         const auto lights = frame_lights(in.tables.lights, in.constants);
-        kernels::compose({pass, in.constants, lights, in.split_sum()});
+        const bool separate_sun = in.settings.environment.separate_sun;
+        kernels::compose({pass, in.constants, lights, in.split_sum(),
+                          *in.moving.environment().view(separate_sun).maps.host});
       })
-      .host_when(
-          [in, constants] { return kernels::can_compose(in.constants, constants().max_roughness); })
       .host_when(kernels::know_materials(features) && kernels::know_lights(features));
   return composed;
 }

@@ -9,7 +9,7 @@ inline constexpr struct SkyboxBuffers {
                              "Radiance of the environment behind the scene."};
 } skybox_buffers{};
 
-/// Linear radiance of the environment where no surface was drawn; elsewhere undefined.
+/// Linear radiance of the environment where no surface was drawn; elsewhere black.
 gpu::ImageRef draw_skybox(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer);
 
 }  // namespace heliograph::render

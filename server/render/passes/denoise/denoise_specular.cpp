@@ -64,7 +64,8 @@ AtrousConfig specular_atrous_config(const FrameInputs& in) {
 }  // namespace
 
 gpu::ImageRef denoise_specular(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                               const Guide& guide, gpu::ImageRef noisy) {
+                               const Guide& guide, const SampleHistories& histories,
+                               gpu::ImageRef noisy) {
   const auto& blurring = in.settings.specular_blur;
   const bool feedback =
       blurring.enabled && blurring.feedback >= 0 && blurring.feedback < blurring.iterations;
@@ -72,7 +73,7 @@ gpu::ImageRef denoise_specular(gpu::FramePlan& plan, const FrameInputs& in, cons
 
   gpu::ImageRef signal = tone_compressed ? compress(plan, in, noisy) : noisy;
   const AccumulatedSignal accumulated =
-      accumulate_specular(plan, in, gbuffer, guide, signal, feedback);
+      accumulate_specular(plan, in, gbuffer, guide, histories, signal, feedback);
   signal = accumulated.signal;
   if (blurring.enabled) {
     estimate_specular_variance(plan, in, gbuffer, guide, accumulated);

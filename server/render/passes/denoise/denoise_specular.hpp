@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/passes/denoise/reproject.hpp"
+#include "render/passes/denoise/temporal.hpp"
 
 namespace heliograph::render {
 
@@ -14,6 +14,7 @@ inline constexpr struct DenoiseSpecularBuffers {
 /// Demodulated reflections (rgb, w: hit distance) without their noise, and the variance left of
 /// their luminance (w): the paper's stages 4 and 5 and its sections 3.1 to 3.4.
 gpu::ImageRef denoise_specular(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                               const Guide& guide, gpu::ImageRef noisy);
+                               const Guide& guide, const SampleHistories& histories,
+                               gpu::ImageRef noisy);
 
 }  // namespace heliograph::render

@@ -61,12 +61,14 @@ gpu::ImageRef combine_visibility(gpu::FramePlan& plan, const FrameInputs& in, gp
 }
 
 gpu::ImageRef denoise_visibility(gpu::FramePlan& plan, const FrameInputs& in,
-                                 const GBuffer& gbuffer, const Guide& guide, gpu::ImageRef noisy) {
+                                 const GBuffer& gbuffer, const Guide& guide,
+                                 const SampleHistories& histories, gpu::ImageRef noisy) {
   const auto& blurring = in.settings.shadow_blur;
   const bool feedback =
       blurring.enabled && blurring.feedback >= 0 && blurring.feedback < blurring.iterations;
 
-  const AccumulatedSignal accumulated = accumulate_visibility(plan, in, guide, noisy, feedback);
+  const AccumulatedSignal accumulated =
+      accumulate_visibility(plan, in, guide, histories, noisy, feedback);
   if (!blurring.enabled) return accumulated.signal;
 
   estimate_visibility_variance(plan, in, gbuffer, guide, accumulated);

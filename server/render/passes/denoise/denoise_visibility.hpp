@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/passes/denoise/reproject.hpp"
+#include "render/passes/denoise/temporal.hpp"
 
 namespace heliograph::render {
 
@@ -16,6 +16,7 @@ gpu::ImageRef combine_visibility(gpu::FramePlan& plan, const FrameInputs& in, gp
 /// The combined visibility without its noise, and the variance left of each (z, w): the paper's
 /// stages 4 and 5.
 gpu::ImageRef denoise_visibility(gpu::FramePlan& plan, const FrameInputs& in,
-                                 const GBuffer& gbuffer, const Guide& guide, gpu::ImageRef noisy);
+                                 const GBuffer& gbuffer, const Guide& guide,
+                                 const SampleHistories& histories, gpu::ImageRef noisy);
 
 }  // namespace heliograph::render

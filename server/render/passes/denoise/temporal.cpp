@@ -38,12 +38,20 @@ bool rectifies_after(protocol::Rectification mode) {
 
 }  // namespace
 
+SampleHistories declare_sample_histories(gpu::FramePlan& plan) {
+  return {plan.history(visibility_temporal_buffers.history.name, four_floats),
+          plan.history(visibility_temporal_buffers.history_length.name, four_floats),
+          plan.history(specular_temporal_buffers.history_length.name, four_floats),
+          plan.history(specular_temporal_buffers.fast_history.name, four_floats)};
+}
+
 AccumulatedSignal accumulate_visibility(gpu::FramePlan& plan, const FrameInputs& in,
-                                        const Guide& guide, gpu::ImageRef noisy, bool feedback) {
+                                        const Guide& guide, const SampleHistories& histories,
+                                        gpu::ImageRef noisy, bool feedback) {
   const auto& buffers = visibility_temporal_buffers;
-  const gpu::History history = plan.history(buffers.history.name, four_floats);
+  const gpu::History history = histories.visibility;
   const gpu::History moments = plan.history(buffers.moments.name, four_floats);
-  const gpu::History history_length = plan.history(buffers.history_length.name, four_floats);
+  const gpu::History history_length = histories.visibility_length;
   const gpu::History fast_history =
       plan.history(buffers.fast_history.name, VK_FORMAT_R32G32_SFLOAT);
   const gpu::ImageRef signal =
@@ -92,11 +100,12 @@ AccumulatedSignal accumulate_visibility(gpu::FramePlan& plan, const FrameInputs&
 
 AccumulatedSignal accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in,
                                       const GBuffer& gbuffer, const Guide& guide,
-                                      gpu::ImageRef noisy, bool feedback) {
+                                      const SampleHistories& histories, gpu::ImageRef noisy,
+                                      bool feedback) {
   const auto& buffers = specular_temporal_buffers;
   const gpu::History history = plan.history(buffers.history.name, four_floats);
-  const gpu::History history_length = plan.history(buffers.history_length.name, four_floats);
-  const gpu::History fast_history = plan.history(buffers.fast_history.name, four_floats);
+  const gpu::History history_length = histories.specular_length;
+  const gpu::History fast_history = histories.specular_fast;
   const gpu::ImageRef signal =
       feedback ? plan.image(buffers.signal.name, four_floats) : history.current;
   const auto& settings = in.settings.specular_temporal;

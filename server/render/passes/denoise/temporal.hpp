@@ -70,6 +70,15 @@ inline constexpr struct SpecularTemporalBuffers {
       .aspects = specular_temporal_aspects};
 } specular_temporal_buffers{};
 
+/// Histories that the sampling plan of the next frame reads too.
+struct SampleHistories {
+  gpu::History visibility;
+  gpu::History visibility_length;
+  gpu::History specular_length;
+  gpu::History specular_fast;
+};
+SampleHistories declare_sample_histories(gpu::FramePlan& plan);
+
 /// A signal accumulated over frames, in this frame.
 struct AccumulatedSignal {
   gpu::ImageRef signal;          // the mean and the variance of its noise
@@ -82,13 +91,15 @@ struct AccumulatedSignal {
 /// Shadow and ambient visibility (x and y; variances z and w). With `feedback` a later pass writes
 /// the history.
 AccumulatedSignal accumulate_visibility(gpu::FramePlan& plan, const FrameInputs& in,
-                                        const Guide& guide, gpu::ImageRef noisy, bool feedback);
+                                        const Guide& guide, const SampleHistories& histories,
+                                        gpu::ImageRef noisy, bool feedback);
 
 /// Demodulated reflections: rgb, and the variance of their luminance in w. The moments lie beside
 /// the length of the history, z and w of `history_length`.
 AccumulatedSignal accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in,
                                       const GBuffer& gbuffer, const Guide& guide,
-                                      gpu::ImageRef noisy, bool feedback);
+                                      const SampleHistories& histories, gpu::ImageRef noisy,
+                                      bool feedback);
 
 /// Gives pixels with a short history the variance of their neighbours (SVGF, section 4.2).
 void estimate_visibility_variance(gpu::FramePlan& plan, const FrameInputs& in,

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "render/kernels/gbuffer_hits.hpp"
+#include "render/kernels/gbuffer/gbuffer_hits.hpp"
 #include "render/passes/blend/blend_surfaces.hpp"
 #include "render/passes/formats.hpp"
 #include "render/passes/rays/ray_stream.hpp"
@@ -36,8 +36,6 @@ void store_hits(gpu::FramePlan& plan, const FrameInputs& in, const Round& round,
   const std::uint32_t features = in.scene.features;
   const bool layered = (features & shared::scene_layers) != 0;
   const auto& shader = layered ? shaders::gbuffer_hits_layered : shaders::gbuffer_hits;
-  // Camera rays decide for themselves, by the filtered texel: as drawn triangles do.
-  begin_rays(plan, in, round.name, round.passed, Blending::stops);
   plan.pass(round.name + ".hits", in.program(shader, features))
       .bind<kernels::GBufferHitsBindings>(
           {.rays = ray_source(round.rays),
@@ -75,26 +73,49 @@ bool traces_gbuffer(const gpu::Device& device, const FrameInputs& in) {
   return rays_find_gbuffer_sooner(device.report(), in.tracer.kind());
 }
 
-GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
-  GBuffer gbuffer = declare_gbuffer(plan, in.scene.features);
+CameraStreams declare_camera_streams(gpu::FramePlan& plan) {
   const VkExtent2D extent = plan.extent();
   // Whole tiles of 8 x 8.
   const std::uint32_t capacity = ((extent.width + 7) / 8) * ((extent.height + 7) / 8) * 64;
-  const auto hits =
-      plan.buffer("gbuffer.hits", sizeof(shared::Hit) * capacity, storage, gpu::Memory::device);
-  const auto previous_vertices = plan.import(in.moving.previous_vertices());
-  tracing::RayStream current = declare_rays(plan, "gbuffer", capacity);
-  tracing::RayStream next = declare_rays(plan, "gbuffer.passed", capacity);
+  return {
+      declare_rays(plan, "gbuffer", capacity, tracing::RayKind::camera),
+      declare_rays(plan, "gbuffer.passed", capacity, tracing::RayKind::camera),
+      plan.buffer("gbuffer.hits", sizeof(shared::Hit) * capacity, storage, gpu::Memory::device)};
+}
 
-  camera_rays(plan, in, current);
-  const int rounds = (in.scene.features & shared::scene_blends) != 0 ? 2 + most_blended : 4;
-  for (int round = 0; round < rounds; ++round) {
-    const std::string name = round == 0 ? "gbuffer" : "gbuffer." + std::to_string(round + 1);
-    in.tracer.trace_closest(plan, name + ".trace", in.structure, current, hits);
-    const bool last = round == rounds - 1;
-    store_hits(plan, in, {name, last, current, hits, previous_vertices, next}, gbuffer);
+int camera_rounds(const FrameInputs& in) {
+  return (in.scene.features & shared::scene_blends) != 0 ? 2 + most_blended : 4;
+}
+
+void trace_rounds(gpu::FramePlan& plan, const FrameInputs& in, const CameraStreams& streams,
+                  int first_round, const GBuffer& gbuffer) {
+  const auto previous_vertices = plan.import(in.moving.previous_vertices());
+  auto [current, next, hits] = streams;
+  const int last_round = camera_rounds(in);
+  for (int round = first_round; round <= last_round; ++round) {
+    // Where the host sees what the rounds before have left, nothing left costs nothing.
+    const gpu::BufferRef count = current.count;
+    const auto any = [&plan, count] {
+      const auto* const rays = reinterpret_cast<const shared::RayCount*>(plan.get(count).mapped());
+      return !rays || rays->count > 0;
+    };
+    const std::string name = round == 1 ? "gbuffer" : "gbuffer." + std::to_string(round);
+    // Camera rays decide for themselves, by the filtered texel: as drawn triangles do.
+    begin_rays(plan, in, name, next, Blending::stops);
+    plan.only_when(any, [&] {
+      in.tracer.trace_closest(plan, name + ".trace", in.structure, current, hits);
+      const bool last = round == last_round;
+      store_hits(plan, in, {name, last, current, hits, previous_vertices, next}, gbuffer);
+    });
     std::swap(current, next);
   }
+}
+
+GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
+  GBuffer gbuffer = declare_gbuffer(plan, in.scene.features);
+  const CameraStreams streams = declare_camera_streams(plan);
+  camera_rays(plan, in, streams.current);
+  trace_rounds(plan, in, streams, 1, gbuffer);
   return gbuffer;
 }
 

@@ -5,6 +5,7 @@
 #include "render/kernels/signals.hpp"
 #include "render/passes/frame_inputs.hpp"
 #include "render/passes/reference/reference.hpp"
+#include "render/passes/sampling/plan_samples.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
@@ -19,10 +20,11 @@ bool is_filtered(const protocol::Settings& settings) {
          settings.reference.use == protocol::ReferenceUse::when_static;
 }
 
-/// Samples in the mean, with this frame's.
+/// Samples in the mean, with this frame's. The frame that ended the motion may lack some.
 std::uint32_t samples_of_mean(const FrameInputs& in) {
-  const bool late = in.settings.reference.use == protocol::ReferenceUse::when_static &&
-                    in.settings.accumulation.blend_samples > 0;
+  const bool late = (in.settings.reference.use == protocol::ReferenceUse::when_static &&
+                     in.settings.accumulation.blend_samples > 0) ||
+                    may_leave_samples_out(in.settings);
   return late ? std::max(in.clock.samples, 1u) : in.clock.samples + 1;
 }
 

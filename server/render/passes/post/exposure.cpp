@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "render/kernels/post/exposure.hpp"
 #include "render/passes/frame_inputs.hpp"
 #include "render/passes/post/accumulate.hpp"
 #include "shaders/embedded.hpp"
@@ -11,24 +12,18 @@
 namespace heliograph::render {
 namespace {
 
-struct AdaptConstants {
-  float seconds;
-  float adaptation;
-  std::uint32_t automatic;
-};
-
 /// Fills the histogram.
 void meter(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef hdr, gpu::ImageRef mean,
            gpu::BufferRef histogram) {
   plan.pass("exposure.begin", in.program(shaders::exposure_begin))
-      .write(histogram)
-      .dispatch({shared::exposure_bins, 1});
+      .bind<kernels::ExposureBeginBindings>({.histogram = histogram})
+      .dispatch({shared::exposure_bins, 1})
+      .host(kernels::exposure_begin);
   plan.pass("exposure.meter", in.program(shaders::exposure_meter))
-      .read(hdr)
-      .read(mean)
-      .read_write(histogram)
-      .constants([in] { return mean_weight(in); })
-      .dispatch({(plan.extent().width + 1) / 2, (plan.extent().height + 1) / 2});
+      .bind<kernels::ExposureMeterBindings>({.hdr = hdr, .mean = mean, .histogram = histogram})
+      .constants([in] { return kernels::ExposureMeterConstants{mean_weight(in)}; })
+      .dispatch({(plan.extent().width + 1) / 2, (plan.extent().height + 1) / 2})
+      .host(kernels::exposure_meter);
 }
 
 shared::ExposureState read_state(const gpu::FramePlan& plan, const Exposure& exposure) {
@@ -53,13 +48,13 @@ Exposure expose(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef hdr,
   const bool automatic = in.settings.exposure.mode == protocol::ExposureMode::automatic;
   if (automatic) meter(plan, in, hdr, mean, histogram);
   plan.pass("exposure.adapt", in.program(shaders::exposure_adapt))
-      .read(histogram)
-      .read_write(exposure.state)
-      .write(exposure.report)
+      .bind<kernels::ExposureAdaptBindings>(
+          {.histogram = histogram, .state = exposure.state, .report = exposure.report})
       .constants([&clock = in.clock, &settings = in.settings.exposure, automatic] {
-        return AdaptConstants{clock.seconds, settings.adaptation, automatic};
+        return kernels::ExposureAdaptConstants{clock.seconds, settings.adaptation, automatic};
       })
-      .dispatch({1, 1});
+      .dispatch({1, 1})
+      .host(kernels::exposure_adapt, in.constants);
   return exposure;
 }
 

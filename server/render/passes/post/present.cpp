@@ -1,6 +1,6 @@
 #include "render/passes/post/present.hpp"
 
-#include "render/kernels/present.hpp"
+#include "render/kernels/post/present.hpp"
 #include "render/passes/frame_inputs.hpp"
 #include "render/passes/post/accumulate.hpp"
 #include "shaders/embedded.hpp"

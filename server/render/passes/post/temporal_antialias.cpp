@@ -1,6 +1,6 @@
 #include "render/passes/post/temporal_antialias.hpp"
 
-#include "render/kernels/temporal_antialias.hpp"
+#include "render/kernels/post/temporal_antialias.hpp"
 #include "render/passes/frame_inputs.hpp"
 #include "shaders/embedded.hpp"
 

@@ -15,12 +15,12 @@ std::uint32_t frame_blending(const FrameInputs& in) {
 }  // namespace
 
 tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
-                                std::uint32_t capacity) {
+                                std::uint32_t capacity, tracing::RayKind kind) {
   constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   return {plan.buffer(name + ".ray_count", sizeof(shared::RayCount),
                       storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, gpu::Memory::device),
           plan.buffer(name + ".rays", sizeof(shared::Ray) * capacity, storage, gpu::Memory::device),
-          capacity};
+          capacity, kind};
 }
 
 void begin_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,

@@ -14,7 +14,7 @@ inline constexpr VkDeviceSize ray_groups_offset = offsetof(shared::RayCount, gro
 
 /// The buffers of a stream: `name`.ray_count and `name`.rays.
 tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
-                                std::uint32_t capacity);
+                                std::uint32_t capacity, tracing::RayKind kind);
 
 /// How a stream's rays meet blended surfaces: all of them stop rays, or each its coverage's
 /// fraction.

@@ -16,7 +16,7 @@ tracing::RayStream sort_rays(gpu::FramePlan& plan, const FrameInputs& in, const 
       rays.count,
       plan.buffer(name + ".sorted_rays", sizeof(shared::Ray) * rays.capacity, storage,
                   gpu::Memory::device),
-      rays.capacity};
+      rays.capacity, rays.kind};
   const scene::Bounds bounds = in.scene.scene->bounds;
   const auto constants = [bounds] {
     const glm::vec3 size = glm::max(bounds.maximum - bounds.minimum, glm::vec3(1e-6f));

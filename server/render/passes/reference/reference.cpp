@@ -122,7 +122,7 @@ class Wavefront {
 
   /// A ray of every pixel; without new rays the old ones are traced no more.
   tracing::RayStream stream(const std::string& name) {
-    const tracing::RayStream made = declare_rays(plan_, name, pixels_);
+    const tracing::RayStream made = declare_rays(plan_, name, pixels_, tracing::RayKind::path);
     begin_rays(plan_, in_, name, made);
     return made;
   }

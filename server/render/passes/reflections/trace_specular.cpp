@@ -6,6 +6,7 @@
 #include "render/passes/formats.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/rays/sort_rays.hpp"
+#include "render/passes/sampling/plan_samples.hpp"
 #include "render/resources/light_table.hpp"
 #include "render/resources/moving_scene.hpp"
 #include "shaders/embedded.hpp"
@@ -33,9 +34,11 @@ Target make_target(gpu::FramePlan& plan, bool half) {
 }
 
 tracing::RayStream generate_rays(gpu::FramePlan& plan, const FrameInputs& in,
-                                 const GBuffer& gbuffer, const Target& target) {
+                                 const GBuffer& gbuffer, const Target& target,
+                                 std::optional<gpu::ImageRef> planned) {
   const std::uint32_t features = in.scene.features;
-  const auto rays = declare_rays(plan, "specular", target.extent.width * target.extent.height);
+  const auto rays = declare_rays(plan, "specular", target.extent.width * target.extent.height,
+                                 tracing::RayKind::reflection);
   const auto& shader = target.directions ? shaders::specular_rays_half : shaders::specular_rays;
   begin_rays(plan, in, "specular", rays);
   plan.pass("specular.rays", in.program(shader, features))
@@ -45,10 +48,13 @@ tracing::RayStream generate_rays(gpu::FramePlan& plan, const FrameInputs& in,
                                             .layers = gbuffer.layers,
                                             .motion = gbuffer.motion,
                                             .rays = ray_sink(rays),
+                                            .planned = planned.value_or(gbuffer.instance),
                                             .radiance = target.radiance,
                                             .directions = target.directions})
-      .constants(
-          [&s = in.settings.specular] { return kernels::SpecularRaysConstants{s.max_roughness}; })
+      .constants([in, has_plan = planned.has_value()] {
+        return kernels::SpecularRaysConstants{in.settings.specular.max_roughness,
+                                              has_plan && leaves_samples_out(in)};
+      })
       .dispatch(target.extent)
       .host([in](const kernels::SpecularRaysJob::Pass& pass) {
         kernels::specular_rays({pass, in.constants, in.split_sum()});
@@ -111,7 +117,8 @@ void trace_and_shade(gpu::FramePlan& plan, const FrameInputs& in, const std::str
   const auto hits = plan.buffer(name + ".hits", sizeof(shared::Hit) * rays.capacity, storage,
                                 gpu::Memory::device);
   in.tracer.trace_closest(plan, name + ".trace", in.structure, rays, hits);
-  const auto shadows = declare_rays(plan, name + ".shadows", rays.capacity);
+  const auto shadows =
+      declare_rays(plan, name + ".shadows", rays.capacity, tracing::RayKind::hit_shadow);
   shade(plan, in, gbuffer, {name, rays, hits, shadows}, target);
   resolve_lights(plan, in, name, shadows, target);
 }
@@ -135,9 +142,11 @@ gpu::ImageRef upsample(gpu::FramePlan& plan, const FrameInputs& in, const GBuffe
 
 }  // namespace
 
-gpu::ImageRef trace_specular(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer) {
+gpu::ImageRef trace_specular(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                             std::optional<gpu::ImageRef> planned) {
   const Target target = make_target(plan, in.settings.specular.half_resolution);
-  const auto rays = generate_rays(plan, in, gbuffer, target);
+  if (target.directions) planned.reset();
+  const auto rays = generate_rays(plan, in, gbuffer, target, planned);
   trace_and_shade(plan, in, "specular", rays, gbuffer, target);
   return target.directions ? upsample(plan, in, gbuffer, target) : target.radiance;
 }

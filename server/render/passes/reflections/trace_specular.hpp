@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "render/passes/gbuffer/gbuffer.hpp"
 #include "tracing/ray_tracer.hpp"
 
@@ -28,8 +30,10 @@ inline constexpr struct SpecularBuffers {
 /// What the specular lobe sees of the scene and the environment, one ray per pixel of a surface not
 /// rougher than `specular.max_roughness`: radiance x BRDF x cos / pdf, divided by the surface's
 /// specular albedo (rgb), and how far the ray went (w, metres; 10 km where it met nothing, 0 where
-/// there was none).
-gpu::ImageRef trace_specular(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer);
+/// there was none). Where a sampling plan is `planned` and leaves a pixel out, w is the distance of
+/// the frame before, negated.
+gpu::ImageRef trace_specular(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                             std::optional<gpu::ImageRef> planned = {});
 
 /// Radiance along `rays`, each with its weight: stored in `radiance` at the rays' pixels. `surface`
 /// holds the roughness that they come from, `distance` how far from the eye that is (a; metres).

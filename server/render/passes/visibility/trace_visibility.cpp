@@ -3,6 +3,7 @@
 #include "render/kernels/signals.hpp"
 #include "render/kernels/visibility_rays.hpp"
 #include "render/passes/rays/ray_stream.hpp"
+#include "render/passes/sampling/plan_samples.hpp"
 #include "render/resources/light_table.hpp"
 #include "shaders/embedded.hpp"
 
@@ -13,11 +14,11 @@ namespace {
 class VisibilityTrace {
  public:
   VisibilityTrace(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
-                  const BufferDescription& buffer)
+                  tracing::RayKind kind, const BufferDescription& buffer)
       : plan_(plan),
         in_(in),
         name_(name),
-        rays_(declare_rays(plan, name, plan.extent().width * plan.extent().height)),
+        rays_(declare_rays(plan, name, plan.extent().width * plan.extent().height, kind)),
         visibility_(plan.image(buffer.name, VK_FORMAT_R32_SFLOAT)) {
     begin_rays(plan, in, name, rays_);
   }
@@ -55,11 +56,17 @@ class VisibilityTrace {
   gpu::ImageRef visibility_;
 };
 
+auto ray_constants(const FrameInputs& in, bool planned) {
+  return
+      [in, planned] { return kernels::VisibilityRaysConstants{planned && leaves_samples_out(in)}; };
+}
+
 }  // namespace
 
-gpu::ImageRef trace_shadows(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer) {
+gpu::ImageRef trace_shadows(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                            std::optional<gpu::ImageRef> planned) {
   const std::uint32_t features = in.scene.features;
-  VisibilityTrace trace(plan, in, "shadows", visibility_buffers.shadows);
+  VisibilityTrace trace(plan, in, "shadows", tracing::RayKind::shadow, visibility_buffers.shadows);
   trace.generate(in.program(shaders::shadows_rays, features), shared::frame_shadows)
       .bind<kernels::ShadowRaysBindings>({.normals = gbuffer.normals,
                                           .motion = gbuffer.motion,
@@ -67,7 +74,9 @@ gpu::ImageRef trace_shadows(gpu::FramePlan& plan, const FrameInputs& in, const G
                                           .surface = gbuffer.surface,
                                           .layers = gbuffer.layers,
                                           .rays = ray_sink(trace.rays()),
+                                          .planned = planned.value_or(gbuffer.instance),
                                           .visibility = trace.visibility()})
+      .constants(ray_constants(in, planned.has_value()))
       .host([in](const kernels::ShadowRaysJob::Pass& pass) {
         const auto lights = frame_lights(in.tables.lights, in.constants);
         kernels::shadows_rays({pass, in.constants, lights, in.split_sum()});
@@ -76,13 +85,16 @@ gpu::ImageRef trace_shadows(gpu::FramePlan& plan, const FrameInputs& in, const G
   return trace.resolve();
 }
 
-gpu::ImageRef trace_ambient(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer) {
-  VisibilityTrace trace(plan, in, "ambient", visibility_buffers.ambient);
+gpu::ImageRef trace_ambient(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                            std::optional<gpu::ImageRef> planned) {
+  VisibilityTrace trace(plan, in, "ambient", tracing::RayKind::ambient, visibility_buffers.ambient);
   trace.generate(in.program(shaders::ambient_rays), shared::frame_ambient_occlusion)
       .bind<kernels::AmbientRaysBindings>({.normals = gbuffer.normals,
                                            .motion = gbuffer.motion,
                                            .rays = ray_sink(trace.rays()),
+                                           .planned = planned.value_or(gbuffer.instance),
                                            .visibility = trace.visibility()})
+      .constants(ray_constants(in, planned.has_value()))
       .host(kernels::ambient_rays, in.constants);
   return trace.resolve();
 }

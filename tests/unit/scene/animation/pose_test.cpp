@@ -139,5 +139,17 @@ TEST(Evaluate, OtherClipStartsFromDefaultPose) {
   EXPECT_EQ(find_clip(scene, "walk"), nullptr);
 }
 
+TEST(MovableNodes, AreThoseBelowAnyAnimatedNode) {
+  Scene scene = animated_scene();
+  EXPECT_EQ(movable_nodes(scene), (std::vector<bool>{true, true, false}));
+  // Morph weights deform a mesh, but move no node.
+  scene.clips[0].channels = {curve(Property::weights, Interpolation::linear, 1, {0}, {1})};
+  EXPECT_EQ(movable_nodes(scene), std::vector<bool>(3));
+  Channel lift = curve(Property::translation, Interpolation::linear, 3, {0}, {0, 5, 0});
+  lift.node = 1;
+  scene.clips.push_back({"lift", 1.0f, {lift}});
+  EXPECT_EQ(movable_nodes(scene), (std::vector<bool>{false, true, false}));
+}
+
 }  // namespace
 }  // namespace heliograph::scene

@@ -1,9 +1,9 @@
-#include "render/kernels/present.hpp"
+#include "render/kernels/post/present.hpp"
 
 #include "render/kernels/simd/rows.hpp"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "render/kernels/present.cpp"
+#define HWY_TARGET_INCLUDE "render/kernels/post/present.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "render/kernels/simd/random.hpp"

@@ -1,9 +1,9 @@
-#include "render/kernels/temporal_antialias.hpp"
+#include "render/kernels/post/temporal_antialias.hpp"
 
 #include "render/kernels/simd/rows.hpp"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "render/kernels/temporal_antialias.cpp"
+#define HWY_TARGET_INCLUDE "render/kernels/post/temporal_antialias.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "render/kernels/simd/history.hpp"

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <algorithm>
+
+#include "render/kernels/common/parallel.hpp"
+
+namespace heliograph::render::kernels {
+
+/// Pixels whose rays lie together in a stream: neighbours see the same part of the scene.
+inline constexpr int tile_shift = 4;
+inline constexpr int tile_side = 1 << tile_shift;
+
+/// Pixels from (left, top) to before (right, bottom).
+struct Tile {
+  int left, top, right, bottom;
+};
+
+/// Calls `work(tile)` for all tiles of an image, on all processors.
+template <class Work>
+void for_each_tile(int width, int height, const Work& work) {
+  const int across = (width + tile_side - 1) / tile_side;
+  const int tiles = across * ((height + tile_side - 1) / tile_side);
+  for_each_range(tiles, 1, [&](int first, int last) {
+    for (int tile = first; tile < last; ++tile) {
+      const int left = tile % across * tile_side, top = tile / across * tile_side;
+      work(Tile{left, top, std::min(left + tile_side, width), std::min(top + tile_side, height)});
+    }
+  });
+}
+
+}  // namespace heliograph::render::kernels

@@ -1,0 +1,123 @@
+#include "render/kernels/gbuffer/gbuffer_hits.hpp"
+
+#include "render/kernels/simd/rows.hpp"
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/kernels/gbuffer/gbuffer_hits.cpp"
+#include "hwy/foreach_target.h"
+// After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/gbuffer/gbuffer_shading.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::kernels::HWY_NAMESPACE {
+
+void make_camera_rays(const shared::FrameConstants& frame, int tile, int tiles_across,
+                      shared::Ray* to) {
+  const CameraLanes camera(frame);
+  const int tile_x = tile % tiles_across * 8, tile_y = tile / tiles_across * 8;
+  const int lanes = static_cast<int>(hn::Lanes(tag));
+  for (int i = 0; i < 64; i += lanes) {
+    const Integer index = hn::Iota(integer_tag, i);
+    const PixelLanes p{hn::Add(integer(tile_x), hn::And(index, integer(7))),
+                       hn::Add(integer(tile_y), hn::ShiftRight<3>(index))};
+    store_rays(camera_rays(frame, camera, p), hn::MaskFromVec(as_float(integer(-1))), to + i);
+  }
+}
+
+/// The hits of one job, some at a time.
+class StreamShading {
+ public:
+  explicit StreamShading(const GBufferHitsJob& job)
+      : job_(job), shading_(job.frame, job.scene, job.deforms) {}
+
+  /// @return how many rays go on, which lie at `passed`
+  std::size_t block(int first, int last, shared::Ray* passed) const {
+    const Mask requested = float_mask(hn::Lt(hn::Iota(integer_tag, first), integer(last)));
+    RayLanes ray = load_rays(job_.rays.rays, first, last);
+    const PixelLanes pixel = unpack_pixel(ray.pixel);
+    const HitLanes hit = load_hits(job_.hits, first, last);
+    const Mask missed = hn::AndNot(hit.met, requested);
+    if (!none(missed)) store(empty_texels(), pixel, hn::And(missed, inside(pixel)));
+    if (none(hit.met)) return 0;
+    HitRecords records(job_.scene, hit);
+    records.triangle.set_point(hit.u, hit.v);
+    const SurfaceLanes s = shading_.surface(records, hit, ray.direction);
+    const Mask passes =
+        job_.constants.last_round ? hn::Lt(one(), zero()) : shading_.go_on(ray.direction, hit, s);
+    const Mask stays = hn::AndNot(passes, hit.met);
+    if (!none(stays)) store(shading_.texels(pixel, records, hit, s), pixel, stays);
+    if (none(passes)) return 0;
+    ray.t_min = GBufferShading::passed_from(hit.t);
+    return store_rays(ray, passes, passed);
+  }
+
+ private:
+  HWY_INLINE Mask inside(const PixelLanes& pixel) const {
+    const glm::uvec2 extent = job_.frame.extent;
+    return float_mask(hn::And(hn::Lt(pixel.x, integer(static_cast<int>(extent.x))),
+                              hn::Lt(pixel.y, integer(static_cast<int>(extent.y)))));
+  }
+
+  HWY_NOINLINE void store(const GBufferTexels& texels, const PixelLanes& pixel,
+                          Mask requested) const {
+    const Texels<4> normals(texels.normals), motion(texels.motion);
+    const Texels<2> depth_slope(texels.depth_slope), emissive(texels.emissive);
+    const Texels<1> base_color(texels.base_color), surface(texels.surface);
+    const Texels<1> instance(texels.instance);
+    const TexelIndices at(pixel);
+    for_each_run(requested, pixel, [&](std::size_t lane, std::size_t count) {
+      normals.put(job_.normals, lane, count, at);
+      motion.put(job_.motion, lane, count, at);
+      depth_slope.put(job_.depth_slope, lane, count, at);
+      emissive.put(job_.emissive, lane, count, at);
+      base_color.put(job_.base_color, lane, count, at);
+      surface.put(job_.surface, lane, count, at);
+      instance.put(job_.instance, lane, count, at);
+    });
+  }
+
+  const GBufferHitsJob& job_;
+  GBufferShading shading_;
+};
+
+void shade_batch(const GBufferHitsJob& job, int first, int last) {
+  const StreamShading shading(job);
+  std::array<shared::Ray, ray_batch> passed;
+  std::size_t used = 0;
+  for (int i = first; i < last; i += static_cast<int>(hn::Lanes(tag))) {
+    used += shading.block(i, last, passed.data() + used);
+  }
+  if (used) job.passed.append({passed.data(), used});
+}
+
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace heliograph::render::kernels {
+
+HWY_EXPORT(make_camera_rays);
+HWY_EXPORT(shade_batch);
+
+void gbuffer_rays(const GBufferRaysJob& job) {
+  const shared::FrameConstants& frame = job.frame;
+  const auto across = static_cast<int>((frame.extent.x + 7) / 8);
+  const auto tiles = across * static_cast<int>((frame.extent.y + 7) / 8);
+  *job.count = {static_cast<std::uint32_t>(tiles) * 64, 0, 0, 1, 0, 0, 0, 0};
+  set_groups(*job.count);
+  for_each_range(tiles, 8, [&](int first, int last) {
+    for (int tile = first; tile < last; ++tile) {
+      HWY_DYNAMIC_DISPATCH(make_camera_rays)(frame, tile, across, job.rays + 64 * tile);
+    }
+  });
+}
+
+void gbuffer_hits(const GBufferHitsJob& job) {
+  const auto count = static_cast<int>(job.rays.count->count);
+  for_each_batch(count, [&](int first, int last) {
+    HWY_DYNAMIC_DISPATCH(shade_batch)(job, first, last);
+  });
+  job.passed.end();
+}
+
+}  // namespace heliograph::render::kernels
+#endif

@@ -1,0 +1,395 @@
+#include "render/kernels/gbuffer/gbuffer_triangles.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "render/kernels/simd/rows.hpp"
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/kernels/gbuffer/gbuffer_triangles.cpp"
+#include "hwy/foreach_target.h"
+// After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/simd/lanes.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::kernels::HWY_NAMESPACE {
+
+/// Positions before the division: of clip space x, y and w; and metres along -Z.
+struct ClipLanes {
+  Float x, y, w, depth;
+};
+
+struct CornerLanes {
+  Integer x, y;  // 1/256 pixel
+  Float nearness;
+};
+
+/// A corner of a triangle that is clipped.
+struct ClipPoint {
+  float x, y, w, depth;
+};
+
+/// One batch of triangles.
+class Projection {
+ public:
+  Projection(const shared::FrameConstants& frame, const SceneView& scene, TriangleBatch& batch)
+      : scene_(scene),
+        batch_(batch),
+        orthographic_((frame.flags & shared::frame_orthographic) != 0),
+        // What rays begin at: the near plane is what the reversed projection leaves of every depth.
+        near_plane_(orthographic_ ? 0.0f : frame.unjittered[3][2]),
+        width_(static_cast<int>(frame.extent.x)),
+        height_(static_cast<int>(frame.extent.y)) {
+    const auto& rows = batch.draw->constants.world;
+    const glm::mat4 world =
+        glm::transpose(glm::mat4(rows[0], rows[1], rows[2], glm::vec4(0, 0, 0, 1)));
+    to_clip_ = frame.view_projection * world;
+    to_view_ = frame.view * world;
+    // glTF's fronts are counter-clockwise as seen, which is clockwise where y points down.
+    turned_ = batch.draw->flipped;
+  }
+
+  void run() {
+    const int last = static_cast<int>(batch_.first + batch_.count);
+    const int lanes = static_cast<int>(hn::Lanes(tag));
+    for (int i = static_cast<int>(batch_.first); i < last; i += lanes) block(i, last);
+  }
+
+ private:
+  // Beyond the frame by so many pixels triangles are clipped: coordinates stay within 23 bits.
+  static constexpr float guard = 4096.0f;
+  // Larger ones are set up in 64 bits.
+  static constexpr int most_pixels = 120;
+
+  void block(int first, int last) {
+    const Integer triangle = hn::Min(hn::Iota(integer_tag, first), integer(last - 1));
+    const Integer index =
+        hn::Add(integer(static_cast<int>(batch_.draw->first_index)), hn::Mul(triangle, integer(3)));
+    std::array<ClipLanes, 3> corners;
+    for (int i = 0; i < 3; ++i) corners[static_cast<std::size_t>(i)] = corner(index, i);
+    const auto& [a, b, c] = corners;
+    Mask seen = float_mask(hn::Lt(hn::Iota(integer_tag, first), integer(last)));
+    const auto beyond = [&](auto distance) HWY_ATTR {
+      const Mask all = hn::And(hn::Lt(distance(a), zero()),
+                               hn::And(hn::Lt(distance(b), zero()), hn::Lt(distance(c), zero())));
+      seen = hn::AndNot(all, seen);
+    };
+    const Float near_plane = number(near_plane_);
+    beyond([=](const ClipLanes& p) HWY_ATTR { return p.depth - near_plane; });
+    beyond([](const ClipLanes& p) HWY_ATTR { return p.w + p.x; });
+    beyond([](const ClipLanes& p) HWY_ATTR { return p.w - p.x; });
+    beyond([](const ClipLanes& p) HWY_ATTR { return p.w + p.y; });
+    beyond([](const ClipLanes& p) HWY_ATTR { return p.w - p.y; });
+    if (none(seen)) return;
+
+    Mask whole = hn::And(inside(a), hn::And(inside(b), inside(c)));
+    std::array<CornerLanes, 3> on_screen{screen(a), screen(b), screen(c)};
+    whole = hn::And(whole, is_small(on_screen));
+    const Mask fast = hn::And(seen, whole);
+    if (!none(fast)) emit(on_screen, triangle, fast);
+    const Mask slow = hn::AndNot(whole, seen);
+    if (!none(slow)) emit_clipped(corners, first, slow);
+  }
+
+  HWY_INLINE ClipLanes corner(Integer first_index, int number_of) const {
+    const LaneIndices<Tag> vertex(gather(scene_.indices, hn::Add(first_index, integer(number_of))));
+    const shared::Vertex* const vertices = scene_.vertices + batch_.draw->first_vertex;
+    const Float4 words = four_words(tag, [&](std::size_t lane) {
+      return &vertices[static_cast<std::uint32_t>(vertex.of[lane])].position.x;
+    });
+    const Float3 p{words.x, words.y, words.z};
+    return {transform_row(to_clip_, 0, p), transform_row(to_clip_, 1, p),
+            orthographic_ ? one() : transform_row(to_clip_, 3, p),
+            hn::Neg(transform_row(to_view_, 2, p))};
+  }
+
+  /// In front of the near plane and not far outside the frame.
+  HWY_INLINE Mask inside(const ClipLanes& p) const {
+    const Float x = p.w * number(limit(width_)), y = p.w * number(limit(height_));
+    return hn::And(hn::Ge(p.depth, number(near_plane_)),
+                   hn::And(hn::Le(hn::Abs(p.x), x), hn::Le(hn::Abs(p.y), y)));
+  }
+  static float limit(int size) { return 1.0f + 2.0f * guard / static_cast<float>(size); }
+
+  HWY_INLINE CornerLanes screen(const ClipLanes& p) const {
+    const Float by = one() / p.w;
+    const auto fixed = [&](Float clip, int size) HWY_ATTR {
+      const Float half = number(0.5f * static_cast<float>(size << subpixel_bits));
+      return hn::NearestInt(hn::MulAdd(clip * by, half, half));
+    };
+    return {fixed(p.x, width_), fixed(p.y, height_), orthographic_ ? hn::Neg(p.depth) : by};
+  }
+
+  /// Small enough for products of two differences in 32 bits.
+  HWY_INLINE Mask is_small(const std::array<CornerLanes, 3>& p) const {
+    const auto extent = [](Integer a, Integer b, Integer c) HWY_ATTR {
+      return hn::Sub(hn::Max(a, hn::Max(b, c)), hn::Min(a, hn::Min(b, c)));
+    };
+    const Integer most = integer(most_pixels << subpixel_bits);
+    return float_mask(hn::And(hn::Lt(extent(p[0].x, p[1].x, p[2].x), most),
+                              hn::Lt(extent(p[0].y, p[1].y, p[2].y), most)));
+  }
+
+  /// The first pixel whose sample lies at or after `low`, the last whose sample lies at or before
+  /// `high`, within `size` pixels.
+  static HWY_INLINE void pixels_between(Integer low, Integer high, int size, Integer& first,
+                                        Integer& last) {
+    constexpr int half = 1 << (subpixel_bits - 1);
+    first = hn::ShiftRight<subpixel_bits>(hn::Add(low, integer(half - 1)));
+    last = hn::ShiftRight<subpixel_bits>(hn::Sub(high, integer(half)));
+    first = hn::Max(first, integer(0));
+    last = hn::Min(last, integer(size - 1));
+  }
+
+  void emit(const std::array<CornerLanes, 3>& p, Integer triangle, Mask seen) {
+    const CornerLanes& a = p[0];
+    // The order that puts the front to the left of the edges.
+    const auto ordered = [&](const CornerLanes& first, const CornerLanes& second,
+                             Mask swapped) HWY_ATTR {
+      return CornerLanes{select(swapped, second.x, first.x), select(swapped, second.y, first.y),
+                         select(swapped, second.nearness, first.nearness)};
+    };
+    const auto cross_of = [&](const CornerLanes& second, const CornerLanes& third) HWY_ATTR {
+      return hn::Sub(hn::Mul(hn::Sub(second.x, a.x), hn::Sub(third.y, a.y)),
+                     hn::Mul(hn::Sub(third.x, a.x), hn::Sub(second.y, a.y)));
+    };
+    const Integer signed_area = cross_of(p[1], p[2]);
+    const Mask clockwise = float_mask(hn::Gt(signed_area, integer(0)));
+    const Mask anticlockwise = float_mask(hn::Lt(signed_area, integer(0)));
+    if (batch_.draw->double_sided) {
+      seen = hn::And(seen, hn::Or(clockwise, anticlockwise));
+    } else {
+      seen = hn::And(seen, turned_ ? clockwise : anticlockwise);
+    }
+    const CornerLanes b = ordered(p[1], p[2], anticlockwise);
+    const CornerLanes c = ordered(p[2], p[1], anticlockwise);
+    Integer first_column, last_column, first_row, last_row;
+    pixels_between(hn::Min(a.x, hn::Min(b.x, c.x)), hn::Max(a.x, hn::Max(b.x, c.x)), width_,
+                   first_column, last_column);
+    pixels_between(hn::Min(a.y, hn::Min(b.y, c.y)), hn::Max(a.y, hn::Max(b.y, c.y)), height_,
+                   first_row, last_row);
+    const auto misses = hn::Or(hn::Gt(first_column, last_column), hn::Gt(first_row, last_row));
+    seen = hn::AndNot(float_mask(misses), seen);
+    if (none(seen)) return;
+
+    const Float area = to_float(hn::Abs(signed_area));
+    const Float pixel = number(static_cast<float>(1 << subpixel_bits));
+    const auto difference = [](Integer to, Integer from)
+                                HWY_ATTR { return to_float(hn::Sub(to, from)); };
+    const Float bx = difference(b.x, a.x), by = difference(b.y, a.y);
+    const Float cx = difference(c.x, a.x), cy = difference(c.y, a.y);
+    const Float bz = b.nearness - a.nearness, cz = c.nearness - a.nearness;
+    const Float scale = pixel / area;
+    const Float right = hn::MulSub(bz, cy, cz * by) * scale;
+    const Float down = hn::MulSub(cz, bx, bz * cx) * scale;
+    const auto packed = [](Integer low, Integer high)
+                            HWY_ATTR { return as_float(hn::Or(low, hn::ShiftLeft<16>(high))); };
+    store({as_float(a.x), as_float(b.x), as_float(c.x), as_float(a.y)},
+          {as_float(b.y), as_float(c.y), packed(first_column, last_column),
+           packed(first_row, last_row)},
+          {a.nearness, right, down, as_float(triangle)}, seen);
+  }
+
+  void store(const Float4& first, const Float4& second, const Float4& third, Mask seen) {
+    constexpr std::size_t most = 4 * hn::MaxLanes(Tag());
+    HWY_ALIGN std::array<float, most> a, b, c;
+    store4(tag, first, a.data());
+    store4(tag, second, b.data());
+    store4(tag, third, c.data());
+    for (std::uint64_t lanes = mask_bits(seen); lanes; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::size_t>(__builtin_ctzll(lanes));
+      ScreenTriangle& to = batch_.visible.emplace_back();
+      auto* const bytes = reinterpret_cast<std::byte*>(&to);
+      std::memcpy(bytes, &a[4 * lane], 16);
+      std::memcpy(bytes + 16, &b[4 * lane], 16);
+      std::memcpy(bytes + 32, &c[4 * lane], 16);
+    }
+  }
+
+  void emit_clipped(const std::array<ClipLanes, 3>& corners, int first, Mask lanes) {
+    constexpr std::size_t most = hn::MaxLanes(Tag());
+    HWY_ALIGN std::array<std::array<float, 4 * most>, 3> points;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const ClipLanes& p = corners[i];
+      store4(tag, Float4{p.x, p.y, p.w, p.depth}, points[i].data());
+    }
+    for (std::uint64_t bits = mask_bits(lanes); bits; bits &= bits - 1) {
+      const auto lane = static_cast<std::size_t>(__builtin_ctzll(bits));
+      Polygon polygon;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const float* const p = &points[i][4 * lane];
+        polygon.add({p[0], p[1], p[2], p[3]});
+      }
+      emit_polygon(polygon, static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(lane));
+    }
+  }
+
+  /// A convex polygon: a triangle has at most one more corner for each plane that clips it. With
+  /// room for those that rounding makes.
+  struct Polygon {
+    static constexpr std::size_t most = 12;
+    std::array<ClipPoint, most> corners;
+    std::size_t count = 0;
+    void add(const ClipPoint& p) {
+      if (count < most) corners[count++] = p;
+    }
+  };
+
+  /// What lies where `distance` >= 0.
+  template <class Distance>
+  static Polygon clip(const Polygon& from, const Distance& distance) {
+    Polygon to;
+    for (std::size_t i = 0; i < from.count; ++i) {
+      const ClipPoint &p = from.corners[i], &q = from.corners[(i + 1) % from.count];
+      const double at_p = distance(p), at_q = distance(q);
+      if (at_p >= 0.0) to.add(p);
+      if ((at_p >= 0.0) == (at_q >= 0.0)) continue;
+      // From the inside out, whichever triangle the edge is of: both get the same point.
+      const bool leaves = at_p >= 0.0;
+      const ClipPoint &in = leaves ? p : q, &out = leaves ? q : p;
+      const double along = (leaves ? at_p : at_q) / std::abs(at_p - at_q);
+      const auto between = [along](float near, float far) {
+        return static_cast<float>(near + along * (double{far} - near));
+      };
+      to.add({between(in.x, out.x), between(in.y, out.y), between(in.w, out.w),
+              between(in.depth, out.depth)});
+    }
+    return to;
+  }
+
+  void emit_polygon(Polygon polygon, std::uint32_t triangle) {
+    const double x = limit(width_), y = limit(height_), near_plane = near_plane_;
+    polygon = clip(polygon, [=](const ClipPoint& p) { return p.depth - near_plane; });
+    polygon = clip(polygon, [=](const ClipPoint& p) { return x * p.w - p.x; });
+    polygon = clip(polygon, [=](const ClipPoint& p) { return x * p.w + p.x; });
+    polygon = clip(polygon, [=](const ClipPoint& p) { return y * p.w - p.y; });
+    polygon = clip(polygon, [=](const ClipPoint& p) { return y * p.w + p.y; });
+    if (polygon.count < 3) return;
+    std::array<ScreenCorner, Polygon::most> corners;
+    for (std::size_t i = 0; i < polygon.count; ++i) corners[i] = screen(polygon.corners[i]);
+    for (std::size_t i = 2; i < polygon.count; ++i) {
+      emit_one(corners[0], corners[i - 1], corners[i], triangle);
+    }
+  }
+
+  struct ScreenCorner {
+    std::int64_t x, y;
+    double nearness;
+  };
+
+  /// By the same instructions as whole triangles' corners, so that shared ones fall together.
+  ScreenCorner screen(const ClipPoint& p) const {
+    const CornerLanes lanes = screen({number(p.x), number(p.y), number(p.w), number(p.depth)});
+    return {hn::GetLane(lanes.x), hn::GetLane(lanes.y), hn::GetLane(lanes.nearness)};
+  }
+
+  void emit_one(const ScreenCorner& a, ScreenCorner b, ScreenCorner c, std::uint32_t triangle) {
+    std::int64_t area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
+    if (area == 0) return;
+    const bool clockwise = area > 0;
+    if (!batch_.draw->double_sided && clockwise != turned_) return;
+    if (!clockwise) {
+      std::swap(b, c);
+      area = -area;
+    }
+    const auto first_pixel = [](std::int64_t low) {
+      return std::max<std::int64_t>((low + 127) >> subpixel_bits, 0);
+    };
+    const auto last_pixel = [](std::int64_t high, int size) {
+      return std::min<std::int64_t>((high - 128) >> subpixel_bits, size - 1);
+    };
+    const std::int64_t left = first_pixel(std::min({a.x, b.x, c.x}));
+    const std::int64_t right = last_pixel(std::max({a.x, b.x, c.x}), width_);
+    const std::int64_t top = first_pixel(std::min({a.y, b.y, c.y}));
+    const std::int64_t bottom = last_pixel(std::max({a.y, b.y, c.y}), height_);
+    if (left > right || top > bottom) return;
+    const double scale = static_cast<double>(1 << subpixel_bits) / static_cast<double>(area);
+    const auto difference = [](std::int64_t to, std::int64_t from) {
+      return static_cast<double>(to - from);
+    };
+    const double bz = b.nearness - a.nearness, cz = c.nearness - a.nearness;
+    const double to_right = (bz * difference(c.y, a.y) - cz * difference(b.y, a.y)) * scale;
+    const double to_below = (cz * difference(b.x, a.x) - bz * difference(c.x, a.x)) * scale;
+    const auto whole = [](std::int64_t v) { return static_cast<std::int32_t>(v); };
+    const auto packed = [](std::int64_t low, std::int64_t high) {
+      return static_cast<std::uint32_t>(low | high << 16);
+    };
+    batch_.visible.push_back({{whole(a.x), whole(b.x), whole(c.x)},
+                              {whole(a.y), whole(b.y), whole(c.y)},
+                              packed(left, right),
+                              packed(top, bottom),
+                              static_cast<float>(a.nearness),
+                              static_cast<float>(to_right),
+                              static_cast<float>(to_below),
+                              triangle});
+  }
+
+  const SceneView& scene_;
+  TriangleBatch& batch_;
+  bool orthographic_;
+  float near_plane_;
+  int width_, height_;
+  glm::mat4 to_clip_, to_view_;
+  bool turned_;
+};
+
+void project_batch(const shared::FrameConstants& frame, const SceneView& scene,
+                   TriangleBatch& batch) {
+  Projection(frame, scene, batch).run();
+}
+
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace heliograph::render::kernels {
+namespace {
+
+/// Batches of the draws, with what an earlier frame has allocated.
+void list_batches(std::span<const Draw* const> draws, ScreenTriangles& to) {
+  to.batch_count = 0;
+  for (const Draw* const draw : draws) {
+    const std::uint32_t triangles = draw->index_count / 3;
+    for (std::uint32_t first = 0; first < triangles; first += triangle_batch) {
+      if (to.batch_count == to.batches.size()) to.batches.emplace_back();
+      TriangleBatch& batch = to.batches[to.batch_count++];
+      batch.draw = draw;
+      batch.first = first;
+      batch.count = std::min(triangle_batch, triangles - first);
+      batch.visible.clear();
+    }
+  }
+}
+
+}  // namespace
+
+HWY_EXPORT(project_batch);
+
+void project_triangles(const shared::FrameConstants& frame, const SceneView& scene,
+                       std::span<const Draw* const> draws, ScreenTriangles& to) {
+  list_batches(draws, to);
+  for (auto* const list : {&to.first_column, &to.last_column, &to.first_row, &to.last_row}) {
+    list->resize(to.batch_count);
+  }
+  for_each_range(static_cast<int>(to.batch_count), 8, [&](int first, int last) {
+    for (int i = first; i < last; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      TriangleBatch& batch = to.batches[at];
+      HWY_DYNAMIC_DISPATCH(project_batch)(frame, scene, batch);
+      std::uint32_t left = 0xffff, right = 0, top = 0xffff, bottom = 0;
+      for (const ScreenTriangle& triangle : batch.visible) {
+        left = std::min(left, triangle.columns & 0xffffu);
+        right = std::max(right, triangle.columns >> 16);
+        top = std::min(top, triangle.rows & 0xffffu);
+        bottom = std::max(bottom, triangle.rows >> 16);
+      }
+      to.first_column[at] = static_cast<std::int32_t>(left);
+      to.last_column[at] = static_cast<std::int32_t>(right);
+      to.first_row[at] = static_cast<std::int32_t>(top);
+      to.last_row[at] = static_cast<std::int32_t>(bottom);
+    }
+  });
+}
+
+}  // namespace heliograph::render::kernels
+#endif

@@ -1,0 +1,126 @@
+#include "render/kernels/sampling/sampling_plan.hpp"
+
+#include "render/kernels/simd/rows.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/kernels/sampling/sampling_plan.cpp"
+#include "hwy/foreach_target.h"
+// After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/simd/history.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::kernels::HWY_NAMESPACE {
+
+template <class D>
+class Planning {
+  using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
+  using DI = hn::RebindToSigned<D>;
+  using VI = hn::Vec<DI>;
+  using MI = hn::Mask<DI>;
+
+ public:
+  HWY_INLINE explicit Planning(const SamplingPlanJob& job)
+      : job_(job),
+        bounds_(job.width, job.height),
+        turn_(static_cast<int>(job.frame.sample_index * shared::plan_step >> 29u)) {}
+
+  HWY_INLINE void rows(int first, int last) const {
+    const int lanes = static_cast<int>(hn::Lanes(d_));
+    for (int y = first; y < last; ++y) {
+      for (int x = 0; x < job_.width; x += lanes) block(std::min(x, job_.width - lanes), y);
+    }
+  }
+
+ private:
+  HWY_INLINE V set(float value) const { return hn::Set(d_, value); }
+  HWY_INLINE VI whole(int value) const { return hn::Set(di_, value); }
+
+  /// turn_of() of the shader, advanced to this frame and by `ahead`.
+  HWY_INLINE VI turn(int x, int y, int ahead) const {
+    const VI column = hn::Iota(di_, x), one = whole(1);
+    const VI differ = hn::Xor(column, whole(y));
+    const VI place = hn::Or(
+        hn::ShiftLeft<2>(hn::And(differ, one)),
+        hn::Or(hn::ShiftLeft<1>(hn::And(column, one)), hn::And(hn::ShiftRight<1>(differ), one)));
+    return hn::And(place + whole(turn_ + ahead), whole(shared::plan_turns - 1));
+  }
+
+  HWY_INLINE MI is_sampled(V frames, VI most, VI turn) const {
+    const M full = hn::Lt(frames, set(job_.constants.full_frames));
+    const MI in_turn = hn::Lt(hn::Mul(turn, most), whole(shared::plan_turns));
+    return hn::Or(hn::RebindMask(di_, full), in_turn);
+  }
+
+  /// A history counts for more where single samples hardly differ.
+  HWY_INLINE V counted(V frames, V variance) const {
+    const M quiet = hn::Lt(variance * frames, set(shared::plan_quiet_variance));
+    return hn::IfThenElse(quiet, frames * set(shared::plan_quiet_factor), frames);
+  }
+
+  HWY_INLINE void block(int x, int y) const {
+    const auto& c = job_.constants;
+    const Quad<V> map = load4(d_, row_of<const float>(job_.reprojection, y) + 4 * x);
+    const V half = set(0.5f), limit = set(1e6f);
+    const V at_x = hn::Max(hn::Min(map.x, limit), hn::Neg(limit));
+    const V at_y = hn::Max(hn::Min(map.y, limit), hn::Neg(limit));
+    const V before_x = hn::Floor(at_x), before_y = hn::Floor(at_y);
+    // The bit of the tap that the position lies in: 1, 2, 4 or 8.
+    const V right = before_x - hn::Floor(at_x - half), down = before_y - hn::Floor(at_y - half);
+    const V bit = (set(1.0f) + right) * hn::MulAdd(set(3.0f), down, set(1.0f));
+    const VI valid = hn::And(hn::ConvertTo(di_, map.z), hn::ConvertTo(di_, bit));
+    const MI known = hn::Ne(valid, whole(0));
+
+    const TexelGather<D> texels =
+        bounds_.gather(hn::ConvertTo(di_, before_x), hn::ConvertTo(di_, before_y));
+    const Pair<V> frames = texels.first_two(job_.visibility_length);
+    const Quad<V> visibility = texels.four(job_.visibility);
+    const V reflected = texels.first_two(job_.specular_length).x;
+    const V away = hn::Abs(texels.last_of_four(job_.specular_distance));
+    const auto packed =
+        hn::LoadU(hn::RebindToUnsigned<D>(), row_of<const std::uint32_t>(job_.surface, y) + x);
+    const M mirrors = hn::Or(hn::Lt(unorm8<0>(d_, packed), set(shared::plan_smooth_roughness)),
+                             hn::Gt(unorm8<8>(d_, packed), set(shared::plan_metallic)));
+    const auto most = [&](shared::uint count) HWY_ATTR { return whole(static_cast<int>(count)); };
+    const VI now = turn(x, y, 0);
+    const MI lit = is_sampled(counted(frames.x, visibility.z), most(c.shadows_most), now);
+    const MI open = is_sampled(counted(frames.y, visibility.w), most(c.ambient_most), now);
+    const MI mirrored = is_sampled(
+        hn::IfThenElse(mirrors, reflected, reflected * set(shared::plan_quiet_factor)),
+        hn::IfThenElse(hn::RebindMask(di_, mirrors), most(c.mirrors_most), most(c.specular_most)),
+        turn(x, y, shared::plan_turns / 2));
+    VI word = hn::ShiftRight<16>(hn::BitCast(di_, away));
+    word = hn::Or(word, hn::IfThenElseZero(lit, whole(shared::plan_shadows)));
+    word = hn::Or(word, hn::IfThenElseZero(open, whole(shared::plan_ambient)));
+    word = hn::Or(word, hn::IfThenElseZero(mirrored, whole(shared::plan_specular)));
+    word = hn::IfThenElse(known, word, whole(shared::plan_all));
+    hn::StoreU(word, di_, row_of<int>(job_.planned, y) + x);
+  }
+
+  const D d_{};
+  const DI di_{};
+  const SamplingPlanJob& job_;
+  Bounds<D> bounds_;
+  int turn_;
+};
+
+void plan_rows(const SamplingPlanJob& job, int first, int last) {
+  run_rows<Planning>(job, job.width, first, last);
+}
+
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace heliograph::render::kernels {
+
+HWY_EXPORT(plan_rows);
+
+void sampling_plan(const SamplingPlanJob& job) {
+  for_each_band(job.height, [&](int first, int last) {
+    HWY_DYNAMIC_DISPATCH(plan_rows)(job, first, last);
+  });
+}
+
+}  // namespace heliograph::render::kernels
+#endif

@@ -1,0 +1,82 @@
+// Pixels of a tile that trace rays, gathered into full vectors however few they are. Included once
+// per instruction set; the guard is Google Highway's convention.
+#if defined(HELIOGRAPH_KERNELS_TILES_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_KERNELS_TILES_HPP
+#undef HELIOGRAPH_KERNELS_TILES_HPP
+#else
+#define HELIOGRAPH_KERNELS_TILES_HPP
+#endif
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "render/kernels/common/tile.hpp"
+#include "render/kernels/simd/ray_writer.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::kernels::HWY_NAMESPACE {
+
+/// Word of a pixel in an image of `words` words a texel.
+HWY_INLINE Integer texel_index(const gpu::HostView& image, const PixelLanes& p, int words) {
+  const auto pitch = static_cast<int>(image.row_pitch / sizeof(float));
+  return hn::Add(hn::Mul(p.y, integer(pitch)), hn::Mul(p.x, integer(words)));
+}
+HWY_INLINE Float4 gathered_unorm8(const gpu::HostView& image, const PixelLanes& p) {
+  return unpack_unorm8(gather(image.data, texel_index(image, p, 1)));
+}
+HWY_INLINE Float4 gathered4(const gpu::HostView& image, const PixelLanes& p) {
+  return gather4(tag, image.row<const float>(0), texel_index(image, p, 4));
+}
+/// The last of four channels.
+HWY_INLINE Float gathered_last(const gpu::HostView& image, const PixelLanes& p) {
+  return gather(image.row<const float>(0), hn::Add(texel_index(image, p, 4), integer(3)));
+}
+
+/// Pixels of a tile, in its order.
+class PixelList {
+ public:
+  int size() const { return size_; }
+
+  HWY_INLINE void add(const PixelLanes& pixels, Mask which) {
+    size_ += static_cast<int>(hn::CompressStore(pack_pixel(pixels), integer_mask(which),
+                                                integer_tag, pixels_.data() + size_));
+  }
+  /// Those from `first` on; lanes past the last are not `valid`.
+  HWY_INLINE PixelLanes from(int first, Mask& valid) const {
+    valid = hn::FirstN(tag, static_cast<std::size_t>(size_ - first));
+    return unpack_pixel(
+        hn::IfThenElseZero(integer_mask(valid), hn::LoadU(integer_tag, pixels_.data() + first)));
+  }
+
+ private:
+  HWY_ALIGN std::array<int, tile_side * tile_side + hn::MaxLanes(Tag())> pixels_;
+  int size_ = 0;
+};
+
+/// Calls `work(pixels, inside)` for all pixels of a tile, a row or less of it at a time; lanes that
+/// are not `inside` hold another pixel of the tile.
+template <class Work>
+HWY_INLINE void for_each_pixel(const Tile& tile, const Work& work) {
+  for (int i = 0; i < tile_side * tile_side; i += static_cast<int>(hn::Lanes(tag))) {
+    const Integer index = hn::Iota(integer_tag, i);
+    const Integer x = hn::Add(integer(tile.left), hn::And(index, integer(tile_side - 1)));
+    const Integer y = hn::Add(integer(tile.top), hn::ShiftRight<tile_shift>(index));
+    const PixelLanes at{hn::Min(x, integer(tile.right - 1)), hn::Min(y, integer(tile.bottom - 1))};
+    const Mask inside = float_mask(hn::And(hn::Eq(x, at.x), hn::Eq(y, at.y)));
+    if (!none(inside)) work(at, inside);
+  }
+}
+
+/// Stores values of one word at the pixels of `which`.
+HWY_INLINE void put_values(const gpu::HostView& image, const PixelLanes& pixels, Mask which,
+                           Float values) {
+  const Texels<1> texels(values);
+  const TexelIndices indices(pixels);
+  for_each_lane(which, [&](std::size_t lane) { texels.put(image, lane, indices); });
+}
+
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

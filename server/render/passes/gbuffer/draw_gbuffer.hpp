@@ -1,0 +1,16 @@
+#pragma once
+
+#include "render/passes/gbuffer/gbuffer.hpp"
+
+namespace heliograph::render {
+
+/// The same G-buffer as trace_gbuffer's, by a rasteriser on the host: the nearest triangle of every
+/// pixel is drawn, and only rays that its surface lets pass are traced. Its cost follows the
+/// triangles, but each costs a tenth of a ray.
+GBuffer draw_gbuffer(gpu::FramePlan& plan, const FrameInputs& in);
+
+/// Whether the host draws the G-buffer of this plan: where host kernels know the materials, unless
+/// the settings ask for rays or there are so many triangles that rays find it sooner.
+bool draws_gbuffer_on_host(const gpu::FramePlan& plan, const FrameInputs& in);
+
+}  // namespace heliograph::render

@@ -1,0 +1,76 @@
+#include "render/passes/sampling/plan_samples.hpp"
+
+#include "render/kernels/sampling/sampling_plan.hpp"
+#include "render/kernels/temporal.hpp"
+#include "render/passes/frame_inputs.hpp"
+#include "render/resources/scene_motion.hpp"
+#include "shaders/embedded.hpp"
+
+namespace heliograph::render {
+namespace {
+
+using protocol::Settings;
+
+/// Frames for which the traces of something that moved may stay in histories.
+constexpr std::uint32_t settling_frames = 32;
+
+/// Rectification by the current frame's neighbourhood needs a sample of every pixel of it.
+bool keeps_without_sample(const protocol::TemporalSettings& temporal) {
+  return temporal.enabled &&
+         kernels::can_accumulate(static_cast<std::uint32_t>(temporal.rectification));
+}
+
+bool plans_visibility(const Settings& s) {
+  return s.sampling.visibility && keeps_without_sample(s.shadow_temporal);
+}
+
+bool plans_specular(const Settings& s) {
+  return s.sampling.specular && s.specular.enabled && !s.specular.half_resolution &&
+         keeps_without_sample(s.specular_temporal);
+}
+
+shared::SamplingPlanConstants plan_constants(const FrameInputs& in) {
+  const Settings& s = in.settings;
+  const SceneMotion& motion = in.scene_motion;
+  const bool settled = motion.still_frames >= settling_frames;
+  const auto rarest = static_cast<std::uint32_t>(s.sampling.floor);
+  const std::uint32_t half = std::min(rarest, 2u), most = settled ? rarest : half;
+  const std::uint32_t mirrors = settled ? half : 1u, shadows = motion.lights > 0.0f ? 1u : most;
+  const auto at_most = [](std::uint32_t frames, bool planned) { return planned ? frames : 1u; };
+  return {static_cast<float>(s.sampling.full_frames), at_most(shadows, plans_visibility(s)),
+          at_most(most, plans_visibility(s)), at_most(most, plans_specular(s)),
+          at_most(mirrors, plans_specular(s))};
+}
+
+}  // namespace
+
+bool may_leave_samples_out(const Settings& settings) {
+  return (plans_visibility(settings) || plans_specular(settings)) &&
+         settings.accumulation.blend_samples > 0 &&
+         settings.reference.use != protocol::ReferenceUse::always;
+}
+
+bool leaves_samples_out(const FrameInputs& in) {
+  return in.clock.samples == 0 && in.constants.history_invalid == 0 &&
+         may_leave_samples_out(in.settings);
+}
+
+gpu::ImageRef plan_samples(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                           const Guide& guide, const PreviousSamples& previous) {
+  const auto planned = plan.image(sampling_plan_buffers.plan.name, VK_FORMAT_R32_UINT);
+  plan.pass("sampling.plan", in.program(shaders::sampling_plan))
+      .bind<kernels::SamplingPlanBindings>({.reprojection = guide.reprojection,
+                                            .surface = gbuffer.surface,
+                                            .visibility_length = previous.visibility_length,
+                                            .specular_length = previous.specular_length,
+                                            .specular_distance = previous.specular_distance,
+                                            .visibility = previous.visibility,
+                                            .planned = planned})
+      .constants([in] { return plan_constants(in); })
+      .dispatch(plan.extent())
+      .host(kernels::sampling_plan, in.constants)
+      .when([in] { return leaves_samples_out(in); });
+  return planned;
+}
+
+}  // namespace heliograph::render

@@ -1,0 +1,58 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 8, local_size_y = 8) in;
+// Which pixels trace rays in this frame: those whose history is short do, the others in turn, the
+// longer the history the more rarely.
+#include "lib/frame.glsl"
+#include "shared/sampling.h"
+
+layout(set = 1, binding = 0, rgba32f) readonly uniform image2D reprojection;
+layout(set = 1, binding = 1, rgba8) readonly uniform image2D surface;
+layout(set = 1, binding = 2, rgba32f) readonly uniform image2D visibility_length;  // one frame ago
+layout(set = 1, binding = 3, rgba32f) readonly uniform image2D specular_length;    // one frame ago
+layout(set = 1, binding = 4, rgba32f) readonly uniform image2D specular_distance;  // w, one frame ago
+layout(set = 1, binding = 5, rgba32f) readonly uniform image2D visibility;  // zw, one frame ago
+layout(set = 1, binding = 6, r32ui) writeonly uniform uimage2D planned;
+layout(push_constant) uniform Constants { SamplingPlanConstants constants; };
+
+/// Place of a pixel in the order in which pixels take turns: any half of the turns, in sequence, is
+/// about a checkerboard of the last one.
+uint turn_of(uvec2 pixel) {
+  uint odd = (pixel.x ^ pixel.y) & 1u;
+  uint across = pixel.x & 1u;
+  uint within = ((pixel.x ^ pixel.y) >> 1u) & 1u;
+  return odd << 2u | across << 1u | within;
+}
+
+/// Whether a surface with a history of `frames` is sampled when `turn` is its place in this frame.
+bool is_sampled(float frames, uint most, uint turn) {
+  return frames < constants.full_frames || (turn % plan_turns) * most < plan_turns;
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (outside_frame(pixel)) return;
+  vec4 map = imageLoad(reprojection, pixel);
+  // Of the four pixels about the position, the one that it lies in.
+  ivec2 before = ivec2(floor(map.xy));
+  ivec2 within = before - ivec2(floor(map.xy - 0.5));
+  bool known = (uint(map.z) >> uint(within.x + 2 * within.y) & 1u) != 0u;
+  if (!known) {
+    imageStore(planned, pixel, uvec4(plan_all));
+    return;
+  }
+  vec2 frames = imageLoad(visibility_length, before).xy;
+  vec2 noise = imageLoad(visibility, before).zw * frames;
+  frames *= mix(vec2(1.0), vec2(plan_quiet_factor), lessThan(noise, vec2(plan_quiet_variance)));
+  vec4 material = imageLoad(surface, pixel);
+  bool mirrors = material.x < plan_smooth_roughness || material.y > plan_metallic;
+  float reflected = imageLoad(specular_length, before).x * (mirrors ? 1.0 : plan_quiet_factor);
+  uint most = mirrors ? constants.mirrors_most : constants.specular_most;
+
+  uint turn = turn_of(uvec2(pixel)) + (frame.sample_index * plan_step >> 29u);
+  uint word = floatBitsToUint(abs(imageLoad(specular_distance, before).w)) >> 16u;
+  if (is_sampled(frames.x, constants.shadows_most, turn)) word |= plan_shadows;
+  if (is_sampled(frames.y, constants.ambient_most, turn)) word |= plan_ambient;
+  if (is_sampled(reflected, most, turn + plan_turns / 2u)) word |= plan_specular;
+  imageStore(planned, pixel, uvec4(word));
+}

@@ -1,0 +1,38 @@
+// Which pixels trace rays in a frame: the plan's words and constants, the same in C++ and GLSL.
+#ifndef HELIOGRAPH_SHARED_SAMPLING_H
+#define HELIOGRAPH_SHARED_SAMPLING_H
+#include "types.h"
+SHARED_BEGIN
+
+// A word per pixel: what is traced for it in this frame, and in the lower half the distance to what
+// its reflection showed one frame ago (the upper half of a float; metres, 0: unknown).
+SHARED_CONSTANT uint plan_shadows = 0x10000u;
+SHARED_CONSTANT uint plan_ambient = 0x20000u;
+SHARED_CONSTANT uint plan_specular = 0x40000u;
+SHARED_CONSTANT uint plan_all = 0x70000u;
+
+// Every square of 4x4 pixels holds each of so many turns twice.
+SHARED_CONSTANT uint plan_turns = 8u;
+// Advances the turn from frame to frame: 2^32 times the golden ratio, less its whole part. No
+// pattern of frames repeats, that of the jitter or of the random numbers either.
+SHARED_CONSTANT uint plan_step = 0x9e3779b9u;
+
+// What was fitted by measurement of similarity while the camera moves; SamplingPlan tests pin them.
+// Single samples of less variance hardly differ: their mean is known after a quarter of the frames.
+SHARED_CONSTANT float plan_quiet_variance = 0.05f;
+SHARED_CONSTANT float plan_quiet_factor = 4.0f;
+// Reflections of smoother surfaces are sharp, those of more metallic ones most of what is seen:
+// both are traced in every second frame at least.
+SHARED_CONSTANT float plan_smooth_roughness = 0.15f;
+SHARED_CONSTANT float plan_metallic = 0.5f;
+
+struct SamplingPlanConstants {
+  float full_frames;  // shorter histories are sampled in every frame
+  uint shadows_most;  // longer ones once in so many frames
+  uint ambient_most;
+  uint specular_most;
+  uint mirrors_most;  // of reflections on smooth or metallic surfaces
+};
+
+SHARED_END
+#endif
