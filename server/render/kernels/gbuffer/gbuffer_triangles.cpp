@@ -171,6 +171,14 @@ class Projection {
     const auto misses = hn::Or(hn::Gt(first_column, last_column), hn::Gt(first_row, last_row));
     seen = hn::AndNot(float_mask(misses), seen);
     if (none(seen)) return;
+    const auto few = hn::And(hn::Lt(hn::Sub(last_column, first_column), integer(2)),
+                             hn::Lt(hn::Sub(last_row, first_row), integer(2)));
+    const Mask small = hn::And(seen, float_mask(few));
+    if (!none(small)) {
+      const Mask covers = covers_sample(a, b, c, first_column, last_column, first_row, last_row);
+      seen = hn::AndNot(hn::AndNot(covers, small), seen);
+      if (none(seen)) return;
+    }
 
     const Float area = to_float(hn::Abs(signed_area));
     const Float pixel = number(static_cast<float>(1 << subpixel_bits));
@@ -188,6 +196,39 @@ class Projection {
           {as_float(b.y), as_float(c.y), packed(first_column, last_column),
            packed(first_row, last_row)},
           {a.nearness, right, down, as_float(triangle)}, seen);
+  }
+
+  /// Whether any of at most 2 x 2 samples lies inside: most of the smallest triangles lie between
+  /// them. By the edge functions of TriangleTile.
+  static HWY_INLINE Mask covers_sample(const CornerLanes& a, const CornerLanes& b,
+                                       const CornerLanes& c, Integer first_column,
+                                       Integer last_column, Integer first_row, Integer last_row) {
+    const auto sample = [](Integer pixel) HWY_ATTR {
+      return hn::Add(hn::ShiftLeft<subpixel_bits>(pixel), integer(1 << (subpixel_bits - 1)));
+    };
+    const Integer x = sample(first_column), y = sample(first_row);
+    const Integer right = hn::Sub(last_column, first_column);
+    const Integer down = hn::Sub(last_row, first_row);
+    // The sign of what lies outside any edge, at each of the samples.
+    Integer outside[4]{integer(0), integer(0), integer(0), integer(0)};
+    const auto add_edge = [&](const CornerLanes& from, const CornerLanes& to) HWY_ATTR {
+      const Integer by_x = hn::Sub(from.y, to.y), by_y = hn::Sub(to.x, from.x);
+      const auto owns = hn::Or(hn::Gt(by_x, integer(0)),
+                               hn::And(hn::Eq(by_x, integer(0)), hn::Gt(by_y, integer(0))));
+      Integer value = hn::Add(hn::Mul(by_y, hn::Sub(y, from.y)), hn::Mul(by_x, hn::Sub(x, from.x)));
+      value = hn::Sub(value, hn::IfThenZeroElse(owns, integer(1)));
+      const Integer step_x = hn::ShiftLeft<subpixel_bits>(hn::Mul(by_x, right));
+      const Integer step_y = hn::ShiftLeft<subpixel_bits>(hn::Mul(by_y, down));
+      outside[0] = hn::Or(outside[0], value);
+      outside[1] = hn::Or(outside[1], hn::Add(value, step_x));
+      outside[2] = hn::Or(outside[2], hn::Add(value, step_y));
+      outside[3] = hn::Or(outside[3], hn::Add(value, hn::Add(step_x, step_y)));
+    };
+    add_edge(a, b);
+    add_edge(b, c);
+    add_edge(c, a);
+    const Integer all = hn::And(hn::And(outside[0], outside[1]), hn::And(outside[2], outside[3]));
+    return float_mask(hn::Gt(all, integer(-1)));
   }
 
   void store(const Float4& first, const Float4& second, const Float4& third, Mask seen) {
@@ -345,6 +386,9 @@ HWY_AFTER_NAMESPACE();
 namespace heliograph::render::kernels {
 namespace {
 
+/// The left edge of a box that lies in no tile.
+constexpr std::int32_t nowhere = 0x7fffff;
+
 /// Batches of the draws, with what an earlier frame has allocated.
 void list_batches(std::span<const Draw* const> draws, ScreenTriangles& to) {
   to.batch_count = 0;
@@ -361,32 +405,54 @@ void list_batches(std::span<const Draw* const> draws, ScreenTriangles& to) {
   }
 }
 
+/// The boxes of the visible triangles, and that of all of them in `batches`.
+void list_boxes(TriangleBatch& batch, std::size_t number, PixelBoxes& batches) {
+  batch.boxes.resize(batch.visible.size());
+  std::int32_t left = nowhere, right = 0, top = nowhere, bottom = 0;
+  for (std::size_t i = 0; i < batch.visible.size(); ++i) {
+    const ScreenTriangle& triangle = batch.visible[i];
+    const auto edge = [](std::uint32_t packed) { return static_cast<std::int32_t>(packed); };
+    const std::int32_t first_column = edge(triangle.columns & 0xffffu);
+    const std::int32_t last_column = edge(triangle.columns >> 16);
+    const std::int32_t first_row = edge(triangle.rows & 0xffffu);
+    const std::int32_t last_row = edge(triangle.rows >> 16);
+    batch.boxes.set(i, first_column, last_column, first_row, last_row);
+    left = std::min(left, first_column);
+    right = std::max(right, last_column);
+    top = std::min(top, first_row);
+    bottom = std::max(bottom, last_row);
+  }
+  batches.set(number, left, right, top, bottom);
+}
+
 }  // namespace
+
+void PixelBoxes::resize(std::size_t count) {
+  constexpr std::size_t room = 16;  // lanes of the widest vectors
+  left.assign(count + room, nowhere);
+  for (auto* const edge : {&right, &top, &bottom}) edge->resize(count + room);
+}
+
+void PixelBoxes::set(std::size_t at, std::int32_t left_edge, std::int32_t right_edge,
+                     std::int32_t top_edge, std::int32_t bottom_edge) {
+  left[at] = left_edge;
+  right[at] = right_edge;
+  top[at] = top_edge;
+  bottom[at] = bottom_edge;
+}
 
 HWY_EXPORT(project_batch);
 
 void project_triangles(const shared::FrameConstants& frame, const SceneView& scene,
                        std::span<const Draw* const> draws, ScreenTriangles& to) {
   list_batches(draws, to);
-  for (auto* const list : {&to.first_column, &to.last_column, &to.first_row, &to.last_row}) {
-    list->resize(to.batch_count);
-  }
+  to.boxes.resize(to.batch_count);
   for_each_range(static_cast<int>(to.batch_count), 8, [&](int first, int last) {
     for (int i = first; i < last; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      TriangleBatch& batch = to.batches[at];
+      const auto number = static_cast<std::size_t>(i);
+      TriangleBatch& batch = to.batches[number];
       HWY_DYNAMIC_DISPATCH(project_batch)(frame, scene, batch);
-      std::uint32_t left = 0xffff, right = 0, top = 0xffff, bottom = 0;
-      for (const ScreenTriangle& triangle : batch.visible) {
-        left = std::min(left, triangle.columns & 0xffffu);
-        right = std::max(right, triangle.columns >> 16);
-        top = std::min(top, triangle.rows & 0xffffu);
-        bottom = std::max(bottom, triangle.rows >> 16);
-      }
-      to.first_column[at] = static_cast<std::int32_t>(left);
-      to.last_column[at] = static_cast<std::int32_t>(right);
-      to.first_row[at] = static_cast<std::int32_t>(top);
-      to.last_row[at] = static_cast<std::int32_t>(bottom);
+      list_boxes(batch, number, to.boxes);
     }
   });
 }

@@ -29,19 +29,27 @@ static_assert(sizeof(ScreenTriangle) == 12 * 4);
 
 inline constexpr int subpixel_bits = 8;
 
+/// Boxes of pixels, each edge by itself, with room for a whole vector behind the last.
+struct PixelBoxes {
+  std::vector<std::int32_t> left, right, top, bottom;
+  void resize(std::size_t count);
+  void set(std::size_t at, std::int32_t left_edge, std::int32_t right_edge, std::int32_t top_edge,
+           std::int32_t bottom_edge);
+};
+
 /// Consecutive triangles of one draw, and those of them that may cover a sample.
 struct TriangleBatch {
   const Draw* draw;
   std::uint32_t first, count;
   std::vector<ScreenTriangle> visible;
+  PixelBoxes boxes;  // of them
 };
 
 /// Triangles of a frame; kept from frame to frame, because memory is.
 struct ScreenTriangles {
   std::vector<TriangleBatch> batches;
   std::size_t batch_count = 0;  // in this frame
-  // Where the visible triangles of every batch lie, for vectors of batches: pixels.
-  std::vector<std::int32_t> first_column, last_column, first_row, last_row;
+  PixelBoxes boxes;             // of the batches
 };
 
 /// Triangles of one batch at most.

@@ -28,13 +28,12 @@ class TriangleTile {
 
   /// Draws all triangles that cover the tile, in order: of equally near ones the first stays.
   void draw(const ScreenTriangles& triangles) {
-    const auto count = static_cast<int>(triangles.batch_count);
-    const int lanes = static_cast<int>(hn::Lanes(tag));
-    for (int i = 0; i < count; i += lanes) {
-      for (std::uint64_t bits = overlapping(triangles, i, count); bits; bits &= bits - 1) {
-        draw(triangles.batches[static_cast<std::size_t>(i + __builtin_ctzll(bits))]);
-      }
-    }
+    for_each_inside(triangles.boxes, triangles.batch_count, [&](std::size_t i) {
+      const TriangleBatch& batch = triangles.batches[i];
+      const auto instance = static_cast<std::int32_t>(batch.draw->constants.instance);
+      for_each_inside(batch.boxes, batch.visible.size(),
+                      [&](std::size_t k) { draw(batch.visible[k], instance); });
+    });
   }
 
   /// Of the pixels from (x, y) on, which count from the tile's corner; shared::hit_none: nothing.
@@ -48,34 +47,19 @@ class TriangleTile {
  private:
   static std::size_t at(int x, int y) { return static_cast<std::size_t>(y * size + x); }
 
-  HWY_INLINE std::uint64_t overlapping(const ScreenTriangles& t, int first, int count) const {
-    const auto at = static_cast<std::size_t>(first);
-    if (first + static_cast<int>(hn::Lanes(tag)) > count) {
-      std::uint64_t bits = 0;
-      for (std::size_t i = at; i < static_cast<std::size_t>(count); ++i) {
-        const bool apart = t.first_column[i] >= left_ + size || t.last_column[i] < left_ ||
-                           t.first_row[i] >= top_ + size || t.last_row[i] < top_;
-        bits |= std::uint64_t{!apart} << (i - at);
-      }
-      return bits;
-    }
-    const auto load = [at](const std::vector<std::int32_t>& from)
-                          HWY_ATTR { return hn::LoadU(integer_tag, from.data() + at); };
-    const auto across = hn::And(hn::Lt(load(t.first_column), integer(left_ + size)),
-                                hn::Gt(load(t.last_column), integer(left_ - 1)));
-    const auto down = hn::And(hn::Lt(load(t.first_row), integer(top_ + size)),
-                              hn::Gt(load(t.last_row), integer(top_ - 1)));
-    return mask_bits(float_mask(hn::And(across, down)));
-  }
-
-  void draw(const TriangleBatch& batch) {
-    const auto instance = static_cast<std::int32_t>(batch.draw->constants.instance);
-    for (const ScreenTriangle& triangle : batch.visible) {
-      const int left = std::max(static_cast<int>(triangle.columns & 0xffffu) - left_, 0);
-      const int right = std::min(static_cast<int>(triangle.columns >> 16) - left_, size - 1);
-      const int top = std::max(static_cast<int>(triangle.rows & 0xffffu) - top_, 0);
-      const int bottom = std::min(static_cast<int>(triangle.rows >> 16) - top_, size - 1);
-      if (left <= right && top <= bottom) draw(triangle, instance, left, right, top, bottom);
+  /// Calls `work` for all boxes that overlap the tile, in order.
+  template <class Work>
+  HWY_INLINE void for_each_inside(const PixelBoxes& boxes, std::size_t count,
+                                  const Work& work) const {
+    for (std::size_t i = 0; i < count; i += hn::Lanes(tag)) {
+      const auto load = [i](const std::vector<std::int32_t>& edge)
+                            HWY_ATTR { return hn::LoadU(integer_tag, edge.data() + i); };
+      const auto across = hn::And(hn::Lt(load(boxes.left), integer(left_ + size)),
+                                  hn::Gt(load(boxes.right), integer(left_ - 1)));
+      const auto down = hn::And(hn::Lt(load(boxes.top), integer(top_ + size)),
+                                hn::Gt(load(boxes.bottom), integer(top_ - 1)));
+      std::uint64_t bits = mask_bits(float_mask(hn::And(across, down)));
+      for (; bits; bits &= bits - 1) work(i + static_cast<std::size_t>(__builtin_ctzll(bits)));
     }
   }
 
@@ -97,38 +81,83 @@ class TriangleTile {
     }
   };
 
-  HWY_INLINE void draw(const ScreenTriangle& t, std::int32_t instance, int left, int right, int top,
-                       int bottom) {
+  /// Columns between which rows may lie inside all edges, counted from the first sample.
+  struct Spans {
+    HWY_ALIGN std::array<std::int32_t, size> first, last;
+  };
+
+  /// Of rows `first_row` to `first_row` + lanes. @return a bit for each that has any column
+  static HWY_INLINE std::uint64_t find_spans(const Edge (&edges)[3], int first_row, int width,
+                                             Spans& spans) {
+    Float low = zero(), high = number(static_cast<float>(width - 1));
+    for (const Edge& edge : edges) {
+      const Integer value = hn::Add(integer(edge.start),
+                                    hn::Mul(integer(edge.down), hn::Iota(integer_tag, first_row)));
+      if (edge.right == 0) {
+        high = select(float_mask(hn::Lt(value, integer(0))), number(-1.0f), high);
+        continue;
+      }
+      const Float crossed = to_float(value) * number(-1.0f / static_cast<float>(edge.right));
+      // One column too many does no harm.
+      constexpr float rounding = 1e-2f;
+      if (edge.right > 0) low = hn::Max(low, crossed - number(rounding));
+      if (edge.right < 0) high = hn::Min(high, crossed + number(rounding));
+    }
+    const Float first = hn::Ceil(hn::Min(low, number(static_cast<float>(size))));
+    const Float last = hn::Floor(hn::Max(high, number(-1.0f)));
+    const auto from = static_cast<std::size_t>(first_row);
+    hn::StoreU(truncated(first), integer_tag, &spans.first[from]);
+    hn::StoreU(truncated(last), integer_tag, &spans.last[from]);
+    return mask_bits(hn::Le(first, last)) << first_row;
+  }
+
+  HWY_INLINE void draw(const ScreenTriangle& t, std::int32_t instance) {
     const int lanes = static_cast<int>(hn::Lanes(tag));
+    int left = std::max(static_cast<int>(t.columns & 0xffffu) - left_, 0);
     left -= left % lanes;
+    const int right = std::min(static_cast<int>(t.columns >> 16) - left_, size - 1);
+    const int top = std::max(static_cast<int>(t.rows & 0xffffu) - top_, 0);
+    const int bottom = std::min(static_cast<int>(t.rows >> 16) - top_, size - 1);
+    const int width = right - left + 1, height = bottom - top + 1;
     constexpr int pixel = 1 << subpixel_bits;
     const std::int64_t x = (left_ + left) * pixel + pixel / 2;
     const std::int64_t y = (top_ + top) * pixel + pixel / 2;
     const Edge edges[3]{{t, 0, 1, x, y}, {t, 1, 2, x, y}, {t, 2, 0, x, y}};
     const Integer iota = hn::Iota(integer_tag, 0);
-    const auto lanes_of = [&](const Edge& edge) HWY_ATTR {
-      return hn::Add(integer(edge.start), hn::Mul(integer(edge.right), iota));
-    };
-    Integer a = lanes_of(edges[0]), b = lanes_of(edges[1]), c = lanes_of(edges[2]);
+    const Integer a = hn::Mul(integer(edges[0].right), iota);
+    const Integer b = hn::Mul(integer(edges[1].right), iota);
+    const Integer c = hn::Mul(integer(edges[2].right), iota);
     constexpr float scale = 1.0f / static_cast<float>(pixel);
-    const float first = t.nearness + t.nearness_right * (static_cast<float>(x - t.x[0]) * scale) +
-                        t.nearness_down * (static_cast<float>(y - t.y[0]) * scale);
-    Float nearness = hn::MulAdd(number(t.nearness_right), to_float(iota), number(first));
-    for (int row = top; row <= bottom; ++row) {
-      Integer row_a = a, row_b = b, row_c = c;
-      Float here = nearness;
-      for (int column = left; column <= right; column += lanes) {
-        const Mask inside = float_mask(hn::Gt(hn::Or(row_a, hn::Or(row_b, row_c)), integer(-1)));
-        if (!none(inside)) put(t, instance, at(column, row), here, inside);
-        row_a = hn::Add(row_a, integer(lanes * edges[0].right));
-        row_b = hn::Add(row_b, integer(lanes * edges[1].right));
-        row_c = hn::Add(row_c, integer(lanes * edges[2].right));
-        here = here + number(static_cast<float>(lanes) * t.nearness_right);
+    const float nearness = t.nearness +
+                           t.nearness_right * (static_cast<float>(x - t.x[0]) * scale) +
+                           t.nearness_down * (static_cast<float>(y - t.y[0]) * scale);
+    const Float nearer = number(t.nearness_right) * to_float(iota);
+    // Most of a large box may lie outside a thin triangle.
+    constexpr int few = 4;
+    const bool all = height * ((width + lanes - 1) / lanes) <= few;
+    Spans spans;
+    std::uint64_t rows = 0;
+    for (int row = 0; row < height && !all; row += lanes) {
+      rows |= find_spans(edges, row, width, spans);
+    }
+    const std::uint64_t in_box = (std::uint64_t{1} << height) - 1;
+    for (rows = all ? in_box : rows & in_box; rows; rows &= rows - 1) {
+      const int row = __builtin_ctzll(rows);
+      const auto which = static_cast<std::size_t>(row);
+      const int first = all ? 0 : spans.first[which] & -lanes;
+      const int last = all ? width - 1 : spans.last[which];
+      for (int column = first; column <= last; column += lanes) {
+        const auto value = [&](const Edge& edge, Integer right_of) HWY_ATTR {
+          return hn::Add(integer(edge.start + edge.down * row + edge.right * column), right_of);
+        };
+        const Integer outside =
+            hn::Or(value(edges[0], a), hn::Or(value(edges[1], b), value(edges[2], c)));
+        const Mask inside = float_mask(hn::Gt(outside, integer(-1)));
+        if (none(inside)) continue;
+        const float here = nearness + t.nearness_right * static_cast<float>(column) +
+                           t.nearness_down * static_cast<float>(row);
+        put(t, instance, at(left + column, top + row), number(here) + nearer, inside);
       }
-      a = hn::Add(a, integer(edges[0].down));
-      b = hn::Add(b, integer(edges[1].down));
-      c = hn::Add(c, integer(edges[2].down));
-      nearness = nearness + number(t.nearness_down);
     }
   }
 

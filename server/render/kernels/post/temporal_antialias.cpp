@@ -8,6 +8,7 @@
 // After the line above, which compiles this file once for each instruction set.
 #include "render/kernels/simd/history.hpp"
 #include "render/kernels/simd/view.hpp"
+#include "render/kernels/simd/window.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
@@ -154,16 +155,42 @@ class Antialiasing {
     const VI column = hn::ConvertTo(di_, low_x), row = hn::ConvertTo(di_, low_y);
     const V zero = hn::Zero(d_);
     Triple<V> sum{zero, zero, zero};
-    for (int j = 0; j < 4; ++j) {
-      Triple<V> line{zero, zero, zero};
-      for (int i = 0; i < 4; ++i) {
-        const TexelGather<D> texels =
-            bounds_.gather(column + hn::Set(di_, i - 1), row + hn::Set(di_, j - 1));
-        line = line + texels.first_three(job_.history) * across.w[i];
+    if (!sum_of_window(column, row, across, down, sum)) {
+      for (int j = 0; j < 4; ++j) {
+        Triple<V> line{zero, zero, zero};
+        for (int i = 0; i < 4; ++i) {
+          const TexelGather<D> texels =
+              bounds_.gather(column + hn::Set(di_, i - 1), row + hn::Set(di_, j - 1));
+          line = line + texels.first_three(job_.history) * across.w[i];
+        }
+        sum = sum + line * down.w[j];
       }
-      sum = sum + line * down.w[j];
     }
     return {hn::Max(sum.x, zero), hn::Max(sum.y, zero), hn::Max(sum.z, zero)};
+  }
+
+  /// The same where the lanes lie near each other, in the same row or the next. @return whether
+  HWY_INLINE bool sum_of_window(VI column, VI row, const Weights& across, const Weights& down,
+                                Triple<V>& sum) const {
+    if constexpr (hn::MaxLanes(D()) == 1) return false;
+    const int top = hn::GetLane(hn::MinOfLanes(di_, row));
+    const int rows = hn::GetLane(hn::MaxOfLanes(di_, row)) - top;
+    const ColumnWindow<D> window(column, 1, 2, job_.width);
+    if (rows > 1 || !window.fits()) return false;
+    const V zero = hn::Zero(d_);
+    const M lower = hn::RebindMask(d_, hn::Gt(row, hn::Set(di_, top)));
+    const typename ColumnWindow<D>::Pick picks[4]{window.pick(-1), window.pick(0), window.pick(1),
+                                                  window.pick(2)};
+    for (int j = 0; j < 4 + rows; ++j) {
+      const int y = std::clamp(top + j - 1, 0, job_.height - 1);
+      const auto texels = window.load(row_of<const float>(job_.history, y));
+      Triple<V> line{zero, zero, zero};
+      for (int i = 0; i < 4; ++i) line = line + window.texels(texels, picks[i]) * across.w[i];
+      const V upper_weight = j < 4 ? down.w[j] : zero;
+      const V lower_weight = j > 0 ? down.w[j - 1] : zero;
+      sum = sum + line * hn::IfThenElse(lower, lower_weight, upper_weight);
+    }
+    return true;
   }
 
   /// Mean and deviation of the 3x3 neighbours.
