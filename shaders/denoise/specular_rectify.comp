@@ -13,7 +13,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "lib/denoise/reprojection.glsl"
 
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D guide;
-layout(set = 1, binding = 1, rgba32f) readonly uniform image2D fast;  // or the change; w < 0: no sample
+layout(set = 1, binding = 1, rgba32f) readonly uniform image2D fast;  // or the change, w < 0: none
 layout(set = 1, binding = 2, rgba32f) uniform image2D signal;
 layout(set = 1, binding = 3, rgba32f) uniform image2D history;
 layout(push_constant) uniform Constants { TemporalConstants constants; };
@@ -48,7 +48,7 @@ void main() {
     frames = min(state.x, frames_under_motion(change / (abs(color.x) + change + 1e-4)));
     vec3 sampled = to_ycocg(imageLoad(fast, pixel).rgb);
     // As if the new sample had come to so short a history.
-    held = color + sampled * (1.0 / frames - 1.0 / max(state.x, 1.0));
+    held = color + sampled * (1.0 / max(frames, 1.0) - 1.0 / max(state.x, 1.0));
     moved = abs(held.x - color.x);
   }
   // The variance of the mean grows as the history shrinks.

@@ -19,7 +19,9 @@ layout(set = 1, binding = 3, rgba32f) uniform image2D history;
 layout(push_constant) uniform Constants { TemporalConstants constants; };
 
 /// 0 where no sample was taken.
-vec2 known_change(vec2 change) { return mix(change, vec2(0.0), equal(change, vec2(change_unknown))); }
+vec2 known_change(vec2 change) {
+  return mix(change, vec2(0.0), equal(change, vec2(change_unknown)));
+}
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -49,7 +51,8 @@ void main() {
     shortened = min(state.xy, vec2(frames_under_motion(change.x), frames_under_motion(change.y)));
     // As if the new sample had come to so short a history.
     vec2 change_here = known_change(imageLoad(fast, pixel).xy);
-    held = value.xy + change_here * (1.0 / shortened - 1.0 / max(state.xy, vec2(1.0)));
+    vec2 more_weight = 1.0 / max(shortened, vec2(1.0)) - 1.0 / max(state.xy, vec2(1.0));
+    held = value.xy + change_here * more_weight;
   }
   vec2 moved = abs(held - value.xy);
   // The variance of the mean grows as the history shrinks.

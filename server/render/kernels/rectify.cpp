@@ -250,8 +250,8 @@ class VisibilityRectification : public Rectification<D, VisibilityRectification<
         hn::Min(state.x, frames_under_motion(certain_change(box.low[0], box.high[0])));
     const V frames_y =
         hn::Min(state.y, frames_under_motion(certain_change(box.low[1], box.high[1])));
-    const V moved_x = changes[0] * (one / frames_x - one / hn::Max(state.x, one));
-    const V moved_y = changes[1] * (one / frames_y - one / hn::Max(state.y, one));
+    const V moved_x = changes[0] * (one / hn::Max(frames_x, one) - one / hn::Max(state.x, one));
+    const V moved_y = changes[1] * (one / hn::Max(frames_y, one) - one / hn::Max(state.y, one));
     new_value = {value.x + moved_x, value.y + moved_y, value.z * this->growth(state.x, frames_x),
                  value.w * this->growth(state.y, frames_y)};
     new_state = {frames_x, frames_y, hn::Abs(moved_x), hn::Abs(moved_y)};
@@ -303,7 +303,7 @@ class SpecularRectification : public Rectification<D, SpecularRectification<D>, 
     const V change = certain_change(box.low[0], box.high[0]);
     const V bright = hn::Abs(to_ycocg({value.x, value.y, value.z}).x);
     const V frames = hn::Min(state.x, frames_under_motion(change / (bright + change + smallest)));
-    const V weight_change = one / frames - one / hn::Max(state.x, one);
+    const V weight_change = one / hn::Max(frames, one) - one / hn::Max(state.x, one);
     const Quad<V> sampled = load4(d_, row_of<const float>(job_.fast_history, y) + 4 * x);
     const V moved = to_ycocg({sampled.x, sampled.y, sampled.z}).x * weight_change;
     new_value = {hn::MulAdd(sampled.x, weight_change, value.x),

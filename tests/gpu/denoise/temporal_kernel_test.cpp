@@ -14,6 +14,7 @@ struct View {
   bool orthographic = false;
   render::SceneMotion motion = {};
   protocol::Settings settings;
+  float left_out = 0.0f;  // fraction of pixels without a sample
 };
 
 scene::Camera camera(const View& view, float turn) {
@@ -60,6 +61,8 @@ class KernelComparison {
       const float firefly = random_.unit() < 0.02f ? 30.0f : 1.0f;
       specular[i] = firefly * glm::vec4(random_.unit(), random_.unit(), 2.0f * random_.unit(), 0);
       specular[i].w = random_.unit() < 0.1f ? 0.0f : 5.0f * random_.unit();
+      if (random_.unit() < view_.left_out) visibility[i] = {-1, -1, 0, 0};
+      if (random_.unit() < view_.left_out) specular[i] = {0, 0, 0, -5.0f * random_.unit()};
       if (random_.unit() < 0.01f) specular[i].x = std::numeric_limits<float>::quiet_NaN();
       if (random_.unit() < 0.01f) specular[i].w = std::numeric_limits<float>::infinity();
     }
@@ -124,6 +127,19 @@ void expect_same_over_frames(const View& view, const std::string& which) {
 TEST_F(TemporalKernel, MatchesShaders) {
   expect_same_over_frames({}, "default settings");
   expect_same_over_frames({.orthographic = true}, "orthographic");
+}
+
+TEST_F(TemporalKernel, MatchesShadersWhereSamplesAreLeftOut) {
+  for (const float left_out : {0.4f, 0.8f}) {
+    View view{.left_out = left_out};
+    view.settings.shadow_temporal.spatial_variance_frames =
+        view.settings.specular_temporal.spatial_variance_frames = 0;
+    view.motion.geometry_moved = true;
+    expect_same_over_frames(view, "gradient");
+    view.settings.shadow_temporal.rectification = view.settings.specular_temporal.rectification =
+        protocol::Rectification::fast_history;
+    expect_same_over_frames(view, "fast history");
+  }
 }
 
 TEST_F(TemporalKernel, MatchesShadersForEverySetting) {

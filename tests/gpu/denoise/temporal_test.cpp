@@ -226,6 +226,39 @@ TEST_F(TemporalAccumulation, IsMeanWhileHistoryGrows) {
   }
 }
 
+TEST_F(TemporalAccumulation, HistoryCountsOnlySamples) {
+  for (const bool specular : {false, true}) {
+    drawn_ = false;
+    start(plain_settings(), specular);
+    double sum = 0.0;
+    int samples = 0;
+    for (int i = 0; i < 24; ++i) {
+      const float value = i % 2 == 0 ? 1.0f : 0.25f;
+      const bool sampled = i < 4 || i % 5 == 0;
+      if (sampled) {
+        sum += value;
+        ++samples;
+        frame(specular ? glm::vec4(glm::vec3(value), 2.0f) : glm::vec4(value, value, 0, 0));
+      } else {
+        frame(specular ? glm::vec4(0, 0, 0, -2.0f) : glm::vec4(-1, -1, 0, 0));
+      }
+      EXPECT_NEAR(signal().x, sum / samples, 1e-5) << i;
+      EXPECT_NEAR(signal().y, sum / samples, 1e-5) << i;
+      EXPECT_NEAR(history_length().x, samples, 1e-3) << i;
+    }
+  }
+}
+
+TEST_F(TemporalAccumulation, VarianceStaysWithoutSamples) {
+  start(plain_settings());
+  for (int i = 0; i < 12; ++i) frame(glm::vec4(i % 2, 1.0f, 0, 0));
+  const glm::vec4 before = signal();
+  EXPECT_GT(before.z, 0.01f);
+  for (int i = 0; i < 8; ++i) frame(glm::vec4(-1, -1, 0, 0));
+  EXPECT_NEAR(signal().z, before.z, 1e-6f);
+  EXPECT_NEAR(signal().w, before.w, 1e-6f);
+}
+
 TEST_F(TemporalAccumulation, HistoryLengthIsInSecondsNotFrames) {
   for (const float rate : {20.0f, 200.0f}) {
     drawn_ = false;

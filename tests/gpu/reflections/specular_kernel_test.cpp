@@ -4,6 +4,7 @@
 #include "render/passes/gbuffer/trace_gbuffer.hpp"
 #include "render/passes/reflections/trace_specular.hpp"
 #include "scene/import.hpp"
+#include "shaders/shared/sampling.h"
 #include "tests/gpu/support/kernel_comparison.hpp"
 #include "tests/gpu/support/textured_scene.hpp"
 #include "tests/support/scene_files.hpp"
@@ -49,6 +50,7 @@ std::shared_ptr<const scene::Scene> lit(const scene::Scene& from) {
 struct View {
   VkExtent2D extent{150, 100};
   protocol::Settings settings;
+  bool with_plan = false;  // a third of the pixels is traced
 };
 
 scene::Environment sky() {
@@ -64,8 +66,9 @@ class KernelComparison {
       : rig_(scene, camera(*scene),
              {.extent = view.extent, .environment = sky(), .settings = view.settings}),
         gbuffer_(render::trace_gbuffer(rig_.plan(), with_host_kernels(rig_, true))),
-        shader_(render::trace_specular(rig_.plan(), with_host_kernels(rig_, false), gbuffer_)),
-        host_(render::trace_specular(rig_.plan(), with_host_kernels(rig_, true), gbuffer_)) {
+        planned_(view.with_plan ? std::optional(plan(view.extent)) : std::nullopt),
+        shader_(trace(false)),
+        host_(trace(true)) {
     rig_.set_view(camera(*scene), 6);
     rig_.run();
   }
@@ -88,8 +91,21 @@ class KernelComparison {
     return made;
   }
 
+  gpu::ImageRef plan(VkExtent2D extent) {
+    std::vector<std::uint32_t> words(std::size_t{extent.width} * extent.height);
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      // 1.5 metres in the frame before
+      words[i] = (i * 7919 % 3 == 0 ? shared::plan_specular : 0u) | 0x3fc0u;
+    }
+    return rig_.input("planned", VK_FORMAT_R32_UINT, words);
+  }
+  gpu::ImageRef trace(bool host) {
+    return render::trace_specular(rig_.plan(), with_host_kernels(rig_, host), gbuffer_, planned_);
+  }
+
   FrameRig rig_;
   render::GBuffer gbuffer_;
+  std::optional<gpu::ImageRef> planned_;
   gpu::ImageRef shader_, host_;
 };
 
@@ -104,6 +120,9 @@ TEST_F(SpecularKernel, MatchesShaders) {
   const auto scene = lit(*textured_scene());
   View view;
   KernelComparison(scene, view).expect_equal("all light");
+  view.with_plan = true;
+  KernelComparison(scene, view).expect_equal("by plan");
+  view.with_plan = false;
   view.settings.specular.half_resolution = true;
   KernelComparison(scene, view).expect_equal("half resolution");
   view.settings.specular.half_resolution = false;

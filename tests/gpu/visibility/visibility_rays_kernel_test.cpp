@@ -5,6 +5,7 @@
 
 #include "render/kernels/visibility_rays.hpp"
 #include "render/passes/visibility/trace_visibility.hpp"
+#include "shaders/shared/sampling.h"
 #include "tests/gpu/support/kernel_comparison.hpp"
 
 namespace heliograph::test {
@@ -32,13 +33,24 @@ const scene::Camera camera = look({0, 0, 3}, {0, 0, 0});
 /// Shadow and ambient visibility by the shaders and by the host kernels.
 class KernelComparison {
  public:
-  explicit KernelComparison(VkExtent2D extent) : rig_(leafy_scene(), camera, {.extent = extent}) {
+  /// With a plan a quarter of the pixels trace shadow rays, half of them ambient rays.
+  explicit KernelComparison(VkExtent2D extent, bool with_plan = false)
+      : rig_(leafy_scene(), camera, {.extent = extent}) {
     RandomFrame random(rig_);
     const render::GBuffer gbuffer = random.gbuffer();
+    std::optional<gpu::ImageRef> planned;
+    if (with_plan) {
+      std::vector<std::uint32_t> words(std::size_t{extent.width} * extent.height);
+      for (std::uint32_t& word : words) {
+        word = (random.unit() < 0.25f ? shared::plan_shadows : 0u) |
+               (random.unit() < 0.5f ? shared::plan_ambient : 0u) | 0x1234u;
+      }
+      planned = rig_.input("planned", VK_FORMAT_R32_UINT, words);
+    }
     for (const bool host : {false, true}) {
       const auto in = with_host_kernels(rig_, host);
-      signals_.push_back(render::trace_shadows(rig_.plan(), in, gbuffer));
-      signals_.push_back(render::trace_ambient(rig_.plan(), in, gbuffer));
+      signals_.push_back(render::trace_shadows(rig_.plan(), in, gbuffer, planned));
+      signals_.push_back(render::trace_ambient(rig_.plan(), in, gbuffer, planned));
     }
     rig_.set_view(camera, 5);
     rig_.run();
@@ -81,6 +93,19 @@ TEST_F(VisibilityRaysKernel, MatchesShaders) {
     ASSERT_EQ(rays.size(), 2u);
     EXPECT_GT(rays[0], 1000u);
     EXPECT_NEAR(static_cast<double>(rays[0]), static_cast<double>(rays[1]), 3.0);
+  }
+}
+
+TEST_F(VisibilityRaysKernel, MatchesShadersUnderAPlan) {
+  KernelComparison whole({177, 95});
+  KernelComparison comparison({177, 95}, true);
+  EXPECT_LT(comparison.shadows().outliers, 2e-3);
+  EXPECT_LT(comparison.ambient().outliers, 2e-3);
+  for (const auto& [pass, fraction] :
+       {std::pair("shadows.trace", 0.25), std::pair("ambient.trace", 0.5)}) {
+    const auto all = whole.rays(pass), rays = comparison.rays(pass);
+    EXPECT_NEAR(static_cast<double>(rays[0]), static_cast<double>(rays[1]), 3.0);
+    EXPECT_NEAR(static_cast<double>(rays[1]) / static_cast<double>(all[1]), fraction, 0.02);
   }
 }
 

@@ -65,8 +65,10 @@ bool is_of_the_denoiser(const SettingDescriptor& setting) {
   static const std::set<std::string_view> groups{"reprojection",  "shadow_temporal",
                                                  "shadow_blur",   "specular_temporal",
                                                  "specular_blur", "reinhard"};
-  static const std::set<std::string_view> paths{"specular.enabled", "specular.hit_shading",
-                                                "specular.max_roughness", "antialiasing.temporal"};
+  static const std::set<std::string_view> paths{"specular.enabled",       "specular.hit_shading",
+                                                "specular.max_roughness", "sampling.visibility",
+                                                "sampling.specular",      "sampling.full_frames",
+                                                "sampling.floor",         "antialiasing.temporal"};
   return groups.contains(setting.group) || paths.contains(setting.path);
 }
 
@@ -127,13 +129,24 @@ TEST(Presets, SvgfIsThePapersBaseline) {
     "shadow_temporal": {"history_seconds": 0.0, "history_frames": 20, "follow_lights": false,
                         "rectification": "off", "rectification_scale": 1.0,
                         "mean_variance": false, "bicubic": false},
-    "shadow_blur": {"kernel": "full", "feedback": 0, "jitter": false},
+    "shadow_blur": {"kernel": "full", "feedback": 0, "jitter": false, "iterations": 4,
+                    "luminance_sigma": 4.0},
     "specular_temporal": {"history_seconds": 0.0, "history_frames": 20, "follow_lights": false,
                           "rectification": "off", "rectification_radius": 1,
                           "rectification_scale": 1.0, "mean_variance": false, "bicubic": false,
                           "virtual_motion": false, "curved_reflectors": false},
     "specular_blur": {"kernel": "full", "feedback": 0, "jitter": false, "lobe_limit": false,
-                      "iterations_by_roughness": false}})"));
+                      "iterations_by_roughness": false, "iterations": 4, "luminance_sigma": 4.0},
+    "sampling": {"visibility": false, "specular": false}})"));
+}
+
+TEST(Presets, StepsOfThePaperTraceOneSamplePerPixel) {
+  for (const Preset& preset : presets()) {
+    const Settings settings = with_preset(preset, all_changed());
+    const bool is_best = preset.name == "best";
+    EXPECT_EQ(settings.sampling.visibility, is_best) << preset.name;
+    EXPECT_EQ(settings.sampling.specular, is_best) << preset.name;
+  }
 }
 
 TEST(Presets, BestIsTheDefaults) {

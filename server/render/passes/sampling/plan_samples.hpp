@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 
+#include "protocol/settings/settings.hpp"
 #include "render/passes/denoise/reproject.hpp"
 #include "shaders/shared/sampling.h"
 
