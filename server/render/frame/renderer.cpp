@@ -13,6 +13,7 @@
 #include "render/frame/probe.hpp"
 #include "render/passes/post/accumulate.hpp"
 #include "render/passes/post/present.hpp"
+#include "render/passes/sampling/plan_samples.hpp"
 #include "render/resources/moving_scene.hpp"
 #include "render/resources/scene_motion.hpp"
 #include "render/views/debug_view.hpp"
@@ -278,6 +279,9 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
     return std::nullopt;
   }
   state.shown_mean_weight = mean_weight(state.compiled->inputs);
+  if (state.clock.samples == 0) {
+    state.clock.first_counts = !leaves_samples_out(state.compiled->inputs);
+  }
   ++state.clock.samples;
 
   Frame frame = state.output();

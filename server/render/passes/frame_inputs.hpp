@@ -19,6 +19,8 @@ struct SceneMotion;
 struct FrameClock {
   std::uint32_t samples = 0;     // already in the accumulated mean
   float seconds = 1.0f / 60.0f;  // since the frame before
+  /// Whether the first of these samples is part of the mean: it is not if it left pixels out.
+  bool first_counts = true;
 };
 
 /// What a frame is made from. References outlive the plan; `constants` and `clock` change in every
