@@ -37,13 +37,14 @@ shared::SamplingPlanConstants plan_constants(const FrameInputs& in) {
           at_most(mirrors, plans_specular(s))};
 }
 
-}  // namespace
-
+/// Whether frames of a moving view do.
 bool may_leave_samples_out(const Settings& settings) {
   return (plans_visibility(settings) || plans_specular(settings)) &&
          settings.accumulation.blend_samples > 0 &&
          settings.reference.use != protocol::ReferenceUse::always;
 }
+
+}  // namespace
 
 bool leaves_samples_out(const FrameInputs& in) {
   return in.clock.samples == 0 && in.constants.history_invalid == 0 &&
