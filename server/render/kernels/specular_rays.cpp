@@ -23,13 +23,12 @@ class Generation {
         random_(specular_pairs(job.frame, 4, scale_)) {}
 
   /// Clears the cells; lists those whose rays are to be made.
-  HWY_INLINE void clear(const PixelLanes& cell, Mask inside, PixelList& traced) const {
-    const PixelLanes pixel = traced_pixel(cell);
-    const Mask seen = hn::Gt(gathered_last(job_.motion, pixel), zero());
+  HWY_INLINE void clear(const TileRow& cells, PixelList& traced) const {
+    const Mask seen = hn::Gt(view_z(cells), zero());
     Mask sampled = seen;
     Float4 radiance{zero(), zero(), zero(), zero()};
     if (job_.constants.by_plan != 0) {
-      const Integer word = gather(job_.planned.data, texel_index(job_.planned, pixel, 1));
+      const Integer word = plan_words(cells);
       const Integer bit = hn::And(word, integer(static_cast<int>(shared::plan_specular)));
       sampled = hn::And(seen, float_mask(hn::Ne(bit, integer(0))));
       // A negative distance: no sample, and how far it was in the frame before.
@@ -37,14 +36,9 @@ class Generation {
       const Float away = hn::Min(hn::Neg(before), number(-1e-6f));
       radiance.w = hn::IfThenElseZero(hn::AndNot(sampled, seen), away);
     }
-    const TexelIndices indices(cell);
-    const Texels<4> cleared(radiance);
-    for_each_lane(inside, [&](std::size_t lane) { cleared.put(job_.radiance, lane, indices); });
-    if (job_.directions) {
-      const Texels<4> nowhere(Float4{zero(), zero(), zero(), zero()});
-      for_each_lane(inside, [&](std::size_t lane) { nowhere.put(job_.directions, lane, indices); });
-    }
-    traced.add(cell, hn::And(inside, sampled));
+    put_row(job_.radiance, cells, radiance);
+    if (job_.directions) put_row(job_.directions, cells, Float4{zero(), zero(), zero(), zero()});
+    traced.add(cells.pixels, hn::And(cells.inside, sampled));
   }
 
   /// @return how many rays there are, which lie at `made`
@@ -86,6 +80,16 @@ class Generation {
   }
 
  private:
+  HWY_INLINE Float view_z(const TileRow& cells) const {
+    if (scale_ == 1) return row_last(job_.motion, cells);
+    return gathered_last(job_.motion, traced_pixel(cells.pixels));
+  }
+
+  HWY_INLINE Integer plan_words(const TileRow& cells) const {
+    if (scale_ == 1) return row_words(job_.planned, cells);
+    return gather(job_.planned.data, texel_index(job_.planned, traced_pixel(cells.pixels), 1));
+  }
+
   /// The pixel that traces for a cell: of 2 x 2 another in every frame.
   HWY_INLINE PixelLanes traced_pixel(const PixelLanes& cell) const {
     if (scale_ == 1) return cell;
@@ -116,8 +120,7 @@ class Generation {
 void make_tile(const SpecularRaysJob& job, const Tile& tile) {
   const Generation generation(job);
   PixelList traced;
-  for_each_pixel(
-      tile, [&](const PixelLanes& cells, Mask inside) { generation.clear(cells, inside, traced); });
+  for_each_row(tile, [&](const TileRow& cells) { generation.clear(cells, traced); });
   std::array<shared::Ray, tile_side * tile_side> made;
   std::size_t count = 0;
   for (int i = 0; i < traced.size(); i += static_cast<int>(hn::Lanes(tag))) {

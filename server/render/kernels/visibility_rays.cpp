@@ -27,12 +27,12 @@ class VisibilityRays {
   /// `unseen`: visibility where there is no surface.
   HWY_INLINE void generate(const Tile& tile, float unseen) const {
     PixelList traced;
-    for_each_pixel(tile, [&](const PixelLanes& pixels, Mask inside) {
-      const Mask seen = hn::Gt(gathered_last(job_.motion, pixels), zero());
-      const Mask sampled = is_sampled(pixels);
-      traced.add(pixels, hn::And(inside, hn::And(seen, sampled)));
+    for_each_row(tile, [&](const TileRow& row) {
+      const Mask seen = hn::Gt(row_last(job_.motion, row), zero());
+      const Mask sampled = is_sampled(row);
+      traced.add(row.pixels, hn::And(row.inside, hn::And(seen, sampled)));
       const Float without_ray = hn::IfThenZeroElse(sampled, number(-1.0f));
-      put_values(job_.visibility, pixels, inside, select(seen, without_ray, number(unseen)));
+      put_row(job_.visibility, row, select(seen, without_ray, number(unseen)));
     });
     std::array<shared::Ray, tile_side * tile_side> made;
     std::size_t count = 0;
@@ -57,10 +57,9 @@ class VisibilityRays {
  private:
   int bit_;
 
-  HWY_INLINE Mask is_sampled(const PixelLanes& pixels) const {
+  HWY_INLINE Mask is_sampled(const TileRow& row) const {
     if (job_.constants.by_plan == 0) return hn::Eq(zero(), zero());
-    const Integer word = gather(job_.planned.data, texel_index(job_.planned, pixels, 1));
-    const Integer bit = hn::And(word, integer(bit_));
+    const Integer bit = hn::And(row_words(job_.planned, row), integer(bit_));
     return float_mask(hn::Ne(bit, integer(0)));
   }
 };
