@@ -1,10 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
-// Temporal antialiasing as in Falcor: the history along the motion of surfaces, kept within mean
-// and deviation of the 3x3 neighbours in YCgCo (Salvi 2016), read by Catmull-Rom's filter so that
-// it does not blur with every frame, blended with less of the new frame where it lies close to the
-// faces of that box.
+// Temporal antialiasing: the mean of the samples of a pixel along the motion of surfaces, kept
+// within mean and deviation of the 3x3 neighbours in YCgCo (Salvi 2016). A jittered sample of a
+// pixel is one of the pixel's whole area; it is not filtered again. What blurs is reading the
+// history between its texels, frame after frame: a cubic steeper than Catmull-Rom's makes up for it.
 #include "lib/frame.glsl"
 #include "shared/exposure.h"
 
@@ -12,9 +12,9 @@ layout(set = 1, binding = 0, rgba32f) readonly uniform image2D hdr;
 layout(set = 1, binding = 1, rgba32f) readonly uniform image2D motion;
 layout(set = 1, binding = 2) uniform sampler2D history;
 layout(set = 1, binding = 3, std140) uniform ExposureBlock { ExposureState exposure; };
-layout(set = 1, binding = 4, rgba32f) writeonly uniform image2D resolved;
+layout(set = 1, binding = 4, rgba32f) writeonly uniform image2D resolved;  // a: frames
 layout(push_constant) uniform Constants {
-  float blend;         // weight of the new frame
+  float blend;         // least weight of the new frame
   float clip;          // half width of the box in standard deviations
   float anti_flicker;  // 1: on
 };
@@ -22,6 +22,15 @@ layout(push_constant) uniform Constants {
 // Least part of `blend` that anti-flicker leaves: a colour that was clamped to the face of the box
 // would otherwise never change.
 const float min_anti_flicker = 0.2;
+// A surface this much nearer than the pixel's own, in parts of its distance, covers some of it.
+const float edge_depth = 0.05;
+// Slope of the cubic at its first zero; Catmull-Rom's is -0.5.
+// TemporalAntialiasTest.SubpixelMotionKeepsDetail pins it.
+const float cubic_slope = -0.75;
+// What is read at a texel does not blur: so many times the frames may count there, falling to one
+// in steps of 1 / off_texel_slope pixels.
+const float most_still = 4.0;
+const float off_texel_slope = 8.0;
 
 vec3 ycgco_from_rgb(vec3 c) {
   return vec3(dot(c, vec3(0.25, 0.5, 0.25)), dot(c, vec3(-0.25, 0.5, -0.25)),
@@ -56,46 +65,55 @@ vec2 background_motion(ivec2 pixel) {
   return (before.xy / before.w - now.xy / now.w) * 0.5;
 }
 
-/// Motion of the nearest surface of 3x3 pixels: an edge moves with what lies in front.
-vec2 nearest_motion(ivec2 pixel) {
+/// Motion of the nearest surface of 3x3 pixels: an edge moves with what lies in front. Elsewhere
+/// that of the pixel itself: its neighbours on the same surface move by more or less.
+vec2 edge_motion(ivec2 pixel) {
   ivec2 last = ivec2(frame.extent) - 1;
-  ivec2 nearest = pixel;
-  vec4 closest = vec4(0.0);
+  vec4 own = imageLoad(motion, pixel);
+  vec4 closest = own;
   for (int y = -1; y <= 1; ++y) {
     for (int x = -1; x <= 1; ++x) {
-      ivec2 at = clamp(pixel + ivec2(x, y), ivec2(0), last);
-      vec4 candidate = imageLoad(motion, at);
+      vec4 candidate = imageLoad(motion, clamp(pixel + ivec2(x, y), ivec2(0), last));
       if (candidate.w <= 0.0 || (closest.w > 0.0 && candidate.w >= closest.w)) continue;
       closest = candidate;
     }
   }
-  return closest.w > 0.0 ? closest.xy : background_motion(pixel);
+  if (closest.w <= 0.0) return background_motion(pixel);
+  bool edge = own.w <= 0.0 || own.w - closest.w > edge_depth * closest.w;
+  return edge ? closest.xy : own.xy;
 }
 
-/// Catmull-Rom's 16 texels as 9 bilinear fetches; may overshoot.
-vec3 sample_history(vec2 uv) {
-  vec2 size = vec2(frame.extent);
-  vec2 position = uv * size;
-  vec2 center = floor(position - 0.5) + 0.5;
-  vec2 f = position - center;
-  vec2 w0 = f * (-0.5 + f * (1.0 - 0.5 * f));
-  vec2 w1 = 1.0 + f * f * (-2.5 + 1.5 * f);
-  vec2 w2 = f * (0.5 + f * (2.0 - 1.5 * f));
-  vec2 w3 = f * f * (-0.5 + 0.5 * f);
-  vec2 w12 = w1 + w2;
-  vec2 uv0 = (center - 1.0) / size;
-  vec2 uv12 = (center + w2 / w12) / size;
-  vec2 uv3 = (center + 2.0) / size;
-  vec3 sum = textureLod(history, uv0, 0.0).rgb * (w0.x * w0.y);
-  sum += textureLod(history, vec2(uv12.x, uv0.y), 0.0).rgb * (w12.x * w0.y);
-  sum += textureLod(history, vec2(uv3.x, uv0.y), 0.0).rgb * (w3.x * w0.y);
-  sum += textureLod(history, vec2(uv0.x, uv12.y), 0.0).rgb * (w0.x * w12.y);
-  sum += textureLod(history, uv12, 0.0).rgb * (w12.x * w12.y);
-  sum += textureLod(history, vec2(uv3.x, uv12.y), 0.0).rgb * (w3.x * w12.y);
-  sum += textureLod(history, vec2(uv0.x, uv3.y), 0.0).rgb * (w0.x * w3.y);
-  sum += textureLod(history, vec2(uv12.x, uv3.y), 0.0).rgb * (w12.x * w3.y);
-  sum += textureLod(history, uv3, 0.0).rgb * (w3.x * w3.y);
-  return max(sum, 0.0);
+/// Weights of four texels in a row for a point at fraction `f` between the second and the third.
+vec4 cubic_weights(float f) {
+  vec4 x = vec4(1.0 + f, f, 1.0 - f, 2.0 - f);
+  vec2 near = ((cubic_slope + 2.0) * x.yz - (cubic_slope + 3.0)) * x.yz * x.yz + 1.0;
+  vec2 far = cubic_slope * (((x.xw - 5.0) * x.xw + 8.0) * x.xw - 4.0);
+  return vec4(far.x, near, far.y);
+}
+
+/// How far from a texel the history is read, 0 (there) to 0.5, along the farther axis.
+float off_texel(vec2 uv) {
+  vec2 off = abs(fract(uv * vec2(frame.extent)) - 0.5);
+  return max(off.x, off.y);
+}
+
+/// May overshoot; a: of the nearest texel.
+vec4 sample_history(vec2 uv) {
+  vec2 position = uv * vec2(frame.extent) - 0.5;
+  ivec2 first = ivec2(floor(position)), last = ivec2(frame.extent) - 1;
+  vec2 f = position - vec2(first);
+  vec4 across = cubic_weights(f.x), down = cubic_weights(f.y);
+  vec3 sum = vec3(0.0);
+  for (int y = 0; y < 4; ++y) {
+    vec3 line = vec3(0.0);
+    for (int x = 0; x < 4; ++x) {
+      ivec2 at = clamp(first + ivec2(x, y) - 1, ivec2(0), last);
+      line += texelFetch(history, at, 0).rgb * across[x];
+    }
+    sum += line * down[y];
+  }
+  ivec2 nearest = clamp(first + ivec2(greaterThanEqual(f, vec2(0.5))), ivec2(0), last);
+  return vec4(max(sum, 0.0), texelFetch(history, nearest, 0).a);
 }
 
 void main() {
@@ -103,12 +121,12 @@ void main() {
   if (outside_frame(pixel)) return;
   vec4 center = imageLoad(hdr, pixel);
   vec2 uv = (vec2(pixel) + 0.5) / vec2(frame.extent);
-  vec2 before = uv + nearest_motion(pixel);
+  vec2 before = uv + edge_motion(pixel);
   // What was outside the previous frame has no history.
   bool known = frame.history_invalid == 0u && all(greaterThanEqual(before, vec2(0.0))) &&
                all(lessThanEqual(before, vec2(1.0)));
   if (!known) {
-    imageStore(resolved, pixel, center);
+    imageStore(resolved, pixel, vec4(center.rgb, 1.0));
     return;
   }
 
@@ -127,12 +145,15 @@ void main() {
   vec3 low = mean - half_extent;
   vec3 high = mean + half_extent;
 
-  vec3 old = compressed(sample_history(before));
-  float weight = blend;
+  vec4 found = sample_history(before);
+  vec3 old = compressed(found.rgb);
+  float still = max(1.0 - off_texel_slope * off_texel(before), 0.0);
+  float frames = min(found.a + 1.0, mix(1.0, most_still, still) / blend);
+  float weight = 1.0 / frames;
   if (anti_flicker > 0.0) {
     float margin = min(abs(old.x - low.x), abs(high.x - old.x));
     weight *= max(margin / max(margin + high.x - low.x, 1e-6), min_anti_flicker);
   }
-  vec3 blended = mix(clamp(old, low, high), compressed(center.rgb), clamp(weight, 0.0, 1.0));
-  imageStore(resolved, pixel, vec4(expanded(blended), center.a));
+  vec3 blended = mix(clamp(old, low, high), compressed(center.rgb), weight);
+  imageStore(resolved, pixel, vec4(expanded(blended), frames));
 }

@@ -172,6 +172,79 @@ TEST_F(TemporalAntialiasTest, EdgeUsesMotionOfNearestSurface) {
   EXPECT_NEAR(texel(image, 30, 10).x, input(30.5f, 0).x, 0.02f);
 }
 
+// On a surface that moves by more from row to row, a neighbour's motion is wrong by the same amount
+// in every frame, and the history drifts.
+TEST_F(TemporalAntialiasTest, SlantedSurfaceMovesByItsOwnMotion) {
+  Texels motion;
+  for (std::uint32_t i = 0; i < width * height; ++i) {
+    // Nearer toward the bottom, by less than an edge; columns move by a tenth of the row.
+    const auto row = static_cast<float>(i / width);
+    motion.emplace_back(-0.1f * row / width, 0, 0, 20.0f - 0.1f * row);
+  }
+  rig_.fill(gbuffer_.motion, motion);
+  const auto surface = [](int frame_number) {
+    return [frame_number](float x, float y) {
+      const float own = x - 0.1f * (y - 0.5f) * static_cast<float>(frame_number);
+      return glm::vec3(1.0f + 0.5f * std::sin(0.6f * own));
+    };
+  };
+  protocol::Settings settings;
+  settings.antialiasing.clip = 8.0f;
+  rig_.set_settings(settings);
+  render::FloatImage image;
+  for (int i = 0; i < 20; ++i) image = frame(surface(i));
+  const Texels expected = paint(surface(19));
+  for (std::uint32_t x = 44; x < width; ++x) {
+    EXPECT_NEAR(texel(image, x, 4).x, expected[4 * width + x].x, 0.05f) << x;
+  }
+}
+
+// Waves of four pixels that move by a third of one: Catmull-Rom's cubic leaves two thirds of them.
+TEST_F(TemporalAntialiasTest, SubpixelMotionKeepsDetail) {
+  move({0.3f, 0});
+  const auto waves = [](int frame_number) {
+    return [frame_number](float x, float) {
+      const float own = x - 0.3f * static_cast<float>(frame_number);
+      return glm::vec3(1.0f + 0.1f * std::sin(1.5707963f * own));
+    };
+  };
+  protocol::Settings settings;
+  settings.antialiasing.clip = 8.0f;
+  rig_.set_settings(settings);
+  render::FloatImage image;
+  for (int i = 0; i < 40; ++i) image = frame(waves(i));
+  double contrast = 0.0;
+  const Texels sharp = paint(waves(39));
+  double whole = 0.0;
+  for (std::uint32_t x = 16; x < 40; ++x) {
+    contrast += (texel(image, x, 10).x - 1.0) * (sharp[10 * width + x].x - 1.0);
+    whole += std::pow(sharp[10 * width + x].x - 1.0, 2);
+  }
+  RecordProperty("contrast", std::to_string(contrast / whole));
+  EXPECT_GT(contrast / whole, 0.75);
+}
+
+TEST_F(TemporalAntialiasTest, NewPixelsAverageTheirFirstFrames) {
+  protocol::Settings settings;
+  settings.antialiasing.clip = 8.0f;
+  rig_.set_settings(settings);
+  for (int i = 0; i < 4; ++i) {
+    const float noise[] = {1.0f, 1.4f, 1.2f, 1.6f};
+    const render::FloatImage image = frame([&](float x, float y) {
+      // Neighbours that differ, so that the box lets the history pass.
+      return glm::vec3(noise[i] + 0.8f * std::fmod(std::floor(x) + std::floor(y), 2.0f));
+    });
+    const float mean = texel(image, 20, 10).x;
+    if (i == 1) {
+      EXPECT_NEAR(mean, 1.2f, 0.03f) << "both weigh the same";
+    }
+    if (i == 3) {
+      EXPECT_NEAR(mean, 1.3f, 0.05f) << "all four";
+    }
+    EXPECT_FLOAT_EQ(texel(image, 20, 10).w, static_cast<float>(i + 1)) << "frames in the mean";
+  }
+}
+
 TEST_F(TemporalAntialiasTest, BicubicHistoryStaysPositiveAtHardEdges) {
   const auto edge = [](float offset) {
     return

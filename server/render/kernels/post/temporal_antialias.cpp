@@ -13,7 +13,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
 
-constexpr float min_anti_flicker = 0.2f;  // as in temporal_antialias.comp
+// As in temporal_antialias.comp.
+constexpr float min_anti_flicker = 0.2f;
+constexpr float edge_depth = 0.05f;
+constexpr float cubic_slope = -0.75f;
+constexpr float most_still = 4.0f;
+constexpr float off_texel_slope = 8.0f;
 
 template <class D>
 class Antialiasing {
@@ -116,42 +121,66 @@ class Antialiasing {
             dot(splat(d_, {m[0].w, m[1].w, m[2].w}), eye)};
   }
 
-  /// Motion of the nearest surface of 3x3 pixels: an edge moves with what lies in front.
-  HWY_INLINE Pair<V> nearest_motion(const BandScratch& motion, const ViewedRow<D>& view, int x,
-                                    int y) const {
-    Triple<V> nearest{hn::Zero(d_), hn::Zero(d_), set(far_away)};
+  /// Motion of the nearest surface of 3x3 pixels: an edge moves with what lies in front. Elsewhere
+  /// that of the pixel itself: its neighbours on the same surface move by more or less.
+  HWY_INLINE Pair<V> edge_motion(const BandScratch& motion, const ViewedRow<D>& view, int x,
+                                 int y) const {
+    const Triple<V> own = load(motion, x, y);
+    Triple<V> nearest = own;
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
         const Triple<V> candidate = load(motion, x + dx, y + dy);
         nearest = select(hn::Lt(candidate.z, nearest.z), candidate, nearest);
       }
     }
+    const M edge = hn::Gt(own.z - nearest.z, set(edge_depth) * nearest.z);
+    const Triple<V> chosen = select(edge, nearest, own);
     const M seen = hn::Lt(nearest.z, set(far_away));
-    if (hn::AllTrue(d_, seen)) return {nearest.x, nearest.y};
+    if (hn::AllTrue(d_, seen)) return {chosen.x, chosen.y};
     const Pair<V> behind = background_motion(view, x);
-    return {hn::IfThenElse(seen, nearest.x, behind.x), hn::IfThenElse(seen, nearest.y, behind.y)};
+    return {hn::IfThenElse(seen, chosen.x, behind.x), hn::IfThenElse(seen, chosen.y, behind.y)};
   }
 
+  /// Of four texels in a row for a point at fraction `f` between the second and the third.
   struct Weights {
     V w[4];
     HWY_INLINE explicit Weights(V f) {
-      const D d;
-      const auto number = [d](float value) HWY_ATTR { return hn::Set(d, value); };
-      const V half = number(0.5f);
-      w[0] = f * hn::MulSub(f, hn::NegMulAdd(half, f, number(1.0f)), half);
-      w[1] = hn::MulAdd(f * f, hn::MulSub(number(1.5f), f, number(2.5f)), number(1.0f));
-      w[2] = f * hn::MulAdd(f, hn::NegMulAdd(number(1.5f), f, number(2.0f)), half);
-      w[3] = f * f * hn::MulSub(half, f, half);
+      const V one = hn::Set(D(), 1.0f);
+      w[0] = far(one + f);
+      w[1] = near(f);
+      w[2] = near(one - f);
+      w[3] = far(hn::Set(D(), 2.0f) - f);
+    }
+
+   private:
+    static HWY_INLINE V near(V x) {
+      const V steep =
+          hn::MulSub(hn::Set(D(), cubic_slope + 2.0f), x, hn::Set(D(), cubic_slope + 3.0f));
+      return hn::MulAdd(steep, x * x, hn::Set(D(), 1.0f));
+    }
+    static HWY_INLINE V far(V x) {
+      const V inner = hn::MulAdd(x - hn::Set(D(), 5.0f), x, hn::Set(D(), 8.0f));
+      return hn::Set(D(), cubic_slope) * hn::MulSub(inner, x, hn::Set(D(), 4.0f));
     }
   };
 
-  /// Catmull-Rom's 16 texels; may overshoot.
-  HWY_INLINE Triple<V> sample_history(V u, V v) const {
+  /// How far from a texel the history is read, 0 (there) to 0.5, along the farther axis.
+  HWY_INLINE V off_texel(V u, V v) const {
+    const auto off = [&](V t, int size) HWY_ATTR {
+      const V at = t * set(static_cast<float>(size));
+      return hn::Abs(at - hn::Floor(at) - set(0.5f));
+    };
+    return hn::Max(off(u, job_.width), off(v, job_.height));
+  }
+
+  /// May overshoot; w: of the nearest texel.
+  HWY_INLINE Quad<V> sample_history(V u, V v) const {
     const V half = set(0.5f);
     const V x = hn::MulSub(u, set(static_cast<float>(job_.width)), half);
     const V y = hn::MulSub(v, set(static_cast<float>(job_.height)), half);
     const V low_x = hn::Floor(x), low_y = hn::Floor(y);
-    const Weights across(x - low_x), down(y - low_y);
+    const V fx = x - low_x, fy = y - low_y;
+    const Weights across(fx), down(fy);
     const VI column = hn::ConvertTo(di_, low_x), row = hn::ConvertTo(di_, low_y);
     const V zero = hn::Zero(d_);
     Triple<V> sum{zero, zero, zero};
@@ -166,7 +195,12 @@ class Antialiasing {
         sum = sum + line * down.w[j];
       }
     }
-    return {hn::Max(sum.x, zero), hn::Max(sum.y, zero), hn::Max(sum.z, zero)};
+    const auto next = [&](V f) HWY_ATTR {
+      const V step = hn::IfThenElseZero(hn::Ge(f, half), set(1.0f));
+      return hn::ConvertTo(di_, step);
+    };
+    const V frames = bounds_.gather(column + next(fx), row + next(fy)).last_of_four(job_.history);
+    return {hn::Max(sum.x, zero), hn::Max(sum.y, zero), hn::Max(sum.z, zero), frames};
   }
 
   /// The same where the lanes lie near each other, in the same row or the next. @return whether
@@ -216,7 +250,7 @@ class Antialiasing {
     const V zero = hn::Zero(d_), one = set(1.0f);
     const Quad<V> center = load4(d_, row_of<const float>(job_.radiance, y) + 4 * x);
     float* const out = row_of<float>(job_.resolved, y) + 4 * x;
-    const Pair<V> moved = nearest_motion(motion, view, x, y);
+    const Pair<V> moved = edge_motion(motion, view, x, y);
     const V u =
         hn::Iota(d_, static_cast<float>(x) + 0.5f) / set(static_cast<float>(job_.width)) + moved.x;
     const V v = set((static_cast<float>(y) + 0.5f) / static_cast<float>(job_.height)) + moved.y;
@@ -224,13 +258,16 @@ class Antialiasing {
     M known =
         hn::And(hn::And(hn::Ge(u, zero), hn::Le(u, one)), hn::And(hn::Ge(v, zero), hn::Le(v, one)));
     if (job_.frame.history_invalid != 0 || hn::AllFalse(d_, known)) {
-      store4(d_, center, out);
+      store4(d_, Quad<V>{center.x, center.y, center.z, one}, out);
       return;
     }
     const Box box = box_about(colors, x, y);
-    const Triple<V> old =
-        compressed(sample_history(clamped(u, 0.0f, 1.0f), clamped(v, 0.0f, 1.0f)));
-    V weight = set(job_.constants.blend);
+    const Quad<V> found = sample_history(clamped(u, 0.0f, 1.0f), clamped(v, 0.0f, 1.0f));
+    const Triple<V> old = compressed({found.x, found.y, found.z});
+    const V still = hn::Max(hn::NegMulAdd(set(off_texel_slope), off_texel(u, v), one), zero);
+    const V most = hn::MulAdd(still, set(most_still - 1.0f), one);
+    const V frames = hn::Min(found.w + one, most * set(1.0f / job_.constants.blend));
+    V weight = one / frames;
     if (job_.constants.anti_flicker > 0.0f) {
       const V margin = hn::Min(hn::Abs(old.x - box.low.x), hn::Abs(box.high.x - old.x));
       const V span = hn::Max(margin + box.high.x - box.low.x, set(1e-6f));
@@ -239,9 +276,12 @@ class Antialiasing {
     const Triple<V> held{hn::Min(hn::Max(old.x, box.low.x), box.high.x),
                          hn::Min(hn::Max(old.y, box.low.y), box.high.y),
                          hn::Min(hn::Max(old.z, box.low.z), box.high.z)};
-    const Triple<V> blended = mix(held, load(colors, x, y), clamped(weight, 0.0f, 1.0f));
+    const Triple<V> blended = mix(held, load(colors, x, y), weight);
     const Triple<V> result = expanded(blended);
-    store4(d_, select(known, Quad<V>{result.x, result.y, result.z, center.w}, center), out);
+    store4(d_,
+           select(known, Quad<V>{result.x, result.y, result.z, frames},
+                  Quad<V>{center.x, center.y, center.z, one}),
+           out);
   }
 
   const D d_{};

@@ -10,10 +10,10 @@ template <class Stage>
 struct AntialiasBindings {
   gpu::Read<Stage> radiance, motion, history;  // rgba32f
   gpu::ReadBuffer<Stage, shared::ExposureState> exposure;
-  gpu::Write<Stage> resolved;  // rgba32f
+  gpu::Write<Stage> resolved;  // rgba32f; a: frames in the mean
 };
 struct AntialiasConstants {
-  float blend;         // weight of the new frame
+  float blend;         // least weight of the new frame
   float clip;          // half width of the box in standard deviations
   float anti_flicker;  // 1: on
 };

@@ -12,7 +12,7 @@ inline constexpr struct TemporalAntialiasBuffers {
 } temporal_antialias_buffers{};
 
 /// Blends each frame with those before along the motion of surfaces and of the background: linear
-/// radiance without jitter (paper section 3, stage 8; the temporal antialiasing of Falcor).
+/// radiance without jitter (paper section 3, stage 8; the box of Salvi 2016).
 /// `radiance` itself where `antialiasing.temporal` is off.
 gpu::ImageRef temporal_antialias(gpu::FramePlan& plan, const FrameInputs& in,
                                  const GBuffer& gbuffer, const Exposure& exposure,
