@@ -79,6 +79,7 @@ struct Case {
   bool areas = false;
   float alpha = 1.0f;
   bool orthographic = false;
+  bool unoccluded = false;  // every ray finds what it looks for
 };
 
 /// Two layered spheres and a panel on a plain floor, lit by punctual lights, or by areas, one of
@@ -115,14 +116,20 @@ std::shared_ptr<const scene::Scene> make_scene(const Case& which) {
   return made;
 }
 
-/// All that a surface goes through, by the shaders and by the host kernels, each on what it has
-/// made itself.
+/// All that a surface goes through, by the shaders and by the host kernels.
 class KernelComparison {
  public:
   explicit KernelComparison(const Case& which, VkExtent2D extent = {150, 100})
-      : rig_(make_scene(which), camera(which.orthographic), options(extent)) {
-    for (const bool host : {false, true}) sides_.push_back(declare(host));
-    drawn_ = render::draw_gbuffer(rig_.plan(), with_host_kernels(rig_, true));
+      : rig_(make_scene(which), camera(which.orthographic), options(which, extent)),
+        random_(!which.unoccluded) {
+    gbuffers_ = {render::trace_gbuffer(rig_.plan(), with_host_kernels(rig_, false)),
+                 render::trace_gbuffer(rig_.plan(), with_host_kernels(rig_, true)),
+                 render::draw_gbuffer(rig_.plan(), with_host_kernels(rig_, true))};
+    // Of one G-buffer, whose rounding would send rays elsewhere.
+    for (const bool host : {false, true}) sides_.push_back(declare(host, gbuffers_[1]));
+    for (const render::GBuffer& gbuffer : gbuffers_) {
+      composed_.push_back(compose(false, gbuffer, sides_[0]).hdr);
+    }
     rig_.set_view(camera(which.orthographic), 6);
     rig_.run();
   }
@@ -130,29 +137,50 @@ class KernelComparison {
   FrameRig& rig() { return rig_; }
 
   void expect_equal(const std::string& which) const {
-    const auto& [shader, host] = std::tie(sides_[0], sides_[1]);
-    expect_equal(which + ": normals", shader.gbuffer.normals, host.gbuffer.normals, 2e-3);
-    expect_equal(which + ": surface", shader.gbuffer.surface, host.gbuffer.surface, 2e-3);
-    expect_equal(which + ": drawn surface", shader.gbuffer.surface, drawn_.surface, 4e-3);
-    expect_equal(which + ": drawn base color", shader.gbuffer.base_color, drawn_.base_color, 4e-3);
+    for (const std::size_t i : {1u, 2u}) {
+      const std::string what = which + (i == 1 ? ": traced" : ": drawn");
+      // What is composed of them tells their layers.
+      expect_equal(what, composed_[0], composed_[i], 8e-3);
+      expect_equal(what + " surface", gbuffers_[0].surface, gbuffers_[i].surface, 4e-3);
+    }
     // Rounding may send a ray past an edge or select another light.
-    expect_equal(which + ": shadows", shader.shadows, host.shadows, 6e-3);
-    expect_equal(which + ": reflections", shader.specular, host.specular, 8e-3);
-    expect_equal(which + ": composed", shader.composed, host.composed, 8e-3);
+    expect_equal(which + ": shadows", sides_[0].shadows, sides_[1].shadows, 6e-3);
+    expect_equal(which + ": reflections", sides_[0].specular, sides_[1].specular, 6e-3);
+    expect_equal(which + ": composed", sides_[0].hdr, sides_[1].hdr, 6e-3);
+  }
+
+  /// Of surfaces that nothing occludes and the frame that they blend over.
+  void expect_equal_blends(const std::string& which) const {
+    expect_equal(which + ": composed", sides_[0].hdr, sides_[1].hdr, 6e-3);
+  }
+
+  /// Where bits of the rays decide what stops them, means are all that can be compared.
+  void expect_equal_means(const std::string& which) const {
+    const auto mean = [this](gpu::ImageRef image) {
+      double sum = 0.0;
+      const render::FloatImage read = rig_.read(image);
+      for (const float value : read.rgba) sum += std::min(std::abs(value), 10.0f);
+      return sum / static_cast<double>(read.rgba.size());
+    };
+    for (const auto signal : {&Side::shadows, &Side::specular, &Side::hdr}) {
+      const double expected = mean(sides_[0].*signal);
+      EXPECT_NEAR(mean(sides_[1].*signal), expected, 0.01 * expected) << which;
+    }
   }
 
  private:
   struct Side {
-    render::GBuffer gbuffer;
-    gpu::ImageRef shadows, specular, composed;
+    gpu::ImageRef shadows, specular, hdr;
   };
 
-  static RigOptions options(VkExtent2D extent) {
+  static RigOptions options(const Case& which, VkExtent2D extent) {
     RigOptions made{.extent = extent, .environment = make_environment(128, [](const glm::vec3& d) {
                                         return glm::vec3(1.0f + d.y, 0.5f + 0.4f * d.x * d.z,
                                                          1.0f - d.x);
                                       })};
     made.settings.specular.max_roughness = 0.4f;  // some surfaces reflect the environment alone
+    made.settings.specular.enabled = made.settings.shadows.enabled =
+        made.settings.ambient.occlusion = !which.unoccluded;
     return made;
   }
   static scene::Camera camera(bool orthographic) {
@@ -161,20 +189,25 @@ class KernelComparison {
     return made;
   }
 
-  Side declare(bool host) {
+  render::Composed compose(bool host, const render::GBuffer& gbuffer, const Side& side) {
+    gpu::FramePlan& plan = rig_.plan();
+    const gpu::ImageRef background = plan.image("background", VK_FORMAT_R32G32B32A32_SFLOAT);
+    plan.get(background).clear();
+    const render::NoisySignals noisy{side.shadows, side.shadows,
+                                     random_ ? std::optional(side.specular) : std::nullopt};
+    return render::compose(plan, with_host_kernels(rig_, host), gbuffer, noisy, std::nullopt,
+                           background);
+  }
+
+  Side declare(bool host, const render::GBuffer& gbuffer) {
     const render::FrameInputs& in = with_host_kernels(rig_, host);
     gpu::FramePlan& plan = rig_.plan();
     Side side;
-    side.gbuffer = render::trace_gbuffer(plan, in);
-    side.shadows = render::trace_shadows(plan, in, side.gbuffer, {});
-    side.specular = render::trace_specular(plan, in, side.gbuffer, {});
-    const gpu::ImageRef background = plan.image("background", VK_FORMAT_R32G32B32A32_SFLOAT);
-    plan.get(background).clear();
-    const render::NoisySignals noisy{side.shadows, side.shadows, side.specular};
-    const render::Composed composed =
-        render::compose(plan, in, side.gbuffer, noisy, std::nullopt, background);
-    render::blend_surfaces(plan, in, side.gbuffer, composed);
-    side.composed = composed.hdr;
+    side.shadows = render::trace_shadows(plan, in, gbuffer, {});
+    side.specular = render::trace_specular(plan, in, gbuffer, {});
+    const render::Composed composed = compose(host, gbuffer, side);
+    render::blend_surfaces(plan, in, gbuffer, composed);
+    side.hdr = composed.hdr;
     return side;
   }
 
@@ -187,8 +220,10 @@ class KernelComparison {
   }
 
   FrameRig rig_;
+  bool random_;
+  std::vector<render::GBuffer> gbuffers_;  // by the shaders, by the kernels, drawn
   std::vector<Side> sides_;
-  render::GBuffer drawn_;
+  std::vector<gpu::ImageRef> composed_;  // of each G-buffer, by the shader
 };
 
 class LayersKernel : public testing::Test {
@@ -200,11 +235,7 @@ class LayersKernel : public testing::Test {
 
 TEST_F(LayersKernel, MatchesShadersForEveryLayer) {
   const std::pair<const char*, scene::MaterialLayers (*)(SceneBuilder&)> layers[] = {
-      {"coat", coat},
-      {"sheen", sheen},
-      {"specular", specular},
-      {"transmission", transmission},
-      {"all, textured", all_of_them}};
+      {"coat", coat}, {"sheen", sheen}, {"specular", specular}, {"all, textured", all_of_them}};
   for (const auto& [name, made] : layers) {
     KernelComparison({.layers = made}).expect_equal(name);
   }
@@ -217,8 +248,16 @@ TEST_F(LayersKernel, MatchesShadersForAreaLights) {
 }
 
 TEST_F(LayersKernel, MatchesShadersForBlendedSurfaces) {
-  KernelComparison({.alpha = 0.6f}).expect_equal("plain");
-  KernelComparison({.layers = all_of_them, .areas = true, .alpha = 0.6f}).expect_equal("layers");
+  const std::pair<const char*, Case> cases[] = {
+      {"plain", {.alpha = 0.6f}},
+      {"orthographic", {.alpha = 0.6f, .orthographic = true}},
+      {"transmission", {.layers = transmission}},
+      {"layers", {.layers = all_of_them, .areas = true, .alpha = 0.6f}}};
+  for (auto [name, which] : cases) {
+    KernelComparison(which).expect_equal_means(name);
+    which.unoccluded = true;
+    KernelComparison(which).expect_equal_blends(name);
+  }
 }
 
 TEST_F(LayersKernel, MatchesShadersAtAnySize) {
