@@ -30,7 +30,9 @@ FrameRig::FrameRig(std::shared_ptr<const scene::Scene> scene, const scene::Camer
               clock_,
               moving_,
               scene_motion_,
-              parts_.split_sum_table},
+              parts_.split_sum_table,
+              parts_.sheen_table,
+              parts_.ltc_table},
       plan_(parts_.device, options.extent) {
   render::write_frame_set(
       parts_, frame_set_, constants_buffer_, moving_.tables().lights,

@@ -95,9 +95,19 @@ struct Renderer::State {
 // The old plan is freed first: two of them may not fit into memory.
 void Renderer::State::rebuild_frame_plan() {
   compiled.reset();
-  const FrameInputs inputs{
-      parts.programs, *scene, moving->tables(), *parts.tracer, moving->structure(),  constants,
-      settings,       clock,  *moving,          scene_motion,  parts.split_sum_table};
+  const FrameInputs inputs{parts.programs,
+                           *scene,
+                           moving->tables(),
+                           *parts.tracer,
+                           moving->structure(),
+                           constants,
+                           settings,
+                           clock,
+                           *moving,
+                           scene_motion,
+                           parts.split_sum_table,
+                           parts.sheen_table,
+                           parts.ltc_table};
   compiled = std::make_unique<CompiledFrame>(parts, inputs, constants_buffer, extent);
   has_previous = false;
   sample_index = 0;

@@ -12,13 +12,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
 
+template <bool layered>
 class Generation {
  public:
   explicit Generation(const SpecularRaysJob& job)
       : job_(job),
         frame_(job.frame),
         camera_(job.frame),
-        split_sum_(job.split_sum.texels, job.split_sum.size),
+        tables_(job.tables),
         scale_(job.directions ? 2 : 1),
         random_(specular_pairs(job.frame, 4, scale_)) {}
 
@@ -49,12 +50,7 @@ class Generation {
     const Mask requested = hn::And(inside, hn::Le(packed.z, number(0.5f)));  // not unlit
     if (none(requested)) return 0;
 
-    const Float4 color = gathered_unorm8(job_.base_color, pixel);
-    const Float4 encoded = gathered4(job_.normals, pixel);
-    const MaterialLanes m =
-        make_material(tag, Float3{color.x * color.x, color.y * color.y, color.z * color.z},
-                      packed.y, packed.x, octahedral_decode(encoded.x, encoded.y),
-                      octahedral_decode(encoded.z, encoded.w), camera_.to_eye(pixel), split_sum_);
+    const auto m = gbuffer_material<layered>(job_, pixel, camera_.to_eye(pixel), tables_);
     Float2 u;
     random_.at(as_unsigned(cell.x), as_unsigned(cell.y), u.x, u.y);
     const SpecularSample s = sample_specular(m, u);
@@ -70,7 +66,8 @@ class Generation {
       ray.user = numbers(1.0f);
     }
     // Roughness is stored in steps of 1 / 255: a little more than half of one is still the same.
-    const Mask smooth = hn::Le(m.roughness, number(job_.constants.max_roughness + 0.6f / 255.0f));
+    const Mask smooth =
+        hn::Le(narrower_roughness(m), number(job_.constants.max_roughness + 0.6f / 255.0f));
     ray.origin = offset_origin(camera_.world_position(pixel, view_z), m.geometric, view_z);
     ray.direction = s.direction;
     ray.t_min = zero();
@@ -112,13 +109,14 @@ class Generation {
   const SpecularRaysJob& job_;
   const shared::FrameConstants& frame_;
   CameraLanes camera_;
-  SquareTable<Tag> split_sum_;
+  LobeLanes<Tag> tables_;
   int scale_;
   RandomPairs<UnsignedTag> random_;
 };
 
-void make_tile(const SpecularRaysJob& job, const Tile& tile) {
-  const Generation generation(job);
+template <bool layered>
+HWY_INLINE void make_tile_of(const SpecularRaysJob& job, const Tile& tile) {
+  const Generation<layered> generation(job);
   PixelList traced;
   for_each_row(tile, [&](const TileRow& cells) { generation.clear(cells, traced); });
   std::array<shared::Ray, tile_side * tile_side> made;
@@ -129,6 +127,11 @@ void make_tile(const SpecularRaysJob& job, const Tile& tile) {
     count += generation.block(cells, valid, made.data() + count);
   }
   if (count) job.rays.append({made.data(), count});
+}
+
+void make_tile(const SpecularRaysJob& job, const Tile& tile) {
+  if (job.layered) return make_tile_of<true>(job, tile);
+  make_tile_of<false>(job, tile);
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE

@@ -36,9 +36,12 @@ struct FrameInputs {
   /// read when a pass runs.
   const protocol::Settings& settings;
   const FrameClock& clock;
-  const MovingScene& moving;          // what the rasteriser draws
-  const SceneMotion& scene_motion;    // since the frame before
-  const gpu::Image& split_sum_table;  // rg32f, mapped on devices that are processors
+  const MovingScene& moving;        // what the rasteriser draws
+  const SceneMotion& scene_motion;  // since the frame before
+  // Mapped on devices that are processors.
+  const gpu::Image& split_sum_table;  // rg32f
+  const gpu::Image& sheen_table;      // r32f
+  const gpu::Image& ltc_table;        // rgba32f
 
   /// The compute program of an embedded shader, made for a scene with these features (all of them
   /// where the shader does not ask) when the plan needs it.
@@ -48,8 +51,11 @@ struct FrameInputs {
     };
   }
 
-  kernels::SplitSum split_sum() const {
-    return {split_sum_table.host(), static_cast<int>(split_sum_table.desc().extent.width)};
+  kernels::LobeTables lobe_tables() const {
+    const auto texels = [](const gpu::Image& table) {
+      return kernels::SquareTexels{table.host(), static_cast<int>(table.desc().extent.width)};
+    };
+    return {texels(split_sum_table), texels(sheen_table), texels(ltc_table)};
   }
 };
 

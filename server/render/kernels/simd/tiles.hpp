@@ -12,6 +12,7 @@
 #include <cstring>
 
 #include "render/kernels/common/tile.hpp"
+#include "render/kernels/simd/layers.hpp"
 #include "render/kernels/simd/ray_writer.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -31,6 +32,25 @@ HWY_INLINE Float4 gathered4(const gpu::HostView& image, const PixelLanes& p) {
 /// The last of four channels.
 HWY_INLINE Float gathered_last(const gpu::HostView& image, const PixelLanes& p) {
   return gather(image.row<const float>(0), hn::Add(texel_index(image, p, 4), integer(3)));
+}
+
+/// shaders/lib/scene/gbuffer_material.glsl, of the images that a pass reads.
+template <bool layered, class Job>
+HWY_INLINE auto gbuffer_material(const Job& job, const PixelLanes& pixels, const Float3& eye,
+                                 const LobeLanes<Tag>& tables) {
+  const Float4 encoded = gathered4(job.normals, pixels);
+  const Float4 root = gathered_unorm8(job.base_color, pixels);
+  const Float4 packed = gathered_unorm8(job.surface, pixels);
+  const Float3 color{root.x * root.x, root.y * root.y, root.z * root.z};
+  const Float3 normal = octahedral_decode(encoded.x, encoded.y);
+  const Float3 geometric = octahedral_decode(encoded.z, encoded.w);
+  if constexpr (layered) {
+    Float roughness;
+    const auto layer = unpack_layer(tag, gathered4(job.layers, pixels), roughness);
+    return make_material(tag, color, packed.y, roughness, normal, geometric, eye, tables, layer);
+  } else {
+    return make_material(tag, color, packed.y, packed.x, normal, geometric, eye, tables.split_sum);
+  }
 }
 
 /// Pixels of a tile, in its order.
