@@ -416,10 +416,7 @@ const Image& FramePlan::get(ImageRef image) const {
   return physical(image.index, parity_);
 }
 const Image& FramePlan::latest(ImageRef image) const {
-  const Image& found = physical(image.index, parity_ ^ 1);
-  // Where all passes that write it were skipped, other resources have left their bytes there.
-  if (found.block() && !was_written(image.index)) found.clear();
-  return found;
+  return physical(image.index, parity_ ^ 1);
 }
 const Buffer& FramePlan::get(BufferRef buffer) const {
   return *resources_[buffer.index].buffer;

@@ -220,8 +220,7 @@ class FramePlan {
 
   const Image& get(ImageRef image) const;  // this frame's image of a history
   const Buffer& get(BufferRef buffer) const;
-  /// The image written by the frame that just ran; zero where that skipped all passes that write
-  /// an image which shares memory.
+  /// The image written by the frame that just ran.
   const Image& latest(ImageRef image) const;
 
   struct View {
@@ -251,8 +250,6 @@ class FramePlan {
   void make(Resource& resource, MemoryPlace place) const;
   /// What is left to make.
   void make_resources();
-  /// Whether a pass of the frame that just ran wrote it.
-  bool was_written(std::uint32_t index) const;
   /// Absent for what needs memory of its own.
   std::optional<Lifetime> shared_lifetime(std::uint32_t index) const;
   PassBuilder add(Pass pass);

@@ -27,6 +27,8 @@ void FramePlan::make(Resource& resource, MemoryPlace place) const {
   if (resource.image_desc) {
     const auto made =
         std::make_shared<const Image>(device_, *resource.image_desc, std::move(place));
+    // Passes may read what the passes that write it have skipped since the plan was made.
+    if (made->host() && !made->block()) made->clear();
     resource.owned_images = {made, made};
     resource.images = {made.get(), made.get()};
   } else if (const auto& buffer = resource.buffer_desc) {
@@ -50,7 +52,9 @@ std::optional<Lifetime> FramePlan::shared_lifetime(std::uint32_t index) const {
     for (const Use& use : pass.all_uses()) {
       if (use.resource != index) continue;
       if (!lifetime) {
-        if (use.access != Access::write) return std::nullopt;  // it comes from the frame before
+        // What comes from the frame before stays, or is left from it where a pass is skipped.
+        if (use.access != Access::write) return std::nullopt;
+        if (resource.image_desc && pass.condition) return std::nullopt;
         lifetime.emplace().first = i;
       }
       lifetime->last = i;
@@ -91,16 +95,6 @@ void FramePlan::make_resources() {
   for (Resource& resource : resources_) {
     if (!resource.is_made()) make(resource, {});
   }
-}
-
-bool FramePlan::was_written(std::uint32_t index) const {
-  for (std::size_t i = 0; i < passes_.size(); ++i) {
-    if (timings_[i].milliseconds < 0.0f) continue;
-    for (const Use& use : passes_[i].all_uses()) {
-      if (use.resource == index && use.access != Access::read) return true;
-    }
-  }
-  return false;
 }
 
 std::uint64_t FramePlan::memory_bytes() const {

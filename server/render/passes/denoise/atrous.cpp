@@ -13,9 +13,14 @@ gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& g
   const bool separable = config.shape == protocol::BlurKernel::separable;
   const int last = config.iterations - 1;
   const gpu::ImageRef result = image(config.buffers.denoised);
-  std::array<gpu::ImageRef, 2> between{};
-  if (last > 0) between[0] = image(config.buffers.even);
-  if (last > 1) between[1] = image(config.buffers.odd);
+  // The second half of a separable iteration does not read the image that it writes: all of them
+  // can write the same one.
+  const bool result_is_written = !feedback || feedback->level != last;
+  std::array<gpu::ImageRef, 2> between{result, result};
+  if (last > 0 && !(separable && result_is_written)) {
+    between[0] = between[1] = image(config.buffers.even);
+  }
+  if (last > 1 && !separable) between[1] = image(config.buffers.odd);
   const gpu::ImageRef half = separable ? image(config.buffers.half) : gpu::ImageRef{};
 
   const auto pass = [&](const std::string& name, gpu::ImageRef from, gpu::ImageRef to, auto shape) {
