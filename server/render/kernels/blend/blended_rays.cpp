@@ -29,13 +29,14 @@ class BlendedRays {
 
   void run(const Tile& tile) const {
     PixelList traced;
-    for_each_pixel(tile, [&](const PixelLanes& pixel, Mask inside) {
+    for_each_row(tile, [&](const TileRow& row) {
+      const PixelLanes& pixel = row.pixels;
       const glm::ivec4 region(job_.constants.region);
       const Mask right = float_mask(
           hn::And(hn::Gt(pixel.x, integer(region.x - 1)), hn::Lt(pixel.x, integer(region.z))));
       const Mask down = float_mask(
           hn::And(hn::Gt(pixel.y, integer(region.y - 1)), hn::Lt(pixel.y, integer(region.w))));
-      traced.add(pixel, hn::And(inside, hn::And(right, down)));
+      traced.add(pixel, hn::And(row.inside, hn::And(right, down)));
     });
     std::array<shared::Ray, tile_side * tile_side> made;
     std::size_t count = 0;
