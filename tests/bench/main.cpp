@@ -197,8 +197,7 @@ nlohmann::json measure(render::Engine& engine, RecordingTracer& tracer, const sc
     }
   }
   tracer.set_recording(true);
-  run.renderer.set_camera(options.still ? camera
-                                        : swung(camera, options.warm_up + options.frames));
+  run.renderer.set_camera(options.still ? camera : swung(camera, options.warm_up + options.frames));
   run.renderer.render();
   tracer.set_recording(false);
   const CopyRates rates = measure_copy_rates(engine.parts().device, extent);

@@ -122,6 +122,7 @@ std::vector<protocol::Settings> settings_for_all_buffers() {
   std::vector<protocol::Settings> all(3);
   all[0].reference.use = protocol::ReferenceUse::always;
   all[1].specular.half_resolution = true;
+  all[1].shadow_blur.kernel = all[1].specular_blur.kernel = protocol::BlurKernel::full;
   for (const char* assignment :
        {"reference.use=when_static", "reinhard.mode=exact",
         "shadow_temporal.rectification=percentile", "specular_temporal.rectification=percentile",
