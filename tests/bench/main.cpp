@@ -32,7 +32,7 @@ struct Options {
   std::string device;
   std::string tracer = "auto";
   int frames = 16;
-  int warm_up = 4;
+  int warm_up = 24;  // until histories are long and most pixels leave samples out
   float draw_scale = 1.0f;
   bool still = false;
   bool shaders = false;
@@ -199,6 +199,7 @@ nlohmann::json measure(render::Engine& engine, RecordingTracer& tracer, const sc
     }
   }
   tracer.set_recording(true);
+  run.renderer.set_camera(options.still ? camera : swung(camera, options.warm_up + options.frames));
   run.renderer.render();
   tracer.set_recording(false);
   const CopyRates rates = measure_copy_rates(engine.parts().device, extent);

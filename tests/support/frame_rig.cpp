@@ -31,6 +31,8 @@ FrameRig::FrameRig(std::shared_ptr<const scene::Scene> scene, const scene::Camer
               moving_,
               scene_motion_,
               parts_.split_sum_table,
+              parts_.sheen_table,
+              parts_.ltc_table,
               options.shown},
       plan_(parts_.device, options.extent) {
   render::write_frame_set(

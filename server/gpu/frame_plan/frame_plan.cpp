@@ -56,10 +56,8 @@ ImageRef FramePlan::image(std::string_view name, VkFormat format, VkImageUsageFl
   desc.usage = extra_usage | VK_IMAGE_USAGE_SAMPLED_BIT |
                (depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_IMAGE_USAGE_STORAGE_BIT);
   desc.mapped = device_.is_cpu() && !depth;
-  Resource resource{.name = std::string(name)};
-  auto made = std::make_shared<const Image>(device_, std::move(desc));
-  resource.images = {made.get(), made.get()};
-  resource.owned_images = {made, made};
+  Resource resource{.name = std::string(name), .image_desc = std::move(desc)};
+  if (!shares_memory_) make(resource, {});
   return {add(std::move(resource))};
 }
 
@@ -82,10 +80,8 @@ History FramePlan::history(std::string_view name, VkFormat format, VkImageUsageF
 
 BufferRef FramePlan::buffer(std::string name, VkDeviceSize size, VkBufferUsageFlags usage,
                             Memory memory) {
-  Resource resource{.name = name};
-  auto made = std::make_shared<const Buffer>(device_, std::move(name), size, usage, memory);
-  resource.buffer = made.get();
-  resource.owned_buffer = std::move(made);
+  Resource resource{.name = std::move(name), .buffer_desc = {{size, usage, memory}}};
+  if (!shares_memory_) make(resource, {});
   return {add(std::move(resource))};
 }
 
@@ -161,6 +157,7 @@ PassBuilder FramePlan::host(std::string name, std::function<void()> run) {
 }
 
 void FramePlan::compile() {
+  make_resources();
   for (Pass& pass : passes_) {
     if (pass.is_host_only()) {
       pass.program = nullptr;
@@ -421,7 +418,10 @@ const Image& FramePlan::get(ImageRef image) const {
   return physical(image.index, parity_);
 }
 const Image& FramePlan::latest(ImageRef image) const {
-  return physical(image.index, parity_ ^ 1);
+  const Image& found = physical(image.index, parity_ ^ 1);
+  // Where all passes that write it were skipped, other resources have left their bytes there.
+  if (found.block() && !was_written(image.index)) found.clear();
+  return found;
 }
 const Buffer& FramePlan::get(BufferRef buffer) const {
   return *resources_[buffer.index].buffer;

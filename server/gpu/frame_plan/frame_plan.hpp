@@ -47,6 +47,7 @@ inline constexpr std::size_t most_constants = 128;
 using ProgramSource = std::function<const ComputeProgram&()>;
 
 class FramePlan;
+struct Lifetime;
 
 /// One pass under construction. Its resources bind, in the order given, to the shader's pass set in
 /// ascending binding order.
@@ -168,6 +169,11 @@ class FramePlan {
   void use_host_kernels(bool use) { host_kernels_ = use && device_.is_cpu(); }
   bool uses_host_kernels() const { return host_kernels_; }
 
+  /// On devices that are processors, resources declared from now on share memory where no pass
+  /// needs both. They do not exist before compile(). Images keep their content until the next
+  /// frame begins, buffers of Memory::device for as long as passes read them.
+  void share_memory() { shares_memory_ = device_.is_cpu(); }
+
   /// An image of the plan's extent, or of its own; mapped on CPU devices.
   ImageRef image(std::string_view name, VkFormat format, VkImageUsageFlags extra_usage = 0,
                  std::optional<VkExtent2D> extent = std::nullopt);
@@ -214,7 +220,8 @@ class FramePlan {
 
   const Image& get(ImageRef image) const;  // this frame's image of a history
   const Buffer& get(BufferRef buffer) const;
-  /// The image written by the frame that just ran.
+  /// The image written by the frame that just ran; zero where that skipped all passes that write
+  /// an image which shares memory.
   const Image& latest(ImageRef image) const;
 
   struct View {
@@ -238,6 +245,9 @@ class FramePlan {
   /// one did
   bool restore(const Kept& kept);
 
+  /// Bytes of all images and buffers that the plan owns.
+  std::uint64_t memory_bytes() const;
+
   /// Names of passes in front of which a barrier stands, in order: what the tests look at.
   std::vector<std::string> barriers() const;
   /// How often the frame that just ran submitted work to the device: not at all where every pass
@@ -250,6 +260,14 @@ class FramePlan {
   struct Pass;
 
   std::uint32_t add(Resource resource);
+  /// Makes what a resource describes: with its own memory, or in its place of a block.
+  void make(Resource& resource, MemoryPlace place) const;
+  /// What is left to make.
+  void make_resources();
+  /// Whether a pass of the frame that just ran wrote it.
+  bool was_written(std::uint32_t index) const;
+  /// Absent for what needs memory of its own.
+  std::optional<Lifetime> shared_lifetime(std::uint32_t index) const;
   PassBuilder add(Pass pass);
   void run_host_kernel(const Pass& pass) const;
   void check_pass(const Pass& pass) const;
@@ -289,6 +307,7 @@ class FramePlan {
   std::vector<View> views_;
   std::uint32_t parity_ = 0;
   bool host_kernels_ = false;
+  bool shares_memory_ = false;
   bool compiled_ = false;
 };
 

@@ -7,6 +7,12 @@
 namespace heliograph::gpu {
 
 struct FramePlan::Resource {
+  struct BufferDesc {
+    VkDeviceSize size;
+    VkBufferUsageFlags usage;
+    Memory memory;
+  };
+
   std::string name;
   // By parity of the frame; both the same except for histories.
   std::array<const Image*, 2> images{};
@@ -15,6 +21,11 @@ struct FramePlan::Resource {
   std::shared_ptr<const Buffer> owned_buffer;
   std::optional<std::uint32_t> level;
   VkSampler sampler = VK_NULL_HANDLE;
+  // What is still to be made by compile(), when it is known which resources share memory.
+  std::optional<ImageDesc> image_desc;
+  std::optional<BufferDesc> buffer_desc;
+
+  bool is_made() const { return images[0] || buffer; }
 };
 
 struct FramePlan::Pass {

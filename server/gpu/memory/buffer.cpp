@@ -5,18 +5,44 @@
 #include <utility>
 
 namespace heliograph::gpu {
+namespace {
+
+VkBufferCreateInfo buffer_info(VkDeviceSize size, VkBufferUsageFlags usage) {
+  VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
+  // Whole texels of any format, so that a view covers the last bytes too.
+  info.size = std::max<VkDeviceSize>((size + 15) / 16 * 16, 16);
+  info.usage = usage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  return info;
+}
+
+}  // namespace
+
+VkMemoryRequirements Buffer::requirements(const Device& device, VkDeviceSize size,
+                                          VkBufferUsageFlags usage) {
+  const VkBufferCreateInfo made = buffer_info(size, usage);
+  VkDeviceBufferMemoryRequirements info{VK_STRUCTURE_TYPE_DEVICE_BUFFER_MEMORY_REQUIREMENTS};
+  info.pCreateInfo = &made;
+  VkMemoryRequirements2 found{VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2};
+  vkGetDeviceBufferMemoryRequirements(device.handle(), &info, &found);
+  return found.memoryRequirements;
+}
 
 Buffer::Buffer(const Device& device, std::string name, VkDeviceSize size, VkBufferUsageFlags usage,
-               Memory memory)
+               Memory memory, MemoryPlace place)
     : Buffer() {  // what is made is the destructor's when a step fails
   device_ = &device;
   name_ = std::move(name);
-  // Whole texels of any format, so that a view covers the last bytes too.
-  size_ = std::max<VkDeviceSize>((size + 15) / 16 * 16, 16);
-  VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
-  info.size = size_;
-  info.usage = usage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  const VkBufferCreateInfo info = buffer_info(size, usage);
+  size_ = info.size;
   check(vkCreateBuffer(device.handle(), &info, nullptr, &handle_), "create a buffer");
+  device.name(VK_OBJECT_TYPE_BUFFER, handle_, name_);
+  if (place.block) {
+    block_ = std::move(place.block);
+    check(vkBindBufferMemory(device.handle(), handle_, block_->handle(), place.offset),
+          "bind a buffer's place");
+    mapped_ = block_->mapped() + place.offset;
+    return;
+  }
   VkMemoryRequirements requirements;
   vkGetBufferMemoryRequirements(device.handle(), handle_, &requirements);
   constexpr VkMemoryPropertyFlags mapped =
@@ -32,7 +58,6 @@ Buffer::Buffer(const Device& device, std::string name, VkDeviceSize size, VkBuff
     check(vkMapMemory(device.handle(), memory_, 0, VK_WHOLE_SIZE, 0, &address), "map a buffer");
     mapped_ = static_cast<std::byte*>(address);
   }
-  device.name(VK_OBJECT_TYPE_BUFFER, handle_, name_);
 }
 
 Buffer::~Buffer() {
@@ -47,6 +72,7 @@ void Buffer::swap(Buffer& other) noexcept {
   std::swap(name_, other.name_);
   std::swap(handle_, other.handle_);
   std::swap(memory_, other.memory_);
+  std::swap(block_, other.block_);
   std::swap(view_, other.view_);
   std::swap(size_, other.size_);
   std::swap(mapped_, other.mapped_);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "gpu/device/device.hpp"
+#include "gpu/memory/memory_block.hpp"
 
 namespace heliograph::gpu {
 
@@ -16,12 +16,13 @@ enum class Memory {
   readback,  // mapped and cached, read by the host
 };
 
-/// A buffer with its own memory. Every buffer may be copied from and to.
+/// A buffer with its own memory, or in a block of several. Every buffer may be copied from and to.
 class Buffer {
  public:
   Buffer() = default;
+  /// `place`: in a block, mapped, whatever `memory` says.
   Buffer(const Device& device, std::string name, VkDeviceSize size, VkBufferUsageFlags usage,
-         Memory memory);
+         Memory memory, MemoryPlace place = {});
   ~Buffer();
   Buffer(Buffer&& other) noexcept { swap(other); }
   Buffer& operator=(Buffer&& other) noexcept {
@@ -29,9 +30,16 @@ class Buffer {
     return *this;
   }
 
+  /// What a block needs to hold a buffer of `size` bytes.
+  static VkMemoryRequirements requirements(const Device& device, VkDeviceSize size,
+                                           VkBufferUsageFlags usage);
+
   VkBuffer handle() const { return handle_; }
   VkDeviceSize size() const { return size_; }
   const std::string& name() const { return name_; }
+  /// The block in which the buffer lies, or null, and bytes of memory that it has for itself.
+  const MemoryBlock* block() const { return block_.get(); }
+  VkDeviceSize own_bytes() const { return block_ ? 0 : size_; }
   explicit operator bool() const { return handle_ != VK_NULL_HANDLE; }
 
   /// The buffer's bytes, or null when the host cannot reach them.
@@ -49,7 +57,8 @@ class Buffer {
   const Device* device_ = nullptr;
   std::string name_;
   VkBuffer handle_ = VK_NULL_HANDLE;
-  VkDeviceMemory memory_ = VK_NULL_HANDLE;
+  VkDeviceMemory memory_ = VK_NULL_HANDLE;  // its own
+  std::shared_ptr<const MemoryBlock> block_;
   mutable VkBufferView view_ = VK_NULL_HANDLE;
   VkDeviceSize size_ = 0;
   std::byte* mapped_ = nullptr;

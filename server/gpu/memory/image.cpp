@@ -17,6 +17,20 @@ VkImageAspectFlags aspect_of(VkFormat format) {
   return is_depth(format) ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
 }
 
+VkImageCreateInfo image_info(const ImageDesc& desc) {
+  VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
+  info.flags = desc.cube ? VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT : 0;
+  info.imageType = VK_IMAGE_TYPE_2D;
+  info.format = desc.format;
+  info.extent = {desc.extent.width, desc.extent.height, 1};
+  info.mipLevels = desc.levels;
+  info.arrayLayers = desc.layers;
+  info.samples = VK_SAMPLE_COUNT_1_BIT;
+  info.tiling = desc.mapped ? VK_IMAGE_TILING_LINEAR : VK_IMAGE_TILING_OPTIMAL;
+  info.usage = desc.usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  return info;
+}
+
 }  // namespace
 
 bool is_depth(VkFormat format) {
@@ -72,42 +86,53 @@ const char* format_name(VkFormat format) {
   }
 }
 
+VkMemoryRequirements Image::requirements(const Device& device, const ImageDesc& desc) {
+  const VkImageCreateInfo made = image_info(desc);
+  VkDeviceImageMemoryRequirements info{VK_STRUCTURE_TYPE_DEVICE_IMAGE_MEMORY_REQUIREMENTS};
+  info.pCreateInfo = &made;
+  VkMemoryRequirements2 found{VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2};
+  vkGetDeviceImageMemoryRequirements(device.handle(), &info, &found);
+  return found.memoryRequirements;
+}
+
 // A constructor that delegates leaves what it has made to the destructor when it fails half way.
-Image::Image(const Device& device, ImageDesc desc) : Image() {
+Image::Image(const Device& device, ImageDesc desc, MemoryPlace place) : Image() {
   device_ = &device;
   desc_ = std::move(desc);
-  VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
-  info.flags = desc_.cube ? VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT : 0;
-  info.imageType = VK_IMAGE_TYPE_2D;
-  info.format = desc_.format;
-  info.extent = {desc_.extent.width, desc_.extent.height, 1};
-  info.mipLevels = desc_.levels;
-  info.arrayLayers = desc_.layers;
-  info.samples = VK_SAMPLE_COUNT_1_BIT;
-  info.tiling = desc_.mapped ? VK_IMAGE_TILING_LINEAR : VK_IMAGE_TILING_OPTIMAL;
-  info.usage = desc_.usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  const VkImageCreateInfo info = image_info(desc_);
   check(vkCreateImage(device.handle(), &info, nullptr, &handle_), "create an image");
-  VkMemoryRequirements requirements;
-  vkGetImageMemoryRequirements(device.handle(), handle_, &requirements);
-  constexpr VkMemoryPropertyFlags host =
-      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  memory_ = device.allocate(requirements, desc_.mapped ? host : 0,
-                            VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, desc_.name);
-  check(vkBindImageMemory(device.handle(), handle_, memory_, 0), "bind an image's memory");
-  if (desc_.mapped) {
-    void* address = nullptr;
-    check(vkMapMemory(device.handle(), memory_, 0, VK_WHOLE_SIZE, 0, &address), "map an image");
-    const VkImageSubresource part{aspect_of(desc_.format), 0, 0};
-    VkSubresourceLayout layout;
-    vkGetImageSubresourceLayout(device.handle(), handle_, &part, &layout);
-    host_ = {static_cast<std::byte*>(address) + layout.offset, layout.rowPitch};
-  }
+  bind_memory(std::move(place));
   device.name(VK_OBJECT_TYPE_IMAGE, handle_, desc_.name);
   view_ = make_view(0, desc_.levels, false);
   if (desc_.usage & VK_IMAGE_USAGE_STORAGE_BIT) {
     for (std::uint32_t i = 0; i < desc_.levels; ++i) level_views_.push_back(make_view(i, 1, true));
   }
   initialise_layout();
+}
+
+void Image::bind_memory(MemoryPlace place) {
+  void* address = nullptr;
+  if (place.block) {
+    block_ = std::move(place.block);
+    check(vkBindImageMemory(device_->handle(), handle_, block_->handle(), place.offset),
+          "bind an image's place");
+    address = block_->mapped() + place.offset;
+  } else {
+    VkMemoryRequirements requirements;
+    vkGetImageMemoryRequirements(device_->handle(), handle_, &requirements);
+    constexpr VkMemoryPropertyFlags host =
+        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    memory_ = device_->allocate(requirements, desc_.mapped ? host : 0,
+                                VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, desc_.name);
+    check(vkBindImageMemory(device_->handle(), handle_, memory_, 0), "bind an image's memory");
+    own_bytes_ = requirements.size;
+    if (!desc_.mapped) return;
+    check(vkMapMemory(device_->handle(), memory_, 0, VK_WHOLE_SIZE, 0, &address), "map an image");
+  }
+  const VkImageSubresource part{aspect_of(desc_.format), 0, 0};
+  VkSubresourceLayout layout;
+  vkGetImageSubresourceLayout(device_->handle(), handle_, &part, &layout);
+  host_ = {static_cast<std::byte*>(address) + layout.offset, layout.rowPitch};
 }
 
 Image::~Image() {
@@ -123,6 +148,8 @@ void Image::swap(Image& other) noexcept {
   std::swap(desc_, other.desc_);
   std::swap(handle_, other.handle_);
   std::swap(memory_, other.memory_);
+  std::swap(own_bytes_, other.own_bytes_);
+  std::swap(block_, other.block_);
   std::swap(view_, other.view_);
   std::swap(level_views_, other.level_views_);
   std::swap(host_, other.host_);

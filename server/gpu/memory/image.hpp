@@ -32,11 +32,12 @@ struct HostView {
   }
 };
 
-/// A 2D or cube image with its own memory. It is moved to GENERAL when made and stays there.
+/// A 2D or cube image with its own memory, or, if mapped, in a block of several. It is moved to
+/// GENERAL when made and stays there.
 class Image {
  public:
   Image() = default;
-  Image(const Device& device, ImageDesc desc);
+  Image(const Device& device, ImageDesc desc, MemoryPlace place = {});
   ~Image();
   Image(Image&& other) noexcept { swap(other); }
   Image& operator=(Image&& other) noexcept {
@@ -44,12 +45,18 @@ class Image {
     return *this;
   }
 
+  /// What a block needs to hold such an image.
+  static VkMemoryRequirements requirements(const Device& device, const ImageDesc& desc);
+
   VkImage handle() const { return handle_; }
   VkImageView view() const { return view_; }
   /// One mip level with all its layers, for storage access.
   VkImageView level_view(std::uint32_t level) const { return level_views_.at(level); }
   const ImageDesc& desc() const { return desc_; }
   HostView host() const { return host_; }
+  /// The block in which the image lies, or null, and bytes of memory that it has for itself.
+  const MemoryBlock* block() const { return block_.get(); }
+  VkDeviceSize own_bytes() const { return own_bytes_; }
   explicit operator bool() const { return handle_ != VK_NULL_HANDLE; }
 
   /// Zeroes every level and layer; waits.
@@ -64,12 +71,16 @@ class Image {
  private:
   void swap(Image& other) noexcept;
   VkImageView make_view(std::uint32_t first_level, std::uint32_t levels, bool storage) const;
+  /// Binds memory and maps it, where the image is to be mapped.
+  void bind_memory(MemoryPlace place);
   void initialise_layout() const;
 
   const Device* device_ = nullptr;
   ImageDesc desc_;
   VkImage handle_ = VK_NULL_HANDLE;
-  VkDeviceMemory memory_ = VK_NULL_HANDLE;
+  VkDeviceMemory memory_ = VK_NULL_HANDLE;  // its own
+  VkDeviceSize own_bytes_ = 0;
+  std::shared_ptr<const MemoryBlock> block_;
   VkImageView view_ = VK_NULL_HANDLE;
   std::vector<VkImageView> level_views_;
   HostView host_;

@@ -15,6 +15,7 @@ CompiledFrame::CompiledFrame(const Engine::Parts& parts, const FrameInputs& in,
                              const gpu::Buffer& constants_buffer, VkExtent2D extent)
     : inputs(in), pool(parts.device, 2, 16), plan(parts.device, extent) {
   plan.use_host_kernels(parts.host_kernels);
+  plan.share_memory();
   share_sets(parts, constants_buffer);
   outputs = declare_frame(plan, inputs);
   plan.read_back(outputs.output);

@@ -48,15 +48,19 @@ Reprojected reproject_and_plan(gpu::FramePlan& plan, const FrameInputs& in,
   return {guide, histories, plan_samples(plan, in, gbuffer, guide, previous)};
 }
 
+/// Whether a frame traces shadows or ambient occlusion.
+auto traces_visibility(const FrameInputs& in) {
+  return [&frame = in.constants] {
+    return (frame.flags & (shared::frame_shadows | shared::frame_ambient_occlusion)) != 0;
+  };
+}
+
 /// The signals without noise, as far as the settings denoise them.
 DenoisedSignals denoise(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                         const Reprojected& from, const NoisySignals& noisy) {
-  // Visibility that is not traced is not read either.
-  const auto traced = [&frame = in.constants] {
-    return (frame.flags & (shared::frame_shadows | shared::frame_ambient_occlusion)) != 0;
-  };
   DenoisedSignals denoised{{}, noisy.specular};
-  plan.only_when(traced, [&] {
+  // Visibility that is not traced is not read either.
+  plan.only_when(traces_visibility(in), [&] {
     denoised.visibility = combine_visibility(plan, in, noisy.shadows, noisy.ambient);
     if (!denoises_visibility(in.settings)) return;
     denoised.visibility =
@@ -87,10 +91,12 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
 
   std::optional<Reprojected> from;
   std::optional<gpu::ImageRef> planned;
-  if (denoises_visibility(in.settings) || denoises_specular(in.settings)) {
+  if (denoises_specular(in.settings)) {
     from = reproject_and_plan(plan, in, gbuffer);
-    planned = from->planned;
+  } else if (denoises_visibility(in.settings)) {
+    plan.only_when(traces_visibility(in), [&] { from = reproject_and_plan(plan, in, gbuffer); });
   }
+  if (from) planned = from->planned;
   NoisySignals noisy{
       trace_shadows(plan, in, gbuffer, planned), trace_ambient(plan, in, gbuffer, planned), {}};
   if (in.settings.specular.enabled) noisy.specular = trace_specular(plan, in, gbuffer, planned);

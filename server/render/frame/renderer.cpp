@@ -14,6 +14,7 @@
 #include "render/frame/probe.hpp"
 #include "render/passes/post/accumulate.hpp"
 #include "render/passes/post/present.hpp"
+#include "render/passes/sampling/plan_samples.hpp"
 #include "render/resources/moving_scene.hpp"
 #include "render/resources/scene_motion.hpp"
 #include "render/views/debug_view.hpp"
@@ -107,9 +108,20 @@ void Renderer::State::rebuild_frame_plan() {
 }
 
 void Renderer::State::make_frame_plan() {
-  const FrameInputs inputs{
-      parts.programs, *scene, moving->tables(), *parts.tracer, moving->structure(),   constants,
-      settings,       clock,  *moving,          scene_motion,  parts.split_sum_table, shown()};
+  const FrameInputs inputs{parts.programs,
+                           *scene,
+                           moving->tables(),
+                           *parts.tracer,
+                           moving->structure(),
+                           constants,
+                           settings,
+                           clock,
+                           *moving,
+                           scene_motion,
+                           parts.split_sum_table,
+                           parts.sheen_table,
+                           parts.ltc_table,
+                           shown()};
   compiled = std::make_unique<CompiledFrame>(parts, inputs, constants_buffer, drawn());
 }
 
@@ -317,6 +329,9 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
     return std::nullopt;
   }
   state.shown_mean_weight = mean_weight(state.compiled->inputs);
+  if (state.clock.samples == 0) {
+    state.clock.first_counts = !leaves_samples_out(state.compiled->inputs);
+  }
   ++state.clock.samples;
 
   Frame frame = state.output();

@@ -9,16 +9,17 @@
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "render/kernels/simd/environment.hpp"
-#include "render/kernels/simd/material.hpp"
+#include "render/kernels/simd/lights.hpp"
 #include "render/kernels/simd/view.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
 
-template <class D>
+template <class D, bool layered>
 class Composition {
   using V = hn::Vec<D>;
   using M = hn::Mask<D>;
+  using Material = std::conditional_t<layered, LayeredMaterial<V>, SurfaceMaterial<V>>;
 
   /// What each signal of a pixel is multiplied by, and what needs none.
   struct Terms {
@@ -30,9 +31,7 @@ class Composition {
 
  public:
   HWY_INLINE explicit Composition(const ComposeJob& job)
-      : job_(job),
-        split_sum_(job.split_sum.texels, job.split_sum.size),
-        environment_(job.frame, job.environment) {}
+      : job_(job), tables_(job.tables), environment_(job.frame, job.environment) {}
 
   HWY_INLINE void rows(int first, int last) const {
     const int lanes = static_cast<int>(hn::Lanes(d_));
@@ -88,11 +87,7 @@ class Composition {
     const M unlit = hn::And(seen, hn::Gt(packed.z, set(0.5f)));
     const M lit = hn::AndNot(unlit, seen);
     if (!hn::AllFalse(d_, lit)) {
-      const Quad<V> encoded = load(job_.normals, x, y);
-      const SurfaceMaterial<V> m =
-          make_material(d_, base_color, packed.y, packed.x, octahedral_decode(encoded.x, encoded.y),
-                        octahedral_decode(encoded.z, encoded.w), view.to_eye(x), split_sum_);
-      add_lit(view, x, view_z, lit, m, root.w, terms);
+      add_lit(view, x, view_z, lit, material(view, x, y, base_color, packed), root.w, terms);
     }
     terms.own = select(unlit, base_color, terms.own);
     if (enabled(shared::frame_emissive)) {
@@ -101,45 +96,57 @@ class Composition {
     }
   }
 
-  HWY_INLINE void add_lit(const ViewedRow<D>& view, int x, V view_z, M lit,
-                          const SurfaceMaterial<V>& m, V occlusion, Terms& terms) const {
+  HWY_INLINE Material material(const ViewedRow<D>& view, int x, int y, const Triple<V>& base_color,
+                               const Quad<V>& packed) const {
+    const Quad<V> encoded = load(job_.normals, x, y);
+    const Triple<V> normal = octahedral_decode(encoded.x, encoded.y);
+    const Triple<V> geometric = octahedral_decode(encoded.z, encoded.w);
+    if constexpr (layered) {
+      V roughness;
+      const SurfaceLayer<V> layer = unpack_layer(d_, load(job_.layers, x, y), roughness);
+      return make_material(d_, base_color, packed.y, roughness, normal, geometric, view.to_eye(x),
+                           tables_, layer);
+    } else {
+      return make_material(d_, base_color, packed.y, packed.x, normal, geometric, view.to_eye(x),
+                           tables_.split_sum);
+    }
+  }
+
+  HWY_INLINE void add_lit(const ViewedRow<D>& view, int x, V view_z, M lit, const Material& m,
+                          V occlusion, Terms& terms) const {
     if (enabled(shared::frame_direct)) {
-      const Triple<V> position = view.world_position(x, view_z);
-      for (const shared::Light& light : job_.lights) {
-        Triple<V> radiance;
-        if (light_contribution(d_, light, m, position, lit, radiance)) {
-          terms.direct = terms.direct + radiance;
-        }
-      }
+      terms.direct =
+          direct_light(d_, job_.lights, job_.tables.ltc, m, view.world_position(x, view_z), lit);
     }
     if (enabled(shared::frame_environment_diffuse)) {
-      terms.ambient =
-          select(lit, m.diffuse_albedo * irradiance(m.normal) * occlusion, terms.ambient);
+      terms.ambient = select(lit, wide_albedo(m) * irradiance(m.normal) * occlusion, terms.ambient);
     }
     // Roughness is stored in steps of 1 / 255: a little more than half of one is still the same.
-    const M traced =
-        hn::And(lit, hn::Le(m.roughness, set(job_.constants.max_roughness + 0.6f / 255.0f)));
+    const M traced = hn::And(
+        lit, hn::Le(narrower_roughness(m), set(job_.constants.max_roughness + 0.6f / 255.0f)));
     terms.specular = select(traced, m.specular_albedo, terms.specular);
     const M looked_up = hn::AndNot(traced, lit);
     if (enabled(shared::frame_environment_specular) && !hn::AllFalse(d_, looked_up)) {
-      const Triple<V> light = m.specular_albedo * reflection(m) * occlusion;
-      terms.ambient = select(looked_up, terms.ambient + light, terms.ambient);
+      const Triple<V> light =
+          environment_specular(m, [&](const Triple<V>& normal, V roughness)
+                                      HWY_ATTR { return reflection(normal, m.eye, roughness); });
+      terms.ambient = select(looked_up, terms.ambient + light * occlusion, terms.ambient);
     }
   }
 
   /// environment_reflection() of shaders/lib/lighting/environment.glsl
-  HWY_INLINE Triple<V> reflection(const SurfaceMaterial<V>& m) const {
-    const V twice = dot(m.normal, m.eye) * set(2.0f);
-    const Triple<V> toward{hn::MulSub(m.normal.x, twice, m.eye.x),
-                           hn::MulSub(m.normal.y, twice, m.eye.y),
-                           hn::MulSub(m.normal.z, twice, m.eye.z)};
+  HWY_INLINE Triple<V> reflection(const Triple<V>& normal, const Triple<V>& eye,
+                                  V roughness) const {
+    const V twice = dot(normal, eye) * set(2.0f);
+    const Triple<V> toward{hn::MulSub(normal.x, twice, eye.x), hn::MulSub(normal.y, twice, eye.y),
+                           hn::MulSub(normal.z, twice, eye.z)};
     if constexpr (std::is_same_v<D, Tag>) {
-      return environment_.reflection(toward, m.roughness);
+      return environment_.reflection(toward, roughness);
     } else {
       // One pixel: in all lanes.
       const auto lanes = [](V value) HWY_ATTR { return number(hn::GetLane(value)); };
       const Float3 found = environment_.reflection(
-          {lanes(toward.x), lanes(toward.y), lanes(toward.z)}, lanes(m.roughness));
+          {lanes(toward.x), lanes(toward.y), lanes(toward.z)}, lanes(roughness));
       return {set(hn::GetLane(found.x)), set(hn::GetLane(found.y)), set(hn::GetLane(found.z))};
     }
   }
@@ -175,12 +182,18 @@ class Composition {
 
   const D d_{};
   const ComposeJob& job_;
-  SquareTable<D> split_sum_;
+  LobeLanes<D> tables_;
   EnvironmentLanes environment_;
 };
 
+template <class D>
+using PlainComposition = Composition<D, false>;
+template <class D>
+using LayeredComposition = Composition<D, true>;
+
 void compose_rows(const ComposeJob& job, int first, int last) {
-  run_rows<Composition>(job, job.width, first, last);
+  if (job.layered) return run_rows<LayeredComposition>(job, job.width, first, last);
+  run_rows<PlainComposition>(job, job.width, first, last);
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE

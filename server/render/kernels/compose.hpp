@@ -10,7 +10,9 @@ namespace heliograph::render::kernels {
 /// shaders/compose/compose.comp, or compose_denoised.comp where there are denoised signals.
 template <class Stage>
 struct ComposeBindings {
-  gpu::Read<Stage> normals, base_color, surface, layers, motion, emissive, background;
+  gpu::Read<Stage> normals, base_color, surface;
+  gpu::Read<Stage> layers;  // shaders/lib/scene/layers.glsl, in scenes that have them
+  gpu::Read<Stage> motion, emissive, background;
   gpu::Read<Stage> shadows, ambient, specular;  // noisy
   gpu::OptionalRead<Stage> denoised_visibility, denoised_specular;
   gpu::Write<Stage> hdr;
@@ -21,8 +23,9 @@ struct ComposeConstants {
 };
 
 struct ComposeJob : FrameJob<ComposeBindings, ComposeConstants> {
-  std::span<const shared::Light> lights;  // punctual, the environment's sun among them
-  SplitSum split_sum;
+  bool layered;                           // materials of the scene have layers
+  std::span<const shared::Light> lights;  // the environment's sun among them
+  LobeTables tables;
   const Environment& environment;
 };
 

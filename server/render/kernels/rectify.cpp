@@ -60,8 +60,8 @@ class WindowBoxes {
   }
 
   /// Lanes with a surface, of a row that was filled.
-  HWY_INLINE M seen(int x, int y) const {
-    return hn::Gt(hn::LoadU(d_, values_.row(channels, y) + x), hn::Zero(d_));
+  HWY_INLINE M surfaces(int x, int y) const {
+    return hn::Gt(hn::LoadU(d_, values_.row(channels + 1, y) + x), hn::Zero(d_));
   }
 
   /// Prepares the boxes of row `y`.
@@ -92,7 +92,7 @@ class WindowBoxes {
       // mean_box() of shaders/lib/denoise/rectification.glsl
       const V surfaces = across(surfaces_row, x);
       scale = scale * hn::Sqrt(surfaces * inv_count);
-      const V enough = hn::Set(d_, least_sampled) * surfaces;
+      const V enough = hn::MulSub(hn::Set(d_, least_sampled), surfaces, hn::Set(d_, 0.5f));
       least = hn::IfThenElseZero(hn::Lt(count, enough), hn::Set(d_, 1e30f));
     }
     Box made;
@@ -173,7 +173,7 @@ class Rectification {
       boxes.sum_columns(y);
       for (int start = 0; start < job_.width; start += lanes) {
         const int x = std::min(start, job_.width - lanes);
-        const M requested = hn::And(boxes.seen(x, y), from_column(d_, x, start));
+        const M requested = hn::And(boxes.surfaces(x, y), from_column(d_, x, start));
         if (!hn::AllFalse(d_, requested)) hold(kernel, boxes, x, y, requested);
       }
     }

@@ -28,7 +28,8 @@ struct SpecularRaysConstants {
   std::uint32_t by_plan;  // 0: every pixel is sampled
 };
 struct SpecularRaysJob : FrameJob<SpecularRaysBindings, SpecularRaysConstants> {
-  SplitSum split_sum;
+  bool layered;  // materials of the scene have layers
+  LobeTables tables;
 };
 void specular_rays(const SpecularRaysJob& job);
 
@@ -47,10 +48,11 @@ struct SpecularShadeConstants {
   std::int32_t scale;    // pixels to a texel of `radiance`
 };
 struct SpecularShadeJob : FrameJob<SpecularShadeBindings, SpecularShadeConstants> {
+  bool layered;  // as above
   SceneView scene;
   const Environment& environment;
   std::span<const shared::Light> lights;
-  SplitSum split_sum;
+  LobeTables tables;
 };
 void specular_shade(const SpecularShadeJob& job);
 

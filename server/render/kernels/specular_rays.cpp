@@ -12,24 +12,24 @@
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
 
+template <bool layered>
 class Generation {
  public:
   explicit Generation(const SpecularRaysJob& job)
       : job_(job),
         frame_(job.frame),
         camera_(job.frame),
-        split_sum_(job.split_sum.texels, job.split_sum.size),
+        tables_(job.tables),
         scale_(job.directions ? 2 : 1),
         random_(specular_pairs(job.frame, 4, scale_)) {}
 
   /// Clears the cells; lists those whose rays are to be made.
-  HWY_INLINE void clear(const PixelLanes& cell, Mask inside, PixelList& traced) const {
-    const PixelLanes pixel = traced_pixel(cell);
-    const Mask seen = hn::Gt(gathered_last(job_.motion, pixel), zero());
+  HWY_INLINE void clear(const TileRow& cells, PixelList& traced) const {
+    const Mask seen = hn::Gt(view_z(cells), zero());
     Mask sampled = seen;
     Float4 radiance{zero(), zero(), zero(), zero()};
     if (job_.constants.by_plan != 0) {
-      const Integer word = gather(job_.planned.data, texel_index(job_.planned, pixel, 1));
+      const Integer word = plan_words(cells);
       const Integer bit = hn::And(word, integer(static_cast<int>(shared::plan_specular)));
       sampled = hn::And(seen, float_mask(hn::Ne(bit, integer(0))));
       // A negative distance: no sample, and how far it was in the frame before.
@@ -37,14 +37,9 @@ class Generation {
       const Float away = hn::Min(hn::Neg(before), number(-1e-6f));
       radiance.w = hn::IfThenElseZero(hn::AndNot(sampled, seen), away);
     }
-    const TexelIndices indices(cell);
-    const Texels<4> cleared(radiance);
-    for_each_lane(inside, [&](std::size_t lane) { cleared.put(job_.radiance, lane, indices); });
-    if (job_.directions) {
-      const Texels<4> nowhere(Float4{zero(), zero(), zero(), zero()});
-      for_each_lane(inside, [&](std::size_t lane) { nowhere.put(job_.directions, lane, indices); });
-    }
-    traced.add(cell, hn::And(inside, sampled));
+    put_row(job_.radiance, cells, radiance);
+    if (job_.directions) put_row(job_.directions, cells, Float4{zero(), zero(), zero(), zero()});
+    traced.add(cells.pixels, hn::And(cells.inside, sampled));
   }
 
   /// @return how many rays there are, which lie at `made`
@@ -55,12 +50,7 @@ class Generation {
     const Mask requested = hn::And(inside, hn::Le(packed.z, number(0.5f)));  // not unlit
     if (none(requested)) return 0;
 
-    const Float4 color = gathered_unorm8(job_.base_color, pixel);
-    const Float4 encoded = gathered4(job_.normals, pixel);
-    const MaterialLanes m =
-        make_material(tag, Float3{color.x * color.x, color.y * color.y, color.z * color.z},
-                      packed.y, packed.x, octahedral_decode(encoded.x, encoded.y),
-                      octahedral_decode(encoded.z, encoded.w), camera_.to_eye(pixel), split_sum_);
+    const auto m = gbuffer_material<layered>(job_, pixel, camera_.to_eye(pixel), tables_);
     Float2 u;
     random_.at(as_unsigned(cell.x), as_unsigned(cell.y), u.x, u.y);
     const SpecularSample s = sample_specular(m, u);
@@ -76,7 +66,8 @@ class Generation {
       ray.user = numbers(1.0f);
     }
     // Roughness is stored in steps of 1 / 255: a little more than half of one is still the same.
-    const Mask smooth = hn::Le(m.roughness, number(job_.constants.max_roughness + 0.6f / 255.0f));
+    const Mask smooth =
+        hn::Le(narrower_roughness(m), number(job_.constants.max_roughness + 0.6f / 255.0f));
     ray.origin = offset_origin(camera_.world_position(pixel, view_z), m.geometric, view_z);
     ray.direction = s.direction;
     ray.t_min = zero();
@@ -86,6 +77,16 @@ class Generation {
   }
 
  private:
+  HWY_INLINE Float view_z(const TileRow& cells) const {
+    if (scale_ == 1) return row_last(job_.motion, cells);
+    return gathered_last(job_.motion, traced_pixel(cells.pixels));
+  }
+
+  HWY_INLINE Integer plan_words(const TileRow& cells) const {
+    if (scale_ == 1) return row_words(job_.planned, cells);
+    return gather(job_.planned.data, texel_index(job_.planned, traced_pixel(cells.pixels), 1));
+  }
+
   /// The pixel that traces for a cell: of 2 x 2 another in every frame.
   HWY_INLINE PixelLanes traced_pixel(const PixelLanes& cell) const {
     if (scale_ == 1) return cell;
@@ -108,16 +109,16 @@ class Generation {
   const SpecularRaysJob& job_;
   const shared::FrameConstants& frame_;
   CameraLanes camera_;
-  SquareTable<Tag> split_sum_;
+  LobeLanes<Tag> tables_;
   int scale_;
   RandomPairs<UnsignedTag> random_;
 };
 
-void make_tile(const SpecularRaysJob& job, const Tile& tile) {
-  const Generation generation(job);
+template <bool layered>
+HWY_INLINE void make_tile_of(const SpecularRaysJob& job, const Tile& tile) {
+  const Generation<layered> generation(job);
   PixelList traced;
-  for_each_pixel(
-      tile, [&](const PixelLanes& cells, Mask inside) { generation.clear(cells, inside, traced); });
+  for_each_row(tile, [&](const TileRow& cells) { generation.clear(cells, traced); });
   std::array<shared::Ray, tile_side * tile_side> made;
   std::size_t count = 0;
   for (int i = 0; i < traced.size(); i += static_cast<int>(hn::Lanes(tag))) {
@@ -126,6 +127,11 @@ void make_tile(const SpecularRaysJob& job, const Tile& tile) {
     count += generation.block(cells, valid, made.data() + count);
   }
   if (count) job.rays.append({made.data(), count});
+}
+
+void make_tile(const SpecularRaysJob& job, const Tile& tile) {
+  if (job.layered) return make_tile_of<true>(job, tile);
+  make_tile_of<false>(job, tile);
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE

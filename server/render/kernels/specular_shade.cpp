@@ -8,21 +8,26 @@
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "render/kernels/simd/environment.hpp"
+#include "render/kernels/simd/lights.hpp"
 #include "render/kernels/simd/specular_lobe.hpp"
-#include "render/kernels/simd/surface.hpp"
+#include "render/kernels/simd/hit_material.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
 
-/// The hits of one job, some at a time.
+/// The hits of one job, some at a time. `Surface`: SurfaceLanes, or LayeredSurfaceLanes.
+template <class Surface>
 class HitShading {
+  using Material =
+      std::conditional_t<Surface::layered, LayeredMaterial<Float>, SurfaceMaterial<Float>>;
+
  public:
   explicit HitShading(const SpecularShadeJob& job)
       : job_(job),
         frame_(job.frame),
         cone_(CameraLanes(job.frame).cone()),
         environment_(job.frame, job.environment),
-        split_sum_(job.split_sum.texels, job.split_sum.size),
+        tables_(job.tables),
         picks_(specular_numbers(job.frame, 5, job.constants.scale)),
         points_(specular_pairs(job.frame, 6, job.constants.scale)) {}
 
@@ -36,7 +41,7 @@ class HitShading {
                                                                    hn::ShiftRight<1>(pixel.y)};
     const HitLanes hit = load_hits(job_.hits, first, last);
     const Mask missed = hn::AndNot(hit.met, requested);
-    Float3 light = numbers(0.0f);
+    Float3 light = numbers(0.0f), weight = ray.user;
     Float travelled = number(distance_of_misses);
     if (!none(missed) && enabled(shared::frame_environment_specular)) {
       light = environment_.radiance(ray.direction);
@@ -44,17 +49,20 @@ class HitShading {
     std::size_t count = 0;
     if (!none(hit.met)) {
       travelled = select(hit.met, hn::Min(hit.t, travelled), travelled);
-      const SurfaceLanes s =
-          hit_surface<true>(job_.scene, hit, ray.direction, footprint(pixel, hit));
-      const MaterialLanes m = make_material(tag, s.base_color, s.metallic, s.roughness, s.normal,
-                                            s.geometric, -ray.direction, split_sum_);
+      const auto s =
+          hit_surface<Surface, true>(job_.scene, hit, ray.direction, footprint(pixel, hit));
+      const Material m = material_of(s, ray.direction, tables_);
+      if constexpr (Surface::layered) {
+        // Rays stop where it covers, less those that its own colour would let through.
+        weight = weight * select(hit.met, one() / (one() - s.passing), one());
+      }
       light = select(hit.met, steady_light(s, m), light);
       const Mask lit = hn::AndNot(s.has(shared::material_unlit), hit.met);
       if (job_.constants.lights && enabled(shared::frame_direct) && !none(lit)) {
-        count = make_shadow_rays(ray, s, m, cell, lit, shadows);
+        count = make_shadow_rays(ray, weight, s.position, m, cell, lit, shadows);
       }
     }
-    store(cell, scrubbed(light * ray.user), travelled, requested);
+    store(cell, scrubbed(light * weight), travelled, requested);
     return count;
   }
 
@@ -78,85 +86,41 @@ class HitShading {
   }
 
   /// What of a hit's light needs no ray.
-  HWY_INLINE Float3 steady_light(const SurfaceLanes& s, const MaterialLanes& m) const {
+  HWY_INLINE Float3 steady_light(const Surface& s, const Material& m) const {
     Float3 light = numbers(0.0f);
     if (enabled(shared::frame_environment_diffuse)) {
-      light = m.diffuse_albedo * environment_.irradiance(m.normal);
+      light = wide_albedo(m) * environment_.irradiance(m.normal);
     }
     if (enabled(shared::frame_environment_specular)) {
-      const Float3 reflected = reflect(-m.eye, m.normal);
-      light =
-          multiply_add(m.specular_albedo, environment_.reflection(reflected, m.roughness), light);
+      const auto reflection = [&](const Float3& normal, Float roughness) HWY_ATTR {
+        return environment_.reflection(reflect(-m.eye, normal), roughness);
+      };
+      light = light + environment_specular(m, reflection);
     }
     light = select(s.has(shared::material_unlit), s.base_color, light);
     return enabled(shared::frame_emissive) ? light + s.emissive : light;
   }
 
-  /// One of the lights, in proportion to what it sends to the eye.
-  struct Choice {
-    Float total;   // of all; 0: there is none
-    Float weight;  // luminance of its unshadowed contribution
-    Float3 contribution;
-    Float3 direction;
-    Float distance;
-    Float spread;  // tangent of its radius as seen from the hit
-  };
-
-  HWY_INLINE Choice choose_light(const MaterialLanes& m, const Float3& position, Mask requested,
-                                 Float pick) const {
-    Choice choice{zero(), one(), numbers(0.0f), numbers(glm::vec3(0.0f, 1.0f, 0.0f)),
-                  one(),  zero()};
-    for (const shared::Light& light : job_.lights) {
-      const Mask near = reached(tag, light, position, requested);
-      if (none(near)) continue;
-      const LightSample<Float> s = light_at(tag, light, position);
-      const Mask faces = hn::And(near, hn::Gt(dot(m.geometric, s.direction), zero()));
-      if (none(faces)) continue;
-      const Float3 sent = numbers(light.color) * s.attenuation * shade_light(tag, m, s.direction);
-      const Float weight = hn::IfThenElseZero(faces, luminance(sent));
-      const Mask shines = hn::Gt(weight, zero());
-      choice.total = select(shines, choice.total + weight, choice.total);
-      const Float probability = weight / select(shines, choice.total, one());
-      const Mask chosen = hn::And(shines, hn::Lt(pick, probability));
-      const Float remaining = (pick - probability) / (one() - probability);
-      pick = select(chosen, pick / probability, select(shines, remaining, pick));
-      choice.weight = select(chosen, weight, choice.weight);
-      choice.contribution = select(chosen, sent, choice.contribution);
-      choice.direction = select(chosen, s.direction, choice.direction);
-      choice.distance = select(chosen, s.distance, choice.distance);
-      const bool far = light.type == shared::light_directional;
-      const Float radius = number(light.radius);
-      choice.spread = select(chosen, far ? radius : radius / s.distance, choice.spread);
-    }
-    return choice;
-  }
-
-  HWY_INLINE std::size_t make_shadow_rays(const RayLanes& ray, const SurfaceLanes& s,
-                                          const MaterialLanes& m, const PixelLanes& cell, Mask lit,
+  HWY_INLINE std::size_t make_shadow_rays(const RayLanes& ray, const Float3& weight,
+                                          const Float3& position, const Material& m,
+                                          const PixelLanes& cell, Mask lit,
                                           shared::Ray* shadows) const {
     const Unsigned x = as_unsigned(cell.x), y = as_unsigned(cell.y);
-    const Choice light = choose_light(m, s.position, lit, picks_.at(x, y));
-    const Mask valid = hn::Gt(light.total, zero());
+    Float pick = picks_.at(x, y);
+    const LightChoice light = choose_light(job_.lights, job_.tables.ltc, m, position, lit, pick);
+    const Mask valid = hn::And(lit, hn::Gt(light.total, zero()));
     if (none(valid)) return 0;
-    // A point of the light's disk.
     Float2 u;
     points_.at(x, y, u.x, u.y);
-    const Float2 disk = sample_disk(u.x, u.y);
-    Float3 tangent, bitangent;
-    orthonormal_basis(light.direction, tangent, bitangent);
     RayLanes shadow;
-    shadow.direction =
-        normalized(multiply_add(tangent, disk.x * light.spread,
-                                multiply_add(bitangent, disk.y * light.spread, light.direction)));
-    // The disk may reach below the horizon, where nothing of it is seen.
-    const Mask above = hn::Gt(dot(shadow.direction, m.geometric), zero());
-    shadow.origin = offset_origin(s.position, m.geometric, zero());
+    const Mask seen = aim(job_.lights, light, m, position, u, pick, valid, shadow);
+    shadow.origin = offset_origin(position, m.geometric, zero());
     shadow.t_min = zero();
     // Without shadows every light is visible: an empty interval hits nothing.
-    shadow.t_max = enabled(shared::frame_shadows) ? light.distance * number(0.999f) : zero();
+    if (!enabled(shared::frame_shadows)) shadow.t_max = zero();
     shadow.pixel = ray.pixel;
-    shadow.user = light.contribution * (light.total / light.weight) * ray.user;
-    return store_rays(shadow, hn::And(valid, above), shadows);
+    shadow.user = light.contribution * (light.total / light.weight) * weight;
+    return store_rays(shadow, seen, shadows);
   }
 
   static HWY_INLINE Float3 scrubbed(const Float3& v) { return select(is_bad(v), numbers(0.0f), v); }
@@ -172,19 +136,25 @@ class HitShading {
   const shared::FrameConstants& frame_;
   glm::vec2 cone_;
   EnvironmentLanes environment_;
-  SquareTable<Tag> split_sum_;
+  LobeLanes<Tag> tables_;
   RandomNumbers<UnsignedTag> picks_;
   RandomPairs<UnsignedTag> points_;
 };
 
-void shade_hits_batch(const SpecularShadeJob& job, int first, int last) {
-  const HitShading shading(job);
+template <class Surface>
+HWY_INLINE void shade_hits_of(const SpecularShadeJob& job, int first, int last) {
+  const HitShading<Surface> shading(job);
   std::array<shared::Ray, ray_batch> shadows;
   std::size_t count = 0;
   for (int i = first; i < last; i += static_cast<int>(hn::Lanes(tag))) {
     count += shading.block(i, last, shadows.data() + count);
   }
   if (count) job.shadows.append({shadows.data(), count});
+}
+
+void shade_hits_batch(const SpecularShadeJob& job, int first, int last) {
+  if (job.layered) return shade_hits_of<LayeredSurfaceLanes>(job, first, last);
+  shade_hits_of<SurfaceLanes>(job, first, last);
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE

@@ -8,7 +8,7 @@
 #define HWY_TARGET_INCLUDE "render/kernels/visibility_rays.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
-#include "render/kernels/simd/material.hpp"
+#include "render/kernels/simd/lights.hpp"
 #include "render/kernels/simd/random.hpp"
 #include "render/kernels/simd/rays.hpp"
 #include "render/kernels/simd/tiles.hpp"
@@ -27,12 +27,12 @@ class VisibilityRays {
   /// `unseen`: visibility where there is no surface.
   HWY_INLINE void generate(const Tile& tile, float unseen) const {
     PixelList traced;
-    for_each_pixel(tile, [&](const PixelLanes& pixels, Mask inside) {
-      const Mask seen = hn::Gt(gathered_last(job_.motion, pixels), zero());
-      const Mask sampled = is_sampled(pixels);
-      traced.add(pixels, hn::And(inside, hn::And(seen, sampled)));
+    for_each_row(tile, [&](const TileRow& row) {
+      const Mask seen = hn::Gt(row_last(job_.motion, row), zero());
+      const Mask sampled = is_sampled(row);
+      traced.add(row.pixels, hn::And(row.inside, hn::And(seen, sampled)));
       const Float without_ray = hn::IfThenZeroElse(sampled, number(-1.0f));
-      put_values(job_.visibility, pixels, inside, select(seen, without_ray, number(unseen)));
+      put_row(job_.visibility, row, select(seen, without_ray, number(unseen)));
     });
     std::array<shared::Ray, tile_side * tile_side> made;
     std::size_t count = 0;
@@ -57,83 +57,41 @@ class VisibilityRays {
  private:
   int bit_;
 
-  HWY_INLINE Mask is_sampled(const PixelLanes& pixels) const {
+  HWY_INLINE Mask is_sampled(const TileRow& row) const {
     if (job_.constants.by_plan == 0) return hn::Eq(zero(), zero());
-    const Integer word = gather(job_.planned.data, texel_index(job_.planned, pixels, 1));
-    const Integer bit = hn::And(word, integer(bit_));
+    const Integer bit = hn::And(row_words(job_.planned, row), integer(bit_));
     return float_mask(hn::Ne(bit, integer(0)));
   }
 };
 
-class ShadowRays : public VisibilityRays<ShadowRays, ShadowRaysJob> {
+template <bool layered>
+class ShadowRays : public VisibilityRays<ShadowRays<layered>, ShadowRaysJob> {
+  using Base = VisibilityRays<ShadowRays<layered>, ShadowRaysJob>;
+  using Base::camera_;
+  using Base::job_;
+
  public:
   HWY_INLINE explicit ShadowRays(const ShadowRaysJob& job)
-      : VisibilityRays(job, shared::plan_shadows),
-        split_sum_(job.split_sum.texels, job.split_sum.size),
+      : Base(job, shared::plan_shadows),
+        tables_(job.tables),
         picks_(unsigned_tag, job.frame.sample_index, 1u, job.frame.seed),
         points_(unsigned_tag, job.frame.sample_index, 2u, job.frame.seed) {}
 
   HWY_INLINE void make(const PixelLanes& pixels, RayLanes& ray, Mask& requested) const {
     const Float view_z = gathered_last(job_.motion, pixels);
-    const auto m = material(pixels);
+    const auto m = gbuffer_material<layered>(job_, pixels, camera_.to_eye(pixels), tables_);
     const Float3 position = camera_.world_position(pixels, view_z);
     Float pick = picks_.at(as_unsigned(pixels.x), as_unsigned(pixels.y));
-    Float total = zero(), spread = total;
-    ray.t_max = total;
-    ray.direction = numbers(0.0f);
-    for (const shared::Light& light : job_.lights) {
-      Float3 radiance;
-      if (!light_contribution(tag, light, m, position, requested, radiance)) continue;
-      const Mask chosen = take(luminance(radiance), total, pick);
-      if (none(chosen)) continue;
-      const LightSample<Float> s = light_at(tag, light, position);
-      ray.direction = select(chosen, s.direction, ray.direction);
-      ray.t_max = select(chosen, s.distance, ray.t_max);
-      const bool endless = light.type == shared::light_directional;
-      const Float radius = number(light.radius);
-      spread = select(chosen, endless ? radius : radius / s.distance, spread);
-    }
-    requested = hn::And(requested, hn::Gt(total, zero()));
-    ray.direction = toward_disk(ray.direction, spread, pixels);
-    requested = hn::And(requested, hn::Gt(dot(ray.direction, m.geometric), zero()));
+    const LightChoice light =
+        choose_light(job_.lights, job_.tables.ltc, m, position, requested, pick);
+    Float2 u;
+    points_.at(as_unsigned(pixels.x), as_unsigned(pixels.y), u.x, u.y);
+    requested = aim(job_.lights, light, m, position, u, pick, requested, ray);
     ray.origin = offset_origin(position, m.geometric, view_z);
-    // Geometry may lie where a light does and show it: it must not occlude itself.
-    ray.t_max = ray.t_max * number(0.999f);
   }
 
  private:
-  HWY_INLINE SurfaceMaterial<Float> material(const PixelLanes& pixels) const {
-    const Float4 encoded = gathered4(job_.normals, pixels);
-    const Float4 root = gathered_unorm8(job_.base_color, pixels);
-    const Float4 packed = gathered_unorm8(job_.surface, pixels);
-    const Float3 color{root.x * root.x, root.y * root.y, root.z * root.z};
-    return make_material(tag, color, packed.y, packed.x, octahedral_decode(encoded.x, encoded.y),
-                         octahedral_decode(encoded.z, encoded.w), camera_.to_eye(pixels),
-                         split_sum_);
-  }
-
-  /// takes() of shaders/lib/lighting/light_choice.glsl
-  HWY_INLINE Mask take(Float weight, Float& total, Float& pick) const {
-    const Mask valid = hn::Gt(weight, zero());
-    total = total + hn::IfThenElseZero(valid, weight);
-    const Float probability = weight / total;
-    const Mask chosen = hn::And(valid, hn::Lt(pick, probability));
-    const Float left = select(valid, (pick - probability) / (one() - probability), pick);
-    pick = select(chosen, pick / probability, left);
-    return chosen;
-  }
-
-  HWY_INLINE Float3 toward_disk(const Float3& direction, Float spread,
-                                const PixelLanes& pixels) const {
-    Float u, v;
-    points_.at(as_unsigned(pixels.x), as_unsigned(pixels.y), u, v);
-    Float3 tangent, bitangent;
-    orthonormal_basis(direction, tangent, bitangent);
-    const Float2 disk = sample_disk(u, v);
-    return normalized(direction + tangent * (disk.x * spread) + bitangent * (disk.y * spread));
-  }
-
-  SquareTable<Tag> split_sum_;
+  LobeLanes<Tag> tables_;
   RandomNumbers<UnsignedTag> picks_;
   RandomPairs<UnsignedTag> points_;
 };
@@ -162,7 +120,8 @@ class AmbientRays : public VisibilityRays<AmbientRays, AmbientRaysJob> {
 };
 
 void shadow_ray_tile(const ShadowRaysJob& job, const Tile& tile) {
-  ShadowRays(job).generate(tile, 0.0f);
+  if (job.layered) return ShadowRays<true>(job).generate(tile, 0.0f);
+  ShadowRays<false>(job).generate(tile, 0.0f);
 }
 
 void ambient_ray_tile(const AmbientRaysJob& job, const Tile& tile) {

@@ -20,8 +20,9 @@ struct VisibilityRaysConstants {
   std::uint32_t by_plan;  // 0: every pixel is sampled
 };
 struct ShadowRaysJob : FrameJob<ShadowRaysBindings, VisibilityRaysConstants> {
-  std::span<const shared::Light> lights;  // punctual, the environment's sun among them
-  SplitSum split_sum;
+  bool layered;                           // materials of the scene have layers
+  std::span<const shared::Light> lights;  // the environment's sun among them
+  LobeTables tables;
 };
 
 /// One ray per pixel toward one light, on all processors, in the widest vectors that they have.

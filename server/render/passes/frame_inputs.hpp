@@ -20,6 +20,8 @@ struct SceneMotion;
 struct FrameClock {
   std::uint32_t samples = 0;     // already in the accumulated mean
   float seconds = 1.0f / 60.0f;  // since the frame before
+  /// Whether the first of these samples is part of the mean: it is not if it left pixels out.
+  bool first_counts = true;
 };
 
 /// What a frame is made from. References outlive the plan; `constants` and `clock` change in every
@@ -35,9 +37,12 @@ struct FrameInputs {
   /// read when a pass runs.
   const protocol::Settings& settings;
   const FrameClock& clock;
-  const MovingScene& moving;          // what the rasteriser draws
-  const SceneMotion& scene_motion;    // since the frame before
-  const gpu::Image& split_sum_table;  // rg32f, mapped on devices that are processors
+  const MovingScene& moving;        // what the rasteriser draws
+  const SceneMotion& scene_motion;  // since the frame before
+  // Mapped on devices that are processors.
+  const gpu::Image& split_sum_table;  // rg32f
+  const gpu::Image& sheen_table;      // r32f
+  const gpu::Image& ltc_table;        // rgba32f
   /// Of the finished frame, where it is larger than the plan's extent, at which it is drawn.
   std::optional<VkExtent2D> shown{};
 
@@ -49,8 +54,11 @@ struct FrameInputs {
     };
   }
 
-  kernels::SplitSum split_sum() const {
-    return {split_sum_table.host(), static_cast<int>(split_sum_table.desc().extent.width)};
+  kernels::LobeTables lobe_tables() const {
+    const auto texels = [](const gpu::Image& table) {
+      return kernels::SquareTexels{table.host(), static_cast<int>(table.desc().extent.width)};
+    };
+    return {texels(split_sum_table), texels(sheen_table), texels(ltc_table)};
   }
 };
 

@@ -10,7 +10,8 @@
 namespace heliograph::render::kernels {
 namespace {
 
-static_assert(sizeof(Slot) == 16 * 4 && sizeof(Material) == (16 + 5 * 16) * 4);
+static_assert(sizeof(Slot) == 16 * 4 && sizeof(Material) == (16 + 5 * 16) * 4 &&
+              sizeof(Layer) == (20 + 9 * 16) * 4);
 
 bool same_texels(const shared::TextureSlot& a, const shared::TextureSlot& b) {
   return a.texture == b.texture && a.uv_set == b.uv_set &&
@@ -47,6 +48,79 @@ bool same_place(const Slot& a, const Slot& b) {
   return a.row0 == b.row0 && a.row1 == b.row1 && a.uv_set == b.uv_set && a.width == b.width &&
          a.height == b.height && a.levels == b.levels && a.wrap_s == b.wrap_s &&
          a.wrap_t == b.wrap_t && filter(a) == filter(b);
+}
+
+/// Copies the slots of one record.
+struct SlotMaker {
+  std::span<const shared::HeapTexture> textures;
+  std::span<const std::uint32_t> first_level;
+
+  Slot make(const shared::TextureSlot& from, std::uint32_t& uses) const {
+    const Slot made = make_slot(from, textures, first_level);
+    if (made.flags & slot_used) uses |= uses_textures | (made.uv_set ? uses_second_uv : 0u);
+    return made;
+  }
+};
+
+/// Marks the slots that are read where the first is.
+void share_place(const Slot& first, std::initializer_list<Slot*> others) {
+  for (Slot* const other : others) {
+    const bool both = (first.flags & other->flags & slot_used) != 0;
+    if (both && same_place(first, *other)) other->flags |= slot_shares_place;
+  }
+}
+
+Material make_material(const shared::Material& from, const SlotMaker& slots) {
+  shared::TextureSlot no_slot{};
+  no_slot.texture = shared::no_texture;
+  Material to{};
+  to.base_color = from.base_color;
+  to.emissive = from.emissive;
+  to.alpha_cutoff = from.alpha_cutoff;
+  to.metallic = from.metallic;
+  to.roughness = from.roughness;
+  to.normal_scale = from.normal_scale;
+  to.occlusion_strength = from.occlusion_strength;
+  to.flags = from.flags;
+  to.base_color_slot = slots.make(from.base_color_texture, to.uses);
+  to.metallic_roughness_slot = slots.make(from.metallic_roughness_texture, to.uses);
+  to.occlusion_slot = slots.make(from.occlusion_texture, to.uses);
+  to.normal_slot = slots.make(from.normal_texture, to.uses);
+  const bool shines = from.emissive != glm::vec3(0.0f);
+  to.emissive_slot = slots.make(shines ? from.emissive_texture : no_slot, to.uses);
+  share_place(to.base_color_slot, {&to.metallic_roughness_slot, &to.occlusion_slot, &to.normal_slot,
+                                   &to.emissive_slot});
+  if (same_texels(from.occlusion_texture, from.metallic_roughness_texture)) {
+    to.occlusion_slot.flags |= slot_repeats;
+  }
+  return to;
+}
+
+Layer make_layer(const shared::MaterialLayer& from, const SlotMaker& slots) {
+  Layer to{};
+  to.specular_color = from.specular_color;
+  to.specular = from.specular;
+  to.sheen = from.sheen;
+  to.sheen_roughness = from.sheen_roughness;
+  to.absorption = from.absorption;
+  to.transmission = from.transmission;
+  to.dielectric = from.dielectric;
+  to.coat = from.coat;
+  to.coat_roughness = from.coat_roughness;
+  to.coat_normal_scale = from.coat_normal_scale;
+  to.coat_slot = slots.make(from.coat_texture, to.uses);
+  to.coat_roughness_slot = slots.make(from.coat_roughness_texture, to.uses);
+  to.coat_normal_slot = slots.make(from.coat_normal_texture, to.uses);
+  to.specular_slot = slots.make(from.specular_texture, to.uses);
+  to.specular_color_slot = slots.make(from.specular_color_texture, to.uses);
+  to.sheen_color_slot = slots.make(from.sheen_color_texture, to.uses);
+  to.sheen_roughness_slot = slots.make(from.sheen_roughness_texture, to.uses);
+  to.transmission_slot = slots.make(from.transmission_texture, to.uses);
+  to.thickness_slot = slots.make(from.thickness_texture, to.uses);
+  share_place(to.coat_slot, {&to.coat_roughness_slot, &to.coat_normal_slot, &to.specular_slot,
+                             &to.specular_color_slot, &to.sheen_color_slot,
+                             &to.sheen_roughness_slot, &to.transmission_slot, &to.thickness_slot});
+  return to;
 }
 
 /// The texel of a cube beyond the rim of a face: the neighbour's nearest. `x` and `y` lie in
@@ -114,6 +188,7 @@ std::vector<glm::vec4> download_face(const gpu::Image& image, std::uint32_t face
 }  // namespace
 
 MaterialTable make_material_table(std::span<const shared::Material> materials,
+                                  std::span<const shared::MaterialLayer> layers,
                                   std::span<const shared::HeapTexture> textures) {
   MaterialTable table;
   std::vector<std::uint32_t> first_level;
@@ -128,38 +203,16 @@ MaterialTable make_material_table(std::span<const shared::Material> materials,
   }
   first_level.push_back(static_cast<std::uint32_t>(table.levels.size()));
   table.levels.insert(table.levels.end(), {0, 0});  // of slots without a texture
-  shared::TextureSlot no_slot{};
-  no_slot.texture = shared::no_texture;
+  const SlotMaker slots{textures, first_level};
+  for (const shared::MaterialLayer& from : layers) table.layers.push_back(make_layer(from, slots));
   for (const shared::Material& from : materials) {
-    Material to{};
-    to.base_color = from.base_color;
-    to.emissive = from.emissive;
-    to.alpha_cutoff = from.alpha_cutoff;
-    to.metallic = from.metallic;
-    to.roughness = from.roughness;
-    to.normal_scale = from.normal_scale;
-    to.occlusion_strength = from.occlusion_strength;
-    to.flags = from.flags;
-    const auto slot = [&](const shared::TextureSlot& of) {
-      const Slot made = make_slot(of, textures, first_level);
-      if (made.flags & slot_used) to.uses |= uses_textures | (made.uv_set ? uses_second_uv : 0u);
-      return made;
-    };
-    to.base_color_slot = slot(from.base_color_texture);
-    to.metallic_roughness_slot = slot(from.metallic_roughness_texture);
-    to.occlusion_slot = slot(from.occlusion_texture);
-    to.normal_slot = slot(from.normal_texture);
-    const bool shines = from.emissive != glm::vec3(0.0f);
-    to.emissive_slot = slot(shines ? from.emissive_texture : no_slot);
-    for (Slot* const other :
-         {&to.metallic_roughness_slot, &to.occlusion_slot, &to.normal_slot, &to.emissive_slot}) {
-      const bool both = (to.base_color_slot.flags & other->flags & slot_used) != 0;
-      if (both && same_place(to.base_color_slot, *other)) other->flags |= slot_shares_place;
+    Material made = make_material(from, slots);
+    if (!table.layers.empty()) {
+      made.layer = from.layer;
+      made.passing = from.passing;
+      made.uses |= table.layers[from.layer].uses;
     }
-    if (same_texels(from.occlusion_texture, from.metallic_roughness_texture)) {
-      to.occlusion_slot.flags |= slot_repeats;
-    }
-    table.materials.push_back(to);
+    table.materials.push_back(made);
   }
   return table;
 }
@@ -173,6 +226,7 @@ SceneView view_scene(const SceneResources& scene, const tracing::SceneTables& ta
           reinterpret_cast<const shared::Mesh*>(mapped(tables.meshes)),
           reinterpret_cast<const shared::Instance*>(mapped(tables.instances)),
           made.materials.data(),
+          made.layers.data(),
           made.levels.data(),
           reinterpret_cast<const std::uint32_t*>(mapped(scene.texture_heap.texels)),
           reinterpret_cast<const shared::Vertex*>(mapped(moving.previous_vertices()))};

@@ -39,7 +39,7 @@ struct Slot {
 inline constexpr std::uint32_t slot_used = 1u << 16;
 /// Reads the same texels as the slot in front of it.
 inline constexpr std::uint32_t slot_repeats = 1u << 17;
-/// Is read at the texels at which the base color slot is, of an image of the same size.
+/// Is read at the texels at which the record's first slot is, of an image of the same size.
 inline constexpr std::uint32_t slot_shares_place = 1u << 18;
 
 struct Material {
@@ -51,8 +51,9 @@ struct Material {
   float normal_scale;
   float occlusion_strength;
   std::uint32_t flags;  // material_*
-  std::uint32_t uses;   // uses_*
-  std::array<std::uint32_t, 2> padding;
+  std::uint32_t uses;   // uses_*, its layer's included
+  std::uint32_t layer;  // in MaterialTable::layers
+  float passing;        // fraction of rays that pass where it covers, because light does
   Slot base_color_slot;
   Slot metallic_roughness_slot;
   Slot occlusion_slot;  // after the slot that often has the same image
@@ -63,13 +64,40 @@ struct Material {
 inline constexpr std::uint32_t uses_textures = 1u;
 inline constexpr std::uint32_t uses_second_uv = 2u;
 
+/// What extensions add to a material, as shared::MaterialLayer has it.
+struct Layer {
+  glm::vec3 specular_color;
+  float specular;
+  glm::vec3 sheen;
+  float sheen_roughness;
+  glm::vec3 absorption;
+  float transmission;
+  float dielectric;
+  float coat;
+  float coat_roughness;
+  float coat_normal_scale;
+  std::uint32_t uses;  // uses_*
+  std::array<std::uint32_t, 3> padding;
+  Slot coat_slot;  // whose place the others may share
+  Slot coat_roughness_slot;
+  Slot coat_normal_slot;
+  Slot specular_slot;
+  Slot specular_color_slot;
+  Slot sheen_color_slot;
+  Slot sheen_roughness_slot;
+  Slot transmission_slot;
+  Slot thickness_slot;
+};
+
 /// What surfaces are made of.
 struct MaterialTable {
   std::vector<Material> materials;
+  std::vector<Layer> layers;          // the first adds nothing
   std::vector<std::uint32_t> levels;  // first texel of every level of every texture
 };
 
 MaterialTable make_material_table(std::span<const shared::Material> materials,
+                                  std::span<const shared::MaterialLayer> layers,
                                   std::span<const shared::HeapTexture> textures);
 
 /// The scene's tables in memory, and those made of them.
@@ -79,6 +107,7 @@ struct SceneView {
   const shared::Mesh* meshes;
   const shared::Instance* instances;
   const Material* materials;
+  const Layer* layers;
   const std::uint32_t* levels;
   const std::uint32_t* texels;
   const shared::Vertex* previous_vertices;

@@ -72,12 +72,17 @@ SceneMotion scene_motion(const MovingScene& scene, const shared::FrameConstants&
     sum.add(glm::dot(glm::vec3(now.sun_irradiance), luminance_weights),
             half_turn(before->sun_direction, now.sun_direction), now.sun_radius);
   }
+  bool changed = now.environment_intensity != before->environment_intensity ||
+                 now.sun_irradiance != before->sun_irradiance || lights.size() != previous.size();
+  for (std::size_t i = 0; i < lights.size() && !changed; ++i) {
+    changed = lights[i].color != previous[i].color;
+  }
   const glm::vec2 facing(now.environment_cos, now.environment_sin);
   const glm::vec2 faced(before->environment_cos, before->environment_sin);
   const float rotation =
       std::atan2(facing.x * faced.y - facing.y * faced.x, glm::dot(facing, faced));
   return {sum.light > 0.0f ? sum.moved / sum.light : 0.0f, std::abs(rotation),
-          scene.geometry_moved()};
+          scene.geometry_moved(), changed};
 }
 
 float frames_under_motion(float motion) {

@@ -12,12 +12,19 @@ struct SceneMotion {
   /// its whole width or more. A mean, weighted by each light's irradiance at the middle of the
   /// scene.
   float lights = 0.0f;
-  float environment = 0.0f;     // rotation, radians
-  bool geometry_moved = false;  // whether any instance moved or any mesh deformed
+  float environment = 0.0f;         // rotation, radians
+  bool geometry_moved = false;      // whether any instance moved or any mesh deformed
+  bool brightness_changed = false;  // of any light or of the environment
   /// Frames since any of these last was not as in the frame before; 0: they are not now.
   std::uint32_t still_frames = ~0u;
 
-  bool any() const { return lights > 0.0f || environment > 0.0f || geometry_moved; }
+  bool any() const {
+    return lights > 0.0f || environment > 0.0f || geometry_moved || brightness_changed;
+  }
+  /// Whether histories hold no more traces of what moved or changed.
+  bool settled() const { return still_frames >= settling_frames; }
+
+  static constexpr std::uint32_t settling_frames = 32;
 };
 
 /// `before` is null in the first frame.

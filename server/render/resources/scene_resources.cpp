@@ -264,7 +264,7 @@ kernels::MaterialTable SceneResources::make_host_materials(
     std::span<const shared::Material> materials) const {
   const auto* const textures =
       reinterpret_cast<const shared::HeapTexture*>(texture_heap.textures.mapped());
-  return kernels::make_material_table(materials, {textures, scene->textures.size()});
+  return kernels::make_material_table(materials, scene->layers, {textures, scene->textures.size()});
 }
 
 void MaterialSets::write(std::span<const shared::Material> materials) const {

@@ -83,9 +83,9 @@ vec2 shortened_history(vec2 frames, vec2 moved, vec2 half_extent) {
 
 /// Within which bounds the mean change of a window that shows so many `surfaces` lies. It is the
 /// less certain the fewer of them were sampled: `scale` is that of all. Where it is less than the
-/// fraction `least`, nothing is known.
+/// fraction `least`, rounded, nothing is known.
 Box mean_box(Window window, float surfaces, float scale, float least) {
-  if (window.count < least * surfaces) return Box(vec3(-1e30), vec3(1e30));
+  if (window.count < least * surfaces - 0.5) return Box(vec3(-1e30), vec3(1e30));
   return variance_box(window, scale * sqrt(surfaces / max(window.count, 1.0)));
 }
 

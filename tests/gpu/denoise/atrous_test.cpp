@@ -375,7 +375,7 @@ TEST(SeparableAtrous, UpdatesVarianceInSecondPassOnly) {
   protocol::Settings settings;
   settings.specular_blur.variance_update = protocol::VarianceUpdate::vertical_only;
   const auto flags = [&](bool first) {
-    return render::atrous_constants(settings.specular_blur, {0, 2, 0, first}).flags;
+    return render::atrous_constants(settings.specular_blur, {}, {0, 2, 0, first}).flags;
   };
   EXPECT_TRUE(flags(true) & shared::atrous_keep_variance);
   EXPECT_FALSE(flags(false) & shared::atrous_keep_variance);

@@ -82,7 +82,16 @@ TEST(SharpMotion, GlossySphereReflectionDoesNotLag) {
     const double compensated = error_in_motion(settings, name, is_sphere, roughness);
     settings.specular_temporal.virtual_motion = false;
     const double lagging = error_in_motion(settings, name + "_lagging", is_sphere, roughness);
-    EXPECT_LT(compensated, 0.85 * lagging) << roughness;
+    EXPECT_LT(compensated, 0.9 * lagging) << roughness;
+    settings.specular_temporal.virtual_motion = true;
+    protocol::Settings other = settings;
+    other.specular_temporal.rectification = protocol::Rectification::fast_history;
+    const double by_fast_history =
+        error_in_motion(other, name + "_fast_history", is_sphere, roughness);
+    EXPECT_LT(compensated, by_fast_history) << roughness;
+    other.specular_temporal.virtual_motion = false;
+    EXPECT_LT(by_fast_history, 0.85 * error_in_motion(other, name + "_both", is_sphere, roughness))
+        << roughness;
   }
 }
 

@@ -91,7 +91,8 @@ class Files(ServerTestCase):
             values = self.array(buffer["name"])
             self.assertIn(values.ndim, (2, 3), buffer)
             self.assertLessEqual(values.shape[0], 90, buffer)
-            kind = {"output": "uint8", "gbuffer.instance": "uint32"}.get(buffer["name"], "float32")
+            kind = {"output": "uint8", "gbuffer.instance": "uint32",
+                    "sampling.plan": "uint32"}.get(buffer["name"], "float32")
             self.assertEqual(values.dtype, kind, buffer)
 
     def test_arrays_have_the_shape_of_their_buffer(self):

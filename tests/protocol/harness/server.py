@@ -141,12 +141,12 @@ class Server:
             raise AssertionError(f"{method}: {answer['error']}")
         return answer["result"]
 
-    def wait_for(self, condition, what, timeout=20):
+    def wait_for(self, condition, what, timeout=20, pause=0.05):
         deadline = time.monotonic() + timeout
         while not condition():
             if time.monotonic() > deadline:
                 raise AssertionError(f"{what} did not happen in {timeout} s:\n{self.log_text()}")
-            time.sleep(0.05)
+            time.sleep(pause)
 
     def stop(self, number=signal.SIGTERM):
         """Ends the server and returns its exit code."""

@@ -108,21 +108,32 @@ class DeviceLoss(ServerTestCase):
 
 class LossBeforeTheFirstFrame(unittest.TestCase):
     def test_the_first_scene_is_loaded_again(self):
+        # The renderer of the session may meet every loss while the scene loads: then once more.
+        for attempt in range(5):
+            if self.loses_the_first_load(attempt):
+                return
+        self.fail("every load ended without a loss")
+
+    def loses_the_first_load(self, attempt):
         with tempfile.TemporaryDirectory() as folder:
-            content, binary = document(*grid(500))
+            content, binary = document(*grid(500 + 100 * attempt))
             write_glb(os.path.join(folder, "first.glb"), content, binary)
             fault = os.path.join(folder, "lose")
             with Server("--scene", "first", scenes=folder, early=True,
                         environment={"HELIOGRAPH_TEST_DEVICE_LOSS": fault}) as server:
-                def load_lost_it():
-                    if "loading first: " in server.log_text():
+                def loaded_or_lost():
+                    log = server.log_text()
+                    if "loading first: " in log or "first loaded in" in log:
                         return True
                     with open(fault, "w", encoding="ascii"):
-                        return False  # it may have been the renderer of the session instead
-                server.wait_for(load_lost_it, "the loss", timeout=60)
+                        return False
+                server.wait_for(loaded_or_lost, "the loss", timeout=60, pause=0.005)
                 if os.path.exists(fault):
                     os.remove(fault)
+                if "loading first: " not in server.log_text():
+                    return False
                 server.wait_for(lambda: server.get("/health/ready")[0] == 200, "the first frame",
                                 timeout=60)
                 self.assertEqual(server.call("scene.list")["current"], "first")
                 self.assertEqual(server.stop(), 0)
+        return True

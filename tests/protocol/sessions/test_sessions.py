@@ -284,7 +284,7 @@ class FairDeviceShare(ServerTestCase):
         """The light one, whose frames take a few milliseconds, gets several between two of the
         heavy one's, and the heavy one still about half of the time."""
         endless = {"accumulation": {"max_samples": 60000}}
-        for name, (width, height) in {"light": (32, 18), "heavy": (960, 540)}.items():
+        for name, (width, height) in {"light": (32, 18), "heavy": (1920, 1080)}.items():
             self.server.call("session.create", {"name": name, "copy_of": "main", "width": width,
                                                 "height": height, "settings": endless})
         alone = {}

@@ -130,13 +130,14 @@ TEST(Presets, SvgfIsThePapersBaseline) {
                         "rectification": "off", "rectification_scale": 1.0,
                         "mean_variance": false, "bicubic": false},
     "shadow_blur": {"kernel": "full", "feedback": 0, "jitter": false, "iterations": 4,
-                    "luminance_sigma": 4.0},
+                    "luminance_sigma": 4.0, "moving_sigma": 4.0},
     "specular_temporal": {"history_seconds": 0.0, "history_frames": 20, "follow_lights": false,
                           "rectification": "off", "rectification_radius": 1,
                           "rectification_scale": 1.0, "mean_variance": false, "bicubic": false,
                           "virtual_motion": false, "curved_reflectors": false},
     "specular_blur": {"kernel": "full", "feedback": 0, "jitter": false, "lobe_limit": false,
-                      "iterations_by_roughness": false, "iterations": 4, "luminance_sigma": 4.0},
+                      "iterations_by_roughness": false, "iterations": 4, "luminance_sigma": 4.0,
+                      "moving_sigma": 4.0},
     "sampling": {"visibility": false, "specular": false}})"));
 }
 

@@ -12,20 +12,23 @@ struct FrameJob : gpu::HostPass<Bindings, Constants> {
   const shared::FrameConstants& frame;
 };
 
-/// A square table in the host's memory, rg32f: scales and biases of F0 (split sum).
-struct SplitSum {
+/// A square table of floats in the host's memory.
+struct SquareTexels {
   gpu::HostView texels;
   int size;
 };
 
-/// Whether kernels know the materials of a scene with these features: glTF's own model alone.
-inline bool know_materials(std::uint32_t features) {
-  return (features & shared::scene_layers) == 0;
-}
+/// What the lobes of surfaces look up.
+struct LobeTables {
+  SquareTexels split_sum;  // rg32f: scales and biases of F0
+  SquareTexels sheen;      // r32f: albedos of the white lobe
+  SquareTexels ltc;        // rgba32f: linearly transformed cosines
+};
 
-/// The same of its lights: punctual ones alone.
-inline bool know_lights(std::uint32_t features) {
-  return (features & shared::scene_area_lights) == 0;
+/// Whether a scene with these features has materials with layers: kernels leave out what they need
+/// of all others.
+inline bool has_layers(std::uint32_t features) {
+  return (features & shared::scene_layers) != 0;
 }
 
 }  // namespace heliograph::render::kernels

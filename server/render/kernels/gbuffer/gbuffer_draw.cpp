@@ -11,7 +11,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
 
+/// `Surface`: SurfaceLanes, or LayeredSurfaceLanes.
+template <class Surface>
 class TileShading {
+  using Shading = GBufferShading<Surface>;
+  using AllTexels = TexelsOf<Surface>;
+
  public:
   TileShading(const GBufferDrawJob& job, int left, int top)
       : job_(job),
@@ -42,7 +47,7 @@ class TileShading {
     hit.met = hn::AndNot(
         float_mask(hn::Eq(hit.instance, integer(static_cast<int>(shared::hit_none)))), requested);
     if (none(hit.met)) {
-      store(empty_texels(), pixel, requested);
+      store(empty_texels<AllTexels>(), pixel, requested);
       return;
     }
     const auto one_met = static_cast<std::size_t>(hn::FindFirstTrue(tag, hit.met));
@@ -52,13 +57,13 @@ class TileShading {
     HitRecords records(job_.scene, hit);
     RayLanes ray = camera_rays(job_.frame, shading_.camera(), pixel);
     meet(records, ray, hit);
-    const SurfaceLanes s = shading_.surface(records, hit, ray.direction);
+    const Surface s = shading_.surface(records, hit, ray.direction);
     // What is stored where rays go on is stored again in the round that stops them.
-    store(choose(hit.met, shading_.texels(pixel, records, hit, s), empty_texels()), pixel,
-          requested);
+    store(choose(hit.met, shading_.texels(pixel, records, hit, s), empty_texels<AllTexels>()),
+          pixel, requested);
     const Mask passes = shading_.go_on(ray.direction, hit, s);
     if (none(passes)) return;
-    ray.t_min = GBufferShading::passed_from(hit.t);
+    ray.t_min = Shading::passed_from(hit.t);
     used_ += store_rays(ray, passes, passed_.data() + used_);
   }
 
@@ -90,20 +95,25 @@ class TileShading {
     records.triangle.set_point(hit.u, hit.v);
   }
 
-  static HWY_INLINE GBufferTexels choose(Mask first, const GBufferTexels& a,
-                                         const GBufferTexels& b) {
+  static HWY_INLINE AllTexels choose(Mask first, const AllTexels& a, const AllTexels& b) {
     if (all(first)) return a;
     const auto pair = [first](const Float2& x, const Float2& y) HWY_ATTR {
       return Float2{select(first, x.x, y.x), select(first, x.y, y.y)};
     };
-    return {select(first, a.normals, b.normals),       select(first, a.motion, b.motion),
-            pair(a.depth_slope, b.depth_slope),        pair(a.emissive, b.emissive),
-            select(first, a.base_color, b.base_color), select(first, a.surface, b.surface),
-            select(first, a.instance, b.instance)};
+    AllTexels to;
+    to.normals = select(first, a.normals, b.normals);
+    to.motion = select(first, a.motion, b.motion);
+    to.depth_slope = pair(a.depth_slope, b.depth_slope);
+    to.emissive = pair(a.emissive, b.emissive);
+    to.base_color = select(first, a.base_color, b.base_color);
+    to.surface = select(first, a.surface, b.surface);
+    to.instance = select(first, a.instance, b.instance);
+    if constexpr (Surface::layered) to.layers = select(first, a.layers, b.layers);
+    return to;
   }
 
   /// Pixels side by side, of which the first are requested.
-  HWY_NOINLINE void store(const GBufferTexels& texels, const PixelLanes& pixel, Mask requested) {
+  HWY_NOINLINE void store(const AllTexels& texels, const PixelLanes& pixel, Mask requested) {
     const int x = hn::GetLane(pixel.x), y = hn::GetLane(pixel.y);
     const std::size_t count = hn::CountTrue(tag, requested);
     const bool whole = count == hn::Lanes(tag);
@@ -124,6 +134,7 @@ class TileShading {
     put(job_.base_color, texels.base_color, 1);
     put(job_.surface, texels.surface, 1);
     put(job_.instance, texels.instance, 1);
+    if constexpr (Surface::layered) put(job_.layers, texels.layers, 4);
   }
   static HWY_INLINE void interleave(Float v, float* to) { hn::StoreU(v, tag, to); }
   static HWY_INLINE void interleave(const Float2& v, float* to) {
@@ -137,7 +148,7 @@ class TileShading {
   }
 
   const GBufferDrawJob& job_;
-  GBufferShading shading_;
+  Shading shading_;
   TriangleTile tile_;
   int left_, top_;
   std::array<shared::Ray, 8 * TriangleTile::size> passed_;
@@ -145,7 +156,8 @@ class TileShading {
 };
 
 void draw_tile(const GBufferDrawJob& job, int left, int top) {
-  TileShading(job, left, top).run();
+  if (job.layers) return TileShading<LayeredSurfaceLanes>(job, left, top).run();
+  TileShading<SurfaceLanes>(job, left, top).run();
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE

@@ -18,6 +18,7 @@ struct GBufferDrawBindings {
   gpu::Write<Stage> emissive;     // rgba16f
   gpu::Write<Stage> depth_slope;  // rg32f
   gpu::Write<Stage> instance;     // r32ui
+  gpu::OptionalWrite<Stage> layers;
 };
 
 struct GBufferDrawJob : FrameJob<GBufferDrawBindings> {
@@ -27,7 +28,7 @@ struct GBufferDrawJob : FrameJob<GBufferDrawBindings> {
 };
 
 /// Finds the nearest triangle of every pixel and stores what its surface is, tile by tile on all
-/// processors. For scenes whose materials the kernels know.
+/// processors.
 void gbuffer_draw(const GBufferDrawJob& job);
 
 }  // namespace heliograph::render::kernels

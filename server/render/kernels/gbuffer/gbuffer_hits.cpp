@@ -24,7 +24,11 @@ void make_camera_rays(const shared::FrameConstants& frame, int tile, int tiles_a
 }
 
 /// The hits of one job, some at a time.
+template <class Surface>
 class StreamShading {
+  using Shading = GBufferShading<Surface>;
+  using AllTexels = TexelsOf<Surface>;
+
  public:
   explicit StreamShading(const GBufferHitsJob& job)
       : job_(job), shading_(job.frame, job.scene, job.deforms) {}
@@ -36,17 +40,17 @@ class StreamShading {
     const PixelLanes pixel = unpack_pixel(ray.pixel);
     const HitLanes hit = load_hits(job_.hits, first, last);
     const Mask missed = hn::AndNot(hit.met, requested);
-    if (!none(missed)) store(empty_texels(), pixel, hn::And(missed, inside(pixel)));
+    if (!none(missed)) store(empty_texels<AllTexels>(), pixel, hn::And(missed, inside(pixel)));
     if (none(hit.met)) return 0;
     HitRecords records(job_.scene, hit);
     records.triangle.set_point(hit.u, hit.v);
-    const SurfaceLanes s = shading_.surface(records, hit, ray.direction);
+    const Surface s = shading_.surface(records, hit, ray.direction);
     const Mask passes =
         job_.constants.last_round ? hn::Lt(one(), zero()) : shading_.go_on(ray.direction, hit, s);
     const Mask stays = hn::AndNot(passes, hit.met);
     if (!none(stays)) store(shading_.texels(pixel, records, hit, s), pixel, stays);
     if (none(passes)) return 0;
-    ray.t_min = GBufferShading::passed_from(hit.t);
+    ray.t_min = Shading::passed_from(hit.t);
     return store_rays(ray, passes, passed);
   }
 
@@ -57,8 +61,7 @@ class StreamShading {
                               hn::Lt(pixel.y, integer(static_cast<int>(extent.y)))));
   }
 
-  HWY_NOINLINE void store(const GBufferTexels& texels, const PixelLanes& pixel,
-                          Mask requested) const {
+  HWY_NOINLINE void store(const AllTexels& texels, const PixelLanes& pixel, Mask requested) const {
     const Texels<4> normals(texels.normals), motion(texels.motion);
     const Texels<2> depth_slope(texels.depth_slope), emissive(texels.emissive);
     const Texels<1> base_color(texels.base_color), surface(texels.surface);
@@ -73,20 +76,30 @@ class StreamShading {
       surface.put(job_.surface, lane, count, at);
       instance.put(job_.instance, lane, count, at);
     });
+    if constexpr (Surface::layered) {
+      const Texels<4> layers(texels.layers);
+      for_each_lane(requested, [&](std::size_t lane) { layers.put(job_.layers, lane, at); });
+    }
   }
 
   const GBufferHitsJob& job_;
-  GBufferShading shading_;
+  Shading shading_;
 };
 
-void shade_batch(const GBufferHitsJob& job, int first, int last) {
-  const StreamShading shading(job);
+template <class Surface>
+HWY_INLINE void shade_batch_of(const GBufferHitsJob& job, int first, int last) {
+  const StreamShading<Surface> shading(job);
   std::array<shared::Ray, ray_batch> passed;
   std::size_t used = 0;
   for (int i = first; i < last; i += static_cast<int>(hn::Lanes(tag))) {
     used += shading.block(i, last, passed.data() + used);
   }
   if (used) job.passed.append({passed.data(), used});
+}
+
+void shade_batch(const GBufferHitsJob& job, int first, int last) {
+  if (job.layers) return shade_batch_of<LayeredSurfaceLanes>(job, first, last);
+  shade_batch_of<SurfaceLanes>(job, first, last);
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE

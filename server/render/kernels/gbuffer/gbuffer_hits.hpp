@@ -43,7 +43,6 @@ struct GBufferHitsJob : FrameJob<GBufferHitsBindings, GBufferHitsConstants> {
   bool deforms;  // meshes have vertices of the frame before
 };
 
-/// For scenes whose materials the kernels know.
 void gbuffer_hits(const GBufferHitsJob& job);
 
 }  // namespace heliograph::render::kernels

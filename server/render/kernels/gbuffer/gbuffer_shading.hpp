@@ -7,8 +7,8 @@
 #define HELIOGRAPH_KERNELS_GBUFFER_SHADING_HPP
 #endif
 
+#include "render/kernels/simd/hit_material.hpp"
 #include "render/kernels/simd/ray_writer.hpp"
-#include "render/kernels/simd/surface.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
@@ -33,24 +33,55 @@ HWY_INLINE RayLanes camera_rays(const shared::FrameConstants& frame, const Camer
 
 /// A texel of every image.
 struct GBufferTexels {
+  static constexpr bool layered = false;
   Float4 normals, motion;
   Float2 depth_slope, emissive;
   Float base_color, surface, instance;
 };
+struct LayeredTexels : GBufferTexels {
+  static constexpr bool layered = true;
+  Float4 layers;
+};
+template <class Surface>
+using TexelsOf = std::conditional_t<Surface::layered, LayeredTexels, GBufferTexels>;
 
 /// Where no surface is.
-HWY_INLINE GBufferTexels empty_texels() {
+template <class Texels>
+HWY_INLINE Texels empty_texels() {
   // Beyond the octahedron: no normal.
   const Float none_of_it = zero(), beyond = number(2.0f);
-  return {{beyond, beyond, beyond, beyond},
-          {none_of_it, none_of_it, none_of_it, none_of_it},
-          {none_of_it, none_of_it},
-          {none_of_it, none_of_it},
-          none_of_it,
-          none_of_it,
-          none_of_it};
+  Texels texels;
+  texels.normals = {beyond, beyond, beyond, beyond};
+  texels.motion = {none_of_it, none_of_it, none_of_it, none_of_it};
+  texels.depth_slope = texels.emissive = {none_of_it, none_of_it};
+  texels.base_color = texels.surface = texels.instance = none_of_it;
+  if constexpr (Texels::layered) texels.layers = texels.motion;
+  return texels;
 }
 
+/// pack_layer() of shaders/lib/scene/layers.glsl
+HWY_INLINE Float4 pack_layer(const SurfaceLayer<Float>& layer, Float roughness) {
+  const auto tenth = [](Float value) HWY_ATTR {
+    const Float root = hn::Sqrt(clamped(value, 0.0f, 1.0f));
+    return truncated(hn::MulAdd(root, number(1023.0f), number(0.5f)));
+  };
+  const auto snorm = [](Float value) HWY_ATTR {
+    return hn::NearestInt(clamped(value, -1.0f, 1.0f) * number(32767.0f));
+  };
+  const Float2 normal = octahedral_encode(layer.coat_normal);
+  const Integer f0 = hn::Or(tenth(layer.f0.x), hn::Or(hn::ShiftLeft<10>(tenth(layer.f0.y)),
+                                                      hn::ShiftLeft<20>(tenth(layer.f0.z))));
+  const Integer packed_normal =
+      hn::Or(hn::And(snorm(normal.x), integer(0xffff)), hn::ShiftLeft<16>(snorm(normal.y)));
+  const Float3& sheen = layer.sheen;
+  return {as_float(f0), as_float(packed_normal),
+          as_float(pack_unorm8({layer.coat, layer.coat_roughness, roughness, layer.f90})),
+          as_float(pack_unorm8(
+              {hn::Sqrt(sheen.x), hn::Sqrt(sheen.y), hn::Sqrt(sheen.z), layer.sheen_roughness}))};
+}
+
+/// `Surface`: SurfaceLanes, or LayeredSurfaceLanes.
+template <class Surface>
 class GBufferShading {
  public:
   GBufferShading(const shared::FrameConstants& frame, const SceneView& scene, bool deforms)
@@ -59,27 +90,20 @@ class GBufferShading {
   HWY_INLINE const CameraLanes& camera() const { return camera_; }
 
   /// The surfaces at `hit`, whose u and v `records` have.
-  HWY_INLINE SurfaceLanes surface(const HitRecords& records, const HitLanes& hit,
-                                  const Float3& direction) const {
+  HWY_INLINE Surface surface(const HitRecords& records, const HitLanes& hit,
+                             const Float3& direction) const {
     const Float width = hn::MulAdd(hit.t, number(cone_.y), number(cone_.x));
-    return surface_at<false>(scene_, records, direction, width);
+    return surface_at<Surface, false>(scene_, records, direction, width);
   }
 
   /// Rays that the surfaces let pass.
-  HWY_INLINE Mask go_on(const Float3& direction, const HitLanes& hit, const SurfaceLanes& s) const {
-    const Mask back = hn::Gt(dot(s.front, direction), zero());
-    Mask passes = hn::AndNot(s.has(shared::material_double_sided), back);
-    // Tracers test the nearest texel; the frame shows the filtered one, as rasterised triangles do.
-    const Mask masked = s.has(shared::material_alpha_mask);
-    passes = hn::Or(passes, hn::And(masked, hn::Lt(s.alpha, s.alpha_cutoff)));
-    // Of blended surfaces only the opaque part: the rest is blended over the frame.
-    const Mask blends = s.has(shared::material_alpha_blend);
-    passes = hn::Or(passes, hn::And(blends, hn::Lt(s.alpha, number(shared::least_solid))));
-    return hn::And(passes, hit.met);
+  HWY_INLINE Mask go_on(const Float3& direction, const HitLanes& hit, const Surface& s) const {
+    // Of blended surfaces only the opaque part is drawn: the rest is blended over the frame.
+    return hn::And(hn::Or(is_open(s, direction), is_blended(s)), hit.met);
   }
 
-  HWY_INLINE GBufferTexels texels(const PixelLanes& pixel, const HitRecords& records,
-                                  const HitLanes& hit, const SurfaceLanes& s) const {
+  HWY_INLINE TexelsOf<Surface> texels(const PixelLanes& pixel, const HitRecords& records,
+                                      const HitLanes& hit, const Surface& s) const {
     const Float view_z = hn::Neg(transform_row(frame_.view, 2, s.position));
     const Float2 shading = octahedral_encode(s.normal), flat = octahedral_encode(s.geometric);
     const auto half = [](Float low, Float high) HWY_ATTR {
@@ -88,18 +112,42 @@ class GBufferShading {
     const Float4 color{hn::Sqrt(s.base_color.x), hn::Sqrt(s.base_color.y), hn::Sqrt(s.base_color.z),
                        s.occlusion};
     const Float unlit = hn::IfThenElseZero(s.has(shared::material_unlit), one());
-    return {{shading.x, shading.y, flat.x, flat.y},
-            motion(records.instance, hit, s, view_z),
-            plane_slope(pixel, s, view_z),
-            {half(s.emissive.x, s.emissive.y), half(s.emissive.z, one())},
-            as_float(pack_unorm8(color)),
-            as_float(pack_unorm8({s.roughness, s.metallic, unlit, zero()})),
-            as_float(hn::Add(hit.instance, integer(1)))};
+    TexelsOf<Surface> to;
+    to.normals = {shading.x, shading.y, flat.x, flat.y};
+    to.motion = motion(records.instance, hit, s, view_z);
+    to.depth_slope = plane_slope(pixel, s, view_z);
+    to.emissive = {half(s.emissive.x, s.emissive.y), half(s.emissive.z, one())};
+    to.base_color = as_float(pack_unorm8(color));
+    Float roughness = s.roughness;
+    if constexpr (Surface::layered) {
+      to.layers = pack_layer(s.layer, roughness);
+      const Mask coated = hn::Gt(s.layer.coat, zero());
+      roughness = select(coated, hn::Min(roughness, s.layer.coat_roughness), roughness);
+    }
+    to.surface = as_float(pack_unorm8({roughness, s.metallic, unlit, zero()}));
+    to.instance = as_float(hn::Add(hit.instance, integer(1)));
+    return to;
   }
 
   /// From a little behind the surface on.
   static HWY_INLINE Float passed_from(Float t) {
     return t + hn::Max(t * number(1e-6f), number(1e-7f));
+  }
+
+  HWY_INLINE Float4 motion(const Records& instance, const HitLanes& hit, const SurfaceLanes& s,
+                           Float view_z) const {
+    const MatrixLanes before(instance, HELIOGRAPH_WORD(shared::Instance, previous_world));
+    const Float3 previous = before.point(previous_local(instance, hit, s));
+    const auto project = [](const glm::mat4& m, const Float3& at) {
+      const Float by = transform_row(m, 3, at);
+      return Float2{transform_row(m, 0, at) / by, transform_row(m, 1, at) / by};
+    };
+    const Float2 now = project(frame_.unjittered, s.position);
+    const Float2 then = project(frame_.previous_unjittered, previous);
+    const Float z_before = hn::Neg(transform_row(frame_.previous_view, 2, previous));
+    // Equal positions give exactly 0: no product is here that the compiler could fuse with this.
+    return {(then.x - now.x) * number(0.5f), (then.y - now.y) * number(0.5f), z_before - view_z,
+            view_z};
   }
 
  private:
@@ -145,22 +193,6 @@ class GBufferShading {
                          moved);
     before.set_point(hit.u, hit.v);
     return select(moved, before.position(), s.local);
-  }
-
-  HWY_INLINE Float4 motion(const Records& instance, const HitLanes& hit, const SurfaceLanes& s,
-                           Float view_z) const {
-    const MatrixLanes before(instance, HELIOGRAPH_WORD(shared::Instance, previous_world));
-    const Float3 previous = before.point(previous_local(instance, hit, s));
-    const auto project = [](const glm::mat4& m, const Float3& at) {
-      const Float by = transform_row(m, 3, at);
-      return Float2{transform_row(m, 0, at) / by, transform_row(m, 1, at) / by};
-    };
-    const Float2 now = project(frame_.unjittered, s.position);
-    const Float2 then = project(frame_.previous_unjittered, previous);
-    const Float z_before = hn::Neg(transform_row(frame_.previous_view, 2, previous));
-    // Equal positions give exactly 0: no product is here that the compiler could fuse with this.
-    return {(then.x - now.x) * number(0.5f), (then.y - now.y) * number(0.5f), z_before - view_z,
-            view_z};
   }
 
   const shared::FrameConstants& frame_;

@@ -1,6 +1,5 @@
-// Surfaces and punctual lights for host kernels: shaders/lib/lighting/brdf.glsl,
-// gbuffer_material.glsl and lights.glsl in vectors. Included once per instruction set; the guard is
-// Google Highway's convention.
+// Surfaces of glTF's own materials for host kernels: shaders/lib/lighting/brdf.glsl in vectors.
+// Included once per instruction set; the guard is Google Highway's convention.
 #if defined(HELIOGRAPH_KERNELS_MATERIAL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef HELIOGRAPH_KERNELS_MATERIAL_HPP
 #undef HELIOGRAPH_KERNELS_MATERIAL_HPP
@@ -10,8 +9,8 @@
 
 #include <numbers>
 
+#include "render/kernels/common/frame_job.hpp"
 #include "render/kernels/simd/pixels.hpp"
-#include "shaders/shared/scene.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
@@ -31,7 +30,7 @@ struct SurfaceMaterial {
   Triple<V> diffuse_albedo;
 };
 
-/// A square table of two floats, read with linear filtering, clamped at its edges.
+/// A square table, read with linear filtering, clamped at its edges.
 template <class D>
 class SquareTable {
   using V = hn::Vec<D>;
@@ -39,25 +38,61 @@ class SquareTable {
   using VI = hn::Vec<DI>;
 
  public:
-  HWY_INLINE SquareTable(const gpu::HostView& texels, int size)
-      : texels_(row_of<const float>(texels, 0)),
-        pitch_(static_cast<int>(texels.row_pitch / sizeof(float))),
-        size_(size) {}
+  HWY_INLINE explicit SquareTable(const SquareTexels& table)
+      : texels_(row_of<const float>(table.texels, 0)),
+        pitch_(static_cast<int>(table.texels.row_pitch / sizeof(float))),
+        size_(table.size) {}
 
+  /// Of a table of two floats.
   HWY_INLINE Pair<V> at(V u, V v) const {
+    const Place p = place(u, v);
+    const Quad<V> top = two_texels(p.above, p.left, p.right);
+    const Quad<V> bottom = two_texels(p.below, p.left, p.right);
+    return {mix(mix(top.x, top.z, p.across), mix(bottom.x, bottom.z, p.across), p.down),
+            mix(mix(top.y, top.w, p.across), mix(bottom.y, bottom.w, p.across), p.down)};
+  }
+  /// Of a table of one float.
+  HWY_INLINE V one_at(V u, V v) const {
+    const Place p = place(u, v);
+    const auto texel = [&](VI row, VI column)
+                           HWY_ATTR { return hn::GatherIndex(d_, texels_, row + column); };
+    return mix(mix(texel(p.above, p.left), texel(p.above, p.right), p.across),
+               mix(texel(p.below, p.left), texel(p.below, p.right), p.across), p.down);
+  }
+  /// Of a table of four floats.
+  HWY_INLINE Quad<V> four_at(V u, V v) const {
+    const Place p = place(u, v);
+    const auto texel = [&](VI row, VI column) HWY_ATTR {
+      const LaneIndices<D> index(row + hn::ShiftLeft<2>(column));
+      return four_words(d_, [&](std::size_t lane) { return texels_ + index.of[lane]; });
+    };
+    const auto between = [](const Quad<V>& a, const Quad<V>& b, V fraction) HWY_ATTR {
+      return Quad<V>{mix(a.x, b.x, fraction), mix(a.y, b.y, fraction), mix(a.z, b.z, fraction),
+                     mix(a.w, b.w, fraction)};
+    };
+    return between(between(texel(p.above, p.left), texel(p.above, p.right), p.across),
+                   between(texel(p.below, p.left), texel(p.below, p.right), p.across), p.down);
+  }
+  int size() const { return size_; }
+
+ private:
+  /// Four neighbours: rows in floats, columns in texels, and the weights of the second ones.
+  struct Place {
+    VI above, below, left, right;
+    V across, down;
+  };
+  HWY_INLINE Place place(V u, V v) const {
     const V half = hn::Set(d_, 0.5f), scale = hn::Set(d_, static_cast<float>(size_));
     const V x = hn::MulSub(u, scale, half), y = hn::MulSub(v, scale, half);
     const V x0 = hn::Floor(x), y0 = hn::Floor(y);
-    const V fx = x - x0, fy = y - y0;
-    const VI left = inside(x0, 0), right = inside(x0, 1);
-    const VI above = hn::Mul(inside(y0, 0), hn::Set(di_, pitch_));
-    const VI below = hn::Mul(inside(y0, 1), hn::Set(di_, pitch_));
-    const Quad<V> top = two_texels(above, left, right), bottom = two_texels(below, left, right);
-    return {mix(mix(top.x, top.z, fx), mix(bottom.x, bottom.z, fx), fy),
-            mix(mix(top.y, top.w, fx), mix(bottom.y, bottom.w, fx), fy)};
+    const VI pitch = hn::Set(di_, pitch_);
+    return {hn::Mul(inside(y0, 0), pitch),
+            hn::Mul(inside(y0, 1), pitch),
+            inside(x0, 0),
+            inside(x0, 1),
+            x - x0,
+            y - y0};
   }
-
- private:
   HWY_INLINE VI inside(V position, int step) const {
     const VI index = hn::ConvertTo(di_, position) + hn::Set(di_, step);
     return hn::Min(hn::Max(index, hn::Zero(di_)), hn::Set(di_, size_ - 1));
@@ -109,26 +144,40 @@ HWY_INLINE SurfaceMaterial<V> make_material(D d, const Triple<V>& base_color, V 
   return m;
 }
 
+/// (1 - v.h)^5
+template <class V>
+HWY_INLINE V schlick_weight(V v_dot_h) {
+  const hn::DFromV<V> d;
+  const V x = clamped(hn::Set(d, 1.0f) - v_dot_h, 0.0f, 1.0f);
+  const V x2 = x * x;
+  return x2 * x2 * x;
+}
+
+/// D V n.l of one lobe.
+template <class V>
+HWY_INLINE V specular_lobe(V n_dot_h, V n_dot_l, V n_dot_v, V roughness) {
+  const hn::DFromV<V> d;
+  const V one = hn::Set(d, 1.0f);
+  const V alpha = hn::Max(roughness * roughness, hn::Set(d, 2e-3f));
+  const V a2 = alpha * alpha;
+  const V narrow = hn::MulAdd(one - n_dot_h, one + n_dot_h, n_dot_h * n_dot_h * a2);
+  const V rest = one - a2;
+  const V by_light = n_dot_l * hn::Sqrt(hn::MulAdd(n_dot_v * n_dot_v, rest, a2));
+  const V by_eye = n_dot_v * hn::Sqrt(hn::MulAdd(n_dot_l * n_dot_l, rest, a2));
+  const V masked = hn::Max(by_light + by_eye, hn::Set(d, 1e-7f));
+  constexpr float pi = std::numbers::pi_v<float>;
+  return hn::Set(d, 0.5f) * a2 * n_dot_l / (hn::Set(d, pi) * narrow * narrow * masked);
+}
+
 /// BRDF x cosine for light arriving along -l.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Triple<V> shade_light(D d, const SurfaceMaterial<V>& m, const Triple<V>& l) {
-  const V one = hn::Set(d, 1.0f), zero = hn::Zero(d);
-  const V n_dot_l = hn::Max(dot(m.normal, l), zero);
+  const V n_dot_l = hn::Max(dot(m.normal, l), hn::Zero(d));
   const Triple<V> h = normalized(l + m.eye);
-  const V alpha = hn::Max(m.roughness * m.roughness, hn::Set(d, 2e-3f));
-  const V a2 = alpha * alpha;
   const V n_dot_h = clamped(dot(m.normal, h), 0.0f, 1.0f);
-  const V narrow = hn::MulAdd(one - n_dot_h, one + n_dot_h, n_dot_h * n_dot_h * a2);
-  const V rest = one - a2;
-  const V by_light = n_dot_l * hn::Sqrt(hn::MulAdd(m.n_dot_v * m.n_dot_v, rest, a2));
-  const V by_eye = m.n_dot_v * hn::Sqrt(hn::MulAdd(n_dot_l * n_dot_l, rest, a2));
-  const V masked = hn::Max(by_light + by_eye, hn::Set(d, 1e-7f));
-  constexpr float pi = std::numbers::pi_v<float>;
-  const V lobe = hn::Set(d, 0.5f) * a2 * n_dot_l / (hn::Set(d, pi) * narrow * narrow * masked);
-  const V x = clamped(one - dot(m.eye, h), 0.0f, 1.0f);
-  const V x2 = x * x;
-  const V schlick = x2 * x2 * x;
-  const V spread = n_dot_l * hn::Set(d, 1.0f / pi);
+  const V lobe = specular_lobe(n_dot_h, n_dot_l, m.n_dot_v, m.roughness);
+  const V schlick = schlick_weight(dot(m.eye, h));
+  const V spread = n_dot_l * hn::Set(d, std::numbers::inv_pi_v<float>);
   const auto channel = [&](V f0, V f90_minus_f0, V diffuse) HWY_ATTR {
     return hn::MulAdd(hn::MulAdd(f90_minus_f0, schlick, f0), lobe, diffuse * spread);
   };
@@ -137,67 +186,24 @@ HWY_INLINE Triple<V> shade_light(D d, const SurfaceMaterial<V>& m, const Triple<
           channel(m.f0.z, m.f90_minus_f0.z, m.diffuse_albedo.z)};
 }
 
-/// A punctual light's middle, as surfaces see it.
+/// What spreads widely of light from everywhere.
 template <class V>
-struct LightSample {
-  Triple<V> direction;
-  V distance;
-  V attenuation;  // of the light's colour
-};
-
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE LightSample<V> light_at(D d, const shared::Light& light, const Triple<V>& position) {
-  const V one = hn::Set(d, 1.0f);
-  if (light.type == shared::light_directional) {
-    return {splat(d, -light.direction), hn::Set(d, 1e30f), one};
-  }
-  const Triple<V> to_light = splat(d, light.position) - position;
-  const V squared = hn::Max(dot(to_light, to_light), hn::Set(d, 1e-8f));
-  LightSample<V> s;
-  s.distance = hn::Sqrt(squared);
-  s.direction = to_light * (one / s.distance);
-  s.attenuation = one / squared;
-  if (light.range > 0.0f) {
-    const V q = squared * hn::Set(d, 1.0f / (light.range * light.range));
-    s.attenuation = s.attenuation * clamped(hn::NegMulAdd(q, q, one), 0.0f, 1.0f);
-  }
-  if (light.type == shared::light_spot) {
-    const V cosine = hn::Neg(dot(splat(d, light.direction), s.direction));
-    const V cone =
-        clamped(hn::MulAdd(cosine, hn::Set(d, light.spot_scale), hn::Set(d, light.spot_offset)),
-                0.0f, 1.0f);
-    s.attenuation = s.attenuation * cone * cone;
-  }
-  return s;
+HWY_INLINE const Triple<V>& wide_albedo(const SurfaceMaterial<V>& m) {
+  return m.diffuse_albedo;
 }
 
-/// Lanes that any of the light may reach, of those that `wanted` names.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE hn::Mask<D> reached(D d, const shared::Light& light, const Triple<V>& position,
-                               hn::Mask<D> requested) {
-  if (light.type == shared::light_directional || light.range <= 0.0f) return requested;
-  const Triple<V> to_light = splat(d, light.position) - position;
-  return hn::And(requested, hn::Lt(dot(to_light, to_light), hn::Set(d, light.range * light.range)));
+/// Of the narrower specular lobe.
+template <class V>
+HWY_INLINE V narrower_roughness(const SurfaceMaterial<V>& m) {
+  return m.roughness;
 }
 
-/// Light that surfaces send to the eye from this punctual light, unshadowed: radiance, 0 in lanes
-/// that are not `wanted`. @return whether there is any
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE bool light_contribution(D d, const shared::Light& light, const SurfaceMaterial<V>& m,
-                                   const Triple<V>& position, hn::Mask<D> requested,
-                                   Triple<V>& radiance) {
-  const auto near = reached(d, light, position, requested);
-  if (hn::AllFalse(d, near)) return false;
-  const LightSample<V> s = light_at(d, light, position);
-  const V zero = hn::Zero(d);
-  const auto lit = hn::And(near, hn::Gt(dot(m.geometric, s.direction), zero));
-  if (hn::AllFalse(d, lit)) return false;
-  const Triple<V> shaded = shade_light(d, m, s.direction);
-  const Triple<V> color = splat(d, light.color) * s.attenuation;
-  radiance = {hn::IfThenElseZero(lit, color.x * shaded.x),
-              hn::IfThenElseZero(lit, color.y * shaded.y),
-              hn::IfThenElseZero(lit, color.z * shaded.z)};
-  return true;
+/// Light of the environment that comes back from the specular lobes, without occlusion.
+/// `reflection(normal, roughness)`: the prefiltered radiance that the eye sees about the normal.
+template <class V, class Reflection>
+HWY_INLINE Triple<V> environment_specular(const SurfaceMaterial<V>& m,
+                                          const Reflection& reflection) {
+  return m.specular_albedo * reflection(m.normal, m.roughness);
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE

@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "render/kernels/simd/lanes.hpp"
-#include "render/kernels/simd/material.hpp"
+#include "render/kernels/simd/layers.hpp"
 #include "render/kernels/simd/random.hpp"
 #include "render/kernels/simd/ray_writer.hpp"
 #include "render/kernels/simd/rays.hpp"
@@ -42,15 +42,15 @@ inline RandomNumbers<UnsignedTag> specular_numbers(const shared::FrameConstants&
   return {unsigned_tag, position.sample, position.dimension, frame.seed};
 }
 
-/// The shading normal, or as close to it as keeps the reflected direction above the triangle.
-HWY_INLINE Float3 reflecting_normal(const MaterialLanes& m) {
-  const Float3 reflected = reflect(-m.eye, m.normal);
+/// The lobe's normal, or as close to it as keeps the reflected direction above the triangle.
+HWY_INLINE Float3 reflecting_normal(const MaterialLanes& m, const Float3& normal) {
+  const Float3 reflected = reflect(-m.eye, normal);
   const Float least = number(0.01f);
   const Float above = dot(reflected, m.geometric);
   const Mask stays = hn::Or(hn::Ge(above, least), hn::Le(dot(m.eye, m.geometric), zero()));
-  if (all(stays)) return m.normal;
+  if (all(stays)) return normal;
   const Float3 lifted = normalized(multiply_add(m.geometric, least - above, reflected));
-  return select(stays, m.normal, normalized(m.eye + lifted));
+  return select(stays, normal, normalized(m.eye + lifted));
 }
 
 /// A microfacet normal as seen from `view`, in the frame of the shading normal.
@@ -93,26 +93,60 @@ struct SpecularSample {
   Float density;
 };
 
-HWY_INLINE SpecularSample sample_specular(const MaterialLanes& m, const Float2& u) {
-  const Float3 normal = reflecting_normal(m);
+/// A direction of one lobe. Its weight is not multiplied by the reflectance at `v_dot_h` yet.
+struct LobeSample {
+  Float3 direction;
+  Float v_dot_h, weight, density;
+};
+
+HWY_INLINE LobeSample sample_lobe(const MaterialLanes& m, const Float3& lobe_normal,
+                                  Float roughness, const Float2& u) {
+  const Float3 normal = reflecting_normal(m, lobe_normal);
   Float3 tangent, bitangent;
   orthonormal_basis(normal, tangent, bitangent);
-  const Float alpha = m.roughness * m.roughness;
+  const Float alpha = roughness * roughness;
   const Float3 view = normalized(
       Float3{dot(m.eye, tangent), dot(m.eye, bitangent), at_least(dot(m.eye, normal), 1e-3f)});
   const Float3 microfacet = sample_visible_normal(view, alpha, u);
-  const Float v_dot_h = dot(view, microfacet);
-  const Float3 light = microfacet * (number(2.0f) * v_dot_h) - view;
-  SpecularSample s;
+  LobeSample s;
+  s.v_dot_h = dot(view, microfacet);
+  const Float3 light = microfacet * (number(2.0f) * s.v_dot_h) - view;
   s.direction = normalized(
       multiply_add(tangent, light.x, multiply_add(bitangent, light.y, normal * light.z)));
   const Mask open = hn::Gt(dot(s.direction, m.geometric), zero());
-  const Float x = clamped(one() - v_dot_h, 0.0f, 1.0f);
-  const Float x2 = x * x;
-  const Float3 reflectance = multiply_add(m.f90_minus_f0, x2 * x2 * x, m.f0);
-  s.weight = keep(open, reflectance * visible_normal_weight(view, light, alpha));
+  s.weight = hn::IfThenElseZero(open, visible_normal_weight(view, light, alpha));
   s.density = visible_normal_pdf(view, light, at_least(alpha, 1e-4f));
   return s;
+}
+
+HWY_INLINE Float3 microfacet_reflectance(const MaterialLanes& m, Float v_dot_h) {
+  return multiply_add(m.f90_minus_f0, schlick_weight(v_dot_h), m.f0);
+}
+
+HWY_INLINE SpecularSample sample_specular(const MaterialLanes& m, const Float2& u) {
+  const LobeSample s = sample_lobe(m, m.normal, m.roughness, u);
+  return {s.direction, microfacet_reflectance(m, s.v_dot_h) * s.weight, s.density};
+}
+
+/// Of a coated surface one of the two lobes is drawn, in proportion to what each gives back.
+HWY_INLINE SpecularSample sample_specular(const LayeredMaterial<Float>& m, Float2 u) {
+  if (!m.coated) return sample_specular(static_cast<const MaterialLanes&>(m), u);
+  const Mask has_coat = hn::Gt(m.coat_albedo, zero());
+  const Float3& albedo = m.specular_albedo;
+  const Float mean = (albedo.x + albedo.y + albedo.z) * number(1.0f / 3.0f);
+  const Float of_coat =
+      hn::IfThenElseZero(has_coat, clamped(m.coat_albedo / at_least(mean, 1e-6f), 0.05f, 0.95f));
+  const Mask coated = hn::Lt(u.x, of_coat);
+  const Float probability = select(coated, of_coat, one() - of_coat);
+  u.x = select(coated, u.x, u.x - of_coat) / probability;
+  const LobeSample s = sample_lobe(m, select(coated, m.coat_normal, m.normal),
+                                   select(coated, m.coat_roughness, m.roughness), u);
+  const Float of_lobe = s.weight / probability;
+  const Float coat =
+      hn::MulAdd(m.coat_f90_minus_f0, schlick_weight(s.v_dot_h), m.coat_f0) * of_lobe;
+  return {s.direction,
+          select(coated, {coat, coat, coat}, microfacet_reflectance(m, s.v_dot_h) * of_lobe),
+          s.density * probability};
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE

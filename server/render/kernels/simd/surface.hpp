@@ -8,7 +8,9 @@
 #endif
 
 #include "render/kernels/simd/lanes.hpp"
-#include "render/kernels/simd/textures.hpp"
+#include "render/kernels/simd/layers.hpp"
+#include "render/kernels/simd/ray_writer.hpp"
+#include "render/kernels/simd/slots.hpp"
 #include "shaders/shared/ray.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -56,6 +58,7 @@ HWY_INLINE HitLanes load_hits(const shared::Hit* hits, int first, int last) {
 }
 
 struct SurfaceLanes {
+  static constexpr bool layered = false;
   Float3 position;   // world
   Float3 normal;     // shading, turned to the side that the ray came from
   Float3 geometric;  // of the triangle, likewise
@@ -69,6 +72,13 @@ struct SurfaceLanes {
     const Integer requested = integer(static_cast<int>(flag));
     return float_mask(hn::Eq(hn::And(flags, requested), requested));
   }
+};
+
+/// In scenes whose materials have layers.
+struct LayeredSurfaceLanes : SurfaceLanes {
+  static constexpr bool layered = true;
+  SurfaceLayer<Float> layer;
+  Float passing;  // fraction of rays that tracers let pass where it covers
 };
 
 /// The columns of an affine matrix.
@@ -147,12 +157,6 @@ class TriangleLanes {
   Float weight_a_, weight_b_, weight_c_;
 };
 
-/// Where textures are read: both uv sets, and the level of detail of an image of one texel.
-struct LookupLanes {
-  Float2 first, second;
-  Float first_lod, second_lod;
-};
-
 /// One uv set of the corners. `footprint` is log2 of the squared fraction of the triangle that the
 /// ray's cone covers.
 HWY_INLINE void read_uv(const TriangleLanes& t, const Float2& a, const Float2& b, const Float2& c,
@@ -163,73 +167,15 @@ HWY_INLINE void read_uv(const TriangleLanes& t, const Float2& a, const Float2& b
   lod = hn::MulAdd(hn::Log2(tag, at_least(area, 1e-30f)), number(0.5f), footprint);
 }
 
-/// The textures of each lane's material. Most materials' textures are read at one place.
-template <bool one_level>
-class SlotReader {
- public:
-  HWY_INLINE SlotReader(const SceneView& scene, const Records& material, const LookupLanes& lookup)
-      : scene_(scene), material_(material), lookup_(lookup) {}
-
-  /// The slot that begins at `word` of the materials; white where there is no texture, or where the
-  /// slot has the flag `unless`.
-  HWY_NOINLINE Float4 texel(int word, std::uint32_t unless = 0) {
-    static_assert(offsetof(Slot, flags) == 32 && offsetof(Slot, wrap_s) == 48);
-    const Float4 size = material_.four(word + HELIOGRAPH_WORD(Slot, flags));
-    const TextureLanes flags{.flags = as_integer(size.x)};
-    Mask used = flags.has(slot_used);
-    if (unless) used = hn::AndNot(flags.has(unless), used);
-    Float4 color{one(), one(), one(), one()};
-    if (none(used)) return color;
-    const Float4 wrap = material_.four(word + HELIOGRAPH_WORD(Slot, wrap_s));
-    const TexturePlace& at = place(word, size, wrap, used);
-    Float4 found;
-    read_texture(scene_, at, as_integer(wrap.z), used, flags.has(shared::texture_srgb), found);
-    return {select(used, found.x, color.x), select(used, found.y, color.y),
-            select(used, found.z, color.z), select(used, found.w, color.w)};
-  }
-
- private:
-  HWY_INLINE const TexturePlace& place(int word, const Float4& size, const Float4& wrap,
-                                       Mask used) {
-    const Mask shares = TextureLanes{.flags = as_integer(size.x)}.has(slot_shares_place);
-    if (placed_ && none(hn::AndNot(shares, used))) return shared_;
-    static_assert(offsetof(Slot, row1) == 12 && offsetof(Slot, lod) == 24);
-    const Float4 front = material_.four(word), back = material_.four(word + 4);
-    const Mask first = float_mask(hn::Eq(as_integer(back.w), integer(0)));
-    const Float x = select(first, lookup_.first.x, lookup_.second.x);
-    const Float y = select(first, lookup_.first.y, lookup_.second.y);
-    const Float2 uv{hn::MulAdd(front.x, x, hn::MulAdd(front.y, y, front.z)),
-                    hn::MulAdd(front.w, x, hn::MulAdd(back.x, y, back.y))};
-    const Float lod = hn::Add(back.z, select(first, lookup_.first_lod, lookup_.second_lod));
-    const TextureLanes t{as_integer(size.y), as_integer(size.z), as_integer(wrap.x),
-                         as_integer(wrap.y), as_integer(size.x), as_integer(size.w)};
-    const bool base = word == HELIOGRAPH_WORD(Material, base_color_slot);
-    TexturePlace& to = base ? shared_ : own_;
-    place_texture<one_level>(t, uv, lod, to);
-    placed_ |= base;
-    return to;
-  }
-
-  const SceneView& scene_;
-  const Records& material_;
-  const LookupLanes& lookup_;
-  TexturePlace shared_;  // of base colors
-  TexturePlace own_;
-  bool placed_ = false;
-};
-
-/// The normal map about the front face's `normal`.
-template <bool one_level>
-HWY_INLINE Float3 mapped_normal(SlotReader<one_level>& slots, const TriangleLanes& triangle,
-                                const MatrixLanes& world, Float handedness, const Records& material,
-                                const Float3& normal) {
-  constexpr int slot = HELIOGRAPH_WORD(Material, normal_slot);
-  const Integer used = hn::And(material.whole(slot + HELIOGRAPH_WORD(Slot, flags)),
-                               integer(static_cast<int>(slot_used)));
-  Mask mapped = float_mask(hn::Ne(used, integer(0)));
+/// The normal map in `slot` about the front face's `normal`; its scale is the word `scale_word`.
+template <class Slots>
+HWY_INLINE Float3 mapped_normal(Slots& slots, int slot, const Records& record, int scale_word,
+                                const TriangleLanes& triangle, const MatrixLanes& world,
+                                Float handedness, const Float3& normal) {
+  Mask mapped = slots.used(slot);
   if (none(mapped)) return normal;
   const Float4 texel = slots.texel(slot);
-  const Float scale = material.real(HELIOGRAPH_WORD(Material, normal_scale));
+  const Float scale = record.real(scale_word);
   const Float2 slope{hn::Mul(hn::MulSub(texel.x, number(2.0f), one()), scale),
                      hn::Mul(hn::MulSub(texel.y, number(2.0f), one()), scale)};
   const Float height = hn::MulSub(texel.z, number(2.0f), one());
@@ -247,7 +193,7 @@ HWY_INLINE Float3 mapped_normal(SlotReader<one_level>& slots, const TriangleLane
 }
 
 template <bool one_level>
-HWY_INLINE void evaluate_material(SlotReader<one_level>& slots, const Float4& base,
+HWY_INLINE void evaluate_material(MaterialSlots<one_level>& slots, const Float4& base,
                                   const TriangleLanes& triangle, const Records& material,
                                   SurfaceLanes& s) {
   const Float4 &a = triangle.a().color, &b = triangle.b().color, &c = triangle.c().color;
@@ -331,16 +277,71 @@ struct HitRecords {
   }
 };
 
+/// What extensions add, with the textures of `slots`. `mapped`: the coat's normals. Not inlined: in
+/// most scenes with layers few surfaces have any.
+template <bool one_level>
+HWY_NOINLINE void evaluate_layer(LayerSlots<one_level>& slots, const Records& from,
+                                 const Float3& coat_normal, SurfaceLayer<Float>& layer) {
+  static_assert(offsetof(Layer, specular) == 12 && offsetof(Layer, sheen_roughness) == 28 &&
+                offsetof(Layer, transmission) == 44 && offsetof(Layer, dielectric) == 48 &&
+                offsetof(Layer, coat_roughness) == 56);
+  const Float4 coats = from.four(HELIOGRAPH_WORD(Layer, dielectric));
+  layer.coat = coats.y * slots.texel(HELIOGRAPH_WORD(Layer, coat_slot)).x;
+  layer.coat_roughness = coats.z * slots.texel(HELIOGRAPH_WORD(Layer, coat_roughness_slot)).y;
+  layer.coat_normal = coat_normal;
+  const Float4 specular = from.four(HELIOGRAPH_WORD(Layer, specular_color));
+  const Float4 tint = slots.texel(HELIOGRAPH_WORD(Layer, specular_color_slot));
+  layer.f90 = specular.w * slots.texel(HELIOGRAPH_WORD(Layer, specular_slot)).w;
+  const auto reflectance = [&](Float color, Float texel) HWY_ATTR {
+    return layer.f90 * hn::Min(coats.x * color * texel, one());
+  };
+  layer.f0 = {reflectance(specular.x, tint.x), reflectance(specular.y, tint.y),
+              reflectance(specular.z, tint.z)};
+  const Float4 sheen = from.four(HELIOGRAPH_WORD(Layer, sheen));
+  const Float4 fuzz = slots.texel(HELIOGRAPH_WORD(Layer, sheen_color_slot));
+  layer.sheen = Float3{sheen.x, sheen.y, sheen.z} * Float3{fuzz.x, fuzz.y, fuzz.z};
+  layer.sheen_roughness = sheen.w * slots.texel(HELIOGRAPH_WORD(Layer, sheen_roughness_slot)).w;
+  const Float4 absorption = from.four(HELIOGRAPH_WORD(Layer, absorption));
+  layer.transmission = absorption.w * slots.texel(HELIOGRAPH_WORD(Layer, transmission_slot)).x;
+  layer.transmitted = numbers(0.0f);
+  if (none(hn::Gt(layer.transmission, zero()))) return;
+  const Float thickness = slots.texel(HELIOGRAPH_WORD(Layer, thickness_slot)).y;
+  const auto remaining = [&](Float exponent) HWY_ATTR {
+    return layer.transmission * hn::Exp(tag, hn::Neg(exponent * thickness));
+  };
+  layer.transmitted = {remaining(absorption.x), remaining(absorption.y), remaining(absorption.z)};
+}
+
+/// The layers of `s`, at the front face's normal.
+template <bool one_level>
+HWY_INLINE void add_layer(const SceneView& scene, const HitRecords& records,
+                          const LookupLanes& lookup, const Float3& vertex_normal, Float side,
+                          LayeredSurfaceLanes& s) {
+  const Integer number = records.material.whole(HELIOGRAPH_WORD(Material, layer));
+  const Records from(scene.layers, number, sizeof(Layer) / 4);
+  LayerSlots<one_level> slots(scene, from, lookup);
+  const Float3 coat_normal =
+      mapped_normal(slots, HELIOGRAPH_WORD(Layer, coat_normal_slot), from,
+                    HELIOGRAPH_WORD(Layer, coat_normal_scale), records.triangle, records.world,
+                    records.handedness, vertex_normal);
+  const Mask plain = float_mask(hn::Eq(number, integer(0)));
+  evaluate_layer<one_level>(slots, from,
+                            select(plain, numbers(glm::vec3(0.0f, 0.0f, 1.0f)), coat_normal) * side,
+                            s.layer);
+  s.passing = records.material.real(HELIOGRAPH_WORD(Material, passing));
+  s.alpha = select(s.has(shared::material_whole_alpha), one(), s.alpha);
+}
+
 /// Where a point of `records.triangle` that set_point() names is met by rays along `direction`,
 /// whose footprints there are `width` metres.
-template <bool one_level>
-HWY_INLINE SurfaceLanes surface_at(const SceneView& scene, const HitRecords& records,
-                                   const Float3& direction, Float width) {
+template <class Surface, bool one_level>
+HWY_INLINE Surface surface_at(const SceneView& scene, const HitRecords& records,
+                              const Float3& direction, Float width) {
   const TriangleLanes& triangle = records.triangle;
   const MatrixLanes& world = records.world;
   const Float handedness = records.handedness;
   const Records& material = records.material;
-  SurfaceLanes s;
+  Surface s;
   const Float3 &a = triangle.a().position, &b = triangle.b().position;
   const Float3& c = triangle.c().position;
   s.local = triangle.position();
@@ -365,20 +366,26 @@ HWY_INLINE SurfaceLanes surface_at(const SceneView& scene, const HitRecords& rec
   const Mask opposed = hn::Lt(dot(s.front, vertex_normal), zero());
   s.geometric = s.front * select(opposed, hn::Neg(side), side);
   const LookupLanes lookup = texture_lookup(triangle, material, area, width, hn::Abs(cosine));
-  SlotReader<one_level> slots(scene, material, lookup);
+  MaterialSlots<one_level> slots(scene, material, lookup);
   const Float4 base = slots.texel(HELIOGRAPH_WORD(Material, base_color_slot));
-  s.normal = mapped_normal(slots, triangle, world, handedness, material, vertex_normal) * side;
-  evaluate_material(slots, base, triangle, material, s);
+  s.normal = mapped_normal(slots, HELIOGRAPH_WORD(Material, normal_slot), material,
+                           HELIOGRAPH_WORD(Material, normal_scale), triangle, world, handedness,
+                           vertex_normal) *
+             side;
+  evaluate_material<one_level>(slots, base, triangle, material, s);
+  if constexpr (Surface::layered) {
+    add_layer<one_level>(scene, records, lookup, vertex_normal, side, s);
+  }
   return s;
 }
 
 /// `hit` of rays along `direction` whose footprints at the hits are `width` metres.
-template <bool one_level>
-HWY_INLINE SurfaceLanes hit_surface(const SceneView& scene, const HitLanes& hit,
-                                    const Float3& direction, Float width) {
+template <class Surface, bool one_level>
+HWY_INLINE Surface hit_surface(const SceneView& scene, const HitLanes& hit, const Float3& direction,
+                               Float width) {
   HitRecords records(scene, hit);
   records.triangle.set_point(hit.u, hit.v);
-  return surface_at<one_level>(scene, records, direction, width);
+  return surface_at<Surface, one_level>(scene, records, direction, width);
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE

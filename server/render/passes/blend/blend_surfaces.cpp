@@ -1,8 +1,10 @@
 #include "render/passes/blend/blend_surfaces.hpp"
 
+#include "render/kernels/blend/blended.hpp"
 #include "render/passes/formats.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/reflections/trace_specular.hpp"
+#include "render/resources/light_table.hpp"
 #include "render/resources/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 
@@ -42,6 +44,11 @@ glm::uvec4 blended_region(const FrameInputs& in) {
   return region;
 }
 
+const kernels::Environment& host_environment(const FrameInputs& in) {
+  const bool separate_sun = in.settings.environment.separate_sun;
+  return *in.moving.environment().view(separate_sun).maps.host;
+}
+
 class BlendedSurfaces {
  public:
   BlendedSurfaces(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer)
@@ -70,16 +77,16 @@ class BlendedSurfaces {
     begin_rays(plan_, in_, "blended", current, Blending::stops);
     begin_rays(plan_, in_, "blended.lit", lit_, Blending::stops);
     plan_.pass("blended.rays", in_.program(shaders::blended_rays))
-        .read(gbuffer_.motion)
-        .read_write(current.count)
-        .write(current.rays)
-        .write(radiance_)
-        .write(transmittance_)
-        .write(motion_)
-        .write(surface_)
-        .write(specular_)
-        .constants([in = in_] { return blended_region(in); })
-        .dispatch(plan_.extent());
+        .bind<kernels::BlendedRaysBindings>({.motion = gbuffer_.motion,
+                                             .rays = ray_sink(current),
+                                             .radiance = radiance_,
+                                             .transmittance = transmittance_,
+                                             .front_motion = motion_,
+                                             .surface = surface_,
+                                             .specular = specular_})
+        .constants([in = in_] { return kernels::BlendedRaysConstants{blended_region(in)}; })
+        .dispatch(plan_.extent())
+        .host(kernels::blended_rays, in_.constants);
     for (std::uint32_t round = 0; round < most_blended; ++round) {
       in_.tracer.trace_closest(plan_, "blended.trace", in_.structure, current, hits_);
       begin_rays(plan_, in_, "blended", next, Blending::stops);
@@ -99,21 +106,24 @@ class BlendedSurfaces {
     }
     const bool traced = in_.settings.specular.enabled;
     pass("blended.light", shaders::blended_light)
-        .read(lit_.count)
-        .read(lit_.rays)
-        .read(chosen_)
-        .read(radiance_)
-        .read_write(transmittance_)
-        .write(surface_)
-        .read_write(shadows.count)
-        .write(shadows.rays)
-        .read_write(ambient.count)
-        .write(ambient.rays)
-        .read_write(reflected.count)
-        .write(reflected.rays)
-        .constants(
-            [&s = in_.settings.specular, traced] { return traced ? s.max_roughness : -1.0f; })
-        .dispatch_indirect(lit_.count, ray_groups_offset);
+        .bind<kernels::BlendedLightBindings>({.lit = ray_source(lit_),
+                                              .chosen = chosen_,
+                                              .radiance = radiance_,
+                                              .transmittance = transmittance_,
+                                              .surface = surface_,
+                                              .shadows = ray_sink(shadows),
+                                              .ambient = ray_sink(ambient),
+                                              .specular = ray_sink(reflected)})
+        .constants([&s = in_.settings.specular, traced] {
+          return kernels::BlendedLightConstants{traced ? s.max_roughness : -1.0f};
+        })
+        .dispatch_indirect(lit_.count, ray_groups_offset)
+        .host([in = in_](const kernels::BlendedLightJob::Pass& pass) {
+          const auto lights = frame_lights(in.tables.lights, in.constants);
+          kernels::blended_light({pass, in.constants, kernels::has_layers(in.scene.features),
+                                  kernels::view_scene(in.scene, in.tables, in.moving),
+                                  host_environment(in), lights, in.lobe_tables()});
+        });
     add_unoccluded_light(plan_, in_, "blended.shadows", shadows, radiance_);
     add_unoccluded_light(plan_, in_, "blended.ambient", ambient, radiance_);
     if (traced) {
@@ -124,11 +134,12 @@ class BlendedSurfaces {
 
   void compose_over(gpu::ImageRef frame) {
     plan_.pass("blended.over", in_.program(shaders::blended_over))
-        .read(radiance_)
-        .read(specular_)
-        .read(transmittance_)
-        .read_write(frame)
-        .dispatch(plan_.extent());
+        .bind<kernels::BlendedOverBindings>({.radiance = radiance_,
+                                             .specular = specular_,
+                                             .transmittance = transmittance_,
+                                             .frame = frame})
+        .dispatch(plan_.extent())
+        .host(kernels::blended_over);
   }
 
  private:
@@ -138,25 +149,26 @@ class BlendedSurfaces {
 
   void add_surfaces(std::uint32_t round, const tracing::RayStream& rays,
                     const tracing::RayStream& next) {
-    struct Constants {
-      std::uint32_t round;
-      std::uint32_t last_round;
-    };
     pass("blended.surfaces", shaders::blended_surfaces)
-        .read(rays.count)
-        .read(rays.rays)
-        .read(hits_)
-        .read(plan_.import(in_.moving.previous_vertices()))
-        .read_write(next.count)
-        .write(next.rays)
-        .read_write(radiance_)
-        .read_write(transmittance_)
-        .write(motion_)
-        .write(chosen_)
-        .read_write(lit_.count)
-        .write(lit_.rays)
-        .constants(Constants{round, round + 1 == most_blended})
-        .dispatch_indirect(rays.count, ray_groups_offset);
+        .bind<kernels::BlendedSurfacesBindings>(
+            {.met = ray_source(rays),
+             .hits = hits_,
+             .previous_vertices = plan_.import(in_.moving.previous_vertices()),
+             .rays = ray_sink(next),
+             .radiance = radiance_,
+             .transmittance = transmittance_,
+             .front_motion = motion_,
+             .chosen = chosen_,
+             .lit = ray_sink(lit_)})
+        .constants(kernels::BlendedSurfacesConstants{round, round + 1 == most_blended})
+        .dispatch_indirect(rays.count, ray_groups_offset)
+        .host([in = in_](const kernels::BlendedSurfacesJob::Pass& pass) {
+          const auto lights = frame_lights(in.tables.lights, in.constants);
+          kernels::blended_surfaces({pass, in.constants, kernels::has_layers(in.scene.features),
+                                     (in.scene.features & shared::scene_deforms) != 0,
+                                     kernels::view_scene(in.scene, in.tables, in.moving),
+                                     host_environment(in), lights, in.lobe_tables()});
+        });
   }
 
   gpu::FramePlan& plan_;

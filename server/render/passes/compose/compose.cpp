@@ -48,10 +48,9 @@ Composed compose(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbu
       .host([in](const kernels::ComposeJob::Pass& pass) {
         const auto lights = frame_lights(in.tables.lights, in.constants);
         const bool separate_sun = in.settings.environment.separate_sun;
-        kernels::compose({pass, in.constants, lights, in.split_sum(),
-                          *in.moving.environment().view(separate_sun).maps.host});
-      })
-      .host_when(kernels::know_materials(features) && kernels::know_lights(features));
+        kernels::compose({pass, in.constants, kernels::has_layers(in.scene.features), lights,
+                          in.lobe_tables(), *in.moving.environment().view(separate_sun).maps.host});
+      });
   return composed;
 }
 

@@ -65,12 +65,13 @@ struct KernelShape {
 };
 
 inline shared::AtrousConstants atrous_constants(const protocol::BlurSettings& settings,
+                                                const SceneMotion& motion,
                                                 const KernelShape& shape) {
   shared::AtrousConstants constants{};
   constants.level = shape.level;
   constants.columns = shape.columns;
   constants.rows = shape.rows;
-  constants.luminance_sigma = settings.luminance_sigma;
+  constants.luminance_sigma = motion.settled() ? settings.luminance_sigma : settings.moving_sigma;
   constants.normal_power = settings.normal_power;
   constants.depth_sigma = settings.depth_sigma;
   const bool keep =

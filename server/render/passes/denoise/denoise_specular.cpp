@@ -41,7 +41,7 @@ gpu::ImageRef expand(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef 
 AtrousConfig specular_atrous_config(const FrameInputs& in) {
   const auto& settings = in.settings.specular_blur;
   const auto constants = [in, &settings](const KernelShape& shape) {
-    shared::AtrousConstants made = atrous_constants(settings, shape);
+    shared::AtrousConstants made = atrous_constants(settings, in.scene_motion, shape);
     made.start_threshold = settings.adapt_start ? settings.roughness_threshold : 2.0f;
     if (settings.lobe_limit) made.flags |= shared::atrous_lobe_limit;
     // Hits that only the environment lights have no noise of shadow rays.

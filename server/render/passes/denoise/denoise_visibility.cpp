@@ -33,7 +33,7 @@ float widest_light(const FrameInputs& in) {
 AtrousConfig visibility_atrous_config(const FrameInputs& in) {
   const auto& settings = in.settings.shadow_blur;
   const auto constants = [in, &settings](const KernelShape& shape) {
-    shared::AtrousConstants made = atrous_constants(settings, shape);
+    shared::AtrousConstants made = atrous_constants(settings, in.scene_motion, shape);
     const bool double_step = settings.adapt_start && widest_light(in) > settings.angle_threshold;
     made.start_threshold = double_step ? -1.0f : 2.0f;
     return made;

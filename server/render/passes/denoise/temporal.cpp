@@ -148,8 +148,9 @@ AccumulatedSignal accumulate_specular(gpu::FramePlan& plan, const FrameInputs& i
         .constants(constants)
         .dispatch(plan.extent())
         .host(kernels::specular_rectify)
+        // A static view's second frame is the first that samples every pixel.
         .when([&settings, &clock = in.clock] {
-          return settings.rectification != protocol::Rectification::gradient || clock.samples == 0;
+          return settings.rectification != protocol::Rectification::gradient || clock.samples <= 1;
         });
   }
   return {signal, history_length.current, history_length.current, history.current};

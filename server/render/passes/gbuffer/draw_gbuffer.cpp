@@ -27,7 +27,7 @@ std::vector<const Draw*> visible_draws(const FrameInputs& in) {
 
 bool draws_gbuffer_on_host(const gpu::FramePlan& plan, const FrameInputs& in) {
   using enum protocol::PrimaryVisibility;
-  if (!plan.uses_host_kernels() || !kernels::know_materials(in.scene.features)) return false;
+  if (!plan.uses_host_kernels()) return false;
   if (in.settings.gbuffer.source != automatic) return in.settings.gbuffer.source == raster;
   const std::uint64_t pixels = std::uint64_t{plan.extent().width} * plan.extent().height;
   std::uint64_t triangles = 0;
@@ -37,6 +37,7 @@ bool draws_gbuffer_on_host(const gpu::FramePlan& plan, const FrameInputs& in) {
 
 GBuffer draw_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
   GBuffer gbuffer = declare_gbuffer(plan, in.scene.features);
+  const bool layered = kernels::has_layers(in.scene.features);
   const CameraStreams streams = declare_camera_streams(plan);
   const auto triangles = std::make_shared<kernels::ScreenTriangles>();
   plan.host("gbuffer.triangles", [in, triangles] {
@@ -46,14 +47,16 @@ GBuffer draw_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
   // Camera rays decide for themselves, by the filtered texel: as drawn triangles do.
   begin_rays(plan, in, "gbuffer", streams.current, Blending::stops);
   plan.host("gbuffer.draw", {})
-      .bind<kernels::GBufferDrawBindings>({.passed = ray_sink(streams.current),
-                                           .normals = gbuffer.normals,
-                                           .base_color = gbuffer.base_color,
-                                           .surface = gbuffer.surface,
-                                           .motion = gbuffer.motion,
-                                           .emissive = gbuffer.emissive,
-                                           .depth_slope = gbuffer.depth_slope,
-                                           .instance = gbuffer.instance})
+      .bind<kernels::GBufferDrawBindings>(
+          {.passed = ray_sink(streams.current),
+           .normals = gbuffer.normals,
+           .base_color = gbuffer.base_color,
+           .surface = gbuffer.surface,
+           .motion = gbuffer.motion,
+           .emissive = gbuffer.emissive,
+           .depth_slope = gbuffer.depth_slope,
+           .instance = gbuffer.instance,
+           .layers = layered ? std::optional(gbuffer.layers) : std::nullopt})
       .host([in, triangles](const kernels::GBufferDrawJob::Pass& pass) {
         kernels::gbuffer_draw({pass, in.constants,
                                kernels::view_scene(in.scene, in.tables, in.moving),

@@ -9,8 +9,8 @@ namespace heliograph::render {
 /// triangles, but each costs a tenth of a ray.
 GBuffer draw_gbuffer(gpu::FramePlan& plan, const FrameInputs& in);
 
-/// Whether the host draws the G-buffer of this plan: where host kernels know the materials, unless
-/// the settings ask for rays or there are so many triangles that rays find it sooner.
+/// Whether the host draws the G-buffer of this plan: where host kernels run, unless the settings
+/// ask for rays or there are so many triangles that rays find it sooner.
 bool draws_gbuffer_on_host(const gpu::FramePlan& plan, const FrameInputs& in);
 
 }  // namespace heliograph::render

@@ -56,8 +56,7 @@ void store_hits(gpu::FramePlan& plan, const FrameInputs& in, const Round& round,
         kernels::gbuffer_hits({pass, in.constants,
                                kernels::view_scene(in.scene, in.tables, in.moving),
                                (in.scene.features & shared::scene_deforms) != 0});
-      })
-      .host_when(kernels::know_materials(features));
+      });
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include "render/kernels/signals.hpp"
 #include "render/passes/frame_inputs.hpp"
 #include "render/passes/reference/reference.hpp"
-#include "render/passes/sampling/plan_samples.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
@@ -20,11 +19,11 @@ bool is_filtered(const protocol::Settings& settings) {
          settings.reference.use == protocol::ReferenceUse::when_static;
 }
 
-/// Samples in the mean, with this frame's. The frame that ended the motion may lack some.
+/// Samples in the mean, with this frame's.
 std::uint32_t samples_of_mean(const FrameInputs& in) {
   const bool late = (in.settings.reference.use == protocol::ReferenceUse::when_static &&
                      in.settings.accumulation.blend_samples > 0) ||
-                    may_leave_samples_out(in.settings);
+                    !in.clock.first_counts;
   return late ? std::max(in.clock.samples, 1u) : in.clock.samples + 1;
 }
 

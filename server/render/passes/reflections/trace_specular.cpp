@@ -57,9 +57,9 @@ tracing::RayStream generate_rays(gpu::FramePlan& plan, const FrameInputs& in,
       })
       .dispatch(target.extent)
       .host([in](const kernels::SpecularRaysJob::Pass& pass) {
-        kernels::specular_rays({pass, in.constants, in.split_sum()});
-      })
-      .host_when(kernels::know_materials(features));
+        kernels::specular_rays(
+            {pass, in.constants, kernels::has_layers(in.scene.features), in.lobe_tables()});
+      });
   return in.settings.specular.sort_rays ? sort_rays(plan, in, "specular", rays) : rays;
 }
 
@@ -91,11 +91,11 @@ void shade(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer, 
       .host([in](const kernels::SpecularShadeJob::Pass& pass) {
         const auto lights = frame_lights(in.tables.lights, in.constants);
         const bool separate_sun = in.settings.environment.separate_sun;
-        kernels::specular_shade(
-            {pass, in.constants, kernels::view_scene(in.scene, in.tables, in.moving),
-             *in.moving.environment().view(separate_sun).maps.host, lights, in.split_sum()});
-      })
-      .host_when(kernels::know_materials(features) && kernels::know_lights(features));
+        kernels::specular_shade({pass, in.constants, kernels::has_layers(in.scene.features),
+                                 kernels::view_scene(in.scene, in.tables, in.moving),
+                                 *in.moving.environment().view(separate_sun).maps.host, lights,
+                                 in.lobe_tables()});
+      });
 }
 
 /// Adds the light of shadow rays that are not occluded.

@@ -11,9 +11,6 @@ namespace {
 
 using protocol::Settings;
 
-/// Frames for which the traces of something that moved may stay in histories.
-constexpr std::uint32_t settling_frames = 32;
-
 /// Rectification by the current frame's neighbourhood needs a sample of every pixel of it.
 bool keeps_without_sample(const protocol::TemporalSettings& temporal) {
   return temporal.enabled &&
@@ -31,24 +28,23 @@ bool plans_specular(const Settings& s) {
 
 shared::SamplingPlanConstants plan_constants(const FrameInputs& in) {
   const Settings& s = in.settings;
-  const SceneMotion& motion = in.scene_motion;
-  const bool settled = motion.still_frames >= settling_frames;
-  const auto rarest = static_cast<std::uint32_t>(s.sampling.floor);
-  const std::uint32_t half = std::min(rarest, 2u), most = settled ? rarest : half;
-  const std::uint32_t mirrors = settled ? half : 1u, shadows = motion.lights > 0.0f ? 1u : most;
+  const std::uint32_t most =
+      in.scene_motion.settled() ? static_cast<std::uint32_t>(s.sampling.floor) : 1u;
+  const std::uint32_t mirrors = std::min(most, 2u);
   const auto at_most = [](std::uint32_t frames, bool planned) { return planned ? frames : 1u; };
-  return {static_cast<float>(s.sampling.full_frames), at_most(shadows, plans_visibility(s)),
+  return {static_cast<float>(s.sampling.full_frames), at_most(most, plans_visibility(s)),
           at_most(most, plans_visibility(s)), at_most(most, plans_specular(s)),
           at_most(mirrors, plans_specular(s))};
 }
 
-}  // namespace
-
+/// Whether frames of a moving view do.
 bool may_leave_samples_out(const Settings& settings) {
   return (plans_visibility(settings) || plans_specular(settings)) &&
          settings.accumulation.blend_samples > 0 &&
          settings.reference.use != protocol::ReferenceUse::always;
 }
+
+}  // namespace
 
 bool leaves_samples_out(const FrameInputs& in) {
   return in.clock.samples == 0 && in.constants.history_invalid == 0 &&

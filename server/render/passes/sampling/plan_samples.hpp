@@ -3,7 +3,6 @@
 #include <array>
 #include <optional>
 
-#include "protocol/settings/settings.hpp"
 #include "render/passes/denoise/reproject.hpp"
 #include "shaders/shared/sampling.h"
 
@@ -39,11 +38,8 @@ struct PreviousSamples {
   gpu::ImageRef visibility;         // variances in zw
 };
 
-/// Whether frames of a moving view leave samples out. They are no part of the accumulated mean,
-/// which a static view converges to: it holds a sample of every pixel in every frame.
-bool may_leave_samples_out(const protocol::Settings& settings);
-
-/// Whether this frame does.
+/// Whether this frame of a moving view leaves samples out. It is no part of the accumulated mean,
+/// which a static view converges to: that holds a sample of every pixel in every frame.
 bool leaves_samples_out(const FrameInputs& in);
 
 /// Decides for every pixel which rays it traces, in words as in shaders/shared/sampling.h, in

@@ -79,9 +79,9 @@ gpu::ImageRef trace_shadows(gpu::FramePlan& plan, const FrameInputs& in, const G
       .constants(ray_constants(in, planned.has_value()))
       .host([in](const kernels::ShadowRaysJob::Pass& pass) {
         const auto lights = frame_lights(in.tables.lights, in.constants);
-        kernels::shadows_rays({pass, in.constants, lights, in.split_sum()});
-      })
-      .host_when(kernels::know_materials(features) && kernels::know_lights(features));
+        kernels::shadows_rays(
+            {pass, in.constants, kernels::has_layers(in.scene.features), lights, in.lobe_tables()});
+      });
   return trace.resolve();
 }
 

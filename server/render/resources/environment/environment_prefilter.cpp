@@ -135,6 +135,7 @@ gpu::Image make_sheen_table(const gpu::Device& device, const Programs& programs)
   gpu::ImageDesc desc{.name = "sheen albedo", .extent = {sheen_size, sheen_size}};
   desc.format = VK_FORMAT_R32_SFLOAT;
   desc.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+  desc.mapped = device.is_cpu();  // host kernels read it
   gpu::Image table(device, desc);
   gpu::FramePlan plan(device, desc.extent);
   plan.pass("sheen_table", programs.compute(shaders::sheen_table))

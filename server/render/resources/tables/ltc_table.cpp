@@ -19,6 +19,7 @@ gpu::Image make_ltc_image(const gpu::Device& device) {
   gpu::ImageDesc desc{.name = "linearly transformed cosines"};
   desc.extent = {ltc_table_size, ltc_table_size};
   desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+  desc.mapped = device.is_cpu();  // host kernels read it
   gpu::Image image(device, desc);
   image.upload(std::as_bytes(std::span(texels)));
   return image;

@@ -1,0 +1,22 @@
+#include "gpu/memory/memory_block.hpp"
+
+namespace heliograph::gpu {
+
+MemoryBlock::MemoryBlock(const Device& device, const VkMemoryRequirements& requirements,
+                         const std::string& name)
+    : device_(device), size_(requirements.size) {
+  constexpr VkMemoryPropertyFlags host =
+      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  memory_ = device.allocate(requirements, host, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, name);
+  void* address = nullptr;
+  const VkResult mapped = vkMapMemory(device.handle(), memory_, 0, VK_WHOLE_SIZE, 0, &address);
+  if (mapped != VK_SUCCESS) vkFreeMemory(device.handle(), memory_, nullptr);
+  check(mapped, "map shared memory");
+  mapped_ = static_cast<std::byte*>(address);
+}
+
+MemoryBlock::~MemoryBlock() {
+  vkFreeMemory(device_.handle(), memory_, nullptr);
+}
+
+}  // namespace heliograph::gpu

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <span>
+
+#include "render/kernels/common/frame_job.hpp"
+#include "render/kernels/common/ray_sink.hpp"
+#include "render/resources/host_tables.hpp"
+
+/// Blended surfaces on all processors, in vectors.
+namespace heliograph::render::kernels {
+
+/// shaders/blend/blended_rays.comp
+template <class Stage>
+struct BlendedRaysBindings {
+  gpu::Read<Stage> motion;  // rgba32f
+  RaySink<Stage> rays;
+  gpu::Write<Stage> radiance;       // rgba32f
+  gpu::Write<Stage> transmittance;  // rgba32f
+  gpu::Write<Stage> front_motion;   // rgba32f
+  gpu::Write<Stage> surface;        // rgba8
+  gpu::Write<Stage> specular;       // rgba32f
+};
+struct BlendedRaysConstants {
+  glm::uvec4 region;  // of pixels: first, behind the last
+};
+using BlendedRaysJob = FrameJob<BlendedRaysBindings, BlendedRaysConstants>;
+void blended_rays(const BlendedRaysJob& job);
+
+/// shaders/blend/blended_surfaces.comp
+template <class Stage>
+struct BlendedSurfacesBindings {
+  RaySource<Stage> met;
+  gpu::ReadBuffer<Stage, shared::Hit> hits;
+  gpu::ReadBuffer<Stage, shared::Vertex> previous_vertices;
+  RaySink<Stage> rays;                          // that go on
+  gpu::ReadWrite<Stage> radiance;               // rgba32f; a: sum of all weights
+  gpu::ReadWrite<Stage> transmittance;          // rgba32f; a: weight of the chosen surface
+  gpu::Write<Stage> front_motion;               // rgba32f
+  gpu::WriteBuffer<Stage, shared::Hit> chosen;  // by pixel
+  RaySink<Stage> lit;
+};
+struct BlendedSurfacesConstants {
+  std::uint32_t round;
+  std::uint32_t last_round;
+};
+struct BlendedSurfacesJob : FrameJob<BlendedSurfacesBindings, BlendedSurfacesConstants> {
+  bool layered;  // materials of the scene have layers
+  bool deforms;  // meshes have vertices of the frame before
+  SceneView scene;
+  const Environment& environment;
+  std::span<const shared::Light> lights;
+  LobeTables tables;
+};
+void blended_surfaces(const BlendedSurfacesJob& job);
+
+/// shaders/blend/blended_light.comp
+template <class Stage>
+struct BlendedLightBindings {
+  RaySource<Stage> lit;
+  gpu::ReadBuffer<Stage, shared::Hit> chosen;  // by pixel
+  gpu::Read<Stage> radiance;                   // rgba32f
+  gpu::ReadWrite<Stage> transmittance;         // rgba32f; a: from weight to view Z
+  gpu::Write<Stage> surface;                   // rgba8
+  RaySink<Stage> shadows, ambient, specular;
+};
+struct BlendedLightConstants {
+  float max_roughness;  // below 0: no reflections are traced
+};
+struct BlendedLightJob : FrameJob<BlendedLightBindings, BlendedLightConstants> {
+  bool layered;  // as above
+  SceneView scene;
+  const Environment& environment;
+  std::span<const shared::Light> lights;
+  LobeTables tables;
+};
+void blended_light(const BlendedLightJob& job);
+
+/// shaders/blend/blended_over.comp
+template <class Stage>
+struct BlendedOverBindings {
+  gpu::Read<Stage> radiance, specular, transmittance;  // rgba32f
+  gpu::ReadWrite<Stage> frame;                         // rgba32f
+};
+using BlendedOverJob = gpu::HostPass<BlendedOverBindings>;
+void blended_over(const BlendedOverJob& job);
+
+}  // namespace heliograph::render::kernels

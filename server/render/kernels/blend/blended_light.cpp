@@ -1,0 +1,208 @@
+#include "render/kernels/blend/blended.hpp"
+#include "render/kernels/simd/rows.hpp"
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/kernels/blend/blended_light.cpp"
+#include "hwy/foreach_target.h"
+// After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/simd/environment.hpp"
+#include "render/kernels/simd/hit_material.hpp"
+#include "render/kernels/simd/lights.hpp"
+#include "render/kernels/simd/random.hpp"
+#include "render/kernels/simd/specular_lobe.hpp"
+#include "render/kernels/simd/tiles.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::kernels::HWY_NAMESPACE {
+
+/// Rays of one kind on their way into a stream.
+struct RayBatch {
+  std::array<shared::Ray, ray_batch> rays;
+  std::size_t count = 0;
+  HWY_INLINE void add(const RayLanes& lanes, Mask requested) {
+    count += store_rays(lanes, requested, rays.data() + count);
+  }
+  void append_to(const RaySink<gpu::Mapped>& sink) const {
+    if (count) sink.append({rays.data(), count});
+  }
+};
+
+struct LightBatches {
+  RayBatch shadows, ambient, specular;
+};
+
+/// `Surface`: SurfaceLanes, or LayeredSurfaceLanes.
+template <class Surface>
+class BlendedLight {
+  using Material =
+      std::conditional_t<Surface::layered, LayeredMaterial<Float>, SurfaceMaterial<Float>>;
+
+ public:
+  explicit BlendedLight(const BlendedLightJob& job)
+      : job_(job),
+        cone_(CameraLanes(job.frame).cone()),
+        environment_(job.frame, job.environment),
+        tables_(job.tables),
+        picks_(unsigned_tag, job.frame.sample_index, 40u, job.frame.seed),
+        points_(unsigned_tag, job.frame.sample_index, 41u, job.frame.seed),
+        around_(unsigned_tag, job.frame.sample_index, 42u, job.frame.seed),
+        lobes_(unsigned_tag, job.frame.sample_index, 43u, job.frame.seed) {}
+
+  void block(int first, int last, LightBatches& to) const {
+    const RayLanes view = load_rays(job_.lit.rays, first, last);
+    const PixelLanes pixel = unpack_pixel(view.pixel);
+    const Mask lanes = float_mask(hn::Lt(hn::Iota(integer_tag, first), integer(last)));
+    Float3 throughput;
+    const HitLanes hit = chosen_at(pixel, lanes, throughput);
+    const Float4 seen = gathered4(job_.transmittance, pixel);
+    throughput = throughput * (gathered_last(job_.radiance, pixel) / seen.w);
+    const Float width = hn::MulAdd(hit.t, number(cone_.y), number(cone_.x));
+    const auto s = hit_surface<Surface, false>(job_.scene, hit, view.direction, width);
+    const Material m = material_of(s, view.direction, tables_);
+    const Float view_z = hn::Neg(transform_row(job_.frame.view, 2, s.position));
+    RayLanes ray;
+    ray.origin = offset_origin(s.position, m.geometric, view_z);
+    ray.t_min = zero();
+    ray.pixel = view.pixel;
+    if (enabled(shared::frame_direct)) add_shadow(s, m, pixel, throughput, lanes, ray, to.shadows);
+    Float3 around = numbers(0.0f);
+    if (enabled(shared::frame_environment_diffuse)) {
+      around = wide_albedo(m) * environment_.irradiance(m.normal);
+    }
+    const Float roughness = narrower_roughness(m);
+    // Roughness is stored in steps of 1 / 255: a little more than half of one is still the same.
+    const Mask traced =
+        hn::And(lanes, hn::Le(roughness, number(job_.constants.max_roughness + 0.6f / 255.0f)));
+    if (!none(traced)) add_specular(m, pixel, throughput, traced, ray, to.specular);
+    if (enabled(shared::frame_environment_specular) && !all(traced)) {
+      const Float3 light = environment_specular(m, [&](const Float3& normal, Float of) HWY_ATTR {
+        return environment_.reflection(reflect(-m.eye, normal), of);
+      });
+      around = select(traced, around, around + light);
+    }
+    add_ambient(m, pixel, throughput * around * s.occlusion, lanes, ray, to.ambient);
+    store(pixel, lanes, {seen.x, seen.y, seen.z, view_z},
+          pack_unorm8({roughness, s.metallic, zero(), zero()}));
+  }
+
+ private:
+  bool enabled(std::uint32_t flag) const { return (job_.frame.flags & flag) != 0; }
+
+  /// The hits that the pixels chose and what of their light reaches the eye.
+  HWY_INLINE HitLanes chosen_at(const PixelLanes& pixel, Mask lanes, Float3& throughput) const {
+    const Integer across = integer(static_cast<int>(job_.frame.extent.x));
+    const Records records(job_.chosen, hn::Add(hn::Mul(pixel.y, across), pixel.x),
+                          sizeof(shared::Hit) / 4);
+    const Float4 front = records.four(0), back = records.four(4);
+    throughput = {back.y, back.z, back.w};
+    HitLanes hit;
+    hit.met = lanes;
+    hit.t = front.x;
+    hit.instance = as_integer(front.y);
+    hit.triangle = as_integer(front.z);
+    hit.u = front.w;
+    hit.v = back.x;
+    return hit;
+  }
+
+  /// Light of all lights times visibility, estimated with one ray to a randomly chosen light.
+  HWY_INLINE void add_shadow(const Surface& s, const Material& m, const PixelLanes& pixel,
+                             const Float3& throughput, Mask lanes, RayLanes ray,
+                             RayBatch& to) const {
+    const Unsigned x = as_unsigned(pixel.x), y = as_unsigned(pixel.y);
+    Float pick = picks_.at(x, y);
+    const LightChoice light =
+        choose_light(job_.lights, job_.tables.ltc, m, s.position, lanes, pick);
+    Mask valid = hn::And(lanes, hn::Gt(light.total, zero()));
+    if (none(valid)) return;
+    Float2 u;
+    points_.at(x, y, u.x, u.y);
+    const Mask seen = aim(job_.lights, light, m, s.position, u, pick, valid, ray);
+    if (enabled(shared::frame_shadows)) {
+      valid = seen;
+    } else {
+      ray.t_max = zero();
+    }
+    ray.user = throughput * light.sum;
+    to.add(ray, valid);
+  }
+
+  HWY_INLINE void add_specular(const Material& m, const PixelLanes& pixel, const Float3& throughput,
+                               Mask lanes, RayLanes ray, RayBatch& to) const {
+    Float2 u;
+    lobes_.at(as_unsigned(pixel.x), as_unsigned(pixel.y), u.x, u.y);
+    const SpecularSample drawn = sample_specular(m, u);
+    ray.direction = drawn.direction;
+    ray.t_max = number(1e30f);
+    ray.user = throughput * drawn.weight;
+    to.add(ray, hn::And(lanes, hn::Gt(largest_of(drawn.weight), zero())));
+  }
+
+  /// `light` comes along it.
+  HWY_INLINE void add_ambient(const Material& m, const PixelLanes& pixel, const Float3& light,
+                              Mask lanes, RayLanes ray, RayBatch& to) const {
+    Float u, v;
+    around_.at(as_unsigned(pixel.x), as_unsigned(pixel.y), u, v);
+    ray.direction = sample_cosine(m.normal, u, v);
+    const bool open = !enabled(shared::frame_ambient_occlusion);
+    ray.t_max = open ? zero() : number(job_.frame.ambient_radius);
+    ray.user = light;
+    const auto differs = [](Float c) HWY_ATTR { return hn::Ne(c, zero()); };
+    Mask valid =
+        hn::And(lanes, hn::Or(differs(light.x), hn::Or(differs(light.y), differs(light.z))));
+    if (!open) valid = hn::And(valid, hn::Gt(dot(ray.direction, m.geometric), zero()));
+    to.add(ray, valid);
+  }
+
+  HWY_INLINE void store(const PixelLanes& pixel, Mask lanes, const Float4& behind,
+                        Integer packed) const {
+    const TexelIndices at(pixel);
+    const Texels<4> transmittance(behind);
+    const Texels<1> surface(as_float(packed));
+    for_each_lane(lanes, [&](std::size_t lane) {
+      transmittance.put(job_.transmittance, lane, at);
+      surface.put(job_.surface, lane, at);
+    });
+  }
+
+  const BlendedLightJob& job_;
+  glm::vec2 cone_;
+  EnvironmentLanes environment_;
+  LobeLanes<Tag> tables_;
+  RandomNumbers<UnsignedTag> picks_;
+  RandomPairs<UnsignedTag> points_, around_, lobes_;
+};
+
+template <class Surface>
+HWY_INLINE void light_batch_of(const BlendedLightJob& job, int first, int last) {
+  const BlendedLight<Surface> light(job);
+  LightBatches made;
+  for (int i = first; i < last; i += static_cast<int>(hn::Lanes(tag))) light.block(i, last, made);
+  made.shadows.append_to(job.shadows);
+  made.ambient.append_to(job.ambient);
+  made.specular.append_to(job.specular);
+}
+
+void light_batch(const BlendedLightJob& job, int first, int last) {
+  if (job.layered) return light_batch_of<LayeredSurfaceLanes>(job, first, last);
+  light_batch_of<SurfaceLanes>(job, first, last);
+}
+
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace heliograph::render::kernels {
+
+HWY_EXPORT(light_batch);
+
+void blended_light(const BlendedLightJob& job) {
+  for_each_batch(static_cast<int>(job.lit.count->count), [&](int first, int last) {
+    HWY_DYNAMIC_DISPATCH(light_batch)(job, first, last);
+  });
+  job.shadows.end();
+  job.ambient.end();
+  job.specular.end();
+}
+
+}  // namespace heliograph::render::kernels
+#endif

@@ -1,0 +1,265 @@
+// Surfaces under clear coat and sheen, and with specular parameters of their own, for host kernels:
+// shaders/lib/scene/layers.glsl and what brdf.glsl and environment.glsl make of them, in vectors.
+// Kernels of scenes without layers use material.hpp alone. Included once per instruction set; the
+// guard is Google Highway's convention.
+#if defined(HELIOGRAPH_KERNELS_LAYERS_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_KERNELS_LAYERS_HPP
+#undef HELIOGRAPH_KERNELS_LAYERS_HPP
+#else
+#define HELIOGRAPH_KERNELS_LAYERS_HPP
+#endif
+
+#include "hwy/contrib/math/math-inl.h"
+#include "render/kernels/simd/material.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::kernels::HWY_NAMESPACE {
+
+/// What extensions make of a point of a surface.
+template <class V>
+struct SurfaceLayer {
+  Triple<V> f0;  // reflectance of the dielectric at normal incidence
+  V f90;
+  Triple<V> coat_normal;
+  V coat, coat_roughness;
+  Triple<V> sheen;
+  V sheen_roughness;
+  V transmission;
+  Triple<V> transmitted;
+};
+
+template <class V>
+struct LayeredMaterial : SurfaceMaterial<V> {
+  Triple<V> transmitted;  // what passes straight through
+  Triple<V> coat_normal;
+  V coat_n_dot_v;
+  V coat_roughness;
+  V coat_f0, coat_f90_minus_f0;
+  V coat_albedo;    // its part of specular_albedo; 0: there is no coat
+  Triple<V> sheen;  // factor on the lobe; 0: there is none
+  V sheen_roughness;
+  Triple<V> sheen_albedo;
+  bool coated, fuzzy;  // whether any lane has a coat, or sheen
+};
+
+/// Dims all that lies under another lobe.
+template <class V>
+HWY_INLINE void cover(LayeredMaterial<V>& m, V under) {
+  for (Triple<V>* const part : {&m.f0, &m.f90_minus_f0, &m.specular_albedo, &m.diffuse_albedo,
+                                &m.transmitted, &m.sheen, &m.sheen_albedo}) {
+    *part = *part * under;
+  }
+}
+
+template <class V>
+HWY_INLINE V largest_of(const Triple<V>& v) {
+  return hn::Max(v.x, hn::Max(v.y, v.z));
+}
+
+/// Of `lanes`: others keep what they have.
+template <class V, class M>
+HWY_INLINE void add_sheen(LayeredMaterial<V>& m, const SurfaceLayer<V>& layer, V albedo, M lanes) {
+  const hn::DFromV<V> d;
+  const V one = hn::Set(d, 1.0f);
+  const Triple<V> given = layer.sheen * hn::IfThenElseZero(lanes, hn::Min(albedo, one));
+  cover(m, one - largest_of(given));
+  m.sheen = layer.sheen * hn::IfThenElseZero(lanes, one / hn::Max(albedo, one));
+  m.sheen_roughness = layer.sheen_roughness;
+  m.sheen_albedo = given;
+}
+
+/// Of `lanes`, likewise. `split` is looked up at the coat's roughness and its own n.v.
+template <class V, class M>
+HWY_INLINE void add_coat(LayeredMaterial<V>& m, const SurfaceLayer<V>& layer, const Pair<V>& split,
+                         M lanes) {
+  const hn::DFromV<V> d;
+  const V one = hn::Set(d, 1.0f), f0 = hn::Set(d, dielectric_f0);
+  const V whole = split.x + split.y;
+  const V energy_compensation = one / hn::Max(whole, hn::Set(d, 1e-3f)) - one;
+  const V scale = hn::IfThenElseZero(lanes, layer.coat * hn::MulAdd(f0, energy_compensation, one));
+  m.coat_normal = layer.coat_normal;
+  m.coat_roughness = layer.coat_roughness;
+  m.coat_f0 = scale * f0;
+  m.coat_f90_minus_f0 = scale * (one - f0);
+  m.coat_albedo = hn::Min(hn::MulAdd(m.coat_f0, whole, m.coat_f90_minus_f0 * split.y), one);
+  cover(m, one - m.coat_albedo);
+  const auto add = [&](V& albedo) HWY_ATTR { albedo = albedo + m.coat_albedo; };
+  add(m.specular_albedo.x);
+  add(m.specular_albedo.y);
+  add(m.specular_albedo.z);
+}
+
+/// The tables of the lobes in vectors.
+template <class D>
+struct LobeLanes {
+  SquareTable<D> split_sum, sheen;
+  HWY_INLINE explicit LobeLanes(const LobeTables& tables)
+      : split_sum(tables.split_sum), sheen(tables.sheen) {}
+};
+
+/// The base layer, before any other lobe covers it.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE LayeredMaterial<V> make_base(D d, const Triple<V>& base_color, V metallic, V roughness,
+                                        const Triple<V>& normal, const Triple<V>& geometric,
+                                        const Triple<V>& eye, const Pair<V>& split,
+                                        const SurfaceLayer<V>& layer) {
+  const V one = hn::Set(d, 1.0f), zero = hn::Zero(d);
+  LayeredMaterial<V> m;
+  m.normal = normal;
+  m.geometric = geometric;
+  m.eye = eye;
+  m.n_dot_v = clamped(dot(normal, eye), 1e-3f, 1.0f);
+  m.roughness = roughness;
+  const V whole = split.x + split.y, rest = one - metallic;
+  const V energy_compensation = one / hn::Max(whole, hn::Set(d, 1e-3f)) - one;
+  Triple<V> albedo;
+  const auto channel = [&](V color, V of_f0, V& f0, V& f90_minus_f0, V& specular,
+                           V& given) HWY_ATTR {
+    const V scale = hn::MulAdd(of_f0, energy_compensation, one);
+    const V dielectric = rest * scale;
+    const V metal = metallic * hn::MulAdd(color, energy_compensation, one);
+    f0 = hn::MulAdd(dielectric, of_f0, metal * color);
+    f90_minus_f0 = hn::MulAdd(dielectric, layer.f90 - of_f0, metal * (one - color));
+    specular = hn::MulAdd(f0, whole, f90_minus_f0 * split.y);
+    given = hn::MulAdd(of_f0, split.x, layer.f90 * split.y) * scale;
+  };
+  channel(base_color.x, layer.f0.x, m.f0.x, m.f90_minus_f0.x, m.specular_albedo.x, albedo.x);
+  channel(base_color.y, layer.f0.y, m.f0.y, m.f90_minus_f0.y, m.specular_albedo.y, albedo.y);
+  channel(base_color.z, layer.f0.z, m.f0.z, m.f90_minus_f0.z, m.specular_albedo.z, albedo.z);
+  const V entering = rest * (one - hn::Min(largest_of(albedo), one));
+  m.diffuse_albedo = base_color * (entering * (one - layer.transmission));
+  m.transmitted = layer.transmitted * base_color * entering;
+  m.coat_normal = normal;
+  m.coat_n_dot_v = m.n_dot_v;
+  m.coat_roughness = m.coat_f0 = m.coat_f90_minus_f0 = m.coat_albedo = m.sheen_roughness = zero;
+  m.sheen = m.sheen_albedo = {zero, zero, zero};
+  m.coated = m.fuzzy = false;
+  return m;
+}
+
+/// surface_material() of shaders/lib/lighting/environment.glsl
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE LayeredMaterial<V> make_material(D d, const Triple<V>& base_color, V metallic,
+                                            V roughness, const Triple<V>& normal,
+                                            const Triple<V>& geometric, const Triple<V>& eye,
+                                            const LobeLanes<D>& tables,
+                                            const SurfaceLayer<V>& layer) {
+  const V zero = hn::Zero(d), n_dot_v = clamped(dot(normal, eye), 1e-3f, 1.0f);
+  LayeredMaterial<V> m = make_base(d, base_color, metallic, roughness, normal, geometric, eye,
+                                   tables.split_sum.at(n_dot_v, roughness), layer);
+  const auto fuzzy = hn::Gt(largest_of(layer.sheen), zero);
+  if (!hn::AllFalse(d, fuzzy)) {
+    m.fuzzy = true;
+    add_sheen(m, layer, tables.sheen.one_at(n_dot_v, layer.sheen_roughness), fuzzy);
+  }
+  const auto coated = hn::Gt(layer.coat, zero);
+  if (!hn::AllFalse(d, coated)) {
+    m.coated = true;
+    m.coat_n_dot_v = clamped(dot(layer.coat_normal, eye), 1e-3f, 1.0f);
+    add_coat(m, layer, tables.split_sum.at(m.coat_n_dot_v, layer.coat_roughness), coated);
+  }
+  return m;
+}
+
+template <class V>
+HWY_INLINE Triple<V> wide_albedo(const LayeredMaterial<V>& m) {
+  return m.fuzzy ? m.diffuse_albedo + m.sheen_albedo : m.diffuse_albedo;
+}
+
+template <class V>
+HWY_INLINE V narrower_roughness(const LayeredMaterial<V>& m) {
+  if (!m.coated) return m.roughness;
+  const auto has_coat = hn::Gt(m.coat_albedo, hn::Zero(hn::DFromV<V>()));
+  return hn::IfThenElse(has_coat, hn::Min(m.coat_roughness, m.roughness), m.roughness);
+}
+
+/// Part of specular_albedo that is not the coat's.
+template <class V>
+HWY_INLINE Triple<V> under_coat_albedo(const LayeredMaterial<V>& m) {
+  if (!m.coated) return m.specular_albedo;
+  return {m.specular_albedo.x - m.coat_albedo, m.specular_albedo.y - m.coat_albedo,
+          m.specular_albedo.z - m.coat_albedo};
+}
+
+template <class V, class Reflection>
+HWY_INLINE Triple<V> environment_specular(const LayeredMaterial<V>& m,
+                                          const Reflection& reflection) {
+  const Triple<V> light = under_coat_albedo(m) * reflection(m.normal, m.roughness);
+  if (!m.coated) return light;
+  return light + reflection(m.coat_normal, m.coat_roughness) * m.coat_albedo;
+}
+
+/// D V of the white sheen.
+template <class V>
+HWY_INLINE V sheen_lobe(V n_dot_h, V n_dot_l, V n_dot_v, V roughness) {
+  const hn::DFromV<V> d;
+  constexpr float least_sheen_roughness = 0.07f;
+  const V one = hn::Set(d, 1.0f), r = hn::Max(roughness, hn::Set(d, least_sheen_roughness));
+  const V sharpness = one / (r * r);
+  const V sine2 = hn::Max(hn::NegMulAdd(n_dot_h, n_dot_h, one), hn::Set(d, 1e-7f));
+  const V power = hn::Exp(d, hn::Log(d, sine2) * sharpness * hn::Set(d, 0.5f));
+  const V distribution =
+      (hn::Set(d, 2.0f) + sharpness) * power * hn::Set(d, 0.5f * std::numbers::inv_pi_v<float>);
+  const V across = hn::Max(hn::NegMulAdd(n_dot_l, n_dot_v, n_dot_l + n_dot_v), hn::Set(d, 1e-4f));
+  return distribution / (hn::Set(d, 4.0f) * across);
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Triple<V> shade_light(D d, const LayeredMaterial<V>& m, const Triple<V>& l) {
+  const V zero = hn::Zero(d);
+  Triple<V> light = shade_light(d, static_cast<const SurfaceMaterial<V>&>(m), l);
+  if (!m.coated && !m.fuzzy) return light;
+  const Triple<V> h = normalized(l + m.eye);
+  if (m.coated) {
+    const V n_dot_l = hn::Max(dot(m.coat_normal, l), zero);
+    const V n_dot_h = clamped(dot(m.coat_normal, h), 0.0f, 1.0f);
+    const V reflectance = hn::MulAdd(m.coat_f90_minus_f0, schlick_weight(dot(m.eye, h)), m.coat_f0);
+    const V coat = reflectance * specular_lobe(n_dot_h, n_dot_l, m.coat_n_dot_v, m.coat_roughness);
+    light = {light.x + coat, light.y + coat, light.z + coat};
+  }
+  if (m.fuzzy) {
+    const V n_dot_l = hn::Max(dot(m.normal, l), zero);
+    const V n_dot_h = clamped(dot(m.normal, h), 0.0f, 1.0f);
+    light =
+        light + m.sheen * (sheen_lobe(n_dot_h, n_dot_l, m.n_dot_v, m.sheen_roughness) * n_dot_l);
+  }
+  return light;
+}
+
+/// unpack_layer() of texels of the G-buffer's layers.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE SurfaceLayer<V> unpack_layer(D d, const Quad<V>& texels, V& roughness) {
+  const hn::RebindToUnsigned<D> du;
+  const hn::RebindToSigned<D> di;
+  const auto bits = [du](V word) HWY_ATTR { return hn::BitCast(du, word); };
+  const auto tenth = [&](auto shifted) HWY_ATTR {
+    const V root = hn::ConvertTo(d, hn::BitCast(di, hn::And(shifted, hn::Set(du, 1023u)))) *
+                   hn::Set(d, 1.0f / 1023.0f);
+    return root * root;
+  };
+  const auto f0 = bits(texels.x), coat = bits(texels.z), sheen = bits(texels.w);
+  const auto snorm = [d](auto whole) HWY_ATTR {
+    return hn::Max(hn::ConvertTo(d, whole) * hn::Set(d, 1.0f / 32767.0f), hn::Set(d, -1.0f));
+  };
+  const auto normal = hn::BitCast(di, texels.y);
+  SurfaceLayer<V> layer;
+  layer.f0 = {tenth(f0), tenth(hn::ShiftRight<10>(f0)), tenth(hn::ShiftRight<20>(f0))};
+  layer.f90 = unorm8<24>(d, coat);
+  layer.coat_normal = octahedral_decode(snorm(hn::ShiftRight<16>(hn::ShiftLeft<16>(normal))),
+                                        snorm(hn::ShiftRight<16>(normal)));
+  layer.coat = unorm8<0>(d, coat);
+  layer.coat_roughness = unorm8<8>(d, coat);
+  roughness = unorm8<16>(d, coat);
+  const Triple<V> root{unorm8<0>(d, sheen), unorm8<8>(d, sheen), unorm8<16>(d, sheen)};
+  layer.sheen = root * root;
+  layer.sheen_roughness = unorm8<24>(d, sheen);
+  // A pixel of the G-buffer lets no light through.
+  layer.transmission = hn::Zero(d);
+  layer.transmitted = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+  return layer;
+}
+
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

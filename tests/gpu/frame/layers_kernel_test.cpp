@@ -1,0 +1,278 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "render/passes/blend/blend_surfaces.hpp"
+#include "render/passes/gbuffer/draw_gbuffer.hpp"
+#include "render/passes/gbuffer/trace_gbuffer.hpp"
+#include "render/passes/reflections/trace_specular.hpp"
+#include "render/passes/visibility/trace_visibility.hpp"
+#include "tests/gpu/support/kernel_comparison.hpp"
+
+namespace heliograph::test {
+namespace {
+
+/// Sine waves in every channel.
+std::uint32_t add_waves(SceneBuilder& builder, bool srgb, double phase) {
+  constexpr std::uint32_t size = 64;
+  std::vector<std::uint8_t> texels(size * size * 4);
+  for (std::uint32_t i = 0; i < texels.size(); ++i) {
+    const double x = (i / 4) % size, y = i / 4 / size, channel = i % 4;
+    texels[i] = static_cast<std::uint8_t>(
+        128.0 + 100.0 * std::sin(0.1 * (x + 2.0 * channel * y) + phase + channel));
+  }
+  return builder.add_texture(size, size, srgb, std::move(texels));
+}
+
+scene::MaterialLayers coat(SceneBuilder&) {
+  return {.clearcoat = 0.8f, .clearcoat_roughness = 0.15f};
+}
+scene::MaterialLayers sheen(SceneBuilder&) {
+  return {.sheen_color = {0.6f, 0.3f, 0.5f}, .sheen_roughness = 0.4f};
+}
+scene::MaterialLayers specular(SceneBuilder&) {
+  return {.specular = 0.6f, .specular_color = {1.0f, 0.6f, 2.5f}};
+}
+scene::MaterialLayers transmission(SceneBuilder&) {
+  return {.transmission = 0.6f,
+          .thickness = 0.2f,
+          .attenuation_distance = 0.3f,
+          .attenuation_color = {0.9f, 0.5f, 0.7f}};
+}
+/// With a texture in every slot but that of the transmission, which keeps to its own surface.
+scene::MaterialLayers all_of_them(SceneBuilder& builder) {
+  scene::MaterialLayers layers{.specular = 0.9f,
+                               .specular_color = {0.9f, 0.8f, 0.7f},
+                               .clearcoat = 0.7f,
+                               .clearcoat_roughness = 0.3f,
+                               .clearcoat_normal_scale = 0.5f,
+                               .sheen_color = {0.5f, 0.4f, 0.3f},
+                               .sheen_roughness = 0.6f};
+  layers.specular_texture.texture = add_waves(builder, false, 0.0);
+  layers.specular_color_texture.texture = add_waves(builder, true, 1.0);
+  layers.clearcoat_texture.texture = add_waves(builder, false, 2.0);
+  layers.clearcoat_roughness_texture.texture = layers.clearcoat_texture.texture;
+  layers.clearcoat_normal_texture.texture = add_waves(builder, false, 3.0);
+  layers.sheen_color_texture.texture = add_waves(builder, true, 4.0);
+  layers.sheen_color_texture.transform_row0 = {1.5f, 0.2f, 0.1f, 0.0f};
+  layers.sheen_color_texture.uv_set = 1;
+  layers.sheen_roughness_texture.texture = add_waves(builder, false, 5.0);
+  return layers;
+}
+
+shared::Light area(std::uint32_t type, const glm::vec3& position) {
+  shared::Light light{};
+  light.type = type;
+  light.position = position;
+  light.direction = glm::normalize(-position);
+  light.tangent = glm::normalize(glm::cross(light.direction, glm::vec3(0.1f, 1.0f, 0.2f)));
+  light.color = {6.0f, 5.0f, 4.0f};
+  light.half_width = 0.7f;
+  light.half_height = 0.3f;
+  light.radius = 0.5f;
+  return light;
+}
+
+struct Case {
+  scene::MaterialLayers (*layers)(SceneBuilder&) = nullptr;
+  bool areas = false;
+  float alpha = 1.0f;
+  bool orthographic = false;
+  bool unoccluded = false;  // every ray finds what it looks for
+};
+
+/// Two layered spheres and a panel on a plain floor, lit by punctual lights, or by areas, one of
+/// which reaches below the horizon of the floor.
+std::shared_ptr<const scene::Scene> make_scene(const Case& which) {
+  SceneBuilder builder;
+  const auto material = [&](const glm::vec3& color, float roughness, float metallic) {
+    shared::Material made = surface(color, roughness, metallic);
+    if (which.layers) made = builder.with_layers(made, which.layers(builder));
+    if (which.alpha < 1.0f) {
+      made.base_color.w = which.alpha;
+      made.flags |= shared::material_alpha_blend | shared::material_double_sided;
+    }
+    return made;
+  };
+  const auto at = [](const glm::vec3& to) { return glm::translate(glm::mat4(1.0f), to); };
+  const auto ball = builder.add_sphere(0.6f, material({0.8f, 0.4f, 0.2f}, 0.5f, 0.0f));
+  builder.place(ball, at({-0.7f, 0.0f, 0.0f})).place(ball, at({0.2f, 0.1f, -1.2f}));
+  builder.place(
+      builder.add_quad({{{-0.5f, -0.5f, 0}, {0.5f, -0.5f, 0}, {0.5f, 0.5f, 0}, {-0.5f, 0.5f, 0}}},
+                       material({0.9f, 0.8f, 0.6f}, 0.25f, 0.7f)),
+      glm::rotate(at({0.7f, 0.0f, 0.1f}), 0.4f, glm::vec3(0, 1, 0)));
+  builder.place(builder.add_quad({{{-3, -0.6f, 3}, {3, -0.6f, 3}, {3, -0.6f, -3}, {-3, -0.6f, -3}}},
+                                 surface({0.7f, 0.7f, 0.6f}, 0.3f, 0.4f)));
+  if (!which.areas) {
+    builder.add_sun({0.3f, -0.5f, -1.0f}, {3, 2, 1}, 2.0f);
+    builder.add_point_light({1.5f, 1.2f, 1.0f}, {4, 5, 6}, 0.1f);
+    return builder.build();
+  }
+  builder.add_point_light({1.5f, 1.2f, 1.0f}, {1, 2, 3}, 0.1f);
+  auto made = std::make_shared<scene::Scene>(*builder.build());
+  made->lights.push_back({"rectangle", area(shared::light_rectangle, {-1.5f, 1.5f, 1.0f}), 0.0f});
+  made->lights.push_back({"disk", area(shared::light_disk, {1.8f, -0.5f, 1.0f}), 0.0f});
+  return made;
+}
+
+/// All that a surface goes through, by the shaders and by the host kernels.
+class KernelComparison {
+ public:
+  explicit KernelComparison(const Case& which, VkExtent2D extent = {150, 100})
+      : rig_(make_scene(which), camera(which.orthographic), options(which, extent)),
+        random_(!which.unoccluded) {
+    gbuffers_ = {render::trace_gbuffer(rig_.plan(), with_host_kernels(rig_, false)),
+                 render::trace_gbuffer(rig_.plan(), with_host_kernels(rig_, true)),
+                 render::draw_gbuffer(rig_.plan(), with_host_kernels(rig_, true))};
+    // Of one G-buffer, whose rounding would send rays elsewhere.
+    for (const bool host : {false, true}) sides_.push_back(declare(host, gbuffers_[1]));
+    for (const render::GBuffer& gbuffer : gbuffers_) {
+      composed_.push_back(compose(false, gbuffer, sides_[0]).hdr);
+    }
+    rig_.set_view(camera(which.orthographic), 6);
+    rig_.run();
+  }
+
+  FrameRig& rig() { return rig_; }
+
+  void expect_equal(const std::string& which) const {
+    for (const std::size_t i : {1u, 2u}) {
+      const std::string what = which + (i == 1 ? ": traced" : ": drawn");
+      // What is composed of them tells their layers.
+      expect_equal(what, composed_[0], composed_[i], 8e-3);
+      expect_equal(what + " surface", gbuffers_[0].surface, gbuffers_[i].surface, 4e-3);
+    }
+    // Rounding may send a ray past an edge or select another light.
+    expect_equal(which + ": shadows", sides_[0].shadows, sides_[1].shadows, 6e-3);
+    expect_equal(which + ": reflections", sides_[0].specular, sides_[1].specular, 6e-3);
+    expect_equal(which + ": composed", sides_[0].hdr, sides_[1].hdr, 6e-3);
+  }
+
+  /// Of surfaces that nothing occludes and the frame that they blend over.
+  void expect_equal_blends(const std::string& which) const {
+    expect_equal(which + ": composed", sides_[0].hdr, sides_[1].hdr, 6e-3);
+  }
+
+  /// Where bits of the rays decide what stops them, means are all that can be compared.
+  void expect_equal_means(const std::string& which) const {
+    const auto mean = [this](gpu::ImageRef image) {
+      double sum = 0.0;
+      const render::FloatImage read = rig_.read(image);
+      for (const float value : read.rgba) sum += std::min(std::abs(value), 10.0f);
+      return sum / static_cast<double>(read.rgba.size());
+    };
+    for (const auto signal : {&Side::shadows, &Side::specular, &Side::hdr}) {
+      const double expected = mean(sides_[0].*signal);
+      EXPECT_NEAR(mean(sides_[1].*signal), expected, 0.01 * expected) << which;
+    }
+  }
+
+ private:
+  struct Side {
+    gpu::ImageRef shadows, specular, hdr;
+  };
+
+  static RigOptions options(const Case& which, VkExtent2D extent) {
+    RigOptions made{.extent = extent, .environment = make_environment(128, [](const glm::vec3& d) {
+                                        return glm::vec3(1.0f + d.y, 0.5f + 0.4f * d.x * d.z,
+                                                         1.0f - d.x);
+                                      })};
+    made.settings.specular.max_roughness = 0.4f;  // some surfaces reflect the environment alone
+    made.settings.specular.enabled = made.settings.shadows.enabled =
+        made.settings.ambient.occlusion = !which.unoccluded;
+    return made;
+  }
+  static scene::Camera camera(bool orthographic) {
+    scene::Camera made = look({0.3f, 0.6f, 3.0f}, {0, -0.1f, 0}, 40.0f);
+    if (orthographic) made.orthographic_height = 2.5f;
+    return made;
+  }
+
+  render::Composed compose(bool host, const render::GBuffer& gbuffer, const Side& side) {
+    gpu::FramePlan& plan = rig_.plan();
+    const gpu::ImageRef background = plan.image("background", VK_FORMAT_R32G32B32A32_SFLOAT);
+    plan.get(background).clear();
+    const render::NoisySignals noisy{side.shadows, side.shadows,
+                                     random_ ? std::optional(side.specular) : std::nullopt};
+    return render::compose(plan, with_host_kernels(rig_, host), gbuffer, noisy, std::nullopt,
+                           background);
+  }
+
+  Side declare(bool host, const render::GBuffer& gbuffer) {
+    const render::FrameInputs& in = with_host_kernels(rig_, host);
+    gpu::FramePlan& plan = rig_.plan();
+    Side side;
+    side.shadows = render::trace_shadows(plan, in, gbuffer, {});
+    side.specular = render::trace_specular(plan, in, gbuffer, {});
+    const render::Composed composed = compose(host, gbuffer, side);
+    render::blend_surfaces(plan, in, gbuffer, composed);
+    side.hdr = composed.hdr;
+    return side;
+  }
+
+  void expect_equal(const std::string& what, gpu::ImageRef shader, gpu::ImageRef host,
+                    double outliers) const {
+    const ErrorStatistics error = compare(rig_.read(shader), rig_.read(host));
+    EXPECT_LT(error.mean, 0.3 * outliers) << what;
+    EXPECT_LT(error.outliers, outliers) << what;
+    EXPECT_GT(error.magnitude, 0.02) << what << " is black";
+  }
+
+  FrameRig rig_;
+  bool random_;
+  std::vector<render::GBuffer> gbuffers_;  // by the shaders, by the kernels, drawn
+  std::vector<Side> sides_;
+  std::vector<gpu::ImageRef> composed_;  // of each G-buffer, by the shader
+};
+
+class LayersKernel : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!has_host_kernels()) GTEST_SKIP() << "host kernels run on CPU devices only";
+  }
+};
+
+TEST_F(LayersKernel, MatchesShadersForEveryLayer) {
+  const std::pair<const char*, scene::MaterialLayers (*)(SceneBuilder&)> layers[] = {
+      {"coat", coat}, {"sheen", sheen}, {"specular", specular}, {"all, textured", all_of_them}};
+  for (const auto& [name, made] : layers) {
+    KernelComparison({.layers = made}).expect_equal(name);
+  }
+  KernelComparison({.layers = all_of_them, .orthographic = true}).expect_equal("orthographic");
+}
+
+TEST_F(LayersKernel, MatchesShadersForAreaLights) {
+  KernelComparison({.areas = true}).expect_equal("plain");
+  KernelComparison({.layers = all_of_them, .areas = true}).expect_equal("layers");
+}
+
+TEST_F(LayersKernel, MatchesShadersForBlendedSurfaces) {
+  const std::pair<const char*, Case> cases[] = {
+      {"plain", {.alpha = 0.6f}},
+      {"orthographic", {.alpha = 0.6f, .orthographic = true}},
+      {"transmission", {.layers = transmission}},
+      {"layers", {.layers = all_of_them, .areas = true, .alpha = 0.6f}}};
+  for (auto [name, which] : cases) {
+    KernelComparison(which).expect_equal_means(name);
+    which.unoccluded = true;
+    KernelComparison(which).expect_equal_blends(name);
+  }
+}
+
+TEST_F(LayersKernel, MatchesShadersAtAnySize) {
+  for (const VkExtent2D extent : {VkExtent2D{17, 31}, {130, 7}}) {
+    KernelComparison comparison({.layers = coat, .areas = true, .alpha = 0.6f}, extent);
+    comparison.rig().run();  // more than one frame
+  }
+}
+
+TEST_F(LayersKernel, IsFasterThanShaders) {
+  KernelComparison comparison({.layers = all_of_them, .areas = true}, {640, 360});
+  expect_faster(comparison.rig(),
+                {"gbuffer.hits", "shadows.rays", "specular.rays", "specular.shade", "compose"},
+                2.0);
+}
+
+}  // namespace
+}  // namespace heliograph::test
