@@ -51,8 +51,8 @@ void main() {
 
   uint turn = turn_of(uvec2(pixel)) + (frame.sample_index * plan_step >> 29u);
   uint word = floatBitsToUint(abs(imageLoad(specular_distance, before).w)) >> 16u;
-  if (is_sampled(frames.x, constants.shadows_most, turn)) word |= plan_shadows;
-  if (is_sampled(frames.y, constants.ambient_most, turn)) word |= plan_ambient;
+  if (is_sampled(frames.x, constants.visibility_most, turn)) word |= plan_shadows;
+  if (is_sampled(frames.y, constants.visibility_most, turn)) word |= plan_ambient;
   if (is_sampled(reflected, most, turn + plan_turns / 2u)) word |= plan_specular;
   imageStore(planned, pixel, uvec4(word));
 }

@@ -27,9 +27,8 @@ SHARED_CONSTANT float plan_smooth_roughness = 0.15f;
 SHARED_CONSTANT float plan_metallic = 0.5f;
 
 struct SamplingPlanConstants {
-  float full_frames;  // shorter histories are sampled in every frame
-  uint shadows_most;  // longer ones once in so many frames
-  uint ambient_most;
+  float full_frames;     // shorter histories are sampled in every frame
+  uint visibility_most;  // longer ones once in so many frames
   uint specular_most;
   uint mirrors_most;  // of reflections on smooth or metallic surfaces
 };

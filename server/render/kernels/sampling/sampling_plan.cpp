@@ -83,8 +83,8 @@ class Planning {
                              hn::Gt(unorm8<8>(d_, packed), set(shared::plan_metallic)));
     const auto most = [&](shared::uint count) HWY_ATTR { return whole(static_cast<int>(count)); };
     const VI now = turn(x, y, 0);
-    const MI lit = is_sampled(counted(frames.x, visibility.z), most(c.shadows_most), now);
-    const MI open = is_sampled(counted(frames.y, visibility.w), most(c.ambient_most), now);
+    const MI lit = is_sampled(counted(frames.x, visibility.z), most(c.visibility_most), now);
+    const MI open = is_sampled(counted(frames.y, visibility.w), most(c.visibility_most), now);
     const MI mirrored = is_sampled(
         hn::IfThenElse(mirrors, reflected, reflected * set(shared::plan_quiet_factor)),
         hn::IfThenElse(hn::RebindMask(di_, mirrors), most(c.mirrors_most), most(c.specular_most)),

@@ -33,8 +33,7 @@ shared::SamplingPlanConstants plan_constants(const FrameInputs& in) {
   const std::uint32_t mirrors = std::min(most, 2u);
   const auto at_most = [](std::uint32_t frames, bool planned) { return planned ? frames : 1u; };
   return {static_cast<float>(s.sampling.full_frames), at_most(most, plans_visibility(s)),
-          at_most(most, plans_visibility(s)), at_most(most, plans_specular(s)),
-          at_most(mirrors, plans_specular(s))};
+          at_most(most, plans_specular(s)), at_most(mirrors, plans_specular(s))};
 }
 
 /// Whether frames of a moving view do.

@@ -44,8 +44,8 @@ bool leaves_samples_out(const FrameInputs& in);
 
 /// Decides for every pixel which rays it traces, in words as in shaders/shared/sampling.h, in
 /// frames that leave samples out. Surfaces with a short history are sampled in every frame, others
-/// in turn, the longer the history the more rarely; more often where lights or geometry have moved,
-/// whose shadows and reflections change under a long history.
+/// in turn; all of them while lights, geometry or brightness change, under whose long histories
+/// shadows and reflections would stay.
 gpu::ImageRef plan_samples(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                            const Guide& guide, const PreviousSamples& previous);
 
