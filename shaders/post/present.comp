@@ -12,7 +12,10 @@ layout(set = 1, binding = 0, rgba32f) readonly uniform image2D radiance;
 layout(set = 1, binding = 1, rgba32f) readonly uniform image2D accumulated;
 layout(set = 1, binding = 2, std140) uniform ExposureBlock { ExposureState exposure; };
 layout(set = 1, binding = 3, rgba8) writeonly uniform image2D shown;
-layout(push_constant) uniform Constants { float mean_share; };
+layout(push_constant) uniform Constants {
+  uvec2 extent;  // of the frame that is shown
+  float mean_share;
+};
 
 vec3 tone_map(vec3 color) {
   switch (int(frame.tone_map_curve)) {
@@ -25,7 +28,7 @@ vec3 tone_map(vec3 color) {
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (outside_frame(pixel)) return;
+  if (any(greaterThanEqual(uvec2(pixel), extent))) return;
   vec3 color = mean_share < 1.0 ? imageLoad(radiance, pixel).rgb : vec3(0.0);
   if (mean_share > 0.0) color = mix(color, imageLoad(accumulated, pixel).rgb, mean_share);
   color = max(color, 0.0) * exposure.factor;

@@ -1,9 +1,11 @@
 #include "gpu/frame_plan/frame_plan.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
 #include "gpu/frame_plan/frame_plan_parts.hpp"
+#include "gpu/memory/carry_over.hpp"
 
 namespace heliograph::gpu {
 namespace {
@@ -429,6 +431,41 @@ std::vector<std::uint8_t> FramePlan::read() const {
 
 void FramePlan::reset(const History& history) {
   for (const Image* image : resources_[history.current.index].images) image->clear();
+}
+
+FramePlan::Kept FramePlan::kept() const {
+  Kept kept;
+  for (const Resource& resource : resources_) {
+    const auto& images = resource.owned_images;
+    if (images[0] != images[1]) kept.images.push_back(images[parity_ ^ 1]);
+  }
+  for (const BufferRef& buffer : kept_buffers_) {
+    kept.buffers.push_back(resources_[buffer.index].owned_buffer);
+  }
+  return kept;
+}
+
+bool FramePlan::restore(const Kept& kept) {
+  bool all = true;
+  for (const Resource& resource : resources_) {
+    const auto& images = resource.owned_images;
+    if (images[0] == images[1]) continue;
+    const ImageDesc& desc = images[0]->desc();
+    const auto found = std::ranges::find_if(kept.images, [&](const auto& image) {
+      return image->desc().name == desc.name && image->desc().format == desc.format;
+    });
+    all &= found != kept.images.end();
+    if (found != kept.images.end()) carry_over(device_, **found, *images[parity_ ^ 1]);
+  }
+  for (const BufferRef& ref : kept_buffers_) {
+    const Buffer& buffer = *resources_[ref.index].buffer;
+    const auto found = std::ranges::find_if(kept.buffers, [&](const auto& other) {
+      return other->name() == buffer.name() && other->size() == buffer.size();
+    });
+    all &= found != kept.buffers.end();
+    if (found != kept.buffers.end()) carry_over(device_, **found, buffer);
+  }
+  return all;
 }
 
 PassBuilder& PassBuilder::use(Use use) {

@@ -231,6 +231,19 @@ class FramePlan {
 
   void reset(const History& history);
 
+  /// What a plan leaves to the one that replaces it, by name.
+  struct Kept {
+    std::vector<std::shared_ptr<const Image>> images;  // the newest of each history
+    std::vector<std::shared_ptr<const Buffer>> buffers;
+  };
+  /// A buffer that a later frame reads, as histories are.
+  void keep(BufferRef buffer) { kept_buffers_.push_back(buffer); }
+  Kept kept() const;
+  /// After compile(): histories continue those of that name and format, by the nearest texel where
+  /// the size is another; kept buffers continue those of that name and size. @return whether every
+  /// one did
+  bool restore(const Kept& kept);
+
   /// Bytes of all images and buffers that the plan owns.
   std::uint64_t memory_bytes() const;
 
@@ -279,6 +292,7 @@ class FramePlan {
   std::vector<std::pair<std::uint32_t, VkDescriptorSet>> shared_sets_;
   std::unique_ptr<DescriptorPool> descriptor_pool_;
   Sampler default_sampler_;
+  std::vector<BufferRef> kept_buffers_;
   ImageRef read_back_;
   Readback readback_;
   VkCommandPool command_pool_ = VK_NULL_HANDLE;

@@ -57,12 +57,15 @@ shared::FrameConstants make_frame_constants(const scene::Camera& camera,
                                             const protocol::Settings& settings,
                                             const MovingScene& scene, VkExtent2D extent,
                                             std::uint32_t sample,
-                                            const shared::FrameConstants* before) {
+                                            const shared::FrameConstants* before,
+                                            std::optional<VkExtent2D> shown) {
   const glm::vec2 size(extent.width, extent.height);
+  const VkExtent2D output = shown.value_or(extent);
+  const float aspect = static_cast<float>(output.width) / static_cast<float>(output.height);
   const glm::vec2 offset =
       settings.antialiasing.jitter ? sample_jitter(sample) * 2.0f / size : glm::vec2(0.0f);
   const glm::mat4 view = scene::view_matrix(camera);
-  const glm::mat4 projection = scene::projection_matrix(camera, size.x / size.y);
+  const glm::mat4 projection = scene::projection_matrix(camera, aspect);
   shared::FrameConstants constants{};
   constants.view = view;
   constants.unjittered = projection * view;

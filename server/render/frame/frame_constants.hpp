@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "gpu/memory/image.hpp"
 #include "protocol/settings/settings.hpp"
 #include "scene/camera.hpp"
@@ -14,11 +16,13 @@ class MovingScene;
 glm::vec2 sample_jitter(std::uint32_t sample);
 
 /// The frame's uniform block for `sample` of a static view. The previous matrices are taken from
-/// `before`, which is this view's block of the frame before (or null for the first).
+/// `before`, which is this view's block of the frame before (or null for the first). `extent` is
+/// what is drawn, `shown` the size of the finished frame where that is larger.
 shared::FrameConstants make_frame_constants(const scene::Camera& camera,
                                             const protocol::Settings& settings,
                                             const MovingScene& scene, VkExtent2D extent,
                                             std::uint32_t sample,
-                                            const shared::FrameConstants* before);
+                                            const shared::FrameConstants* before,
+                                            std::optional<VkExtent2D> shown = std::nullopt);
 
 }  // namespace heliograph::render

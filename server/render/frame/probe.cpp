@@ -49,7 +49,8 @@ std::vector<BufferValue> inspect_buffers(const CompiledFrame& compiled, const Vi
       const gpu::Image& mean = compiled.plan.latest(compiled.outputs.accumulated.current);
       const glm::uvec2 pixel = pixel_at(point, image.desc().extent);
       FloatImage value = read_texel(image, pixel.x, pixel.y);
-      mix(value, read_texel(mean, pixel.x, pixel.y), mean_weight);
+      const glm::uvec2 drawn = pixel_at(point, mean.desc().extent);
+      mix(value, read_texel(mean, drawn.x, drawn.y), mean_weight);
       values.push_back({buffer.name, std::move(value.rgba), {}});
       continue;
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <utility>
@@ -56,6 +57,10 @@ struct Renderer::State {
                          VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Memory::upload) {}
 
   void rebuild_frame_plan();
+  void make_frame_plan();
+  void rescale_frame_plan();
+  std::optional<VkExtent2D> shown() const;
+  VkExtent2D drawn() const;
   void change_settings(const protocol::Settings& changed);
   void use_newest_shaders();
   Frame output();
@@ -87,7 +92,8 @@ struct Renderer::State {
   std::optional<MovingScene> moving;  // the scene in this renderer's pose
   scene::Camera camera;
   protocol::Settings settings;
-  VkExtent2D extent{640, 360};
+  VkExtent2D extent{640, 360};  // of the finished frame
+  float draw_scale = 1.0f;
 
   std::unique_ptr<CompiledFrame> compiled;
 };
@@ -95,6 +101,13 @@ struct Renderer::State {
 // The old plan is freed first: two of them may not fit into memory.
 void Renderer::State::rebuild_frame_plan() {
   compiled.reset();
+  make_frame_plan();
+  has_previous = false;
+  sample_index = 0;
+  restart_accumulation();
+}
+
+void Renderer::State::make_frame_plan() {
   const FrameInputs inputs{parts.programs,
                            *scene,
                            moving->tables(),
@@ -107,11 +120,33 @@ void Renderer::State::rebuild_frame_plan() {
                            scene_motion,
                            parts.split_sum_table,
                            parts.sheen_table,
-                           parts.ltc_table};
-  compiled = std::make_unique<CompiledFrame>(parts, inputs, constants_buffer, extent);
-  has_previous = false;
-  sample_index = 0;
+                           parts.ltc_table,
+                           shown()};
+  compiled = std::make_unique<CompiledFrame>(parts, inputs, constants_buffer, drawn());
+}
+
+/// Histories move to the new plan; of the old one they alone outlive it.
+void Renderer::State::rescale_frame_plan() {
+  const gpu::FramePlan::Kept kept = compiled->plan.kept();
+  compiled.reset();
+  make_frame_plan();
+  if (!compiled->plan.restore(kept)) has_previous = false;
   restart_accumulation();
+}
+
+VkExtent2D Renderer::State::drawn() const {
+  if (settings.reference.use == protocol::ReferenceUse::always) return extent;
+  const auto scaled = [&](std::uint32_t side) {
+    return std::max(1u, static_cast<std::uint32_t>(std::lround(draw_scale * float(side))));
+  };
+  return {scaled(extent.width), scaled(extent.height)};
+}
+
+/// The size of the finished frame where it is drawn smaller.
+std::optional<VkExtent2D> Renderer::State::shown() const {
+  const VkExtent2D smaller = drawn();
+  if (smaller.width == extent.width && smaller.height == extent.height) return std::nullopt;
+  return extent;
 }
 
 void Renderer::State::change_settings(const protocol::Settings& changed) {
@@ -203,6 +238,11 @@ void Renderer::set_size(std::uint32_t width, std::uint32_t height) {
   state_->rebuild_frame_plan();
 }
 
+void Renderer::set_draw_scale(float scale) {
+  scale = std::clamp(scale, 0.0f, 1.0f);
+  if (std::exchange(state_->draw_scale, scale) != scale) state_->rescale_frame_plan();
+}
+
 void Renderer::set_camera(const scene::Camera& camera) {
   if (scene::same_view(state_->camera, camera)) return;
   state_->camera = camera;
@@ -268,9 +308,9 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
   if (!state.settings.accumulation.enabled) state.clock.samples = 0;
   const shared::FrameConstants before = state.constants;
   const bool had_previous = state.has_previous;
-  state.constants =
-      make_frame_constants(state.camera, state.settings, *state.moving, state.extent,
-                           state.sample_index++, state.has_previous ? &before : nullptr);
+  state.constants = make_frame_constants(state.camera, state.settings, *state.moving, state.drawn(),
+                                         state.sample_index++,
+                                         state.has_previous ? &before : nullptr, state.shown());
   const std::uint32_t still = state.scene_motion.still_frames;
   state.scene_motion =
       render::scene_motion(*state.moving, state.constants, state.has_previous ? &before : nullptr);

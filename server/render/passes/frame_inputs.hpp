@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "gpu/frame_plan/frame_plan.hpp"
 #include "protocol/settings/settings.hpp"
@@ -42,6 +43,8 @@ struct FrameInputs {
   const gpu::Image& split_sum_table;  // rg32f
   const gpu::Image& sheen_table;      // r32f
   const gpu::Image& ltc_table;        // rgba32f
+  /// Of the finished frame, where it is larger than the plan's extent, at which it is drawn.
+  std::optional<VkExtent2D> shown{};
 
   /// The compute program of an embedded shader, made for a scene with these features (all of them
   /// where the shader does not ask) when the plan needs it.

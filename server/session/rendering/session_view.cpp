@@ -122,7 +122,7 @@ SessionView::Work SessionView::advance(bool may_draw) {
   if (session_->timeline().in_lockstep()) return advance_step(may_draw);
   newest_stepped_ = false;
   adopt_state();
-  adopt_size();
+  adopt_draw_scale();
   readers_.answer_probes(readable_frame(false));
   if (readers_.answer_captures(readable_frame(false))) return Work::small;
   if (next_view_state(view_inputs()) == ViewState::final) broadcast_.send_final();
@@ -133,8 +133,8 @@ SessionView::Work SessionView::advance(bool may_draw) {
   return Work::drawing;
 }
 
-/// One requested frame, at full size whatever it takes; between steps the frame can be read by what
-/// was requested before the next one.
+/// One requested frame, at full resolution whatever it takes; between steps the frame can be read
+/// by what was requested before the next one.
 SessionView::Work SessionView::advance_step(bool may_draw) {
   if (!newest_stepped_) readers_.fail_before_first_step();
   readers_.answer_probes(readable_frame(true));
@@ -145,7 +145,7 @@ SessionView::Work SessionView::advance_step(bool may_draw) {
   }
   if (const std::optional<StepFrame> step = session_->timeline().begin_step(first_read)) {
     adopt(step->state);
-    set_size({state_.width, state_.height});
+    set_draw_scale(1.0f);
     render_frame(step->seconds);
     newest_stepped_ = true;
     broadcast_.pump();
@@ -250,23 +250,38 @@ void SessionView::adopt_pose() {
   renderer_->set_camera(scene::camera_at(*state_.scene, state_.camera, pose));
 }
 
-void SessionView::adopt_size() {
-  set_size(draw_size({.now = Clock::now(),
-                      .camera_moved_at = camera_moved_at_,
-                      .animation_playing = state_.animation.playing,
-                      .full = {state_.width, state_.height},
-                      .full_frame_time = full_frame_time_,
-                      .motion_scale = state_.settings.motion.scale,
-                      .capture_pending = readers_.has_captures()}));
+void SessionView::adopt_draw_scale() {
+  set_draw_scale(draw_scale({.now = Clock::now(),
+                             .camera_moved_at = camera_moved_at_,
+                             .animation_playing = state_.animation.playing,
+                             .full = {state_.width, state_.height},
+                             .full_frame_time = full_frame_time_,
+                             .least_scale = state_.settings.motion.scale,
+                             .scale = draw_scale_,
+                             .capture_pending = readers_.has_captures()}));
 }
 
-void SessionView::set_size(DrawSize size) {
-  draw_size_ = size;
-  renderer_->set_size(size.width, size.height);
+/// The path traced reference is not reconstructed: where it is shown alone, frames are smaller.
+void SessionView::set_draw_scale(float scale) {
+  const bool reference = state_.settings.reference.use == protocol::ReferenceUse::always;
+  const auto scaled = [&](std::uint32_t side) {
+    const float pixels = static_cast<float>(side) * (reference ? scale : 1.0f);
+    return std::max(1u, static_cast<std::uint32_t>(pixels + 0.5f));
+  };
+  draw_scale_ = scale;
+  renderer_->set_size(scaled(state_.width), scaled(state_.height));
+  renderer_->set_draw_scale(scale);
+}
+
+/// Follows frames slowly: the first ones after a change also make images.
+void SessionView::measure_moving_frame(Clock::duration taken) {
+  const auto full = duration_cast<Clock::duration>(taken / time_share(draw_scale_));
+  const bool known = full_frame_time_ > Clock::duration::zero();
+  full_frame_time_ = known ? (3 * full_frame_time_ + full) / 4 : full;
 }
 
 bool SessionView::is_full_size() const {
-  return draw_size_ == DrawSize{state_.width, state_.height};
+  return draw_scale_ == 1.0f;
 }
 
 /// A change and its reverse leave the image as it is, but the viewer that made them waits for a
@@ -329,7 +344,8 @@ void SessionView::render_frame(double seconds) {
   renderer_->set_frame_seconds(static_cast<float>(seconds));
   const Clock::time_point before = std::exchange(frame_began_at_, start);
   // A viewer that moves the camera does not wait for a sample of the view that it leaves.
-  const bool refining = next_view_state(view_inputs()) == ViewState::refining;
+  const ViewState view_state = next_view_state(view_inputs());
+  const bool refining = view_state == ViewState::refining;
   std::optional<render::Frame> finished =
       renderer_->render([&] { return refining && session_->version() != state_.version; });
   if (!finished) {
@@ -338,7 +354,7 @@ void SessionView::render_frame(double seconds) {
   }
   render::Frame& frame = *finished;
   const Clock::time_point end = Clock::now();
-  if (is_full_size()) full_frame_time_ = end - start;
+  if (view_state == ViewState::moving) measure_moving_frame(end - start);
   services_.measurements.rendered(std::chrono::duration<double>(end - start).count(),
                                   pass_timings(frame));
   newest_ = describe(std::move(frame), start, end);

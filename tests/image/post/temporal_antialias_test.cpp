@@ -82,6 +82,46 @@ TEST(TemporalAntialias, JitteredStaticViewConvergesToGroundTruth) {
   EXPECT_LT(change, 0.02 * raw_change) << "almost constant";
 }
 
+// What is drawn smaller: the samples of many frames give the image of the full size.
+TEST(TemporalAntialias, ReconstructedStaticViewConvergesToGroundTruth) {
+  const scene::Camera camera = look({0, 0, 3}, {0, 0, 0});
+  Edges full(camera);
+  full.accumulate(200);
+  const render::FloatImage reference = full.capture("accumulated");
+  const double raw = mean_square(reference, full.capture("hdr"));
+  for (const float scale : {0.8f, 0.67f, 0.5f}) {
+    Edges rig(camera);
+    rig.renderer.set_draw_scale(scale);
+    rig.accumulate(100);
+    const render::Frame frame = rig.renderer.render();
+    EXPECT_EQ(frame.width, antialias_width);
+    EXPECT_EQ(frame.height, antialias_height);
+    save_image("reconstructed", frame);
+    const render::FloatImage drawn = rig.capture("hdr");
+    EXPECT_EQ(drawn.width, static_cast<std::uint32_t>(std::lround(scale * antialias_width)));
+    EXPECT_LT(mean_square(reference, rig.capture("temporal_antialias")), 0.5 * raw) << scale;
+  }
+}
+
+// The end of motion: full size continues what was reconstructed, in the denoisers too.
+TEST(TemporalAntialias, HistoriesOutliveAChangeOfTheDrawScale) {
+  const scene::Camera camera = look({0, 0, 3}, {0, 0, 0});
+  Edges rig(camera);
+  protocol::Settings settings = without_noise();
+  settings.shadows.enabled = settings.ambient.occlusion = settings.specular.enabled = true;
+  rig.apply(settings);
+  rig.renderer.set_draw_scale(0.67f);
+  for (int i = 0; i < 24; ++i) rig.renderer.render();
+  const render::FloatImage before = rig.capture("temporal_antialias");
+  rig.renderer.set_draw_scale(1.0f);
+  rig.renderer.render();
+  const double jump = mean_square(before, rig.capture("temporal_antialias"));
+  Edges fresh(camera);
+  fresh.apply(settings);
+  fresh.renderer.render();
+  EXPECT_LT(jump, 0.1 * mean_square(before, fresh.capture("temporal_antialias")));
+}
+
 TEST(TemporalAntialias, StaticViewWithoutJitterIsConstant) {
   Edges rig(look({0, 0, 3}, {0, 0, 0}));
   protocol::Settings settings = without_noise();

@@ -20,12 +20,15 @@ class Presentation {
 
  public:
   HWY_INLINE explicit Presentation(const PresentJob& job)
-      : job_(job), curve_(static_cast<int>(job.frame.tone_map_curve)), dither_(DU(), 0u, 5u, 0u) {}
+      : job_(job),
+        width_(static_cast<int>(job.constants.extent.x)),
+        curve_(static_cast<int>(job.frame.tone_map_curve)),
+        dither_(DU(), 0u, 5u, 0u) {}
 
   HWY_INLINE void rows(int first, int last) const {
     const int lanes = static_cast<int>(hn::Lanes(d_));
     for (int y = first; y < last; ++y) {
-      for (int x = 0; x < job_.width; x += lanes) block(std::min(x, job_.width - lanes), y);
+      for (int x = 0; x < width_; x += lanes) block(std::min(x, width_ - lanes), y);
     }
   }
 
@@ -82,12 +85,13 @@ class Presentation {
 
   const D d_{};
   const PresentJob& job_;
+  int width_;
   int curve_;
   RandomPairs<DU> dither_;
 };
 
 void present_rows(const PresentJob& job, int first, int last) {
-  run_rows<Presentation>(job, job.width, first, last);
+  run_rows<Presentation>(job, static_cast<int>(job.constants.extent.x), first, last);
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE
@@ -99,7 +103,7 @@ namespace heliograph::render::kernels {
 HWY_EXPORT(present_rows);
 
 void present(const PresentJob& job) {
-  for_each_band(job.height, [&](int first, int last) {
+  for_each_band(static_cast<int>(job.constants.extent.y), [&](int first, int last) {
     HWY_DYNAMIC_DISPATCH(present_rows)(job, first, last);
   });
 }

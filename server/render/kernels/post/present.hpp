@@ -13,6 +13,7 @@ struct PresentBindings {
   gpu::Write<Stage> output;  // rgba8
 };
 struct PresentConstants {
+  glm::uvec2 extent;  // of the frame that is shown, pixels
   float mean_weight;  // of the accumulated mean in the image that is shown, 0..1
 };
 using PresentJob = FrameJob<PresentBindings, PresentConstants>;

@@ -43,6 +43,7 @@ gpu::History accumulate(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageR
 }
 
 float mean_weight(const FrameInputs& in) {
+  if (in.shown) return 0.0f;
   const protocol::Settings& settings = in.settings;
   if (settings.reference.use == protocol::ReferenceUse::always || !is_filtered(settings) ||
       settings.accumulation.blend_samples == 0) {

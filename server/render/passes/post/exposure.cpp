@@ -42,6 +42,7 @@ Exposure expose(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef hdr,
       plan.buffer("exposure", size, storage | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
                   gpu::Memory::device),
       plan.buffer("exposure.report", size, storage, gpu::Memory::readback)};
+  plan.keep(exposure.state);
   const auto histogram =
       plan.buffer("exposure.histogram", shared::exposure_bins * sizeof(std::uint32_t), storage,
                   gpu::Memory::device);
