@@ -1,11 +1,9 @@
 #include "gpu/frame_plan/frame_plan.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <utility>
 
 #include "gpu/frame_plan/frame_plan_parts.hpp"
-#include "gpu/memory/carry_over.hpp"
 
 namespace heliograph::gpu {
 namespace {
@@ -30,7 +28,10 @@ std::uint32_t groups(std::uint32_t threads, std::uint32_t local_size) {
 }  // namespace
 
 FramePlan::FramePlan(const Device& device, VkExtent2D extent)
-    : device_(device), extent_(extent), default_sampler_(make_default_sampler(device)) {
+    : device_(device),
+      extent_(extent),
+      drawn_(extent),
+      default_sampler_(make_default_sampler(device)) {
   VkCommandPoolCreateInfo info{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
   info.queueFamilyIndex = device.queue_family();
   info.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
@@ -50,28 +51,28 @@ std::uint32_t FramePlan::add(Resource resource) {
 }
 
 ImageRef FramePlan::image(std::string_view name, VkFormat format, VkImageUsageFlags extra_usage,
-                          std::optional<VkExtent2D> extent) {
+                          FrameSize size) {
   const bool depth = is_depth(format);
-  ImageDesc desc{.name = std::string(name), .extent = extent.value_or(extent_), .format = format};
+  ImageDesc desc{.name = std::string(name), .extent = size.of(extent_), .format = format};
   desc.usage = extra_usage | VK_IMAGE_USAGE_SAMPLED_BIT |
                (depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_IMAGE_USAGE_STORAGE_BIT);
   desc.mapped = device_.is_cpu() && !depth;
-  Resource resource{.name = std::string(name), .image_desc = std::move(desc)};
+  Resource resource{.name = std::string(name), .size = size, .image_desc = std::move(desc)};
   if (!shares_memory_) make(resource, {});
   return {add(std::move(resource))};
 }
 
 History FramePlan::history(std::string_view name, VkFormat format, VkImageUsageFlags extra_usage,
-                           std::optional<VkExtent2D> extent) {
-  ImageDesc desc{.name = std::string(name), .extent = extent.value_or(extent_), .format = format};
+                           FrameSize size) {
+  ImageDesc desc{.name = std::string(name), .extent = size.of(extent_), .format = format};
   desc.usage = extra_usage | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
   desc.mapped = device_.is_cpu();
   const auto even = std::make_shared<const Image>(device_, desc);
   const auto odd = std::make_shared<const Image>(device_, desc);
-  Resource current{.name = std::string(name)};
+  Resource current{.name = std::string(name), .size = size};
   current.images = {even.get(), odd.get()};
   current.owned_images = {even, odd};
-  Resource previous{.name = std::string(name) + ".previous"};
+  Resource previous{.name = std::string(name) + ".previous", .size = size};
   previous.images = {odd.get(), even.get()};
   const History made{{add(std::move(current))}, {add(std::move(previous))}};
   reset(made);
@@ -93,7 +94,7 @@ BufferRef FramePlan::import(const Buffer& buffer) {
 
 ImageRef FramePlan::import(const Image& image, std::optional<std::uint32_t> level,
                            VkSampler sampler) {
-  Resource resource{.name = image.desc().name};
+  Resource resource{.name = image.desc().name, .size = image.desc().extent};
   resource.images = {&image, &image};
   resource.level = level;
   resource.sampler = sampler;
@@ -284,7 +285,7 @@ void FramePlan::run_host_kernel(const Pass& pass) const {
   std::array<std::byte, most_constants> constants;
   if (pass.constants) pass.constants(constants.data());
   pass.kernel(std::span(views).first(pass.listed.size()),
-              std::span(constants).first(pass.constants_size), extent_);
+              std::span(constants).first(pass.constants_size), drawn_);
 }
 
 VkCommandBuffer FramePlan::recorder() {
@@ -326,14 +327,15 @@ void FramePlan::record(const Pass& pass, VkCommandBuffer commands, std::uint32_t
     record_raster(pass, commands);
   } else {
     bind(pass, commands);
+    const VkExtent2D threads = pass.threads.of(drawn_);
     if (pass.rays) {
-      pass.rays->launch(commands, pass.threads.width);
+      pass.rays->launch(commands, threads.width);
     } else if (pass.indirect) {
       vkCmdDispatchIndirect(commands, resources_[pass.indirect->first].buffer->handle(),
                             pass.indirect->second);
     } else {
-      vkCmdDispatch(commands, groups(pass.threads.width, pass.local_size.width),
-                    groups(pass.threads.height, pass.local_size.height), pass.layers);
+      vkCmdDispatch(commands, groups(threads.width, pass.local_size.width),
+                    groups(threads.height, pass.local_size.height), pass.layers);
     }
   }
   if (!timed_by_clock()) {
@@ -376,15 +378,14 @@ void FramePlan::record_raster(const Pass& pass, VkCommandBuffer commands) {
   VkRenderingAttachmentInfo depth{};
   if (pass.depth) depth = attachment(*pass.depth);
   VkRenderingInfo info{VK_STRUCTURE_TYPE_RENDERING_INFO};
-  info.renderArea = {{0, 0}, extent_};
+  info.renderArea = {{0, 0}, drawn_};
   info.layerCount = 1;
   info.colorAttachmentCount = static_cast<std::uint32_t>(colors.size());
   info.pColorAttachments = colors.data();
   info.pDepthAttachment = pass.depth ? &depth : nullptr;
   vkCmdBeginRendering(commands, &info);
   const VkViewport viewport{
-      0.0f, 0.0f, static_cast<float>(extent_.width), static_cast<float>(extent_.height),
-      0.0f, 1.0f};
+      0.0f, 0.0f, static_cast<float>(drawn_.width), static_cast<float>(drawn_.height), 0.0f, 1.0f};
   vkCmdSetViewport(commands, 0, 1, &viewport);
   vkCmdSetScissor(commands, 0, 1, &info.renderArea);
   bind(pass, commands);
@@ -431,41 +432,6 @@ std::vector<std::uint8_t> FramePlan::read() const {
 
 void FramePlan::reset(const History& history) {
   for (const Image* image : resources_[history.current.index].images) image->clear();
-}
-
-FramePlan::Kept FramePlan::kept() const {
-  Kept kept;
-  for (const Resource& resource : resources_) {
-    const auto& images = resource.owned_images;
-    if (images[0] != images[1]) kept.images.push_back(images[parity_ ^ 1]);
-  }
-  for (const BufferRef& buffer : kept_buffers_) {
-    kept.buffers.push_back(resources_[buffer.index].owned_buffer);
-  }
-  return kept;
-}
-
-bool FramePlan::restore(const Kept& kept) {
-  bool all = true;
-  for (const Resource& resource : resources_) {
-    const auto& images = resource.owned_images;
-    if (images[0] == images[1]) continue;
-    const ImageDesc& desc = images[0]->desc();
-    const auto found = std::ranges::find_if(kept.images, [&](const auto& image) {
-      return image->desc().name == desc.name && image->desc().format == desc.format;
-    });
-    all &= found != kept.images.end();
-    if (found != kept.images.end()) carry_over(device_, **found, *images[parity_ ^ 1]);
-  }
-  for (const BufferRef& ref : kept_buffers_) {
-    const Buffer& buffer = *resources_[ref.index].buffer;
-    const auto found = std::ranges::find_if(kept.buffers, [&](const auto& other) {
-      return other->name() == buffer.name() && other->size() == buffer.size();
-    });
-    all &= found != kept.buffers.end();
-    if (found != kept.buffers.end()) carry_over(device_, **found, buffer);
-  }
-  return all;
 }
 
 PassBuilder& PassBuilder::use(Use use) {
@@ -518,7 +484,7 @@ PassBuilder& PassBuilder::depth(ImageRef image, float clear) {
   return *this;
 }
 
-PassBuilder& PassBuilder::dispatch(VkExtent2D threads, std::uint32_t layers) {
+PassBuilder& PassBuilder::dispatch(FrameSize threads, std::uint32_t layers) {
   plan_.passes_[pass_].threads = threads;
   plan_.passes_[pass_].layers = layers;
   return *this;

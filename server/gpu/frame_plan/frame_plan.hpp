@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "gpu/frame_plan/bindings.hpp"
+#include "gpu/frame_plan/frame_size.hpp"
 #include "gpu/memory/readback.hpp"
 #include "gpu/pipelines/ray_pipeline.hpp"
 #include "gpu/pipelines/shader.hpp"
@@ -86,8 +87,8 @@ class PassBuilder {
   PassBuilder& color(ImageRef image, std::optional<std::array<float, 4>> clear);
   PassBuilder& depth(ImageRef image, float clear);
 
-  /// One thread per pixel (or per element) and layer.
-  PassBuilder& dispatch(VkExtent2D threads, std::uint32_t layers = 1);
+  /// Threads of each layer: each_pixel(), or as many as there are elements.
+  PassBuilder& dispatch(FrameSize threads, std::uint32_t layers = 1);
   /// Groups from a VkDispatchIndirectCommand at `offset` of a buffer, which counts as read.
   PassBuilder& dispatch_indirect(BufferRef groups, VkDeviceSize offset);
   /// One invocation of a ray tracing pipeline's generation stage per element.
@@ -118,7 +119,7 @@ class PassBuilder {
 
  private:
   friend class FramePlan;
-  /// Views of the list's resources, bytes of the constants, the plan's extent.
+  /// Views of the list's resources, bytes of the constants, the size that is drawn.
   using HostRun =
       std::function<void(std::span<const HostView>, std::span<const std::byte>, VkExtent2D)>;
 
@@ -161,7 +162,15 @@ class FramePlan {
   FramePlan(const FramePlan&) = delete;
   FramePlan& operator=(const FramePlan&) = delete;
 
+  /// The size of frames.
   VkExtent2D extent() const { return extent_; }
+  /// The size that they are drawn at: that one, unless set_drawn() reduced it.
+  VkExtent2D drawn() const { return drawn_; }
+  /// The same of an image.
+  VkExtent2D drawn(ImageRef image) const;
+  /// Images that follow the frame are used from the first texel to this size from the next frame
+  /// on. Histories among them are scaled to it. At most extent(). Waits.
+  void set_drawn(VkExtent2D drawn);
   const Device& device() const { return device_; }
 
   /// Whether passes declared from now on run their host kernels, where they have one. Only devices
@@ -174,12 +183,12 @@ class FramePlan {
   /// frame begins, buffers of Memory::device for as long as passes read them.
   void share_memory() { shares_memory_ = device_.is_cpu(); }
 
-  /// An image of the plan's extent, or of its own; mapped on CPU devices.
+  /// An image; mapped on CPU devices.
   ImageRef image(std::string_view name, VkFormat format, VkImageUsageFlags extra_usage = 0,
-                 std::optional<VkExtent2D> extent = std::nullopt);
+                 FrameSize size = each_pixel());
   /// Two images that swap after every frame; cleared to zero.
   History history(std::string_view name, VkFormat format, VkImageUsageFlags extra_usage = 0,
-                  std::optional<VkExtent2D> extent = std::nullopt);
+                  FrameSize size = each_pixel());
   BufferRef buffer(std::string name, VkDeviceSize size, VkBufferUsageFlags usage, Memory memory);
   /// Resources owned elsewhere, which must outlive the plan.
   BufferRef import(const Buffer& buffer);
@@ -231,19 +240,6 @@ class FramePlan {
 
   void reset(const History& history);
 
-  /// What a plan leaves to the one that replaces it, by name.
-  struct Kept {
-    std::vector<std::shared_ptr<const Image>> images;  // the newest of each history
-    std::vector<std::shared_ptr<const Buffer>> buffers;
-  };
-  /// A buffer that a later frame reads, as histories are.
-  void keep(BufferRef buffer) { kept_buffers_.push_back(buffer); }
-  Kept kept() const;
-  /// After compile(): histories continue those of that name and format, by the nearest texel where
-  /// the size is another; kept buffers continue those of that name and size. @return whether every
-  /// one did
-  bool restore(const Kept& kept);
-
   /// Bytes of all images and buffers that the plan owns.
   std::uint64_t memory_bytes() const;
 
@@ -287,12 +283,12 @@ class FramePlan {
 
   const Device& device_;
   VkExtent2D extent_;
+  VkExtent2D drawn_;
   std::vector<Resource> resources_;
   std::vector<Pass> passes_;
   std::vector<std::pair<std::uint32_t, VkDescriptorSet>> shared_sets_;
   std::unique_ptr<DescriptorPool> descriptor_pool_;
   Sampler default_sampler_;
-  std::vector<BufferRef> kept_buffers_;
   ImageRef read_back_;
   Readback readback_;
   VkCommandPool command_pool_ = VK_NULL_HANDLE;

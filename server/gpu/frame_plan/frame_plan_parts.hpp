@@ -14,6 +14,7 @@ struct FramePlan::Resource {
   };
 
   std::string name;
+  FrameSize size{0, 0};  // of an image
   // By parity of the frame; both the same except for histories.
   std::array<const Image*, 2> images{};
   const Buffer* buffer = nullptr;
@@ -46,7 +47,7 @@ struct FramePlan::Pass {
   std::vector<Attachment> colors;
   std::optional<Attachment> depth;
   std::optional<std::pair<std::uint32_t, VkDeviceSize>> indirect;
-  VkExtent2D threads{};
+  FrameSize threads{0, 0};
   std::uint32_t layers = 1;
   std::size_t constants_size = 0;
   std::function<void(std::byte*)> constants;

@@ -57,10 +57,8 @@ struct Renderer::State {
                          VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Memory::upload) {}
 
   void rebuild_frame_plan();
-  void make_frame_plan();
-  void rescale_frame_plan();
-  std::optional<VkExtent2D> shown() const;
   VkExtent2D drawn() const;
+  void set_drawn();
   void change_settings(const protocol::Settings& changed);
   void use_newest_shaders();
   Frame output();
@@ -101,13 +99,6 @@ struct Renderer::State {
 // The old plan is freed first: two of them may not fit into memory.
 void Renderer::State::rebuild_frame_plan() {
   compiled.reset();
-  make_frame_plan();
-  has_previous = false;
-  sample_index = 0;
-  restart_accumulation();
-}
-
-void Renderer::State::make_frame_plan() {
   const FrameInputs inputs{parts.programs,
                            *scene,
                            moving->tables(),
@@ -121,16 +112,11 @@ void Renderer::State::make_frame_plan() {
                            parts.split_sum_table,
                            parts.sheen_table,
                            parts.ltc_table,
-                           shown()};
-  compiled = std::make_unique<CompiledFrame>(parts, inputs, constants_buffer, drawn());
-}
-
-/// Histories move to the new plan; of the old one they alone outlive it.
-void Renderer::State::rescale_frame_plan() {
-  const gpu::FramePlan::Kept kept = compiled->plan.kept();
-  compiled.reset();
-  make_frame_plan();
-  if (!compiled->plan.restore(kept)) has_previous = false;
+                           extent};
+  compiled = std::make_unique<CompiledFrame>(parts, inputs, constants_buffer, extent);
+  compiled->plan.set_drawn(drawn());
+  has_previous = false;
+  sample_index = 0;
   restart_accumulation();
 }
 
@@ -142,11 +128,9 @@ VkExtent2D Renderer::State::drawn() const {
   return {scaled(extent.width), scaled(extent.height)};
 }
 
-/// The size of the finished frame where it is drawn smaller.
-std::optional<VkExtent2D> Renderer::State::shown() const {
-  const VkExtent2D smaller = drawn();
-  if (smaller.width == extent.width && smaller.height == extent.height) return std::nullopt;
-  return extent;
+void Renderer::State::set_drawn() {
+  compiled->plan.set_drawn(drawn());
+  restart_accumulation();
 }
 
 void Renderer::State::change_settings(const protocol::Settings& changed) {
@@ -172,9 +156,9 @@ void Renderer::State::use_newest_shaders() {
 std::optional<FloatImage> Renderer::State::read(std::string_view name) const {
   if (name == present_buffers.radiance.name) return shown_radiance(*compiled, shown_mean_weight);
   const View view = find_view(name);
-  const gpu::Image* const image = view ? compiled->find(view.buffer->name) : nullptr;
+  const auto image = view ? compiled->find(view.buffer->name) : std::nullopt;
   if (!image) return std::nullopt;
-  return extract(view, read_image(*image),
+  return extract(view, read_image(image->whole, image->drawn),
                  {constants, exposure_factor(compiled->plan, compiled->outputs.exposure)});
 }
 
@@ -240,7 +224,7 @@ void Renderer::set_size(std::uint32_t width, std::uint32_t height) {
 
 void Renderer::set_draw_scale(float scale) {
   scale = std::clamp(scale, 0.0f, 1.0f);
-  if (std::exchange(state_->draw_scale, scale) != scale) state_->rescale_frame_plan();
+  if (std::exchange(state_->draw_scale, scale) != scale) state_->set_drawn();
 }
 
 void Renderer::set_camera(const scene::Camera& camera) {
@@ -308,9 +292,9 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
   if (!state.settings.accumulation.enabled) state.clock.samples = 0;
   const shared::FrameConstants before = state.constants;
   const bool had_previous = state.has_previous;
-  state.constants = make_frame_constants(state.camera, state.settings, *state.moving, state.drawn(),
-                                         state.sample_index++,
-                                         state.has_previous ? &before : nullptr, state.shown());
+  state.constants = make_frame_constants(
+      state.camera, state.settings, *state.moving, {.drawn = state.drawn(), .shown = state.extent},
+      state.sample_index++, state.has_previous ? &before : nullptr);
   const std::uint32_t still = state.scene_motion.still_frames;
   state.scene_motion =
       render::scene_motion(*state.moving, state.constants, state.has_previous ? &before : nullptr);

@@ -30,7 +30,7 @@ class VisibilityTrace {
   /// tracing it costs nothing.
   gpu::PassBuilder generate(gpu::ProgramSource program, std::uint32_t flag) {
     gpu::PassBuilder pass = plan_.pass(name_ + ".rays", std::move(program));
-    pass.dispatch(plan_.extent()).when([&constants = in_.constants, flag] {
+    pass.dispatch(gpu::each_pixel()).when([&constants = in_.constants, flag] {
       return (constants.flags & flag) != 0;
     });
     return pass;
