@@ -13,12 +13,15 @@ namespace heliograph::session {
 
 using std::chrono::duration_cast;
 using std::chrono::microseconds;
+using std::chrono::milliseconds;
 
 namespace {
 
 /// Histories are measured in seconds. After a pause the time since the last frame means nothing.
 constexpr float max_frame_seconds = 1.0f;
 constexpr std::chrono::seconds retry_delay{1};
+/// Frames of static views trace every sample: about how much longer they take than moving ones.
+constexpr int refining_frame_factor = 2;
 
 std::uint32_t microseconds_of(Clock::duration duration) {
   return static_cast<std::uint32_t>(duration_cast<microseconds>(duration).count());
@@ -206,7 +209,7 @@ void SessionView::adopt(RenderState next) {
   }
   const bool same_scene = state_.resources == before.resources;
   const bool resized = state_.width != before.width || state_.height != before.height;
-  if (resized) full_frame_time_ = {};
+  if (resized || !same_scene) full_frame_time_ = {};
   const bool jumped = state_.discontinuities != before.discontinuities;
   if (jumped) renderer_->invalidate_history();
   discontinuous_ |= resized || !same_scene || jumped;
@@ -256,6 +259,7 @@ void SessionView::adopt_draw_scale() {
                              .animation_playing = state_.animation.playing,
                              .full = {state_.width, state_.height},
                              .full_frame_time = full_frame_time_,
+                             .frame_time = milliseconds(state_.settings.motion.frame_time),
                              .least_scale = state_.settings.motion.scale,
                              .scale = draw_scale_,
                              .capture_pending = readers_.has_captures()}));
@@ -273,11 +277,15 @@ void SessionView::set_draw_scale(float scale) {
   renderer_->set_draw_scale(scale);
 }
 
-/// Follows frames slowly: the first ones after a change also make images.
-void SessionView::measure_moving_frame(Clock::duration taken) {
+/// Follows the times of moving frames slowly. Before there are any, refining frames tell.
+void SessionView::measure_frame(ViewState state, Clock::duration taken) {
   const auto full = duration_cast<Clock::duration>(taken / time_share(draw_scale_));
   const bool known = full_frame_time_ > Clock::duration::zero();
-  full_frame_time_ = known ? (3 * full_frame_time_ + full) / 4 : full;
+  if (state == ViewState::moving) {
+    full_frame_time_ = known ? (3 * full_frame_time_ + full) / 4 : full;
+  } else if (!known) {
+    full_frame_time_ = full / refining_frame_factor;
+  }
 }
 
 bool SessionView::is_full_size() const {
@@ -354,7 +362,7 @@ void SessionView::render_frame(double seconds) {
   }
   render::Frame& frame = *finished;
   const Clock::time_point end = Clock::now();
-  if (view_state == ViewState::moving) measure_moving_frame(end - start);
+  measure_frame(view_state, end - start);
   services_.measurements.rendered(std::chrono::duration<double>(end - start).count(),
                                   pass_timings(frame));
   newest_ = describe(std::move(frame), start, end);

@@ -69,7 +69,7 @@ class SessionView {
   void adopt_pose();
   void adopt_draw_scale();
   void set_draw_scale(float scale);
-  void measure_moving_frame(Clock::duration taken);
+  void measure_frame(ViewState state, Clock::duration taken);
   bool is_full_size() const;
   bool needs_frame() const;
   ViewInputs view_inputs() const;

@@ -5,8 +5,6 @@
 namespace heliograph::session {
 namespace {
 
-/// Motion stutters where frames take longer.
-constexpr Clock::duration slow_frame = std::chrono::milliseconds(66);
 /// Images of at most so many pixels are never reduced.
 constexpr std::uint32_t min_reducible_pixels = 320 * 180;
 /// Fractions of width and height that frames are drawn at.
@@ -68,10 +66,11 @@ float draw_scale(const ResolutionInputs& in) {
   const bool moves = in.animation_playing || in.now < in.camera_moved_at + final_delay;
   const bool reducible = in.full.width * in.full.height > min_reducible_pixels;
   if (!moves || in.capture_pending || !reducible) return 1.0f;
+  if (in.frame_time == Clock::duration::zero()) return in.least_scale;
   const auto fits = [&](float scale) {
     const float margin = scale > in.scale ? step_up : scale == in.scale ? stay : 1.0f;
     return time_share(scale) * static_cast<float>(in.full_frame_time.count()) <=
-           margin * static_cast<float>(slow_frame.count());
+           margin * static_cast<float>(in.frame_time.count());
   };
   for (const float scale : scale_steps) {
     if (scale <= in.least_scale) break;

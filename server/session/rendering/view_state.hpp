@@ -107,6 +107,7 @@ struct ResolutionInputs {
   bool animation_playing = false;
   DrawSize full;                      // the session's size
   Clock::duration full_frame_time{};  // that a moving frame takes at full size; zero: not known
+  Clock::duration frame_time{};       // that it should take at most; zero: any is too long
   float least_scale = 1.0f;           // of width and height
   float scale = 1.0f;                 // of the newest frame
   bool capture_pending = false;       // captures are of full resolution
@@ -114,7 +115,7 @@ struct ResolutionInputs {
 
 /// The fraction of width and height to draw at: less than 1 while the camera moves or a clip plays
 /// and full frames are slow. Of a few steps, and it changes only where times differ clearly, since
-/// every change makes new images.
+/// every change scales all histories.
 float draw_scale(const ResolutionInputs& in);
 
 /// The part of a full frame's time that a frame takes at this scale.

@@ -137,6 +137,7 @@ ResolutionInputs moving_image() {
           .camera_moved_at = view_start,
           .full = {1280, 720},
           .full_frame_time = 100ms,
+          .frame_time = 66ms,
           .least_scale = 0.5f};
 }
 
@@ -176,6 +177,17 @@ TEST(DrawScale, IsTheLargestStepThatKeepsTheFrameTime) {
   EXPECT_EQ(draw_scale(in), 0.7f);
   in.least_scale = 1.0f;
   EXPECT_EQ(draw_scale(in), 1.0f);
+}
+
+TEST(DrawScale, FollowsTheFrameTimeThatIsAskedFor) {
+  ResolutionInputs in = moving_image();
+  in.frame_time = 100ms;
+  EXPECT_EQ(draw_scale(in), 1.0f);
+  in.frame_time = 33ms;
+  EXPECT_EQ(draw_scale(in), 0.5f);
+  in.frame_time = 0ms;
+  in.full_frame_time = 1ms;
+  EXPECT_EQ(draw_scale(in), 0.5f) << "always the least";
 }
 
 TEST(DrawScale, StaysWhereTimesSwing) {
