@@ -103,6 +103,43 @@ TEST(TemporalAntialias, ReconstructedStaticViewConvergesToGroundTruth) {
   }
 }
 
+// Without antialiasing there is nothing to reconstruct from.
+TEST(TemporalAntialias, SmallerFramesWithoutItShowTheNearestPixels) {
+  const scene::Camera camera = look({0, 0, 3}, {0, 0, 0});
+  protocol::Settings settings = without_noise();
+  settings.antialiasing.temporal = settings.antialiasing.jitter = false;
+  Edges small(camera), rig(camera);
+  small.apply(settings);
+  rig.apply(settings);
+  small.renderer.set_size(antialias_width / 2, antialias_height / 2);
+  rig.renderer.set_draw_scale(0.5f);
+  const render::Frame drawn = small.renderer.render(), frame = rig.renderer.render();
+  ASSERT_EQ(frame.width, antialias_width);
+  ASSERT_EQ(frame.height, antialias_height);
+  for (std::uint32_t y = 0; y < frame.height; ++y) {
+    for (std::uint32_t x = 0; x < frame.width; ++x) {
+      for (std::uint32_t c = 0; c < 3; ++c) {
+        const int expected = drawn.rgba[(y / 2 * drawn.width + x / 2) * 4 + c];
+        EXPECT_NEAR(frame.rgba[(y * frame.width + x) * 4 + c], expected, 1) << x << ", " << y;
+      }
+    }
+  }
+}
+
+TEST(TemporalAntialias, PointsOfSmallerFramesAreTheSameSurfaces) {
+  const scene::Camera camera = look({0, 0, 3}, {0, 0, 0});
+  Edges full(camera), rig(camera);
+  rig.renderer.set_draw_scale(0.5f);
+  full.renderer.render();
+  rig.renderer.render();
+  const glm::vec2 point(0.35f, 0.4f);  // on the sphere
+  const auto expected = full.renderer.pick(point), found = rig.renderer.pick(point);
+  ASSERT_TRUE(expected && *expected && found && *found);
+  EXPECT_EQ((*found)->instance, (*expected)->instance);
+  EXPECT_LT(glm::distance((*found)->position, (*expected)->position), 0.05f);
+  EXPECT_EQ(rig.renderer.inspect(point).size(), full.renderer.inspect(point).size());
+}
+
 // The end of motion: full size continues what was reconstructed, in the denoisers too.
 TEST(TemporalAntialias, HistoriesOutliveAChangeOfTheDrawScale) {
   const scene::Camera camera = look({0, 0, 3}, {0, 0, 0});
