@@ -40,8 +40,8 @@ class BlendedLight {
   explicit BlendedLight(const BlendedLightJob& job)
       : job_(job),
         cone_(CameraLanes(job.frame).cone()),
-        environment_(job.frame, job.environment),
-        tables_(job.tables),
+        environment_(job.frame, job.lit_scene.environment),
+        tables_(job.lit_scene.tables),
         picks_(unsigned_tag, job.frame.sample_index, 40u, job.frame.seed),
         points_(unsigned_tag, job.frame.sample_index, 41u, job.frame.seed),
         around_(unsigned_tag, job.frame.sample_index, 42u, job.frame.seed),
@@ -56,7 +56,7 @@ class BlendedLight {
     const Float4 seen = gathered4(job_.transmittance, pixel);
     throughput = throughput * (gathered_last(job_.radiance, pixel) / seen.w);
     const Float width = hn::MulAdd(hit.t, number(cone_.y), number(cone_.x));
-    const auto s = hit_surface<Surface, false>(job_.scene, hit, view.direction, width);
+    const auto s = hit_surface<Surface, false>(job_.lit_scene.scene, hit, view.direction, width);
     const Material m = material_of(s, view.direction, tables_);
     const Float view_z = hn::Neg(transform_row(job_.frame.view, 2, s.position));
     RayLanes ray;
@@ -111,12 +111,12 @@ class BlendedLight {
     const Unsigned x = as_unsigned(pixel.x), y = as_unsigned(pixel.y);
     Float pick = picks_.at(x, y);
     const LightChoice light =
-        choose_light(job_.lights, job_.tables.ltc, m, s.position, lanes, pick);
+        choose_light(job_.lit_scene.lights, job_.lit_scene.tables.ltc, m, s.position, lanes, pick);
     Mask valid = hn::And(lanes, hn::Gt(light.total, zero()));
     if (none(valid)) return;
     Float2 u;
     points_.at(x, y, u.x, u.y);
-    const Mask seen = aim(job_.lights, light, m, s.position, u, pick, valid, ray);
+    const Mask seen = aim(job_.lit_scene.lights, light, m, s.position, u, pick, valid, ray);
     if (enabled(shared::frame_shadows)) {
       valid = seen;
     } else {
@@ -183,7 +183,7 @@ HWY_INLINE void light_batch_of(const BlendedLightJob& job, int first, int last) 
 }
 
 void light_batch(const BlendedLightJob& job, int first, int last) {
-  if (job.layered) return light_batch_of<LayeredSurfaceLanes>(job, first, last);
+  if (job.lit_scene.layered) return light_batch_of<LayeredSurfaceLanes>(job, first, last);
   light_batch_of<SurfaceLanes>(job, first, last);
 }
 

@@ -40,7 +40,9 @@ class StreamShading {
     const PixelLanes pixel = unpack_pixel(ray.pixel);
     const HitLanes hit = load_hits(job_.hits, first, last);
     const Mask missed = hn::AndNot(hit.met, requested);
-    if (!none(missed)) store(empty_texels<AllTexels>(), pixel, hn::And(missed, inside(pixel)));
+    if (!none(missed)) {
+      store_texels(job_, empty_texels<AllTexels>(), pixel, hn::And(missed, inside(pixel)));
+    }
     if (none(hit.met)) return 0;
     HitRecords records(job_.scene, hit);
     records.triangle.set_point(hit.u, hit.v);
@@ -48,7 +50,7 @@ class StreamShading {
     const Mask passes =
         job_.constants.last_round ? hn::Lt(one(), zero()) : shading_.go_on(ray.direction, hit, s);
     const Mask stays = hn::AndNot(passes, hit.met);
-    if (!none(stays)) store(shading_.texels(pixel, records, hit, s), pixel, stays);
+    if (!none(stays)) store_texels(job_, shading_.texels(pixel, records, hit, s), pixel, stays);
     if (none(passes)) return 0;
     ray.t_min = Shading::passed_from(hit.t);
     return store_rays(ray, passes, passed);
@@ -59,27 +61,6 @@ class StreamShading {
     const glm::uvec2 extent = job_.frame.extent;
     return float_mask(hn::And(hn::Lt(pixel.x, integer(static_cast<int>(extent.x))),
                               hn::Lt(pixel.y, integer(static_cast<int>(extent.y)))));
-  }
-
-  HWY_NOINLINE void store(const AllTexels& texels, const PixelLanes& pixel, Mask requested) const {
-    const Texels<4> normals(texels.normals), motion(texels.motion);
-    const Texels<2> depth_slope(texels.depth_slope), emissive(texels.emissive);
-    const Texels<1> base_color(texels.base_color), surface(texels.surface);
-    const Texels<1> instance(texels.instance);
-    const TexelIndices at(pixel);
-    for_each_run(requested, pixel, [&](std::size_t lane, std::size_t count) {
-      normals.put(job_.normals, lane, count, at);
-      motion.put(job_.motion, lane, count, at);
-      depth_slope.put(job_.depth_slope, lane, count, at);
-      emissive.put(job_.emissive, lane, count, at);
-      base_color.put(job_.base_color, lane, count, at);
-      surface.put(job_.surface, lane, count, at);
-      instance.put(job_.instance, lane, count, at);
-    });
-    if constexpr (Surface::layered) {
-      const Texels<4> layers(texels.layers);
-      for_each_lane(requested, [&](std::size_t lane) { layers.put(job_.layers, lane, at); });
-    }
   }
 
   const GBufferHitsJob& job_;

@@ -391,7 +391,7 @@ constexpr std::int32_t nowhere = 0x7fffff;
 
 /// Batches of the draws, with what an earlier frame has allocated.
 void list_batches(std::span<const Draw* const> draws, ScreenTriangles& to) {
-  to.batch_count = 0;
+  to.batch_count = to.first_passing = 0;
   for (const Draw* const draw : draws) {
     const std::uint32_t triangles = draw->index_count / 3;
     for (std::uint32_t first = 0; first < triangles; first += triangle_batch) {
@@ -402,6 +402,7 @@ void list_batches(std::span<const Draw* const> draws, ScreenTriangles& to) {
       batch.count = std::min(triangle_batch, triangles - first);
       batch.visible.clear();
     }
+    if (!draw->masked) to.first_passing = to.batch_count;
   }
 }
 
