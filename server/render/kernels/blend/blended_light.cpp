@@ -14,18 +14,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
 
-/// Rays of one kind on their way into a stream.
-struct RayBatch {
-  std::array<shared::Ray, ray_batch> rays;
-  std::size_t count = 0;
-  HWY_INLINE void add(const RayLanes& lanes, Mask requested) {
-    count += store_rays(lanes, requested, rays.data() + count);
-  }
-  void append_to(const RaySink<gpu::Mapped>& sink) const {
-    if (count) sink.append({rays.data(), count});
-  }
-};
-
 struct LightBatches {
   RayBatch shadows, ambient, specular;
 };

@@ -18,14 +18,13 @@ void list_lit_tile(const BlendedLitJob& job, const Tile& tile) {
   });
   if (lit.size() == 0) return;
   const CameraLanes camera(job.frame);
-  std::array<shared::Ray, tile_side * tile_side> made;
-  std::size_t count = 0;
+  RayBatch made;
   for (int i = 0; i < lit.size(); i += static_cast<int>(hn::Lanes(tag))) {
     Mask valid;
     const PixelLanes pixel = lit.from(i, valid);
-    count += store_rays(camera_rays(job.frame, camera, pixel), valid, made.data() + count);
+    made.add(camera_rays(job.frame, camera, pixel), valid);
   }
-  job.lit.append({made.data(), count});
+  made.append_to(job.lit);
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE

@@ -20,9 +20,8 @@ class BlendedHits {
                {job.radiance, job.transmittance, job.front_motion, job.chosen}, shading_,
                job.constants.round) {}
 
-  /// Rays that go on lie at `passed`, those whose pixel has a surface to light at `lit`.
-  void block(int first, int last, shared::Ray* passed, std::size_t& passed_count, shared::Ray* lit,
-             std::size_t& lit_count) const {
+  /// `passed`: rays that go on. `lit`: those whose pixel has a surface to light.
+  void block(int first, int last, RayBatch& passed, RayBatch& lit) const {
     const HitLanes hit = load_hits(job_.hits, first, last);
     if (none(hit.met)) return;
     RayLanes ray = load_rays(job_.met.rays, first, last);
@@ -36,11 +35,11 @@ class BlendedHits {
     if (!none(blended)) {
       const auto found = layer_.lay_over(pixel, records, hit, s, ray.direction, blended);
       goes_on = hn::Or(goes_on, found.shows);
-      lit_count += store_rays(ray, found.first_lit, lit + lit_count);
+      lit.add(ray, found.first_lit);
     }
     if (job_.constants.last_round || none(goes_on)) return;
     ray.t_min = GBufferShading<Surface>::passed_from(hit.t);
-    passed_count += store_rays(ray, goes_on, passed + passed_count);
+    passed.add(ray, goes_on);
   }
 
  private:
@@ -52,13 +51,12 @@ class BlendedHits {
 template <class Surface>
 HWY_INLINE void blended_batch_of(const BlendedSurfacesJob& job, int first, int last) {
   const BlendedHits<Surface> surfaces(job);
-  std::array<shared::Ray, ray_batch> passed, lit;
-  std::size_t passed_count = 0, lit_count = 0;
+  RayBatch passed, lit;
   for (int i = first; i < last; i += static_cast<int>(hn::Lanes(tag))) {
-    surfaces.block(i, last, passed.data(), passed_count, lit.data(), lit_count);
+    surfaces.block(i, last, passed, lit);
   }
-  if (passed_count) job.rays.append({passed.data(), passed_count});
-  if (lit_count) job.lit.append({lit.data(), lit_count});
+  passed.append_to(job.rays);
+  lit.append_to(job.lit);
 }
 
 void blended_batch(const BlendedSurfacesJob& job, int first, int last) {

@@ -33,8 +33,8 @@ class StreamShading {
   explicit StreamShading(const GBufferHitsJob& job)
       : job_(job), shading_(job.frame, job.scene, job.deforms) {}
 
-  /// @return how many rays go on, which lie at `passed`
-  std::size_t block(int first, int last, shared::Ray* passed) const {
+  /// `passed`: rays that go on.
+  void block(int first, int last, RayBatch& passed) const {
     const Mask requested = float_mask(hn::Lt(hn::Iota(integer_tag, first), integer(last)));
     RayLanes ray = load_rays(job_.rays.rays, first, last);
     const PixelLanes pixel = unpack_pixel(ray.pixel);
@@ -43,7 +43,7 @@ class StreamShading {
     if (!none(missed)) {
       store_texels(job_, empty_texels<AllTexels>(), pixel, hn::And(missed, inside(pixel)));
     }
-    if (none(hit.met)) return 0;
+    if (none(hit.met)) return;
     HitRecords records(job_.scene, hit);
     records.triangle.set_point(hit.u, hit.v);
     const Surface s = shading_.surface(records, hit, ray.direction);
@@ -51,9 +51,9 @@ class StreamShading {
         job_.constants.last_round ? hn::Lt(one(), zero()) : shading_.go_on(ray.direction, hit, s);
     const Mask stays = hn::AndNot(passes, hit.met);
     if (!none(stays)) store_texels(job_, shading_.texels(pixel, records, hit, s), pixel, stays);
-    if (none(passes)) return 0;
+    if (none(passes)) return;
     ray.t_min = Shading::passed_from(hit.t);
-    return store_rays(ray, passes, passed);
+    passed.add(ray, passes);
   }
 
  private:
@@ -70,12 +70,11 @@ class StreamShading {
 template <class Surface>
 HWY_INLINE void shade_batch_of(const GBufferHitsJob& job, int first, int last) {
   const StreamShading<Surface> shading(job);
-  std::array<shared::Ray, ray_batch> passed;
-  std::size_t used = 0;
+  RayBatch passed;
   for (int i = first; i < last; i += static_cast<int>(hn::Lanes(tag))) {
-    used += shading.block(i, last, passed.data() + used);
+    shading.block(i, last, passed);
   }
-  if (used) job.passed.append({passed.data(), used});
+  passed.append_to(job.passed);
 }
 
 void shade_batch(const GBufferHitsJob& job, int first, int last) {

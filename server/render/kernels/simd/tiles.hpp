@@ -53,6 +53,8 @@ HWY_INLINE auto gbuffer_material(const Job& job, const PixelLanes& pixels, const
   }
 }
 
+static_assert(tile_side * tile_side <= ray_batch);
+
 /// Pixels of a tile, in its order.
 class PixelList {
  public:
