@@ -6,7 +6,7 @@
 #define HWY_TARGET_INCLUDE "render/kernels/specular_rays.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
-#include "render/kernels/simd/specular_lobe.hpp"
+#include "render/kernels/simd/material/specular_lobe.hpp"
 #include "render/kernels/simd/tiles.hpp"
 
 HWY_BEFORE_NAMESPACE();

@@ -7,7 +7,7 @@
 #define HELIOGRAPH_KERNELS_GBUFFER_SHADING_HPP
 #endif
 
-#include "render/kernels/simd/hit_material.hpp"
+#include "render/kernels/simd/material/hit_material.hpp"
 #include "render/kernels/simd/ray_writer.hpp"
 
 HWY_BEFORE_NAMESPACE();

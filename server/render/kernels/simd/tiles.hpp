@@ -12,7 +12,7 @@
 #include <cstring>
 
 #include "render/kernels/common/tile.hpp"
-#include "render/kernels/simd/layers.hpp"
+#include "render/kernels/simd/material/layers.hpp"
 #include "render/kernels/simd/ray_writer.hpp"
 
 HWY_BEFORE_NAMESPACE();
