@@ -80,6 +80,7 @@ struct BlendedLightBindings {
 };
 struct BlendedLightConstants {
   float max_roughness;  // below 0: no reflections are traced
+  float rough_rate;     // fraction of the rays that rough surfaces reflect which are traced
 };
 struct BlendedLightJob : FrameJob<BlendedLightBindings, BlendedLightConstants> {
   LitScene lit_scene;

@@ -10,6 +10,7 @@
 #include "render/kernels/simd/material/specular_lobe.hpp"
 #include "render/kernels/simd/random.hpp"
 #include "render/kernels/simd/tiles.hpp"
+#include "shaders/shared/sampling.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
@@ -31,6 +32,7 @@ class BlendedLight {
         environment_(job.frame, job.lit_scene.environment),
         tables_(job.lit_scene.tables),
         picks_(unsigned_tag, job.frame.sample_index, 40u, job.frame.seed),
+        rates_(unsigned_tag, job.frame.sample_index, 50u, job.frame.seed),
         points_(unsigned_tag, job.frame.sample_index, 41u, job.frame.seed),
         around_(unsigned_tag, job.frame.sample_index, 42u, job.frame.seed),
         lobes_(unsigned_tag, job.frame.sample_index, 43u, job.frame.seed) {}
@@ -60,7 +62,10 @@ class BlendedLight {
     // Roughness is stored in steps of 1 / 255: a little more than half of one is still the same.
     const Mask traced =
         hn::And(lanes, hn::Le(roughness, number(job_.constants.max_roughness + 0.6f / 255.0f)));
-    if (!none(traced)) add_specular(m, pixel, throughput, traced, ray, to.specular);
+    if (!none(traced)) {
+      const Float rate = reflection_rate(roughness, s.metallic);
+      add_specular(m, pixel, throughput, rate, traced, ray, to.specular);
+    }
     if (enabled(shared::frame_environment_specular) && !all(traced)) {
       const Float3 light = environment_specular(m, [&](const Float3& normal, Float of) HWY_ATTR {
         return environment_.reflection(reflect(-m.eye, normal), of);
@@ -114,14 +119,24 @@ class BlendedLight {
     to.add(ray, valid);
   }
 
+  /// Rough surfaces other than metals reflect little, and what they reflect is noisy anyhow.
+  HWY_INLINE Float reflection_rate(Float roughness, Float metallic) const {
+    const Mask mirrors = hn::Or(hn::Lt(roughness, number(shared::plan_smooth_roughness)),
+                                hn::Gt(metallic, number(shared::plan_metallic)));
+    return select(mirrors, one(), number(job_.constants.rough_rate));
+  }
+
   HWY_INLINE void add_specular(const Material& m, const PixelLanes& pixel, const Float3& throughput,
-                               Mask lanes, RayLanes ray, RayBatch& to) const {
+                               Float rate, Mask lanes, RayLanes ray, RayBatch& to) const {
+    const Unsigned x = as_unsigned(pixel.x), y = as_unsigned(pixel.y);
+    lanes = hn::And(lanes, hn::Lt(rates_.at(x, y), rate));
+    if (none(lanes)) return;
     Float2 u;
-    lobes_.at(as_unsigned(pixel.x), as_unsigned(pixel.y), u.x, u.y);
+    lobes_.at(x, y, u.x, u.y);
     const SpecularSample drawn = sample_specular(m, u);
     ray.direction = drawn.direction;
     ray.t_max = number(1e30f);
-    ray.user = throughput * drawn.weight;
+    ray.user = throughput * drawn.weight * (one() / rate);
     to.add(ray, hn::And(lanes, hn::Gt(largest_of(drawn.weight), zero())));
   }
 
@@ -156,7 +171,7 @@ class BlendedLight {
   glm::vec2 cone_;
   EnvironmentLanes environment_;
   LobeLanes<Tag> tables_;
-  RandomNumbers<UnsignedTag> picks_;
+  RandomNumbers<UnsignedTag> picks_, rates_;
   RandomPairs<UnsignedTag> points_, around_, lobes_;
 };
 

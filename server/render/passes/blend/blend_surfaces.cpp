@@ -4,6 +4,7 @@
 #include "render/passes/formats.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/reflections/trace_specular.hpp"
+#include "render/passes/sampling/plan_samples.hpp"
 #include "render/resources/light_table.hpp"
 #include "render/resources/moving_scene.hpp"
 #include "shaders/embedded.hpp"
@@ -110,8 +111,11 @@ class BlendedSurfaces {
                                               .shadows = ray_sink(shadows),
                                               .ambient = ray_sink(ambient),
                                               .specular = ray_sink(reflected)})
-        .constants([&s = in_.settings.specular, traced] {
-          return kernels::BlendedLightConstants{traced ? s.max_roughness : -1.0f};
+        .constants([in = in_, traced] {
+          // Where other surfaces leave samples out, as in their plan.
+          const bool fewer = in.settings.sampling.specular && leaves_samples_out(in);
+          return kernels::BlendedLightConstants{traced ? in.settings.specular.max_roughness : -1.0f,
+                                                fewer ? 1.0f / shared::plan_quiet_factor : 1.0f};
         })
         .dispatch_indirect(lit_.count, ray_groups_offset)
         .host([in = in_](const kernels::BlendedLightJob::Pass& pass) {

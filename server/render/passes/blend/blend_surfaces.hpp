@@ -43,9 +43,10 @@ inline bool has_blends(const FrameInputs& in) {
 kernels::LitScene lit_scene(const FrameInputs& in, std::span<const shared::Light> lights);
 
 /// Blends the scene's blended surfaces over the composed frame, in place: glTF's alphaMode BLEND
-/// and what lets light through. Rays through the pixels find them from front to back between the
-/// camera and the G-buffer's surfaces, so that no order of drawing matters. They are lit as others
-/// are, by one ray of each kind in every pixel, without a denoiser.
+/// and what lets light through. They are found from front to back between the camera and the
+/// G-buffer's surfaces, by rays through the pixels or by the host's rasteriser (draw_gbuffer), so
+/// that no order of drawing matters. They are lit as others are, by one ray of each kind in every
+/// pixel, without a denoiser; rough ones reflect fewer in frames that leave samples out.
 /// @param drawn what draw_gbuffer has filled; otherwise rays find the surfaces
 /// @return motion vectors of the visible surface: the first that covers more than half of what is
 /// behind it
