@@ -9,6 +9,7 @@ layout(local_size_x = 64) in;
 #include "lib/rays/ray_stream.glsl"
 #include "lib/math/sampling.glsl"
 #include "lib/rays/specular_pixels.glsl"
+#include "shared/sampling.h"
 
 layout(set = 1, binding = 0, std430) readonly buffer LitCount { RayCount lit_count; };
 layout(set = 1, binding = 1, std430) readonly buffer LitRays { Ray lit_rays[]; };
@@ -22,7 +23,10 @@ layout(set = 1, binding = 8, std430) buffer AmbientCount { RayCount ambient_coun
 layout(set = 1, binding = 9, std430) writeonly buffer AmbientRays { Ray ambient_rays[]; };
 layout(set = 1, binding = 10, std430) buffer MirrorCount { RayCount mirror_count; };
 layout(set = 1, binding = 11, std430) writeonly buffer MirrorRays { Ray mirror_rays[]; };
-layout(push_constant) uniform Constants { float max_roughness; };  // below 0: nothing is traced
+layout(push_constant) uniform Constants {
+  float max_roughness;  // below 0: no reflections are traced
+  float rough_rate;     // fraction of the rays that rough surfaces reflect which are traced
+};
 
 vec2 pair(ivec2 pixel, uint dimension) {
   return random_pair(uvec2(pixel), frame.sample_index, dimension, frame.seed);
@@ -74,6 +78,11 @@ Ray ambient_ray(HitSurface s, SurfaceMaterial m, float view_z, vec3 light, ivec2
   return carrying(ray, pixel, light);
 }
 
+/// Rough surfaces other than metals reflect little, and what they reflect is noisy anyhow.
+float reflection_rate(float roughness, float metallic) {
+  return roughness < plan_smooth_roughness || metallic > plan_metallic ? 1.0 : rough_rate;
+}
+
 void main() {
   uint index = ray_index();
   bool lit = false, open = false, mirrors = false;
@@ -92,9 +101,11 @@ void main() {
     vec3 around = enabled(frame_environment_diffuse) ? environment_diffuse(m) : vec3(0.0);
     if (traces_specular(specular_roughness(m), max_roughness)) {
       SpecularSample drawn = sample_specular(m, pair(pixel, 43u));
-      mirrors = any(greaterThan(drawn.weight, vec3(0.0)));
+      float rate = reflection_rate(specular_roughness(m), s.metallic);
+      mirrors = any(greaterThan(drawn.weight, vec3(0.0))) &&
+                random_number(uvec2(pixel), frame.sample_index, 50u, frame.seed) < rate;
       specular = carrying(ray_along(s, view_z, drawn.direction, 1e30), pixel,
-                          throughput * drawn.weight);
+                          throughput * drawn.weight / rate);
     } else if (enabled(frame_environment_specular)) {
       around += environment_specular(m);
     }

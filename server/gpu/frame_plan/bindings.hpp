@@ -50,6 +50,11 @@ template <Access kind>
 struct BufferUse : Use {
   BufferUse(BufferRef buffer) : Use{buffer.index, kind} {}
 };
+template <Access kind>
+struct OptionalBufferUse : Use {
+  OptionalBufferUse(std::optional<BufferRef> buffer)
+      : Use{buffer.value_or(BufferRef()).index, kind} {}
+};
 
 /// A buffer's contents in the host's memory.
 template <typename Element>
@@ -67,9 +72,11 @@ struct Declared {
   using OptionalImage = OptionalImageUse<access>;
   template <Access access, typename Element>
   using Buffer = BufferUse<access>;
+  template <Access access, typename Element>
+  using OptionalBuffer = OptionalBufferUse<access>;
 };
 
-/// Images without memory of the host, and those that are absent, have no data.
+/// Images without memory of the host, and what is absent, have no data.
 struct Mapped {
   template <Access access>
   using Image = HostView;
@@ -77,6 +84,8 @@ struct Mapped {
   using OptionalImage = HostView;
   template <Access access, typename Element>
   using Buffer = HostBuffer<Element>;
+  template <Access access, typename Element>
+  using OptionalBuffer = HostBuffer<Element>;
 };
 
 template <class Stage>
@@ -95,6 +104,8 @@ template <class Stage, typename Element>
 using WriteBuffer = typename Stage::template Buffer<Access::write, Element>;
 template <class Stage, typename Element>
 using ReadWriteBuffer = typename Stage::template Buffer<Access::read_write, Element>;
+template <class Stage, typename Element>
+using OptionalWriteBuffer = typename Stage::template OptionalBuffer<Access::write, Element>;
 
 /// How many resources a list has.
 template <template <class> class Bindings>

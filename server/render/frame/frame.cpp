@@ -19,8 +19,8 @@ namespace heliograph::render {
 namespace {
 
 /// By the method that suits the device, unless the settings name one.
-GBuffer find_surfaces(gpu::FramePlan& plan, const FrameInputs& in) {
-  if (draws_gbuffer_on_host(plan, in)) return draw_gbuffer(plan, in);
+GBuffer find_surfaces(gpu::FramePlan& plan, const FrameInputs& in, const BlendedImages* blended) {
+  if (draws_gbuffer_on_host(plan, in)) return draw_gbuffer(plan, in, blended);
   return traces_gbuffer(plan.device(), in) ? trace_gbuffer(plan, in) : rasterize_gbuffer(plan, in);
 }
 
@@ -87,7 +87,11 @@ FrameOutputs declare_reference(gpu::FramePlan& plan, const FrameInputs& in) {
 FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   const protocol::ReferenceUse reference = in.settings.reference.use;
   if (reference == protocol::ReferenceUse::always) return declare_reference(plan, in);
-  const GBuffer gbuffer = find_surfaces(plan, in);
+  // The host's rasteriser finds blended surfaces together with those behind them.
+  std::optional<BlendedImages> drawn;
+  if (has_blends(in) && draws_gbuffer_on_host(plan, in)) drawn = declare_blended(plan);
+  const BlendedImages* const blended = drawn ? &*drawn : nullptr;
+  const GBuffer gbuffer = find_surfaces(plan, in, blended);
 
   std::optional<Reprojected> from;
   std::optional<gpu::ImageRef> planned;
@@ -106,7 +110,7 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   const gpu::ImageRef background = draw_skybox(plan, in, gbuffer);
   const Composed composed = compose(plan, in, gbuffer, noisy, denoised, background);
   GBuffer visible = gbuffer;
-  visible.motion = blend_surfaces(plan, in, gbuffer, composed);
+  visible.motion = blend_surfaces(plan, in, gbuffer, composed, blended);
 
   const bool traces_reference = reference == protocol::ReferenceUse::when_static;
   const gpu::History accumulated =

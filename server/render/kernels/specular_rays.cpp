@@ -6,7 +6,7 @@
 #define HWY_TARGET_INCLUDE "render/kernels/specular_rays.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
-#include "render/kernels/simd/specular_lobe.hpp"
+#include "render/kernels/simd/material/specular_lobe.hpp"
 #include "render/kernels/simd/tiles.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -42,13 +42,12 @@ class Generation {
     traced.add(cells.pixels, hn::And(cells.inside, sampled));
   }
 
-  /// @return how many rays there are, which lie at `made`
-  HWY_INLINE std::size_t block(const PixelLanes& cell, Mask inside, shared::Ray* made) const {
+  HWY_INLINE void block(const PixelLanes& cell, Mask inside, RayBatch& made) const {
     const PixelLanes pixel = traced_pixel(cell);
     const Float view_z = gathered_last(job_.motion, pixel);
     const Float4 packed = gathered_unorm8(job_.surface, pixel);
     const Mask requested = hn::And(inside, hn::Le(packed.z, number(0.5f)));  // not unlit
-    if (none(requested)) return 0;
+    if (none(requested)) return;
 
     const auto m = gbuffer_material<layered>(job_, pixel, camera_.to_eye(pixel), tables_);
     Float2 u;
@@ -73,7 +72,7 @@ class Generation {
     ray.t_min = zero();
     ray.t_max = number(1e30f);
     ray.pixel = pack_pixel(pixel);
-    return store_rays(ray, hn::And(requested, hn::And(smooth, valid)), made);
+    made.add(ray, hn::And(requested, hn::And(smooth, valid)));
   }
 
  private:
@@ -119,14 +118,13 @@ HWY_INLINE void make_tile_of(const SpecularRaysJob& job, const Tile& tile) {
   const Generation<layered> generation(job);
   PixelList traced;
   for_each_row(tile, [&](const TileRow& cells) { generation.clear(cells, traced); });
-  std::array<shared::Ray, tile_side * tile_side> made;
-  std::size_t count = 0;
+  RayBatch made;
   for (int i = 0; i < traced.size(); i += static_cast<int>(hn::Lanes(tag))) {
     Mask valid;
     const PixelLanes cells = traced.from(i, valid);
-    count += generation.block(cells, valid, made.data() + count);
+    generation.block(cells, valid, made);
   }
-  if (count) job.rays.append({made.data(), count});
+  made.append_to(job.rays);
 }
 
 void make_tile(const SpecularRaysJob& job, const Tile& tile) {

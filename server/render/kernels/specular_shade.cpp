@@ -8,9 +8,9 @@
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "render/kernels/simd/environment.hpp"
-#include "render/kernels/simd/hit_material.hpp"
 #include "render/kernels/simd/lights.hpp"
-#include "render/kernels/simd/specular_lobe.hpp"
+#include "render/kernels/simd/material/hit_material.hpp"
+#include "render/kernels/simd/material/specular_lobe.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {

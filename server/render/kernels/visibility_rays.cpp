@@ -34,8 +34,7 @@ class VisibilityRays {
       const Float without_ray = hn::IfThenZeroElse(sampled, number(-1.0f));
       put_row(job_.visibility, row, select(seen, without_ray, number(unseen)));
     });
-    std::array<shared::Ray, tile_side * tile_side> made;
-    std::size_t count = 0;
+    RayBatch made;
     for (int i = 0; i < traced.size(); i += static_cast<int>(hn::Lanes(tag))) {
       Mask requested;
       const PixelLanes pixels = traced.from(i, requested);
@@ -45,9 +44,9 @@ class VisibilityRays {
       ray.user = numbers(0.0f);
       static_cast<const Maker*>(this)->make(pixels, ray, requested);
       put_values(job_.visibility, pixels, requested, one());
-      count += store_rays(ray, requested, made.data() + count);
+      made.add(ray, requested);
     }
-    if (count) job_.rays.append({made.data(), count});
+    made.append_to(job_.rays);
   }
 
  protected:

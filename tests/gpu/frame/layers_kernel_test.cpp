@@ -127,6 +127,7 @@ class KernelComparison {
                  render::draw_gbuffer(rig_.plan(), with_host_kernels(rig_, true))};
     // Of one G-buffer, whose rounding would send rays elsewhere.
     for (const bool host : {false, true}) sides_.push_back(declare(host, gbuffers_[1]));
+    if (render::has_blends(rig_.inputs())) declare_drawn_blends();
     for (const render::GBuffer& gbuffer : gbuffers_) {
       composed_.push_back(compose(false, gbuffer, sides_[0]).hdr);
     }
@@ -152,6 +153,9 @@ class KernelComparison {
   /// Of surfaces that nothing occludes and the frame that they blend over.
   void expect_equal_blends(const std::string& which) const {
     expect_equal(which + ": composed", sides_[0].hdr, sides_[1].hdr, 6e-3);
+    // Samples on edges may belong to other triangles, in each of several layers.
+    expect_equal(which + ": drawn", sides_[1].hdr, sides_[2].hdr, 2e-2);
+    expect_equal(which + ": drawn, motion", sides_[1].motion, sides_[2].motion, 2e-2);
   }
 
   /// Where bits of the rays decide what stops them, means are all that can be compared.
@@ -166,11 +170,13 @@ class KernelComparison {
       const double expected = mean(sides_[0].*signal);
       EXPECT_NEAR(mean(sides_[1].*signal), expected, 0.01 * expected) << which;
     }
+    const double expected = mean(sides_[1].hdr);
+    EXPECT_NEAR(mean(sides_[2].hdr), expected, 0.01 * expected) << which << ", drawn";
   }
 
  private:
   struct Side {
-    gpu::ImageRef shadows, specular, hdr;
+    gpu::ImageRef shadows, specular, hdr, motion;
   };
 
   static RigOptions options(const Case& which, VkExtent2D extent) {
@@ -199,14 +205,23 @@ class KernelComparison {
                            background);
   }
 
-  Side declare(bool host, const render::GBuffer& gbuffer) {
+  /// Of the rasteriser's G-buffer, with what it has laid over on the way.
+  void declare_drawn_blends() {
+    const render::BlendedImages images = render::declare_blended(rig_.plan());
+    const render::GBuffer drawn =
+        render::draw_gbuffer(rig_.plan(), with_host_kernels(rig_, true), &images);
+    sides_.push_back(declare(true, drawn, &images));
+  }
+
+  Side declare(bool host, const render::GBuffer& gbuffer,
+               const render::BlendedImages* blended = nullptr) {
     const render::FrameInputs& in = with_host_kernels(rig_, host);
     gpu::FramePlan& plan = rig_.plan();
     Side side;
     side.shadows = render::trace_shadows(plan, in, gbuffer, {});
     side.specular = render::trace_specular(plan, in, gbuffer, {});
     const render::Composed composed = compose(host, gbuffer, side);
-    render::blend_surfaces(plan, in, gbuffer, composed);
+    side.motion = render::blend_surfaces(plan, in, gbuffer, composed, blended);
     side.hdr = composed.hdr;
     return side;
   }
@@ -222,7 +237,7 @@ class KernelComparison {
   FrameRig rig_;
   bool random_;
   std::vector<render::GBuffer> gbuffers_;  // by the shaders, by the kernels, drawn
-  std::vector<Side> sides_;
+  std::vector<Side> sides_;  // by the shaders, by the kernels; if anything is blended: drawn
   std::vector<gpu::ImageRef> composed_;  // of each G-buffer, by the shader
 };
 

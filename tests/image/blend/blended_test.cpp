@@ -130,5 +130,49 @@ TEST_P(BlendedRays, AmbientOcclusionIsProportionalToAlpha) {
   EXPECT_NEAR(center_mean(rig, settings, 48, "blended_sky").x, 0.7f * open, 0.02f * open);
 }
 
+/// Reflections of a rough blended pane over frames of a moving view.
+struct MovingReflections {
+  double mean = 0.0;
+  double traced = 0.0;  // fraction of pixels
+};
+
+MovingReflections moving_reflections(bool planned) {
+  SceneBuilder builder;
+  shared::Material rough = surface(glm::vec3(0.5f), 0.5f);
+  rough.base_color.w = 0.6f;
+  rough.flags = shared::material_alpha_blend | shared::material_double_sided;
+  builder.place(builder.add_quad({{{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}}}, rough));
+  const glm::vec3 target(0.0f);
+  RendererRig rig(builder.build(), scene::constant_environment(glm::vec3(1.0f)),
+                  look({0, 0, 5}, target, 20.0f), 48, 48);
+  protocol::Settings settings;
+  settings.sampling.specular = planned;
+  rig.apply(settings);
+  MovingReflections sum;
+  constexpr int frames = 24, first = 4;
+  for (int frame = 0; frame < frames; ++frame) {
+    rig.renderer.set_camera(look({0.02f * static_cast<float>(frame), 0, 5}, target, 20.0f));
+    rig.renderer.render();
+    if (frame < first) continue;
+    const render::FloatImage image = rig.capture("blended.specular");
+    const double share = 4.0 / static_cast<double>(image.rgba.size()) / (frames - first);
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+      sum.mean += share * image.rgba[i];
+      sum.traced += share * (image.rgba[i] > 0.0f);
+    }
+  }
+  return sum;
+}
+
+// Rough surfaces reflect a quarter of their rays while the view moves, each with four times the
+// light (shared::plan_quiet_factor).
+TEST(BlendedReflections, TraceFewerRaysInMotionWithTheSameMean) {
+  const MovingReflections all = moving_reflections(false), fewer = moving_reflections(true);
+  EXPECT_GT(all.mean, 0.005);
+  EXPECT_NEAR(fewer.mean, all.mean, 0.04 * all.mean);
+  EXPECT_GT(all.traced, 0.9);  // a few go below the surface
+  EXPECT_NEAR(fewer.traced, 0.25 * all.traced, 0.03);
+}
+
 }  // namespace
 }  // namespace heliograph::test

@@ -26,6 +26,15 @@ struct BlendedRaysConstants {
 using BlendedRaysJob = FrameJob<BlendedRaysBindings, BlendedRaysConstants>;
 void blended_rays(const BlendedRaysJob& job);
 
+/// What lights surfaces, and what they are.
+struct LitScene {
+  bool layered;  // materials of the scene have layers
+  SceneView scene;
+  const Environment& environment;
+  std::span<const shared::Light> lights;
+  LobeTables tables;
+};
+
 /// shaders/blend/blended_surfaces.comp
 template <class Stage>
 struct BlendedSurfacesBindings {
@@ -44,14 +53,20 @@ struct BlendedSurfacesConstants {
   std::uint32_t last_round;
 };
 struct BlendedSurfacesJob : FrameJob<BlendedSurfacesBindings, BlendedSurfacesConstants> {
-  bool layered;  // materials of the scene have layers
+  LitScene lit_scene;
   bool deforms;  // meshes have vertices of the frame before
-  SceneView scene;
-  const Environment& environment;
-  std::span<const shared::Light> lights;
-  LobeTables tables;
 };
 void blended_surfaces(const BlendedSurfacesJob& job);
+
+/// A pass of the host alone, where its rasteriser has found the blended surfaces: lists the pixels
+/// that have one to light.
+template <class Stage>
+struct BlendedLitBindings {
+  gpu::Read<Stage> radiance;  // rgba32f; a: sum of all weights
+  RaySink<Stage> lit;
+};
+using BlendedLitJob = FrameJob<BlendedLitBindings>;
+void blended_lit(const BlendedLitJob& job);
 
 /// shaders/blend/blended_light.comp
 template <class Stage>
@@ -65,13 +80,10 @@ struct BlendedLightBindings {
 };
 struct BlendedLightConstants {
   float max_roughness;  // below 0: no reflections are traced
+  float rough_rate;     // fraction of the rays that rough surfaces reflect which are traced
 };
 struct BlendedLightJob : FrameJob<BlendedLightBindings, BlendedLightConstants> {
-  bool layered;  // as above
-  SceneView scene;
-  const Environment& environment;
-  std::span<const shared::Light> lights;
-  LobeTables tables;
+  LitScene lit_scene;
 };
 void blended_light(const BlendedLightJob& job);
 

@@ -5,26 +5,15 @@
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "render/kernels/simd/environment.hpp"
-#include "render/kernels/simd/hit_material.hpp"
 #include "render/kernels/simd/lights.hpp"
+#include "render/kernels/simd/material/hit_material.hpp"
+#include "render/kernels/simd/material/specular_lobe.hpp"
 #include "render/kernels/simd/random.hpp"
-#include "render/kernels/simd/specular_lobe.hpp"
 #include "render/kernels/simd/tiles.hpp"
+#include "shaders/shared/sampling.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
-
-/// Rays of one kind on their way into a stream.
-struct RayBatch {
-  std::array<shared::Ray, ray_batch> rays;
-  std::size_t count = 0;
-  HWY_INLINE void add(const RayLanes& lanes, Mask requested) {
-    count += store_rays(lanes, requested, rays.data() + count);
-  }
-  void append_to(const RaySink<gpu::Mapped>& sink) const {
-    if (count) sink.append({rays.data(), count});
-  }
-};
 
 struct LightBatches {
   RayBatch shadows, ambient, specular;
@@ -40,9 +29,10 @@ class BlendedLight {
   explicit BlendedLight(const BlendedLightJob& job)
       : job_(job),
         cone_(CameraLanes(job.frame).cone()),
-        environment_(job.frame, job.environment),
-        tables_(job.tables),
+        environment_(job.frame, job.lit_scene.environment),
+        tables_(job.lit_scene.tables),
         picks_(unsigned_tag, job.frame.sample_index, 40u, job.frame.seed),
+        rates_(unsigned_tag, job.frame.sample_index, 50u, job.frame.seed),
         points_(unsigned_tag, job.frame.sample_index, 41u, job.frame.seed),
         around_(unsigned_tag, job.frame.sample_index, 42u, job.frame.seed),
         lobes_(unsigned_tag, job.frame.sample_index, 43u, job.frame.seed) {}
@@ -56,7 +46,7 @@ class BlendedLight {
     const Float4 seen = gathered4(job_.transmittance, pixel);
     throughput = throughput * (gathered_last(job_.radiance, pixel) / seen.w);
     const Float width = hn::MulAdd(hit.t, number(cone_.y), number(cone_.x));
-    const auto s = hit_surface<Surface, false>(job_.scene, hit, view.direction, width);
+    const auto s = hit_surface<Surface, false>(job_.lit_scene.scene, hit, view.direction, width);
     const Material m = material_of(s, view.direction, tables_);
     const Float view_z = hn::Neg(transform_row(job_.frame.view, 2, s.position));
     RayLanes ray;
@@ -72,7 +62,10 @@ class BlendedLight {
     // Roughness is stored in steps of 1 / 255: a little more than half of one is still the same.
     const Mask traced =
         hn::And(lanes, hn::Le(roughness, number(job_.constants.max_roughness + 0.6f / 255.0f)));
-    if (!none(traced)) add_specular(m, pixel, throughput, traced, ray, to.specular);
+    if (!none(traced)) {
+      const Float rate = reflection_rate(roughness, s.metallic);
+      add_specular(m, pixel, throughput, rate, traced, ray, to.specular);
+    }
     if (enabled(shared::frame_environment_specular) && !all(traced)) {
       const Float3 light = environment_specular(m, [&](const Float3& normal, Float of) HWY_ATTR {
         return environment_.reflection(reflect(-m.eye, normal), of);
@@ -111,12 +104,12 @@ class BlendedLight {
     const Unsigned x = as_unsigned(pixel.x), y = as_unsigned(pixel.y);
     Float pick = picks_.at(x, y);
     const LightChoice light =
-        choose_light(job_.lights, job_.tables.ltc, m, s.position, lanes, pick);
+        choose_light(job_.lit_scene.lights, job_.lit_scene.tables.ltc, m, s.position, lanes, pick);
     Mask valid = hn::And(lanes, hn::Gt(light.total, zero()));
     if (none(valid)) return;
     Float2 u;
     points_.at(x, y, u.x, u.y);
-    const Mask seen = aim(job_.lights, light, m, s.position, u, pick, valid, ray);
+    const Mask seen = aim(job_.lit_scene.lights, light, m, s.position, u, pick, valid, ray);
     if (enabled(shared::frame_shadows)) {
       valid = seen;
     } else {
@@ -126,14 +119,24 @@ class BlendedLight {
     to.add(ray, valid);
   }
 
+  /// Rough surfaces other than metals reflect little, and what they reflect is noisy anyhow.
+  HWY_INLINE Float reflection_rate(Float roughness, Float metallic) const {
+    const Mask mirrors = hn::Or(hn::Lt(roughness, number(shared::plan_smooth_roughness)),
+                                hn::Gt(metallic, number(shared::plan_metallic)));
+    return select(mirrors, one(), number(job_.constants.rough_rate));
+  }
+
   HWY_INLINE void add_specular(const Material& m, const PixelLanes& pixel, const Float3& throughput,
-                               Mask lanes, RayLanes ray, RayBatch& to) const {
+                               Float rate, Mask lanes, RayLanes ray, RayBatch& to) const {
+    const Unsigned x = as_unsigned(pixel.x), y = as_unsigned(pixel.y);
+    lanes = hn::And(lanes, hn::Lt(rates_.at(x, y), rate));
+    if (none(lanes)) return;
     Float2 u;
-    lobes_.at(as_unsigned(pixel.x), as_unsigned(pixel.y), u.x, u.y);
+    lobes_.at(x, y, u.x, u.y);
     const SpecularSample drawn = sample_specular(m, u);
     ray.direction = drawn.direction;
     ray.t_max = number(1e30f);
-    ray.user = throughput * drawn.weight;
+    ray.user = throughput * drawn.weight * (one() / rate);
     to.add(ray, hn::And(lanes, hn::Gt(largest_of(drawn.weight), zero())));
   }
 
@@ -168,7 +171,7 @@ class BlendedLight {
   glm::vec2 cone_;
   EnvironmentLanes environment_;
   LobeLanes<Tag> tables_;
-  RandomNumbers<UnsignedTag> picks_;
+  RandomNumbers<UnsignedTag> picks_, rates_;
   RandomPairs<UnsignedTag> points_, around_, lobes_;
 };
 
@@ -183,7 +186,7 @@ HWY_INLINE void light_batch_of(const BlendedLightJob& job, int first, int last) 
 }
 
 void light_batch(const BlendedLightJob& job, int first, int last) {
-  if (job.layered) return light_batch_of<LayeredSurfaceLanes>(job, first, last);
+  if (job.lit_scene.layered) return light_batch_of<LayeredSurfaceLanes>(job, first, last);
   light_batch_of<SurfaceLanes>(job, first, last);
 }
 

@@ -38,14 +38,13 @@ class BlendedRays {
           hn::And(hn::Gt(pixel.y, integer(region.y - 1)), hn::Lt(pixel.y, integer(region.w))));
       traced.add(pixel, hn::And(row.inside, hn::And(right, down)));
     });
-    std::array<shared::Ray, tile_side * tile_side> made;
-    std::size_t count = 0;
+    RayBatch made;
     for (int i = 0; i < traced.size(); i += static_cast<int>(hn::Lanes(tag))) {
       Mask valid;
       const PixelLanes pixel = traced.from(i, valid);
-      count += store_rays(ray(pixel), valid, made.data() + count);
+      made.add(ray(pixel), valid);
     }
-    if (count) job_.rays.append({made.data(), count});
+    made.append_to(job_.rays);
   }
 
  private:

@@ -5,6 +5,7 @@
 #define HWY_TARGET_INCLUDE "render/kernels/gbuffer/gbuffer_draw.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/blend/blended_layer.hpp"
 #include "render/kernels/gbuffer/gbuffer_shading.hpp"
 #include "render/kernels/gbuffer/triangle_tile.hpp"
 
@@ -16,6 +17,7 @@ template <class Surface>
 class TileShading {
   using Shading = GBufferShading<Surface>;
   using AllTexels = TexelsOf<Surface>;
+  static constexpr int size = TriangleTile::size;
 
  public:
   TileShading(const GBufferDrawJob& job, int left, int top)
@@ -23,48 +25,155 @@ class TileShading {
         shading_(job.frame, job.scene, job.deforms),
         tile_(left, top),
         left_(left),
-        top_(top) {}
+        top_(top),
+        width_(std::min(size, job.width - left)),
+        height_(std::min(size, job.height - top)) {}
 
   void run() {
-    tile_.draw(job_.triangles);
+    const bool passing = tile_.draw(job_.triangles);
+    if (job_.blended) begin_blended();
     const int lanes = static_cast<int>(hn::Lanes(tag));
-    const int width = std::min(TriangleTile::size, job_.width - left_);
-    const int height = std::min(TriangleTile::size, job_.height - top_);
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; x += lanes) block(x, y, std::min(lanes, width - x));
-      if (used_ > passed_.size() - TriangleTile::size) flush();
+    for (int y = 0; y < height_; ++y) {
+      for (int x = 0; x < width_; x += lanes) {
+        nearest(x, y, std::min(lanes, width_ - x), passing);
+      }
     }
-    flush();
+    while (passed_count_ > 0) next_layer();
+    if (job_.blended) end_blended(passing);
   }
 
  private:
   /// Of `count` pixels from (x, y) of the tile on.
-  void block(int x, int y, int count) {
+  void nearest(int x, int y, int count, bool passing) {
     const PixelLanes pixel{hn::Iota(integer_tag, left_ + x), integer(top_ + y)};
+    const auto number_of = static_cast<std::size_t>(y * size + x);
     const Mask requested = hn::FirstN(tag, static_cast<std::size_t>(count));
-    HitLanes hit;
-    hit.instance = tile_.instance(x, y);
-    hit.met = hn::AndNot(
-        float_mask(hn::Eq(hit.instance, integer(static_cast<int>(shared::hit_none)))), requested);
+    HitLanes hit = hits(tile_.instances(number_of), tile_.triangles(number_of), requested);
     if (none(hit.met)) {
       store(empty_texels<AllTexels>(), pixel, requested);
       return;
     }
-    const auto one_met = static_cast<std::size_t>(hn::FindFirstTrue(tag, hit.met));
-    hit.instance = select(hit.met, hit.instance, integer(hn::ExtractLane(hit.instance, one_met)));
-    hit.triangle = tile_.triangle(x, y);
-    hit.triangle = select(hit.met, hit.triangle, integer(hn::ExtractLane(hit.triangle, one_met)));
     HitRecords records(job_.scene, hit);
-    RayLanes ray = camera_rays(job_.frame, shading_.camera(), pixel);
+    const RayLanes ray = camera_rays(job_.frame, shading_.camera(), pixel);
     meet(records, ray, hit);
     const Surface s = shading_.surface(records, hit, ray.direction);
-    // What is stored where rays go on is stored again in the round that stops them.
+    if (passing) {
+      const Integer numbers_of = hn::Iota(integer_tag, y * size + x);
+      const Mask passes = let_pass(pixel, numbers_of, records, hit, s, ray.direction);
+      keep(numbers_of, passes);
+      // What lies behind is stored in the round that finds it.
+      if (hn::CountTrue(tag, passes) == static_cast<std::size_t>(count)) return;
+    }
     store(choose(hit.met, shading_.texels(pixel, records, hit, s), empty_texels<AllTexels>()),
           pixel, requested);
-    const Mask passes = shading_.go_on(ray.direction, hit, s);
+  }
+
+  /// Of the pixels that let rays pass: what is behind.
+  void next_layer() {
+    ++round_;
+    tile_.draw_behind(job_.triangles);
+    const int count = passed_count_;
+    passed_count_ = 0;
+    for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(tag))) {
+      const Mask requested = hn::FirstN(tag, static_cast<std::size_t>(count - i));
+      const Integer numbers_of = hn::IfThenElseZero(
+          integer_mask(requested), hn::LoadU(integer_tag, &passed_[static_cast<std::size_t>(i)]));
+      behind(numbers_of, requested);
+    }
+  }
+
+  void behind(Integer numbers_of, Mask requested) {
+    static_assert(size == 32);
+    const PixelLanes pixel{hn::Add(integer(left_), hn::And(numbers_of, integer(size - 1))),
+                           hn::Add(integer(top_), hn::ShiftRight<5>(numbers_of))};
+    HitLanes hit = hits(tile_.instances_at(numbers_of), tile_.triangles_at(numbers_of), requested);
+    const Mask missed = hn::AndNot(hit.met, requested);
+    if (!none(missed)) store_texels(job_, empty_texels<AllTexels>(), pixel, missed);
+    for_each_lane(missed, [&](std::size_t lane) { tile_.stop(number_in(numbers_of, lane)); });
+    if (none(hit.met)) return;
+    HitRecords records(job_.scene, hit);
+    const RayLanes ray = camera_rays(job_.frame, shading_.camera(), pixel);
+    meet(records, ray, hit);
+    const Surface s = shading_.surface(records, hit, ray.direction);
+    Mask passes = hn::Lt(one(), zero());
+    if (round_ < job_.rounds) {
+      passes = let_pass(pixel, numbers_of, records, hit, s, ray.direction);
+      keep(numbers_of, passes);
+    }
+    const Mask stays = hn::AndNot(passes, hit.met);
+    if (none(stays)) return;
+    for_each_lane(stays, [&](std::size_t lane) { tile_.stop(number_in(numbers_of, lane)); });
+    store_texels(job_, shading_.texels(pixel, records, hit, s), pixel, stays);
+  }
+
+  static HWY_INLINE std::size_t number_in(Integer numbers_of, std::size_t lane) {
+    return static_cast<std::size_t>(hn::ExtractLane(numbers_of, lane));
+  }
+
+  static HWY_INLINE HitLanes hits(Integer instance, Integer triangle, Mask requested) {
+    HitLanes hit;
+    hit.met = hn::AndNot(float_mask(hn::Eq(instance, integer(static_cast<int>(shared::hit_none)))),
+                         requested);
+    if (none(hit.met)) return hit;
+    const auto one_met = static_cast<std::size_t>(hn::FindFirstTrue(tag, hit.met));
+    hit.instance = select(hit.met, instance, integer(hn::ExtractLane(instance, one_met)));
+    hit.triangle = select(hit.met, triangle, integer(hn::ExtractLane(triangle, one_met)));
+    return hit;
+  }
+
+  /// Whether the surfaces let rays pass; blended ones are laid over those in front.
+  HWY_NOINLINE Mask let_pass(const PixelLanes& pixel, Integer numbers_of, const HitRecords& records,
+                             const HitLanes& hit, const Surface& s, const Float3& direction) {
+    const Mask open = hn::And(hit.met, is_open(s, direction));
+    const Mask blended = hn::AndNot(open, hn::And(hit.met, is_blended(s)));
+    if (job_.blended && round_ <= job_.blended_rounds && !none(blended)) {
+      const BlendedLayer<Surface> layer(job_.frame, *job_.blended,
+                                        {job_.blended_radiance, job_.blended_transmittance,
+                                         job_.blended_motion, job_.blended_chosen},
+                                        shading_, round_ - 1);
+      const Mask seen = hn::And(blended, layer.shows_behind(pixel));
+      if (!none(seen)) {
+        const Mask front = layer.lay_over(pixel, records, hit, s, direction, seen).front;
+        for_each_lane(front, [&](std::size_t lane) { fronts_[number_in(numbers_of, lane)] = 1; });
+      }
+    }
+    return hn::Or(open, blended);
+  }
+
+  /// Lists pixels for the next layer.
+  HWY_INLINE void keep(Integer numbers_of, Mask passes) {
     if (none(passes)) return;
-    ray.t_min = Shading::passed_from(hit.t);
-    used_ += store_rays(ray, passes, passed_.data() + used_);
+    for_each_lane(passes, [&](std::size_t lane) { tile_.pass(number_in(numbers_of, lane)); });
+    passed_count_ +=
+        static_cast<int>(hn::CompressStore(numbers_of, integer_mask(passes), integer_tag,
+                                           &passed_[static_cast<std::size_t>(passed_count_)]));
+  }
+
+  void begin_blended() {
+    fronts_.fill(0);
+    const auto width = static_cast<std::size_t>(width_);
+    for (int y = top_; y < top_ + height_; ++y) {
+      std::fill_n(row_of<float>(job_.blended_radiance, y) + 4 * left_, 4 * width, 0.0f);
+      std::fill_n(row_of<glm::vec4>(job_.blended_transmittance, y) + left_, width,
+                  glm::vec4(1.0f, 1.0f, 1.0f, 0.0f));
+      std::fill_n(row_of<std::uint32_t>(job_.blended_surface, y) + left_, width, 0u);
+      std::fill_n(row_of<float>(job_.blended_specular, y) + 4 * left_, 4 * width, 0.0f);
+    }
+  }
+
+  /// Pixels without a blended surface in front move as the G-buffer's.
+  void end_blended(bool passing) {
+    for (int y = 0; y < height_; ++y) {
+      const auto* const from = row_of<const glm::vec4>(job_.motion, top_ + y) + left_;
+      auto* const to = row_of<glm::vec4>(job_.blended_motion, top_ + y) + left_;
+      if (!passing) {
+        std::copy_n(from, width_, to);
+        continue;
+      }
+      for (int x = 0; x < width_; ++x) {
+        if (!fronts_[static_cast<std::size_t>(y * size + x)]) to[x] = from[x];
+      }
+    }
   }
 
   /// Where the rays meet the planes of their triangles (Möller and Trumbore 1997), kept within
@@ -142,17 +251,15 @@ class TileShading {
   }
   static HWY_INLINE void interleave(const Float4& v, float* to) { store4(tag, v, to); }
 
-  void flush() {
-    if (used_) job_.passed.append({passed_.data(), used_});
-    used_ = 0;
-  }
-
   const GBufferDrawJob& job_;
   Shading shading_;
   TriangleTile tile_;
-  int left_, top_;
-  std::array<shared::Ray, 8 * TriangleTile::size> passed_;
-  std::size_t used_ = 0;
+  int left_, top_, width_, height_;
+  std::uint32_t round_ = 1;
+  // Pixels whose rays go on, counted as the tile counts them; with room for a whole vector.
+  HWY_ALIGN std::array<int, TriangleTile::pixels + hn::MaxLanes(Tag())> passed_;
+  int passed_count_ = 0;
+  std::array<std::uint8_t, TriangleTile::pixels> fronts_;  // 1: moves as a blended surface
 };
 
 void draw_tile(const GBufferDrawJob& job, int left, int top) {
@@ -176,7 +283,6 @@ void gbuffer_draw(const GBufferDrawJob& job) {
       HWY_DYNAMIC_DISPATCH(draw_tile)(job, i % across * size, i / across * size);
     }
   });
-  job.passed.end();
 }
 
 }  // namespace heliograph::render::kernels

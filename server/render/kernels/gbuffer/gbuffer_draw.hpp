@@ -1,7 +1,6 @@
 #pragma once
 
-#include "render/kernels/common/frame_job.hpp"
-#include "render/kernels/common/ray_sink.hpp"
+#include "render/kernels/blend/blended.hpp"
 #include "render/kernels/gbuffer/gbuffer_triangles.hpp"
 #include "render/resources/host_tables.hpp"
 
@@ -10,7 +9,6 @@ namespace heliograph::render::kernels {
 /// A pass of the host alone: devices that are not processors draw with their own rasteriser.
 template <class Stage>
 struct GBufferDrawBindings {
-  RaySink<Stage> passed;          // rays that go on behind the nearest triangle
   gpu::Write<Stage> normals;      // rgba32f
   gpu::Write<Stage> base_color;   // rgba8
   gpu::Write<Stage> surface;      // rgba8
@@ -19,16 +17,27 @@ struct GBufferDrawBindings {
   gpu::Write<Stage> depth_slope;  // rg32f
   gpu::Write<Stage> instance;     // r32ui
   gpu::OptionalWrite<Stage> layers;
+  // As blended_rays and blended_surfaces leave them; in scenes without blended surfaces, none.
+  gpu::OptionalWrite<Stage> blended_radiance;       // rgba32f
+  gpu::OptionalWrite<Stage> blended_transmittance;  // rgba32f
+  gpu::OptionalWrite<Stage> blended_motion;         // rgba32f
+  gpu::OptionalWrite<Stage> blended_surface;        // rgba8
+  gpu::OptionalWrite<Stage> blended_specular;       // rgba32f
+  gpu::OptionalWriteBuffer<Stage, shared::Hit> blended_chosen;
 };
 
 struct GBufferDrawJob : FrameJob<GBufferDrawBindings> {
   SceneView scene;
   bool deforms;  // meshes have vertices of the frame before
   const ScreenTriangles& triangles;
+  std::uint32_t rounds;          // the surface of the last is taken as it is
+  std::uint32_t blended_rounds;  // in which blended surfaces are laid over; fewer
+  const LitScene* blended;       // null: they are passed only
 };
 
 /// Finds the nearest triangle of every pixel and stores what its surface is, tile by tile on all
-/// processors.
+/// processors. Where it lets rays pass, the next one behind it is drawn, and so on (depth peeling,
+/// Everitt 2001); blended surfaces that are passed are laid over each other on the way.
 void gbuffer_draw(const GBufferDrawJob& job);
 
 }  // namespace heliograph::render::kernels

@@ -33,25 +33,27 @@ class StreamShading {
   explicit StreamShading(const GBufferHitsJob& job)
       : job_(job), shading_(job.frame, job.scene, job.deforms) {}
 
-  /// @return how many rays go on, which lie at `passed`
-  std::size_t block(int first, int last, shared::Ray* passed) const {
+  /// `passed`: rays that go on.
+  void block(int first, int last, RayBatch& passed) const {
     const Mask requested = float_mask(hn::Lt(hn::Iota(integer_tag, first), integer(last)));
     RayLanes ray = load_rays(job_.rays.rays, first, last);
     const PixelLanes pixel = unpack_pixel(ray.pixel);
     const HitLanes hit = load_hits(job_.hits, first, last);
     const Mask missed = hn::AndNot(hit.met, requested);
-    if (!none(missed)) store(empty_texels<AllTexels>(), pixel, hn::And(missed, inside(pixel)));
-    if (none(hit.met)) return 0;
+    if (!none(missed)) {
+      store_texels(job_, empty_texels<AllTexels>(), pixel, hn::And(missed, inside(pixel)));
+    }
+    if (none(hit.met)) return;
     HitRecords records(job_.scene, hit);
     records.triangle.set_point(hit.u, hit.v);
     const Surface s = shading_.surface(records, hit, ray.direction);
     const Mask passes =
         job_.constants.last_round ? hn::Lt(one(), zero()) : shading_.go_on(ray.direction, hit, s);
     const Mask stays = hn::AndNot(passes, hit.met);
-    if (!none(stays)) store(shading_.texels(pixel, records, hit, s), pixel, stays);
-    if (none(passes)) return 0;
+    if (!none(stays)) store_texels(job_, shading_.texels(pixel, records, hit, s), pixel, stays);
+    if (none(passes)) return;
     ray.t_min = Shading::passed_from(hit.t);
-    return store_rays(ray, passes, passed);
+    passed.add(ray, passes);
   }
 
  private:
@@ -61,27 +63,6 @@ class StreamShading {
                               hn::Lt(pixel.y, integer(static_cast<int>(extent.y)))));
   }
 
-  HWY_NOINLINE void store(const AllTexels& texels, const PixelLanes& pixel, Mask requested) const {
-    const Texels<4> normals(texels.normals), motion(texels.motion);
-    const Texels<2> depth_slope(texels.depth_slope), emissive(texels.emissive);
-    const Texels<1> base_color(texels.base_color), surface(texels.surface);
-    const Texels<1> instance(texels.instance);
-    const TexelIndices at(pixel);
-    for_each_run(requested, pixel, [&](std::size_t lane, std::size_t count) {
-      normals.put(job_.normals, lane, count, at);
-      motion.put(job_.motion, lane, count, at);
-      depth_slope.put(job_.depth_slope, lane, count, at);
-      emissive.put(job_.emissive, lane, count, at);
-      base_color.put(job_.base_color, lane, count, at);
-      surface.put(job_.surface, lane, count, at);
-      instance.put(job_.instance, lane, count, at);
-    });
-    if constexpr (Surface::layered) {
-      const Texels<4> layers(texels.layers);
-      for_each_lane(requested, [&](std::size_t lane) { layers.put(job_.layers, lane, at); });
-    }
-  }
-
   const GBufferHitsJob& job_;
   Shading shading_;
 };
@@ -89,12 +70,11 @@ class StreamShading {
 template <class Surface>
 HWY_INLINE void shade_batch_of(const GBufferHitsJob& job, int first, int last) {
   const StreamShading<Surface> shading(job);
-  std::array<shared::Ray, ray_batch> passed;
-  std::size_t used = 0;
+  RayBatch passed;
   for (int i = first; i < last; i += static_cast<int>(hn::Lanes(tag))) {
-    used += shading.block(i, last, passed.data() + used);
+    shading.block(i, last, passed);
   }
-  if (used) job.passed.append({passed.data(), used});
+  passed.append_to(job.passed);
 }
 
 void shade_batch(const GBufferHitsJob& job, int first, int last) {

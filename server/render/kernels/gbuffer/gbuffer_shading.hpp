@@ -7,7 +7,7 @@
 #define HELIOGRAPH_KERNELS_GBUFFER_SHADING_HPP
 #endif
 
-#include "render/kernels/simd/hit_material.hpp"
+#include "render/kernels/simd/material/hit_material.hpp"
 #include "render/kernels/simd/ray_writer.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -57,6 +57,30 @@ HWY_INLINE Texels empty_texels() {
   texels.base_color = texels.surface = texels.instance = none_of_it;
   if constexpr (Texels::layered) texels.layers = texels.motion;
   return texels;
+}
+
+/// Stores texels at pixels anywhere in the images of `job`.
+template <class AllTexels, class Job>
+HWY_NOINLINE void store_texels(const Job& job, const AllTexels& texels, const PixelLanes& pixel,
+                               Mask requested) {
+  const Texels<4> normals(texels.normals), motion(texels.motion);
+  const Texels<2> depth_slope(texels.depth_slope), emissive(texels.emissive);
+  const Texels<1> base_color(texels.base_color), surface(texels.surface);
+  const Texels<1> instance(texels.instance);
+  const TexelIndices at(pixel);
+  for_each_run(requested, pixel, [&](std::size_t lane, std::size_t count) {
+    normals.put(job.normals, lane, count, at);
+    motion.put(job.motion, lane, count, at);
+    depth_slope.put(job.depth_slope, lane, count, at);
+    emissive.put(job.emissive, lane, count, at);
+    base_color.put(job.base_color, lane, count, at);
+    surface.put(job.surface, lane, count, at);
+    instance.put(job.instance, lane, count, at);
+  });
+  if constexpr (AllTexels::layered) {
+    const Texels<4> layers(texels.layers);
+    for_each_lane(requested, [&](std::size_t lane) { layers.put(job.layers, lane, at); });
+  }
 }
 
 /// pack_layer() of shaders/lib/scene/layers.glsl

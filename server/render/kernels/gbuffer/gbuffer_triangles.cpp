@@ -1,9 +1,8 @@
 #include "render/kernels/gbuffer/gbuffer_triangles.hpp"
 
 #include <array>
-#include <cmath>
-#include <limits>
 
+#include "render/kernels/gbuffer/triangle_clipping.hpp"
 #include "render/kernels/simd/rows.hpp"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/kernels/gbuffer/gbuffer_triangles.cpp"
@@ -22,11 +21,6 @@ struct ClipLanes {
 struct CornerLanes {
   Integer x, y;  // 1/256 pixel
   Float nearness;
-};
-
-/// A corner of a triangle that is clipped.
-struct ClipPoint {
-  float x, y, w, depth;
 };
 
 /// One batch of triangles.
@@ -256,113 +250,32 @@ class Projection {
     }
     for (std::uint64_t bits = mask_bits(lanes); bits; bits &= bits - 1) {
       const auto lane = static_cast<std::size_t>(__builtin_ctzll(bits));
-      Polygon polygon;
+      std::array<ClipPoint, 3> triangle;
       for (std::size_t i = 0; i < 3; ++i) {
         const float* const p = &points[i][4 * lane];
-        polygon.add({p[0], p[1], p[2], p[3]});
+        triangle[i] = {p[0], p[1], p[2], p[3]};
       }
-      emit_polygon(polygon, static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(lane));
+      emit_polygon(triangle, static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(lane));
     }
   }
 
-  /// A convex polygon: a triangle has at most one more corner for each plane that clips it. With
-  /// room for those that rounding makes.
-  struct Polygon {
-    static constexpr std::size_t most = 12;
-    std::array<ClipPoint, most> corners;
-    std::size_t count = 0;
-    void add(const ClipPoint& p) {
-      if (count < most) corners[count++] = p;
-    }
-  };
-
-  /// What lies where `distance` >= 0.
-  template <class Distance>
-  static Polygon clip(const Polygon& from, const Distance& distance) {
-    Polygon to;
-    for (std::size_t i = 0; i < from.count; ++i) {
-      const ClipPoint &p = from.corners[i], &q = from.corners[(i + 1) % from.count];
-      const double at_p = distance(p), at_q = distance(q);
-      if (at_p >= 0.0) to.add(p);
-      if ((at_p >= 0.0) == (at_q >= 0.0)) continue;
-      // From the inside out, whichever triangle the edge is of: both get the same point.
-      const bool leaves = at_p >= 0.0;
-      const ClipPoint &in = leaves ? p : q, &out = leaves ? q : p;
-      const double along = (leaves ? at_p : at_q) / std::abs(at_p - at_q);
-      const auto between = [along](float near, float far) {
-        return static_cast<float>(near + along * (double{far} - near));
-      };
-      to.add({between(in.x, out.x), between(in.y, out.y), between(in.w, out.w),
-              between(in.depth, out.depth)});
-    }
-    return to;
-  }
-
-  void emit_polygon(Polygon polygon, std::uint32_t triangle) {
-    const double x = limit(width_), y = limit(height_), near_plane = near_plane_;
-    polygon = clip(polygon, [=](const ClipPoint& p) { return p.depth - near_plane; });
-    polygon = clip(polygon, [=](const ClipPoint& p) { return x * p.w - p.x; });
-    polygon = clip(polygon, [=](const ClipPoint& p) { return x * p.w + p.x; });
-    polygon = clip(polygon, [=](const ClipPoint& p) { return y * p.w - p.y; });
-    polygon = clip(polygon, [=](const ClipPoint& p) { return y * p.w + p.y; });
+  void emit_polygon(const std::array<ClipPoint, 3>& points, std::uint32_t triangle) {
+    const ClippedPolygon polygon =
+        clip_triangle(points, near_plane_, limit(width_), limit(height_));
     if (polygon.count < 3) return;
-    std::array<ScreenCorner, Polygon::most> corners;
+    std::array<ScreenCorner, ClippedPolygon::most> corners;
     for (std::size_t i = 0; i < polygon.count; ++i) corners[i] = screen(polygon.corners[i]);
+    const ScreenSides sides{batch_.draw->double_sided, turned_, width_, height_};
     for (std::size_t i = 2; i < polygon.count; ++i) {
-      emit_one(corners[0], corners[i - 1], corners[i], triangle);
+      const auto made = screen_triangle(corners[0], corners[i - 1], corners[i], sides, triangle);
+      if (made) batch_.visible.push_back(*made);
     }
   }
-
-  struct ScreenCorner {
-    std::int64_t x, y;
-    double nearness;
-  };
 
   /// By the same instructions as whole triangles' corners, so that shared ones fall together.
   ScreenCorner screen(const ClipPoint& p) const {
     const CornerLanes lanes = screen({number(p.x), number(p.y), number(p.w), number(p.depth)});
     return {hn::GetLane(lanes.x), hn::GetLane(lanes.y), hn::GetLane(lanes.nearness)};
-  }
-
-  void emit_one(const ScreenCorner& a, ScreenCorner b, ScreenCorner c, std::uint32_t triangle) {
-    std::int64_t area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
-    if (area == 0) return;
-    const bool clockwise = area > 0;
-    if (!batch_.draw->double_sided && clockwise != turned_) return;
-    if (!clockwise) {
-      std::swap(b, c);
-      area = -area;
-    }
-    const auto first_pixel = [](std::int64_t low) {
-      return std::max<std::int64_t>((low + 127) >> subpixel_bits, 0);
-    };
-    const auto last_pixel = [](std::int64_t high, int size) {
-      return std::min<std::int64_t>((high - 128) >> subpixel_bits, size - 1);
-    };
-    const std::int64_t left = first_pixel(std::min({a.x, b.x, c.x}));
-    const std::int64_t right = last_pixel(std::max({a.x, b.x, c.x}), width_);
-    const std::int64_t top = first_pixel(std::min({a.y, b.y, c.y}));
-    const std::int64_t bottom = last_pixel(std::max({a.y, b.y, c.y}), height_);
-    if (left > right || top > bottom) return;
-    const double scale = static_cast<double>(1 << subpixel_bits) / static_cast<double>(area);
-    const auto difference = [](std::int64_t to, std::int64_t from) {
-      return static_cast<double>(to - from);
-    };
-    const double bz = b.nearness - a.nearness, cz = c.nearness - a.nearness;
-    const double to_right = (bz * difference(c.y, a.y) - cz * difference(b.y, a.y)) * scale;
-    const double to_below = (cz * difference(b.x, a.x) - bz * difference(c.x, a.x)) * scale;
-    const auto whole = [](std::int64_t v) { return static_cast<std::int32_t>(v); };
-    const auto packed = [](std::int64_t low, std::int64_t high) {
-      return static_cast<std::uint32_t>(low | high << 16);
-    };
-    batch_.visible.push_back({{whole(a.x), whole(b.x), whole(c.x)},
-                              {whole(a.y), whole(b.y), whole(c.y)},
-                              packed(left, right),
-                              packed(top, bottom),
-                              static_cast<float>(a.nearness),
-                              static_cast<float>(to_right),
-                              static_cast<float>(to_below),
-                              triangle});
   }
 
   const SceneView& scene_;
@@ -391,7 +304,7 @@ constexpr std::int32_t nowhere = 0x7fffff;
 
 /// Batches of the draws, with what an earlier frame has allocated.
 void list_batches(std::span<const Draw* const> draws, ScreenTriangles& to) {
-  to.batch_count = 0;
+  to.batch_count = to.first_passing = 0;
   for (const Draw* const draw : draws) {
     const std::uint32_t triangles = draw->index_count / 3;
     for (std::uint32_t first = 0; first < triangles; first += triangle_batch) {
@@ -402,6 +315,7 @@ void list_batches(std::span<const Draw* const> draws, ScreenTriangles& to) {
       batch.count = std::min(triangle_batch, triangles - first);
       batch.visible.clear();
     }
+    if (!draw->masked) to.first_passing = to.batch_count;
   }
 }
 

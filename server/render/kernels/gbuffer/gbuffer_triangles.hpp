@@ -48,8 +48,9 @@ struct TriangleBatch {
 /// Triangles of a frame; kept from frame to frame, because memory is.
 struct ScreenTriangles {
   std::vector<TriangleBatch> batches;
-  std::size_t batch_count = 0;  // in this frame
-  PixelBoxes boxes;             // of the batches
+  std::size_t batch_count = 0;    // in this frame
+  std::size_t first_passing = 0;  // of those that may let rays pass; they are the last
+  PixelBoxes boxes;               // of the batches
 };
 
 /// Triangles of one batch at most.
@@ -59,7 +60,8 @@ inline constexpr std::uint32_t triangle_batch = 256;
 inline constexpr int triangle_tile = 32;
 
 /// Projects the triangles of `draws`, clips them to the near plane, and leaves out those that face
-/// away, lie outside the frame or between samples; on all processors.
+/// away, lie outside the frame or between samples; on all processors. Masked and blended draws are
+/// the last.
 void project_triangles(const shared::FrameConstants& frame, const SceneView& scene,
                        std::span<const Draw* const> draws, ScreenTriangles& to);
 

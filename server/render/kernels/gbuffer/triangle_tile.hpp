@@ -8,6 +8,7 @@
 #endif
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "render/kernels/gbuffer/gbuffer_triangles.hpp"
@@ -21,44 +22,88 @@ class TriangleTile {
  public:
   static constexpr int size = triangle_tile;
 
+  static constexpr std::size_t pixels = std::size_t{size} * size;
+
   TriangleTile(int left, int top) : left_(left), top_(top) {
-    nearness_.fill(-std::numeric_limits<float>::max());
-    instance_.fill(static_cast<std::int32_t>(shared::hit_none));
+    nearest_.nearness.fill(lowest);
+    nearest_.instance.fill(static_cast<std::int32_t>(shared::hit_none));
   }
 
   /// Draws all triangles that cover the tile, in order: of equally near ones the first stays.
-  void draw(const ScreenTriangles& triangles) {
-    for_each_inside(triangles.boxes, triangles.batch_count, [&](std::size_t i) {
-      const TriangleBatch& batch = triangles.batches[i];
-      const auto instance = static_cast<std::int32_t>(batch.draw->constants.instance);
-      for_each_inside(batch.boxes, batch.visible.size(),
-                      [&](std::size_t k) { draw(batch.visible[k], instance); });
-    });
+  /// @return whether any that may let rays pass is among them
+  bool draw(const ScreenTriangles& triangles) {
+    for_each_inside(triangles.boxes, 0, triangles.first_passing,
+                    [&](std::size_t i) { draw<false>(triangles.batches[i]); });
+    bool passing = false;
+    for_each_inside(triangles.boxes, triangles.first_passing, triangles.batch_count,
+                    [&](std::size_t i) {
+                      if (!passing) {
+                        solid_ = nearest_;
+                        limits_.fill(lowest);
+                      }
+                      passing = true;
+                      draw<false>(triangles.batches[i]);
+                    });
+    return passing;
   }
 
-  /// Of the pixels from (x, y) on, which count from the tile's corner; shared::hit_none: nothing.
-  HWY_INLINE Integer instance(int x, int y) const {
-    return hn::LoadU(integer_tag, &instance_[at(x, y)]);
+  /// Pixels let their rays pass: the next layer is what lies behind the present one.
+  /// `number` counts pixels from the tile's corner, row by row.
+  void pass(std::size_t number) {
+    // As far behind as rays begin again.
+    const float nearness = nearest_.nearness[number];
+    limits_[number] = nearness - std::abs(nearness) * 1e-6f;
   }
-  HWY_INLINE Integer triangle(int x, int y) const {
-    return hn::LoadU(integer_tag, &triangle_[at(x, y)]);
+  void stop(std::size_t number) { limits_[number] = lowest; }
+
+  /// Draws the next layer of the pixels that let their rays pass; all others are left undefined.
+  void draw_behind(const ScreenTriangles& triangles) {
+    nearest_ = solid_;
+    for_each_inside(triangles.boxes, triangles.first_passing, triangles.batch_count,
+                    [&](std::size_t i) { draw<true>(triangles.batches[i]); });
+  }
+
+  /// Of the pixels from `number` on; shared::hit_none: nothing.
+  HWY_INLINE Integer instances(std::size_t number) const {
+    return hn::LoadU(integer_tag, &nearest_.instance[number]);
+  }
+  HWY_INLINE Integer triangles(std::size_t number) const {
+    return hn::LoadU(integer_tag, &nearest_.triangle[number]);
+  }
+  /// Of pixels anywhere in the tile.
+  HWY_INLINE Integer instances_at(Integer numbers) const {
+    return gather(nearest_.instance.data(), numbers);
+  }
+  HWY_INLINE Integer triangles_at(Integer numbers) const {
+    return gather(nearest_.triangle.data(), numbers);
   }
 
  private:
+  static constexpr float lowest = -std::numeric_limits<float>::max();
+
   static std::size_t at(int x, int y) { return static_cast<std::size_t>(y * size + x); }
 
-  /// Calls `work` for all boxes that overlap the tile, in order.
+  /// `behind`: only what lies behind the limits.
+  template <bool behind>
+  void draw(const TriangleBatch& batch) {
+    const auto instance = static_cast<std::int32_t>(batch.draw->constants.instance);
+    for_each_inside(batch.boxes, 0, batch.visible.size(),
+                    [&](std::size_t k) { draw<behind>(batch.visible[k], instance); });
+  }
+
+  /// Calls `work` for all boxes from `first` to before `last` that overlap the tile, in order.
   template <class Work>
-  HWY_INLINE void for_each_inside(const PixelBoxes& boxes, std::size_t count,
+  HWY_INLINE void for_each_inside(const PixelBoxes& boxes, std::size_t first, std::size_t last,
                                   const Work& work) const {
-    for (std::size_t i = 0; i < count; i += hn::Lanes(tag)) {
+    for (std::size_t i = first; i < last; i += hn::Lanes(tag)) {
       const auto load = [i](const std::vector<std::int32_t>& edge)
                             HWY_ATTR { return hn::LoadU(integer_tag, edge.data() + i); };
       const auto across = hn::And(hn::Lt(load(boxes.left), integer(left_ + size)),
                                   hn::Gt(load(boxes.right), integer(left_ - 1)));
       const auto down = hn::And(hn::Lt(load(boxes.top), integer(top_ + size)),
                                 hn::Gt(load(boxes.bottom), integer(top_ - 1)));
-      std::uint64_t bits = mask_bits(float_mask(hn::And(across, down)));
+      const Mask listed = hn::FirstN(tag, last - i);
+      std::uint64_t bits = mask_bits(hn::And(listed, float_mask(hn::And(across, down))));
       for (; bits; bits &= bits - 1) work(i + static_cast<std::size_t>(__builtin_ctzll(bits)));
     }
   }
@@ -111,6 +156,7 @@ class TriangleTile {
     return mask_bits(hn::Le(first, last)) << first_row;
   }
 
+  template <bool behind>
   HWY_INLINE void draw(const ScreenTriangle& t, std::int32_t instance) {
     const int lanes = static_cast<int>(hn::Lanes(tag));
     int left = std::max(static_cast<int>(t.columns & 0xffffu) - left_, 0);
@@ -156,28 +202,38 @@ class TriangleTile {
         if (none(inside)) continue;
         const float here = nearness + t.nearness_right * static_cast<float>(column) +
                            t.nearness_down * static_cast<float>(row);
-        put(t, instance, at(left + column, top + row), number(here) + nearer, inside);
+        put<behind>(t, instance, at(left + column, top + row), number(here) + nearer, inside);
       }
     }
   }
 
+  template <bool behind>
   HWY_INLINE void put(const ScreenTriangle& t, std::int32_t instance, std::size_t where,
                       Float nearness, Mask inside) {
-    const Float before = hn::Load(tag, &nearness_[where]);
-    const Mask nearer = hn::And(inside, hn::Gt(nearness, before));
+    const Float before = hn::Load(tag, &nearest_.nearness[where]);
+    Mask nearer = hn::And(inside, hn::Gt(nearness, before));
+    if constexpr (behind) {
+      nearer = hn::And(nearer, hn::Lt(nearness, hn::Load(tag, &limits_[where])));
+    }
     if (none(nearer)) return;
-    hn::Store(select(nearer, nearness, before), tag, &nearness_[where]);
+    hn::Store(select(nearer, nearness, before), tag, &nearest_.nearness[where]);
     const auto keep = [&](std::int32_t value, std::int32_t* to) HWY_ATTR {
       hn::Store(select(nearer, integer(value), hn::Load(integer_tag, to)), integer_tag, to);
     };
-    keep(instance, &instance_[where]);
-    keep(static_cast<std::int32_t>(t.triangle), &triangle_[where]);
+    keep(instance, &nearest_.instance[where]);
+    keep(static_cast<std::int32_t>(t.triangle), &nearest_.triangle[where]);
   }
 
+  struct Layer {
+    HWY_ALIGN std::array<float, pixels> nearness;
+    HWY_ALIGN std::array<std::int32_t, pixels> instance;
+    HWY_ALIGN std::array<std::int32_t, pixels> triangle;
+  };
+
   int left_, top_;
-  HWY_ALIGN std::array<float, size * size> nearness_;
-  HWY_ALIGN std::array<std::int32_t, size * size> instance_;
-  HWY_ALIGN std::array<std::int32_t, size * size> triangle_;
+  Layer nearest_;
+  Layer solid_;  // of triangles that let no ray pass
+  HWY_ALIGN std::array<float, pixels> limits_;
 };
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
-#include "render/kernels/simd/layers.hpp"
+#include "render/kernels/simd/material/layers.hpp"
 #include "render/kernels/simd/rays.hpp"
 
 HWY_BEFORE_NAMESPACE();

@@ -10,7 +10,7 @@
 #include <span>
 
 #include "render/kernels/simd/area_lights.hpp"
-#include "render/kernels/simd/layers.hpp"
+#include "render/kernels/simd/material/layers.hpp"
 #include "render/kernels/simd/ray_writer.hpp"
 #include "render/kernels/simd/rays.hpp"
 

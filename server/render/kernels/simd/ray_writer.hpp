@@ -71,6 +71,21 @@ HWY_INLINE std::size_t store_rays(const RayLanes& r, Mask requested, shared::Ray
   return count;
 }
 
+/// Rays of a tile or a batch on their way into a stream.
+class RayBatch {
+ public:
+  HWY_INLINE void add(const RayLanes& lanes, Mask requested) {
+    count_ += store_rays(lanes, requested, rays_.data() + count_);
+  }
+  void append_to(const RaySink<gpu::Mapped>& sink) const {
+    if (count_) sink.append({rays_.data(), count_});
+  }
+
+ private:
+  std::array<shared::Ray, ray_batch> rays_;
+  std::size_t count_ = 0;
+};
+
 /// Calls `work(lane)` for every lane in `wanted`.
 template <class Work>
 HWY_INLINE void for_each_lane(Mask requested, const Work& work) {

@@ -12,7 +12,7 @@
 #include <cstring>
 
 #include "render/kernels/common/tile.hpp"
-#include "render/kernels/simd/layers.hpp"
+#include "render/kernels/simd/material/layers.hpp"
 #include "render/kernels/simd/ray_writer.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -52,6 +52,8 @@ HWY_INLINE auto gbuffer_material(const Job& job, const PixelLanes& pixels, const
     return make_material(tag, color, packed.y, packed.x, normal, geometric, eye, tables.split_sum);
   }
 }
+
+static_assert(tile_side * tile_side <= ray_batch);
 
 /// Pixels of a tile, in its order.
 class PixelList {

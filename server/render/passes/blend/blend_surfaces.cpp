@@ -4,6 +4,7 @@
 #include "render/passes/formats.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/reflections/trace_specular.hpp"
+#include "render/passes/sampling/plan_samples.hpp"
 #include "render/resources/light_table.hpp"
 #include "render/resources/moving_scene.hpp"
 #include "shaders/embedded.hpp"
@@ -44,55 +45,51 @@ glm::uvec4 blended_region(const FrameInputs& in) {
   return region;
 }
 
-const kernels::Environment& host_environment(const FrameInputs& in) {
-  const bool separate_sun = in.settings.environment.separate_sun;
-  return *in.moving.environment().view(separate_sun).maps.host;
-}
-
 class BlendedSurfaces {
  public:
-  BlendedSurfaces(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer)
+  BlendedSurfaces(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                  const BlendedImages& images)
       : plan_(plan),
         in_(in),
         gbuffer_(gbuffer),
+        to_(images),
         pixels_(plan.extent().width * plan.extent().height),
-        radiance_(plan.image(blended_buffers.radiance.name, four_floats)),
-        transmittance_(plan.image(blended_buffers.transmittance.name, four_floats)),
-        motion_(plan.image(blended_buffers.motion.name, four_floats)),
-        specular_(plan.image(blended_buffers.specular.name, four_floats)),
-        surface_(plan.image(blended_buffers.surface.name, VK_FORMAT_R8G8B8A8_UNORM)),
-        hits_(plan.buffer("blended.hits", sizeof(shared::Hit) * pixels_, storage,
-                          gpu::Memory::device)),
-        lit_(declare_rays(plan, "blended.lit", pixels_, tracing::RayKind::camera)),
-        chosen_(plan.buffer("blended.chosen", sizeof(shared::Hit) * pixels_, storage,
-                            gpu::Memory::device)) {}
-
-  gpu::ImageRef motion() const { return motion_; }
+        lit_(declare_rays(plan, "blended.lit", pixels_, tracing::RayKind::camera)) {}
 
   /// From front to back, the light that the surfaces emit and their transmittance.
   void find() {
     tracing::RayStream current = declare_rays(plan_, "blended", pixels_, tracing::RayKind::camera);
     tracing::RayStream next =
         declare_rays(plan_, "blended.next", pixels_, tracing::RayKind::camera);
+    const gpu::BufferRef hits =
+        plan_.buffer("blended.hits", sizeof(shared::Hit) * pixels_, storage, gpu::Memory::device);
     begin_rays(plan_, in_, "blended", current, Blending::stops);
     begin_rays(plan_, in_, "blended.lit", lit_, Blending::stops);
     plan_.pass("blended.rays", in_.program(shaders::blended_rays))
         .bind<kernels::BlendedRaysBindings>({.motion = gbuffer_.motion,
                                              .rays = ray_sink(current),
-                                             .radiance = radiance_,
-                                             .transmittance = transmittance_,
-                                             .front_motion = motion_,
-                                             .surface = surface_,
-                                             .specular = specular_})
+                                             .radiance = to_.radiance,
+                                             .transmittance = to_.transmittance,
+                                             .front_motion = to_.motion,
+                                             .surface = to_.surface,
+                                             .specular = to_.specular})
         .constants([in = in_] { return kernels::BlendedRaysConstants{blended_region(in)}; })
         .dispatch(gpu::each_pixel())
         .host(kernels::blended_rays, in_.constants);
     for (std::uint32_t round = 0; round < most_blended; ++round) {
-      in_.tracer.trace_closest(plan_, "blended.trace", in_.structure, current, hits_);
+      in_.tracer.trace_closest(plan_, "blended.trace", in_.structure, current, hits);
       begin_rays(plan_, in_, "blended", next, Blending::stops);
-      add_surfaces(round, current, next);
+      add_surfaces(round, current, hits, next);
       std::swap(current, next);
     }
+  }
+
+  /// The pixels of surfaces that the G-buffer's rasteriser has found.
+  void list() {
+    begin_rays(plan_, in_, "blended.lit", lit_, Blending::stops);
+    plan_.host("blended.lit", {})
+        .bind<kernels::BlendedLitBindings>({.radiance = to_.radiance, .lit = ray_sink(lit_)})
+        .host(kernels::blended_lit, in_.constants);
   }
 
   /// The light on the surface that was chosen in each pixel.
@@ -107,36 +104,37 @@ class BlendedSurfaces {
     const bool traced = in_.settings.specular.enabled;
     pass("blended.light", shaders::blended_light)
         .bind<kernels::BlendedLightBindings>({.lit = ray_source(lit_),
-                                              .chosen = chosen_,
-                                              .radiance = radiance_,
-                                              .transmittance = transmittance_,
-                                              .surface = surface_,
+                                              .chosen = to_.chosen,
+                                              .radiance = to_.radiance,
+                                              .transmittance = to_.transmittance,
+                                              .surface = to_.surface,
                                               .shadows = ray_sink(shadows),
                                               .ambient = ray_sink(ambient),
                                               .specular = ray_sink(reflected)})
-        .constants([&s = in_.settings.specular, traced] {
-          return kernels::BlendedLightConstants{traced ? s.max_roughness : -1.0f};
+        .constants([in = in_, traced] {
+          // Where other surfaces leave samples out, as in their plan.
+          const bool fewer = in.settings.sampling.specular && leaves_samples_out(in);
+          return kernels::BlendedLightConstants{traced ? in.settings.specular.max_roughness : -1.0f,
+                                                fewer ? 1.0f / shared::plan_quiet_factor : 1.0f};
         })
         .dispatch_indirect(lit_.count, ray_groups_offset)
         .host([in = in_](const kernels::BlendedLightJob::Pass& pass) {
           const auto lights = frame_lights(in.tables.lights, in.constants);
-          kernels::blended_light({pass, in.constants, kernels::has_layers(in.scene.features),
-                                  kernels::view_scene(in.scene, in.tables, in.moving),
-                                  host_environment(in), lights, in.lobe_tables()});
+          kernels::blended_light({pass, in.constants, lit_scene(in, lights)});
         });
-    add_unoccluded_light(plan_, in_, "blended.shadows", shadows, radiance_);
-    add_unoccluded_light(plan_, in_, "blended.ambient", ambient, radiance_);
+    add_unoccluded_light(plan_, in_, "blended.shadows", shadows, to_.radiance);
+    add_unoccluded_light(plan_, in_, "blended.ambient", ambient, to_.radiance);
     if (traced) {
-      trace_reflections(plan_, in_, "blended.specular", reflected, surface_, transmittance_,
-                        specular_);
+      trace_reflections(plan_, in_, "blended.specular", reflected, to_.surface, to_.transmittance,
+                        to_.specular);
     }
   }
 
   void compose_over(gpu::ImageRef frame) {
     plan_.pass("blended.over", in_.program(shaders::blended_over))
-        .bind<kernels::BlendedOverBindings>({.radiance = radiance_,
-                                             .specular = specular_,
-                                             .transmittance = transmittance_,
+        .bind<kernels::BlendedOverBindings>({.radiance = to_.radiance,
+                                             .specular = to_.specular,
+                                             .transmittance = to_.transmittance,
                                              .frame = frame})
         .dispatch(gpu::each_pixel())
         .host(kernels::blended_over);
@@ -147,55 +145,67 @@ class BlendedSurfaces {
     return plan_.pass(name, in_.program(shader, in_.scene.features));
   }
 
-  void add_surfaces(std::uint32_t round, const tracing::RayStream& rays,
+  void add_surfaces(std::uint32_t round, const tracing::RayStream& rays, gpu::BufferRef hits,
                     const tracing::RayStream& next) {
     pass("blended.surfaces", shaders::blended_surfaces)
         .bind<kernels::BlendedSurfacesBindings>(
             {.met = ray_source(rays),
-             .hits = hits_,
+             .hits = hits,
              .previous_vertices = plan_.import(in_.moving.previous_vertices()),
              .rays = ray_sink(next),
-             .radiance = radiance_,
-             .transmittance = transmittance_,
-             .front_motion = motion_,
-             .chosen = chosen_,
+             .radiance = to_.radiance,
+             .transmittance = to_.transmittance,
+             .front_motion = to_.motion,
+             .chosen = to_.chosen,
              .lit = ray_sink(lit_)})
         .constants(kernels::BlendedSurfacesConstants{round, round + 1 == most_blended})
         .dispatch_indirect(rays.count, ray_groups_offset)
         .host([in = in_](const kernels::BlendedSurfacesJob::Pass& pass) {
           const auto lights = frame_lights(in.tables.lights, in.constants);
-          kernels::blended_surfaces({pass, in.constants, kernels::has_layers(in.scene.features),
-                                     (in.scene.features & shared::scene_deforms) != 0,
-                                     kernels::view_scene(in.scene, in.tables, in.moving),
-                                     host_environment(in), lights, in.lobe_tables()});
+          kernels::blended_surfaces({pass, in.constants, lit_scene(in, lights),
+                                     (in.scene.features & shared::scene_deforms) != 0});
         });
   }
 
   gpu::FramePlan& plan_;
   const FrameInputs& in_;
   const GBuffer& gbuffer_;
+  BlendedImages to_;
   std::uint32_t pixels_;
-  gpu::ImageRef radiance_;       // a: of all weights, the sum
-  gpu::ImageRef transmittance_;  // a: of the chosen surface, its weight, then view Z
-  gpu::ImageRef motion_;
-  gpu::ImageRef specular_;
-  gpu::ImageRef surface_;
-  gpu::BufferRef hits_;
   tracing::RayStream lit_;  // the pixels that have a surface to light, each once
-  gpu::BufferRef chosen_;
 };
 
 }  // namespace
 
+BlendedImages declare_blended(gpu::FramePlan& plan) {
+  const std::uint32_t pixels = plan.extent().width * plan.extent().height;
+  const auto& buffers = blended_buffers;
+  return {
+      plan.image(buffers.radiance.name, four_floats),
+      plan.image(buffers.transmittance.name, four_floats),
+      plan.image(buffers.motion.name, four_floats),
+      plan.image(buffers.specular.name, four_floats),
+      plan.image(buffers.surface.name, VK_FORMAT_R8G8B8A8_UNORM),
+      plan.buffer("blended.chosen", sizeof(shared::Hit) * pixels, storage, gpu::Memory::device)};
+}
+
+kernels::LitScene lit_scene(const FrameInputs& in, std::span<const shared::Light> lights) {
+  const bool separate_sun = in.settings.environment.separate_sun;
+  return {kernels::has_layers(in.scene.features),
+          kernels::view_scene(in.scene, in.tables, in.moving),
+          *in.moving.environment().view(separate_sun).maps.host, lights, in.lobe_tables()};
+}
+
 gpu::ImageRef blend_surfaces(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                             const Composed& composed) {
-  if (!(in.scene.features & shared::scene_blends)) return gbuffer.motion;
-  BlendedSurfaces blended(plan, in, gbuffer);
-  blended.find();
+                             const Composed& composed, const BlendedImages* drawn) {
+  if (!has_blends(in)) return gbuffer.motion;
+  const BlendedImages images = drawn ? *drawn : declare_blended(plan);
+  BlendedSurfaces blended(plan, in, gbuffer, images);
+  drawn ? blended.list() : blended.find();
   blended.light();
   blended.compose_over(composed.hdr);
   if (composed.noisy.index != composed.hdr.index) blended.compose_over(composed.noisy);
-  return blended.motion();
+  return images.motion;
 }
 
 }  // namespace heliograph::render

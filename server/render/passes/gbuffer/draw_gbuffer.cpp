@@ -1,9 +1,11 @@
 #include "render/passes/gbuffer/draw_gbuffer.hpp"
 
+#include <algorithm>
+
 #include "render/kernels/gbuffer/gbuffer_draw.hpp"
 #include "render/passes/gbuffer/frustum.hpp"
 #include "render/passes/gbuffer/trace_gbuffer.hpp"
-#include "render/passes/rays/ray_stream.hpp"
+#include "render/resources/light_table.hpp"
 #include "render/resources/moving_scene.hpp"
 
 namespace heliograph::render {
@@ -13,13 +15,14 @@ namespace {
 /// that is projected and, one of several, drawn.
 constexpr std::uint64_t triangles_per_ray = 8;
 
-/// What may be in view.
+/// What may be in view; what may let rays pass comes last.
 std::vector<const Draw*> visible_draws(const FrameInputs& in) {
   const Frustum frustum(in.constants.view_projection);
   std::vector<const Draw*> draws;
   for (const Draw& draw : in.moving.draws()) {
     if (frustum.may_contain(draw.bounds)) draws.push_back(&draw);
   }
+  std::stable_partition(draws.begin(), draws.end(), [](const Draw* draw) { return !draw->masked; });
   return draws;
 }
 
@@ -35,34 +38,41 @@ bool draws_gbuffer_on_host(const gpu::FramePlan& plan, const FrameInputs& in) {
   return triangles < triangles_per_ray * pixels;
 }
 
-GBuffer draw_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
+GBuffer draw_gbuffer(gpu::FramePlan& plan, const FrameInputs& in, const BlendedImages* blended) {
   GBuffer gbuffer = declare_gbuffer(plan, in.scene.features);
-  const bool layered = kernels::has_layers(in.scene.features);
-  const CameraStreams streams = declare_camera_streams(plan);
   const auto triangles = std::make_shared<kernels::ScreenTriangles>();
   plan.host("gbuffer.triangles", [in, triangles] {
     kernels::project_triangles(in.constants, kernels::view_scene(in.scene, in.tables, in.moving),
                                visible_draws(in), *triangles);
   });
-  // Camera rays decide for themselves, by the filtered texel: as drawn triangles do.
-  begin_rays(plan, in, "gbuffer", streams.current, Blending::stops);
+  const auto given = [](bool present, auto resource) {
+    return present ? std::optional(resource) : std::nullopt;
+  };
+  const bool blends = blended != nullptr;
+  const BlendedImages to = blends ? *blended : BlendedImages();
   plan.host("gbuffer.draw", {})
       .bind<kernels::GBufferDrawBindings>(
-          {.passed = ray_sink(streams.current),
-           .normals = gbuffer.normals,
+          {.normals = gbuffer.normals,
            .base_color = gbuffer.base_color,
            .surface = gbuffer.surface,
            .motion = gbuffer.motion,
            .emissive = gbuffer.emissive,
            .depth_slope = gbuffer.depth_slope,
            .instance = gbuffer.instance,
-           .layers = layered ? std::optional(gbuffer.layers) : std::nullopt})
-      .host([in, triangles](const kernels::GBufferDrawJob::Pass& pass) {
-        kernels::gbuffer_draw({pass, in.constants,
-                               kernels::view_scene(in.scene, in.tables, in.moving),
-                               (in.scene.features & shared::scene_deforms) != 0, *triangles});
+           .layers = given(kernels::has_layers(in.scene.features), gbuffer.layers),
+           .blended_radiance = given(blends, to.radiance),
+           .blended_transmittance = given(blends, to.transmittance),
+           .blended_motion = given(blends, to.motion),
+           .blended_surface = given(blends, to.surface),
+           .blended_specular = given(blends, to.specular),
+           .blended_chosen = given(blends, to.chosen)})
+      .host([in, triangles, blends](const kernels::GBufferDrawJob::Pass& pass) {
+        const auto lights = frame_lights(in.tables.lights, in.constants);
+        const kernels::LitScene lit = lit_scene(in, lights);
+        kernels::gbuffer_draw({pass, in.constants, lit.scene,
+                               (in.scene.features & shared::scene_deforms) != 0, *triangles,
+                               camera_rounds(in), most_blended, blends ? &lit : nullptr});
       });
-  trace_rounds(plan, in, streams, 2, gbuffer);
   return gbuffer;
 }
 

@@ -72,26 +72,23 @@ bool traces_gbuffer(const gpu::Device& device, const FrameInputs& in) {
   return rays_find_gbuffer_sooner(device.report(), in.tracer.kind());
 }
 
-CameraStreams declare_camera_streams(gpu::FramePlan& plan) {
-  const VkExtent2D extent = plan.extent();
-  // Whole tiles of 8 x 8.
-  const std::uint32_t capacity = ((extent.width + 7) / 8) * ((extent.height + 7) / 8) * 64;
-  return {
-      declare_rays(plan, "gbuffer", capacity, tracing::RayKind::camera),
-      declare_rays(plan, "gbuffer.passed", capacity, tracing::RayKind::camera),
-      plan.buffer("gbuffer.hits", sizeof(shared::Hit) * capacity, storage, gpu::Memory::device)};
-}
-
-int camera_rounds(const FrameInputs& in) {
+std::uint32_t camera_rounds(const FrameInputs& in) {
   return (in.scene.features & shared::scene_blends) != 0 ? 2 + most_blended : 4;
 }
 
-void trace_rounds(gpu::FramePlan& plan, const FrameInputs& in, const CameraStreams& streams,
-                  int first_round, const GBuffer& gbuffer) {
+GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
+  GBuffer gbuffer = declare_gbuffer(plan, in.scene.features);
+  const VkExtent2D extent = plan.extent();
+  // Whole tiles of 8 x 8.
+  const std::uint32_t capacity = ((extent.width + 7) / 8) * ((extent.height + 7) / 8) * 64;
+  auto current = declare_rays(plan, "gbuffer", capacity, tracing::RayKind::camera);
+  auto next = declare_rays(plan, "gbuffer.passed", capacity, tracing::RayKind::camera);
+  const gpu::BufferRef hits =
+      plan.buffer("gbuffer.hits", sizeof(shared::Hit) * capacity, storage, gpu::Memory::device);
   const auto previous_vertices = plan.import(in.moving.previous_vertices());
-  auto [current, next, hits] = streams;
-  const int last_round = camera_rounds(in);
-  for (int round = first_round; round <= last_round; ++round) {
+  camera_rays(plan, in, current);
+  const std::uint32_t last_round = camera_rounds(in);
+  for (std::uint32_t round = 1; round <= last_round; ++round) {
     // Where the host sees what the rounds before have left, nothing left costs nothing.
     const gpu::BufferRef count = current.count;
     const auto any = [&plan, count] {
@@ -108,13 +105,6 @@ void trace_rounds(gpu::FramePlan& plan, const FrameInputs& in, const CameraStrea
     });
     std::swap(current, next);
   }
-}
-
-GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
-  GBuffer gbuffer = declare_gbuffer(plan, in.scene.features);
-  const CameraStreams streams = declare_camera_streams(plan);
-  camera_rays(plan, in, streams.current);
-  trace_rounds(plan, in, streams, 1, gbuffer);
   return gbuffer;
 }
 

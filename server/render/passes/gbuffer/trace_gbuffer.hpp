@@ -13,18 +13,8 @@ namespace heliograph::render {
 /// is taken as it is; in scenes with blended surfaces the eighth. `depth` stays empty.
 GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in);
 
-/// The streams of camera rays and what they meet.
-struct CameraStreams {
-  tracing::RayStream current;
-  tracing::RayStream next;  // the round after
-  gpu::BufferRef hits;
-};
-CameraStreams declare_camera_streams(gpu::FramePlan& plan);
-
-/// Traces what lies in `streams.current` and stores the surfaces, from `first_round` (the first is
-/// 1) to the last, each with the rays that the one before has let pass.
-void trace_rounds(gpu::FramePlan& plan, const FrameInputs& in, const CameraStreams& streams,
-                  int first_round, const GBuffer& gbuffer);
+/// How many surfaces behind each other are tried: the last is taken as it is.
+std::uint32_t camera_rounds(const FrameInputs& in);
 
 /// Whether rays find the G-buffer sooner than drawing does.
 /// Processors: Embree takes no longer than the rasteriser for the simplest of scenes, and a third

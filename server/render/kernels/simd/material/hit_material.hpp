@@ -7,7 +7,7 @@
 #define HELIOGRAPH_KERNELS_HIT_MATERIAL_HPP
 #endif
 
-#include "render/kernels/simd/surface.hpp"
+#include "render/kernels/simd/material/surface.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {

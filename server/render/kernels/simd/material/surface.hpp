@@ -8,9 +8,9 @@
 #endif
 
 #include "render/kernels/simd/lanes.hpp"
-#include "render/kernels/simd/layers.hpp"
+#include "render/kernels/simd/material/layers.hpp"
+#include "render/kernels/simd/material/slots.hpp"
 #include "render/kernels/simd/ray_writer.hpp"
-#include "render/kernels/simd/slots.hpp"
 #include "shaders/shared/ray.h"
 
 HWY_BEFORE_NAMESPACE();

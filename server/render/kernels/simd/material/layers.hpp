@@ -10,7 +10,7 @@
 #endif
 
 #include "hwy/contrib/math/math-inl.h"
-#include "render/kernels/simd/material.hpp"
+#include "render/kernels/simd/material/material.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {

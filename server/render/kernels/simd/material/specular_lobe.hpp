@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "render/kernels/simd/lanes.hpp"
-#include "render/kernels/simd/layers.hpp"
+#include "render/kernels/simd/material/layers.hpp"
 #include "render/kernels/simd/random.hpp"
 #include "render/kernels/simd/ray_writer.hpp"
 #include "render/kernels/simd/rays.hpp"

@@ -8,7 +8,7 @@
 #endif
 
 #include "render/kernels/simd/lanes.hpp"
-#include "render/kernels/simd/textures.hpp"
+#include "render/kernels/simd/material/textures.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
