@@ -13,11 +13,12 @@ namespace heliograph::render {
 /// The plan of a frame with the resources that it keeps alive: one scene at one size, made of the
 /// passes that the settings asked for when it was made.
 struct CompiledFrame {
-  /// References in `inputs`, and `constants_buffer`, outlive this.
+  /// References in `inputs`, and `constants_buffer`, outlive this. `keeps_buffers`: whether all
+  /// images can be read after a frame, or just the output and the histories.
   CompiledFrame(const Engine::Parts& parts, const FrameInputs& inputs,
-                const gpu::Buffer& constants_buffer, VkExtent2D extent);
+                const gpu::Buffer& constants_buffer, VkExtent2D extent, bool keeps_buffers);
 
-  /// The image of that name as of the last frame, or null.
+  /// The image of that name as of the last frame, or null, also if it was not kept.
   const gpu::Image* find(std::string_view buffer) const;
 
   FrameInputs inputs;

@@ -19,6 +19,9 @@ namespace {
 /// Histories are measured in seconds. After a pause the time since the last frame means nothing.
 constexpr float max_frame_seconds = 1.0f;
 constexpr std::chrono::seconds retry_delay{1};
+/// Frames keep their buffers for so long after one was read: another one often follows, and the
+/// change takes as long as a frame.
+constexpr std::chrono::seconds keep_buffers_after{10};
 
 std::uint32_t microseconds_of(Clock::duration duration) {
   return static_cast<std::uint32_t>(duration_cast<microseconds>(duration).count());
@@ -77,6 +80,7 @@ bool SessionView::watched() const {
 
 void SessionView::make_renderer() {
   renderer_ = std::make_unique<render::Renderer>(engine_);
+  renderer_->keep_buffers(false);
   needed_at_ = Clock::now();
   state_ = {};
   apply(session_->render_state().settings);
@@ -119,6 +123,7 @@ SessionView::Work SessionView::advance(bool may_draw) {
     release_renderer();
     return Work::none;
   }
+  keep_buffers();
   if (session_->timeline().in_lockstep()) return advance_step(may_draw);
   newest_stepped_ = false;
   adopt_state();
@@ -258,6 +263,13 @@ void SessionView::adopt_size() {
                       .full_frame_time = full_frame_time_,
                       .motion_scale = state_.settings.motion.scale,
                       .capture_pending = readers_.has_captures()}));
+}
+
+/// What will be read after a step is not known before it.
+void SessionView::keep_buffers() {
+  if (readers_.read_buffers()) buffers_read_at_ = Clock::now();
+  renderer_->keep_buffers(session_->timeline().in_lockstep() ||
+                          Clock::now() < buffers_read_at_ + keep_buffers_after);
 }
 
 void SessionView::set_size(DrawSize size) {

@@ -68,6 +68,7 @@ class SessionView {
   void adopt_edits(const RenderState& before);
   void adopt_pose();
   void adopt_size();
+  void keep_buffers();
   void set_size(DrawSize size);
   bool is_full_size() const;
   bool needs_frame() const;
@@ -95,9 +96,10 @@ class SessionView {
   DrawSize draw_size_;                 // of the renderer
   Clock::duration full_frame_time_{};  // of the newest frame of full size; zero: not known
   std::shared_ptr<const RenderedFrame> newest_;
-  std::uint64_t newest_version_ = 0;  // of the state that it shows
-  bool newest_stepped_ = false;       // it was rendered in lockstep
-  bool discontinuous_ = true;         // the next frame does not continue the last one
+  std::uint64_t newest_version_ = 0;     // of the state that it shows
+  bool newest_stepped_ = false;          // it was rendered in lockstep
+  Clock::time_point buffers_read_at_{};  // last time that a reader of buffers waited
+  bool discontinuous_ = true;            // the next frame does not continue the last one
   std::uint64_t discontinuities_ = 0;
   std::uint32_t render_count_ = 0;
   std::deque<Clock::time_point> frame_times_;  // ends of frames in the last second
