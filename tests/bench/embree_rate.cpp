@@ -160,7 +160,9 @@ void RecordingTracer::record(gpu::FramePlan& plan, const std::string& name,
               const auto* const first =
                   reinterpret_cast<const shared::Ray*>(plan.get(rays.rays).mapped());
               const std::size_t count = std::min(header.count, rays.capacity);
-              streams_.try_emplace(name, Stream{{first, first + count}, any});
+              Stream& stream = streams_[name];
+              stream.any = any;
+              stream.rays.insert(stream.rays.end(), first, first + count);
             })
       .read(rays.count)
       .read(rays.rays)

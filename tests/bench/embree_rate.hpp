@@ -32,8 +32,7 @@ class RecordingTracer : public tracing::RayTracer {
     recording_ = recording;
     if (recording) streams_.clear();
   }
-  /// The rays that the pass `name` traced in the last recorded frame; the first ones, if it traced
-  /// several streams. Null without any.
+  /// The rays that the passes `name` traced in the recorded frames. Null without any.
   const Stream* find(const std::string& name) const;
 
   protocol::TracerKind kind() const override { return tracer_->kind(); }

@@ -34,6 +34,8 @@ class FrameRig {
 
   /// Sets the camera of the next frame; the current one becomes the previous one.
   void set_view(const scene::Camera& camera, std::uint32_t sample = 0);
+  /// The next set_view() has no view before it.
+  void invalidate_history() { has_view_ = false; }
   void set_settings(const protocol::Settings& settings) { settings_ = settings; }
   /// Number of samples already accumulated.
   void set_accumulated(std::uint32_t samples) { clock_.samples = samples; }

@@ -1,5 +1,6 @@
 #include "gpu/frame_plan/frame_plan.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -67,16 +68,16 @@ History FramePlan::history(std::string_view name, VkFormat format, VkImageUsageF
   ImageDesc desc{.name = std::string(name), .extent = size.of(extent_), .format = format};
   desc.usage = extra_usage | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
   desc.mapped = device_.is_cpu();
-  const auto even = std::make_shared<const Image>(device_, desc);
-  const auto odd = std::make_shared<const Image>(device_, desc);
-  Resource current{.name = std::string(name), .size = size};
-  current.images = {even.get(), odd.get()};
-  current.owned_images = {even, odd};
-  Resource previous{.name = std::string(name) + ".previous", .size = size};
-  previous.images = {odd.get(), even.get()};
-  const History made{{add(std::move(current))}, {add(std::move(previous))}};
-  reset(made);
-  return made;
+  const std::uint32_t current = add(Resource{.name = std::string(name),
+                                             .size = size,
+                                             .part = Resource::Part::current,
+                                             .image_desc = desc});
+  const std::uint32_t previous = add(Resource{.name = std::string(name) + ".previous",
+                                              .size = size,
+                                              .part = Resource::Part::previous,
+                                              .image_desc = std::move(desc)});
+  if (!shares_memory_) make_history(current, {});
+  return {{current}, {previous}};
 }
 
 BufferRef FramePlan::buffer(std::string name, VkDeviceSize size, VkBufferUsageFlags usage,
@@ -88,7 +89,7 @@ BufferRef FramePlan::buffer(std::string name, VkDeviceSize size, VkBufferUsageFl
 
 BufferRef FramePlan::import(const Buffer& buffer) {
   Resource resource{.name = buffer.name()};
-  resource.buffer = &buffer;
+  resource.buffers = {&buffer, &buffer};
   return {add(std::move(resource))};
 }
 
@@ -147,7 +148,9 @@ void FramePlan::only_when(const std::function<bool()>& condition,
   for (std::size_t i = first; i < passes_.size(); ++i) {
     std::function<bool()>& own = passes_[i].condition;
     own = [condition, own] { return condition() && (!own || own()); };
+    passes_[i].conditions.push_back(conditions_);
   }
+  ++conditions_;
 }
 
 PassBuilder FramePlan::host(std::string name, std::function<void()> run) {
@@ -157,7 +160,30 @@ PassBuilder FramePlan::host(std::string name, std::function<void()> run) {
   return add(std::move(pass));
 }
 
+void FramePlan::keep_images(bool keep) {
+  if (std::exchange(keeps_images_, keep) == keep || !compiled_ || !shares_memory_) return;
+  descriptor_pool_.reset();
+  release_shared();
+  make_resources();
+  make_descriptor_sets();
+}
+
+void FramePlan::finish_frames_from_here() {
+  cancelable_ = passes_.size();
+}
+
+bool FramePlan::holds(ImageRef image) const {
+  if (keeps_images() || std::ranges::find(kept_, image.index) != kept_.end()) return true;
+  const Resource& resource = resources_[image.index];
+  return is_history(image) ? !leaves_out(image.index) : !resource.shares;
+}
+
+bool FramePlan::is_history(ImageRef image) const {
+  return resources_[image.index].part != Resource::Part::none;
+}
+
 void FramePlan::compile() {
+  make_histories();
   make_resources();
   for (Pass& pass : passes_) {
     if (pass.is_host_only()) {
@@ -212,9 +238,10 @@ void FramePlan::make_descriptor_sets() {
           writer.sampled_image(binding.binding, physical(index, parity).view(),
                                resource.sampler ? resource.sampler : default_sampler_.handle());
         } else if (binding.type == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER) {
-          writer.texel_buffer(binding.binding, resource.buffer->texel_view(binding.format));
+          writer.texel_buffer(binding.binding,
+                              resource.buffers[parity]->texel_view(binding.format));
         } else {
-          writer.buffer(binding.binding, binding.type, resource.buffer->handle());
+          writer.buffer(binding.binding, binding.type, resource.buffers[parity]->handle());
         }
       }
       writer.apply();
@@ -239,7 +266,7 @@ bool FramePlan::execute(const std::function<bool()>& canceled) {
     const Pass& pass = passes_[i];
     timings_[i].milliseconds = -1.0f;  // not run
     // Where passes are timed by the clock, nothing is recorded that was not submitted.
-    if (canceled && timed_by_clock() && canceled()) return false;
+    if (i < cancelable_ && canceled && timed_by_clock() && canceled()) return false;
     barrier |= pass.barrier_before;
     if (pass.condition && !pass.condition()) {
       barrier |= !pass.program;
@@ -279,8 +306,9 @@ void FramePlan::run_host_kernel(const Pass& pass) const {
     const std::uint32_t index = pass.listed[i].resource;
     if (index == ImageRef().index) continue;
     const Resource& resource = resources_[index];
-    views[i] = resource.buffer ? HostView{resource.buffer->mapped(), resource.buffer->size()}
-                               : resource.images[parity_]->host();
+    const Buffer* const buffer = resource.buffers[parity_];
+    views[i] =
+        buffer ? HostView{buffer->mapped(), buffer->size()} : resource.images[parity_]->host();
   }
   std::array<std::byte, most_constants> constants;
   if (pass.constants) pass.constants(constants.data());
@@ -331,7 +359,7 @@ void FramePlan::record(const Pass& pass, VkCommandBuffer commands, std::uint32_t
     if (pass.rays) {
       pass.rays->launch(commands, threads.width);
     } else if (pass.indirect) {
-      vkCmdDispatchIndirect(commands, resources_[pass.indirect->first].buffer->handle(),
+      vkCmdDispatchIndirect(commands, get(BufferRef{pass.indirect->first}).handle(),
                             pass.indirect->second);
     } else {
       vkCmdDispatch(commands, groups(threads.width, pass.local_size.width),
@@ -422,7 +450,7 @@ const Image& FramePlan::latest(ImageRef image) const {
   return physical(image.index, parity_ ^ 1);
 }
 const Buffer& FramePlan::get(BufferRef buffer) const {
-  return *resources_[buffer.index].buffer;
+  return *resources_[buffer.index].buffers[parity_];
 }
 
 std::vector<std::uint8_t> FramePlan::read() const {
@@ -507,6 +535,7 @@ PassBuilder& PassBuilder::draw(std::function<void(VkCommandBuffer, VkPipelineLay
 
 PassBuilder& PassBuilder::when(std::function<bool()> condition) {
   plan_.passes_[pass_].condition = std::move(condition);
+  plan_.passes_[pass_].conditions = {plan_.conditions_++};
   return *this;
 }
 

@@ -179,9 +179,23 @@ class FramePlan {
   bool uses_host_kernels() const { return host_kernels_; }
 
   /// On devices that are processors, resources declared from now on share memory where no pass
-  /// needs both. They do not exist before compile(). Images keep their content until the next
-  /// frame begins, buffers of Memory::device for as long as passes read them.
+  /// needs both. They do not exist before compile(). Images and buffers of Memory::device keep
+  /// their content for as long as passes read them; histories, and images for keep(), until the
+  /// next frame begins. A history that only passes under a condition write has no defined content
+  /// after frames without them.
   void share_memory() { shares_memory_ = device_.is_cpu(); }
+  /// Before compile(): an image that can be read after every frame.
+  void keep(ImageRef image) { kept_.push_back(image.index); }
+  /// From the next frame on all images keep their content until another frame begins, and what
+  /// passes left out, instead of only those for keep(): more memory, in which histories stay.
+  void keep_images(bool keep);
+  bool keeps_images() const { return keeps_images_ || !shares_memory_; }
+  /// Whether the image can be read after a frame.
+  bool holds(ImageRef image) const;
+  bool is_history(ImageRef image) const;
+  /// A frame that has come to the passes declared from now on is not canceled any more. Of what
+  /// shares memory, they may take that of the frame before's histories.
+  void finish_frames_from_here();
 
   /// An image; mapped on CPU devices.
   ImageRef image(std::string_view name, VkFormat format, VkImageUsageFlags extra_usage = 0,
@@ -210,18 +224,23 @@ class FramePlan {
   void only_when(const std::function<bool()>& condition, const std::function<void()>& declare);
 
   /// The one image that comes back to the host with every frame, through read().
-  void read_back(ImageRef image) { read_back_ = image; }
+  void read_back(ImageRef image) {
+    read_back_ = image;
+    keep(image);
+  }
 
   /// Checks every pass against its shader and derives everything else; call once after the last
   /// pass. @throws GpuError naming pass, binding and what is wrong
   void compile();
 
   /// Runs all passes, waits for them, reads the timers and swaps the histories. `canceled` is asked
-  /// before each pass on CPU devices; where it returns true, the result is false, the remaining
-  /// passes do not run and histories do not swap. Images have no defined content then.
+  /// before each pass on CPU devices, up to finish_frames_from_here(); where it returns true, the
+  /// result is false, the remaining passes do not run and histories do not swap. Images have no
+  /// defined content then.
   bool execute(const std::function<bool()>& canceled = {});
   /// The frame that just ran, as read_back() asked for it: level 0, rows tightly packed.
   std::vector<std::uint8_t> read() const;
+  /// Of every pass, in order; below 0 where it did not run.
   const std::vector<PassTiming>& timings() const { return timings_; }
   /// The work behind the timings of the frame that just ran, in the same order. Copies counts back
   /// from the device: for measurements, not for every frame.
@@ -255,12 +274,27 @@ class FramePlan {
   struct Pass;
 
   std::uint32_t add(Resource resource);
-  /// Makes what a resource describes: with its own memory, or in its place of a block.
-  void make(Resource& resource, MemoryPlace place) const;
+  /// Makes what a resource describes: with its own memory, or in its places of blocks in even and
+  /// in odd frames.
+  void make(Resource& resource, const std::array<MemoryPlace, 2>& places) const;
+  /// The history whose `current` has this index, likewise; zeroed.
+  void make_history(std::uint32_t current, const std::array<MemoryPlace, 2>& places);
   /// What is left to make.
+  void make_histories();
   void make_resources();
+  void release_shared();
   /// Absent for what needs memory of its own.
   std::optional<Lifetime> shared_lifetime(std::uint32_t index) const;
+  Lifetime history_lifetime(std::uint32_t index) const;
+  struct Uses {
+    std::uint32_t first, last;  // passes
+    Access first_access;
+  };
+  std::optional<Uses> first_and_last_use(std::uint32_t index) const;
+  /// Whether frames may leave out the pass that uses the resource first; whether they may do so
+  /// and run another pass that uses it.
+  bool leaves_out(std::uint32_t index) const;
+  bool reads_left_out(std::uint32_t index) const;
   PassBuilder add(Pass pass);
   void run_host_kernel(const Pass& pass) const;
   void check_pass(const Pass& pass) const;
@@ -298,6 +332,14 @@ class FramePlan {
   VkQueryPool queries_ = VK_NULL_HANDLE;
   std::vector<PassTiming> timings_;
   std::vector<View> views_;
+  /// The two blocks of all histories, which change parts after every frame; null where histories
+  /// have memory of their own.
+  std::array<std::shared_ptr<const MemoryBlock>, 2> history_blocks_;
+  std::vector<std::pair<std::uint32_t, std::uint64_t>> history_offsets_;  // of `current` ones
+  std::vector<std::uint32_t> kept_;
+  std::uint32_t conditions_ = 0;              // of passes, made so far
+  std::size_t cancelable_ = ~std::size_t{0};  // passes in front of which a frame may be canceled
+  bool keeps_images_ = false;
   std::uint32_t parity_ = 0;
   bool host_kernels_ = false;
   bool shares_memory_ = false;

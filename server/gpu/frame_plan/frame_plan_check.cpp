@@ -170,7 +170,7 @@ std::vector<PassWork> FramePlan::work() const {
         const std::uint64_t texels = std::uint64_t{desc.extent.width} * desc.extent.height;
         work.image_bytes += texels * texel_bytes(desc.format) * (reads(use) + writes(use));
       } else if (work.entries == 0 && resource.name.ends_with(".ray_count")) {
-        const auto count = download_buffer(device_, *resource.buffer, sizeof(std::uint32_t));
+        const auto count = download_buffer(device_, *resource.buffers[0], sizeof(std::uint32_t));
         std::uint32_t entries = 0;
         std::memcpy(&entries, count.data(), sizeof entries);
         work.entries = entries;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "gpu/frame_plan/frame_plan_parts.hpp"
 #include "gpu/frame_plan/memory_plan.hpp"
@@ -23,19 +24,36 @@ VkMemoryRequirements requirements_of(const Device& device, const Resource& resou
 
 }  // namespace
 
-void FramePlan::make(Resource& resource, MemoryPlace place) const {
-  if (resource.image_desc) {
-    const auto made =
-        std::make_shared<const Image>(device_, *resource.image_desc, std::move(place));
-    // Passes may read what the passes that write it have skipped since the plan was made.
-    if (made->host() && !made->block()) made->clear();
-    resource.owned_images = {made, made};
-    resource.images = {made.get(), made.get()};
-  } else if (const auto& buffer = resource.buffer_desc) {
-    resource.owned_buffer = std::make_shared<const Buffer>(
-        device_, resource.name, buffer->size, buffer->usage, buffer->memory, std::move(place));
-    resource.buffer = resource.owned_buffer.get();
+void FramePlan::make(Resource& resource, const std::array<MemoryPlace, 2>& places) const {
+  const bool same = places[0].block == places[1].block;
+  for (std::size_t parity = 0; parity < 2; ++parity) {
+    auto& image = resource.owned_images[parity];
+    auto& buffer = resource.owned_buffers[parity];
+    if (parity == 1 && same) {
+      image = resource.owned_images[0];
+      buffer = resource.owned_buffers[0];
+    } else if (resource.image_desc) {
+      image = std::make_shared<const Image>(device_, *resource.image_desc, places[parity]);
+      // Passes may read what the passes that write it have skipped since the plan was made.
+      if (image->host() && !image->block()) image->clear();
+    } else if (const auto& desc = resource.buffer_desc) {
+      buffer = std::make_shared<const Buffer>(device_, resource.name, desc->size, desc->usage,
+                                              desc->memory, places[parity]);
+    }
+    resource.images[parity] = image.get();
+    resource.buffers[parity] = buffer.get();
   }
+}
+
+void FramePlan::make_history(std::uint32_t current, const std::array<MemoryPlace, 2>& places) {
+  Resource& written = resources_[current];
+  Resource& read = resources_[current + 1];
+  for (std::size_t parity = 0; parity < 2; ++parity) {
+    auto& image = written.owned_images[parity];
+    image = std::make_shared<const Image>(device_, *written.image_desc, places[parity]);
+    written.images[parity] = read.images[parity ^ 1] = image.get();
+  }
+  reset({{current}, {current + 1}});
 }
 
 std::optional<Lifetime> FramePlan::shared_lifetime(std::uint32_t index) const {
@@ -46,27 +64,113 @@ std::optional<Lifetime> FramePlan::shared_lifetime(std::uint32_t index) const {
     return std::nullopt;
   }
   if (resource.image_desc && !resource.image_desc->mapped) return std::nullopt;
-  std::optional<Lifetime> lifetime;
+  const auto uses = first_and_last_use(index);
+  // What comes from the frame before stays.
+  if (!uses || uses->first_access != Access::write) return std::nullopt;
+  Lifetime lifetime{.first = uses->first, .last = uses->last};
+  // Something is left from the frame before where a pass is skipped.
+  if (resource.image_desc && (keeps_images_ ? leaves_out(index) : reads_left_out(index))) {
+    return std::nullopt;
+  }
+  if (resource.image_desc && keeps_images_) {
+    lifetime.last = static_cast<std::uint32_t>(passes_.size());
+  }
+  if (std::ranges::find(kept_, index) != kept_.end()) {
+    lifetime.last = static_cast<std::uint32_t>(passes_.size());
+  }
+  const VkMemoryRequirements needed = requirements_of(device_, resource);
+  lifetime.bytes = needed.size;
+  lifetime.alignment = needed.alignment;
+  return lifetime;
+}
+
+std::optional<FramePlan::Uses> FramePlan::first_and_last_use(std::uint32_t index) const {
+  std::optional<Uses> found;
   for (std::uint32_t i = 0; i < passes_.size(); ++i) {
-    const Pass& pass = passes_[i];
-    for (const Use& use : pass.all_uses()) {
+    for (const Use& use : passes_[i].all_uses()) {
       if (use.resource != index) continue;
-      if (!lifetime) {
-        // What comes from the frame before stays, or is left from it where a pass is skipped.
-        if (use.access != Access::write) return std::nullopt;
-        if (resource.image_desc && pass.condition) return std::nullopt;
-        lifetime.emplace().first = i;
-      }
-      lifetime->last = i;
+      if (!found) found = Uses{i, i, use.access};
+      found->last = i;
     }
   }
-  if (!lifetime) return std::nullopt;
-  // Every image can be looked at after the frame.
-  if (resource.image_desc) lifetime->last = static_cast<std::uint32_t>(passes_.size());
-  const VkMemoryRequirements needed = requirements_of(device_, resource);
-  lifetime->bytes = needed.size;
-  lifetime->alignment = needed.alignment;
+  return found;
+}
+
+bool FramePlan::leaves_out(std::uint32_t index) const {
+  const auto uses = first_and_last_use(index);
+  return uses && passes_[uses->first].condition;
+}
+
+bool FramePlan::reads_left_out(std::uint32_t index) const {
+  const auto uses = first_and_last_use(index);
+  if (!uses) return false;
+  const bool history = resources_[index].part == Resource::Part::current;
+  const auto is_it = [&](const Use& use) {
+    return use.resource == index || (history && use.resource == index + 1);
+  };
+  const auto& written = passes_[uses->first].conditions;
+  return std::ranges::any_of(passes_, [&](const Pass& pass) {
+    const auto all = pass.all_uses();
+    return std::ranges::any_of(all, is_it) &&
+           !std::ranges::all_of(written, [&](std::uint32_t condition) {
+             return std::ranges::find(pass.conditions, condition) != pass.conditions.end();
+           });
+  });
+}
+
+// Until it is written, the image of this frame is free for what the passes before it need. That of
+// the frame before is needed again when the frame is canceled.
+Lifetime FramePlan::history_lifetime(std::uint32_t index) const {
+  const auto passes = static_cast<std::uint32_t>(passes_.size());
+  const bool current = resources_[index].part == Resource::Part::current;
+  const std::uint32_t written = current ? index : index - 1;
+  const auto uses = first_and_last_use(written);
+  Lifetime lifetime{.last = passes};
+  // What is left from a frame that does not write it stays.
+  if (!uses || uses->first_access != Access::write) return lifetime;
+  if (keeps_images_ ? leaves_out(written) : reads_left_out(written)) return lifetime;
+  if (current) {
+    lifetime.first = uses->first;
+  } else if (cancelable_ < passes) {
+    const auto read = first_and_last_use(index);
+    const auto needed = static_cast<std::uint32_t>(cancelable_);
+    lifetime.last = std::max(needed, read ? read->last + 1 : 1) - 1;
+  }
   return lifetime;
+}
+
+// All histories lie in the same order in two blocks, one of which is what the frame writes, the
+// other what it reads. What is written at the same time lies side by side: so does the memory that
+// is free until then.
+void FramePlan::make_histories() {
+  std::vector<std::uint32_t> pending;
+  for (std::uint32_t i = 0; i < resources_.size(); ++i) {
+    if (resources_[i].part == Resource::Part::current && !resources_[i].is_made()) {
+      pending.push_back(i);
+    }
+  }
+  std::ranges::stable_sort(pending, {}, [&](std::uint32_t i) { return history_lifetime(i).first; });
+  VkMemoryRequirements all{.size = 0, .alignment = 1, .memoryTypeBits = ~0u};
+  for (const std::uint32_t i : pending) {
+    const VkMemoryRequirements needed = requirements_of(device_, resources_[i]);
+    const VkDeviceSize offset =
+        (all.size + needed.alignment - 1) / needed.alignment * needed.alignment;
+    history_offsets_.emplace_back(i, offset);
+    all.size = offset + needed.size;
+    all.memoryTypeBits &= needed.memoryTypeBits;
+  }
+  if (pending.empty()) return;
+  if (all.size > most_block_bytes) {
+    history_offsets_.clear();
+    for (const std::uint32_t i : pending) make_history(i, {});
+    return;
+  }
+  for (auto& block : history_blocks_) {
+    block = std::make_shared<const MemoryBlock>(device_, all, "histories");
+  }
+  for (const auto& [i, offset] : history_offsets_) {
+    make_history(i, {{{history_blocks_[0], offset}, {history_blocks_[1], offset}}});
+  }
 }
 
 // Every pass is a submit of its own on the devices where memory is shared: what a pass writes where
@@ -82,18 +186,43 @@ void FramePlan::make_resources() {
       all.memoryTypeBits &= requirements_of(device_, resources_[i]).memoryTypeBits;
     }
   }
-  const MemoryPlan plan = plan_memory(lifetimes, most_block_bytes);
-  std::vector<std::shared_ptr<const MemoryBlock>> blocks;
+  // Block 0 is what this frame writes, block 1 what the frame before has written.
+  std::vector<FixedPlace> histories;
+  for (const auto& [current, offset] : history_offsets_) {
+    for (std::uint32_t part = 0; part < 2; ++part) {
+      histories.push_back({history_lifetime(current + part), {part, offset}});
+      histories.back().lifetime.bytes = requirements_of(device_, resources_[current]).size;
+    }
+  }
+  const MemoryPlan plan = plan_memory(lifetimes, most_block_bytes, histories);
+  std::vector<std::array<std::shared_ptr<const MemoryBlock>, 2>> blocks;
   for (const std::uint64_t bytes : plan.block_bytes) {
+    if (!histories.empty() && blocks.size() < 2) {
+      const std::size_t part = blocks.size();
+      blocks.push_back({history_blocks_[part], history_blocks_[part ^ 1]});
+      continue;
+    }
     all.size = bytes;
-    blocks.push_back(std::make_shared<const MemoryBlock>(device_, all, "a frame's resources"));
+    const auto block = std::make_shared<const MemoryBlock>(device_, all, "a frame's resources");
+    blocks.push_back({block, block});
   }
   for (std::size_t i = 0; i < shared.size(); ++i) {
-    const MemoryPlan::Place& place = plan.places[i];
-    make(resources_[shared[i]], {blocks[place.block], place.offset});
+    const auto& [block, offset] = plan.places[i];
+    resources_[shared[i]].shares = true;
+    make(resources_[shared[i]], {{{blocks[block][0], offset}, {blocks[block][1], offset}}});
   }
   for (Resource& resource : resources_) {
     if (!resource.is_made()) make(resource, {});
+  }
+}
+
+void FramePlan::release_shared() {
+  for (std::uint32_t i = 0; i < resources_.size(); ++i) {
+    Resource& resource = resources_[i];
+    const bool image = resource.part == Resource::Part::none && resource.image_desc;
+    if (!std::exchange(resource.shares, false) && !image) continue;
+    const auto uses = first_and_last_use(i);
+    if (uses && uses->first_access == Access::write) resource.forget();
   }
 }
 
@@ -109,9 +238,12 @@ std::uint64_t FramePlan::memory_bytes() const {
     bytes += block->size();
   };
   for (const Resource& resource : resources_) {
-    count(resource.owned_buffer.get());
-    count(resource.owned_images[0].get());
-    if (resource.owned_images[1] != resource.owned_images[0]) count(resource.owned_images[1].get());
+    const auto& [even, odd] = resource.owned_images;
+    count(even.get());
+    if (odd != even) count(odd.get());
+    const auto& [buffer, odd_buffer] = resource.owned_buffers;
+    count(buffer.get());
+    if (odd_buffer != buffer) count(odd_buffer.get());
   }
   return bytes;
 }

@@ -13,20 +13,31 @@ struct FramePlan::Resource {
     Memory memory;
   };
 
+  /// The part that a resource has in a history.
+  enum class Part { none, current, previous };
+
   std::string name;
   FrameSize size{0, 0};  // of an image
-  // By parity of the frame; both the same except for histories.
+  Part part = Part::none;
+  // By parity of the frame; both the same except for histories, and for what shares their memory.
   std::array<const Image*, 2> images{};
-  const Buffer* buffer = nullptr;
+  std::array<const Buffer*, 2> buffers{};
   std::array<std::shared_ptr<const Image>, 2> owned_images{};
-  std::shared_ptr<const Buffer> owned_buffer;
+  std::array<std::shared_ptr<const Buffer>, 2> owned_buffers{};
   std::optional<std::uint32_t> level;
   VkSampler sampler = VK_NULL_HANDLE;
   // What is still to be made by compile(), when it is known which resources share memory.
   std::optional<ImageDesc> image_desc;
   std::optional<BufferDesc> buffer_desc;
+  bool shares = false;  // memory with others
 
-  bool is_made() const { return images[0] || buffer; }
+  bool is_made() const { return images[0] || buffers[0]; }
+  void forget() {
+    images = {};
+    buffers = {};
+    owned_images = {};
+    owned_buffers = {};
+  }
 };
 
 struct FramePlan::Pass {
@@ -58,6 +69,7 @@ struct FramePlan::Pass {
   std::size_t kernel_constants_size = 0;
   std::function<bool()> kernel_known;  // empty: in every frame
   std::function<bool()> condition;
+  std::vector<std::uint32_t> conditions;  // numbers of those that it is made of
 
   bool barrier_before = false;
   std::array<VkDescriptorSet, 2> sets{};

@@ -25,9 +25,16 @@ struct MemoryPlan {
   std::vector<std::uint64_t> block_bytes;  // how large each block of memory is
 };
 
+/// A resource whose place is given. Blocks that have such resources grow no further than these.
+struct FixedPlace {
+  Lifetime lifetime;
+  MemoryPlan::Place place;
+};
+
 /// Places resources in as little memory as first fit finds, the largest first, such that those
 /// alive in the same pass never overlap. No block is larger than `most_block_bytes`, unless one
-/// resource is: that has a block of its own.
-MemoryPlan plan_memory(std::span<const Lifetime> lifetimes, std::uint64_t most_block_bytes);
+/// resource is: that has a block of its own. `fixed`: what lies in the first blocks already.
+MemoryPlan plan_memory(std::span<const Lifetime> lifetimes, std::uint64_t most_block_bytes,
+                       std::span<const FixedPlace> fixed = {});
 
 }  // namespace heliograph::gpu

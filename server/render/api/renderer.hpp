@@ -55,6 +55,13 @@ class Renderer {
   /// Refused as check_buffer_name says. Where the passes write no such buffer, the output is shown.
   protocol::Result<void> set_settings(const protocol::Settings& settings);
 
+  /// Whether all buffers can be read after the frames from the next one on, as they can at first:
+  /// that takes more memory. Otherwise these: the output, its radiance, and what was picked from.
+  /// Nothing else follows from it.
+  void keep_buffers(bool keep);
+  /// Whether the last frame kept them.
+  bool has_buffers() const;
+
   /// False once a static view has all its samples and nothing has changed since.
   bool needs_frame() const;
   /// Renders the next frame; the empty scene is black.

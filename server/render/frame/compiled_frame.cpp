@@ -12,13 +12,16 @@
 namespace heliograph::render {
 
 CompiledFrame::CompiledFrame(const Engine::Parts& parts, const FrameInputs& in,
-                             const gpu::Buffer& constants_buffer, VkExtent2D extent)
+                             const gpu::Buffer& constants_buffer, VkExtent2D extent,
+                             bool keeps_buffers)
     : inputs(in), pool(parts.device, 2, 16), plan(parts.device, extent) {
   plan.use_host_kernels(parts.host_kernels);
   plan.share_memory();
   share_sets(parts, constants_buffer);
   outputs = declare_frame(plan, inputs);
   plan.read_back(outputs.output);
+  plan.keep(outputs.radiance);
+  plan.keep_images(keeps_buffers);
   plan.compile();
   list_buffers();
 }
@@ -54,7 +57,8 @@ void CompiledFrame::list_buffers() {
 
 std::optional<CompiledFrame::DrawnImage> CompiledFrame::find(std::string_view buffer) const {
   for (const auto& view : plan.views()) {
-    if (view.name == buffer) return latest(view.image);
+    if (view.name != buffer) continue;
+    return plan.holds(view.image) ? std::optional(latest(view.image)) : std::nullopt;
   }
   return std::nullopt;
 }

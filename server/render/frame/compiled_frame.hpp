@@ -14,9 +14,10 @@ namespace heliograph::render {
 /// The plan of a frame with the resources that it keeps alive: one scene at one size, made of the
 /// passes that the settings asked for when it was made.
 struct CompiledFrame {
-  /// References in `inputs`, and `constants_buffer`, outlive this.
+  /// References in `inputs`, and `constants_buffer`, outlive this. `keeps_buffers`: whether all
+  /// images can be read after a frame, or just the output and the histories.
   CompiledFrame(const Engine::Parts& parts, const FrameInputs& inputs,
-                const gpu::Buffer& constants_buffer, VkExtent2D extent);
+                const gpu::Buffer& constants_buffer, VkExtent2D extent, bool keeps_buffers);
 
   /// An image as of the last frame, and how much of it, from the first texel, was drawn.
   struct DrawnImage {
@@ -24,7 +25,7 @@ struct CompiledFrame {
     VkExtent2D drawn;
   };
   DrawnImage latest(gpu::ImageRef image) const { return {plan.latest(image), plan.drawn(image)}; }
-  /// That of a name, if there is one.
+  /// That of a name, if there is one and it was kept.
   std::optional<DrawnImage> find(std::string_view buffer) const;
 
   FrameInputs inputs;

@@ -107,12 +107,15 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   std::optional<DenoisedSignals> denoised;
   if (from) denoised = denoise(plan, in, gbuffer, *from, noisy);
 
+  // What is left takes little time, unless it traces rays.
+  const bool traces_reference = reference == protocol::ReferenceUse::when_static;
+  const bool traces = traces_reference || (in.scene.features & shared::scene_blends) != 0;
+  if (!traces) plan.finish_frames_from_here();
   const gpu::ImageRef background = draw_skybox(plan, in, gbuffer);
   const Composed composed = compose(plan, in, gbuffer, noisy, denoised, background);
   GBuffer visible = gbuffer;
   visible.motion = blend_surfaces(plan, in, gbuffer, composed, blended);
 
-  const bool traces_reference = reference == protocol::ReferenceUse::when_static;
   const gpu::History accumulated =
       accumulate(plan, in, traces_reference ? trace_reference(plan, in) : composed.noisy);
   const Exposure exposure = expose(plan, in, composed.hdr, accumulated.current);

@@ -62,6 +62,12 @@ struct Renderer::State {
   void change_settings(const protocol::Settings& changed);
   void use_newest_shaders();
   Frame output();
+  /// Whether all buffers of the next frame are kept: a view of one of them needs them, too.
+  bool buffers_needed() const {
+    const std::string& shown = settings.view.buffer;
+    return keeps_buffers ||
+           (shown != present_buffers.output.name && shown != present_buffers.radiance.name);
+  }
   std::optional<FloatImage> read(std::string_view name) const;
   std::uint32_t target_samples() const {
     return settings.accumulation.enabled
@@ -82,6 +88,8 @@ struct Renderer::State {
   FrameClock clock;
   float shown_mean_weight = 0.0f;  // in the last frame's output
   SceneMotion scene_motion;
+  bool keeps_buffers = true;          // as requested
+  bool has_buffers = false;           // of the last frame
   bool stale = true;                  // something changed since the last frame
   std::uint64_t shader_version = 0;   // of ShaderReload::version, as of the last frame
   std::uint64_t program_version = 0;  // of ShaderReload::program_version, likewise
@@ -113,8 +121,10 @@ void Renderer::State::rebuild_frame_plan() {
                            parts.sheen_table,
                            parts.ltc_table,
                            extent};
-  compiled = std::make_unique<CompiledFrame>(parts, inputs, constants_buffer, extent);
+  compiled =
+      std::make_unique<CompiledFrame>(parts, inputs, constants_buffer, extent, buffers_needed());
   compiled->plan.set_drawn(drawn());
+  has_buffers = false;
   has_previous = false;
   sample_index = 0;
   restart_accumulation();
@@ -266,7 +276,16 @@ protocol::Result<void> Renderer::set_settings(const protocol::Settings& settings
   return {};
 }
 
+void Renderer::keep_buffers(bool keep) {
+  state_->keeps_buffers = keep;
+}
+
+bool Renderer::has_buffers() const {
+  return state_->has_buffers;
+}
+
 bool Renderer::needs_frame() const {
+  if (state_->keeps_buffers && !state_->has_buffers) return true;
   const auto& reload = state_->parts.shader_reload;
   if (reload && reload->version() != state_->shader_version) return true;
   if (state_->stale || state_->clock.samples < state_->target_samples()) return true;
@@ -285,6 +304,8 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
   const auto start = std::chrono::steady_clock::now();
   state.use_newest_shaders();
   state.stale = false;
+  state.has_buffers = false;
+  state.compiled->plan.keep_images(state.buffers_needed());
   bool moves = state.moving->advance();
   // Without a frame before there is no motion since.
   if (!state.has_previous) moves |= state.moving->advance();
@@ -312,6 +333,7 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
     state.stale = true;
     return std::nullopt;
   }
+  state.has_buffers = state.compiled->plan.keeps_images();
   state.shown_mean_weight = mean_weight(state.compiled->inputs);
   if (state.clock.samples == 0) {
     state.clock.first_counts = !leaves_samples_out(state.compiled->inputs);
@@ -331,7 +353,13 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
   for (const auto& timing : state.compiled->plan.timings()) {
     if (timing.milliseconds < 0.0f) continue;
     const auto kind = timing.host ? protocol::PassKind::host : protocol::PassKind::device;
-    frame.passes.push_back({timing.name, kind, timing.milliseconds});
+    // Strips of rays are passes of one name.
+    const auto known = std::ranges::find(frame.passes, timing.name, &PassTime::name);
+    if (known == frame.passes.end()) {
+      frame.passes.push_back({timing.name, kind, timing.milliseconds});
+    } else {
+      known->milliseconds += timing.milliseconds;
+    }
   }
   const auto elapsed = std::chrono::steady_clock::now() - start;
   frame.milliseconds = std::chrono::duration<float, std::milli>(elapsed).count();
@@ -341,7 +369,12 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
 std::vector<PassWork> Renderer::work() const {
   std::vector<PassWork> all;
   for (const auto& pass : state_->compiled->plan.work()) {
-    all.push_back({pass.name, pass.image_bytes, pass.entries});
+    const auto known = std::ranges::find(all, pass.name, &PassWork::name);
+    if (known == all.end()) {
+      all.push_back({pass.name, pass.image_bytes, pass.entries});
+    } else {
+      known->rays += pass.entries;  // in the same images
+    }
   }
   return all;
 }

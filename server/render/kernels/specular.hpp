@@ -4,6 +4,7 @@
 
 #include "render/kernels/common/frame_job.hpp"
 #include "render/kernels/common/ray_sink.hpp"
+#include "render/kernels/common/tile.hpp"
 #include "render/resources/host_tables.hpp"
 
 /// Reflections on all processors, in vectors.
@@ -30,6 +31,7 @@ struct SpecularRaysConstants {
 struct SpecularRaysJob : FrameJob<SpecularRaysBindings, SpecularRaysConstants> {
   bool layered;  // materials of the scene have layers
   LobeTables tables;
+  Rows rows;  // of cells, whose rays are made
 };
 void specular_rays(const SpecularRaysJob& job);
 

@@ -145,7 +145,7 @@ void specular_rays(const SpecularRaysJob& job) {
   const auto cells = [scale](std::uint32_t size) {
     return (static_cast<int>(size) + scale - 1) / scale;
   };
-  for_each_tile(cells(job.frame.extent.x), cells(job.frame.extent.y), [&](const Tile& tile) {
+  for_each_tile(cells(job.frame.extent.x), cells(job.frame.extent.y), job.rows, [&](const Tile& tile) {
     HWY_DYNAMIC_DISPATCH(make_tile)(job, tile);
   });
   job.rays.end();

@@ -4,6 +4,7 @@
 
 #include "render/kernels/common/frame_job.hpp"
 #include "render/kernels/common/ray_sink.hpp"
+#include "render/kernels/common/tile.hpp"
 
 namespace heliograph::render::kernels {
 
@@ -23,6 +24,7 @@ struct ShadowRaysJob : FrameJob<ShadowRaysBindings, VisibilityRaysConstants> {
   bool layered;                           // materials of the scene have layers
   std::span<const shared::Light> lights;  // the environment's sun among them
   LobeTables tables;
+  Rows rows;  // whose rays are made
 };
 
 /// One ray per pixel toward one light, on all processors, in the widest vectors that they have.
@@ -36,7 +38,9 @@ struct AmbientRaysBindings {
   gpu::Read<Stage> planned;      // as above
   gpu::Write<Stage> visibility;  // as above
 };
-using AmbientRaysJob = FrameJob<AmbientRaysBindings, VisibilityRaysConstants>;
+struct AmbientRaysJob : FrameJob<AmbientRaysBindings, VisibilityRaysConstants> {
+  Rows rows;  // as above
+};
 
 /// One ray per pixel over the hemisphere.
 void ambient_rays(const AmbientRaysJob& job);

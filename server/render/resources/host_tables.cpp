@@ -243,8 +243,17 @@ Environment copy_environment(const scene::Environment& map, const gpu::Image& pr
   copy.map = {map.width, map.height, {}};
   copy.map.values.resize(map.radiance.size() * 3);
   std::memcpy(copy.map.values.data(), map.radiance.data(), map.radiance.size() * sizeof(glm::vec3));
+  const auto size_of = [&](std::uint32_t level) {
+    return std::max(prefiltered.desc().extent.width >> level, 1u);
+  };
+  std::size_t floats = 0;
   for (std::uint32_t level = 0; level < prefiltered.desc().levels; ++level) {
-    const std::uint32_t size = std::max(prefiltered.desc().extent.width >> level, 1u);
+    const std::size_t side = size_of(level) + 2;
+    floats += 6 * 4 * side * side;
+  }
+  copy.cube.reserve(floats);
+  for (std::uint32_t level = 0; level < prefiltered.desc().levels; ++level) {
+    const std::uint32_t size = size_of(level);
     std::array<std::vector<glm::vec4>, 6> faces;
     for (std::uint32_t face = 0; face < 6; ++face) {
       faces[face] = download_face(prefiltered, face, level);

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
+#include <string_view>
+#include <utility>
 
 namespace heliograph::render {
 namespace {
@@ -57,12 +60,33 @@ void copy_texels(const HeapPlan::Slot& slot, std::span<const std::uint8_t> pixel
   std::memcpy(heap + slot.first, &pixels[slot.skipped * 4], slot.kept * 4);
 }
 
+/// Finds images that have the same texels as one before, by their encoded files.
+class KnownImages {
+ public:
+  /// The number of the first such image; `number` where there is none.
+  std::size_t first_like(const scene::Image& image, std::size_t number) {
+    if (!image.file) return number;
+    const std::string_view content(reinterpret_cast<const char*>(image.file->data()),
+                                   image.file->size());
+    return numbers_.try_emplace({image.srgb, content}, number).first->second;
+  }
+
+ private:
+  std::map<std::pair<bool, std::string_view>, std::size_t> numbers_;
+};
+
 /// @throws gpu::GpuError when the images do not fit into `most_texels`
 HeapPlan plan_heap(const scene::Scene& scene, std::uint64_t most_texels) {
   const std::uint32_t longest = longest_side_that_fits(scene, most_texels);
   HeapPlan plan;
+  KnownImages known;
   for (const scene::Image& image : scene.images) {
     const std::uint32_t level = first_level(image, longest);
+    const std::size_t first = known.first_like(image, plan.slots.size());
+    if (first < plan.slots.size()) {
+      plan.slots.push_back({plan.slots[first].skipped, 0, plan.slots[first].first});
+      continue;
+    }
     plan.slots.push_back(
         {texels(image, 0, level), texels(image, level, image.levels), plan.texels});
     plan.texels += plan.slots.back().kept;

@@ -22,8 +22,8 @@ struct TextureHeap {
 struct HeapPlan {
   struct Slot {             // of an image, texels
     std::uint64_t skipped;  // levels of it that are left out
-    std::uint64_t kept;
-    std::uint64_t first;  // in the heap
+    std::uint64_t kept;     // 0 where an image before has the same texels
+    std::uint64_t first;    // in the heap
   };
   std::vector<Slot> slots;
   std::vector<shared::HeapTexture> textures;

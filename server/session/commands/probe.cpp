@@ -64,28 +64,29 @@ Inspection inspect(const render::Renderer& renderer, const RenderState& state, g
   return inspection;
 }
 
-/// Adds a method that reads from the frame at a point.
+/// Adds a method that reads from the frame at a point. `reads_buffers`: see Probe.
 template <class Method, class Read>
-void add_probe(protocol::Dispatcher& dispatcher, SessionHost& host, Read read) {
-  dispatcher.add<Method>([&host, read](const ImagePoint& request,
-                                       const protocol::CallContext& context,
-                                       protocol::Completion<typename Method::Result> done) {
-    const auto session = host.sessions().session_of(context);
-    if (!session) return done(session.error());
-    const glm::vec2 point(request.x, request.y);
-    const Result<void> accepted = (*session)->captures().request_probe(
-        {.read = [read, point, done](
-                     render::Renderer& renderer,
-                     const RenderState& state) { done(read(renderer, state, point)); },
-         .fail = [done](const protocol::Error& error) { done(error); }});
-    if (!accepted) done(accepted.error());
-  });
+void add_probe(protocol::Dispatcher& dispatcher, SessionHost& host, bool reads_buffers, Read read) {
+  dispatcher.add<Method>(
+      [&host, reads_buffers, read](const ImagePoint& request, const protocol::CallContext& context,
+                                   protocol::Completion<typename Method::Result> done) {
+        const auto session = host.sessions().session_of(context);
+        if (!session) return done(session.error());
+        const glm::vec2 point(request.x, request.y);
+        const Result<void> accepted = (*session)->captures().request_probe(
+            {.reads_buffers = reads_buffers,
+             .read = [read, point, done](
+                         render::Renderer& renderer,
+                         const RenderState& state) { done(read(renderer, state, point)); },
+             .fail = [done](const protocol::Error& error) { done(error); }});
+        if (!accepted) done(accepted.error());
+      });
 }
 
 }  // namespace
 
 void add_probe_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
-  add_probe<methods::scene_pick>(dispatcher, host,
+  add_probe<methods::scene_pick>(dispatcher, host, false,
                                  [](const render::Renderer& renderer, const RenderState& state,
                                     glm::vec2 point) -> Result<PickResult> {
                                    if (!state.scene)
@@ -93,7 +94,7 @@ void add_probe_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
                                    return pick(renderer, *state.scene, point);
                                  });
   add_probe<methods::frame_inspect>(
-      dispatcher, host,
+      dispatcher, host, true,
       [](const render::Renderer& renderer, const RenderState& state,
          glm::vec2 point) -> Result<Inspection> { return inspect(renderer, state, point); });
 }

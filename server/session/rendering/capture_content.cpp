@@ -135,6 +135,11 @@ std::vector<std::uint8_t> image_file(const render::Frame& frame, ImageFormat for
 
 }  // namespace
 
+bool reads_other_buffers(std::string_view buffer, ImageFormat format) {
+  if (buffer == radiance_buffer) return false;
+  return buffer != output_buffer || format == ImageFormat::exr;
+}
+
 Result<CaptureContent> read_content(render::Renderer& renderer, std::string_view buffer,
                                     ImageFormat format) {
   const bool as_image = format == ImageFormat::png || format == ImageFormat::jpeg ||

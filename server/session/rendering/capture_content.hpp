@@ -25,6 +25,9 @@ struct CaptureContent {
   std::variant<render::Frame, render::FloatImage, std::vector<stream::ExrChannel>> values;
 };
 
+/// Whether read_content() reads buffers that not every frame keeps: render::Renderer::keep_buffers.
+bool reads_other_buffers(std::string_view buffer, protocol::ImageFormat format);
+
 /// Reads the buffer as of the last frame.
 protocol::Result<CaptureContent> read_content(render::Renderer& renderer, std::string_view buffer,
                                               protocol::ImageFormat format);

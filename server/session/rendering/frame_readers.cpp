@@ -1,5 +1,6 @@
 #include "session/rendering/frame_readers.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <utility>
@@ -63,6 +64,13 @@ void FrameReaders::fail_captures_of_departed() {
   });
 }
 
+bool FrameReaders::read_buffers() const {
+  return std::ranges::any_of(probes_, [](const auto& it) { return it.probe.reads_buffers; }) ||
+         std::ranges::any_of(captures_, [](const auto& it) {
+           return reads_other_buffers(it.request.buffer, it.request.format);
+         });
+}
+
 std::optional<Ticket> FrameReaders::first_ticket() const {
   std::optional<Ticket> first;
   for (const PendingCapture& capture : captures_) first = earliest(first, capture.request.ticket);
@@ -79,6 +87,7 @@ bool FrameReaders::comes_after_steps(const ReadableFrame& frame,
 void FrameReaders::answer_probes(const ReadableFrame& frame) {
   std::erase_if(probes_, [&](const PendingProbe& pending) {
     if (!shows_state_since(frame, pending.requested)) return false;
+    if (pending.probe.reads_buffers && !frame.renderer.has_buffers()) return false;
     if (comes_after_steps(frame, pending.probe.ticket)) return false;
     pending.probe.read(frame.renderer, frame.state);
     return true;
@@ -103,6 +112,8 @@ bool FrameReaders::answer_captures(const ReadableFrame& frame) {
 
 bool FrameReaders::is_ready(const PendingCapture& capture, const ReadableFrame& frame) const {
   const RenderState& state = frame.state;
+  const bool reads_buffers = reads_other_buffers(capture.request.buffer, capture.request.format);
+  if (reads_buffers && !frame.renderer.has_buffers()) return false;
   if (frame.lockstep) return frame.stepped && !comes_after_steps(frame, capture.request.ticket);
   if (!frame.full_size || !shows_state_since(frame, capture.requested)) return false;
   const render::Frame& newest = frame.newest->frame;

@@ -33,6 +33,8 @@ class FrameReaders {
   void collect();
   bool empty() const { return captures_.empty() && probes_.empty(); }
   bool has_captures() const { return !captures_.empty(); }
+  /// Whether one of them reads buffers that not every frame keeps.
+  bool read_buffers() const;
   /// In lockstep: the first ticket of all.
   std::optional<Ticket> first_ticket() const;
 

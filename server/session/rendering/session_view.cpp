@@ -22,6 +22,9 @@ constexpr float max_frame_seconds = 1.0f;
 constexpr std::chrono::seconds retry_delay{1};
 /// Frames of static views trace every sample: about how much longer they take than moving ones.
 constexpr int refining_frame_factor = 2;
+/// Frames keep their buffers for so long after one was read: another one often follows, and the
+/// change takes as long as a frame.
+constexpr std::chrono::seconds keep_buffers_after{10};
 
 std::uint32_t microseconds_of(Clock::duration duration) {
   return static_cast<std::uint32_t>(duration_cast<microseconds>(duration).count());
@@ -80,6 +83,7 @@ bool SessionView::watched() const {
 
 void SessionView::make_renderer() {
   renderer_ = std::make_unique<render::Renderer>(engine_);
+  renderer_->keep_buffers(false);
   needed_at_ = Clock::now();
   state_ = {};
   apply(session_->render_state().settings);
@@ -122,6 +126,7 @@ SessionView::Work SessionView::advance(bool may_draw) {
     release_renderer();
     return Work::none;
   }
+  keep_buffers();
   if (session_->timeline().in_lockstep()) return advance_step(may_draw);
   newest_stepped_ = false;
   adopt_state();
@@ -286,6 +291,13 @@ void SessionView::measure_frame(ViewState state, Clock::duration taken) {
   } else if (!known) {
     full_frame_time_ = full / refining_frame_factor;
   }
+}
+
+/// What will be read after a step is not known before it.
+void SessionView::keep_buffers() {
+  if (readers_.read_buffers()) buffers_read_at_ = Clock::now();
+  renderer_->keep_buffers(session_->timeline().in_lockstep() ||
+                          Clock::now() < buffers_read_at_ + keep_buffers_after);
 }
 
 bool SessionView::is_full_size() const {

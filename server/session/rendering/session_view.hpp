@@ -70,6 +70,7 @@ class SessionView {
   void adopt_draw_scale();
   void set_draw_scale(float scale);
   void measure_frame(ViewState state, Clock::duration taken);
+  void keep_buffers();
   bool is_full_size() const;
   bool needs_frame() const;
   ViewInputs view_inputs() const;
@@ -96,9 +97,10 @@ class SessionView {
   float draw_scale_ = 1.0f;            // of the renderer
   Clock::duration full_frame_time_{};  // that moving frames take at full size; zero: not known
   std::shared_ptr<const RenderedFrame> newest_;
-  std::uint64_t newest_version_ = 0;  // of the state that it shows
-  bool newest_stepped_ = false;       // it was rendered in lockstep
-  bool discontinuous_ = true;         // the next frame does not continue the last one
+  std::uint64_t newest_version_ = 0;     // of the state that it shows
+  bool newest_stepped_ = false;          // it was rendered in lockstep
+  Clock::time_point buffers_read_at_{};  // last time that a reader of buffers waited
+  bool discontinuous_ = true;            // the next frame does not continue the last one
   std::uint64_t discontinuities_ = 0;
   std::uint32_t render_count_ = 0;
   std::deque<Clock::time_point> frame_times_;  // ends of frames in the last second

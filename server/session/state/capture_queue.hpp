@@ -45,6 +45,8 @@ struct CaptureRequest {
 
 /// Something to read from a frame that shows a session's state, on the render thread.
 struct Probe {
+  /// Whether it reads buffers that not every frame keeps: render::Renderer::keep_buffers().
+  bool reads_buffers = false;
   /// In lockstep only; given by the session.
   std::optional<Ticket> ticket;
   /// Called once, with the renderer right after it rendered that state. Must not block.

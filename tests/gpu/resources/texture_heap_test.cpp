@@ -121,6 +121,29 @@ TEST_P(TextureHeap, MatchesHardwareSampler) {
 
 INSTANTIATE_TEST_SUITE_P(Encodings, TextureHeap, testing::Bool());
 
+TEST(PackTextures, ImagesOfTheSameFileShareTexels) {
+  const auto file = std::make_shared<const std::vector<std::uint8_t>>(5, std::uint8_t{7});
+  const auto same = std::make_shared<const std::vector<std::uint8_t>>(*file);
+  const auto other = std::make_shared<const std::vector<std::uint8_t>>(5, std::uint8_t{8});
+  scene::Scene scene;
+  for (const auto& [from, srgb] :
+       {std::pair(file, false), {same, false}, {other, false}, {file, true}}) {
+    scene.images.push_back(noise(8, 8, srgb));
+    scene.images.back().file = from;
+    scene.textures.push_back({static_cast<std::uint32_t>(scene.images.size() - 1), {}});
+  }
+  const render::PackedTextures packed = render::pack_textures(scene, 1 << 20);
+  const auto& textures = packed.textures;
+  EXPECT_EQ(textures[1].first_texel, textures[0].first_texel);
+  EXPECT_EQ(packed.texels.size(), 3 * scene.images[0].pixels.size() / 4);
+  for (const std::size_t i : {2, 3}) {
+    EXPECT_NE(textures[i].first_texel, textures[0].first_texel);
+    EXPECT_EQ(std::memcmp(&packed.texels[textures[i].first_texel], scene.images[i].pixels.data(),
+                          scene.images[i].pixels.size()),
+              0);
+  }
+}
+
 TEST(PackTextures, DropsTopMipLevelsToFitBudget) {
   scene::Scene scene;
   scene.images = {noise(2048, 8, false), noise(64, 64, false)};

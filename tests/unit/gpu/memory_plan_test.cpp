@@ -75,6 +75,17 @@ TEST(MemoryPlan, GivesWhatExceedsTheLimitABlockOfItsOwn) {
   EXPECT_EQ(plan.places[2].block, plan.places[0].block);
 }
 
+TEST(MemoryPlan, UsesWhatIsFreeBesideFixedPlacesWithoutGrowingTheirBlocks) {
+  const std::vector<FixedPlace> fixed{{{60, 1, 5, 9}, {0, 0}}, {{40, 1, 3, 9}, {0, 60}}};
+  const std::vector<Lifetime> frame{{80, 1, 0, 2}, {60, 1, 3, 4}, {20, 1, 0, 9}};
+  const MemoryPlan plan = plan_memory(frame, no_limit, fixed);
+  EXPECT_EQ(plan.block_bytes, (std::vector<std::uint64_t>{100, 20}));
+  EXPECT_EQ(plan.places[0].block, 0u);
+  EXPECT_EQ(plan.places[1].block, 0u);
+  EXPECT_EQ(plan.places[1].offset, 0u);
+  EXPECT_EQ(plan.places[2].block, 1u);
+}
+
 TEST(MemoryPlan, OfNothingHasNoBlocks) {
   EXPECT_TRUE(plan_memory({}, no_limit).block_bytes.empty());
 }

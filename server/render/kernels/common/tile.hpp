@@ -15,15 +15,22 @@ struct Tile {
   int left, top, right, bottom;
 };
 
-/// Calls `work(tile)` for all tiles of an image, on all processors.
+/// Rows of an image, from `top`, which begins a tile, to before `bottom`.
+struct Rows {
+  int top, bottom;
+};
+
+/// Calls `work(tile)` for all tiles of those of the rows that an image has, on all processors.
 template <class Work>
-void for_each_tile(int width, int height, const Work& work) {
+void for_each_tile(int width, int height, Rows rows, const Work& work) {
+  rows = {std::min(rows.top, height), std::min(rows.bottom, height)};
   const int across = (width + tile_side - 1) / tile_side;
-  const int tiles = across * ((height + tile_side - 1) / tile_side);
+  const int tiles = across * ((rows.bottom - rows.top + tile_side - 1) / tile_side);
   for_each_range(tiles, 1, [&](int first, int last) {
     for (int tile = first; tile < last; ++tile) {
-      const int left = tile % across * tile_side, top = tile / across * tile_side;
-      work(Tile{left, top, std::min(left + tile_side, width), std::min(top + tile_side, height)});
+      const int left = tile % across * tile_side, top = rows.top + tile / across * tile_side;
+      work(Tile{left, top, std::min(left + tile_side, width),
+                std::min(top + tile_side, rows.bottom)});
     }
   });
 }

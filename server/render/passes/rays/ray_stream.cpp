@@ -1,10 +1,15 @@
 #include "render/passes/rays/ray_stream.hpp"
 
+#include <algorithm>
+
 #include "shaders/embedded.hpp"
 #include "shaders/shared/ray_mask.h"
 
 namespace heliograph::render {
 namespace {
+
+/// Rays of a strip, about: enough for many cores, few enough for their caches.
+constexpr std::uint32_t strip_rays = 1u << 17;
 
 /// RayCount::blending of a frame's streams; the same in shaders/lib/denoise/frame_blending.glsl.
 std::uint32_t frame_blending(const FrameInputs& in) {
@@ -21,6 +26,19 @@ tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
                       storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, gpu::Memory::device),
           plan.buffer(name + ".rays", sizeof(shared::Ray) * capacity, storage, gpu::Memory::device),
           capacity, kind};
+}
+
+std::vector<kernels::Rows> ray_strips(const gpu::FramePlan& plan, VkExtent2D extent) {
+  const auto height = static_cast<int>(extent.height);
+  constexpr auto tile = static_cast<std::uint32_t>(kernels::tile_side);
+  const std::uint32_t tile_rows = std::max(strip_rays / (extent.width * tile), 1u);
+  if (!plan.uses_host_kernels()) return {{0, height}};
+  const int step = static_cast<int>(tile_rows * tile);
+  std::vector<kernels::Rows> strips;
+  for (int top = 0; top < height; top += step) {
+    strips.push_back({top, std::min(top + step, height)});
+  }
+  return strips;
 }
 
 void begin_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,

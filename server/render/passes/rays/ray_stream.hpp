@@ -2,8 +2,10 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "render/kernels/common/ray_sink.hpp"
+#include "render/kernels/common/tile.hpp"
 #include "render/passes/frame_inputs.hpp"
 #include "shaders/shared/ray.h"
 
@@ -23,6 +25,10 @@ enum class Blending { stops, by_coverage };
 /// The pass `name`.begin, which empties the stream.
 void begin_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
                 const tracing::RayStream& rays, Blending blending = Blending::by_coverage);
+
+/// The rows of a frame of that size, in parts whose rays are made, traced and resolved before those
+/// of the next: where the host does so, the buffers of one part are enough for all. Elsewhere one.
+std::vector<kernels::Rows> ray_strips(const gpu::FramePlan& plan, VkExtent2D extent);
 
 /// A stream in the list of a pass's bindings.
 inline kernels::RaySource<gpu::Declared> ray_source(const tracing::RayStream& rays) {

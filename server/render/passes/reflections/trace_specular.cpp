@@ -34,12 +34,13 @@ Target make_target(gpu::FramePlan& plan, bool half) {
 }
 
 tracing::RayStream generate_rays(gpu::FramePlan& plan, const FrameInputs& in,
-                                 const GBuffer& gbuffer, const Target& target,
+                                 const GBuffer& gbuffer, const Target& target, kernels::Rows rows,
                                  std::optional<gpu::ImageRef> planned) {
   const std::uint32_t features = in.scene.features;
   const VkExtent2D most = target.size.of(plan.extent());
+  const auto height = static_cast<std::uint32_t>(rows.bottom - rows.top);
   const auto rays =
-      declare_rays(plan, "specular", most.width * most.height, tracing::RayKind::reflection);
+      declare_rays(plan, "specular", most.width * height, tracing::RayKind::reflection);
   const auto& shader = target.directions ? shaders::specular_rays_half : shaders::specular_rays;
   begin_rays(plan, in, "specular", rays);
   plan.pass("specular.rays", in.program(shader, features))
@@ -57,9 +58,9 @@ tracing::RayStream generate_rays(gpu::FramePlan& plan, const FrameInputs& in,
                                               has_plan && leaves_samples_out(in)};
       })
       .dispatch(target.size)
-      .host([in](const kernels::SpecularRaysJob::Pass& pass) {
+      .host([in, rows](const kernels::SpecularRaysJob::Pass& pass) {
         kernels::specular_rays(
-            {pass, in.constants, kernels::has_layers(in.scene.features), in.lobe_tables()});
+            {pass, in.constants, kernels::has_layers(in.scene.features), in.lobe_tables(), rows});
       });
   return in.settings.specular.sort_rays ? sort_rays(plan, in, "specular", rays) : rays;
 }
@@ -147,8 +148,10 @@ gpu::ImageRef trace_specular(gpu::FramePlan& plan, const FrameInputs& in, const 
                              std::optional<gpu::ImageRef> planned) {
   const Target target = make_target(plan, in.settings.specular.half_resolution);
   if (target.directions) planned.reset();
-  const auto rays = generate_rays(plan, in, gbuffer, target, planned);
-  trace_and_shade(plan, in, "specular", rays, gbuffer, target);
+  for (const kernels::Rows rows : ray_strips(plan, target.size.of(plan.extent()))) {
+    const auto rays = generate_rays(plan, in, gbuffer, target, rows, planned);
+    trace_and_shade(plan, in, "specular", rays, gbuffer, target);
+  }
   return target.directions ? upsample(plan, in, gbuffer, target) : target.radiance;
 }
 
