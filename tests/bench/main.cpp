@@ -136,15 +136,16 @@ struct Run {
   Table table;
 };
 
-/// The bare loop for a half of an iteration of the blur, such as "visibility.atrous.3.first".
+/// The bare loop for an iteration of the blur in two halves, such as "visibility.atrous.3".
 std::optional<double> bare_loop_milliseconds(const std::string& pass, VkExtent2D extent) {
   char signal[16];
   int level = 0, end = 0;
-  if (std::sscanf(pass.c_str(), "%15[a-z].atrous.%d.%n", signal, &level, &end) != 2 || end == 0) {
+  if (std::sscanf(pass.c_str(), "%15[a-z].atrous.%d%n", signal, &level, &end) != 2 ||
+      end != static_cast<int>(pass.size())) {
     return std::nullopt;
   }
-  return atrous_milliseconds(std::string(signal) == "visibility", extent.width, extent.height,
-                             1 << level);
+  return 2.0 * atrous_milliseconds(std::string(signal) == "visibility", extent.width, extent.height,
+                                   1 << level);
 }
 
 /// Adds reference times per pass: Embree alone, in its fastest configuration, on the rays of the

@@ -9,302 +9,151 @@
 #define HWY_TARGET_INCLUDE "render/kernels/atrous.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
-#include "render/kernels/simd/atrous_taps.hpp"
-#include "render/kernels/simd/edge_stopping.hpp"
-#include "render/kernels/simd/signal_rows.hpp"
-
-#ifndef HELIOGRAPH_ATROUS_JOB
-#define HELIOGRAPH_ATROUS_JOB
-namespace heliograph::render::kernels {
-
-struct Job : AtrousJob {
-  bool visibility;  // otherwise specular
-  float footprint;  // of a pixel at one metre, or at any in an orthographic view
-  bool orthographic;
-};
-
-}  // namespace heliograph::render::kernels
-#endif
+#include "render/kernels/simd/atrous/filter.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
+template <class Job>
+HWY_INLINE AtrousPass make_pass(const Job& job, const shared::AtrousConstants& constants) {
+  const shared::FrameConstants& frame = job.frame;
+  return {constants,
+          frame,
+          job.depth_slope,
+          job.height,
+          2.0f * std::abs(frame.unproject.y) / static_cast<float>(frame.extent.y),
+          (frame.flags & shared::frame_orthographic) != 0,
+          atrous_steps(constants)};
+}
 
-/// One iteration over an area; lanes are pixels side by side. `straight`: all taps lie on one axis.
-template <class D, bool visibility, bool straight>
-class AtrousArea {
-  using V = hn::Vec<D>;
-  using DI = hn::RebindToSigned<D>;
-  using M = hn::Mask<D>;
+/// One iteration in one pass.
+template <class D, bool visibility>
+class AtrousWhole {
   using Rows = SignalRows<D, visibility>;
 
-  /// Of the plane through a pixel: what a neighbour's Z is multiplied with, and what is expected of
-  /// the product. Their difference is the exponent.
-  struct Expected {
-    V scale;
-    V product;
-  };
-  /// All exponents count octaves.
-  struct Center {
-    Triple<V> normal;  // times the power
-    V roughness;
-    V roughness_reach;
-    V view_z;
-    Pair<V> slope;
-    V curve;                                 // 1 / Z, 0 in orthographic views
-    V flattened;                             // 1 - Z * curve
-    V footprint;                             // half of a pixel's
-    V inv_allowed;                           // 1 / what the plane may be missed by, per pixel
-    V curve_scale, depth_scale, flat_scale;  // that times slope * curve, Z, slope * flattened
-    V bright[2];
-    V inv_sigma[2];  // 1 / what a difference of brightness may be
-  };
-  struct Sums {
-    Quad<V> value;
-    V total[2];
-  };
-
  public:
-  HWY_INLINE AtrousArea(const Job& job, const Area& area)
+  HWY_INLINE AtrousWhole(const AtrousJob& job, const Area& area)
       : job_(job),
-        c_(job.constants),
         area_(area),
-        least_step_(static_cast<int>(hn::GetLane(steps(hn::Zero(d_))))),
-        most_step_(static_cast<int>(hn::GetLane(steps(set(1.0f))))),
-        rows_(job.guide, job.signal, job.width, job.height, area,
-              c_.columns > 0 ? reach(most_step_) : 1, c_.rows > 0 ? reach(most_step_) : 1),
-        taps_(c_, job.frame, job.height, least_step_, most_step_) {}
+        pass_(make_pass(job, job.constants)),
+        reach_(pass_.steps.reach()),
+        rows_(job.guide, job.signal, job.width, job.height,
+              {area.left, area.right, std::max(area.top - reach_, 0), area.bottom},
+              {reach_, reach_, reach_}),
+        filter_(pass_, rows_) {}
 
   HWY_INLINE void run() {
     const int lanes = static_cast<int>(hn::Lanes(d_));
     for (int y = area_.top; y < area_.bottom; ++y) {
       rows_.advance(y);
-      if (has(shared::atrous_variance_prefilter)) rows_.add_variance_rows(y);
-      for (int x = area_.left; x < area_.right; x += lanes) {
-        block(std::min(x, area_.right - lanes), y);
+      filter_.begin_row(area_.left, area_.right, y);
+      float* const out = row_of<float>(job_.filtered, y);
+      for (int start = area_.left; start < area_.right; start += lanes) {
+        const int x = std::min(start, area_.right - lanes);
+        store4(d_, filter_.filtered(x, y), out + 4 * x);
       }
     }
   }
 
  private:
-  /// Of the taps, jitter included, in pixels.
-  static int reach(int step) { return 2 * step + step / 4 + 1; }
+  const D d_{};
+  const AtrousJob& job_;
+  Area area_;
+  AtrousPass pass_;
+  int reach_;
+  Rows rows_;
+  AtrousFilter<D, visibility, false, Rows::signal> filter_;
+};
 
-  bool has(std::uint32_t flag) const { return (c_.flags & flag) != 0; }
-  HWY_INLINE V set(float value) const { return hn::Set(d_, value); }
-  HWY_INLINE V load(const float* texels, int plane) const { return rows_.load(texels, plane); }
+/// Both halves of an iteration: rows of the first stay in the cache for the second.
+template <class D, bool visibility>
+class AtrousHalfPair {
+  using Rows = SignalRows<D, visibility>;
 
-  HWY_INLINE V variance_at(const float* texels, int column, int i) const {
-    if (has(shared::atrous_variance_prefilter)) return rows_.smooth_variance(column, i);
-    return load(texels, Rows::variance + i);
-  }
+ public:
+  HWY_INLINE AtrousHalfPair(const AtrousHalvesJob& job, const Area& area)
+      : job_(job),
+        area_(area),
+        first_pass_(make_pass(job, job.constants.first)),
+        second_pass_(make_pass(job, job.constants.second)),
+        across_first_(job.constants.first.columns > 0),
+        reach_(first_pass_.steps.reach()),
+        between_(grown(area, across_first_ ? 1 : reach_, across_first_ ? reach_ : 1)),
+        rows_(job.guide, job.signal, job.width, job.height,
+              grown(between_, across_first_ ? reach_ : 1, across_first_ ? 1 : reach_),
+              {reach_, across_first_ ? 2 * reach_ : reach_, across_first_ ? 1 : reach_}, 2),
+        first_(first_pass_, rows_),
+        second_(second_pass_, rows_) {}
 
-  /// 1 / (sigma x standard deviation + smallest difference), in octaves.
-  HWY_INLINE V inv_sigma(V of) const {
-    const V safe = hn::Max(of, set(1e-30f));
-    const V noise = safe * hn::ApproximateReciprocalSqrt(safe);
-    const float smallest = visibility ? 1e-3f : 1e-4f;
-    const V allowed = hn::MulAdd(set(c_.luminance_sigma / octaves), noise, set(smallest / octaves));
-    return hn::ApproximateReciprocal(allowed);
-  }
-
-  HWY_INLINE Center center(const float* texels, int x, int y) const {
-    Center c;
-    const V power = set(c_.normal_power * octaves);
-    c.normal = Triple<V>{load(texels, Rows::normal_x), load(texels, Rows::normal_y),
-                         load(texels, Rows::normal_z)} *
-               power;
-    c.roughness = load(texels, Rows::roughness);
-    c.view_z = load(texels, Rows::view_z);
-    c.slope = load2(d_, row_of<const float>(job_.depth_slope, y) + 2 * x);
-    c.curve = job_.orthographic ? hn::Zero(d_) : reciprocal(c.view_z);
-    c.flattened = job_.orthographic ? set(1.0f) : hn::Zero(d_);
-    c.footprint = set(0.5f * job_.footprint);
-    if (!job_.orthographic) c.footprint = c.footprint * c.view_z;
-    if constexpr (straight) {
-      const V slope = c_.columns > 0 ? c.slope.x : c.slope.y;
-      const float sigma = c_.depth_sigma / octaves;
-      c.inv_allowed = hn::ApproximateReciprocal(
-          hn::Max(set(sigma) * (hn::Abs(slope) + c.footprint), set(1e-30f)));
-      c.depth_scale = c.view_z * c.inv_allowed;
-      const V steepness = slope * c.inv_allowed;
-      c.curve_scale = steepness * c.curve;
-      c.flat_scale = steepness * c.flattened;
-    }
-    if constexpr (visibility) {
-      c.bright[0] = load(texels, Rows::channels);
-      c.bright[1] = load(texels, Rows::channels + 1);
-    } else {
-      c.bright[0] = load(texels, Rows::brightness);
-      c.roughness_reach = hn::ApproximateReciprocal(
-          hn::MulAdd(set(0.2f / octaves), c.roughness, set(0.02f / octaves)));
-    }
-    for (int i = 0; i < Rows::variances; ++i) {
-      c.inv_sigma[i] = inv_sigma(variance_at(texels, x - area_.left, i));
-    }
-    return c;
-  }
-
-  /// plane_distance() / depth_allowance() of the shaders, taken apart.
-  HWY_INLINE Expected expected(const Center& c, const AtrousTap& tap) const {
-    if constexpr (straight) {
-      const V inv_distance = set(tap.inv_distance), side = set(tap.side);
-      const V scale = hn::NegMulAdd(side, c.curve_scale, c.inv_allowed * inv_distance);
-      const V product = c.depth_scale * inv_distance;
-      return {scale, job_.orthographic ? hn::MulAdd(side, c.flat_scale, product) : product};
-    } else {
-      const V rise = hn::MulAdd(c.slope.x, set(tap.dx), c.slope.y * set(tap.dy));
-      const V allowed = hn::MulAdd(c.footprint, set(1.0f / tap.inv_distance), hn::Abs(rise));
-      const V inv_allowed =
-          hn::ApproximateReciprocal(hn::Max(set(c_.depth_sigma / octaves) * allowed, set(1e-30f)));
-      return {inv_allowed * hn::NegMulAdd(rise, c.curve, set(1.0f)),
-              inv_allowed * hn::MulAdd(rise, c.flattened, c.view_z)};
+  HWY_INLINE void run() {
+    const int ahead = across_first_ ? reach_ : 1;
+    for (int y = area_.top, next = between_.top; y < area_.bottom; ++y) {
+      for (; next <= std::min(y + ahead, job_.height - 1); ++next) filter_first(next);
+      filter_second(y);
     }
   }
 
-  HWY_INLINE void add_tap(const Center& c, const AtrousTap& tap, int column, M requested,
-                          Sums& sums) const {
-    const float* const texels = tap.texels + column;
-    const V z = load(texels, Rows::view_z);
-    const M valid = hn::And(requested, hn::Gt(z, hn::Zero(d_)));
-    V exponent = hn::MulAdd(c.normal.x, load(texels, Rows::normal_x),
-                            set(tap.exponent + weight_one - c_.normal_power * octaves));
-    exponent = hn::MulAdd(c.normal.y, load(texels, Rows::normal_y), exponent);
-    exponent = hn::MulAdd(c.normal.z, load(texels, Rows::normal_z), exponent);
-    const Expected plane = expected(c, tap);
-    exponent = exponent - hn::Abs(hn::MulSub(z, plane.scale, plane.product));
-    const V x = load(texels, Rows::channels), y = load(texels, Rows::channels + 1);
-    const V v = load(texels, Rows::channels + 2), w = load(texels, Rows::channels + 3);
-    if constexpr (visibility) {
-      const V of_x = weight(valid, exponent, c, x, 0), of_y = weight(valid, exponent, c, y, 1);
-      sums.value.x = hn::MulAdd(of_x, x, sums.value.x);
-      sums.value.y = hn::MulAdd(of_y, y, sums.value.y);
-      sums.value.z = hn::MulAdd(of_x * of_x, v, sums.value.z);
-      sums.value.w = hn::MulAdd(of_y * of_y, w, sums.value.w);
-      sums.total[0] = sums.total[0] + of_x;
-      sums.total[1] = sums.total[1] + of_y;
-    } else {
-      const V rougher = hn::Abs(load(texels, Rows::roughness) - c.roughness);
-      exponent = hn::NegMulAdd(rougher, c.roughness_reach, exponent);
-      const V all = weight(valid, exponent, c, load(texels, Rows::brightness), 0);
-      sums.value.x = hn::MulAdd(all, x, sums.value.x);
-      sums.value.y = hn::MulAdd(all, y, sums.value.y);
-      sums.value.z = hn::MulAdd(all, v, sums.value.z);
-      sums.value.w = hn::MulAdd(all * all, w, sums.value.w);
-      sums.total[0] = sums.total[0] + all;
+ private:
+  Area grown(const Area& area, int columns, int rows) const {
+    return {std::max(area.left - columns, 0), std::min(area.right + columns, job_.width),
+            std::max(area.top - rows, 0), std::min(area.bottom + rows, job_.height)};
+  }
+
+  HWY_INLINE void filter_first(int y) {
+    const int lanes = static_cast<int>(hn::Lanes(d_));
+    rows_.advance(y);
+    first_.begin_row(between_.left, between_.right, y);
+    for (int start = between_.left; start < between_.right; start += lanes) {
+      const int x = std::min(start, between_.right - lanes);
+      rows_.store_second(first_.filtered(x, y), x, y);
     }
+    rows_.extend_second(y);
   }
 
-  HWY_INLINE V weight(M valid, V exponent, const Center& c, V bright, int i) const {
-    const V apart = hn::Abs(bright - c.bright[i]);
-    return edge_weight(valid, hn::NegMulAdd(apart, c.inv_sigma[i], exponent));
-  }
-
-  HWY_INLINE V levels(V rough) const {
-    V most = set(16.0f);
-    if (has(shared::atrous_lobe_limit) && !job_.orthographic) {
-      const V pixels = rough * rough * set(2.0f / job_.footprint);
-      // The whole part of the logarithm is the exponent; below 1 it is negative.
-      const auto bits = hn::BitCast(DI(), hn::Max(pixels, set(0.5f)));
-      most = hn::ConvertTo(d_, hn::ShiftRight<23>(bits)) - set(126.0f);
-    }
-    if (!has(shared::atrous_levels_by_roughness)) return most;
-    const V some = hn::IfThenElse(hn::Le(rough, set(shared::atrous_blurred_once_roughness)),
-                                  set(1.0f), set(16.0f));
-    const M unblurred = hn::Le(rough, set(shared::atrous_unblurred_roughness));
-    return hn::Min(most, hn::IfThenElse(unblurred, hn::Zero(d_), some));
-  }
-
-  /// Pixels from tap to tap.
-  HWY_INLINE V steps(V rough) const {
-    const float low = c_.start_threshold - shared::atrous_step_half_band;
-    const float high = c_.start_threshold + shared::atrous_step_half_band;
-    const V t = clamped((rough - set(low)) * set(1.0f / (high - low)), 0.0f, 1.0f);
-    const V twice = t * t * hn::NegMulAdd(set(2.0f), t, set(3.0f));
-    return hn::Round(set(static_cast<float>(1 << c_.level)) * (set(1.0f) + twice));
-  }
-
-  HWY_INLINE void block(int x, int y) {
-    const int column = x - area_.left;
-    const float* const texels = rows_.row(y) + column;
-    const V rough = load(texels, Rows::roughness);
-    const Quad<V> value{load(texels, Rows::channels), load(texels, Rows::channels + 1),
-                        load(texels, Rows::channels + 2), load(texels, Rows::channels + 3)};
-    const M active = hn::And(hn::Gt(load(texels, Rows::view_z), hn::Zero(d_)),
-                             hn::Lt(set(static_cast<float>(c_.level)), levels(rough)));
-    float* const out = row_of<float>(job_.filtered, y) + 4 * x;
-    if (hn::AllFalse(d_, active)) {
-      store4(d_, value, out);
-      return;
-    }
-    const Center c = center(texels, x, y);
-    Sums sums{value, {set(1.0f), set(1.0f)}};
-    if (least_step_ == most_step_) {
-      add_taps(c, most_step_, column, y, active, sums);
-    } else {
-      add_taps_of_steps(c, hn::Min(steps(rough), set(static_cast<float>(most_step_))), column, y,
-                        active, sums);
-    }
-    store4(d_, select(active, result(sums, value), value), out);
-  }
-
-  HWY_INLINE Quad<V> result(const Sums& sums, const Quad<V>& value) const {
-    const V by_x = reciprocal(sums.total[0]);
-    const V by_y = visibility ? reciprocal(sums.total[1]) : by_x;
-    Quad<V> filtered{sums.value.x * by_x, sums.value.y * by_y, sums.value.z * by_x,
-                     sums.value.w * (by_y * by_y)};
-    if constexpr (visibility) filtered.z = filtered.z * by_x;
-    if (has(shared::atrous_keep_variance)) {
-      if constexpr (visibility) filtered.z = value.z;
-      filtered.w = value.w;
-    }
-    return filtered;
-  }
-
-  HWY_INLINE void add_taps(const Center& c, int step, int column, int y, M requested, Sums& sums) {
-    const auto row = [this](int at) { return rows_.row(at); };
-    for (const AtrousTap& tap : taps_.at(step, y, row)) add_tap(c, tap, column, requested, sums);
-  }
-
-  /// Pixels of each step by themselves.
-  HWY_INLINE void add_taps_of_steps(const Center& c, V step, int column, int y, M active,
-                                    Sums& sums) {
-    for (M left = active; !hn::AllFalse(d_, left);) {
-      const float next = hn::GetLane(hn::MinOfLanes(d_, hn::IfThenElse(left, step, set(1e9f))));
-      const M same = hn::And(left, hn::Eq(step, set(next)));
-      add_taps(c, static_cast<int>(next), column, y, same, sums);
-      left = hn::AndNot(same, left);
+  HWY_INLINE void filter_second(int y) {
+    const int lanes = static_cast<int>(hn::Lanes(d_));
+    second_.begin_row(area_.left, area_.right, y);
+    float* const out = row_of<float>(job_.filtered, y);
+    for (int start = area_.left; start < area_.right; start += lanes) {
+      const int x = std::min(start, area_.right - lanes);
+      store4(d_, second_.filtered(x, y), out + 4 * x);
     }
   }
 
   const D d_{};
-  const Job& job_;
-  const shared::AtrousConstants& c_;
+  const AtrousHalvesJob& job_;
   Area area_;
-  int least_step_, most_step_;
+  AtrousPass first_pass_, second_pass_;
+  bool across_first_;
+  int reach_;
+  Area between_;  // where the first half is needed
   Rows rows_;
-  AtrousTapRows taps_;
+  AtrousFilter<D, visibility, true, Rows::signal> first_;
+  AtrousFilter<D, visibility, true, Rows::second_signal> second_;
 };
 
-template <class D, bool visibility>
-void filter_area_of(const Job& job, const Area& area) {
-  if (job.constants.columns == 0 || job.constants.rows == 0) {
-    AtrousArea<D, visibility, true>(job, area).run();
+template <template <class, bool> class Kernel, bool visibility, class Job>
+void filter_in_lanes(const Job& job, const Area& area) {
+  using Wide = hn::ScalableTag<float>;
+  using Single = hn::FixedTag<float, 1>;
+  if (job.width >= static_cast<int>(hn::Lanes(Wide()))) {
+    Kernel<Wide, visibility>(job, area).run();
   } else {
-    AtrousArea<D, visibility, false>(job, area).run();
+    Kernel<Single, visibility>(job, area).run();
   }
 }
 
-void filter_area(const Job& job, const Area& area) {
-  using Wide = hn::ScalableTag<float>;
-  using Single = hn::FixedTag<float, 1>;
-  const bool wide = job.width >= static_cast<int>(hn::Lanes(Wide()));
-  if (job.visibility) {
-    wide ? filter_area_of<Wide, true>(job, area) : filter_area_of<Single, true>(job, area);
-  } else {
-    wide ? filter_area_of<Wide, false>(job, area) : filter_area_of<Single, false>(job, area);
-  }
+void filter_visibility(const AtrousJob& job, const Area& area) {
+  filter_in_lanes<AtrousWhole, true>(job, area);
+}
+void filter_specular(const AtrousJob& job, const Area& area) {
+  filter_in_lanes<AtrousWhole, false>(job, area);
+}
+void filter_visibility_halves(const AtrousHalvesJob& job, const Area& area) {
+  filter_in_lanes<AtrousHalfPair, true>(job, area);
+}
+void filter_specular_halves(const AtrousHalvesJob& job, const Area& area) {
+  filter_in_lanes<AtrousHalfPair, false>(job, area);
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE
@@ -313,39 +162,57 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace heliograph::render::kernels {
 
-HWY_EXPORT(filter_area);
+HWY_EXPORT(filter_visibility);
+HWY_EXPORT(filter_specular);
+HWY_EXPORT(filter_visibility_halves);
+HWY_EXPORT(filter_specular_halves);
 
 namespace {
 
-/// Bands of rows for taps across. Taps down read many rows, which stay in the cache if they are
-/// narrow; short columns touch few enough pages for the translation of addresses.
-Areas divided(const Job& job) {
-  constexpr int band = 12, strip = 64, segment = 120, block = 64;
-  const auto parts = [](int size, int part) { return (size + part - 1) / part; };
-  if (job.constants.rows == 0) return {1, parts(job.height, band)};
-  if (job.constants.columns > 0) return {1, parts(job.height, block)};
-  return {std::max(job.width / strip, 1), parts(job.height, segment)};
+constexpr int parts(int size, int part) {
+  return std::max((size + part / 2) / part, 1);
 }
 
-void filter(const AtrousJob& pass, bool visibility) {
-  const shared::FrameConstants& frame = pass.frame;
-  const bool orthographic = (frame.flags & shared::frame_orthographic) != 0;
-  const float footprint = 2.0f * std::abs(frame.unproject.y) / static_cast<float>(frame.extent.y);
-  const Job job{pass, visibility, footprint, orthographic};
+/// What is filtered first must exist beside an area, too, in the direction of the second half: few
+/// areas in that direction waste least, and enough for all processors.
+Areas divided(const AtrousHalvesJob& job) {
+  constexpr int strip = 128, band = 90;
+  const bool across_first = job.constants.first.columns > 0;
+  return {across_first ? parts(job.width, strip) : 1,
+          parts(job.height, across_first ? 2 * band : band)};
+}
+Areas divided(const AtrousJob& job) {
+  constexpr int band = 64;
+  return {1, parts(job.height, band)};
+}
+
+template <class Job, class Filter>
+void for_each_area(const Job& job, const Filter& filter) {
   const Areas areas = divided(job);
-  for_each_range(areas.count(), 1, [&](int first, int) {
-    HWY_DYNAMIC_DISPATCH(filter_area)(job, areas.at(first, job.width, job.height));
-  });
+  for_each_range(areas.count(), 1,
+                 [&](int first, int) { filter(areas.at(first, job.width, job.height)); });
 }
 
 }  // namespace
 
 void visibility_atrous(const AtrousJob& job) {
-  filter(job, true);
+  for_each_area(job, [&](const Area& area) { HWY_DYNAMIC_DISPATCH(filter_visibility)(job, area); });
 }
 
 void specular_atrous(const AtrousJob& job) {
-  filter(job, false);
+  for_each_area(job, [&](const Area& area) { HWY_DYNAMIC_DISPATCH(filter_specular)(job, area); });
+}
+
+void visibility_atrous_halves(const AtrousHalvesJob& job) {
+  for_each_area(job, [&](const Area& area) {
+    HWY_DYNAMIC_DISPATCH(filter_visibility_halves)(job, area);
+  });
+}
+
+void specular_atrous_halves(const AtrousHalvesJob& job) {
+  for_each_area(job, [&](const Area& area) {
+    HWY_DYNAMIC_DISPATCH(filter_specular_halves)(job, area);
+  });
 }
 
 }  // namespace heliograph::render::kernels

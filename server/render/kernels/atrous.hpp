@@ -15,9 +15,18 @@ struct AtrousBindings {
 };
 using AtrousJob = FrameJob<AtrousBindings, shared::AtrousConstants>;
 
+/// Both halves of a separable iteration at once: two passes of the shaders, without the image
+/// between them.
+struct AtrousHalves {
+  shared::AtrousConstants first, second;  // one across and one down
+};
+using AtrousHalvesJob = FrameJob<AtrousBindings, AtrousHalves>;
+
 /// On all processors, in the widest vectors that they have. The results agree with the shaders' up
 /// to rounding.
 void visibility_atrous(const AtrousJob& job);
 void specular_atrous(const AtrousJob& job);
+void visibility_atrous_halves(const AtrousHalvesJob& job);
+void specular_atrous_halves(const AtrousHalvesJob& job);
 
 }  // namespace heliograph::render::kernels

@@ -73,7 +73,8 @@ class SpatialVariance {
         if (hn::AllFalse(d_, requested)) continue;
         if (!rows) {
           rows.emplace(job_.guide, job_.moments, job_.width, job_.height,
-                       Area{0, job_.width, first, last}, radius, radius);
+                       Area{0, job_.width, std::max(first - radius, 0), last},
+                       RowReach{radius, radius, radius});
         }
         rows->advance(y);
         block(*rows, view, x, y, requested, frames);
@@ -188,10 +189,10 @@ class SpatialVariance {
           hn::MulAdd(set(128.0f * octaves), cosine, set(weight_one - 128.0f * octaves));
       weight = edge_weight(valid, hn::NegMulAdd(off_plane, inv_allowed, of_normal));
     }
-    sums.moments.x = hn::MulAdd(weight, plane(Rows::channels), sums.moments.x);
-    sums.moments.y = hn::MulAdd(weight, plane(Rows::channels + 1), sums.moments.y);
-    sums.moments.z = hn::MulAdd(weight, plane(Rows::channels + 2), sums.moments.z);
-    sums.moments.w = hn::MulAdd(weight, plane(Rows::channels + 3), sums.moments.w);
+    sums.moments.x = hn::MulAdd(weight, plane(Rows::signal), sums.moments.x);
+    sums.moments.y = hn::MulAdd(weight, plane(Rows::signal + 1), sums.moments.y);
+    sums.moments.z = hn::MulAdd(weight, plane(Rows::signal + 2), sums.moments.z);
+    sums.moments.w = hn::MulAdd(weight, plane(Rows::signal + 3), sums.moments.w);
     sums.total = sums.total + weight;
   }
 

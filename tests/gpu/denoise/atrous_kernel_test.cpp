@@ -11,6 +11,8 @@
 namespace heliograph::test {
 namespace {
 
+namespace kernels = render::kernels;
+
 enum class Signal { visibility, specular };
 using Texels = std::vector<glm::vec4>;
 
@@ -60,6 +62,12 @@ class AtrousRig {
     by_host_ = rig_.plan().image("host", four);
     declare("atrous", by_shader_, false);
     declare("atrous.host", by_host_, true);
+    between_ = rig_.plan().image("between", four);
+    by_two_shaders_ = rig_.plan().image("shaders", four);
+    both_by_host_ = rig_.plan().image("both.host", four);
+    declare_shader("atrous.first", signal_, between_, &kernels::AtrousHalves::first);
+    declare_shader("atrous.second", between_, by_two_shaders_, &kernels::AtrousHalves::second);
+    declare_halves();
     rig_.set_view(camera(orthographic), 5);
   }
 
@@ -71,7 +79,17 @@ class AtrousRig {
   ErrorStatistics compare(const shared::AtrousConstants& constants) {
     constants_ = constants;
     rig_.run();
-    const render::FloatImage shader = rig_.read(by_shader_), host = rig_.read(by_host_);
+    return compared(by_shader_, by_host_);
+  }
+  /// Both halves at once with two passes of the shader.
+  ErrorStatistics compare(const kernels::AtrousHalves& halves) {
+    halves_ = halves;
+    rig_.run();
+    return compared(by_two_shaders_, both_by_host_);
+  }
+
+  ErrorStatistics compared(gpu::ImageRef by_shader, gpu::ImageRef by_host) {
+    const render::FloatImage shader = rig_.read(by_shader), host = rig_.read(by_host);
     const render::FloatImage signal = rig_.read(signal_);
     ErrorStatistics result{};
     for (std::size_t i = 0; i < shader.rgba.size(); ++i) {
@@ -114,18 +132,43 @@ class AtrousRig {
     rig_.plan().use_host_kernels(host);
     rig_.plan()
         .pass(name, rig_.inputs().program(shader))
-        .bind<render::kernels::AtrousBindings>(
+        .bind<kernels::AtrousBindings>(
             {.guide = guide_, .depth_slope = slope_, .signal = signal_, .filtered = filtered})
         .constants([this] { return constants_; })
         .dispatch(rig_.plan().extent())
-        .host(visibility ? render::kernels::visibility_atrous : render::kernels::specular_atrous,
+        .host(visibility ? kernels::visibility_atrous : kernels::specular_atrous, rig_.constants());
+  }
+
+  void declare_shader(const std::string& name, gpu::ImageRef from, gpu::ImageRef to,
+                      shared::AtrousConstants kernels::AtrousHalves::*half) {
+    const bool visibility = kind_ == Signal::visibility;
+    rig_.plan().use_host_kernels(false);
+    rig_.plan()
+        .pass(name, rig_.inputs().program(visibility ? shaders::visibility_atrous
+                                                     : shaders::specular_atrous))
+        .bind<kernels::AtrousBindings>(
+            {.guide = guide_, .depth_slope = slope_, .signal = from, .filtered = to})
+        .constants([this, half] { return halves_.*half; })
+        .dispatch(rig_.plan().extent());
+  }
+  void declare_halves() {
+    rig_.plan().use_host_kernels(true);
+    rig_.plan()
+        .host("atrous.halves", {})
+        .bind<kernels::AtrousBindings>(
+            {.guide = guide_, .depth_slope = slope_, .signal = signal_, .filtered = both_by_host_})
+        .constants([this] { return halves_; })
+        .host(kind_ == Signal::visibility ? kernels::visibility_atrous_halves
+                                          : kernels::specular_atrous_halves,
               rig_.constants());
   }
 
   Signal kind_;
   shared::AtrousConstants constants_{};
+  kernels::AtrousHalves halves_{};
   FrameRig rig_;
   gpu::ImageRef guide_, slope_, signal_, by_shader_, by_host_;
+  gpu::ImageRef between_, by_two_shaders_, both_by_host_;
 };
 
 shared::AtrousConstants constants(int level, int columns, int rows, std::uint32_t flags,
@@ -139,6 +182,17 @@ shared::AtrousConstants constants(int level, int columns, int rows, std::uint32_
   made.depth_sigma = 1.0f;
   made.start_threshold = start_threshold;
   made.flags = flags;
+  return made;
+}
+
+/// `across_first`: the first half is the one across.
+kernels::AtrousHalves halves(int level, bool across_first, std::uint32_t flags,
+                             float start_threshold) {
+  const shared::AtrousConstants across = constants(level, 2, 0, flags, start_threshold);
+  const shared::AtrousConstants down = constants(level, 0, 2, flags, start_threshold);
+  kernels::AtrousHalves made =
+      across_first ? kernels::AtrousHalves{across, down} : kernels::AtrousHalves{down, across};
+  made.second.flags &= ~shared::atrous_keep_variance;
   return made;
 }
 
@@ -188,6 +242,42 @@ TEST_P(AtrousKernel, MatchesShaderWhereThreadsShareAFrame) {
       const auto result = rig.compare(constants(level, columns, rows, 5u, 0.2f));
       EXPECT_LT(result.mean, 1e-4) << columns << "," << rows << " level " << level;
       EXPECT_LT(result.max, 5e-3) << columns << "," << rows << " level " << level;
+    }
+  }
+}
+
+TEST_P(AtrousKernel, HalvesAtOnceMatchTwoPassesOfTheShader) {
+  for (const bool orthographic : {false, true}) {
+    AtrousRig rig({77, 45}, GetParam(), orthographic);
+    for (const bool across_first : {false, true}) {
+      for (const int level : {0, 1, 3}) {
+        for (const float threshold : {-1.0f, 0.2f, 2.0f}) {
+          for (const std::uint32_t flags : {0u, 1u, 3u, 5u, 15u}) {
+            const auto result = rig.compare(halves(level, across_first, flags, threshold));
+            const std::string which = std::string(across_first ? "across" : "down") +
+                                      " first, level " + std::to_string(level) + " flags " +
+                                      std::to_string(flags) + " threshold " +
+                                      std::to_string(threshold);
+            EXPECT_LT(result.mean, 1e-4) << which;
+            EXPECT_LT(result.max, 5e-3) << which;
+            EXPECT_GT(result.changed, 0.01) << "the filter changes nothing: " << which;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_P(AtrousKernel, HalvesAtOnceMatchTwoPassesAtAnySize) {
+  for (const VkExtent2D extent :
+       {VkExtent2D{1, 1}, {3, 5}, {16, 2}, {17, 31}, {130, 1}, {1, 200}, {300, 400}, {650, 150}}) {
+    AtrousRig rig(extent, GetParam());
+    for (const bool across_first : {false, true}) {
+      for (const int level : {0, 4}) {
+        const auto result = rig.compare(halves(level, across_first, 5u, 0.2f));
+        EXPECT_LT(result.mean, 1e-4) << extent.width << " x " << extent.height << " level " << level
+                                     << (across_first ? " across first" : " down first");
+      }
     }
   }
 }

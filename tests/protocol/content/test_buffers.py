@@ -81,7 +81,7 @@ class SettingsTakeEffect(Sessions, ServerTestCase):
 
     def test_with_another_scene_and_with_presets(self):
         self.own("other")
-        self.patch("other", {"view": {"buffer": "specular.blur.half"}})
+        self.patch("other", {"view": {"buffer": "specular.blur.even"}})
         self.capture("other")
         self.server.call("settings.preset", {"name": "svgf"}, session="other")
         self.assert_exposed("other")
@@ -148,9 +148,12 @@ class TheListFollows(Sessions, ServerTestCase):
 
     def test_a_preset(self):
         self.own("preset")
-        self.assert_complete("preset", ["visibility.blur.half"], ["visibility.temporal"])
+        of_svgf = ["visibility.temporal", "visibility.blur.odd"]
+        self.assert_complete("preset", ["visibility.blur.even"], of_svgf)
         self.server.call("settings.preset", {"name": "svgf"}, session="preset")
-        self.assert_complete("preset", ["visibility.temporal"], ["visibility.blur.half"])
+        self.assert_complete("preset", of_svgf)
+        self.server.call("settings.preset", {"name": "best"}, session="preset")
+        self.assert_complete("preset", ["visibility.blur.even"], of_svgf)
 
     def test_a_capture_immediately_after_the_patch(self):
         self.own("at-once")

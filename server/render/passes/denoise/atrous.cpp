@@ -13,15 +13,21 @@ gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& g
   const bool separable = config.shape == protocol::BlurKernel::separable;
   const int last = config.iterations - 1;
   const gpu::ImageRef result = image(config.buffers.denoised);
+  const bool halves_at_once = separable && plan.uses_host_kernels();
   // The second half of a separable iteration does not read the image that it writes: all of them
   // can write the same one.
   const bool result_is_written = !feedback || feedback->level != last;
   std::array<gpu::ImageRef, 2> between{result, result};
-  if (last > 0 && !(separable && result_is_written)) {
-    between[0] = between[1] = image(config.buffers.even);
+  if (halves_at_once) {
+    if (last > 0) between[(last + 1) % 2] = image(config.buffers.even);
+  } else {
+    if (last > 0 && !(separable && result_is_written)) {
+      between[0] = between[1] = image(config.buffers.even);
+    }
+    if (last > 1 && !separable) between[1] = image(config.buffers.odd);
   }
-  if (last > 1 && !separable) between[1] = image(config.buffers.odd);
-  const gpu::ImageRef half = separable ? image(config.buffers.half) : gpu::ImageRef{};
+  const bool needs_half = separable && !halves_at_once;
+  const gpu::ImageRef half = needs_half ? image(config.buffers.half) : gpu::ImageRef{};
 
   const auto pass = [&](const std::string& name, gpu::ImageRef from, gpu::ImageRef to, auto shape) {
     plan.pass(name, config.program)
@@ -32,6 +38,18 @@ gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& g
         .constants([constants = config.constants, shape] { return constants(shape()); })
         .dispatch(gpu::each_pixel())
         .host(config.kernel, in.constants);
+  };
+  const auto host_pass = [&](const std::string& name, gpu::ImageRef from, gpu::ImageRef to,
+                             auto half_shape) {
+    plan.host(name, {})
+        .bind<kernels::AtrousBindings>({.guide = guide.surface,
+                                        .depth_slope = gbuffer.depth_slope,
+                                        .signal = from,
+                                        .filtered = to})
+        .constants([constants = config.constants, half_shape] {
+          return kernels::AtrousHalves{constants(half_shape(true)), constants(half_shape(false))};
+        })
+        .host(config.halves_kernel, in.constants);
   };
   for (int level = 0; level <= last; ++level) {
     gpu::ImageRef to = level == last ? result : between[level % 2];
@@ -45,8 +63,12 @@ gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& g
             ((frame.sample_index + static_cast<std::uint32_t>(level)) % 2 == 0) == first_half;
         return KernelShape{level, columns ? 2 : 0, columns ? 0 : 2, first_half};
       };
-      pass(name + ".first", signal, half, [half_shape] { return half_shape(true); });
-      pass(name + ".second", half, to, [half_shape] { return half_shape(false); });
+      if (halves_at_once) {
+        host_pass(name, signal, to, half_shape);
+      } else {
+        pass(name + ".first", signal, half, [half_shape] { return half_shape(true); });
+        pass(name + ".second", half, to, [half_shape] { return half_shape(false); });
+      }
     } else {
       pass(name, signal, to, [level] { return KernelShape{level, 2, 2, false}; });
     }

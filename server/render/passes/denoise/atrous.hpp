@@ -24,7 +24,7 @@ inline constexpr std::array specular_denoised_aspects{
 
 struct AtrousBuffers {
   BufferDescription even, odd;  // between iterations
-  BufferDescription half;       // between the halves of a separable iteration
+  BufferDescription half;       // between the halves of a separable iteration, in shaders
   BufferDescription denoised;
 };
 inline constexpr AtrousBuffers visibility_atrous_buffers{
@@ -52,6 +52,7 @@ struct AtrousConfig {
   const AtrousBuffers& buffers;
   gpu::ProgramSource program;
   void (*kernel)(const kernels::AtrousJob&);
+  void (*halves_kernel)(const kernels::AtrousHalvesJob&);
   int iterations;
   protocol::BlurKernel shape;
   std::function<shared::AtrousConstants(const KernelShape&)> constants;
@@ -64,7 +65,8 @@ struct Feedback {
 };
 
 /// The a-trous filter (Dammertz et al. 2010; paper sections 3.2 and 3.3): `iterations` passes, or
-/// twice as many halves, whose distance between taps doubles from one to the next.
+/// twice as many halves, whose distance between taps doubles from one to the next. A host kernel
+/// runs both halves in one pass.
 /// @return the last iteration's result
 gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                    const Guide& guide, const AtrousConfig& config, gpu::ImageRef signal,

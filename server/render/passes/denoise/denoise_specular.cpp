@@ -56,6 +56,7 @@ AtrousConfig specular_atrous_config(const FrameInputs& in) {
           specular_atrous_buffers,
           in.program(shaders::specular_atrous),
           kernels::specular_atrous,
+          kernels::specular_atrous_halves,
           settings.iterations,
           settings.kernel,
           constants};

@@ -42,6 +42,7 @@ AtrousConfig visibility_atrous_config(const FrameInputs& in) {
           visibility_atrous_buffers,
           in.program(shaders::visibility_atrous),
           kernels::visibility_atrous,
+          kernels::visibility_atrous_halves,
           settings.iterations,
           settings.kernel,
           constants};
