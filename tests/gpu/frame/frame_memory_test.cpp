@@ -161,7 +161,7 @@ TEST_F(FrameMemory, WhatIsTurnedOnAgainReadsNothingThatWasLeftOut) {
 
 TEST_F(FrameMemory, PixelOfADefaultFrameTakesHalfOfItsResources) {
   EXPECT_LT(bytes_per_pixel({}, true), 480.0);
-  EXPECT_GT(bytes_per_pixel({}, false), 900.0);
+  EXPECT_GT(bytes_per_pixel({}, false), 750.0);
 }
 
 TEST_F(FrameMemory, CanceledFrameLeavesHistoriesAsTheyWere) {
